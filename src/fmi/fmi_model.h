@@ -1,0 +1,69 @@
+/* What fmus/<name>/model.c gives the FMI layer, and what the layer gives it.
+ *
+ * model.c reads:
+ *     #include "vars.h"           generated from the description: struct vars, FMU_* constants
+ *     struct model { ... };       all other state; plain data, no pointers
+ *     #define MODEL_BLOB          only if it keeps something beside the state (files, buffers)
+ *     #include "fmi_model.h"
+ * and then defines the functions declared below. The layer is compiled into the same unit.
+ */
+#ifndef FMI_MODEL_H
+#define FMI_MODEL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Everything getFMUState keeps: one memcpy. */
+struct state {
+    struct vars  v;     /* every variable of the description, by its name */
+    struct model m;
+    int64_t      now;   /* [ns] since startTime */
+};
+
+struct fmu {
+    struct state s;
+    void        *blob;  /* what model_open made; NULL without MODEL_BLOB */
+};
+
+/* The model's own functions. They return 0, or -1 after fmu_fail(). */
+
+/* Check the parameters, set f->s.m and all outputs for time 0. May be called again: it must start
+ * from f->s.v alone and leave parameters and inputs as they are. */
+static int model_start(struct fmu *f);
+
+/* Advance from t0 to t1 [ns], t1 > t0, both whole multiples of FMU_TICK_NS, inputs held.
+ * Any split of an interval into steps must give the same outputs at the common points. */
+static int model_step(struct fmu *f, int64_t t0, int64_t t1);
+
+#ifdef MODEL_BLOB
+static int  model_open(struct fmu *f);   /* make f->blob from the parameters; before model_start */
+static int  model_end(struct fmu *f);    /* the run ended well: write files */
+static void model_close(struct fmu *f);  /* free f->blob, delete what is half written */
+#endif
+
+/* What the layer gives the model. */
+
+/* Report a status of Error to the importer; printf format; returns -1. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+static int fmu_fail(struct fmu *f, const char *format, ...);
+
+/* Tell the importer something worth knowing (category logEvents, or logStatusWarning). */
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3), unused))
+#endif
+static void fmu_event(struct fmu *f, const char *format, ...);
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3), unused))
+#endif
+static void fmu_warn(struct fmu *f, const char *format, ...);
+
+/* Folder of the unpacked FMU's resources, ending in a separator, or "" if unknown. */
+#if defined(__GNUC__)
+__attribute__((unused))
+#endif
+static const char *fmu_resources(const struct fmu *f);
+
+#endif
