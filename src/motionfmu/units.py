@@ -1,0 +1,108 @@
+"""Units as FMI carries them: exponents of the SI base units and a factor."""
+
+import math
+import re
+from dataclasses import dataclass
+
+BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+
+# Symbol: (factor to SI, exponents of the base units). FMI counts rad among the base units.
+SYMBOLS: dict[str, tuple[float, dict[str, int]]] = {
+    "1": (1.0, {}),
+    "kg": (1.0, {"kg": 1}),
+    "m": (1.0, {"m": 1}),
+    "mm": (1e-3, {"m": 1}),
+    "um": (1e-6, {"m": 1}),
+    "s": (1.0, {"s": 1}),
+    "ms": (1e-3, {"s": 1}),
+    "min": (60.0, {"s": 1}),
+    "A": (1.0, {"A": 1}),
+    "K": (1.0, {"K": 1}),
+    "rad": (1.0, {"rad": 1}),
+    "deg": (math.pi / 180.0, {"rad": 1}),
+    "rpm": (2.0 * math.pi / 60.0, {"rad": 1, "s": -1}),
+    "Hz": (1.0, {"s": -1}),
+    "N": (1.0, {"kg": 1, "m": 1, "s": -2}),
+    "Pa": (1.0, {"kg": 1, "m": -1, "s": -2}),
+    "bar": (1e5, {"kg": 1, "m": -1, "s": -2}),
+    "W": (1.0, {"kg": 1, "m": 2, "s": -3}),
+    "J": (1.0, {"kg": 1, "m": 2, "s": -2}),
+    "V": (1.0, {"kg": 1, "m": 2, "s": -3, "A": -1}),
+    "Ohm": (1.0, {"kg": 1, "m": 2, "s": -3, "A": -2}),
+    "H": (1.0, {"kg": 1, "m": 2, "s": -2, "A": -2}),
+}
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit by its factor to SI and its base-unit exponents.
+
+    Attributes
+    ----------
+    name : str
+        As written, for example ``N.m.s/rad``.
+    factor : float
+        Value in SI = factor * value in this unit.
+    exponents : tuple of int
+        Exponents in the order of `BASE`.
+    """
+
+    name: str
+    factor: float
+    exponents: tuple[int, ...]
+
+    def attributes(self) -> dict[str, str]:
+        """Attributes of the FMI element BaseUnit."""
+        out = {b: str(e) for b, e in zip(BASE, self.exponents, strict=True) if e}
+        if self.factor != 1.0:
+            out["factor"] = repr(self.factor)
+        return out
+
+
+def parse(name: str) -> Unit:
+    """Read a unit such as ``mm/min``, ``N.m`` or ``kg.m2``.
+
+    Parameters
+    ----------
+    name : str
+        Symbols joined by ``.`` (product) and ``/`` (each divides once), with integer exponents.
+
+    Returns
+    -------
+    Unit
+
+    Raises
+    ------
+    ValueError
+        A symbol is not in `SYMBOLS`; the message names it.
+    """
+    factor, total = 1.0, dict.fromkeys(BASE, 0)
+    for i, part in enumerate(name.split("/")):
+        sign = -1 if i else 1
+        for token in part.split("."):
+            match = re.fullmatch(r"([A-Za-z]+|1)(-?\d+)?", token)
+            if match is None or match[1] not in SYMBOLS:
+                raise ValueError(f'unit "{name}": unknown symbol "{token}"')
+            power = sign * int(match[2] or 1)
+            scale, exponents = SYMBOLS[match[1]]
+            factor *= scale**power
+            for base, e in exponents.items():
+                total[base] += power * e
+    return Unit(name, factor, tuple(total[b] for b in BASE))
+
+
+def convertible(a: str | None, b: str | None) -> bool:
+    """Whether a value may cross a wire between these units unchanged.
+
+    Parameters
+    ----------
+    a, b : str or None
+        Units; None stands for no unit, which goes only with none or ``1``.
+
+    Returns
+    -------
+    bool
+        True if both have the same dimension and the same factor.
+    """
+    ua, ub = parse(a or "1"), parse(b or "1")
+    return ua.exponents == ub.exponents and math.isclose(ua.factor, ub.factor, rel_tol=1e-12)
