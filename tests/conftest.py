@@ -1,7 +1,7 @@
-"""Shared by all tests: where the FMUs are."""
+"""Shared by all tests: where the project and its FMUs are."""
 
 import os
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-os.environ.setdefault("MOTIONFMU_FMUS", str(ROOT / "build" / "fmus"))
+FMUS = Path(os.environ.setdefault("MOTIONFMU_FMUS", str(ROOT / "build" / "fmus")))

@@ -141,7 +141,7 @@ def _check_value(variable: Variable, value: Any) -> Scalar:
         if not low <= value <= high:
             raise ValueError(f"start {value!r} is outside {low} .. {high}")
         return float(value) if variable.type == "f64" else int(value)
-    return value
+    return bool(value) if variable.type == "bool" else str(value)
 
 
 def variable(name: str, causality: str, row: dict[str, Any]) -> Variable:

@@ -1,0 +1,148 @@
+"""The description of an FMU and what is generated from it."""
+
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+from conftest import FMUS, ROOT
+from fmpy import read_model_description
+
+from motionfmu import ctables, describe, pack, units
+from motionfmu.modeldescription import model_description
+
+NAMES = sorted(p.parent.name for p in ROOT.glob("fmus/*/fmu.toml"))
+HEAD = 'name="A"\ndescription="a"\ntick_ns=25\nexperiment={stop=1.0,step=1e-3}\ncores=[]\n'
+
+
+def wrong(rows: str) -> str:
+    with pytest.raises(ValueError) as caught:
+        describe.parse(HEAD + rows, "a/fmu.toml")
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ('[input]\nx={type="f64", doc="d"}', "a/fmu.toml:7: input x: start is missing"),
+        (
+            '[input]\nx={type="f32", start=0.0, doc="d"}',
+            "a/fmu.toml:7: input x: type 'f32' is not one of f64, i32, bool, string",
+        ),
+        ('[input]\nx={type="i32", start=0.5, doc="d"}', "start 0.5 is not of type i32"),
+        ('[input]\nx={type="i32", start=true, doc="d"}', "start True is not of type i32"),
+        ('[input]\nx={type="f64", start=nan, doc="d"}', "start nan is outside -inf .. inf"),
+        ('[parameter]\nx={type="f64", start=3.0, max=2.0, doc="d"}', "start 3.0 is outside"),
+        ('[input]\nx={type="f64", start=0.0}', "doc is missing"),
+        ('[input]\nX={type="f64", start=0.0, doc="d"}', "a name is snake_case"),
+        ('[input]\nx={type="f64", start=0.0, unit="furlong", doc="d"}', 'unknown symbol "furlong"'),
+        ('[input]\nx={type="bool", start=true, unit="m", doc="d"}', "unit 'm' on type bool"),
+        ('[input]\nx={type="f64", dims=[3], start=[0.0, 1.0], doc="d"}', "2 values for 3 elements"),
+        ('[output]\nx={type="f64", start=0.0, doc="d"}', "it is calculated and has no start"),
+        ('[output]\nx={type="f64", dox="d"}', "unknown key 'dox'"),
+        ('[input]\nx={type="f64",start=0.0,doc="d"}\n[output]\nx={type="f64",doc="d"}', "twice"),
+        ("colour=1", "a/fmu.toml:6: unknown key 'colour'"),
+        ("x ==", "a/fmu.toml: Invalid"),
+    ],
+)
+def test_a_wrong_description_names_the_line_and_the_value(rows: str, message: str) -> None:
+    assert message in wrong(rows)
+
+
+def test_a_wrong_file_stops_the_build_with_status_2_and_writes_nothing(tmp_path: Path) -> None:
+    (tmp_path / "fmu.toml").write_text(HEAD + '[input]\nx={type="f64", start=true, doc="d"}')
+    command = [sys.executable, "-m", "motionfmu.pack", "generate", tmp_path, tmp_path / "out"]
+    run = subprocess.run(command, capture_output=True, text=True)
+    assert run.returncode == 2
+    assert run.stderr == f"{tmp_path}/fmu.toml:7: input x: start True is not of type f64\n"
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "factor", "exponents"),
+    [
+        ("m", 1.0, {"m": 1}),
+        ("mm/min", 1e-3 / 60.0, {"m": 1, "s": -1}),
+        ("N.m.s/rad", 1.0, {"kg": 1, "m": 2, "s": -1, "rad": -1}),
+        ("kg.m2", 1.0, {"kg": 1, "m": 2}),
+        ("1/s", 1.0, {"s": -1}),
+        ("rpm/V", 0.10471975511965977, {"kg": -1, "m": -2, "s": 2, "A": 1, "rad": 1}),
+    ],
+)
+def test_units_are_products_of_base_units(name: str, factor: float, exponents: dict) -> None:
+    unit = units.parse(name)
+    assert unit.factor == pytest.approx(factor, rel=1e-15)
+    assert dict(zip(units.BASE, unit.exponents, strict=True)) == {
+        **dict.fromkeys(units.BASE, 0),
+        **exponents,
+    }
+
+
+def test_only_equal_units_share_a_wire() -> None:
+    assert units.convertible("N.m", "kg.m2/s2")
+    assert units.convertible(None, "1")
+    assert not units.convertible("mm", "m")
+    assert not units.convertible("V", None)
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("name", NAMES)
+def test_the_fmu_says_what_the_description_says(name: str, fmi: int) -> None:
+    d = describe.load(ROOT / "fmus" / name / "fmu.toml")
+    md = read_model_description(str(FMUS / f"{name}.fmi{fmi}.fmu"), validate=True)
+    assert (md.guid if fmi == 2 else md.instantiationToken) == d.token
+    found = {v.name: v for v in md.modelVariables}
+    found.pop("time", None)
+    expected = {
+        element: (v, None if v.start is None else v.start[i], ref + i)
+        for v, ref in zip(d.variables, d.references(), strict=True)
+        for i, element in enumerate(v.element_names() if fmi == 2 else [v.name])
+    }
+    assert set(found) == set(expected)
+    for key, (v, start, ref) in expected.items():
+        x = found[key]
+        assert (x.valueReference, x.causality, x.variability) == (ref, v.causality, v.variability)
+        assert (x.unit, x.description) == (v.unit, v.doc)
+        limits = [None if t is None else float(t) for t in (x.min, x.max)]
+        assert limits == [None if t is None else float(t) for t in (v.min, v.max)]
+        if fmi == 3:
+            assert x.shape == v.dims or not v.dims
+        if start is None or v.type == "string":
+            continue
+        read = {"f64": float, "i32": int, "bool": lambda t: t == "true"}[v.type]
+        if fmi == 2:
+            assert read(x.start) == start
+        else:
+            got = x.start if isinstance(x.start, list) else x.start.split()
+            assert [read(t) for t in got] == v.start
+
+
+def test_the_token_changes_with_anything_in_the_description() -> None:
+    a = describe.parse(HEAD + '[output]\nx={type="f64", doc="d"}')
+    b = describe.parse(HEAD + '[output]\nx={type="f64", doc="e"}')
+    assert re.fullmatch(r"\{[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}\}", a.token)
+    assert a.token != b.token
+    assert a.token == describe.parse("# note\n" + HEAD + '[output]\nx={type="f64", doc="d"}').token
+
+
+def test_arrays_become_scalars_with_structured_names_in_fmi_2() -> None:
+    d = describe.parse(HEAD + '[input]\nx={type="i32", dims=[2,3], start=[1,2,3,4,5,6], doc="d"}')
+    two, three = model_description(d, 2).decode(), model_description(d, 3).decode()
+    assert [f'name="x[{i},{j}]"' in two for i in (1, 2) for j in (1, 2, 3)] == [True] * 6
+    assert 'start="1 2 3 4 5 6"' in three and three.count("<Dimension") == 2
+    assert ".x = {{1, 2, 3}, {4, 5, 6}}," in ctables.table(d)
+    assert "int32_t x[2][3];" in ctables.header(d)
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_equal_input_packs_equal_bytes(fmi: int, tmp_path: Path) -> None:
+    source = FMUS / f"scope.fmi{fmi}.fmu"
+    with zipfile.ZipFile(source) as z:
+        library = next(n for n in z.namelist() if n.startswith("binaries/"))
+        (tmp_path / "scope.so").write_bytes(z.read(library))
+    pack.generate(ROOT / "fmus/scope", tmp_path / "gen")
+    target = tmp_path / "again.fmu"
+    pack.archive(ROOT / "fmus/scope", tmp_path / "gen", fmi, tmp_path / "scope.so", target)
+    assert target.read_bytes() == source.read_bytes()
