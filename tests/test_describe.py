@@ -54,7 +54,7 @@ def test_a_wrong_description_names_the_line_and_the_value(rows: str, message: st
 def test_a_wrong_file_stops_the_build_with_status_2_and_writes_nothing(tmp_path: Path) -> None:
     (tmp_path / "fmu.toml").write_text(HEAD + '[input]\nx={type="f64", start=true, doc="d"}')
     command = [sys.executable, "-m", "motionfmu.pack", "generate", tmp_path, tmp_path / "out"]
-    run = subprocess.run(command, capture_output=True, text=True)
+    run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "src")
     assert run.returncode == 2
     assert run.stderr == f"{tmp_path}/fmu.toml:7: input x: start True is not of type f64\n"
     assert not (tmp_path / "out").exists()

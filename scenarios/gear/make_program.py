@@ -1,7 +1,7 @@
 """Write gear.ngc: the outline of an involute spur gear in short straight lines.
 
-A user would get such a file from a CAM system; the numbers are the usual ones of gear geometry
-(module m, z teeth, pressure angle 20 degrees, tip at m above, root at 1.25 m below the pitch circle).
+A user would get such a file from a CAM system; the numbers are the usual ones of gear geometry:
+module m, pressure angle 20 degrees, tip circle m above, root circle 1.25 m below the pitch circle.
 """
 
 import math

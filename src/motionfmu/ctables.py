@@ -92,7 +92,7 @@ def table(d: Description) -> str:
 
 
 def main_unit(model: str, fmi: int) -> str:
-    """Text of fmu_main.c, the unit that joins the model and the FMI layer.
+    """Text of fmu_main.c, which joins model and FMI layer.
 
     Parameters
     ----------

@@ -115,7 +115,7 @@ class Description:
         return f"{{{h[:8]}-{h[8:12]}-{h[12:16]}-{h[16:20]}-{h[20:32]}}}"
 
     def references(self) -> list[int]:
-        """First value reference of each variable; elements take successive ones."""
+        """First value reference of each variable (one per element)."""
         return [0, *itertools.accumulate(v.count for v in self.variables)][:-1]
 
     @property

@@ -1,0 +1,130 @@
+"""How the project reads: docstrings, sizes, names, purity of the cores."""
+
+import ast
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+PYTHON = sorted(ROOT.glob("src/motionfmu/**/*.py"))
+LIBRARIES = sorted((ROOT / "build").glob("lib*.a"))
+# A file past this size is two things.
+LINES_MAX = 500
+# What a core may take from outside: mathematics, and the copies the compiler makes by itself.
+ALLOWED = set(
+    "acos asin atan atan2 ceil copysign cos exp fabs floor fmax fmin fmod hypot ldexp llround log"
+    " lround modf pow rint round sin sqrt tan tanh trunc sincos cbrt"
+    " memcpy memset memcmp memmove _GLOBAL_OFFSET_TABLE_".split()
+)
+
+
+def public_definitions(tree: ast.Module) -> list[ast.FunctionDef | ast.ClassDef]:
+    found = []
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+            found.append(node)
+            if isinstance(node, ast.ClassDef):
+                found += [
+                    m
+                    for m in node.body
+                    if isinstance(m, ast.FunctionDef) and not m.name.startswith("_")
+                ]
+    return found
+
+
+def complaints(text: str) -> list[str]:
+    """What is wrong with the docstrings and signatures of one module."""
+    tree, found = ast.parse(text), []
+    if not ast.get_docstring(tree):
+        found.append("module without docstring")
+    for node in public_definitions(tree):
+        doc = ast.get_docstring(node) or ""
+        first = doc.split("\n", 1)[0]
+        if not first.endswith(".") or len(first) > 64:
+            found.append(f"{node.name}: summary {first!r}")
+        if isinstance(node, ast.FunctionDef):
+            arguments = [a.arg for a in node.args.args if a.arg not in ("self", "cls")]
+            arguments += [a.arg for a in node.args.kwonlyargs]
+            if len(arguments) > 5:
+                found.append(f"{node.name}: {len(arguments)} arguments")
+            if len(arguments) > 0 and "Parameters\n----------" not in doc:
+                found.append(f"{node.name}: parameters not described")
+            missing = [a for a in arguments if not re.search(rf"^[^\n]*\b{a}\b[^\n]*:", doc, re.M)]
+            found += [f"{node.name}: parameter {a} not described" for a in missing]
+    found += [
+        "import *"
+        for n in ast.walk(tree)
+        if isinstance(n, ast.ImportFrom) and any(a.name == "*" for a in n.names)
+    ]
+    return found
+
+
+@pytest.mark.parametrize("file", PYTHON, ids=lambda f: str(f.relative_to(ROOT / "src")))
+def test_public_python_is_described(file: Path) -> None:
+    assert complaints(file.read_text()) == []
+
+
+def test_the_description_check_can_fail() -> None:
+    bad = '"""M."""\nfrom a import *\ndef f(a, b, c, d, e, g):\n    """Do it"""\n'
+    assert len(complaints(bad)) == 10
+
+
+def sources() -> list[Path]:
+    names = subprocess.run(
+        ["git", "ls-files", "*.c", "*.h", "*.inc", "*.py", "*.mo"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split()
+    return [ROOT / n for n in names]
+
+
+def test_no_file_is_two_things() -> None:
+    long = {str(f.relative_to(ROOT)): n for f in sources() if (n := lines(f)) > LINES_MAX}
+    assert long == {}
+
+
+def lines(file: Path) -> int:
+    return len(file.read_text().splitlines()) if file.exists() else 0
+
+
+def test_c_file_names_are_unique_because_sources_are_packed_flat() -> None:
+    names = [f.name for f in sources() if f.suffix in (".c", ".h", ".inc") and f.name != "model.c"]
+    assert sorted(names) == sorted(set(names))
+
+
+def outside_names(library: Path) -> set[str]:
+    listing = subprocess.run(["nm", library], capture_output=True, text=True, check=True).stdout
+    rows = [line.split() for line in listing.splitlines()]
+    own = {r[-1] for r in rows if len(r) == 3}
+    return {r[-1] for r in rows if len(r) == 2 and r[0] == "U"} - own
+
+
+@pytest.mark.parametrize("library", LIBRARIES, ids=lambda f: f.name)
+def test_cores_use_mathematics_only(library: Path) -> None:
+    assert outside_names(library) <= ALLOWED
+
+
+@pytest.mark.parametrize("library", LIBRARIES, ids=lambda f: f.name)
+def test_cores_keep_no_variables_of_their_own(library: Path) -> None:
+    listing = subprocess.run(["nm", library], capture_output=True, text=True, check=True).stdout
+    own = [line for line in listing.splitlines() if re.search(r" [bBdDcC] ", line)]
+    assert own == []
+
+
+def test_every_core_is_checked_for_purity() -> None:
+    cores = {p.parent.name for p in ROOT.glob("src/*/*.c")} - {"plant", "fmi"}
+    assert {f"lib{c}.a" for c in cores} == {f.name for f in LIBRARIES}
+
+
+def test_generated_and_private_things_are_not_committed() -> None:
+    found = subprocess.run(
+        ["git", "grep", "-nIE", "(/root/|/work/|TODO|FIXME)", "--", ".", ":!tests/test_style.py"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    ).stdout
+    assert found == ""
