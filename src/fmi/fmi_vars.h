@@ -1,0 +1,27 @@
+/* The table of variables that the generated vars.c fills in and the FMI layer reads. */
+#ifndef FMI_VARS_H
+#define FMI_VARS_H
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum var_type { VAR_F64, VAR_I32, VAR_BOOL, VAR_STRING };
+
+/* Those a call may set come first: see settable() in fmi_values.inc. */
+enum var_causality { CAUSE_PARAMETER, CAUSE_INPUT, CAUSE_OUTPUT, CAUSE_LOCAL };
+
+enum var_variability { VARY_FIXED, VARY_TUNABLE, VARY_DISCRETE, VARY_CONTINUOUS };
+
+struct var_info {
+    const char *name;
+    uint32_t ref;         /* value reference of the first element; the others follow */
+    uint32_t count;       /* elements, row-major */
+    uint32_t offset;      /* [byte] of the first element in struct vars */
+    uint8_t  type;        /* enum var_type */
+    uint8_t  causality;   /* enum var_causality */
+    uint8_t  variability; /* enum var_variability */
+    double   min, max;    /* -INFINITY, INFINITY where there is no limit */
+};
+
+#endif
