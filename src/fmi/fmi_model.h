@@ -5,7 +5,11 @@
  *     struct model { ... };       all other state; plain data, no pointers
  *     #define MODEL_BLOB          only if it keeps something beside the state (files, buffers)
  *     #include "fmi_model.h"
- * and then defines the functions declared below. The layer is compiled into the same unit.
+ * and then defines the functions declared below. The layer is compiled into the same unit; its own
+ * names start with fmi, FMI, var_, VAR_, CAUSE_ and VARY_.
+ *
+ * What a model can rely on: numbers are finite and within the limits of the description, strings
+ * end; fixed parameters do not change after model_start; no function is called out of order.
  */
 #ifndef FMI_MODEL_H
 #define FMI_MODEL_H
@@ -29,7 +33,8 @@ struct fmu {
 /* The model's own functions. They return 0, or -1 after fmu_fail(). */
 
 /* Check the parameters, set f->s.m and all outputs for time 0. May be called again: it must start
- * from f->s.v alone and leave parameters and inputs as they are. */
+ * from f->s.v alone and leave parameters and inputs as they are. f->s.m and the outputs come
+ * cleared to 0. */
 static int model_start(struct fmu *f);
 
 /* Advance from t0 to t1 [ns], t1 > t0, both whole multiples of FMU_TICK_NS, inputs held.
@@ -37,9 +42,16 @@ static int model_start(struct fmu *f);
 static int model_step(struct fmu *f, int64_t t0, int64_t t1);
 
 #ifdef MODEL_BLOB
-static int  model_open(struct fmu *f);   /* make f->blob from the parameters; before model_start */
-static int  model_end(struct fmu *f);    /* the run ended well: write files */
-static void model_close(struct fmu *f);  /* free f->blob, delete what is half written */
+/* Make f->blob from the fixed parameters in f->s.v, nothing else; before model_start. When an FMU
+ * state is restored, f->s is replaced and the blob stays if its fixed parameters are the same. */
+static int model_open(struct fmu *f);
+
+/* The run ended well: write files, all or none. */
+static int model_end(struct fmu *f);
+
+/* Free f->blob, delete what is half written. Follows every model_open, one that failed too:
+ * f->blob may be NULL. */
+static void model_close(struct fmu *f);
 #endif
 
 /* What the layer gives the model. */
