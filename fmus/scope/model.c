@@ -1,0 +1,242 @@
+/* Trace recorder. Row k holds the inputs at k*period; rows wait in memory and become files when
+ * the run ends well. */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "trace_file.h"
+#include "vars.h"
+
+struct model {
+    int64_t period; /* [ns] */
+};
+
+#define MODEL_BLOB
+#include "fmi_model.h"
+
+enum {
+    GROUP     = 6,   /* channels of an axes_ input */
+    REAL_AXES = 60,  /* channels before real_1 */
+    INT_AXES  = 54,  /* channels before int_1 */
+    FIRST     = 1024 /* rows of the first buffer; it doubles when full */
+};
+
+/* Rows recorded so far. A restored FMU state may stand before or after the last of them. */
+struct rows {
+    double  *real; /* rows x real_columns */
+    int32_t *ints; /* rows x int_columns */
+    int64_t  room; /* rows there is memory for */
+    int64_t  held; /* rows recorded */
+};
+
+/* The files, in the order in which they are written; the last one if csv says so. */
+static const struct {
+    const char *ending;
+    bool (*write)(FILE *file, const struct trace *t);
+} files[] = {
+    {".real.npy", trace_write_real},
+    {".int.npy", trace_write_int},
+    {".csv", trace_write_csv},
+};
+
+/* The channels of one type follow one another in struct vars, as the files' columns do. */
+#define AT(name) offsetof(struct vars, name)
+_Static_assert(AT(real_1) == AT(axes_real_1) + REAL_AXES * sizeof(double), "real channels");
+_Static_assert(AT(real_4) == AT(real_1) + 3 * sizeof(double), "real channels");
+_Static_assert(AT(int_1) == AT(axes_int_1) + INT_AXES * sizeof(int32_t), "integer channels");
+_Static_assert(AT(int_10) == AT(int_1) + 9 * sizeof(int32_t), "integer channels");
+
+static size_t real_columns(const struct vars *v)
+{
+    return (size_t)(GROUP * v->axes_real_used + v->real_used);
+}
+
+static size_t int_columns(const struct vars *v)
+{
+    return (size_t)(GROUP * v->axes_int_used + v->int_used);
+}
+
+static bool recording(const struct vars *v)
+{
+    return v->file[0] != '\0';
+}
+
+/* Name of a trace file, or of its place while it is being written. */
+struct path { char text[FMU_STRING_MAX + 16]; };
+
+static struct path path_of(const struct vars *v, int file, bool part)
+{
+    struct path p;
+    snprintf(p.text, sizeof p.text, "%s%s%s", v->file, files[file].ending, part ? ".part" : "");
+    return p;
+}
+
+static int cannot_write(struct fmu *f, int file, int error)
+{
+    return fmu_fail(f, "cannot write %s: %s", path_of(&f->s.v, file, false).text,
+                    strerror(error));
+}
+
+/* A path that cannot be written is told before the run, not after it. */
+static int model_open(struct fmu *f)
+{
+    if (!recording(&f->s.v)) {
+        return 0;
+    }
+    struct path part = path_of(&f->s.v, 0, true);
+    FILE *file = fopen(part.text, "wb");
+    if (!file) {
+        return cannot_write(f, 0, errno);
+    }
+    fclose(file);
+    remove(part.text);
+    f->blob = calloc(1, sizeof(struct rows));
+    return f->blob ? 0 : fmu_fail(f, "no memory for the recording");
+}
+
+static void model_close(struct fmu *f)
+{
+    struct rows *r = f->blob;
+    if (r) {
+        free(r->real);
+        free(r->ints);
+        free(r);
+    }
+}
+
+static int model_start(struct fmu *f)
+{
+    const double tick_tolerance = 1e-6; /* [ticks] a period in decimals is not exact as a double */
+    double ticks = f->s.v.period * 1e9 / FMU_TICK_NS;
+    double whole = floor(ticks + 0.5);
+    if (!(fabs(ticks - whole) <= tick_tolerance && whole < 1e15)) {
+        return fmu_fail(f, "period = %.15g s is not a whole number of %d ns", f->s.v.period,
+                        FMU_TICK_NS);
+    }
+    f->s.m.period = (int64_t)whole * FMU_TICK_NS;
+    return 0;
+}
+
+static int make_room(struct fmu *f, struct rows *r, int64_t rows)
+{
+    if (rows <= r->room) {
+        return 0;
+    }
+    int64_t room = r->room ? 2 * r->room : FIRST;
+    while (room < rows) {
+        room *= 2;
+    }
+    /* One byte more: no columns is not no memory. */
+    double *real = realloc(r->real, (size_t)room * real_columns(&f->s.v) * sizeof *real + 1);
+    r->real = real ? real : r->real;
+    int32_t *ints = realloc(r->ints, (size_t)room * int_columns(&f->s.v) * sizeof *ints + 1);
+    r->ints = ints ? ints : r->ints;
+    if (!real || !ints) {
+        return fmu_fail(f, "no memory for row %" PRId64 " of %s", rows, f->s.v.file);
+    }
+    r->room = room;
+    return 0;
+}
+
+/* Rows an FMU state brings along from another instance are not known here. */
+static void fill_gap(const struct vars *v, struct rows *r, int64_t end)
+{
+    size_t nr = real_columns(v), ni = int_columns(v);
+    for (; r->held < end; r->held++) {
+        for (size_t i = 0; i < nr; i++) {
+            r->real[(size_t)r->held * nr + i] = NAN;
+        }
+        memset(r->ints + (size_t)r->held * ni, 0, ni * sizeof *r->ints);
+    }
+}
+
+static int record(struct fmu *f, struct rows *r)
+{
+    const struct vars *v = &f->s.v;
+    int64_t k = v->rows;
+    if (k == INT32_MAX) {
+        return fmu_fail(f, "%s holds no more than %" PRId64 " rows", v->file, k);
+    }
+    if (make_room(f, r, k + 1) != 0) {
+        return -1;
+    }
+    fill_gap(v, r, k);
+    size_t nr = real_columns(v), ni = int_columns(v);
+    size_t nr_axes = (size_t)(GROUP * v->axes_real_used);
+    size_t ni_axes = (size_t)(GROUP * v->axes_int_used);
+    double *real = r->real + (size_t)k * nr;
+    int32_t *ints = r->ints + (size_t)k * ni;
+    const char *in = (const char *)v;
+    memcpy(real, in + AT(axes_real_1), nr_axes * sizeof *real);
+    memcpy(real + nr_axes, in + AT(real_1), (nr - nr_axes) * sizeof *real);
+    memcpy(ints, in + AT(axes_int_1), ni_axes * sizeof *ints);
+    memcpy(ints + ni_axes, in + AT(int_1), (ni - ni_axes) * sizeof *ints);
+    r->held = k + 1;
+    f->s.v.rows = (int32_t)(k + 1);
+    return 0;
+}
+
+static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    (void)t0; /* every row before it is recorded */
+    if (recording(&f->s.v)) {
+        while (f->s.v.rows * f->s.m.period < t1) {
+            if (record(f, f->blob) != 0) {
+                return -1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* Write one file under its temporary name. */
+static int write_part(struct fmu *f, int k, const struct trace *t)
+{
+    FILE *file = fopen(path_of(&f->s.v, k, true).text, "wb");
+    if (!file) {
+        return cannot_write(f, k, errno);
+    }
+    errno = 0;
+    bool good = files[k].write(file, t);
+    int error = errno;
+    if (fclose(file) != 0 && good) {
+        good = false;
+        error = errno;
+    }
+    return good ? 0 : cannot_write(f, k, error);
+}
+
+/* All files appear, or none and one message: each is written in full under a temporary name. */
+static int model_end(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct rows *r = f->blob;
+    if (!recording(v)) {
+        return 0;
+    }
+    if (make_room(f, r, v->rows) != 0) {
+        return -1;
+    }
+    fill_gap(v, r, v->rows);
+    struct trace t = {r->real, r->ints, v->rows, real_columns(v), int_columns(v), f->s.m.period};
+    int n = v->csv ? 3 : 2, written = 0, result = 0;
+    for (; written < n && result == 0; written++) {
+        result = write_part(f, written, &t);
+    }
+    for (int k = 0; k < n && result == 0; k++) {
+#ifdef _WIN32
+        remove(path_of(v, k, false).text); /* rename does not replace there */
+#endif
+        if (rename(path_of(v, k, true).text, path_of(v, k, false).text) != 0) {
+            result = cannot_write(f, k, errno);
+            while (k-- > 0) {
+                remove(path_of(v, k, false).text);
+            }
+            break;
+        }
+    }
+    while (result != 0 && written-- > 0) {
+        remove(path_of(v, written, true).text);
+    }
+    return result;
+}

@@ -1,0 +1,95 @@
+/* Recorded rows as files: two .npy (format version 1.0) and .csv. The writers return false when
+ * something could not be written; errno says why. */
+#ifndef TRACE_FILE_H
+#define TRACE_FILE_H
+
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+struct trace {
+    const double  *real;
+    const int32_t *ints;
+    int64_t        rows;
+    size_t         real_columns, int_columns;
+    int64_t        period; /* [ns] between two rows */
+};
+
+/* Head of a .npy file: a Python dictionary padded to 64 bytes. `type`: f8 or i4. */
+static bool trace_write_head(FILE *file, const char *type, int64_t rows, size_t columns)
+{
+    const uint16_t one = 1;
+    char order = *(const char *)&one == 1 ? '<' : '>';
+    char head[128];
+    int n = 10 + snprintf(head + 10, sizeof head - 10,
+                          "{'descr': '%c%s', 'fortran_order': False, 'shape': (%" PRId64
+                          ", %zu), }", order, type, rows, columns);
+    memset(head + n, ' ', sizeof head - (size_t)n);
+    memcpy(head, "\x93NUMPY\x01\x00", 8);
+    head[8] = (char)(sizeof head - 10); /* size of the dictionary, two bytes, low one first */
+    head[9] = 0;
+    head[sizeof head - 1] = '\n';
+    return fwrite(head, 1, sizeof head, file) == sizeof head;
+}
+
+static bool trace_write_real(FILE *file, const struct trace *t)
+{
+    size_t n = (size_t)t->rows * t->real_columns;
+    return trace_write_head(file, "f8", t->rows, t->real_columns)
+           && fwrite(t->real, sizeof *t->real, n, file) == n;
+}
+
+static bool trace_write_int(FILE *file, const struct trace *t)
+{
+    size_t n = (size_t)t->rows * t->int_columns;
+    return trace_write_head(file, "i4", t->rows, t->int_columns)
+           && fwrite(t->ints, sizeof *t->ints, n, file) == n;
+}
+
+/* A number that reads back as the same double, with a point whatever the importer's locale. */
+static bool trace_write_number(FILE *file, double x)
+{
+    char text[40];
+    snprintf(text, sizeof text, ",%.17g", x);
+    char *comma = strchr(text + 1, ',');
+    if (comma) {
+        *comma = '.';
+    }
+    return fputs(text, file) >= 0;
+}
+
+static bool trace_write_row(FILE *file, const struct trace *t, int64_t k)
+{
+    const int64_t second = 1000000000; /* [ns] */
+    const double *real = t->real + (size_t)k * t->real_columns;
+    const int32_t *ints = t->ints + (size_t)k * t->int_columns;
+    int64_t time = k * t->period; /* [ns] */
+    bool good = fprintf(file, "%" PRId64 ".%09" PRId64, time / second, time % second) > 0;
+    for (size_t i = 0; good && i < t->real_columns; i++) {
+        good = trace_write_number(file, real[i]);
+    }
+    for (size_t i = 0; good && i < t->int_columns; i++) {
+        good = fprintf(file, ",%" PRId32, ints[i]) > 0;
+    }
+    return good && fputc('\n', file) != EOF;
+}
+
+static bool trace_write_csv(FILE *file, const struct trace *t)
+{
+    bool good = fputs("time", file) >= 0;
+    for (size_t i = 1; good && i <= t->real_columns; i++) {
+        good = fprintf(file, ",r%zu", i) > 0;
+    }
+    for (size_t i = 1; good && i <= t->int_columns; i++) {
+        good = fprintf(file, ",i%zu", i) > 0;
+    }
+    good = good && fputc('\n', file) != EOF;
+    for (int64_t k = 0; good && k < t->rows; k++) {
+        good = trace_write_row(file, t, k);
+    }
+    return good;
+}
+
+#endif
