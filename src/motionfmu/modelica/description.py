@@ -1,0 +1,174 @@
+"""The description of an FMU whose variables come from a Modelica class."""
+
+import math
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from motionfmu import describe
+from motionfmu.modelica import causal
+from motionfmu.modelica.flat import Declaration
+from motionfmu.modelica.ode import Ode
+
+_TYPES = {"Real": "f64", "Integer": "i32", "Boolean": "bool"}
+_KEYS = ("name", "description", "tick_ns", "experiment", "modelica", "instances", "micro_step")
+
+
+@dataclass(frozen=True)
+class Packing:
+    """What fmu.toml says about a Modelica FMU.
+
+    Attributes
+    ----------
+    name, description : str
+        Of the FMU.
+    tick_ns : int
+        Every communication step is a whole multiple of it [ns].
+    experiment : dict
+        Default ``stop`` and ``step`` [s].
+    modelica : str
+        Full class name.
+    instances : int
+        Copies of the class, one per axis.
+    micro_step : float
+        Default grid of the integrator [s].
+    package : Path
+        Folder of the Modelica package.
+    """
+
+    name: str
+    description: str
+    tick_ns: int
+    experiment: dict[str, float]
+    modelica: str
+    instances: int
+    micro_step: float
+    package: Path
+
+
+def read(toml: Path) -> Packing:
+    """Read an fmu.toml with a key ``modelica``.
+
+    Parameters
+    ----------
+    toml : Path
+
+    Returns
+    -------
+    Packing
+
+    Raises
+    ------
+    ValueError
+        ``file:line: what``.
+    """
+    text = toml.read_text()
+    try:
+        doc: dict[str, Any] = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{toml}: {error}") from None
+
+    def refuse(key: str, what: str) -> ValueError:
+        lines = text.splitlines()
+        here = [n for n, line in enumerate(lines, 1) if re.match(rf"\s*\[?{key}\b", line)]
+        return ValueError(f"{toml}:{here[0] if here else 0}: {what}")
+
+    for key in sorted(set(doc) - set(_KEYS)):
+        raise refuse(key, f"unknown key {key!r}; the variables come from the Modelica class")
+    for key in _KEYS:
+        if key not in doc:
+            raise ValueError(f"{toml}: {key!r} is missing")
+    for key in ("tick_ns", "instances"):
+        if not isinstance(doc[key], int) or isinstance(doc[key], bool) or doc[key] < 1:
+            raise refuse(key, f"{key} {doc[key]!r} is not a positive integer")
+    step = doc["micro_step"]
+    if not isinstance(step, float | int) or not math.isfinite(step) or step <= 0:
+        raise refuse("micro_step", f"micro_step {step!r} is not a positive number")
+    if not isinstance(doc["modelica"], str):
+        raise refuse("modelica", f"modelica {doc['modelica']!r} is not a class name")
+    top = doc["modelica"].split(".")[0]
+    for folder in toml.resolve().parents:
+        if (folder / "modelica" / top / "package.mo").is_file():
+            return Packing(**doc, package=folder / "modelica" / top)
+    raise refuse("modelica", f"there is no package modelica/{top} above this file")
+
+
+def from_modelica(toml: Path) -> describe.Description:
+    """Make the description of a Modelica FMU.
+
+    Parameters
+    ----------
+    toml : Path
+        fmus/<name>/fmu.toml.
+
+    Returns
+    -------
+    Description
+        Parameters ``active`` and ``micro_step``, then all that the class declares, one element
+        per instance.
+
+    Raises
+    ------
+    ValueError
+        The file or the class is wrong.
+    """
+    packing = read(toml)
+    ode = causal.load(packing.package, packing.modelica)
+    own: list[tuple[str, str, dict[str, Any]]] = [
+        ("active", "parameter", _active(packing.instances)),
+        ("micro_step", "parameter", _micro_step(packing)),
+    ]
+    for group, values in ((ode.parameters, ode.p0), (ode.inputs, ode.u0), (ode.outputs, None)):
+        for k, d in enumerate(group):
+            start = None if values is None else values[k]
+            own.append((d.name, d.kind, _row(ode, d, packing.instances, start)))
+    names = [name for name, _, _ in own]
+    try:
+        for name in ("active", "micro_step"):
+            if names.count(name) > 1:
+                raise ValueError(f"the name {name} is taken: every plant has it")
+        variables = tuple(describe.variable(*row) for row in own)
+    except ValueError as error:
+        raise ValueError(f"{toml}: {packing.modelica}: {error}") from None
+    return describe.Description(
+        packing.name,
+        packing.description,
+        packing.tick_ns,
+        packing.experiment,
+        variables=variables,
+    )
+
+
+def _active(instances: int) -> dict[str, Any]:
+    doc = "Axis is used; an unused axis costs nothing and its outputs stay 0"
+    return {"type": "bool", "dims": [instances], "start": True, "doc": doc}
+
+
+def _micro_step(packing: Packing) -> dict[str, Any]:
+    return {
+        "type": "f64",
+        "unit": "s",
+        "start": packing.micro_step,
+        "min": packing.tick_ns * 1e-9,
+        "doc": f"Fixed grid of the integrator; a whole number of {packing.tick_ns} ns",
+    }
+
+
+def _row(ode: Ode, d: Declaration, instances: int, start: float | None) -> dict[str, Any]:
+    """One variable as a row of fmu.toml would say it."""
+    row: dict[str, Any] = {"type": _TYPES[d.type], "dims": [instances], "doc": d.description}
+    kind = {"Real": float, "Integer": int, "Boolean": bool}[d.type]
+    if start is not None:
+        row["start"] = kind(start)
+    if d.type == "Real":
+        if not d.unit:
+            raise ValueError(f"{ode.name}: {d.name} has no unit")
+        row["unit"] = None if d.unit == "1" else d.unit
+        row["continuous"] = d.kind != "parameter"
+    if d.type != "Boolean":
+        for key, value in zip(("min", "max", "nominal"), ode.limits[d.name], strict=True):
+            if value is not None and (key != "nominal" or d.type == "Real"):
+                row[key] = kind(value)
+    return row

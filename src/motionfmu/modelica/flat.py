@@ -1,0 +1,236 @@
+"""Flatten a Modelica class with rumoca, and refuse what the back end does not handle."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+Expression = dict[str, Any]
+
+# Sections of rumoca's flat form that must be empty, and what a Modelica author calls them.
+_REFUSED = {
+    "when_chains": "when-equation",
+    "algorithms": "algorithm section",
+    "initial_equations": "initial equation",
+    "initial_algorithms": "initial algorithm",
+    "initial_structured_equations": "initial equation",
+    "initial_assert_equations": "assert in an initial equation",
+    "structured_equations": "for-equation",
+    "enumeration_types": "enumeration type",
+    "record_instances": "record",
+    "definite_roots": "overconstrained connector",
+    "potential_roots": "overconstrained connector",
+}
+
+
+class Unsupported(ValueError):
+    """A construct of Modelica that this back end does not handle."""
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """One scalar component of the flat class.
+
+    Attributes
+    ----------
+    name : str
+        Flat name, for example ``rotor.speed``.
+    type : str
+        Real, Integer or Boolean.
+    kind : str
+        parameter, input, output (both only at the top level) or variable.
+    unit, description : str
+        As declared, empty where nothing is.
+    final : bool
+        A final parameter, or a constant: nobody may set it.
+    fixed : bool
+        Its start value is an initial condition.
+    binding, start, min, max, nominal : dict or None
+        Flat expressions.
+    """
+
+    name: str
+    type: str
+    kind: str
+    unit: str
+    description: str
+    final: bool
+    fixed: bool
+    binding: Expression | None
+    start: Expression | None
+    min: Expression | None
+    max: Expression | None
+    nominal: Expression | None
+
+    @property
+    def top(self) -> bool:
+        """Whether it belongs to the class itself and not to a component of it."""
+        return "." not in self.name
+
+
+@dataclass(frozen=True)
+class Equation:
+    """One equation, residual = 0.
+
+    Attributes
+    ----------
+    component : str
+        Component it stands in, empty for the class itself.
+    residual : dict
+        Flat expression.
+    """
+
+    component: str
+    residual: Expression
+
+
+@dataclass(frozen=True)
+class Flat:
+    """A flattened class.
+
+    Attributes
+    ----------
+    name, description : str
+        Full class name and its description.
+    declarations : dict of Declaration
+        By flat name, in the order of the source.
+    equations : tuple of Equation
+    asserts : tuple of (Expression, str)
+        Conditions with their messages.
+    functions : dict
+        Flat functions by name.
+    """
+
+    name: str
+    description: str
+    declarations: dict[str, Declaration]
+    equations: tuple[Equation, ...]
+    asserts: tuple[tuple[Expression, str], ...]
+    functions: dict[str, Any]
+
+
+def flatten(package: Path, name: str) -> Flat:
+    """Flatten one class of a package.
+
+    Parameters
+    ----------
+    package : Path
+        Folder with package.mo, or one .mo file.
+    name : str
+        Full class name, for example ``MotionControl.VelocityAxis``.
+
+    Returns
+    -------
+    Flat
+
+    Raises
+    ------
+    ValueError
+        The class does not compile; the message has rumoca's file, line and reason.
+    Unsupported
+        It compiles and has a construct that is not handled; the message names both.
+    """
+    import rumoca
+
+    file = package / "package.mo" if package.is_dir() else package
+    if not file.is_file():
+        raise ValueError(f"{file}: there is no such Modelica file")
+    try:
+        model = rumoca.Session().load(str(file), model=name)
+        doc = json.loads(model.to_json("flat", pretty=False))
+    except rumoca.RumocaError as error:
+        raise ValueError(f"{file}: {name}: {error}") from None
+    return read(doc, name)
+
+
+def read(doc: dict[str, Any], name: str) -> Flat:
+    """Read rumoca's flat form.
+
+    Parameters
+    ----------
+    doc : dict
+        Parsed JSON.
+    name : str
+        Class name for messages.
+
+    Returns
+    -------
+    Flat
+
+    Raises
+    ------
+    Unsupported
+        As in `flatten`.
+    """
+    if doc["is_partial"]:
+        raise Unsupported(f"{name}: a partial class cannot be simulated")
+    for section, construct in _REFUSED.items():
+        if doc.get(section):
+            where = _component(_first(doc[section]))
+            raise Unsupported(f"{name}{where}: {construct} is not supported")
+    declarations = {n: _declaration(doc, name, n, v) for n, v in doc["variables"].items()}
+    return Flat(
+        name,
+        doc["model_description"] or "",
+        declarations,
+        tuple(Equation(_component(e), e["residual"]) for e in doc["equations"]),
+        tuple(_assert(name, a) for a in doc["assert_equations"]),
+        doc["functions"],
+    )
+
+
+def _first(section: Any) -> Any:
+    return next(iter(section.values())) if isinstance(section, dict) else section[0]
+
+
+def _component(item: Any) -> str:
+    """Text " (component x)" of the place a construct stands in, as far as rumoca tells."""
+    origin = item.get("origin") if isinstance(item, dict) else None
+    found = (origin or {}).get("ComponentEquation", {}).get("component", "")
+    return f" (component {found})" if found else ""
+
+
+def _tag(value: Any) -> str:
+    """Name of a Rust enum that is either "Name" or {"Name": data}."""
+    return value if isinstance(value, str) else next(iter(value))
+
+
+def _declaration(doc: dict[str, Any], model: str, name: str, v: dict[str, Any]) -> Declaration:
+    variability, causality = _tag(v["variability"]), _tag(v["causality"])
+    kind = doc["variable_type_names"].get(name, "Real")
+    refused = {
+        f"type {kind}": kind not in ("Real", "Integer", "Boolean"),
+        "an array": bool(v["dims"]),
+        "discrete": variability == "Discrete",
+        "stream": v["stream"],
+        "an expandable connector": v["from_expandable_connector"],
+    }
+    for construct, present in refused.items():
+        if present:
+            raise Unsupported(f"{model}: {name} is {construct}, which is not supported")
+    constant = variability in ("Parameter", "Constant")
+    top = "." not in name
+    role = "variable"
+    if constant:
+        role = "parameter"
+    elif top and causality in ("Input", "Output"):
+        role = causality.lower()
+    return Declaration(
+        name,
+        kind,
+        role,
+        v["unit"] or "",
+        v["description"] or "",
+        variability == "Constant" or name in doc["variable_final_flags"] or v["is_protected"],
+        v["fixed"] == [True],
+        *(v[key] for key in ("binding", "start", "min", "max", "nominal")),
+    )
+
+
+def _assert(model: str, item: dict[str, Any]) -> tuple[Expression, str]:
+    message = item["message"].get("Literal", {}).get("value", {}).get("String")
+    if message is None:
+        raise Unsupported(f"{model}{_component(item)}: assert without a constant text")
+    if item["level"] is not None:
+        raise Unsupported(f"{model}{_component(item)}: assert with a level")
+    return item["condition"], message

@@ -1,0 +1,122 @@
+"""The scalar operations of a CasADi SX function, as a list in order of evaluation."""
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+# Operations that jump, or select, where an operand crosses something: their derivative hides it.
+STEPS = frozenset(
+    {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_SIGN, ca.OP_FLOOR, ca.OP_CEIL, ca.OP_NOT}
+    | {ca.OP_AND, ca.OP_OR}
+)
+
+
+@dataclass(frozen=True)
+class Node:
+    """One operation.
+
+    Attributes
+    ----------
+    op : int
+        CasADi's operation code.
+    args : tuple of int
+        Positions of the operands in the list.
+    value : float
+        Of a constant.
+    input : tuple of int
+        Argument and element, of an input.
+    """
+
+    op: int
+    args: tuple[int, ...] = ()
+    value: float = 0.0
+    input: tuple[int, int] = (-1, -1)
+
+
+@dataclass(frozen=True)
+class Program:
+    """All operations of a function.
+
+    Attributes
+    ----------
+    nodes : tuple of Node
+    results : tuple of tuple of int
+        For each output of the function the node of each of its elements; dense.
+    """
+
+    nodes: tuple[Node, ...]
+    results: tuple[tuple[int, ...], ...]
+
+    def depends(self, arguments: set[int]) -> list[bool]:
+        """Whether each node depends on any of the function's arguments of these positions.
+
+        Parameters
+        ----------
+        arguments : set of int
+
+        Returns
+        -------
+        list of bool
+        """
+        found: list[bool] = []
+        for n in self.nodes:
+            own = n.op == ca.OP_INPUT and n.input[0] in arguments
+            found.append(own or any(found[a] for a in n.args))
+        return found
+
+
+def program(arguments: list[ca.SX], results: list[ca.SX]) -> Program:
+    """List the operations that compute some expressions.
+
+    Parameters
+    ----------
+    arguments : list of casadi.SX
+        Column vectors of symbols.
+    results : list of casadi.SX
+        Expressions of these symbols only.
+
+    Returns
+    -------
+    Program
+    """
+    f = ca.Function("f", arguments, [ca.densify(r) for r in results], {"cse": True})
+    nodes: list[Node] = []
+    register: dict[int, int] = {}  # the function reuses registers; each node stays
+    outputs: list[list[int]] = [[-1] * r.numel() for r in results]
+    for k in range(f.n_instructions()):
+        op, source, target = (
+            f.instruction_id(k),
+            f.instruction_input(k),
+            f.instruction_output(k),
+        )
+        if op == ca.OP_OUTPUT:
+            outputs[target[0]][target[1]] = register[source[0]]
+            continue
+        if op == ca.OP_CONST:
+            node = Node(op, value=f.instruction_constant(k))
+        elif op == ca.OP_INPUT:
+            node = Node(op, input=(source[0], source[1]))
+        else:
+            node = Node(op, tuple(register[s] for s in source))
+        register[target[0]] = len(nodes)
+        nodes.append(node)
+    return Program(tuple(nodes), tuple(map(tuple, outputs)))
+
+
+def steps_on(expression: ca.SX, variables: ca.SX) -> bool:
+    """Whether a comparison, sign or rounding in an expression depends on any of the variables.
+
+    Parameters
+    ----------
+    expression : casadi.SX
+    variables : casadi.SX
+        Column of symbols.
+
+    Returns
+    -------
+    bool
+    """
+    others = [s for s in ca.symvar(expression) if not ca.depends_on(s, variables)]
+    p = program([variables, ca.vertcat(*others)], [expression])
+    depends = p.depends({0})
+    return any(n.op in STEPS and d for n, d in zip(p.nodes, depends, strict=True))

@@ -1,0 +1,249 @@
+/* Model of every Modelica FMU: PLANT_INSTANCES copies of one class on a fixed micro-grid.
+ *
+ * At each instant of the grid k h the inputs are read, and held to the next instant, where the new
+ * state shows. Communication points between two instants show the older one, so any split of an
+ * interval gives the same bits.
+ *
+ * Integrator: classic Runge-Kutta of order 4, in n equal sub-steps per micro step. It is stable to
+ * (h/n) |lambda| = 2.785 on the negative real axis and 2.83 on the imaginary one. model_start
+ * bounds |lambda| over all branches of the equations (contact or gap, and so on) at the initial
+ * state, where smoothed friction is steepest, and takes n so that (h/n) |lambda| <= 2. A machine
+ * that needs no sub-steps gets none; axes do not influence each other's n.
+ *
+ * Active axes are packed into blocks of PLANT_LANES that are integrated together.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "plant.h"
+
+enum {
+    PLANT_STATE_SIZE    = PLANT_STATES * PLANT_LANES,
+    PLANT_INPUT_SIZE    = (PLANT_INPUTS > 0 ? PLANT_INPUTS : 1) * PLANT_LANES,
+    PLANT_CONSTANT_SIZE = (PLANT_CONSTANTS > 0 ? PLANT_CONSTANTS : 1) * PLANT_LANES,
+    PLANT_OUTPUT_SIZE   = PLANT_OUTPUTS * PLANT_LANES,
+    PLANT_PARAMETER_SIZE = PLANT_PARAMETERS > 0 ? PLANT_PARAMETERS : 1,
+    PLANT_SUB_STEPS_MAX = 1000 /* 1000 is 25 ns at 25 us: beyond it a parameter is wrong */
+};
+
+/* Axes with the same number of sub-steps. */
+struct plant_block {
+    double x[PLANT_STATE_SIZE];
+    double u[PLANT_INPUT_SIZE];
+    double c[PLANT_CONSTANT_SIZE];
+    int    instance[PLANT_LANES]; /* the last axis fills the lanes that are left */
+    int    lanes;                 /* used */
+    int    sub_steps;
+};
+
+struct model {
+    struct plant_block block[PLANT_INSTANCES];
+    int     blocks;
+    int64_t step_ns; /* [ns] micro step */
+};
+
+#include "fmi_model.h"
+
+static const double plant_h_lambda = 2.0;
+
+/* Bound of the largest |eigenvalue| of an n x n matrix, a[i][j] at a[i * n + j], which it destroys:
+ * |lambda| <= norm(a^m)^(1/m) for every m; with m = 2^10 at most some per cent too large. */
+static double plant_spectral_radius(double *a)
+{
+    enum { n = PLANT_STATES, SQUARINGS = 10 };
+    double logarithm = 0.0, share = 1.0;
+    for (int k = 0; k <= SQUARINGS; k++, share *= 0.5) {
+        double norm = 0.0;
+        for (int i = 0; i < n; i++) {
+            double sum = 0.0;
+            for (int j = 0; j < n; j++) {
+                sum += fabs(a[i * n + j]);
+            }
+            norm = sum > norm || isnan(sum) ? sum : norm;
+        }
+        if (norm == 0.0 || !isfinite(norm)) {
+            return norm;
+        }
+        logarithm += share * log(norm);
+        double b[n * n], square[n * n];
+        for (int i = 0; i < n * n; i++) {
+            b[i] = a[i] / norm;
+        }
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) {
+                double sum = 0.0;
+                for (int q = 0; q < n; q++) {
+                    sum += b[i * n + q] * b[q * n + j];
+                }
+                square[i * n + j] = sum;
+            }
+        }
+        memcpy(a, square, sizeof square);
+    }
+    return exp(logarithm);
+}
+
+/* [1/s] bound of |lambda| at a point, over all branches. Branches that exclude each other may give
+ * 0/0 and are skipped; NaN if nothing is left. */
+static double plant_stiffness(const double *x, const double *u, const double *p)
+{
+    double largest = NAN;
+    for (unsigned branches = 0; branches < 1u << PLANT_BRANCHES; branches++) {
+        double a[PLANT_STATES * PLANT_STATES];
+        plant_jacobian(x, u, p, branches, a);
+        const double radius = plant_spectral_radius(a);
+        if (!isnan(radius) && !(largest >= radius)) {
+            largest = radius;
+        }
+    }
+    return largest;
+}
+
+/* One Runge-Kutta step of h [s]. */
+static void plant_step(struct plant_block *b, double h)
+{
+    double k1[PLANT_STATE_SIZE], k2[PLANT_STATE_SIZE], k3[PLANT_STATE_SIZE], k4[PLANT_STATE_SIZE];
+    double at[PLANT_STATE_SIZE];
+    plant_rhs(b->x, b->u, b->c, k1);
+    for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+        at[i] = b->x[i] + 0.5 * h * k1[i];
+    }
+    plant_rhs(at, b->u, b->c, k2);
+    for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+        at[i] = b->x[i] + 0.5 * h * k2[i];
+    }
+    plant_rhs(at, b->u, b->c, k3);
+    for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+        at[i] = b->x[i] + h * k3[i];
+    }
+    plant_rhs(at, b->u, b->c, k4);
+    for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+        b->x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+    }
+}
+
+static void plant_read(struct fmu *f)
+{
+    for (int n = 0; n < f->s.m.blocks; n++) {
+        struct plant_block *b = &f->s.m.block[n];
+        for (int lane = 0; lane < PLANT_LANES; lane++) {
+            plant_inputs(&f->s.v, b->instance[lane], &b->u[lane]);
+        }
+    }
+}
+
+/* Show the state at the grid instant `now` [ns] on the outputs, if it is a number. */
+static int plant_publish(struct fmu *f, int64_t now)
+{
+    for (int n = 0; n < f->s.m.blocks; n++) {
+        const struct plant_block *b = &f->s.m.block[n];
+        for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+            if (!(fabs(b->x[i]) <= DBL_MAX)) {
+                return fmu_fail(f, "axis %d: %s is %g at %.9f s", b->instance[i % PLANT_LANES] + 1,
+                    plant_state_names[i / PLANT_LANES], b->x[i], 1e-9 * (double)now);
+            }
+        }
+        double y[PLANT_OUTPUT_SIZE];
+        plant_outputs(b->x, b->u, b->c, y);
+        for (int lane = 0; lane < b->lanes; lane++) {
+            plant_show(&f->s.v, b->instance[lane], &y[lane]);
+        }
+    }
+    return 0;
+}
+
+/* Give an axis its lane: in a block with room and the same sub-steps, else in a new one. */
+static void plant_place(struct fmu *f, int instance, int sub_steps, const double *p)
+{
+    struct model *m = &f->s.m;
+    int n = 0;
+    while (n < m->blocks
+           && (m->block[n].sub_steps != sub_steps || m->block[n].lanes == PLANT_LANES)) {
+        n++;
+    }
+    m->blocks += n == m->blocks;
+    struct plant_block *b = &m->block[n];
+    double x[PLANT_STATES], c[PLANT_CONSTANT_SIZE];
+    plant_start(p, x);
+    plant_constants(p, c);
+    b->sub_steps = sub_steps;
+    for (int lane = b->lanes; lane < PLANT_LANES; lane++) {
+        b->instance[lane] = instance;
+        for (int k = 0; k < PLANT_STATES; k++) {
+            b->x[k * PLANT_LANES + lane] = x[k];
+        }
+        for (int k = 0; k < PLANT_CONSTANTS; k++) {
+            b->c[k * PLANT_LANES + lane] = c[k];
+        }
+    }
+    b->lanes++;
+}
+
+static int plant_start_axis(struct fmu *f, int instance)
+{
+    double p[PLANT_PARAMETER_SIZE], x[PLANT_STATES], u[PLANT_INPUT_SIZE], packed[PLANT_INPUT_SIZE];
+    const double h = 1e-9 * (double)f->s.m.step_ns;
+    plant_parameters(&f->s.v, instance, p);
+    const char *wrong = plant_check(p);
+    if (wrong) {
+        return fmu_fail(f, "axis %d: %s", instance + 1, wrong);
+    }
+    plant_start(p, x);
+    plant_inputs(&f->s.v, instance, u);
+    for (int k = 0; k < PLANT_INPUTS; k++) {
+        packed[k] = u[k * PLANT_LANES];
+    }
+    const double steps = ceil(h * plant_stiffness(x, packed, p) / plant_h_lambda);
+    if (!(steps <= PLANT_SUB_STEPS_MAX)) {
+        return fmu_fail(f, "axis %d: too stiff, %g s would need %g sub-steps, more than %d",
+            instance + 1, h, steps, PLANT_SUB_STEPS_MAX);
+    }
+    if (steps > 1.0) {
+        fmu_event(f, "axis %d: stiff, %g sub-steps per micro step of %g s", instance + 1, steps, h);
+    }
+    plant_place(f, instance, steps > 1.0 ? (int)steps : 1, p);
+    return 0;
+}
+
+static int model_start(struct fmu *f)
+{
+    const double y[PLANT_OUTPUT_SIZE] = {0.0};
+    const double step = 1e9 * f->s.v.micro_step;
+    const double tolerance = 1e-3; /* [ns] no clock means less; 25 us is 25000.000000000004 ns */
+    memset(&f->s.m, 0, sizeof f->s.m);
+    if (!(step >= FMU_TICK_NS && step <= 1e18) || fabs(step - round(step)) > tolerance
+        || llround(step) % FMU_TICK_NS != 0) {
+        return fmu_fail(f, "micro_step %.12g s is not a whole multiple of %d ns", f->s.v.micro_step,
+            FMU_TICK_NS);
+    }
+    f->s.m.step_ns = llround(step);
+    for (int i = 0; i < PLANT_INSTANCES; i++) {
+        plant_show(&f->s.v, i, y);
+        if (f->s.v.active[i] && plant_start_axis(f, i) != 0) {
+            return -1;
+        }
+    }
+    plant_read(f);
+    return plant_publish(f, 0);
+}
+
+static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    struct model *m = &f->s.m;
+    const int64_t h = m->step_ns, first = t0 / h * h, last = t1 / h * h;
+    for (int64_t now = first; now <= t1; now += h) {
+        if (now > t0) {
+            for (int n = 0; n < m->blocks; n++) {
+                struct plant_block *b = &m->block[n];
+                for (int k = 0; k < b->sub_steps; k++) {
+                    plant_step(b, 1e-9 * (double)h / b->sub_steps);
+                }
+            }
+        }
+        if (now >= t0 && now < t1) {
+            plant_read(f);
+        }
+    }
+    return last > t0 ? plant_publish(f, last) : 0;
+}
