@@ -1,0 +1,61 @@
+#include "machine.h"
+
+#include <math.h>
+
+static bool positive(double x)
+{
+    return isfinite(x) && x > 0.0;
+}
+
+static bool axis_valid(const struct machine *m, const struct machine_axis *a)
+{
+    return positive(a->pitch) && positive(a->gear_ratio) && a->ppr >= 1 && positive(a->rpm) &&
+           a->p_gain >= 0 && a->p_gain <= 65535 &&
+           a->max_dda >= 0 && a->max_dda <= machine_dda_limit(m);
+}
+
+bool machine_valid(const struct machine *m)
+{
+    if (m->dda_length < 10 || m->dda_length > 15 || m->queue_depth < 1) {
+        return false;
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (!axis_valid(m, &m->axis[i])) {
+            return false;
+        }
+    }
+    return positive(m->dda_time) && positive(m->feed) && positive(m->max_feed) &&
+           m->feed <= m->max_feed && positive(m->acc_time) && positive(m->dec_time);
+}
+
+int32_t machine_dda_divider(const struct machine *m)
+{
+    const double one = ldexp(1.0, m->dda_length) / CLOCK_HZ;    /* [s] at divider 1 */
+    const double n = round(m->dda_time / one);
+    return n < 1.0 ? 1 : n > 65535.0 ? 65535 : (int32_t)n;
+}
+
+int64_t machine_dda_clocks(const struct machine *m)
+{
+    return ((int64_t)1 << m->dda_length) * machine_dda_divider(m);
+}
+
+double machine_dda_time(const struct machine *m)
+{
+    return (double)machine_dda_clocks(m) / CLOCK_HZ;
+}
+
+int32_t machine_dda_limit(const struct machine *m)
+{
+    return (int32_t)((1u << m->dda_length) - 1u);
+}
+
+double machine_pulses_per_mm(const struct machine_axis *a)
+{
+    return a->ppr * a->gear_ratio / a->pitch;
+}
+
+double machine_axis_speed(const struct machine_axis *a)
+{
+    return a->rpm / 60.0 * a->pitch / a->gear_ratio;
+}

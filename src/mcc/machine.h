@@ -1,0 +1,49 @@
+/* machine - the axes and the card as the library knows them: units, speeds, DDA time. */
+#ifndef MACHINE_H
+#define MACHINE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { AXES = 6 };              /* X Y Z U V W */
+enum { CLOCK_HZ = 40000000 };   /* clock of the card: one count is 25 ns */
+
+/* One axis; the fields of MCC_MACH_PARAM that have a meaning here. */
+struct machine_axis {
+    bool    used;
+    double  pitch;          /* [mm] travel per turn of the screw */
+    double  gear_ratio;     /* motor turns per screw turn */
+    int32_t ppr;            /* pulses per motor turn */
+    double  rpm;            /* [rpm] highest safe motor speed */
+    int32_t p_gain;         /* position loop of the card */
+    int32_t max_dda;        /* most pulses in one DDA time; 0 at init means 2^dda_length - 1 */
+};
+
+struct machine {
+    struct machine_axis axis[AXES];
+    double  dda_time;       /* [s] wanted */
+    int32_t dda_length;     /* [bit] 10..15 */
+    int32_t queue_depth;    /* interpolation points kept ahead */
+    double  feed;           /* [mm/s] until one is set */
+    double  max_feed;       /* [mm/s] cart_max_speed of the source document */
+    double  acc_time;       /* [s] from rest to the commanded feed */
+    double  dec_time;       /* [s] from the commanded feed to rest */
+};
+
+/* True if every value lies in its range and is finite. */
+bool machine_valid(const struct machine *m);
+
+/* Divider, 1..65535, that brings 2^length * divider * 25 ns nearest to dda_time. */
+int32_t machine_dda_divider(const struct machine *m);
+
+/* DDA time the card really has. */
+int64_t machine_dda_clocks(const struct machine *m);    /* [25 ns clocks] */
+double  machine_dda_time(const struct machine *m);      /* [s] */
+
+/* Largest command the DDA can take: 2^length - 1. [pulses] */
+int32_t machine_dda_limit(const struct machine *m);
+
+double machine_pulses_per_mm(const struct machine_axis *a);     /* [pulses/mm] */
+double machine_axis_speed(const struct machine_axis *a);        /* [mm/s] at rpm */
+
+#endif

@@ -1,0 +1,64 @@
+/* path - exact geometry of one command: point and direction at any arc length.
+ *
+ * A line runs straight in all six axes. An arc turns about a normal along X, Y or Z, its third
+ * axis (helix) and U V W follow linearly. Length is measured in X Y Z; a move of U V W alone is
+ * measured in U V W.
+ */
+#ifndef PATH_H
+#define PATH_H
+
+#include <stdbool.h>
+
+#include "fault.h"
+#include "machine.h"
+
+/* Plane by its normal's index: YZ 0 (normal X), ZX 1 (normal Y), XY 2 (normal Z). */
+enum path_plane { PATH_YZ, PATH_ZX, PATH_XY };
+
+struct path {
+    bool   arc;
+    enum path_plane plane;
+    double start[AXES], end[AXES];  /* [mm] */
+    double centre[2];               /* [mm] in the plane's first and second axis */
+    double radius;                  /* [mm] at the start */
+    double growth;                  /* [mm] radius at the end - radius at the start; rounding of
+                                     * the program makes it, and keeps start and end exact */
+    double angle;                   /* [rad] of the start, seen from the normal's positive end */
+    double sweep;                   /* [rad] counter-clockwise positive */
+    double length;                  /* [mm] */
+};
+
+/* First and second axis of a plane: XY, YZ, ZX. */
+int path_first(enum path_plane p);
+int path_second(enum path_plane p);
+
+void path_line(struct path *p, const double start[AXES], const double end[AXES]);
+
+/* Arc about a centre (in the plane's axes); ccw seen from the normal's positive end; turns >= 1,
+ * each one above 1 adds a full circle. Same start and end make a full circle. On a fault *p is
+ * undefined and *miss [mm] says by how much the end misses the circle. */
+enum fault path_arc(struct path *p, enum path_plane plane, const double start[AXES],
+                    const double end[AXES], const double centre[2], bool ccw, int turns,
+                    double *miss);
+
+/* Centre of the arc of radius |r|; r < 0 takes the one of more than half a turn.
+ * *half is half the distance from start to end [mm]. */
+enum fault path_centre_by_radius(enum path_plane plane, const double start[AXES],
+                                 const double end[AXES], double r, bool ccw, double centre[2],
+                                 double *half);
+
+/* Centre and direction of the arc start - via - end. */
+enum fault path_centre_by_point(enum path_plane plane, const double start[AXES],
+                                const double via[2], const double end[AXES], double centre[2],
+                                bool *ccw);
+
+/* Point at arc length s, 0..length, and d(point)/ds; s = length gives the end exactly. */
+void path_at(const struct path *p, double s, double point[AXES], double slope[AXES]);
+
+/* Largest |d(point)/ds| of one axis anywhere on the path: axis speed per unit of feed. */
+double path_share(const struct path *p, int axis);
+
+/* Largest |coordinate| of one axis anywhere on the path, or a bound of it. [mm] */
+double path_reach(const struct path *p, int axis);
+
+#endif

@@ -1,0 +1,192 @@
+/* Geometry of lines, arcs and helices against trigonometry of its own. */
+#include "mcc_check.h"
+#include "path.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* Length of the path as a sum of chords, and its direction as a difference quotient. */
+static void walk(const struct path *p, double tolerance)
+{
+    enum { N = 20000 };
+    double a[AXES], b[AXES], slope[AXES], unused[AXES], sum = 0.0;
+    path_at(p, 0.0, a, slope);
+    for (int k = 0; k < AXES; k++) {
+        CHECK_NEAR(a[k], p->start[k], 1e-12);
+    }
+    for (int i = 1; i <= N; i++) {
+        path_at(p, p->length * i / N, b, unused);
+        sum += sqrt(pow(b[0] - a[0], 2) + pow(b[1] - a[1], 2) + pow(b[2] - a[2], 2));
+        memcpy(a, b, sizeof a);
+    }
+    CHECK_NEAR(sum, p->length, tolerance * p->length);
+    for (int k = 0; k < AXES; k++) {
+        CHECK(b[k] == p->end[k]);
+    }
+    for (int i = 1; i < 10; i++) {
+        const double s = p->length * i / 10.0, ds = 1e-6 * p->length;
+        double c[AXES];
+        path_at(p, s - ds, a, unused);
+        path_at(p, s + ds, b, unused);
+        path_at(p, s, c, slope);
+        for (int k = 0; k < AXES; k++) {
+            CHECK_NEAR(slope[k], (b[k] - a[k]) / (2.0 * ds), 1e-7);
+            CHECK(fabs(slope[k]) <= path_share(p, k) * (1.0 + 1e-12));
+            CHECK(fabs(c[k]) <= path_reach(p, k) * (1.0 + 1e-12));
+        }
+    }
+}
+
+static void lines(void)
+{
+    const double a[AXES] = { 1, 2, 3, 4, 5, 6 }, b[AXES] = { 4, 6, 15, 4, -5, 7 };
+    const double c[AXES] = { 1, 2, 3, 7, 9, 18 };
+    struct path p;
+    double at[AXES], slope[AXES];
+    path_line(&p, a, b);
+    CHECK_NEAR(p.length, 13.0, 1e-14);      /* 3 4 12, X Y Z alone */
+    walk(&p, 1e-12);
+    path_at(&p, 6.5, at, slope);
+    CHECK_NEAR(at[4], 0.0, 1e-14);
+    CHECK_NEAR(slope[4], -10.0 / 13.0, 1e-14);
+    path_line(&p, a, c);
+    CHECK_NEAR(p.length, 13.0, 1e-14);      /* only U V W move */
+}
+
+/* Quarter circles from a point 10 right of the centre: counter-clockwise seen from the normal's
+ * positive end turns the plane's first axis to its second: X to Y, Y to Z, Z to X. */
+static void planes(void)
+{
+    const int first[3] = { 1, 2, 0 }, second[3] = { 2, 0, 1 };  /* by normal X, Y, Z */
+    for (int n = 0; n < 3; n++) {
+        const int i = first[n], k = second[n];
+        double start[AXES] = { 0 }, end[AXES] = { 0 }, at[AXES], slope[AXES], miss;
+        const double centre[2] = { 7.0, -2.0 };
+        struct path p;
+        CHECK(path_first((enum path_plane)n) == i && path_second((enum path_plane)n) == k);
+        start[i] = 17.0;
+        start[k] = -2.0;
+        end[i] = 7.0;
+        end[k] = 8.0;
+        end[n] = 6.0;
+        end[5] = 3.0;
+        CHECK(path_arc(&p, (enum path_plane)n, start, end, centre, true, 1, &miss) == FAULT_NONE);
+        CHECK_NEAR(p.sweep, PI / 2, 1e-15);
+        CHECK_NEAR(p.length, hypot(10.0 * PI / 2, 6.0), 1e-13);
+        walk(&p, 1e-8);
+        path_at(&p, p.length / 3.0, at, slope);
+        CHECK_NEAR(at[i], 7.0 + 10.0 * cos(PI / 6), 1e-13);
+        CHECK_NEAR(at[k], -2.0 + 10.0 * sin(PI / 6), 1e-13);
+        CHECK_NEAR(at[n], 2.0, 1e-14);
+        CHECK_NEAR(at[5], 1.0, 1e-14);
+
+        CHECK(path_arc(&p, (enum path_plane)n, start, end, centre, false, 3, &miss) == FAULT_NONE);
+        CHECK_NEAR(p.sweep, -1.5 * PI - 4.0 * PI, 1e-14);
+        walk(&p, 1e-6);
+        path_at(&p, p.length * 0.75 / 2.75, at, slope);     /* after three quarters of a turn */
+        CHECK_NEAR(at[i], 7.0, 1e-13);
+        CHECK_NEAR(at[k], 8.0, 1e-13);
+    }
+}
+
+static void full_circle(void)
+{
+    const double start[AXES] = { 50.0, 0.0 }, centre[2] = { 0.0, 0.0 };
+    double at[AXES], slope[AXES], miss;
+    struct path p;
+    CHECK(path_arc(&p, PATH_XY, start, start, centre, false, 1, &miss) == FAULT_NONE);
+    CHECK_NEAR(p.length, 100.0 * PI, 1e-12);
+    path_at(&p, 25.0 * PI, at, slope);      /* clockwise from +X: first to -Y */
+    CHECK_NEAR(at[0], 0.0, 1e-13);
+    CHECK_NEAR(at[1], -50.0, 1e-13);
+    CHECK_NEAR(slope[0], -1.0, 1e-14);
+}
+
+/* R form: the centre is r from both ends, and the sign of r picks the arc below or above pi. */
+static void by_radius(void)
+{
+    uint64_t seed = 3;
+    for (int i = 0; i < 500; i++) {
+        double start[AXES] = { 0 }, end[AXES] = { 0 }, centre[2], half, miss;
+        start[0] = mcc_random(&seed, -50, 50);
+        start[1] = mcc_random(&seed, -50, 50);
+        end[0] = mcc_random(&seed, -50, 50);
+        end[1] = mcc_random(&seed, -50, 50);
+        const double chord = hypot(end[0] - start[0], end[1] - start[1]);
+        const double r = chord / 2.0 * mcc_random(&seed, 1.001, 5.0);
+        const bool ccw = mcc_random(&seed, 0, 1) < 0.5, large = mcc_random(&seed, 0, 1) < 0.5;
+        struct path p;
+        CHECK(path_centre_by_radius(PATH_XY, start, end, large ? -r : r, ccw, centre, &half) ==
+              FAULT_NONE);
+        CHECK_NEAR(hypot(start[0] - centre[0], start[1] - centre[1]), r, 1e-10 * r);
+        CHECK(path_arc(&p, PATH_XY, start, end, centre, ccw, 1, &miss) == FAULT_NONE);
+        const double small = 2.0 * asin(chord / 2.0 / r);
+        CHECK_NEAR(fabs(p.sweep), large ? 2.0 * PI - small : small, 1e-9);
+        CHECK((p.sweep > 0.0) == ccw);
+    }
+}
+
+/* Three points: the arc passes through the middle one. */
+static void by_point(void)
+{
+    uint64_t seed = 4;
+    for (int i = 0; i < 500; i++) {
+        const double r = mcc_random(&seed, 0.5, 80.0), a0 = mcc_random(&seed, -3.0, 3.0);
+        const double turn = mcc_random(&seed, 0.1, 6.0) * (i % 2 ? 1.0 : -1.0);
+        const double part = mcc_random(&seed, 0.1, 0.9), c0 = mcc_random(&seed, -9, 9);
+        double start[AXES] = { 0 }, end[AXES] = { 0 }, centre[2], miss;
+        const double via[2] = { c0 + r * cos(a0 + part * turn), r * sin(a0 + part * turn) };
+        bool ccw;
+        struct path p;
+        start[0] = c0 + r * cos(a0);
+        start[1] = r * sin(a0);
+        end[0] = c0 + r * cos(a0 + turn);
+        end[1] = r * sin(a0 + turn);
+        CHECK(path_centre_by_point(PATH_XY, start, via, end, centre, &ccw) == FAULT_NONE);
+        CHECK_NEAR(centre[0], c0, 1e-9 * r / (part * part));
+        CHECK_NEAR(centre[1], 0.0, 1e-9 * r / (part * part));
+        CHECK(ccw == (turn > 0.0));
+        CHECK(path_arc(&p, PATH_XY, start, end, centre, ccw, 1, &miss) == FAULT_NONE);
+        CHECK_NEAR(p.sweep, turn, 1e-8);
+    }
+    const double a[AXES] = { 0 }, b[AXES] = { 2.0, 2.0 };
+    double centre[2];
+    bool ccw;
+    CHECK(path_centre_by_point(PATH_XY, a, (double[]){ 1.0, 1.0 }, b, centre, &ccw) ==
+          FAULT_ARC_CLOSED);
+}
+
+/* The tolerance of E1: 0.005 mm always, 0.5 mm never more, 0.1 % between. */
+static void tolerance(void)
+{
+    const struct { double r, error; enum fault want; } cases[] = {
+        { 1.0, 0.0049, FAULT_NONE },  { 1.0, 0.0051, FAULT_ARC_END },
+        { 100.0, 0.099, FAULT_NONE }, { 100.0, 0.101, FAULT_ARC_END },
+        { 1000.0, 0.49, FAULT_NONE }, { 1000.0, 0.51, FAULT_ARC_END },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const double start[AXES] = { cases[i].r }, end[AXES] = { 0.0, cases[i].r + cases[i].error };
+        const double centre[2] = { 0.0, 0.0 };
+        double miss;
+        struct path p;
+        CHECK(path_arc(&p, PATH_XY, start, end, centre, true, 1, &miss) == cases[i].want);
+        CHECK_NEAR(miss, cases[i].error, 1e-12 * cases[i].r);
+        if (cases[i].want == FAULT_NONE) {
+            walk(&p, 1e-6);     /* start and end are met; speed errs by less than 0.1 % */
+        }
+    }
+    const double zero[AXES] = { 0.0 }, centre[2] = { 0.0, 0.0 };
+    double miss;
+    struct path p;
+    CHECK(path_arc(&p, PATH_XY, zero, zero, centre, true, 1, &miss) == FAULT_ARC_RADIUS);
+}
+
+int main(void)
+{
+    lines();
+    planes();
+    full_circle();
+    by_radius();
+    by_point();
+    tolerance();
+    return check_result();
+}

@@ -1,0 +1,109 @@
+/* Trapezoidal profile: closed-form durations, limits under any sequence of replanning. */
+#include "mcc_check.h"
+#include "profile.h"
+
+/* T of a rest-to-rest move: L/v + v (1/a + 1/d)/2 if the cruise speed is reached, else the triangle. */
+static double duration(double way, double v, double a, double d)
+{
+    const double ramps = v * v / 2.0 * (1.0 / a + 1.0 / d);
+    const double peak = sqrt(2.0 * way / (1.0 / a + 1.0 / d));
+    return ramps <= way ? way / v + v / 2.0 * (1.0 / a + 1.0 / d) : peak * (1.0 / a + 1.0 / d);
+}
+
+static void rest_to_rest(void)
+{
+    uint64_t seed = 1;
+    for (int i = 0; i < 2000; i++) {
+        const double way = pow(10.0, mcc_random(&seed, -6.0, 4.0));
+        const struct profile_limits l = { mcc_random(&seed, 0.1, 500.0),
+                                          mcc_random(&seed, 10.0, 5000.0),
+                                          mcc_random(&seed, 10.0, 5000.0) };
+        struct profile p;
+        double s, v;
+        profile_plan(&p, 0.0, 0.0, way, &l);
+        const double want = duration(way, l.speed, l.acc, l.dec);
+        CHECK(p.ends);
+        CHECK_NEAR(p.total, want, 1e-12 * want);
+        p.t = p.tail;
+        profile_state(&p, &s, &v);
+        CHECK_NEAR(v, fmin(l.speed, sqrt(2.0 * way * l.acc * l.dec / (l.acc + l.dec))), 1e-9 * v);
+        p.t = p.total;
+        profile_state(&p, &s, &v);
+        CHECK(s == way && v == 0.0);
+    }
+}
+
+/* Nearer to the end than this a plan has lost its digits: v^2/(2 d) of 1e-9 mm needs s to
+ * 1e-15 mm for the deceleration of 1e-6 relative. A pulse is a million times larger. [mm] */
+static const double NEAR = 1e-6;
+
+/* New targets at random moments: s and v stay continuous, v and a within limits, the end exact. */
+static void replanned(void)
+{
+    uint64_t seed = 2;
+    for (int i = 0; i < 500; i++) {
+        const double way = mcc_random(&seed, 0.01, 200.0);
+        const double acc = mcc_random(&seed, 50.0, 3000.0), dec = mcc_random(&seed, 50.0, 3000.0);
+        struct profile p;
+        double s = 0.0, v = 0.0, fastest = 0.0;
+        for (int k = 0; k < 8; k++) {
+            const double target = k == 7 ? 50.0 : mcc_random(&seed, 0.0, 1.0) < 0.3
+                                ? 0.0 : mcc_random(&seed, 1.0, 300.0);
+            const struct profile_limits l = { target, acc, dec };
+            const double s0 = s, v0 = v;
+            fastest = fmax(fastest, target);
+            profile_plan(&p, s, v, way, &l);
+            profile_state(&p, &s, &v);
+            CHECK_NEAR(s, s0, 1e-12 * way);
+            const bool far = way - s0 > NEAR;
+            CHECK(!far || fabs(v - v0) <= 1e-9 * fastest);
+            for (int j = 0; j < PROFILE_PHASES; j++) {
+                CHECK(p.time[j] >= 0.0);
+                CHECK(p.acc[j] <= acc * (1.0 + 1e-9));
+                CHECK(p.time[j] == 0.0 || !far || p.acc[j] >= -dec * (1.0 + 1e-6));
+            }
+            const double t1 = k == 7 ? p.total : mcc_random(&seed, 0.0, 1.1) * p.total;
+            double last_s = s;
+            for (int j = 1; j <= 50; j++) {
+                p.t = j < 50 ? t1 * j / 50.0 : t1;
+                profile_state(&p, &s, &v);
+                CHECK(s >= last_s - 1e-12 * way && s <= way);
+                CHECK(v >= 0.0 && v <= fastest * (1.0 + 1e-12));
+                last_s = s;
+            }
+        }
+        CHECK(p.ends && s == way && v == 0.0);
+    }
+}
+
+/* To rest on the path: v^2/(2 d) further, v/d later. */
+static void brake(void)
+{
+    const struct profile_limits l = { 0.0, 100.0, 400.0 };
+    struct profile p;
+    double s, v;
+    profile_plan(&p, 3.0, 20.0, 10.0, &l);
+    CHECK(!p.ends);
+    CHECK_NEAR(p.total, 0.05, 1e-15);
+    p.t = p.total;
+    profile_state(&p, &s, &v);
+    CHECK_NEAR(s, 3.5, 1e-14);
+    CHECK(v == 0.0);
+    p.t = 1.0;
+    profile_state(&p, &s, &v);
+    CHECK_NEAR(s, 3.5, 1e-14);
+
+    profile_plan(&p, 9.5, 20.0, 10.0, &l);      /* exactly the way that is left */
+    p.t = p.total;
+    profile_state(&p, &s, &v);
+    CHECK(p.ends && s == 10.0);
+    CHECK_NEAR(p.acc[2], -400.0, 1e-9);
+}
+
+int main(void)
+{
+    rest_to_rest();
+    replanned();
+    brake();
+    return check_result();
+}
