@@ -1,0 +1,65 @@
+/* command - one planned motion command, and the ring it waits in. */
+#ifndef COMMAND_H
+#define COMMAND_H
+
+#include "fault.h"
+#include "machine.h"
+#include "path.h"
+#include "profile.h"
+
+/* nType of the library's COMMAND_INFO. */
+enum command_type {
+    COMMAND_PTP, COMMAND_LINE, COMMAND_CW_ARC, COMMAND_CCW_ARC, COMMAND_CW_HELIX,
+    COMMAND_CCW_HELIX, COMMAND_DELAY
+};
+
+struct command {
+    enum command_type type;
+    int32_t index;      /* counts from 1 */
+    int32_t line;       /* of the part program; 0 for a call of the API */
+    bool    blend;      /* continuous path: the next command may start in the deceleration */
+    double  feed;       /* [mm/s] programmed */
+    double  cap;        /* [mm/s] highest speed any override may bring */
+    double  acc, dec;   /* [mm/s^2] feed / acc_time, feed / dec_time */
+    double  dwell;      /* [s] of a delay */
+    struct path path;
+};
+
+/* Complete a command whose path is set (and is not a point): type and feed [mm/s] given; cap, acc
+ * and dec found. Refuses what the machine cannot do; FAULT_SPEED sets value and limit of *r. */
+enum fault command_move(struct command *c, const struct machine *m, enum command_type type,
+                        double feed, struct fault_report *r);
+
+/* Rapid positioning: all axes together, the slowest at its safe motor speed. */
+enum fault command_ptp(struct command *c, const struct machine *m);
+
+/* Wait for so many seconds at a point. */
+void command_delay(struct command *c, const double point[AXES], double seconds);
+
+/* Type of an arc's command from its geometry. */
+enum command_type command_arc_type(const struct path *p);
+
+/* True if it can share the tool with a neighbour: line or arc, not a rapid or a delay. */
+bool command_blends(const struct command *c);
+
+/* Begin its profile. */
+void command_start(const struct command *c, double override, struct profile *p);
+
+/* Speed it runs at under an override. [mm/s] */
+double command_speed(const struct command *c, double override);
+
+/* Commands that wait for the interpolation; first in, first out. */
+enum { RING_SIZE = 64 };
+
+struct ring {
+    struct command item[RING_SIZE];
+    int32_t head, count;
+};
+
+void ring_clear(struct ring *r);
+bool ring_full(const struct ring *r);
+void ring_push(struct ring *r, const struct command *c);    /* not when full */
+const struct command *ring_head(const struct ring *r);      /* NULL when empty */
+void ring_pop(struct ring *r);                              /* not when empty */
+
+#endif
