@@ -1,0 +1,196 @@
+#include "ipo.h"
+
+#include <math.h>
+#include <string.h>
+
+void ipo_start(struct ipo *p)
+{
+    memset(p, 0, sizeof *p);
+    p->override[0] = p->override[1] = 1.0;
+}
+
+static double override_of(const struct ipo *p, const struct command *c)
+{
+    return p->hold || p->abort ? 0.0 : p->override[c->type == COMMAND_PTP];
+}
+
+static bool move_resting(const struct ipo *p, const struct ipo_move *m)
+{
+    if (m->command.type == COMMAND_DELAY) {
+        return p->hold || p->abort;
+    }
+    return !m->profile.ends && profile_left(&m->profile) <= 0.0;
+}
+
+bool ipo_resting(const struct ipo *p, const struct ring *r)
+{
+    for (int i = 0; i < p->count; i++) {
+        if (!move_resting(p, &p->move[i])) {
+            return false;
+        }
+    }
+    return p->count > 0 || p->hold || p->abort || r->count == 0;
+}
+
+bool ipo_moving(const struct ipo *p)
+{
+    for (int i = 0; i < p->count; i++) {
+        if (p->move[i].command.type != COMMAND_DELAY && !move_resting(p, &p->move[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Plan the newest move afresh from where it is. An older one beside it decelerates to its end. */
+static void replan(struct ipo *p)
+{
+    if (p->count == 0) {
+        return;
+    }
+    struct ipo_move *m = &p->move[p->count - 1];
+    if (m->command.type != COMMAND_DELAY) {
+        const struct profile_limits l = {
+            command_speed(&m->command, override_of(p, &m->command)),
+            m->command.acc, m->command.dec
+        };
+        double s, v;
+        profile_state(&m->profile, &s, &v);
+        profile_plan(&m->profile, s, v, m->command.path.length, &l);
+    }
+}
+
+void ipo_hold(struct ipo *p, bool on)
+{
+    if (p->hold != on) {
+        p->hold = on;
+        replan(p);
+    }
+}
+
+void ipo_override(struct ipo *p, double feed, double ptp)
+{
+    if (p->override[0] != feed || p->override[1] != ptp) {
+        p->override[0] = feed;
+        p->override[1] = ptp;
+        replan(p);
+    }
+}
+
+static void place(const struct ipo *p, double point[AXES], double velocity[AXES])
+{
+    memcpy(point, p->rest, AXES * sizeof *point);
+    memset(velocity, 0, AXES * sizeof *velocity);
+    for (int i = 0; i < p->count; i++) {
+        const struct ipo_move *m = &p->move[i];
+        double s, v, at[AXES], slope[AXES];
+        profile_state(&m->profile, &s, &v);
+        path_at(&m->command.path, s, at, slope);
+        for (int k = 0; k < AXES; k++) {
+            point[k] = i == 0 ? at[k] : point[k] + (at[k] - m->command.path.start[k]);
+            velocity[k] += v * slope[k];
+        }
+    }
+}
+
+void ipo_stop(struct ipo *p, struct ring *r)
+{
+    double velocity[AXES], at[AXES];
+    place(p, at, velocity);
+    memcpy(p->rest, at, sizeof p->rest);
+    p->count = 0;
+    p->hold = p->abort = false;
+    ring_clear(r);
+}
+
+void ipo_abort(struct ipo *p, struct ring *r)
+{
+    p->abort = true;
+    replan(p);
+    if (ipo_resting(p, r)) {
+        ipo_stop(p, r);
+    }
+}
+
+/* The older move has ended; the newer takes its place. */
+static void retire(struct ipo *p)
+{
+    memcpy(p->rest, p->move[0].command.path.end, sizeof p->rest);
+    if (--p->count) {
+        p->move[0] = p->move[1];
+    }
+}
+
+static bool may_start(const struct ipo *p, const struct ring *r)
+{
+    const struct command *next = ring_head(r);
+    if (!next || p->hold || p->abort || p->count == 2) {
+        return false;
+    }
+    return p->count == 0 || (p->move[0].command.blend && p->move[0].profile.ends &&
+                             command_blends(&p->move[0].command) && command_blends(next));
+}
+
+static void start(struct ipo *p, struct ring *r)
+{
+    struct ipo_move *m = &p->move[p->count++];
+    m->command = *ring_head(r);
+    ring_pop(r);
+    command_start(&m->command, override_of(p, &m->command), &m->profile);
+    p->started = m->command.index;
+    p->line = m->command.line;
+}
+
+double ipo_advance(struct ipo *p, struct ring *r, double dt)
+{
+    for (;;) {
+        const bool startable = may_start(p, r);
+        struct profile *old = &p->move[0].profile;
+
+        if (startable && (p->count == 0 || old->t >= old->tail)) {
+            start(p, r);
+            return dt;
+        }
+        if (p->count && old->ends && old->t >= old->total) {
+            retire(p);
+            continue;
+        }
+        if (ipo_resting(p, r)) {
+            if (p->abort) {
+                ipo_stop(p, r);
+            }
+            return dt;
+        }
+        if (dt <= 0.0) {
+            return 0.0;
+        }
+        const double event = startable ? old->tail : old->total;
+        const double step = fmin(dt, event - old->t);
+        for (int i = 0; i < p->count; i++) {
+            p->move[i].profile.t += step;
+        }
+        if (step < dt) {
+            old->t = event;     /* met exactly, whatever the sum rounds to */
+        }
+        dt -= step;
+    }
+}
+
+void ipo_point(const struct ipo *p, const struct machine *m, struct point *point)
+{
+    double velocity[AXES];
+
+    place(p, point->place, velocity);
+    const double *v = velocity;
+    point->feed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    if (point->feed == 0.0) {
+        point->feed = sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
+    }
+    for (int i = 0; i < AXES; i++) {
+        const double ideal = point->place[i] * machine_pulses_per_mm(&m->axis[i]);
+        point->pulses[i] = m->axis[i].used ? (int32_t)lround(ideal) : 0;
+    }
+    point->line = p->count ? p->move[0].command.line : p->line;
+    point->command = p->count ? p->move[0].command.index : p->started;
+    point->waits = p->count && p->move[0].command.type == COMMAND_DELAY;
+}

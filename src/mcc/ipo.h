@@ -1,0 +1,62 @@
+/* ipo - trajectory planning: commands become points at the DDA boundaries.
+ *
+ * Motion runs in continuous time. A command that ends inside a DDA time hands the rest of it to the
+ * next one, so no time is lost between them. With continuous path (G64) the next line or arc starts
+ * when the current one begins to decelerate, and the tool moves by the sum of both:
+ *
+ *     point = A(s_A) + B(s_B) - B(0)          at most two commands at a time
+ *
+ * Otherwise each command ends at rest (exact stop). Pulses are differences of the rounded ideal
+ * position, so every axis is within half a pulse of it at every boundary and nothing drifts.
+ */
+#ifndef IPO_H
+#define IPO_H
+
+#include "command.h"
+#include "queue.h"
+
+struct ipo_move {
+    struct command command;
+    struct profile profile;
+};
+
+struct ipo {
+    struct ipo_move move[2];    /* the older first */
+    int32_t count;              /* moves under way */
+    double  rest[AXES];         /* [mm] where the axes stand while count is 0 */
+    int32_t pulses[AXES];       /* [pulses] of the latest point */
+    double  override[2];        /* of lines and arcs, of point-to-point; 1 is 100 % */
+    bool    hold;
+    bool    abort;              /* ramp to rest, then drop everything */
+    int32_t started, line;      /* index and source line of the latest command begun */
+};
+
+/* At rest at the origin, pulses 0. */
+void ipo_start(struct ipo *p);
+
+/* True if time alone changes nothing: no move under way that could go on, none to begin. */
+bool ipo_resting(const struct ipo *p, const struct ring *r);
+
+/* True while pulses are due: a line, arc or rapid under way that is not brought to rest. */
+bool ipo_moving(const struct ipo *p);
+
+/* Pause on the path, or go on. */
+void ipo_hold(struct ipo *p, bool on);
+
+/* New overrides, from now on. A move that hands over to the next one keeps its deceleration. */
+void ipo_override(struct ipo *p, double feed, double ptp);
+
+/* Ramp to rest; when there, moves and ring are dropped. */
+void ipo_abort(struct ipo *p, struct ring *r);
+
+/* Drop moves and ring without a ramp, at the latest point. */
+void ipo_stop(struct ipo *p, struct ring *r);
+
+/* Let up to dt seconds pass. Stops early after it took a command from the ring, so that the caller
+ * can refill it, and when the axes rest (ipo_resting); returns the time that is left. */
+double ipo_advance(struct ipo *p, struct ring *r, double dt);
+
+/* The point reached; *point gets everything but its frame, which is the way from p->pulses. */
+void ipo_point(const struct ipo *p, const struct machine *m, struct point *point);
+
+#endif

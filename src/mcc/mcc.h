@@ -1,0 +1,110 @@
+/* mcc - the motion library: the calls of the source document under their own names.
+ *
+ * The document's library has one implicit state; here it is the first argument, so that several
+ * libraries live side by side and a state can be copied. Positions are in mm and in machine
+ * coordinates, X Y Z U V W. A call that is refused changes nothing.
+ */
+#ifndef MCC_H
+#define MCC_H
+
+#include "interpreter.h"
+#include "ipo.h"
+#include "queue.h"
+
+/* Return codes of the library that occur here. */
+enum mcc_return {
+    MCC_NO_ERR              = 0,
+    MCC_INITIAL_MOTION      = -1,   /* MCC_init_motion has not been called */
+    MCC_COMMAND_BUFFER_FULL = -2,
+    MCC_COMMAND_NOTACCEPTED = -3,   /* a part program is running */
+    MCC_COMMAND_NOTFINISHED = -4,   /* allowed at standstill only */
+    MCC_PARAMETER           = -5,
+    MCC_FEED_RATE           = -7,
+    MCC_HOLD_ILLEGAL        = -11,
+    MCC_CONTI_ILLEGAL       = -12,
+    MCC_ABORT_ILLEGAL       = -13,
+    MCC_RUN_TIME            = -14,  /* a run-time error waits for MCC_clear_error */
+    MCC_ABORT_NOT_FINISH    = -15
+};
+
+/* Run-time errors. */
+enum mcc_error {
+    MCC_ERROR_ARC   = 0xF104,       /* invalid command met while the program ran */
+    MCC_ERROR_SPEED = 0xF203        /* more pulses in one DDA time than max_dda_spd */
+};
+
+struct mcc {
+    bool    open;
+    struct machine machine;
+    double  offset[INTERPRETER_SYSTEMS][AXES];  /* [mm] */
+    double  feed;               /* [mm/s] of MCC_line, arcs and circles */
+    bool    incremental;
+    bool    blend;
+    int32_t error;              /* enum mcc_error, 0 none */
+    int32_t commands;           /* commands accepted; the index of the latest */
+    double  end[AXES];          /* [mm] end of the latest */
+    bool    running;            /* the part program has lines to come */
+    struct interpreter program;
+    struct ring  ring;
+    struct ipo   ipo;
+    struct queue queue;
+    struct point written;       /* the latest point the card took */
+    int32_t errcnt[AXES];       /* [counts] as the card reported them */
+};
+
+/* System. MCC_init_motion: at rest at the origin, settings from the machine. */
+int MCC_init_motion(struct mcc *m, const struct machine *machine);
+int MCC_close_motion(struct mcc *m);
+int MCC_clear_error(struct mcc *m);
+int MCC_get_errcode(const struct mcc *m);               /* enum mcc_error */
+
+/* Motion: each returns the command's index > 0, or a code < 0. Targets are absolute or incremental
+ * as set; a circle direction is 0 clockwise, 1 counter-clockwise. */
+int MCC_line(struct mcc *m, const double target[AXES]);
+int MCC_line_x(struct mcc *m, double x);
+int MCC_line_y(struct mcc *m, double y);
+int MCC_line_z(struct mcc *m, double z);
+int MCC_arc_xy(struct mcc *m, double via_x, double via_y, double x, double y);
+int MCC_arc_yz(struct mcc *m, double via_y, double via_z, double y, double z);
+int MCC_arc_zx(struct mcc *m, double via_z, double via_x, double z, double x);
+int MCC_circle_xy(struct mcc *m, double centre_x, double centre_y, int direction);
+int MCC_circle_yz(struct mcc *m, double centre_y, double centre_z, int direction);
+int MCC_circle_zx(struct mcc *m, double centre_z, double centre_x, int direction);
+int MCC_ptp(struct mcc *m, const double target[AXES]);  /* all axes arrive together */
+int MCC_motion_delay(struct mcc *m, double ms);
+
+/* Trajectory control. */
+int MCC_motion_hold(struct mcc *m);     /* ramp to rest on the path */
+int MCC_motion_conti(struct mcc *m);
+int MCC_motion_abort(struct mcc *m);    /* ramp to rest, drop commands and program */
+
+/* Settings. Acceleration and deceleration times count from the next command on. */
+int MCC_set_abs(struct mcc *m);
+int MCC_set_inc(struct mcc *m);
+int MCC_get_pos_type(const struct mcc *m);              /* 0 incremental, 1 absolute */
+int MCC_set_fspd(struct mcc *m, double feed);           /* [mm/s] */
+int MCC_enable_quit(struct mcc *m);                     /* continuous path */
+int MCC_disable_quit(struct mcc *m);
+int MCC_check_quit(const struct mcc *m);                /* 0 enabled, 1 disabled, as the library */
+int MCC_set_acc_step(struct mcc *m, double ms);
+double MCC_get_acc_step(const struct mcc *m);           /* [ms] */
+int MCC_set_dec_step(struct mcc *m, double ms);
+double MCC_get_dec_step(const struct mcc *m);           /* [ms] */
+int MCC_set_dda(struct mcc *m, double ms);              /* at standstill; the nearest possible */
+double MCC_get_dda(const struct mcc *m);                /* [ms] that the card has */
+int MCC_set_max_dda_spd(struct mcc *m, const int32_t pulses[AXES]);
+int MCC_get_max_dda_spd(const struct mcc *m, int32_t pulses[AXES]);
+int MCC_set_over_spd(struct mcc *m, double percent);    /* 0..200, lines and arcs */
+double MCC_get_over_spd(const struct mcc *m);
+int MCC_set_ptp_ospd(struct mcc *m, double percent);    /* 0..200, never above the safe speed */
+double MCC_get_ptp_ospd(const struct mcc *m);
+int MCC_set_P_gain(struct mcc *m, const int32_t gain[AXES]);
+int MCC_get_P_gain(const struct mcc *m, int32_t gain[AXES]);
+
+/* Status: of the points the card has taken. */
+int MCC_get_cpos(const struct mcc *m, double place[AXES]);      /* [mm] */
+int MCC_get_ppos(const struct mcc *m, int32_t pulses[AXES]);    /* [pulses] */
+int MCC_get_errcnt(const struct mcc *m, int32_t counts[AXES]);  /* [counts] */
+int MCC_check_stop(const struct mcc *m);    /* 1 all commands done and every point written */
+
+#endif

@@ -1,0 +1,109 @@
+#include "pc.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double VOLTS_MAX = 10.0;   /* [V] range of the card's DAC */
+
+int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *config, bool program)
+{
+    memset(pc, 0, sizeof *pc);
+    pc->config = *config;
+    pc->random = (uint64_t)(int64_t)config->seed;
+    pc->program = program;
+    pcl_start(&pc->pcl, m, config->min_stock, config->batch);
+    return MCC_init_motion(&pc->mcc, m);
+}
+
+/* Uniform in [0, 1): SplitMix64, the 53 upper bits. */
+static double uniform(uint64_t *state)
+{
+    uint64_t x = *state += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return ldexp((double)((x ^ (x >> 31)) >> 11), -53);
+}
+
+/* Latency of an interrupt; a number is drawn for each. [clocks] */
+static int64_t latency(struct pc *pc)
+{
+    return (int64_t)llround(pc->config.latency + pc->config.jitter * uniform(&pc->random));
+}
+
+static void read_panel(struct pc *pc, const struct pc_panel *panel)
+{
+    const struct machine *m = &pc->mcc.machine;
+
+    pc->abort_due = pc->abort_due || (panel->abort && !pc->abort_seen);
+    pc->abort_seen = panel->abort;
+    MCC_set_P_gain(&pc->mcc, panel->p_gain);
+    memcpy(pc->mcc.errcnt, panel->err_count, sizeof pc->mcc.errcnt);
+    for (int i = 0; i < AXES; i++) {
+        if (pc->config.output_mode[i] == 2 && m->axis[i].used) {
+            const double v = panel->software_gain * panel->err_count[i];
+            pc->volts[i] = fmax(-VOLTS_MAX, fmin(VOLTS_MAX, v));
+        }
+    }
+}
+
+/* One cycle of the IPO task, with the panel as read last. */
+static void cycle(struct pc *pc, const struct pc_panel *panel, const char *text, size_t length)
+{
+    struct mcc *m = &pc->mcc;
+
+    if (pc->program && !pc->started && pc->next_ipo >= pc->config.start) {
+        task_start(m);
+        pc->started = true;
+    }
+    if (pc->abort_due) {
+        pc->started = true;     /* a program that waits for its start is dropped too */
+        pc->abort_due = false;
+        MCC_motion_abort(m);
+    }
+    /* The level is offered every time: what does not apply is refused. */
+    if (panel->hold) {
+        MCC_motion_hold(m);
+    } else {
+        MCC_motion_conti(m);
+    }
+    MCC_set_over_spd(m, 100.0 * panel->override);
+    MCC_set_ptp_ospd(m, 100.0 * panel->override);
+    task_run(m, text, length);
+    pc->next_ipo += pc->config.ipo;
+}
+
+void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
+                const struct pc_panel *panel, const char *text, size_t length)
+{
+    const int64_t publish = now + pc->config.bus, horizon = publish + pc->config.bus;
+
+    pcl_look(&pc->pcl, &pc->mcc, card, now,
+             pcl_interrupt(&pc->pcl, card) ? latency(pc) : 0);
+    read_panel(pc, panel);
+    for (;;) {
+        const int64_t due = pcl_due(&pc->pcl);
+        if (pc->next_ipo < horizon && pc->next_ipo <= due) {
+            cycle(pc, panel, text, length);
+        } else if (due < horizon) {
+            pcl_serve(&pc->pcl, &pc->mcc, due < publish ? publish : due);
+        } else {
+            return;
+        }
+    }
+}
+
+bool pc_done(const struct pc *pc)
+{
+    return (pc->started || !pc->program) && !pc->mcc.error && pc->pcl.seq > 0 && !pc->pcl.open &&
+           MCC_check_stop(&pc->mcc);
+}
+
+bool pc_loop_on(const struct pc *pc, int axis)
+{
+    return pc->mcc.machine.axis[axis].used && pc->config.output_mode[axis] != 0;
+}
+
+int32_t pc_dac_source(const struct pc *pc, int axis)
+{
+    return pc->config.output_mode[axis] == 1 ? 1 : 0;
+}

@@ -1,0 +1,59 @@
+/* pc - the computer the library runs on: interrupt latency and jitter, task cycle, bus.
+ *
+ * The PC meets the card and its panel on the bus grid k T_b. What it reads at instant k decides all
+ * that happens before (k+2) T_b; it is published at (k+1) T_b, frames with the exact clock at which
+ * they reach the card. A service due earlier than (k+1) T_b is late: it takes place at (k+1) T_b.
+ */
+#ifndef PC_H
+#define PC_H
+
+#include "pcl.h"
+#include "task.h"
+
+struct pc_config {
+    int64_t bus;            /* [clocks] T_b */
+    int64_t ipo;            /* [clocks] cycle of the IPO task */
+    int64_t start;          /* [clocks] the program starts at the first IPO cycle from here on */
+    double  latency;        /* [clocks] from interrupt to write */
+    double  jitter;         /* [clocks] width of the uniform random addition */
+    int32_t seed;
+    int32_t min_stock, batch;
+    int32_t output_mode[AXES];  /* 0 pulses, 1 position loop of the card, 2 software voltage */
+};
+
+/* The operator's panel and what else is read on the bus grid. */
+struct pc_panel {
+    bool   hold, abort;
+    double override;            /* 0..2 */
+    double software_gain;       /* [V/count] of output mode 2 */
+    int32_t p_gain[AXES];
+    int32_t err_count[AXES];    /* [counts] of the card */
+};
+
+struct pc {
+    struct pc_config config;
+    struct mcc mcc;
+    struct pcl pcl;
+    uint64_t random;
+    int64_t next_ipo;       /* [clocks] */
+    bool    program;        /* there is one */
+    bool    started;        /* it has been started, or dropped by an abort */
+    bool    abort_seen, abort_due;
+    double  volts[AXES];    /* [V] software control law */
+};
+
+/* Everything at rest at clock 0. Returns a library code. */
+int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *config, bool program);
+
+/* One bus instant, at clock now = k T_b; call for k = 0, 1, 2, ... */
+void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
+                const struct pc_panel *panel, const char *text, size_t length);
+
+/* The program has ended without error and every point is in the card. */
+bool pc_done(const struct pc *pc);
+
+/* Where the card's DAC and loop take their values from for an axis. */
+bool    pc_loop_on(const struct pc *pc, int axis);
+int32_t pc_dac_source(const struct pc *pc, int axis);
+
+#endif

@@ -1,0 +1,64 @@
+/* pcl - the position control task: interrupt service, points from the queue to the card.
+ *
+ * A transaction is up to 16 frames under a number. It stays visible until the card acknowledges the
+ * number; only then its points leave the queue, less those the card refused (the last ones, for the
+ * card takes frames in order until one does not fit). So no frame is lost or doubled, whatever the
+ * wire does. A card with n or fewer commands left and no service due gets one: a late refill may
+ * have left the stock at n without a further edge of the interrupt.
+ */
+#ifndef PCL_H
+#define PCL_H
+
+#include "task.h"
+
+enum { PCL_FRAMES = 16, PCL_FIFO = 63 };
+
+/* What the card shows on its bus. */
+struct pcl_card {
+    int32_t irq_seq;            /* pulls of the interrupt line */
+    int64_t irq_clock;          /* of the latest pull */
+    int32_t irq_flags;
+    int32_t cmd_ack;            /* latest transaction taken */
+    int32_t frames_refused;
+    int32_t stock;              /* of the watched axis */
+};
+
+struct pcl {
+    int32_t min_stock, batch;   /* n and N */
+    int32_t mask;               /* interrupt source served: FIFO of the first used axis */
+    int32_t axis;               /* that axis */
+    int32_t prime;              /* frames still to write before the first service */
+
+    int32_t seq;                /* the transaction: number, 0 before the first */
+    bool    open;               /* not yet acknowledged */
+    int64_t clock;              /* when it reaches the card */
+    int32_t count, points;      /* frames in it, and how many of them from the queue */
+    bool    late;               /* the others are standstill in the middle of a motion */
+    int32_t frames[PCL_FRAMES][AXES];
+
+    int32_t pending;            /* interrupts not served */
+    int64_t due;                /* clock of the next service */
+    int64_t raised;             /* clock of its interrupt, -1 if none asked for it */
+    int32_t irq_seq, refused;   /* as seen last */
+    int32_t ack_seq, ack_flags; /* interrupt acknowledge to the card */
+
+    int32_t services, starved;
+    int64_t latency;            /* [clocks] of the latest service */
+};
+
+void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch);
+
+/* Look at the card at a bus instant (clock now). latency [clocks] is that of an interrupt seen now. */
+void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t now,
+              int64_t latency);
+
+/* True if an interrupt has come that pcl_look has not seen. */
+bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card);
+
+/* Clock of the next service: 0 while the FIFO is primed, INT64_MAX if none can be given now. */
+int64_t pcl_due(const struct pcl *p);
+
+/* Serve: open a transaction that reaches the card at clock. */
+void pcl_serve(struct pcl *p, const struct mcc *m, int64_t clock);
+
+#endif

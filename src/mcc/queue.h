@@ -1,0 +1,32 @@
+/* queue - interpolation points between the IPO task, which fills it, and the interrupt service. */
+#ifndef QUEUE_H
+#define QUEUE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "machine.h"
+
+enum { QUEUE_SIZE = 1024 };
+
+/* What happens in one DDA time. */
+struct point {
+    int32_t frame[AXES];    /* [pulses] to put out */
+    int32_t pulses[AXES];   /* [pulses] position at the end, all frames added up */
+    double  place[AXES];    /* [mm] ideal position at the end */
+    double  feed;           /* [mm/s] speed along the path at the end */
+    int32_t line, command;  /* that moves at the end */
+    bool    waits;          /* the end lies in a delay */
+};
+
+struct queue {
+    struct point item[QUEUE_SIZE];
+    int32_t head, count;
+};
+
+void queue_clear(struct queue *q);
+void queue_push(struct queue *q, const struct point *p);        /* not when count is QUEUE_SIZE */
+const struct point *queue_peek(const struct queue *q, int32_t i);  /* i-th from the head, i < count */
+void queue_drop(struct queue *q, int32_t n);                    /* the first n, n <= count */
+
+#endif

@@ -1,0 +1,156 @@
+#include "task.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct program program_of(const struct mcc *m, const char *text, size_t length)
+{
+    return (struct program){ text, length, &m->machine, m->offset };
+}
+
+void task_check(const struct mcc *m, const char *text, size_t length, struct fault_report *r)
+{
+    const struct program p = program_of(m, text, length);
+    struct interpreter in;
+    interpreter_start(&in, m->end, m->feed);
+    interpreter_check(&in, &p, r);
+}
+
+int task_start(struct mcc *m)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (m->error) {
+        return MCC_RUN_TIME;
+    }
+    if (m->running || m->ipo.abort) {
+        return MCC_COMMAND_NOTACCEPTED;
+    }
+    interpreter_start(&m->program, m->end, m->feed);
+    m->running = true;
+    return MCC_NO_ERR;
+}
+
+int task_set_origin(struct mcc *m, int system, const double origin[AXES])
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (m->running) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    if (system < 1 || system > INTERPRETER_SYSTEMS) {
+        return MCC_PARAMETER;
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (!isfinite(origin[i])) {
+            return MCC_PARAMETER;
+        }
+    }
+    memcpy(m->offset[system - 1], origin, sizeof m->offset[system - 1]);
+    return MCC_NO_ERR;
+}
+
+/* Stop for a run-time error: on a ramp the first time, at once if that cannot be either. */
+static void fail(struct mcc *m, enum mcc_error error)
+{
+    const bool again = m->error == (int32_t)error;
+    m->error = error;
+    m->running = false;
+    if (again) {
+        ipo_stop(&m->ipo, &m->ring);
+    } else {
+        ipo_abort(&m->ipo, &m->ring);
+    }
+}
+
+/* Interpret ahead while the ring has room. */
+static void refill(struct mcc *m, const struct program *p)
+{
+    struct command c;
+    struct fault_report r;
+
+    while (m->running && !ring_full(&m->ring)) {
+        switch (interpreter_next(&m->program, p, &c, &r)) {
+        case INTERPRETER_COMMAND:
+            c.index = ++m->commands;
+            memcpy(m->end, m->program.point, sizeof m->end);
+            ring_push(&m->ring, &c);
+            break;
+        case INTERPRETER_END:
+            m->running = false;
+            break;
+        case INTERPRETER_FAULT:
+            fail(m, MCC_ERROR_ARC);
+            break;
+        }
+    }
+}
+
+/* Frame of a point from the previous position; false if the card could not take it. */
+static bool frame(const struct mcc *m, struct point *p)
+{
+    for (int i = 0; i < AXES; i++) {
+        const int64_t pulses = (int64_t)p->pulses[i] - m->ipo.pulses[i];
+        if (llabs(pulses) > m->machine.axis[i].max_dda) {
+            return false;
+        }
+        p->frame[i] = (int32_t)pulses;
+    }
+    return true;
+}
+
+/* Let one DDA time pass on the path and queue its point. */
+static void next_point(struct mcc *m, const struct program *p)
+{
+    const struct ipo before = m->ipo;
+    struct point point;
+    double left = machine_dda_time(&m->machine);
+
+    do {
+        left = ipo_advance(&m->ipo, &m->ring, left);
+        refill(m, p);
+    } while (left > 0.0 && !ipo_resting(&m->ipo, &m->ring));
+    ipo_point(&m->ipo, &m->machine, &point);
+    if (frame(m, &point)) {
+        memcpy(m->ipo.pulses, point.pulses, sizeof m->ipo.pulses);
+        queue_push(&m->queue, &point);
+    } else {
+        m->ipo = before;
+        fail(m, MCC_ERROR_SPEED);
+    }
+}
+
+void task_run(struct mcc *m, const char *text, size_t length)
+{
+    const struct program p = program_of(m, text, length);
+
+    if (!m->open) {
+        return;
+    }
+    refill(m, &p);
+    while (m->queue.count < m->machine.queue_depth && !ipo_resting(&m->ipo, &m->ring)) {
+        next_point(m, &p);
+    }
+    if (m->ipo.count == 0 && m->ring.count == 0 && !m->running) {
+        memcpy(m->end, m->ipo.rest, sizeof m->end);     /* an abort may have moved it */
+    }
+}
+
+bool task_moving(const struct mcc *m)
+{
+    return ipo_moving(&m->ipo);
+}
+
+enum task_status task_status(const struct mcc *m)
+{
+    if (MCC_check_stop(m)) {
+        return TASK_STOPPED;
+    }
+    if (m->ipo.hold && m->queue.count == 0 && ipo_resting(&m->ipo, &m->ring)) {
+        return TASK_HOLD;
+    }
+    return m->written.waits ? TASK_DELAY : TASK_RUNNING;
+}
