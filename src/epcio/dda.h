@@ -1,0 +1,61 @@
+/* Digital differential analyser: six channels spread their pulses evenly over one shared DDA time. */
+#ifndef DDA_H
+#define DDA_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum {
+    DDA_CHANNELS = 6,
+    DDA_LENGTH_MIN = 10,        /* [bit] */
+    DDA_LENGTH_MAX = 15,        /* [bit] */
+    DDA_DIVIDER_MAX = 65535,    /* 16-bit register */
+};
+
+struct dda {
+    int32_t length;                     /* [bit] of the DDA time in progress */
+    int32_t divider;                    /* [clocks per tick] of the DDA time in progress */
+    int32_t next_length;                /* from the next boundary on */
+    int32_t next_divider;
+    bool    run;
+    int64_t start;                      /* [clock] the DDA time in progress began */
+    int64_t stop;                       /* [clock] at which run was switched off */
+    int32_t command[DDA_CHANNELS];      /* [pulses] of the DDA time in progress */
+    int64_t before[DDA_CHANNELS];       /* [pulses] put out by the DDA times before */
+};
+
+/* One DDA time: 2^length ticks of `divider` clocks each [clocks]. */
+int64_t dda_time(int32_t length, int32_t divider);
+
+/* Largest command of this length: 2^length - 1, forward or backward [pulses]. */
+int32_t dda_largest(int32_t length);
+
+/* Pulses that `command` has put out after `tick` of its 2^length ticks, signed [pulses]. */
+int64_t dda_pulses(int32_t command, int32_t length, int64_t tick);
+
+/* Tick of the j-th pulse, j = 1 .. |command|. */
+int64_t dda_edge_tick(int32_t command, int32_t length, int32_t j);
+
+/* Stand at clock 0, running, at the beginning of an idle DDA time. */
+void dda_reset(struct dda *d, int32_t length, int32_t divider);
+
+/* Ask for another DDA time. It holds from the next boundary on; at the very clock at which an idle
+ * DDA time begins (as after reset) it holds for that one already. */
+void dda_set_time(struct dda *d, int32_t length, int32_t divider, int64_t clock);
+
+/* Switch the divider: off, everything stands still; on, the DDA time goes on where it stood. */
+void dda_set_run(struct dda *d, bool run, int64_t clock);
+
+/* Clock of the next boundary; INT64_MAX while stopped. */
+int64_t dda_boundary(const struct dda *d);
+
+/* At the boundary: end this DDA time and begin the next with these commands. */
+void dda_begin(struct dda *d, const int32_t command[DDA_CHANNELS]);
+
+/* Pulses put out up to and including `clock` of the DDA time in progress, since reset [pulses]. */
+void dda_counts(const struct dda *d, int64_t clock, int64_t counts[DDA_CHANNELS]);
+
+/* Clock of the j-th pulse of the DDA time in progress; -1 if it has no such pulse or is stopped. */
+int64_t dda_edge_clock(const struct dda *d, int channel, int32_t j);
+
+#endif

@@ -1,0 +1,33 @@
+/* FIFO of DDA commands of one axis: 63 deep, with the minimum-stock comparator. */
+#ifndef FIFO_H
+#define FIFO_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { FIFO_DEPTH = 63 };
+
+struct fifo {
+    int32_t entry[FIFO_DEPTH];  /* [pulses] ring */
+    int32_t head;               /* place of the oldest entry */
+    int32_t stock;              /* entries held */
+    bool    high;               /* comparator: the stock was above the minimum when last looked at */
+};
+
+/* Append a command; false, and nothing changed, if the FIFO is full (overflow). */
+bool fifo_push(struct fifo *f, int32_t command);
+
+/* Take the oldest command; false, and *command untouched, if the FIFO is empty (underflow). */
+bool fifo_pop(struct fifo *f, int32_t *command);
+
+/* Empty the FIFO. */
+void fifo_clear(struct fifo *f);
+
+/* Largest |command| in stock [pulses]. */
+int32_t fifo_largest(const struct fifo *f);
+
+/* Comparator: true once each time the condition stock <= minimum becomes true. Call it after every
+ * change of the stock or the minimum. An empty FIFO starts with the condition true. */
+bool fifo_fell(struct fifo *f, int32_t minimum);
+
+#endif

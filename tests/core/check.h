@@ -1,0 +1,46 @@
+/* Checks for the C tests: each prints file:line and the values; main returns check_result(). */
+#ifndef CHECK_H
+#define CHECK_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+static int check_failures;
+
+/* The condition must hold. */
+#define CHECK(condition) \
+    do { \
+        if (!(condition)) { \
+            check_failures++; \
+            printf("%s:%d: %s\n", __FILE__, __LINE__, #condition); \
+        } \
+    } while (0)
+
+/* Two whole numbers must be equal. */
+#define CHECK_EQ(got, want) \
+    do { \
+        long long check_got = (long long)(got), check_want = (long long)(want); \
+        if (check_got != check_want) { \
+            check_failures++; \
+            printf("%s:%d: %s = %lld, want %lld\n", __FILE__, __LINE__, #got, check_got, \
+                   check_want); \
+        } \
+    } while (0)
+
+static inline int check_result(void)
+{
+    if (check_failures > 0)
+        printf("%d checks failed\n", check_failures);
+    return check_failures > 0;
+}
+
+/* Reproducible random number in low .. high (xorshift64). */
+static inline int64_t check_random(uint64_t *state, int64_t low, int64_t high)
+{
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return low + (int64_t)(*state % (uint64_t)(high - low + 1));
+}
+
+#endif
