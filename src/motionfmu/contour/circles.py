@@ -1,0 +1,292 @@
+"""Circles of a program: where they are, and their circular tests."""
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.contour.assign import Index
+from motionfmu.contour.geometry import TURN, Arc, Array, Segment
+from motionfmu.contour.iso230 import BothWays, Reading, both_ways, reading
+from motionfmu.contour.path import Path
+from motionfmu.contour.track import Track
+
+# Arcs belong to one circle if centre, radius and normal agree to this [mm; 1]: the rounding of
+# a part program with four decimals.
+SAME = 1e-3
+# A circle is run steadily while its speed stays within this part of its median...
+STEADY = 0.01
+# ...measured over this time [s], and this part of the circle, in which pulse rounding averages out.
+SPEED_SPAN = 0.02
+SPEED_PART = 0.01
+# An ellipse needs more than half the circle to be found well.
+COVERAGE_MIN = 0.55 * TURN
+# Five unknowns of the ellipse, twice over.
+SAMPLES_MIN = 10
+
+
+@dataclass(frozen=True)
+class Way:
+    """One directed path round a circle.
+
+    Attributes
+    ----------
+    first, last : int
+        Segments of the path.
+    lines : tuple of int
+        First and last line of the program.
+    points : ndarray, shape (n, 2)
+        The samples that count, from the nominal centre in the plane's axes [mm].
+    time : ndarray, shape (n,)
+        Their time [s].
+    coverage : float
+        Angle they cover [rad].
+    steady : bool
+        Whether run-in and run-out are left out; false if the circle is too short for that.
+    speed : float
+        Median speed of the command over them [mm/s].
+    reading : Reading
+        The quantities.
+    """
+
+    first: int
+    last: int
+    lines: tuple[int, int]
+    points: Array
+    time: Array
+    coverage: float
+    steady: bool
+    speed: float
+    reading: Reading
+
+    def numbers(self) -> dict[str, Any]:
+        """Its numbers, ready for JSON."""
+        out = {"lines": list(self.lines), "coverage": self.coverage, "speed": self.speed}
+        rest = {"steady": self.steady, "samples": len(self.points)}
+        return out | rest | asdict(self.reading)
+
+
+@dataclass(frozen=True)
+class CircularTest:
+    """Circular test of one circle, in one direction or both.
+
+    Attributes
+    ----------
+    centre, normal : ndarray, shape (3,)
+        [mm]; the normal points to the positive side of its largest component.
+    radius : float
+        [mm].
+    axes : ndarray, shape (2, 3)
+        First and second axis of the plane: XY, YZ or ZX for the main planes.
+    ccw, cw : Way, optional
+        Seen from the positive end of the normal.
+    both : BothWays, optional
+        If both directions are there.
+    """
+
+    centre: Array
+    normal: Array
+    radius: float
+    axes: Array
+    ccw: Way | None
+    cw: Way | None
+    both: BothWays | None
+
+    def numbers(self) -> dict[str, Any]:
+        """Its numbers, ready for JSON."""
+        return {
+            "centre": self.centre.tolist(),
+            "normal": self.normal.tolist(),
+            "radius": self.radius,
+            "ccw": self.ccw.numbers() if self.ccw else None,
+            "cw": self.cw.numbers() if self.cw else None,
+            "both": asdict(self.both) if self.both else None,
+        }
+
+
+def circular_tests(
+    path: Path,
+    samples: tuple[Array, Array],
+    tracks: tuple[Track, Track],
+    settle: float,
+    run_in: float | None,
+) -> tuple[CircularTest, ...]:
+    """Circular tests of all full circles of a path.
+
+    Parameters
+    ----------
+    path : Path
+        The planned geometry.
+    samples : tuple of two ndarray, shapes (n,) and (n, 3)
+        Time [s] and actual position [mm].
+    tracks : tuple of two Track
+        Of the actual position and of the pulses put out.
+    settle : float
+        Time left out after the speed or the curvature has changed [s].
+    run_in : float or None
+        Angle left out at both ends [rad]; None leaves out what is not steady.
+
+    Returns
+    -------
+    tuple of CircularTest
+        A circle run both ways is one test.
+    """
+    tests: list[CircularTest] = []
+    for ends in _full_circles(path.segments):
+        arc = path.segments[ends[0]]
+        assert isinstance(arc, Arc)
+        normal = arc.axis * np.sign(arc.axis[np.argmax(np.abs(arc.axis))])
+        axes = plane_axes(normal)
+        on = np.flatnonzero((tracks[0].segment >= ends[0]) & (tracks[0].segment <= ends[1]))
+        if len(on) < SAMPLES_MIN:
+            continue
+        span = max(SPEED_SPAN, SPEED_PART * float(samples[0][on[-1]] - samples[0][on[0]]))
+        speed = speed_along(samples[0], tracks[1].along, span)
+        if run_in is None:
+            chosen = _steady(samples[0], speed, (tracks[1].segment, ends), settle)
+        else:
+            low, high = path.offsets[ends[0]], path.offsets[ends[1] + 1]
+            skip = run_in * arc.radius
+            chosen = (tracks[0].along >= low + skip) & (tracks[0].along <= high - skip)
+        points = (samples[1] - arc.centre) @ axes.T
+        kept = _whole_turns(points, on[chosen[on]])
+        steady = _coverage(points, kept) >= COVERAGE_MIN
+        if not steady:
+            kept = _whole_turns(points, on)
+        if _coverage(points, kept) < COVERAGE_MIN:
+            continue
+        way = Way(
+            *ends,
+            lines=(arc.label.line, path.segments[ends[1]].label.line),
+            points=points[kept],
+            time=samples[0][kept],
+            coverage=_coverage(points, kept),
+            steady=steady,
+            speed=float(np.median(speed[kept])),
+            reading=reading(points[kept], arc.radius),
+        )
+        _add(tests, CircularTest(arc.centre, normal, arc.radius, axes, None, None, None), way, arc)
+    return tuple(tests)
+
+
+def plane_axes(normal: Array) -> Array:
+    """First and second axis of the plane with a normal.
+
+    Parameters
+    ----------
+    normal : ndarray, shape (3,)
+        Unit vector.
+
+    Returns
+    -------
+    ndarray, shape (2, 3)
+        Unit vectors, right-handed with the normal: XY, YZ and ZX for the main planes.
+    """
+    main = int(np.argmax(np.abs(normal)))
+    first = np.eye(3)[(main + 1) % 3]
+    first = first - (first @ normal) * normal
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(normal, first)])
+
+
+def _full_circles(segments: tuple[Segment, ...]) -> list[tuple[int, int]]:
+    """First and last segment of each run of arcs that makes a full turn or more."""
+    found = []
+    i = 0
+    while i < len(segments):
+        j, turned = i, 0.0
+        head = segments[i]
+        while j < len(segments) and _continues(head, segments[j]):
+            turned += segments[j].angle  # type: ignore[union-attr]
+            j += 1
+        if turned >= TURN * (1.0 - 1e-9):
+            found.append((i, j - 1))
+        i = max(j, i + 1)
+    return found
+
+
+def _continues(head: Segment, other: Segment) -> bool:
+    if not isinstance(head, Arc) or not isinstance(other, Arc) or other.rise or head.rise:
+        return False
+    near = np.abs(head.centre - other.centre).max() <= SAME
+    alike = abs(head.radius - other.radius) <= SAME and head.axis @ other.axis >= 1.0 - SAME
+    return bool(near and alike)
+
+
+def _steady(
+    time: Array, speed: Array, where: tuple[Index, tuple[int, int]], settle: float
+) -> NDArray[np.bool_]:
+    """Samples of the longest steady part of a circle, after it has settled."""
+    segment, ends = where
+    inside = (segment >= ends[0]) & (segment <= ends[1])
+    middle = float(np.median(speed[inside])) if inside.any() else 0.0
+    good = inside & (np.abs(speed - middle) <= STEADY * middle)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(int), [0]])))
+    if not len(edges):
+        return good
+    begins, stops = edges[::2], edges[1::2]
+    longest = int(np.argmax(stops - begins))
+    begin, end = time[begins[longest]] + settle, time[stops[longest] - 1] - 0.5 * SPEED_SPAN
+    return (time >= begin) & (time <= end)
+
+
+def speed_along(time: Array, along: Array, span: float) -> Array:
+    """Speed along the path, averaged.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        [s].
+    along : ndarray, shape (n,)
+        Way along the path [mm].
+    span : float
+        Time over which it is averaged [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [mm/s].
+    """
+    low = np.maximum(time - 0.5 * span, time[0])
+    high = np.minimum(time + 0.5 * span, time[-1])
+    return (np.interp(high, time, along) - np.interp(low, time, along)) / (high - low)
+
+
+def _turned(points: Array, chosen: Index) -> Array:
+    """Angle turned through since the first of some samples [rad]."""
+    angle = np.unwrap(np.arctan2(points[chosen, 1], points[chosen, 0]))
+    return np.abs(angle - angle[0]) if len(angle) else angle
+
+
+def _coverage(points: Array, chosen: Index) -> float:
+    return float(_turned(points, chosen)[-1]) if len(chosen) >= SAMPLES_MIN else 0.0
+
+
+def _whole_turns(points: Array, chosen: Index) -> Index:
+    """As many whole turns as there are; all samples if there is not one."""
+    way = _turned(points, chosen)
+    turns = math.floor(float(way[-1]) / TURN) if len(way) else 0
+    return chosen[: np.searchsorted(way, turns * TURN, side="right")] if turns else chosen
+
+
+def _add(tests: list[CircularTest], bare: CircularTest, way: Way, arc: Arc) -> None:
+    """Put a directed path into the test of its circle."""
+    name = "ccw" if float(arc.axis @ bare.normal) > 0.0 else "cw"
+    for i, test in enumerate(tests):
+        same = (
+            np.abs(test.centre - bare.centre).max() <= SAME
+            and abs(test.radius - bare.radius) <= SAME
+            and test.normal @ bare.normal >= 1.0 - SAME
+        )
+        if same and getattr(test, name) is None:
+            ccw, cw = (way, test.cw) if name == "ccw" else (test.ccw, way)
+            assert ccw is not None and cw is not None
+            joint = both_ways(ccw.points, cw.points, test.radius)
+            tests[i] = CircularTest(
+                test.centre, test.normal, test.radius, test.axes, ccw, cw, joint
+            )
+            return
+    ccw, cw = (way, None) if name == "ccw" else (None, way)
+    tests.append(CircularTest(bare.centre, bare.normal, bare.radius, bare.axes, ccw, cw, bare.both))

@@ -1,0 +1,133 @@
+"""Corners of a path and the contour error there."""
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.contour.circles import SPEED_SPAN, speed_along
+from motionfmu.contour.geometry import Array
+from motionfmu.contour.path import Path
+from motionfmu.contour.track import Track
+
+# Smallest change of direction that is called a corner [rad].
+ANGLE_MIN = math.radians(10.0)
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A corner between two cutting moves.
+
+    Attributes
+    ----------
+    line_before, line_after : int
+        Lines of the program.
+    point : tuple of float
+        [mm].
+    angle : float
+        Change of direction; pi turns back [rad].
+    error : float
+        Largest contour error on the two moves within the servo window [mm].
+    time : float
+        When it is largest [s].
+    speed : float
+        Least commanded speed within the servo window [mm/s].
+    """
+
+    line_before: int
+    line_after: int
+    point: tuple[float, float, float]
+    angle: float
+    error: float
+    time: float
+    speed: float
+
+
+def find_corners(
+    path: Path,
+    time: Array,
+    tracks: tuple[Track, Track],
+    cutting: NDArray[np.bool_],
+    window: float,
+) -> tuple[Corner, ...]:
+    """Corners of the cutting moves, in the order of travel.
+
+    Parameters
+    ----------
+    path : Path
+        The planned geometry.
+    time : ndarray, shape (n,)
+        [s].
+    tracks : tuple of two Track
+        Of the actual position and of the pulses put out.
+    cutting : ndarray of bool, shape (n,)
+        Samples that count.
+    window : float
+        Time before and after the corner that belongs to it [s].
+
+    Returns
+    -------
+    tuple of Corner
+    """
+    track, command = tracks
+    speed = speed_along(time, command.along, SPEED_SPAN)
+    moves = [s for s, move in enumerate(path.segments) if move.length and cutting_move(path, s)]
+    corners = []
+    for before, after in pairwise(moves):
+        if not _joined(path, before, after):
+            continue
+        first, second = path.segments[before], path.segments[after]
+        angle = _turn(first.tangent(np.array([first.length])), second.tangent(np.zeros(1)))
+        if angle < ANGLE_MIN:
+            continue
+        passed = int(np.searchsorted(track.segment, after))
+        low = int(np.searchsorted(time, time[passed] - window))
+        high = int(np.searchsorted(time, time[passed] + window))
+        low = max(low, int(np.searchsorted(track.segment, before)))
+        high = min(high, int(np.searchsorted(track.segment, after, side="right")))
+        own = low + np.flatnonzero(cutting[low:high])
+        if not len(own):
+            continue
+        worst = int(own[np.argmax(track.distance[own])])
+        x, y, z = (float(c) for c in second.start)
+        corners.append(
+            Corner(
+                first.label.line,
+                second.label.line,
+                (x, y, z),
+                angle,
+                float(track.distance[worst]),
+                float(time[worst]),
+                float(speed[own].min()),
+            )
+        )
+    return tuple(corners)
+
+
+def cutting_move(path: Path, segment: int) -> bool:
+    """Whether a segment is cut: a line, arc or helix.
+
+    Parameters
+    ----------
+    path : Path
+        The planned geometry.
+    segment : int
+        Its index.
+
+    Returns
+    -------
+    bool
+    """
+    return path.segments[segment].label.kind != "ptp"
+
+
+def _joined(path: Path, before: int, after: int) -> bool:
+    """Whether nothing but moves without length lies between two segments."""
+    return all(path.segments[s].length == 0.0 for s in range(before + 1, after))
+
+
+def _turn(before: Array, after: Array) -> float:
+    cross = float(np.linalg.norm(np.cross(before[0], after[0])))
+    return math.atan2(cross, float(before[0] @ after[0]))

@@ -1,0 +1,172 @@
+"""Nearest points on lines, arcs and helices against brute force and symmetry."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+
+from motionfmu.contour.geometry import Arc, Label, Line, kepler_root
+from motionfmu.contour.path import make_arc
+
+LABEL = Label(1, 10, "line", 0.0)
+# Rounding of coordinates up to about 200 mm, a few operations long. [mm]
+ROUNDING = 1e-12 * 200.0
+
+coordinate = st.floats(-60.0, 60.0, allow_subnormal=False)
+point = st.tuples(coordinate, coordinate, coordinate).map(np.array)
+positive = st.floats(0.1, 50.0)
+
+
+@st.composite
+def arcs(draw) -> Arc:
+    """Arcs and helices of up to three turns about any axis, some with a growing radius."""
+    axis = draw(point.filter(lambda v: np.linalg.norm(v) > 1.0))
+    axis = axis / np.linalg.norm(axis)
+    spoke = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+    radius = draw(positive)
+    centre = draw(point)
+    rise = draw(st.one_of(st.just(0.0), st.floats(-40.0, 40.0)))
+    growth = draw(st.one_of(st.just(0.0), st.floats(-1e-3, 1e-3))) * radius
+    angle = draw(st.floats(0.01, 6.0 * math.pi))
+    start = centre + radius * spoke / np.linalg.norm(spoke)
+    return Arc(LABEL, start, centre, axis, angle, rise, growth)
+
+
+@st.composite
+def segments(draw) -> Line | Arc:
+    if draw(st.booleans()):
+        return draw(arcs())
+    return Line(LABEL, draw(point), draw(point))
+
+
+@settings(max_examples=200, deadline=None)
+@given(segments(), st.lists(point, min_size=1, max_size=8))
+def test_no_sampled_point_is_nearer(segment, points) -> None:
+    points = np.array(points)
+    foot = segment.foot(points)
+    dense = segment.at(np.linspace(0.0, segment.length, 2000))
+    brute = np.linalg.norm(points[:, None, :] - dense[None, :, :], axis=2).min(axis=1)
+    assert (foot.distance <= brute + ROUNDING).all()
+    # and it is a distance to a point of the segment, not less
+    assert np.allclose(segment.at(foot.along), foot.point, atol=ROUNDING * 10, rtol=0.0)
+    assert (foot.along >= 0.0).all() and (foot.along <= segment.length * (1 + 1e-15)).all()
+    own = np.linalg.norm(points - foot.point, axis=1)
+    assert np.allclose(foot.distance, own, atol=ROUNDING, rtol=0.0)
+
+
+@settings(max_examples=200, deadline=None)
+@given(segments(), point)
+def test_foot_is_square_to_the_path_or_an_end(segment, query) -> None:
+    foot = segment.foot(query[None, :])
+    along = foot.along[0]
+    if 0.0 < along < segment.length:
+        tangent = segment.tangent(foot.along)[0]
+        gap = query - foot.point[0]
+        # the angle's rounding times the arm it turns
+        arm = np.linalg.norm(gap) + segment.length + 1.0
+        assert abs(gap @ tangent) <= 1e-11 * arm
+
+
+def rotation(axis: np.ndarray, angle: float) -> np.ndarray:
+    x, y, z = axis / np.linalg.norm(axis)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
+
+
+@settings(max_examples=100, deadline=None)
+@given(segments(), point, point, point.filter(lambda v: np.linalg.norm(v) > 1.0), st.floats(-3, 3))
+def test_moving_everything_moves_nothing(segment, query, shift, axis, angle) -> None:
+    turn = rotation(axis, angle)
+
+    def moved(p: np.ndarray) -> np.ndarray:
+        return turn @ p + shift
+
+    if isinstance(segment, Line):
+        other = Line(LABEL, moved(segment.start), moved(segment.end))
+    else:
+        other = Arc(
+            LABEL,
+            moved(segment.start),
+            moved(segment.centre),
+            turn @ segment.axis,
+            segment.angle,
+            segment.rise,
+            segment.growth,
+        )
+    before = segment.foot(query[None, :]).distance[0]
+    after = other.foot(moved(query)[None, :]).distance[0]
+    assert after == pytest.approx(before, abs=20.0 * ROUNDING)
+
+
+@settings(max_examples=100, deadline=None)
+@given(segments(), st.lists(point, min_size=2, max_size=6))
+def test_many_points_at_once_are_as_each_alone(segment, points) -> None:
+    points = np.array(points)
+    together = segment.foot(points)
+    for i, p in enumerate(points):
+        alone = segment.foot(p[None, :])
+        assert together.distance[i] == pytest.approx(alone.distance[0], abs=ROUNDING)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.floats(0.0, 1e4), st.floats(1e-6, 1e3), st.floats(-math.pi, math.pi))
+def test_kepler_root_is_the_one_brent_finds(pull, stiff, way) -> None:
+    def slope(w: float) -> float:
+        return pull * math.sin(w) + stiff * (w - way)
+
+    root = kepler_root(np.array([pull]), stiff, np.array([way]), np.array([abs(way)]))[0]
+    low, high = sorted((0.0, way))
+    if slope(low) * slope(high) < 0.0:
+        other = brentq(slope, low, high, xtol=1e-15, rtol=1e-15)
+        # where pull and stiff nearly cancel, the root is as flat as the rounding of the slope
+        noise = 1e-14 * (pull + stiff * abs(way)) / max(pull * math.cos(other) + stiff, 1e-300)
+        assert abs(root - other) <= 1e-13 + noise
+    assert low <= root <= high
+
+
+def test_circle_closed_forms() -> None:
+    arc = Arc(LABEL, np.array([50.0, 0, 0]), np.zeros(3), np.array([0, 0, 1.0]), 2 * math.pi)
+    points = np.array([[30.0, 40.0, 0], [33.0, 44.0, 0], [27.0, 36.0, 4.0], [0.0, 0.0, 0.0]])
+    want = [0.0, 5.0, math.hypot(5.0, 4.0), 50.0]
+    assert arc.foot(points).distance == pytest.approx(want, abs=1e-13)
+
+
+def test_arc_beyond_its_ends_takes_the_nearer_end() -> None:
+    quarter = Arc(LABEL, np.array([50.0, 0, 0]), np.zeros(3), np.array([0, 0, 1.0]), math.pi / 2)
+    foot = quarter.foot(np.array([[50.0, -3.0, 0], [-3.0, 50.0, 0], [-50.0, -49.0, 0]]))
+    assert foot.along == pytest.approx([0.0, quarter.length, quarter.length], abs=1e-12)
+    assert foot.distance[:2] == pytest.approx([3.0, 3.0], abs=1e-12)
+
+
+def test_helix_takes_the_right_turn() -> None:
+    helix = Arc(
+        LABEL, np.array([10.0, 0, 0]), np.zeros(3), np.array([0, 0, 1.0]), 8 * math.pi, rise=20.0
+    )
+    # 0.1 mm outside of the middle of the third turn, and on the axis
+    middle = helix.at(np.array([5.0 / 8.0 * helix.length]))
+    out = middle + 0.1 * np.array([[-1.0, 0.0, 0.0]])
+    foot = helix.foot(out)
+    assert foot.along[0] == pytest.approx(5.0 / 8.0 * helix.length, abs=1e-9)
+    assert foot.distance[0] == pytest.approx(0.1, abs=1e-12)
+    assert helix.foot(np.array([[0.0, 0.0, 9.0]])).distance[0] == pytest.approx(10.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("sweep", [math.pi / 2, -math.pi / 2, 5.0, -5.0])
+def test_sweep_turns_about_the_normal(sweep: float) -> None:
+    start, normal = np.array([2.0, 0, 1.0]), np.array([0.0, 0, 2.0])
+    end = np.array([2 * math.cos(sweep), 2 * math.sin(sweep), 4.0])
+    arc = make_arc(LABEL, (start, end), (np.zeros(3), normal), sweep)
+    assert arc.end == pytest.approx(end, abs=1e-12)
+    assert arc.length == pytest.approx(math.hypot(2 * sweep, 3.0), rel=1e-14)
+    middle = arc.at(np.array([0.5 * arc.length]))[0]
+    assert middle == pytest.approx([2 * math.cos(sweep / 2), 2 * math.sin(sweep / 2), 2.5])
+    assert arc.tangent(np.zeros(1))[0, 1] * sweep > 0.0
+
+
+def test_line_without_length_is_a_point() -> None:
+    dot = Line(LABEL, np.array([1.0, 2, 3]), np.array([1.0, 2, 3]))
+    foot = dot.foot(np.array([[1.0, 2.0, 7.0]]))
+    assert foot.distance[0] == 4.0 and foot.along[0] == 0.0
