@@ -1,0 +1,106 @@
+"""Every FMU found: schema, rules of two validators, and the library behind the description."""
+
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import fmpy
+import pytest
+from fmi_tools import unpacked
+from fmpy.validation import validate_fmu
+
+from motionfmu.fmus import fmu_names, fmu_path
+
+every_fmu = pytest.mark.parametrize("name", fmu_names())
+both = pytest.mark.parametrize("fmi", (2, 3))
+HEADERS = Path(fmpy.__file__).parent / "c-code"
+MODEL_EXCHANGE = {  # functions that an FMI 2.0 library without model exchange need not have
+    f"fmi2{name}"
+    for name in (
+        "EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep SetTime"
+        " SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates"
+        " GetNominalsOfContinuousStates"
+    ).split()
+}
+
+
+@both
+@every_fmu
+def test_fmpy_finds_nothing_wrong(name: str, fmi: int) -> None:
+    assert validate_fmu(str(fmu_path(name, fmi))) == []
+
+
+@both
+@every_fmu
+def test_fmutool_finds_nothing_wrong(name: str, fmi: int) -> None:
+    command = [str(Path(sys.executable).parent / "fmutool"), "-input", str(fmu_path(name, fmi))]
+    done = subprocess.run([*command, "-check"], capture_output=True, text=True)
+    told = done.stdout + done.stderr
+    assert done.returncode == 0
+    assert f"compliant with FMI-{fmi}.0" in told
+    assert f"No semantic error against the FMI-{fmi} standard" in told
+    assert "ERROR" not in told
+
+
+@both
+@every_fmu
+def test_the_library_exports_the_standard_and_nothing_else(name: str, fmi: int) -> None:
+    library = next(Path(unpacked(name, fmi)[1]).glob("binaries/*/*"))
+    text = (HEADERS / f"fmi{fmi}Functions.h").read_text()
+    wanted = set(re.findall(rf"^\s*FMI{fmi}_Export\s+\w+TYPE\s+(\w+);", text, re.MULTILINE))
+    listing = subprocess.run(
+        ["nm", "-D", "--defined-only", str(library)], capture_output=True, text=True, check=True
+    ).stdout
+    exported = {line.split()[-1] for line in listing.splitlines()}
+    assert len(wanted) > 40
+    assert exported == wanted - MODEL_EXCHANGE
+
+
+@every_fmu
+def test_both_versions_describe_the_same_variables(name: str) -> None:
+    two, three = (unpacked(name, fmi)[2] for fmi in (2, 3))
+    assert list(two) == list(three)
+    for key, v in two.items():
+        w = three[key]
+        assert v.refs[0] == w.refs[0]
+        assert v.refs == list(range(v.refs[0], v.refs[0] + v.count))
+        for field in ("type", "causality", "variability", "count", "min", "max"):
+            assert getattr(v, field) == getattr(w, field), (key, field)
+
+
+@both
+@every_fmu
+def test_outputs_and_initial_unknowns_are_complete(name: str, fmi: int) -> None:
+    folder = unpacked(name, fmi)[1]
+    root = ET.parse(Path(folder, "modelDescription.xml")).getroot()
+    variables = list(root.find("ModelVariables") or [])
+    structure = root.find("ModelStructure")
+    assert structure is not None
+    if fmi == 2:
+        outputs = {i for i, v in enumerate(variables, 1) if v.get("causality") == "output"}
+        listed = [{int(u.attrib["index"]) for u in structure.findall(f"{t}/Unknown")}
+                  for t in ("Outputs", "InitialUnknowns")]  # fmt: skip
+    else:
+        outputs = {
+            int(v.attrib["valueReference"]) for v in variables if v.get("causality") == "output"
+        }
+        listed = [{int(u.attrib["valueReference"]) for u in structure.findall(t)}
+                  for t in ("Output", "InitialUnknown")]  # fmt: skip
+    assert outputs
+    assert listed[0] == outputs
+    assert listed[1] >= outputs
+
+
+@both
+@every_fmu
+def test_documents_and_sources_are_packed(name: str, fmi: int) -> None:
+    with zipfile.ZipFile(fmu_path(name, fmi)) as archive:
+        names = archive.namelist()
+        assert names == sorted(names)
+        assert {i.date_time for i in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+    assert "documentation/README.md" in names
+    assert "sources/fmu_main.c" in names
+    assert ("sources/buildDescription.xml" in names) == (fmi == 3)
