@@ -40,7 +40,7 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     memcpy(pc->mcc.errcnt, panel->err_count, sizeof pc->mcc.errcnt);
     for (int i = 0; i < AXES; i++) {
         if (pc->config.output_mode[i] == 2 && m->axis[i].used) {
-            const double v = panel->software_gain * panel->err_count[i];
+            const double v = panel->software_gain[i] * panel->err_count[i];
             pc->volts[i] = fmax(-VOLTS_MAX, fmin(VOLTS_MAX, v));
         }
     }

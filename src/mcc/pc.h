@@ -25,7 +25,7 @@ struct pc_config {
 struct pc_panel {
     bool   hold, abort;
     double override;            /* 0..2 */
-    double software_gain;       /* [V/count] of output mode 2 */
+    double software_gain[AXES]; /* [V/count] of output mode 2 */
     int32_t p_gain[AXES];
     int32_t err_count[AXES];    /* [counts] of the card */
 };
