@@ -124,13 +124,12 @@ class _Names:
         d = self.flat.declarations.get(name)
         if d is None:
             raise self.refuse(f"{name} is not supported here")
-        bound = d.binding or d.start
-        if bound is None:
+        if d.binding is None:  # a start is no value: rumoca makes one up
             raise self.refuse(f"parameter {name} has no value")
         if name in self._pending:
             raise self.refuse(f"parameter {name} depends on itself")
         self._pending.append(name)
-        self._known[name] = self.evaluate(bound)
+        self._known[name] = self.evaluate(d.binding)
         self._pending.pop()
         return self._known[name]
 
@@ -154,7 +153,7 @@ class _Names:
         return float(value)
 
     def default(self, d: Declaration) -> float:
-        value = self.number(d, "binding" if d.binding else "start")
+        value = self.number(d, "binding")
         if value is None:
             raise self.refuse(f"parameter {d.name} has no value")
         return value

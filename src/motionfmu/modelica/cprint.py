@@ -1,5 +1,6 @@
 """Print the operations of a Program as C statements, one constant per operation."""
 
+import math
 from collections.abc import Callable, Iterable
 
 import casadi as ca
@@ -38,7 +39,7 @@ _TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f + "({0})" for f in _LIBRARY
 
 
 def literal(value: float) -> str:
-    """C text of a double, exact.
+    """C text of a double, exact; infinity and NaN by the names of math.h.
 
     Parameters
     ----------
@@ -48,7 +49,10 @@ def literal(value: float) -> str:
     -------
     str
     """
-    return f"({value!r})" if value < 0 else repr(value)
+    if math.isnan(value):
+        return "NAN"
+    text = "INFINITY" if math.isinf(value) else repr(abs(value))
+    return f"(-{text})" if value < 0 else text
 
 
 def statements(

@@ -1,6 +1,7 @@
 """Flatten a Modelica class with rumoca, and refuse what the back end does not handle."""
 
 import json
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -138,8 +139,11 @@ def flatten(package: Path, name: str) -> Flat:
     try:
         model = rumoca.Session().load(str(file), model=name)
         doc = json.loads(model.to_json("flat", pretty=False))
-    except rumoca.RumocaError as error:
-        raise ValueError(f"{file}: {name}: {error}") from None
+    except BaseException as error:
+        # A panic of rumoca's compiler (for some wrong models) is no Exception.
+        if isinstance(error, rumoca.RumocaError) or type(error).__name__ == "PanicException":
+            raise ValueError(_reason(file, error)) from None
+        raise
     return read(doc, name)
 
 
@@ -179,6 +183,28 @@ def read(doc: dict[str, Any], name: str) -> Flat:
     )
 
 
+def _reason(file: Path, error: BaseException) -> str:
+    """One line ``file:line: what`` of a class that does not compile.
+
+    Rumoca tells the line of a syntax error only inside a picture of it, and no line for a name it
+    does not know; that name is looked for.
+    """
+    import rumoca
+
+    text = str(error).splitlines()[0]
+    sources = sorted(file.parent.rglob("*.mo")) if file.name == "package.mo" else [file]
+    for source in sources:
+        for d in rumoca.validate(str(source)):
+            if found := re.search(r"\.mo:(\d+):\d+\]", d.message):
+                return f"{source}:{found[1]}: {text}"
+    if name := re.search(r"'([\w.]+)'$", text):
+        for source in sources:
+            for number, line in enumerate(source.read_text().splitlines(), 1):
+                if re.search(rf"\b{re.escape(name[1])}\b", line):
+                    return f"{source}:{number}: {text}"
+    return f"{file}: {text}"
+
+
 def _first(section: Any) -> Any:
     return next(iter(section.values())) if isinstance(section, dict) else section[0]
 
@@ -186,7 +212,8 @@ def _first(section: Any) -> Any:
 def _component(item: Any) -> str:
     """Text " (component x)" of the place a construct stands in, as far as rumoca tells."""
     origin = item.get("origin") if isinstance(item, dict) else None
-    found = (origin or {}).get("ComponentEquation", {}).get("component", "")
+    known = origin.get("ComponentEquation", {}) if isinstance(origin, dict) else {}
+    found = known.get("component", "")
     return f" (component {found})" if found else ""
 
 
