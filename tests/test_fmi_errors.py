@@ -37,9 +37,12 @@ def output(instance: Instance) -> str:
 
 
 def set_itself(instance: Instance, name: str) -> int:
-    """Set a variable to the start value of its type."""
+    """Set a variable to 0, or the least it may be."""
     v = instance.variables[name]
-    return instance.set(name, "" if v.type == "String" else max(v.min or 0, 0))
+    number = max(v.min or 0.0, 0.0)
+    return instance.set(
+        name, "" if v.type == "String" else number if v.type == "f64" else int(number)
+    )
 
 
 def set_fixed(instance: Instance) -> int:

@@ -214,7 +214,7 @@ static int model_end(struct fmu *f)
     if (!recording(v)) {
         return 0;
     }
-    if (make_room(f, r, v->rows) != 0) {
+    if (make_room(f, r, (int64_t)v->rows + 1) != 0) { /* buffers exist even without a row */
         return -1;
     }
     fill_gap(v, r, v->rows);

@@ -176,6 +176,8 @@ static void test_start_on_demand(void)
     CHECK_REFUSED(call_exit(c), "name = start fails does not start");
     CHECK(call_set_name(c, "open fails") == 0);
     CHECK_REFUSED(call_get_y(c, y), "name = open fails does not open 100%");
+    CHECK(call_set_name(c, "o\xe4 \xc3\xa4 \xe2\x82") == 0); /* Latin-1, UTF-8, one cut short */
+    CHECK_REFUSED(call_get_y(c, y), "name = o? \xc3\xa4 ?? does not");
     CHECK(call_set_name(c, "end fails") == 0);
     CHECK(call_exit(c) == 0 && y_of(c) == 50.0);
     CHECK_REFUSED(call_terminate(c), "name = end fails does not end");
