@@ -49,7 +49,11 @@ static double y_of(void *c)
 
 /* Every sequence of calls: the layer must accept exactly what this table of the standards allows.
  * Rows: where the instance stands. */
-enum call { ENTER, EXIT, STEP, TERMINATE, RESET, SET_GAIN, SET_TRIM, SET_U, GET_GAIN, GET_Y, CALLS };
+enum call {
+    ENTER, EXIT, STEP, TERMINATE, RESET,
+    SET_GAIN, SET_TRIM, SET_U, GET_GAIN, GET_Y,
+    CALLS
+};
 enum stand { NEW, INITIALIZING, RUNNING, ENDED, FAILED };
 
 static bool allowed(enum stand s, enum call call)
