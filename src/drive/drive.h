@@ -1,0 +1,71 @@
+/* Digital servo drive of one motor: velocity or position mode, velocity PI, torque limit, alarms.
+ * One drive_tick() per sampling period; README.md has the equations. */
+#ifndef DRIVE_H
+#define DRIVE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum drive_mode { DRIVE_VELOCITY = 0, DRIVE_POSITION = 1 };
+enum drive_alarm { DRIVE_NO_ALARM = 0, DRIVE_FOLLOWING_ERROR = 1, DRIVE_OVERSPEED = 2 };
+enum drive_status { DRIVE_OK = 0, DRIVE_BAD_PHASE = -1 };
+
+/* Overspeed alarm at this multiple of the speed limit: the usual factory setting, above what a
+ * velocity loop overshoots. */
+#define DRIVE_OVERSPEED_RATIO 1.2
+
+/* Largest position whose counts are whole numbers in a double, 2^53 [counts]. */
+#define DRIVE_COUNTS_MAX 9007199254740992.0
+
+struct drive_config {
+    int32_t mode;               /* enum drive_mode */
+    double  period;             /* [s] sampling period */
+    double  speed_per_volt;     /* [rpm/V] velocity mode */
+    double  volt_offset;        /* [V] added to the command voltage */
+    int32_t enc_lines;          /* [line periods/turn] */
+    int32_t enc_counts;         /* [counts/turn] the drive resolves */
+    int32_t pulses_per_turn;    /* [pulses/turn] position mode */
+    double  velocity_gain;      /* [N.m.s/rad] */
+    double  velocity_time;      /* [s] integral time; 0: no integral */
+    double  position_gain;      /* [1/s] */
+    double  feed_forward;       /* share of the command speed, 0 .. 1 */
+    double  torque_limit;       /* [N.m] */
+    double  speed_limit;        /* [rpm] */
+    double  error_limit;        /* [turns] following error that raises the alarm */
+};
+
+struct drive_input {
+    bool    enable;
+    bool    alarm_reset;        /* a rising edge clears the alarm */
+    double  volts;              /* [V] velocity command */
+    int32_t pulses;             /* [pulses] command, cumulative, may wrap */
+    double  phase;              /* [line periods] motor encoder */
+};
+
+struct drive_state {
+    bool    primed;             /* there was a first sample */
+    bool    on;                 /* the loops ran at the latest sample */
+    bool    reset;              /* alarm_reset at the latest sample */
+    int32_t alarm;              /* enum drive_alarm */
+    int64_t counts;             /* [counts] position at the latest sample */
+    int64_t zero;               /* [counts] position at which the loops were switched on */
+    int32_t pulses;             /* [pulses] input at the latest sample */
+    int64_t command;            /* [pulses] received since the loops were switched on */
+    double  integral;           /* [N.m] of the velocity loop */
+};
+
+struct drive_output {
+    double  torque;             /* [N.m] */
+    double  speed;              /* [rpm] measured */
+    double  speed_command;      /* [rpm] */
+    double  following_error;    /* [turns] position mode */
+    bool    ready;              /* enabled and without alarm */
+    bool    saturated;          /* torque at its limit */
+    int32_t alarm;              /* enum drive_alarm */
+};
+
+/* One sampling instant. A phase that is no number or too large changes nothing. */
+enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,
+                             const struct drive_input *in, struct drive_output *out);
+
+#endif
