@@ -1,5 +1,5 @@
 /* Digital servo drive of one motor: velocity or position mode, velocity PI, torque limit, alarms.
- * One drive_tick() per sampling period; README.md has the equations. */
+ * One drive_tick() per sampling period; fmus/servo_drives/README.md has the equations. */
 #ifndef DRIVE_H
 #define DRIVE_H
 

@@ -1,0 +1,105 @@
+/* Six servo drives on one sampling grid. */
+#include <math.h>
+
+#include "drive.h"
+#include "vars.h"
+
+enum { CHANNELS = 6 };
+
+struct model {
+    struct drive_state  drive[CHANNELS];
+    struct drive_output next[CHANNELS];     /* computed at the latest instant, shown at the next */
+    int64_t period;                         /* [ns] sampling grid */
+    int64_t instant;                        /* [ns] next instant of that grid */
+};
+
+#include "fmi_model.h"
+
+/* A decimal period such as 1e-4 s is not exact in binary: off by far less than this [ticks]. */
+#define PERIOD_TOLERANCE 1e-6
+
+/* Ticks beyond this are not whole numbers in a double any more (2^53). */
+#define TICKS_MAX 9007199254740992.0
+
+static struct drive_config config(const struct vars *v, int i)
+{
+    return (struct drive_config){
+        .mode = v->mode[i],
+        .period = v->period,
+        .speed_per_volt = v->speed_per_volt[i],
+        .volt_offset = v->volt_offset[i],
+        .enc_lines = v->enc_lines[i],
+        .enc_counts = v->enc_counts[i],
+        .pulses_per_turn = v->pulses_per_turn[i],
+        .velocity_gain = v->velocity_gain[i],
+        .velocity_time = v->velocity_time[i],
+        .position_gain = v->position_gain[i],
+        .feed_forward = v->feed_forward[i],
+        .torque_limit = v->torque_limit[i],
+        .speed_limit = v->speed_limit[i],
+        .error_limit = v->error_limit[i],
+    };
+}
+
+static void publish(struct vars *v, const struct model *m)
+{
+    for (int i = 0; i < CHANNELS; i++) {
+        const struct drive_output *o = &m->next[i];
+        v->torque[i] = o->torque;
+        v->speed[i] = o->speed;
+        v->speed_command[i] = o->speed_command;
+        v->following_error[i] = o->following_error;
+        v->ready[i] = o->ready;
+        v->saturated[i] = o->saturated;
+        v->alarm[i] = o->alarm;
+    }
+}
+
+static int model_start(struct fmu *f)
+{
+    struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    double ticks = v->period * (1e9 / FMU_TICK_NS);
+    if (!(ticks >= 1.0 && ticks < TICKS_MAX && fabs(ticks - round(ticks)) < PERIOD_TOLERANCE))
+        return fmu_fail(f, "period = %.17g s: not a whole number of %d ns", v->period,
+                        FMU_TICK_NS);
+    *m = (struct model){.period = (int64_t)round(ticks) * FMU_TICK_NS};
+    publish(v, m);
+    return 0;
+}
+
+static int sample(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    for (int i = 0; i < CHANNELS; i++) {
+        if (!v->active[i])
+            continue;
+        struct drive_config c = config(v, i);
+        struct drive_input in = {v->enable[i], v->alarm_reset[i], v->dac[i], v->pulse_count[i],
+                                 v->phase[i]};
+        int32_t alarm = m->drive[i].alarm;
+        if (drive_tick(&c, &m->drive[i], &in, &m->next[i]) != DRIVE_OK)
+            return fmu_fail(f, "phase[%d] = %g: more counts than a number can hold exactly", i + 1,
+                            v->phase[i]);
+        if (m->next[i].alarm != alarm)
+            fmu_event(f, "axis %d: alarm %d at %.9f s", i + 1, (int)m->next[i].alarm,
+                      (double)m->instant * 1e-9);
+    }
+    return 0;
+}
+
+/* Instants in [t0, t1) read the inputs; what they compute is shown from the next instant on. */
+static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    struct model *m = &f->s.m;
+    for (; m->instant < t1; m->instant += m->period) {
+        if (m->instant > t0)
+            publish(&f->s.v, m);
+        if (sample(f))
+            return -1;
+    }
+    if (m->instant == t1)
+        publish(&f->s.v, m);
+    return 0;
+}
