@@ -23,9 +23,10 @@ bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card)
 }
 
 /* The card has taken the transaction but for the frames it refused. */
-static void acknowledged(struct pcl *p, struct mcc *m, int32_t refused)
+static void acknowledged(struct pcl *p, struct mcc *m, int64_t refused)
 {
-    const int32_t taken = refused < 0 ? p->count : refused > p->count ? 0 : p->count - refused;
+    const int32_t taken = refused < 0 ? p->count
+                        : refused > p->count ? 0 : (int32_t)(p->count - refused);
     const int32_t points = taken < p->points ? taken : p->points;
 
     if (points > 0) {
@@ -44,7 +45,7 @@ void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t
               int64_t latency)
 {
     if (p->open && card->cmd_ack == p->seq) {
-        acknowledged(p, m, card->frames_refused - p->refused);
+        acknowledged(p, m, (int64_t)card->frames_refused - p->refused);
         p->refused = card->frames_refused;
     }
     if (pcl_interrupt(p, card)) {
@@ -52,7 +53,7 @@ void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t
             p->due = card->irq_clock + latency;
             p->raised = card->irq_clock;
         }
-        p->pending += card->irq_seq - p->irq_seq;
+        p->pending += (int64_t)card->irq_seq - p->irq_seq;
         p->irq_seq = card->irq_seq;
         p->ack_flags = card->irq_flags & p->mask;
         p->ack_seq++;

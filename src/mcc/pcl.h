@@ -36,7 +36,7 @@ struct pcl {
     bool    late;               /* the others are standstill in the middle of a motion */
     int32_t frames[PCL_FRAMES][AXES];
 
-    int32_t pending;            /* interrupts not served */
+    int64_t pending;            /* interrupts not served */
     int64_t due;                /* clock of the next service */
     int64_t raised;             /* clock of its interrupt, -1 if none asked for it */
     int32_t irq_seq, refused;   /* as seen last */

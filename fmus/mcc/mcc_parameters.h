@@ -1,0 +1,78 @@
+/* Parameters of the mcc FMU as the library takes them. Included by model.c behind fmi_model.h. */
+#ifndef MCC_PARAMETERS_H
+#define MCC_PARAMETERS_H
+
+#include <math.h>
+#include <string.h>
+
+enum { CLOCK_NS = 25 };
+
+/* A decimal period such as 1e-4 s is not exact in binary: off by far less than this. [clocks] */
+static const double PERIOD_TOLERANCE = 1e-6;
+
+/* Longest time that is sure to be exact: 2^53 clocks are 7 years. [clocks] */
+static const double CLOCKS_MAX = 9007199254740992.0;
+
+static double clocks(double seconds)
+{
+    return seconds * CLOCK_HZ;
+}
+
+static struct machine machine_of(const struct vars *v)
+{
+    struct machine m = {
+        .dda_time = v->dda_time, .dda_length = v->dda_length, .queue_depth = v->queue_depth,
+        .feed = v->feed / 60.0, .max_feed = v->max_feed / 60.0,
+        .acc_time = v->acc_time, .dec_time = v->dec_time
+    };
+    for (int i = 0; i < AXES; i++) {
+        m.axis[i] = (struct machine_axis){
+            .used = v->active[i], .pitch = v->lead[i], .gear_ratio = v->gear_ratio[i],
+            .ppr = v->ppr[i], .rpm = v->max_rpm[i], .p_gain = v->p_gain[i]
+        };
+    }
+    return m;
+}
+
+static int check_parameters(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    const double bus = clocks(v->bus_period);
+
+    if (!(bus >= 1.0 && bus < CLOCKS_MAX && fabs(bus - round(bus)) < PERIOD_TOLERANCE)) {
+        return fmu_fail(f, "bus_period = %.17g s is not a whole number of %d ns clocks",
+                        v->bus_period, CLOCK_NS);
+    }
+    const struct { const char *name; double value; } times[] = {
+        { "start_delay", v->start_delay }, { "irq_latency", v->irq_latency },
+        { "irq_jitter", v->irq_jitter },
+    };
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
+        if (!(clocks(times[i].value) < CLOCKS_MAX)) {
+            return fmu_fail(f, "%s = %g s is too long", times[i].name, times[i].value);
+        }
+    }
+    if (v->min_stock + v->batch > PCL_FIFO) {
+        return fmu_fail(f, "min_stock %d + batch %d: the FIFO of the card holds %d commands",
+                        (int)v->min_stock, (int)v->batch, PCL_FIFO);
+    }
+    if (v->feed > v->max_feed) {
+        return fmu_fail(f, "feed %g mm/min is above max_feed %g mm/min", v->feed, v->max_feed);
+    }
+    return 0;
+}
+
+static struct pc_config config_of(const struct vars *v)
+{
+    struct pc_config c = {
+        .bus = (int64_t)round(clocks(v->bus_period)),
+        .ipo = (int64_t)round(clocks(v->ipo_period)),
+        .start = (int64_t)ceil(clocks(v->start_delay) - PERIOD_TOLERANCE),
+        .latency = clocks(v->irq_latency), .jitter = clocks(v->irq_jitter), .seed = v->seed,
+        .min_stock = v->min_stock, .batch = v->batch
+    };
+    memcpy(c.output_mode, v->output_mode, sizeof c.output_mode);
+    return c;
+}
+
+#endif

@@ -1,0 +1,226 @@
+/* The motion library on its PC, on the wires of a co-simulation: bus grid, registers, mailboxes. */
+#include <string.h>
+
+#include "pc.h"
+#include "program_file.h"
+#include "vars.h"
+
+struct model {
+    struct pc pc;
+    int64_t bus;            /* [ns] */
+    int64_t instant;        /* [ns] next instant of the bus grid that reads */
+    bool    unpublished;    /* what was read last shows at that instant */
+    int32_t shown_seq;      /* transaction whose frames stand in the outputs */
+    int32_t told_error;     /* run-time error that was reported */
+};
+
+#define MODEL_BLOB
+#include "fmi_model.h"
+#include "mcc_parameters.h"
+#include "path_file.h"
+
+static int cannot_write(struct fmu *f, int error)
+{
+    return fmu_fail(f, "path_file: cannot write %s: %s", f->s.v.path_file, strerror(error));
+}
+
+static int open_program(struct fmu *f)
+{
+    const char *name = f->s.v.program;
+    struct text *text;
+    const int error = text_read(name, &text);
+
+    f->blob = text;
+    if (error == EFBIG) {
+        return fmu_fail(f, "program: %s is larger than %d MiB", name, PROGRAM_MAX >> 20);
+    }
+    if (error) {
+        return fmu_fail(f, "program: cannot read %s: %s", name, strerror(error));
+    }
+    return text ? 0 : fmu_fail(f, "program: %s is empty", name);
+}
+
+/* A path that cannot be written is told before the run, not after it. */
+static int model_open(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+
+    const int error = v->path_file[0] ? path_try(v->path_file) : 0;
+    if (error) {
+        return cannot_write(f, error);
+    }
+    return v->program[0] ? open_program(f) : 0;
+}
+
+static void model_close(struct fmu *f)
+{
+    free(f->blob);
+}
+
+static const char *text_of(const struct fmu *f, size_t *length)
+{
+    const struct text *t = f->blob;
+    *length = t ? t->length : 0;
+    return t ? t->byte : NULL;
+}
+
+/* Say what is wrong with the part program, where, and which text. */
+static int refuse_program(struct fmu *f, const struct fault_report *r)
+{
+    size_t length;
+    const char *text = text_of(f, &length);
+    char detail[96] = "";
+
+    if (r->fault == FAULT_FEED || r->fault == FAULT_SPEED) {
+        snprintf(detail, sizeof detail, " (%.6g, limit %.6g)", r->value, r->limit);
+    } else if (r->fault == FAULT_ARC_END) {
+        snprintf(detail, sizeof detail, " (by %.6g mm)", r->value);
+    } else if (r->fault == FAULT_ARC_CHORD) {
+        snprintf(detail, sizeof detail, " (%.6g mm, half the distance is %.6g mm)", r->value,
+                 r->limit);
+    }
+    return fmu_fail(f, "%s: line %d: %s \"%.*s\"%s", f->s.v.program, (int)r->line,
+                    fault_text(r->fault), (int)r->length, text + r->at, detail);
+}
+
+static void publish_card(struct vars *v, struct model *m)
+{
+    const struct machine *machine = &m->pc.mcc.machine;
+    const struct pcl *pcl = &m->pc.pcl;
+
+    v->card_dda_length = machine->dda_length;
+    v->card_dda_divider = machine_dda_divider(machine);
+    v->card_dda_run = true;
+    v->card_min_stock = pcl->min_stock;
+    v->card_irq_mask = pcl->mask;
+    v->card_ack_seq = pcl->ack_seq;
+    v->card_ack_flags = pcl->ack_flags;
+    for (int i = 0; i < AXES; i++) {
+        v->card_p_gain[i] = machine->axis[i].p_gain;
+        v->card_loop_on[i] = pc_loop_on(&m->pc, i);
+        v->card_dac_source[i] = pc_dac_source(&m->pc, i);
+        v->card_dac_volts[i] = m->pc.volts[i];
+    }
+    if (pcl->seq != m->shown_seq) {
+        m->shown_seq = pcl->seq;
+        v->card_cmd_seq = pcl->seq;
+        v->card_cmd_clock = (double)pcl->clock;
+        v->card_cmd_count = pcl->count;
+        memcpy(v->card_cmd_frames, pcl->frames, sizeof v->card_cmd_frames);
+    }
+}
+_Static_assert(sizeof ((struct vars *)0)->card_cmd_frames == sizeof ((struct pcl *)0)->frames,
+               "the wire carries a whole transaction");
+
+static void publish(struct fmu *f)
+{
+    struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    const struct mcc *mcc = &m->pc.mcc;
+
+    v->status = task_status(mcc);
+    v->done = pc_done(&m->pc);
+    v->error = MCC_get_errcode(mcc);
+    v->line = mcc->written.line;
+    v->command = mcc->written.command;
+    v->path_feed = mcc->written.feed;
+    MCC_get_cpos(mcc, v->position);
+    v->queue = mcc->queue.count;
+    v->starved = m->pc.pcl.starved;
+    v->services = m->pc.pcl.services;
+    v->latency = (double)m->pc.pcl.latency / CLOCK_HZ;
+    publish_card(v, m);
+    if (v->error != m->told_error) {
+        m->told_error = v->error;
+        fmu_warn(f, "run-time error 0x%04X after line %d", (unsigned)v->error, (int)v->line);
+    }
+}
+
+static int model_start(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    size_t length;
+    const char *text = text_of(f, &length);
+    const struct machine machine = machine_of(v);
+
+    if (check_parameters(f)) {
+        return -1;
+    }
+    const struct pc_config c = config_of(v);
+    if (pc_start(&m->pc, &machine, &c, text != NULL) != MCC_NO_ERR) {
+        return fmu_fail(f, "the library refuses the machine parameters");
+    }
+    if (text) {
+        struct fault_report r;
+        task_check(&m->pc.mcc, text, length, &r);
+        if (r.fault != FAULT_NONE) {
+            return refuse_program(f, &r);
+        }
+    }
+    m->bus = c.bus * CLOCK_NS;
+    fmu_event(f, "DDA time %.9g s", machine_dda_time(&machine));
+    publish(f);
+    return 0;
+}
+
+/* Read the wires at an instant of the bus grid and let the PC work. */
+static void read_bus(struct fmu *f, int64_t at)
+{
+    const struct vars *v = &f->s.v;
+    struct pc *pc = &f->s.m.pc;
+    size_t length;
+    const char *text = text_of(f, &length);
+    const struct pcl_card card = {
+        .irq_seq = v->card_irq_seq, .irq_clock = (int64_t)v->card_irq_clock,
+        .irq_flags = v->card_irq_flags, .cmd_ack = v->card_cmd_ack,
+        .frames_refused = v->card_frames_refused, .stock = v->card_stock[pc->pcl.axis]
+    };
+    struct pc_panel panel = {
+        .hold = v->hold, .abort = v->abort, .override = v->override
+    };
+    memcpy(panel.software_gain, v->software_gain, sizeof panel.software_gain);
+    memcpy(panel.p_gain, v->p_gain, sizeof panel.p_gain);
+    memcpy(panel.err_count, v->card_err_count, sizeof panel.err_count);
+    pc_instant(pc, at / CLOCK_NS, &card, &panel, text, length);
+}
+
+static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    struct model *m = &f->s.m;
+
+    (void)t0;
+    if (!(fabs(f->s.v.card_irq_clock) < CLOCKS_MAX)) {
+        return fmu_fail(f, "card_irq_clock = %g is not a clock", f->s.v.card_irq_clock);
+    }
+    for (;;) {
+        if (m->unpublished && m->instant <= t1) {
+            publish(f);
+            m->unpublished = false;
+        }
+        if (m->instant >= t1) {
+            return 0;
+        }
+        read_bus(f, m->instant);
+        m->instant += m->bus;
+        m->unpublished = true;
+    }
+}
+
+/* The commands that have begun, as rows of path_file. */
+static int model_end(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    const struct mcc *mcc = &f->s.m.pc.mcc;
+
+    if (!v->path_file[0]) {
+        return 0;
+    }
+    struct program program = { .machine = &mcc->machine, .offset = mcc->offset };
+    struct interpreter in;
+    const double origin[AXES] = { 0.0 };
+    program.text = text_of(f, &program.length);
+    interpreter_start(&in, origin, mcc->machine.feed);
+    const int error = path_write(v->path_file, &in, &program, mcc->ipo.started);
+    return error ? cannot_write(f, error) : 0;
+}
