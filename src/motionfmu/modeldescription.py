@@ -47,6 +47,7 @@ def _head(root: ET.Element, d: Description, fmi: int, sources: Iterable[str]) ->
         **{f"canGetAndSetFMU{state}": True, f"canSerializeFMU{state}": True},
     )
     if fmi == 2:
+        cs.set("canNotUseMemoryManagementFunctions", "true")
         files = _add(cs, "SourceFiles")
         for name in sources:
             _add(files, "File", name=name)

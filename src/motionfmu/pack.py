@@ -165,9 +165,10 @@ def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> N
     files = {
         "modelDescription.xml": xml,
         f"binaries/{platform_folder(fmi)}/{name}": library.read_bytes(),
-        "documentation/README.md": (folder / "README.md").read_bytes(),
         "documentation/LICENSE": (SOURCE.parent / "LICENSE").read_bytes(),
     }
+    for readme in folder.glob("README.md"):
+        files["documentation/README.md"] = readme.read_bytes()
     for source, data in _packed_sources(folder, out, fmi).items():
         files[f"sources/{source}"] = data
     target.parent.mkdir(parents=True, exist_ok=True)

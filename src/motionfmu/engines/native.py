@@ -1,0 +1,117 @@
+"""The native engine: the system becomes one container FMU whose master is C.
+
+The container is made by fmucontainer of the FMU manipulation toolbox in its parallel mode, which
+exchanges all values and then steps all FMUs (Jacobi). It is run by FMPy in few long steps.
+"""
+
+import logging
+import tempfile
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from fmu_manipulation_toolbox.container import FMUContainer
+
+from motionfmu import fmus
+from motionfmu.engines.slave import Slave
+from motionfmu.system import End, System
+
+IDENTIFIER = "system"
+# A run is cut into at least so many steps of the container, so that progress shows.
+PARTS = 100
+
+
+def _exposed(end: End, fmi: int) -> list[str]:
+    """Names of a port, by element in FMI 2."""
+    if fmi == 3 or not end.port.shape:
+        return [end.port.name]
+    assert len(end.port.shape) == 1, "only vectors are set"
+    return [f"{end.port.name}[{i + 1}]" for i in range(end.port.count)]
+
+
+def build(system: System, fmi: int, folder: Path) -> Path:
+    """Make the container FMU, unpacked.
+
+    Settings and stimuli become inputs of the container, ``component.variable``, because its own
+    start values cannot carry arrays of Boolean nor text with spaces.
+
+    Parameters
+    ----------
+    system : System
+    fmi : int
+        2 or 3: version of the container and of every FMU in it.
+    folder : Path
+        An empty folder.
+
+    Returns
+    -------
+    Path
+        Folder of the unpacked container FMU.
+    """
+    log = logging.getLogger("fmu_manipulation_toolbox")
+    before, log.disabled = log.disabled, True  # it warns of every output that nothing reads
+    try:
+        container = FMUContainer(IDENTIFIER, folder, fmi_version=fmi)
+        container.start_time, container.stop_time = 0.0, system.steps * system.step_ns * 1e-9
+        for name, fmu in system.components.items():
+            container.get_fmu(str(fmus.fmu_path(fmu, fmi)), name=f"{name}.fmu")
+        for wire in system.wires:
+            container.add_link(
+                f"{wire.source.component}.fmu",
+                wire.source.port.name,
+                f"{wire.target.component}.fmu",
+                wire.target.port.name,
+            )
+        ends = [*(s.end for s in system.settings), *(s.end for s in system.stimuli)]
+        for end in {e.name: e for e in ends}.values():
+            for name in _exposed(end, fmi):
+                container.add_input(f"{end.component}.{name}", f"{end.component}.fmu", name)
+        container.make_fmu(f"{IDENTIFIER}.fmu", step_size=system.step_ns * 1e-9, debug=True)
+    finally:
+        log.disabled = before
+    return folder / IDENTIFIER
+
+
+def _give(slave: Slave, end: End, values: tuple[Any, ...]) -> None:
+    names = _exposed(end, slave.fmi)
+    parts = [values] if len(names) == 1 else [(v,) for v in values]
+    for name, part in zip(names, parts, strict=True):
+        slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], part)
+
+
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
+    """Run a system inside a container FMU.
+
+    Parameters
+    ----------
+    system : System
+    fmi : int
+        2 or 3: version of the container and of every FMU in it.
+    progress : callable
+        Called with the share done, 0 to 1.
+
+    Raises
+    ------
+    InputError
+        An FMU refused something; its message.
+    """
+    with ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
+        slave = Slave(IDENTIFIER, build(system, fmi, Path(folder)), fmi, [])
+        stack.callback(slave.free)
+        for s in system.settings:
+            _give(slave, s.end, s.values)
+        slave.initialize()
+        slave.start()
+        part = max(1, system.steps // PARTS)
+        stops = {s.step for s in system.stimuli if s.step < system.steps}
+        cuts = sorted({*range(0, system.steps, part), *stops, 0})
+        pending = list(system.stimuli)
+        for k, following in zip(cuts, [*cuts[1:], system.steps], strict=True):
+            while pending and pending[0].step == k:
+                now = pending.pop(0)
+                _give(slave, now.end, now.values)
+            slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
+            progress(following / system.steps)
+        slave.end()

@@ -1,0 +1,206 @@
+"""One FMU opened with FMPy, with fast access to its variables."""
+
+import ctypes
+import shutil
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from fmpy import extract, read_model_description
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.fmi3 import FMU3Slave
+
+from motionfmu.errors import InputError
+
+_C = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_bool}
+_FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
+_ERROR = 3  # status of both FMI versions from which on nothing is good
+
+
+class Slave:
+    """A co-simulation FMU of either version.
+
+    Parameters
+    ----------
+    name : str
+        Instance name.
+    source : Path
+        An .fmu, or a folder that holds an unpacked one.
+    fmi : int
+        2 or 3.
+    messages : list of str
+        Receives what the FMU logs with a status of Warning or worse.
+    """
+
+    def __init__(self, name: str, source: Path, fmi: int, messages: list[str]) -> None:
+        self.name, self.fmi, self.messages = name, fmi, messages
+        self._own: str | None = None
+        if source.is_dir():
+            folder = str(source)
+        else:
+            folder = self._own = tempfile.mkdtemp(prefix="motionfmu-")
+            extract(str(source), folder)
+        self.description = read_model_description(folder, validate=False)
+        cosimulation = self.description.coSimulation
+        assert cosimulation, "every FMU here is made for co-simulation"
+        self.references = {v.name: v.valueReference for v in self.description.modelVariables}
+        keys = {
+            "guid": self.description.guid or self.description.instantiationToken,
+            "unzipDirectory": folder,
+            "modelIdentifier": cosimulation.modelIdentifier,
+            "instanceName": name,
+        }
+        if fmi == 3:
+            self.slave: Any = FMU3Slave(**keys)
+            self._do("instantiate", logMessage=self._log3, loggingOn=False)
+        else:
+            self.slave = FMU2Slave(**keys)
+            callbacks = fmi2CallbackFunctions()
+            self._log = fmi2CallbackLoggerTYPE(self._log2)
+            callbacks.logger = self._log
+            self._do("instantiate", callbacks=callbacks, loggingOn=False)
+
+    def _log3(self, environment: Any, status: int, category: bytes, message: bytes) -> None:
+        if status > 0:
+            self.messages.append(message.decode(errors="replace").strip())
+
+    def _log2(self, environment: Any, name: Any, status: int, category: Any, text: Any) -> None:
+        if status > 0:
+            raw = text if isinstance(text, bytes) else str(text).encode()
+            self.messages.append(raw.decode(errors="replace").strip())
+
+    def _do(self, call: str, **arguments: Any) -> None:
+        """Call a method of FMPy's slave; what it raises becomes the FMU's own message."""
+        try:
+            getattr(self.slave, call)(**arguments)
+        except Exception as error:
+            raise self.failure(call) from error
+
+    def failure(self, call: str) -> InputError:
+        """The error for a call that did not return OK.
+
+        Parameters
+        ----------
+        call : str
+            Name of the call.
+
+        Returns
+        -------
+        InputError
+            With the first message the FMU gave.
+        """
+        told = self.messages[0] if self.messages else f"{call} failed without a message"
+        return InputError(told if told.startswith(f"{self.name}:") else f"{self.name}: {told}")
+
+    def buffer(self, kind: str, count: int) -> Any:
+        """Memory for `count` values of a type, as the FMU reads and writes them.
+
+        Parameters
+        ----------
+        kind : str
+            Float64, Int32 or Boolean.
+        count : int
+            Number of elements.
+
+        Returns
+        -------
+        ctypes array
+        """
+        c = ctypes.c_int32 if self.fmi == 2 and kind == "Boolean" else _C[kind]
+        return (c * count)()
+
+    def access(self, verb: str, kind: str, reference: int, buffer: Any) -> Any:
+        """A function that gets or sets one variable through its buffer.
+
+        Parameters
+        ----------
+        verb : str
+            ``Get`` or ``Set``.
+        kind : str
+            Float64, Int32 or Boolean.
+        reference : int
+            First value reference.
+        buffer : ctypes array
+            From `buffer`.
+
+        Returns
+        -------
+        callable
+            Without arguments; raises InputError when the FMU refuses.
+        """
+        count = len(buffer)
+        if self.fmi == 3:
+            call = getattr(self.slave.dll, f"fmi3{verb}{kind}")
+            references = (ctypes.c_uint32 * 1)(reference)
+            arguments = (self.slave.component, references, ctypes.c_size_t(1), buffer)
+            arguments += (ctypes.c_size_t(count),)
+        else:
+            call = getattr(self.slave.dll, f"fmi2{verb}{_FMI2[kind]}")
+            references = (ctypes.c_uint32 * count)(*range(reference, reference + count))
+            arguments = (self.slave.component, references, ctypes.c_size_t(count), buffer)
+
+        def run() -> None:
+            if call(*arguments) >= _ERROR:
+                raise self.failure(f"{verb}{kind}")
+
+        return run
+
+    def assign(self, kind: str, reference: int, values: Iterable[Any]) -> None:
+        """Set a variable once.
+
+        Parameters
+        ----------
+        kind : str
+            Float64, Int32, Boolean or String.
+        reference : int
+            First value reference.
+        values : iterable
+            One per element.
+        """
+        listed = list(values)
+        if kind == "String":
+            references = (
+                [reference] if self.fmi == 3 else [*range(reference, reference + len(listed))]
+            )
+            self._do("setString", vr=references, **{"values" if self.fmi == 3 else "value": listed})
+            return
+        buffer = self.buffer(kind, len(listed))
+        buffer[:] = listed
+        self.access("Set", kind, reference, buffer)()
+
+    def initialize(self) -> None:
+        """Enter Initialization Mode at time 0."""
+        if self.fmi == 2:
+            self._do("setupExperiment", startTime=0.0)
+            self._do("enterInitializationMode")
+        else:
+            self._do("enterInitializationMode", startTime=0.0)
+
+    def start(self) -> None:
+        """Leave Initialization Mode."""
+        self._do("exitInitializationMode")
+
+    def step(self, time: float, size: float) -> None:
+        """Advance by one communication step.
+
+        Parameters
+        ----------
+        time : float
+            Communication point [s].
+        size : float
+            Step [s].
+        """
+        self._do("doStep", currentCommunicationPoint=time, communicationStepSize=size)
+
+    def end(self) -> None:
+        """Terminate: the FMU writes its files."""
+        self._do("terminate")
+
+    def free(self) -> None:
+        """Free the instance, the library and the unpacked files; never raises."""
+        try:
+            self.slave.freeInstance()
+        finally:
+            if self._own:
+                shutil.rmtree(self._own, ignore_errors=True)

@@ -1,0 +1,279 @@
+"""Load a scenario, run it, keep what it gave."""
+
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu import recording, scenario, system, values
+from motionfmu.checks import Verdict, judge
+from motionfmu.engines import ENGINES
+from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.contour import ContourResult
+
+CONTOUR = "contour."
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to run.
+
+    Attributes
+    ----------
+    engine : str
+        A name of `motionfmu.engines.ENGINES`.
+    fmi : int
+        2 or 3.
+    set : mapping
+        Value by ``component.variable``, stronger than the scenario's.
+    stop, step : float or None
+        Instead of the scenario's [s].
+    progress : callable
+        Called with the share done, 0 to 1.
+    """
+
+    engine: str = "native"
+    fmi: int = 3
+    set: Mapping[str, Any] = field(default_factory=dict)
+    stop: float | None = None
+    step: float | None = None
+    progress: Callable[[float], None] = lambda share: None
+
+
+@dataclass
+class Result:
+    """What a run gave.
+
+    Attributes
+    ----------
+    scenario : Scenario
+    time : ndarray
+        Times of the samples [s], shape (N,).
+    signals : dict
+        By name: (N, 6) for an array of axes, (N,) for a scalar.
+    parameters : dict
+        Value of every parameter that was set, by name.
+    geometry : str or None
+        The planned path as the library wrote it (CSV), if the scenario has a contour.
+    """
+
+    scenario: "Scenario"
+    time: NDArray[np.float64]
+    signals: dict[str, NDArray[Any]]
+    parameters: dict[str, Any]
+    geometry: str | None = None
+    _contour: "ContourResult | None" = None
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A signal, or with ``name[i]`` one axis of it, i from 1."""
+        if name in self.signals:
+            return self.signals[name]
+        whole, bracket, rest = name.partition("[")
+        index = rest.removesuffix("]")
+        if bracket and whole in self.signals and index.isdigit():
+            data = self.signals[whole]
+            if data.ndim == 2 and 1 <= int(index) <= data.shape[1]:
+                return data[:, int(index) - 1]
+        raise KeyError(f"{name} is not recorded (recorded: {', '.join(sorted(self.signals))})")
+
+    def parameter(self, name: str) -> Any:
+        """Value of a parameter in this run, set or from its description.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``.
+
+        Returns
+        -------
+        tuple
+            One value per element.
+        """
+        if name in self.parameters:
+            return self.parameters[name]
+        port = self.scenario.resolver.end(name, "set", name).port
+        kind: Any = {"Float64": float, "Int32": int, "Boolean": "true".__eq__}.get(port.type, str)
+        listed = (port.start or "").split() if port.type != "String" else [port.start or ""]
+        return tuple(kind(x) for x in listed)
+
+    def contour(self) -> "ContourResult":
+        """The contour error of this run against the planned geometry.
+
+        Returns
+        -------
+        ContourResult
+
+        Raises
+        ------
+        InputError
+            The scenario has no [contour] table.
+        """
+        if self._contour is None:
+            from motionfmu.contour_of import contour_of
+
+            self._contour = contour_of(self)
+        return self._contour
+
+    @property
+    def checks(self) -> list[Verdict]:
+        """The verdict of every bound in the scenario's [check] table."""
+        found = []
+        for name, check in self.scenario.document.body.check.items():
+            if name.startswith(CONTOUR):
+                figure = self.contour().figures[name.removeprefix(CONTOUR)]
+                data = np.array([figure])
+                found += judge(name, check, np.zeros(1), data)
+            else:
+                found += judge(name, check, self.time, self[name])
+        return found
+
+    @property
+    def ok(self) -> bool:
+        """Whether every check holds."""
+        return all(v.ok for v in self.checks)
+
+
+class Scenario:
+    """A scenario ready to run.
+
+    Parameters
+    ----------
+    path : str or Path
+        A scenario.toml or the folder that holds it.
+
+    Raises
+    ------
+    InputError
+        Anything wrong in the file; one message with file, line and value.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.document = scenario.read(path)
+        self.resolver = system.Resolver(self.document)
+        self.ends = recording.chosen(self.resolver, self._recorded())
+        self._system(Options())
+        self._check_checks()
+
+    @property
+    def name(self) -> str:
+        """Name of the scenario's folder."""
+        return self.document.file.parent.name
+
+    def _recorded(self) -> list[str]:
+        body = self.document.body
+        contour = [body.contour.position, body.contour.pulses] if body.contour else []
+        return [*body.record.signals, *contour]
+
+    def _check_checks(self) -> None:
+        recorded = {e.name for e in self.ends}
+        for name in self.document.body.check:
+            if name.startswith(CONTOUR):
+                if self.document.body.contour is None:
+                    raise self.document.error(f"{name}: there is no [contour] table", "check", name)
+                from motionfmu.contour import FIGURES
+
+                if name.removeprefix(CONTOUR) not in FIGURES:
+                    known = ", ".join(CONTOUR + f for f in FIGURES)
+                    raise self.document.error(f"{name} is no figure ({known})", "check", name)
+            elif name.partition("[")[0] not in recorded:
+                raise self.document.error(f"{name} is not recorded", "check", name)
+
+    def _system(self, options: Options) -> system.System:
+        document, body = self.document, self.document.body
+        step_ns = system.nanoseconds(document, "step", options.step or body.step)
+        stop = options.stop or body.stop
+        stop_ns = system.nanoseconds(document, "stop", stop)
+        if stop_ns % step_ns:
+            raise document.error(f"stop = {stop!r} s is no whole number of steps", "", "stop")
+        resolved = system.System(
+            components=dict(body.component),
+            wires=tuple(system.wires(self.resolver)),
+            settings=tuple(values.settings(self.resolver, options.set)),
+            stimuli=tuple(values.stimuli(self.resolver, step_ns)),
+            step_ns=step_ns,
+            steps=stop_ns // step_ns,
+        )
+        system.check_inputs(self.resolver, resolved)
+        return resolved
+
+    def run(self, **options: Any) -> Result:
+        """Run the scenario.
+
+        Parameters
+        ----------
+        **options : engine, fmi, set, stop, step, progress
+            See `Options`.
+
+        Returns
+        -------
+        Result
+
+        Raises
+        ------
+        InputError
+            An option is wrong, or an FMU refused something; one message.
+        """
+        asked = Options(**options)
+        if asked.engine not in ENGINES:
+            raise InputError(f"no engine {asked.engine!r} (there are: {', '.join(ENGINES)})")
+        if asked.fmi not in (2, 3):
+            raise InputError(f"FMI {asked.fmi!r}: 2 or 3")
+        with tempfile.TemporaryDirectory(prefix="motionfmu-") as name:
+            folder = Path(name)
+            library = self._library()
+            extra = {f"{library}.path_file": str(folder / "path.csv")} if library else {}
+            given = Options(**{**options, "set": {**asked.set, **extra}})
+            plain = self._system(given)
+            wired, traces = recording.plan(plain, self.ends, folder)
+            try:
+                ENGINES[asked.engine](wired, asked.fmi, asked.progress)
+            except InputError as error:
+                raise self._located(error, plain) from None
+            signals = traces.load()
+            geometry = (folder / "path.csv").read_text() if library else None
+        time = np.arange(wired.steps, dtype=np.float64) * (wired.step_ns * 1e-9)
+        parameters = {s.end.name: s.values for s in plain.settings}
+        return Result(self, time, signals, parameters, geometry)
+
+    def _library(self) -> str | None:
+        """The component that plans the path, if the scenario looks at the contour."""
+        if self.document.body.contour is None:
+            return None
+        for name, ports in self.resolver.ports.items():
+            if "path_file" in ports:
+                return name
+        raise self.document.error("no component plans a path (none has path_file)", "contour")
+
+    def _located(self, error: InputError, plain: system.System) -> InputError:
+        """Add the line of the setting that an FMU's message names."""
+        text = str(error)
+        for s in plain.settings:
+            if s.end.name in self.document.body.set and s.end.port.name in text:
+                return self.document.error(text, "set", s.end.name)
+        return InputError(f"{self.document.file}: {text}")
+
+
+def load(path: str | Path) -> Scenario:
+    """Read a scenario and check it against its FMUs.
+
+    Parameters
+    ----------
+    path : str or Path
+        A scenario.toml or the folder that holds it, anywhere.
+
+    Returns
+    -------
+    Scenario
+
+    Raises
+    ------
+    InputError
+        Anything wrong in the file; one message with file, line and value.
+    """
+    return Scenario(path)

@@ -1,0 +1,210 @@
+"""A scenario file: which FMUs, how they are wired, set, driven, recorded and judged."""
+
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from motionfmu.errors import InputError
+from motionfmu.toml_lines import Lines
+
+Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+
+class Drive(BaseModel):
+    """A stimulus: an input that steps to given values at given times [s]."""
+
+    model_config = _STRICT
+    input: str
+    at: list[float] = Field(min_length=1)
+    value: list[Value] = Field(min_length=1)
+
+
+class Check(BaseModel):
+    """Bounds of one signal or contour figure; every bound given must hold."""
+
+    model_config = _STRICT
+    min: float | None = None
+    max: float | None = None
+    absmax: float | None = None
+    peak: tuple[float, float] | None = None
+    rms: tuple[float, float] | None = None
+    final: bool | float | tuple[float, float] | None = None
+    at: float | None = None
+
+
+class Contour(BaseModel):
+    """Which signals hold the actual position and the pulses put out."""
+
+    model_config = _STRICT
+    position: str
+    pulses: str
+
+
+class Record(BaseModel):
+    """What is recorded at every step: names or patterns of outputs."""
+
+    model_config = _STRICT
+    signals: list[str] = Field(min_length=1)
+
+
+class Body(BaseModel):
+    """The tables of a scenario.toml."""
+
+    model_config = _STRICT
+    stop: float = Field(gt=0)
+    step: float = Field(gt=0)
+    component: dict[str, str] = Field(min_length=1)
+    connect: dict[str, str] = Field(default_factory=dict)
+    set: dict[str, Value] = Field(default_factory=dict)
+    drive: list[Drive] = Field(default_factory=list)
+    leave: list[str] = Field(default_factory=list)
+    record: Record
+    contour: Contour | None = None
+    check: dict[str, Check] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Document:
+    """A scenario as read: its tables, its file and where each key stands.
+
+    Attributes
+    ----------
+    file : Path
+        The scenario.toml.
+    about : str
+        What its first line says.
+    body : Body
+        The tables.
+    lines : Lines
+        Line numbers of the keys.
+    """
+
+    file: Path
+    about: str
+    body: Body
+    lines: Lines
+
+    def error(self, text: str, table: str = "", key: str = "") -> InputError:
+        """Make the error for a key of this file.
+
+        Parameters
+        ----------
+        text : str
+            What is wrong, with the value.
+        table, key : str
+            Where; see `Lines.of`.
+
+        Returns
+        -------
+        InputError
+        """
+        return InputError(f"{self.file}:{self.lines.of(table, key)}: {text}")
+
+
+def scenario_file(path: str | Path) -> Path:
+    """The scenario.toml that a user's path means.
+
+    Parameters
+    ----------
+    path : str or Path
+        A scenario.toml or the folder that holds it.
+
+    Returns
+    -------
+    Path
+        Absolute.
+
+    Raises
+    ------
+    InputError
+        There is no such file.
+    """
+    file = Path(path)
+    file = file / "scenario.toml" if file.is_dir() else file
+    if not file.is_file():
+        raise InputError(f"{file}: no such scenario")
+    return file.resolve()
+
+
+def read(path: str | Path) -> Document:
+    """Read and check the form of a scenario file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A scenario.toml or the folder that holds it.
+
+    Returns
+    -------
+    Document
+
+    Raises
+    ------
+    InputError
+        The file is missing, is no TOML, or a key is unknown, missing or of the wrong type.
+    """
+    file = scenario_file(path)
+    try:
+        text = file.read_text(encoding="utf-8")
+        tables = tomllib.loads(text)
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: not UTF-8 text ({error})") from None
+    except tomllib.TOMLDecodeError as error:
+        where = re.search(r"line (\d+)", str(error))
+        raise InputError(f"{file}:{where[1] if where else 1}: {error}") from None
+    lines = Lines(text)
+    first = text.split("\n", 1)[0]
+    if not first.startswith("#"):
+        raise InputError(f"{file}:1: the first line is a comment that says what the scenario shows")
+    tables = _floats(tables)
+    try:
+        body = Body.model_validate(tables)
+    except ValidationError as error:
+        raise InputError(_first(error, file, lines, tables)) from None
+    return Document(file, first.lstrip("# "), body, lines)
+
+
+def _floats(tables: dict[str, Any]) -> dict[str, Any]:
+    """Whole numbers where a time or a bound is meant; pairs become tuples."""
+
+    def number(x: Any) -> Any:
+        return float(x) if isinstance(x, int) and not isinstance(x, bool) else x
+
+    out = dict(tables)
+    for key in ("stop", "step"):
+        if key in out:
+            out[key] = number(out[key])
+    for row in out.get("drive", []) if isinstance(out.get("drive"), list) else []:
+        if isinstance(row, dict) and isinstance(row.get("at"), list):
+            row["at"] = [number(x) for x in row["at"]]
+    checks = out.get("check", {})
+    for row in checks.values() if isinstance(checks, dict) else []:
+        for key, x in list(row.items()) if isinstance(row, dict) else []:
+            row[key] = tuple(number(y) for y in x) if isinstance(x, list) else number(x)
+    return out
+
+
+def _first(error: ValidationError, file: Path, lines: Lines, tables: dict[str, Any]) -> str:
+    """One line for the first thing pydantic found."""
+    found = error.errors()[0]
+    place = [str(p) for p in found["loc"]]
+    if found["type"] == "missing" and len(place) == 1:
+        return f"{file}: {place[0]} is missing"
+    if len(place) == 1:
+        table, key = "", place[0]
+        if isinstance(tables.get(key), dict | list) and found["type"] == "extra_forbidden":
+            table, key = key, ""
+    elif place[0] == "drive" and len(place) > 1:
+        table, key = f"drive.{place[1]}", place[2] if len(place) > 2 else ""
+    else:
+        table, key = place[0], place[1]
+    name = ".".join(place[1:] if place[0] == "set" else place)
+    if found["type"] == "extra_forbidden":
+        return f"{file}:{lines.of(table, key)}: unknown key {place[-1]!r}"
+    shown = found["input"] if not isinstance(found["input"], dict) else "..."
+    return f"{file}:{lines.of(table, key)}: {name} = {shown!r}: {found['msg'].lower()}"
