@@ -12,6 +12,8 @@ from plant_library import PACKAGE, ROOT, Library, Run, array
 from motionfmu.modelica import causal
 
 HORIZON = 1000_000  # [ns]
+INSIDE = st.integers(1, HORIZON // 25 - 1)  # [25 ns]
+ON_GRID = st.integers(1, HORIZON // 25_000 - 1).map(lambda k: 1000 * k)
 
 
 @pytest.fixture(scope="module")
@@ -31,8 +33,8 @@ def outputs(run):
 
 @settings(max_examples=40, deadline=None)
 @given(
-    cuts=st.sets(st.integers(1, HORIZON // 25 - 1), max_size=30),
-    switch=st.integers(1, HORIZON // 25 - 1),
+    cuts=st.sets(INSIDE | ON_GRID, max_size=30),
+    switch=INSIDE | ON_GRID,
     backlash=st.sampled_from([0.0, 2e-6]),
 )
 def test_any_split_gives_the_same_bits(ball_screw, cuts, switch, backlash):
@@ -65,8 +67,16 @@ def test_inputs_are_read_and_states_shown_on_the_grid(velocity):
     r.set(voltage=7.0)  # not read before h
     r.step(4 * h / 5)
     assert r.get("motor_angle")[0] == pytest.approx(2.0 * gain * h, rel=1e-14)
-    r.step(h)
+    assert r.get("motor_speed")[0] == pytest.approx(2.0 * gain, rel=1e-14)
+    r.step(h / 5)
+    assert r.get("motor_speed")[0] == pytest.approx(2.0 * gain, rel=1e-14), "shown at 2 h"
+    r.step(4 * h / 5)
+    assert r.get("motor_speed")[0] == pytest.approx(7.0 * gain, rel=1e-14)
     assert r.get("motor_angle")[0] == pytest.approx(9.0 * gain * h, rel=1e-14)
+    r.step(h / 5)
+    r.set(voltage=1.0)  # read at 3 h, inside the next communication step
+    r.step(9 * h / 5)
+    assert r.get("motor_angle")[0] == pytest.approx(17.0 * gain * h, rel=1e-14)
 
 
 def test_pure_integrator_and_lag_against_closed_forms(velocity):

@@ -1,1 +1,4 @@
-"""Modelica classes as FMUs: rumoca flattens, CasADi holds the equations, C is printed from them."""
+"""Modelica classes as FMUs.
+
+rumoca flattens a class, CasADi holds its equations, C is printed from them.
+"""

@@ -1,4 +1,4 @@
-"""From flat equations to dx/dt = xdot(x, u, p): sort into blocks and solve each."""
+"""From flat equations to dx/dt = xdot(x, u, p), block by block."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -112,13 +112,15 @@ class _Names:
         self._known = {d.name: ca.SX.sym(d.name) for d in own}
 
     def refuse(self, what: str) -> Unsupported:
+        """The error to raise."""
         return Unsupported(f"{self.flat.name}: {what}")
 
     def column(self, names: Iterable[str]) -> ca.SX:
+        """Symbols of some names."""
         return ca.vertcat(ca.SX(0, 1), *(self._known[n] for n in names))
 
     def symbol(self, name: str) -> ca.SX:
-        """Symbol of a variable, value of a parameter that is bound to others."""
+        """Symbol of a variable, value of a bound parameter."""
         if name in self._known:
             return self._known[name]
         d = self.flat.declarations.get(name)
@@ -134,6 +136,7 @@ class _Names:
         return self._known[name]
 
     def derivative(self, name: str) -> ca.SX:
+        """Symbol of der(name)."""
         d = self.flat.declarations[name]
         if d.kind not in ("variable", "output"):
             raise self.refuse(f"der({name}) of a {d.kind} is not supported")
@@ -153,6 +156,7 @@ class _Names:
         return float(value)
 
     def default(self, d: Declaration) -> float:
+        """Value of a parameter as declared."""
         value = self.number(d, "binding")
         if value is None:
             raise self.refuse(f"parameter {d.name} has no value")
@@ -160,7 +164,7 @@ class _Names:
 
 
 def _residuals(flat: Flat) -> list[Expression]:
-    """Equations of the class, with declarations ``Real y = e`` as equations y - e."""
+    """Residuals of all equations; ``Real y = e`` gives y - e."""
     found = [e.residual for e in flat.equations]
     for d in flat.declarations.values():
         if d.kind in ("variable", "output") and d.binding is not None:
@@ -236,7 +240,7 @@ def _inputs(flat: Flat) -> list[str]:
 
 
 def _solve(names: _Names, residuals: ca.SX, unknowns: ca.SX) -> ca.SX:
-    """Solve residuals = 0 block by block (block lower triangular form); blocks are linear."""
+    """Solve residuals = 0 by its block lower triangular form."""
     labels = [str(unknowns[i]) for i in range(unknowns.numel())]
     if residuals.numel() != unknowns.numel():
         raise names.refuse(f"{residuals.numel()} equations for {len(labels)} unknowns")

@@ -1,4 +1,6 @@
-"""Write plant.c and plant.h, the equations of a Modelica class as plant_model.c needs them.
+"""Write a Modelica class as plant.c and plant.h.
+
+They are what plant_model.c integrates.
 
 CasADi's own C text serves one point per call, and its null checks keep compilers from doing
 two points at once. Here quantity k of lane i stands at [k * PLANT_LANES + i], each function is one
@@ -21,7 +23,7 @@ from motionfmu.modelica.ode import Ode
 # Axes that are integrated together. Measured on SSE2 (per axis and step of BallScrewAxis, 2025-11):
 # 1 lane 74 ns, 2 lanes 56 ns, 4 lanes 37 ns, 6 lanes 42 ns; the same bits.
 LANES = 4
-# Every combination of branches is looked at when an FMU starts: 2^8 Jacobians are 0.1 ms.
+# Every combination of branches is looked at when an FMU starts: 2^8 of them take 0.4 ms per axis.
 MAX_BRANCHES = 8
 
 _NOTE = "/* Generated from {}; do not edit. */\n"
@@ -31,7 +33,7 @@ _ARGUMENTS = "xupc"
 
 
 def write(toml: Path, out: Path) -> None:
-    """Write plant.c and plant.h of one FMU, if they are not there already.
+    """Write plant.c and plant.h of one FMU, where they differ.
 
     Parameters
     ----------
@@ -102,7 +104,7 @@ def generate(ode: Ode, instances: int) -> tuple[str, str]:
 
 
 def _branches(jacobian: Program) -> dict[int, int]:
-    """Comparisons and signs that the state or the input decides -> their bit."""
+    """Comparisons that state or input decides, with their bits."""
     moving = jacobian.depends({_X, _U})
     logic = {ca.OP_NOT, ca.OP_AND, ca.OP_OR, ca.OP_FLOOR, ca.OP_CEIL}
     found = [k for k, n in enumerate(jacobian.nodes) if moving[k] and n.op in STEPS - logic]
@@ -110,7 +112,7 @@ def _branches(jacobian: Program) -> dict[int, int]:
 
 
 def _function(head: str, lines: list[str]) -> str:
-    """A C function; arguments of one letter or a word that it does not use are named as unused."""
+    """A C function; arguments it does not use are named as such."""
     body = "\n".join(lines)
     arguments = re.findall(r"(\w+)[,)]", head)
     unused = [a for a in arguments if not re.search(rf"\b{a}\b", body)]
@@ -158,7 +160,7 @@ def _single(_: int, node: Node) -> str | None:
 
 
 def _of_parameters(ode: Ode, equations: Split) -> str:
-    """Functions of the parameters alone: checks, initial state, constants."""
+    """Checks, initial state and constants: of parameters alone."""
     conditions = ca.vertcat(ca.SX(0, 1), *(c for c, _ in ode.checks))
     early = program([ode.x, ode.u, ode.p], [conditions, ode.start])
     checks, start = early.results

@@ -1,4 +1,4 @@
-"""Print the operations of a Program as C statements, one constant per operation."""
+"""Print the operations of a Program as C statements."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -39,7 +39,7 @@ _TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f + "({0})" for f in _LIBRARY
 
 
 def literal(value: float) -> str:
-    """C text of a double, exact; infinity and NaN by the names of math.h.
+    """C text of a double, exact.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def literal(value: float) -> str:
 def statements(
     program: Program, roots: Iterable[int], leaf: Callable[[int, Node], str | None]
 ) -> list[str]:
-    """C statements ``const double aN = ...;`` for all that some nodes need.
+    """Statements ``const double aN = ...;`` that some nodes need.
 
     Parameters
     ----------

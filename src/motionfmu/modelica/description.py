@@ -1,4 +1,4 @@
-"""The description of an FMU whose variables come from a Modelica class."""
+"""The description of an FMU made from a Modelica class."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Flatten a Modelica class with rumoca, and refuse what the back end does not handle."""
+"""Flatten a Modelica class, or refuse what is not handled."""
 
 import json
 import re
@@ -65,7 +65,7 @@ class Declaration:
 
     @property
     def top(self) -> bool:
-        """Whether it belongs to the class itself and not to a component of it."""
+        """Whether it belongs to the class itself, not a component."""
         return "." not in self.name
 
 
@@ -210,7 +210,7 @@ def _first(section: Any) -> Any:
 
 
 def _component(item: Any) -> str:
-    """Text " (component x)" of the place a construct stands in, as far as rumoca tells."""
+    """Text " (component x)" of a construct, if rumoca tells it."""
     origin = item.get("origin") if isinstance(item, dict) else None
     known = origin.get("ComponentEquation", {}) if isinstance(origin, dict) else {}
     found = known.get("component", "")

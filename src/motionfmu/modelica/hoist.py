@@ -51,7 +51,7 @@ def split(early: Program, varying: set[int], group: int) -> Split:
     at: dict[tuple[int, bool], int] = {}  # (old node, inverted) -> node of `late`
 
     def fetch(k: int, inverted: bool = False) -> int:
-        """Position in `late` of a node, which is a constant if it is not there yet."""
+        """Position of a node in `late`; a new one is a constant."""
         if (k, inverted) not in at:
             node = early.nodes[k]
             if node.op == ca.OP_CONST:

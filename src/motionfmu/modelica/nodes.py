@@ -1,4 +1,4 @@
-"""The scalar operations of a CasADi SX function, as a list in order of evaluation."""
+"""The operations of a CasADi function, in order of evaluation."""
 
 from dataclasses import dataclass
 
@@ -48,7 +48,7 @@ class Program:
     results: tuple[tuple[int, ...], ...]
 
     def depends(self, arguments: set[int]) -> list[bool]:
-        """Whether each node depends on any of the function's arguments of these positions.
+        """Whether each node depends on any of these arguments.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ def program(arguments: list[ca.SX], results: list[ca.SX]) -> Program:
 
 
 def steps_on(expression: ca.SX, variables: ca.SX) -> bool:
-    """Whether a comparison, sign or rounding in an expression depends on any of the variables.
+    """Whether a comparison, sign or rounding depends on variables.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A flat class as an explicit ordinary differential equation in CasADi."""
+"""A class as an ordinary differential equation in CasADi."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Ode:
-    """dx/dt = xdot(x, u, p), y = y(x, u, p): the one model behind simulation and tuning.
+    """The one model: dx/dt = xdot(x, u, p), y = y(x, u, p).
 
     Attributes
     ----------
