@@ -94,8 +94,8 @@ void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
 
 bool pc_done(const struct pc *pc)
 {
-    return (pc->started || !pc->program) && !pc->mcc.error && pc->pcl.seq > 0 && !pc->pcl.open &&
-           MCC_check_stop(&pc->mcc);
+    /* Points leave the queue when the card has acknowledged them. */
+    return (pc->started || !pc->program) && !pc->mcc.error && MCC_check_stop(&pc->mcc);
 }
 
 bool pc_loop_on(const struct pc *pc, int axis)

@@ -155,11 +155,14 @@ static void panel(void)
     CHECK_EQ(c.sum[0], 0);
     CHECK_EQ(task_status(&pc.mcc), TASK_HOLD);
     p.hold = false;
-    for (; k < 14000; k++) {
+    int changes = 0;
+    for (bool was = false; k < 15000; k++) {
         card_period(&c, k * config.bus, &p, line_100);
+        changes += was != pc_done(&pc);
+        was = pc_done(&pc);
     }
     CHECK_EQ(c.sum[0], 100000);
-    CHECK(pc_done(&pc));
+    CHECK(pc_done(&pc) && changes == 1);
 
     config.start = 40000000;
     card_start(&c, &m, &config, true);

@@ -1,0 +1,213 @@
+"""The mcc FMU alone and with the card: bad programs, planned geometry, pulses end to end."""
+
+import csv
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fmi_tools import ERROR, OK, Instance
+
+HOST = """dda_length dda_divider dda_run min_stock irq_mask ack_seq ack_flags p_gain loop_on
+dac_source dac_volts cmd_seq cmd_clock cmd_count cmd_frames clear_seq""".split()
+CARD = """irq_seq irq_clock irq_flags cmd_ack frames_refused stock pulse_count enc_count
+err_count""".split()
+QUARTER = "G21 G17 G90 G61\nG1 X5 F3000\nG3 X0 Y5 I-5\nG4 P0.02\nG2 X5 Y0 R5 Z1\nM2\n"
+FAST = {"acc_time": 0.01, "dec_time": 0.01}
+
+
+def start(fmi: int, text: str | bytes, folder: Path, **values: Any) -> tuple[int, Instance]:
+    """Status of the initialization with a program, and the instance."""
+    program = folder / "part.ngc"
+    program.write_bytes(text if isinstance(text, bytes) else text.encode())
+    instance = Instance("mcc", fmi)
+    for name, value in {"program": str(program), **values}.items():
+        assert instance.set(name, value) == OK, instance.said
+    return instance.enter() or instance.call("ExitInitializationMode"), instance
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("G1 X1\n\nY2 Q3\n", 'line 3: unknown word "Q3"'),
+        ("G1 X1 A1", 'line 1: unknown word "A1"'),
+        ("G2 X10 R4 (tight)", 'half the distance to the end "G2 X10 R4 (tight)" (4 mm, half'),
+        ("G2 X10 I6", '"G2 X10 I6" (by 2 mm)'),
+        ("F60001", 'feed above max_feed [mm/min] "F60001" (60001, limit 60000)'),
+        ("G1 X10 F40000", 'above max_rpm [rpm] "G1 X10 F40000" (4000, limit 3000)'),
+        ("G1 X1\n\x00", "line 2: unexpected character"),
+        (b"G1 X1 \xff\xfe", "line 1: unexpected character"),
+        ("G1 W1", 'axis is not active "W1"'),
+        ("", "part.ngc is empty"),
+    ],
+)
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_bad_program_is_refused_before_anything_moves(
+    fmi: int, text: str | bytes, said: str, tmp_path: Path
+) -> None:
+    planned = tmp_path / "planned.csv"
+    status, instance = start(fmi, text, tmp_path, path_file=str(planned))
+    assert status == ERROR
+    assert said in instance.said and str(tmp_path / "part.ngc") in instance.said
+    instance.free()
+    assert [f.name for f in tmp_path.iterdir()] == ["part.ngc"]
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"min_stock": 62, "batch": 16}, "min_stock 62 + batch 16: the FIFO of the card holds 63"),
+        ({"feed": 700.0, "max_feed": 600.0}, "feed 700 mm/min is above max_feed 600 mm/min"),
+        ({"bus_period": 1.1e-7}, "bus_period = "),
+        ({"start_delay": 1e12}, "start_delay = 1e+12 s is too long"),
+        ({"program": "no/such.ngc"}, "program: cannot read no/such.ngc: No such file"),
+        ({"program": "."}, "program: cannot read .: Is a directory"),
+        ({"path_file": "no/such/planned.csv"}, "path_file: cannot write no/such/planned.csv: No"),
+    ],
+)
+def test_bad_parameter_is_named(values: dict[str, Any], said: str, tmp_path: Path) -> None:
+    status, instance = start(3, "G1 X1", tmp_path, **values)
+    assert status == ERROR and said in instance.said
+    instance.free()
+
+
+def test_program_too_large_is_refused(tmp_path: Path) -> None:
+    status, instance = start(3, b"\n" * ((64 << 20) + 1), tmp_path)
+    assert status == ERROR and "larger than 64 MiB" in instance.said
+    instance.free()
+
+
+class Machine:
+    """Library and card, wired, one communication step at a time (Jacobi)."""
+
+    def __init__(self, fmi: int, values: dict[str, Any]) -> None:
+        self.mcc = Instance("mcc", fmi).initialize(values)
+        self.card = Instance("epcio", fmi).initialize({})
+        self.wires = [(self.mcc, f"card_{n}", self.card, f"host_{n}") for n in HOST]
+        self.wires += [(self.card, n, self.mcc, f"card_{n}") for n in CARD]
+        self.seq = -1
+
+    def step(self, size: float) -> None:
+        """Move every wire, then step both."""
+        values = []
+        seq = self.mcc.get("card_cmd_seq")[0]
+        for source, name, sink, target in self.wires:
+            if name != "card_cmd_frames" or seq != self.seq:
+                values.append((sink, target, source.get(name)))
+        self.seq = seq
+        for sink, target, value in values:
+            assert sink.set(target, value) == OK, sink.said
+        assert self.mcc.step(size) == OK, self.mcc.said
+        assert self.card.step(size) == OK, self.card.said
+
+    def seen(self) -> list[Any]:
+        """Outputs of both, without the mailbox."""
+        names = ("status", "done", "line", "command", "path_feed", "position", "queue", "starved")
+        card = ("pulse_count", "stock", "irq_seq", "irq_clock", "underflows", "cmd_ack")
+        return [self.mcc.get(n) for n in names] + [self.card.get(n) for n in card]
+
+    def end(self) -> None:
+        """Terminate and free both."""
+        for instance in (self.mcc, self.card):
+            assert instance.call("Terminate") == OK, instance.said
+            instance.free()
+
+
+def program(folder: Path, text: str) -> str:
+    """Name of a file with the text."""
+    (folder / "part.ngc").write_text(text)
+    return str(folder / "part.ngc")
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_arcs_end_to_end(fmi: int, tmp_path: Path) -> None:
+    planned = tmp_path / "planned.csv"
+    values = {"program": program(tmp_path, QUARTER), "path_file": str(planned), **FAST}
+    machine = Machine(fmi, {**values, "output_mode": 0})
+    pulses, statuses = [], set()
+    for _ in range(8000):
+        machine.step(1e-4)
+        pulses.append(machine.card.get("pulse_count")[:3])
+        statuses.add(machine.mcc.get("status")[0])
+        if machine.mcc.get("done")[0] and machine.card.get("pulse_count")[:3] == [5000, 0, 1000]:
+            break
+    x, y, _ = (np.array(pulses) / 1000.0).T
+    assert machine.mcc.get("done")[0] and pulses[-1] == [5000, 0, 1000]
+    assert machine.mcc.get("position")[:3] == [5.0, 0.0, 1.0]
+    assert machine.card.get("underflows") == [0] * 6
+    assert {0, 3} <= statuses
+    on_arc = y > 0.01
+    # Straight between points 0.05 mm apart, pulses spread evenly: chord error and a pulse.
+    radius = np.hypot(x[on_arc], y[on_arc])
+    assert np.abs(radius - 5.0).max() < 0.0512**2 / (8 * 5.0) + 1.5e-3
+    machine.end()
+
+    rows = list(csv.DictReader(planned.open()))
+    assert [r["type"] for r in rows] == ["1", "3", "6", "4"]
+    assert [r["line"] for r in rows] == ["2", "3", "4", "5"]
+    assert float(rows[1]["sweep"]) == pytest.approx(math.pi / 2, abs=1e-15)
+    assert float(rows[3]["sweep"]) == pytest.approx(-math.pi / 2, abs=1e-12)
+    assert float(rows[3]["length"]) == pytest.approx(math.hypot(2.5 * math.pi, 1.0), abs=1e-12)
+    assert [float(rows[1][f"normal_{a}"]) for a in "xyz"] == [0.0, 0.0, 1.0]
+    assert float(rows[1]["feed"]) == 50.0
+    assert sorted(f.name for f in tmp_path.iterdir()) == ["part.ngc", "planned.csv"]
+
+
+def test_dividing_the_step_changes_no_bit(tmp_path: Path) -> None:
+    runs = []
+    values = {"program": program(tmp_path, QUARTER), "irq_latency": 3.3e-4, "irq_jitter": 1e-3}
+    for split in (1, 2, 5):
+        machine = Machine(3, {**values, **FAST, "output_mode": 0})
+        seen = []
+        for k in range(600):
+            assert machine.mcc.set("hold", 300 <= k < 400) == OK
+            assert machine.mcc.set("override", 1.0 if k < 100 else 0.7) == OK
+            for _ in range(split):
+                machine.step(1e-4 / split)
+            seen.append(repr(machine.seen()))
+        runs.append(seen)
+        assert machine.card.get("pulse_count")[0] > 1000
+        machine.end()
+    assert runs[0] == runs[1] == runs[2]
+
+
+def test_abort_keeps_what_the_card_was_given(tmp_path: Path) -> None:
+    machine = Machine(3, {"program": program(tmp_path, QUARTER), **FAST, "output_mode": 0})
+    for k in range(1600):
+        assert machine.mcc.set("abort", k > 500) == OK
+        machine.step(1e-4)
+    assert machine.mcc.get("done")[0] and machine.mcc.get("status") == [1]
+    position = np.array(machine.mcc.get("position")[:3])
+    pulses = np.array(machine.card.get("pulse_count")[:3])
+    assert 0.0 < position[0] < 5.0
+    assert np.abs(position * 1000.0 - pulses).max() <= 0.5 + 1e-9
+    machine.end()
+
+
+def test_too_many_pulses_stop_the_motion(tmp_path: Path) -> None:
+    text = "G1 X100 F30000\n"
+    machine = Machine(3, {"program": program(tmp_path, text), **FAST, "ppr": 100000})
+    largest = 0
+    for _ in range(800):
+        machine.step(1e-4)
+        largest = max(largest, *machine.mcc.get("card_cmd_frames"))
+    assert machine.mcc.get("error") == [0xF203]
+    assert 3500 < largest <= 4095  # 5120 pulses per DDA time were asked for
+    assert not machine.mcc.get("done")[0] and machine.mcc.get("status") == [1]
+    assert machine.card.get("pulse_count")[0] == round(machine.mcc.get("position")[0] * 1e4)
+    machine.end()
+
+
+def test_a_restored_state_goes_on_the_same_way(tmp_path: Path) -> None:
+    values = {"program": program(tmp_path, QUARTER), **FAST}
+    machine = Machine(3, values)
+    for _ in range(100):
+        machine.step(1e-4)
+    state, time = machine.mcc.save(), machine.mcc.time
+    first = [repr(machine.mcc.outputs()) for _ in range(300) if machine.mcc.step(1e-4) == OK]
+    assert machine.mcc.restore(state, time) == OK
+    second = [repr(machine.mcc.outputs()) for _ in range(300) if machine.mcc.step(1e-4) == OK]
+    assert first == second and len(first) == 300
+    assert machine.mcc.free_state(state) == OK
+    machine.end()
