@@ -1,0 +1,95 @@
+"""The servo drives as an FMU: one period of delay, whatever the steps."""
+
+import random
+from typing import Any
+
+import pytest
+from fmi_tools import ERROR, OK, Instance
+
+TICK = 25e-9
+PERIOD = 4000  # [ticks] 100 us
+
+
+def drives(fmi: int = 3, **values: Any) -> Instance:
+    return Instance("servo_drives", fmi).initialize(values)
+
+
+def to_tick(fmu: Instance, tick: int) -> None:
+    """One step to `tick`; the time is counted, not added up."""
+    now = round(fmu.time / TICK)
+    fmu.time = now * TICK
+    assert fmu.step((tick - now) * TICK) == OK, fmu.said
+    fmu.time = tick * TICK
+
+
+@pytest.mark.parametrize("period", [1e-4, 2.5e-5, 2e-4])
+def test_any_split_into_steps_gives_the_same_bits(period: float) -> None:
+    rng = random.Random(7)
+    values = {
+        "mode": [0, 1, 0, 1, 0, 1],
+        "period": period,
+        "error_limit": 0.02,
+        "active": [True, True, True, True, True, False],
+    }
+    whole, split = drives(**values), drives(**values)
+    phase, pulses = [0.0] * 6, [0] * 6
+    alarms = 0
+    for k in range(200):
+        phase = [p + rng.uniform(-30, 40) for p in phase]
+        pulses = [p + rng.randint(-50, 60) for p in pulses]
+        row = {
+            "phase": phase,
+            "pulse_count": pulses,
+            "dac": [rng.uniform(-10, 10) for _ in range(6)],
+            "enable": [rng.random() < 0.95 for _ in range(6)],
+            "alarm_reset": [rng.random() < 0.2 for _ in range(6)],
+        }
+        for fmu in (whole, split):
+            for name, value in row.items():
+                assert fmu.set(name, value) == OK
+        begin, end = k * PERIOD, (k + 1) * PERIOD
+        to_tick(whole, end)
+        for cut in [*sorted(rng.sample(range(begin + 1, end), rng.choice([0, 1, 4]))), end]:
+            to_tick(split, cut)
+        seen = whole.outputs()
+        assert repr(seen) == repr(split.outputs()), f"instant {k}"
+        assert [x[5] for x in seen.values()] == [0.0, 0.0, 0.0, 0.0, False, False, 0]
+        alarms += sum(seen["alarm"])
+    assert alarms > 0
+    whole.free()
+    split.free()
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_torque_stands_one_period_after_its_cause(fmi: int) -> None:
+    fmu = drives(fmi, velocity_time=0.0, velocity_gain=0.1)
+    to_tick(fmu, PERIOD)
+    assert fmu.get("ready") == [True] * 6
+    fmu.set("dac", 1.0)
+    to_tick(fmu, PERIOD + 1)
+    assert fmu.get("torque") == [0.0] * 6
+    to_tick(fmu, 2 * PERIOD - 1)
+    assert fmu.get("torque") == [0.0] * 6
+    to_tick(fmu, 2 * PERIOD)
+    assert fmu.get("torque") == pytest.approx([0.1 * 300 * 3.141592653589793 / 30] * 6, rel=1e-14)
+    fmu.set("velocity_gain", 0.2)  # tunable while it runs
+    to_tick(fmu, 3 * PERIOD)
+    assert fmu.get("torque") == pytest.approx([0.2 * 300 * 3.141592653589793 / 30] * 6, rel=1e-14)
+    fmu.free()
+
+
+def test_a_wrong_period_is_named() -> None:
+    fmu = Instance("servo_drives", 3)
+    assert fmu.set("period", 1.00003e-4) == OK
+    fmu.enter()
+    assert fmu.call("ExitInitializationMode") == ERROR
+    assert any("period = 0.000100003" in text for _, _, text in fmu.messages), fmu.messages
+    fmu.free()
+
+
+def test_a_phase_beyond_all_counts_is_named() -> None:
+    fmu = drives()
+    fmu.set("phase", [0, 0, 0, -1e16, 0, 0])
+    assert fmu.step(1e-4) == ERROR
+    assert any("phase[4] = -1e+16" in text for _, _, text in fmu.messages), fmu.messages
+    fmu.free()
