@@ -1,13 +1,14 @@
 """FMPy's own container as an engine: a third opinion for tests.
 
-It has no type conversion, so a Boolean is not recorded (it reads as false), and it carries FMI 3
-only.
+It has no type conversion, so a Boolean is not recorded (it reads as false). It cannot set an array,
+so its components are the FMI 2 FMUs, whose elements are variables of their own.
 """
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 from fmpy import read_model_description
 from fmpy.container_fmu.cli import create_container_fmu
@@ -15,32 +16,35 @@ from fmpy.container_fmu.config import Component, Configuration, Connection
 from fmpy.model_description import (
     CoSimulation,
     DefaultExperiment,
-    Dimension,
     ModelDescription,
     ModelVariable,
 )
 
 from motionfmu import fmus
-from motionfmu.engines.slave import Slave
+from motionfmu.engines.slave import Slave, element_names
 from motionfmu.errors import InputError
 from motionfmu.system import End, System
 
 TOKEN = "{6d6f7469-6f6e-666d-7500-636f6e746169}"
 
 
-def _outer(end: End, reference: int) -> ModelVariable:
-    """The container's variable for an exposed port."""
-    start = {"Float64": "0", "Int32": "0", "Boolean": "false", "String": ""}[end.port.type]
+def _outer(name: str, kind: str, reference: int, start: str | None) -> ModelVariable:
+    """The container's variable for one element; text can be given by its start value only."""
     return ModelVariable(
-        type=end.port.type,
-        name=end.name,
+        type=kind,
+        name=name,
         valueReference=reference,
         causality="input",
         variability="discrete",
-        start=start if not end.port.shape else [start] * end.port.count,
-        dimensions=[Dimension(start=n, valueReference=None) for n in end.port.shape],
-        shape=end.port.shape,
+        start=start,
     )
+
+
+def _elements(variables: dict[str, ModelVariable], end: End) -> list[ModelVariable]:
+    """The FMI 2 scalars of a port."""
+    first = end.port.reference
+    by_reference = {v.valueReference: v for v in variables.values()}
+    return [by_reference[first + i] for i in range(end.port.count)]
 
 
 def _configuration(system: System, folder: Path) -> Configuration:
@@ -48,12 +52,27 @@ def _configuration(system: System, folder: Path) -> Configuration:
     variables: dict[str, dict[str, ModelVariable]] = {}
     for name, fmu in system.components.items():
         link = folder / f"{name}.fmu"
-        link.symlink_to(fmus.fmu_path(fmu, 3).resolve())
+        link.symlink_to(fmus.fmu_path(fmu, 2).resolve())
         components[name] = Component(name, link, read_model_description(str(link)))
         variables[name] = {v.name: v for v in components[name].modelDescription.modelVariables}
+        for v in variables[name].values():  # the container knows the type names of FMI 3 only
+            v.type = {"Real": "Float64", "Integer": "Int32"}.get(v.type, v.type)
     ends = [*(s.end for s in system.settings), *(s.end for s in system.stimuli)]
-    given = {e.name: e for e in ends}
-    outer = {_outer(e, i): e for i, e in enumerate(given.values())}
+    texts = {s.end.name: str(s.values[0]) for s in system.settings if s.end.port.type == "String"}
+    # The container counts its variables from the one after time.
+    time = ModelVariable(
+        type="Float64",
+        name="time",
+        valueReference=0,
+        causality="independent",
+        variability="continuous",
+    )
+    outer: dict[ModelVariable, list[tuple[Component, ModelVariable]]] = {}
+    for end in {e.name: e for e in ends}.values():
+        for inner in _elements(variables[end.component], end):
+            name = f"{end.component}.{inner.name}"
+            shown = _outer(name, end.port.type, len(outer) + 1, texts.get(end.name))
+            outer[shown] = [(components[end.component], inner)]
     step = system.step_ns * 1e-9
     description = ModelDescription(
         fmiVersion="3.0",
@@ -61,7 +80,7 @@ def _configuration(system: System, folder: Path) -> Configuration:
         instantiationToken=TOKEN,
         coSimulation=CoSimulation(modelIdentifier="container_fmu", fixedInternalStepSize=step),
         defaultExperiment=DefaultExperiment(startTime="0", stepSize=str(step)),
-        modelVariables=list(outer),
+        modelVariables=[time, *outer],
     )
     return Configuration(
         parallelDoStep=False,
@@ -70,18 +89,20 @@ def _configuration(system: System, folder: Path) -> Configuration:
         connections=[
             Connection(
                 components[w.source.component],
-                [variables[w.source.component][w.source.port.name]],
+                _elements(variables[w.source.component], w.source),
                 components[w.target.component],
-                [variables[w.target.component][w.target.port.name]],
+                _elements(variables[w.target.component], w.target),
             )
             for w in system.wires
             if w.source.port.type == w.target.port.type
         ],
-        variableMappings={
-            v: [(components[e.component], variables[e.component][e.port.name])]
-            for v, e in outer.items()
-        },
+        variableMappings=outer,
     )
+
+
+def _give(slave: Slave, end: End, values: Iterable[Any]) -> None:
+    for name, value in zip(element_names(end), values, strict=True):
+        slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], [value])
 
 
 def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
@@ -91,17 +112,17 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
     ----------
     system : System
     fmi : int
-        Must be 3.
+        Must be 2.
     progress : callable
         Called with the share done, 0 to 1.
 
     Raises
     ------
     InputError
-        `fmi` is not 3, or an FMU refused something.
+        `fmi` is not 2, or an FMU refused something.
     """
-    if fmi != 3:
-        raise InputError(f"engine fmpy runs FMI 3 only, not FMI {fmi}")
+    if fmi != 2:
+        raise InputError(f"engine fmpy runs FMI 2 components only, not FMI {fmi}")
     with ExitStack() as stack:
         name = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
         folder = Path(name)
@@ -110,8 +131,8 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
         create_container_fmu(configuration, folder / "unzipped", folder / "container.fmu")
         slave = Slave("container_fmu", folder / "container.fmu", 3, [])
         stack.callback(slave.free)
-        for s in system.settings:
-            slave.assign(s.end.port.type, slave.references[s.end.name], s.values)
+        for s in (s for s in system.settings if s.end.port.type != "String"):
+            _give(slave, s.end, s.values)
         slave.initialize()
         slave.start()
         pending = list(system.stimuli)
@@ -119,7 +140,7 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
         for k in range(system.steps):
             while pending and pending[0].step == k:
                 now = pending.pop(0)
-                slave.assign(now.end.port.type, slave.references[now.end.name], now.values)
+                _give(slave, now.end, now.values)
             slave.step(k * system.step_ns * 1e-9, step)
             if k % max(1, system.steps // 100) == 0:
                 progress(k / system.steps)

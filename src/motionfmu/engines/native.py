@@ -14,7 +14,7 @@ from typing import Any
 from fmu_manipulation_toolbox.container import FMUContainer
 
 from motionfmu import fmus
-from motionfmu.engines.slave import Slave
+from motionfmu.engines.slave import Slave, element_names
 from motionfmu.system import End, System
 
 IDENTIFIER = "system"
@@ -24,10 +24,7 @@ PARTS = 100
 
 def _exposed(end: End, fmi: int) -> list[str]:
     """Names of a port, by element in FMI 2."""
-    if fmi == 3 or not end.port.shape:
-        return [end.port.name]
-    assert len(end.port.shape) == 1, "only vectors are set"
-    return [f"{end.port.name}[{i + 1}]" for i in range(end.port.count)]
+    return [end.port.name] if fmi == 3 else element_names(end)
 
 
 def build(system: System, fmi: int, folder: Path) -> Path:

@@ -1,6 +1,7 @@
 """One FMU opened with FMPy, with fast access to its variables."""
 
 import ctypes
+import itertools
 import shutil
 import tempfile
 from collections.abc import Iterable
@@ -12,10 +13,29 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 
 from motionfmu.errors import InputError
+from motionfmu.system import End
 
 _C = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_bool}
 _FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
 _ERROR = 3  # status of both FMI versions from which on nothing is good
+
+
+def element_names(end: End) -> list[str]:
+    """FMI 2 names of the elements of a port, in the order of their references.
+
+    Parameters
+    ----------
+    end : End
+
+    Returns
+    -------
+    list of str
+        ``name`` or ``name[1]``, ``name[1,2]``.
+    """
+    if not end.port.shape:
+        return [end.port.name]
+    indices = itertools.product(*(range(1, n + 1) for n in end.port.shape))
+    return [f"{end.port.name}[{','.join(map(str, index))}]" for index in indices]
 
 
 class Slave:
