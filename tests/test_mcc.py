@@ -107,6 +107,10 @@ class Machine:
         card = ("pulse_count", "stock", "irq_seq", "irq_clock", "underflows", "cmd_ack")
         return [self.mcc.get(n) for n in names] + [self.card.get(n) for n in card]
 
+    def irqs(self) -> int:
+        """Interrupts so far."""
+        return int(self.card.get("irq_seq")[0])
+
     def end(self) -> None:
         """Terminate and free both."""
         for instance in (self.mcc, self.card):
@@ -125,11 +129,12 @@ def test_arcs_end_to_end(fmi: int, tmp_path: Path) -> None:
     planned = tmp_path / "planned.csv"
     values = {"program": program(tmp_path, QUARTER), "path_file": str(planned), **FAST}
     machine = Machine(fmi, {**values, "output_mode": 0})
-    pulses, statuses = [], set()
+    pulses, statuses, raised = [], set(), []
     for _ in range(8000):
         machine.step(1e-4)
         pulses.append(machine.card.get("pulse_count")[:3])
         statuses.add(machine.mcc.get("status")[0])
+        raised.append(machine.card.get("irq_clock")[0])
         if machine.mcc.get("done")[0] and machine.card.get("pulse_count")[:3] == [5000, 0, 1000]:
             break
     x, y, _ = (np.array(pulses) / 1000.0).T
@@ -137,6 +142,8 @@ def test_arcs_end_to_end(fmi: int, tmp_path: Path) -> None:
     assert machine.mcc.get("position")[:3] == [5.0, 0.0, 1.0]
     assert machine.card.get("underflows") == [0] * 6
     assert {0, 3} <= statuses
+    # An interrupt each N = 4 DDA times of 40960 clocks, first when 7 frames have become 3.
+    assert np.unique(raised).tolist() == [163840.0 * k for k in range(machine.irqs() + 1)]
     on_arc = y > 0.01
     # Straight between points 0.05 mm apart, pulses spread evenly: chord error and a pulse.
     radius = np.hypot(x[on_arc], y[on_arc])

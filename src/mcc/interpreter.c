@@ -26,7 +26,8 @@ static enum fault set_modes(struct interpreter *in, const struct program *p, str
     }
     b->scale = in->inch ? 25.4 : 1.0;
     if (code[GCODE_PLANE] != GCODE_ABSENT) {
-        in->plane = code[GCODE_PLANE] == 170 ? PATH_XY : code[GCODE_PLANE] == 180 ? PATH_ZX : PATH_YZ;
+        in->plane = code[GCODE_PLANE] == 170 ? PATH_XY
+                  : code[GCODE_PLANE] == 180 ? PATH_ZX : PATH_YZ;
     }
     if (code[GCODE_SYSTEM] != GCODE_ABSENT) {
         in->system = (code[GCODE_SYSTEM] - 540) / 10;

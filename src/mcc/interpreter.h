@@ -43,7 +43,7 @@ void interpreter_start(struct interpreter *in, const double point[AXES], double 
 enum interpreter_result interpreter_next(struct interpreter *in, const struct program *p,
                                          struct command *c, struct fault_report *r);
 
-/* Read a whole program to its end, from a copy of the state; r->fault is FAULT_NONE if it is good. */
+/* Read a whole program to its end, from a copy of the state; FAULT_NONE in *r if it is good. */
 void interpreter_check(const struct interpreter *from, const struct program *p,
                        struct fault_report *r);
 

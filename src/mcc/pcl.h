@@ -48,7 +48,7 @@ struct pcl {
 
 void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch);
 
-/* Look at the card at a bus instant (clock now). latency [clocks] is that of an interrupt seen now. */
+/* Look at the card at bus instant now [clock]; an interrupt seen now has this latency [clocks]. */
 void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t now,
               int64_t latency);
 

@@ -29,7 +29,7 @@ struct profile_limits {
     double acc, dec;    /* [mm/s^2] both > 0 */
 };
 
-/* Plan from s, v (0 <= s <= length, v >= 0) to rest at length, or to rest at once if the target is 0.
+/* Plan from s, v (0 <= s <= length, v >= 0) to rest at length, or at once if the target is 0.
  * The deceleration to the end keeps within dec if v^2 / (2 dec) <= length - s, as any state does
  * that an earlier plan with the same dec passed through. */
 void profile_plan(struct profile *p, double s, double v, double length,

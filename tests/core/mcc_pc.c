@@ -1,4 +1,4 @@
-/* PC and card together: FIFO timing of the source document, conservation of pulses, late service. */
+/* PC and card together: FIFO timing of the source document, late service, conservation. */
 #include "mcc_card.h"
 
 static const struct pc_panel calm = { .override = 1.0 };

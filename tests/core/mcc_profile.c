@@ -2,7 +2,7 @@
 #include "mcc_check.h"
 #include "profile.h"
 
-/* T of a rest-to-rest move: L/v + v (1/a + 1/d)/2 if the cruise speed is reached, else the triangle. */
+/* T of a rest-to-rest move: L/v + v (1/a + 1/d)/2 if v is reached, else the triangle. */
 static double duration(double way, double v, double a, double d)
 {
     const double ramps = v * v / 2.0 * (1.0 / a + 1.0 / d);
