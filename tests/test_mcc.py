@@ -161,6 +161,23 @@ def test_arcs_end_to_end(fmi: int, tmp_path: Path) -> None:
     assert sorted(f.name for f in tmp_path.iterdir()) == ["part.ngc", "planned.csv"]
 
 
+@pytest.mark.parametrize("bus", [1e-4, 2e-4])
+def test_deadline_is_exact_to_the_clock_on_a_coarse_wire(bus: float, tmp_path: Path) -> None:
+    # The FIFO has n = 3 commands and one is being put out: (n + 1) T = 4.096 ms to refill it.
+    gaps = []
+    for late in (-25e-9, 25e-9):
+        values = {"program": program(tmp_path, "G1 X10 F3000"), "start_delay": 0.02, **FAST}
+        values |= {"bus_period": bus, "irq_latency": 4.096e-3 + late, "output_mode": 0}
+        machine = Machine(3, values)
+        for _ in range(round(0.3 / bus)):
+            machine.step(bus)
+        assert machine.card.get("pulse_count")[0] == round(machine.mcc.get("position")[0] * 1e3)
+        assert machine.mcc.get("latency")[0] == pytest.approx(4.096e-3 + late, abs=1e-12)
+        gaps.append(machine.card.get("underflows")[0])
+        machine.end()
+    assert gaps[0] == 0 and gaps[1] > 20
+
+
 def test_dividing_the_step_changes_no_bit(tmp_path: Path) -> None:
     runs = []
     values = {"program": program(tmp_path, QUARTER), "irq_latency": 3.3e-4, "irq_jitter": 1e-3}
