@@ -1,4 +1,4 @@
-/* Digital differential analyser: six channels spread their pulses evenly over one shared DDA time. */
+/* Digital differential analyser: six channels spread their pulses over one shared DDA time. */
 #ifndef DDA_H
 #define DDA_H
 

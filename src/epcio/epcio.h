@@ -78,7 +78,7 @@ struct epcio {
     struct dda          dda;
     struct fifo         fifo[EPCIO_AXES];
     int32_t             minimum;                    /* minimum stock */
-    int32_t             underflows[EPCIO_AXES];     /* DDA times begun with an empty FIFO after motion */
+    int32_t             underflows[EPCIO_AXES];     /* DDA times begun empty after motion */
     struct bus          bus;
     int32_t             cmd_ack;                    /* latest transaction that arrived */
     int32_t             frames_taken;

@@ -11,7 +11,7 @@ struct fifo {
     int32_t entry[FIFO_DEPTH];  /* [pulses] ring */
     int32_t head;               /* place of the oldest entry */
     int32_t stock;              /* entries held */
-    bool    high;               /* comparator: the stock was above the minimum when last looked at */
+    bool    high;               /* comparator: stock was above the minimum at the last look */
 };
 
 /* Append a command; false, and nothing changed, if the FIFO is full (overflow). */

@@ -76,7 +76,7 @@ static void refusals(void)
 }
 
 /* Whatever comes (stops, changes of the DDA time, overflow, underflow, clears, late and early
- * transactions): pulses out = commands taken, axis by axis, and every frame sent is accounted for. */
+ * transactions): pulses out = commands taken, axis by axis, and every frame is accounted for. */
 static void conservation(uint64_t seed)
 {
     struct epcio card;
