@@ -37,8 +37,8 @@ enum encoder_event encoder_sample(const struct encoder_config *c, struct encoder
 void encoder_clear(const struct encoder_config *c, struct encoder *e);
 
 /* The phase moves on a straight line from `from` at clock 0 to `to` at clock `span`: first clock,
- * in 1 .. span, at which it has passed `edge`: >= edge on the way up, < edge on the way down. The edge
- * must lie between them. All phases in line periods. */
+ * in 1 .. span, at which it has passed `edge`: >= edge on the way up, < edge on the way down. The
+ * edge must lie between them. All phases in line periods. */
 int64_t encoder_edge(double from, double to, int64_t span, double edge);
 
 #endif
