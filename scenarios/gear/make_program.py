@@ -11,7 +11,7 @@ MODULE = 3.0  # [mm]
 TEETH = 24
 PRESSURE_ANGLE = math.radians(20.0)
 FLANK_POINTS = 12  # points on each involute flank
-FEED = 2400  # [mm/min]
+FEED = 1200  # [mm/min]
 
 
 def involute(angle: float) -> float:
@@ -56,11 +56,12 @@ def program() -> str:
         f"(Involute gear outline, module {MODULE:g} mm, {TEETH} teeth, F {FEED} mm/min)",
         "N10 G21 G17 G90 G64",
         f"N20 G0 X{x0:.4f} Y{y0:.4f}",
-        f"N30 G1 X{x0:.4f} Y{y0:.4f} F{FEED}",
+        "N30 G4 P0.3",
+        f"N40 G1 F{FEED}",
     ]
-    for i, (x, y) in enumerate(points[1:], 4):
+    for i, (x, y) in enumerate(points[1:], 5):
         lines.append(f"N{10 * i} X{x:.4f} Y{y:.4f}")
-    return "\n".join([*lines, f"N{10 * (len(points) + 4)} M30", "%", ""])
+    return "\n".join([*lines, f"N{10 * (len(points) + 5)} M30", "%", ""])
 
 
 if __name__ == "__main__":

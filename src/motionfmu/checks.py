@@ -17,7 +17,7 @@ class Verdict:
     ----------
     name : str
         Signal or figure.
-    bound : str
+    bounds : str
         What was asked, in words.
     value : float
         What was found, the worst over time and axes.
@@ -25,7 +25,7 @@ class Verdict:
     """
 
     name: str
-    bound: str
+    bounds: str
     value: float
     ok: bool
 

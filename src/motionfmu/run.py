@@ -120,15 +120,29 @@ class Result:
             self._contour = contour_of(self)
         return self._contour
 
+    def _figure(self, name: str) -> float:
+        try:
+            return self.contour().number(name.removeprefix(CONTOUR))
+        except KeyError as error:
+            raise self.scenario.document.error(str(error.args[0]), "check", name) from None
+
+    @property
+    def name(self) -> str:
+        """Name of the scenario."""
+        return self.scenario.name
+
+    @property
+    def about(self) -> str:
+        """What the scenario shows: its first line."""
+        return self.scenario.document.about
+
     @property
     def checks(self) -> list[Verdict]:
         """The verdict of every bound in the scenario's [check] table."""
         found = []
         for name, check in self.scenario.document.body.check.items():
             if name.startswith(CONTOUR):
-                figure = self.contour().figures[name.removeprefix(CONTOUR)]
-                data = np.array([figure])
-                found += judge(name, check, np.zeros(1), data)
+                found += judge(name, check, np.zeros(1), np.array([self._figure(name)]))
             else:
                 found += judge(name, check, self.time, self[name])
         return found
@@ -166,9 +180,9 @@ class Scenario:
         return self.document.file.parent.name
 
     def _recorded(self) -> list[str]:
-        body = self.document.body
-        contour = [body.contour.position, body.contour.pulses] if body.contour else []
-        return [*body.record.signals, *contour]
+        from motionfmu.contour_of import wanted
+
+        return [*self.document.body.record.signals, *wanted(self)]
 
     def _check_checks(self) -> None:
         recorded = {e.name for e in self.ends}
@@ -176,11 +190,6 @@ class Scenario:
             if name.startswith(CONTOUR):
                 if self.document.body.contour is None:
                     raise self.document.error(f"{name}: there is no [contour] table", "check", name)
-                from motionfmu.contour import FIGURES
-
-                if name.removeprefix(CONTOUR) not in FIGURES:
-                    known = ", ".join(CONTOUR + f for f in FIGURES)
-                    raise self.document.error(f"{name} is no figure ({known})", "check", name)
             elif name.partition("[")[0] not in recorded:
                 raise self.document.error(f"{name} is not recorded", "check", name)
 
@@ -245,10 +254,9 @@ class Scenario:
         """The component that plans the path, if the scenario looks at the contour."""
         if self.document.body.contour is None:
             return None
-        for name, ports in self.resolver.ports.items():
-            if "path_file" in ports:
-                return name
-        raise self.document.error("no component plans a path (none has path_file)", "contour")
+        from motionfmu.contour_of import library_of
+
+        return library_of(self)
 
     def _located(self, error: InputError, plain: system.System) -> InputError:
         """Add the line of the setting that an FMU's message names."""

@@ -221,7 +221,9 @@ def _steady(
     """Samples of the longest steady part of a circle, after it has settled."""
     segment, ends = where
     inside = (segment >= ends[0]) & (segment <= ends[1])
-    middle = float(np.median(speed[inside])) if inside.any() else 0.0
+    # The tool may rest at an end for long: the usual speed is that of the samples in motion.
+    moving = inside & (speed > 0.1 * float(speed[inside].max(initial=0.0)))
+    middle = float(np.median(speed[moving])) if moving.any() else 0.0
     good = inside & (np.abs(speed - middle) <= STEADY * middle)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(int), [0]])))
     if not len(edges):

@@ -1,0 +1,138 @@
+"""From a run to its contour analysis: which signal is what, in mm."""
+
+import pathlib
+import tempfile
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionfmu import units
+from motionfmu.contour import ContourInput, ContourResult, Path, Trace, analyse, read_path
+from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.run import Result, Scenario
+
+CLOCK = 25e-9  # [s] of the card
+# Outputs the analysis wants beside position and pulses, by their owner.
+LIBRARY = ("command", "path_feed", "card_dda_length", "card_dda_divider")
+CARD = ("stock", "irq_seq", "dac")
+
+
+def library_of(scenario: "Scenario") -> str:
+    """Name of the component that plans the path.
+
+    Parameters
+    ----------
+    scenario : Scenario
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        No component plans a path.
+    """
+    for name, ports in scenario.resolver.ports.items():
+        if "path_file" in ports:
+            return name
+    raise scenario.document.error("no component plans a path (none has path_file)", "contour")
+
+
+def wanted(scenario: "Scenario") -> list[str]:
+    """Signals the contour analysis needs, for recording.
+
+    Parameters
+    ----------
+    scenario : Scenario
+
+    Returns
+    -------
+    list of str
+        Empty if the scenario has no [contour] table.
+    """
+    contour = scenario.document.body.contour
+    if contour is None:
+        return []
+    library, card = library_of(scenario), contour.pulses.partition(".")[0]
+    more = [f"{card}.{name}" for name in CARD if name in scenario.resolver.ports.get(card, {})]
+    return [contour.position, contour.pulses, *(f"{library}.{name}" for name in LIBRARY), *more]
+
+
+def _millimetres(result: "Result", name: str) -> Any:
+    unit = units.parse(result.scenario.resolver.end(name, "contour", "position").port.unit or "1")
+    if unit.exponents != units.parse("m").exponents:
+        raise result.scenario.document.error(f"{name} is no length", "contour", "position")
+    return result[name] * (unit.factor / units.parse("mm").factor)
+
+
+def contour_of(result: "Result") -> ContourResult:
+    """Analyse the contour of a run.
+
+    Parameters
+    ----------
+    result : Result
+        Of a scenario with a [contour] table.
+
+    Returns
+    -------
+    ContourResult
+
+    Raises
+    ------
+    InputError
+        There is no [contour] table, or the run has no contour.
+    """
+    document = result.scenario.document
+    contour = document.body.contour
+    if contour is None:
+        raise InputError(f"{document.file}: the scenario has no [contour] table")
+    library, card = library_of(result.scenario), contour.pulses.partition(".")[0]
+
+    def axes(name: str) -> Any:
+        return np.asarray(result.parameter(f"{library}.{name}"))
+
+    pulses_per_mm = axes("ppr") * axes("gear_ratio") / axes("lead")
+    length = int(result[f"{library}.card_dda_length"][-1])
+    divider = int(result[f"{library}.card_dda_divider"][-1])
+    optional = {name: result.signals.get(f"{card}.{name}") for name in CARD}
+    used = tuple(int(i) for i in np.flatnonzero(axes("active")))
+    traces = _traces(result, (contour.position, contour.pulses))
+    try:
+        return analyse(
+            ContourInput(
+                path=_path(result),
+                time=result.time,
+                actual=_millimetres(result, contour.position),
+                commanded=result[contour.pulses] / pulses_per_mm,
+                command=result[f"{library}.command"].astype(np.int64),
+                stock=optional["stock"],
+                interrupts=optional["irq_seq"],
+                feed=result[f"{library}.path_feed"],
+                axes=used,
+                dda_time=2**length * divider * CLOCK,
+                traces=traces,
+            )
+        )
+    except ValueError as error:
+        raise InputError(f"{document.file}: {error}") from None
+
+
+def _path(result: "Result") -> Path:
+    with tempfile.TemporaryDirectory(prefix="motionfmu-") as folder:
+        file = pathlib.Path(folder) / "path.csv"
+        file.write_text(result.geometry or "", encoding="utf-8")
+        return read_path(file)
+
+
+def _traces(result: "Result", used: tuple[str, ...]) -> tuple[Trace, ...]:
+    """Real signals of the drives and the card that the report also draws."""
+    found = []
+    for name, values in result.signals.items():
+        port = result.scenario.resolver.end(name, "record", "signals").port
+        if name in used or port.type != "Float64" or not port.shape or port.unit is None:
+            continue
+        found.append(Trace(name, port.unit, values))
+    return tuple(found)
