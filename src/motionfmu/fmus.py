@@ -102,7 +102,7 @@ def fmu_path(name: str, fmi: int = 3) -> Path:
 
 @functools.cache
 def ports(name: str) -> dict[str, Port]:
-    """Variables of an FMU by name, as its FMI 3 description declares them.
+    """Variables of an FMU by name.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def ports(name: str) -> dict[str, Port]:
     Returns
     -------
     dict
-        Port by variable name; without the independent variable.
+        Port by variable name, as the FMI 3 description declares it; without the independent variable.
 
     Raises
     ------

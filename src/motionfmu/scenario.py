@@ -16,7 +16,7 @@ _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 
 class Drive(BaseModel):
-    """A stimulus: an input that steps to given values at given times [s]."""
+    """An input that steps to given values at given times [s]."""
 
     model_config = _STRICT
     input: str
@@ -25,7 +25,7 @@ class Drive(BaseModel):
 
 
 class Check(BaseModel):
-    """Bounds of one signal or contour figure; every bound given must hold."""
+    """Bounds of one signal or figure; each one given must hold."""
 
     model_config = _STRICT
     min: float | None = None
@@ -70,7 +70,7 @@ class Body(BaseModel):
 
 @dataclass(frozen=True)
 class Document:
-    """A scenario as read: its tables, its file and where each key stands.
+    """A scenario as read: tables, file and line numbers.
 
     Attributes
     ----------

@@ -47,7 +47,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Stimulus:
-    """An input that takes `values` at the beginning of step number `step`."""
+    """An input that takes `values` when step number `step` begins."""
 
     end: End
     step: int
@@ -260,7 +260,7 @@ def wires(resolver: Resolver) -> list[Wire]:
 
 
 def check_inputs(resolver: Resolver, system: System) -> None:
-    """Refuse an input that nothing feeds, and one that two things feed.
+    """Refuse an input that nothing or two things feed.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from motionfmu.system import NS_TOLERANCE, End, Resolver, Setting, Stimulus, Val
 
 
 def values_of(end: End, value: Any) -> Values:
-    """Check a value for a variable; a single one goes to every element.
+    """Check a value; a single one goes to every element.
 
     Parameters
     ----------
@@ -32,15 +32,15 @@ def values_of(end: End, value: Any) -> Values:
     listed = list(value) if isinstance(value, list | tuple) else [value] * end.port.count
     if len(listed) != end.port.count:
         raise ValueError(f"{end.name} has {end.port.count} elements, not {len(listed)}")
-    kinds: dict[str, type | tuple[type, ...]] = {
+    kinds: dict[str, Any] = {
         "Float64": (int, float),
         "Int32": int,
         "Boolean": bool,
         "String": str,
     }
-    out = []
-    for x in listed:
-        x = x.item() if hasattr(x, "item") else x
+    out: list[float | int | bool | str] = []
+    for given in listed:
+        x: Any = given.item() if hasattr(given, "item") else given
         wrong = isinstance(x, bool) and end.port.type != "Boolean"
         if wrong or not isinstance(x, kinds[end.port.type]):
             raise ValueError(f"{end.name} = {x!r}: {end.port.type} wanted")

@@ -55,7 +55,7 @@ class Path:
 
     @cached_property
     def offsets(self) -> Array:
-        """Length of the path before each segment, and its whole length [mm]."""
+        """Length before each segment, and the whole length [mm]."""
         return np.concatenate([[0.0], np.cumsum([s.length for s in self.segments])])
 
     @cached_property

@@ -21,7 +21,7 @@ _ERROR = 3  # status of both FMI versions from which on nothing is good
 
 
 def element_names(end: End) -> list[str]:
-    """FMI 2 names of the elements of a port, in the order of their references.
+    """FMI 2 names of the elements of a port, in order.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class Slave:
         return InputError(told if told.startswith(f"{self.name}:") else f"{self.name}: {told}")
 
     def buffer(self, kind: str, count: int) -> Any:
-        """Memory for `count` values of a type, as the FMU reads and writes them.
+        """Memory for values of a type, as the FMU has them.
 
         Parameters
         ----------
@@ -127,7 +127,7 @@ class Slave:
         -------
         ctypes array
         """
-        c = ctypes.c_int32 if self.fmi == 2 and kind == "Boolean" else _C[kind]
+        c: Any = ctypes.c_int32 if self.fmi == 2 and kind == "Boolean" else _C[kind]
         return (c * count)()
 
     def access(self, verb: str, kind: str, reference: int, buffer: Any) -> Any:
@@ -152,9 +152,9 @@ class Slave:
         count = len(buffer)
         if self.fmi == 3:
             call = getattr(self.slave.dll, f"fmi3{verb}{kind}")
-            references = (ctypes.c_uint32 * 1)(reference)
-            arguments = (self.slave.component, references, ctypes.c_size_t(1), buffer)
-            arguments += (ctypes.c_size_t(count),)
+            one = (ctypes.c_uint32 * 1)(reference)
+            sizes = ctypes.c_size_t(1), ctypes.c_size_t(count)
+            arguments: tuple[Any, ...] = (self.slave.component, one, sizes[0], buffer, sizes[1])
         else:
             call = getattr(self.slave.dll, f"fmi2{verb}{_FMI2[kind]}")
             references = (ctypes.c_uint32 * count)(*range(reference, reference + count))
@@ -218,7 +218,7 @@ class Slave:
         self._do("terminate")
 
     def free(self) -> None:
-        """Free the instance, the library and the unpacked files; never raises."""
+        """Free the instance, the library and the unpacked files."""
         try:
             self.slave.freeInstance()
         finally:
