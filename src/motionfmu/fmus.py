@@ -112,7 +112,7 @@ def ports(name: str) -> dict[str, Port]:
     Returns
     -------
     dict
-        Port by variable name, as the FMI 3 description declares it; without the independent variable.
+        Port by variable name, from the FMI 3 description, without the independent variable.
 
     Raises
     ------
