@@ -1,5 +1,6 @@
 """Load a scenario, run it, keep what it gave."""
 
+import re
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -243,7 +244,7 @@ class Scenario:
             try:
                 ENGINES[asked.engine](wired, asked.fmi, asked.progress)
             except InputError as error:
-                raise self._located(error, plain) from None
+                raise self._located(error, plain, asked) from None
             signals = traces.load()
             geometry = (folder / "path.csv").read_text() if library else None
         time = np.arange(wired.steps, dtype=np.float64) * (wired.step_ns * 1e-9)
@@ -258,12 +259,19 @@ class Scenario:
 
         return library_of(self)
 
-    def _located(self, error: InputError, plain: system.System) -> InputError:
-        """Add the line of the setting that an FMU's message names."""
+    def _located(self, error: InputError, plain: system.System, given: Options) -> InputError:
+        """Say where the value stands that an FMU's message names."""
         text = str(error)
+        component, _, rest = text.partition(": ")
         for s in plain.settings:
-            if s.end.name in self.document.body.set and s.end.port.name in text:
-                return self.document.error(text, "set", s.end.name)
+            end = s.end
+            if end.component != component or not re.search(rf"\b{end.port.name}\b", rest):
+                continue
+            value = s.values[0] if len(set(s.values)) == 1 else list(s.values)
+            if end.name in given.set:
+                return InputError(f"set {end.name} = {value!r}: {text}")
+            if end.name in self.document.body.set:
+                return self.document.error(f"{end.name} = {value!r}: {text}", "set", end.name)
         return InputError(f"{self.document.file}: {text}")
 
 

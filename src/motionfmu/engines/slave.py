@@ -2,6 +2,7 @@
 
 import ctypes
 import itertools
+import re
 import shutil
 import tempfile
 from collections.abc import Iterable
@@ -17,6 +18,9 @@ from motionfmu.system import End
 
 _C = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_bool}
 _FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
+# fmucontainer puts "mcc.fmu: " before the message of a component, which may name itself again.
+_INNER = re.compile(r"^(\w+)\.fmu: (?:(?:\w+\.)*\w+\.fmu: |\1: )?")
+_NAMED = re.compile(r"^\w+: ")
 _ERROR = 3  # status of both FMI versions from which on nothing is good
 
 
@@ -50,7 +54,7 @@ class Slave:
     fmi : int
         2 or 3.
     messages : list of str
-        Receives what the FMU logs with a status of Warning or worse.
+        Receives what the FMU logs with a status of Error or worse.
     """
 
     def __init__(self, name: str, source: Path, fmi: int, messages: list[str]) -> None:
@@ -82,13 +86,16 @@ class Slave:
             self._do("instantiate", callbacks=callbacks, loggingOn=False)
 
     def _log3(self, environment: Any, status: int, category: bytes, message: bytes) -> None:
-        if status > 0:
-            self.messages.append(message.decode(errors="replace").strip())
+        self._keep(status, message)
 
     def _log2(self, environment: Any, name: Any, status: int, category: Any, text: Any) -> None:
-        if status > 0:
-            raw = text if isinstance(text, bytes) else str(text).encode()
-            self.messages.append(raw.decode(errors="replace").strip())
+        self._keep(status, text if isinstance(text, bytes) else str(text).encode())
+
+    def _keep(self, status: int, message: bytes) -> None:
+        """Keep an error; one from inside a container gets its component's name in front."""
+        if status >= _ERROR:
+            text = message.decode(errors="replace").strip()
+            self.messages.append(_INNER.sub(r"\1: ", text))
 
     def _do(self, call: str, **arguments: Any) -> None:
         """Call a method of FMPy's slave; what it raises becomes the FMU's own message."""
@@ -108,10 +115,11 @@ class Slave:
         Returns
         -------
         InputError
-            With the first message the FMU gave.
+            With the first error that names a component, which is the cause.
         """
-        told = self.messages[0] if self.messages else f"{call} failed without a message"
-        return InputError(told if told.startswith(f"{self.name}:") else f"{self.name}: {told}")
+        named = [m for m in self.messages if _NAMED.match(m)]
+        told = [*named, *self.messages, f"{self.name}: {call} failed without a message"]
+        return InputError(told[0])
 
     def buffer(self, kind: str, count: int) -> Any:
         """Memory for values of a type, as the FMU has them.

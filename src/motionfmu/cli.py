@@ -1,0 +1,236 @@
+"""The console command.
+
+Exit status: 0 all checks hold, 1 a check failed, 2 the input is wrong (one message on stderr).
+"""
+
+import sys
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.run import Result, Scenario
+
+app = typer.Typer(
+    help="Motion controllers as FMI co-simulation FMUs.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+out = Console(highlight=False)
+
+FAILED, WRONG = 1, 2
+ScenarioPath = Annotated[Path, typer.Argument(help="Folder of a scenario, or its scenario.toml.")]
+Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
+Fmi = Annotated[int, typer.Option(help="FMI version of the FMUs: 2 or 3.")]
+Set = Annotated[
+    list[str], typer.Option("--set", metavar="COMP.VAR=VALUE", help="Stronger than the scenario's.")
+]
+
+
+def setting(text: str) -> tuple[str, Any]:
+    """Read ``comp.var=value``; the value is TOML, a bare word is text.
+
+    Parameters
+    ----------
+    text : str
+        As given on the command line.
+
+    Returns
+    -------
+    str, object
+        Name and value.
+
+    Raises
+    ------
+    InputError
+        There is no ``=``.
+    """
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise InputError(f"--set {text}: COMP.VAR=VALUE wanted")
+    try:
+        return name.strip(), tomllib.loads(f"x = {value}")["x"]
+    except tomllib.TOMLDecodeError:
+        return name.strip(), value.strip()
+
+
+def _verdicts(result: "Result") -> None:
+    table = Table(box=None, header_style="dim")
+    for heading in ("", "check", "found", "asked"):
+        table.add_column(heading)
+    for v in result.checks:
+        mark = "[green]ok[/]" if v.ok else "[bold red]FAILED[/]"
+        table.add_row(mark, v.name, f"{v.value:.6g}", v.bounds.replace("[", r"\["))
+    out.print(table)
+
+
+def _run(scenario: "Scenario", options: dict[str, Any]) -> "Result":
+    """Run with a progress bar, which shows on a terminal only."""
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+    from rich.progress import TimeRemainingColumn as TimeLeft
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeLeft())
+    with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
+        task = bar.add_task(scenario.name, total=1.0)
+        return scenario.run(**options, progress=lambda share: bar.update(task, completed=share))
+
+
+@app.command("list")
+def list_all() -> None:
+    """List the FMUs that are built and the scenarios of this project."""
+    from motionfmu import fmus, scenario
+
+    out.print("[bold]FMUs[/]")
+    for name in fmus.fmu_names():
+        out.print(f"  {name}")
+    out.print("[bold]Scenarios[/]")
+    for file in sorted(Path("scenarios").glob("*/scenario.toml")):
+        out.print(f"  {file.parent}  [dim]{scenario.read(file).about}[/]")
+
+
+@app.command()
+def info(what: Annotated[str, typer.Argument(help="An FMU's name, or a scenario.")]) -> None:
+    """Show the variables of an FMU, or what a scenario is made of."""
+    from motionfmu import fmus
+
+    if what in fmus.fmu_names():
+        _describe(what)
+        return
+    from motionfmu.run import load
+
+    if not Path(what).exists():
+        known = ", ".join(fmus.fmu_names())
+        raise InputError(f"{what}: neither an FMU ({known}) nor a scenario")
+    scenario = load(what)
+    body = scenario.document.body
+    out.print(f"[bold]{scenario.name}[/]  {scenario.document.about}")
+    out.print(f"{body.stop:g} s in steps of {body.step:g} s")
+    for name, fmu in body.component.items():
+        out.print(f"  {name:12} {fmu}")
+    for check, bounds in body.check.items():
+        out.print(f"  check {check}  [dim]{bounds.model_dump(exclude_none=True)}[/]")
+
+
+@app.command()
+def describe(name: Annotated[str, typer.Argument(help="An FMU's name.")]) -> None:
+    """Show the variables of an FMU with units, start values and meaning."""
+    _describe(name)
+
+
+def _describe(name: str) -> None:
+    from motionfmu import fmus
+
+    table = Table(box=None, header_style="dim")
+    for heading in ("", "variable", "type", "unit"):
+        table.add_column(heading, no_wrap=True)
+    table.add_column("start", overflow="fold", max_width=12)
+    table.add_column("meaning", min_width=24)
+    for port in fmus.ports(name).values():
+        kind = port.type + "".join(f"[{n}]" for n in port.shape)
+        values = (port.start or "").split()
+        start = values[0] if values and len(set(values)) == 1 else (port.start or "")
+        cells = (port.causality, port.name, kind, port.unit or "", start, port.doc)
+        table.add_row(*(c.replace("[", r"\[") for c in cells))
+    out.print(table)
+
+
+@app.command()
+def run(  # noqa: PLR0913  (each is an option of the command)
+    path: ScenarioPath,
+    engine: Engine = "native",
+    fmi: Annotated[int | None, typer.Option(help="2 or 3; 3 but for engine fmpy.")] = None,
+    set_: Set = [],  # noqa: B006  (typer makes a new list)
+    stop: Annotated[float | None, typer.Option(help="Instead of the scenario's [s].")] = None,
+    step: Annotated[float | None, typer.Option(help="Instead of the scenario's [s].")] = None,
+    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Also write signals.csv.")] = False,
+) -> None:
+    """Run a scenario, judge it and write its report."""
+    from motionfmu import outcome
+    from motionfmu.run import load
+
+    scenario = load(path)
+    options: dict[str, Any] = {
+        "engine": engine,
+        "fmi": fmi or (2 if engine == "fmpy" else 3),
+        "set": dict(setting(text) for text in set_),
+        "stop": stop,
+        "step": step,
+    }
+    result = _run(scenario, options)
+    shown = outcome.save(result, folder or Path("results") / scenario.name, options, csv)
+    _verdicts(result)
+    out.print(f"{scenario.name}: {'all checks hold' if result.ok else 'a check FAILED'}")
+    out.print(f"report: {shown}", soft_wrap=True)
+    if not result.ok:
+        raise typer.Exit(FAILED)
+
+
+@app.command()
+def check(
+    paths: Annotated[list[Path] | None, typer.Argument(help="Scenarios; all if none.")] = None,
+    engine: Engine = "native",
+    fmi: Fmi = 3,
+) -> None:
+    """Run scenarios and judge them; nothing is written."""
+    from motionfmu.run import load
+
+    chosen = paths or sorted(p.parent for p in Path("scenarios").glob("*/scenario.toml"))
+    if not chosen:
+        raise InputError("no scenario here: name one, or run from the project's folder")
+    failed = False
+    for path in chosen:
+        scenario = load(path)
+        result = _run(scenario, {"engine": engine, "fmi": fmi})
+        mark = "[green]ok[/]" if result.ok else "[bold red]FAILED[/]"
+        out.print(f"{mark}  {scenario.name}  [dim]{len(result.checks)} bounds[/]")
+        if not result.ok:
+            failed = True
+            _verdicts(result)
+    if failed:
+        raise typer.Exit(FAILED)
+
+
+@app.command()
+def contour(path: ScenarioPath, set_: Set = []) -> None:  # noqa: B006
+    """Run a scenario and print its contour figures."""
+    from motionfmu.run import load
+
+    result = _run(load(path), {"set": dict(setting(text) for text in set_)})
+    found = result.contour().numbers()
+    table = Table(box=None, header_style="dim")
+    for heading in ("figure", "value"):
+        table.add_column(heading)
+    for name, value in _flat({k: v for k, v in found.items() if k != "commands"}):
+        table.add_row(name, value)
+    out.print(table)
+
+
+def _flat(value: Any, name: str = "") -> list[tuple[str, str]]:
+    if isinstance(value, dict):
+        pairs = list(value.items())
+    elif isinstance(value, list):
+        pairs = [(str(i), v) for i, v in enumerate(value)]
+    else:
+        return [(name, f"{value:.6g}" if isinstance(value, float) else str(value))]
+    return [row for k, v in pairs for row in _flat(v, f"{name}.{k}" if name else k)]
+
+
+def main() -> None:
+    """Entry point: one message and status 2 for wrong input."""
+    try:
+        app()
+    except InputError as error:
+        print(f"motionfmu: {error}", file=sys.stderr)
+        sys.exit(WRONG)
+
+
+if __name__ == "__main__":
+    main()

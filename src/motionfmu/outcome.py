@@ -1,0 +1,106 @@
+"""What a run leaves on disk: signals, numbers, report."""
+
+import json
+import os
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motionfmu.errors import InputError
+from motionfmu.run import Result
+
+SIGNALS, NUMBERS, TABLE = "signals.npz", "result.json", "signals.csv"
+
+
+def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
+    """The machine-readable result.
+
+    Parameters
+    ----------
+    result : Result
+    options : mapping
+        How it was run; kept as given.
+
+    Returns
+    -------
+    dict
+        Ready for JSON.
+    """
+    found: dict[str, Any] = {
+        "scenario": result.name,
+        "about": result.about,
+        "options": dict(options),
+        "samples": len(result.time),
+        "ok": result.ok,
+        "checks": [
+            {"name": v.name, "bounds": v.bounds, "value": v.value, "ok": v.ok}
+            for v in result.checks
+        ],
+    }
+    if result.scenario.document.body.contour is not None:
+        found["contour"] = result.contour().numbers()
+    return found
+
+
+def _write_csv(result: Result, file: Path) -> None:
+    names, columns = ["time"], [result.time]
+    for name, data in result.signals.items():
+        wide = data.reshape(len(data), -1)
+        for i in range(wide.shape[1]):
+            names.append(f"{name}[{i + 1}]" if data.ndim == 2 else name)
+            columns.append(wide[:, i])
+    table = np.column_stack(columns)
+    np.savetxt(file, table, delimiter=",", header=",".join(names), comments="", fmt="%.17g")
+
+
+def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = False) -> Path:
+    """Write a run's folder, whole or not at all.
+
+    Parameters
+    ----------
+    result : Result
+    folder : Path
+        Replaced if it holds an older result.
+    options : mapping
+        How it was run.
+    csv : bool
+        Also write signals.csv.
+
+    Returns
+    -------
+    Path
+        The report, or result.json when the scenario has no contour.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or holds something else than a result.
+    """
+    if folder.exists() and not (folder / NUMBERS).is_file() and any(folder.iterdir()):
+        raise InputError(f"{folder} holds no earlier result; it is left as it is")
+    part = folder.with_name(f".{folder.name}.part{os.getpid()}")
+    try:
+        part.mkdir(parents=True)
+        arrays: dict[str, Any] = {"time": result.time, **result.signals}
+        np.savez_compressed(part / SIGNALS, **arrays)
+        text = json.dumps(numbers(result, options), indent=1, allow_nan=False)
+        (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
+        if csv:
+            _write_csv(result, part / TABLE)
+        if result.scenario.document.body.contour is None:
+            shown = NUMBERS
+        else:
+            from motionfmu.report import write_report
+
+            shown = write_report(result, result.contour(), part).name
+        if folder.exists():
+            shutil.rmtree(folder)
+        part.rename(folder)
+    except OSError as error:
+        raise InputError(f"cannot write {folder}: {error.strerror or error}") from None
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    return folder / shown

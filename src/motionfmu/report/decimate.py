@@ -1,0 +1,39 @@
+"""Fewer points with every peak kept."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.contour.geometry import Array
+
+Index = NDArray[np.int64]
+
+
+def keep_peaks(values: Array, buckets: int) -> Index:
+    """Samples with the least and the largest value of each bucket.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,) or (n, k)
+        One or several signals with common samples.
+    buckets : int
+        Number of buckets of equal size; each keeps at most two samples per signal.
+
+    Returns
+    -------
+    ndarray of int
+        Sorted indices, the first and the last sample among them.
+    """
+    columns = values.reshape(len(values), -1)
+    count = len(columns)
+    if count <= 2 * buckets:
+        return np.arange(count)
+    edges = np.linspace(0, count, buckets + 1).astype(np.int64)
+    width = int(np.diff(edges).max())
+    # rows of equal length: the last samples of a shorter bucket are repeated
+    rows = np.minimum(edges[:-1, None] + np.arange(width), edges[1:, None] - 1)
+    kept = [np.array([0, count - 1])]
+    for column in columns.T:
+        block = column[rows]
+        for best in (block.argmin(axis=1), block.argmax(axis=1)):
+            kept.append(rows[np.arange(buckets), best])
+    return np.unique(np.concatenate(kept))

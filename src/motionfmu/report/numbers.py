@@ -1,0 +1,133 @@
+"""Numbers as a reader wants them: units, rounding, round magnifications."""
+
+import math
+
+MINUS = "\N{MINUS SIGN}"
+# At the chosen magnification the usual error, and the largest, are these parts of the path's size.
+SHARE_USUAL = 0.05
+SHARE_LARGEST = 0.2
+# The largest error stays below this part of the way between two corners: details stay apart.
+SHARE_REACH = 0.5
+# Lengths from here on read better in mm than in um [mm].
+MILLIMETRES_FROM = 1.0
+
+
+def length(value: float, sign: bool = False) -> str:
+    """A length in um or mm.
+
+    Parameters
+    ----------
+    value : float
+        [mm].
+    sign : bool
+        Write a plus as well.
+
+    Returns
+    -------
+    str
+        Three or four digits that mean something, with a true minus sign.
+    """
+    size = abs(value)
+    if size >= MILLIMETRES_FROM:
+        return f"{figure(value, sign)} mm"
+    return f"{figure(value * 1e3, sign)} µm"
+
+
+def figure(value: float, sign: bool = False) -> str:
+    """A number with three to four significant digits.
+
+    Parameters
+    ----------
+    value : float
+        Any.
+    sign : bool
+        Write a plus as well.
+
+    Returns
+    -------
+    str
+    """
+    if not math.isfinite(value):
+        return str(value)
+    size = abs(value)
+    if size < 5e-4:
+        return "0"
+    digits = max(0, 3 - max(0, math.floor(math.log10(size)) + 1)) if size >= 1e-2 else 4
+    text = f"{value:+.{digits}f}" if sign else f"{value:.{digits}f}"
+    return text.replace("-", MINUS)
+
+
+def unit(largest: float) -> tuple[float, str]:
+    """Unit for an axis of lengths.
+
+    Parameters
+    ----------
+    largest : float
+        Largest magnitude on it [mm].
+
+    Returns
+    -------
+    factor : float
+        Values in this unit per mm.
+    name : str
+    """
+    return (1.0, "mm") if largest >= MILLIMETRES_FROM else (1e3, "µm")
+
+
+def round_down(value: float) -> float:
+    """Largest of 1, 2, 5, 10, 20, ... that is not above a value.
+
+    Parameters
+    ----------
+    value : float
+        Positive.
+
+    Returns
+    -------
+    float
+    """
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(m * power for m in (0.5, 1.0, 2.0, 5.0) if m * power <= value * (1.0 + 1e-12))
+
+
+def round_up(value: float) -> float:
+    """A round number that is not far above a value.
+
+    Parameters
+    ----------
+    value : float
+        Positive.
+
+    Returns
+    -------
+    float
+    """
+    power = 10.0 ** math.floor(math.log10(value))
+    steps = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+    return min(m * power for m in steps if m * power >= value * (1.0 - 1e-12))
+
+
+def magnification(errors: tuple[float, float], size: float, reach: float) -> float:
+    """Round magnification that makes an error easy to see.
+
+    Parameters
+    ----------
+    errors : tuple of two float
+        95th percentile and maximum of the error [mm].
+    size : float
+        Size of the path [mm].
+    reach : float
+        Mean way between two corners [mm].
+
+    Returns
+    -------
+    float
+        1, 2, 5, 10, ...; 1 where nothing has to be magnified.
+    """
+    usual, largest = errors
+    if largest <= 0.0 or size <= 0.0:
+        return 1.0
+    wanted = min(SHARE_LARGEST * size, SHARE_REACH * reach) / largest
+    if usual > 0.0:
+        wanted = min(wanted, SHARE_USUAL * size / usual)
+    return max(1.0, round_down(wanted))

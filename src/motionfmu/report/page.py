@@ -1,0 +1,259 @@
+"""The report as one HTML page that needs no network."""
+
+import json
+from collections.abc import Sequence
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+from typing import Any, Protocol
+
+import plotly.offline
+
+from motionfmu.contour import ContourResult
+from motionfmu.contour.circles import CircularTest
+from motionfmu.report.drawing import Drawing, draw
+from motionfmu.report.numbers import figure, length
+from motionfmu.report.packed import packed
+from motionfmu.report.path_plot import path_figure
+from motionfmu.report.pictures import write_pictures
+from motionfmu.report.polar_plot import polar_figure
+from motionfmu.report.tables import (
+    CORNERS_SHOWN,
+    Check,
+    check_table,
+    circle_table,
+    corner_table,
+    error_table,
+    line_table,
+)
+from motionfmu.report.time_plots import (
+    error_figure,
+    fifo_figure,
+    following_figure,
+    trace_figures,
+)
+
+PAGE = "report.html"
+NUMBERS = "contour.json"
+CIRCLES_SHOWN = 6
+MAGNIFICATIONS = [m * 10**p for p in range(6) for m in (1, 2, 5)]
+
+
+class Result(Protocol):
+    """What the report needs to know of a run beside its contour.
+
+    Attributes
+    ----------
+    name, about : str
+        Of the scenario: its name, and what it shows.
+    checks : sequence of Check
+        Its verdicts.
+    """
+
+    @property
+    def name(self) -> str:
+        """Name of the scenario."""
+
+    @property
+    def about(self) -> str:
+        """What the scenario shows."""
+
+    @property
+    def checks(self) -> Sequence[Check]:
+        """Its verdicts."""
+
+
+class _Page:
+    """Sections and figures, as they are added."""
+
+    def __init__(self) -> None:
+        self.sections: list[str] = []
+        self.figures: list[dict[str, Any]] = []
+
+    def place(self, name: str, drawn: dict[str, Any], over_time: bool = False) -> str:
+        self.figures.append({"id": name, "over_time": over_time} | drawn)
+        return f'<div id="{name}" style="min-height:{drawn["layout"]["height"]}px"></div>'
+
+    def section(self, title: str, note: str, content: str) -> None:
+        note = f'<p class="note">{note}</p>' if note else ""
+        self.sections.append(f"<section><h2>{title}</h2>{note}{content}</section>")
+
+
+def write_report(result: Result, contour: ContourResult, folder: str | Path) -> Path:
+    """Write the page, the main picture and the numbers of a run.
+
+    Parameters
+    ----------
+    result : Result
+        Name, purpose and verdicts of the scenario.
+    contour : ContourResult
+        The analysed run.
+    folder : str or Path
+        Made if it is not there; gets report.html, path.svg, path.png and contour.json.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be written.
+    """
+    folder = Path(folder)
+    drawing = draw(contour)
+    page = page_text(result, contour, drawing)
+    numbers = json.dumps(contour.numbers(), indent=1, allow_nan=False)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_pictures(result.name, contour, drawing, folder)
+    (folder / NUMBERS).write_text(numbers + "\n", encoding="utf-8")
+    (folder / PAGE).write_text(page, encoding="utf-8")
+    return folder / PAGE
+
+
+def page_text(result: Result, contour: ContourResult, drawing: Drawing) -> str:
+    """The whole HTML page.
+
+    Parameters
+    ----------
+    result : Result
+        Name, purpose and verdicts of the scenario.
+    contour : ContourResult
+        The analysed run.
+    drawing : Drawing
+        The path as it is drawn.
+
+    Returns
+    -------
+    str
+    """
+    page = _Page()
+    page.sections.append(_cards(contour))
+    _add_path(page, contour, drawing)
+    if result.checks:
+        page.section("Verdict", "", check_table(result.checks))
+    for i, test in enumerate(contour.circles[:CIRCLES_SHOWN]):
+        _add_circle(page, f"circle{i}", test)
+    _add_time(page, contour)
+    _add_corners(page, contour)
+    data = {
+        "figures": page.figures,
+        "path": {
+            "foot": [packed(c) for c in drawing.foot.T],
+            "gap": [packed(c) for c in drawing.gap.T],
+            "hairs": packed(drawing.hairs),
+        },
+    }
+    here = files("motionfmu.report")
+    sign = "Positive is to the left of the direction of travel, negative to the right."
+    return Template((here / "page.html").read_text(encoding="utf-8")).substitute(
+        title=escape(f"{result.name}: contour report"),
+        name=escape(result.name),
+        about=escape(result.about),
+        verdict=_verdict(result.checks),
+        sign="" if contour.track.signed is None else sign,
+        body="\n".join(page.sections),
+        style=(here / "page.css").read_text(encoding="utf-8"),
+        script=(here / "page.js").read_text(encoding="utf-8"),
+        plotly=plotly.offline.get_plotlyjs(),
+        # "</" would end the script element
+        data=json.dumps(data, separators=(",", ":")).replace("</", "<\\/"),
+    )
+
+
+def _verdict(checks: Sequence[Check]) -> str:
+    failed = sum(not c.ok for c in checks)
+    if not checks:
+        return ""
+    if failed:
+        return f'<span class="pill fail">✗ {failed} of {len(checks)} checks failed</span>'
+    return f'<span class="pill pass">✓ all {len(checks)} checks passed</span>'
+
+
+def _cards(contour: ContourResult) -> str:
+    error, command = contour.error, contour.command_error
+    lag = f"{figure(contour.lag * 1e3)} ms"
+    gain = f"as a position gain of {figure(1.0 / contour.lag)} 1/s" if contour.lag > 0 else ""
+    cards = [
+        ("Largest contour error", length(error.max), f"line {error.line}, at {error.time:.3f} s"),
+        ("RMS contour error", length(error.rms), f"95 % below {length(error.p95)}"),
+        ("Largest command error", length(command.max), f"RMS {length(command.rms)}"),
+        ("Servo lag", lag, gain),
+    ]
+    if contour.circles:
+        test = contour.circles[0]
+        way = test.ccw or test.cw
+        assert way is not None
+        g = test.both.g if test.both else way.reading.g
+        change = length(way.reading.radius_change, sign=True)
+        name = "Circular deviation G(b)" if test.both else "Circular deviation G"
+        cards.append((name, length(g), f"radius change {change}"))
+    return '<div class="cards">{}</div>'.format(
+        "".join(
+            f'<div class="card"><div class="what">{what}</div>'
+            f'<div class="value">{value}</div><div class="where">{where}</div></div>'
+            for what, value, where in cards
+        )
+    )
+
+
+def _add_path(page: _Page, contour: ContourResult, drawing: Drawing) -> None:
+    factor = drawing.magnify
+    choices = "".join(
+        f'<option value="{m}"{" selected" if m == factor else ""}>&times; {m:,}</option>'
+        for m in MAGNIFICATIONS
+    )
+    control = (
+        '<div class="control"><label for="magnification">Magnification</label>'
+        '<button id="less" type="button" aria-label="less">&minus;</button>'
+        f'<select id="magnification">{choices}</select>'
+        '<button id="more" type="button" aria-label="more">+</button></div>'
+    )
+    note = (
+        f"The contour error is drawn <b><span data-magnification>{factor:,.0f}</span> times</b> as"
+        " large as it is; colour is its true size."
+    )
+    left = f"<div>{control}{page.place('path', path_figure(drawing))}</div>"
+    content = f'<div class="wide">{left}<div><h3>Errors</h3>{error_table(contour)}</div></div>'
+    page.section("Path and contour error", note, content)
+
+
+def _add_circle(page: _Page, name: str, test: CircularTest) -> None:
+    lines = sorted({n for way in (test.ccw, test.cw) if way for n in way.lines})
+    where = "line " + str(lines[0]) if len(lines) == 1 else f"lines {lines[0]} to {lines[-1]}"
+    title = f"Circular test, radius {test.radius:g} mm"
+    note = (
+        f"ISO 230-4, {where}. Radial deviation from the nominal circle about its nominal centre;"
+        " the rings are labelled with their deviation."
+    )
+    plot = page.place(name, polar_figure(test))
+    page.section(title, note, f'<div class="two">{plot}<div>{circle_table(test)}</div></div>')
+
+
+def _add_time(page: _Page, contour: ContourResult) -> None:
+    sign = "" if contour.track.signed is None else " Positive is left of the direction of travel."
+    zoom = " Zooming one plot zooms all plots over time."
+    note = "Where the tool is cutting." + sign + zoom
+    page.section("Contour error", note, page.place("error", error_figure(contour), True))
+    note = "Pulses put out minus actual position."
+    content = page.place("following", following_figure(contour), True)
+    page.section("Following error", note, content)
+    fifo = fifo_figure(contour)
+    if fifo is not None:
+        note = "Least stock of the axes in use; an empty FIFO during motion means the PC was late."
+        page.section("FIFO and interrupts", note, page.place("fifo", fifo, True))
+    for i, (title, drawn) in enumerate(trace_figures(contour)):
+        content = page.place(f"trace{i}", drawn, True)
+        page.section(escape(title[:1].upper() + title[1:]), "", content)
+
+
+def _add_corners(page: _Page, contour: ContourResult) -> None:
+    parts = ""
+    if contour.corners:
+        count = len(contour.corners)
+        more = f", worst {CORNERS_SHOWN} of {count}" if count > CORNERS_SHOWN else ""
+        parts += f"<div><h2>Corners{more}</h2>{corner_table(contour)}</div>"
+    parts += f"<div><h2>Worst lines of the program</h2>{line_table(contour)}</div>"
+    page.sections.append(f'<section><div class="two">{parts}</div></section>')

@@ -1,0 +1,76 @@
+"""Colours and type of all pictures, safe for the colour-blind."""
+
+from typing import Any
+
+INK = "#1b2733"
+MUTED = "#5b6b7a"
+GRID = "#e4e9ee"
+PATH = "#31465a"
+RAPID = "#9aa8b5"
+# Okabe and Ito's palette: X Y Z U V W
+AXES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#a07800", "#56b4e9")
+CCW, CW = AXES[0], AXES[1]
+# Size of an error: lightness falls all the way, so it reads in grey as well.
+HEAT = ("#f3c46b", "#ee8f45", "#d9533b", "#a8204a", "#5a0f45")
+FONT = "Inter, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif"
+
+
+def axis(title: str, **more: Any) -> dict[str, Any]:
+    """An axis of a plotly figure.
+
+    Parameters
+    ----------
+    title : str
+        Quantity and unit.
+    **more : dict
+        Further keys.
+
+    Returns
+    -------
+    dict
+    """
+    plain = {
+        "title": {"text": title, "standoff": 8, "font": {"size": 13, "color": INK}},
+        "gridcolor": GRID,
+        "linecolor": MUTED,
+        "zerolinecolor": "#b8c4ce",
+        "zerolinewidth": 1,
+        "ticks": "outside",
+        "tickcolor": GRID,
+        "tickfont": {"size": 12, "color": MUTED},
+        "automargin": True,
+    }
+    return plain | more
+
+
+def layout(height: int, **more: Any) -> dict[str, Any]:
+    """Layout of a plotly figure, its legend above the plot.
+
+    Parameters
+    ----------
+    height : int
+        [pixel].
+    **more : dict
+        Further keys.
+
+    Returns
+    -------
+    dict
+    """
+    plain = {
+        "height": height,
+        "margin": {"l": 64, "r": 20, "t": 34, "b": 48},
+        "paper_bgcolor": "#ffffff",
+        "plot_bgcolor": "#ffffff",
+        "font": {"family": FONT, "size": 13, "color": INK},
+        "hoverlabel": {"font": {"family": FONT, "size": 12}},
+        "legend": {
+            "orientation": "h",
+            "x": 0,
+            "xanchor": "left",
+            "y": 1.0,
+            "yanchor": "bottom",
+            "font": {"size": 12},
+        },
+    }
+    return plain | more

@@ -1,0 +1,231 @@
+"""The tables of the page."""
+
+import math
+from collections.abc import Iterable, Sequence
+from html import escape
+from typing import Any, Protocol
+
+from motionfmu.contour import ContourResult
+from motionfmu.contour.circles import CircularTest, Way
+from motionfmu.report.numbers import MINUS, figure, length
+
+CORNERS_SHOWN = 10
+LINES_SHOWN = 10
+
+
+class Check(Protocol):
+    """One verdict of a scenario.
+
+    Attributes
+    ----------
+    name : str
+        What was checked.
+    ok : bool
+    value : object
+        What came out.
+    bounds : str
+        What was asked for.
+    """
+
+    @property
+    def name(self) -> str:
+        """What was checked."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether it holds."""
+
+    @property
+    def value(self) -> Any:
+        """What came out."""
+
+    @property
+    def bounds(self) -> str:
+        """What was asked for."""
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: int = 1) -> str:
+    """A table of ready HTML cells.
+
+    Parameters
+    ----------
+    heads : sequence of str
+        Column titles.
+    rows : iterable of sequence of str
+        Cells.
+    numeric : int
+        Columns from this one on are numbers and stand to the right.
+
+    Returns
+    -------
+    str
+    """
+
+    def cells(tag: str, row: Sequence[str]) -> str:
+        kinds = ["key" if i < numeric else "n" for i in range(len(row))]
+        return "".join(f'<{tag} class="{k}">{c}</{tag}>' for k, c in zip(kinds, row, strict=True))
+
+    body = "".join(f"<tr>{cells('td', row)}</tr>" for row in rows)
+    return (
+        f'<div class="scroll"><table><thead><tr>{cells("th", heads)}</tr></thead>'
+        f"<tbody>{body}</tbody></table></div>"
+    )
+
+
+def check_table(checks: Sequence[Check]) -> str:
+    """Verdicts of the scenario, failures first.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        In the order of the scenario.
+
+    Returns
+    -------
+    str
+    """
+    rows = []
+    for check in sorted(checks, key=lambda c: c.ok):
+        mark, kind = ("✓ pass", "pass") if check.ok else ("✗ fail", "fail")
+        value = check.value
+        text = str(value)
+        if isinstance(value, float) and not math.isnan(value):
+            text = f"{value:.6g}".replace("-", MINUS)
+        rows.append(
+            (
+                f'<span class="mark {kind}">{mark}</span>',
+                escape(check.name),
+                escape(text),
+                escape(check.bounds),
+            )
+        )
+    return table(("Verdict", "Check", "Value", "Bounds"), rows, numeric=2)
+
+
+def error_table(contour: ContourResult) -> str:
+    """Maximum, RMS and percentiles of the errors.
+
+    Parameters
+    ----------
+    contour : ContourResult
+        The analysed run.
+
+    Returns
+    -------
+    str
+    """
+    rows = []
+    for name, size in (("Contour error", contour.error), ("Command error", contour.command_error)):
+        shown = (size.max, size.rms, size.p50, size.p95)
+        rows.append((name, *(length(v) for v in shown)))
+    per_axis = contour.numbers()["following"]
+    for axis, both in per_axis.items():
+        cells = (length(both["max"]), length(both["rms"]), "", "")
+        rows.append((f"Following error {axis.upper()}", *cells))
+    return table(("", "Max", "RMS", "Median", "95 %"), rows)
+
+
+def circle_table(test: CircularTest) -> str:
+    """Quantities of a circular test.
+
+    Parameters
+    ----------
+    test : CircularTest
+        The circle.
+
+    Returns
+    -------
+    str
+    """
+    ways = [(name, w) for name, w in (("ccw", test.ccw), ("cw", test.cw)) if w is not None]
+
+    def row(title: str, what: str, get: Any, both: str = "") -> tuple[str, ...]:
+        cells = [get(way) for _, way in ways]
+        name = f'{title}<br><span class="sub">{what}</span>'
+        return (name, *cells, *([both] if test.both else []))
+
+    def um(key: str) -> Any:
+        return lambda way: length(getattr(way.reading, key), sign=not key.startswith("g"))
+
+    both_g = length(test.both.g) if test.both else ""
+    both_d = length(test.both.d, sign=True) if test.both else ""
+    rows = [
+        row("G, G(b)", "minimum zone of the path, of both paths", um("g"), both_g),
+        row("F max", "about the nominal centre", um("f_max")),
+        row("F min", "about the nominal centre", um("f_min")),
+        row("Radius change, D", "mean, least-squares centre", um("radius_change"), both_d),
+        row("Major semi-axis", "fitted ellipse minus radius", um("major_change")),
+        row("Minor semi-axis", "fitted ellipse minus radius", um("minor_change")),
+        row("Ellipse direction", "of the major axis", _direction),
+        row("Centre offset", "least squares minus nominal", _offset),
+        row("Evaluated", "angle, speed", _evaluated),
+    ]
+    heads = ["", *(name for name, _ in ways), *(["both"] if test.both else [])]
+    return table(heads, rows)
+
+
+def _direction(way: Way) -> str:
+    return f"{figure(math.degrees(way.reading.orientation), sign=True)}°"
+
+
+def _offset(way: Way) -> str:
+    return "<br>".join(length(v, sign=True) for v in way.reading.offset)
+
+
+def _evaluated(way: Way) -> str:
+    steady = "" if way.steady else "<br>with run-in"
+    return f"{math.degrees(way.coverage):.0f}°<br>{figure(way.speed)} mm/s{steady}"
+
+
+def corner_table(contour: ContourResult) -> str:
+    """Corners with the largest errors.
+
+    Parameters
+    ----------
+    contour : ContourResult
+        The analysed run.
+
+    Returns
+    -------
+    str
+    """
+    worst = sorted(contour.corners, key=lambda c: -c.error)[:CORNERS_SHOWN]
+    rows = [
+        (
+            f"{c.line_before} → {c.line_after}",
+            ", ".join(figure(v) for v in c.point),
+            f"{math.degrees(c.angle):.1f}°",
+            f"{figure(c.speed)} mm/s",
+            length(c.error),
+            f"{c.time:.3f} s",
+        )
+        for c in worst
+    ]
+    return table(("Lines", "At X, Y, Z [mm]", "Turn", "Least feed", "Error", "Time"), rows, 2)
+
+
+def line_table(contour: ContourResult) -> str:
+    """Program lines with the largest errors.
+
+    Parameters
+    ----------
+    contour : ContourResult
+        The analysed run.
+
+    Returns
+    -------
+    str
+    """
+    worst = sorted(contour.numbers()["commands"], key=lambda row: -row["max"])[:LINES_SHOWN]
+    rows = [
+        (
+            str(row["line"]),
+            row["kind"],
+            f"{figure(row['length'])} mm",
+            length(row["max"]),
+            length(row["rms"]),
+            f"{row['time']:.3f} s",
+        )
+        for row in worst
+    ]
+    return table(("Line", "Move", "Length", "Max", "RMS", "Time of max"), rows, 2)
