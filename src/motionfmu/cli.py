@@ -28,7 +28,7 @@ out = Console(highlight=False)
 FAILED, WRONG = 1, 2
 ScenarioPath = Annotated[Path, typer.Argument(help="Folder of a scenario, or its scenario.toml.")]
 Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
-Fmi = Annotated[int, typer.Option(help="FMI version of the FMUs: 2 or 3.")]
+Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
 Set = Annotated[
     list[str], typer.Option("--set", metavar="COMP.VAR=VALUE", help="Stronger than the scenario's.")
 ]
@@ -59,6 +59,11 @@ def setting(text: str) -> tuple[str, Any]:
         return name.strip(), tomllib.loads(f"x = {value}")["x"]
     except tomllib.TOMLDecodeError:
         return name.strip(), value.strip()
+
+
+def _version(engine: str, fmi: int | None) -> int:
+    """FMPy's container runs FMI 2 components only."""
+    return fmi if fmi is not None else 2 if engine == "fmpy" else 3
 
 
 def _verdicts(result: "Result") -> None:
@@ -119,9 +124,21 @@ def info(what: Annotated[str, typer.Argument(help="An FMU's name, or a scenario.
 
 
 @app.command()
-def describe(name: Annotated[str, typer.Argument(help="An FMU's name.")]) -> None:
+def describe(
+    name: Annotated[str, typer.Argument(help="An FMU's name.")],
+    xml: Annotated[bool, typer.Option("--xml", help="Print its modelDescription.xml.")] = False,
+    fmi: Annotated[int, typer.Option(help="FMI version of the XML: 2 or 3.")] = 3,
+) -> None:
     """Show the variables of an FMU with units, start values and meaning."""
-    _describe(name)
+    if not xml:
+        _describe(name)
+        return
+    import zipfile
+
+    from motionfmu import fmus
+
+    with zipfile.ZipFile(fmus.fmu_path(name, fmi)) as archive:
+        print(archive.read("modelDescription.xml").decode(), end="")
 
 
 def _describe(name: str) -> None:
@@ -145,7 +162,7 @@ def _describe(name: str) -> None:
 def run(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
     engine: Engine = "native",
-    fmi: Annotated[int | None, typer.Option(help="2 or 3; 3 but for engine fmpy.")] = None,
+    fmi: Fmi = None,
     set_: Set = [],  # noqa: B006  (typer makes a new list)
     stop: Annotated[float | None, typer.Option(help="Instead of the scenario's [s].")] = None,
     step: Annotated[float | None, typer.Option(help="Instead of the scenario's [s].")] = None,
@@ -157,15 +174,16 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.run import load
 
     scenario = load(path)
+    target = outcome.usable(folder or Path("results") / scenario.name)
     options: dict[str, Any] = {
         "engine": engine,
-        "fmi": fmi or (2 if engine == "fmpy" else 3),
+        "fmi": _version(engine, fmi),
         "set": dict(setting(text) for text in set_),
         "stop": stop,
         "step": step,
     }
     result = _run(scenario, options)
-    shown = outcome.save(result, folder or Path("results") / scenario.name, options, csv)
+    shown = outcome.save(result, target, options, csv)
     _verdicts(result)
     out.print(f"{scenario.name}: {'all checks hold' if result.ok else 'a check FAILED'}")
     out.print(f"report: {shown}", soft_wrap=True)
@@ -177,7 +195,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
 def check(
     paths: Annotated[list[Path] | None, typer.Argument(help="Scenarios; all if none.")] = None,
     engine: Engine = "native",
-    fmi: Fmi = 3,
+    fmi: Fmi = None,
 ) -> None:
     """Run scenarios and judge them; nothing is written."""
     from motionfmu.run import load
@@ -188,7 +206,7 @@ def check(
     failed = False
     for path in chosen:
         scenario = load(path)
-        result = _run(scenario, {"engine": engine, "fmi": fmi})
+        result = _run(scenario, {"engine": engine, "fmi": _version(engine, fmi)})
         mark = "[green]ok[/]" if result.ok else "[bold red]FAILED[/]"
         out.print(f"{mark}  {scenario.name}  [dim]{len(result.checks)} bounds[/]")
         if not result.ok:

@@ -1,6 +1,7 @@
 """What a run leaves on disk: signals, numbers, report."""
 
 import json
+import math
 import os
 import shutil
 from collections.abc import Mapping
@@ -36,7 +37,7 @@ def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
         "samples": len(result.time),
         "ok": result.ok,
         "checks": [
-            {"name": v.name, "bounds": v.bounds, "value": v.value, "ok": v.ok}
+            {"name": v.name, "bounds": v.bounds, "value": _number(v.value), "ok": v.ok}
             for v in result.checks
         ],
     }
@@ -54,6 +55,37 @@ def _write_csv(result: Result, file: Path) -> None:
             columns.append(wide[:, i])
     table = np.column_stack(columns)
     np.savetxt(file, table, delimiter=",", header=",".join(names), comments="", fmt="%.17g")
+
+
+def usable(folder: Path) -> Path:
+    """Check that a result may be written to this folder.
+
+    Parameters
+    ----------
+    folder : Path
+        New, empty, or with an older result.
+
+    Returns
+    -------
+    Path
+        The folder, absolute.
+
+    Raises
+    ------
+    InputError
+        It holds something else than a result, or is a file.
+    """
+    folder = folder.resolve()
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file, not a folder")
+    if folder.exists() and not (folder / NUMBERS).is_file() and any(folder.iterdir()):
+        raise InputError(f"{folder} holds no earlier result; it is left as it is")
+    return folder
+
+
+def _number(value: float) -> float | None:
+    """JSON has no NaN."""
+    return value if math.isfinite(value) else None
 
 
 def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = False) -> Path:
@@ -79,9 +111,9 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
     InputError
         The folder cannot be written, or holds something else than a result.
     """
-    if folder.exists() and not (folder / NUMBERS).is_file() and any(folder.iterdir()):
-        raise InputError(f"{folder} holds no earlier result; it is left as it is")
+    folder = usable(folder)
     part = folder.with_name(f".{folder.name}.part{os.getpid()}")
+    old = folder.with_name(f".{folder.name}.old{os.getpid()}")
     try:
         part.mkdir(parents=True)
         arrays: dict[str, Any] = {"time": result.time, **result.signals}
@@ -97,10 +129,11 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
 
             shown = write_report(result, result.contour(), part).name
         if folder.exists():
-            shutil.rmtree(folder)
+            folder.rename(old)
         part.rename(folder)
     except OSError as error:
         raise InputError(f"cannot write {folder}: {error.strerror or error}") from None
     finally:
         shutil.rmtree(part, ignore_errors=True)
+        shutil.rmtree(old, ignore_errors=True)
     return folder / shown

@@ -154,6 +154,15 @@ class Result:
         return all(v.ok for v in self.checks)
 
 
+def _is_axis(name: str, recorded: Mapping[str, system.End]) -> bool:
+    """Whether ``signal`` or ``signal[i]`` is there; i from 1."""
+    whole, bracket, rest = name.partition("[")
+    if not bracket:
+        return True
+    index, shape = rest.removesuffix("]"), recorded[whole].port.shape
+    return bool(shape) and index.isdigit() and 1 <= int(index) <= shape[0]
+
+
 class Scenario:
     """A scenario ready to run.
 
@@ -186,21 +195,25 @@ class Scenario:
         return [*self.document.body.record.signals, *wanted(self)]
 
     def _check_checks(self) -> None:
-        recorded = {e.name for e in self.ends}
+        recorded = {e.name: e for e in self.ends}
+        stop = self.document.body.stop
         for name in self.document.body.check:
             if name.startswith(CONTOUR):
                 if self.document.body.contour is None:
                     raise self.document.error(f"{name}: there is no [contour] table", "check", name)
-            elif name.partition("[")[0] not in recorded:
+            elif name.partition("[")[0] not in recorded or not _is_axis(name, recorded):
                 raise self.document.error(f"{name} is not recorded", "check", name)
+            elif (at := self.document.body.check[name].at) is not None and at > stop:
+                raise self.document.error(f"{name}: at = {at!r} s is after the stop", "check", name)
 
     def _system(self, options: Options) -> system.System:
         document, body = self.document, self.document.body
-        step_ns = system.nanoseconds(document, "step", options.step or body.step)
-        stop = options.stop or body.stop
-        stop_ns = system.nanoseconds(document, "stop", stop)
+        step_ns = self._time("step", options.step, body.step)
+        stop_ns = self._time("stop", options.stop, body.stop)
         if stop_ns % step_ns:
-            raise document.error(f"stop = {stop!r} s is no whole number of steps", "", "stop")
+            text = f"stop = {stop_ns * 1e-9:.9g} s is no whole number of steps"
+            given = options.stop is not None or options.step is not None
+            raise InputError(text) if given else document.error(text, "", "stop")
         resolved = system.System(
             components=dict(body.component),
             wires=tuple(system.wires(self.resolver)),
@@ -211,6 +224,17 @@ class Scenario:
         )
         system.check_inputs(self.resolver, resolved)
         return resolved
+
+    def _time(self, key: str, given: float | None, written: float) -> int:
+        """Whole nanoseconds of an option, or of the scenario's own key."""
+        try:
+            return system.nanoseconds(key, written if given is None else given)
+        except ValueError as error:
+            raise (
+                self.document.error(str(error), "", key)
+                if given is None
+                else InputError(str(error))
+            ) from None
 
     def run(self, **options: Any) -> Result:
         """Run the scenario.

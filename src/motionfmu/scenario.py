@@ -152,6 +152,8 @@ def read(path: str | Path) -> Document:
     try:
         text = file.read_text(encoding="utf-8")
         tables = tomllib.loads(text)
+    except OSError as error:
+        raise InputError(f"{file}: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise InputError(f"{file}: not UTF-8 text ({error})") from None
     except tomllib.TOMLDecodeError as error:

@@ -78,15 +78,13 @@ class System:
     steps: int
 
 
-def nanoseconds(document: Document, key: str, seconds: float) -> int:
+def nanoseconds(key: str, seconds: float) -> int:
     """Whole nanoseconds of a positive time.
 
     Parameters
     ----------
-    document : Document
-        For the message.
     key : str
-        Its key in the file.
+        Its name, for the message.
     seconds : float
         Time [s].
 
@@ -96,12 +94,12 @@ def nanoseconds(document: Document, key: str, seconds: float) -> int:
 
     Raises
     ------
-    InputError
+    ValueError
         It is not positive or no whole number of ns.
     """
     ns = seconds * 1e9
     if not (math.isfinite(ns) and ns >= 1 and abs(ns - round(ns)) <= NS_TOLERANCE):
-        raise document.error(f"{key} = {seconds!r} s is not a whole number of ns", "", key)
+        raise ValueError(f"{key} = {seconds!r} s is not a whole number of ns")
     return round(ns)
 
 

@@ -104,7 +104,8 @@ def _override_end(resolver: Resolver, name: str) -> End:
     try:
         return resolver.end(name, "set", name)
     except InputError as error:
-        raise InputError("set " + str(error).split(": ", 1)[1]) from None
+        text = str(error).removeprefix(f"{resolver.document.file}:").partition(": ")[2]
+        raise InputError(f"set {text}") from None
 
 
 def stimuli(resolver: Resolver, step_ns: int) -> list[Stimulus]:

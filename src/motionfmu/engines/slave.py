@@ -6,12 +6,14 @@ import re
 import shutil
 import tempfile
 from collections.abc import Iterable
+from ctypes import byref
 from pathlib import Path
 from typing import Any
 
 from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
+from fmpy.logging import addLoggerProxy
 
 from motionfmu.errors import InputError
 from motionfmu.system import End
@@ -40,6 +42,10 @@ def element_names(end: End) -> list[str]:
         return [end.port.name]
     indices = itertools.product(*(range(1, n + 1) for n in end.port.shape))
     return [f"{end.port.name}[{','.join(map(str, index))}]" for index in indices]
+
+
+def _unnamed(message: str) -> bool:
+    return _NAMED.match(message) is None
 
 
 class Slave:
@@ -83,13 +89,17 @@ class Slave:
             callbacks = fmi2CallbackFunctions()
             self._log = fmi2CallbackLoggerTYPE(self._log2)
             callbacks.logger = self._log
+            addLoggerProxy(byref(callbacks))  # formats the message; Python cannot
             self._do("instantiate", callbacks=callbacks, loggingOn=False)
 
     def _log3(self, environment: Any, status: int, category: bytes, message: bytes) -> None:
         self._keep(status, message)
 
     def _log2(self, environment: Any, name: Any, status: int, category: Any, text: Any) -> None:
-        self._keep(status, text if isinstance(text, bytes) else str(text).encode())
+        told = text if isinstance(text, bytes) else str(text).encode()
+        if _unnamed(told.decode(errors="replace")) and b".fmu: " not in told:
+            told = name + b": " + told
+        self._keep(status, told)
 
     def _keep(self, status: int, message: bytes) -> None:
         """Keep an error; one from inside a container gets its component's name in front."""
@@ -117,9 +127,10 @@ class Slave:
         InputError
             With the first error that names a component, which is the cause.
         """
-        named = [m for m in self.messages if _NAMED.match(m)]
-        told = [*named, *self.messages, f"{self.name}: {call} failed without a message"]
-        return InputError(told[0])
+        own = f"{self.name}: "
+        inner = [m for m in self.messages if not m.startswith(own)]
+        told = [*inner, *self.messages, f"{own}{call} failed without a message"]
+        return InputError(sorted(told[: len(inner)] or told[:1], key=_unnamed)[0])
 
     def buffer(self, kind: str, count: int) -> Any:
         """Memory for values of a type, as the FMU has them.

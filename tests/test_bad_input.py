@@ -1,0 +1,193 @@
+"""Wrong input gets one message with file, line and value, status 2, and leaves nothing behind."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+import motionfmu
+
+CIRCLE = (ROOT / "scenarios/circle_theory/scenario.toml").read_text()
+PROGRAM = "G21 G17 G90\nG1 X5 F3000\nM30\n"
+
+
+def scenario(folder: Path, old: str = "", new: str = "", program: str = PROGRAM) -> Path:
+    """A scenario folder in which `old` stands as `new`."""
+    assert old in CIRCLE
+    folder = folder / "mine"
+    folder.mkdir()
+    text = CIRCLE.replace(old, new, 1) if old else CIRCLE
+    (folder / "scenario.toml").write_text(text.replace("stop = 3.0", "stop = 0.1"))
+    (folder / "circle.ngc").write_text(program)
+    return folder
+
+
+def message(folder: Path, *arguments: str) -> str:
+    """The one message of the command, which must end with status 2 and write nothing."""
+    out = folder.parent / "out" / "result"
+    command = [sys.executable, "-m", "motionfmu", "run", str(folder), "--out", str(out), *arguments]
+    run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "src")
+    assert run.returncode == 2, run.stdout + run.stderr
+    assert run.stdout == ""
+    assert "Traceback" not in run.stderr
+    assert run.stderr.startswith("motionfmu: ") and run.stderr.count("\n") == 1, run.stderr
+    assert not out.exists() and not list(folder.parent.glob("out/.*"))
+    return run.stderr.removeprefix("motionfmu: ").rstrip("\n")
+
+
+@pytest.mark.parametrize(
+    ("line", "program", "what"),
+    [
+        (2, "G21\nG1 X5 Q3 F100\nM30\n", 'unknown word "Q3"'),
+        (3, "G21\nG1 X5 F100\nG3 X9 Y9 R1\n", "arc radius is smaller than half the distance"),
+        (2, "G21\nG3 X10 Y0 I4 J0 F100\n", "does not lie on the circle"),
+        (2, "G21\nG1 G2 X5 F100\n", "second word of one modal group"),
+        (2, "G21\nG1 Xabc F100\n", "X"),
+        (2, "G21\nG1 X1 X2 F100\n", "X"),
+        (1, "G21 G1 X5 F-100\n", "F"),
+    ],
+)
+def test_a_wrong_part_program(tmp_path: Path, line: int, program: str, what: str) -> None:
+    folder = scenario(tmp_path, program=program)
+    text = message(folder)
+    assert f"{folder}/circle.ngc: line {line}: " in text
+    assert what in text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key", "what"),
+    [
+        ("stop = 3.0", "stop = 0.0", "stop", "greater than 0"),
+        ("stop = 3.0", "stop = 3.00005", "stop", "no whole number of steps"),
+        ("step = 1e-4", "step = 1.5e-10", "step", "not a whole number of ns"),
+        ("step = 1e-4", 'step = "fast"', "step", "'fast'"),
+        ("step = 1e-4", "step = 1e-4\nspeed = 3", "speed", "unknown key 'speed'"),
+        ('= "epcio"', '= "epcoi"', "card ", "no FMU 'epcoi'"),
+        ('"card.dac"', '"card.dca"', '"machine.voltage"', "did you mean 'dac'?"),
+        ('"card.dac"', '"cart.dac"', '"machine.voltage"', "did you mean 'card'?"),
+        ('"card.dac"', '"card.dac[1]"', '"machine.voltage"', "whole arrays: card.dac"),
+        ('"card.dac"', '"machine.table_position"', '"machine.voltage"', "units differ"),
+        ('"card.dac"', '"card.stock"', '"machine.voltage"', "Int32[6]"),
+        ('"card.dac"', '"mcc.p_gain"', '"machine.voltage"', "mcc.p_gain is no output"),
+        ('"machine.voltage" =', '"machine.tau" =', '"machine.tau"', "is no input"),
+        ('"card.host_*" ', '"card.nothing_*" ', '"card.nothing_*"', "joins nothing"),
+        ('= "mcc.card_*"', '= "mcc.card"', '"card.host_*"', "* on both sides"),
+        ('"mcc.p_gain"     = 200', '"mcc.p_gain" = nan', '"mcc.p_gain"', "nan"),
+        (
+            '"mcc.p_gain"     = 200',
+            '"mcc.p_gain" = 70000',
+            '"mcc.p_gain"',
+            "70000: outside 0 .. 65535",
+        ),
+        ('"mcc.p_gain"     = 200', '"mcc.p_gain" = 2.5', '"mcc.p_gain"', "2.5: Int32 wanted"),
+        ('"mcc.p_gain"     = 200', '"mcc.p_gain" = true', '"mcc.p_gain"', "True: Int32 wanted"),
+        ('"mcc.p_gain"     = 200', '"mcc.p_gain" = [1, 2]', '"mcc.p_gain"', "6 elements, not 2"),
+        ('"mcc.p_gain"     = 200', '"mcc.lead" = "wide"', '"mcc.lead"', "'wide': Float64 wanted"),
+        ('"mcc.p_gain"     = 200', '"card.dac" = 1.0', '"card.dac"', "cannot be set"),
+        ('"circle.ngc"', '"square.ngc"', '"mcc.program"', "square.ngc"),
+        ('"circle.ngc"', '"/"', '"mcc.program"', "'/'"),
+        ('"card.dac",', '"card.irq_clock*x",', "signals", "matches no output"),
+        ('"card.dac",', '"card.enc_phase",', "signals", "card.enc_phase is no output"),
+        ('"mcc.done"    = {', '"mcc.services" = {', '"mcc.services"', "is not recorded"),
+        ("{ final = true }", "{ last = true }", '"mcc.done"', "unknown key 'last'"),
+        ("radius_change", "radius_chance", '"contour.circles', "radius_chance"),
+    ],
+)
+def test_a_wrong_scenario(tmp_path: Path, old: str, new: str, key: str, what: str) -> None:
+    program = (ROOT / "scenarios/circle_theory/circle.ngc").read_text()
+    folder = scenario(tmp_path, old, new, program)
+    file = folder / "scenario.toml"
+    if "circles" in key:
+        file.write_text(file.read_text().replace("stop = 0.1", "stop = 2.0"))
+    lines = file.read_text().splitlines()
+    number = 1 + next(i for i, row in enumerate(lines) if row.lstrip().startswith(key))
+    text = message(folder)
+    assert text.startswith(f"{file}:{number}: "), text
+    assert what in text
+
+
+def test_an_open_input_is_named(tmp_path: Path) -> None:
+    text = message(scenario(tmp_path, '"card.enc_phase"  = "machine.motor_phase"\n'))
+    assert "input card.enc_phase is open: connect, drive or set it, or name it in leave" in text
+
+
+@pytest.mark.parametrize(
+    ("rows", "what"),
+    [
+        ('input = "mcc.hold"\nat = [0.05, 0.02]\nvalue = [true, false]', "does not come after"),
+        ('input = "mcc.hold"\nat = [0.05]\nvalue = [true, false]', "1 times for 2 values"),
+        ('input = "mcc.hold"\nat = [0.00005]\nvalue = [true]', "no whole number of steps"),
+        ('input = "mcc.hold"\nat = [0.0]\nvalue = [1]', "Boolean wanted"),
+        ('input = "mcc.done"\nat = [0.0]\nvalue = [true]', "is no input"),
+        ('input = "card.enc_phase"\nat = [0.0]\nvalue = [1.0]', "is connected and driven"),
+    ],
+)
+def test_a_wrong_stimulus(tmp_path: Path, rows: str, what: str) -> None:
+    text = message(scenario(tmp_path, "[record]", f"[[drive]]\n{rows}\n\n[record]"))
+    assert "scenario.toml:" in text and what in text
+
+
+def test_two_sources_for_one_input(tmp_path: Path) -> None:
+    more = '"machine.voltage" = "card.dac"\n"machine.*" = "card.*"'
+    text = message(scenario(tmp_path, '"machine.voltage" = "card.dac"', more))
+    assert "joins nothing" in text or "two sources" in text
+    again = '"machine.voltage" = "card.dac"\n"machine.voltage" = "card.dac"'
+    (tmp_path / "b").mkdir()
+    text = message(scenario(tmp_path / "b", '"machine.voltage" = "card.dac"', again))
+    assert "scenario.toml:" in text
+
+
+@pytest.mark.parametrize(
+    ("option", "what"),
+    [
+        (("--set", "mcc.p_gian=3"), "did you mean 'p_gain'?"),
+        (("--set", "mcc.p_gain=nan"), "set mcc.p_gain = nan"),
+        (("--set", "mcc.lead=inf"), "set mcc.lead = inf: not a finite number"),
+        (("--set", "mcc.p_gain"), "COMP.VAR=VALUE wanted"),
+        (("--set", "mcc.program=none.ngc"), "set mcc.program = 'none.ngc'"),
+        (("--set", "card.loop_period=1.2e-7"), "set card.loop_period = 1.2e-07"),
+        (("--engine", "steam"), "no engine 'steam' (there are: native, python, fmpy)"),
+        (("--fmi", "4"), "FMI 4: 2 or 3"),
+        (("--step", "3e-5"), "no whole number of steps"),
+    ],
+)
+def test_a_wrong_option(tmp_path: Path, option: tuple[str, ...], what: str) -> None:
+    assert what in message(scenario(tmp_path), *option)
+
+
+@pytest.mark.parametrize("engine", ["native", "python", "fmpy"])
+def test_every_engine_tells_the_fmus_own_message(tmp_path: Path, engine: str) -> None:
+    folder = scenario(tmp_path, program="G21\nG1 X5 Q3 F100\n")
+    with pytest.raises(motionfmu.InputError) as caught:
+        motionfmu.load(folder).run(engine=engine, fmi=2)
+    name = "" if engine == "fmpy" else "mcc: "  # FMPy's container drops the component's name
+    expected = f'{name}{folder}/circle.ngc: line 2: unknown word "Q3"'
+    assert str(caught.value) == f"{folder}/scenario.toml: {expected}"
+
+
+def test_files_that_are_no_scenario(tmp_path: Path) -> None:
+    for name, content, what in (
+        ("none", None, "none: no such scenario"),
+        ("empty", "", "empty/scenario.toml:1: the first line is a comment"),
+        ("torn", "# about\nstop = \n", "torn/scenario.toml:2: "),
+        ("binary", b"\xff\xfe\x00", "not UTF-8 text"),
+        ("short", "# about\nstop = 1.0\n", "step is missing"),
+    ):
+        if content is not None:
+            (tmp_path / name).mkdir()
+            raw = content if isinstance(content, bytes) else content.encode()
+            (tmp_path / name / "scenario.toml").write_bytes(raw)
+        assert what in message(tmp_path / name)
+
+
+def test_a_foreign_folder_is_never_replaced(tmp_path: Path) -> None:
+    folder = scenario(tmp_path)
+    (tmp_path / "precious").mkdir()
+    (tmp_path / "precious/thesis.txt").write_text("years of work")
+    command = [sys.executable, "-m", "motionfmu", "run", folder, "--out", tmp_path / "precious"]
+    run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "src")
+    assert run.returncode == 2
+    assert "holds no earlier result" in run.stderr
+    assert (tmp_path / "precious/thesis.txt").read_text() == "years of work"

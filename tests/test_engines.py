@@ -1,0 +1,144 @@
+"""All engines and both FMI versions give the same bits; so does any step that divides the grids."""
+
+import functools
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import motionfmu
+
+SCENARIOS = sorted(p.parent.name for p in ROOT.glob("scenarios/*/scenario.toml"))
+# The reference engines take a Python call per value and step; this much of a run is enough motion.
+SHORT = 0.4  # [s]
+DRIVEN = """
+[[drive]]
+input = "mcc.hold"
+at    = [0.3, 0.5]
+value = [true, false]
+
+[[drive]]
+input = "mcc.override"
+at    = [0.1, 0.6, 0.8]
+value = [0.5, 1.5, 1.0]
+
+[[drive]]
+input = "mcc.abort"
+at    = [0.9]
+value = [true]
+
+[record]
+"""
+
+
+@functools.cache
+def native(scenario: str, stop: float | None = None) -> motionfmu.Result:
+    return motionfmu.load(ROOT / "scenarios" / scenario).run(stop=stop)
+
+
+def differing(a: motionfmu.Result, b: motionfmu.Result, every: int = 1) -> list[str]:
+    """Signals of which the rows of `a` and every n-th row of `b` differ in a bit."""
+    assert set(a.signals) == set(b.signals) and len(a.time) > 0
+    return [k for k, x in a.signals.items() if x.tobytes() != b.signals[k][::every].tobytes()]
+
+
+def moved(result: motionfmu.Result) -> bool:
+    return bool(np.ptp(result["card.pulse_count"]) > 100)
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS)
+def test_every_scenario_holds_its_verdict(scenario: str) -> None:
+    result = native(scenario)
+    assert result.checks
+    assert [v for v in result.checks if not v.ok] == []
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS)
+def test_fmi_2_gives_the_bits_of_fmi_3(scenario: str) -> None:
+    whole = native(scenario)
+    other = motionfmu.load(ROOT / "scenarios" / scenario).run(fmi=2)
+    assert differing(whole, other) == []
+    assert whole.geometry == other.geometry
+
+
+@pytest.mark.parametrize(("engine", "fmi"), [("python", 3), ("python", 2), ("fmpy", 2)])
+@pytest.mark.parametrize("scenario", SCENARIOS)
+def test_engines_agree_to_the_bit(scenario: str, engine: str, fmi: int) -> None:
+    one = native(scenario, SHORT)
+    other = motionfmu.load(ROOT / "scenarios" / scenario).run(engine=engine, fmi=fmi, stop=SHORT)
+    flags = {k for k, x in one.signals.items() if x.dtype == bool}
+    found = differing(one, other)
+    assert [k for k in found if not (engine == "fmpy" and k in flags)] == []
+    assert moved(one) or scenario == "circle"
+
+
+@pytest.mark.parametrize(("engine", "fmi"), [("python", 3), ("fmpy", 2)])
+def test_engines_agree_over_a_whole_run(engine: str, fmi: int) -> None:
+    one = native("mismatch_line")
+    other = motionfmu.load(ROOT / "scenarios/mismatch_line").run(engine=engine, fmi=fmi)
+    assert [k for k in differing(one, other) if k != "mcc.done"] == []
+    assert moved(one)
+
+
+@pytest.mark.parametrize("divisor", [2, 4, 10])
+@pytest.mark.parametrize("scenario", SCENARIOS)
+def test_dividing_the_step_changes_no_bit(scenario: str, divisor: int) -> None:
+    loaded = motionfmu.load(ROOT / "scenarios" / scenario)
+    stop = min(loaded.document.body.stop, 2.0)
+    coarse = native(scenario, stop)
+    fine = loaded.run(step=loaded.document.body.step / divisor, stop=stop)
+    assert len(fine.time) == divisor * len(coarse.time)
+    assert differing(coarse, fine, divisor) == []
+    assert moved(coarse)
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A scenario outside the project that is held, overridden and aborted while it moves."""
+    folder = tmp_path_factory.mktemp("driven") / "here with space"
+    folder.mkdir()
+    text = (ROOT / "scenarios/circle_theory/scenario.toml").read_text()
+    text = text.replace("[record]\n", DRIVEN).replace("stop = 3.0", "stop = 1.5")
+    text = text.replace('"mcc.hold", "mcc.abort", "mcc.override", ', "")
+    text = text[: text.index("[check]")]
+    (folder / "scenario.toml").write_text(text)
+    program = (ROOT / "scenarios/circle_theory/circle.ngc").read_text()
+    (folder / "circle.ngc").write_text(program)
+    return folder
+
+
+def test_stimuli_reach_every_engine_alike(driven: Path) -> None:
+    loaded = motionfmu.load(driven)
+    one = loaded.run()
+    t, feed = one.time, one["mcc.path_feed"]
+    assert feed[(t > 0.45) & (t < 0.5)].max() == 0.0, "held"
+    assert feed[(t > 0.6) & (t < 0.9)].max() > 50.0, "faster than the programmed 50 mm/s"
+    assert feed[-1] == 0.0 and one["mcc.status"][-1] == 1, "aborted"
+    for engine, fmi in (("native", 2), ("python", 3), ("python", 2), ("fmpy", 2)):
+        other = loaded.run(engine=engine, fmi=fmi)
+        assert [k for k in differing(one, other) if k != "mcc.done"] == [], (engine, fmi)
+
+
+@pytest.mark.parametrize("divisor", [2, 4, 10])
+def test_stimuli_stay_where_they_are_when_the_step_is_divided(driven: Path, divisor: int) -> None:
+    loaded = motionfmu.load(driven)
+    assert differing(loaded.run(), loaded.run(step=1e-4 / divisor), divisor) == []
+
+
+def test_more_signals_than_one_scope_holds() -> None:
+    """Ten groups of six integers need a second scope."""
+    loaded = motionfmu.load(ROOT / "scenarios/mismatch_line")
+    wide = [e for e in loaded.resolver.matching("*", "output") if e.port.shape == (6,)]
+    loaded.ends = list({e.name: e for e in [*loaded.ends, *wide]}.values())
+    assert sum(e.port.type != "Float64" for e in loaded.ends if e.port.shape) > 9
+    whole, plain = loaded.run(stop=SHORT), native("mismatch_line", SHORT)
+    assert all(np.array_equal(whole[k], x) for k, x in plain.signals.items())
+
+
+def test_a_difference_would_be_seen() -> None:
+    one = native("mismatch_line", SHORT)
+    other = motionfmu.load(ROOT / "scenarios/mismatch_line").run(
+        stop=SHORT, set={"mcc.irq_latency": 3e-4}
+    )
+    assert "card.stock" in differing(one, other)
