@@ -127,12 +127,13 @@ def test_stimuli_stay_where_they_are_when_the_step_is_divided(driven: Path, divi
 
 
 def test_more_signals_than_one_scope_holds() -> None:
-    """Ten groups of six integers need a second scope."""
-    loaded = motionfmu.load(ROOT / "scenarios/mismatch_line")
+    """A scope has ten groups of six real channels."""
+    loaded = motionfmu.load(ROOT / "scenarios/circle")
     wide = [e for e in loaded.resolver.matching("*", "output") if e.port.shape == (6,)]
     loaded.ends = list({e.name: e for e in [*loaded.ends, *wide]}.values())
-    assert sum(e.port.type != "Float64" for e in loaded.ends if e.port.shape) > 9
-    whole, plain = loaded.run(stop=SHORT), native("mismatch_line", SHORT)
+    assert sum(e.port.type == "Float64" for e in loaded.ends if e.port.shape) > 10
+    whole, plain = loaded.run(stop=SHORT), native("circle", SHORT)
+    assert len(whole.signals) > len(plain.signals)
     assert all(np.array_equal(whole[k], x) for k, x in plain.signals.items())
 
 
