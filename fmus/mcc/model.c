@@ -185,6 +185,17 @@ static void read_bus(struct fmu *f, int64_t at)
     pc_instant(pc, at / CLOCK_NS, &card, &panel, text, length);
 }
 
+/* A full FIFO drains, so nothing that passes by itself explains so many refusals. */
+static int refused_by_card(struct fmu *f)
+{
+    const struct pcl *pcl = &f->s.m.pc.pcl;
+
+    return fmu_fail(f, "the card has refused every frame of %d transactions in a row, with %d "
+                    "commands in the FIFO of axis %d: is every axis that is active here active "
+                    "on the card?", PCL_REFUSALS, (int)f->s.v.card_stock[pcl->axis],
+                    (int)pcl->axis + 1);
+}
+
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;
@@ -202,6 +213,9 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
             return 0;
         }
         read_bus(f, m->instant);
+        if (m->pc.pcl.refusals >= PCL_REFUSALS) {
+            return refused_by_card(f);
+        }
         m->instant += m->bus;
         m->unpublished = true;
     }

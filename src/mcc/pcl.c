@@ -38,6 +38,7 @@ static void acknowledged(struct pcl *p, struct mcc *m, int64_t refused)
         p->starved += p->late ? taken - points : 0;
     }
     p->prime = p->prime > taken ? p->prime - taken : 0;
+    p->refusals = taken > 0 ? 0 : p->refusals + 1;
     p->open = false;
 }
 

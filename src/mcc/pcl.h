@@ -11,7 +11,11 @@
 
 #include "task.h"
 
-enum { PCL_FRAMES = 16, PCL_FIFO = 63 };
+enum {
+    PCL_FRAMES = 16,
+    PCL_FIFO = 63,
+    PCL_REFUSALS = 3    /* wholly refused transactions in a row that no full FIFO explains */
+};
 
 /* What the card shows on its bus. */
 struct pcl_card {
@@ -36,6 +40,7 @@ struct pcl {
     bool    late;               /* the others are standstill in the middle of a motion */
     int32_t frames[PCL_FRAMES][AXES];
 
+    int32_t refusals;           /* transactions in a row of which the card took nothing */
     int64_t pending;            /* interrupts not served */
     int64_t due;                /* clock of the next service */
     int64_t raised;             /* clock of its interrupt, -1 if none asked for it */
