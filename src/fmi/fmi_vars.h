@@ -2,7 +2,7 @@
 #ifndef FMI_VARS_H
 #define FMI_VARS_H
 
-#include <math.h>
+#include <float.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -21,7 +21,7 @@ struct var_info {
     uint8_t  type;        /* enum var_type */
     uint8_t  causality;   /* enum var_causality */
     uint8_t  variability; /* enum var_variability */
-    double   min, max;    /* -INFINITY, INFINITY where there is no limit */
+    double   min, max;    /* -DBL_MAX, DBL_MAX where there is no limit: finite at least */
 };
 
 #endif

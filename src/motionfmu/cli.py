@@ -164,8 +164,8 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     engine: Engine = "native",
     fmi: Fmi = None,
     set_: Set = [],  # noqa: B006  (typer makes a new list)
-    stop: Annotated[float | None, typer.Option(help="Instead of the scenario's [s].")] = None,
-    step: Annotated[float | None, typer.Option(help="Instead of the scenario's [s].")] = None,
+    stop: Annotated[float | None, typer.Option(help="Seconds, instead of the scenario's.")] = None,
+    step: Annotated[float | None, typer.Option(help="Seconds, instead of the scenario's.")] = None,
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
     csv: Annotated[bool, typer.Option("--csv", help="Also write signals.csv.")] = False,
 ) -> None:

@@ -74,8 +74,8 @@ def table(d: Description) -> str:
         if v.start is not None:
             values = _nested([_literal(x) for x in v.start], v.dims)
             starts.append(f"    .{v.name} = {values},")
-        low = "-INFINITY" if v.min is None else repr(float(v.min))
-        high = "INFINITY" if v.max is None else repr(float(v.max))
+        low = "-DBL_MAX" if v.min is None else repr(float(v.min))
+        high = "DBL_MAX" if v.max is None else repr(float(v.max))
         rows.append(
             f'    {{"{v.name}", {ref}, {v.count}, offsetof(struct vars, {v.name}), '
             f"VAR_{v.type.upper()}, CAUSE_{v.causality.upper()}, {_VARY[v.variability]}, "
@@ -84,7 +84,7 @@ def table(d: Description) -> str:
         refs += [str(row)] * v.count
     lines = [", ".join(refs[i : i + 24]) for i in range(0, len(refs), 24)]
     return (
-        f'{_NOTE}#include <math.h>\n#include <stddef.h>\n#include "fmi_vars.h"\n\n'
+        f'{_NOTE}#include <float.h>\n#include <stddef.h>\n#include "fmi_vars.h"\n\n'
         "static const struct vars vars_start = {\n" + "\n".join(starts) + "\n};\n\n"
         "static const struct var_info var_table[FMU_NVARS] = {\n" + "\n".join(rows) + "\n};\n\n"
         "static const uint16_t var_of_ref[FMU_NREFS] = {\n    " + ",\n    ".join(lines) + "\n};\n"

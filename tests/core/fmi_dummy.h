@@ -34,19 +34,19 @@ static const struct vars vars_start = {.name = "good", .gain = 2.0, .u = {1.0, 2
 
 static const struct var_info var_table[FMU_NVARS] = {
     {"name", 0, 1, offsetof(struct vars, name), VAR_STRING, CAUSE_PARAMETER, VARY_FIXED,
-     -INFINITY, INFINITY},
+     -DBL_MAX, DBL_MAX},
     {"gain", 1, 1, offsetof(struct vars, gain), VAR_F64, CAUSE_PARAMETER, VARY_FIXED, 0.0, 100.0},
     {"trim", 2, 1, offsetof(struct vars, trim), VAR_F64, CAUSE_PARAMETER, VARY_TUNABLE,
-     -INFINITY, INFINITY},
-    {"u", 3, 3, offsetof(struct vars, u), VAR_F64, CAUSE_INPUT, VARY_DISCRETE, -INFINITY,
-     INFINITY},
+     -DBL_MAX, DBL_MAX},
+    {"u", 3, 3, offsetof(struct vars, u), VAR_F64, CAUSE_INPUT, VARY_DISCRETE, -DBL_MAX,
+     DBL_MAX},
     {"n", 6, 1, offsetof(struct vars, n), VAR_I32, CAUSE_INPUT, VARY_DISCRETE, -5, 5},
-    {"on", 7, 2, offsetof(struct vars, on), VAR_BOOL, CAUSE_INPUT, VARY_DISCRETE, -INFINITY,
-     INFINITY},
-    {"y", 9, 2, offsetof(struct vars, y), VAR_F64, CAUSE_OUTPUT, VARY_CONTINUOUS, -INFINITY,
-     INFINITY},
-    {"steps", 11, 1, offsetof(struct vars, steps), VAR_I32, CAUSE_LOCAL, VARY_DISCRETE, -INFINITY,
-     INFINITY},
+    {"on", 7, 2, offsetof(struct vars, on), VAR_BOOL, CAUSE_INPUT, VARY_DISCRETE, -DBL_MAX,
+     DBL_MAX},
+    {"y", 9, 2, offsetof(struct vars, y), VAR_F64, CAUSE_OUTPUT, VARY_CONTINUOUS, -DBL_MAX,
+     DBL_MAX},
+    {"steps", 11, 1, offsetof(struct vars, steps), VAR_I32, CAUSE_LOCAL, VARY_DISCRETE, -DBL_MAX,
+     DBL_MAX},
 };
 
 static const uint16_t var_of_ref[FMU_NREFS] = {0, 1, 2, 3, 3, 3, 4, 5, 5, 6, 6, 7};

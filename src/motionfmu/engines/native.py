@@ -6,6 +6,7 @@ exchanges all values and then steps all FMUs (Jacobi). It is run by FMPy in few 
 
 import logging
 import tempfile
+import zipfile
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
@@ -25,6 +26,24 @@ PARTS = 100
 def _exposed(end: End, fmi: int) -> list[str]:
     """Names of a port, by element in FMI 2."""
     return [end.port.name] if fmi == 3 else element_names(end)
+
+
+class _Folder(FMUContainer):
+    """A container that stays a folder: it is run here, so nobody needs its archive."""
+
+    def make_fmu_package(self, base_directory: Path, fmu_filename: Path) -> None:
+        """Do nothing; the base class compresses everything."""
+
+
+def _runnable(source: Path, folder: Path) -> Path:
+    """A copy of an FMU with only what runs: most of an FMU's files are its C sources."""
+    target = folder / source.name
+    if not target.exists():
+        with zipfile.ZipFile(source) as whole, zipfile.ZipFile(target, "w") as part:
+            for entry in whole.namelist():
+                if not entry.startswith(("sources/", "documentation/")):
+                    part.writestr(entry, whole.read(entry))
+    return target
 
 
 def build(system: System, fmi: int, folder: Path) -> Path:
@@ -49,10 +68,10 @@ def build(system: System, fmi: int, folder: Path) -> Path:
     log = logging.getLogger("fmu_manipulation_toolbox")
     before, log.disabled = log.disabled, True  # it warns of every output that nothing reads
     try:
-        container = FMUContainer(IDENTIFIER, folder, fmi_version=fmi)
+        container = _Folder(IDENTIFIER, folder, fmi_version=fmi)
         container.start_time, container.stop_time = 0.0, system.steps * system.step_ns * 1e-9
         for name, fmu in system.components.items():
-            container.get_fmu(str(fmus.fmu_path(fmu, fmi)), name=f"{name}.fmu")
+            container.get_fmu(str(_runnable(fmus.fmu_path(fmu, fmi), folder)), name=f"{name}.fmu")
         for wire in system.wires:
             container.add_link(
                 f"{wire.source.component}.fmu",

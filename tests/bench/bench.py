@@ -1,0 +1,156 @@
+"""Speed of the engines, as ratios measured in one run: `make bench`.
+
+Every quantity is the best of several rounds, and the rounds take turns, so that a busy machine
+slows all of them alike. README.md beside this file says what each line means and
+where the time goes.
+"""
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.progress import Progress
+
+import motionfmu
+
+ROOT = Path(__file__).resolve().parents[2]
+DEMO = ROOT / "scenarios/circle"
+SIX_AXES = Path(__file__).parent / "six_axes"
+FUSED = ROOT / "build/tests/bench/fused"
+ROUNDS = 5
+SLOW_STOP = 0.2  # [s] simulated by the engines that go through Python at every step
+
+
+class Clock:
+    """Takes the time between the first and the last report of progress before the end."""
+
+    def __init__(self) -> None:
+        self.marks: list[tuple[float, float]] = []
+
+    def __call__(self, share: float) -> None:
+        if share < 1.0:
+            self.marks.append((share, time.perf_counter()))
+
+    def seconds(self) -> float:
+        """Time of the whole loop, from the part that was seen."""
+        (first, start), (last, end) = self.marks[0], self.marks[-1]
+        return (end - start) / (last - first)
+
+
+class Timed:
+    """A scenario under one engine: seconds of its loop and of the whole run, best of all rounds."""
+
+    def __init__(self, scenario: Path, **options: Any) -> None:
+        self.scenario, self.options = motionfmu.load(scenario), options
+        self.loop = self.whole = float("inf")
+        self.result: motionfmu.Result | None = None
+
+    def __call__(self) -> None:
+        clock = Clock()
+        start = time.perf_counter()
+        self.result = self.scenario.run(progress=clock, **self.options)
+        self.whole = min(self.whole, time.perf_counter() - start)
+        self.loop = min(self.loop, clock.seconds())
+
+    @property
+    def steps(self) -> int:
+        assert self.result is not None
+        return len(self.result.time)
+
+    @property
+    def simulated(self) -> float:
+        """Simulated time [s]."""
+        return float(self.options.get("stop") or self.scenario.document.body.stop)
+
+    @property
+    def fmus(self) -> int:
+        """FMUs stepped, the recorder among them."""
+        return len(self.scenario.document.body.component) + 1
+
+
+class Fused:
+    """The demo's loop without FMI, tests/bench/fused.c."""
+
+    def __init__(self, steps: int) -> None:
+        self.steps, self.loop = steps, float("inf")
+        layout = subprocess.check_output([FUSED, "--layout"], text=True).split("\n")
+        *rows, size = [line.split() for line in layout if line]
+        kinds = {"double": "f8", "int32_t": "i4", "bool": "?"}
+        self.type = np.dtype(
+            {
+                "names": [row[0] for row in rows],
+                "formats": [(kinds[row[1]], int(row[2])) for row in rows],
+                "offsets": [int(row[3]) for row in rows],
+                "itemsize": int(size[1]),
+            }
+        )
+        self.data = np.zeros(0, self.type)
+
+    def __call__(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "rows"
+            program = str(DEMO / "circle.ngc")
+            told = subprocess.check_output([FUSED, program, str(self.steps), file], text=True)
+            self.loop = min(self.loop, float(told))
+            self.data = np.fromfile(file, self.type)
+
+    def check(self, result: motionfmu.Result) -> None:
+        """The same bits as the engine gave, or it is another loop."""
+        for name, signal in result.signals.items():
+            if not np.array_equal(self.data[name].reshape(signal.shape), signal):
+                sys.exit(f"bench: {name} differs between the fused loop and the native engine")
+
+
+def rounds(runs: list[Callable[[], None]]) -> None:
+    """Let all take turns."""
+    with Progress(transient=True, console=Console(stderr=True)) as progress:
+        task = progress.add_task("measuring", total=ROUNDS * len(runs))
+        for _ in range(ROUNDS):
+            for run in runs:
+                run()
+                progress.advance(task)
+
+
+def verdict(what: str, figure: float, most: float = np.inf, least: float = 0.0) -> None:
+    """Print a ratio beside what is asked of it."""
+    asked = f"at most {most:g}" if least == 0.0 else f"at least {least:g}"
+    print(f"{what:44}{figure:8.2f}   {'' if least <= figure <= most else 'MISSED, '}asked: {asked}")
+
+
+def main() -> None:
+    native, six = Timed(DEMO), Timed(SIX_AXES)
+    engines = {
+        "native, FMI 3": native,
+        "native, FMI 2": Timed(DEMO, fmi=2),
+        "python, FMI 3": Timed(DEMO, engine="python", stop=SLOW_STOP),
+        "python, FMI 2": Timed(DEMO, engine="python", fmi=2, stop=SLOW_STOP),
+        "fmpy (container), FMI 2": Timed(DEMO, engine="fmpy", fmi=2, stop=SLOW_STOP),
+    }
+    native()
+    assert native.result is not None
+    fused = Fused(native.steps)
+    rounds([fused, *engines.values(), six])
+    fused.check(native.result)
+
+    base = fused.loop / fused.steps
+    print(f"{'demo, one step of all FMUs':28}{'ns':>10}{'ns/FMU':>10}{'x fused':>10}")
+    print(f"{'fused in C, no FMI':28}{base * 1e9:10.0f}{'':>10}{1.0:10.2f}")
+    for name, run in engines.items():
+        step = run.loop / run.steps
+        print(f"{name:28}{step * 1e9:10.0f}{step / run.fmus * 1e9:10.0f}{step / base:10.2f}")
+    print(f"\n{'simulated s per wall s':28}{'loop':>10}{'whole run':>10}")
+    for name, run in (("demo", native), ("six ball-screw axes", six)):
+        print(f"{name:28}{run.simulated / run.loop:10.1f}{run.simulated / run.whole:10.1f}")
+    print()
+    verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
+    verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
+
+
+if __name__ == "__main__":
+    main()
