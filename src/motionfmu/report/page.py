@@ -246,7 +246,7 @@ def _add_time(page: _Page, contour: ContourResult) -> None:
         page.section("FIFO and interrupts", note, page.place("fifo", fifo, True))
     for i, (title, drawn) in enumerate(trace_figures(contour)):
         content = page.place(f"trace{i}", drawn, True)
-        page.section(escape(title[:1].upper() + title[1:]), "", content)
+        page.section(escape(title), "", content)
 
 
 def _add_corners(page: _Page, contour: ContourResult) -> None:

@@ -1,0 +1,116 @@
+"""The page says what was computed: its curves hold the very numbers, peaks included."""
+
+import base64
+import json
+import re
+from pathlib import Path
+
+import matplotlib.image
+import numpy as np
+import pytest
+from conftest import ROOT
+from hypothesis import given
+from hypothesis import strategies as st
+
+import motionfmu
+from motionfmu.report import write_report
+from motionfmu.report.decimate import keep_peaks
+from motionfmu.report.numbers import figure, length, magnification
+from motionfmu.report.packed import packed
+
+FLOAT32 = 1e-6
+
+
+def unpacked(value: object) -> np.ndarray:
+    if isinstance(value, dict):
+        return np.frombuffer(base64.b64decode(value["bdata"]), "<" + value["dtype"])
+    return np.asarray(value, dtype=float)
+
+
+@pytest.fixture(scope="module")
+def reported(tmp_path_factory: pytest.TempPathFactory):
+    folder = tmp_path_factory.mktemp("report")
+    result = motionfmu.load(ROOT / "scenarios/circle").run()
+    page = write_report(result, result.contour(), folder).read_text()
+    data = re.search(r'id="data">(.*?)</script>', page, re.DOTALL)
+    assert data
+    return result, folder, page, json.loads(data[1])
+
+
+def traces(data, name: str) -> list[dict]:
+    return next(f for f in data["figures"] if f["id"] == name)["data"]
+
+
+@given(
+    st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=400), st.integers(1, 40), st.integers(1, 3)
+)
+def test_no_peak_is_lost(values: list[float], buckets: int, columns: int) -> None:
+    data = np.array(values)[: len(values) // columns * columns].reshape(-1, columns)
+    if not len(data):
+        return
+    kept = keep_peaks(data, buckets)
+    assert np.array_equal(kept, np.unique(kept)) and kept[0] == 0 and kept[-1] == len(data) - 1
+    assert len(kept) <= 2 * buckets * columns + 2
+    for column in data.T:
+        assert column[kept].max() == column.max() and column[kept].min() == column.min()
+
+
+@given(st.lists(st.floats(-1e3, 1e3, width=32), max_size=30))
+def test_packed_numbers_come_back(values: list[float]) -> None:
+    assert np.array_equal(unpacked(packed(np.array(values))), np.array(values, np.float32))
+
+
+def test_the_error_curve_has_the_largest_error(reported) -> None:
+    result, _, _, data = reported
+    error = result.contour().error
+    curve, peak = (t for t in traces(data, "error") if "y" in t)
+    shown = np.abs(unpacked(curve["y"]))
+    assert np.nanmax(shown) == pytest.approx(1e3 * error.max, rel=FLOAT32)
+    at = unpacked(curve["x"])[np.nanargmax(shown)]
+    assert at == pytest.approx(error.time, abs=1e-4)
+    assert unpacked(peak["x"])[0] == error.time and length(error.max) in peak["text"][0]
+
+
+def test_the_path_is_drawn_with_the_true_error(reported) -> None:
+    result, _, _, data = reported
+    gap = np.hypot(*(unpacked(c) for c in data["path"]["gap"]))
+    assert np.nanmax(gap) == pytest.approx(result.contour().error.max, rel=1e-5)
+    foot = np.hypot(*(unpacked(c) for c in data["path"]["foot"]))
+    assert np.allclose(foot, 50.0, atol=1e-4)  # the nearest point is on the commanded circle
+
+
+def test_the_fifo_curve_reaches_the_least_stock(reported) -> None:
+    result, _, _, data = reported
+    least = result["card.stock"][:, :2].min(axis=1)
+    shown = np.concatenate([unpacked(t["y"]) for t in traces(data, "fifo") if "y" in t])
+    assert least[100:-100].min() in shown
+
+
+def test_the_polar_plot_shows_both_ways(reported) -> None:
+    result, _, page, data = reported
+    names = {str(t.get("name", "")).lower() for t in traces(data, "circle0")}
+    assert any("counter" in n for n in names) and any(re.match("clockwise", n) for n in names)
+    assert "ISO 230-4" in page and figure(1e3 * result.contour().circles[0].both.g) in page
+
+
+def test_the_pictures_are_pictures(reported) -> None:
+    _, folder, _, _ = reported
+    picture = matplotlib.image.imread(folder / "path.png")
+    assert min(picture.shape[:2]) > 500 and len(np.unique(picture.reshape(-1, 4), axis=0)) > 50
+    assert (folder / "path.svg").read_text().lstrip().startswith("<?xml")
+
+
+def test_the_page_tells_a_failed_check(tmp_path: Path) -> None:
+    gains = {"mcc.p_gain": 200}
+    result = motionfmu.load(ROOT / "scenarios/mismatch_line").run(set=gains)
+    page = write_report(result, result.contour(), tmp_path).read_text()
+    assert re.search(r"✗ \d of \d+ checks failed", page)
+
+
+@pytest.mark.parametrize(
+    ("errors", "size", "reach"), [((0.01, 0.04), 100.0, 100.0), ((1e-4, 1e-3), 20.0, 1.0)]
+)
+def test_the_magnification_keeps_details_apart(errors, size: float, reach: float) -> None:
+    factor = magnification(errors, size, reach)
+    assert factor >= 1.0 and factor * errors[1] <= 0.5 * reach + 1e-12
+    assert magnification((0.0, 0.0), size, reach) == 1.0
