@@ -11,6 +11,7 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
+from motionfmu.outcome import save
 
 
 def command(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -125,3 +126,14 @@ def test_progress_ends_at_one_and_never_falls() -> None:
     motionfmu.load(ROOT / "scenarios/mismatch_line").run(stop=0.5, progress=shares.append)
     assert len(shares) >= 50 and shares[-1] == 1.0
     assert shares == sorted(shares)
+
+
+def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch) -> None:
+    def full(*_, **__) -> None:
+        raise OSError(28, "No space left on device")
+
+    result = motionfmu.load(ROOT / "scenarios/circle").run(stop=0.01)
+    monkeypatch.setattr("motionfmu.outcome.np.savez_compressed", full)
+    with pytest.raises(motionfmu.InputError, match=r"cannot write .*No space left on device"):
+        save(result, tmp_path / "a/b/result", {})
+    assert list(tmp_path.iterdir()) == []

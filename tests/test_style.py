@@ -98,6 +98,15 @@ def test_c_file_names_are_unique_because_sources_are_packed_flat() -> None:
     assert sorted(names) == sorted(set(names))
 
 
+@pytest.mark.parametrize(
+    "folder",
+    sorted(f.parent for f in (*ROOT.glob("fmus/*/fmu.toml"), *ROOT.glob("scenarios/*/*.toml"))),
+    ids=lambda f: f.name,
+)
+def test_every_fmu_and_scenario_says_what_it_is(folder: Path) -> None:
+    assert (folder / "README.md").read_text().startswith("# ")
+
+
 def outside_names(library: Path) -> set[str]:
     listing = subprocess.run(["nm", library], capture_output=True, text=True, check=True).stdout
     rows = [line.split() for line in listing.splitlines()]

@@ -1,5 +1,6 @@
 """What a run leaves on disk: signals, numbers, report."""
 
+import contextlib
 import json
 import math
 import os
@@ -114,6 +115,7 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
     folder = usable(folder)
     part = folder.with_name(f".{folder.name}.part{os.getpid()}")
     old = folder.with_name(f".{folder.name}.old{os.getpid()}")
+    new_parents = [p for p in part.parents if not p.exists()]
     try:
         part.mkdir(parents=True)
         arrays: dict[str, Any] = {"time": result.time, **result.signals}
@@ -136,4 +138,7 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
     finally:
         shutil.rmtree(part, ignore_errors=True)
         shutil.rmtree(old, ignore_errors=True)
+        for parent in new_parents:
+            with contextlib.suppress(OSError):
+                parent.rmdir()  # refused where the result stands
     return folder / shown
