@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 TICK = 25e-9
 TL = 4000  # [clocks] the default loop_period, 100 us
+DDA_PAGE, ENC6_PAGE, LIO_PAGE, PAGES = 0, 3, 7, 9  # pages of the interrupt latch
 DDA = {"host_dda_length": 10, "host_dda_divider": 4}  # one DDA time is 4096 clocks
 T = 4096
 
@@ -28,6 +29,11 @@ def to_clock(fmu: Instance, clock: int) -> None:
     fmu.time = clock * TICK
 
 
+def page(number: int, bits: int) -> list[int]:
+    """Bits on one page of the interrupt latch."""
+    return [bits if i == number else 0 for i in range(PAGES)]
+
+
 def frames(*rows: list[int]) -> dict[str, Any]:
     """The registers of a transaction of these frames."""
     full = [r + [0] * (6 - len(r)) for r in rows] + [[0] * 6] * (16 - len(rows))
@@ -39,12 +45,23 @@ def send(fmu: Instance, number: int, clock: int, *rows: list[int]) -> None:
         assert fmu.set(name, value) == OK, fmu.said
 
 
+def register(*writes: tuple[int, float]) -> dict[str, Any]:
+    """The register mailbox with these writes."""
+    rest = [0] * (16 - len(writes))
+    return {
+        "reg_count": len(writes),
+        "reg_address": [a for a, _ in writes] + rest,
+        "reg_value": [float(v) for _, v in writes] + rest,
+    }
+
+
 def traffic(seed: int, instants: int) -> Iterator[dict[str, Any]]:
     """What a busy host and moving axes put on the wires at each instant."""
     rng = random.Random(seed)
     number = {"host_cmd_seq": 0, "host_ack_seq": 0, "host_clear_seq": 0}
     phase = [rng.uniform(-3000, 3000) for _ in range(9)]
-    levels: dict[str, Any] = {"host_irq_mask": 0x3FFFFF, **DDA}
+    every = [0xFFFF] * PAGES
+    levels: dict[str, Any] = {"host_irq_mask": every, **DDA}
     for k in range(instants):
         row = {}
         if rng.random() < 0.4:
@@ -54,7 +71,7 @@ def traffic(seed: int, instants: int) -> Iterator[dict[str, Any]]:
             row |= frames(*rows) | {"host_cmd_clock": float(clock)}
         if rng.random() < 0.3:
             number["host_ack_seq"] += 1
-            row["host_ack_flags"] = rng.getrandbits(22)
+            row["host_ack_flags"] = [rng.getrandbits(16) for _ in range(PAGES)]
         if rng.random() < 0.02:
             number["host_clear_seq"] += 1
         if rng.random() < 0.05:
@@ -62,11 +79,18 @@ def traffic(seed: int, instants: int) -> Iterator[dict[str, Any]]:
             levels["host_dda_divider"] = rng.randint(1, 5)
         levels["host_dda_run"] = rng.random() < 0.95
         levels["host_min_stock"] = rng.choice([3, 3, 3, 0, 7])
-        levels["host_irq_mask"] = rng.choice([0x3FFFFF, 0x3F, levels["host_irq_mask"]])
+        levels["host_irq_mask"] = rng.choice([every, page(0, 0x3F), levels["host_irq_mask"]])
         levels["host_loop_on"] = [rng.random() < 0.95 for _ in range(6)]
         levels["host_dac_source"] = [1, 1, 0, rng.randint(0, 1), 1, 1]
         levels["host_dac_volts"] = [rng.uniform(-12, 12) for _ in range(6)]
         phase = [p + rng.uniform(-3, 3) * 10 ** rng.uniform(-3, 3) for p in phase]
+        levels["io_volts"] = [rng.uniform(-10, 10) for _ in range(6)]
+        levels["io_ldi"] = [rng.random() < 0.3 for _ in range(8)]
+        levels["io_remote"] = [rng.getrandbits(16) for _ in range(24)]
+        levels["io_remote_connected"] = [rng.random() < 0.9 for _ in range(6)]
+        if rng.random() < 0.1:
+            number["reg_seq"] = number.get("reg_seq", 0) + 1
+            row |= register(rng.choice([(0x150, 300), (0x180, 0x6001), (0x540, 5001), (0x543, 1)]))
         row |= {"enc_phase": phase[:6], "enc_phase_aux": phase[6:], **number, **levels}
         yield row
 
@@ -83,8 +107,22 @@ def test_any_split_into_steps_gives_the_same_bits(seed: int, period: float) -> N
     rng = random.Random(seed)
     extra = {
         "index_lines": 100,
-        "enc_rate": [4, 2, 1, 4, 0, 4],
-        "enc_inverse": [False, True, True, False, False, False],
+        "enc_rate": [4, 2, 1, 4, 0, 4, 4, 4, 4],
+        "enc_wiring": [0, 4, 1, 0, 0, 0, 8, 2, 15],
+        "enc_filter": [0, 0, 0, 20, 0, 0, 3, 0, 40],
+        "compare_on": True,
+        "compare": 500,
+        "latch_source": 0x61FF,
+        "latch_last": [True, False, True, False, True, False, True, False, True],
+        "adc_run": True,
+        "adc_compare_on": 255,
+        "adc_tagged": 9,
+        "timer_period": 7777,
+        "watchdog_value": 1000,
+        "rio_enabled": [5, 2],
+        "rio_edge": 2,
+        "ldi_edge": 2,
+        "pulse_lines": True,
         "active": [True, True, True, True, True, False],
         "loop_period": period,
     }
@@ -110,7 +148,7 @@ def test_any_split_into_steps_gives_the_same_bits(seed: int, period: float) -> N
 @pytest.mark.parametrize("late", [-1, 0, 1])
 def test_deadline_of_a_refill_to_the_clock(fmi: int, late: int) -> None:
     """n = 3, N = 4: in time one clock before (n + 1) T, too late at it and after."""
-    fmu = card(fmi, host_irq_mask=1, host_min_stock=3)
+    fmu = card(fmi, host_irq_mask=page(DDA_PAGE, 1), host_min_stock=3)
     send(fmu, 1, 100, *[[100]] * 5)
     to_clock(fmu, 2 * T - 1)
     assert (fmu.get("stock")[0], fmu.get("irq_seq")) == (4, [0])
@@ -171,11 +209,11 @@ def test_a_voltage_stands_one_period_after_its_cause() -> None:
 
 
 def test_index_interrupt_carries_its_interpolated_clock() -> None:
-    fmu = card(host_irq_mask=1 << 19, index_lines_aux=[10, 2500, 2500], index_lines=10)
+    fmu = card(host_irq_mask=page(ENC6_PAGE, 1 << 3), index_lines=10)
     to_clock(fmu, TL)
     fmu.set("enc_phase_aux", [40.0, 0.0, 0.0])  # four pulses; the first after a quarter of the way
     to_clock(fmu, 2 * TL)
-    assert fmu.get("irq_flags") == [(1 << 19) | (1 << 6)]
+    assert fmu.get("irq_flags") == [1 << 6, 0, 0, 1 << 3, 0, 0, 0, 0, 0]
     assert fmu.get("irq_seq") == [1]
     assert fmu.get("irq_clock") == [TL / 4]
     assert fmu.get("enc_count_aux") == [160, 0, 0]
@@ -183,14 +221,14 @@ def test_index_interrupt_carries_its_interpolated_clock() -> None:
 
 
 def test_an_acknowledge_keeps_what_fired_meanwhile() -> None:
-    fmu = card(host_irq_mask=0x3F, host_min_stock=0)
+    fmu = card(host_irq_mask=page(DDA_PAGE, 0x3F), host_min_stock=0)
     send(fmu, 1, 0, [5])
     to_clock(fmu, 2 * TL)
     assert fmu.get("irq_flags")[0] & 1  # fell to 0 at T
     send(fmu, 2, 2 * TL, [6])
     to_clock(fmu, 3 * TL)  # and again at 2 T, in this period
     assert fmu.get("irq_seq") == [1]
-    fmu.set("host_ack_flags", 0x3F)
+    fmu.set("host_ack_flags", page(DDA_PAGE, 0x3F))
     fmu.set("host_ack_seq", 1)
     to_clock(fmu, 4 * TL)
     assert fmu.get("irq_seq") == [2]
@@ -265,8 +303,8 @@ def test_pulses_out_are_commands_taken(
     [
         ("loop_period", 1.0001e-4 + 3e-9, "loop_period = 0.000100013"),
         ("loop_period", 2.6e-8, "not a whole number of 25 ns clocks"),
-        ("enc_rate", [4, 3, 4, 4, 4, 4], "enc_rate[2] = 3: an encoder multiplies by 0, 1, 2 or 4"),
-        ("enc_rate_aux", [4, 4, 3], "enc_rate_aux[3] = 3"),
+        ("enc_rate", [4, 3, *[4] * 7], "enc_rate[2] = 3: an encoder multiplies by 0, 1, 2 or 4"),
+        ("adc_bits", 13, "adc_bits = 13: the ADC has 12, 14 or 16 bit"),
     ],
 )
 def test_wrong_parameters_are_named(name: str, value: Any, message: str) -> None:

@@ -1,36 +1,34 @@
 /* The EPCIO card on the wires of a co-simulation: sampling grid, registers, mailboxes. */
 #include <math.h>
+#include <string.h>
 
-#include "epcio.h"
+#include "register_map.h"
+#include "registers.h"
 #include "vars.h"
 
 struct model {
     struct epcio card;
     int64_t period;         /* [clocks] sampling grid of loops and host bus */
     int64_t instant;        /* [clock] next instant of that grid */
+    bool    powered;        /* the first instant has passed */
     int32_t cmd_seq;        /* numbers taken last from the mailboxes */
     int32_t ack_seq;
     int32_t clear_seq;
+    int32_t reg_seq;
+    enum epcio_status reg_status;   /* of that transaction */
     int32_t warned_length;  /* DDA length that was refused last, to say so once */
     int32_t warned_frames;  /* frames refused when that was last said */
 };
 
 #include "fmi_model.h"
+#include "epcio_outputs.h"
+#include "epcio_power_on.h"
 
 /* A decimal period such as 1e-4 s is not exact in binary: off by far less than this [clocks]. */
 #define PERIOD_TOLERANCE 1e-6
 
 /* Clocks beyond this are not whole numbers in a double any more (2^53). */
 #define CLOCK_MAX 9007199254740992.0
-
-static int check_rates(struct fmu *f, const char *name, const int32_t *rate, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (rate[i] != 0 && rate[i] != 1 && rate[i] != 2 && rate[i] != 4)
-            return fmu_fail(f, "%s[%d] = %d: an encoder multiplies by 0, 1, 2 or 4", name, i + 1,
-                            (int)rate[i]);
-    return 0;
-}
 
 static int model_start(struct fmu *f)
 {
@@ -40,33 +38,15 @@ static int model_start(struct fmu *f)
     if (!(clocks >= 1.0 && clocks < CLOCK_MAX && fabs(clocks - round(clocks)) < PERIOD_TOLERANCE))
         return fmu_fail(f, "loop_period = %.17g s: not a whole number of 25 ns clocks",
                         v->loop_period);
-    if (check_rates(f, "enc_rate", v->enc_rate, 6) ||
-        check_rates(f, "enc_rate_aux", v->enc_rate_aux, 3))
-        return -1;
-    struct epcio_config c = {.loop = {.limit = v->error_limit, .scale = v->p_scale}};
-    for (int i = 0; i < 6; i++) {
-        c.active[i] = v->active[i];
-        c.encoder[i] =
-            (struct encoder_config){v->enc_rate[i], v->enc_inverse[i], v->index_lines[i]};
-    }
-    for (int i = 0; i < 3; i++)
-        c.encoder[6 + i] = (struct encoder_config){v->enc_rate_aux[i], v->enc_inverse_aux[i],
-                                                   v->index_lines_aux[i]};
+    const struct epcio_config c = config_of(v);
     *m = (struct model){.period = (int64_t)round(clocks)};
-    epcio_reset(&m->card, &c);
-    v->irq = false;
-    v->irq_seq = v->irq_flags = 0;
-    v->irq_clock = 0.0;
-    v->cmd_ack = v->frames_taken = v->frames_refused = 0;
-    for (int i = 0; i < 6; i++) {
-        v->stock[i] = v->underflows[i] = v->pulse_count[i] = 0;
-        v->enc_count[i] = v->err_count[i] = 0;
-        v->dac[i] = 0.0;
-    }
-    for (int i = 0; i < 3; i++)
-        v->enc_count_aux[i] = 0;
-    for (int i = 0; i < 2; i++)
-        v->dac_aux[i] = 0.0;
+    enum epcio_status s = epcio_reset(&m->card, &c);
+    if (s != EPCIO_OK)
+        return refuse_config(f, s);
+    if (write_power_on(f))
+        return -1;
+    for (int i = 0; i < EPCIO_AXES; i++)
+        v->pulse_clock[i] = -1.0;
     return 0;
 }
 
@@ -98,21 +78,56 @@ static int take_command(struct fmu *f)
     struct model *m = &f->s.m;
     if (v->host_cmd_seq == m->cmd_seq)
         return 0;
-    if (v->host_cmd_count < 0 || v->host_cmd_count > BUS_FRAMES)
-        return fmu_fail(f, "host_cmd_count = %d: a transaction has 0 to %d frames",
-                        (int)v->host_cmd_count, BUS_FRAMES);
     if (!(fabs(v->host_cmd_clock) < CLOCK_MAX))
         return fmu_fail(f, "host_cmd_clock = %g: not a clock", v->host_cmd_clock);
     struct bus_write w = {.seq = v->host_cmd_seq, .clock = (int64_t)ceil(v->host_cmd_clock),
                           .count = v->host_cmd_count};
-    for (int k = 0; k < w.count; k++)
+    for (int k = 0; k < BUS_FRAMES && k < w.count; k++)
         for (int i = 0; i < 6; i++)
             w.frame[k][i] = v->host_cmd_frames[k][i];
     enum epcio_status s = epcio_post(&m->card, &w);
+    if (s == EPCIO_BAD_COUNT)
+        return fmu_fail(f, "host_cmd_count = %d: %s", (int)w.count, epcio_status_text(s));
     if (s != EPCIO_OK)
         return fmu_fail(f, "host_cmd_seq = %d: %s", (int)w.seq, epcio_status_text(s));
     m->cmd_seq = v->host_cmd_seq;
     return 0;
+}
+
+/* A new number in the register mailbox writes its registers in order, now, up to the first that the
+ * card refuses. */
+static void take_registers(struct fmu *f)
+{
+    struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    enum epcio_status s = EPCIO_OK;
+    if (v->reg_seq == m->reg_seq)
+        return;
+    for (int i = 0; i < v->reg_count && s == EPCIO_OK; i++) {
+        s = epcio_write(&m->card, v->reg_address[i], v->reg_value[i]);
+        if (s != EPCIO_OK)
+            fmu_warn(f, "register 0x%03X = %g refused in transaction %d: %s",
+                     (unsigned)v->reg_address[i], v->reg_value[i], (int)v->reg_seq,
+                     epcio_status_text(s));
+    }
+    m->reg_seq = v->reg_seq;
+    m->reg_status = s;
+}
+
+static int set_levels(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct epcio_host host;
+    for (int i = 0; i < EPCIO_AXES; i++) {
+        host.gain[i] = v->host_p_gain[i];
+        host.loop_on[i] = v->host_loop_on[i];
+        host.dac_loop[i] = v->host_dac_source[i] == 1;
+        host.volts[i] = v->host_dac_volts[i];
+    }
+    for (int i = 0; i < 2; i++)
+        host.volts[EPCIO_AXES + i] = v->host_dac_volts_aux[i];
+    enum epcio_status s = epcio_set_host(&f->s.m.card, &host);
+    return s == EPCIO_OK ? 0 : fmu_fail(f, "host registers: %s", epcio_status_text(s));
 }
 
 static int read_host(struct fmu *f)
@@ -120,11 +135,14 @@ static int read_host(struct fmu *f)
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
     struct epcio *card = &m->card;
+    uint32_t mask[IRQ_PAGES], flags[IRQ_PAGES];
+    memcpy(mask, v->host_irq_mask, sizeof mask);
+    memcpy(flags, v->host_ack_flags, sizeof flags);
     if (v->host_ack_seq != m->ack_seq) {
         m->ack_seq = v->host_ack_seq;
-        epcio_acknowledge(card, (uint32_t)v->host_ack_flags, (uint32_t)v->host_irq_mask);
+        epcio_acknowledge(card, flags, mask);
     } else {
-        epcio_set_mask(card, (uint32_t)v->host_irq_mask);
+        epcio_set_mask(card, mask);
     }
     if (v->host_clear_seq != m->clear_seq) {
         m->clear_seq = v->host_clear_seq;
@@ -132,32 +150,83 @@ static int read_host(struct fmu *f)
     }
     if (set_dda(f))
         return -1;
-    epcio_set_run(card, v->host_dda_run);
-    epcio_set_minimum(card, v->host_min_stock);
-    for (int i = 0; i < 6; i++) {
-        card->host.gain[i] = v->host_p_gain[i];
-        card->host.loop_on[i] = v->host_loop_on[i];
-        card->host.dac_loop[i] = v->host_dac_source[i] == 1;
-        card->host.volts[i] = v->host_dac_volts[i];
-    }
-    for (int i = 0; i < 2; i++)
-        card->host.volts[6 + i] = v->host_dac_volts_aux[i];
+    if (card->run != v->host_dda_run)
+        epcio_set_run(card, v->host_dda_run);
+    enum epcio_status s = epcio_set_minimum(card, v->host_min_stock);
+    if (s != EPCIO_OK)
+        return fmu_fail(f, "host_min_stock = %d: %s", (int)v->host_min_stock,
+                        epcio_status_text(s));
+    if (set_levels(f))
+        return -1;
+    take_registers(f);
     return take_command(f);
 }
 
-static int sample_encoders(struct fmu *f)
+static uint32_t bits_of(const bool *level, int count)
+{
+    uint32_t bits = 0;
+    for (int i = 0; i < count; i++)
+        bits |= (uint32_t)level[i] << i;
+    return bits;
+}
+
+static void read_pins(const struct vars *v, struct epcio_lines *l)
+{
+    for (int i = 0; i < 6; i++) {
+        l->phase[i] = v->enc_phase[i];
+        l->volts[i] = v->io_volts[i];
+    }
+    for (int i = 0; i < 3; i++)
+        l->phase[6 + i] = v->enc_phase_aux[i];
+    for (int i = 0; i < 2; i++)
+        l->volts[6 + i] = v->io_volts_aux[i];
+    l->local = (struct local_io_lines){
+        .ldi = bits_of(v->io_ldi, 8), .dfi = bits_of(v->io_dfi, 7),
+        .home = bits_of(v->io_home, 6), .up = bits_of(v->io_up, 6),
+        .down = bits_of(v->io_down, 6), .stop = v->io_stop, .power = v->io_power,
+    };
+}
+
+static void read_remote(const struct vars *v, struct epcio_lines *l)
+{
+    for (int i = 0; i < EPCIO_SETS * REMOTE_IO_SLAVES; i++) {
+        struct remote_io_lines *r = &l->remote[i / REMOTE_IO_SLAVES];
+        const int slave = i % REMOTE_IO_SLAVES;
+        r->connected |= (uint32_t)v->io_remote_connected[i] << slave;
+        for (int p = 0; p < REMOTE_IO_PORTS; p++)
+            r->in[slave][p] = (uint16_t)v->io_remote[i][p];
+    }
+}
+
+static int sample(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
-    double phase[EPCIO_ENCODERS];
-    for (int i = 0; i < 6; i++)
-        phase[i] = v->enc_phase[i];
-    for (int i = 0; i < 3; i++)
-        phase[6 + i] = v->enc_phase_aux[i];
+    struct epcio *card = &f->s.m.card;
+    struct epcio_lines lines = {.local.power = false};
+    read_pins(v, &lines);
+    if (card->remote_used || v->reg_seq != f->s.m.reg_seq || !f->s.m.powered)
+        read_remote(v, &lines);
     int bad = 0;
-    enum epcio_status s = epcio_sample(&f->s.m.card, phase, &bad);
-    if (s != EPCIO_OK)
-        return fmu_fail(f, "enc_phase%s[%d] = %g: %s", bad < 6 ? "" : "_aux",
-                        bad < 6 ? bad + 1 : bad - 5, phase[bad], epcio_status_text(s));
+    enum epcio_status s = epcio_sample(card, &lines, &bad);
+    if (s == EPCIO_OK)
+        return 0;
+    const char *name = s == EPCIO_BAD_PHASE ? "enc_phase" : "io_volts";
+    const double *value = s == EPCIO_BAD_PHASE ? lines.phase : lines.volts;
+    return fmu_fail(f, "%s%s[%d] = %g: %s", name, bad < 6 ? "" : "_aux",
+                    bad < 6 ? bad + 1 : bad - 5, value[bad], epcio_status_text(s));
+}
+
+/* What cannot start before the pins have been seen once: ADC and remote I/O. */
+static int power_on(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    m->powered = true;
+    if (v->adc_run)
+        epcio_start_adc(&m->card);
+    for (int i = 0; i < EPCIO_SETS; i++)
+        if (epcio_write(&m->card, REG_RIO_ENABLED + i, v->rio_enabled[i]) != EPCIO_OK)
+            return fmu_fail(f, "rio_enabled[%d] = %d", i + 1, (int)v->rio_enabled[i]);
     return 0;
 }
 
@@ -174,41 +243,6 @@ static void warn_refused(struct fmu *f)
     m->warned_frames = card->frames_refused;
 }
 
-/* Counters are 32-bit registers: they wrap. */
-static int32_t wrap(int64_t count)
-{
-    return (int32_t)(uint32_t)(uint64_t)count;
-}
-
-static void publish(struct fmu *f)
-{
-    struct vars *v = &f->s.v;
-    const struct epcio *card = &f->s.m.card;
-    v->irq = card->irq.line;
-    v->irq_seq = wrap(card->irq.seq);
-    v->irq_clock = (double)card->irq.clock;
-    v->irq_flags = wrap(card->irq.flags);
-    v->cmd_ack = card->cmd_ack;
-    v->frames_taken = card->frames_taken;
-    v->frames_refused = card->frames_refused;
-    int64_t pulses[EPCIO_AXES];
-    epcio_pulses(card, pulses);
-    for (int i = 0; i < 6; i++) {
-        if (!card->config.active[i])
-            continue;
-        v->stock[i] = card->fifo[i].stock;
-        v->underflows[i] = card->underflows[i];
-        v->pulse_count[i] = wrap(pulses[i]);
-        v->enc_count[i] = wrap(card->encoder[i].count);
-        v->err_count[i] = card->loop[i].error;
-        v->dac[i] = analog_volts(card->analog.code[i]);
-    }
-    for (int i = 0; i < 3; i++)
-        v->enc_count_aux[i] = wrap(card->encoder[6 + i].count);
-    for (int i = 0; i < 2; i++)
-        v->dac_aux[i] = analog_volts(card->analog.code[6 + i]);
-}
-
 /* Instants in [t0, t1) read the inputs; the state shown is that at t1, with the DAC codes of the
  * latest instant before t1 if t1 is an instant itself. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
@@ -219,7 +253,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     for (; m->instant < end; m->instant += m->period) {
         epcio_advance(&m->card, m->instant);
         epcio_convert(&m->card);
-        if (sample_encoders(f) || read_host(f))
+        if (sample(f) || (!m->powered && power_on(f)) || read_host(f))
             return -1;
         epcio_control(&m->card);
     }
@@ -227,6 +261,8 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     if (m->instant == end)
         epcio_convert(&m->card);
     warn_refused(f);
-    publish(f);
+    f->s.v.reg_ack = m->reg_seq;
+    f->s.v.reg_status = (int32_t)m->reg_status;
+    publish(&f->s.v, &m->card);
     return 0;
 }

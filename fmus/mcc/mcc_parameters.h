@@ -45,7 +45,7 @@ static int check_parameters(struct fmu *f)
     }
     const struct { const char *name; double value; } times[] = {
         { "start_delay", v->start_delay }, { "irq_latency", v->irq_latency },
-        { "irq_jitter", v->irq_jitter },
+        { "irq_jitter", v->irq_jitter }, { "service_time", v->service_time },
     };
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
         if (!(clocks(times[i].value) < CLOCKS_MAX)) {
@@ -71,6 +71,9 @@ static struct pc_config config_of(const struct vars *v)
         .latency = clocks(v->irq_latency), .jitter = clocks(v->irq_jitter), .seed = v->seed,
         .min_stock = v->min_stock, .batch = v->batch
     };
+    c.isr.service = (int64_t)llround(clocks(v->service_time));
+    memcpy(c.isr.mask, v->irq_sources, sizeof c.isr.mask);
+    memcpy(c.isr.priority, v->irq_priority, sizeof c.isr.priority);
     memcpy(c.output_mode, v->output_mode, sizeof c.output_mode);
     return c;
 }

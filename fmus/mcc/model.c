@@ -92,9 +92,11 @@ static void publish_card(struct vars *v, struct model *m)
     v->card_dda_divider = machine_dda_divider(machine);
     v->card_dda_run = true;
     v->card_min_stock = pcl->min_stock;
-    v->card_irq_mask = pcl->mask;
     v->card_ack_seq = pcl->ack_seq;
-    v->card_ack_flags = pcl->ack_flags;
+    for (int i = 0; i < ISR_PAGES; i++) {
+        v->card_irq_mask[i] = pcl_mask(pcl, i);
+        v->card_ack_flags[i] = pcl->ack_flags[i];
+    }
     for (int i = 0; i < AXES; i++) {
         v->card_p_gain[i] = machine->axis[i].p_gain;
         v->card_loop_on[i] = pc_loop_on(&m->pc, i);
@@ -129,6 +131,10 @@ static void publish(struct fmu *f)
     v->starved = m->pc.pcl.starved;
     v->services = m->pc.pcl.services;
     v->latency = (double)m->pc.pcl.latency / CLOCK_HZ;
+    for (int i = 0; i < ISR_PAGES; i++) {
+        v->served[i] = m->pc.pcl.isr.served[i];
+        v->served_latency[i] = (double)m->pc.pcl.isr.latency[i] / CLOCK_HZ;
+    }
     publish_card(v, m);
     if (v->error != m->told_error) {
         m->told_error = v->error;
@@ -171,14 +177,15 @@ static void read_bus(struct fmu *f, int64_t at)
     struct pc *pc = &f->s.m.pc;
     size_t length;
     const char *text = text_of(f, &length);
-    const struct pcl_card card = {
+    struct pcl_card card = {
         .irq_seq = v->card_irq_seq, .irq_clock = (int64_t)v->card_irq_clock,
-        .irq_flags = v->card_irq_flags, .cmd_ack = v->card_cmd_ack,
+        .cmd_ack = v->card_cmd_ack,
         .frames_refused = v->card_frames_refused, .stock = v->card_stock[pc->pcl.axis]
     };
     struct pc_panel panel = {
         .hold = v->hold, .abort = v->abort, .override = v->override
     };
+    memcpy(card.irq_flags, v->card_irq_flags, sizeof card.irq_flags);
     memcpy(panel.software_gain, v->software_gain, sizeof panel.software_gain);
     memcpy(panel.p_gain, v->p_gain, sizeof panel.p_gain);
     memcpy(panel.err_count, v->card_err_count, sizeof panel.err_count);

@@ -15,6 +15,13 @@ int64_t dda_time(int32_t length, int32_t divider)
     return (int64_t)divider << length;
 }
 
+int32_t dda_divider(int32_t length, int64_t wanted)
+{
+    int64_t tick = (int64_t)1 << length;
+    int64_t divider = wanted > 0 ? (wanted - 1 + tick / 2) / tick : 1;
+    return (int32_t)(divider < 1 ? 1 : divider > DDA_DIVIDER_MAX ? DDA_DIVIDER_MAX : divider);
+}
+
 int32_t dda_largest(int32_t length)
 {
     return (1 << length) - 1;

@@ -27,6 +27,10 @@ struct dda {
 /* One DDA time: 2^length ticks of `divider` clocks each [clocks]. */
 int64_t dda_time(int32_t length, int32_t divider);
 
+/* Divider whose DDA time is nearest to the wanted one [clocks], within 1 .. 65535; the shorter time
+ * if two are as near. dda_time() of it is what the card can do. */
+int32_t dda_divider(int32_t length, int64_t wanted);
+
 /* Largest command of this length: 2^length - 1, forward or backward [pulses]. */
 int32_t dda_largest(int32_t length);
 

@@ -1,13 +1,14 @@
-/* The EPCIO card: six DDA channels with FIFO, nine encoder counters, six position loops, eight DAC,
- * interrupt latch. README.md has the timing diagrams.
+/* The EPCIO card: six DDA channels with FIFO, nine encoder counters, six position loops, eight DAC
+ * and ADC channels, local and remote I/O, timer and watchdog, interrupt latch. README.md has the
+ * timing diagrams, registers.h what the host writes.
  *
  *     struct epcio card;
  *     epcio_reset(&card, &config);
  *     for (clock = 0; ; clock += period) {        each sampling instant of the loops
- *         epcio_advance(&card, clock);            boundaries and bus writes up to and including it
+ *         epcio_advance(&card, clock);            what happens up to and including it
  *         epcio_convert(&card);                   DAC codes of the instant before reach the outputs
- *         epcio_sample(&card, phase);             encoders
- *         ...                                     host: card.host, epcio_set_..., epcio_post
+ *         epcio_sample(&card, &lines, &bad);      encoders, local inputs, voltages
+ *         ...                                     host: registers.h
  *         epcio_control(&card);                   error counters, position loops, new DAC codes
  *     }
  */
@@ -17,19 +18,27 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "adc.h"
 #include "analog.h"
 #include "bus.h"
 #include "dda.h"
 #include "encoder.h"
 #include "fifo.h"
 #include "irq.h"
+#include "latch.h"
+#include "local_io.h"
 #include "ploop.h"
+#include "pulse.h"
+#include "remote_io.h"
+#include "status.h"
+#include "timer.h"
 
 enum {
     EPCIO_CLOCK_HZ = 40000000,
     EPCIO_CLOCK_NS = 25,
     EPCIO_AXES = 6,
     EPCIO_ENCODERS = 9,
+    EPCIO_SETS = 2,             /* of remote I/O slaves */
 };
 _Static_assert((int)DDA_CHANNELS == (int)EPCIO_AXES && (int)BUS_AXES == (int)EPCIO_AXES,
                "a DDA channel per axis");
@@ -37,31 +46,31 @@ _Static_assert((int)DDA_CHANNELS == (int)EPCIO_AXES && (int)BUS_AXES == (int)EPC
 /* DDA length and divider after reset: one DDA time is 2^12 * 10 clocks = 1.024 ms. */
 enum { EPCIO_RESET_LENGTH = 12, EPCIO_RESET_DIVIDER = 10 };
 
-enum epcio_status {
-    EPCIO_OK,
-    EPCIO_FIFO_FULL,            /* a FIFO holds 63 commands already */
-    EPCIO_COMMAND_TOO_LARGE,    /* |command| > 2^length - 1 */
-    EPCIO_AXIS_UNUSED,          /* pulses for an axis that is not active */
-    EPCIO_DROPPED,              /* an emergency stop caught the frame on its way */
-    EPCIO_BAD_LENGTH,           /* not 10 .. 15 bit */
-    EPCIO_BAD_DIVIDER,          /* not 1 .. 65535 */
-    EPCIO_STOCK_TOO_LARGE,      /* a command in stock does not fit the shorter length */
-    EPCIO_BUS_FULL,             /* eight transactions are on their way */
-    EPCIO_BAD_PHASE,            /* an encoder phase is no number or beyond 2^50 lines */
-};
-
+/* What is wired and set before power on. */
 struct epcio_config {
     bool active[EPCIO_AXES];                        /* an unused axis costs nothing */
+    struct pulse_config   pulse[EPCIO_AXES];
     struct encoder_config encoder[EPCIO_ENCODERS];
-    struct ploop_config loop;
+    struct ploop_config   loop;
+    struct analog_trim    trim[ANALOG_DACS];
+    struct adc_config     adc;
+    struct remote_io_config remote;
 };
 
 /* Level registers of the host: read at each epcio_control(). */
 struct epcio_host {
-    int32_t gain[EPCIO_AXES];       /* P gain */
+    int32_t gain[EPCIO_AXES];       /* P gain, 0 .. 65535 */
     bool    loop_on[EPCIO_AXES];
     bool    dac_loop[EPCIO_AXES];   /* DAC source: position loop, else software */
-    double  volts[ANALOG_DACS];     /* [V] software voltage */
+    double  volts[ANALOG_DACS];     /* [V] software voltage; beyond +-10 V it saturates */
+};
+
+/* The pins: what the machine shows the card at an instant. */
+struct epcio_lines {
+    double phase[EPCIO_ENCODERS];   /* [line periods] */
+    double volts[ADC_CHANNELS];     /* [V] held until the next instant */
+    struct local_io_lines  local;
+    struct remote_io_lines remote[EPCIO_SETS];  /* held likewise */
 };
 
 /* Why the latest refused frame was refused. */
@@ -74,54 +83,53 @@ struct epcio_refusal {
 struct epcio {
     struct epcio_config config;
     struct epcio_host   host;
+    struct epcio_lines  lines;                      /* as sampled last */
     int64_t             clock;                      /* [25 ns] everything up to here has happened */
     struct dda          dda;
+    struct pulse        pulse[EPCIO_AXES];
     struct fifo         fifo[EPCIO_AXES];
     int32_t             minimum;                    /* minimum stock */
     int32_t             underflows[EPCIO_AXES];     /* DDA times begun empty after motion */
+    int32_t             overflows;                  /* frames refused because a FIFO was full */
     struct bus          bus;
     int32_t             cmd_ack;                    /* latest transaction that arrived */
     int32_t             frames_taken;
     int32_t             frames_refused;
     struct epcio_refusal refusal;
     struct encoder      encoder[EPCIO_ENCODERS];
+    struct latch        latch[EPCIO_ENCODERS];
+    struct latch_moments moments;                   /* triggers since the latest instant */
     struct ploop        loop[EPCIO_AXES];
     struct analog       analog;
+    struct adc_control  adc_control;
+    struct adc          adc;
+    struct local_io_control local_control;
+    struct local_io     local;
+    struct remote_io_control remote_control[EPCIO_SETS];
+    struct remote_io    remote[EPCIO_SETS];
+    bool                remote_used;                /* a set has been on since power on */
+    struct timer        timer;
+    struct watchdog     watchdog;
+    int64_t             slow_due;                   /* [clock] next event of the four above */
+    bool                run;                        /* the host lets the DDA run */
     struct irq          irq;
 };
 
-/* What a status means, for messages. */
-const char *epcio_status_text(enum epcio_status status);
+/* Six active axes, A/B encoders x4 with 2500 lines, pulse and direction of 1 us, P loop scale 6, ADC
+ * of 14 bit and 10 us, remote exchanges of 144 us. */
+struct epcio_config epcio_default_config(void);
 
-/* Power on at clock 0: DDA running with the reset length and divider, FIFOs empty, mask 0. */
-void epcio_reset(struct epcio *card, const struct epcio_config *config);
+/* Power on at clock 0: DDA running with the reset length and divider, FIFOs empty, mask 0, outputs
+ * let through. A wrong configuration is refused and nothing done. */
+enum epcio_status epcio_reset(struct epcio *card, const struct epcio_config *config);
 
-/* Do all that happens up to and including `clock`: DDA boundaries and arriving transactions, a
- * boundary before a transaction of the same clock. Costs per event, not per clock. */
+/* Do all that happens up to and including `clock`. At one clock, in this order: DDA boundary;
+ * timer, watchdog, ADC, remote I/O; arriving transactions. Costs per event, not per clock. */
 void epcio_advance(struct epcio *card, int64_t clock);
 
-/* DDA length [bit] and divider. They hold from the next boundary on (see dda_set_time). */
-enum epcio_status epcio_set_dda(struct epcio *card, int32_t length, int32_t divider);
-
-/* DDA and FIFO run. */
-void epcio_set_run(struct epcio *card, bool run);
-
-/* Minimum stock of all FIFOs; raising it to or above the stock is a fall too. */
-void epcio_set_minimum(struct epcio *card, int32_t minimum);
-
-/* Send a transaction; it is applied at its clock, now if that has passed. */
-enum epcio_status epcio_post(struct epcio *card, const struct bus_write *write);
-
-/* Write one command per axis to the FIFOs, all or none. */
-enum epcio_status epcio_write_frame(struct epcio *card, const int32_t frame[EPCIO_AXES]);
-
-/* Emergency stop: empty the FIFOs and drop the transactions on their way, whose frames count as
- * refused. The DDA time in progress ends as commanded. */
-void epcio_clear(struct epcio *card);
-
-/* Sample all encoders (the axes, then 7 to 9) at the card's clock. On EPCIO_BAD_PHASE
- * *bad is the encoder, and those before it have been sampled. */
-enum epcio_status epcio_sample(struct epcio *card, const double phase[EPCIO_ENCODERS], int *bad);
+/* Sample the pins at the card's clock. On EPCIO_BAD_PHASE or EPCIO_BAD_VOLTS nothing was sampled
+ * and *bad is the encoder or the channel. */
+enum epcio_status epcio_sample(struct epcio *card, const struct epcio_lines *lines, int *bad);
 
 /* Error counters, position loops, DAC codes at the card's clock. */
 void epcio_control(struct epcio *card);
@@ -129,11 +137,21 @@ void epcio_control(struct epcio *card);
 /* The DAC codes of the latest epcio_control() reach the outputs. */
 void epcio_convert(struct epcio *card);
 
-/* Choose the interrupt sources that pull the line; the same while acknowledging flags. */
-void epcio_set_mask(struct epcio *card, uint32_t mask);
-void epcio_acknowledge(struct epcio *card, uint32_t flags, uint32_t mask);
+/* Outputs are held off: gate closed, emergency stop, or watchdog expired. DAC at 0 V before trim,
+ * local outputs off; the DDA stands still, but for the emergency stop, which lets the DDA time in
+ * progress end and keeps the FIFOs empty. */
+bool epcio_off(const struct epcio *card);
 
 /* Pulses put out up to and including the card's clock, forward minus backward [pulses]. */
 void epcio_pulses(const struct epcio *card, int64_t pulses[EPCIO_AXES]);
+
+/* Voltage of a DAC at its terminal [V], channel 0 .. 7. */
+double epcio_volts(const struct epcio *card, int channel);
+
+/* Between the files of the card: the comparator looks at a stock; events of a counter; what the
+ * blocks wait for has changed, so look for the next event anew. */
+void epcio_watch_stock(struct epcio *card, int axis);
+void epcio_encoder_events(struct epcio *card, int encoder, int events);
+void epcio_plan(struct epcio *card);
 
 #endif

@@ -21,6 +21,13 @@ bool fifo_pop(struct fifo *f, int32_t *command)
     return true;
 }
 
+int32_t fifo_erase_last(struct fifo *f, int32_t n)
+{
+    int32_t erased = n < f->stock ? n : f->stock;
+    f->stock -= erased;
+    return erased;
+}
+
 void fifo_clear(struct fifo *f)
 {
     f->head = 0;

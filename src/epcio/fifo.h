@@ -20,6 +20,9 @@ bool fifo_push(struct fifo *f, int32_t command);
 /* Take the oldest command; false, and *command untouched, if the FIFO is empty (underflow). */
 bool fifo_pop(struct fifo *f, int32_t *command);
 
+/* Take back the newest commands, at most n; returns how many. */
+int32_t fifo_erase_last(struct fifo *f, int32_t n);
+
 /* Empty the FIFO. */
 void fifo_clear(struct fifo *f);
 

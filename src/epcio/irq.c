@@ -1,8 +1,13 @@
 #include "irq.h"
 
+#include <string.h>
+
 static void drive_line(struct irq *q, int64_t clock)
 {
-    bool up = (q->flags & q->mask) != 0;
+    uint32_t pulling = 0;
+    for (int i = 0; i < IRQ_PAGES; i++)
+        pulling |= q->flags[i] & q->mask[i];
+    bool up = pulling != 0;
     if (up && !q->line) {
         q->seq++;
         q->clock = clock;
@@ -10,25 +15,30 @@ static void drive_line(struct irq *q, int64_t clock)
     q->line = up;
 }
 
-void irq_raise(struct irq *q, int source, int64_t clock)
+void irq_raise(struct irq *q, enum irq_page page, uint32_t bits, int64_t clock)
 {
-    uint32_t bit = (uint32_t)1 << source;
-    q->again |= q->flags & bit;
-    q->flags |= bit;
+    q->again[page] |= q->flags[page] & bits;
+    q->flags[page] |= bits;
+    if ((bits & q->mask[page]) != 0 && !q->line)
+        drive_line(q, clock);
+}
+
+void irq_set_mask(struct irq *q, const uint32_t mask[IRQ_PAGES], int64_t clock)
+{
+    if (memcmp(q->mask, mask, sizeof q->mask) == 0)
+        return;
+    memcpy(q->mask, mask, sizeof q->mask);
     drive_line(q, clock);
 }
 
-void irq_set_mask(struct irq *q, uint32_t mask, int64_t clock)
+void irq_acknowledge(struct irq *q, const uint32_t flags[IRQ_PAGES],
+                     const uint32_t mask[IRQ_PAGES], int64_t clock)
 {
-    q->mask = mask;
-    drive_line(q, clock);
-}
-
-void irq_acknowledge(struct irq *q, uint32_t flags, uint32_t mask, int64_t clock)
-{
-    q->flags = (q->flags & ~flags) | q->again;
-    q->again &= ~flags;
-    q->mask = mask;
+    for (int i = 0; i < IRQ_PAGES; i++) {
+        q->flags[i] = (q->flags[i] & ~flags[i]) | q->again[i];
+        q->again[i] &= ~flags[i];
+    }
+    memcpy(q->mask, mask, sizeof q->mask);
     q->line = false;
     drive_line(q, clock);
 }

@@ -1,37 +1,62 @@
-/* Interrupt latch: many sources, one line to the host. */
+/* Interrupt latch: nine pages of sources, one line to the host. */
 #ifndef IRQ_H
 #define IRQ_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Bit numbers of the sources. */
+/* Pages of the interrupt source register, in the order the card's driver reads them. */
+enum irq_page {
+    IRQ_DDA,
+    IRQ_ENC0,           /* encoders 1 to 3 */
+    IRQ_ENC3,           /* encoders 4 to 6 */
+    IRQ_ENC6,           /* encoders 7 to 9 */
+    IRQ_RIO0,           /* remote I/O, first set of slaves */
+    IRQ_RIO1,           /* second set */
+    IRQ_ADC,
+    IRQ_LIO,            /* local I/O and timer */
+    IRQ_PCL,            /* position loops */
+    IRQ_PAGES,
+};
+
+/* Bits in a page; a source of several channels has consecutive bits. */
 enum {
-    IRQ_FIFO = 0,       /* 6: minimum stock */
-    IRQ_CYCLE = 6,      /* DDA boundary */
-    IRQ_OVERFLOW = 7,   /* 6: error counter */
-    IRQ_INDEX = 13,     /* 9: encoder index */
-    IRQ_SOURCES = 22,
+    IRQ_DDA_FIFO = 0,       /* 6: minimum stock */
+    IRQ_DDA_CYCLE = 6,      /* DDA boundary */
+    IRQ_ENC_COMP = 0,       /* 3: counter at or beyond its compare value */
+    IRQ_ENC_INDEX = 3,      /* 3: index pulse */
+    IRQ_RIO_DI = 0,         /* 4 a slave: its first four inputs */
+    IRQ_RIO_FAIL = 12,      /* transmission failure */
+    IRQ_RIO_NOT_READY = 13, /* a slave did not answer when it was switched on */
+    IRQ_ADC_COMP = 0,       /* 8: compare condition met */
+    IRQ_ADC_CONV = 8,       /* a conversion is done */
+    IRQ_ADC_TAG = 9,        /* the tagged channels have all been converted */
+    IRQ_LIO_LDI = 0,        /* 8: local inputs */
+    IRQ_LIO_DFI = 8,        /* 7: dual-function inputs */
+    IRQ_LIO_TIMER = 15,
+    IRQ_PCL_OV = 0,         /* 6: error counter overflow */
 };
 
 struct irq {
-    uint32_t flags;     /* sources that fired and were not acknowledged */
-    uint32_t again;     /* of these, the ones that fired once more since */
-    uint32_t mask;      /* sources that pull the line */
-    bool     line;      /* (flags & mask) != 0 */
-    uint32_t seq;       /* rising edges of the line */
-    int64_t  clock;     /* [clock] of the latest rising edge */
+    uint32_t flags[IRQ_PAGES];  /* sources that fired and were not acknowledged */
+    uint32_t again[IRQ_PAGES];  /* of these, the ones that fired once more since */
+    uint32_t mask[IRQ_PAGES];   /* sources that pull the line */
+    bool     line;              /* flags & mask is not 0 in some page */
+    uint32_t seq;               /* rising edges of the line */
+    int64_t  clock;             /* [clock] of the latest rising edge */
 };
 
-/* A source fires. A second firing before the acknowledge is kept beside the first. */
-void irq_raise(struct irq *q, int source, int64_t clock);
+/* Sources of a page fire, each of the bits. A second firing before the acknowledge is kept beside
+ * the first. No bits: nothing happens. */
+void irq_raise(struct irq *q, enum irq_page page, uint32_t bits, int64_t clock);
 
 /* Choose which sources pull the line. */
-void irq_set_mask(struct irq *q, uint32_t mask, int64_t clock);
+void irq_set_mask(struct irq *q, const uint32_t mask[IRQ_PAGES], int64_t clock);
 
 /* The host acknowledges what it saw, and sets the mask in the same write. A flag whose source fired
  * again meanwhile stays up, so no firing that the host has not seen is lost. The line is released;
  * if a flag still pulls it, it rises anew at this clock. */
-void irq_acknowledge(struct irq *q, uint32_t flags, uint32_t mask, int64_t clock);
+void irq_acknowledge(struct irq *q, const uint32_t flags[IRQ_PAGES],
+                     const uint32_t mask[IRQ_PAGES], int64_t clock);
 
 #endif

@@ -5,9 +5,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+enum { PLOOP_GAIN_MAX = 65535, PLOOP_LIMIT_MAX = 32767, PLOOP_SCALE_MAX = 15 };
+
 struct ploop_config {
-    int32_t limit;      /* [counts] size of the error that latches the overflow interrupt */
-    int32_t scale;      /* DAC code = error * gain / 2^scale */
+    int32_t limit;      /* [counts] size of the error that latches the overflow interrupt, >= 1 */
+    int32_t scale;      /* DAC code = error * gain / 2^scale, 0 .. 15 */
 };
 
 struct ploop {

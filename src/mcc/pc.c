@@ -11,7 +11,7 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     pc->config = *config;
     pc->random = (uint64_t)(int64_t)config->seed;
     pc->program = program;
-    pcl_start(&pc->pcl, m, config->min_stock, config->batch);
+    pcl_start(&pc->pcl, m, config->min_stock, config->batch, &config->isr);
     return MCC_init_motion(&pc->mcc, m);
 }
 
@@ -80,6 +80,7 @@ void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
     pcl_look(&pc->pcl, &pc->mcc, card, now,
              pcl_interrupt(&pc->pcl, card) ? latency(pc) : 0);
     read_panel(pc, panel);
+    isr_run(&pc->pcl.isr, horizon);
     for (;;) {
         const int64_t due = pcl_due(&pc->pcl);
         if (pc->next_ipo < horizon && pc->next_ipo <= due) {

@@ -18,6 +18,7 @@ struct pc_config {
     double  jitter;         /* [clocks] width of the uniform random addition */
     int32_t seed;
     int32_t min_stock, batch;
+    struct isr_config isr;
     int32_t output_mode[AXES];  /* 0 pulses, 1 position loop of the card, 2 software voltage */
 };
 

@@ -2,7 +2,8 @@
 
 #include <string.h>
 
-void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch)
+void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch,
+               const struct isr_config *isr)
 {
     memset(p, 0, sizeof *p);
     p->min_stock = min_stock;
@@ -15,6 +16,12 @@ void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_
         }
     }
     p->mask = 1 << p->axis;
+    isr_start(&p->isr, isr);
+}
+
+int32_t pcl_mask(const struct pcl *p, int page)
+{
+    return p->isr.config.mask[page] | (page == ISR_FIFO_PAGE ? p->mask : 0);
 }
 
 bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card)
@@ -50,13 +57,18 @@ void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t
         p->refused = card->frames_refused;
     }
     if (pcl_interrupt(p, card)) {
-        if (p->pending == 0) {
-            p->due = card->irq_clock + latency;
+        const bool fifo = (card->irq_flags[ISR_FIFO_PAGE] & p->mask) != 0;
+        const int64_t due = isr_read(&p->isr, card->irq_flags, fifo, card->irq_clock,
+                                     card->irq_clock + latency);
+        if (fifo && p->pending == 0) {
+            p->due = due;
             p->raised = card->irq_clock;
         }
-        p->pending += (int64_t)card->irq_seq - p->irq_seq;
+        p->pending += fifo;
         p->irq_seq = card->irq_seq;
-        p->ack_flags = card->irq_flags & p->mask;
+        for (int i = 0; i < ISR_PAGES; i++) {
+            p->ack_flags[i] = card->irq_flags[i] & pcl_mask(p, i);
+        }
         p->ack_seq++;
     } else if (!p->open && p->seq > 0 && p->prime == 0 && p->pending == 0 &&
                card->stock <= p->min_stock) {

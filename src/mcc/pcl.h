@@ -9,6 +9,7 @@
 #ifndef PCL_H
 #define PCL_H
 
+#include "isr.h"
 #include "task.h"
 
 enum {
@@ -21,7 +22,7 @@ enum {
 struct pcl_card {
     int32_t irq_seq;            /* pulls of the interrupt line */
     int64_t irq_clock;          /* of the latest pull */
-    int32_t irq_flags;
+    int32_t irq_flags[ISR_PAGES];   /* first page: DDA, bits 0 to 5 FIFO */
     int32_t cmd_ack;            /* latest transaction taken */
     int32_t frames_refused;
     int32_t stock;              /* of the watched axis */
@@ -29,7 +30,7 @@ struct pcl_card {
 
 struct pcl {
     int32_t min_stock, batch;   /* n and N */
-    int32_t mask;               /* interrupt source served: FIFO of the first used axis */
+    int32_t mask;               /* source that asks for commands: FIFO of the first used axis */
     int32_t axis;               /* that axis */
     int32_t prime;              /* frames still to write before the first service */
 
@@ -45,13 +46,19 @@ struct pcl {
     int64_t due;                /* clock of the next service */
     int64_t raised;             /* clock of its interrupt, -1 if none asked for it */
     int32_t irq_seq, refused;   /* as seen last */
-    int32_t ack_seq, ack_flags; /* interrupt acknowledge to the card */
+    int32_t ack_seq;            /* interrupt acknowledge to the card */
+    int32_t ack_flags[ISR_PAGES];
+    struct isr isr;             /* the other sources */
 
     int32_t services, starved;
     int64_t latency;            /* [clocks] of the latest service */
 };
 
-void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch);
+void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch,
+               const struct isr_config *isr);
+
+/* Sources of a page that the library lets through. */
+int32_t pcl_mask(const struct pcl *p, int page);
 
 /* Look at the card at bus instant now [clock]; an interrupt seen now has this latency [clocks]. */
 void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t now,

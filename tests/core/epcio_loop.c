@@ -1,8 +1,5 @@
 /* Error counter, position loop and DAC against their formulas. */
-#include "analog.h"
-#include "check.h"
-#include "epcio.h"
-#include "ploop.h"
+#include "epcio_card.h"
 
 #include <math.h>
 #include <string.h>
@@ -79,11 +76,8 @@ static void dac(void)
  * Kv = gain / 2^scale * LSB * counts per second per volt, one period of delay or not. */
 static void velocity_error(int32_t gain)
 {
-    struct epcio_config config = {.active = {true}, .loop = {.limit = 32767, .scale = 6}};
-    config.encoder[0] = (struct encoder_config){4, false, 2500};
-    struct epcio card;
+    struct epcio card = card_on();
     int bad;
-    epcio_reset(&card, &config);
     epcio_set_dda(&card, 10, 40);                       /* 1.024 ms */
     card.host.gain[0] = gain;
     card.host.loop_on[0] = card.host.dac_loop[0] = true;
@@ -93,7 +87,7 @@ static void velocity_error(int32_t gain)
     for (int64_t k = 0; k < 20000; k++) {               /* 2 s at 100 us */
         epcio_advance(&card, k * 4000);
         epcio_convert(&card);
-        epcio_sample(&card, phase, &bad);
+        card_sample(&card, phase, &bad);
         while (card.fifo[0].stock < 10)
             epcio_write_frame(&card, (int32_t[6]){command});
         epcio_control(&card);
@@ -109,8 +103,10 @@ static void velocity_error(int32_t gain)
 /* Loop and software source; an unused axis gives nothing; a code waits for the next instant. */
 static void source_select(void)
 {
-    struct epcio_config config = {.active = {true, true, false}, .loop = {100, 0}};
-    config.encoder[0] = (struct encoder_config){4, false, 2500};
+    struct epcio_config config = epcio_default_config();
+    config.loop = (struct ploop_config){100, 0};
+    for (int i = 2; i < EPCIO_AXES; i++)
+        config.active[i] = false;
     struct epcio card;
     int bad;
     double phase[EPCIO_ENCODERS] = {0};
@@ -122,10 +118,10 @@ static void source_select(void)
     }
     card.host.volts[7] = -2.5;
     card.host.dac_loop[0] = true;
-    epcio_sample(&card, phase, &bad);
+    card_sample(&card, phase, &bad);
     epcio_control(&card);
     phase[0] = -3.0;
-    epcio_sample(&card, phase, &bad);
+    card_sample(&card, phase, &bad);
     epcio_control(&card);
     CHECK_EQ(card.analog.code[0], 0);
     epcio_convert(&card);

@@ -1,31 +1,12 @@
 /* FIFO timing contract of the source document. */
-#include "check.h"
-#include "epcio.h"
-
-static const struct epcio_config all_axes = {
-    .active = {true, true, true, true, true, true},
-    .loop = {.limit = 32767, .scale = 6},
-};
-
-/* A card whose FIFOs hold `stock` commands of 100 pulses on each axis, at clock 0. */
-static struct epcio stocked(int stock, int minimum)
-{
-    struct epcio card;
-    epcio_reset(&card, &all_axes);
-    CHECK_EQ(epcio_set_dda(&card, 10, 1), EPCIO_OK);
-    epcio_set_minimum(&card, minimum);
-    epcio_set_mask(&card, 1);
-    for (int k = 0; k < stock; k++)
-        CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){100, 100, 100, 100, 100, 100}), EPCIO_OK);
-    return card;
-}
+#include "epcio_card.h"
 
 static void refill(struct epcio *card, int frames, int64_t clock)
 {
     epcio_advance(card, clock);
     for (int k = 0; k < frames; k++)
         CHECK_EQ(epcio_write_frame(card, (int32_t[6]){100, -100, 1, 0, 1023, -1023}), EPCIO_OK);
-    epcio_acknowledge(card, 0x3F, 1);
+    card_acknowledge(card, IRQ_DDA, 0x3F, 1);
 }
 
 static int64_t moved_underflows(const struct epcio *card)
@@ -37,7 +18,7 @@ static int64_t moved_underflows(const struct epcio *card)
 static void minimum_three_write_four(void)
 {
     const int64_t T = 1024;
-    struct epcio card = stocked(8, 3);
+    struct epcio card = card_stocked(8, 3);
     epcio_advance(&card, T);                /* one into the DDA, 7 in stock */
     CHECK_EQ(card.fifo[0].stock, 7);
     for (int round = 0; round < 5; round++) {
@@ -53,7 +34,7 @@ static void minimum_three_write_four(void)
         CHECK_EQ(card.fifo[0].stock, 3);
         CHECK_EQ(card.irq.seq, round + 1);
         CHECK_EQ(card.irq.clock, begin + 4 * T);
-        CHECK_EQ(card.irq.flags & 0x3F, 0x3F);
+        CHECK_EQ(card.irq.flags[IRQ_DDA] & 0x3F, 0x3F);
         refill(&card, 4, begin + 4 * T + 17 * round);
         CHECK_EQ(card.fifo[5].stock, 7);
     }
@@ -65,7 +46,7 @@ static void deadline(int n, int batch)
 {
     const int64_t T = 1024;
     for (int late = -1; late <= 1; late++) {
-        struct epcio card = stocked(n + 2, n);
+        struct epcio card = card_stocked(n + 2, n);
         epcio_advance(&card, 2 * T);
         CHECK_EQ(card.irq.clock, 2 * T);
         CHECK_EQ(card.irq.seq, 1);
@@ -85,7 +66,7 @@ static void deadline(int n, int batch)
 static void bus_at_the_boundary(void)
 {
     for (int early = 0; early < 2; early++) {
-        struct epcio card = stocked(1, 0);
+        struct epcio card = card_stocked(1, 0);
         struct bus_write w = {.seq = 5, .clock = 2048 - early, .count = 1, .frame = {{33}}};
         epcio_post(&card, &w);
         epcio_advance(&card, 2048);
@@ -112,7 +93,7 @@ static void bus_at_the_boundary(void)
 static void one_by_one(void)
 {
     const int64_t T = 1024;
-    struct epcio card = stocked(1, 0);
+    struct epcio card = card_stocked(1, 0);
     for (int k = 1; k <= 50; k++) {
         epcio_advance(&card, k * T);
         CHECK_EQ(card.irq.seq, k);
@@ -125,11 +106,7 @@ static void one_by_one(void)
 /* Half the DDA time and twice the batch: the interrupt period stays. */
 static void doubled_points(void)
 {
-    struct epcio card;
-    epcio_reset(&card, &all_axes);
-    epcio_set_dda(&card, 10, 1);
-    epcio_set_minimum(&card, 3);
-    epcio_set_mask(&card, 1);
+    struct epcio card = card_stocked(0, 3);
     refill(&card, 12, 0);
     int64_t last = 0;
     for (int k = 0; k < 6; k++) {
@@ -145,16 +122,16 @@ static void doubled_points(void)
 /* The interrupt is an edge: none at rest, none while the stock stays low, one per fall. */
 static void edge_of_the_stock(void)
 {
-    struct epcio card = stocked(2, 3);          /* never above the minimum */
+    struct epcio card = card_stocked(2, 3);          /* never above the minimum */
     epcio_advance(&card, 100 * 1024);
-    CHECK_EQ(card.irq.flags & 0x3F, 0);
-    card = stocked(6, 3);
+    CHECK_EQ(card.irq.flags[IRQ_DDA] & 0x3F, 0);
+    card = card_stocked(6, 3);
     epcio_set_minimum(&card, 6);                /* the minimum rises to the stock */
-    CHECK_EQ(card.irq.flags & 0x3F, 0x3F);
+    CHECK_EQ(card.irq.flags[IRQ_DDA] & 0x3F, 0x3F);
     CHECK_EQ(card.irq.seq, 1);
-    card = stocked(6, 3);
+    card = card_stocked(6, 3);
     epcio_clear(&card);                         /* the stock falls to nothing */
-    CHECK_EQ(card.irq.flags & 0x3F, 0x3F);
+    CHECK_EQ(card.irq.flags[IRQ_DDA] & 0x3F, 0x3F);
     CHECK_EQ(card.fifo[0].stock, 0);
 }
 

@@ -58,7 +58,7 @@ static void card_boundary(struct card *c)
             c->irq_first = c->irqs++ ? c->irq_first : c->now;
         }
         c->flag = true;
-        c->shows.irq_flags = 1;
+        c->shows.irq_flags[0] = 1;
     }
 }
 
@@ -102,9 +102,9 @@ static void card_read(struct card *c)
 {
     if (pc.pcl.ack_seq != c->last_ack_seq) {
         c->last_ack_seq = pc.pcl.ack_seq;
-        if (pc.pcl.ack_flags & 1) {
+        if (pc.pcl.ack_flags[0] & 1) {
             c->flag = false;
-            c->shows.irq_flags = 0;
+            c->shows.irq_flags[0] = 0;
         }
     }
     if (pc.pcl.open && pc.pcl.seq != c->shows.cmd_ack && !c->coming) {

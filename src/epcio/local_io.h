@@ -1,0 +1,99 @@
+/* Local I/O: inputs with edge interrupts, dedicated signals of the axes, gated outputs. */
+#ifndef LOCAL_IO_H
+#define LOCAL_IO_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum {
+    LOCAL_IO_AXES = 6,
+    LOCAL_IO_LDIS = 8,      /* local inputs LDI0 .. LDI7 */
+    LOCAL_IO_DFIS = 7,      /* dual-function inputs DFI0 .. DFI6 */
+    LOCAL_IO_LDOS = 8,      /* local outputs LDO0 .. LDO7 */
+    LOCAL_IO_DFI_STOP = 6,  /* the dual-function input of the emergency stop */
+};
+
+/* Bits of the events and of `inputs`, in the order of the interrupt latch. */
+enum local_io_event {
+    LOCAL_IO_EVENT_LDI = 0, /* 8: LDI0 .. LDI7 */
+    LOCAL_IO_EVENT_DFI = 8, /* 7: DFI0 .. DFI6 */
+};
+
+/* Change of level that fires. */
+enum local_io_edge {
+    LOCAL_IO_RISE,
+    LOCAL_IO_FALL,
+    LOCAL_IO_BOTH,
+};
+
+/* Levels at the terminals; 1 is active, whatever the wiring. Bits beyond the last are ignored. */
+struct local_io_lines {
+    uint32_t ldi;           /* bits 0 .. 7 */
+    uint32_t dfi;           /* bits 0 .. 6 */
+    uint32_t home;          /* bits 0 .. 5: home switch of axis 1 .. 6 */
+    uint32_t up;            /* bits 0 .. 5: over-travel switch at the positive end */
+    uint32_t down;          /* bits 0 .. 5: over-travel switch at the negative end */
+    bool     stop;          /* emergency stop is pressed */
+    bool     power;         /* 24 V field power is present */
+};
+
+/* Registers of the host. They may change at any clock; edges and `dedicated` are looked at when a
+ * sample is taken, the others at once. */
+struct local_io_control {
+    enum local_io_edge ldi_edge[LOCAL_IO_LDIS];
+    enum local_io_edge dfi_edge[LOCAL_IO_DFIS];
+    uint32_t dedicated;     /* bits 0 .. 6: DFI i is its dedicated signal, else its terminal */
+    uint32_t ldo;           /* bits 0 .. 7 */
+    uint32_t servo_on;      /* bits 0 .. 5 */
+    bool     position_ready;
+    bool     stop_enable;   /* the emergency stop acts on the card, whatever `dedicated` says */
+    bool     gate;          /* the outputs are let through */
+};
+
+/* All zero is the state after power on: nothing sampled, so no field power yet. */
+struct local_io {
+    struct local_io_lines seen;     /* latest sample */
+    uint32_t              inputs;   /* latest LDI and DFI in the bits of local_io_event */
+    bool                  primed;   /* there is a sample */
+};
+
+/* Levels at the output terminals. */
+struct local_io_outputs {
+    uint32_t ldo;           /* bits 0 .. 7 */
+    uint32_t servo_on;      /* bits 0 .. 5 */
+    bool     position_ready;
+};
+
+enum local_io_status {
+    LOCAL_IO_OK,
+    LOCAL_IO_BAD_EDGE,      /* no local_io_edge */
+    LOCAL_IO_BAD_DEDICATED, /* a bit above 6 */
+    LOCAL_IO_BAD_LDO,       /* a bit above 7 */
+    LOCAL_IO_BAD_SERVO_ON,  /* a bit above 5 */
+};
+
+/* Say what is wrong, the first in the order of local_io_status. The other functions take only what
+ * was found right here. */
+enum local_io_status local_io_check_control(const struct local_io_control *set);
+
+/* Sample the terminals: the events, in the bits of local_io_event. The first sample fires nothing.
+ *
+ * A dedicated DFI0 .. DFI5 is the over-travel of axis 1 .. 6, up or down: one switch closing while
+ * the other stays closed is no edge. A dedicated DFI6 is the emergency stop.
+ * An input fires if the source chosen now differs from that same source a sample ago, in the
+ * direction chosen now. So a change of `dedicated` or of an edge type fires nothing by itself, and
+ * an edge of the new source is not lost. A pulse between two samples is not seen.
+ * Inputs are taken as given, also without field power. */
+uint32_t local_io_sample(const struct local_io_control *set, struct local_io *io,
+                         const struct local_io_lines *lines);
+
+/* The emergency stop acts: enabled now and pressed at the latest sample. A level, not latched. */
+bool local_io_stopped(const struct local_io_control *set, const struct local_io *io);
+
+/* Outputs as they stand at the terminals. All of them, position ready too, are driven by the field
+ * power: they are 0 without it, with the gate closed, while the emergency stop acts, and while
+ * `off` (the watchdog holds them off). They come back by themselves when the last of these ends. */
+struct local_io_outputs local_io_outputs(const struct local_io_control *set,
+                                         const struct local_io *io, bool off);
+
+#endif

@@ -1,0 +1,172 @@
+#include "pulse.h"
+
+#include <stdlib.h>
+
+/* divider 4, width 3 or more; 2^length - 1 forward, whose last pulse lies on the boundary, and then
+ * as many backward; one column is one clock
+ *
+ *     boundary            |
+ *     A         __/`\_/`\_/`\_/`\_      high for half of 4 clocks
+ *     B         ____________/```````      backward, once that pulse has ended
+ *
+ * Only such a pulse reaches over the boundary: one that comes x clocks before, x a multiple of the
+ * divider, is high for (x + divider) / 2 <= x clocks at most.
+ */
+
+/* When a pulse is on its line. */
+struct high {
+    int64_t rise, fall;     /* [clock] */
+    bool    backward;
+};
+
+enum pulse_status pulse_check(const struct pulse_config *c)
+{
+    if ((int)c->format < PULSE_DIRECTION || c->format > PULSE_NONE)
+        return PULSE_BAD_FORMAT;
+    if (c->wiring > (PULSE_A_INVERSE | PULSE_B_INVERSE | PULSE_SWAP))
+        return PULSE_BAD_WIRING;
+    return c->width < 1 || c->width > PULSE_WIDTH_MAX ? PULSE_BAD_WIDTH : PULSE_OK;
+}
+
+const char *pulse_status_text(enum pulse_status status)
+{
+    switch (status) {
+    case PULSE_OK:
+        return "ok";
+    case PULSE_BAD_FORMAT:
+        return "the pulse format is 0 to 3";
+    case PULSE_BAD_WIRING:
+        return "the pulse wiring is a sum of 1, 2, 4";
+    case PULSE_BAD_WIDTH:
+        return "the pulse width is 1 to 65535 clocks";
+    default:
+        return "unknown status";
+    }
+}
+
+/* [clocks] a pulse is high whose next one comes `distance` clocks later. */
+static int32_t high_time(const struct pulse_config *c, int64_t distance)
+{
+    int64_t half = distance < 2 ? 1 : distance / 2;
+    return half < c->width ? (int32_t)half : c->width;
+}
+
+/* [clock] of the j-th pulse of the DDA time in progress, stopped or not. */
+static int64_t edge(const struct dda *d, int channel, int32_t j)
+{
+    return d->start + d->divider * dda_edge_tick(d->command[channel], d->length, j);
+}
+
+/* Pulses of the DDA time in progress up to and including `clock`. */
+static int32_t pulses_until(const struct dda *d, int channel, int64_t clock)
+{
+    int64_t tick = ((d->run ? clock : d->stop) - d->start) / d->divider;
+    return (int32_t)llabs(dda_pulses(d->command[channel], d->length, tick));
+}
+
+void pulse_reset(struct pulse *p)
+{
+    *p = (struct pulse){.last = -1};
+}
+
+void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct dda *d,
+                    int channel)
+{
+    int32_t command = d->command[channel];
+    if (command == 0)
+        return;
+    p->last = edge(d, channel, abs(command));
+    p->high = high_time(c, d->next_divider);    /* its next pulse comes in the next DDA time */
+    p->backward = command < 0;
+}
+
+/* The n-th pulse of the DDA time in progress; n = 0: the one on its first clock, or else one that is
+ * over: fall = start. */
+static struct high nth_pulse(const struct pulse_config *c, const struct pulse *p,
+                             const struct dda *d, int channel, int32_t n)
+{
+    int32_t command = d->command[channel];
+    if (n == 0)
+        return (struct high){p->last, p->last == d->start ? p->last + p->high : d->start,
+                             p->backward};
+    int64_t rise = edge(d, channel, n);
+    int64_t next = n < abs(command) ? edge(d, channel, n + 1)
+                                    : d->start + dda_time(d->length, d->divider) + d->divider;
+    return (struct high){rise, rise + high_time(c, next - rise), command < 0};
+}
+
+static struct pulse_lines wired(uint32_t wiring, bool a, bool b)
+{
+    a = a != ((wiring & PULSE_A_INVERSE) != 0);
+    b = b != ((wiring & PULSE_B_INVERSE) != 0);
+    return wiring & PULSE_SWAP ? (struct pulse_lines){b, a} : (struct pulse_lines){a, b};
+}
+
+struct pulse_lines pulse_at(const struct pulse_config *c, const struct pulse *p,
+                            const struct dda *d, int channel, int64_t clock)
+{
+    int32_t command = d->command[channel];
+    int32_t n = pulses_until(d, channel, clock);
+    if (c->format == PULSE_NONE)
+        return wired(c->wiring, false, false);
+    if (c->format == PULSE_AB) {
+        /* as the card's encoder inputs at phase = count / 4; the low two bits are count mod 4 */
+        uint64_t count = (uint64_t)(d->before[channel] + (command < 0 ? -n : n));
+        return wired(c->wiring, (count & 2) == 0, ((count + 1) & 2) != 0);
+    }
+    struct high h = nth_pulse(c, p, d, channel, n);
+    bool on = (d->run ? clock : d->stop) < h.fall;
+    if (c->format == PULSE_CW_CCW)
+        return wired(c->wiring, on && !h.backward, on && h.backward);
+    return wired(c->wiring, on, on || command == 0 ? h.backward : command < 0);
+}
+
+/* First tick after `tick` without a pulse; beyond 2^length if there is none. i ticks have
+ * ceil((i left - half) / 2^length) of them, left = 2^length - |command|. */
+static int64_t gap_tick(int32_t command, int32_t length, int64_t tick)
+{
+    int64_t half = (int64_t)1 << (length - 1), left = 2 * half - llabs(command);
+    int64_t j = tick - llabs(dda_pulses(command, length, tick)) + 1;
+    return (2 * j - 1) * half / left + 1;
+}
+
+int64_t pulse_next(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
+                   int channel, int64_t clock)
+{
+    int32_t command = d->command[channel];
+    int64_t boundary = d->start + dda_time(d->length, d->divider);
+    if (!d->run || c->format == PULSE_NONE)
+        return INT64_MAX;
+    int32_t n = pulses_until(d, channel, clock);
+    int64_t next = n < abs(command) ? edge(d, channel, n + 1) : INT64_MAX;
+    if (c->format != PULSE_AB) {
+        struct high h = nth_pulse(c, p, d, channel, n);
+        if (clock < h.fall)
+            next = h.fall;  /* at the latest where the next pulse comes */
+        if (next >= boundary)
+            return INT64_MAX;
+        struct pulse_lines now = pulse_at(c, p, d, channel, clock);
+        struct pulse_lines then = pulse_at(c, p, d, channel, next);
+        if (now.a == then.a && now.b == then.b)     /* merged: one clock is one tick */
+            next = d->start + gap_tick(command, d->length, next - d->start);
+    }
+    return next < boundary ? next : INT64_MAX;
+}
+
+int64_t pulse_latest(const struct pulse *p, const struct dda *d, int channel, int64_t clock)
+{
+    int32_t n = pulses_until(d, channel, clock);
+    return n > 0 ? edge(d, channel, n) : p->last;
+}
+
+bool pulse_merges(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
+                  int channel)
+{
+    int32_t command = d->command[channel], ticks = 1 << d->length;
+    if (c->format == PULSE_AB || c->format == PULSE_NONE || d->divider > 1)
+        return false;
+    if (2 * abs(command) > ticks)
+        return true;
+    bool same_line = c->format == PULSE_DIRECTION || p->backward == (command < 0);
+    return 2 * abs(command) == ticks && p->last == d->start && same_line;
+}

@@ -1,0 +1,257 @@
+#include "single_buffer.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const int32_t NO_COMMAND[SINGLE_BUFFER_AXES];
+
+const char *single_buffer_status_text(enum single_buffer_status status)
+{
+    switch (status) {
+    case SINGLE_BUFFER_OK:
+        return "ok";
+    case SINGLE_BUFFER_NOT_FREE:
+        return "the buffer holds a command already";
+    case SINGLE_BUFFER_COMMAND_TOO_LARGE:
+        return "the command is larger than the DDA length allows";
+    case SINGLE_BUFFER_AXIS_UNUSED:
+        return "the axis is not active";
+    case SINGLE_BUFFER_DROPPED:
+        return "an emergency stop caught the frame on its way";
+    case SINGLE_BUFFER_BAD_LENGTH:
+        return "the DDA length is 10 to 15 bit";
+    case SINGLE_BUFFER_BAD_DIVIDER:
+        return "the DDA divider is 1 to 65535";
+    case SINGLE_BUFFER_COMMAND_WAITS:
+        return "the waiting command is too large for the shorter DDA length";
+    case SINGLE_BUFFER_BAD_COUNT:
+        return "a transaction has 0 to 16 frames";
+    case SINGLE_BUFFER_BUS_FULL:
+        return "eight transactions are on their way to the card already";
+    }
+    return "unknown status";
+}
+_Static_assert(BUS_FRAMES == 16 && BUS_DEPTH == 8, "the texts name these numbers");
+
+void single_buffer_reset(struct single_buffer *card, const struct single_buffer_config *config)
+{
+    memset(card, 0, sizeof *card);
+    card->config = *config;
+    dda_reset(&card->dda, SINGLE_BUFFER_RESET_LENGTH, SINGLE_BUFFER_RESET_DIVIDER);
+}
+
+/* FIFO bits of the active axes. */
+static uint32_t fifo_bits(const struct single_buffer *card)
+{
+    uint32_t bits = 0;
+    for (int i = 0; i < SINGLE_BUFFER_AXES; i++)
+        if (card->config.active[i])
+            bits |= 1u << (IRQ_DDA_FIFO + i);
+    return bits;
+}
+
+/* The time of the DDA, which stands while it is off [clock]. */
+static int64_t dda_clock(const struct single_buffer *card)
+{
+    return card->dda.run ? card->clock : card->dda.stop;
+}
+
+/* A direct card has waited so long for a command [clocks]. */
+static int64_t waited(const struct single_buffer *card)
+{
+    return card->config.latched || card->running ? 0 : dda_clock(card) - card->dda.start;
+}
+
+int32_t single_buffer_underflows(const struct single_buffer *card, int axis)
+{
+    return card->underflows[axis] + (waited(card) > 0 && card->last[axis] != 0 ? 1 : 0);
+}
+
+/* A command goes into the DDA. */
+static void take(struct single_buffer *card, const int32_t command[SINGLE_BUFFER_AXES])
+{
+    for (int i = 0; i < SINGLE_BUFFER_AXES; i++) {
+        if (!card->stopped && card->last[i] != 0 && command[i] != 0)
+            card->gap[i] += card->stood;
+        card->last[i] = command[i];
+    }
+    card->stood = 0;
+    card->stopped = false;
+    card->running = true;
+    dda_begin(&card->dda, command);
+}
+
+/* Direct: the command starts the next DDA time at this clock. */
+static void start(struct single_buffer *card, const int32_t command[SINGLE_BUFFER_AXES])
+{
+    struct dda *d = &card->dda;
+    for (int i = 0; i < SINGLE_BUFFER_AXES; i++)
+        card->underflows[i] = single_buffer_underflows(card, i);
+    card->stood = waited(card);
+    d->start = dda_clock(card) - dda_time(d->length, d->divider);   /* as if one ended now */
+    take(card, command);
+}
+
+/* Direct: the command is complete, the DDA waits for the next. Returns the sources that fire. */
+static uint32_t end_direct(struct single_buffer *card)
+{
+    card->running = false;
+    dda_begin(&card->dda, NO_COMMAND);
+    return fifo_bits(card);
+}
+
+/* Latched: the waiting command goes into the DDA, or the axes stand for a DDA time. */
+static uint32_t end_latched(struct single_buffer *card)
+{
+    struct dda *d = &card->dda;
+    if (!card->running)
+        card->stood += dda_time(d->length, d->divider);
+    if (card->waits) {
+        card->waits = false;
+        take(card, card->command);
+        return fifo_bits(card);
+    }
+    for (int i = 0; i < SINGLE_BUFFER_AXES; i++)
+        card->underflows[i] += d->command[i] != 0 ? 1 : 0;
+    card->running = false;
+    dda_begin(d, NO_COMMAND);
+    return 0;
+}
+
+static void boundary(struct single_buffer *card)
+{
+    uint32_t freed = card->config.latched ? end_latched(card) : end_direct(card);
+    irq_raise(&card->irq, IRQ_DDA, freed | 1u << IRQ_DDA_CYCLE, card->clock);
+}
+
+static void arrive(struct single_buffer *card)
+{
+    struct bus_write w = bus_take(&card->bus);
+    bool refused = false;   /* what follows a refused frame is refused: nothing overtakes */
+    for (int k = 0; k < w.count; k++) {
+        refused = refused || single_buffer_write_frame(card, w.frame[k]) != SINGLE_BUFFER_OK;
+        if (refused)
+            card->frames_refused++;
+        else
+            card->frames_taken++;
+    }
+    card->cmd_ack = w.seq;
+}
+
+void single_buffer_advance(struct single_buffer *card, int64_t clock)
+{
+    for (;;) {
+        bool ticks = card->config.latched || card->running;
+        int64_t end = ticks ? dda_boundary(&card->dda) : INT64_MAX;
+        int64_t due = bus_due(&card->bus);
+        int64_t next = end <= due ? end : due;
+        if (next > clock)
+            break;
+        card->clock = next > card->clock ? next : card->clock;
+        if (end <= due)
+            boundary(card);
+        else
+            arrive(card);
+    }
+    card->clock = clock;
+}
+
+enum single_buffer_status single_buffer_set_dda(struct single_buffer *card, int32_t length,
+                                                int32_t divider)
+{
+    if (length == card->dda.next_length && divider == card->dda.next_divider)
+        return SINGLE_BUFFER_OK;
+    if (length < DDA_LENGTH_MIN || length > DDA_LENGTH_MAX)
+        return SINGLE_BUFFER_BAD_LENGTH;
+    if (divider < 1 || divider > DDA_DIVIDER_MAX)
+        return SINGLE_BUFFER_BAD_DIVIDER;
+    for (int i = 0; i < SINGLE_BUFFER_AXES && card->waits; i++)
+        if (abs(card->command[i]) > dda_largest(length))
+            return SINGLE_BUFFER_COMMAND_WAITS;
+    dda_set_time(&card->dda, length, divider, card->clock);
+    return SINGLE_BUFFER_OK;
+}
+
+void single_buffer_set_run(struct single_buffer *card, bool run)
+{
+    dda_set_run(&card->dda, run, card->clock);
+}
+
+enum single_buffer_status single_buffer_post(struct single_buffer *card,
+                                             const struct bus_write *write)
+{
+    if (write->count < 0 || write->count > BUS_FRAMES)
+        return SINGLE_BUFFER_BAD_COUNT;
+    if (!bus_post(&card->bus, write))
+        return SINGLE_BUFFER_BUS_FULL;
+    single_buffer_advance(card, card->clock);
+    return SINGLE_BUFFER_OK;
+}
+
+static enum single_buffer_status refuse(struct single_buffer *card,
+                                        enum single_buffer_status status, int axis,
+                                        int32_t command)
+{
+    card->refusal = (struct single_buffer_refusal){status, axis, command};
+    return status;
+}
+
+enum single_buffer_status single_buffer_write_frame(struct single_buffer *card,
+                                                    const int32_t frame[SINGLE_BUFFER_AXES])
+{
+    int32_t largest = dda_largest(card->dda.next_length);
+    int first = -1;     /* active axis */
+    for (int i = 0; i < SINGLE_BUFFER_AXES; i++) {
+        if (!card->config.active[i] && frame[i] != 0)
+            return refuse(card, SINGLE_BUFFER_AXIS_UNUSED, i, frame[i]);
+        if (frame[i] > largest || frame[i] < -largest)
+            return refuse(card, SINGLE_BUFFER_COMMAND_TOO_LARGE, i, frame[i]);
+        first = card->config.active[i] && first < 0 ? i : first;
+    }
+    first = first < 0 ? 0 : first;
+    if (single_buffer_stock(card) > 0)
+        return refuse(card, SINGLE_BUFFER_NOT_FREE, first, frame[first]);
+    if (card->config.latched) {
+        memcpy(card->command, frame, sizeof card->command);
+        card->waits = true;
+    } else {
+        start(card, frame);
+    }
+    return SINGLE_BUFFER_OK;
+}
+
+void single_buffer_clear(struct single_buffer *card)
+{
+    while (bus_due(&card->bus) != INT64_MAX) {
+        struct bus_write w = bus_take(&card->bus);
+        card->cmd_ack = w.seq;
+        card->frames_refused += w.count;
+        if (w.count > 0)
+            refuse(card, SINGLE_BUFFER_DROPPED, 0, w.frame[0][0]);
+    }
+    if (card->waits)
+        irq_raise(&card->irq, IRQ_DDA, fifo_bits(card), card->clock);
+    card->waits = false;
+    card->stopped = true;
+}
+
+void single_buffer_set_mask(struct single_buffer *card, const uint32_t mask[IRQ_PAGES])
+{
+    irq_set_mask(&card->irq, mask, card->clock);
+}
+
+void single_buffer_acknowledge(struct single_buffer *card, const uint32_t flags[IRQ_PAGES],
+                               const uint32_t mask[IRQ_PAGES])
+{
+    irq_acknowledge(&card->irq, flags, mask, card->clock);
+}
+
+int32_t single_buffer_stock(const struct single_buffer *card)
+{
+    return card->config.latched ? card->waits : card->running;
+}
+
+void single_buffer_pulses(const struct single_buffer *card, int64_t pulses[SINGLE_BUFFER_AXES])
+{
+    dda_counts(&card->dda, card->clock, pulses);
+}

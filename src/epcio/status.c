@@ -1,0 +1,151 @@
+#include "status.h"
+
+#include "adc.h"
+#include "encoder.h"
+#include "local_io.h"
+#include "pulse.h"
+#include "remote_io.h"
+#include "timer.h"
+
+static const char *card_text(int status)
+{
+    switch (status) {
+    case EPCIO_OK:
+        return "ok";
+    case EPCIO_FIFO_FULL:
+        return "the FIFO holds 63 commands already";
+    case EPCIO_FIFO_EMPTY:
+        return "the FIFO is empty";
+    case EPCIO_COMMAND_TOO_LARGE:
+        return "the command is larger than the DDA length allows";
+    case EPCIO_AXIS_UNUSED:
+        return "the axis is not active";
+    case EPCIO_DROPPED:
+        return "an emergency stop caught the frame on its way";
+    case EPCIO_STOPPED:
+        return "the emergency stop is pressed or the watchdog has expired";
+    case EPCIO_BAD_LENGTH:
+        return "the DDA length is 10 to 15 bit";
+    case EPCIO_BAD_DIVIDER:
+        return "the DDA divider is 1 to 65535";
+    case EPCIO_BAD_MINIMUM:
+        return "the minimum stock is 0 to 62";
+    case EPCIO_BAD_COUNT:
+        return "a count is not negative, and a transaction has 16 frames at most";
+    case EPCIO_STOCK_TOO_LARGE:
+        return "a command in the FIFO is too large for the shorter DDA length";
+    case EPCIO_BUS_FULL:
+        return "eight transactions are on their way to the card already";
+    case EPCIO_BAD_AXIS:
+        return "there is no such axis, encoder, channel or set";
+    case EPCIO_BAD_MASK:
+        return "a mask has a bit beyond the last";
+    case EPCIO_BAD_GAIN:
+        return "the P gain is 0 to 65535";
+    case EPCIO_BAD_SCALE:
+        return "the scale of the position loop is 0 to 15";
+    case EPCIO_BAD_LIMIT:
+        return "the limit of the error counter is 1 to 32767";
+    case EPCIO_BAD_TRIM:
+        return "the gain of a DAC is 0.5 to 1.5, its offset -1 to 1 V";
+    case EPCIO_BAD_VOLTS:
+        return "a voltage is a number, of a DAC trigger within +-10 V";
+    case EPCIO_BAD_PHASE:
+        return "the phase is no number or beyond 2^50 line periods";
+    case EPCIO_BAD_MODULE:
+        return "the modules to reset are 1 to 10";
+    case EPCIO_BAD_REGISTER:
+        return "there is no register at this address";
+    case EPCIO_BAD_VALUE:
+        return "the value is no number, fractional or out of range";
+    default:
+        return "unknown status";
+    }
+}
+
+static const char *encoder_text(int status)
+{
+    switch (status) {
+    case ENCODER_BAD_FORMAT:
+        return "the encoder format is 0 to 3";
+    case ENCODER_BAD_RATE:
+        return "an encoder multiplies by 0, 1, 2 or 4";
+    case ENCODER_BAD_WIRING:
+        return "the encoder wiring is a sum of 1, 2, 4, 8; pulse and direction cannot be swapped";
+    case ENCODER_BAD_FILTER:
+        return "the encoder filter is 0 to 65535 clocks";
+    default:
+        return "there is at least one line period between two index pulses";
+    }
+}
+
+static const char *adc_text(int status)
+{
+    switch (status) {
+    case ADC_BAD_BITS:
+        return "the ADC has 12, 14 or 16 bit";
+    case ADC_BAD_TIME:
+        return "a conversion takes one clock or more";
+    case ADC_BAD_MODE:
+        return "the ADC mode is 0 (single) or 1 (free run)";
+    case ADC_BAD_CHANNEL:
+        return "the ADC channel is 0 to 7";
+    case ADC_BAD_MASK:
+        return "a mask of ADC channels is 0 to 255";
+    case ADC_BAD_RANGE:
+        return "the ADC range is 0 (bipolar) or 1 (unipolar)";
+    case ADC_BAD_COMPARE:
+        return "the ADC compares rising (0), falling (1) or both (2)";
+    case ADC_BAD_VOLTS:
+        return "the compare voltage is outside the range of its channel";
+    default:
+        return "the ADC comparison ignores 0 to 3 low bits";
+    }
+}
+
+static const char *local_text(int status)
+{
+    switch (status) {
+    case LOCAL_IO_BAD_EDGE:
+        return "an edge is rising (0), falling (1) or both (2)";
+    case LOCAL_IO_BAD_DEDICATED:
+        return "there are 7 dual-function inputs";
+    case LOCAL_IO_BAD_LDO:
+        return "there are 8 local outputs";
+    default:
+        return "there are 6 servo-on outputs";
+    }
+}
+
+static const char *timer_text(int status)
+{
+    switch (status) {
+    case TIMER_BAD_PERIOD:
+        return "the timer period is 1 to 4294967295 clocks";
+    case TIMER_BAD_VALUE:
+        return "the watchdog waits 1 to 65535 timer periods";
+    default:
+        return "the watchdog resets for 1 to 4294967295 clocks";
+    }
+}
+
+const char *epcio_status_text(enum epcio_status status)
+{
+    int number = (int)status & 0xFF;
+    switch ((int)status & ~0xFF) {
+    case EPCIO_PULSE:
+        return pulse_status_text((enum pulse_status)number);
+    case EPCIO_ENCODER:
+        return encoder_text(number);
+    case EPCIO_ADC:
+        return adc_text(number);
+    case EPCIO_LOCAL_IO:
+        return local_text(number);
+    case EPCIO_REMOTE_IO:
+        return remote_io_status_text((enum remote_io_status)number);
+    case EPCIO_TIMER:
+        return timer_text(number);
+    default:
+        return card_text((int)status);
+    }
+}
