@@ -44,12 +44,15 @@ static void publish_encoders(struct vars *v, const struct epcio *card)
     v->enc_too_fast = 0;
     for (int i = 0; i < EPCIO_ENCODERS; i++)
         v->enc_too_fast |= (int32_t)card->encoder[i].too_fast << i;
-    for (int i = 0; i < EPCIO_ENCODERS - EPCIO_AXES; i++) {
-        const int k = EPCIO_AXES + i;
-        v->enc_count_aux[i] = wrap(card->encoder[k].count);
-        v->latch_value_aux[i] = wrap(card->latch[k].value);
-        v->latch_seen_aux[i] = card->latch[k].seen;
-    }
+    v->enc_count_7 = wrap(card->encoder[6].count);
+    v->enc_count_8 = wrap(card->encoder[7].count);
+    v->enc_count_9 = wrap(card->encoder[8].count);
+    v->latch_value_7 = wrap(card->latch[6].value);
+    v->latch_value_8 = wrap(card->latch[7].value);
+    v->latch_value_9 = wrap(card->latch[8].value);
+    v->latch_seen_7 = card->latch[6].seen;
+    v->latch_seen_8 = card->latch[7].seen;
+    v->latch_seen_9 = card->latch[8].seen;
 }
 
 static void publish_adc(struct vars *v, const struct epcio *card)
@@ -59,10 +62,12 @@ static void publish_adc(struct vars *v, const struct epcio *card)
     if (v->adc_conversions == a->conversions)
         return;
     v->adc_conversions = a->conversions;
-    for (int i = 0; i < ADC_CHANNELS; i++) {
-        const double volts = adc_volts(&card->config.adc, a->range[i], a->code[i]);
-        *(i < 6 ? &v->adc[i] : &v->adc_aux[i - 6]) = volts;
-    }
+    double volts[ADC_CHANNELS];
+    for (int i = 0; i < ADC_CHANNELS; i++)
+        volts[i] = adc_volts(&card->config.adc, a->range[i], a->code[i]);
+    memcpy(v->adc, volts, sizeof v->adc);
+    v->adc_7 = volts[6];
+    v->adc_8 = volts[7];
 }
 
 static void publish_local(struct vars *v, const struct epcio *card)
@@ -85,6 +90,8 @@ static void publish_local(struct vars *v, const struct epcio *card)
 
 static void publish_remote(struct vars *v, const struct epcio *card)
 {
+    int32_t *const in[] = {v->remote_in_1, v->remote_in_2, v->remote_in_3, v->remote_in_4};
+    int32_t *const port[] = {v->remote_out_1, v->remote_out_2, v->remote_out_3, v->remote_out_4};
     v->remote_ready = 0;
     for (int i = 0; i < EPCIO_SETS * REMOTE_IO_SLAVES; i++) {
         const int set = i / REMOTE_IO_SLAVES, slave = i % REMOTE_IO_SLAVES;
@@ -94,8 +101,8 @@ static void publish_remote(struct vars *v, const struct epcio *card)
         v->remote_ready |= (int32_t)(r->ready >> slave & 1u) << i;
         v->remote_errors[i] = r->errors[slave];
         for (int p = 0; p < REMOTE_IO_PORTS; p++) {
-            v->remote_in[i][p] = r->in[slave][p];
-            v->remote_out[i][p] = out[p];
+            in[p][i] = r->in[slave][p];
+            port[p][i] = out[p];
         }
     }
 }
@@ -106,6 +113,9 @@ static void publish(struct vars *v, const struct epcio *card)
     v->irq_seq = wrap(card->irq.seq);
     v->irq_clock = (double)card->irq.clock;
     memcpy(v->irq_flags, card->irq.flags, sizeof v->irq_flags);
+    v->irq_pages = 0;
+    for (int i = 0; i < IRQ_PAGES; i++)
+        v->irq_pages |= (int32_t)((card->irq.flags[i] & card->irq.mask[i]) != 0) << i;
     v->cmd_ack = card->cmd_ack;
     v->frames_taken = card->frames_taken;
     v->frames_refused = card->frames_refused;
@@ -118,8 +128,8 @@ static void publish(struct vars *v, const struct epcio *card)
     publish_encoders(v, card);
     publish_adc(v, card);
     publish_local(v, card);
-    for (int i = 0; i < 2; i++)
-        v->dac_aux[i] = epcio_volts(card, EPCIO_AXES + i);
+    v->dac_7 = epcio_volts(card, 6);
+    v->dac_8 = epcio_volts(card, 7);
     if (card->remote_used)
         publish_remote(v, card);
 }

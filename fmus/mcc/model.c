@@ -135,6 +135,7 @@ static void publish(struct fmu *f)
         v->served[i] = m->pc.pcl.isr.served[i];
         v->served_latency[i] = (double)m->pc.pcl.isr.latency[i] / CLOCK_HZ;
     }
+    v->serving = m->pc.pcl.isr.page + 1;
     publish_card(v, m);
     if (v->error != m->told_error) {
         m->told_error = v->error;

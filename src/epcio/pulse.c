@@ -6,8 +6,8 @@
  * as many backward; one column is one clock
  *
  *     boundary            |
- *     A         __/`\_/`\_/`\_/`\_      high for half of 4 clocks
- *     B         ____________/```````      backward, once that pulse has ended
+ *     A         __/`\_/`\_/`\_/`\_/`    high for half of 4 clocks
+ *     B         ____________/```````    backward, once that pulse has ended
  *
  * Only such a pulse reaches over the boundary: one that comes x clocks before, x a multiple of the
  * divider, is high for (x + divider) / 2 <= x clocks at most.
@@ -80,8 +80,8 @@ void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct 
     p->backward = command < 0;
 }
 
-/* The n-th pulse of the DDA time in progress; n = 0: the one on its first clock, or else one that is
- * over: fall = start. */
+/* The n-th pulse of the DDA time in progress; n = 0: the one on its first clock, or else one
+ * that is over: fall = start. */
 static struct high nth_pulse(const struct pulse_config *c, const struct pulse *p,
                              const struct dda *d, int channel, int32_t n)
 {

@@ -78,9 +78,9 @@ struct pulse_lines pulse_at(const struct pulse_config *c, const struct pulse *p,
 int64_t pulse_next(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
                    int channel, int64_t clock);
 
-/* Clock of the channel's latest pulse up to and including `clock` >= start, whatever the format; -1
- * if there was none since reset. A stop moves the pulses of the DDA time it interrupts: once it goes
- * on, their clocks count from the shifted start, as in dda_edge_clock(). */
+/* Clock of the channel's latest pulse up to and including `clock` >= start, whatever the format;
+ * -1 if there was none since reset. A stop moves the pulses of the DDA time it interrupts: once it
+ * goes on, their clocks count from the shifted start, as in dda_edge_clock(). */
 int64_t pulse_latest(const struct pulse *p, const struct dda *d, int channel, int64_t clock);
 
 /* Two pulses of the DDA time in progress, its first clock included, come one clock apart on one

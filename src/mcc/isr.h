@@ -8,7 +8,6 @@
 #ifndef ISR_H
 #define ISR_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -17,7 +16,7 @@ enum {
 };
 
 struct isr_config {
-    int32_t mask[ISR_PAGES];        /* sources let through beside the FIFO */
+    int32_t mask[ISR_PAGES];        /* sources served beside the FIFO */
     int32_t priority[ISR_PAGES];
     int64_t service;                /* [clocks] the PC needs for a page */
 };
@@ -28,6 +27,7 @@ struct isr {
     int64_t raised[ISR_PAGES];      /* [clock] of the interrupt that brought the first of them */
     int64_t due[ISR_PAGES];         /* [clock] of the page's service */
     int64_t busy;                   /* [clock] up to which the PC serves */
+    int     page;                   /* served until then; -1 before the first */
 
     int32_t order;                  /* services begun so far */
     int32_t served[ISR_PAGES];      /* of each page */
@@ -37,12 +37,12 @@ struct isr {
 
 void isr_start(struct isr *q, const struct isr_config *config);
 
-/* These sources were read: line up their pages behind clock `begin`, the FIFO's too if `fifo`.
- * Returns the clock of the FIFO's service, `begin` at the earliest. */
-int64_t isr_read(struct isr *q, const int32_t flags[ISR_PAGES], bool fifo, int64_t raised,
+/* These sources were read, `fifo` being the one that asks for commands: line up their pages behind
+ * clock `begin`. Returns the clock at which the FIFO's page is served, `begin` if it does not wait. */
+int64_t isr_read(struct isr *q, const int32_t flags[ISR_PAGES], int32_t fifo, int64_t raised,
                  int64_t begin);
 
-/* Serve the pages due before `end`. */
+/* Mark the pages served that are due before `end`. */
 void isr_run(struct isr *q, int64_t end);
 
 #endif

@@ -80,7 +80,7 @@ void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
     pcl_look(&pc->pcl, &pc->mcc, card, now,
              pcl_interrupt(&pc->pcl, card) ? latency(pc) : 0);
     read_panel(pc, panel);
-    isr_run(&pc->pcl.isr, horizon);
+    isr_run(&pc->pcl.isr, publish + 1);
     for (;;) {
         const int64_t due = pcl_due(&pc->pcl);
         if (pc->next_ipo < horizon && pc->next_ipo <= due) {

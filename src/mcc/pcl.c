@@ -58,7 +58,7 @@ void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t
     }
     if (pcl_interrupt(p, card)) {
         const bool fifo = (card->irq_flags[ISR_FIFO_PAGE] & p->mask) != 0;
-        const int64_t due = isr_read(&p->isr, card->irq_flags, fifo, card->irq_clock,
+        const int64_t due = isr_read(&p->isr, card->irq_flags, p->mask, card->irq_clock,
                                      card->irq_clock + latency);
         if (fifo && p->pending == 0) {
             p->due = due;

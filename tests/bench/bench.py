@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,9 @@ import motionfmu
 ROOT = Path(__file__).resolve().parents[2]
 DEMO = ROOT / "scenarios/circle"
 SIX_AXES = Path(__file__).parent / "six_axes"
+PULSE_AXES = Path(__file__).parent / "pulse_axes"
 FUSED = ROOT / "build/tests/bench/fused"
+CARD_COST = ROOT / "build/tests/bench/card_cost"
 ROUNDS = 5
 SLOW_STOP = 0.2  # [s] simulated by the engines that go through Python at every step
 
@@ -107,6 +110,32 @@ class Fused:
                 sys.exit(f"bench: {name} differs between the fused loop and the native engine")
 
 
+@dataclass
+class Card:
+    """The card alone: processor time per simulated second."""
+
+    axes: int
+    hertz: int
+    edges: bool
+    cost: float = np.inf
+
+    def __call__(self) -> None:
+        line = [CARD_COST, str(self.axes), str(self.hertz), str(int(self.edges))]
+        self.cost = min(self.cost, float(subprocess.check_output(line, text=True).split()[0]))
+
+
+def card_table(cards: list[Card]) -> None:
+    """Cost of the card against pulse rate and axes."""
+    print(f"\n{'card alone, ms per simulated s':32}{'counts':>10}{'all edges':>12}")
+    for card in cards:
+        if not card.edges:
+            other = next(
+                c for c in cards if c.edges and (c.axes, c.hertz) == (card.axes, card.hertz)
+            )
+            what = f"{card.axes} axes at {card.hertz / 1000:g} kHz"
+            print(f"  {what:30}{card.cost * 1e3:10.2f}{other.cost * 1e3:12.2f}")
+
+
 def rounds(runs: list[Callable[[], None]]) -> None:
     """Let all take turns."""
     with Progress(transient=True, console=Console(stderr=True)) as progress:
@@ -135,7 +164,9 @@ def main() -> None:
     native()
     assert native.result is not None
     fused = Fused(native.steps)
-    rounds([fused, *engines.values(), six])
+    pulses = Timed(PULSE_AXES)
+    cards = [Card(a, h, e) for a in (1, 3, 6) for h in (0, 10_000, 500_000) for e in (False, True)]
+    rounds([fused, *engines.values(), six, pulses, *cards])
     fused.check(native.result)
 
     base = fused.loop / fused.steps
@@ -145,11 +176,23 @@ def main() -> None:
         step = run.loop / run.steps
         print(f"{name:28}{step * 1e9:10.0f}{step / run.fmus * 1e9:10.0f}{step / base:10.2f}")
     print(f"\n{'simulated s per wall s':28}{'loop':>10}{'whole run':>10}")
-    for name, run in (("demo", native), ("six ball-screw axes", six)):
+    for name, run in (
+        ("demo", native),
+        ("six ball-screw axes", six),
+        ("six pulse axes at 500 kHz", pulses),
+    ):
         print(f"{name:28}{run.simulated / run.loop:10.1f}{run.simulated / run.whole:10.1f}")
+    card_table(cards)
     print()
     verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
     verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
+    fastest = 1.0 / next(c.cost for c in cards if c.axes == 6 and c.hertz > 1e5 and not c.edges)
+    edges = 1.0 / next(c.cost for c in cards if c.axes == 6 and c.hertz > 1e5 and c.edges)
+    verdict("card with six axes at 500 kHz, times real time", fastest, least=20.0)
+    verdict("the same, every edge asked for", edges, least=20.0)
+    verdict(
+        "the same as FMUs with the library, whole loop", pulses.simulated / pulses.loop, least=20.0
+    )
 
 
 if __name__ == "__main__":

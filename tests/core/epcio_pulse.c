@@ -94,6 +94,18 @@ static struct pulse_lines literal_lines(const struct literal *m, int32_t o, int6
     return m->c.wiring & 4 ? (struct pulse_lines){b, a} : (struct pulse_lines){a, b};
 }
 
+/* The DDA time is over at `clock`: its last pulse may lie on the boundary. */
+static void end_literal(struct literal *m, int32_t command, int32_t end, int64_t last,
+                        int64_t clock)
+{
+    for (int32_t o = 1; o <= end; o++)
+        m->before += m->pulse[o] ? (m->back[o] ? -1 : 1) : 0;
+    m->direction = command != 0 ? command < 0 : m->direction;
+    m->pulse[0] = m->pulse[end];
+    m->back[0] = m->back[end];
+    m->last = m->pulse[0] ? clock : last;
+}
+
 /* Two pulses one clock apart on one line. */
 static bool literal_merges(const struct literal *m, int32_t end)
 {
@@ -179,43 +191,32 @@ static void one_time(struct bench *x, int32_t pause_at, int64_t pause_clocks, bo
             if (m->pulse[0] && pause_clocks > 0)
                 cut_literal(m, o, end);
             struct pulse_lines now = literal_lines(m, o, count, command);
-            if (now.a != want.a || now.b != want.b)
-                foretold = x->clock;
-            else if (o > 0 && foretold != INT64_MAX)
-                foretold += pause_clocks;
+            bool cut = now.a != want.a || now.b != want.b;
+            foretold = cut ? x->clock : foretold < INT64_MAX ? foretold + pause_clocks : foretold;
             want = now;
         }
         struct pulse_lines got = lines_now(x);
         CHECK(got.a == want.a && got.b == want.b);
         CHECK_EQ(pulse_latest(&x->p, &x->d, CHANNEL, x->clock),
                  last < 0 ? m->last : x->d.start + last);
-        bool changed = o > 0 && (want.a != old.a || want.b != old.b);
         int64_t next = pulse_next(&m->c, &x->p, &x->d, CHANNEL, x->clock);
         CHECK(next > x->clock);
-        if (o > 0)
+        if (o > 0) {
+            bool changed = want.a != old.a || want.b != old.b;
             CHECK_EQ(foretold == x->clock, changed);
-        if (o > 0 && !changed)
-            CHECK_EQ(next, foretold);
+            CHECK(changed || next == foretold);
+        }
         foretold = next;
         old = want;
         receive(&x->r, &m->c, got);
         if (o == 0 && merged_before)
             x->r.lost = count - x->r.count;
-        if (!merges && m->c.format != PULSE_NONE)
-            CHECK_EQ(x->r.count + x->r.lost, count);
+        CHECK(merges || m->c.format == PULSE_NONE || x->r.count + x->r.lost == count);
     }
     CHECK_EQ(foretold, INT64_MAX);
-    if (merges && pause_at < 0)
-        CHECK(x->r.count + x->r.lost != count);
-    m->last = last < 0 ? m->last : x->d.start + last;
-    m->before = count;
-    m->direction = command != 0 ? command < 0 : m->direction;
-    m->pulse[0] = m->pulse[end];
-    m->back[0] = m->back[end];
-    if (m->pulse[0]) {
-        m->last = x->clock;
-        m->before += m->back[0] ? -1 : 1;
-    }
+    CHECK(!merges || pause_at >= 0 || x->r.count + x->r.lost != count);
+    end_literal(m, command, end, last < 0 ? m->last : x->d.start + last, x->clock);
+    CHECK_EQ(m->before, x->d.before[CHANNEL] + command);
 }
 
 static int32_t some_command(uint64_t *seed, int32_t length)
@@ -263,7 +264,6 @@ static void against_clocks(enum pulse_format format, uint32_t wiring, uint64_t s
         if (x->d.command[CHANNEL] != 0)     /* as the card does */
             pulse_boundary(&x->m.c, &x->p, &x->d, CHANNEL);
         dda_begin(&x->d, (int32_t[DDA_CHANNELS]){7, [CHANNEL] = some_command(&seed, length)});
-        CHECK_EQ(x->m.before, x->d.before[CHANNEL]);
     }
 }
 
@@ -343,6 +343,32 @@ static void gaps(void)
     }
 }
 
+/* A pulse on the boundary and the first one behind it, with half the ticks used up: they merge if
+ * they share a line. */
+static void merging_boundary(void)
+{
+    const struct {
+        enum pulse_format format;
+        int32_t command;
+        bool merges;
+    } row[] = {
+        {PULSE_DIRECTION, 512, true},  {PULSE_DIRECTION, -512, true}, {PULSE_DIRECTION, 511, false},
+        {PULSE_CW_CCW, 512, true},     {PULSE_CW_CCW, -512, false},   {PULSE_CW_CCW, -513, true},
+        {PULSE_AB, 1023, false},       {PULSE_NONE, 1023, false},
+    };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        const struct pulse_config c = {row[i].format, 0, 1};
+        struct dda d;
+        struct pulse p;
+        dda_reset(&d, 10, 1);
+        pulse_reset(&p);
+        dda_begin(&d, (int32_t[DDA_CHANNELS]){600});
+        pulse_boundary(&c, &p, &d, 0);
+        dda_begin(&d, (int32_t[DDA_CHANNELS]){row[i].command});
+        CHECK_EQ(pulse_merges(&c, &p, &d, 0), row[i].merges);
+    }
+}
+
 static void refusals(void)
 {
     const struct {
@@ -379,6 +405,7 @@ int main(void)
     sign_change();
     slow();
     gaps();
+    merging_boundary();
     refusals();
     return check_result();
 }
