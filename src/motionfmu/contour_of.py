@@ -132,7 +132,12 @@ def _traces(result: "Result", used: tuple[str, ...]) -> tuple[Trace, ...]:
     found = []
     for name, values in result.signals.items():
         port = result.scenario.resolver.end(name, "record", "signals").port
-        if name in used or port.type != "Float64" or not port.shape or port.unit is None:
+        if (
+            name in (*used, *result.scenario.only_drawn)
+            or port.type != "Float64"
+            or not port.shape
+            or port.unit is None
+        ):
             continue
         found.append(Trace(name, port.unit, values))
     return tuple(found)

@@ -105,7 +105,7 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
     Returns
     -------
     Path
-        The report, or result.json when the scenario has no contour.
+        The report.
 
     Raises
     ------
@@ -124,12 +124,10 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
         (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
         if csv:
             _write_csv(result, part / TABLE)
-        if result.scenario.document.body.contour is None:
-            shown = NUMBERS
-        else:
-            from motionfmu.report import write_report
+        from motionfmu.report import write_report
 
-            shown = write_report(result, result.contour(), part).name
+        contour = None if result.scenario.document.body.contour is None else result.contour()
+        shown = write_report(result, contour, part).name
         if folder.exists():
             folder.rename(old)
         part.rename(folder)

@@ -76,6 +76,36 @@ def recordable(end: End) -> bool:
     return end.port.shape in ((), (AXES,)) and end.port.type in ("Float64", "Int32", "Boolean")
 
 
+def output(resolver: Resolver, name: str, table: str, key: str) -> End:
+    """Find an output that can be recorded.
+
+    Parameters
+    ----------
+    resolver : Resolver
+    name : str
+        ``component.variable``.
+    table, key : str
+        Where it is written, for the message.
+
+    Returns
+    -------
+    End
+
+    Raises
+    ------
+    InputError
+        The name is unknown, no output, or not recordable.
+    """
+    end = resolver.end(name, table, key)
+    if end.port.causality != "output":
+        text = f"{name} is no output ({end.port.causality})"
+        raise resolver.document.error(text, table, key)
+    if not recordable(end):
+        text = f"{name}: only numbers, single or in groups of six, can be recorded"
+        raise resolver.document.error(text, table, key)
+    return end
+
+
 def chosen(resolver: Resolver, patterns: Iterable[str]) -> list[End]:
     """Outputs that the patterns name, each once.
 
@@ -101,16 +131,7 @@ def chosen(resolver: Resolver, patterns: Iterable[str]) -> list[End]:
             if not ends:
                 raise document.error(f"{pattern!r} matches no output", "record", "signals")
         else:
-            ends = [resolver.end(pattern, "record", "signals")]
-            if ends[0].port.causality != "output":
-                what = ends[0].port.causality
-                raise document.error(f"{pattern} is no output ({what})", "record", "signals")
-            if not recordable(ends[0]):
-                raise document.error(
-                    f"{pattern}: only numbers, single or in groups of six, can be recorded",
-                    "record",
-                    "signals",
-                )
+            ends = [output(resolver, pattern, "record", "signals")]
         found.update({e.name: e for e in ends})
     return list(found.values())
 

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu import recording, scenario, system, values
+from motionfmu import figures, recording, scenario, system, values
 from motionfmu.checks import Verdict, judge
 from motionfmu.engines import ENGINES
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult
+    from motionfmu.figures import Chart
 
 CONTOUR = "contour."
 
@@ -121,6 +122,26 @@ class Result:
             self._contour = contour_of(self)
         return self._contour
 
+    def figures(self) -> "list[Chart]":
+        """The figures the scenario asks for, with their curves.
+
+        Returns
+        -------
+        list of Chart
+            Empty if the scenario has no [[figure]].
+        """
+        return figures.charts(self)
+
+    def overview(self) -> "list[Chart]":
+        """One figure for each recorded signal.
+
+        Returns
+        -------
+        list of Chart
+            Not more than `motionfmu.figures.OVERVIEW`.
+        """
+        return figures.overview(self)
+
     def _figure(self, name: str) -> float:
         try:
             return self.contour().number(name.removeprefix(CONTOUR))
@@ -171,6 +192,17 @@ class Scenario:
     path : str or Path
         A scenario.toml or the folder that holds it.
 
+    Attributes
+    ----------
+    document : Document
+        The file.
+    resolver : Resolver
+        Its FMUs.
+    ends : list of End
+        What is recorded.
+    only_drawn : set of str
+        Names among them that nothing but a figure asks for.
+
     Raises
     ------
     InputError
@@ -180,7 +212,10 @@ class Scenario:
     def __init__(self, path: str | Path) -> None:
         self.document = scenario.read(path)
         self.resolver = system.Resolver(self.document)
-        self.ends = recording.chosen(self.resolver, self._recorded())
+        listed = recording.chosen(self.resolver, self._recorded())
+        drawn = figures.wanted(self.resolver)
+        self.ends = list({e.name: e for e in (*listed, *drawn)}.values())
+        self.only_drawn = {e.name for e in drawn} - {e.name for e in listed}
         self._system(Options())
         self._check_checks()
 
@@ -223,6 +258,7 @@ class Scenario:
             steps=stop_ns // step_ns,
         )
         system.check_inputs(self.resolver, resolved)
+        figures.check(document, step_ns)
         return resolved
 
     def _time(self, key: str, given: float | None, written: float) -> int:

@@ -52,6 +52,29 @@ class Record(BaseModel):
     signals: list[str] = Field(min_length=1)
 
 
+class Plot(BaseModel):
+    """One panel of a figure: signals, and how they are shown."""
+
+    model_config = _STRICT
+    signals: list[str] = Field(min_length=1)
+    label: str = Field(min_length=1)
+    steps: bool = False
+    rate: float | None = None
+    scale: float = 1.0
+    levels: dict[str, float] = Field(default_factory=dict)
+    names: list[str] | None = None
+
+
+class Figure(BaseModel):
+    """Panels above each other that share the time axis [s]."""
+
+    model_config = _STRICT
+    title: str = Field(min_length=1)
+    note: str = ""
+    window: list[float] | None = Field(default=None, min_length=2, max_length=2)
+    plot: list[Plot] = Field(min_length=1)
+
+
 class Body(BaseModel):
     """The tables of a scenario.toml."""
 
@@ -65,6 +88,7 @@ class Body(BaseModel):
     leave: list[str] = Field(default_factory=list)
     record: Record
     contour: Contour | None = None
+    figure: list[Figure] = Field(default_factory=list)
     check: dict[str, Check] = Field(default_factory=dict)
 
 
@@ -163,11 +187,10 @@ def read(path: str | Path) -> Document:
     first = text.split("\n", 1)[0]
     if not first.startswith("#"):
         raise InputError(f"{file}:1: the first line is a comment that says what the scenario shows")
-    tables = _floats(tables)
     try:
-        body = Body.model_validate(tables)
+        body = Body.model_validate(_floats(tables))
     except ValidationError as error:
-        raise InputError(_first(error, file, lines, tables)) from None
+        raise InputError(_first(error, file, lines)) from None
     return Document(file, first.lstrip("# "), body, lines)
 
 
@@ -191,22 +214,27 @@ def _floats(tables: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
-def _first(error: ValidationError, file: Path, lines: Lines, tables: dict[str, Any]) -> str:
+def _first(error: ValidationError, file: Path, lines: Lines) -> str:
     """One line for the first thing pydantic found."""
     found = error.errors()[0]
     place = [str(p) for p in found["loc"]]
     if found["type"] == "missing" and len(place) == 1:
         return f"{file}: {place[0]} is missing"
-    if len(place) == 1:
-        table, key = "", place[0]
-        if isinstance(tables.get(key), dict | list) and found["type"] == "extra_forbidden":
-            table, key = key, ""
-    elif place[0] == "drive" and len(place) > 1:
-        table, key = f"drive.{place[1]}", place[2] if len(place) > 2 else ""
-    else:
-        table, key = place[0], place[1]
+    table, key = _place(place)
+    if found["type"] == "missing":
+        return f"{file}:{lines.of(table)}: {place[-1]} is missing"
     name = ".".join(place[1:] if place[0] == "set" else place)
     if found["type"] == "extra_forbidden":
         return f"{file}:{lines.of(table, key)}: unknown key {place[-1]!r}"
     shown = found["input"] if not isinstance(found["input"], dict) else "..."
     return f"{file}:{lines.of(table, key)}: {name} = {shown!r}: {found['msg'].lower()}"
+
+
+def _place(place: list[str]) -> tuple[str, str]:
+    """Table and key that `Lines` knows, of a place that pydantic names."""
+    if len(place) == 1:
+        return "", place[0]
+    depth = 1
+    if place[0] in ("drive", "figure"):
+        depth = 4 if place[2:3] == ["plot"] and len(place) > 3 else 2
+    return ".".join(place[:depth]), place[depth] if len(place) > depth else ""

@@ -18,27 +18,44 @@ class Lines:
         counts: dict[str, int] = {}
         for number, line in enumerate(text.splitlines(), 1):
             if header := re.match(r"\s*\[\[(.+?)\]\]", line):
-                counts[header[1]] = counts.get(header[1], -1) + 1
-                table = f"{header[1]}.{counts[header[1]]}"
+                name = _numbered(header[1], counts)
+                counts[name] = counts.get(name, -1) + 1
+                table = f"{name}.{counts[name]}"
                 self._at[table, ""] = number
             elif header := re.match(r"\s*\[([^\[].*?)\]\s*(#.*)?$", line):
-                table = header[1]
+                table = _numbered(header[1], counts)
                 self._at[table, ""] = number
             elif key := re.match(r"""\s*("[^"]*"|'[^']*'|[A-Za-z0-9_.-]+)\s*=""", line):
                 self._at.setdefault((table, key[1].strip("\"'")), number)
 
     def of(self, table: str, key: str = "") -> int:
-        """Line of a key, of its table if the key is not found, else 1.
+        """Line of a key, else of the nearest table around it, else 1.
 
         Parameters
         ----------
         table : str
-            Table name, empty for the top; ``drive.0`` for the first ``[[drive]]``.
+            Table name, empty for the top; ``drive.0`` for the first ``[[drive]]``,
+            ``figure.0.plot.1`` for the second ``[[figure.plot]]`` of the first ``[[figure]]``.
         key : str
-            Key without quotes, empty for the table itself.
+            Key without quotes, or table at the top; empty for the table itself.
 
         Returns
         -------
         int
         """
-        return self._at.get((table, key)) or self._at.get((table, "")) or 1
+        while table:
+            if found := self._at.get((table, key)) or self._at.get((table, "")):
+                return found
+            table, _, key = table.rpartition(".")
+        places = (("", key), (key, ""), (f"{key}.0", ""))
+        return next((self._at[p] for p in places if p in self._at), 1)
+
+
+def _numbered(header: str, counts: dict[str, int]) -> str:
+    """Put the number of the latest array table after the name of each one around a table."""
+    name = ""
+    around, dot, own = header.rpartition(".")
+    for part in around.split(".") if dot else ():
+        name += part.strip()
+        name += f".{counts[name]}." if name in counts else "."
+    return name + own.strip()

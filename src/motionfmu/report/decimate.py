@@ -8,6 +8,27 @@ from motionfmu.contour.geometry import Array
 Index = NDArray[np.int64]
 
 
+def keep_steps(values: Array, buckets: int) -> Index:
+    """Samples at which a staircase changes, or its peaks.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        A signal that holds its value between samples.
+    buckets : int
+        As for `keep_peaks`; with more than twice as many changes, only the peaks are kept.
+
+    Returns
+    -------
+    ndarray of int
+        Sorted indices, the first and the last sample among them.
+    """
+    changed = np.flatnonzero(np.diff(values) != 0) + 1
+    if len(changed) > 2 * buckets:
+        return keep_peaks(values, buckets)
+    return np.union1d(changed, np.array([0, len(values) - 1]))
+
+
 def keep_peaks(values: Array, buckets: int) -> Index:
     """Samples with the least and the largest value of each bucket.
 

@@ -3,24 +3,23 @@
 import json
 from collections.abc import Sequence
 from html import escape
-from importlib.resources import files
 from pathlib import Path
-from string import Template
-from typing import Any, Protocol
-
-import plotly.offline
 
 from motionfmu.contour import ContourResult
 from motionfmu.contour.circles import CircularTest
+from motionfmu.figures import Chart
+from motionfmu.report.chart_pictures import write_charts
+from motionfmu.report.charts import add_charts
 from motionfmu.report.drawing import Drawing, draw
 from motionfmu.report.numbers import figure, length
 from motionfmu.report.packed import packed
 from motionfmu.report.path_plot import path_figure
 from motionfmu.report.pictures import write_pictures
+from motionfmu.report.plain import Result, plain_text
 from motionfmu.report.polar_plot import polar_figure
+from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.tables import (
     CORNERS_SHOWN,
-    Check,
     check_table,
     circle_table,
     corner_table,
@@ -38,59 +37,27 @@ PAGE = "report.html"
 NUMBERS = "contour.json"
 CIRCLES_SHOWN = 6
 MAGNIFICATIONS = [m * 10**p for p in range(6) for m in (1, 2, 5)]
+FOOTER = (
+    "The contour error is the distance of the actual position from the nearest point of the exact"
+    " programmed geometry (lines, arcs, helices), on the part of the path that is being cut."
+    " {sign}Rapids and standstill are not counted. The command error is the same for the pulses"
+    " the card put out: chords between interpolation points, rounding to pulses, blended corners."
+    ' Every number of this analysis is in <a href="contour.json">contour.json</a>.'
+)
 
 
-class Result(Protocol):
-    """What the report needs to know of a run beside its contour.
-
-    Attributes
-    ----------
-    name, about : str
-        Of the scenario: its name, and what it shows.
-    checks : sequence of Check
-        Its verdicts.
-    """
-
-    @property
-    def name(self) -> str:
-        """Name of the scenario."""
-
-    @property
-    def about(self) -> str:
-        """What the scenario shows."""
-
-    @property
-    def checks(self) -> Sequence[Check]:
-        """Its verdicts."""
-
-
-class _Page:
-    """Sections and figures, as they are added."""
-
-    def __init__(self) -> None:
-        self.sections: list[str] = []
-        self.figures: list[dict[str, Any]] = []
-
-    def place(self, name: str, drawn: dict[str, Any], over_time: bool = False) -> str:
-        self.figures.append({"id": name, "over_time": over_time} | drawn)
-        return f'<div id="{name}" style="min-height:{drawn["layout"]["height"]}px"></div>'
-
-    def section(self, title: str, note: str, content: str) -> None:
-        note = f'<p class="note">{note}</p>' if note else ""
-        self.sections.append(f"<section><h2>{title}</h2>{note}{content}</section>")
-
-
-def write_report(result: Result, contour: ContourResult, folder: str | Path) -> Path:
-    """Write the page, the main picture and the numbers of a run.
+def write_report(result: Result, contour: ContourResult | None, folder: str | Path) -> Path:
+    """Write the page, the pictures and the contour's numbers of a run.
 
     Parameters
     ----------
     result : Result
-        Name, purpose and verdicts of the scenario.
-    contour : ContourResult
-        The analysed run.
+        Name, purpose, verdicts and figures of the scenario.
+    contour : ContourResult or None
+        The analysed run; None without a contour.
     folder : str or Path
-        Made if it is not there; gets report.html, path.svg, path.png and contour.json.
+        Made if it is not there; gets report.html, figure1.png, figure1.svg and so on, and with a
+        contour path.svg, path.png and contour.json.
 
     Returns
     -------
@@ -103,18 +70,26 @@ def write_report(result: Result, contour: ContourResult, folder: str | Path) -> 
         The folder cannot be written.
     """
     folder = Path(folder)
-    drawing = draw(contour)
-    page = page_text(result, contour, drawing)
-    numbers = json.dumps(contour.numbers(), indent=1, allow_nan=False)
-    folder.mkdir(parents=True, exist_ok=True)
-    write_pictures(result.name, contour, drawing, folder)
-    (folder / NUMBERS).write_text(numbers + "\n", encoding="utf-8")
+    charts = result.figures()
+    if contour is None:
+        page = plain_text(result, charts)
+        folder.mkdir(parents=True, exist_ok=True)
+    else:
+        drawing = draw(contour)
+        page = page_text(result, contour, drawing, charts)
+        numbers = json.dumps(contour.numbers(), indent=1, allow_nan=False)
+        folder.mkdir(parents=True, exist_ok=True)
+        write_pictures(result.name, contour, drawing, folder)
+        (folder / NUMBERS).write_text(numbers + "\n", encoding="utf-8")
+    write_charts(charts, folder)
     (folder / PAGE).write_text(page, encoding="utf-8")
     return folder / PAGE
 
 
-def page_text(result: Result, contour: ContourResult, drawing: Drawing) -> str:
-    """The whole HTML page.
+def page_text(
+    result: Result, contour: ContourResult, drawing: Drawing, charts: Sequence[Chart]
+) -> str:
+    """The whole HTML page of a run with a contour.
 
     Parameters
     ----------
@@ -124,12 +99,14 @@ def page_text(result: Result, contour: ContourResult, drawing: Drawing) -> str:
         The analysed run.
     drawing : Drawing
         The path as it is drawn.
+    charts : sequence of Chart
+        Figures that the scenario asks for.
 
     Returns
     -------
     str
     """
-    page = _Page()
+    page = Sheet()
     page.sections.append(_cards(contour))
     _add_path(page, contour, drawing)
     if result.checks:
@@ -137,39 +114,17 @@ def page_text(result: Result, contour: ContourResult, drawing: Drawing) -> str:
     for i, test in enumerate(contour.circles[:CIRCLES_SHOWN]):
         _add_circle(page, f"circle{i}", test)
     _add_time(page, contour)
+    add_charts(page, charts)
     _add_corners(page, contour)
-    data = {
-        "figures": page.figures,
-        "path": {
-            "foot": [packed(c) for c in drawing.foot.T],
-            "gap": [packed(c) for c in drawing.gap.T],
-            "hairs": packed(drawing.hairs),
-        },
+    path = {
+        "foot": [packed(c) for c in drawing.foot.T],
+        "gap": [packed(c) for c in drawing.gap.T],
+        "hairs": packed(drawing.hairs),
     }
-    here = files("motionfmu.report")
-    sign = "Positive is to the left of the direction of travel, negative to the right."
-    return Template((here / "page.html").read_text(encoding="utf-8")).substitute(
-        title=escape(f"{result.name}: contour report"),
-        name=escape(result.name),
-        about=escape(result.about),
-        verdict=_verdict(result.checks),
-        sign="" if contour.track.signed is None else sign,
-        body="\n".join(page.sections),
-        style=(here / "page.css").read_text(encoding="utf-8"),
-        script=(here / "page.js").read_text(encoding="utf-8"),
-        plotly=plotly.offline.get_plotlyjs(),
-        # "</" would end the script element
-        data=json.dumps(data, separators=(",", ":")).replace("</", "<\\/"),
-    )
-
-
-def _verdict(checks: Sequence[Check]) -> str:
-    failed = sum(not c.ok for c in checks)
-    if not checks:
-        return ""
-    if failed:
-        return f'<span class="pill fail">✗ {failed} of {len(checks)} checks failed</span>'
-    return f'<span class="pill pass">✓ all {len(checks)} checks passed</span>'
+    sign = "Positive is to the left of the direction of travel, negative to the right. "
+    footer = FOOTER.format(sign="" if contour.track.signed is None else sign)
+    frame = Frame(result.name, result.about, "contour report", result.checks, footer)
+    return page.text(frame, ["path.js"], path=path)
 
 
 def _cards(contour: ContourResult) -> str:
@@ -199,7 +154,7 @@ def _cards(contour: ContourResult) -> str:
     )
 
 
-def _add_path(page: _Page, contour: ContourResult, drawing: Drawing) -> None:
+def _add_path(page: Sheet, contour: ContourResult, drawing: Drawing) -> None:
     factor = drawing.magnify
     choices = "".join(
         f'<option value="{m}"{" selected" if m == factor else ""}>&times; {m:,}</option>'
@@ -220,7 +175,7 @@ def _add_path(page: _Page, contour: ContourResult, drawing: Drawing) -> None:
     page.section("Path and contour error", note, content)
 
 
-def _add_circle(page: _Page, name: str, test: CircularTest) -> None:
+def _add_circle(page: Sheet, name: str, test: CircularTest) -> None:
     lines = sorted({n for way in (test.ccw, test.cw) if way for n in way.lines})
     where = "line " + str(lines[0]) if len(lines) == 1 else f"lines {lines[0]} to {lines[-1]}"
     title = f"Circular test, radius {test.radius:g} mm"
@@ -232,7 +187,7 @@ def _add_circle(page: _Page, name: str, test: CircularTest) -> None:
     page.section(title, note, f'<div class="two">{plot}<div>{circle_table(test)}</div></div>')
 
 
-def _add_time(page: _Page, contour: ContourResult) -> None:
+def _add_time(page: Sheet, contour: ContourResult) -> None:
     sign = "" if contour.track.signed is None else " Positive is left of the direction of travel."
     zoom = " Zooming one plot zooms all plots over time."
     note = "Where the tool is cutting." + sign + zoom
@@ -249,7 +204,7 @@ def _add_time(page: _Page, contour: ContourResult) -> None:
         page.section(escape(title), "", content)
 
 
-def _add_corners(page: _Page, contour: ContourResult) -> None:
+def _add_corners(page: Sheet, contour: ContourResult) -> None:
     parts = ""
     if contour.corners:
         count = len(contour.corners)
