@@ -130,6 +130,40 @@ def test_a_signal_too_fast_for_the_filter_miscounts_and_says_so() -> None:
     fmu.free()
 
 
+def test_a_new_gain_acts_at_the_next_update_and_a_loop_can_be_cleared() -> None:
+    fmu = card(host_loop_on=True, host_dac_source=1, p_scale=0, host_p_gain=1)
+    to_clock(fmu, TL)
+    fmu.set("enc_phase", first(-25.0, 6, 0.0))
+    to_clock(fmu, 3 * TL)
+    assert fmu.get("dac")[0] == 100 * LSB
+    fmu.set("host_p_gain", first(3, 6))
+    to_clock(fmu, 4 * TL - 1)
+    assert fmu.get("dac")[0] == 100 * LSB
+    to_clock(fmu, 4 * TL)  # computed at the instant 3 TL, one period of conversion
+    assert fmu.get("dac")[0] == 300 * LSB
+    write(fmu, (0x200, 1))
+    to_clock(fmu, 5 * TL)
+    assert fmu.get("err_count")[0] == 0 and fmu.get("dac")[0] == 0.0
+    fmu.free()
+
+
+def test_fifo_operations() -> None:
+    """Erase the newest, shift the oldest out, see the command in progress."""
+    fmu = card(host_dda_length=10, host_dda_divider=10)  # 10240 clocks
+    rows = [[10 * k, *[0] * 5] for k in range(1, 9)]
+    fmu.set("host_cmd_frames", [x for r in rows for x in r] + [0] * 48)
+    fmu.set("host_cmd_count", 8)
+    fmu.set("host_cmd_seq", 1)
+    to_clock(fmu, 10240)
+    assert (fmu.get("dda_command")[0], fmu.get("stock")[0]) == (10, 7)
+    write(fmu, (0x010, 3), (0x018, 1))
+    to_clock(fmu, 4 * TL)
+    assert fmu.get("stock")[0] == 3  # 30 40 50 are left
+    to_clock(fmu, 100 * TL)
+    assert fmu.get("pulse_count")[0] == 10 + 30 + 40 + 50
+    fmu.free()
+
+
 def test_dac_trim() -> None:
     fmu = card(dac_gain=first(1.1, 8, 1.0), dac_offset=[0.0, -0.25, *[0.0] * 6])
     fmu.set("host_dac_volts", [5.0, 1.0, 10.0, 0.0, 0.0, 0.0])

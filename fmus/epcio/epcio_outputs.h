@@ -19,6 +19,7 @@ static void publish_axes(struct vars *v, const struct epcio *card)
             continue;
         v->stock[i] = card->fifo[i].stock;
         v->underflows[i] = card->underflows[i];
+        v->dda_command[i] = card->dda.command[i];
         v->pulse_count[i] = wrap(pulses[i]);
         v->enc_count[i] = wrap(card->encoder[i].count);
         v->err_count[i] = card->loop[i].error;
