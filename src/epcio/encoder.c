@@ -401,8 +401,6 @@ bool encoder_sample(struct encoder *e, double phase, int64_t clock)
 {
     if (!(fabs(phase) <= ENCODER_PHASE_MAX))
         return false;
-    if (e->config.rate == 0 || e->config.format == ENCODER_NONE)
-        return true;
     e->from = e->primed ? e->to : phase;
     e->from_clock = e->primed ? e->clock : clock;
     e->to = phase;
@@ -410,10 +408,9 @@ bool encoder_sample(struct encoder *e, double phase, int64_t clock)
     e->raw_end = (int64_t)floor(4.0 * phase);
     e->walked = 0;
     e->index_first = -1;
-    if (!e->primed) {
-        e->primed = true;
-        settle(e);
-    }
+    if (!e->primed || e->config.rate == 0 || e->config.format == ENCODER_NONE)
+        settle(e);      /* an input that is off follows the shaft without counting */
+    e->primed = true;
     return true;
 }
 

@@ -19,8 +19,12 @@ void irq_raise(struct irq *q, enum irq_page page, uint32_t bits, int64_t clock)
 {
     q->again[page] |= q->flags[page] & bits;
     q->flags[page] |= bits;
-    if ((bits & q->mask[page]) != 0 && !q->line)
+    if ((bits & q->mask[page]) == 0)
+        return;
+    if (!q->line)
         drive_line(q, clock);
+    else if (clock < q->clock)
+        q->clock = clock;   /* told later, but it was first */
 }
 
 void irq_set_mask(struct irq *q, const uint32_t mask[IRQ_PAGES], int64_t clock)

@@ -47,7 +47,8 @@ struct irq {
 };
 
 /* Sources of a page fire, each of the bits. A second firing before the acknowledge is kept beside
- * the first. No bits: nothing happens. */
+ * the first. No bits: nothing happens. What happened between two instants is told at the later one:
+ * a clock before that of the line's rising edge moves the edge there. */
 void irq_raise(struct irq *q, enum irq_page page, uint32_t bits, int64_t clock);
 
 /* Choose which sources pull the line. */

@@ -25,7 +25,7 @@ struct latch {
     uint32_t source;    /* sources that latch; 0 switches the latch off */
     bool     keep_last; /* every trigger latches; else only the first after arming */
     bool     armed;     /* waits for its first trigger, or keeps the last */
-    int32_t  seen;      /* times it has latched */
+    int32_t  seen;      /* sampling periods in which it has latched */
     int64_t  value;     /* [counts] of the counter at `clock` */
     int64_t  clock;
 };

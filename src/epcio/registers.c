@@ -230,6 +230,8 @@ enum epcio_status epcio_set_local_io(struct epcio *card, const struct local_io_c
     enum local_io_status s = local_io_check_control(control);
     if (s == LOCAL_IO_OK)
         card->local_control = *control;
+    if (local_io_stopped(&card->local_control, &card->local))
+        epcio_clear(card);
     epcio_plan(card);
     return of_block(EPCIO_LOCAL_IO, s);
 }
@@ -364,10 +366,13 @@ enum epcio_status epcio_reset_module(struct epcio *card, enum epcio_module modul
                                                                                    : module;
     int last = module == EPCIO_RESET_PERI ? PERI.last : module == EPCIO_RESET_ALL ? ALL.last
                                                                                  : module;
+    const struct irq silent = {.seq = card->irq.seq, .clock = card->irq.clock};
+    if (module == EPCIO_RESET_ALL)
+        card->irq = silent;     /* emptying the FIFOs pulls nothing */
     for (int i = first; i <= last; i++)
         reset_one(card, (enum epcio_module)i);
     if (module == EPCIO_RESET_ALL)
-        card->irq = (struct irq){.seq = card->irq.seq, .clock = card->irq.clock};
+        card->irq = silent;
     epcio_plan(card);
     return EPCIO_OK;
 }

@@ -97,8 +97,10 @@ static void registers_fire_nothing(uint64_t seed)
     struct local_io_lines lines = {.ldi = 0x5A, .dfi = 0x2C, .up = 0x11, .stop = true};
     for (int n = 0; n < 500; n++) {
         set.dedicated = (uint32_t)check_random(&seed, 0, 127);
-        for (int i = 0; i < INPUTS; i++)
-            set_edge(&set, i, (enum local_io_edge)check_random(&seed, 0, 2));
+        for (int i = 0; i < 8; i++)
+            set.ldi_edge[i] = (enum local_io_edge)check_random(&seed, 0, 2);
+        for (int i = 0; i < 7; i++)
+            set.dfi_edge[i] = (enum local_io_edge)check_random(&seed, 0, 2);
         CHECK_EQ(local_io_sample(&set, &io, &lines), 0);
     }
 }
