@@ -93,6 +93,8 @@ def draw(rows: list[Row], picture: Path) -> None:
         )
     right.set(xlabel="interpolation points a turn", ylabel="largest error of the pulses [um]")
     right.set_xlim(right=points.max() * 2.2)
+    right.set_xticks(points, [f"{n:.0f}" for n in points])
+    right.minorticks_off()
     right.set_title("Four times less error for twice the points", loc="left", fontsize=10)
     right.legend(frameon=False, loc="lower left")
     for axes in (left, right):
