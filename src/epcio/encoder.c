@@ -1,4 +1,4 @@
-#include "encoder.h"
+#include "encoder_parts.h"
 
 #include <math.h>
 
@@ -9,11 +9,7 @@
  * the same place in both directions: a decoder that counted the rising edge both ways would drift
  * when the shaft trembles. So a counter is floor((q - shift) / share), turned round if the wiring
  * turns the direction round. Pulses count the same way: one per line period, halfway high, so that
- * x2 counts both edges of a pulse, and there is no x4.
- *
- * Filter: a line is seen `filter` clocks after its edge if it has not changed again before. A and B
- * change at alternate edges, so all edges pass while two quarters take `filter` clocks or more. */
-enum { A, B, C };
+ * x2 counts both edges of a pulse, and there is no x4. */
 
 static int64_t floor_divide(int64_t a, int64_t b)
 {
@@ -25,17 +21,17 @@ static int64_t modulo(int64_t a, int64_t b)
     return a - b * floor_divide(a, b);
 }
 
-static bool a_high(int64_t quarter)
+bool encoder_a_high(int64_t quarter)
 {
     return (quarter & 2) == 0;
 }
 
-static bool b_high(int64_t quarter)
+bool encoder_b_high(int64_t quarter)
 {
     return ((quarter + 1) & 2) != 0;
 }
 
-static bool index_high(const struct encoder *e, int64_t quarter)
+bool encoder_index_high(const struct encoder *e, int64_t quarter)
 {
     return modulo(quarter, 4 * (int64_t)e->config.index_lines) == 0;
 }
@@ -56,8 +52,8 @@ enum encoder_status encoder_check(const struct encoder_config *c)
 /* Lines A and B after inversion and swap: bit 0 and 1. */
 static int wired(uint32_t wiring, int quarter)
 {
-    int a = a_high(quarter) != ((wiring & ENCODER_A_INVERSE) != 0);
-    int b = b_high(quarter) != ((wiring & ENCODER_B_INVERSE) != 0);
+    int a = encoder_a_high(quarter) != ((wiring & ENCODER_A_INVERSE) != 0);
+    int b = encoder_b_high(quarter) != ((wiring & ENCODER_B_INVERSE) != 0);
     return wiring & ENCODER_SWAP ? b | a << 1 : a | b << 1;
 }
 
@@ -91,7 +87,7 @@ void encoder_reset(struct encoder *e, const struct encoder_config *c)
     decode(e);
 }
 
-static int64_t counting_edges(const struct encoder *e)
+int64_t encoder_counting_edges(const struct encoder *e)
 {
     return e->sign * floor_divide(e->seen - e->shift, e->share);
 }
@@ -101,10 +97,10 @@ static void settle(struct encoder *e)
 {
     e->raw = e->seen = e->raw_end;
     e->lost = 0;
-    e->line[A].pin = e->line[A].level = a_high(e->raw);
-    e->line[B].pin = e->line[B].level = b_high(e->raw);
-    e->line[C].pin = e->line[C].level = index_high(e, e->raw);
-    e->zero = counting_edges(e) - e->count;
+    e->line[A].pin = e->line[A].level = encoder_a_high(e->raw);
+    e->line[B].pin = e->line[B].level = encoder_b_high(e->raw);
+    e->line[C].pin = e->line[C].level = encoder_index_high(e, e->raw);
+    e->zero = encoder_counting_edges(e) - e->count;
 }
 
 void encoder_configure(struct encoder *e, const struct encoder_config *c)
@@ -114,7 +110,7 @@ void encoder_configure(struct encoder *e, const struct encoder_config *c)
     settle(e);
 }
 
-static int compare(struct encoder *e, int64_t clock)
+int encoder_compare(struct encoder *e, int64_t clock)
 {
     bool was = e->reached;
     e->reached = e->compare_on && e->count >= e->compare;
@@ -126,10 +122,10 @@ static int compare(struct encoder *e, int64_t clock)
 
 int encoder_clear(struct encoder *e, int64_t clock)
 {
-    e->zero = counting_edges(e);
+    e->zero = encoder_counting_edges(e);
     e->count = 0;
     e->too_fast = false;
-    return compare(e, clock);
+    return encoder_compare(e, clock);
 }
 
 int encoder_set_compare(struct encoder *e, bool on, int32_t value, int64_t clock)
@@ -139,7 +135,7 @@ int encoder_set_compare(struct encoder *e, bool on, int32_t value, int64_t clock
     e->compare_on = on;
     e->compare = value;
     e->reached = false;     /* a new value is a new condition */
-    return compare(e, clock);
+    return encoder_compare(e, clock);
 }
 
 int64_t encoder_edge(double from, double to, int64_t span, double edge)
@@ -155,20 +151,20 @@ int64_t encoder_edge(double from, double to, int64_t span, double edge)
 }
 
 /* [clock] at which the edge between quarters `upper` - 1 and `upper` was passed. */
-static int64_t edge_clock(const struct encoder *e, int64_t upper)
+int64_t encoder_edge_clock(const struct encoder *e, int64_t upper)
 {
     return e->from_clock +
            encoder_edge(e->from, e->to, e->clock - e->from_clock, 0.25 * (double)upper);
 }
 
 /* [clock] of the n-th edge from here, n = 1 for the next; n < 1 for those behind. */
-static int64_t nth_clock(const struct encoder *e, int way, int64_t n)
+int64_t encoder_nth_clock(const struct encoder *e, int way, int64_t n)
 {
-    return edge_clock(e, way > 0 ? e->raw + n : e->raw - n + 1);
+    return encoder_edge_clock(e, way > 0 ? e->raw + n : e->raw - n + 1);
 }
 
 /* Edges from here to `until`. */
-static int64_t edges_until(const struct encoder *e, int way, int64_t until)
+int64_t encoder_edges_until(const struct encoder *e, int way, int64_t until)
 {
     int64_t all = way * (e->raw_end - e->raw);
     if (until >= e->clock || all == 0)
@@ -177,22 +173,22 @@ static int64_t edges_until(const struct encoder *e, int way, int64_t until)
     int64_t there = (int64_t)floor(4.0 * (e->from + (e->to - e->from) * share));
     int64_t n = way * (there - e->raw);
     n = n < 0 ? 0 : n > all ? all : n;
-    while (n < all && nth_clock(e, way, n + 1) <= until)
+    while (n < all && encoder_nth_clock(e, way, n + 1) <= until)
         n++;
-    while (n > 0 && nth_clock(e, way, n) > until)
+    while (n > 0 && encoder_nth_clock(e, way, n) > until)
         n--;
     return n;
 }
 
 /* Edges from `quarter` until the index line changes. */
-static int64_t edges_to_index(const struct encoder *e, int way)
+int64_t encoder_edges_to_index(const struct encoder *e, int way)
 {
     int64_t turn = 4 * (int64_t)e->config.index_lines, place = modulo(e->raw, turn);
     return place == 0 ? 1 : way > 0 ? turn - place : place;
 }
 
 /* Edges until the comparator may change. */
-static int64_t edges_to_compare(const struct encoder *e, int way)
+int64_t encoder_edges_to_compare(const struct encoder *e, int way)
 {
     if (!e->compare_on)
         return INT64_MAX;
@@ -218,7 +214,7 @@ static int index_pulse(struct encoder *e, int64_t clock)
     return ENCODER_INDEX;
 }
 
-static int show_index(struct encoder *e, bool level, int64_t clock)
+int encoder_show_index(struct encoder *e, bool level, int64_t clock)
 {
     e->line[C].level = level;
     bool rises = level != ((e->config.wiring & ENCODER_C_INVERSE) != 0);
@@ -229,172 +225,38 @@ static int show_index(struct encoder *e, bool level, int64_t clock)
 static int run_plain(struct encoder *e, int way, int64_t until)
 {
     int events = 0;
-    int64_t left = edges_until(e, way, until);
+    int64_t left = encoder_edges_until(e, way, until);
     while (left > 0) {
-        int64_t free = least(edges_to_index(e, way), edges_to_compare(e, way)) - 1;
+        int64_t free = least(encoder_edges_to_index(e, way), encoder_edges_to_compare(e, way)) - 1;
         int64_t step = free > 0 ? least(left, free) : 1;
-        int64_t clock = free > 0 ? 0 : nth_clock(e, way, 1);
+        int64_t clock = free > 0 ? 0 : encoder_nth_clock(e, way, 1);
         e->raw += way * step;
         e->seen = e->raw;
         left -= step;
         if (free > 0)
             continue;
-        e->count = counting_edges(e) - e->zero;
-        events |= compare(e, clock);
-        if (index_high(e, e->raw) != e->line[C].level)
-            events |= show_index(e, !e->line[C].level, clock);
+        e->count = encoder_counting_edges(e) - e->zero;
+        events |= encoder_compare(e, clock);
+        if (encoder_index_high(e, e->raw) != e->line[C].level)
+            events |= encoder_show_index(e, !e->line[C].level, clock);
     }
-    e->count = counting_edges(e) - e->zero;
+    e->count = encoder_counting_edges(e) - e->zero;
     return events;
 }
 
 /* More than an edge a clock: the count is kept, but index and compare are only looked at in the end. */
 static int run_aliased(struct encoder *e, int way, int64_t until)
 {
-    int64_t n = edges_until(e, way, until);
-    bool index = n >= edges_to_index(e, way);
+    int64_t n = encoder_edges_until(e, way, until);
+    bool index = n >= encoder_edges_to_index(e, way);
     if (n == 0)
         return 0;
     e->too_fast = true;
     e->raw += way * n;
     e->seen = e->raw;
-    e->count = counting_edges(e) - e->zero;
-    e->line[C].level = index_high(e, e->raw);
-    return compare(e, until) | (index ? index_pulse(e, until) : 0);
-}
-
-/* A pin changes. If the change before was not seen yet, it never will be. */
-static void pin_edge(struct encoder_line *l, int64_t clock)
-{
-    l->pin = !l->pin;
-    l->edge = clock;
-}
-
-static void raw_edge(struct encoder *e, int way, int64_t clock)
-{
-    int64_t upper = way > 0 ? e->raw + 1 : e->raw;
-    pin_edge(&e->line[upper & 1 ? B : A], clock);
-    e->raw += way;
-    e->walked++;
-    if (index_high(e, e->raw) != e->line[C].pin)
-        pin_edge(&e->line[C], clock);
-}
-
-/* [clock] at which a line's latest edge is seen; INT64_MAX if there is nothing to see. */
-static int64_t sight(const struct encoder *e, int line)
-{
-    const struct encoder_line *l = &e->line[line];
-    return l->pin != l->level ? l->edge + e->config.filter : INT64_MAX;
-}
-
-/* Lines change behind the filter at `clock`. Both at once is no step of the code: nothing counts. */
-static int see(struct encoder *e, int64_t clock)
-{
-    bool a = sight(e, A) == clock, b = sight(e, B) == clock, index = sight(e, C) == clock;
-    int events = 0;
-    if (a && b) {
-        int64_t before = counting_edges(e);
-        e->seen += 2;
-        e->zero += counting_edges(e) - before;
-        e->too_fast = true;
-    } else if (a || b) {
-        bool rises = a ? e->line[A].pin : e->line[B].pin;
-        bool up = a ? rises != e->line[B].level : rises == e->line[A].level;
-        e->seen += up ? 1 : -1;
-    }
-    for (int i = A; i <= B; i++)
-        if (i == A ? a : b)
-            e->line[i].level = e->line[i].pin;
-    if (a || b) {
-        e->count = counting_edges(e) - e->zero;
-        events |= compare(e, clock);
-    }
-    if (index)
-        events |= show_index(e, e->line[C].pin, clock);
-    return events;
-}
-
-/* Many like edges in a row need not be walked: either all are seen or none. Whole line periods are
- * skipped, up to a few edges before the end or before one that means something if it is seen. */
-static void skip(struct encoder *e, int way, int64_t left)
-{
-    enum { MARGIN = 8, SETTLED = 4 };
-    if (e->walked < SETTLED || e->line[C].pin || e->line[C].level)
-        return;     /* what came before may still stand in the filter */
-    double half = 0.5 * (double)(e->clock - e->from_clock) / fabs(e->to - e->from);  /* [clocks] */
-    bool all = half >= e->config.filter;
-    bool none = half <= e->config.filter - 1;
-    if (all)
-        left = least(left, least(edges_to_index(e, way), edges_to_compare(e, way)));
-    int64_t many = (left - MARGIN) & ~(int64_t)3, waiting = way * (e->raw - e->seen - e->lost);
-    if (index_high(e, e->raw + way * many))
-        many -= 4;
-    if (many < 4 || !(all || none) || (all && waiting < 0))
-        return;
-    e->raw += way * many;
-    for (int n = -1; n <= 0; n++) {         /* the two edges just passed */
-        int64_t upper = way > 0 ? e->raw + n : e->raw - n + 1;
-        struct encoder_line *l = &e->line[upper & 1 ? B : A];
-        l->edge = edge_clock(e, upper);
-        if (all)
-            l->level = !l->pin;             /* both still to be seen */
-    }
-    if (all)
-        e->seen += way * (many + waiting - 2);
-    else
-        e->lost += way * many;
-    e->too_fast = e->too_fast || !all;
-    e->count = counting_edges(e) - e->zero;
-    e->walked = 0;
-}
-
-/* More than an edge a clock: nothing stands long enough to be seen, and the pins start anew. */
-static int run_blind(struct encoder *e, int way, int64_t until)
-{
-    int64_t n = edges_until(e, way, until);
-    if (n == 0)
-        return 0;
-    e->too_fast = true;
-    e->raw += way * n;
-    e->line[A].pin = a_high(e->raw);
-    e->line[B].pin = b_high(e->raw);
-    e->line[C].pin = index_high(e, e->raw);
-    for (int i = A; i <= C; i++)
-        e->line[i].edge = until;
-    e->lost = (e->raw - e->seen) & ~(int64_t)3;
-    return 0;
-}
-
-/* At most one edge of A and one of B wait to be seen: with three behind, a line period is lost. */
-static void note_loss(struct encoder *e)
-{
-    int64_t behind = e->raw - e->seen - e->lost;
-    if (behind > 2 || behind < -2) {
-        e->too_fast = true;
-        e->lost += behind > 0 ? 4 : -4;
-    }
-}
-
-static int run_filtered(struct encoder *e, int way, int64_t until)
-{
-    int events = 0;
-    int64_t left = edges_until(e, way, until);
-    for (;;) {
-        int64_t due = least(least(sight(e, A), sight(e, B)), sight(e, C));
-        int64_t next = left > 0 ? nth_clock(e, way, 1) : INT64_MAX;
-        if (least(due, next) > until)
-            return events;
-        if (due <= next) {
-            events |= see(e, due);
-            continue;
-        }
-        raw_edge(e, way, next);
-        left--;
-        note_loss(e);
-        int64_t before = e->raw;
-        skip(e, way, left);
-        left -= way * (e->raw - before);
-    }
+    e->count = encoder_counting_edges(e) - e->zero;
+    e->line[C].level = encoder_index_high(e, e->raw);
+    return encoder_compare(e, until) | (index ? index_pulse(e, until) : 0);
 }
 
 bool encoder_sample(struct encoder *e, double phase, int64_t clock)
@@ -421,7 +283,7 @@ int encoder_run(struct encoder *e, int64_t until)
     int way = e->raw_end > e->raw ? 1 : -1;
     bool aliased = 4.0 * fabs(e->to - e->from) > (double)(e->clock - e->from_clock);
     if (e->config.filter > 0)
-        return aliased ? run_blind(e, way, until) : run_filtered(e, way, until);
+        return aliased ? encoder_run_blind(e, way, until) : encoder_run_filtered(e, way, until);
     if (e->raw == e->raw_end)
         return 0;
     return aliased ? run_aliased(e, way, until) : run_plain(e, way, until);
