@@ -89,6 +89,17 @@ def test_no_file_is_two_things() -> None:
     assert long == {}
 
 
+def test_lines_of_c_fit_a_hundred_columns() -> None:
+    long = [
+        f"{f.relative_to(ROOT)}:{n}"
+        for f in sources()
+        if f.suffix in (".c", ".h", ".inc", ".mo") and f.exists()
+        for n, line in enumerate(f.read_text().splitlines(), 1)
+        if len(line) > 100
+    ]
+    assert long == []
+
+
 def lines(file: Path) -> int:
     return len(file.read_text().splitlines()) if file.exists() else 0
 

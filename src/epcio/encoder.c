@@ -221,7 +221,7 @@ int encoder_show_index(struct encoder *e, bool level, int64_t clock)
     return rises ? index_pulse(e, clock) : 0;
 }
 
-/* Without a filter: as far as nothing can happen in one go, then one edge that may mean something. */
+/* Without a filter: in one go as far as nothing can happen, then an edge that may mean something. */
 static int run_plain(struct encoder *e, int way, int64_t until)
 {
     int events = 0;
@@ -244,7 +244,7 @@ static int run_plain(struct encoder *e, int way, int64_t until)
     return events;
 }
 
-/* More than an edge a clock: the count is kept, but index and compare are only looked at in the end. */
+/* More than an edge a clock: the count is kept; index and compare are looked at in the end only. */
 static int run_aliased(struct encoder *e, int way, int64_t until)
 {
     int64_t n = encoder_edges_until(e, way, until);

@@ -47,7 +47,7 @@ struct encoder {
     double  from, to;           /* [line periods] phase at the two latest samples */
     int64_t from_clock, clock;  /* [clock] of these */
     int64_t raw_end;            /* floor(4 to) */
-    int64_t raw;                /* quadrature edges at the pins so far, as far as they are worked off */
+    int64_t raw;                /* quadrature edges at the pins, as far as worked off */
     int64_t seen;               /* the same behind the filter, less those lost there */
     int64_t lost;               /* [edges] whole line periods */
     int32_t walked;             /* edges taken one by one since the latest sample */

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* A line is seen `filter` clocks after its edge if it has not changed again before. A and B change at
- * alternate edges, so all edges pass while two quarters take `filter` clocks or more. */
+/* A line is seen `filter` clocks after its edge if it has not changed again before. A and B change
+ * at alternate edges, so all edges pass while two quarters take `filter` clocks or more. */
 
 static int64_t least(int64_t a, int64_t b)
 {
@@ -34,7 +34,7 @@ static int64_t sight(const struct encoder *e, int line)
     return l->pin != l->level ? l->edge + e->config.filter : INT64_MAX;
 }
 
-/* Lines change behind the filter at `clock`. Both at once is no step of the code: nothing counts. */
+/* Lines change behind the filter at `clock`. Both at once is no step of the code: no count. */
 static int see(struct encoder *e, int64_t clock)
 {
     bool a = sight(e, A) == clock, b = sight(e, B) == clock, index = sight(e, C) == clock;

@@ -14,8 +14,8 @@ bool encoder_index_high(const struct encoder *e, int64_t quarter);
 /* Edges that count, from phase 0 to what is seen. */
 int64_t encoder_counting_edges(const struct encoder *e);
 
-/* [clock] at which the edge between quarters `upper` - 1 and `upper` was passed; of the n-th edge from
- * here, n = 1 for the next, n < 1 for those behind. `way` is +1 or -1. */
+/* [clock] at which the edge between quarters `upper` - 1 and `upper` was passed; of the n-th edge
+ * from here, n = 1 for the next, n < 1 for those behind. `way` is +1 or -1. */
 int64_t encoder_edge_clock(const struct encoder *e, int64_t upper);
 int64_t encoder_nth_clock(const struct encoder *e, int way, int64_t n);
 

@@ -115,8 +115,8 @@ struct epcio {
     struct irq          irq;
 };
 
-/* Six active axes, A/B encoders x4 with 2500 lines, pulse and direction of 1 us, P loop scale 6, ADC
- * of 14 bit and 10 us, remote exchanges of 144 us. */
+/* Six active axes, A/B encoders x4 with 2500 lines, pulse and direction of 1 us, P loop scale 6,
+ * ADC of 14 bit and 10 us, remote exchanges of 144 us. */
 struct epcio_config epcio_default_config(void);
 
 /* Power on at clock 0: DDA running with the reset length and divider, FIFOs empty, mask 0, outputs

@@ -1,5 +1,5 @@
-/* Registers by number, for a host that has only a bus. The numbers are ours: the chip's register map
- * is not public. Each takes one value; a fractional one only where a voltage is meant. */
+/* Registers by number, for a host that has only a bus. The numbers are ours: the chip's register
+ * map is not public. Each takes one value; a fractional one only where a voltage is meant. */
 #ifndef REGISTER_MAP_H
 #define REGISTER_MAP_H
 

@@ -358,14 +358,16 @@ static void reset_one(struct epcio *card, enum epcio_module module)
 
 enum epcio_status epcio_reset_module(struct epcio *card, enum epcio_module module)
 {
-    static const struct { enum epcio_module first, last; } PERI = {EPCIO_RESET_ENC, EPCIO_RESET_LIO},
-                                                           ALL = {EPCIO_RESET_DDA, EPCIO_RESET_DAC};
+    int first = module, last = module;
     if ((int)module < EPCIO_RESET_DDA || module > EPCIO_RESET_ALL)
         return EPCIO_BAD_MODULE;
-    int first = module == EPCIO_RESET_PERI ? PERI.first : module == EPCIO_RESET_ALL ? ALL.first
-                                                                                   : module;
-    int last = module == EPCIO_RESET_PERI ? PERI.last : module == EPCIO_RESET_ALL ? ALL.last
-                                                                                 : module;
+    if (module == EPCIO_RESET_PERI) {
+        first = EPCIO_RESET_ENC;
+        last = EPCIO_RESET_LIO;
+    } else if (module == EPCIO_RESET_ALL) {
+        first = EPCIO_RESET_DDA;
+        last = EPCIO_RESET_DAC;
+    }
     const struct irq silent = {.seq = card->irq.seq, .clock = card->irq.clock};
     if (module == EPCIO_RESET_ALL)
         card->irq = silent;     /* emptying the FIFOs pulls nothing */

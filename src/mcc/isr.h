@@ -1,9 +1,9 @@
 /* isr - the order in which one interrupt line's many sources are served.
  *
- * The card latches sources on nine pages. At an interrupt the host reads them all, acknowledges what
- * it has read, and serves the pages one after another, the lowest priority number first, pages of one
- * number in their order on the card. The first begins after the interrupt latency, each keeps the PC
- * for its service time. Pages of an earlier interrupt that still wait take part in the new order.
+ * The card latches sources on nine pages. At an interrupt the host reads them all, acknowledges
+ * what it has read, and serves the pages one after another, the lowest priority number first, pages
+ * of one number in their order on the card. The first begins after the interrupt latency, each
+ * keeps the PC for its service time. Pages of an earlier interrupt that still wait join the new order.
  */
 #ifndef ISR_H
 #define ISR_H
@@ -38,7 +38,8 @@ struct isr {
 void isr_start(struct isr *q, const struct isr_config *config);
 
 /* These sources were read, `fifo` being the one that asks for commands: line up their pages behind
- * clock `begin`. Returns the clock at which the FIFO's page is served, `begin` if it does not wait. */
+ * clock `begin`. Returns the clock at which the FIFO's page is served; `begin` if it does not
+ * wait. */
 int64_t isr_read(struct isr *q, const int32_t flags[ISR_PAGES], int32_t fifo, int64_t raised,
                  int64_t begin);
 

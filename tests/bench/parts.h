@@ -1,4 +1,4 @@
-/* The variables of the four FMUs of the fused loop, each under its own name, and their functions. */
+/* The variables of the four FMUs of the fused loop, each under its own name, and functions. */
 #ifndef PARTS_H
 #define PARTS_H
 

@@ -79,6 +79,7 @@ int main(int argc, char **argv)
     CHECK_EQ(pulses[0], 0);
     CHECK_EQ(card.encoder[0].count, 0);
     CHECK_EQ(card.underflows[0], 0);
-    CHECK_EQ(card.latch[0].seen, 19);     /* nine each way (the lag turns it before the tenth), zero */
+    /* nine each way, for the lag turns it round before the tenth, and the one at zero */
+    CHECK_EQ(card.latch[0].seen, 19);
     return check_result();
 }

@@ -246,7 +246,12 @@ static void overload_ends(void)
 /* Swap turns the direction round; so does one inverted line, and two leave it. */
 static void wiring_and_formats(void)
 {
-    static const struct { enum encoder_format format; uint32_t wiring; int32_t rate; int want; } ROW[] = {
+    static const struct {
+        enum encoder_format format;
+        uint32_t wiring;
+        int32_t rate;
+        int want;
+    } ROW[] = {
         {ENCODER_AB, 0, 4, 40},
         {ENCODER_AB, ENCODER_SWAP, 4, -40},
         {ENCODER_AB, ENCODER_A_INVERSE, 4, -40},
