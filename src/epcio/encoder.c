@@ -221,7 +221,7 @@ int encoder_show_index(struct encoder *e, bool level, int64_t clock)
     return rises ? index_pulse(e, clock) : 0;
 }
 
-/* Without a filter: in one go as far as nothing can happen, then an edge that may mean something. */
+/* Without a filter: in one go as far as nothing can happen, then an edge that may matter. */
 static int run_plain(struct encoder *e, int way, int64_t until)
 {
     int events = 0;

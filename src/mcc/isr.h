@@ -3,7 +3,8 @@
  * The card latches sources on nine pages. At an interrupt the host reads them all, acknowledges
  * what it has read, and serves the pages one after another, the lowest priority number first, pages
  * of one number in their order on the card. The first begins after the interrupt latency, each
- * keeps the PC for its service time. Pages of an earlier interrupt that still wait join the new order.
+ * keeps the PC for its service time. Pages of an earlier interrupt that still wait join the new
+ * order.
  */
 #ifndef ISR_H
 #define ISR_H

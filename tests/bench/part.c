@@ -1,8 +1,8 @@
 /* One FMU's model without FMI: its own C files behind four plain functions.
  *
  * Compiled once per FMU with -DPART=<name>, its C file as MODEL and its folders in the include
- * path. <name>_open gives the variables at their start values; then <name>_start, <name>_step, <name>_end. An error
- * ends the program.
+ * path. <name>_open gives the variables at their start values; then <name>_start, <name>_step,
+ * <name>_end. An error ends the program.
  */
 #include <stdarg.h>
 #include <stdio.h>
