@@ -63,7 +63,7 @@ enum fault command_ptp(struct command *c, const struct machine *m)
 
     c->type = COMMAND_PTP;
     c->blend = false;
-    set_speed(c, m, safe, safe);
+    set_speed(c, m, m->ptp_ratio > 0.0 ? safe * m->ptp_ratio : safe, safe);
     return check_range(&c->path, m);
 }
 

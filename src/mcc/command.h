@@ -30,7 +30,7 @@ struct command {
 enum fault command_move(struct command *c, const struct machine *m, enum command_type type,
                         double feed, struct fault_report *r);
 
-/* Rapid positioning: all axes together, the slowest at its safe motor speed. */
+/* Rapid positioning: all axes together, the slowest at its share of the safe motor speed. */
 enum fault command_ptp(struct command *c, const struct machine *m);
 
 /* Wait for so many seconds at a point. */

@@ -28,6 +28,7 @@ struct machine {
     double  max_feed;       /* [mm/s] cart_max_speed of the source document */
     double  acc_time;       /* [s] from rest to the commanded feed */
     double  dec_time;       /* [s] from the commanded feed to rest */
+    double  ptp_ratio;      /* 0..1 share of the safe motor speed for point-to-point; 0 means 1 */
 };
 
 /* True if every value lies in its range and is finite. */

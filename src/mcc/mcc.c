@@ -113,30 +113,51 @@ int MCC_ptp(struct mcc *m, const double target[AXES])
     return straight(m, target, COMMAND_PTP);
 }
 
-/* Only one axis goes somewhere. */
-static int line_one(struct mcc *m, int axis, double value)
+/* Only some axes go somewhere: `count` from `first` on. */
+static int some(struct mcc *m, int first, int count, const double value[],
+                enum command_type type)
 {
     double target[AXES] = { 0.0 };
     if (!m->incremental) {
         memcpy(target, m->end, sizeof target);
     }
-    target[axis] = value;
-    return MCC_line(m, target);
+    memcpy(target + first, value, (size_t)count * sizeof *value);
+    return straight(m, target, type);
 }
 
 int MCC_line_x(struct mcc *m, double x)
 {
-    return line_one(m, 0, x);
+    return some(m, 0, 1, &x, COMMAND_LINE);
 }
 
 int MCC_line_y(struct mcc *m, double y)
 {
-    return line_one(m, 1, y);
+    return some(m, 1, 1, &y, COMMAND_LINE);
 }
 
 int MCC_line_z(struct mcc *m, double z)
 {
-    return line_one(m, 2, z);
+    return some(m, 2, 1, &z, COMMAND_LINE);
+}
+
+int MCC_ptp_x(struct mcc *m, double x)
+{
+    return some(m, 0, 1, &x, COMMAND_PTP);
+}
+
+int MCC_ptp_y(struct mcc *m, double y)
+{
+    return some(m, 1, 1, &y, COMMAND_PTP);
+}
+
+int MCC_ptp_z(struct mcc *m, double z)
+{
+    return some(m, 2, 1, &z, COMMAND_PTP);
+}
+
+int MCC_ptp_uvw(struct mcc *m, double u, double v, double w)
+{
+    return some(m, 3, 3, (double[]){ u, v, w }, COMMAND_PTP);
 }
 
 /* A point of a plane in machine coordinates. */
@@ -147,34 +168,57 @@ static void in_plane(const struct mcc *m, enum path_plane plane, double a, doubl
     point[1] = b + (m->incremental ? m->end[path_second(plane)] : 0.0);
 }
 
-/* Arc through a point, or with via NULL the full circle about centre. */
-static int turn(struct mcc *m, enum path_plane plane, const double *via, const double end2[2],
-                double centre[2], bool ccw)
+/* An arc as it is asked for, in machine coordinates of its plane. */
+struct turn {
+    enum path_plane plane;
+    bool   circle;          /* full circle about centre, else an arc through via */
+    bool   ccw;
+    double via[2], end[2], centre[2];
+    const double *follow;   /* U V W of the user that follow, or NULL */
+};
+
+/* End of an arc in all axes; false if an axis is not used or a number is none. */
+static bool turn_end(const struct mcc *m, const struct turn *t, double end[AXES])
+{
+    const int a = path_first(t->plane), b = path_second(t->plane);
+
+    memcpy(end, m->end, AXES * sizeof *end);
+    end[a] = t->end[0];
+    end[b] = t->end[1];
+    for (int i = 3; i < AXES && t->follow; i++) {
+        end[i] = t->follow[i - 3] + (m->incremental ? m->end[i] : 0.0);
+    }
+    for (int i = 0; i < AXES; i++) {
+        const bool moves = i == a || i == b || end[i] != m->end[i];
+        if (!isfinite(end[i]) || (moves && !m->machine.axis[i].used)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int turn(struct mcc *m, struct turn *t)
 {
     struct fault_report r;
     struct command c = { .blend = m->blend };
     double end[AXES];
-    const int code = acceptable(m), a = path_first(plane), b = path_second(plane);
+    const int code = acceptable(m);
     enum fault f = FAULT_NONE;
 
     if (code) {
         return code;
     }
-    memcpy(end, m->end, sizeof end);
-    end[a] = end2[0];
-    end[b] = end2[1];
-    if (!isfinite(end[a]) || !isfinite(end[b]) || !m->machine.axis[a].used ||
-        !m->machine.axis[b].used) {
+    if (!turn_end(m, t, end)) {
         return MCC_PARAMETER;
     }
-    if (via) {
-        f = path_centre_by_point(plane, m->end, via, end, centre, &ccw);
+    if (!t->circle) {
+        f = path_centre_by_point(t->plane, m->end, t->via, end, t->centre, &t->ccw);
     }
-    if (f == FAULT_NONE && (!isfinite(centre[0]) || !isfinite(centre[1]))) {
+    if (f == FAULT_NONE && (!isfinite(t->centre[0]) || !isfinite(t->centre[1]))) {
         return MCC_PARAMETER;
     }
     if (f == FAULT_NONE) {
-        f = path_arc(&c.path, plane, m->end, end, centre, ccw, 1, &r.value);
+        f = path_arc(&c.path, t->plane, m->end, end, t->centre, t->ccw, 1, &r.value);
     }
     if (f == FAULT_NONE) {
         f = command_move(&c, &m->machine, command_arc_type(&c.path), m->feed, &r);
@@ -182,53 +226,85 @@ static int turn(struct mcc *m, enum path_plane plane, const double *via, const d
     return accept(m, &c, f);
 }
 
-static int arc(struct mcc *m, enum path_plane plane, const double via[2], const double end[2])
+static int arc(struct mcc *m, enum path_plane plane, const double p[4], const double *follow)
 {
-    double v[2], e[2], centre[2];
-    in_plane(m, plane, via[0], via[1], v);
-    in_plane(m, plane, end[0], end[1], e);
-    return turn(m, plane, v, e, centre, false);
+    struct turn t = { .plane = plane, .follow = follow };
+    in_plane(m, plane, p[0], p[1], t.via);
+    in_plane(m, plane, p[2], p[3], t.end);
+    return turn(m, &t);
 }
 
 int MCC_arc_xy(struct mcc *m, double via_x, double via_y, double x, double y)
 {
-    return arc(m, PATH_XY, (double[]){ via_x, via_y }, (double[]){ x, y });
+    return arc(m, PATH_XY, (double[]){ via_x, via_y, x, y }, NULL);
 }
 
 int MCC_arc_yz(struct mcc *m, double via_y, double via_z, double y, double z)
 {
-    return arc(m, PATH_YZ, (double[]){ via_y, via_z }, (double[]){ y, z });
+    return arc(m, PATH_YZ, (double[]){ via_y, via_z, y, z }, NULL);
 }
 
 int MCC_arc_zx(struct mcc *m, double via_z, double via_x, double z, double x)
 {
-    return arc(m, PATH_ZX, (double[]){ via_z, via_x }, (double[]){ z, x });
+    return arc(m, PATH_ZX, (double[]){ via_z, via_x, z, x }, NULL);
 }
 
-static int circle(struct mcc *m, enum path_plane plane, double a, double b, int direction)
+int MCC_arc_xyuvw(struct mcc *m, const double plane[4], const double uvw[3])
 {
-    const double end[2] = { m->end[path_first(plane)], m->end[path_second(plane)] };
-    double centre[2];
+    return arc(m, PATH_XY, plane, uvw);
+}
+
+int MCC_arc_yzuvw(struct mcc *m, const double plane[4], const double uvw[3])
+{
+    return arc(m, PATH_YZ, plane, uvw);
+}
+
+int MCC_arc_zxuvw(struct mcc *m, const double plane[4], const double uvw[3])
+{
+    return arc(m, PATH_ZX, plane, uvw);
+}
+
+static int circle(struct mcc *m, enum path_plane plane, const double centre[2], int direction,
+                  const double *follow)
+{
+    struct turn t = { .plane = plane, .circle = true, .ccw = direction == 1, .follow = follow };
     if (direction != 0 && direction != 1) {
         return MCC_PARAMETER;
     }
-    in_plane(m, plane, a, b, centre);
-    return turn(m, plane, NULL, end, centre, direction == 1);
+    t.end[0] = m->end[path_first(plane)];
+    t.end[1] = m->end[path_second(plane)];
+    in_plane(m, plane, centre[0], centre[1], t.centre);
+    return turn(m, &t);
 }
 
 int MCC_circle_xy(struct mcc *m, double centre_x, double centre_y, int direction)
 {
-    return circle(m, PATH_XY, centre_x, centre_y, direction);
+    return circle(m, PATH_XY, (double[]){ centre_x, centre_y }, direction, NULL);
 }
 
 int MCC_circle_yz(struct mcc *m, double centre_y, double centre_z, int direction)
 {
-    return circle(m, PATH_YZ, centre_y, centre_z, direction);
+    return circle(m, PATH_YZ, (double[]){ centre_y, centre_z }, direction, NULL);
 }
 
 int MCC_circle_zx(struct mcc *m, double centre_z, double centre_x, int direction)
 {
-    return circle(m, PATH_ZX, centre_z, centre_x, direction);
+    return circle(m, PATH_ZX, (double[]){ centre_z, centre_x }, direction, NULL);
+}
+
+int MCC_circle_xyuvw(struct mcc *m, const double centre[2], int direction, const double uvw[3])
+{
+    return circle(m, PATH_XY, centre, direction, uvw);
+}
+
+int MCC_circle_yzuvw(struct mcc *m, const double centre[2], int direction, const double uvw[3])
+{
+    return circle(m, PATH_YZ, centre, direction, uvw);
+}
+
+int MCC_circle_zxuvw(struct mcc *m, const double centre[2], int direction, const double uvw[3])
+{
+    return circle(m, PATH_ZX, centre, direction, uvw);
 }
 
 int MCC_motion_delay(struct mcc *m, double ms)

@@ -70,7 +70,19 @@ int MCC_arc_zx(struct mcc *m, double via_z, double via_x, double z, double x);
 int MCC_circle_xy(struct mcc *m, double centre_x, double centre_y, int direction);
 int MCC_circle_yz(struct mcc *m, double centre_y, double centre_z, int direction);
 int MCC_circle_zx(struct mcc *m, double centre_z, double centre_x, int direction);
+/* The arc through (plane[0], plane[1]) to (plane[2], plane[3]), or the circle, while U V W go to
+ * their own target in proportion; their speed counts for the safe speed, not for the feed. */
+int MCC_arc_xyuvw(struct mcc *m, const double plane[4], const double uvw[3]);
+int MCC_arc_yzuvw(struct mcc *m, const double plane[4], const double uvw[3]);
+int MCC_arc_zxuvw(struct mcc *m, const double plane[4], const double uvw[3]);
+int MCC_circle_xyuvw(struct mcc *m, const double centre[2], int direction, const double uvw[3]);
+int MCC_circle_yzuvw(struct mcc *m, const double centre[2], int direction, const double uvw[3]);
+int MCC_circle_zxuvw(struct mcc *m, const double centre[2], int direction, const double uvw[3]);
 int MCC_ptp(struct mcc *m, const double target[AXES]);  /* all axes arrive together */
+int MCC_ptp_x(struct mcc *m, double x);
+int MCC_ptp_y(struct mcc *m, double y);
+int MCC_ptp_z(struct mcc *m, double z);
+int MCC_ptp_uvw(struct mcc *m, double u, double v, double w);
 int MCC_motion_delay(struct mcc *m, double ms);
 
 /* Trajectory control. */
@@ -83,6 +95,7 @@ int MCC_set_abs(struct mcc *m);
 int MCC_set_inc(struct mcc *m);
 int MCC_get_pos_type(const struct mcc *m);              /* 0 incremental, 1 absolute */
 int MCC_set_fspd(struct mcc *m, double feed);           /* [mm/s] */
+int MCC_set_ptp_spd(struct mcc *m, double percent);     /* > 0..100 of the safe motor speed */
 int MCC_enable_quit(struct mcc *m);                     /* continuous path */
 int MCC_disable_quit(struct mcc *m);
 int MCC_check_quit(const struct mcc *m);                /* 0 enabled, 1 disabled, as the library */

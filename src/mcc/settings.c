@@ -38,6 +38,18 @@ int MCC_set_fspd(struct mcc *m, double feed)
     return MCC_NO_ERR;
 }
 
+int MCC_set_ptp_spd(struct mcc *m, double percent)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (!(percent > 0.0 && percent <= 100.0)) {
+        return MCC_FEED_RATE;
+    }
+    m->machine.ptp_ratio = percent / 100.0;
+    return MCC_NO_ERR;
+}
+
 int MCC_enable_quit(struct mcc *m)
 {
     if (!m->open) {
