@@ -6,8 +6,7 @@
  *     x = position / interval + home          place in the table; home is the index of position 0
  *
  * the wanted correction is table[x] of the direction of the latest motion. Backlash is what the two
- * rows differ by: it is driven in when the direction turns, not faster than the axis allows. What has
- * been added never strays from the wanted correction by more than rounding once it was caught up.
+ * rows differ by: it is driven in when the direction turns, not faster than the axis allows.
  */
 #ifndef COMP_H
 #define COMP_H

@@ -25,7 +25,8 @@ bool machine_valid(const struct machine *m)
         }
     }
     return positive(m->dda_time) && positive(m->feed) && positive(m->max_feed) &&
-           m->ptp_ratio >= 0.0 && m->ptp_ratio <= 1.0 && m->feed <= m->max_feed && positive(m->acc_time) && positive(m->dec_time);
+           m->ptp_ratio >= 0.0 && m->ptp_ratio <= 1.0 &&
+           m->feed <= m->max_feed && positive(m->acc_time) && positive(m->dec_time);
 }
 
 int32_t machine_dda_divider(const struct machine *m)

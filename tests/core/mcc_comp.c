@@ -21,7 +21,7 @@ static void interpolation(uint64_t seed)
     const struct comp_table t = table(seed);
 
     for (int trial = 0; trial < 5000; trial++) {
-        const int64_t p = check_random(&seed, -300 * (int64_t)t.interval, 300 * (int64_t)t.interval);
+        const int64_t far = 300 * (int64_t)t.interval, p = check_random(&seed, -far, far);
         const bool back = trial & 1;
         const int32_t *row = back ? t.backward : t.forward;
         const double x = fmax(0.0, fmin(255.0, (double)p / t.interval + t.home));
