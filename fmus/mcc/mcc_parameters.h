@@ -69,7 +69,8 @@ static struct pc_config config_of(const struct vars *v)
         .ipo = (int64_t)round(clocks(v->ipo_period)),
         .start = (int64_t)ceil(clocks(v->start_delay) - PERIOD_TOLERANCE),
         .latency = clocks(v->irq_latency), .jitter = clocks(v->irq_jitter), .seed = v->seed,
-        .min_stock = v->min_stock, .batch = v->batch
+        .min_stock = v->min_stock, .batch = v->batch,
+        .block_delete = v->block_delete, .optional_stop = v->optional_stop
     };
     c.isr.service = (int64_t)llround(clocks(v->service_time));
     memcpy(c.isr.mask, v->irq_sources, sizeof c.isr.mask);

@@ -27,17 +27,14 @@ static int cannot_write(struct fmu *f, int error)
 static int open_program(struct fmu *f)
 {
     const char *name = f->s.v.program;
-    struct text *text;
-    const int error = text_read(name, &text);
+    struct program_file *program;
+    const int error = program_open(name, &program);
 
-    f->blob = text;
-    if (error == EFBIG) {
-        return fmu_fail(f, "program: %s is larger than %d MiB", name, PROGRAM_MAX >> 20);
-    }
+    f->blob = program;
     if (error) {
         return fmu_fail(f, "program: cannot read %s: %s", name, strerror(error));
     }
-    return text ? 0 : fmu_fail(f, "program: %s is empty", name);
+    return program ? 0 : fmu_fail(f, "program: %s is empty", name);
 }
 
 /* A path that cannot be written is told before the run, not after it. */
@@ -54,24 +51,41 @@ static int model_open(struct fmu *f)
 
 static void model_close(struct fmu *f)
 {
-    free(f->blob);
+    program_close(f->blob);
 }
 
-static const char *text_of(const struct fmu *f, size_t *length)
+static struct source source_of_program(const struct fmu *f)
 {
-    const struct text *t = f->blob;
-    *length = t ? t->length : 0;
-    return t ? t->byte : NULL;
+    return (struct source){ program_look, f->blob };
+}
+
+/* Some text of the line a report speaks of. */
+struct quote { char text[SOURCE_LINE_MAX + 1]; };
+
+static struct quote quote(const struct fmu *f, const struct fault_report *r, int32_t at,
+                          int32_t length)
+{
+    const char *text = "";
+    const int64_t there = program_look(f->blob, r->offset, &text);
+    struct quote q;
+    snprintf(q.text, sizeof q.text, "%.*s", there < at + length ? 0 : (int)length, text + at);
+    return q;
 }
 
 /* Say what is wrong with the part program, where, and which text. */
 static int refuse_program(struct fmu *f, const struct fault_report *r)
 {
-    size_t length;
-    const char *text = text_of(f, &length);
-    char detail[96] = "";
+    const struct program_file *program = f->blob;
+    char detail[SOURCE_LINE_MAX + 96] = "";
 
-    if (r->fault == FAULT_FEED || r->fault == FAULT_SPEED) {
+    if (r->fault == FAULT_READ) {
+        return fmu_fail(f, "program: cannot read %s: %s", f->s.v.program,
+                        strerror(program->error));
+    }
+    if (r->other_length) {
+        snprintf(detail, sizeof detail, " beside \"%s\"",
+                 quote(f, r, r->other_at, r->other_length).text);
+    } else if (r->fault == FAULT_FEED || r->fault == FAULT_SPEED) {
         snprintf(detail, sizeof detail, " (%.6g, limit %.6g)", r->value, r->limit);
     } else if (r->fault == FAULT_ARC_END) {
         snprintf(detail, sizeof detail, " (by %.6g mm)", r->value);
@@ -79,8 +93,8 @@ static int refuse_program(struct fmu *f, const struct fault_report *r)
         snprintf(detail, sizeof detail, " (%.6g mm, half the distance is %.6g mm)", r->value,
                  r->limit);
     }
-    return fmu_fail(f, "%s: line %d: %s \"%.*s\"%s", f->s.v.program, (int)r->line,
-                    fault_text(r->fault), (int)r->length, text + r->at, detail);
+    return fmu_fail(f, "%s: line %d: %s \"%s\"%s", f->s.v.program, (int)r->line,
+                    fault_text(r->fault), quote(f, r, r->at, r->length).text, detail);
 }
 
 static void publish_card(struct vars *v, struct model *m)
@@ -127,6 +141,9 @@ static void publish(struct fmu *f)
     v->command = mcc->written.command;
     v->path_feed = mcc->written.feed;
     MCC_get_cpos(mcc, v->position);
+    v->spindle_speed = mcc->written.outputs.spindle;
+    v->coolant = mcc->written.outputs.coolant;
+    v->digital_out = (int32_t)mcc->written.outputs.digital;
     v->queue = mcc->queue.count;
     v->starved = m->pc.pcl.starved;
     v->services = m->pc.pcl.services;
@@ -147,20 +164,19 @@ static int model_start(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
-    size_t length;
-    const char *text = text_of(f, &length);
     const struct machine machine = machine_of(v);
 
     if (check_parameters(f)) {
         return -1;
     }
     const struct pc_config c = config_of(v);
-    if (pc_start(&m->pc, &machine, &c, text != NULL) != MCC_NO_ERR) {
+    if (pc_start(&m->pc, &machine, &c, f->blob != NULL) != MCC_NO_ERR) {
         return fmu_fail(f, "the library refuses the machine parameters");
     }
-    if (text) {
+    if (f->blob) {
+        const struct source source = source_of_program(f);
         struct fault_report r;
-        task_check(&m->pc.mcc, text, length, &r);
+        task_check(&m->pc.mcc, &source, &r);
         if (r.fault != FAULT_NONE) {
             return refuse_program(f, &r);
         }
@@ -176,21 +192,21 @@ static void read_bus(struct fmu *f, int64_t at)
 {
     const struct vars *v = &f->s.v;
     struct pc *pc = &f->s.m.pc;
-    size_t length;
-    const char *text = text_of(f, &length);
+    const struct source source = source_of_program(f);
     struct pcl_card card = {
         .irq_seq = v->card_irq_seq, .irq_clock = (int64_t)v->card_irq_clock,
         .cmd_ack = v->card_cmd_ack,
         .frames_refused = v->card_frames_refused, .stock = v->card_stock[pc->pcl.axis]
     };
     struct pc_panel panel = {
-        .hold = v->hold, .abort = v->abort, .override = v->override
+        .hold = v->hold, .abort = v->abort, .cycle_start = v->cycle_start,
+        .override = v->override
     };
     memcpy(card.irq_flags, v->card_irq_flags, sizeof card.irq_flags);
     memcpy(panel.software_gain, v->software_gain, sizeof panel.software_gain);
     memcpy(panel.p_gain, v->p_gain, sizeof panel.p_gain);
     memcpy(panel.err_count, v->card_err_count, sizeof panel.err_count);
-    pc_instant(pc, at / CLOCK_NS, &card, &panel, text, length);
+    pc_instant(pc, at / CLOCK_NS, &card, &panel, &source);
 }
 
 /* A full FIFO drains, so nothing that passes by itself explains so many refusals. */
@@ -238,11 +254,11 @@ static int model_end(struct fmu *f)
     if (!v->path_file[0]) {
         return 0;
     }
-    struct program program = { .machine = &mcc->machine, .offset = mcc->offset };
+    const struct source source = source_of_program(f);
+    const struct program program = task_program(mcc, &source);
     struct interpreter in;
-    const double origin[AXES] = { 0.0 };
-    program.text = text_of(f, &program.length);
-    interpreter_start(&in, origin, mcc->machine.feed);
+    const double zero[AXES] = { 0.0 };
+    interpreter_start(&in, zero, mcc->machine.feed, mcc->offset);
     const int error = path_write(v->path_file, &in, &program, mcc->ipo.started);
     return error ? cannot_write(f, error) : 0;
 }

@@ -80,12 +80,14 @@ static void put_path(FILE *file, struct interpreter in, const struct program *pr
     fputs("command,line,type,start_x,start_y,start_z,start_u,start_v,start_w,"
           "end_x,end_y,end_z,end_u,end_v,end_w,centre_x,centre_y,centre_z,"
           "normal_x,normal_y,normal_z,radius,sweep,length,feed\n", file);
-    for (int32_t i = 1; i <= last; i++) {
+    for (int32_t i = 1; i <= last;) {
         if (interpreter_next(&in, program, &c, &r) != INTERPRETER_COMMAND) {
             return;
         }
-        c.index = i;
-        put_command(file, &c);
+        if (command_lasts(&c)) {
+            c.index = i++;
+            put_command(file, &c);
+        }
     }
 }
 

@@ -1,57 +1,107 @@
-/* Reads the part program of the mcc FMU. */
+/* Reads the part program of the mcc FMU, through a window of fixed size. */
 #ifndef PROGRAM_FILE_H
 #define PROGRAM_FILE_H
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { PROGRAM_MAX = 64 << 20 };    /* [byte] some two million blocks */
+#include "source.h"
 
-/* Text of a part program. */
-struct text {
-    size_t length;
-    char   byte[];
+enum { PROGRAM_WINDOW = 1 << 16 };      /* [byte] some two thousand blocks */
+
+/* An open part program; byte[0 .. count) stands at an offset of the file, which is read up to
+ * offset + count. */
+struct program_file {
+    FILE   *file;
+    int64_t offset, count;
+    int     error;          /* errno value of a read that failed */
+    char    byte[PROGRAM_WINDOW];
 };
 
-/* Read a whole file; *text stays NULL if it is empty. Returns an errno value, EFBIG if it is larger
- * than PROGRAM_MAX. The caller frees. */
-static int text_read(const char *name, struct text **text)
+/* Go to an offset, also beyond 2 GiB. */
+static int program_seek(FILE *file, int64_t offset)
 {
-    size_t room = 1 << 16;
+#ifdef _WIN32
+    return _fseeki64(file, offset, SEEK_SET);
+#else
+    return offset <= LONG_MAX ? fseek(file, (long)offset, SEEK_SET) : -1;
+#endif
+}
+
+/* Fill the window from an offset on, keeping what it has of it. */
+static int program_fill(struct program_file *p, int64_t offset)
+{
+    const int64_t skip = offset - p->offset;
+    const int64_t keep = skip >= 0 && skip <= p->count ? p->count - skip : -1;
+
+    p->count = keep > 0 ? keep : 0;
+    p->offset = offset;
+    if (keep > 0) {
+        memmove(p->byte, p->byte + skip, (size_t)keep);
+    }
+    errno = 0;
+    if (keep < 0 && program_seek(p->file, offset) != 0) {
+        p->error = errno ? errno : EIO;
+        return -1;
+    }
+    p->count += (int64_t)fread(p->byte + p->count, 1, (size_t)(PROGRAM_WINDOW - p->count), p->file);
+    if (ferror(p->file)) {
+        p->error = errno ? errno : EIO;
+        return -1;
+    }
+    return 0;
+}
+
+/* struct source's look. */
+static int64_t program_look(void *context, int64_t offset, const char **text)
+{
+    struct program_file *p = context;
+    const int64_t behind = p->offset + p->count;
+
+    if (offset < p->offset || offset > behind - SOURCE_WINDOW) {
+        if (program_fill(p, offset)) {
+            return -1;
+        }
+    }
+    *text = p->byte + (offset - p->offset);
+    return p->offset + p->count - offset;
+}
+
+/* Returns an errno value; *program stays NULL if the file is empty. */
+static int program_open(const char *name, struct program_file **program)
+{
+    *program = NULL;
     FILE *file = fopen(name, "rb");
-    *text = NULL;
     if (!file) {
         return errno;
     }
-    int error = 0;
-    struct text *t = malloc(sizeof *t + room);
-    if (t) {
-        t->length = 0;
-    } else {
-        error = ENOMEM;
+    struct program_file *p = malloc(sizeof *p);
+    if (!p) {
+        fclose(file);
+        return ENOMEM;
     }
-    while (!error) {
-        const size_t n = fread(t->byte + t->length, 1, room - t->length, file);
-        t->length += n;
-        if (t->length > PROGRAM_MAX) {
-            error = EFBIG;
-        } else if (t->length == room) {
-            struct text *more = realloc(t, sizeof *t + (room *= 2));
-            error = more ? 0 : ENOMEM;
-            t = more ? more : t;
-        } else {
-            error = ferror(file) ? errno : 0;
-            break;
-        }
+    setvbuf(file, NULL, _IONBF, 0);     /* the window is the buffer */
+    p->file = file;
+    p->offset = p->count = p->error = 0;
+    if (program_fill(p, 0) || p->count == 0) {
+        const int error = p->error;
+        fclose(file);
+        free(p);
+        return error;
     }
-    fclose(file);
-    if (error || t->length == 0) {
-        free(t);
-    } else {
-        *text = t;
+    *program = p;
+    return 0;
+}
+
+static void program_close(struct program_file *p)
+{
+    if (p) {
+        fclose(p->file);
+        free(p);
     }
-    return error;
 }
 
 #endif

@@ -3,18 +3,28 @@
 #include <math.h>
 #include <string.h>
 
-static const char AXIS_LETTERS[] = "XYZUVW";
+#include "offsets.h"
+
 static const char CENTRE_LETTERS[] = "IJK";
 static const int TURNS_MAX = 10000;         /* P of an arc */
+static const double DWELL_MAX = 86400.0;    /* [s] a day */
 
-const struct token *block_first(const struct block *b, const char *letters)
+struct command *block_command(struct interpreter *in)
 {
-    for (; *letters; letters++) {
-        if (gcode_word(&b->g, *letters)) {
-            return gcode_word(&b->g, *letters);
-        }
-    }
-    return NULL;
+    struct command *c = &in->made[in->count];
+    memset(c, 0, sizeof *c);
+    c->line = in->line;
+    return c;
+}
+
+/* The command is a motion of the program: digital outputs that wait for one go with it. */
+static void accept(struct interpreter *in, struct command *c)
+{
+    c->set = in->set;
+    c->clear = in->clear;
+    in->set = in->clear = 0;
+    memcpy(in->point, c->path.end, sizeof in->point);
+    in->count++;
 }
 
 /* End point of the block in machine coordinates. */
@@ -24,7 +34,7 @@ static enum fault end_point(const struct interpreter *in, const struct program *
     const bool machine = b->g.code[GCODE_NONMODAL] == 530;
 
     for (int i = 0; i < AXES; i++) {
-        const struct token *w = gcode_word(&b->g, AXIS_LETTERS[i]);
+        const struct token *w = gcode_word(&b->g, BLOCK_AXES[i]);
         end[i] = in->point[i];
         if (!w) {
             continue;
@@ -34,18 +44,17 @@ static enum fault end_point(const struct interpreter *in, const struct program *
         }
         const double value = w->value * b->scale;
         end[i] = machine ? value : in->incremental ? end[i] + value
-                                                   : value + p->offset[in->system][i];
+                                                   : value + offsets_zero(in, i);
     }
     return FAULT_NONE;
 }
 
-static enum fault arc_centre(const struct interpreter *in, const struct program *p,
-                             const struct block *b, const double end[AXES], double centre[2],
-                             struct fault_report *r)
+static enum fault arc_centre(const struct interpreter *in, const struct block *b,
+                             const double end[AXES], double centre[2], struct fault_report *r)
 {
     const int axis[2] = { path_first(in->plane), path_second(in->plane) };
     const struct token *radius = gcode_word(&b->g, 'R');
-    const struct token *any = block_first(b, CENTRE_LETTERS);
+    const struct token *any = gcode_first(&b->g, CENTRE_LETTERS);
     const struct token *normal = gcode_word(&b->g, CENTRE_LETTERS[in->plane]);
 
     if (normal) {
@@ -67,7 +76,7 @@ static enum fault arc_centre(const struct interpreter *in, const struct program 
             return tokens_at_line(r, FAULT_NO_CENTRE, &b->tokens);
         }
         const double value = w ? w->value * b->scale : 0.0;
-        centre[i] = value + (in->absolute_centre ? p->offset[in->system][axis[i]]
+        centre[i] = value + (in->absolute_centre ? offsets_zero(in, axis[i])
                                                  : in->point[axis[i]]);
     }
     return FAULT_NONE;
@@ -87,7 +96,7 @@ static enum fault arc(const struct interpreter *in, const struct program *p, con
                   turns->value != round(turns->value))) {
         return tokens_at_word(r, FAULT_VALUE, turns);
     }
-    enum fault f = arc_centre(in, p, b, end, centre, r);
+    enum fault f = arc_centre(in, b, end, centre, r);
     if (f == FAULT_NONE) {
         f = path_arc(path, in->plane, in->point, end, centre, in->motion == 3,
                      turns ? (int)turns->value : 1, &r->value);
@@ -97,32 +106,78 @@ static enum fault arc(const struct interpreter *in, const struct program *p, con
 }
 
 enum fault block_motion(struct interpreter *in, const struct program *p, const struct block *b,
-                         struct command *c, struct fault_report *r)
+                        struct fault_report *r)
 {
+    struct command *c = block_command(in);
     double end[AXES];
     enum fault f = end_point(in, p, b, end, r);
-    if (f != FAULT_NONE) {
-        return f;
-    }
-    if (in->motion >= 2) {
+
+    if (f == FAULT_NONE && in->motion >= 2) {
         f = arc(in, p, b, end, &c->path, r);
-    } else {
+    } else if (f == FAULT_NONE) {
         path_line(&c->path, in->point, end);
     }
-    if (f != FAULT_NONE) {
+    if (f != FAULT_NONE || c->path.length == 0.0) {
         return f;
     }
-    if (c->path.length > 0.0) {
-        c->blend = in->blend;
-        c->line = in->line;
-        if (in->motion == 0) {
-            f = command_ptp(c, p->machine);
-        } else {
-            f = command_move(c, p->machine,
-                             in->motion == 1 ? COMMAND_LINE : command_arc_type(&c->path),
-                             in->feed, r);
-        }
-        memcpy(in->point, end, sizeof in->point);
+    c->blend = in->blend;
+    if (in->motion == 0) {
+        f = command_ptp(c, p->machine);
+    } else {
+        f = command_move(c, p->machine,
+                         in->motion == 1 ? COMMAND_LINE : command_arc_type(&c->path), in->feed, r);
     }
+    accept(in, c);
     return tokens_at_line(r, f, &b->tokens);
+}
+
+static enum fault rapid(struct interpreter *in, const struct program *p, const struct block *b,
+                        const double end[AXES], struct fault_report *r)
+{
+    struct command *c = block_command(in);
+
+    path_line(&c->path, in->point, end);
+    if (c->path.length == 0.0) {
+        return FAULT_NONE;
+    }
+    const enum fault f = command_ptp(c, p->machine);
+    accept(in, c);
+    return tokens_at_line(r, f, &b->tokens);
+}
+
+enum fault block_home(struct interpreter *in, const struct program *p, const struct block *b,
+                      struct fault_report *r)
+{
+    const bool all = !gcode_first(&b->g, BLOCK_AXES);
+    double via[AXES], home[AXES];
+    enum fault f = end_point(in, p, b, via, r);
+
+    for (int i = 0; i < AXES; i++) {
+        const bool goes = all ? p->machine->axis[i].used
+                              : gcode_word(&b->g, BLOCK_AXES[i]) != NULL;
+        home[i] = goes ? 0.0 : via[i];
+    }
+    if (f == FAULT_NONE) {
+        f = rapid(in, p, b, via, r);
+    }
+    return f != FAULT_NONE ? f : rapid(in, p, b, home, r);
+}
+
+enum fault block_dwell(struct interpreter *in, const struct block *b, struct fault_report *r)
+{
+    const struct token *wait = gcode_word(&b->g, 'P'), *extra = gcode_first(&b->g, BLOCK_AXES);
+
+    extra = extra ? extra : gcode_first(&b->g, "IJKR");
+    if (extra) {
+        return tokens_at_word(r, FAULT_UNUSED, extra);
+    }
+    if (!wait) {
+        return tokens_at_line(r, FAULT_NO_DWELL, &b->tokens);
+    }
+    if (wait->value < 0.0 || wait->value > DWELL_MAX) {
+        return tokens_at_word(r, FAULT_VALUE, wait);
+    }
+    command_delay(block_command(in), in->point, wait->value);
+    in->count++;
+    return FAULT_NONE;
 }

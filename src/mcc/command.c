@@ -85,9 +85,14 @@ enum command_type command_arc_type(const struct path *p)
     return helix ? COMMAND_CW_HELIX : COMMAND_CW_ARC;
 }
 
+bool command_lasts(const struct command *c)
+{
+    return c->type <= COMMAND_DELAY;
+}
+
 bool command_blends(const struct command *c)
 {
-    return c->type != COMMAND_PTP && c->type != COMMAND_DELAY;
+    return c->type >= COMMAND_LINE && c->type <= COMMAND_CCW_HELIX;
 }
 
 double command_speed(const struct command *c, double override)

@@ -7,21 +7,26 @@
 #include "path.h"
 #include "profile.h"
 
-/* nType of the library's COMMAND_INFO. */
+/* nType of the library's COMMAND_INFO, which ends at 10, and two of ours that take no time. */
 enum command_type {
     COMMAND_PTP, COMMAND_LINE, COMMAND_CW_ARC, COMMAND_CCW_ARC, COMMAND_CW_HELIX,
-    COMMAND_CCW_HELIX, COMMAND_DELAY
+    COMMAND_CCW_HELIX, COMMAND_DELAY,
+    COMMAND_OUTPUTS = 11,   /* switch spindle, coolant, digital outputs */
+    COMMAND_STOP            /* M0, M1: wait for the operator */
 };
 
 struct command {
     enum command_type type;
-    int32_t index;      /* counts from 1 */
+    int32_t index;      /* counts from 1 those that take time; 0 for the others */
     int32_t line;       /* of the part program; 0 for a call of the API */
     bool    blend;      /* continuous path: the next command may start in the deceleration */
     double  feed;       /* [mm/s] programmed */
     double  cap;        /* [mm/s] highest speed any override may bring */
     double  acc, dec;   /* [mm/s^2] feed / acc_time, feed / dec_time */
     double  dwell;      /* [s] of a delay */
+    uint32_t set, clear;    /* digital outputs that its start switches on, off */
+    double  spindle;    /* [rpm] of COMMAND_OUTPUTS */
+    int32_t coolant;    /* of COMMAND_OUTPUTS */
     struct path path;
 };
 
@@ -38,6 +43,9 @@ void command_delay(struct command *c, const double point[AXES], double seconds);
 
 /* Type of an arc's command from its geometry. */
 enum command_type command_arc_type(const struct path *p);
+
+/* True if time passes in it: a motion or a delay. The others have no path. */
+bool command_lasts(const struct command *c);
 
 /* True if it can share the tool with a neighbour: line or arc, not a rapid or a delay. */
 bool command_blends(const struct command *c);

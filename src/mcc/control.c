@@ -6,7 +6,7 @@
 /* Nothing under way and nothing to come. */
 static bool idle(const struct mcc *m)
 {
-    return !m->running && m->ring.count == 0 && m->ipo.count == 0;
+    return !m->running && m->ring.count == 0 && m->ipo.count == 0 && !m->ipo.stopped;
 }
 
 int MCC_motion_hold(struct mcc *m)
@@ -48,7 +48,7 @@ int MCC_motion_abort(struct mcc *m)
 
 int MCC_check_stop(const struct mcc *m)
 {
-    return idle(m) && m->queue.count == 0;
+    return idle(m) && m->queue.count == 0 && !m->ipo.news;
 }
 
 int MCC_get_cpos(const struct mcc *m, double place[AXES])

@@ -1,9 +1,10 @@
 #include "fault.h"
 
-enum fault fault_at(struct fault_report *r, enum fault f, int64_t at, int64_t length)
+enum fault fault_at(struct fault_report *r, enum fault f, int32_t at, int32_t length)
 {
     r->at = at;
     r->length = length;
+    r->other_length = 0;
     return f;
 }
 
@@ -16,15 +17,20 @@ const char *fault_text(enum fault f)
     case FAULT_DIGITS:       return "number with too many digits";
     case FAULT_LINE_LENGTH:  return "line longer than 256 characters";
     case FAULT_WORD_COUNT:   return "too many words in the line";
+    case FAULT_READ:         return "the program cannot be read";
     case FAULT_COMMENT:      return "comment without )";
     case FAULT_WORD:         return "unknown word";
     case FAULT_TWICE:        return "word given twice";
     case FAULT_GROUP:        return "second word of one modal group";
+    case FAULT_M_COUNT:      return "more than four M words in the line";
+    case FAULT_SHARED:       return "two codes take the same words";
     case FAULT_UNUSED:       return "word has no use in this line";
     case FAULT_VALUE:        return "value out of range";
     case FAULT_NO_MOTION:    return "axis word without G0, G1, G2 or G3";
     case FAULT_NO_DWELL:     return "G4 without P";
     case FAULT_NO_AXES:      return "no axis word";
+    case FAULT_NO_SYSTEM:    return "G10 needs L2 and P0 to P6";
+    case FAULT_NO_OUTPUT:    return "output without P0 to P31";
     case FAULT_G53:          return "G53 needs G0 or G1";
     case FAULT_AXIS:         return "axis is not active";
     case FAULT_NO_CENTRE:    return "arc without centre or radius";

@@ -4,15 +4,26 @@
 #include <stddef.h>
 #include <string.h>
 
-static const struct { int code; enum gcode_group group; } codes[] = {
+struct code { int code; enum gcode_group group; };
+
+static const struct code g_codes[] = {
     { 0, GCODE_MOTION },    { 10, GCODE_MOTION },   { 20, GCODE_MOTION },   { 30, GCODE_MOTION },
-    { 800, GCODE_MOTION },  { 40, GCODE_NONMODAL }, { 530, GCODE_NONMODAL },
-    { 170, GCODE_PLANE },   { 180, GCODE_PLANE },   { 190, GCODE_PLANE },
+    { 800, GCODE_MOTION },  { 40, GCODE_NONMODAL }, { 100, GCODE_NONMODAL },
+    { 280, GCODE_NONMODAL }, { 520, GCODE_NONMODAL }, { 530, GCODE_NONMODAL },
+    { 920, GCODE_NONMODAL }, { 921, GCODE_NONMODAL }, { 922, GCODE_NONMODAL },
+    { 923, GCODE_NONMODAL }, { 170, GCODE_PLANE },  { 180, GCODE_PLANE },   { 190, GCODE_PLANE },
     { 200, GCODE_UNITS },   { 210, GCODE_UNITS },   { 400, GCODE_CUTTER },  { 490, GCODE_TOOL },
     { 540, GCODE_SYSTEM },  { 550, GCODE_SYSTEM },  { 560, GCODE_SYSTEM },  { 570, GCODE_SYSTEM },
     { 580, GCODE_SYSTEM },  { 590, GCODE_SYSTEM },  { 610, GCODE_PATH },    { 640, GCODE_PATH },
     { 900, GCODE_DISTANCE }, { 910, GCODE_DISTANCE }, { 901, GCODE_CENTRE }, { 911, GCODE_CENTRE },
     { 940, GCODE_FEED_MODE },
+};
+
+static const struct code m_codes[] = {
+    { 0, GCODE_STOP },      { 10, GCODE_STOP },     { 20, GCODE_STOP },     { 300, GCODE_STOP },
+    { 30, GCODE_SPINDLE },  { 40, GCODE_SPINDLE },  { 50, GCODE_SPINDLE },
+    { 70, GCODE_COOLANT },  { 80, GCODE_COOLANT },  { 90, GCODE_COOLANT },
+    { 620, GCODE_IO },      { 630, GCODE_IO },      { 640, GCODE_IO },      { 650, GCODE_IO },
 };
 
 /* Ten times a code; E1 of the facts takes a number within 0.0001 as meant. -1 if it is none. */
@@ -22,72 +33,85 @@ static int tenfold(double value)
     return value >= 0.0 && value < 1000.0 && fabs(value * 10.0 - ten) <= 1e-3 ? (int)ten : -1;
 }
 
-static enum fault sort_g(struct gcode *g, const struct token *w)
+static enum fault sort_code(struct gcode *g, const struct token *w, const struct code *codes,
+                            size_t count, struct fault_report *r)
 {
     const int code = tenfold(w->value);
-    for (size_t i = 0; i < sizeof codes / sizeof *codes; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (codes[i].code == code) {
-            if (g->code[codes[i].group] != GCODE_ABSENT) {
-                return FAULT_GROUP;
+            const enum gcode_group group = codes[i].group;
+            if (g->by[group]) {
+                return tokens_at_words(r, FAULT_GROUP, w, g->by[group]);
             }
-            g->code[codes[i].group] = code;
+            g->by[group] = w;
+            g->code[group] = code;
             return FAULT_NONE;
         }
     }
-    return FAULT_WORD;
+    return tokens_at_word(r, FAULT_WORD, w);
 }
 
-static enum fault sort_m(struct gcode *g, const struct token *w)
-{
-    const int code = tenfold(w->value);
-    if (code != 20 && code != 300) {
-        return FAULT_WORD;
-    }
-    if (g->end) {
-        return FAULT_GROUP;
-    }
-    g->end = true;
-    return FAULT_NONE;
-}
-
-static enum fault sort_letter(struct gcode *g, const struct token *w)
+static enum fault sort_letter(struct gcode *g, const struct token *w, struct fault_report *r)
 {
     bool known = false;
-    for (const char *l = "NFXYZUVWIJKRP"; *l; l++) {
+    for (const char *l = "NFSXYZUVWIJKRPL"; *l; l++) {
         known = known || *l == w->letter;
     }
     if (!known) {
-        return FAULT_WORD;
+        return tokens_at_word(r, FAULT_WORD, w);
     }
     if (g->word[w->letter - 'A']) {
-        return FAULT_TWICE;
+        return tokens_at_word(r, FAULT_TWICE, w);
     }
     if (w->letter == 'N' && (w->value < 0.0 || w->value != round(w->value))) {
-        return FAULT_VALUE;
+        return tokens_at_word(r, FAULT_VALUE, w);
     }
     g->word[w->letter - 'A'] = w;
     return FAULT_NONE;
 }
 
+static enum fault sort(struct gcode *g, const struct token *w, int *m_words,
+                       struct fault_report *r)
+{
+    if (w->letter == 'G') {
+        return sort_code(g, w, g_codes, sizeof g_codes / sizeof *g_codes, r);
+    }
+    if (w->letter == 'M' && ++*m_words > GCODE_M_MAX) {
+        return tokens_at_word(r, FAULT_M_COUNT, w);
+    }
+    if (w->letter == 'M') {
+        return sort_code(g, w, m_codes, sizeof m_codes / sizeof *m_codes, r);
+    }
+    return sort_letter(g, w, r);
+}
+
 enum fault gcode_sort(struct gcode *g, const struct tokens *t, struct fault_report *r)
 {
+    enum fault f = FAULT_NONE;
+    int m_words = 0;
+
     memset(g->word, 0, sizeof g->word);
-    g->end = false;
+    memset(g->by, 0, sizeof g->by);
     for (int i = 0; i < GCODE_GROUPS; i++) {
         g->code[i] = GCODE_ABSENT;
     }
-    for (int i = 0; i < t->count; i++) {
-        const struct token *w = &t->word[i];
-        const enum fault f = w->letter == 'G' ? sort_g(g, w) :
-                             w->letter == 'M' ? sort_m(g, w) : sort_letter(g, w);
-        if (f != FAULT_NONE) {
-            return tokens_at_word(r, f, w);
-        }
+    for (int i = 0; i < t->count && f == FAULT_NONE; i++) {
+        f = sort(g, &t->word[i], &m_words, r);
     }
-    return FAULT_NONE;
+    return f;
 }
 
 const struct token *gcode_word(const struct gcode *g, char letter)
 {
     return g->word[letter - 'A'];
+}
+
+const struct token *gcode_first(const struct gcode *g, const char *letters)
+{
+    for (; *letters; letters++) {
+        if (gcode_word(g, *letters)) {
+            return gcode_word(g, *letters);
+        }
+    }
+    return NULL;
 }

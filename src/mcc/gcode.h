@@ -10,7 +10,7 @@
 
 /* Modal groups of RS-274 that have members here. */
 enum gcode_group {
-    GCODE_NONMODAL,     /* G4 G53 */
+    GCODE_NONMODAL,     /* G4 G10 G28 G52 G53 G92 G92.1 G92.2 G92.3 */
     GCODE_MOTION,       /* G0 G1 G2 G3 G80 */
     GCODE_PLANE,        /* G17 G18 G19 */
     GCODE_DISTANCE,     /* G90 G91 */
@@ -21,15 +21,19 @@ enum gcode_group {
     GCODE_TOOL,         /* G49 */
     GCODE_SYSTEM,       /* G54 .. G59 */
     GCODE_PATH,         /* G61 G64 */
+    GCODE_STOP,         /* M0 M1 M2 M30 */
+    GCODE_IO,           /* M62 M63 M64 M65 */
+    GCODE_SPINDLE,      /* M3 M4 M5 */
+    GCODE_COOLANT,      /* M7 M8 M9 */
     GCODE_GROUPS
 };
 
-enum { GCODE_ABSENT = -1 };
+enum { GCODE_ABSENT = -1, GCODE_M_MAX = 4 };    /* M words in a line */
 
 struct gcode {
-    const struct token *word[26];   /* by letter, except G, M; NULL if absent */
-    int  code[GCODE_GROUPS];        /* ten times the G number, or GCODE_ABSENT */
-    bool end;                       /* M2 or M30 */
+    const struct token *word[26];           /* by letter, except G, M; NULL if absent */
+    const struct token *by[GCODE_GROUPS];   /* the word that gave the code */
+    int code[GCODE_GROUPS];                 /* ten times the number of G or M, or GCODE_ABSENT */
 };
 
 /* Sort the words of a line; *r gets the place of a fault. */
@@ -37,5 +41,8 @@ enum fault gcode_sort(struct gcode *g, const struct tokens *t, struct fault_repo
 
 /* The word of a letter, or NULL. */
 const struct token *gcode_word(const struct gcode *g, char letter);
+
+/* The first of the letters that the block has, or NULL. */
+const struct token *gcode_first(const struct gcode *g, const char *letters);
 
 #endif

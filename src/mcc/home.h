@@ -7,8 +7,9 @@
  *
  * The axis comes to rest between the phases. An axis that stands on its sensor begins with phase 2.
  * If the search meets a limit switch first it turns, passes the sensor, and searches once more, so
- * that the sensor is always met from the same side. The limit switch itself can be the sensor. There
- * may be no index, then the edge of phase 2 is the place, or no sensor, then only phase 3 is run.
+ * that the sensor is always met from the same side. The limit switch itself can be the sensor.
+ * There may be no index, then the edge of phase 2 is the place, or no sensor, then only phase 3 is
+ * run.
  */
 #ifndef HOME_H
 #define HOME_H

@@ -1,23 +1,23 @@
 #include "interpreter.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "block.h"
+#include "offsets.h"
+#include "switching.h"
 
-static const double DWELL_MAX = 86400.0;    /* [s] a day */
-
-void interpreter_start(struct interpreter *in, const double point[AXES], double feed)
+void interpreter_start(struct interpreter *in, const double point[AXES], double feed,
+                       const double origin[INTERPRETER_SYSTEMS][AXES])
 {
     memset(in, 0, sizeof *in);
     in->motion = -1;
     in->plane = PATH_XY;
     in->feed = feed;
     memcpy(in->point, point, sizeof in->point);
+    memcpy(in->origin, origin, sizeof in->origin);
 }
 
-static enum fault set_modes(struct interpreter *in, const struct program *p, struct block *b,
-                            struct fault_report *r)
+static void set_modes(struct interpreter *in, struct block *b)
 {
     const int *code = b->g.code;
 
@@ -44,58 +44,68 @@ static enum fault set_modes(struct interpreter *in, const struct program *p, str
     if (code[GCODE_MOTION] != GCODE_ABSENT) {
         in->motion = code[GCODE_MOTION] == 800 ? -1 : code[GCODE_MOTION] / 10;
     }
+}
+
+static enum fault set_feed(struct interpreter *in, const struct program *p, const struct block *b,
+                           struct fault_report *r)
+{
     const struct token *f = gcode_word(&b->g, 'F');
-    if (f) {
-        const double feed = f->value * b->scale / 60.0;
-        if (!(feed > 0.0)) {
-            return tokens_at_word(r, FAULT_VALUE, f);
-        }
-        if (feed > p->machine->max_feed) {
-            r->value = feed * 60.0;
-            r->limit = p->machine->max_feed * 60.0;
-            return tokens_at_word(r, FAULT_FEED, f);
-        }
-        in->feed = feed;
+
+    if (!f) {
+        return FAULT_NONE;
     }
+    const double feed = f->value * b->scale / 60.0;
+    if (!(feed > 0.0)) {
+        return tokens_at_word(r, FAULT_VALUE, f);
+    }
+    if (feed > p->machine->max_feed) {
+        r->value = feed * 60.0;
+        r->limit = p->machine->max_feed * 60.0;
+        return tokens_at_word(r, FAULT_FEED, f);
+    }
+    in->feed = feed;
     return FAULT_NONE;
 }
 
-/* Execute one block; *made tells whether it became a command. */
-static enum fault execute(struct interpreter *in, const struct program *p, struct block *b,
-                          struct command *c, bool *made, struct fault_report *r)
+/* Each word serves one code: axis words a motion or a code beside the groups, P one of several. */
+static enum fault check_shares(const struct interpreter *in, const struct block *b,
+                               struct fault_report *r)
 {
-    enum fault f = gcode_sort(&b->g, &b->tokens, r);
-    if (f == FAULT_NONE) {
-        f = set_modes(in, p, b, r);
-    }
-    if (f != FAULT_NONE) {
-        return f;
-    }
-    const struct token *axis = block_first(b, "XYZUVW"), *shape = block_first(b, "IJKRP");
-    const int nonmodal = b->g.code[GCODE_NONMODAL], code = b->g.code[GCODE_MOTION];
+    const int nonmodal = b->g.code[GCODE_NONMODAL], motion = b->g.code[GCODE_MOTION];
+    const struct token *one = b->g.by[GCODE_NONMODAL], *io = b->g.by[GCODE_IO];
+    const struct token *p = gcode_word(&b->g, 'P'), *l = gcode_word(&b->g, 'L');
+    const bool axes = nonmodal == 100 || nonmodal == 280 || nonmodal == 520 || nonmodal == 920;
 
-    in->ended = b->g.end;
-    if (nonmodal == 40) {
-        const struct token *wait = gcode_word(&b->g, 'P');
-        const struct token *extra = axis ? axis : block_first(b, "IJKR");
-        if (extra) {
-            return tokens_at_word(r, FAULT_UNUSED, extra);
-        }
-        if (!wait) {
-            return tokens_at_line(r, FAULT_NO_DWELL, &b->tokens);
-        }
-        if (wait->value < 0.0 || wait->value > DWELL_MAX) {
-            return tokens_at_word(r, FAULT_VALUE, wait);
-        }
-        command_delay(c, in->point, wait->value);
-        c->line = in->line;
-        *made = true;
-        return FAULT_NONE;
+    if (axes && motion != GCODE_ABSENT && motion != 800) {
+        return tokens_at_words(r, FAULT_SHARED, b->g.by[GCODE_MOTION], one);
     }
-    if (nonmodal == 530 && !axis) {
+    if (io && (nonmodal == 40 || nonmodal == 100)) {
+        return tokens_at_words(r, FAULT_SHARED, io, one);
+    }
+    if (io && p && !axes && in->motion >= 2 && gcode_first(&b->g, BLOCK_AXES "IJKR")) {
+        return tokens_at_words(r, FAULT_SHARED, p, io);
+    }
+    if (l && nonmodal != 100) {
+        return tokens_at_word(r, FAULT_UNUSED, l);
+    }
+    const struct token *extra = axes ? gcode_first(&b->g, "IJKR") : NULL;
+    extra = !extra && axes && nonmodal != 100 && !io ? p : extra;
+    return extra ? tokens_at_word(r, FAULT_UNUSED, extra) : FAULT_NONE;
+}
+
+/* Motion of the block, if it has any. */
+static enum fault move(struct interpreter *in, const struct program *p, const struct block *b,
+                       struct fault_report *r)
+{
+    const struct token *axis = gcode_first(&b->g, BLOCK_AXES);
+    const struct token *shape = gcode_first(&b->g, b->g.by[GCODE_IO] ? "IJKR" : "IJKRP");
+    const int code = b->g.code[GCODE_MOTION];
+    const bool machine = b->g.code[GCODE_NONMODAL] == 530;
+
+    if (machine && !axis) {
         return tokens_at_line(r, FAULT_NO_AXES, &b->tokens);
     }
-    if (nonmodal == 530 && in->motion != 0 && in->motion != 1) {
+    if (machine && in->motion != 0 && in->motion != 1) {
         return tokens_at_line(r, FAULT_G53, &b->tokens);
     }
     if (in->motion < 2 && shape) {
@@ -104,39 +114,116 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     if (in->motion < 0 && axis) {
         return tokens_at_word(r, FAULT_NO_MOTION, axis);
     }
-    if (axis || shape || code == 20 || code == 30) {
-        f = block_motion(in, p, b, c, r);
-        *made = f == FAULT_NONE && c->path.length > 0.0;
+    return axis || shape || code == 20 || code == 30 ? block_motion(in, p, b, r) : FAULT_NONE;
+}
+
+/* Dwell, offsets, home or motion, whichever the block asks for. */
+static enum fault act(struct interpreter *in, const struct program *p, const struct block *b,
+                      struct fault_report *r)
+{
+    const int nonmodal = b->g.code[GCODE_NONMODAL];
+    enum fault f = FAULT_NONE;
+
+    if (nonmodal == 40) {
+        return block_dwell(in, b, r);
+    }
+    if (nonmodal == 280) {
+        return block_home(in, p, b, r);
+    }
+    if (offsets_changed(b)) {
+        f = offsets_change(in, p, b, r);
+        if (f != FAULT_NONE || nonmodal <= 920) {   /* these have taken the axis words */
+            return f;
+        }
+    }
+    return move(in, p, b, r);
+}
+
+static void stop(struct interpreter *in, const struct program *p, const struct block *b)
+{
+    const int code = b->g.code[GCODE_STOP];
+
+    if (code == 0 || (code == 10 && p->optional_stop)) {
+        block_command(in)->type = COMMAND_STOP;
+        in->count++;
+    }
+    if (code == 20 || code == 300) {
+        in->ended = true;
+        switching_end(in);
+    }
+}
+
+/* Execute one block, in the order of RS-274: feed, outputs, spindle, coolant, dwell, modes,
+ * offsets, motion, stop. */
+static enum fault execute(struct interpreter *in, const struct program *p, struct block *b,
+                          struct fault_report *r)
+{
+    enum fault f = gcode_sort(&b->g, &b->tokens, r);
+
+    if (f == FAULT_NONE) {
+        set_modes(in, b);
+        f = check_shares(in, b, r);
+    }
+    if (f == FAULT_NONE) {
+        f = set_feed(in, p, b, r);
+    }
+    if (f == FAULT_NONE) {
+        f = switching_block(in, b, r);
+    }
+    if (f == FAULT_NONE) {
+        f = act(in, p, b, r);
+    }
+    if (f == FAULT_NONE) {
+        stop(in, p, b);
     }
     return f;
+}
+
+/* Read and execute one line. */
+static enum fault next_line(struct interpreter *in, const struct program *p,
+                            struct fault_report *r)
+{
+    struct source_line line;
+    struct block b;
+
+    enum fault f = source_read(p->source, &in->offset, &line, r);
+    if (f == FAULT_NONE && !line.text) {
+        in->ended = true;
+        return FAULT_NONE;
+    }
+    r->line = ++in->line;
+    if (f != FAULT_NONE) {
+        return f;
+    }
+    f = tokens_read(&b.tokens, line.text, line.length, r);
+    if (b.tokens.slash && p->block_delete) {
+        return FAULT_NONE;      /* whatever stands behind it */
+    }
+    if (f == FAULT_NONE && b.tokens.percent) {
+        in->ended = in->percent;    /* the second % closes the program */
+        in->percent = true;
+        return FAULT_NONE;
+    }
+    return f == FAULT_NONE ? execute(in, p, &b, r) : f;
 }
 
 enum interpreter_result interpreter_next(struct interpreter *in, const struct program *p,
                                          struct command *c, struct fault_report *r)
 {
-    struct block b;
-
-    while (!in->ended && in->offset < (int64_t)p->length) {
-        bool made = false;
-        r->line = ++in->line;
-        r->fault = tokens_read(&b.tokens, p->text, p->length, &in->offset, r);
-        if (r->fault == FAULT_NONE && b.tokens.percent) {
-            in->ended = in->percent;    /* the second % closes the program */
-            in->percent = true;
-        } else if (r->fault == FAULT_NONE) {
-            memset(c, 0, sizeof *c);
-            r->fault = execute(in, p, &b, c, &made, r);
+    while (in->taken == in->count) {
+        if (in->ended) {
+            return INTERPRETER_END;
         }
+        in->taken = in->count = 0;
+        r->fault = next_line(in, p, r);
         if (r->fault != FAULT_NONE) {
             in->ended = true;
+            in->taken = in->count = 0;
             return INTERPRETER_FAULT;
         }
-        if (made) {
-            return INTERPRETER_COMMAND;
-        }
     }
-    in->ended = true;
-    return INTERPRETER_END;
+    *c = in->made[in->taken++];
+    return INTERPRETER_COMMAND;
 }
 
 void interpreter_check(const struct interpreter *from, const struct program *p,

@@ -1,4 +1,4 @@
-/* interpreter - a part program becomes motion commands, one at a time.
+/* interpreter - a part program becomes commands, one at a time.
  *
  * The text stays outside: the state is a place in it and the modal values, so a program of any
  * length streams through, and checking it is one pass with a copy of the state.
@@ -6,22 +6,31 @@
 #ifndef INTERPRETER_H
 #define INTERPRETER_H
 
-#include <stddef.h>
-
 #include "command.h"
+#include "source.h"
 
-enum { INTERPRETER_SYSTEMS = 6 };   /* G54 .. G59 */
+enum {
+    INTERPRETER_SYSTEMS = 6,    /* G54 .. G59 */
+    INTERPRETER_MADE = 4        /* commands of one block: outputs, G28's two rapids, stop or end */
+};
 
 /* What a program is read against; all of it constant while it runs. */
 struct program {
-    const char *text;
-    size_t length;
+    const struct source  *source;
     const struct machine *machine;
-    const double (*offset)[AXES];   /* [mm] origins of G54 .. G59 in machine coordinates */
+    bool block_delete;      /* lines that begin with / are passed over */
+    bool optional_stop;     /* M1 stops */
+};
+
+/* What S, M3 to M9 have set so far; it outlives the program. */
+struct switches {
+    double  speed;          /* [rpm] S */
+    int32_t turning;        /* 1 M3, -1 M4, 0 M5 */
+    int32_t coolant;        /* enum outputs_coolant */
 };
 
 struct interpreter {
-    int64_t offset;         /* next line in the text */
+    int64_t offset;         /* [byte] next line in the text */
     int32_t line;           /* lines read */
     bool    ended;
     bool    percent;        /* the first % has passed */
@@ -30,14 +39,23 @@ struct interpreter {
     bool    inch, incremental, absolute_centre;
     bool    blend;          /* G64 */
     int32_t system;         /* 0..5 for G54 .. G59 */
+    double  origin[INTERPRETER_SYSTEMS][AXES];  /* [mm] of each system, machine coordinates */
+    double  local[AXES];    /* [mm] G52 */
+    double  shift[AXES];    /* [mm] G92 */
+    bool    shifted;        /* it is in force */
     double  feed;           /* [mm/s] */
     double  point[AXES];    /* [mm] end of the last command, machine coordinates */
+    struct switches switches;
+    uint32_t set, clear;    /* digital outputs of M62, M63, for the next motion */
+    struct command made[INTERPRETER_MADE];      /* of the block read last */
+    int32_t taken, count;   /* of them handed out, made */
 };
 
 enum interpreter_result { INTERPRETER_COMMAND, INTERPRETER_END, INTERPRETER_FAULT };
 
-/* Begin at the first line, at rest in a point; G17 G21 G90 G91.1 G54 G61 in force. */
-void interpreter_start(struct interpreter *in, const double point[AXES], double feed);
+/* Begin at the first line, at rest in a point; G17 G21 G90 G91.1 G54 G61 M5 M9 in force. */
+void interpreter_start(struct interpreter *in, const double point[AXES], double feed,
+                       const double origin[INTERPRETER_SYSTEMS][AXES]);
 
 /* Read on until there is a command (its index is left to the caller). A fault ends the program. */
 enum interpreter_result interpreter_next(struct interpreter *in, const struct program *p,

@@ -29,7 +29,7 @@ bool ipo_resting(const struct ipo *p, const struct ring *r)
             return false;
         }
     }
-    return p->count > 0 || p->hold || p->abort || r->count == 0;
+    return p->count > 0 || p->hold || p->abort || p->stopped || r->count == 0;
 }
 
 bool ipo_moving(const struct ipo *p)
@@ -68,6 +68,11 @@ void ipo_hold(struct ipo *p, bool on)
     }
 }
 
+void ipo_continue(struct ipo *p)
+{
+    p->stopped = false;
+}
+
 void ipo_override(struct ipo *p, double feed, double ptp)
 {
     if (p->override[0] != feed || p->override[1] != ptp) {
@@ -99,7 +104,10 @@ void ipo_stop(struct ipo *p, struct ring *r)
     place(p, at, velocity);
     memcpy(p->rest, at, sizeof p->rest);
     p->count = 0;
-    p->hold = p->abort = false;
+    p->hold = p->abort = p->stopped = false;
+    p->news = p->news || p->outputs.spindle != 0.0 || p->outputs.coolant != 0;
+    p->outputs.spindle = 0.0;
+    p->outputs.coolant = 0;
     ring_clear(r);
 }
 
@@ -124,7 +132,7 @@ static void retire(struct ipo *p)
 static bool may_start(const struct ipo *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
-    if (!next || p->hold || p->abort || p->count == 2) {
+    if (!next || p->hold || p->abort || p->stopped || p->count == 2) {
         return false;
     }
     return p->count == 0 || (p->move[0].command.blend && p->move[0].profile.ends &&
@@ -133,12 +141,23 @@ static bool may_start(const struct ipo *p, const struct ring *r)
 
 static void start(struct ipo *p, struct ring *r)
 {
-    struct ipo_move *m = &p->move[p->count++];
-    m->command = *ring_head(r);
+    const struct command *c = ring_head(r);
+
+    p->outputs.digital = (p->outputs.digital | c->set) & ~c->clear;
+    p->line = c->line;
+    if (command_lasts(c)) {
+        struct ipo_move *m = &p->move[p->count++];
+        m->command = *c;
+        command_start(&m->command, override_of(p, &m->command), &m->profile);
+        p->started = c->index;
+    } else if (c->type == COMMAND_OUTPUTS) {
+        p->outputs.spindle = c->spindle;
+        p->outputs.coolant = c->coolant;
+        p->news = true;
+    } else {
+        p->stopped = p->news = true;
+    }
     ring_pop(r);
-    command_start(&m->command, override_of(p, &m->command), &m->profile);
-    p->started = m->command.index;
-    p->line = m->command.line;
 }
 
 double ipo_advance(struct ipo *p, struct ring *r, double dt)
@@ -193,4 +212,5 @@ void ipo_point(const struct ipo *p, const struct machine *m, struct point *point
     point->line = p->count ? p->move[0].command.line : p->line;
     point->command = p->count ? p->move[0].command.index : p->started;
     point->waits = p->count && p->move[0].command.type == COMMAND_DELAY;
+    point->outputs = p->outputs;
 }

@@ -6,7 +6,8 @@
  *
  *     point = A(s_A) + B(s_B) - B(0)          at most two commands at a time
  *
- * Otherwise each command ends at rest (exact stop). Pulses are differences of the rounded ideal
+ * Otherwise each command ends at rest (exact stop). Commands that switch outputs or stop the
+ * program wait until all motion before them has ended. Pulses are differences of the rounded ideal
  * position, so every axis is within half a pulse of it at every boundary and nothing drifts.
  */
 #ifndef IPO_H
@@ -28,6 +29,9 @@ struct ipo {
     double  override[2];        /* of lines and arcs, of point-to-point; 1 is 100 % */
     bool    hold;
     bool    abort;              /* ramp to rest, then drop everything */
+    bool    stopped;            /* M0, M1: at rest until ipo_continue */
+    bool    news;               /* outputs or line have changed since the latest point */
+    struct outputs outputs;
     int32_t started, line;      /* index and source line of the latest command begun */
 };
 
@@ -43,20 +47,24 @@ bool ipo_moving(const struct ipo *p);
 /* Pause on the path, or go on. */
 void ipo_hold(struct ipo *p, bool on);
 
+/* Go on behind a stop of the program. */
+void ipo_continue(struct ipo *p);
+
 /* New overrides, from now on. A move that hands over to the next one keeps its deceleration. */
 void ipo_override(struct ipo *p, double feed, double ptp);
 
-/* Ramp to rest; when there, moves and ring are dropped. */
+/* Ramp to rest; when there, moves and ring are dropped, spindle and coolant go off. */
 void ipo_abort(struct ipo *p, struct ring *r);
 
-/* Drop moves and ring without a ramp, at the latest point. */
+/* The same without a ramp, at the latest point. */
 void ipo_stop(struct ipo *p, struct ring *r);
 
 /* Let up to dt seconds pass. Stops early after it took a command from the ring, so that the caller
  * can refill it, and when the axes rest (ipo_resting); returns the time that is left. */
 double ipo_advance(struct ipo *p, struct ring *r, double dt);
 
-/* The point reached; *point gets everything but its frame, which is the way from p->pulses. */
+/* The point reached, with the outputs at that time; *point gets everything but its frame, which is
+ * the way from p->pulses. */
 void ipo_point(const struct ipo *p, const struct machine *m, struct point *point);
 
 #endif

@@ -36,7 +36,8 @@ enum mcc_error {
 struct mcc {
     bool    open;
     struct machine machine;
-    double  offset[INTERPRETER_SYSTEMS][AXES];  /* [mm] */
+    double  offset[INTERPRETER_SYSTEMS][AXES];  /* [mm] origins a program begins with */
+    bool    block_delete, optional_stop;        /* of task_set_switches */
     double  feed;               /* [mm/s] of MCC_line, arcs and circles */
     bool    incremental;
     bool    blend;

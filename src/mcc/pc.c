@@ -12,7 +12,9 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     pc->random = (uint64_t)(int64_t)config->seed;
     pc->program = program;
     pcl_start(&pc->pcl, m, config->min_stock, config->batch, &config->isr);
-    return MCC_init_motion(&pc->mcc, m);
+    const int code = MCC_init_motion(&pc->mcc, m);
+    task_set_switches(&pc->mcc, config->block_delete, config->optional_stop);
+    return code;
 }
 
 /* Uniform in [0, 1): SplitMix64, the 53 upper bits. */
@@ -36,6 +38,8 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
 
     pc->abort_due = pc->abort_due || (panel->abort && !pc->abort_seen);
     pc->abort_seen = panel->abort;
+    pc->cycle_due = pc->cycle_due || (panel->cycle_start && !pc->cycle_seen);
+    pc->cycle_seen = panel->cycle_start;
     MCC_set_P_gain(&pc->mcc, panel->p_gain);
     memcpy(pc->mcc.errcnt, panel->err_count, sizeof pc->mcc.errcnt);
     for (int i = 0; i < AXES; i++) {
@@ -47,7 +51,7 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
 }
 
 /* One cycle of the IPO task, with the panel as read last. */
-static void cycle(struct pc *pc, const struct pc_panel *panel, const char *text, size_t length)
+static void cycle(struct pc *pc, const struct pc_panel *panel, const struct source *program)
 {
     struct mcc *m = &pc->mcc;
 
@@ -60,6 +64,10 @@ static void cycle(struct pc *pc, const struct pc_panel *panel, const char *text,
         pc->abort_due = false;
         MCC_motion_abort(m);
     }
+    if (pc->cycle_due) {
+        pc->cycle_due = false;
+        task_continue(m);       /* refused where nothing waits for it */
+    }
     /* The level is offered every time: what does not apply is refused. */
     if (panel->hold) {
         MCC_motion_hold(m);
@@ -68,12 +76,12 @@ static void cycle(struct pc *pc, const struct pc_panel *panel, const char *text,
     }
     MCC_set_over_spd(m, 100.0 * panel->override);
     MCC_set_ptp_ospd(m, 100.0 * panel->override);
-    task_run(m, text, length);
+    task_run(m, program);
     pc->next_ipo += pc->config.ipo;
 }
 
 void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
-                const struct pc_panel *panel, const char *text, size_t length)
+                const struct pc_panel *panel, const struct source *program)
 {
     const int64_t publish = now + pc->config.bus, horizon = publish + pc->config.bus;
 
@@ -84,7 +92,7 @@ void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
     for (;;) {
         const int64_t due = pcl_due(&pc->pcl);
         if (pc->next_ipo < horizon && pc->next_ipo <= due) {
-            cycle(pc, panel, text, length);
+            cycle(pc, panel, program);
         } else if (due < horizon) {
             pcl_serve(&pc->pcl, &pc->mcc, due < publish ? publish : due);
         } else {

@@ -20,11 +20,12 @@ struct pc_config {
     int32_t min_stock, batch;
     struct isr_config isr;
     int32_t output_mode[AXES];  /* 0 pulses, 1 position loop of the card, 2 software voltage */
+    bool    block_delete, optional_stop;    /* as of task_set_switches */
 };
 
 /* The operator's panel and what else is read on the bus grid. */
 struct pc_panel {
-    bool   hold, abort;
+    bool   hold, abort, cycle_start;
     double override;            /* 0..2 */
     double software_gain[AXES]; /* [V/count] of output mode 2 */
     int32_t p_gain[AXES];
@@ -40,6 +41,7 @@ struct pc {
     bool    program;        /* there is one */
     bool    started;        /* it has been started, or dropped by an abort */
     bool    abort_seen, abort_due;
+    bool    cycle_seen, cycle_due;
     double  volts[AXES];    /* [V] software control law */
 };
 
@@ -48,7 +50,7 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
 
 /* One bus instant, at clock now = k T_b; call for k = 0, 1, 2, ... */
 void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
-                const struct pc_panel *panel, const char *text, size_t length);
+                const struct pc_panel *panel, const struct source *program);
 
 /* The program has ended without error and every point is in the card. */
 bool pc_done(const struct pc *pc);

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "machine.h"
+#include "outputs.h"
 
 enum { QUEUE_SIZE = 1024 };
 
@@ -17,6 +18,7 @@ struct point {
     double  feed;           /* [mm/s] speed along the path at the end */
     int32_t line, command;  /* that moves at the end */
     bool    waits;          /* the end lies in a delay */
+    struct outputs outputs; /* at the end */
 };
 
 struct queue {

@@ -4,16 +4,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct program program_of(const struct mcc *m, const char *text, size_t length)
+struct program task_program(const struct mcc *m, const struct source *s)
 {
-    return (struct program){ text, length, &m->machine, m->offset };
+    return (struct program){ s, &m->machine, m->block_delete, m->optional_stop };
 }
 
-void task_check(const struct mcc *m, const char *text, size_t length, struct fault_report *r)
+/* A program begins; what the one before has switched on stays on. */
+static void begin(const struct mcc *m, struct interpreter *in)
 {
-    const struct program p = program_of(m, text, length);
+    const struct switches switches = m->program.switches;
+    interpreter_start(in, m->end, m->feed, m->offset);
+    in->switches = switches;
+}
+
+void task_check(const struct mcc *m, const struct source *s, struct fault_report *r)
+{
+    const struct program p = task_program(m, s);
     struct interpreter in;
-    interpreter_start(&in, m->end, m->feed);
+    begin(m, &in);
     interpreter_check(&in, &p, r);
 }
 
@@ -28,7 +36,7 @@ int task_start(struct mcc *m)
     if (m->running || m->ipo.abort) {
         return MCC_COMMAND_NOTACCEPTED;
     }
-    interpreter_start(&m->program, m->end, m->feed);
+    begin(m, &m->program);
     m->running = true;
     return MCC_NO_ERR;
 }
@@ -50,6 +58,24 @@ int task_set_origin(struct mcc *m, int system, const double origin[AXES])
         }
     }
     memcpy(m->offset[system - 1], origin, sizeof m->offset[system - 1]);
+    return MCC_NO_ERR;
+}
+
+void task_set_switches(struct mcc *m, bool block_delete, bool optional_stop)
+{
+    m->block_delete = block_delete;
+    m->optional_stop = optional_stop;
+}
+
+int task_continue(struct mcc *m)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (!m->ipo.stopped || m->ipo.news || m->queue.count > 0) {
+        return MCC_CONTI_ILLEGAL;
+    }
+    ipo_continue(&m->ipo);
     return MCC_NO_ERR;
 }
 
@@ -75,7 +101,7 @@ static void refill(struct mcc *m, const struct program *p)
     while (m->running && !ring_full(&m->ring)) {
         switch (interpreter_next(&m->program, p, &c, &r)) {
         case INTERPRETER_COMMAND:
-            c.index = ++m->commands;
+            c.index = command_lasts(&c) ? ++m->commands : 0;
             memcpy(m->end, m->program.point, sizeof m->end);
             ring_push(&m->ring, &c);
             break;
@@ -117,25 +143,31 @@ static void next_point(struct mcc *m, const struct program *p)
     if (frame(m, &point)) {
         memcpy(m->ipo.pulses, point.pulses, sizeof m->ipo.pulses);
         queue_push(&m->queue, &point);
+        m->ipo.news = false;
     } else {
         m->ipo = before;
         fail(m, MCC_ERROR_SPEED);
     }
 }
 
-void task_run(struct mcc *m, const char *text, size_t length)
+void task_run(struct mcc *m, const struct source *s)
 {
-    const struct program p = program_of(m, text, length);
+    const struct program p = task_program(m, s);
 
     if (!m->open) {
         return;
     }
     refill(m, &p);
-    while (m->queue.count < m->machine.queue_depth && !ipo_resting(&m->ipo, &m->ring)) {
+    while (m->queue.count < m->machine.queue_depth &&
+           (m->ipo.news || !ipo_resting(&m->ipo, &m->ring))) {
         next_point(m, &p);
     }
     if (m->ipo.count == 0 && m->ring.count == 0 && !m->running) {
-        memcpy(m->end, m->ipo.rest, sizeof m->end);     /* an abort may have moved it */
+        memcpy(m->end, m->ipo.rest, sizeof m->end);     /* an abort may have moved it, */
+        if (m->ipo.outputs.spindle == 0.0) {
+            m->program.switches.turning = 0;            /* and switched these off */
+        }
+        m->program.switches.coolant = m->ipo.outputs.coolant;
     }
 }
 
@@ -149,7 +181,8 @@ enum task_status task_status(const struct mcc *m)
     if (MCC_check_stop(m)) {
         return TASK_STOPPED;
     }
-    if (m->ipo.hold && m->queue.count == 0 && ipo_resting(&m->ipo, &m->ring)) {
+    if ((m->ipo.hold || m->ipo.stopped) && m->queue.count == 0 && !m->ipo.news &&
+        ipo_resting(&m->ipo, &m->ring)) {
         return TASK_HOLD;
     }
     return m->written.waits ? TASK_DELAY : TASK_RUNNING;

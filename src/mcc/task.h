@@ -7,17 +7,28 @@
 /* Codes of the library's group status that occur here. */
 enum task_status { TASK_RUNNING, TASK_STOPPED, TASK_HOLD, TASK_DELAY };
 
+/* What a program is read against, whose text comes from s. */
+struct program task_program(const struct mcc *m, const struct source *s);
+
 /* Read the whole program as it would run from the last command's end; nothing moves. */
-void task_check(const struct mcc *m, const char *text, size_t length, struct fault_report *r);
+void task_check(const struct mcc *m, const struct source *s, struct fault_report *r);
 
 /* Start a program that task_check found good. Refused like a motion call. */
 int task_start(struct mcc *m);
 
-/* Origins of G54 (system 1) .. G59 (6). [mm] Refused while a program runs. */
+/* Origins of G54 (system 1) .. G59 (6) at the start of a program. [mm] Refused while one runs. */
 int task_set_origin(struct mcc *m, int system, const double origin[AXES]);
 
-/* One cycle: fill the point queue as far as commands reach. The text is that of task_start. */
-void task_run(struct mcc *m, const char *text, size_t length);
+/* Switches of the panel, from the next line on that is read: pass over lines that begin with /,
+ * stop at M1. Both are off at first. */
+void task_set_switches(struct mcc *m, bool block_delete, bool optional_stop);
+
+/* Go on behind M0 or M1. Refused unless the axes rest there and every point has been written. */
+int task_continue(struct mcc *m);
+
+/* One cycle: fill the point queue as far as commands reach. The text is the one that task_check
+ * found good; NULL if no program runs. */
+void task_run(struct mcc *m, const struct source *s);
 
 /* True while a card that gets no point would stand still in the middle of a motion. */
 bool task_moving(const struct mcc *m);

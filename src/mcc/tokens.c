@@ -17,7 +17,7 @@ static char letter(char c)
 }
 
 /* First c in text[at, end), or end. */
-static int64_t find(const char *text, int64_t at, int64_t end, char c)
+static int32_t find(const char *text, int32_t at, int32_t end, char c)
 {
     while (at < end && text[at] != c) {
         at++;
@@ -27,12 +27,12 @@ static int64_t find(const char *text, int64_t at, int64_t end, char c)
 
 /* A number from text[*i] on, blanks between its characters allowed. Digits make an integer below
  * 2^53, and powers of ten to 10^22 are exact, so the one division gives the nearest double. */
-static enum fault number(const char *text, int64_t end, int64_t *i, struct token *w,
+static enum fault number(const char *text, int32_t end, int32_t *i, struct token *w,
                          struct fault_report *r)
 {
-    int64_t mantissa = 0, last = w->at;
+    int64_t mantissa = 0;
     double scale = 1.0;
-    int digits = 0;
+    int32_t last = w->at, digits = 0;
     bool point = false, negative = false, sign = false;
 
     for (; *i < end; ++*i) {
@@ -68,10 +68,10 @@ static enum fault number(const char *text, int64_t end, int64_t *i, struct token
     return FAULT_NONE;
 }
 
-static enum fault words(struct tokens *t, const char *text, int64_t i, int64_t end,
+static enum fault words(struct tokens *t, const char *text, int32_t i, int32_t end,
                         struct fault_report *r)
 {
-    bool slash = true;      /* a / is allowed before anything else */
+    bool first = true;      /* a / is allowed before anything else */
 
     while (i < end) {
         const char c = text[i];
@@ -83,19 +83,20 @@ static enum fault words(struct tokens *t, const char *text, int64_t i, int64_t e
             return FAULT_NONE;
         }
         if (c == '(') {
-            const int64_t close = find(text, i, end, ')');
+            const int32_t close = find(text, i, end, ')');
             if (close == end) {
                 return fault_at(r, FAULT_COMMENT, i, end - i);
             }
             i = close + 1;
             continue;
         }
-        if (c == '/' && slash) {
-            slash = false;
+        if (c == '/' && first) {
+            first = false;
+            t->slash = true;
             i++;
             continue;
         }
-        slash = false;
+        first = false;
         if (!letter(c)) {
             return fault_at(r, FAULT_CHARACTER, i, 1);
         }
@@ -118,30 +119,35 @@ enum fault tokens_at_word(struct fault_report *r, enum fault f, const struct tok
     return fault_at(r, f, w->at, w->length);
 }
 
+enum fault tokens_at_words(struct fault_report *r, enum fault f, const struct token *w,
+                           const struct token *other)
+{
+    fault_at(r, f, w->at, w->length);
+    r->other_at = other->at;
+    r->other_length = other->length;
+    return f;
+}
+
 enum fault tokens_at_line(struct fault_report *r, enum fault f, const struct tokens *t)
 {
     return fault_at(r, f, t->at, t->length);
 }
 
-enum fault tokens_read(struct tokens *t, const char *text, size_t length, int64_t *offset,
+enum fault tokens_read(struct tokens *t, const char *line, int32_t length,
                        struct fault_report *r)
 {
-    int64_t at = *offset;
-    int64_t end = find(text, at, (int64_t)length, '\n');
+    int32_t at = 0, end = length;
 
-    *offset = end < (int64_t)length ? end + 1 : end;
-    while (at < end && blank(text[at])) {
+    while (at < end && blank(line[at])) {
         at++;
     }
-    while (end > at && blank(text[end - 1])) {
+    while (end > at && blank(line[end - 1])) {
         end--;
     }
     t->count = 0;
+    t->slash = false;
     t->at = at;
     t->length = end - at;
-    t->percent = end - at == 1 && text[at] == '%';
-    if (end - at > TOKENS_LINE_MAX) {
-        return fault_at(r, FAULT_LINE_LENGTH, at, TOKENS_LINE_MAX);
-    }
-    return t->percent ? FAULT_NONE : words(t, text, at, end, r);
+    t->percent = end - at == 1 && line[at] == '%';
+    return t->percent ? FAULT_NONE : words(t, line, at, end, r);
 }

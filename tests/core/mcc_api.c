@@ -144,7 +144,11 @@ static void settings(void)
 /* While a program runs its commands alone are taken; origins move it. */
 static void program(void)
 {
-    static const char text[] = "G55 G1 X1 Y2\nG53 X0 Y0 Z5\n";
+    static const char good_text[] = "G55 G1 X1 Y2\nG53 X0 Y0 Z5\n";
+    static const char bad_text[] = "G1 X1\nG2 X2 R0.1";
+    struct source_text text = { good_text, sizeof good_text - 1 };
+    struct source_text bad = { bad_text, sizeof bad_text - 1 };
+    const struct source source = source_of(&text), other = source_of(&bad);
     const struct machine machine = mcc_machine();
     const double origin[AXES] = { 10.0, 20.0 };
     struct fault_report r;
@@ -152,21 +156,21 @@ static void program(void)
     CHECK_EQ(MCC_init_motion(&m, &machine), MCC_NO_ERR);
     CHECK_EQ(task_set_origin(&m, 2, origin), 0);
     memcpy(&before, &m, sizeof m);
-    task_check(&m, text, strlen(text), &r);
+    task_check(&m, &source, &r);
     CHECK_EQ(r.fault, FAULT_NONE);
-    task_check(&m, "G1 X1\nG2 X2 R0.1", 16, &r);
+    task_check(&m, &other, &r);
     CHECK(r.fault == FAULT_ARC_CHORD && r.line == 2);
     CHECK(memcmp(&before, &m, sizeof m) == 0);
     CHECK_EQ(task_start(&m), 0);
     REFUSED(MCC_line_x(&m, 1.0), MCC_COMMAND_NOTACCEPTED);
     REFUSED(task_start(&m), MCC_COMMAND_NOTACCEPTED);
     REFUSED(task_set_origin(&m, 2, origin), MCC_COMMAND_NOTFINISHED);
-    task_run(&m, text, strlen(text));
+    task_run(&m, &source);
     CHECK_NEAR(m.ring.count + m.ipo.count, 2, 0.0);
     while (!MCC_check_stop(&m)) {
         m.written = *queue_peek(&m.queue, 0);
         queue_drop(&m.queue, 1);
-        task_run(&m, text, strlen(text));
+        task_run(&m, &source);
     }
     CHECK_EQ(MCC_get_cpos(&m, place), 0);
     CHECK(place[0] == 0.0 && place[1] == 0.0 && place[2] == 5.0);

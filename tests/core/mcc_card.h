@@ -123,7 +123,9 @@ static void card_period(struct card *c, int64_t at, const struct pc_panel *panel
     c->shows.stock = c->stock;
     const struct pcl_card seen = c->shows;
     card_read(c);
-    pc_instant(&pc, at, &seen, panel, text, text ? strlen(text) : 0);
+    struct source_text program = { text, text ? (int64_t)strlen(text) : 0 };
+    const struct source source = source_of(&program);
+    pc_instant(&pc, at, &seen, panel, &source);
     card_advance(c, at + pc.config.bus);
 }
 

@@ -26,7 +26,7 @@ static int run(double place[AXES], double centre_x, double centre_y, double radi
     MCC_get_ppos(&m, sum);
     *off = *out_of_step = 0.0;
     while (!MCC_check_stop(&m)) {
-        task_run(&m, "", 0);
+        task_run(&m, NULL);
         while (m.queue.count > 0) {
             m.written = *queue_peek(&m.queue, 0);
             queue_drop(&m.queue, 1);

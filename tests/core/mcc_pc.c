@@ -174,6 +174,37 @@ static void panel(void)
     CHECK(pc_done(&pc));
 }
 
+/* M0 rests until a rising edge that comes while it rests; one that comes earlier is not kept. */
+static void program_stop(void)
+{
+    static const char text[] = "M64 P3\nG1 X10 F6000 M0\n/Y9\nM3 S500 X20\nM1\nM2";
+    const struct machine m = mcc_machine();
+    struct pc_config config = usual(3, 4, 8000.0);
+    struct pc_panel p = calm;
+    struct card c;
+    config.block_delete = true;
+    card_start(&c, &m, &config, true);
+    int turned = 0;
+    for (int k = 0; k < 8000; k++) {
+        p.cycle_start = k < 500 || k >= 6000;
+        card_period(&c, k * config.bus, &p, text);
+        const struct outputs *o = &pc.mcc.written.outputs;
+        CHECK(o->digital == 8 || k < 200);
+        turned += o->spindle == 500.0;
+        if (k >= 4000 && k < 6000) {
+            CHECK_EQ(task_status(&pc.mcc), TASK_HOLD);
+            CHECK(c.sum[0] == 10000 && o->spindle == 0.0 && !pc_done(&pc));
+            CHECK_EQ(pc.mcc.written.line, 2);
+        }
+    }
+    CHECK(c.sum[0] > 12000 && turned > 1000 && turned < 2000);
+    CHECK_EQ(c.sum[1], 0);
+    for (int k = 8000; k < 12000; k++) {
+        card_period(&c, k * config.bus, &p, text);      /* M1 is not asked for */
+    }
+    CHECK(pc_done(&pc) && c.sum[0] == 20000 && pc.mcc.written.outputs.spindle == 0.0);
+}
+
 static void software_voltage(void)
 {
     const struct machine m = mcc_machine();
@@ -265,6 +296,7 @@ int main(void)
     starved();
     refused();
     panel();
+    program_stop();
     software_voltage();
     conservation();
     return check_result();

@@ -6,6 +6,7 @@
 #include "task.h"
 
 static struct mcc m;    /* 140 kB: not on the stack */
+static const struct source *program;    /* NULL: calls of the API only */
 enum { LONGEST = 200000 };
 
 /* A recording of everything the task queues. */
@@ -25,7 +26,7 @@ static void begin(struct machine machine)
 /* One point; false if the axes rest. Each frame must be the way between half-pulse ideal points. */
 static bool point(struct record *r)
 {
-    task_run(&m, NULL, 0);
+    task_run(&m, program);
     if (m.queue.count == 0) {
         return false;
     }

@@ -1,0 +1,13 @@
+/* switching - S, M3 to M5, M7 to M9, M62 to M65 of one block. */
+#ifndef SWITCHING_H
+#define SWITCHING_H
+
+#include "block.h"
+
+/* Execute them. Makes a command if something is to be switched when the motion so far has ended. */
+enum fault switching_block(struct interpreter *in, const struct block *b, struct fault_report *r);
+
+/* M2, M30: spindle and coolant off behind the motion of the block. */
+void switching_end(struct interpreter *in);
+
+#endif
