@@ -10,9 +10,9 @@ import pytest
 from fmi_tools import ERROR, OK, Instance
 
 HOST = """dda_length dda_divider dda_run min_stock irq_mask ack_seq ack_flags p_gain loop_on
-dac_source dac_volts cmd_seq cmd_clock cmd_count cmd_frames clear_seq""".split()
+dac_source dac_volts cmd_seq cmd_clock cmd_count cmd_frames latch_seq clear_seq""".split()
 CARD = """irq_seq irq_clock irq_flags cmd_ack frames_refused stock pulse_count enc_count
-err_count""".split()
+err_count latch_value latch_seen home over_travel stopped""".split()
 QUARTER = "G21 G17 G90 G61\nG1 X5 F3000\nG3 X0 Y5 I-5\nG4 P0.02\nG2 X5 Y0 R5 Z1\nM2\n"
 FAST = {"acc_time": 0.01, "dec_time": 0.01}
 

@@ -13,7 +13,7 @@ struct model {
     bool    powered;        /* the first instant has passed */
     int32_t cmd_seq;        /* numbers taken last from the mailboxes */
     int32_t ack_seq;
-    int32_t clear_seq;
+    int32_t clear_seq, latch_seq[6];
     int32_t reg_seq;
     enum epcio_status reg_status;   /* of that transaction */
     int32_t warned_length;  /* DDA length that was refused last, to say so once */
@@ -147,6 +147,12 @@ static int read_host(struct fmu *f)
     if (v->host_clear_seq != m->clear_seq) {
         m->clear_seq = v->host_clear_seq;
         epcio_clear(card);
+    }
+    for (int i = 0; i < EPCIO_AXES; i++) {
+        if (v->host_latch_seq[i] != m->latch_seq[i]) {
+            m->latch_seq[i] = v->host_latch_seq[i];
+            epcio_set_latch(card, i, 1u << (LATCH_INDEX + i), false);
+        }
     }
     if (set_dda(f))
         return -1;

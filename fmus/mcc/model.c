@@ -116,6 +116,7 @@ static void publish_card(struct vars *v, struct model *m)
         v->card_loop_on[i] = pc_loop_on(&m->pc, i);
         v->card_dac_source[i] = pc_dac_source(&m->pc, i);
         v->card_dac_volts[i] = m->pc.volts[i];
+        v->card_latch_seq[i] = m->pc.mcc.latch_seq[i];
     }
     if (pcl->seq != m->shown_seq) {
         m->shown_seq = pcl->seq;
@@ -205,7 +206,14 @@ static void read_bus(struct fmu *f, int64_t at)
     memcpy(card.irq_flags, v->card_irq_flags, sizeof card.irq_flags);
     memcpy(panel.software_gain, v->software_gain, sizeof panel.software_gain);
     memcpy(panel.p_gain, v->p_gain, sizeof panel.p_gain);
-    memcpy(panel.err_count, v->card_err_count, sizeof panel.err_count);
+    panel.signals = (struct signals){
+        .stop = v->card_stopped, .home = (uint32_t)v->card_home,
+        .upper = v->card_over_travel & 0x3f, .lower = (v->card_over_travel >> 8) & 0x3f
+    };
+    memcpy(panel.signals.enc, v->card_enc_count, sizeof panel.signals.enc);
+    memcpy(panel.signals.err, v->card_err_count, sizeof panel.signals.err);
+    memcpy(panel.signals.latch, v->card_latch_value, sizeof panel.signals.latch);
+    memcpy(panel.signals.latched, v->card_latch_seen, sizeof panel.signals.latched);
     pc_instant(pc, at / CLOCK_NS, &card, &panel, &source);
 }
 

@@ -65,6 +65,6 @@ int MCC_get_ppos(const struct mcc *m, int32_t pulses[AXES])
 
 int MCC_get_errcnt(const struct mcc *m, int32_t counts[AXES])
 {
-    memcpy(counts, m->errcnt, sizeof m->errcnt);
+    memcpy(counts, m->signals.err, sizeof m->signals.err);
     return m->open ? MCC_NO_ERR : MCC_INITIAL_MOTION;
 }

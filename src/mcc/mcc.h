@@ -10,6 +10,7 @@
 #include "interpreter.h"
 #include "ipo.h"
 #include "queue.h"
+#include "signals.h"
 
 /* Return codes of the library that occur here. */
 enum mcc_return {
@@ -50,7 +51,8 @@ struct mcc {
     struct ipo   ipo;
     struct queue queue;
     struct point written;       /* the latest point the card took */
-    int32_t errcnt[AXES];       /* [counts] as the card reported them */
+    struct signals signals;     /* as the card reported them last */
+    int32_t latch_seq[AXES];    /* a new number arms the latch for the next index, once */
 };
 
 /* System. MCC_init_motion: at rest at the origin, settings from the machine. */

@@ -41,10 +41,10 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     pc->cycle_due = pc->cycle_due || (panel->cycle_start && !pc->cycle_seen);
     pc->cycle_seen = panel->cycle_start;
     MCC_set_P_gain(&pc->mcc, panel->p_gain);
-    memcpy(pc->mcc.errcnt, panel->err_count, sizeof pc->mcc.errcnt);
+    pc->mcc.signals = panel->signals;
     for (int i = 0; i < AXES; i++) {
         if (pc->config.output_mode[i] == 2 && m->axis[i].used) {
-            const double v = panel->software_gain[i] * panel->err_count[i];
+            const double v = panel->software_gain[i] * panel->signals.err[i];
             pc->volts[i] = fmax(-VOLTS_MAX, fmin(VOLTS_MAX, v));
         }
     }

@@ -29,7 +29,7 @@ struct pc_panel {
     double override;            /* 0..2 */
     double software_gain[AXES]; /* [V/count] of output mode 2 */
     int32_t p_gain[AXES];
-    int32_t err_count[AXES];    /* [counts] of the card */
+    struct signals signals;
 };
 
 struct pc {

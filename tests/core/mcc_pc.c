@@ -216,12 +216,12 @@ static void software_voltage(void)
     card_start(&c, &m, &config, false);
     for (int i = 0; i < AXES; i++) {
         p.software_gain[i] = 0.01;
-        p.err_count[i] = 250;
+        p.signals.err[i] = 250;
     }
     card_period(&c, 0, &p, NULL);
     CHECK_NEAR(pc.volts[0], 0.0, 0.0);
     CHECK_NEAR(pc.volts[1], 2.5, 1e-15);
-    p.err_count[1] = -5000;
+    p.signals.err[1] = -5000;
     card_period(&c, config.bus, &p, NULL);
     CHECK_NEAR(pc.volts[1], -10.0, 0.0);
     CHECK(!pc_loop_on(&pc, 0) && pc_loop_on(&pc, 1) && pc_loop_on(&pc, 2) && !pc_loop_on(&pc, 4));

@@ -1,0 +1,20 @@
+/* signals - what the card tells the library of the machine, beside FIFO and interrupts. */
+#ifndef SIGNALS_H
+#define SIGNALS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "machine.h"
+
+struct signals {
+    bool     stop;          /* the emergency stop acts */
+    uint32_t home;          /* logic level of the home switches, a bit an axis */
+    uint32_t upper, lower;  /* limit switches, a bit an axis, 1: run onto */
+    int32_t  enc[AXES];     /* [counts] encoder counters */
+    int32_t  err[AXES];     /* [counts] error counters */
+    int32_t  latch[AXES];   /* [counts] encoder counter at the index latched last */
+    int32_t  latched[AXES]; /* how often it has latched */
+};
+
+#endif
