@@ -23,7 +23,8 @@ static struct machine machine_of(const struct vars *v)
     struct machine m = {
         .dda_time = v->dda_time, .dda_length = v->dda_length, .queue_depth = v->queue_depth,
         .feed = v->feed / 60.0, .max_feed = v->max_feed / 60.0,
-        .acc_time = v->acc_time, .dec_time = v->dec_time
+        .acc_time = v->acc_time, .dec_time = v->dec_time,
+        .acc_type = v->acc_type[0], .dec_type = v->dec_type[0], .jerk_share = v->jerk_share
     };
     for (int i = 0; i < AXES; i++) {
         m.axis[i] = (struct machine_axis){
@@ -55,6 +56,14 @@ static int check_parameters(struct fmu *f)
     if (v->min_stock + v->batch > PCL_FIFO) {
         return fmu_fail(f, "min_stock %d + batch %d: the FIFO of the card holds %d commands",
                         (int)v->min_stock, (int)v->batch, PCL_FIFO);
+    }
+    const struct { const char *name, *value; } types[] = {
+        { "acc_type", v->acc_type }, { "dec_type", v->dec_type }
+    };
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        if (strcmp(types[i].value, "T") && strcmp(types[i].value, "S")) {
+            return fmu_fail(f, "%s = \"%s\" is neither T nor S", types[i].name, types[i].value);
+        }
     }
     if (v->feed > v->max_feed) {
         return fmu_fail(f, "feed %g mm/min is above max_feed %g mm/min", v->feed, v->max_feed);

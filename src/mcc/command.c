@@ -36,8 +36,9 @@ static void set_speed(struct command *c, const struct machine *m, double feed, d
 {
     c->feed = feed;
     c->cap = cap;
-    c->acc = feed / m->acc_time;
-    c->dec = feed / m->dec_time;
+    const struct machine_ramp up = machine_ramp(m, m->acc_type, feed, m->acc_time);
+    const struct machine_ramp down = machine_ramp(m, m->dec_type, feed, m->dec_time);
+    c->ramp = (struct ramp_limits){ up.acc, down.acc, up.jerk, down.jerk };
 }
 
 enum fault command_move(struct command *c, const struct machine *m, enum command_type type,
@@ -72,7 +73,8 @@ void command_delay(struct command *c, const double point[AXES], double seconds)
     path_line(&c->path, point, point);
     c->type = COMMAND_DELAY;
     c->blend = false;
-    c->feed = c->cap = c->acc = c->dec = 0.0;
+    c->feed = c->cap = 0.0;
+    c->ramp = (struct ramp_limits){ 0.0, 0.0, 0.0, 0.0 };
     c->dwell = seconds;
 }
 
@@ -105,8 +107,9 @@ void command_start(const struct command *c, double override, struct profile *p)
     if (c->type == COMMAND_DELAY) {
         profile_wait(p, c->dwell);
     } else {
-        const struct profile_limits l = { command_speed(c, override), c->acc, c->dec };
-        profile_plan(p, 0.0, 0.0, c->path.length, &l);
+        const struct profile_limits l = { command_speed(c, override), c->ramp };
+        const struct scurve_start rest = { 0.0, 0.0, 0.0 };
+        profile_plan(p, &rest, c->path.length, &l);
     }
 }
 

@@ -22,7 +22,7 @@ struct command {
     bool    blend;      /* continuous path: the next command may start in the deceleration */
     double  feed;       /* [mm/s] programmed */
     double  cap;        /* [mm/s] highest speed any override may bring */
-    double  acc, dec;   /* [mm/s^2] feed / acc_time, feed / dec_time */
+    struct ramp_limits ramp;    /* of its feed in acc_time, dec_time */
     double  dwell;      /* [s] of a delay */
     uint32_t set, clear;    /* digital outputs that its start switches on, off */
     double  spindle;    /* [rpm] of COMMAND_OUTPUTS */

@@ -51,12 +51,10 @@ static void replan(struct ipo *p)
     struct ipo_move *m = &p->move[p->count - 1];
     if (m->command.type != COMMAND_DELAY) {
         const struct profile_limits l = {
-            command_speed(&m->command, override_of(p, &m->command)),
-            m->command.acc, m->command.dec
+            command_speed(&m->command, override_of(p, &m->command)), m->command.ramp
         };
-        double s, v;
-        profile_state(&m->profile, &s, &v);
-        profile_plan(&m->profile, s, v, m->command.path.length, &l);
+        const struct scurve_start now = profile_state(&m->profile);
+        profile_plan(&m->profile, &now, m->command.path.length, &l);
     }
 }
 
@@ -88,12 +86,12 @@ static void place(const struct ipo *p, double point[AXES], double velocity[AXES]
     memset(velocity, 0, AXES * sizeof *velocity);
     for (int i = 0; i < p->count; i++) {
         const struct ipo_move *m = &p->move[i];
-        double s, v, at[AXES], slope[AXES];
-        profile_state(&m->profile, &s, &v);
-        path_at(&m->command.path, s, at, slope);
+        const struct scurve_start now = profile_state(&m->profile);
+        double at[AXES], slope[AXES];
+        path_at(&m->command.path, now.s, at, slope);
         for (int k = 0; k < AXES; k++) {
             point[k] = i == 0 ? at[k] : point[k] + (at[k] - m->command.path.start[k]);
-            velocity[k] += v * slope[k];
+            velocity[k] += now.v * slope[k];
         }
     }
 }

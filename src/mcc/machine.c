@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+static const double JERK_SHARE = 0.5;
+
 static bool positive(double x)
 {
     return isfinite(x) && x > 0.0;
@@ -12,6 +14,11 @@ static bool axis_valid(const struct machine *m, const struct machine_axis *a)
     return positive(a->pitch) && positive(a->gear_ratio) && a->ppr >= 1 && positive(a->rpm) &&
            a->p_gain >= 0 && a->p_gain <= 65535 &&
            a->max_dda >= 0 && a->max_dda <= machine_dda_limit(m);
+}
+
+static bool type_valid(char type)
+{
+    return type == 0 || type == 'T' || type == 'S';
 }
 
 bool machine_valid(const struct machine *m)
@@ -25,6 +32,8 @@ bool machine_valid(const struct machine *m)
         }
     }
     return positive(m->dda_time) && positive(m->feed) && positive(m->max_feed) &&
+           type_valid(m->acc_type) && type_valid(m->dec_type) &&
+           m->jerk_share >= 0.0 && m->jerk_share <= 1.0 &&
            m->ptp_ratio >= 0.0 && m->ptp_ratio <= 1.0 &&
            m->feed <= m->max_feed && positive(m->acc_time) && positive(m->dec_time);
 }
@@ -49,6 +58,18 @@ double machine_dda_time(const struct machine *m)
 int32_t machine_dda_limit(const struct machine *m)
 {
     return (int32_t)((1u << m->dda_length) - 1u);
+}
+
+struct machine_ramp machine_ramp(const struct machine *m, char type, double speed, double time)
+{
+    const double share = m->jerk_share > 0.0 ? m->jerk_share : JERK_SHARE;
+
+    if (type != 'S') {
+        return (struct machine_ramp){ speed / time, 0.0 };
+    }
+    /* Half of the share at each end: speed = acc (time - share time / 2). */
+    const double acc = speed / (time * (1.0 - 0.5 * share));
+    return (struct machine_ramp){ acc, acc / (0.5 * share * time) };
 }
 
 double machine_pulses_per_mm(const struct machine_axis *a)

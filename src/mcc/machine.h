@@ -28,6 +28,10 @@ struct machine {
     double  max_feed;       /* [mm/s] cart_max_speed of the source document */
     double  acc_time;       /* [s] from rest to the commanded feed */
     double  dec_time;       /* [s] from the commanded feed to rest */
+    char    acc_type;       /* 'T' or 0: at constant acceleration; 'S': S-shaped */
+    char    dec_type;
+    double  jerk_share;     /* 0..1 part of the time of an S-shaped ramp in which the acceleration
+                             * changes; 0 means 0.5 */
     double  ptp_ratio;      /* 0..1 share of the safe motor speed for point-to-point; 0 means 1 */
 };
 
@@ -43,6 +47,14 @@ double  machine_dda_time(const struct machine *m);      /* [s] */
 
 /* Largest command the DDA can take: 2^length - 1. [pulses] */
 int32_t machine_dda_limit(const struct machine *m);
+
+/* A ramp between rest and a speed [mm/s] that takes a time [s]; jerk 0, of type 'T': no limit. */
+struct machine_ramp {
+    double acc;             /* [mm/s^2] */
+    double jerk;            /* [mm/s^3] */
+};
+
+struct machine_ramp machine_ramp(const struct machine *m, char type, double speed, double time);
 
 double machine_pulses_per_mm(const struct machine_axis *a);     /* [pulses/mm] */
 double machine_axis_speed(const struct machine_axis *a);        /* [mm/s] at rpm */

@@ -15,6 +15,8 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
             m->machine.axis[i].max_dda = machine_dda_limit(machine);
         }
     }
+    m->machine.acc_type = machine->acc_type ? machine->acc_type : 'T';
+    m->machine.dec_type = machine->dec_type ? machine->dec_type : 'T';
     m->feed = machine->feed;
     ipo_start(&m->ipo);
     m->open = true;

@@ -102,6 +102,10 @@ int MCC_set_ptp_spd(struct mcc *m, double percent);     /* > 0..100 of the safe 
 int MCC_enable_quit(struct mcc *m);                     /* continuous path */
 int MCC_disable_quit(struct mcc *m);
 int MCC_check_quit(const struct mcc *m);                /* 0 enabled, 1 disabled, as the library */
+int MCC_set_acc_type(struct mcc *m, char type);         /* 'T' trapezoidal, 'S' S-shaped */
+char MCC_get_acc_type(const struct mcc *m);
+int MCC_set_dec_type(struct mcc *m, char type);
+char MCC_get_dec_type(const struct mcc *m);
 int MCC_set_acc_step(struct mcc *m, double ms);
 double MCC_get_acc_step(const struct mcc *m);           /* [ms] */
 int MCC_set_dec_step(struct mcc *m, double ms);

@@ -85,6 +85,38 @@ static int set_time(const struct mcc *m, double *time, double ms)
     return MCC_NO_ERR;
 }
 
+static int set_type(const struct mcc *m, char *type, char value)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (value != 'T' && value != 'S') {
+        return MCC_PARAMETER;
+    }
+    *type = value;
+    return MCC_NO_ERR;
+}
+
+int MCC_set_acc_type(struct mcc *m, char type)
+{
+    return set_type(m, &m->machine.acc_type, type);
+}
+
+char MCC_get_acc_type(const struct mcc *m)
+{
+    return m->machine.acc_type;
+}
+
+int MCC_set_dec_type(struct mcc *m, char type)
+{
+    return set_type(m, &m->machine.dec_type, type);
+}
+
+char MCC_get_dec_type(const struct mcc *m)
+{
+    return m->machine.dec_type;
+}
+
 int MCC_set_acc_step(struct mcc *m, double ms)
 {
     return set_time(m, &m->machine.acc_time, ms);

@@ -122,6 +122,13 @@ static void settings(void)
     CHECK_NEAR(MCC_get_dda(&m), 2.048, 1e-15);      /* 2^12 * 20 * 25 ns */
     CHECK_EQ(MCC_set_dda(&m, 0.01), 0);
     CHECK_NEAR(MCC_get_dda(&m), 0.1024, 1e-15);     /* divider 1 */
+    REFUSED(MCC_set_acc_type(&m, 's'), MCC_PARAMETER);
+    REFUSED(MCC_set_dec_type(&m, 0), MCC_PARAMETER);
+    CHECK(MCC_get_acc_type(&m) == 'T' && MCC_get_dec_type(&m) == 'T');
+    CHECK_EQ(MCC_set_acc_type(&m, 'S'), 0);
+    CHECK(MCC_get_acc_type(&m) == 'S' && MCC_get_dec_type(&m) == 'T');
+    CHECK_EQ(MCC_set_dec_type(&m, 'S'), 0);
+    CHECK(MCC_get_dec_type(&m) == 'S');
     REFUSED(MCC_set_acc_step(&m, 0.0), MCC_PARAMETER);
     CHECK_EQ(MCC_set_acc_step(&m, 250.0), 0);
     CHECK_EQ(MCC_set_dec_step(&m, 150.0), 0);

@@ -13,7 +13,7 @@ static void lines_and_modes(void)
     expect_end(&x, 10.0, 0.0, 0.0);
     CHECK_EQ(x.c.line, 3);
     CHECK_NEAR(x.c.feed, 10.0, 0.0);
-    CHECK_NEAR(x.c.acc, 100.0, 1e-12);      /* 10 mm/s in 0.1 s */
+    CHECK_NEAR(x.c.ramp.acc, 100.0, 1e-12);      /* 10 mm/s in 0.1 s */
     CHECK_EQ(next(&x), COMMAND_LINE);
     expect_end(&x, 10.0, -0.5, 2.0);
     CHECK_EQ(next(&x), COMMAND_LINE);

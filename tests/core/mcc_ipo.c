@@ -32,6 +32,31 @@ static void no_time_is_lost(void)
     CHECK(MCC_check_stop(&m));
 }
 
+/* An S-shaped ramp takes the acceleration time; jerk and acceleration stay below those of the
+ * ramp, a/(share T/2) and v/(T (1 - share/2)) with share 0.5, at every sample. */
+static void s_shaped(void)
+{
+    const double dt = 1.024e-3, acc = 50.0 / (0.1 * 0.75), jerk = acc / 0.025;
+    struct machine machine = mcc_machine();
+    struct record r = { 0 };
+    double s[4] = { 0 };
+    begin(machine);
+    MCC_set_fspd(&m, 50.0);
+    MCC_set_acc_type(&m, 'S');
+    MCC_set_dec_type(&m, 'S');
+    CHECK(MCC_line(&m, (double[AXES]){ 30.0, 40.0 }) > 0);
+    while (point(&r)) {
+        memmove(s + 1, s, 3 * sizeof *s);
+        s[0] = hypot(r.last.place[0], r.last.place[1]);
+        CHECK(s[0] - s[1] <= 50.0 * dt * (1.0 + 1e-9));
+        CHECK(fabs(s[0] - 2.0 * s[1] + s[2]) <= acc * dt * dt * (1.0 + 1e-6));
+        CHECK(fabs(s[0] - 3.0 * s[1] + 3.0 * s[2] - s[3]) <= jerk * dt * dt * dt * (1.0 + 1e-6));
+    }
+    CHECK_EQ(r.n, (int)ceil((50.0 / 50.0 + 0.1) / dt));
+    CHECK_NEAR(r.speed_max, 50.0, 1e-9);
+    CHECK_NEAR(r.last.place[1], 40.0, 0.0);
+}
+
 /* Path mixing on a straight line, equal ramps: the speed never dips, n moves save n - 1 ramps. */
 static void mixing_is_smooth(void)
 {
@@ -102,6 +127,7 @@ static void circle(void)
 int main(void)
 {
     no_time_is_lost();
+    s_shaped();
     mixing_is_smooth();
     corner();
     circle();

@@ -10,26 +10,33 @@ static double duration(double way, double v, double a, double d)
     return ramps <= way ? way / v + v / 2.0 * (1.0 / a + 1.0 / d) : peak * (1.0 / a + 1.0 / d);
 }
 
+static void plan(struct profile *p, double s, double v, double length,
+                 const struct profile_limits *l)
+{
+    profile_plan(p, &(struct scurve_start){ s, v, 0.0 }, length, l);
+}
+
+static struct scurve_start at(struct profile *p, double t)
+{
+    p->t = t;
+    return profile_state(p);
+}
+
 static void rest_to_rest(void)
 {
     uint64_t seed = 1;
     for (int i = 0; i < 2000; i++) {
         const double way = pow(10.0, mcc_random(&seed, -6.0, 4.0));
-        const struct profile_limits l = { mcc_random(&seed, 0.1, 500.0),
-                                          mcc_random(&seed, 10.0, 5000.0),
-                                          mcc_random(&seed, 10.0, 5000.0) };
+        const double acc = mcc_random(&seed, 10.0, 5000.0), dec = mcc_random(&seed, 10.0, 5000.0);
+        const struct profile_limits l = { mcc_random(&seed, 0.1, 500.0), { acc, dec, 0.0, 0.0 } };
         struct profile p;
-        double s, v;
-        profile_plan(&p, 0.0, 0.0, way, &l);
-        const double want = duration(way, l.speed, l.acc, l.dec);
+        plan(&p, 0.0, 0.0, way, &l);
+        const double want = duration(way, l.speed, acc, dec);
         CHECK(p.ends);
         CHECK_NEAR(p.total, want, 1e-12 * want);
-        p.t = p.tail;
-        profile_state(&p, &s, &v);
-        CHECK_NEAR(v, fmin(l.speed, sqrt(2.0 * way * l.acc * l.dec / (l.acc + l.dec))), 1e-9 * v);
-        p.t = p.total;
-        profile_state(&p, &s, &v);
-        CHECK(s == way && v == 0.0);
+        const double top = fmin(l.speed, sqrt(2.0 * way * acc * dec / (acc + dec)));
+        CHECK_NEAR(at(&p, p.tail).v, top, 1e-9 * top);
+        CHECK(at(&p, p.total).s == way && at(&p, p.total).v == 0.0);
     }
 }
 
@@ -49,11 +56,12 @@ static void replanned(void)
         for (int k = 0; k < 8; k++) {
             const double target = k == 7 ? 50.0 : mcc_random(&seed, 0.0, 1.0) < 0.3
                                 ? 0.0 : mcc_random(&seed, 1.0, 300.0);
-            const struct profile_limits l = { target, acc, dec };
+            const struct profile_limits l = { target, { acc, dec, 0.0, 0.0 } };
             const double s0 = s, v0 = v;
             fastest = fmax(fastest, target);
-            profile_plan(&p, s, v, way, &l);
-            profile_state(&p, &s, &v);
+            plan(&p, s, v, way, &l);
+            s = at(&p, 0.0).s;
+            v = at(&p, 0.0).v;
             CHECK_NEAR(s, s0, 1e-12 * way);
             const bool far = way - s0 > NEAR;
             CHECK(!far || fabs(v - v0) <= 1e-9 * fastest);
@@ -65,8 +73,8 @@ static void replanned(void)
             const double t1 = k == 7 ? p.total : mcc_random(&seed, 0.0, 1.1) * p.total;
             double last_s = s;
             for (int j = 1; j <= 50; j++) {
-                p.t = j < 50 ? t1 * j / 50.0 : t1;
-                profile_state(&p, &s, &v);
+                s = at(&p, j < 50 ? t1 * j / 50.0 : t1).s;
+                v = at(&p, p.t).v;
                 CHECK(s >= last_s - 1e-12 * way && s <= way);
                 CHECK(v >= 0.0 && v <= fastest * (1.0 + 1e-12));
                 last_s = s;
@@ -79,24 +87,17 @@ static void replanned(void)
 /* To rest on the path: v^2/(2 d) further, v/d later. */
 static void brake(void)
 {
-    const struct profile_limits l = { 0.0, 100.0, 400.0 };
+    const struct profile_limits l = { 0.0, { 100.0, 400.0, 0.0, 0.0 } };
     struct profile p;
-    double s, v;
-    profile_plan(&p, 3.0, 20.0, 10.0, &l);
+    plan(&p, 3.0, 20.0, 10.0, &l);
     CHECK(!p.ends);
     CHECK_NEAR(p.total, 0.05, 1e-15);
-    p.t = p.total;
-    profile_state(&p, &s, &v);
-    CHECK_NEAR(s, 3.5, 1e-14);
-    CHECK(v == 0.0);
-    p.t = 1.0;
-    profile_state(&p, &s, &v);
-    CHECK_NEAR(s, 3.5, 1e-14);
+    CHECK_NEAR(at(&p, p.total).s, 3.5, 1e-14);
+    CHECK(at(&p, p.total).v == 0.0);
+    CHECK_NEAR(at(&p, 1.0).s, 3.5, 1e-14);
 
-    profile_plan(&p, 9.5, 20.0, 10.0, &l);      /* exactly the way that is left */
-    p.t = p.total;
-    profile_state(&p, &s, &v);
-    CHECK(p.ends && s == 10.0);
+    plan(&p, 9.5, 20.0, 10.0, &l);      /* exactly the way that is left */
+    CHECK(p.ends && at(&p, p.total).s == 10.0);
     CHECK_NEAR(p.acc[2], -400.0, 1e-9);
 }
 
