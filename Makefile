@@ -25,7 +25,7 @@ check: .venv/installed          ## formatting, lint, types
 	$(BIN)/mypy
 
 bench: build                    ## speed, as ratios measured in one run
-	@cmake --build build --target fused card_cost
+	@cmake --build build --target fused card_cost interpreter_cost
 	$(BIN)/python tests/bench/bench.py
 
 clean:

@@ -2,6 +2,8 @@
 
 import csv
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -243,3 +245,57 @@ def test_a_restored_state_goes_on_the_same_way(tmp_path: Path) -> None:
     assert first == second and len(first) == 300
     assert machine.mcc.free_state(state) == OK
     machine.end()
+
+
+CLEAR = Path("/proc/self/clear_refs")  # a 5 sets the peak back to what is in use
+
+
+@contextmanager
+def peak() -> Iterator[list[float]]:
+    """Growth of the peak of resident memory while it is open, in one element [MiB]."""
+
+    def status(name: str) -> float:
+        rows = Path("/proc/self/status").read_text().splitlines()
+        return next(float(r.split()[1]) for r in rows if r.startswith(name)) / 1024
+
+    CLEAR.write_text("5")
+    before, grown = status("VmRSS"), [math.nan]
+    yield grown
+    grown[0] = status("VmHWM") - before
+
+
+@pytest.mark.skipif(not CLEAR.exists(), reason="needs Linux to tell the peak of memory")
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_million_lines_need_no_memory(fmi: int, tmp_path: Path) -> None:
+    few = "".join(f"G1 X0.{n % 1000:03} Y0.{n * 7 % 1000:03} F3000\n" for n in range(10_000))
+    long = tmp_path / "long.ngc"
+    with long.open("w") as file:
+        for _ in range(100):
+            file.write(few)
+    assert long.stat().st_size > 20_000_000
+    values: dict[str, Any] = {**FAST, "output_mode": 0}
+    warm = Machine(fmi, {**values, "program": program(tmp_path, few)})
+    warm.step(1e-3)
+    warm.end()
+    with peak() as grown:
+        machine = Machine(fmi, {**values, "program": str(long)})
+        for _ in range(300):
+            machine.step(1e-3)
+    assert machine.mcc.get("status") == [0] and machine.mcc.get("line")[0] > 5
+    assert machine.card.get("pulse_count")[1] > 0
+    machine.end()
+    assert grown[0] < 5.0
+
+    with long.open("a") as file:
+        file.write("G1 X1 Q3\n")
+    with peak() as grown:
+        instance = Instance("mcc", fmi)
+        assert instance.set("program", str(long)) == OK
+        assert ERROR in (instance.enter(), instance.call("ExitInitializationMode"))
+    assert 'line 1000001: unknown word "Q3"' in instance.said
+    assert grown[0] < 5.0
+    instance.free()
+
+    with peak() as grown:
+        assert bytearray(long.stat().st_size)[-1] == 0
+    assert grown[0] > 19.0  # what it would be with the text in memory

@@ -26,6 +26,7 @@ SIX_AXES = Path(__file__).parent / "six_axes"
 PULSE_AXES = Path(__file__).parent / "pulse_axes"
 FUSED = ROOT / "build/tests/bench/fused"
 CARD_COST = ROOT / "build/tests/bench/card_cost"
+INTERPRETER_COST = ROOT / "build/tests/bench/interpreter_cost"
 ROUNDS = 5
 SLOW_STOP = 0.2  # [s] simulated by the engines that go through Python at every step
 
@@ -124,6 +125,17 @@ class Card:
         self.cost = min(self.cost, float(subprocess.check_output(line, text=True).split()[0]))
 
 
+class Interpreter:
+    """The interpreter alone: processor time per line [s], and of strtod for its numbers."""
+
+    def __init__(self) -> None:
+        self.line = self.strtod = float("inf")
+
+    def __call__(self) -> None:
+        line, strtod, _ = subprocess.check_output([INTERPRETER_COST], text=True).split()
+        self.line, self.strtod = min(self.line, float(line)), min(self.strtod, float(strtod))
+
+
 def card_table(cards: list[Card]) -> None:
     """Cost of the card against pulse rate and axes."""
     print(f"\n{'card alone, ms per simulated s':32}{'counts':>10}{'all edges':>12}")
@@ -166,7 +178,8 @@ def main() -> None:
     fused = Fused(native.steps)
     pulses = Timed(PULSE_AXES)
     cards = [Card(a, h, e) for a in (1, 3, 6) for h in (0, 10_000, 500_000) for e in (False, True)]
-    rounds([fused, *engines.values(), six, pulses, *cards])
+    interpreter = Interpreter()
+    rounds([fused, *engines.values(), six, pulses, *cards, interpreter])
     fused.check(native.result)
 
     base = fused.loop / fused.steps
@@ -183,6 +196,9 @@ def main() -> None:
     ):
         print(f"{name:28}{run.simulated / run.loop:10.1f}{run.simulated / run.whole:10.1f}")
     card_table(cards)
+    print(f"\n{'one line of a part program':28}{'ns':>10}{'x strtod':>20}")
+    ratio = interpreter.line / interpreter.strtod
+    print(f"{'read, checked, planned':28}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
     print()
     verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
     verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
@@ -193,6 +209,7 @@ def main() -> None:
     verdict(
         "the same as FMUs with the library, whole loop", pulses.simulated / pulses.loop, least=20.0
     )
+    verdict("interpreter, million lines/s", 1e-6 / interpreter.line, least=0.5)
 
 
 if __name__ == "__main__":

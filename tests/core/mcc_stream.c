@@ -117,19 +117,30 @@ static void unreadable(void)
 
 enum { LINES = 1000000, LINE = 24 };
 
-/* "G1 X0000.123 Y123.0000\n" by its number, so that the text needs no memory. */
-static void write_line(char *to, int64_t number)
-{
-    char line[64];
-    const int a = (int)(number % 1000), b = (int)(number * 7 % 1000);
-    snprintf(line, sizeof line, "G1 X0000.%03d Y%03d.00000\n", a, b);
-    memcpy(to, line, LINE);
-}
-
+/* A program of LINES lines to X = n mod 1000 / 1000, Y = 7 n mod 1000, n from 0; a line is made
+ * when it is looked at, so that the text needs no memory. */
 struct endless {
-    int64_t from;               /* the window begins with this line */
+    const char *form;           /* of a line; # and @ are the digits of X and Y */
+    const char *last;           /* the last line */
+    int64_t from;               /* the window begins with this line; -1: it is empty */
     char window[1024 * LINE];
 };
+
+static void write_line(const struct endless *e, char *to, int64_t n)
+{
+    int x = (int)(n % 1000), y = (int)(n * 7 % 1000);
+
+    memcpy(to, n == LINES - 1 ? e->last : e->form, LINE);
+    for (int i = LINE - 1; i >= 0; i--) {
+        if (to[i] == '#') {
+            to[i] = (char)('0' + x % 10);
+            x /= 10;
+        } else if (to[i] == '@') {
+            to[i] = (char)('0' + y % 10);
+            y /= 10;
+        }
+    }
+}
 
 static int64_t endless_look(void *context, int64_t offset, const char **text)
 {
@@ -138,7 +149,7 @@ static int64_t endless_look(void *context, int64_t offset, const char **text)
     if (e->from < 0 || offset < e->from * LINE || offset + SOURCE_WINDOW > e->from * LINE + room) {
         e->from = offset / LINE;
         for (int64_t i = 0; i < room / LINE; i++) {
-            write_line(e->window + i * LINE, e->from + i);
+            write_line(e, e->window + i * LINE, e->from + i);
         }
     }
     const int64_t behind = e->from * LINE + room;
@@ -146,26 +157,69 @@ static int64_t endless_look(void *context, int64_t offset, const char **text)
     return (behind < all ? behind : all) - offset;
 }
 
-/* A million lines. The bound is a third of what a slow machine does. [lines/s of processor time] */
-static void speed(void)
+static struct source endless(struct endless *e, struct reader *x, const char *form,
+                             const char *last)
 {
-    static struct endless e = { .from = -1 };
-    const struct source s = { endless_look, &e };
+    CHECK(strlen(form) == LINE && strlen(last) == LINE);
+    begin(x, "");
+    e->form = form;
+    e->last = last;
+    e->from = -1;
+    return (struct source){ endless_look, e };
+}
+
+static const char form[] = "G1 X0000.### Y@@@.00000\n";
+
+/* The check reads a million lines to the last. The bound of its speed is a third of what a slow
+ * machine does. [lines/s of processor time] */
+static void million_checked(void)
+{
+    static struct endless e;
     struct reader x;
-    begin(&x, "");
+    struct fault_report r;
+    const struct source s = endless(&e, &x, form, "G1 X0 (the last) Y1 Q3 \n");
     x.program.source = &s;
     const clock_t start = clock();
-    int64_t commands = 0;
-    while (next(&x) == COMMAND_LINE) {
-        commands++;
-    }
+    interpreter_check(&x.in, &x.program, &r);
     const double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
-    CHECK_EQ(x.in.line, LINES);
-    CHECK_EQ(commands, LINES - 1);      /* the first leads to where the axes are */
+    CHECK_EQ(r.fault, FAULT_WORD);
+    CHECK_EQ(r.line, LINES);
+    CHECK_EQ(r.offset, (int64_t)(LINES - 1) * LINE);
+    CHECK(r.at == 20 && r.length == 2);
     printf("%.0f lines/s, state %zu bytes\n", LINES / seconds, sizeof x.in);
 #if !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
     CHECK(LINES / seconds > 500000.0);
 #endif
+}
+
+/* A million lines become commands, each once. The state is of one size and holds numbers only: a
+ * program that says the same in other words leaves the same bytes. */
+static void million_interpreted(void)
+{
+    static struct endless e, other;
+    struct reader x, y;
+    const struct source s = endless(&e, &x, form, form);
+    const struct source t = endless(&other, &y, "g1y@@@(G1 X0000)x.### ;\n", form);
+    double sum_x = 0.0, sum_y = 0.0;
+    int64_t commands = 0;
+
+    x.program.source = &s;
+    y.program.source = &t;
+    while (next(&x) == COMMAND_LINE && next(&y) == COMMAND_LINE) {
+        commands++;
+        sum_x += x.c.path.end[0];
+        sum_y += x.c.path.end[1];
+        CHECK(commands % 1024 || !memcmp(&x.in, &y.in, sizeof x.in));
+    }
+    CHECK_EQ(next(&x), -1);
+    CHECK_EQ(next(&y), -1);
+    CHECK(!memcmp(&x.in, &y.in, sizeof x.in));
+    CHECK_EQ(commands, LINES - 1);          /* the first leads to where the axes are */
+    CHECK_EQ(x.in.line, LINES);
+    CHECK_EQ(x.in.offset, (int64_t)LINES * LINE);
+    CHECK_NEAR(sum_x, LINES * 0.4995, 1e-5);    /* 0 .. 999 a thousand times */
+    CHECK_NEAR(sum_y, LINES * 499.5, 1e-2);
+    CHECK(sizeof x.in < 2048);
 }
 
 int main(void)
@@ -173,6 +227,7 @@ int main(void)
     windows();
     longest_line();
     unreadable();
-    speed();
+    million_checked();
+    million_interpreted();
     return check_result();
 }
