@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import plans
+import scurve_moves
 from rich.console import Console
 from rich.progress import Progress
 
@@ -166,7 +168,11 @@ def main() -> None:
     fused = Fused(native.steps)
     pulses = Timed(PULSE_AXES)
     cards = [Card(a, h, e) for a in (1, 3, 6) for h in (0, 10_000, 500_000) for e in (False, True)]
-    rounds([fused, *engines.values(), six, pulses, *cards])
+    curves = [
+        plans.Plans("rest to rest", scurve_moves.rest_to_rest),
+        plans.Plans("in motion to rest", scurve_moves.to_rest),
+    ]
+    rounds([fused, *engines.values(), six, pulses, *cards, *curves])
     fused.check(native.result)
 
     base = fused.loop / fused.steps
@@ -183,6 +189,7 @@ def main() -> None:
     ):
         print(f"{name:28}{run.simulated / run.loop:10.1f}{run.simulated / run.whole:10.1f}")
     card_table(cards)
+    plans.table(curves)
     print()
     verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
     verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
@@ -193,6 +200,8 @@ def main() -> None:
     verdict(
         "the same as FMUs with the library, whole loop", pulses.simulated / pulses.loop, least=20.0
     )
+    for curve in curves:
+        verdict(f"ruckig / scurve, {curve.name}", curve.ruckig / curve.scurve, least=1.0)
 
 
 if __name__ == "__main__":
