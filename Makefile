@@ -25,8 +25,8 @@ check: .venv/installed          ## formatting, lint, types
 	$(BIN)/mypy
 
 bench: build                    ## speed, as ratios measured in one run
-	@cmake --build build --target fused card_cost interpreter_cost
-	$(BIN)/python tests/bench/bench.py
+	@cmake --build build --target fused card_cost interpreter_cost scurve_batch
+	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py
 
 clean:
 	rm -rf build results

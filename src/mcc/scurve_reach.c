@@ -24,8 +24,8 @@
  *
  * If a0 < 0 and v1 <= base the peak may stay below 0 ("sag"): then the first pulse counts negative,
  * w = base + x^2. Along T, d way'/dT = w + x y/2; it never falls but within a sag. For v1 >= 0 it
- * is never below 0. So the first T that meets the target lies between two corners of the cases
- * (x = acc, y = dec, x = 0), or before a local maximum within a sag. */
+ * is never below 0. So the first T that meets the target lies before a local maximum within a sag
+ * that is far enough, else between two corners of the cases (x = acc, y = dec, x = 0). */
 
 struct pulses {
     double base, v1, acc, dec;      /* see above */
@@ -139,15 +139,14 @@ static struct shape rising(const struct pulses *p, double low, double top)
 /* The peak stays below 0, dec held, x in the range. False if the target is not met. */
 static int sag_held(const struct pulses *p, struct range x, struct shape *s)
 {
-    if (way_of(p, p->base + x.high * x.high, 1) < p->way) {
-        /* d way/dT = x^2 + dec x/2 + base: its smaller zero is a local maximum. */
-        const double root = p->dec * p->dec - 16.0 * p->base;
-        const double top = -(p->dec + sqrt(fmax(0.0, root))) / 4.0;
-        if (root <= 0.0 || !(top > x.low && top < x.high)
-            || way_of(p, p->base + top * top, 1) < p->way) {
-            return 0;
-        }
+    /* d way/dT = x^2 + dec x/2 + base: its smaller zero is a local maximum. */
+    const double root = p->dec * p->dec - 16.0 * p->base;
+    const double top = -(p->dec + sqrt(fmax(0.0, root))) / 4.0;
+    if (root > 0.0 && top > x.low && top < x.high
+        && way_of(p, p->base + top * top, 1) >= p->way) {
         x.high = top;
+    } else if (way_of(p, p->base + x.high * x.high, 1) < p->way) {
+        return 0;
     }
     *s = dec_held(p, x);
     return 1;
@@ -156,18 +155,15 @@ static int sag_held(const struct pulses *p, struct range x, struct shape *s)
 /* The peak stays below 0, dec not reached, u = x + y in the range. */
 static int sag_free(const struct pulses *p, struct range u, struct shape *s)
 {
-    if (way_of(p, p->base, 1) < p->way) {
-        /* 2 d way/dT = 3 u^2/4 + sum + d^2/(4 u^2): its smaller zero is a local maximum. */
-        const double sum = p->base + p->v1, d = p->v1 - p->base;
-        const double root = 4.0 * sum * sum - 3.0 * d * d;
-        if (!(sum < 0.0 && root > 0.0)) {
-            return 0;
-        }
-        const double top = sqrt(d * d / (sqrt(root) - 2.0 * sum)), x = (top + d / top) / 2.0;
-        if (!(top > u.low && top < u.high) || way_of(p, p->base + x * x, 1) < p->way) {
-            return 0;
-        }
+    /* 2 d way/dT = 3 u^2/4 + sum + d^2/(4 u^2): its smaller zero is a local maximum. */
+    const double sum = p->base + p->v1, d = p->v1 - p->base;
+    const double root = 4.0 * sum * sum - 3.0 * d * d;
+    const double top = sqrt(d * d / (sqrt(fmax(0.0, root)) - 2.0 * sum)), x = (top + d / top) / 2.0;
+    if (sum < 0.0 && root > 0.0 && top > u.low && top < u.high
+        && way_of(p, p->base + x * x, 1) >= p->way) {
         u.high = top;
+    } else if (way_of(p, p->base, 1) < p->way) {
+        return 0;
     }
     *s = triangles(p, u);
     return 1;

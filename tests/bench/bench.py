@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import plans
+import scurve_moves
 from rich.console import Console
 from rich.progress import Progress
 
@@ -179,7 +181,11 @@ def main() -> None:
     pulses = Timed(PULSE_AXES)
     cards = [Card(a, h, e) for a in (1, 3, 6) for h in (0, 10_000, 500_000) for e in (False, True)]
     interpreter = Interpreter()
-    rounds([fused, *engines.values(), six, pulses, *cards, interpreter])
+    curves = [
+        plans.Plans("rest to rest", scurve_moves.rest_to_rest),
+        plans.Plans("in motion to rest", scurve_moves.to_rest),
+    ]
+    rounds([fused, *engines.values(), six, pulses, *cards, interpreter, *curves])
     fused.check(native.result)
 
     base = fused.loop / fused.steps
@@ -199,6 +205,7 @@ def main() -> None:
     print(f"\n{'one line of a part program':28}{'ns':>10}{'x strtod':>20}")
     ratio = interpreter.line / interpreter.strtod
     print(f"{'read, checked, planned':28}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
+    plans.table(curves)
     print()
     verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
     verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
@@ -210,6 +217,8 @@ def main() -> None:
         "the same as FMUs with the library, whole loop", pulses.simulated / pulses.loop, least=20.0
     )
     verdict("interpreter, million lines/s", 1e-6 / interpreter.line, least=0.5)
+    for curve in curves:
+        verdict(f"ruckig / scurve, {curve.name}", curve.ruckig / curve.scurve, least=1.0)
 
 
 if __name__ == "__main__":

@@ -193,6 +193,38 @@ static void replanned(void)
     }
 }
 
+/* Jerk takes a from a0 to x, then to y, then to 0, held at x and y for a while: no plan between its
+ * ends takes longer. With a0 < x < 0 and y < x it may pass its end on the way. */
+static void by_hand(void)
+{
+    uint64_t seed = 7;
+    for (int i = 0; i < 50000; i++) {
+        struct move m = random_move(&seed, MOVING, 0.0);
+        const double j = m.l.jerk, least = i % 2 ? -m.l.dec : fmin(0.0, m.from.a);
+        const double x = mcc_random(&seed, least, i % 2 ? m.l.acc : 0.0);
+        const double y = mcc_random(&seed, -m.l.dec, m.l.acc), edge[] = { x, x, y, y, 0.0 };
+        const double hold = m.l.dec / j * (i / 2 % 2 ? 0.0 : mcc_random(&seed, 0.0, 1.0));
+        double total = 0.0, s = m.from.s, v = m.from.v, a = m.from.a;
+        m.l.speed = fabs(v);
+        for (int k = 0; k < 5; k++) {
+            const double da = edge[k] - a, t = k % 2 ? hold : fabs(da) / j;
+            const double end = v + (a + da / 2.0) * t;
+            /* Where a = 0 within the phase the speed has its extreme. */
+            const double turn = a * edge[k] < 0.0 ? v + a * fabs(a) / (2.0 * j) : end;
+            m.l.speed = fmax(m.l.speed, fmax(fabs(end), fabs(turn)));
+            s += t * (v + t * (a / 2.0 + da / 6.0));
+            v = end;
+            a = edge[k];
+            total += t;
+        }
+        m.s1 = s;
+        m.v1 = v;
+        struct scurve p;
+        CHECK(plan(&p, &m) == SCURVE_OK);
+        CHECK(p.total <= total + TIGHT * (total + m.l.dec / j));
+    }
+}
+
 /* The way to a speed is its plan's; a target just there is met by the same plan, without a turn. */
 static void ways(void)
 {
@@ -307,6 +339,7 @@ int main(void)
     monotone();
     symmetries();
     replanned();
+    by_hand();
     ways();
     closed_forms();
     unusable();
