@@ -121,6 +121,7 @@ enum fault block_motion(struct interpreter *in, const struct program *p, const s
         return f;
     }
     c->blend = in->blend;
+    c->tolerance = in->tolerance;
     if (in->motion == 0) {
         f = command_ptp(c, p->machine);
     } else {

@@ -38,6 +38,7 @@ static void set_speed(struct command *c, const struct machine *m, double feed, d
     c->cap = cap;
     const struct machine_ramp up = machine_ramp(m, m->acc_type, feed, m->acc_time);
     const struct machine_ramp down = machine_ramp(m, m->dec_type, feed, m->dec_time);
+    c->smooth = machine_smooth(m);
     c->ramp = (struct ramp_limits){ up.acc, down.acc, up.jerk, down.jerk };
 }
 
@@ -111,31 +112,4 @@ void command_start(const struct command *c, double override, struct profile *p)
         const struct scurve_start rest = { 0.0, 0.0, 0.0 };
         profile_plan(p, &rest, c->path.length, &l);
     }
-}
-
-void ring_clear(struct ring *r)
-{
-    r->head = r->count = 0;
-}
-
-bool ring_full(const struct ring *r)
-{
-    return r->count == RING_SIZE;
-}
-
-void ring_push(struct ring *r, const struct command *c)
-{
-    r->item[(r->head + r->count) % RING_SIZE] = *c;
-    r->count++;
-}
-
-const struct command *ring_head(const struct ring *r)
-{
-    return r->count ? &r->item[r->head] : NULL;
-}
-
-void ring_pop(struct ring *r)
-{
-    r->head = (r->head + 1) % RING_SIZE;
-    r->count--;
 }

@@ -20,6 +20,8 @@ struct command {
     int32_t index;      /* counts from 1 those that take time; 0 for the others */
     int32_t line;       /* of the part program; 0 for a call of the API */
     bool    blend;      /* continuous path: the next command may start in the deceleration */
+    double  tolerance;  /* [mm] of the corners with its neighbours, by look-ahead; 0 none */
+    double  smooth;     /* [s] time of the mean that makes a chain's ramps S-shaped */
     double  feed;       /* [mm/s] programmed */
     double  cap;        /* [mm/s] highest speed any override may bring */
     struct ramp_limits ramp;    /* of its feed in acc_time, dec_time */
@@ -55,19 +57,5 @@ void command_start(const struct command *c, double override, struct profile *p);
 
 /* Speed it runs at under an override. [mm/s] */
 double command_speed(const struct command *c, double override);
-
-/* Commands that wait for the interpolation; first in, first out. */
-enum { RING_SIZE = 64 };
-
-struct ring {
-    struct command item[RING_SIZE];
-    int32_t head, count;
-};
-
-void ring_clear(struct ring *r);
-bool ring_full(const struct ring *r);
-void ring_push(struct ring *r, const struct command *c);    /* not when full */
-const struct command *ring_head(const struct ring *r);      /* NULL when empty */
-void ring_pop(struct ring *r);                              /* not when empty */
 
 #endif

@@ -6,7 +6,7 @@
 /* Nothing under way and nothing to come. */
 static bool idle(const struct mcc *m)
 {
-    return !m->running && m->ring.count == 0 && m->ipo.count == 0 && !m->ipo.stopped;
+    return !m->running && m->ring.count == 0 && !ipo_busy(&m->ipo) && !m->ipo.stopped;
 }
 
 int MCC_motion_hold(struct mcc *m)

@@ -33,7 +33,9 @@ static void set_modes(struct interpreter *in, struct block *b)
         in->system = (code[GCODE_SYSTEM] - 540) / 10;
     }
     if (code[GCODE_PATH] != GCODE_ABSENT) {
+        const struct token *p = gcode_word(&b->g, 'P');
         in->blend = code[GCODE_PATH] == 640;
+        in->tolerance = in->blend && p ? p->value * b->scale : 0.0;
     }
     if (code[GCODE_DISTANCE] != GCODE_ABSENT) {
         in->incremental = code[GCODE_DISTANCE] == 910;
@@ -74,6 +76,8 @@ static enum fault check_shares(const struct interpreter *in, const struct block 
     const int nonmodal = b->g.code[GCODE_NONMODAL], motion = b->g.code[GCODE_MOTION];
     const struct token *one = b->g.by[GCODE_NONMODAL], *io = b->g.by[GCODE_IO];
     const struct token *p = gcode_word(&b->g, 'P'), *l = gcode_word(&b->g, 'L');
+    const struct token *path = b->g.code[GCODE_PATH] == 640 && p ? b->g.by[GCODE_PATH] : NULL;
+    const bool arc = in->motion >= 2 && gcode_first(&b->g, BLOCK_AXES "IJKR");
     const bool axes = nonmodal == 100 || nonmodal == 280 || nonmodal == 520 || nonmodal == 920;
 
     if (axes && motion != GCODE_ABSENT && motion != 800) {
@@ -82,14 +86,20 @@ static enum fault check_shares(const struct interpreter *in, const struct block 
     if (io && (nonmodal == 40 || nonmodal == 100)) {
         return tokens_at_words(r, FAULT_SHARED, io, one);
     }
-    if (io && p && !axes && in->motion >= 2 && gcode_first(&b->g, BLOCK_AXES "IJKR")) {
+    if (io && p && !axes && arc) {
         return tokens_at_words(r, FAULT_SHARED, p, io);
+    }
+    if (path && (io || nonmodal == 40 || nonmodal == 100 || (arc && !axes))) {
+        return tokens_at_words(r, FAULT_SHARED, path, io ? io : arc && !axes ? p : one);
+    }
+    if (path && p->value < 0.0) {
+        return tokens_at_word(r, FAULT_VALUE, p);
     }
     if (l && nonmodal != 100) {
         return tokens_at_word(r, FAULT_UNUSED, l);
     }
     const struct token *extra = axes ? gcode_first(&b->g, "IJKR") : NULL;
-    extra = !extra && axes && nonmodal != 100 && !io ? p : extra;
+    extra = !extra && axes && nonmodal != 100 && !io && !path ? p : extra;
     return extra ? tokens_at_word(r, FAULT_UNUSED, extra) : FAULT_NONE;
 }
 
@@ -98,7 +108,8 @@ static enum fault move(struct interpreter *in, const struct program *p, const st
                        struct fault_report *r)
 {
     const struct token *axis = gcode_first(&b->g, BLOCK_AXES);
-    const struct token *shape = gcode_first(&b->g, b->g.by[GCODE_IO] ? "IJKR" : "IJKRP");
+    const bool other = b->g.by[GCODE_IO] || b->g.code[GCODE_PATH] == 640;   /* whose P it is */
+    const struct token *shape = gcode_first(&b->g, other ? "IJKR" : "IJKRP");
     const int code = b->g.code[GCODE_MOTION];
     const bool machine = b->g.code[GCODE_NONMODAL] == 530;
 

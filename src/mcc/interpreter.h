@@ -38,6 +38,7 @@ struct interpreter {
     enum path_plane plane;
     bool    inch, incremental, absolute_centre;
     bool    blend;          /* G64 */
+    double  tolerance;      /* [mm] P of G64: look-ahead instead of path mixing; 0 none */
     int32_t system;         /* 0..5 for G54 .. G59 */
     double  origin[INTERPRETER_SYSTEMS][AXES];  /* [mm] of each system, machine coordinates */
     double  local[AXES];    /* [mm] G52 */

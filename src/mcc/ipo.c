@@ -22,8 +22,21 @@ static bool move_resting(const struct ipo *p, const struct ipo_move *m)
     return !m->profile.ends && profile_left(&m->profile) <= 0.0;
 }
 
+static double chain_override(const struct ipo *p)
+{
+    return p->hold || p->abort ? 0.0 : p->override[0];
+}
+
+bool ipo_busy(const struct ipo *p)
+{
+    return p->count > 0 || p->track.active;
+}
+
 bool ipo_resting(const struct ipo *p, const struct ring *r)
 {
+    if (p->track.active) {
+        return chain_override(p) <= 0.0 && track_rests(&p->track);
+    }
     for (int i = 0; i < p->count; i++) {
         if (!move_resting(p, &p->move[i])) {
             return false;
@@ -34,6 +47,9 @@ bool ipo_resting(const struct ipo *p, const struct ring *r)
 
 bool ipo_moving(const struct ipo *p)
 {
+    if (p->track.active) {
+        return !track_rests(&p->track);
+    }
     for (int i = 0; i < p->count; i++) {
         if (p->move[i].command.type != COMMAND_DELAY && !move_resting(p, &p->move[i])) {
             return true;
@@ -80,8 +96,13 @@ void ipo_override(struct ipo *p, double feed, double ptp)
     }
 }
 
-static void place(const struct ipo *p, double point[AXES], double velocity[AXES])
+static void place(const struct ipo *p, const struct ring *r, double point[AXES],
+                  double velocity[AXES])
 {
+    if (p->track.active) {
+        track_place(&p->track, r, point, velocity);
+        return;
+    }
     memcpy(point, p->rest, AXES * sizeof *point);
     memset(velocity, 0, AXES * sizeof *velocity);
     for (int i = 0; i < p->count; i++) {
@@ -99,9 +120,10 @@ static void place(const struct ipo *p, double point[AXES], double velocity[AXES]
 void ipo_stop(struct ipo *p, struct ring *r)
 {
     double velocity[AXES], at[AXES];
-    place(p, at, velocity);
+    place(p, r, at, velocity);
     memcpy(p->rest, at, sizeof p->rest);
     p->count = 0;
+    p->track.active = false;
     p->hold = p->abort = p->stopped = false;
     p->news = p->news || p->outputs.spindle != 0.0 || p->outputs.coolant != 0;
     p->outputs.spindle = 0.0;
@@ -130,24 +152,34 @@ static void retire(struct ipo *p)
 static bool may_start(const struct ipo *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
-    if (!next || p->hold || p->abort || p->stopped || p->count == 2) {
+    if (!next || p->track.active || p->hold || p->abort || p->stopped || p->count == 2) {
         return false;
     }
     return p->count == 0 || (p->move[0].command.blend && p->move[0].profile.ends &&
                              command_blends(&p->move[0].command) && command_blends(next));
 }
 
+/* A command begins. */
+static void begin(struct ipo *p, const struct command *c)
+{
+    p->outputs.digital = (p->outputs.digital | c->set) & ~c->clear;
+    p->line = c->line;
+    p->started = command_lasts(c) ? c->index : p->started;
+}
+
 static void start(struct ipo *p, struct ring *r)
 {
     const struct command *c = ring_head(r);
 
-    p->outputs.digital = (p->outputs.digital | c->set) & ~c->clear;
-    p->line = c->line;
+    if (p->count == 0 && track_begins(r)) {
+        track_start(&p->track, r);
+        return;
+    }
+    begin(p, c);
     if (command_lasts(c)) {
         struct ipo_move *m = &p->move[p->count++];
         m->command = *c;
         command_start(&m->command, override_of(p, &m->command), &m->profile);
-        p->started = c->index;
     } else if (c->type == COMMAND_OUTPUTS) {
         p->outputs.spindle = c->spindle;
         p->outputs.coolant = c->coolant;
@@ -158,8 +190,39 @@ static void start(struct ipo *p, struct ring *r)
     ring_pop(r);
 }
 
+static void begin_chained(struct ipo *p, const struct ring *r)
+{
+    const struct command *c;
+    while ((c = track_begun(&p->track, r)) != NULL) {
+        begin(p, c);
+    }
+}
+
+/* Let time pass in a chain; returns what is left of it once the chain has ended. */
+static double advance_chain(struct ipo *p, struct ring *r, double dt)
+{
+    struct track *t = &p->track;
+
+    track_drop(t, r);
+    const double left = track_advance(t, r, chain_override(p), dt);
+    if (left <= 0.0 || (t->smooth > 0.0 && !track_done(t))) {
+        return 0.0;         /* the tool has to come after */
+    }
+    begin_chained(p, r);
+    const int32_t last = t->joined - 1;
+    memcpy(p->rest, ring_peek(r, last)->command.path.end, sizeof p->rest);
+    for (int32_t i = 0; i <= last; i++) {
+        ring_pop(r);
+    }
+    t->active = false;
+    return left;
+}
+
 double ipo_advance(struct ipo *p, struct ring *r, double dt)
 {
+    if (p->track.active) {
+        return advance_chain(p, r, dt);
+    }
     for (;;) {
         const bool startable = may_start(p, r);
         struct profile *old = &p->move[0].profile;
@@ -193,11 +256,19 @@ double ipo_advance(struct ipo *p, struct ring *r, double dt)
     }
 }
 
-void ipo_point(const struct ipo *p, const struct machine *m, struct point *point)
+void ipo_point(struct ipo *p, struct ring *r, const struct machine *m, struct track_mean *mean,
+               struct point *point)
 {
     double velocity[AXES];
 
-    place(p, point->place, velocity);
+    if (p->track.active) {
+        track_sample(&p->track, mean, r, machine_dda_time(m));
+        begin_chained(p, r);
+        if (p->abort && track_rests(&p->track)) {
+            ipo_stop(p, r);
+        }
+    }
+    place(p, r, point->place, velocity);
     const double *v = velocity;
     point->feed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     if (point->feed == 0.0) {

@@ -6,6 +6,7 @@
  *
  *     point = A(s_A) + B(s_B) - B(0)          at most two commands at a time
  *
+ * Commands with a corner tolerance (G64 P) are one motion by look-ahead: track.h.
  * Otherwise each command ends at rest (exact stop). Commands that switch outputs or stop the
  * program wait until all motion before them has ended. Pulses are differences of the rounded ideal
  * position, so every axis is within half a pulse of it at every boundary and nothing drifts.
@@ -13,7 +14,7 @@
 #ifndef IPO_H
 #define IPO_H
 
-#include "command.h"
+#include "track.h"
 #include "queue.h"
 
 struct ipo_move {
@@ -33,6 +34,7 @@ struct ipo {
     bool    news;               /* outputs or line have changed since the latest point */
     struct outputs outputs;
     int32_t started, line;      /* index and source line of the latest command begun */
+    struct track track;         /* chain under way by look-ahead; then count is 0 */
 };
 
 /* At rest at the origin, pulses 0. */
@@ -43,6 +45,9 @@ bool ipo_resting(const struct ipo *p, const struct ring *r);
 
 /* True while pulses are due: a line, arc or rapid under way that is not brought to rest. */
 bool ipo_moving(const struct ipo *p);
+
+/* Under way: a move or a chain. */
+bool ipo_busy(const struct ipo *p);
 
 /* Pause on the path, or go on. */
 void ipo_hold(struct ipo *p, bool on);
@@ -63,8 +68,9 @@ void ipo_stop(struct ipo *p, struct ring *r);
  * can refill it, and when the axes rest (ipo_resting); returns the time that is left. */
 double ipo_advance(struct ipo *p, struct ring *r, double dt);
 
-/* The point reached, with the outputs at that time; *point gets everything but its frame, which is
- * the way from p->pulses. */
-void ipo_point(const struct ipo *p, const struct machine *m, struct point *point);
+/* A DDA boundary: the point reached, with the outputs at that time; *point gets everything but its
+ * frame, which is the way from p->pulses. `mean` is what a chain with S-shaped ramps remembers. */
+void ipo_point(struct ipo *p, struct ring *r, const struct machine *m, struct track_mean *mean,
+               struct point *point);
 
 #endif

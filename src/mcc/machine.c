@@ -60,9 +60,14 @@ int32_t machine_dda_limit(const struct machine *m)
     return (int32_t)((1u << m->dda_length) - 1u);
 }
 
+static double jerk_share(const struct machine *m)
+{
+    return m->jerk_share > 0.0 ? m->jerk_share : JERK_SHARE;
+}
+
 struct machine_ramp machine_ramp(const struct machine *m, char type, double speed, double time)
 {
-    const double share = m->jerk_share > 0.0 ? m->jerk_share : JERK_SHARE;
+    const double share = jerk_share(m);
 
     if (type != 'S') {
         return (struct machine_ramp){ speed / time, 0.0 };
@@ -70,6 +75,13 @@ struct machine_ramp machine_ramp(const struct machine *m, char type, double spee
     /* Half of the share at each end: speed = acc (time - share time / 2). */
     const double acc = speed / (time * (1.0 - 0.5 * share));
     return (struct machine_ramp){ acc, acc / (0.5 * share * time) };
+}
+
+double machine_smooth(const struct machine *m)
+{
+    const double up = m->acc_type == 'S' ? m->acc_time : 0.0;
+    const double down = m->dec_type == 'S' ? m->dec_time : 0.0;
+    return 0.5 * jerk_share(m) * (up + down);   /* from +acc to -dec at most: (acc + dec) / jerk */
 }
 
 double machine_pulses_per_mm(const struct machine_axis *a)

@@ -56,6 +56,10 @@ struct machine_ramp {
 
 struct machine_ramp machine_ramp(const struct machine *m, char type, double speed, double time);
 
+/* Time over which a way with these ramps, at constant acceleration, has to be averaged for a jerk
+ * like theirs; 0 of type 'T'. [s] */
+double machine_smooth(const struct machine *m);
+
 double machine_pulses_per_mm(const struct machine_axis *a);     /* [pulses/mm] */
 double machine_axis_speed(const struct machine_axis *a);        /* [mm/s] at rpm */
 

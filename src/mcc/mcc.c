@@ -87,7 +87,7 @@ static int accept(struct mcc *m, struct command *c, enum fault f)
 static int straight(struct mcc *m, const double target[AXES], enum command_type type)
 {
     struct fault_report r;
-    struct command c = { .blend = m->blend };
+    struct command c = { .blend = m->blend, .tolerance = m->tolerance };
     double end[AXES];
     const int code = acceptable(m);
 
@@ -202,7 +202,7 @@ static bool turn_end(const struct mcc *m, const struct turn *t, double end[AXES]
 static int turn(struct mcc *m, struct turn *t)
 {
     struct fault_report r;
-    struct command c = { .blend = m->blend };
+    struct command c = { .blend = m->blend, .tolerance = m->tolerance };
     double end[AXES];
     const int code = acceptable(m);
     enum fault f = FAULT_NONE;

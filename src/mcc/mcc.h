@@ -42,6 +42,7 @@ struct mcc {
     double  feed;               /* [mm/s] of MCC_line, arcs and circles */
     bool    incremental;
     bool    blend;
+    double  tolerance;          /* [mm] */
     int32_t error;              /* enum mcc_error, 0 none */
     int32_t commands;           /* commands accepted; the index of the latest */
     double  end[AXES];          /* [mm] end of the latest */
@@ -49,6 +50,7 @@ struct mcc {
     struct interpreter program;
     struct ring  ring;
     struct ipo   ipo;
+    struct track_mean mean;
     struct queue queue;
     struct point written;       /* the latest point the card took */
     struct signals signals;     /* as the card reported them last */
@@ -102,6 +104,9 @@ int MCC_set_ptp_spd(struct mcc *m, double percent);     /* > 0..100 of the safe 
 int MCC_enable_quit(struct mcc *m);                     /* continuous path */
 int MCC_disable_quit(struct mcc *m);
 int MCC_check_quit(const struct mcc *m);                /* 0 enabled, 1 disabled, as the library */
+/* Ours: look-ahead over lines, arcs and circles from here on, whose corners are rounded by no more
+ * than this [mm]; 0 switches it off. */
+int mcc_set_tolerance(struct mcc *m, double tolerance);
 int MCC_set_acc_type(struct mcc *m, char type);         /* 'T' trapezoidal, 'S' S-shaped */
 char MCC_get_acc_type(const struct mcc *m);
 int MCC_set_dec_type(struct mcc *m, char type);

@@ -165,6 +165,15 @@ double path_share(const struct path *p, int axis)
     return fabs(p->end[axis] - p->start[axis]) / p->length;
 }
 
+double path_bend(const struct path *p)
+{
+    if (!p->arc) {
+        return 0.0;
+    }
+    const double per = p->sweep / p->length;    /* [rad/mm] */
+    return fmax(p->radius, p->radius + p->growth) * per * per;
+}
+
 double path_reach(const struct path *p, int axis)
 {
     if (p->arc && axis < 3 && axis != (int)p->plane) {

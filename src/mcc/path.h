@@ -58,6 +58,9 @@ void path_at(const struct path *p, double s, double point[AXES], double slope[AX
 /* Largest |d(point)/ds| of one axis anywhere on the path: axis speed per unit of feed. */
 double path_share(const struct path *p, int axis);
 
+/* Largest curvature. [1/mm] */
+double path_bend(const struct path *p);
+
 /* Largest |coordinate| of one axis anywhere on the path, or a bound of it. [mm] */
 double path_reach(const struct path *p, int axis);
 

@@ -73,6 +73,18 @@ int MCC_check_quit(const struct mcc *m)
     return m->blend ? 0 : 1;
 }
 
+int mcc_set_tolerance(struct mcc *m, double tolerance)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (!(isfinite(tolerance) && tolerance >= 0.0)) {
+        return MCC_PARAMETER;
+    }
+    m->tolerance = tolerance;
+    return MCC_NO_ERR;
+}
+
 static int set_time(const struct mcc *m, double *time, double ms)
 {
     if (!m->open) {

@@ -139,7 +139,7 @@ static void next_point(struct mcc *m, const struct program *p)
         left = ipo_advance(&m->ipo, &m->ring, left);
         refill(m, p);
     } while (left > 0.0 && !ipo_resting(&m->ipo, &m->ring));
-    ipo_point(&m->ipo, &m->machine, &point);
+    ipo_point(&m->ipo, &m->ring, &m->machine, &m->mean, &point);
     if (frame(m, &point)) {
         memcpy(m->ipo.pulses, point.pulses, sizeof m->ipo.pulses);
         queue_push(&m->queue, &point);
@@ -162,7 +162,7 @@ void task_run(struct mcc *m, const struct source *s)
            (m->ipo.news || !ipo_resting(&m->ipo, &m->ring))) {
         next_point(m, &p);
     }
-    if (m->ipo.count == 0 && m->ring.count == 0 && !m->running) {
+    if (!ipo_busy(&m->ipo) && m->ring.count == 0 && !m->running) {
         memcpy(m->end, m->ipo.rest, sizeof m->end);     /* an abort may have moved it, */
         if (m->ipo.outputs.spindle == 0.0) {
             m->program.switches.turning = 0;            /* and switched these off */

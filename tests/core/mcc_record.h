@@ -42,7 +42,7 @@ static bool point(struct record *r)
     return true;
 }
 
-static void run(struct record *r)
+static inline void run(struct record *r)
 {
     while (r->n < LONGEST && point(r)) {
     }

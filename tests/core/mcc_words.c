@@ -44,6 +44,21 @@ static void home(void)
     CHECK_EQ(next(&x), -1);
 }
 
+/* P of G64 is the tolerance of the look-ahead, in the units in force, until the next G64 or G61. */
+static void tolerance(void)
+{
+    struct reader x;
+    begin(&x, "G64 P0.1 G1 X1\nX2\nG20 G64 P.01\nG21 X3\nG92 X0 G64 P0.2\nX1\nG64 X2\n"
+              "G64 P1\nG61 X3\n");
+    const double want[] = { 0.1, 0.1, 0.254, 0.2, 0.0, 0.0 };
+    for (int i = 0; i < 6; i++) {
+        CHECK_EQ(next(&x), COMMAND_LINE);
+        CHECK_NEAR(x.c.tolerance, want[i], 1e-15);
+        CHECK_EQ(x.c.blend, i < 5);
+    }
+    CHECK_EQ(next(&x), -1);
+}
+
 static void shifts(void)
 {
     struct reader x;
@@ -214,6 +229,7 @@ int main(void)
 {
     block_delete();
     home();
+    tolerance();
     shifts();
     origins_and_local();
     turns();

@@ -1,0 +1,35 @@
+/* ring - commands that wait for the interpolation or are in a chain under way; first in, first
+ * out. */
+#ifndef RING_H
+#define RING_H
+
+#include "command.h"
+#include "corner.h"
+
+enum { RING_SIZE = 256 };
+
+struct ring_item {
+    struct command command;
+    /* In a chain (track.h): */
+    struct corner corner;       /* at its start, with the command before */
+    double body, turn;          /* [mm/s] bends allow so much: of the command, of that corner */
+    double enter, leave;        /* [mm/s] most behind the corner at its start, at that at its end */
+    double enter_even, leave_even;  /* [mm] before these places without a change of speed */
+};
+
+struct ring {
+    struct ring_item item[RING_SIZE];
+    int32_t head, count;
+};
+
+void ring_clear(struct ring *r);
+bool ring_full(const struct ring *r);
+void ring_push(struct ring *r, const struct command *c);    /* not when full */
+const struct command *ring_head(const struct ring *r);      /* NULL when empty */
+void ring_pop(struct ring *r);                              /* not when empty */
+
+/* Item i from the head, 0 .. count - 1. */
+struct ring_item *ring_at(struct ring *r, int32_t i);
+const struct ring_item *ring_peek(const struct ring *r, int32_t i);
+
+#endif

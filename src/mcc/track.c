@@ -1,0 +1,435 @@
+#include "track.h"
+
+#include <math.h>
+#include <string.h>
+
+/* New commands are planned once they are so many of the planned ones (a fourth), so that a plan,
+ * which goes through all, costs each command the same whatever their number. */
+enum { PLAN_SHARE = 4 };
+
+/* Speed, up to the command's highest, at which a path of this bend and twist needs the acceleration
+ * of a command, or the jerk if it is limited. [mm/s] */
+static double bend_speed(const struct command *c, double bend, double twist)
+{
+    const struct ramp_limits *r = &c->ramp;
+    double v = c->cap;
+
+    if (bend > 0.0) {
+        v = fmin(v, sqrt(fmin(r->acc, r->dec) / bend));
+    }
+    if (c->smooth > 0.0 && twist > 0.0) {
+        v = fmin(v, cbrt((r->acc + r->dec) / (c->smooth * twist)));
+    }
+    return v;
+}
+
+static double half_at(const struct ring *r, const struct track *t, int32_t i)
+{
+    return i > 0 && i < t->joined ? ring_peek(r, i)->corner.half : 0.0;
+}
+
+bool track_begins(const struct ring *r)
+{
+    const struct command *c = ring_head(r);
+    return c && c->tolerance > 0.0 && command_blends(c);
+}
+
+/* Limits of a command on its own, and its corner with the one before. */
+static void add(struct track *t, struct ring *r, const struct corner *k)
+{
+    struct ring_item *n = ring_at(r, t->joined);
+    const double bend = path_bend(&n->command.path);
+
+    n->body = bend_speed(&n->command, bend, bend * bend);
+    n->corner = *k;
+    n->turn = n->command.cap;
+    if (t->joined > 0) {
+        const struct command *before = &ring_peek(r, t->joined - 1)->command;
+        n->turn = fmin(bend_speed(&n->command, k->bend, k->twist),
+                       bend_speed(before, k->bend, k->twist));
+    }
+    t->end += n->command.path.length;
+    t->joined++;
+}
+
+/* Whether the motion, on its way to rest at the end, can still be as slow in the corner. */
+static bool in_time(const struct track *t, const struct ring *r, const struct corner *k,
+                    const struct command *next)
+{
+    const struct command *last = &ring_peek(r, t->joined - 1)->command;
+    const double turn = fmin(bend_speed(next, k->bend, k->twist),
+                             bend_speed(last, k->bend, k->twist));
+    const double way = t->end - (t->base + t->s) - k->half;
+    const double brake = fmax(0.0, way - turn * t->smooth);
+
+    return way > 0.0 && t->v * t->v <= turn * turn + 2.0 * last->ramp.dec * brake;
+}
+
+/* Take commands of the ring into the chain while they fit smoothly. */
+static void join(struct track *t, struct ring *r)
+{
+    while (t->joined < r->count) {
+        const struct command *a = &ring_peek(r, t->joined - 1)->command;
+        const struct command *b = &ring_peek(r, t->joined)->command;
+        struct corner k;
+
+        if (!(b->tolerance > 0.0) || !command_blends(b) || b->smooth != t->smooth) {
+            return;
+        }
+        const double room = 0.5 * fmin(a->path.length, b->path.length);
+        if (!corner_make(&k, &a->path, &b->path, fmin(a->tolerance, b->tolerance), room,
+                         t->smooth > 0.0) ||
+            !in_time(t, r, &k, b)) {
+            return;
+        }
+        add(t, r, &k);
+    }
+}
+
+void track_start(struct track *t, struct ring *r)
+{
+    const struct corner none = { 0.0, 0.0, 0.0 };
+
+    memset(t, 0, sizeof *t);
+    t->active = true;
+    t->started = ring_head(r)->index;
+    t->smooth = ring_head(r)->smooth;
+    t->override = -1.0;
+    add(t, r, &none);
+}
+
+/* Most speed at a place from which `speed` must be had after a way, the last `even` of it without
+ * change. What is left of `even` is returned in it. */
+static double braked(double speed, double *even, double way, double dec)
+{
+    if (way <= *even) {
+        *even -= way;
+        return speed;
+    }
+    const double v = sqrt(speed * speed + 2.0 * dec * (way - *even));
+    *even = 0.0;
+    return v;
+}
+
+/* A lower limit takes the place of a speed; it holds for some way before it too. */
+static void limit(double *speed, double *even, double most, double smooth)
+{
+    if (most < *speed) {
+        *speed = most;
+        *even = fmax(*even, most * smooth);
+    }
+}
+
+static double body_limit(const struct ring_item *n, double override)
+{
+    return fmin(n->body, command_speed(&n->command, override));
+}
+
+/* The corner is driven at the feed of neither more than the command's that follows it nor that of
+ * the one before. */
+static double turn_limit(const struct ring *r, int32_t i, double override)
+{
+    const struct ring_item *n = ring_peek(r, i);
+    const double v = fmin(n->turn, command_speed(&n->command, override));
+    return i > 0 ? fmin(v, command_speed(&ring_peek(r, i - 1)->command, override)) : v;
+}
+
+/* From the end backwards. */
+static void plan(struct track *t, struct ring *r, double override)
+{
+    double speed = 0.0, even = 0.0;
+
+    for (int32_t i = t->joined - 1; i >= t->at; i--) {
+        struct ring_item *n = ring_at(r, i);
+        const double dec = n->command.ramp.dec, half = half_at(r, t, i);
+        const double body = n->command.path.length - half - half_at(r, t, i + 1);
+
+        n->leave = speed;
+        n->leave_even = even;
+        speed = braked(speed, &even, body, dec);
+        limit(&speed, &even, body_limit(n, override), t->smooth);
+        n->enter = speed;
+        n->enter_even = even;
+        if (half > 0.0) {
+            speed = braked(speed, &even, 2.0 * half, dec);
+            limit(&speed, &even, turn_limit(r, i, override), t->smooth);
+        }
+    }
+    t->planned = t->joined;
+    t->override = override;
+}
+
+/* Where the corner or the command's own part ends. */
+static double border(const struct track *t, const struct ring *r)
+{
+    return t->turning ? half_at(r, t, t->at)
+                      : ring_peek(r, t->at)->command.path.length - half_at(r, t, t->at + 1);
+}
+
+/* One piece of the way with constant limits: up to `end`, at most `top` fast, and no faster than
+ * `leave` there. */
+struct piece {
+    double end, top, leave;
+    double acc, dec;
+};
+
+static struct piece next_piece(const struct track *t, const struct ring *r, double override)
+{
+    const struct ring_item *n = ring_peek(r, t->at);
+    const double speed = t->turning ? n->enter : n->leave;
+    const double even = border(t, r) - (t->turning ? n->enter_even : n->leave_even);
+    struct piece p = { border(t, r), t->turning ? turn_limit(r, t->at, override)
+                                          : body_limit(n, override),
+                       speed, n->command.ramp.acc, n->command.ramp.dec };
+
+    for (int32_t i = 0; i < t->caps; i++) {
+        if (t->base + t->s < t->cap[i].until && t->cap[i].speed < p.top) {
+            p.top = fmin(p.top, t->cap[i].speed);
+            p.end = fmin(p.end, t->cap[i].until - t->base);
+        }
+    }
+    if (t->s < even) {
+        p.end = fmin(p.end, even);
+    } else {
+        p.top = fmin(p.top, fmax(speed, 0.0));
+    }
+    /* What can be braked from there on. */
+    p.leave = fmin(p.top, sqrt(speed * speed + 2.0 * p.dec * fmax(0.0, even - p.end)));
+    return p;
+}
+
+/* Move on by constant accelerations: up to time dt or way `way`. Returns the time used. */
+static double glide(struct track *t, double acc, double to, double way, double dt, double *done)
+{
+    double time = acc != 0.0 ? (to - t->v) / acc : (t->v > 0.0 ? way / t->v : dt);
+    time = fmax(0.0, fmin(time, dt));
+    *done = time * (t->v + 0.5 * acc * time);
+    t->v = time < dt && acc != 0.0 ? to : fmax(0.0, t->v + acc * time);
+    t->s += *done;
+    return time;
+}
+
+/* A plan met again may be missed by so much. */
+static const double ROUNDING = 1e-7;
+
+/* Drive the piece for up to dt; returns the time left. Ends on the piece's end exactly if it gets
+ * there. */
+static double drive(struct track *t, const struct piece *p, double dt)
+{
+    const double way = p->end - t->s, v = t->v;
+    double done, leave = fmin(p->leave, sqrt(v * v + 2.0 * p->acc * way));
+    const double peak = sqrt(fmax(0.0, (2.0 * p->acc * p->dec * way + p->dec * v * v +
+                                        p->acc * leave * leave) / (p->acc + p->dec)));
+
+    if (v > p->top || peak < v) {
+        /* Slower: to the limit, or as much as the way allows. */
+        const double to = v > p->top && peak >= v ? p->top : fmin(p->top, leave);
+        double dec = p->dec;
+        if (peak < v && way > 0.0) {    /* rounding has taken some of the way */
+            dec = fmin(fmax(dec, (v * v - leave * leave) / (2.0 * way)), (1.0 + ROUNDING) * dec);
+        }
+        const double there = v * v - 2.0 * dec * way;       /* square of the speed at the end */
+        const bool all = there >= to * to;
+        const double used = glide(t, -dec, all ? sqrt(there) : to, way, dt, &done);
+        if (all && used < dt) {
+            t->s = p->end;
+        }
+        return dt - used;
+    }
+    const double top = fmin(p->top, peak);
+    const double up = (top * top - v * v) / (2.0 * p->acc);
+    const double down = (top * top - leave * leave) / (2.0 * p->dec);
+    double left = dt;
+    left -= top > v ? glide(t, p->acc, top, up, left, &done) : 0.0;
+    if (left > 0.0 && way - up - down > 0.0 && top > 0.0) {
+        left -= glide(t, 0.0, top, way - up - down, left, &done);
+    }
+    if (left > 0.0 && top > leave) {
+        left -= glide(t, -p->dec, leave, down, left, &done);
+    }
+    if (left > 0.0) {
+        t->s = p->end;
+        t->v = leave;
+    }
+    return left;
+}
+
+/* A limit that has been left goes on for the way the mean is behind. */
+static void keep_limit(struct track *t, double speed)
+{
+    const double way = t->base + t->s, until = way + speed * t->smooth;
+    int32_t n = 0;
+
+    if (t->smooth <= 0.0) {
+        return;
+    }
+    for (int32_t i = 0; i < t->caps; i++) {
+        const struct track_cap *c = &t->cap[i];
+        if (c->until > way && !(c->speed >= speed && c->until <= until)) {
+            t->cap[n++] = *c;
+        }
+    }
+    if (n == TRACK_CAPS) {      /* two become one that holds for both */
+        n--;
+        t->cap[n - 1].speed = fmin(t->cap[n - 1].speed, t->cap[n].speed);
+        t->cap[n - 1].until = fmax(t->cap[n - 1].until, t->cap[n].until);
+    }
+    t->cap[n] = (struct track_cap){ speed, until };
+    t->caps = n + 1;
+}
+
+/* Over the border to the next piece of way. */
+static void cross(struct track *t, const struct ring *r, double override)
+{
+    keep_limit(t, t->turning ? turn_limit(r, t->at, override)
+                             : body_limit(ring_peek(r, t->at), override));
+    if (t->turning) {
+        t->turning = false;
+    } else {
+        const double length = ring_peek(r, t->at)->command.path.length;
+        t->base += length;
+        t->s -= length;
+        t->at++;
+        t->turning = half_at(r, t, t->at) > 0.0;
+    }
+}
+
+static bool at_end(const struct track *t, const struct ring *r)
+{
+    return t->at == t->joined - 1 && !t->turning &&
+           t->s >= ring_peek(r, t->at)->command.path.length;
+}
+
+double track_advance(struct track *t, struct ring *r, double override, double dt)
+{
+    join(t, r);
+    while (dt > 0.0) {
+        if (at_end(t, r)) {
+            t->v = 0.0;
+            return dt;
+        }
+        if (override > 0.0 && (override != t->override ||
+                               PLAN_SHARE * (t->joined - t->planned) > t->planned - t->at)) {
+            plan(t, r, override);
+        }
+        struct piece p = next_piece(t, r, override);
+        if (override <= 0.0) {
+            p.top = 0.0;
+        }
+        if (p.top <= 0.0 && t->v <= 0.0) {
+            return 0.0;
+        }
+        dt = p.end > t->s ? drive(t, &p, dt) : dt;
+        if (t->s >= border(t, r) && !at_end(t, r)) {
+            cross(t, r, override);
+        }
+    }
+    return dt;
+}
+
+static void begin_mean(struct track *t, struct track_mean *m, double dda_time)
+{
+    const double taps = round(t->smooth / dda_time);
+    t->taps = taps < 1.0 ? 1 : taps > TRACK_MEAN - 1 ? TRACK_MEAN - 1 : (int32_t)taps;
+    memset(m->sample, 0, sizeof m->sample);
+}
+
+/* Mean of the latest samples, of which `way` is the newest. */
+static double mean_of(struct track *t, struct track_mean *m, double way)
+{
+    const int32_t oldest = (t->next + TRACK_MEAN - t->taps) % TRACK_MEAN;
+    const int32_t newest = (t->next + TRACK_MEAN - 1) % TRACK_MEAN;
+
+    t->still = way == m->sample[newest] ? t->still + 1 : 0;
+    t->sum += way - m->sample[oldest];
+    m->sample[t->next] = way;
+    t->next = (t->next + 1) % TRACK_MEAN;
+    if (t->next == 0) {
+        /* What rounding has left in the sum goes. */
+        t->zero = way;
+        t->sum = 0.0;
+        for (int32_t i = 0; i < t->taps; i++) {
+            t->sum += m->sample[TRACK_MEAN - 1 - i] - t->zero;
+        }
+    }
+    return t->still >= t->taps ? way : fmin(t->zero + t->sum / t->taps, way);
+}
+
+void track_sample(struct track *t, struct track_mean *m, struct ring *r, double dda_time)
+{
+    const double out = t->out_base + t->out_s;
+    double way = t->base + t->s;
+
+    if (t->taps == 0) {
+        begin_mean(t, m, dda_time);
+    }
+    t->out_v = t->v;
+    if (t->taps > 1) {
+        way = fmax(out, mean_of(t, m, way));
+        t->out_v = (way - out) / dda_time;
+    }
+    t->out_s = way - t->out_base;
+    while (t->out < t->at && t->out_s >= ring_peek(r, t->out)->command.path.length) {
+        const double length = ring_peek(r, t->out)->command.path.length;
+        t->out_base += length;
+        t->out_s -= length;
+        t->out++;
+    }
+}
+
+const struct command *track_begun(struct track *t, const struct ring *r)
+{
+    const int32_t last = at_end(t, r) && t->taps <= 1 ? t->at : t->out;
+    return t->begun <= last ? &ring_peek(r, t->begun++)->command : NULL;
+}
+
+void track_drop(struct track *t, struct ring *r)
+{
+    /* The corner at the start of a command needs the one before. */
+    const int32_t gone = t->out_s > half_at(r, t, t->out) ? t->out : t->out - 1;
+
+    for (int32_t i = 0; i < gone; i++) {
+        ring_pop(r);
+        t->out--;
+        t->at--;
+        t->joined--;
+        t->planned--;
+        t->begun--;
+    }
+}
+
+bool track_rests(const struct track *t)
+{
+    return t->v == 0.0 && t->out_base + t->out_s >= t->base + t->s;
+}
+
+bool track_done(const struct track *t)
+{
+    return track_rests(t) && t->base + t->s >= t->end;
+}
+
+const struct command *track_command(const struct track *t, const struct ring *r)
+{
+    return &ring_peek(r, t->out)->command;
+}
+
+void track_place(const struct track *t, const struct ring *r, double point[AXES],
+                 double velocity[AXES])
+{
+    const struct ring_item *n = ring_peek(r, t->out);
+    const double left = fmax(0.0, n->command.path.length - t->out_s);
+    double slope[AXES];
+
+    if (t->out_s < half_at(r, t, t->out)) {
+        corner_at(&n->corner, &ring_peek(r, t->out - 1)->command.path, &n->command.path, t->out_s,
+                  point, slope);
+    } else if (left < half_at(r, t, t->out + 1)) {
+        const struct ring_item *b = ring_peek(r, t->out + 1);
+        corner_at(&b->corner, &n->command.path, &b->command.path, -left, point, slope);
+    } else {
+        path_at(&n->command.path, t->out_s, point, slope);
+    }
+    for (int k = 0; k < AXES; k++) {
+        velocity[k] = t->out_v * slope[k];
+    }
+}

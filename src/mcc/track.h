@@ -1,0 +1,94 @@
+/* track - look-ahead: commands in a row that have a corner tolerance are one motion.
+ *
+ *   v ^     ____          ___         limits of the commands and of their corners; from the end of
+ *     |    /    \   __   /   \        the last known command backwards, the speed at every border
+ *     |   /      \_/  \_/     \       from which the rest can still be braked; forwards, as fast as
+ *     +--+-----+--+----+---+---+> s   these allow. At the end of what is known the motion rests.
+ *
+ * The way along the chain is planned with constant accelerations. For S-shaped ramps it then passes
+ * a mean over a time: the mean of a way within limits of speed and acceleration is within them too,
+ * and its jerk is the change of acceleration over that time. Low limits are widened by the way that
+ * the mean smears, so that they hold where the tool is.
+ *
+ * The commands stay in the ring until the tool has left them.
+ */
+#ifndef TRACK_H
+#define TRACK_H
+
+#include "ring.h"
+
+enum {
+    TRACK_MEAN = 2048,      /* DDA times of the mean, and one more */
+    TRACK_CAPS = 8
+};
+
+/* A limit left behind that still holds for some way: the tool is behind the planned motion. */
+struct track_cap {
+    double speed;           /* [mm/s] */
+    double until;           /* [mm] on the chain */
+};
+
+struct track_mean {
+    double sample[TRACK_MEAN];  /* [mm] way at the latest DDA boundaries */
+};
+
+struct track {
+    bool    active;
+    int32_t started;        /* index of its first command */
+    int32_t joined;         /* commands from the head of the ring that are in the chain */
+    int32_t planned;        /* of these, known to the latest plan of the speeds */
+    double  override;       /* of that plan */
+    double  smooth;         /* [s] time of the mean; 0 none */
+    double  end;            /* [mm] end of the joined commands on the chain */
+
+    int32_t at;             /* command of the planned motion, from the head */
+    bool    turning;        /* it is in the corner at that command's start */
+    double  base;           /* [mm] start of that command on the chain */
+    double  s, v;           /* [mm] from there, [mm/s] */
+    struct track_cap cap[TRACK_CAPS];
+    int32_t caps;
+
+    int32_t taps, next;     /* of the mean: samples, place of the next; 0 taps before the first */
+    int32_t still;          /* samples since the planned motion moved */
+    double  sum, zero;      /* [mm] of the samples, counted from `zero` */
+
+    int32_t out;            /* command of the tool, from the head */
+    int32_t begun;          /* commands of which track_begun has told */
+    double  out_base;       /* [mm] its start on the chain */
+    double  out_s, out_v;   /* [mm], [mm/s] the tool */
+};
+
+/* Whether the first command of the ring begins a chain. */
+bool track_begins(const struct ring *r);
+
+/* Begin one, at rest. */
+void track_start(struct track *t, struct ring *r);
+
+/* Join what the ring has, and let up to dt seconds pass on the planned motion under an override; 0
+ * brings it to rest. Returns the time left: above 0 only at the end of the chain. */
+double track_advance(struct track *t, struct ring *r, double override, double dt);
+
+/* A DDA boundary: the tool follows the planned motion. */
+void track_sample(struct track *t, struct track_mean *m, struct ring *r, double dda_time);
+
+/* The next command that the tool has begun since it was asked last, or NULL; all of them once the
+ * planned motion has ended. */
+const struct command *track_begun(struct track *t, const struct ring *r);
+
+/* Drop commands that the tool has left. */
+void track_drop(struct track *t, struct ring *r);
+
+/* The planned motion stands and the tool is there. */
+bool track_rests(const struct track *t);
+
+/* That, and at the end of the chain. */
+bool track_done(const struct track *t);
+
+/* The command the tool is in. */
+const struct command *track_command(const struct track *t, const struct ring *r);
+
+/* Place of the tool [mm] and its velocity [mm/s]. */
+void track_place(const struct track *t, const struct ring *r, double point[AXES],
+                 double velocity[AXES]);
+
+#endif

@@ -1,0 +1,327 @@
+/* Look-ahead: corners within their tolerance, limits at every sample, exact ends, closed forms. */
+#include "corner.h"
+#include "mcc_record.h"
+
+static const double DT = 1.024e-3;      /* [s] of mcc_machine */
+
+static double norm3(const double a[3])
+{
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+/* Distance of a point from a path, by sampling and then halving. */
+static double distance(const struct path *p, const double at[AXES])
+{
+    enum { SAMPLES = 60 };
+    double best = INFINITY, where = 0.0, x[AXES], slope[AXES];
+    for (double step = p->length / SAMPLES; step > 1e-9 * p->length; step *= 0.5) {
+        const int wide = best == INFINITY ? SAMPLES : 2;
+        const double from = best == INFINITY ? 0.0 : where - step;
+        for (int i = 0; i <= wide; i++) {
+            const double s = fmin(p->length, fmax(0.0, from + i * step));
+            path_at(p, s, x, slope);
+            const double d = norm3((double[3]){ x[0] - at[0], x[1] - at[1], x[2] - at[2] });
+            where = d < best ? s : where;
+            best = fmin(best, d);
+        }
+    }
+    return best;
+}
+
+static void random_path(uint64_t *seed, const double start[AXES], struct path *p)
+{
+    double end[AXES] = { 0 }, miss;
+    for (int i = 0; i < 3; i++) {
+        end[i] = start[i] + mcc_random(seed, -10.0, 10.0);
+    }
+    if (mcc_random(seed, 0.0, 1.0) < 0.5) {
+        path_line(p, start, end);
+        return;
+    }
+    const double r = mcc_random(seed, 1.0, 20.0), a = mcc_random(seed, 0.0, 6.28);
+    const double centre[2] = { start[0] + r * cos(a), start[1] + r * sin(a) };
+    const double b = a + mcc_random(seed, 1.0, 5.0);
+    end[0] = centre[0] - r * cos(b);
+    end[1] = centre[1] - r * sin(b);
+    CHECK_EQ(path_arc(p, PATH_XY, start, end, centre, true, 1, &miss), FAULT_NONE);
+}
+
+/* Every random corner: ends on its paths, near enough to them, as smooth as it says. */
+static void corners(void)
+{
+    uint64_t seed = 1;
+    for (int i = 0; i < 300; i++) {
+        const double start[AXES] = { mcc_random(&seed, -5.0, 5.0) };
+        const double tolerance = pow(10.0, mcc_random(&seed, -4.0, 0.0));
+        struct path a, b;
+        struct corner k;
+        double x[4][AXES], slope[AXES], end[AXES], way[AXES];
+        random_path(&seed, start, &a);
+        random_path(&seed, a.end, &b);
+        CHECK(corner_make(&k, &a, &b, tolerance, 0.5 * fmin(a.length, b.length), true));
+        corner_at(&k, &a, &b, -k.half, x[0], slope);
+        path_at(&a, a.length - k.half, end, way);
+        CHECK_NEAR(x[0][0], end[0], 1e-12);
+        CHECK_NEAR(slope[1], way[1], 1e-12);
+        corner_at(&k, &a, &b, k.half, x[0], slope);
+        path_at(&b, k.half, end, way);
+        CHECK_NEAR(x[0][1], end[1], 1e-12);
+        CHECK_NEAR(slope[2], way[2], 1e-12);
+        const double h = 2.0 * k.half / 200;
+        double farthest = 0.0;
+        for (int n = 0; n <= 200; n++) {
+            double d[4] = { 0 };
+            memmove(x[1], x[0], 3 * sizeof x[0]);
+            corner_at(&k, &a, &b, fmin(n * h - k.half, k.half), x[0], slope);
+            CHECK(norm3(slope) <= 1.0 + 1e-12);
+            farthest = n % 10 ? farthest : fmax(farthest, fmin(distance(&a, x[0]),
+                                                               distance(&b, x[0])));
+            for (int j = 0; j < 3; j++) {
+                d[2] += pow(x[0][j] - 2.0 * x[1][j] + x[2][j], 2.0);
+                d[3] += pow(x[0][j] - 3.0 * x[1][j] + 3.0 * x[2][j] - x[3][j], 2.0);
+            }
+            CHECK(n < 2 || sqrt(d[2]) <= k.bend * h * h * (1.0 + 1e-6) + 1e-13);
+            CHECK(n < 3 || sqrt(d[3]) <= k.twist * h * h * h * (1.0 + 1e-3) + 1e-13);
+        }
+        CHECK(farthest <= tolerance * (1.0 + 1e-6));
+    }
+}
+
+/* A square corner of two lines is cut by sqrt(2) CUT half, all of the tolerance. */
+static void square(void)
+{
+    const double o[AXES] = { 0 }, x[AXES] = { 10.0 }, y[AXES] = { 10.0, 10.0 };
+    struct path a, b;
+    struct corner k;
+    double at[AXES], slope[AXES];
+    path_line(&a, o, x);
+    path_line(&b, x, y);
+    CHECK(corner_make(&k, &a, &b, 0.05, 5.0, false));
+    CHECK_NEAR(k.half, 0.05 / (0.1875 * sqrt(2.0)), 1e-12);
+    corner_at(&k, &a, &b, 0.0, at, slope);
+    CHECK_NEAR(hypot(at[0] - 10.0, at[1]), 0.05, 1e-12);
+    CHECK(!corner_make(&k, &a, &b, 0.0, 5.0, true));
+    CHECK(corner_make(&k, &a, &a, 0.0, 5.0, true) && k.half == 0.0);
+    CHECK(!corner_make(&k, &a, &b, 1.0, 1e-7, true));
+}
+
+static void smooth_ramps(bool on)
+{
+    MCC_set_acc_type(&m, on ? 'S' : 'T');
+    MCC_set_dec_type(&m, on ? 'S' : 'T');
+}
+
+static double way_of_tool(void)
+{
+    return m.ipo.track.out_base + m.ipo.track.out_s;
+}
+
+/* A line in a thousand pieces is the line: same time, no dip. */
+static void pieces(bool smooth)
+{
+    struct record r = { 0 };
+    begin(mcc_machine());
+    smooth_ramps(smooth);
+    MCC_set_fspd(&m, 50.0);
+    CHECK_EQ(mcc_set_tolerance(&m, 0.01), 0);
+    int sent = 0;
+    double slowest = INFINITY;
+    for (;;) {
+        while (sent < 1000 && !ring_full(&m.ring)) {
+            sent++;
+            CHECK(MCC_line(&m, (double[AXES]){ 0.06 * sent, 0.08 * sent }) > 0);
+        }
+        if (!point(&r)) {
+            break;
+        }
+        const double t = r.n * DT;
+        slowest = t > 0.2 && t < 1.9 ? fmin(slowest, r.last.feed) : slowest;
+    }
+    CHECK_NEAR(slowest, 50.0, 1e-6);
+    CHECK_NEAR(r.speed_max, 50.0, 1e-6);
+    /* T: 2 s + one ramp. S: ramps of 0.1 (1 - share/2) s, share 0.5, and the mean's 0.05 s. */
+    CHECK_NEAR(r.n * DT, smooth ? 2.0 + 0.075 + 0.05 : 2.0 + 0.1, 3.0 * DT);
+    CHECK_NEAR(r.last.place[0], 60.0, 0.0);
+    CHECK_NEAR(r.last.place[1], 80.0, 0.0);
+    CHECK(MCC_check_stop(&m));
+}
+
+/* Another one for each chain: the index of its first command. */
+static int chain_number(void)
+{
+    return m.ipo.track.started;
+}
+
+struct limits {
+    double speed, acc, jerk;
+};
+
+/* Stream of the tool's way, differentiated. */
+struct stream {
+    double s[4];
+    int n;
+};
+
+static void look(struct stream *x, double way, const struct limits *l)
+{
+    memmove(x->s + 1, x->s, 3 * sizeof *x->s);
+    x->s[0] = way;
+    x->n++;
+    const double v = x->s[0] - x->s[1], a = v - (x->s[1] - x->s[2]);
+    const double j = a - (x->s[1] - 2.0 * x->s[2] + x->s[3]);
+    const double noise = 1e-12;
+    CHECK(x->n < 2 || (v >= 0.0 && v <= l->speed * DT * (1.0 + 1e-6) + noise));
+    CHECK(x->n < 3 || fabs(a) <= l->acc * DT * DT * (1.0 + 1e-6) + noise);
+    CHECK(x->n < 4 || l->jerk <= 0.0 || fabs(j) <= l->jerk * DT * DT * DT * (1.0 + 1e-6) + noise);
+}
+
+static struct limits limits_at(double feed, bool smooth)
+{
+    /* 0.1 s from rest to the feed; S with share 0.5: acc/0.75, jerk acc/0.025 */
+    const double acc = smooth ? feed / 0.075 : feed / 0.1;
+    return (struct limits){ 2.0 * feed, acc, smooth ? acc / 0.025 : 0.0 };
+}
+
+/* Random chains, twice in a row, under random overrides, holds and at last an abort. */
+static void anything(bool smooth)
+{
+    uint64_t seed = 5;
+    for (int i = 0; i < 40; i++) {
+        const double feed = mcc_random(&seed, 10.0, 100.0), size = i % 2 ? 5.0 : 0.05;
+        const struct limits l = limits_at(feed, smooth);
+        struct record r = { 0 };
+        struct stream x = { 0 };
+        double v0[3] = { 0 }, x0[3] = { 0 };
+        int sent = 0;
+        bool aborted = false;
+        begin(mcc_machine());
+        smooth_ramps(smooth);
+        MCC_set_fspd(&m, feed);
+        CHECK_EQ(mcc_set_tolerance(&m, i % 3 ? 0.02 : 0.2), 0);
+        MCC_set_inc(&m);
+        while (r.n < LONGEST) {
+            for (; sent < 300 && !ring_full(&m.ring) && !aborted; sent++) {
+                if (sent == 150) {
+                    CHECK(MCC_motion_delay(&m, 20.0) > 0);
+                    continue;
+                }
+                const double a = mcc_random(&seed, 0.2, 1.0) * size;
+                const double b = mcc_random(&seed, -1.0, 1.0) * size;
+                CHECK((sent % 5 == 4 && i % 4 == 0
+                       ? MCC_arc_xy(&m, a, b, 2.0 * a, 0.0)
+                       : MCC_line(&m, (double[AXES]){ a, b, 0.3 * b })) > 0);
+            }
+            const double die = mcc_random(&seed, 0, 1);
+            if (die < 0.005) {
+                MCC_motion_hold(&m);
+            } else if (die < 0.03) {
+                MCC_motion_conti(&m);
+            } else if (die < 0.04) {
+                MCC_set_over_spd(&m, mcc_random(&seed, 0.0, 200.0));
+            } else if (die < 0.0401 && i % 5 == 0 && MCC_motion_abort(&m) == 0) {
+                aborted = true;
+            }
+            const int chain = m.ipo.track.active ? chain_number() : 0;
+            if (!point(&r)) {
+                if (MCC_check_stop(&m)) {
+                    break;
+                }
+                memset(v0, 0, sizeof v0);
+                continue;
+            }
+            if (chain && m.ipo.track.active && chain == chain_number()) {
+                look(&x, way_of_tool(), &l);
+            } else {
+                x.n = 0;
+            }
+            double change = 0.0;
+            for (int j = 0; j < 3; j++) {
+                const double v = (r.last.place[j] - x0[j]) / DT;
+                change += pow(v - v0[j], 2.0);
+                v0[j] = v;
+                x0[j] = r.last.place[j];
+            }
+            CHECK(sqrt(change) <= 2.0 * l.acc * DT + 1e-9);   /* along and across */
+        }
+        CHECK(r.n < LONGEST && MCC_check_stop(&m));
+        for (int j = 0; j < 3; j++) {
+            CHECK(r.last.place[j] == m.end[j]);
+            CHECK_EQ(r.sum[j], (int32_t)lround(m.end[j] * 1000.0));
+        }
+    }
+}
+
+/* A polygon of many corners: the tool stays within the tolerance of it and is done sooner than with
+ * exact stops; the corner speed is what the acceleration allows: v^2 0.75 sqrt(2) / half = a. */
+static void tolerance(void)
+{
+    struct record r = { 0 };
+    struct path side[20];
+    double at[AXES] = { 0 }, slowest = INFINITY;
+    begin(mcc_machine());
+    MCC_set_fspd(&m, 50.0);
+    CHECK_EQ(mcc_set_tolerance(&m, 0.1), 0);
+    for (int i = 0; i < 20; i++) {
+        double end[AXES];
+        memcpy(end, at, sizeof end);
+        end[i % 2] += 5.0;
+        path_line(&side[i], at, end);
+        memcpy(at, end, sizeof at);
+        CHECK(MCC_line(&m, at) > 0);
+    }
+    while (point(&r)) {
+        double d = INFINITY;
+        for (int i = 0; i < 20; i++) {
+            d = fmin(d, distance(&side[i], r.last.place));
+        }
+        CHECK(d <= 0.1 * (1.0 + 1e-9));
+        slowest = r.n > 100 && r.n < 2000 ? fmin(slowest, m.ipo.track.v) : slowest;
+    }
+    const double half = 0.1 / (0.1875 * sqrt(2.0));
+    const double turn = sqrt(500.0 * half / (0.75 * sqrt(2.0)));
+    CHECK_NEAR(slowest, turn, 0.02 * turn);
+    /* Corners at their speed; between them up from it and down to it, at the ends from rest. */
+    const double acc = 500.0, inner = 5.0 - 2.0 * half, outer = 5.0 - half;
+    const double top = sqrt(turn * turn + acc * inner);
+    const double last = sqrt((2.0 * acc * outer + turn * turn) / 2.0);
+    const double time = 19.0 * 2.0 * half / turn + 18.0 * 2.0 * (top - turn) / acc +
+                        2.0 * (2.0 * last - turn) / acc;
+    CHECK_NEAR(r.n * DT, time, DT);
+    CHECK(time < 20.0 * (5.0 / 50.0 + 0.1));        /* exact stops */
+}
+
+/* What does not fit ends the chain at rest: no tolerance, another command kind. */
+static void chain_ends(void)
+{
+    struct record r = { 0 };
+    begin(mcc_machine());
+    CHECK_EQ(mcc_set_tolerance(&m, -1.0), MCC_PARAMETER);
+    CHECK_EQ(mcc_set_tolerance(&m, NAN), MCC_PARAMETER);
+    CHECK_EQ(mcc_set_tolerance(&m, 0.1), 0);
+    CHECK(MCC_line_x(&m, 5.0) > 0);
+    CHECK(MCC_line_y(&m, 5.0) > 0);
+    CHECK_EQ(mcc_set_tolerance(&m, 0.0), 0);
+    CHECK(MCC_line_x(&m, 0.0) > 0);
+    CHECK(MCC_ptp_y(&m, 0.0) > 0);
+    double corner = INFINITY, stop = INFINITY;
+    while (point(&r)) {
+        corner = fmin(corner, hypot(r.last.place[0] - 5.0, r.last.place[1]));
+        stop = fmin(stop, hypot(r.last.place[0] - 5.0, r.last.place[1] - 5.0));
+    }
+    CHECK(corner > 0.09 && corner < 0.11);
+    CHECK(stop < 1e-2);
+    CHECK(r.last.place[0] == 0.0 && r.last.place[1] == 0.0);
+}
+
+int main(void)
+{
+    corners();
+    square();
+    pieces(false);
+    pieces(true);
+    tolerance();
+    chain_ends();
+    anything(false);
+    anything(true);
+    return check_result();
+}
