@@ -21,6 +21,18 @@ static bool type_valid(char type)
     return type == 0 || type == 'T' || type == 'S';
 }
 
+static bool asyn_valid(const struct machine_asyn *r)
+{
+    for (int i = 0; i < AXES; i++) {
+        if (!type_valid(r->acc_type[i]) || !type_valid(r->dec_type[i]) ||
+            !(r->acc_time[i] == 0.0 || positive(r->acc_time[i])) ||
+            !(r->dec_time[i] == 0.0 || positive(r->dec_time[i]))) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool machine_valid(const struct machine *m)
 {
     if (m->dda_length < 10 || m->dda_length > 15 || m->queue_depth < 1) {
@@ -33,9 +45,21 @@ bool machine_valid(const struct machine *m)
     }
     return positive(m->dda_time) && positive(m->feed) && positive(m->max_feed) &&
            type_valid(m->acc_type) && type_valid(m->dec_type) &&
-           m->jerk_share >= 0.0 && m->jerk_share <= 1.0 &&
+           m->jerk_share >= 0.0 && m->jerk_share <= 1.0 && asyn_valid(&m->asyn) &&
            m->ptp_ratio >= 0.0 && m->ptp_ratio <= 1.0 &&
            m->feed <= m->max_feed && positive(m->acc_time) && positive(m->dec_time);
+}
+
+void machine_complete_asyn(struct machine *m)
+{
+    struct machine_asyn *r = &m->asyn;
+
+    for (int i = 0; i < AXES; i++) {
+        r->acc_type[i] = r->acc_type[i] ? r->acc_type[i] : m->acc_type;
+        r->dec_type[i] = r->dec_type[i] ? r->dec_type[i] : m->dec_type;
+        r->acc_time[i] = r->acc_time[i] > 0.0 ? r->acc_time[i] : m->acc_time;
+        r->dec_time[i] = r->dec_time[i] > 0.0 ? r->dec_time[i] : m->dec_time;
+    }
 }
 
 int32_t machine_dda_divider(const struct machine *m)
@@ -92,4 +116,9 @@ double machine_pulses_per_mm(const struct machine_axis *a)
 double machine_axis_speed(const struct machine_axis *a)
 {
     return a->rpm / 60.0 * a->pitch / a->gear_ratio;
+}
+
+double machine_ptp_speed(const struct machine *m, int axis)
+{
+    return machine_axis_speed(&m->axis[axis]) * (m->ptp_ratio > 0.0 ? m->ptp_ratio : 1.0);
 }

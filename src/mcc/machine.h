@@ -19,6 +19,12 @@ struct machine_axis {
     int32_t max_dda;        /* most pulses in one DDA time; 0 at init means 2^dda_length - 1 */
 };
 
+/* Ramps of motion whose axes are independent, of each axis its own; 0 at init: the machine's. */
+struct machine_asyn {
+    char   acc_type[AXES], dec_type[AXES];  /* 'T' or 'S' */
+    double acc_time[AXES], dec_time[AXES];  /* [s] from rest to the axis' speed, and back */
+};
+
 struct machine {
     struct machine_axis axis[AXES];
     double  dda_time;       /* [s] wanted */
@@ -33,10 +39,14 @@ struct machine {
     double  jerk_share;     /* 0..1 part of the time of an S-shaped ramp in which the acceleration
                              * changes; 0 means 0.5 */
     double  ptp_ratio;      /* 0..1 share of the safe motor speed for point-to-point; 0 means 1 */
+    struct machine_asyn asyn;
 };
 
 /* True if every value lies in its range and is finite. */
 bool machine_valid(const struct machine *m);
+
+/* Ramps of independent axes where none are given. */
+void machine_complete_asyn(struct machine *m);
 
 /* Divider, 1..65535, that brings 2^length * divider * 25 ns nearest to dda_time. */
 int32_t machine_dda_divider(const struct machine *m);
@@ -62,5 +72,6 @@ double machine_smooth(const struct machine *m);
 
 double machine_pulses_per_mm(const struct machine_axis *a);     /* [pulses/mm] */
 double machine_axis_speed(const struct machine_axis *a);        /* [mm/s] at rpm */
+double machine_ptp_speed(const struct machine *m, int axis);    /* [mm/s] its share for rapids */
 
 #endif
