@@ -87,10 +87,12 @@ static void turn(struct home *h, const struct home_config *c, const struct home_
     }
 }
 
-/* Phase 2. A limit switch that is the sensor may be active here, the other one not. */
+/* Phase 2. A limit switch that is the sensor may be active here, the other one not. If the axis has
+ * run over the sensor before it came to rest, it comes onto it once more on its way back. */
 static void leave(struct home *h, const struct home_config *c, const struct home_inputs *in)
 {
-    if (!on(c, in)) {
+    h->passed = h->passed || on(c, in);
+    if (h->passed && !on(c, in)) {
         h->place = in->position;
         h->stopping = true;
     } else if (limit(in, sign(c, 1)) && !(by_limit(c) && sign(c, 1) == sign(c, 0))) {

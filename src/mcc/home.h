@@ -43,7 +43,7 @@ enum home_phase {
 enum home_fault {
     HOME_OK,
     HOME_NO_SENSOR,         /* phase 1 found none within `search`, or between both limits */
-    HOME_STUCK,             /* phase 2 did not leave the sensor within `search` */
+    HOME_STUCK,             /* phase 2 did not leave the sensor, or meet it again, in `search` */
     HOME_NO_INDEX,          /* phase 3 met none within `index_way` */
     HOME_ON_LIMIT           /* phase 2, 3 or the last way ran onto a limit switch */
 };
@@ -71,7 +71,7 @@ struct home {
     enum home_fault fault;
     bool   stopping;        /* found; the axis comes to rest before the next phase */
     bool   turned;          /* met a limit in phase 1 */
-    bool   passed;          /* was on the sensor since it turned */
+    bool   passed;          /* was on the sensor since the phase began, in turn and leave */
     bool   armed;
     double begin;           /* [mm] where the phase began */
     double place;           /* [mm] what was found */

@@ -113,6 +113,24 @@ static void same_place_from_anywhere(void)
     }
 }
 
+/* A sensor narrower than the way to rest is run over; the way back leads over it again. */
+static void run_over(void)
+{
+    for (double start = -50.0; start < 15.0; start += 1.7) {
+        struct axis a = machine();
+        struct home h;
+        struct home_config c = config(HOME_SENSOR_INDEX, 6);
+        a.on_to = 20.2;
+        a.position = start;
+        CHECK_EQ(run(&a, &c, &h), HOME_DONE);
+        CHECK_NEAR(h.place, 11.25, 1e-9);
+        a.position = start;
+        a.on_from = 20.1;
+        c.direction = 4;            /* on from it in the direction of the search: it is not met */
+        CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
+    }
+}
+
 /* The logic state of the sensor, and index only. */
 static void logic_and_index_only(void)
 {
@@ -182,6 +200,7 @@ static void refusals(void)
 int main(void)
 {
     same_place_from_anywhere();
+    run_over();
     logic_and_index_only();
     faults();
     refusals();
