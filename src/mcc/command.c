@@ -69,6 +69,13 @@ enum fault command_ptp(struct command *c, const struct machine *m)
     return check_range(&c->path, m);
 }
 
+enum fault command_ptp_asyn(struct command *c, const struct machine *m)
+{
+    c->type = COMMAND_PTP_ASYN;
+    c->blend = false;
+    return check_range(&c->path, m);
+}
+
 void command_delay(struct command *c, const double point[AXES], double seconds)
 {
     path_line(&c->path, point, point);
@@ -90,7 +97,7 @@ enum command_type command_arc_type(const struct path *p)
 
 bool command_lasts(const struct command *c)
 {
-    return c->type <= COMMAND_DELAY;
+    return c->type <= COMMAND_DELAY || c->type == COMMAND_PTP_ASYN;
 }
 
 bool command_blends(const struct command *c)

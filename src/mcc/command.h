@@ -2,17 +2,20 @@
 #ifndef COMMAND_H
 #define COMMAND_H
 
+#include "axes.h"
 #include "fault.h"
 #include "machine.h"
 #include "path.h"
 #include "profile.h"
 
-/* nType of the library's COMMAND_INFO, which ends at 10, and two of ours that take no time. */
+/* nType of the library's COMMAND_INFO, which ends at 10, and ours: two that take no time, and
+ * point-to-point with independent axes. */
 enum command_type {
     COMMAND_PTP, COMMAND_LINE, COMMAND_CW_ARC, COMMAND_CCW_ARC, COMMAND_CW_HELIX,
     COMMAND_CCW_HELIX, COMMAND_DELAY,
     COMMAND_OUTPUTS = 11,   /* switch spindle, coolant, digital outputs */
-    COMMAND_STOP            /* M0, M1: wait for the operator */
+    COMMAND_STOP,           /* M0, M1: wait for the operator */
+    COMMAND_PTP_ASYN
 };
 
 struct command {
@@ -39,6 +42,9 @@ enum fault command_move(struct command *c, const struct machine *m, enum command
 
 /* Rapid positioning: all axes together, the slowest at its share of the safe motor speed. */
 enum fault command_ptp(struct command *c, const struct machine *m);
+
+/* Rapid positioning, each axis for itself. */
+enum fault command_ptp_asyn(struct command *c, const struct machine *m);
 
 /* Wait for so many seconds at a point. */
 void command_delay(struct command *c, const double point[AXES], double seconds);

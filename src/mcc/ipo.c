@@ -9,9 +9,16 @@ void ipo_start(struct ipo *p)
     p->override[0] = p->override[1] = 1.0;
 }
 
-static double override_of(const struct ipo *p, const struct command *c)
+static double override_of(const struct ipo *p, enum command_type type)
 {
-    return p->hold || p->abort ? 0.0 : p->override[c->type == COMMAND_PTP];
+    const bool ptp = type == COMMAND_PTP || type == COMMAND_PTP_ASYN;
+    return p->hold || p->abort ? 0.0 : p->override[ptp];
+}
+
+/* The move under way is the axes mover's. */
+static bool asyn(const struct ipo *p)
+{
+    return p->count > 0 && p->move[0].command.type == COMMAND_PTP_ASYN;
 }
 
 static bool move_resting(const struct ipo *p, const struct ipo_move *m)
@@ -29,13 +36,16 @@ static double chain_override(const struct ipo *p)
 
 bool ipo_busy(const struct ipo *p)
 {
-    return p->count > 0 || p->track.active;
+    return p->count > 0 || p->track.active || p->free;
 }
 
 bool ipo_resting(const struct ipo *p, const struct ring *r)
 {
     if (p->track.active) {
         return chain_override(p) <= 0.0 && track_rests(&p->track);
+    }
+    if (p->free) {
+        return axes_resting(&p->axes);
     }
     for (int i = 0; i < p->count; i++) {
         if (!move_resting(p, &p->move[i])) {
@@ -50,6 +60,9 @@ bool ipo_moving(const struct ipo *p)
     if (p->track.active) {
         return !track_rests(&p->track);
     }
+    if (p->free) {
+        return !axes_resting(&p->axes);
+    }
     for (int i = 0; i < p->count; i++) {
         if (p->move[i].command.type != COMMAND_DELAY && !move_resting(p, &p->move[i])) {
             return true;
@@ -58,20 +71,66 @@ bool ipo_moving(const struct ipo *p)
     return false;
 }
 
+/* The profile of a move of independent axes is that of the last one's time: a wait. */
+static void wait_for_axes(struct ipo *p)
+{
+    profile_wait(&p->move[0].profile, axes_left(&p->axes));
+    p->move[0].profile.ends = p->axes.ratio > 0.0;
+}
+
+static void start_asyn(struct ipo *p, const struct axes_limits l[AXES])
+{
+    const struct command *c = &p->move[0].command;
+    axes_start(&p->axes, c->path.start, override_of(p, c->type));
+    for (int i = 0; i < AXES; i++) {
+        if (c->path.end[i] != c->path.start[i]) {
+            axes_go(&p->axes, i, c->path.end[i], &l[i]);
+        }
+    }
+    wait_for_axes(p);
+}
+
 /* Plan the newest move afresh from where it is. An older one beside it decelerates to its end. */
 static void replan(struct ipo *p)
 {
+    if (p->free || asyn(p)) {
+        axes_set_ratio(&p->axes, override_of(p, COMMAND_PTP_ASYN));
+        if (asyn(p)) {
+            wait_for_axes(p);
+        }
+        return;
+    }
     if (p->count == 0) {
         return;
     }
     struct ipo_move *m = &p->move[p->count - 1];
     if (m->command.type != COMMAND_DELAY) {
         const struct profile_limits l = {
-            command_speed(&m->command, override_of(p, &m->command)), m->command.ramp
+            command_speed(&m->command, override_of(p, m->command.type)), m->command.ramp
         };
         const struct scurve_start now = profile_state(&m->profile);
         profile_plan(&m->profile, &now, m->command.path.length, &l);
     }
+}
+
+void ipo_free(struct ipo *p)
+{
+    axes_start(&p->axes, p->rest, override_of(p, COMMAND_PTP_ASYN));
+    p->free = true;
+}
+
+static void place_of_axes(const struct ipo *p, double point[AXES], double velocity[AXES])
+{
+    for (int i = 0; i < AXES; i++) {
+        axes_state(&p->axes, i, &point[i], &velocity[i]);
+    }
+}
+
+void ipo_bind(struct ipo *p)
+{
+    double velocity[AXES];
+    place_of_axes(p, p->rest, velocity);
+    p->free = false;
 }
 
 void ipo_hold(struct ipo *p, bool on)
@@ -103,6 +162,10 @@ static void place(const struct ipo *p, const struct ring *r, double point[AXES],
         track_place(&p->track, r, point, velocity);
         return;
     }
+    if (p->free || asyn(p)) {
+        place_of_axes(p, point, velocity);
+        return;
+    }
     memcpy(point, p->rest, AXES * sizeof *point);
     memset(velocity, 0, AXES * sizeof *velocity);
     for (int i = 0; i < p->count; i++) {
@@ -124,6 +187,7 @@ void ipo_stop(struct ipo *p, struct ring *r)
     memcpy(p->rest, at, sizeof p->rest);
     p->count = 0;
     p->track.active = false;
+    p->free = false;
     p->hold = p->abort = p->stopped = false;
     p->news = p->news || p->outputs.spindle != 0.0 || p->outputs.coolant != 0;
     p->outputs.spindle = 0.0;
@@ -152,7 +216,8 @@ static void retire(struct ipo *p)
 static bool may_start(const struct ipo *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
-    if (!next || p->track.active || p->hold || p->abort || p->stopped || p->count == 2) {
+    if (!next || p->track.active || p->free || p->hold || p->abort || p->stopped ||
+        p->count == 2) {
         return false;
     }
     return p->count == 0 || (p->move[0].command.blend && p->move[0].profile.ends &&
@@ -179,7 +244,11 @@ static void start(struct ipo *p, struct ring *r)
     if (command_lasts(c)) {
         struct ipo_move *m = &p->move[p->count++];
         m->command = *c;
-        command_start(&m->command, override_of(p, &m->command), &m->profile);
+        if (c->type == COMMAND_PTP_ASYN) {
+            start_asyn(p, ring_peek(r, 0)->axis);
+        } else {
+            command_start(&m->command, override_of(p, c->type), &m->profile);
+        }
     } else if (c->type == COMMAND_OUTPUTS) {
         p->outputs.spindle = c->spindle;
         p->outputs.coolant = c->coolant;
@@ -244,6 +313,11 @@ double ipo_advance(struct ipo *p, struct ring *r, double dt)
         if (dt <= 0.0) {
             return 0.0;
         }
+        if (p->free) {
+            axes_advance(&p->axes, dt);
+            dt = 0.0;
+            continue;
+        }
         const double event = startable ? old->tail : old->total;
         const double step = fmin(dt, event - old->t);
         for (int i = 0; i < p->count; i++) {
@@ -251,6 +325,9 @@ double ipo_advance(struct ipo *p, struct ring *r, double dt)
         }
         if (step < dt) {
             old->t = event;     /* met exactly, whatever the sum rounds to */
+        }
+        if (asyn(p)) {
+            axes_advance(&p->axes, step);
         }
         dt -= step;
     }

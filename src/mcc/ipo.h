@@ -10,6 +10,9 @@
  * Otherwise each command ends at rest (exact stop). Commands that switch outputs or stop the
  * program wait until all motion before them has ended. Pulses are differences of the rounded ideal
  * position, so every axis is within half a pulse of it at every boundary and nothing drifts.
+ *
+ * Point-to-point with independent axes is a command whose point comes from the axes mover. Between
+ * commands the axes may also be set free: then they follow whatever orders the mover gets.
  */
 #ifndef IPO_H
 #define IPO_H
@@ -26,6 +29,8 @@ struct ipo {
     struct ipo_move move[2];    /* the older first */
     int32_t count;              /* moves under way */
     double  rest[AXES];         /* [mm] where the axes stand while count is 0 */
+    bool    free;               /* no command: the axes follow orders, see ipo_free */
+    struct axes axes;           /* while free, and of COMMAND_PTP_ASYN */
     int32_t pulses[AXES];       /* [pulses] of the latest point */
     double  override[2];        /* of lines and arcs, of point-to-point; 1 is 100 % */
     bool    hold;
@@ -46,8 +51,15 @@ bool ipo_resting(const struct ipo *p, const struct ring *r);
 /* True while pulses are due: a line, arc or rapid under way that is not brought to rest. */
 bool ipo_moving(const struct ipo *p);
 
-/* Under way: a move or a chain. */
+/* Under way: a move, a chain, or free axes. */
 bool ipo_busy(const struct ipo *p);
+
+/* Set the axes free, count being 0: from now on p->axes may get orders. Hold, override and abort
+ * act on them as on commands; abort binds them again. */
+void ipo_free(struct ipo *p);
+
+/* Back to commands; the axes rest. */
+void ipo_bind(struct ipo *p);
 
 /* Pause on the path, or go on. */
 void ipo_hold(struct ipo *p, bool on);

@@ -17,6 +17,7 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
     }
     m->machine.acc_type = machine->acc_type ? machine->acc_type : 'T';
     m->machine.dec_type = machine->dec_type ? machine->dec_type : 'T';
+    machine_complete_asyn(&m->machine);
     m->feed = machine->feed;
     ipo_start(&m->ipo);
     m->open = true;
@@ -55,7 +56,7 @@ static int acceptable(const struct mcc *m)
     return !m->open ? MCC_INITIAL_MOTION :
            m->error ? MCC_RUN_TIME :
            m->ipo.abort ? MCC_ABORT_NOT_FINISH :
-           m->running ? MCC_COMMAND_NOTACCEPTED :
+           m->running || m->ipo.free ? MCC_COMMAND_NOTACCEPTED :
            ring_full(&m->ring) ? MCC_COMMAND_BUFFER_FULL : MCC_NO_ERR;
 }
 
@@ -78,7 +79,9 @@ static int accept(struct mcc *m, struct command *c, enum fault f)
     }
     c->index = ++m->commands;
     memcpy(m->end, c->path.end, sizeof m->end);
-    if (c->path.length > 0.0 || c->type == COMMAND_DELAY) {
+    if (c->type == COMMAND_PTP_ASYN) {
+        ring_push_asyn(&m->ring, c, &m->machine);
+    } else if (c->path.length > 0.0 || c->type == COMMAND_DELAY) {
         ring_push(&m->ring, c);
     }
     return c->index;
@@ -102,7 +105,8 @@ static int straight(struct mcc *m, const double target[AXES], enum command_type 
         return accept(m, &c, FAULT_NONE);
     }
     return accept(m, &c, type == COMMAND_PTP ? command_ptp(&c, &m->machine)
-                                             : command_move(&c, &m->machine, type, m->feed, &r));
+                       : type == COMMAND_PTP_ASYN ? command_ptp_asyn(&c, &m->machine)
+                       : command_move(&c, &m->machine, type, m->feed, &r));
 }
 
 int MCC_line(struct mcc *m, const double target[AXES])
@@ -113,6 +117,11 @@ int MCC_line(struct mcc *m, const double target[AXES])
 int MCC_ptp(struct mcc *m, const double target[AXES])
 {
     return straight(m, target, COMMAND_PTP);
+}
+
+int MCC_ptp_asyn(struct mcc *m, const double target[AXES])
+{
+    return straight(m, target, COMMAND_PTP_ASYN);
 }
 
 /* Only some axes go somewhere: `count` from `first` on. */

@@ -7,8 +7,10 @@
 #ifndef MCC_H
 #define MCC_H
 
+#include "homing.h"
 #include "interpreter.h"
 #include "ipo.h"
+#include "manual.h"
 #include "queue.h"
 #include "signals.h"
 
@@ -17,10 +19,11 @@ enum mcc_return {
     MCC_NO_ERR              = 0,
     MCC_INITIAL_MOTION      = -1,   /* MCC_init_motion has not been called */
     MCC_COMMAND_BUFFER_FULL = -2,
-    MCC_COMMAND_NOTACCEPTED = -3,   /* a part program is running */
+    MCC_COMMAND_NOTACCEPTED = -3,   /* a part program is running, or axes are moved by hand */
     MCC_COMMAND_NOTFINISHED = -4,   /* allowed at standstill only */
     MCC_PARAMETER           = -5,
     MCC_FEED_RATE           = -7,
+    MCC_HOME_COMMAND_NOTCALLED = -10,
     MCC_HOLD_ILLEGAL        = -11,
     MCC_CONTI_ILLEGAL       = -12,
     MCC_ABORT_ILLEGAL       = -13,
@@ -28,9 +31,11 @@ enum mcc_return {
     MCC_ABORT_NOT_FINISH    = -15
 };
 
-/* Run-time errors. */
+/* Run-time errors. That of homing is ours: 0xF700 + 16 enum home_fault + axis from 1, so 0xF732 is
+ * an index of the Y axis that was not found. */
 enum mcc_error {
     MCC_ERROR_ARC   = 0xF104,       /* invalid command met while the program ran */
+    MCC_ERROR_HOME  = 0xF700,
     MCC_ERROR_SPEED = 0xF203        /* more pulses in one DDA time than max_dda_spd */
 };
 
@@ -55,6 +60,8 @@ struct mcc {
     struct point written;       /* the latest point the card took */
     struct signals signals;     /* as the card reported them last */
     int32_t latch_seq[AXES];    /* a new number arms the latch for the next index, once */
+    struct manual manual;
+    struct homing homing;
 };
 
 /* System. MCC_init_motion: at rest at the origin, settings from the machine. */
@@ -88,7 +95,24 @@ int MCC_ptp_x(struct mcc *m, double x);
 int MCC_ptp_y(struct mcc *m, double y);
 int MCC_ptp_z(struct mcc *m, double z);
 int MCC_ptp_uvw(struct mcc *m, double u, double v, double w);
+int MCC_ptp_asyn(struct mcc *m, const double target[AXES]);     /* each axis for itself */
 int MCC_motion_delay(struct mcc *m, double ms);
+
+/* By hand: each axis for itself, only while no command is under way or waits; commands are refused
+ * meanwhile. Hold, conti, abort and the override of point-to-point act on all of them. Axes count
+ * from 0. A jog's percent is > 0..100 of the safe motor speed. */
+int MCC_jog_c(struct mcc *m, int axis, int direction, double percent);  /* -1, +1; 0 stops */
+int MCC_jog_i(struct mcc *m, int axis, double distance, double percent);        /* [mm] */
+int MCC_jog_s(struct mcc *m, int axis, int32_t pulses);
+/* The axis follows the counts of an encoder counter, 0..8, times ratio [pulses/count], to the
+ * pulse. MCC_MPG_disable brings all such axes to rest where they are. */
+int MCC_MPG_set(struct mcc *m, int axis, int encoder, double ratio);
+int MCC_MPG_disable(struct mcc *m);
+/* Search the origins: axes with order 1 together, then those with 2, ...; 0: not. Then the place
+ * found is 0. How is set by homing_set(). */
+int MCC_go_home(struct mcc *m, const int32_t order[AXES]);
+int MCC_check_homef(const struct mcc *m);   /* 1 found, 0 under way; MCC_HOME_COMMAND_NOTCALLED,
+                                             * also after an abort; MCC_RUN_TIME: it failed */
 
 /* Trajectory control. */
 int MCC_motion_hold(struct mcc *m);     /* ramp to rest on the path */
@@ -115,6 +139,15 @@ int MCC_set_acc_step(struct mcc *m, double ms);
 double MCC_get_acc_step(const struct mcc *m);           /* [ms] */
 int MCC_set_dec_step(struct mcc *m, double ms);
 double MCC_get_dec_step(const struct mcc *m);           /* [ms] */
+/* The same for the axes of MCC_ptp_asyn, jog, hand wheel and homing, one by one. */
+int MCC_set_ptp_asyn_acc_type(struct mcc *m, const char types[AXES]);   /* 'T' or 'S' */
+int MCC_get_ptp_asyn_acc_type(const struct mcc *m, char types[AXES]);
+int MCC_set_ptp_asyn_decc_type(struct mcc *m, const char types[AXES]);  /* as it is printed */
+int MCC_get_ptp_asyn_dec_type(const struct mcc *m, char types[AXES]);
+int MCC_set_ptp_asyn_acc_step(struct mcc *m, const double ms[AXES]);
+int MCC_get_ptp_asyn_acc_step(const struct mcc *m, double ms[AXES]);
+int MCC_set_ptp_asyn_dec_step(struct mcc *m, const double ms[AXES]);
+int MCC_get_ptp_asyn_dec_step(const struct mcc *m, double ms[AXES]);
 int MCC_set_dda(struct mcc *m, double ms);              /* at standstill; the nearest possible */
 double MCC_get_dda(const struct mcc *m);                /* [ms] that the card has */
 int MCC_set_max_dda_spd(struct mcc *m, const int32_t pulses[AXES]);

@@ -14,6 +14,14 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     pcl_start(&pc->pcl, m, config->min_stock, config->batch, &config->isr);
     const int code = MCC_init_motion(&pc->mcc, m);
     task_set_switches(&pc->mcc, config->block_delete, config->optional_stop);
+    for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
+        if (config->home_order[i] > 0 &&
+            homing_set(&pc->mcc, i, &config->home[i], config->encoder_backward[i])) {
+            return MCC_PARAMETER;
+        }
+    }
+    homing_set_settle(&pc->mcc, config->home_settle);
+    pc->home_due = config->home_first;
     return code;
 }
 
@@ -40,8 +48,11 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     pc->abort_seen = panel->abort;
     pc->cycle_due = pc->cycle_due || (panel->cycle_start && !pc->cycle_seen);
     pc->cycle_seen = panel->cycle_start;
+    pc->home_due = pc->home_due || (panel->go_home && !pc->home_seen);
+    pc->home_seen = panel->go_home;
     MCC_set_P_gain(&pc->mcc, panel->p_gain);
     pc->mcc.signals = panel->signals;
+    manual_look(&pc->mcc, pc->config.bus);
     for (int i = 0; i < AXES; i++) {
         if (pc->config.output_mode[i] == 2 && m->axis[i].used) {
             const double v = panel->software_gain[i] * panel->signals.err[i];
@@ -50,16 +61,48 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     }
 }
 
+/* Homing, jog, hand wheel; the library refuses what cannot be now. */
+static void by_hand(struct pc *pc, const struct pc_panel *panel)
+{
+    struct mcc *m = &pc->mcc;
+
+    if (pc->home_due && pc->next_ipo >= pc->config.start) {
+        pc->home_due = false;
+        MCC_go_home(m, pc->config.home_order);
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (panel->jog[i] != pc->jog_seen[i]) {
+            pc->jog_seen[i] = panel->jog[i];
+            MCC_jog_c(m, i, panel->jog[i], panel->jog_percent);
+        }
+    }
+    if (panel->wheel_axis != pc->wheel_seen) {
+        pc->wheel_seen = panel->wheel_axis;
+        MCC_MPG_disable(m);
+        MCC_MPG_set(m, panel->wheel_axis - 1, panel->wheel_encoder - 1, panel->wheel_ratio);
+    }
+}
+
+/* The program may start: it waits for a search of the origins; home_first wants a good one. */
+static bool may_start(const struct pc *pc)
+{
+    const int homed = MCC_check_homef(&pc->mcc);
+    return pc->next_ipo >= pc->config.start &&
+           (homed == 1 || (homed < 0 && !pc->config.home_first));
+}
+
 /* One cycle of the IPO task, with the panel as read last. */
 static void cycle(struct pc *pc, const struct pc_panel *panel, const struct source *program)
 {
     struct mcc *m = &pc->mcc;
 
-    if (pc->program && !pc->started && pc->next_ipo >= pc->config.start) {
+    by_hand(pc, panel);
+    if (pc->program && !pc->started && may_start(pc)) {
         task_start(m);
         pc->started = true;
     }
     if (pc->abort_due) {
+        pc->home_due = false;
         pc->started = true;     /* a program that waits for its start is dropped too */
         pc->abort_due = false;
         MCC_motion_abort(m);

@@ -21,11 +21,22 @@ struct pc_config {
     struct isr_config isr;
     int32_t output_mode[AXES];  /* 0 pulses, 1 position loop of the card, 2 software voltage */
     bool    block_delete, optional_stop;    /* as of task_set_switches */
+    struct home_config home[AXES];  /* not valid: the axis is not homed */
+    int32_t home_order[AXES];   /* as of MCC_go_home */
+    bool    home_first;         /* home before the program */
+    double  home_settle;        /* [s] as of homing_set_settle */
+    bool    encoder_backward[AXES];
 };
 
-/* The operator's panel and what else is read on the bus grid. */
+/* The operator's panel and what else is read on the bus grid. Homing starts at a rising edge, jog
+ * and hand wheel change when their values do; what is refused is forgotten. */
 struct pc_panel {
-    bool   hold, abort, cycle_start;
+    bool   hold, abort, cycle_start, go_home;
+    int32_t jog[AXES];          /* direction: -1, 0, +1 */
+    double jog_percent;
+    int32_t wheel_axis;         /* that follows the hand wheel, from 1; 0 none */
+    int32_t wheel_encoder;      /* from 1 */
+    double wheel_ratio;         /* [pulses/count] */
     double override;            /* 0..2 */
     double software_gain[AXES]; /* [V/count] of output mode 2 */
     int32_t p_gain[AXES];
@@ -42,6 +53,8 @@ struct pc {
     bool    started;        /* it has been started, or dropped by an abort */
     bool    abort_seen, abort_due;
     bool    cycle_seen, cycle_due;
+    bool    home_seen, home_due;
+    int32_t jog_seen[AXES], wheel_seen;
     double  volts[AXES];    /* [V] software control law */
 };
 

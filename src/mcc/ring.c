@@ -18,6 +18,14 @@ void ring_push(struct ring *r, const struct command *c)
     ring_at(r, r->count - 1)->command = *c;
 }
 
+void ring_push_asyn(struct ring *r, const struct command *c, const struct machine *m)
+{
+    ring_push(r, c);
+    for (int i = 0; i < AXES; i++) {
+        ring_at(r, r->count - 1)->axis[i] = axes_limits_of(m, i, machine_ptp_speed(m, i));
+    }
+}
+
 const struct command *ring_head(const struct ring *r)
 {
     return r->count ? &ring_peek(r, 0)->command : NULL;

@@ -10,11 +10,15 @@ enum { RING_SIZE = 256 };
 
 struct ring_item {
     struct command command;
-    /* In a chain (track.h): */
-    struct corner corner;       /* at its start, with the command before */
-    double body, turn;          /* [mm/s] bends allow so much: of the command, of that corner */
-    double enter, leave;        /* [mm/s] most behind the corner at its start, at that at its end */
-    double enter_even, leave_even;  /* [mm] before these places without a change of speed */
+    union {
+        struct {    /* in a chain (track.h) */
+            struct corner corner;   /* at its start, with the command before */
+            double body, turn;      /* [mm/s] bends allow so much: of the command, of that corner */
+            double enter, leave;    /* [mm/s] most behind the corner at its start, at its end */
+            double enter_even, leave_even;  /* [mm] before these without a change of speed */
+        };
+        struct axes_limits axis[AXES];      /* of COMMAND_PTP_ASYN */
+    };
 };
 
 struct ring {
@@ -25,6 +29,8 @@ struct ring {
 void ring_clear(struct ring *r);
 bool ring_full(const struct ring *r);
 void ring_push(struct ring *r, const struct command *c);    /* not when full */
+/* The same for COMMAND_PTP_ASYN, the axes at their share of the safe motor speed. */
+void ring_push_asyn(struct ring *r, const struct command *c, const struct machine *m);
 const struct command *ring_head(const struct ring *r);      /* NULL when empty */
 void ring_pop(struct ring *r);                              /* not when empty */
 

@@ -12,6 +12,7 @@ struct signals {
     uint32_t home;          /* logic level of the home switches, a bit an axis */
     uint32_t upper, lower;  /* limit switches, a bit an axis, 1: run onto */
     int32_t  enc[AXES];     /* [counts] encoder counters */
+    int32_t  enc_aux[3];    /* [counts] encoder counters 7 to 9 */
     int32_t  err[AXES];     /* [counts] error counters */
     int32_t  latch[AXES];   /* [counts] encoder counter at the index latched last */
     int32_t  latched[AXES]; /* how often it has latched */

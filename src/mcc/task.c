@@ -33,7 +33,7 @@ int task_start(struct mcc *m)
     if (m->error) {
         return MCC_RUN_TIME;
     }
-    if (m->running || m->ipo.abort) {
+    if (m->running || m->ipo.abort || m->ipo.free) {
         return MCC_COMMAND_NOTACCEPTED;
     }
     begin(m, &m->program);
@@ -169,6 +169,7 @@ void task_run(struct mcc *m, const struct source *s)
         }
         m->program.switches.coolant = m->ipo.outputs.coolant;
     }
+    manual_end(m);
 }
 
 bool task_moving(const struct mcc *m)
@@ -185,5 +186,5 @@ enum task_status task_status(const struct mcc *m)
         ipo_resting(&m->ipo, &m->ring)) {
         return TASK_HOLD;
     }
-    return m->written.waits ? TASK_DELAY : TASK_RUNNING;
+    return manual_wheel(m) ? TASK_WHEEL : m->written.waits ? TASK_DELAY : TASK_RUNNING;
 }

@@ -5,7 +5,7 @@
 #include "mcc.h"
 
 /* Codes of the library's group status that occur here. */
-enum task_status { TASK_RUNNING, TASK_STOPPED, TASK_HOLD, TASK_DELAY };
+enum task_status { TASK_RUNNING, TASK_STOPPED, TASK_HOLD, TASK_DELAY, TASK_WHEEL = 5 };
 
 /* What a program is read against, whose text comes from s. */
 struct program task_program(const struct mcc *m, const struct source *s);

@@ -1,0 +1,242 @@
+#include "homing.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mcc.h"
+
+static double scale(const struct mcc *m, int i)
+{
+    return machine_pulses_per_mm(&m->machine.axis[i]);
+}
+
+int homing_set(struct mcc *m, int axis, const struct home_config *config, bool backward)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (m->ipo.free && m->homing.state == HOMING_RUNS) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    if (axis < 0 || axis >= AXES || !home_valid(config) ||
+        fmax(config->high_speed, config->low_speed) >
+        machine_axis_speed(&m->machine.axis[axis])) {
+        return MCC_PARAMETER;
+    }
+    struct homing_axis *x = &m->homing.axis[axis];
+    x->config = *config;
+    x->config.offset = round(config->offset * scale(m, axis)) / scale(m, axis);
+    x->backward = backward;
+    return MCC_NO_ERR;
+}
+
+int homing_set_settle(struct mcc *m, double seconds)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (!(seconds >= 0.0 && seconds < 1e6)) {
+        return MCC_PARAMETER;
+    }
+    m->homing.settle = (int64_t)llround(seconds * CLOCK_HZ);
+    return MCC_NO_ERR;
+}
+
+/* Place of the machine at an encoder count. [mm] */
+static double place_at(const struct mcc *m, int i, int32_t count)
+{
+    const struct homing_axis *x = &m->homing.axis[i];
+    const int32_t from_zero = (int32_t)((uint32_t)count - (uint32_t)x->zero);
+    return (x->backward ? -1.0 : 1.0) * from_zero / scale(m, i);
+}
+
+/* The axis stands: planned so, all its pulses written, and for some time at its encoder. */
+static bool rests(const struct mcc *m, int i)
+{
+    return axes_rests(&m->ipo.axes, i) && m->homing.axis[i].clocks >= m->homing.settle;
+}
+
+static void watch(struct mcc *m, int i, int64_t clocks)
+{
+    struct homing_axis *x = &m->homing.axis[i];
+    const int32_t moved = (int32_t)((uint32_t)m->signals.enc[i] - (uint32_t)x->still);
+
+    if (!axes_rests(&m->ipo.axes, i) || m->written.pulses[i] != m->ipo.pulses[i] ||
+        moved < -1 || moved > 1) {
+        x->still = m->signals.enc[i];
+        x->clocks = 0;
+    } else {
+        x->clocks += clocks;
+    }
+}
+
+static struct home_inputs inputs(const struct mcc *m, int i)
+{
+    const struct homing_axis *x = &m->homing.axis[i];
+    double place, speed;
+
+    axes_state(&m->ipo.axes, i, &place, &speed);
+    return (struct home_inputs){
+        .sensor = (m->signals.home >> i & 1) != 0,
+        .upper = (m->signals.upper >> i & 1) != 0, .lower = (m->signals.lower >> i & 1) != 0,
+        .rest = rests(m, i),
+        .position = x->home.phase == HOME_GO ? place : place_at(m, i, m->signals.enc[i]),
+        .latched = m->signals.latched[i] != x->latched,
+        .latch = place_at(m, i, m->signals.latch[i])
+    };
+}
+
+static void obey(struct mcc *m, int i, const struct home_order *o)
+{
+    struct homing_axis *x = &m->homing.axis[i];
+    struct axes *axes = &m->ipo.axes;
+    struct axes_limits l = axes_limits_of(&m->machine, i, x->config.high_speed);
+
+    if (o->arm) {
+        x->latched = m->signals.latched[i];
+        m->latch_seq[i] = (int32_t)((uint32_t)m->latch_seq[i] + 1u);
+    }
+    if (o->what == x->order.what && o->speed == x->order.speed &&
+        (o->what != HOME_MOVE || o->target == x->order.target)) {
+        return;
+    }
+    x->order = *o;
+    if (o->what == HOME_RUN) {
+        axes_run(axes, i, o->speed, &l);
+    } else if (o->what == HOME_MOVE) {
+        l.speed = o->speed;
+        axes_go(axes, i, o->target, &l);
+    } else {
+        axes_stand(axes, i);
+    }
+}
+
+/* The axes with the next number, if there is one. */
+static bool next_group(struct mcc *m)
+{
+    struct homing *h = &m->homing;
+    int32_t next = INT32_MAX;
+
+    for (int i = 0; i < AXES; i++) {
+        if (h->order[i] > h->group && h->order[i] < next) {
+            next = h->order[i];
+        }
+    }
+    for (int i = 0; i < AXES && next < INT32_MAX; i++) {
+        struct homing_axis *x = &h->axis[i];
+        if (h->order[i] == next) {
+            x->order = (struct home_order){ HOME_STAND, 0.0, 0.0, false };
+            x->latched = m->signals.latched[i];
+            x->still = m->signals.enc[i];
+            x->clocks = 0;
+            memset(&x->home, 0, sizeof x->home);
+            const struct home_inputs in = inputs(m, i);
+            home_start(&x->home, &x->config, &in);
+        }
+    }
+    h->group = next;
+    return next < INT32_MAX;
+}
+
+static int check_order(const struct mcc *m, const int32_t order[AXES])
+{
+    bool any = false;
+
+    for (int i = 0; i < AXES; i++) {
+        if (order[i] < 0 || order[i] == INT32_MAX ||
+            (order[i] > 0 && !(m->machine.axis[i].used && home_valid(&m->homing.axis[i].config)))) {
+            return MCC_PARAMETER;
+        }
+        any = any || order[i] > 0;
+    }
+    return any ? MCC_NO_ERR : MCC_PARAMETER;
+}
+
+int MCC_go_home(struct mcc *m, const int32_t order[AXES])
+{
+    const int code = manual_allowed(m);
+    const int bad = code ? code : check_order(m, order);
+
+    if (bad) {
+        return bad;
+    }
+    if (m->ipo.free) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (order[i] > 0) {
+            manual_use(m, i, MANUAL_HOME);
+        }
+    }
+    memcpy(m->homing.order, order, sizeof m->homing.order);
+    m->homing.state = HOMING_RUNS;
+    m->homing.group = 0;
+    next_group(m);
+    return MCC_NO_ERR;
+}
+
+int MCC_check_homef(const struct mcc *m)
+{
+    switch (m->homing.state) {
+    case HOMING_RUNS:
+        return m->ipo.free ? 0 : MCC_HOME_COMMAND_NOTCALLED;
+    case HOMING_DONE:
+        return 1;
+    case HOMING_FAILED:
+        return MCC_RUN_TIME;
+    default:
+        return MCC_HOME_COMMAND_NOTCALLED;
+    }
+}
+
+static void fail(struct mcc *m, int i, enum home_fault fault)
+{
+    m->error = MCC_ERROR_HOME + 16 * (int32_t)fault + i + 1;
+    m->homing.state = HOMING_FAILED;
+    ipo_abort(&m->ipo, &m->ring);
+}
+
+/* All axes stand at their origins, every point is written: here is 0 from now on. */
+static void set_origin(struct mcc *m)
+{
+    ipo_bind(&m->ipo);
+    memcpy(m->end, m->ipo.rest, sizeof m->end);
+    for (int i = 0; i < AXES; i++) {
+        struct homing_axis *x = &m->homing.axis[i];
+        if (m->homing.order[i] > 0) {
+            const uint32_t counts = (uint32_t)m->ipo.pulses[i];
+            x->zero = (int32_t)((uint32_t)x->zero + (x->backward ? 0u - counts : counts));
+            m->ipo.pulses[i] = m->written.pulses[i] = 0;
+            m->ipo.rest[i] = m->written.place[i] = m->end[i] = 0.0;
+        }
+    }
+    m->homing.state = HOMING_DONE;
+}
+
+void homing_look(struct mcc *m, int64_t clocks)
+{
+    struct homing *h = &m->homing;
+    bool done = true;
+
+    if (h->state != HOMING_RUNS) {
+        return;
+    }
+    for (int i = 0; i < AXES; i++) {
+        struct homing_axis *x = &h->axis[i];
+        if (h->order[i] != h->group) {
+            continue;
+        }
+        watch(m, i, clocks);
+        const struct home_inputs in = inputs(m, i);
+        const struct home_order order = home_step(&x->home, &x->config, &in);
+        if (x->home.phase == HOME_FAILED) {
+            fail(m, i, x->home.fault);
+            return;
+        }
+        obey(m, i, &order);
+        done = done && x->home.phase == HOME_DONE;
+    }
+    if (done && !next_group(m) && m->queue.count == 0) {
+        set_origin(m);
+    }
+}

@@ -1,0 +1,367 @@
+#include "manual.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mcc.h"
+
+/* The counters are 32-bit; far enough inside that an axis can still come to rest. [pulses] */
+static const double PULSES_MAX = 2147483647.0 / 3.0;
+
+/* Settings of asynchronous point-to-point. */
+
+static int set_types(const struct mcc *m, char to[AXES], const char types[AXES])
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (types[i] != 'T' && types[i] != 'S') {
+            return MCC_PARAMETER;
+        }
+    }
+    memcpy(to, types, AXES);
+    return MCC_NO_ERR;
+}
+
+static int set_times(const struct mcc *m, double to[AXES], const double ms[AXES])
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (!(isfinite(ms[i]) && ms[i] > 0.0)) {
+            return MCC_PARAMETER;
+        }
+    }
+    for (int i = 0; i < AXES; i++) {
+        to[i] = ms[i] / 1000.0;
+    }
+    return MCC_NO_ERR;
+}
+
+static int get_types(const struct mcc *m, const char from[AXES], char types[AXES])
+{
+    memcpy(types, from, AXES);
+    return m->open ? MCC_NO_ERR : MCC_INITIAL_MOTION;
+}
+
+static int get_times(const struct mcc *m, const double from[AXES], double ms[AXES])
+{
+    for (int i = 0; i < AXES; i++) {
+        ms[i] = from[i] * 1000.0;
+    }
+    return m->open ? MCC_NO_ERR : MCC_INITIAL_MOTION;
+}
+
+int MCC_set_ptp_asyn_acc_type(struct mcc *m, const char types[AXES])
+{
+    return set_types(m, m->machine.asyn.acc_type, types);
+}
+
+int MCC_get_ptp_asyn_acc_type(const struct mcc *m, char types[AXES])
+{
+    return get_types(m, m->machine.asyn.acc_type, types);
+}
+
+int MCC_set_ptp_asyn_decc_type(struct mcc *m, const char types[AXES])
+{
+    return set_types(m, m->machine.asyn.dec_type, types);
+}
+
+int MCC_get_ptp_asyn_dec_type(const struct mcc *m, char types[AXES])
+{
+    return get_types(m, m->machine.asyn.dec_type, types);
+}
+
+int MCC_set_ptp_asyn_acc_step(struct mcc *m, const double ms[AXES])
+{
+    return set_times(m, m->machine.asyn.acc_time, ms);
+}
+
+int MCC_get_ptp_asyn_acc_step(const struct mcc *m, double ms[AXES])
+{
+    return get_times(m, m->machine.asyn.acc_time, ms);
+}
+
+int MCC_set_ptp_asyn_dec_step(struct mcc *m, const double ms[AXES])
+{
+    return set_times(m, m->machine.asyn.dec_time, ms);
+}
+
+int MCC_get_ptp_asyn_dec_step(const struct mcc *m, double ms[AXES])
+{
+    return get_times(m, m->machine.asyn.dec_time, ms);
+}
+
+/* Use of axes. */
+
+int manual_allowed(const struct mcc *m)
+{
+    return !m->open ? MCC_INITIAL_MOTION :
+           m->error ? MCC_RUN_TIME :
+           m->ipo.abort ? MCC_ABORT_NOT_FINISH :
+           m->running || m->ring.count || m->ipo.stopped ||
+           (m->ipo.free ? m->homing.state == HOMING_RUNS : ipo_busy(&m->ipo))
+           ? MCC_COMMAND_NOTFINISHED : MCC_NO_ERR;
+}
+
+void manual_use(struct mcc *m, int axis, enum manual_use use)
+{
+    if (!m->ipo.free) {
+        memset(&m->manual, 0, sizeof m->manual);
+        ipo_free(&m->ipo);
+    }
+    m->manual.axis[axis].use = use;
+}
+
+static enum manual_use use_of(const struct mcc *m, int axis)
+{
+    return m->ipo.free ? m->manual.axis[axis].use : MANUAL_NONE;
+}
+
+static double place_of(const struct mcc *m, int axis)
+{
+    double place, speed;
+    if (!m->ipo.free) {
+        return m->ipo.rest[axis];
+    }
+    axes_state(&m->ipo.axes, axis, &place, &speed);
+    return place;
+}
+
+static double pulses_of(const struct mcc *m, int axis)
+{
+    return round(place_of(m, axis) * machine_pulses_per_mm(&m->machine.axis[axis]));
+}
+
+/* The axis stands on the limit switch of a direction. */
+static bool on_limit(const struct mcc *m, int axis, double direction)
+{
+    return ((direction > 0.0 ? m->signals.upper : m->signals.lower) >> axis & 1) != 0;
+}
+
+/* Whether an axis can move by hand in a direction; 0 stands for none. */
+static int movable(const struct mcc *m, int axis, double direction)
+{
+    const int code = manual_allowed(m);
+    if (code) {
+        return code;
+    }
+    if (axis < 0 || axis >= AXES || !m->machine.axis[axis].used) {
+        return MCC_PARAMETER;
+    }
+    return direction != 0.0 && on_limit(m, axis, direction) ? MCC_COMMAND_NOTACCEPTED
+                                                            : MCC_NO_ERR;
+}
+
+/* Jog. */
+
+static bool percent_valid(double percent)
+{
+    return percent > 0.0 && percent <= 100.0;
+}
+
+static struct axes_limits jog_limits(const struct mcc *m, int axis, double percent)
+{
+    return axes_limits_of(&m->machine, axis,
+                          machine_axis_speed(&m->machine.axis[axis]) * percent / 100.0);
+}
+
+int MCC_jog_c(struct mcc *m, int axis, int direction, double percent)
+{
+    const int code = movable(m, axis, direction);
+
+    if (code) {
+        return code;
+    }
+    if (direction < -1 || direction > 1 || (direction != 0 && !percent_valid(percent))) {
+        return MCC_PARAMETER;
+    }
+    if (use_of(m, axis) == MANUAL_WHEEL) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    if (direction == 0) {
+        if (use_of(m, axis) == MANUAL_JOG) {
+            axes_stand(&m->ipo.axes, axis);
+        }
+        return MCC_NO_ERR;
+    }
+    manual_use(m, axis, MANUAL_JOG);
+    const struct axes_limits l = jog_limits(m, axis, percent);
+    axes_run(&m->ipo.axes, axis, direction * l.speed, &l);
+    return MCC_NO_ERR;
+}
+
+/* One step of an axis that stands. */
+static int step(struct mcc *m, int axis, double target, const struct axes_limits *l)
+{
+    const double pulses = target * machine_pulses_per_mm(&m->machine.axis[axis]);
+    if (!(fabs(pulses) < PULSES_MAX)) {
+        return MCC_PARAMETER;
+    }
+    if (use_of(m, axis) != MANUAL_NONE) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    manual_use(m, axis, MANUAL_JOG);
+    axes_go(&m->ipo.axes, axis, target, l);
+    return MCC_NO_ERR;
+}
+
+int MCC_jog_i(struct mcc *m, int axis, double distance, double percent)
+{
+    const int code = movable(m, axis, distance);
+    if (code) {
+        return code;
+    }
+    if (!percent_valid(percent)) {
+        return MCC_PARAMETER;
+    }
+    const struct axes_limits l = jog_limits(m, axis, percent);
+    return step(m, axis, place_of(m, axis) + distance, &l);
+}
+
+int MCC_jog_s(struct mcc *m, int axis, int32_t pulses)
+{
+    const int code = movable(m, axis, pulses);
+    if (code) {
+        return code;
+    }
+    const struct axes_limits l =
+        axes_limits_of(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
+    return step(m, axis, (pulses_of(m, axis) + pulses) /
+                         machine_pulses_per_mm(&m->machine.axis[axis]), &l);
+}
+
+/* Hand wheel. */
+
+static int32_t counter(const struct mcc *m, int encoder)
+{
+    return encoder < AXES ? m->signals.enc[encoder] : m->signals.enc_aux[encoder - AXES];
+}
+
+/* The axis is where it shall be when the wheel stands as it does now. */
+static void rebase(struct mcc *m, int axis)
+{
+    struct manual_axis *w = &m->manual.axis[axis];
+    w->count = counter(m, w->encoder);
+    w->turned = 0;
+    w->base = (int32_t)pulses_of(m, axis);
+}
+
+int MCC_MPG_set(struct mcc *m, int axis, int encoder, double ratio)
+{
+    const int code = movable(m, axis, 0.0);
+
+    if (code) {
+        return code;
+    }
+    if (encoder < 0 || encoder >= MANUAL_ENCODERS || encoder == axis || !isfinite(ratio)) {
+        return MCC_PARAMETER;
+    }
+    if (use_of(m, axis) != MANUAL_NONE) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    manual_use(m, axis, MANUAL_WHEEL);
+    m->manual.axis[axis].encoder = encoder;
+    m->manual.axis[axis].ratio = ratio;
+    rebase(m, axis);
+    return MCC_NO_ERR;
+}
+
+int MCC_MPG_disable(struct mcc *m)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (use_of(m, i) == MANUAL_WHEEL) {
+            m->manual.axis[i].use = MANUAL_JOG;
+            axes_stand(&m->ipo.axes, i);
+        }
+    }
+    return MCC_NO_ERR;
+}
+
+bool manual_wheel(const struct mcc *m)
+{
+    bool on = false;
+    for (int i = 0; i < AXES; i++) {
+        on = on || use_of(m, i) == MANUAL_WHEEL;
+    }
+    return on;
+}
+
+/* Follow the wheel: to the pulse base + ratio * counts, or no further onto a limit switch. */
+static void follow(struct mcc *m, int axis)
+{
+    struct manual_axis *w = &m->manual.axis[axis];
+    const int32_t now = counter(m, w->encoder);
+    const double scale = machine_pulses_per_mm(&m->machine.axis[axis]);
+
+    w->turned += (int32_t)((uint32_t)now - (uint32_t)w->count);
+    w->count = now;
+    const double want = round(w->base + w->ratio * (double)w->turned);
+    const double target = fmax(-PULSES_MAX, fmin(PULSES_MAX, want)) / scale;
+    if (target != place_of(m, axis) && on_limit(m, axis, target - place_of(m, axis))) {
+        axes_stand(&m->ipo.axes, axis);
+        rebase(m, axis);
+    } else if (m->ipo.axes.axis[axis].order != AXES_GO ||
+               m->ipo.axes.axis[axis].goal != target) {
+        const struct axes_limits l =
+            axes_limits_of(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
+        axes_go(&m->ipo.axes, axis, target, &l);
+    }
+}
+
+/* A jogged axis stops at a limit switch, and before its counter overflows. */
+static void guard(struct mcc *m, int axis)
+{
+    double place, speed;
+    axes_state(&m->ipo.axes, axis, &place, &speed);
+    const bool far = fabs(pulses_of(m, axis)) > PULSES_MAX && speed * place > 0.0;
+    if (m->ipo.axes.axis[axis].order != AXES_STAND && speed != 0.0 &&
+        (far || on_limit(m, axis, speed))) {
+        axes_stand(&m->ipo.axes, axis);
+    }
+}
+
+void manual_look(struct mcc *m, int64_t clocks)
+{
+    if (!m->ipo.free || m->ipo.abort) {
+        return;
+    }
+    for (int i = 0; i < AXES; i++) {
+        switch (m->manual.axis[i].use) {
+        case MANUAL_JOG:
+            guard(m, i);
+            break;
+        case MANUAL_WHEEL:
+            follow(m, i);
+            break;
+        default:
+            break;
+        }
+    }
+    homing_look(m, clocks);
+}
+
+void manual_end(struct mcc *m)
+{
+    bool used = false;
+
+    if (!m->ipo.free) {
+        return;
+    }
+    for (int i = 0; i < AXES; i++) {
+        struct manual_axis *a = &m->manual.axis[i];
+        if (a->use == MANUAL_JOG && axes_done(&m->ipo.axes, i)) {
+            a->use = MANUAL_NONE;
+        }
+        used = used || a->use != MANUAL_NONE;
+    }
+    if (!used) {
+        ipo_bind(&m->ipo);
+        memcpy(m->end, m->ipo.rest, sizeof m->end);
+    }
+}
