@@ -14,7 +14,8 @@ from fmi_tools import ERROR, OK, Instance
 HOST = """dda_length dda_divider dda_run min_stock irq_mask ack_seq ack_flags p_gain loop_on
 dac_source dac_volts cmd_seq cmd_clock cmd_count cmd_frames latch_seq clear_seq""".split()
 CARD = """irq_seq irq_clock irq_flags cmd_ack frames_refused stock pulse_count enc_count
-err_count latch_value latch_seen home over_travel stopped""".split()
+err_count latch_value latch_seen home over_travel stopped enc_count_7 enc_count_8
+enc_count_9""".split()
 QUARTER = "G21 G17 G90 G61\nG1 X5 F3000\nG3 X0 Y5 I-5\nG4 P0.02\nG2 X5 Y0 R5 Z1\nM2\n"
 FAST = {"acc_time": 0.01, "dec_time": 0.01}
 
@@ -79,6 +80,9 @@ def test_bad_program_is_refused_before_anything_moves(
         ({"start_delay": 1e12}, "start_delay = 1e+12 s is too long"),
         ({"program": "no/such.ngc"}, "program: cannot read no/such.ngc: No such file"),
         ({"program": "."}, "program: cannot read .: Is a directory"),
+        ({"home_order": [0, 0, 0, 1, 0, 0]}, "home_order[4] = 1: the axis is not active"),
+        ({"home_order": [1] + 5 * [0], "home_high_speed": 501.0}, "home_high_speed[1] = 501 mm/s"),
+        ({"home_first": True}, "home_first: home_order names no axis"),
         ({"path_file": "no/such/planned.csv"}, "path_file: cannot write no/such/planned.csv: No"),
     ],
 )
@@ -132,6 +136,37 @@ def program(folder: Path, text: str) -> str:
     """Name of a file with the text."""
     (folder / "part.ngc").write_text(text)
     return str(folder / "part.ngc")
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_jog_and_hand_wheel_from_the_panel(fmi: int) -> None:
+    machine = Machine(fmi, {**FAST, "output_mode": 0, "queue_depth": 8})
+
+    def pass_time(steps: int) -> tuple[list[int], int]:
+        for _ in range(steps):
+            machine.step(1e-4)
+        return machine.card.get("pulse_count")[:3], machine.mcc.get("status")[0]
+
+    machine.mcc.set("jog", [1, -1, 0, 0, 0, 0])
+    (x, y, z), status = pass_time(3000)
+    assert (status, z) == (0, 0) and 12000 < x == -y < 15000  # 50 mm/s for less than 0.3 s
+    machine.mcc.set("jog", 0)
+    still, status = pass_time(1000)
+    assert status == 1 and machine.mcc.get("done")[0]
+    assert pass_time(500)[0] == still
+
+    machine.mcc.set("mpg_ratio", -2.5)
+    machine.mcc.set("mpg_axis", 3)
+    assert pass_time(100)[1] == 5 and not machine.mcc.get("done")[0]
+    for k in range(300):  # 7.77 turns of a wheel with 100 lines
+        machine.card.set("enc_phase_aux", [777.0 * k / 299, 0.0, 0.0])
+        machine.step(1e-4)
+    (x, y, z), status = pass_time(1500)
+    assert machine.card.get("enc_count_7")[0] == 3108
+    assert ([x, y], z, status) == (still[:2], -7770, 5)
+    machine.mcc.set("mpg_axis", 0)
+    assert pass_time(100) == ([x, y, z], 1)
+    machine.end()
 
 
 @pytest.mark.parametrize("fmi", [2, 3])

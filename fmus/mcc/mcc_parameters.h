@@ -35,6 +35,31 @@ static struct machine machine_of(const struct vars *v)
     return m;
 }
 
+static int check_homing(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    const struct machine m = machine_of(v);
+    bool any = false;
+
+    for (int i = 0; i < AXES; i++) {
+        const double safe = machine_axis_speed(&m.axis[i]);
+        if (v->home_order[i] == 0) {
+            continue;
+        }
+        any = true;
+        if (!v->active[i]) {
+            return fmu_fail(f, "home_order[%d] = %d: the axis is not active", i + 1,
+                            (int)v->home_order[i]);
+        }
+        if (v->home_high_speed[i] > safe || v->home_low_speed[i] > safe) {
+            return fmu_fail(f, "home_high_speed[%d] = %g mm/s, home_low_speed[%d] = %g mm/s: "
+                            "max_rpm is %g mm/s", i + 1, v->home_high_speed[i], i + 1,
+                            v->home_low_speed[i], safe);
+        }
+    }
+    return v->home_first && !any ? fmu_fail(f, "home_first: home_order names no axis") : 0;
+}
+
 static int check_parameters(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -65,10 +90,29 @@ static int check_parameters(struct fmu *f)
             return fmu_fail(f, "%s = \"%s\" is neither T nor S", types[i].name, types[i].value);
         }
     }
+    if (check_homing(f)) {
+        return -1;
+    }
     if (v->feed > v->max_feed) {
         return fmu_fail(f, "feed %g mm/min is above max_feed %g mm/min", v->feed, v->max_feed);
     }
     return 0;
+}
+
+static void homing_of(const struct vars *v, struct pc_config *c)
+{
+    for (int i = 0; i < AXES; i++) {
+        c->home[i] = (struct home_config){
+            .mode = (enum home_mode)v->home_mode[i], .direction = (uint32_t)v->home_dir[i],
+            .sensor_on = v->home_sensor_on[i], .high_speed = v->home_high_speed[i],
+            .low_speed = v->home_low_speed[i], .offset = v->home_offset[i],
+            .search = v->home_search[i], .index_way = v->home_index_way[i]
+        };
+        c->home_order[i] = v->home_order[i];
+        c->encoder_backward[i] = v->pos2encoder_dir[i] == 1;
+    }
+    c->home_first = v->home_first;
+    c->home_settle = v->home_settle;
 }
 
 static struct pc_config config_of(const struct vars *v)
@@ -85,6 +129,7 @@ static struct pc_config config_of(const struct vars *v)
     memcpy(c.isr.mask, v->irq_sources, sizeof c.isr.mask);
     memcpy(c.isr.priority, v->irq_priority, sizeof c.isr.priority);
     memcpy(c.output_mode, v->output_mode, sizeof c.output_mode);
+    homing_of(v, &c);
     return c;
 }
 

@@ -137,6 +137,7 @@ static void publish(struct fmu *f)
 
     v->status = task_status(mcc);
     v->done = pc_done(&m->pc);
+    v->homed = MCC_check_homef(mcc) == 1;
     v->error = MCC_get_errcode(mcc);
     v->line = mcc->written.line;
     v->command = mcc->written.command;
@@ -201,7 +202,8 @@ static void read_bus(struct fmu *f, int64_t at)
     };
     struct pc_panel panel = {
         .hold = v->hold, .abort = v->abort, .cycle_start = v->cycle_start,
-        .override = v->override
+        .override = v->override, .go_home = v->go_home, .jog_percent = 100.0 * v->jog_speed,
+        .wheel_axis = v->mpg_axis, .wheel_encoder = v->mpg_encoder, .wheel_ratio = v->mpg_ratio
     };
     memcpy(card.irq_flags, v->card_irq_flags, sizeof card.irq_flags);
     memcpy(panel.software_gain, v->software_gain, sizeof panel.software_gain);
@@ -211,6 +213,10 @@ static void read_bus(struct fmu *f, int64_t at)
         .upper = v->card_over_travel & 0x3f, .lower = (v->card_over_travel >> 8) & 0x3f
     };
     memcpy(panel.signals.enc, v->card_enc_count, sizeof panel.signals.enc);
+    memcpy(panel.jog, v->jog, sizeof panel.jog);
+    memcpy(panel.signals.enc_aux,
+           (int32_t[]){ v->card_enc_count_7, v->card_enc_count_8, v->card_enc_count_9 },
+           sizeof panel.signals.enc_aux);
     memcpy(panel.signals.err, v->card_err_count, sizeof panel.signals.err);
     memcpy(panel.signals.latch, v->card_latch_value, sizeof panel.signals.latch);
     memcpy(panel.signals.latched, v->card_latch_seen, sizeof panel.signals.latched);
