@@ -2,7 +2,7 @@
 #include "mcc_check.h"
 #include "task.h"
 
-static struct mcc m, before;    /* 180 kB each: not on the stack */
+static struct mcc m, before;    /* 300 kB each: not on the stack */
 
 /* The call must return the code and, if it is an error, leave the whole state as it was. */
 #define REFUSED(call, code) \
