@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
@@ -57,8 +57,13 @@ def test_no_sampled_point_is_nearer(segment, points) -> None:
     assert np.allclose(foot.distance, own, atol=ROUNDING, rtol=0.0)
 
 
+# A rise so small that the circle's foot is as near as the helix', to the last digit.
+FLAT = Arc(LABEL, np.array([0.0, 0.0, -1.0]), np.zeros(3), np.array([0.0, 1.0, 0.0]), 4.0, 7.5e-10)
+
+
 @settings(max_examples=200, deadline=None)
 @given(segments(), point)
+@example(FLAT, np.array([0.0, 1.0, 1.0]))
 def test_foot_is_square_to_the_path_or_an_end(segment, query) -> None:
     foot = segment.foot(query[None, :])
     along = foot.along[0]

@@ -235,7 +235,7 @@ class Arc:
             if self.growth:
                 inside = self._refine(points, inside)
             other = _norm(points - self._points(inside))
-            nearer = other < distance
+            nearer = other <= distance  # the later candidates are the more exact
             best = np.where(nearer, inside, best)
             distance = np.where(nearer, other, distance)
         return Foot(self._points(best), best / self.angle * self.length, distance)
