@@ -1,7 +1,7 @@
 /* control - the library's calls that act on motion under way or tell about it. */
 #include <string.h>
 
-#include "mcc.h"
+#include "compensate.h"
 
 /* Nothing under way and nothing to come. */
 static bool idle(const struct mcc *m)
@@ -46,9 +46,14 @@ int MCC_motion_abort(struct mcc *m)
     return MCC_NO_ERR;
 }
 
-int MCC_check_stop(const struct mcc *m)
+bool control_rests(const struct mcc *m)
 {
     return idle(m) && m->queue.count == 0 && !m->ipo.news;
+}
+
+int MCC_check_stop(const struct mcc *m)
+{
+    return control_rests(m) && !compensate_due(m);
 }
 
 int MCC_get_cpos(const struct mcc *m, double place[AXES])

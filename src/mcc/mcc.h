@@ -8,6 +8,7 @@
 #define MCC_H
 
 #include "homing.h"
+#include "comp.h"
 #include "interpreter.h"
 #include "ipo.h"
 #include "manual.h"
@@ -62,6 +63,8 @@ struct mcc {
     int32_t latch_seq[AXES];    /* a new number arms the latch for the next index, once */
     struct manual manual;
     struct homing homing;
+    struct comp_table comp_table[AXES];
+    struct comp  comp[AXES];    /* of the latest point */
 };
 
 /* System. MCC_init_motion: at rest at the origin, settings from the machine. */
@@ -158,11 +161,16 @@ int MCC_set_ptp_ospd(struct mcc *m, double percent);    /* 0..200, never above t
 double MCC_get_ptp_ospd(const struct mcc *m);
 int MCC_set_P_gain(struct mcc *m, const int32_t gain[AXES]);
 int MCC_get_P_gain(const struct mcc *m, int32_t gain[AXES]);
+/* Pitch and backlash table of an axis, at standstill; interval 0 drives its correction out. */
+int MCC_set_comp(struct mcc *m, int axis, const struct comp_table *table);
 
 /* Status: of the points the card has taken. */
 int MCC_get_cpos(const struct mcc *m, double place[AXES]);      /* [mm] */
 int MCC_get_ppos(const struct mcc *m, int32_t pulses[AXES]);    /* [pulses] */
 int MCC_get_errcnt(const struct mcc *m, int32_t counts[AXES]);  /* [counts] */
 int MCC_check_stop(const struct mcc *m);    /* 1 all commands done and every point written */
+
+/* The same, but that some compensation may be still to be driven in. */
+bool control_rests(const struct mcc *m);
 
 #endif

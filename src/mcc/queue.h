@@ -13,7 +13,8 @@ enum { QUEUE_SIZE = 1024 };
 /* What happens in one DDA time. */
 struct point {
     int32_t frame[AXES];    /* [pulses] to put out */
-    int32_t pulses[AXES];   /* [pulses] position at the end, all frames added up */
+    int32_t pulses[AXES];   /* [pulses] position at the end, without compensation */
+    int32_t added[AXES];    /* [pulses] compensation in all frames up to the end */
     double  place[AXES];    /* [mm] ideal position at the end */
     double  feed;           /* [mm/s] speed along the path at the end */
     int32_t line, command;  /* that moves at the end */

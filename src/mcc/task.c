@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compensate.h"
+
 struct program task_program(const struct mcc *m, const struct source *s)
 {
     return (struct program){ s, &m->machine, m->block_delete, m->optional_stop };
@@ -116,7 +118,7 @@ static void refill(struct mcc *m, const struct program *p)
 }
 
 /* Frame of a point from the previous position; false if the card could not take it. */
-static bool frame(const struct mcc *m, struct point *p)
+static bool frame(struct mcc *m, struct point *p)
 {
     for (int i = 0; i < AXES; i++) {
         const int64_t pulses = (int64_t)p->pulses[i] - m->ipo.pulses[i];
@@ -125,6 +127,7 @@ static bool frame(const struct mcc *m, struct point *p)
         }
         p->frame[i] = (int32_t)pulses;
     }
+    compensate_frame(m, p);
     return true;
 }
 
@@ -159,7 +162,7 @@ void task_run(struct mcc *m, const struct source *s)
     }
     refill(m, &p);
     while (m->queue.count < m->machine.queue_depth &&
-           (m->ipo.news || !ipo_resting(&m->ipo, &m->ring))) {
+           (m->ipo.news || compensate_due(m) || !ipo_resting(&m->ipo, &m->ring))) {
         next_point(m, &p);
     }
     if (!ipo_busy(&m->ipo) && m->ring.count == 0 && !m->running) {

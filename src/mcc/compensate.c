@@ -1,0 +1,56 @@
+#include "compensate.h"
+
+#include <math.h>
+
+int MCC_set_comp(struct mcc *m, int axis, const struct comp_table *table)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (!control_rests(m)) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    if (axis < 0 || axis >= AXES || !m->machine.axis[axis].used || !comp_valid(table)) {
+        return MCC_PARAMETER;
+    }
+    m->comp_table[axis] = *table;
+    return MCC_NO_ERR;
+}
+
+/* The correction of a DDA time changes the speed by no more than the axis gains in a DDA time when
+ * it takes acc_time to its safe speed; one pulse always fits. */
+static struct comp_limits limits(const struct machine *m, const struct machine_axis *a)
+{
+    const double dda = machine_dda_time(m);         /* [s] */
+    const double safe = a->rpm / 60.0 * a->ppr;     /* [pulses/s] */
+    const double gain = safe * dda * dda / m->acc_time;
+
+    return (struct comp_limits){
+        .command = a->max_dda,
+        .change = (int32_t)fmax(1.0, fmin(gain, COMP_LARGEST))
+    };
+}
+
+bool compensate_due(const struct mcc *m)
+{
+    for (int i = 0; i < AXES; i++) {
+        if (m->machine.axis[i].used &&
+            !comp_done(&m->comp_table[i], &m->comp[i], m->ipo.pulses[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void compensate_frame(struct mcc *m, struct point *p)
+{
+    for (int i = 0; i < AXES; i++) {
+        const struct machine_axis *a = &m->machine.axis[i];
+        if (a->used) {
+            const struct comp_limits l = limits(&m->machine, a);
+            p->frame[i] += comp_step(&m->comp_table[i], &m->comp[i], p->pulses[i], p->frame[i],
+                                     &l);
+        }
+        p->added[i] = m->comp[i].added;
+    }
+}
