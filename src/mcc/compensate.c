@@ -33,7 +33,7 @@ static struct comp_limits limits(const struct machine *m, const struct machine_a
 
 bool compensate_due(const struct mcc *m)
 {
-    for (int i = 0; i < AXES; i++) {
+    for (int i = 0; i < AXES && !m->dry_run; i++) {
         if (m->machine.axis[i].used &&
             !comp_done(&m->comp_table[i], &m->comp[i], m->ipo.pulses[i])) {
             return true;
@@ -46,7 +46,9 @@ void compensate_frame(struct mcc *m, struct point *p)
 {
     for (int i = 0; i < AXES; i++) {
         const struct machine_axis *a = &m->machine.axis[i];
-        if (a->used) {
+        if (m->dry_run) {
+            p->frame[i] = 0;
+        } else if (a->used) {
             const struct comp_limits l = limits(&m->machine, a);
             p->frame[i] += comp_step(&m->comp_table[i], &m->comp[i], p->pulses[i], p->frame[i],
                                      &l);

@@ -11,7 +11,8 @@
 /* Some correction is still to be driven in where the axes stand. */
 bool compensate_due(const struct mcc *m);
 
-/* Add what fits to the frames of the next point, whose pulses and frames are uncompensated. */
+/* Add what fits to the frames of the next point, whose pulses and frames are uncompensated;
+ * in a dry run the frames become zero. */
 void compensate_frame(struct mcc *m, struct point *p);
 
 #endif

@@ -39,6 +39,19 @@ bool ipo_busy(const struct ipo *p)
     return p->count > 0 || p->track.active || p->free;
 }
 
+/* Single block: the next command is the first of a block that has no leave. A block is a line of
+ * the program, or one call of the API. */
+static bool blocked(const struct ipo *p, const struct ring *r)
+{
+    const struct command *next = ring_head(r);
+    return p->single && !p->leave && next && (next->line == 0 || next->line != p->block);
+}
+
+bool ipo_waits(const struct ipo *p, const struct ring *r)
+{
+    return !ipo_busy(p) && (p->stopped || blocked(p, r));
+}
+
 bool ipo_resting(const struct ipo *p, const struct ring *r)
 {
     if (p->track.active) {
@@ -52,7 +65,7 @@ bool ipo_resting(const struct ipo *p, const struct ring *r)
             return false;
         }
     }
-    return p->count > 0 || p->hold || p->abort || p->stopped || r->count == 0;
+    return p->count > 0 || p->hold || p->abort || ipo_waits(p, r) || r->count == 0;
 }
 
 bool ipo_moving(const struct ipo *p)
@@ -141,9 +154,23 @@ void ipo_hold(struct ipo *p, bool on)
     }
 }
 
+void ipo_single(struct ipo *p, const struct ring *r, bool on)
+{
+    p->stopped = p->stopped || (p->single && !on && ipo_waits(p, r));
+    p->leave = p->leave && on;
+    p->single = on;
+}
+
+void ipo_leave(struct ipo *p)
+{
+    p->leave = p->single;
+    p->block = 0;
+}
+
 void ipo_continue(struct ipo *p)
 {
     p->stopped = false;
+    ipo_leave(p);
 }
 
 void ipo_override(struct ipo *p, double feed, double ptp)
@@ -188,7 +215,7 @@ void ipo_stop(struct ipo *p, struct ring *r)
     p->count = 0;
     p->track.active = false;
     p->free = false;
-    p->hold = p->abort = p->stopped = false;
+    p->hold = p->abort = p->stopped = p->leave = false;
     p->news = p->news || p->outputs.spindle != 0.0 || p->outputs.coolant != 0;
     p->outputs.spindle = 0.0;
     p->outputs.coolant = 0;
@@ -217,7 +244,7 @@ static bool may_start(const struct ipo *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
     if (!next || p->track.active || p->free || p->hold || p->abort || p->stopped ||
-        p->count == 2) {
+        p->count == 2 || blocked(p, r)) {
         return false;
     }
     return p->count == 0 || (p->move[0].command.blend && p->move[0].profile.ends &&
@@ -228,7 +255,8 @@ static bool may_start(const struct ipo *p, const struct ring *r)
 static void begin(struct ipo *p, const struct command *c)
 {
     p->outputs.digital = (p->outputs.digital | c->set) & ~c->clear;
-    p->line = c->line;
+    p->line = p->block = c->line;
+    p->leave = false;
     p->started = command_lasts(c) ? c->index : p->started;
 }
 
@@ -236,7 +264,7 @@ static void start(struct ipo *p, struct ring *r)
 {
     const struct command *c = ring_head(r);
 
-    if (p->count == 0 && track_begins(r)) {
+    if (p->count == 0 && !p->single && track_begins(r)) {
         track_start(&p->track, r);
         return;
     }

@@ -36,6 +36,9 @@ struct ipo {
     bool    hold;
     bool    abort;              /* ramp to rest, then drop everything */
     bool    stopped;            /* M0, M1: at rest until ipo_continue */
+    bool    single;             /* each block waits for ipo_continue */
+    bool    leave;              /* given for the next one */
+    int32_t block;              /* line of the latest one */
     bool    news;               /* outputs or line have changed since the latest point */
     struct outputs outputs;
     int32_t started, line;      /* index and source line of the latest command begun */
@@ -64,7 +67,17 @@ void ipo_bind(struct ipo *p);
 /* Pause on the path, or go on. */
 void ipo_hold(struct ipo *p, bool on);
 
-/* Go on behind a stop of the program. */
+/* Rest before each block (a line of the program, a call of the API), or no longer: what rests then
+ * still waits for ipo_continue. */
+void ipo_single(struct ipo *p, const struct ring *r, bool on);
+
+/* True if the axes rest at a stop of the program or before a block. */
+bool ipo_waits(const struct ipo *p, const struct ring *r);
+
+/* The next command begins a block, and has leave to. */
+void ipo_leave(struct ipo *p);
+
+/* Go on behind a stop of the program, or with one block. */
 void ipo_continue(struct ipo *p);
 
 /* New overrides, from now on. A move that hands over to the next one keeps its deceleration. */

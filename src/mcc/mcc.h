@@ -65,6 +65,9 @@ struct mcc {
     struct homing homing;
     struct comp_table comp_table[AXES];
     struct comp  comp[AXES];    /* of the latest point */
+    bool    dry_run;            /* the points go to the card without pulses */
+    double  dry_place[AXES];    /* [mm] where the axes really stand meanwhile */
+    int32_t dry_pulses[AXES];   /* [pulses] */
 };
 
 /* System. MCC_init_motion: at rest at the origin, settings from the machine. */
@@ -163,6 +166,11 @@ int MCC_set_P_gain(struct mcc *m, const int32_t gain[AXES]);
 int MCC_get_P_gain(const struct mcc *m, int32_t gain[AXES]);
 /* Pitch and backlash table of an axis, at standstill; interval 0 drives its correction out. */
 int MCC_set_comp(struct mcc *m, int axis, const struct comp_table *table);
+/* Dry run: all is done and reported, but the card gets no pulses. At standstill; switched off, the
+ * position is again where the axes stand. */
+int MCC_enable_dry_run(struct mcc *m);
+int MCC_disable_dry_run(struct mcc *m);
+int MCC_check_dry_run(const struct mcc *m);             /* 0 enabled, 1 disabled */
 
 /* Status: of the points the card has taken. */
 int MCC_get_cpos(const struct mcc *m, double place[AXES]);      /* [mm] */

@@ -40,6 +40,7 @@ int task_start(struct mcc *m)
     }
     begin(m, &m->program);
     m->running = true;
+    ipo_leave(&m->ipo);
     return MCC_NO_ERR;
 }
 
@@ -69,12 +70,21 @@ void task_set_switches(struct mcc *m, bool block_delete, bool optional_stop)
     m->optional_stop = optional_stop;
 }
 
+int task_set_single_block(struct mcc *m, bool on)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    ipo_single(&m->ipo, &m->ring, on);
+    return MCC_NO_ERR;
+}
+
 int task_continue(struct mcc *m)
 {
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!m->ipo.stopped || m->ipo.news || m->queue.count > 0) {
+    if (!ipo_waits(&m->ipo, &m->ring) || m->ipo.news || m->queue.count > 0) {
         return MCC_CONTI_ILLEGAL;
     }
     ipo_continue(&m->ipo);
@@ -166,6 +176,7 @@ void task_run(struct mcc *m, const struct source *s)
         next_point(m, &p);
     }
     if (!ipo_busy(&m->ipo) && m->ring.count == 0 && !m->running) {
+        m->ipo.leave = false;
         memcpy(m->end, m->ipo.rest, sizeof m->end);     /* an abort may have moved it, */
         if (m->ipo.outputs.spindle == 0.0) {
             m->program.switches.turning = 0;            /* and switched these off */
@@ -188,6 +199,9 @@ enum task_status task_status(const struct mcc *m)
     if ((m->ipo.hold || m->ipo.stopped) && m->queue.count == 0 && !m->ipo.news &&
         ipo_resting(&m->ipo, &m->ring)) {
         return TASK_HOLD;
+    }
+    if (ipo_waits(&m->ipo, &m->ring) && m->queue.count == 0 && !m->ipo.news) {
+        return TASK_BLOCK_HOLD;
     }
     return manual_wheel(m) ? TASK_WHEEL : m->written.waits ? TASK_DELAY : TASK_RUNNING;
 }

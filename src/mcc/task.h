@@ -5,7 +5,9 @@
 #include "mcc.h"
 
 /* Codes of the library's group status that occur here. */
-enum task_status { TASK_RUNNING, TASK_STOPPED, TASK_HOLD, TASK_DELAY, TASK_WHEEL = 5 };
+enum task_status {
+    TASK_RUNNING, TASK_STOPPED, TASK_HOLD, TASK_DELAY, TASK_BLOCK_HOLD, TASK_WHEEL
+};
 
 /* What a program is read against, whose text comes from s. */
 struct program task_program(const struct mcc *m, const struct source *s);
@@ -23,7 +25,12 @@ int task_set_origin(struct mcc *m, int system, const double origin[AXES]);
  * stop at M1. Both are off at first. */
 void task_set_switches(struct mcc *m, bool block_delete, bool optional_stop);
 
-/* Go on behind M0 or M1. Refused unless the axes rest there and every point has been written. */
+/* Rest before each block: a line of the program, or a call of the API. The one with which a program
+ * starts has leave. Switched off, a block that waits still needs task_continue. */
+int task_set_single_block(struct mcc *m, bool on);
+
+/* Go on behind M0 or M1, or with the next block. Refused unless the axes rest there and every point
+ * has been written. */
 int task_continue(struct mcc *m);
 
 /* One cycle: fill the point queue as far as commands reach. The text is the one that task_check
