@@ -381,7 +381,7 @@ void ipo_point(struct ipo *p, struct ring *r, const struct machine *m, struct tr
     }
     for (int i = 0; i < AXES; i++) {
         const double ideal = point->place[i] * machine_pulses_per_mm(&m->axis[i]);
-        point->pulses[i] = m->axis[i].used ? (int32_t)lround(ideal) : 0;
+        point->pulses[i] = m->axis[i].used ? (int32_t)lround(ideal) : p->pulses[i];
     }
     point->line = p->count ? p->move[0].command.line : p->line;
     point->command = p->count ? p->move[0].command.index : p->started;

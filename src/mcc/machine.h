@@ -17,6 +17,7 @@ struct machine_axis {
     double  rpm;            /* [rpm] highest safe motor speed */
     int32_t p_gain;         /* position loop of the card */
     int32_t max_dda;        /* most pulses in one DDA time; 0 at init means 2^dda_length - 1 */
+    bool    inverted;       /* pulses and encoder counts of the card run against the position */
 };
 
 /* Ramps of motion whose axes are independent, of each axis its own; 0 at init: the machine's. */

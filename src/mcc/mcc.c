@@ -14,10 +14,12 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
         if (m->machine.axis[i].max_dda == 0) {
             m->machine.axis[i].max_dda = machine_dda_limit(machine);
         }
+        m->epcio_axis_param[i] = mcc_param_of(&machine->axis[i]);
     }
     m->machine.acc_type = machine->acc_type ? machine->acc_type : 'T';
     m->machine.dec_type = machine->dec_type ? machine->dec_type : 'T';
     machine_complete_asyn(&m->machine);
+    m->cart_max_speed = machine->max_feed;
     m->feed = machine->feed;
     ipo_start(&m->ipo);
     m->open = true;

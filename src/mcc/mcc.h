@@ -12,6 +12,7 @@
 #include "interpreter.h"
 #include "ipo.h"
 #include "manual.h"
+#include "mcc_param.h"
 #include "queue.h"
 #include "signals.h"
 
@@ -68,6 +69,8 @@ struct mcc {
     bool    dry_run;            /* the points go to the card without pulses */
     double  dry_place[AXES];    /* [mm] where the axes really stand meanwhile */
     int32_t dry_pulses[AXES];   /* [pulses] */
+    MCC_MACH_PARAM epcio_axis_param[AXES];  /* for the user to fill, see MCC_update_param */
+    double  cart_max_speed;     /* [mm/s] likewise */
 };
 
 /* System. MCC_init_motion: at rest at the origin, settings from the machine. */
@@ -75,6 +78,10 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine);
 int MCC_close_motion(struct mcc *m);
 int MCC_clear_error(struct mcc *m);
 int MCC_get_errcode(const struct mcc *m);               /* enum mcc_error */
+/* Make epcio_axis_param and cart_max_speed effective, at standstill. The axes stay where they are
+ * and their pulses count on. */
+int MCC_update_param(struct mcc *m);
+MCC_MACH_PARAM mcc_param_of(const struct machine_axis *a);
 
 /* Motion: each returns the command's index > 0, or a code < 0. Targets are absolute or incremental
  * as set; a circle direction is 0 clockwise, 1 counter-clockwise. */

@@ -51,7 +51,7 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     pc->home_due = pc->home_due || (panel->go_home && !pc->home_seen);
     pc->home_seen = panel->go_home;
     MCC_set_P_gain(&pc->mcc, panel->p_gain);
-    pc->mcc.signals = panel->signals;
+    pc->mcc.signals = signals_turned(&panel->signals, m);
     manual_look(&pc->mcc, pc->config.bus);
     for (int i = 0; i < AXES; i++) {
         if (pc->config.output_mode[i] == 2 && m->axis[i].used) {

@@ -95,7 +95,10 @@ void pcl_serve(struct pcl *p, const struct mcc *m, int64_t clock)
     p->late = p->points < p->count && task_moving(m);
     memset(p->frames, 0, sizeof p->frames);
     for (int i = 0; i < p->points; i++) {
-        memcpy(p->frames[i], queue_peek(&m->queue, i)->frame, sizeof p->frames[i]);
+        for (int k = 0; k < AXES; k++) {
+            const int32_t pulses = queue_peek(&m->queue, i)->frame[k];
+            p->frames[i][k] = m->machine.axis[k].inverted ? -pulses : pulses;
+        }
     }
     p->clock = clock;
     p->open = true;

@@ -18,4 +18,7 @@ struct signals {
     int32_t  latched[AXES]; /* how often it has latched */
 };
 
+/* The counts of the card as counts of the library, or back: of an inverted axis they turn round. */
+struct signals signals_turned(const struct signals *s, const struct machine *m);
+
 #endif

@@ -1,0 +1,102 @@
+#include "mcc_param.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mcc.h"
+
+MCC_MACH_PARAM mcc_param_of(const struct machine_axis *a)
+{
+    return (MCC_MACH_PARAM){
+        .type = a->used ? MCC_LINEAR : MCC_UNUSED, .pos2encoder_dir = a->inverted,
+        .PPR = a->ppr, .RPM = a->rpm, .pitch = a->pitch, .gear_ratio = a->gear_ratio
+    };
+}
+
+static bool bit(int32_t x)
+{
+    return x == 0 || x == 1;
+}
+
+/* What machine_valid does not look at. */
+static bool valid(const MCC_MACH_PARAM *p)
+{
+    return p->type >= MCC_LINEAR && p->type <= MCC_UNUSED && bit(p->pos2encoder_dir) &&
+           isfinite(p->high_limit) && isfinite(p->low_limit) && p->low_limit <= p->high_limit &&
+           isfinite(p->HOT_offset) && isfinite(p->LOT_offset) &&
+           bit(p->sensor_on) && bit(p->index_on) && p->home_dir >= 0 && p->home_dir <= 7;
+}
+
+static void set_axis(struct machine_axis *a, const MCC_MACH_PARAM *p)
+{
+    a->used = p->type == MCC_LINEAR || p->type == MCC_ROTARY;
+    a->inverted = p->pos2encoder_dir == 1;
+    a->ppr = p->PPR;
+    a->rpm = p->RPM;
+    a->pitch = p->pitch;
+    a->gear_ratio = p->gear_ratio;
+}
+
+/* The machine as the user wants it. */
+static int wanted(const struct mcc *m, struct machine *w)
+{
+    *w = m->machine;
+    w->max_feed = m->cart_max_speed;
+    for (int i = 0; i < AXES; i++) {
+        if (!valid(&m->epcio_axis_param[i])) {
+            return MCC_PARAMETER;
+        }
+        set_axis(&w->axis[i], &m->epcio_axis_param[i]);
+    }
+    if (m->feed > w->max_feed) {
+        return MCC_FEED_RATE;
+    }
+    w->feed = fmin(w->feed, w->max_feed);
+    return machine_valid(w) ? MCC_NO_ERR : MCC_PARAMETER;
+}
+
+/* Where an axis stands does not change: the pulses it got are the same in number, and turn their
+ * sign with its direction; what they are in mm follows. */
+static void keep_place(struct mcc *m, int i, const struct machine_axis *new)
+{
+    const struct machine_axis *old = &m->machine.axis[i];
+    double place = m->ipo.rest[i];
+
+    if (new->inverted != old->inverted) {
+        m->ipo.pulses[i] = -m->ipo.pulses[i];
+        place = -place;
+        m->comp[i] = (struct comp){ -m->comp[i].added, !m->comp[i].backward };
+    }
+    if (machine_pulses_per_mm(new) != machine_pulses_per_mm(old)) {
+        place = m->ipo.pulses[i] / machine_pulses_per_mm(new);
+    }
+    m->ipo.rest[i] = m->end[i] = m->written.place[i] = place;
+    m->written.pulses[i] = m->ipo.pulses[i];
+    m->written.added[i] = m->comp[i].added;
+}
+
+int MCC_update_param(struct mcc *m)
+{
+    struct machine w;
+
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (!MCC_check_stop(m)) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    if (m->dry_run) {
+        return MCC_COMMAND_NOTACCEPTED;
+    }
+    const int code = wanted(m, &w);
+    if (code) {
+        return code;
+    }
+    const struct signals card = signals_turned(&m->signals, &m->machine);
+    for (int i = 0; i < AXES; i++) {
+        keep_place(m, i, &w.axis[i]);
+    }
+    m->machine = w;
+    m->signals = signals_turned(&card, &w);
+    return MCC_NO_ERR;
+}
