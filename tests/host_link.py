@@ -115,7 +115,9 @@ class Run:
         for name in ("card_cmd_seq", "card_cmd_count", "card_cmd_frames"):
             self.wires.watch("mcc", name)
         self.wires.watch("card", "cmd_ack")
-        for name in ("done", "error", "position", "starved", "status"):
+        for name in ("pos2encoder_dir", "dry_run"):
+            self.wires.watch("mcc", name)
+        for name in ("done", "error", "position", "compensation", "starved", "status"):
             self.wires.watch("mcc", name)
 
     def go(self, after: float = 0.2) -> None:
@@ -192,7 +194,10 @@ class Run:
         frames = np.array(self.taken).reshape(-1, 6).sum(axis=0)
         assert np.array_equal(pulses, frames), "pulses out are not the commands in"
         position = np.array(self.value("mcc", "position"))
-        assert np.array_equal(pulses[:AXES], np.round(position[:AXES] * PULSES_PER_MM))
+        commanded = np.round(position * PULSES_PER_MM) + self.value("mcc", "compensation")
+        commanded *= np.where(self.value("mcc", "pos2encoder_dir"), -1, 1)
+        commanded *= not self.value("mcc", "dry_run")
+        assert np.array_equal(pulses[:AXES], commanded[:AXES])
 
 
 def execute(case: Case, folder: Path, after: float = 0.2) -> Run:

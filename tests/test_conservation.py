@@ -79,6 +79,38 @@ def test_every_program_ends_where_it_says(tmp_path, program, setting) -> None:
     assert pulses == [round(x * PULSES_PER_MM) for x in end]
 
 
+@st.composite
+def tables(draw: st.DrawFn) -> str:
+    """A comp_file for all axes: pitch errors and a backlash each."""
+    axes = [f"{a},{draw(st.integers(50, 2000))},{draw(st.integers(0, 12))}" for a in (1, 2, 3)]
+    rows = []
+    for axis in (1, 2, 3):
+        gap = draw(st.integers(-60, 60))
+        errors = draw(st.lists(st.integers(-40, 40), min_size=1, max_size=12))
+        rows += [f"{axis},{i},{e},{e + gap}" for i, e in enumerate(errors)]
+    return "\n".join(["axis,interval,home", *axes, "axis,index,forward,backward", *rows])
+
+
+@RUNS
+@given(
+    program=blocks(),
+    setting=fifo,
+    table=tables(),
+    refusals=st.lists(st.integers(0, 16), max_size=3),
+    stop=st.sampled_from([None, "hold", "abort"]),
+)
+def test_compensation_is_in_the_commands(tmp_path, program, setting, table, refusals, stop) -> None:
+    """Balanced at the end; the position told is the one of the program, without correction."""
+    text, end = program
+    file = tmp_path / "screw.csv"
+    file.write_text(table)
+    acts = [] if stop is None else [(0.1, stop, True), (0.3, stop, False)]
+    case = Case(text, {**setting, "comp_file": str(file)}, acts, refusals=(*refusals[:2], 0))
+    run = execute(case, tmp_path)
+    if stop != "abort":
+        assert run.value("mcc", "position")[:AXES] == pytest.approx(end, abs=1e-9)
+
+
 @RUNS
 @given(
     program=blocks(),

@@ -29,7 +29,8 @@ static struct machine machine_of(const struct vars *v)
     for (int i = 0; i < AXES; i++) {
         m.axis[i] = (struct machine_axis){
             .used = v->active[i], .pitch = v->lead[i], .gear_ratio = v->gear_ratio[i],
-            .ppr = v->ppr[i], .rpm = v->max_rpm[i], .p_gain = v->p_gain[i]
+            .ppr = v->ppr[i], .rpm = v->max_rpm[i], .p_gain = v->p_gain[i],
+            .inverted = v->pos2encoder_dir[i] == 1
         };
     }
     return m;
@@ -123,7 +124,8 @@ static struct pc_config config_of(const struct vars *v)
         .start = (int64_t)ceil(clocks(v->start_delay) - PERIOD_TOLERANCE),
         .latency = clocks(v->irq_latency), .jitter = clocks(v->irq_jitter), .seed = v->seed,
         .min_stock = v->min_stock, .batch = v->batch,
-        .block_delete = v->block_delete, .optional_stop = v->optional_stop
+        .block_delete = v->block_delete, .optional_stop = v->optional_stop,
+        .dry_run = v->dry_run
     };
     c.isr.service = (int64_t)llround(clocks(v->service_time));
     memcpy(c.isr.mask, v->irq_sources, sizeof c.isr.mask);

@@ -16,6 +16,7 @@ struct model {
 
 #define MODEL_BLOB
 #include "fmi_model.h"
+#include "comp_file.h"
 #include "mcc_parameters.h"
 #include "path_file.h"
 
@@ -143,6 +144,7 @@ static void publish(struct fmu *f)
     v->command = mcc->written.command;
     v->path_feed = mcc->written.feed;
     MCC_get_cpos(mcc, v->position);
+    memcpy(v->compensation, mcc->written.added, sizeof v->compensation);
     v->spindle_speed = mcc->written.outputs.spindle;
     v->coolant = mcc->written.outputs.coolant;
     v->digital_out = (int32_t)mcc->written.outputs.digital;
@@ -162,6 +164,23 @@ static void publish(struct fmu *f)
     }
 }
 
+/* The tables of comp_file come into force. */
+static int set_compensation(struct fmu *f)
+{
+    const char *name = f->s.v.comp_file;
+    struct comp_file file;
+
+    if (comp_read(&file, name)) {
+        return fmu_fail(f, "comp_file: %s: %s", name, file.said);
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (file.table[i].interval && MCC_set_comp(&f->s.m.pc.mcc, i, &file.table[i])) {
+            return fmu_fail(f, "comp_file: %s: axis %d is not active", name, i + 1);
+        }
+    }
+    return 0;
+}
+
 static int model_start(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -174,6 +193,9 @@ static int model_start(struct fmu *f)
     const struct pc_config c = config_of(v);
     if (pc_start(&m->pc, &machine, &c, f->blob != NULL) != MCC_NO_ERR) {
         return fmu_fail(f, "the library refuses the machine parameters");
+    }
+    if (v->comp_file[0] && set_compensation(f)) {
+        return -1;
     }
     if (f->blob) {
         const struct source source = source_of_program(f);
@@ -202,6 +224,7 @@ static void read_bus(struct fmu *f, int64_t at)
     };
     struct pc_panel panel = {
         .hold = v->hold, .abort = v->abort, .cycle_start = v->cycle_start,
+        .single_block = v->single_block,
         .override = v->override, .go_home = v->go_home, .jog_percent = 100.0 * v->jog_speed,
         .wheel_axis = v->mpg_axis, .wheel_encoder = v->mpg_encoder, .wheel_ratio = v->mpg_ratio
     };

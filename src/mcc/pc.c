@@ -22,6 +22,9 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     }
     homing_set_settle(&pc->mcc, config->home_settle);
     pc->home_due = config->home_first;
+    if (config->dry_run) {
+        MCC_enable_dry_run(&pc->mcc);
+    }
     return code;
 }
 
@@ -97,6 +100,7 @@ static void cycle(struct pc *pc, const struct pc_panel *panel, const struct sour
     struct mcc *m = &pc->mcc;
 
     by_hand(pc, panel);
+    task_set_single_block(m, panel->single_block);
     if (pc->program && !pc->started && may_start(pc)) {
         task_start(m);
         pc->started = true;

@@ -26,12 +26,13 @@ struct pc_config {
     bool    home_first;         /* home before the program */
     double  home_settle;        /* [s] as of homing_set_settle */
     bool    encoder_backward[AXES];
+    bool    dry_run;        /* from the start on */
 };
 
 /* The operator's panel and what else is read on the bus grid. Homing starts at a rising edge, jog
  * and hand wheel change when their values do; what is refused is forgotten. */
 struct pc_panel {
-    bool   hold, abort, cycle_start, go_home;
+    bool   hold, abort, cycle_start, single_block, go_home;
     int32_t jog[AXES];          /* direction: -1, 0, +1 */
     double jog_percent;
     int32_t wheel_axis;         /* that follows the hand wheel, from 1; 0 none */
