@@ -96,17 +96,17 @@ def tables(draw: st.DrawFn) -> str:
     program=blocks(),
     setting=fifo,
     table=tables(),
-    refusals=st.lists(st.integers(0, 16), max_size=3),
-    stop=st.sampled_from([None, "hold", "abort"]),
+    refusals=st.lists(st.integers(0, 16), max_size=2),
 )
-def test_compensation_is_in_the_commands(tmp_path, program, setting, table, refusals, stop) -> None:
+@pytest.mark.parametrize("stop", [None, "hold", "abort"])
+def test_compensation_is_in_the_commands(tmp_path, stop, **drawn) -> None:
     """Balanced at the end; the position told is the one of the program, without correction."""
-    text, end = program
+    text, end = drawn["program"]
     file = tmp_path / "screw.csv"
-    file.write_text(table)
+    file.write_text(drawn["table"])
     acts = [] if stop is None else [(0.1, stop, True), (0.3, stop, False)]
-    case = Case(text, {**setting, "comp_file": str(file)}, acts, refusals=(*refusals[:2], 0))
-    run = execute(case, tmp_path)
+    setting = {**drawn["setting"], "comp_file": str(file)}
+    run = execute(Case(text, setting, acts, refusals=(*drawn["refusals"], 0)), tmp_path)
     if stop != "abort":
         assert run.value("mcc", "position")[:AXES] == pytest.approx(end, abs=1e-9)
 

@@ -119,6 +119,27 @@ def test_static_wind_up_is_force_over_stiffness(library):
     assert run.get("screw_force") == pytest.approx(np.full(6, force), rel=1e-6)
 
 
+def test_lead_error_shifts_the_table_and_nothing_else(library):
+    slope, amplitude, period = 1e-4, 8e-6, 0.013
+    errors = {"slope": slope, "amplitude": amplitude, "period": period}
+    with_error = Run(library, **{f"lead_error_{k}": v for k, v in errors.items()})
+    exact = Run(library)
+    for run in (with_error, exact):
+        assert run.start() == 0
+        run.set(torque_command=2.0)
+    for _ in range(300):
+        for run in (with_error, exact):
+            run.step(1e-3)
+        s, v = exact.get("table_position"), exact.get("table_speed")
+        shift = slope * s + amplitude * np.sin(2 * np.pi * s / period)
+        turn = slope + amplitude * 2 * np.pi / period * np.cos(2 * np.pi * s / period)
+        assert with_error.get("table_position") == pytest.approx(s + shift, abs=1e-15)
+        assert with_error.get("table_phase") == pytest.approx((s + shift) / 2e-5, rel=1e-12)
+        assert with_error.get("table_speed") == pytest.approx(v * (1 + turn), rel=1e-12)
+        assert np.array_equal(with_error.get("motor_angle"), exact.get("motor_angle"))
+    assert s[0] > 0.05
+
+
 def test_lost_motion_is_the_backlash(library):
     """Push from either side against the standing table: the motor finds the gap."""
     backlash, push, lead = 4e-5, 20.0, 0.01

@@ -14,6 +14,9 @@ model BallScrewAxis
   parameter Real motor_rest_speed(unit = "rad/s", min = 1e-9) = 5e-3
     "Motor side: speed that counts as rest";
   parameter Real lead(unit = "m", min = 1e-9) = 0.01 "Travel of the nut per turn";
+  parameter Real lead_error_slope(unit = "1") = 0 "Error of the travel per travel";
+  parameter Real lead_error_amplitude(unit = "m") = 0 "Amplitude of a wave of the error";
+  parameter Real lead_error_period(unit = "m", min = 1e-9) = 0.01 "Period of the wave";
   parameter Real screw_stiffness(unit = "N/m", min = 0) = 1e8 "Axial stiffness from motor to table";
   parameter Real screw_damping(unit = "N.s/m", min = 0) = 1e4 "Axial damping from motor to table";
   parameter Real backlash(unit = "m", min = 0) = 0 "Lost motion between nut and table";
@@ -32,7 +35,8 @@ model BallScrewAxis
     "The lower limit switch is on from here downwards";
   parameter Real upper_limit_position(unit = "m") = 0.5
     "The upper limit switch is on from here upwards";
-  parameter Real start_position(unit = "m") = 0 "Table position at the start, the backlash centred";
+  parameter Real start_position(unit = "m") = 0
+    "Table position at the start but for the lead error, the backlash centred";
   input Real torque_command(unit = "N.m", start = 0) "Torque asked of the current loop";
   input Real force(unit = "N", start = 0) "External force on the table";
   output Real motor_torque(unit = "N.m") "Torque of the motor";
@@ -58,6 +62,8 @@ protected
   Slide table(mass = table_mass, coulomb = table_coulomb, static = table_static,
     stribeck_speed = table_stribeck_speed, viscous = table_viscous, rest_speed = table_rest_speed,
     start_position = start_position) "Table";
+  LeadError error(slope = lead_error_slope, amplitude = lead_error_amplitude,
+    period = lead_error_period) "Error of the screw";
   RotaryEncoder encoder(lines = encoder_lines) "On the motor shaft";
   LinearScale scale(pitch = scale_pitch) "On the table";
 equation
@@ -72,17 +78,19 @@ equation
   rotor.drive = current_loop.y;
   table.load = force;
   encoder.angle = rotor.angle;
-  scale.position = table.position;
+  error.nominal = table.position;
+  error.nominal_speed = table.speed;
+  scale.position = error.position;
   motor_torque = current_loop.y;
   motor_angle = rotor.angle;
   motor_speed = rotor.speed;
   motor_phase = encoder.phase;
   index = encoder.index;
-  table_position = table.position;
-  table_speed = table.speed;
+  table_position = error.position;
+  table_speed = error.speed;
   table_phase = scale.phase;
   screw_force = spring.force;
-  home_switch = table.position <= home_position;
-  lower_limit = table.position <= lower_limit_position;
-  upper_limit = table.position >= upper_limit_position;
+  home_switch = error.position <= home_position;
+  lower_limit = error.position <= lower_limit_position;
+  upper_limit = error.position >= upper_limit_position;
 end BallScrewAxis;

@@ -1,7 +1,7 @@
 /* compensate - pitch and backlash compensation of the axes, between interpolation and card.
  *
- * The position of the library, in mm and in pulses, is the uncompensated one; only the frames of the
- * card carry the correction. When motion ends, frames go on until all of it has been driven in.
+ * The position of the library, in mm and in pulses, is the uncompensated one; only the frames of
+ * the card carry the correction. When motion ends, frames go on until all of it has been driven in.
  */
 #ifndef COMPENSATE_H
 #define COMPENSATE_H

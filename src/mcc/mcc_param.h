@@ -26,8 +26,8 @@ typedef struct {
     double  LOT_offset;         /* [mm] negative end */
     int32_t sensor_on;          /* logic state of the home sensor when ON, 0 or 1 */
     int32_t index_on;           /* of the index */
-    int32_t home_dir;           /* bits 1 and 2: direction in phases 2 and 3; 0 positive, 1 negative;
-                                 * bit 0: in phase 1 */
+    int32_t home_dir;           /* bits 0, 1, 2: direction in phases 1, 2, 3; 0 positive,
+                                 * 1 negative */
 } MCC_MACH_PARAM;
 
 #endif
