@@ -164,7 +164,6 @@ void ipo_single(struct ipo *p, const struct ring *r, bool on)
 void ipo_leave(struct ipo *p)
 {
     p->leave = p->single;
-    p->block = 0;
 }
 
 void ipo_continue(struct ipo *p)

@@ -1,7 +1,7 @@
 /* Dry run and single block: what is reported without pulses, and what waits for the operator. */
 #include "mcc_card.h"
 
-static const struct pc_panel calm = { .override = 1.0 };
+static struct pc_panel panel;
 static const struct pc_config usual = { .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1,
                                         .min_stock = 3, .batch = 4 };
 
@@ -9,7 +9,7 @@ static const struct pc_config usual = { .bus = 4000, .ipo = 40000, .latency = 80
 static int64_t wait(struct card *c, int64_t at, int periods, const char *text)
 {
     for (int k = 0; k < periods; k++, at += pc.config.bus) {
-        card_period(c, at, &calm, text);
+        card_period(c, at, &panel, text);
     }
     return at;
 }
@@ -27,6 +27,7 @@ static void dry_equals_wet(void)
     int64_t at;
 
     for (int dry = 0; dry < 2; dry++) {
+        panel = (struct pc_panel){ .override = 1.0 };
         card_start(&c, &m, &usual, false);
         CHECK(MCC_line_x(&pc.mcc, -3.0) > 0);
         at = wait(&c, 0, 10000, NULL);
@@ -38,7 +39,7 @@ static void dry_equals_wet(void)
         }
         CHECK_EQ(task_start(&pc.mcc), 0);
         for (int k = 0; k < 20000; k++, at += pc.config.bus) {
-            card_period(&c, at, &calm, text);
+            card_period(&c, at, &panel, text);
             const struct point *p = &pc.mcc.written;
             memcpy(seen[dry][k].place, p->place, sizeof p->place);
             memcpy(seen[dry][k].pulses, p->pulses, sizeof p->pulses);
@@ -75,6 +76,7 @@ static void dry_refusals(void)
     struct card c;
     int64_t at;
 
+    panel = (struct pc_panel){ .override = 1.0 };
     card_start(&c, &m, &usual, false);
     CHECK(MCC_line_x(&pc.mcc, 1.0) > 0);
     was = pc.mcc;
@@ -95,6 +97,7 @@ static void dry_refusals(void)
     MCC_close_motion(&pc.mcc);
     CHECK_EQ(MCC_enable_dry_run(&pc.mcc), MCC_INITIAL_MOTION);
     CHECK_EQ(MCC_disable_dry_run(&pc.mcc), MCC_INITIAL_MOTION);
+    CHECK_EQ(task_set_single_block(&pc.mcc, true), MCC_INITIAL_MOTION);
 }
 
 /* A program block by block: the first has leave, then each waits; a block is a line. */
@@ -107,8 +110,9 @@ static void blocks(void)
     struct card c;
     int64_t at;
 
+    panel = (struct pc_panel){ .override = 1.0 };
     card_start(&c, &m, &usual, true);
-    CHECK_EQ(task_set_single_block(&pc.mcc, true), 0);
+    panel.single_block = true;
     at = wait(&c, 0, 3000, text);
     for (int k = 0; k < 6; k++) {
         CHECK_EQ(c.sum[0], x[k]);
@@ -123,6 +127,12 @@ static void blocks(void)
     CHECK_EQ(c.sum[0], x[5]);
     CHECK(pc_done(&pc));
     CHECK_EQ(task_continue(&pc.mcc), MCC_CONTI_ILLEGAL);
+    /* The leave of a program without a block does not pass to what comes behind it. */
+    CHECK_EQ(task_start(&pc.mcc), 0);
+    at = wait(&c, at, 100, "F100\nM2");
+    CHECK(MCC_line_x(&pc.mcc, 9.0) > 0);
+    wait(&c, at, 1000, NULL);
+    CHECK_EQ(task_status(&pc.mcc), TASK_BLOCK_HOLD);
 }
 
 /* Switched on in the middle: the block under way ends. Switched off while one waits: it still
@@ -134,6 +144,7 @@ static void on_and_off(void)
     int64_t at;
 
     m.queue_depth = 16;     /* the task is not far ahead of the card */
+    panel = (struct pc_panel){ .override = 1.0 };
     card_start(&c, &m, &usual, false);
     CHECK_EQ(MCC_enable_quit(&pc.mcc), 0);
     for (int k = 1; k <= 6; k++) {
@@ -141,22 +152,22 @@ static void on_and_off(void)
     }
     at = wait(&c, 0, 500, NULL);
     CHECK(c.sum[0] > 100 && c.sum[0] < 1000);
-    CHECK_EQ(task_set_single_block(&pc.mcc, true), 0);
     CHECK_EQ(task_continue(&pc.mcc), MCC_CONTI_ILLEGAL);
+    panel.single_block = true;
     at = wait(&c, at, 4000, NULL);
     CHECK_EQ(c.sum[0], 1000);
     CHECK_EQ(task_status(&pc.mcc), TASK_BLOCK_HOLD);
     CHECK_EQ(task_continue(&pc.mcc), 0);
     at = wait(&c, at, 4000, NULL);
     CHECK_EQ(c.sum[0], 2000);
-    CHECK_EQ(task_set_single_block(&pc.mcc, false), 0);
+    panel.single_block = false;
     at = wait(&c, at, 4000, NULL);
     CHECK_EQ(c.sum[0], 2000);
     CHECK_EQ(task_status(&pc.mcc), TASK_HOLD);
     CHECK_EQ(task_continue(&pc.mcc), 0);
     at = wait(&c, at, 20000, NULL);
     CHECK_EQ(c.sum[0], 6000);
-    CHECK_EQ(task_set_single_block(&pc.mcc, true), 0);
+    panel.single_block = true;
     CHECK(MCC_line_x(&pc.mcc, 9.0) > 0);
     at = wait(&c, at, 2000, NULL);
     CHECK_EQ(task_status(&pc.mcc), TASK_BLOCK_HOLD);
