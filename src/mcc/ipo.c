@@ -156,6 +156,9 @@ void ipo_hold(struct ipo *p, bool on)
 
 void ipo_single(struct ipo *p, const struct ring *r, bool on)
 {
+    if (on && !p->single && p->track.active) {
+        track_close(&p->track, r);
+    }
     p->stopped = p->stopped || (p->single && !on && ipo_waits(p, r));
     p->leave = p->leave && on;
     p->single = on;

@@ -68,7 +68,7 @@ static bool in_time(const struct track *t, const struct ring *r, const struct co
 /* Take commands of the ring into the chain while they fit smoothly. */
 static void join(struct track *t, struct ring *r)
 {
-    while (t->joined < r->count) {
+    while (!t->closed && t->joined < r->count) {
         const struct command *a = &ring_peek(r, t->joined - 1)->command;
         const struct command *b = &ring_peek(r, t->joined)->command;
         struct corner k;
@@ -325,6 +325,24 @@ double track_advance(struct track *t, struct ring *r, double override, double dt
         }
     }
     return dt;
+}
+
+void track_close(struct track *t, const struct ring *r)
+{
+    double end = t->base, dec = INFINITY;
+
+    t->closed = true;
+    for (int32_t i = t->at; i < t->joined; i++) {
+        const struct command *c = &ring_peek(r, i)->command;
+        end += c->path.length;
+        dec = fmin(dec, c->ramp.dec);
+        if (t->v * t->v <= 2.0 * dec * (end - (t->base + t->s))) {
+            t->joined = i + 1;
+            t->end = end;
+            t->override = -1.0;     /* plan anew */
+            return;
+        }
+    }
 }
 
 static void begin_mean(struct track *t, struct track_mean *m, double dda_time)

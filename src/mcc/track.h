@@ -34,6 +34,7 @@ struct track_mean {
 
 struct track {
     bool    active;
+    bool    closed;         /* no further command joins */
     int32_t started;        /* index of its first command */
     int32_t joined;         /* commands from the head of the ring that are in the chain */
     int32_t planned;        /* of these, known to the latest plan of the speeds */
@@ -67,6 +68,9 @@ void track_start(struct track *t, struct ring *r);
 /* Join what the ring has, and let up to dt seconds pass on the planned motion under an override; 0
  * brings it to rest. Returns the time left: above 0 only at the end of the chain. */
 double track_advance(struct track *t, struct ring *r, double override, double dt);
+
+/* End with the first command in which the motion can still be brought to rest. */
+void track_close(struct track *t, const struct ring *r);
 
 /* A DDA boundary: the tool follows the planned motion. */
 void track_sample(struct track *t, struct track_mean *m, struct ring *r, double dda_time);

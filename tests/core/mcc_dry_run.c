@@ -178,11 +178,67 @@ static void on_and_off(void)
     CHECK_EQ(c.sum[0], 6000);
 }
 
+/* Let so many bus periods pass; the speed changes by at most so much in a DDA time. [mm/s] */
+static int64_t wait_smooth(struct card *c, int64_t at, int periods, const char *text, double most)
+{
+    double worst = 0.0;
+    for (int k = 0; k < periods; k++) {
+        at = wait(c, at, 1, text);
+        for (int i = 1; i < pc.mcc.queue.count; i++) {
+            worst = fmax(worst, fabs(queue_peek(&pc.mcc.queue, i)->feed -
+                                     queue_peek(&pc.mcc.queue, i - 1)->feed));
+        }
+    }
+    CHECK(worst <= most && worst > 0.5 * most);
+    return at;
+}
+
+/* Switched on in the middle of a chain of look-ahead: it ends with a block, as soon as it can be
+ * brought to rest there; then block by block, and off again the rest of the chain. */
+static void chain(char type)
+{
+    static const char text[] = "G64 P.02 F6000 G91 G1 X1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\n"
+                               "X1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\nX1\nM2";
+    struct machine m = mcc_machine();
+    struct card c;
+    int64_t at;
+
+    panel = (struct pc_panel){ .override = 1.0 };
+    m.acc_type = m.dec_type = type;
+    m.queue_depth = 16;
+    card_start(&c, &m, &usual, true);
+    at = wait(&c, 0, 1400, text);
+    const int32_t before = c.sum[0];
+    CHECK(before > 5000 && before < 12000);
+    panel.single_block = true;
+    /* 1 m/s^2 in 1.024 ms, with S-shaped ramps a third more */
+    at = wait_smooth(&c, at, 4000, text, type == 'S' ? 1.366 : 1.025);
+    /* braking from 100 mm/s takes 5 mm; the task is some 20 points of 0.1 mm ahead */
+    CHECK(c.sum[0] > before + 5000 && c.sum[0] < before + 5000 + 2500 + 4000);
+    CHECK_EQ(c.sum[0] % 1000, 0);
+    CHECK_EQ(pc.mcc.written.line, c.sum[0] / 1000);
+    for (int k = 0; k < 2; k++) {
+        const int32_t rest = c.sum[0];
+        CHECK_EQ(task_status(&pc.mcc), TASK_BLOCK_HOLD);
+        CHECK_EQ(task_continue(&pc.mcc), 0);
+        at = wait(&c, at, 4000, text);
+        CHECK_EQ(c.sum[0], rest + 1000);
+    }
+    panel.single_block = false;
+    at = wait(&c, at, 10, text);
+    CHECK_EQ(task_continue(&pc.mcc), 0);
+    wait(&c, at, 20000, text);
+    CHECK_EQ(c.sum[0], 24000);
+    CHECK(pc_done(&pc));
+}
+
 int main(void)
 {
     dry_equals_wet();
     dry_refusals();
     blocks();
     on_and_off();
+    chain('T');
+    chain('S');
     return check_result();
 }
