@@ -301,8 +301,6 @@ static void begin_chained(struct ipo *p, const struct ring *r)
 static double advance_chain(struct ipo *p, struct ring *r, double dt)
 {
     struct track *t = &p->track;
-
-    track_drop(t, r);
     const double left = track_advance(t, r, chain_override(p), dt);
     if (left <= 0.0 || (t->smooth > 0.0 && !track_done(t))) {
         return 0.0;         /* the tool has to come after */
@@ -360,6 +358,15 @@ double ipo_advance(struct ipo *p, struct ring *r, double dt)
             axes_advance(&p->axes, step);
         }
         dt -= step;
+    }
+}
+
+void ipo_accept(struct ipo *p, struct ring *r, const struct point *point)
+{
+    memcpy(p->pulses, point->pulses, sizeof p->pulses);
+    p->news = false;
+    if (p->track.active) {
+        track_drop(&p->track, r);
     }
 }
 

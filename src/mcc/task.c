@@ -154,9 +154,8 @@ static void next_point(struct mcc *m, const struct program *p)
     } while (left > 0.0 && !ipo_resting(&m->ipo, &m->ring));
     ipo_point(&m->ipo, &m->ring, &m->machine, &m->mean, &point);
     if (frame(m, &point)) {
-        memcpy(m->ipo.pulses, point.pulses, sizeof m->ipo.pulses);
+        ipo_accept(&m->ipo, &m->ring, &point);
         queue_push(&m->queue, &point);
-        m->ipo.news = false;
     } else {
         m->ipo = before;
         fail(m, MCC_ERROR_SPEED);
