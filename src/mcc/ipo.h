@@ -98,7 +98,7 @@ double ipo_advance(struct ipo *p, struct ring *r, double dt);
 void ipo_point(struct ipo *p, struct ring *r, const struct machine *m, struct track_mean *mean,
                struct point *point);
 
-/* The point is taken. Until then an earlier *p can be put back, for the chain keeps its commands. */
+/* The point is taken. Until then an earlier *p can be put back: the chain keeps its commands. */
 void ipo_accept(struct ipo *p, struct ring *r, const struct point *point);
 
 #endif
