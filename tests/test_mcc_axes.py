@@ -3,9 +3,12 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from fmi_tools import ERROR
 from host_link import AXES, Case, Run, execute
+from test_homing import COUNT, OFFSET, origins
+from test_homing import run as homing
 from test_mcc import start
 
 AXIS = "axis,interval,home\n"
@@ -86,6 +89,25 @@ def test_an_inverted_axis_runs_the_other_way_with_its_table(tmp_path: Path) -> N
     done = run(tmp_path, "G1 F3000 X1 Y2\nM2\n", comp_file=TABLE, pos2encoder_dir=1)
     assert done.value("mcc", "position")[:2] == [1.0, 2.0]
     assert done.value("card", "pulse_count")[:2] == [-1010, -2000]
+
+
+def test_compensation_counts_from_the_origin_that_was_found(tmp_path: Path) -> None:
+    """The table at its home is added to the same place; during the search it said otherwise."""
+    rows = [
+        f"{a},{i},{i * i * 7},{i * i * 7 - 40 * (i != 3)}" for a in range(1, 7) for i in range(9)
+    ]
+    axes = [f"{a},5000,3" for a in range(1, 7)]
+    table = tmp_path / "screw.csv"
+    table.write_text("\n".join([AXIS.strip(), *axes, POINT.strip(), *rows]))
+    result = homing(9.0, mcc__comp_file=str(table))
+    shift = 63e-6  # [m] the table at its home, 3 * 3 * 7 pulses
+    assert np.abs(origins(result) - shift - origins(homing(9.0))).max() < 2 * COUNT
+
+
+def test_an_inverted_axis_finds_the_same_origin() -> None:
+    """All directions turned, the offset too: the same switch, index and place of the machine."""
+    turned = homing(9.0, mcc__pos2encoder_dir=1, mcc__home_dir=6, mcc__home_offset=-OFFSET)
+    assert np.abs(origins(turned) - origins(homing(9.0))).max() < 2 * COUNT
 
 
 def test_a_dry_run_reports_everything_and_moves_nothing(tmp_path: Path) -> None:

@@ -110,7 +110,6 @@ static void homing_of(const struct vars *v, struct pc_config *c)
             .search = v->home_search[i], .index_way = v->home_index_way[i]
         };
         c->home_order[i] = v->home_order[i];
-        c->encoder_backward[i] = v->pos2encoder_dir[i] == 1;
     }
     c->home_first = v->home_first;
     c->home_settle = v->home_settle;

@@ -27,6 +27,7 @@ int homing_set(struct mcc *m, int axis, const struct home_config *config, bool b
     x->config = *config;
     x->config.offset = round(config->offset * scale(m, axis)) / scale(m, axis);
     x->backward = backward;
+    mcc_param_home(m, axis);
     return MCC_NO_ERR;
 }
 
@@ -162,6 +163,9 @@ int MCC_go_home(struct mcc *m, const int32_t order[AXES])
     }
     if (m->ipo.free) {
         return MCC_COMMAND_NOTFINISHED;
+    }
+    if (m->dry_run) {
+        return MCC_COMMAND_NOTACCEPTED;     /* nothing would be found */
     }
     for (int i = 0; i < AXES; i++) {
         if (order[i] > 0) {

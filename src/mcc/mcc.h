@@ -82,6 +82,7 @@ int MCC_get_errcode(const struct mcc *m);               /* enum mcc_error */
  * and their pulses count on. */
 int MCC_update_param(struct mcc *m);
 MCC_MACH_PARAM mcc_param_of(const struct machine_axis *a);
+void mcc_param_home(struct mcc *m, int axis);   /* homing has been set: show it there */
 
 /* Motion: each returns the command's index > 0, or a code < 0. Targets are absolute or incremental
  * as set; a circle direction is 0 clockwise, 1 counter-clockwise. */

@@ -47,12 +47,38 @@ static int wanted(const struct mcc *m, struct machine *w)
             return MCC_PARAMETER;
         }
         set_axis(&w->axis[i], &m->epcio_axis_param[i]);
+        const struct home_config *h = &m->homing.axis[i].config;
+        if (fmax(h->high_speed, h->low_speed) > machine_axis_speed(&w->axis[i])) {
+            return MCC_PARAMETER;
+        }
     }
     if (m->feed > w->max_feed) {
         return MCC_FEED_RATE;
     }
     w->feed = fmin(w->feed, w->max_feed);
     return machine_valid(w) ? MCC_NO_ERR : MCC_PARAMETER;
+}
+
+void mcc_param_home(struct mcc *m, int axis)
+{
+    const struct home_config *c = &m->homing.axis[axis].config;
+    m->epcio_axis_param[axis].home_dir = (int32_t)c->direction;
+    m->epcio_axis_param[axis].sensor_on = c->sensor_on;
+}
+
+/* The search of the origin with new parameters: the offset counts in whole pulses, the counter of
+ * the encoder turns with the axis. */
+static void set_homing(struct homing_axis *x, const MCC_MACH_PARAM *p, bool turned,
+                       const struct machine_axis *a)
+{
+    const double scale = machine_pulses_per_mm(a);
+
+    x->config.direction = (uint32_t)p->home_dir;
+    x->config.sensor_on = p->sensor_on == 1;
+    x->config.offset = round(x->config.offset * scale) / scale;
+    if (turned) {
+        x->zero = (int32_t)(0u - (uint32_t)x->zero);
+    }
 }
 
 /* Where an axis stands does not change: the pulses it got are the same in number, and turn their
@@ -95,6 +121,8 @@ int MCC_update_param(struct mcc *m)
     const struct signals card = signals_turned(&m->signals, &m->machine);
     for (int i = 0; i < AXES; i++) {
         keep_place(m, i, &w.axis[i]);
+        set_homing(&m->homing.axis[i], &m->epcio_axis_param[i],
+                   w.axis[i].inverted != m->machine.axis[i].inverted, &w.axis[i]);
     }
     m->machine = w;
     m->signals = signals_turned(&card, &w);

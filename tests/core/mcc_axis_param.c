@@ -108,6 +108,44 @@ static void inverted(void)
     CHECK_EQ(c.sum[0], -993);
 }
 
+/* What homing has been set to shows in the parameters, and what they say goes to it. */
+static void homing(void)
+{
+    static struct mcc was;
+    const struct machine m = mcc_machine();
+    const struct home_config config = {
+        .mode = HOME_SENSOR_INDEX, .direction = 5, .sensor_on = true, .high_speed = 20.0,
+        .low_speed = 2.0, .offset = 1.25, .search = 100.0, .index_way = 15.0
+    };
+    struct card c;
+
+    card_start(&c, &m, &usual, false);
+    CHECK_EQ(homing_set(&pc.mcc, 1, &config, false), 0);
+    MCC_MACH_PARAM *p = &pc.mcc.epcio_axis_param[1];
+    CHECK(p->home_dir == 5 && p->sensor_on == 1);
+    p->home_dir = 2;
+    p->sensor_on = 0;
+    p->pitch = 20.0;    /* 0.02 mm a pulse */
+    p->gear_ratio = 0.1;
+    p->pos2encoder_dir = 1;
+    pc.mcc.homing.axis[1].zero = 123;
+    CHECK_EQ(MCC_update_param(&pc.mcc), 0);
+    const struct homing_axis *x = &pc.mcc.homing.axis[1];
+    CHECK(x->config.direction == 2 && !x->config.sensor_on && x->zero == -123);
+    CHECK_NEAR(x->config.offset, 1.26, 1e-12);
+    p->RPM = 0.05;      /* 10 mm/s */
+    p->pitch = 20.0;
+    was = pc.mcc;
+    CHECK_EQ(MCC_update_param(&pc.mcc), MCC_PARAMETER);
+    CHECK(memcmp(&was, &pc.mcc, sizeof was) == 0);
+    p->RPM = 3000.0;
+    CHECK_EQ(MCC_enable_dry_run(&pc.mcc), 0);
+    CHECK_EQ(MCC_go_home(&pc.mcc, (int32_t[AXES]){ 0, 1 }), MCC_COMMAND_NOTACCEPTED);
+    CHECK_EQ(MCC_disable_dry_run(&pc.mcc), 0);
+    CHECK_EQ(MCC_go_home(&pc.mcc, (int32_t[AXES]){ 0, 1 }), 0);
+    CHECK_EQ(MCC_update_param(&pc.mcc), MCC_COMMAND_NOTFINISHED);
+}
+
 /* An axis that leaves the motion keeps its pulses, and goes on from there when it is back. */
 static void types(void)
 {
@@ -193,6 +231,7 @@ int main(void)
     first_values();
     another_lead();
     inverted();
+    homing();
     types();
     refusals();
     return check_result();
