@@ -174,11 +174,54 @@ double path_bend(const struct path *p)
     return fmax(p->radius, p->radius + p->growth) * per * per;
 }
 
+/* Coordinate along an axis of the arc's plane where it turns back near a cosine of +1 or -1: the
+ * k-th half turn of the angle from that axis. With r growing over the sweep, d/dt (r cos w) = 0 at
+ * tan w = growth / (r sweep). Held within the parts t0 .. t1 of the way. [mm] */
+static double turning(const struct path *p, int axis, int k, double t0, double t1)
+{
+    const bool second = axis != path_first(p->plane);
+    const double angle = p->angle - (second ? TAU / 4.0 : 0.0);
+    double t = (k * TAU / 2.0 - angle) / p->sweep;
+
+    t += atan(p->growth / ((p->radius + p->growth * t) * p->sweep)) / p->sweep;
+    t = fmax(t0, fmin(t1, t));
+    return p->centre[second] + (p->radius + p->growth * t) * cos(angle + p->sweep * t);
+}
+
+/* Half turns between two angles, the first and last ones, for between them nothing is further. */
+static void turnings(const struct path *p, int axis, double t0, double t1, double *low,
+                     double *high)
+{
+    const double angle = p->angle - (axis == path_first(p->plane) ? 0.0 : TAU / 4.0);
+    const double a = (angle + p->sweep * t0) / (TAU / 2.0);
+    const double b = (angle + p->sweep * t1) / (TAU / 2.0);
+    const int first = (int)floor(fmin(a, b)), last = (int)ceil(fmax(a, b));
+
+    for (int k = first; k <= last; k = k == first + 2 && last - 2 > k ? last - 2 : k + 1) {
+        const double x = turning(p, axis, k, t0, t1);
+        *low = fmin(*low, x);
+        *high = fmax(*high, x);
+    }
+}
+
+void path_extent(const struct path *p, int axis, double from, double to, double *low,
+                 double *high)
+{
+    double a[AXES], b[AXES], slope[AXES];
+
+    path_at(p, from, a, slope);
+    path_at(p, to, b, slope);
+    *low = fmin(a[axis], b[axis]);
+    *high = fmax(a[axis], b[axis]);
+    if (p->arc && axis < 3 && axis != (int)p->plane) {
+        turnings(p, axis, from / p->length, to / p->length, low, high);
+    }
+}
+
 double path_reach(const struct path *p, int axis)
 {
-    if (p->arc && axis < 3 && axis != (int)p->plane) {
-        const double c = p->centre[axis == path_first(p->plane) ? 0 : 1];
-        return fabs(c) + p->radius + fabs(p->growth);
-    }
-    return fmax(fabs(p->start[axis]), fabs(p->end[axis]));
+    double low, high;
+
+    path_extent(p, axis, 0.0, p->length, &low, &high);
+    return fmax(fabs(low), fabs(high));
 }

@@ -61,7 +61,11 @@ double path_share(const struct path *p, int axis);
 /* Largest curvature. [1/mm] */
 double path_bend(const struct path *p);
 
-/* Largest |coordinate| of one axis anywhere on the path, or a bound of it. [mm] */
+/* Smallest and largest coordinate of one axis between two arc lengths, the exact ones. [mm] */
+void path_extent(const struct path *p, int axis, double from, double to, double *low,
+                 double *high);
+
+/* Largest |coordinate| of one axis anywhere on the path. [mm] */
 double path_reach(const struct path *p, int axis);
 
 #endif
