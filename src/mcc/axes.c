@@ -142,6 +142,22 @@ void axes_state(const struct axes *a, int axis, double *place, double *speed)
     *speed = at.v;
 }
 
+void axes_reach(const struct axes *a, int axis, double *low, double *high)
+{
+    const struct axes_axis *x = &a->axis[axis];
+    const struct scurve_start at = state(x);
+    double fastest = fabs(at.v);
+
+    for (int i = 0; i < x->plan.count; i++) {
+        const struct scurve_phase *h = &x->plan.phase[i];   /* may pass a peak of speed: a = 0 */
+        fastest = fmax(fastest, fabs(h->v) + (h->j != 0.0 ? h->a * h->a / fabs(2.0 * h->j) : 0.0));
+    }
+    const double left = fmax(0.0, x->plan.total - x->t);
+    const double way = x->plan.v1 != 0.0 ? INFINITY : fastest * left;
+    *low = at.s - way;
+    *high = at.s + way;
+}
+
 bool axes_rests(const struct axes *a, int axis)
 {
     const struct axes_axis *x = &a->axis[axis];

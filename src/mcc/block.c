@@ -123,7 +123,7 @@ enum fault block_motion(struct interpreter *in, const struct program *p, const s
     c->blend = in->blend;
     c->tolerance = in->tolerance;
     if (in->motion == 0) {
-        f = command_ptp(c, p->machine);
+        f = command_ptp(c, p->machine, r);
     } else {
         f = command_move(c, p->machine,
                          in->motion == 1 ? COMMAND_LINE : command_arc_type(&c->path), in->feed, r);
@@ -141,7 +141,7 @@ static enum fault rapid(struct interpreter *in, const struct program *p, const s
     if (c->path.length == 0.0) {
         return FAULT_NONE;
     }
-    const enum fault f = command_ptp(c, p->machine);
+    const enum fault f = command_ptp(c, p->machine, r);
     accept(in, c);
     return tokens_at_line(r, f, &b->tokens);
 }

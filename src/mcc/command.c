@@ -3,10 +3,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "guard.h"
+
 /* The counters of card and library are 32-bit, and path mixing adds up three positions. [pulses] */
 static const double PULSES_MAX = 2147483647.0 / 3.0;
 
-static enum fault check_range(const struct path *p, const struct machine *m)
+static enum fault check_range(const struct path *p, const struct machine *m,
+                              struct fault_report *r)
 {
     for (int i = 0; i < AXES; i++) {
         const struct machine_axis *a = &m->axis[i];
@@ -14,7 +17,7 @@ static enum fault check_range(const struct path *p, const struct machine *m)
             return FAULT_RANGE;
         }
     }
-    return FAULT_NONE;
+    return guard_path(m, p, r);
 }
 
 /* Speed along the path at which the first axis reaches its safe motor speed. [mm/s] */
@@ -55,10 +58,10 @@ enum fault command_move(struct command *c, const struct machine *m, enum command
         return FAULT_SPEED;
     }
     set_speed(c, m, feed, fmin(safe, m->max_feed));
-    return check_range(&c->path, m);
+    return check_range(&c->path, m, r);
 }
 
-enum fault command_ptp(struct command *c, const struct machine *m)
+enum fault command_ptp(struct command *c, const struct machine *m, struct fault_report *r)
 {
     int axis;
     const double safe = safe_speed(&c->path, m, &axis);
@@ -66,14 +69,14 @@ enum fault command_ptp(struct command *c, const struct machine *m)
     c->type = COMMAND_PTP;
     c->blend = false;
     set_speed(c, m, m->ptp_ratio > 0.0 ? safe * m->ptp_ratio : safe, safe);
-    return check_range(&c->path, m);
+    return check_range(&c->path, m, r);
 }
 
-enum fault command_ptp_asyn(struct command *c, const struct machine *m)
+enum fault command_ptp_asyn(struct command *c, const struct machine *m, struct fault_report *r)
 {
     c->type = COMMAND_PTP_ASYN;
     c->blend = false;
-    return check_range(&c->path, m);
+    return check_range(&c->path, m, r);
 }
 
 void command_delay(struct command *c, const double point[AXES], double seconds)

@@ -36,15 +36,15 @@ struct command {
 };
 
 /* Complete a command whose path is set (and is not a point): type and feed [mm/s] given; cap, acc
- * and dec found. Refuses what the machine cannot do; FAULT_SPEED sets value and limit of *r. */
+ * and dec found. Refuses what the machine cannot do; FAULT_SPEED, FAULT_TRAVEL complete *r. */
 enum fault command_move(struct command *c, const struct machine *m, enum command_type type,
                         double feed, struct fault_report *r);
 
 /* Rapid positioning: all axes together, the slowest at its share of the safe motor speed. */
-enum fault command_ptp(struct command *c, const struct machine *m);
+enum fault command_ptp(struct command *c, const struct machine *m, struct fault_report *r);
 
 /* Rapid positioning, each axis for itself. */
-enum fault command_ptp_asyn(struct command *c, const struct machine *m);
+enum fault command_ptp_asyn(struct command *c, const struct machine *m, struct fault_report *r);
 
 /* Wait for so many seconds at a point. */
 void command_delay(struct command *c, const double point[AXES], double seconds);

@@ -6,7 +6,8 @@
 /* Nothing under way and nothing to come. */
 static bool idle(const struct mcc *m)
 {
-    return !m->running && m->ring.count == 0 && !ipo_busy(&m->ipo) && !m->ipo.stopped;
+    return !m->running && m->ring.count == 0 && !ipo_busy(&m->ipo) && !m->ipo.stopped &&
+           !m->ipo.confirming;
 }
 
 int MCC_motion_hold(struct mcc *m)

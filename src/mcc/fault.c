@@ -42,6 +42,7 @@ const char *fault_text(enum fault f)
     case FAULT_FEED:         return "feed above max_feed [mm/min]";
     case FAULT_SPEED:        return "feed drives an axis above max_rpm [rpm]";
     case FAULT_RANGE:        return "position does not fit the 32-bit pulse counter";
+    case FAULT_TRAVEL:       return "path leaves the software limits";
     case FAULT_COUNT:        break;
     }
     return "";

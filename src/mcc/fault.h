@@ -36,6 +36,7 @@ enum fault {
     FAULT_FEED,             /* above max_feed */
     FAULT_SPEED,            /* drives an axis above its safe motor speed */
     FAULT_RANGE,            /* a position that does not fit the pulse counter */
+    FAULT_TRAVEL,           /* the path leaves the software limits of an axis */
     FAULT_COUNT
 };
 
@@ -46,7 +47,8 @@ struct fault_report {
     int64_t    offset;      /* [byte] where that line begins in the program */
     int32_t    at, length;  /* offending text in the line */
     int32_t    other_at, other_length;  /* of GROUP, SHARED: the word it does not agree with */
-    double     value, limit;    /* for ARC_END, ARC_CHORD [mm], FEED [mm/min], SPEED [rpm] */
+    int32_t    axis;            /* of TRAVEL */
+    double     value, limit;    /* ARC_END, ARC_CHORD, TRAVEL [mm], FEED [mm/min], SPEED [rpm] */
 };
 
 /* Note where the offending text stands in its line; returns f. */

@@ -210,6 +210,7 @@ static void set_origin(struct mcc *m)
         if (m->homing.order[i] > 0) {
             const uint32_t counts = (uint32_t)m->ipo.pulses[i];
             x->zero = (int32_t)((uint32_t)x->zero + (x->backward ? 0u - counts : counts));
+            m->protection.base[i] -= m->ipo.pulses[i];
             m->ipo.pulses[i] = m->written.pulses[i] = 0;
             m->ipo.rest[i] = m->written.place[i] = m->end[i] = 0.0;
         }

@@ -65,7 +65,8 @@ bool ipo_resting(const struct ipo *p, const struct ring *r)
             return false;
         }
     }
-    return p->count > 0 || p->hold || p->abort || ipo_waits(p, r) || r->count == 0;
+    return p->count > 0 || p->hold || p->abort || p->confirming || ipo_waits(p, r) ||
+           r->count == 0;
 }
 
 bool ipo_moving(const struct ipo *p)
@@ -169,6 +170,46 @@ void ipo_leave(struct ipo *p)
     p->leave = p->single;
 }
 
+/* Path mixing: the bounds of each move, the sum of them. Exact if there is one. */
+static void reach_moves(const struct ipo *p, const struct ipo *ahead, double low[AXES],
+                        double high[AXES])
+{
+    memcpy(low, p->rest, AXES * sizeof *low);
+    memcpy(high, p->rest, AXES * sizeof *high);
+    for (int i = 0; i < p->count; i++) {
+        const struct path *way = &p->move[i].command.path;
+        struct profile ramp = ahead->move[i].profile;
+        const double s = profile_state(&ramp).s;
+        ramp.t = ramp.total;
+        const double end = profile_state(&ramp).s;
+        for (int k = 0; k < AXES; k++) {
+            double a, b;
+            path_extent(way, k, s, end, &a, &b);
+            low[k] = i == 0 ? a : low[k] + (a - way->start[k]);
+            high[k] = i == 0 ? b : high[k] + (b - way->start[k]);
+        }
+    }
+}
+
+bool ipo_reach(const struct ipo *p, const struct ring *r, double low[AXES], double high[AXES])
+{
+    struct ipo ahead = *p;
+
+    ahead.abort = true;
+    replan(&ahead);
+    if (p->track.active) {
+        track_reach(&p->track, r, low, high);
+    } else if (p->free || asyn(p)) {
+        for (int i = 0; i < AXES; i++) {
+            axes_reach(&ahead.axes, i, &low[i], &high[i]);
+        }
+    } else {
+        reach_moves(p, &ahead, low, high);
+        return p->count < 2;
+    }
+    return false;
+}
+
 void ipo_continue(struct ipo *p)
 {
     p->stopped = false;
@@ -217,7 +258,7 @@ void ipo_stop(struct ipo *p, struct ring *r)
     p->count = 0;
     p->track.active = false;
     p->free = false;
-    p->hold = p->abort = p->stopped = p->leave = false;
+    p->hold = p->abort = p->stopped = p->leave = p->confirming = false;
     p->news = p->news || p->outputs.spindle != 0.0 || p->outputs.coolant != 0;
     p->outputs.spindle = 0.0;
     p->outputs.coolant = 0;
@@ -239,6 +280,8 @@ static void retire(struct ipo *p)
     memcpy(p->rest, p->move[0].command.path.end, sizeof p->rest);
     if (--p->count) {
         p->move[0] = p->move[1];
+    } else {
+        p->confirming = p->confirm && p->move[0].command.type != COMMAND_DELAY;
     }
 }
 
@@ -246,7 +289,7 @@ static bool may_start(const struct ipo *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
     if (!next || p->track.active || p->free || p->hold || p->abort || p->stopped ||
-        p->count == 2 || blocked(p, r)) {
+        p->confirming || p->count == 2 || blocked(p, r)) {
         return false;
     }
     return p->count == 0 || (p->move[0].command.blend && p->move[0].profile.ends &&
@@ -312,6 +355,7 @@ static double advance_chain(struct ipo *p, struct ring *r, double dt)
         ring_pop(r);
     }
     t->active = false;
+    p->confirming = p->confirm;
     return left;
 }
 

@@ -39,6 +39,8 @@ struct ipo {
     bool    single;             /* each block waits for ipo_continue */
     bool    leave;              /* given for the next one */
     int32_t block;              /* line of the latest one */
+    bool    confirm;            /* each motion that ends at rest waits to be confirmed, */
+    bool    confirming;         /* as one does now: in-position check */
     bool    news;               /* outputs or line have changed since the latest point */
     struct outputs outputs;
     int32_t started, line;      /* index and source line of the latest command begun */
@@ -66,6 +68,10 @@ void ipo_bind(struct ipo *p);
 
 /* Pause on the path, or go on. */
 void ipo_hold(struct ipo *p, bool on);
+
+/* Bounds of where the ramp of an abort would lead from here [mm]; true if they are exact, else they
+ * are wide. */
+bool ipo_reach(const struct ipo *p, const struct ring *r, double low[AXES], double high[AXES]);
 
 /* Rest before each block (a line of the program, a call of the API), or no longer: what rests then
  * still waits for ipo_continue. */

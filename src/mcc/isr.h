@@ -13,7 +13,8 @@
 
 enum {
     ISR_PAGES = 9,
-    ISR_FIFO_PAGE = 0   /* its FIFO source asks for commands, see pcl */
+    ISR_FIFO_PAGE = 0,  /* its FIFO source asks for commands, see pcl */
+    ISR_LOOP_PAGE = 8   /* overflow of the error counters, a bit an axis */
 };
 
 struct isr_config {

@@ -9,11 +9,24 @@ static bool positive(double x)
     return isfinite(x) && x > 0.0;
 }
 
+static bool number(double x)
+{
+    return isfinite(x) && x >= 0.0;
+}
+
+static bool guard_valid(const struct machine *m, const struct machine_axis *a)
+{
+    return isfinite(a->high_limit) && isfinite(a->low_limit) && isfinite(a->hot_offset) &&
+           isfinite(a->lot_offset) && (!a->check_ot || machine_low(a) <= machine_high(a)) &&
+           a->max_dda_acc >= 0 && a->max_dda_acc <= 2 * machine_dda_limit(m) &&
+           a->track_limit >= 0 && number(a->inpos_tol);
+}
+
 static bool axis_valid(const struct machine *m, const struct machine_axis *a)
 {
     return positive(a->pitch) && positive(a->gear_ratio) && a->ppr >= 1 && positive(a->rpm) &&
            a->p_gain >= 0 && a->p_gain <= 65535 &&
-           a->max_dda >= 0 && a->max_dda <= machine_dda_limit(m);
+           a->max_dda >= 0 && a->max_dda <= machine_dda_limit(m) && guard_valid(m, a);
 }
 
 static bool type_valid(char type)
@@ -42,6 +55,11 @@ bool machine_valid(const struct machine *m)
         if (!axis_valid(m, &m->axis[i])) {
             return false;
         }
+    }
+    if (m->limit_mode < 0 || m->limit_mode > MACHINE_LIMIT_TOWARD_ERROR ||
+        m->inpos_mode < 0 || m->inpos_mode > MACHINE_INPOS_SETTLE_UNBLOCK ||
+        !number(m->inpos_settle) || !number(m->inpos_timeout)) {
+        return false;
     }
     return positive(m->dda_time) && positive(m->feed) && positive(m->max_feed) &&
            type_valid(m->acc_type) && type_valid(m->dec_type) &&
@@ -121,4 +139,14 @@ double machine_axis_speed(const struct machine_axis *a)
 double machine_ptp_speed(const struct machine *m, int axis)
 {
     return machine_axis_speed(&m->axis[axis]) * (m->ptp_ratio > 0.0 ? m->ptp_ratio : 1.0);
+}
+
+double machine_high(const struct machine_axis *a)
+{
+    return a->high_limit - fabs(a->hot_offset);
+}
+
+double machine_low(const struct machine_axis *a)
+{
+    return a->low_limit + fabs(a->lot_offset);
 }

@@ -18,6 +18,26 @@ struct machine_axis {
     int32_t p_gain;         /* position loop of the card */
     int32_t max_dda;        /* most pulses in one DDA time; 0 at init means 2^dda_length - 1 */
     bool    inverted;       /* pulses and encoder counts of the card run against the position */
+    int32_t max_dda_acc;    /* [pulses] largest change of that; 0 at init means no limit */
+    bool    check_ot;       /* the software limits are in force: */
+    double  high_limit, low_limit;  /* [mm] from the logical origin to the limit switches */
+    double  hot_offset, lot_offset; /* [mm] so far inside them the software stops */
+    int32_t track_limit;    /* [counts] largest following error; 0: it is not watched */
+    bool    in_pos;         /* commands wait until the axis is in position: */
+    double  inpos_tol;      /* [mm] following error that counts as in position */
+};
+
+/* What a limit switch does; the library's numbers. */
+enum machine_limit {
+    MACHINE_LIMIT_BOTH,     /* blocks both directions */
+    MACHINE_LIMIT_TOWARD,   /* blocks the direction towards it */
+    MACHINE_LIMIT_BOTH_ERROR, MACHINE_LIMIT_TOWARD_ERROR    /* and generates an error */
+};
+
+/* When a command is in position; the library's numbers. Block: too late is an error. */
+enum machine_inpos {
+    MACHINE_INPOS_ONCE_BLOCK, MACHINE_INPOS_ONCE_UNBLOCK,
+    MACHINE_INPOS_SETTLE_BLOCK, MACHINE_INPOS_SETTLE_UNBLOCK
 };
 
 /* Ramps of motion whose axes are independent, of each axis its own; 0 at init: the machine's. */
@@ -41,6 +61,11 @@ struct machine {
                              * changes; 0 means 0.5 */
     double  ptp_ratio;      /* 0..1 share of the safe motor speed for point-to-point; 0 means 1 */
     struct machine_asyn asyn;
+    bool    limit_check;    /* the limit switches are looked at: */
+    int32_t limit_mode;     /* enum machine_limit */
+    int32_t inpos_mode;     /* enum machine_inpos */
+    double  inpos_settle;   /* [s] that the error counters must stay within the tolerance */
+    double  inpos_timeout;  /* [s] in which that must have happened; 0: no end */
 };
 
 /* True if every value lies in its range and is finite. */
@@ -74,5 +99,9 @@ double machine_smooth(const struct machine *m);
 double machine_pulses_per_mm(const struct machine_axis *a);     /* [pulses/mm] */
 double machine_axis_speed(const struct machine_axis *a);        /* [mm/s] at rpm */
 double machine_ptp_speed(const struct machine *m, int axis);    /* [mm/s] its share for rapids */
+
+/* Software limits: the limit switches less |hot_offset|, |lot_offset|. [mm] */
+double machine_high(const struct machine_axis *a);
+double machine_low(const struct machine_axis *a);
 
 #endif

@@ -101,7 +101,7 @@ int manual_allowed(const struct mcc *m)
     return !m->open ? MCC_INITIAL_MOTION :
            m->error ? MCC_RUN_TIME :
            m->ipo.abort ? MCC_ABORT_NOT_FINISH :
-           m->running || m->ring.count || m->ipo.stopped ||
+           m->running || m->ring.count || m->ipo.stopped || m->ipo.confirming ||
            (m->ipo.free ? m->homing.state == HOMING_RUNS : ipo_busy(&m->ipo))
            ? MCC_COMMAND_NOTFINISHED : MCC_NO_ERR;
 }

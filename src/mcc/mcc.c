@@ -14,6 +14,9 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
         if (m->machine.axis[i].max_dda == 0) {
             m->machine.axis[i].max_dda = machine_dda_limit(machine);
         }
+        if (m->machine.axis[i].max_dda_acc == 0) {
+            m->machine.axis[i].max_dda_acc = 2 * machine_dda_limit(machine);
+        }
         m->epcio_axis_param[i] = mcc_param_of(&machine->axis[i]);
     }
     m->machine.acc_type = machine->acc_type ? machine->acc_type : 'T';
@@ -22,6 +25,7 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
     m->cart_max_speed = machine->max_feed;
     m->feed = machine->feed;
     ipo_start(&m->ipo);
+    m->ipo.confirm = guard_watched(&m->machine) != 0;
     m->open = true;
     return MCC_NO_ERR;
 }
@@ -35,15 +39,6 @@ int MCC_close_motion(struct mcc *m)
         return MCC_COMMAND_NOTFINISHED;
     }
     m->open = false;
-    return MCC_NO_ERR;
-}
-
-int MCC_clear_error(struct mcc *m)
-{
-    if (!m->open) {
-        return MCC_INITIAL_MOTION;
-    }
-    m->error = 0;
     return MCC_NO_ERR;
 }
 
@@ -106,8 +101,8 @@ static int straight(struct mcc *m, const double target[AXES], enum command_type 
     if (c.path.length == 0.0) {
         return accept(m, &c, FAULT_NONE);
     }
-    return accept(m, &c, type == COMMAND_PTP ? command_ptp(&c, &m->machine)
-                       : type == COMMAND_PTP_ASYN ? command_ptp_asyn(&c, &m->machine)
+    return accept(m, &c, type == COMMAND_PTP ? command_ptp(&c, &m->machine, &r)
+                       : type == COMMAND_PTP_ASYN ? command_ptp_asyn(&c, &m->machine, &r)
                        : command_move(&c, &m->machine, type, m->feed, &r));
 }
 

@@ -7,6 +7,7 @@
 #ifndef MCC_H
 #define MCC_H
 
+#include "guard.h"
 #include "homing.h"
 #include "comp.h"
 #include "interpreter.h"
@@ -36,9 +37,23 @@ enum mcc_return {
 /* Run-time errors. That of homing is ours: 0xF700 + 16 enum home_fault + axis from 1, so 0xF732 is
  * an index of the Y axis that was not found. */
 enum mcc_error {
-    MCC_ERROR_ARC   = 0xF104,       /* invalid command met while the program ran */
-    MCC_ERROR_HOME  = 0xF700,
-    MCC_ERROR_SPEED = 0xF203        /* more pulses in one DDA time than max_dda_spd */
+    MCC_ERROR_STOP   = 0xF102,      /* emergency stop */
+    MCC_ERROR_ARC    = 0xF104,      /* invalid command met while the program ran */
+    MCC_ERROR_SPEED  = 0xF203,      /* more pulses in one DDA time than max_dda_spd */
+    MCC_ERROR_ACC    = 0xF204,      /* a change of them larger than max_dda_acc */
+    MCC_ERROR_TRAVEL = 0xF301,      /* axis 1 at a software limit or limit switch; .. 0xF306 */
+    MCC_ERROR_IN_POS = 0xF501,      /* not in position within inpos_timeout */
+    MCC_ERROR_HOME   = 0xF700,
+    MCC_ERROR_TRACK  = 0xF801       /* following error of axis 1 too large; .. 0xF806 */
+};
+
+/* State of the reactions: see reaction.h. */
+struct protection {
+    int32_t base[AXES];         /* [pulses] position where the card's pulse count is 0 */
+    int32_t frame[AXES];        /* [pulses] of the latest DDA time, 0 at rest */
+    int32_t seen[AXES];         /* [pulses] the card's count at the latest look */
+    int64_t quiet;              /* [clocks] since it changed or the emergency stop acted */
+    int64_t waited, settled;    /* [clocks] in-position check: since its begin, within tolerance */
 };
 
 struct mcc {
@@ -61,6 +76,7 @@ struct mcc {
     struct queue queue;
     struct point written;       /* the latest point the card took */
     struct signals signals;     /* as the card reported them last */
+    struct protection protection;
     int32_t latch_seq[AXES];    /* a new number arms the latch for the next index, once */
     struct manual manual;
     struct homing homing;
@@ -76,7 +92,6 @@ struct mcc {
 /* System. MCC_init_motion: at rest at the origin, settings from the machine. */
 int MCC_init_motion(struct mcc *m, const struct machine *machine);
 int MCC_close_motion(struct mcc *m);
-int MCC_clear_error(struct mcc *m);
 int MCC_get_errcode(const struct mcc *m);               /* enum mcc_error */
 /* Make epcio_axis_param and cart_max_speed effective, at standstill. The axes stay where they are
  * and their pulses count on. */
@@ -179,6 +194,19 @@ int MCC_set_comp(struct mcc *m, int axis, const struct comp_table *table);
 int MCC_enable_dry_run(struct mcc *m);
 int MCC_disable_dry_run(struct mcc *m);
 int MCC_check_dry_run(const struct mcc *m);             /* 0 enabled, 1 disabled */
+
+/* Protection. MCC_clear_error is refused with MCC_RUN_TIME while the cause lasts, with
+ * MCC_COMMAND_NOTFINISHED until everything has come to rest; then commands are taken again. */
+int MCC_clear_error(struct mcc *m);
+int MCC_set_check_OT(struct mcc *m, const int on[AXES]);        /* software limits, 1 on, 0 off */
+int MCC_get_check_OT(const struct mcc *m, int on[AXES]);
+int MCC_set_max_dda_acc(struct mcc *m, const int32_t pulses[AXES]);
+int MCC_get_max_dda_acc(const struct mcc *m, int32_t pulses[AXES]);
+int MCC_enable_in_pos(struct mcc *m, int axes);         /* bits: X 1, Y 2 .. W 0x20 */
+int MCC_disable_in_pos(struct mcc *m, int axes);
+int MCC_check_in_pos(const struct mcc *m, int in[AXES]);        /* 1: within the tolerance */
+int MCC_set_inpos_tol(struct mcc *m, const double mm[AXES]);
+int MCC_get_inpos_tol(const struct mcc *m, double mm[AXES]);
 
 /* Status: of the points the card has taken. */
 int MCC_get_cpos(const struct mcc *m, double place[AXES]);      /* [mm] */

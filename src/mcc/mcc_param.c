@@ -9,7 +9,9 @@ MCC_MACH_PARAM mcc_param_of(const struct machine_axis *a)
 {
     return (MCC_MACH_PARAM){
         .type = a->used ? MCC_LINEAR : MCC_UNUSED, .pos2encoder_dir = a->inverted,
-        .PPR = a->ppr, .RPM = a->rpm, .pitch = a->pitch, .gear_ratio = a->gear_ratio
+        .PPR = a->ppr, .RPM = a->rpm, .pitch = a->pitch, .gear_ratio = a->gear_ratio,
+        .high_limit = a->high_limit, .low_limit = a->low_limit,
+        .HOT_offset = a->hot_offset, .LOT_offset = a->lot_offset
     };
 }
 
@@ -35,6 +37,10 @@ static void set_axis(struct machine_axis *a, const MCC_MACH_PARAM *p)
     a->rpm = p->RPM;
     a->pitch = p->pitch;
     a->gear_ratio = p->gear_ratio;
+    a->high_limit = p->high_limit;
+    a->low_limit = p->low_limit;
+    a->hot_offset = p->HOT_offset;
+    a->lot_offset = p->LOT_offset;
 }
 
 /* The machine as the user wants it. */
@@ -90,6 +96,7 @@ static void keep_place(struct mcc *m, int i, const struct machine_axis *new)
 
     if (new->inverted != old->inverted) {
         m->ipo.pulses[i] = -m->ipo.pulses[i];
+        m->protection.base[i] = -m->protection.base[i];
         place = -place;
         m->comp[i] = (struct comp){ -m->comp[i].added, !m->comp[i].backward };
     }

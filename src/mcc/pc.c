@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "reaction.h"
+
 static const double VOLTS_MAX = 10.0;   /* [V] range of the card's DAC */
 
 int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *config, bool program)
@@ -11,7 +13,11 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     pc->config = *config;
     pc->random = (uint64_t)(int64_t)config->seed;
     pc->program = program;
-    pcl_start(&pc->pcl, m, config->min_stock, config->batch, &config->isr);
+    struct isr_config isr = config->isr;
+    for (int i = 0; i < AXES; i++) {
+        isr.mask[ISR_LOOP_PAGE] |= (m->axis[i].used && m->axis[i].track_limit > 0) << i;
+    }
+    pcl_start(&pc->pcl, m, config->min_stock, config->batch, &isr);
     const int code = MCC_init_motion(&pc->mcc, m);
     task_set_switches(&pc->mcc, config->block_delete, config->optional_stop);
     for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
@@ -53,6 +59,8 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     pc->cycle_seen = panel->cycle_start;
     pc->home_due = pc->home_due || (panel->go_home && !pc->home_seen);
     pc->home_seen = panel->go_home;
+    pc->clear_due = pc->clear_due || (panel->clear_error && !pc->clear_seen);
+    pc->clear_seen = panel->clear_error;
     MCC_set_P_gain(&pc->mcc, panel->p_gain);
     pc->mcc.signals = signals_turned(&panel->signals, m);
     manual_look(&pc->mcc, pc->config.bus);
@@ -94,6 +102,54 @@ static bool may_start(const struct pc *pc)
            (homed == 1 || (homed < 0 && !pc->config.home_first));
 }
 
+/* What the card and the interrupts just served tell of danger. */
+static void protect(struct pc *pc)
+{
+    const struct isr *isr = &pc->pcl.isr;
+    const bool served = isr->served[ISR_LOOP_PAGE] != pc->loop_served;
+    const struct reaction_look look = {
+        .clocks = pc->config.bus, .flying = pc->pcl.open ? pc->pcl.points : 0,
+        .overflow = served ? (uint32_t)isr->sources[ISR_LOOP_PAGE] : 0
+    };
+
+    pc->loop_served = isr->served[ISR_LOOP_PAGE];
+    pcl_halt(&pc->pcl, pc->mcc.signals.stop);
+    reaction_look(&pc->mcc, &look);
+}
+
+/* The program once more from its first line, from where the axes stand. */
+static void run_again(struct pc *pc, const struct source *program)
+{
+    struct mcc *m = &pc->mcc;
+    struct fault_report r;
+
+    task_check(m, program, &r);
+    if (r.fault != FAULT_NONE) {
+        reaction_stop(m, reaction_error_of(&r));
+    } else {
+        task_start(m);
+    }
+    pc->again = false;
+}
+
+static void panel_keys(struct pc *pc, const struct source *program)
+{
+    struct mcc *m = &pc->mcc;
+
+    if (pc->clear_due) {
+        pc->clear_due = false;
+        const bool error = m->error != 0;
+        pc->again = (MCC_clear_error(m) == MCC_NO_ERR && error && pc->started) || pc->again;
+    }
+    if (pc->cycle_due) {
+        pc->cycle_due = false;
+        if (task_continue(m) != MCC_NO_ERR && pc->again && pc->program && MCC_check_stop(m) &&
+            !m->error) {
+            run_again(pc, program);
+        }
+    }
+}
+
 /* One cycle of the IPO task, with the panel as read last. */
 static void cycle(struct pc *pc, const struct pc_panel *panel, const struct source *program)
 {
@@ -111,10 +167,7 @@ static void cycle(struct pc *pc, const struct pc_panel *panel, const struct sour
         pc->abort_due = false;
         MCC_motion_abort(m);
     }
-    if (pc->cycle_due) {
-        pc->cycle_due = false;
-        task_continue(m);       /* refused where nothing waits for it */
-    }
+    panel_keys(pc, program);
     /* The level is offered every time: what does not apply is refused. */
     if (panel->hold) {
         MCC_motion_hold(m);
@@ -136,6 +189,7 @@ void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
              pcl_interrupt(&pc->pcl, card) ? latency(pc) : 0);
     read_panel(pc, panel);
     isr_run(&pc->pcl.isr, publish + 1);
+    protect(pc);
     for (;;) {
         const int64_t due = pcl_due(&pc->pcl);
         if (pc->next_ipo < horizon && pc->next_ipo <= due) {

@@ -32,7 +32,7 @@ struct pc_config {
 /* The operator's panel and what else is read on the bus grid. Homing starts at a rising edge, jog
  * and hand wheel change when their values do; what is refused is forgotten. */
 struct pc_panel {
-    bool   hold, abort, cycle_start, single_block, go_home;
+    bool   hold, abort, cycle_start, single_block, go_home, clear_error;
     int32_t jog[AXES];          /* direction: -1, 0, +1 */
     double jog_percent;
     int32_t wheel_axis;         /* that follows the hand wheel, from 1; 0 none */
@@ -56,6 +56,9 @@ struct pc {
     bool    cycle_seen, cycle_due;
     bool    home_seen, home_due;
     int32_t jog_seen[AXES], wheel_seen;
+    bool    clear_seen, clear_due;
+    bool    again;          /* an error has been cleared: cycle_start runs the program anew */
+    int32_t loop_served;    /* services of the position loops' page seen */
     double  volts[AXES];    /* [V] software control law */
 };
 

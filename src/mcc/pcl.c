@@ -78,9 +78,21 @@ void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t
     }
 }
 
+void pcl_halt(struct pcl *p, bool halted)
+{
+    p->halted = halted;
+    if (halted) {
+        p->prime = p->min_stock + p->batch;
+        p->points = p->refusals = 0;
+        p->late = false;
+        p->pending = 0;
+        p->raised = -1;
+    }
+}
+
 int64_t pcl_due(const struct pcl *p)
 {
-    if (p->open) {
+    if (p->open || p->halted) {
         return INT64_MAX;
     }
     return p->prime > 0 ? 0 : p->pending > 0 ? p->due : INT64_MAX;

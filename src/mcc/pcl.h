@@ -41,6 +41,7 @@ struct pcl {
     bool    late;               /* the others are standstill in the middle of a motion */
     int32_t frames[PCL_FRAMES][AXES];
 
+    bool    halted;             /* emergency stop: the card takes nothing */
     int32_t refusals;           /* transactions in a row of which the card took nothing */
     int64_t pending;            /* interrupts not served */
     int64_t due;                /* clock of the next service */
@@ -63,6 +64,10 @@ int32_t pcl_mask(const struct pcl *p, int page);
 /* Look at the card at bus instant now [clock]; an interrupt seen now has this latency [clocks]. */
 void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t now,
               int64_t latency);
+
+/* The emergency stop acts, or no longer: while it does nothing is written, a transaction under way
+ * is of no account; then the empty FIFO is primed as at the start. */
+void pcl_halt(struct pcl *p, bool halted);
 
 /* True if an interrupt has come that pcl_look has not seen. */
 bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card);

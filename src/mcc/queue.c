@@ -21,3 +21,8 @@ void queue_drop(struct queue *q, int32_t n)
     q->head = (q->head + n) % QUEUE_SIZE;
     q->count -= n;
 }
+
+void queue_keep(struct queue *q, int32_t n)
+{
+    q->count = n;
+}

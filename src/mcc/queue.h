@@ -31,5 +31,6 @@ void queue_clear(struct queue *q);
 void queue_push(struct queue *q, const struct point *p);        /* not when count is QUEUE_SIZE */
 const struct point *queue_peek(const struct queue *q, int32_t i);   /* i-th, 0 <= i < count */
 void queue_drop(struct queue *q, int32_t n);                    /* the first n, n <= count */
+void queue_keep(struct queue *q, int32_t n);                    /* only the first n, n <= count */
 
 #endif

@@ -11,6 +11,7 @@ struct signals {
     bool     stop;          /* the emergency stop acts */
     uint32_t home;          /* logic level of the home switches, a bit an axis */
     uint32_t upper, lower;  /* limit switches, a bit an axis, 1: run onto */
+    int32_t  pulses[AXES];  /* [pulses] put out */
     int32_t  enc[AXES];     /* [counts] encoder counters */
     int32_t  enc_aux[3];    /* [counts] encoder counters 7 to 9 */
     int32_t  err[AXES];     /* [counts] error counters */

@@ -1,10 +1,10 @@
 #include "task.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "compensate.h"
+#include "reaction.h"
 
 struct program task_program(const struct mcc *m, const struct source *s)
 {
@@ -91,26 +91,14 @@ int task_continue(struct mcc *m)
     return MCC_NO_ERR;
 }
 
-/* Stop for a run-time error: on a ramp the first time, at once if that cannot be either. */
-static void fail(struct mcc *m, enum mcc_error error)
-{
-    const bool again = m->error == (int32_t)error;
-    m->error = error;
-    m->running = false;
-    if (again) {
-        ipo_stop(&m->ipo, &m->ring);
-    } else {
-        ipo_abort(&m->ipo, &m->ring);
-    }
-}
-
-/* Interpret ahead while the ring has room. */
-static void refill(struct mcc *m, const struct program *p)
+/* Interpret ahead while the ring has room; what has left it since its head was there is kept. */
+static void refill(struct mcc *m, const struct program *p, int32_t head)
 {
     struct command c;
     struct fault_report r;
 
-    while (m->running && !ring_full(&m->ring)) {
+    while (m->running &&
+           m->ring.count + (m->ring.head - head + RING_SIZE) % RING_SIZE < RING_SIZE) {
         switch (interpreter_next(&m->program, p, &c, &r)) {
         case INTERPRETER_COMMAND:
             c.index = command_lasts(&c) ? ++m->commands : 0;
@@ -121,58 +109,52 @@ static void refill(struct mcc *m, const struct program *p)
             m->running = false;
             break;
         case INTERPRETER_FAULT:
-            fail(m, MCC_ERROR_ARC);
+            reaction_stop(m, reaction_error_of(&r));
             break;
         }
     }
-}
-
-/* Frame of a point from the previous position; false if the card could not take it. */
-static bool frame(struct mcc *m, struct point *p)
-{
-    for (int i = 0; i < AXES; i++) {
-        const int64_t pulses = (int64_t)p->pulses[i] - m->ipo.pulses[i];
-        if (llabs(pulses) > m->machine.axis[i].max_dda) {
-            return false;
-        }
-        p->frame[i] = (int32_t)pulses;
-    }
-    compensate_frame(m, p);
-    return true;
 }
 
 /* Let one DDA time pass on the path and queue its point. */
 static void next_point(struct mcc *m, const struct program *p)
 {
     const struct ipo before = m->ipo;
+    const int32_t head = m->ring.head, count = m->ring.count;
     struct point point;
+    int32_t error;
     double left = machine_dda_time(&m->machine);
 
     do {
         left = ipo_advance(&m->ipo, &m->ring, left);
-        refill(m, p);
+        refill(m, p, head);
     } while (left > 0.0 && !ipo_resting(&m->ipo, &m->ring));
     ipo_point(&m->ipo, &m->ring, &m->machine, &m->mean, &point);
-    if (frame(m, &point)) {
-        ipo_accept(&m->ipo, &m->ring, &point);
-        queue_push(&m->queue, &point);
-    } else {
+    if (!reaction_point(m, before.abort, &point, &error)) {
         m->ipo = before;
-        fail(m, MCC_ERROR_SPEED);
+        m->ring.head = head;
+        m->ring.count = count;
+        reaction_stop(m, error);
+        return;
     }
+    memcpy(m->protection.frame, point.frame, sizeof m->protection.frame);
+    ipo_accept(&m->ipo, &m->ring, &point);
+    queue_push(&m->queue, &point);
 }
 
 void task_run(struct mcc *m, const struct source *s)
 {
     const struct program p = task_program(m, s);
 
-    if (!m->open) {
+    if (!m->open || m->error == MCC_ERROR_STOP) {
         return;
     }
-    refill(m, &p);
+    refill(m, &p, m->ring.head);
     while (m->queue.count < m->machine.queue_depth &&
            (m->ipo.news || compensate_due(m) || !ipo_resting(&m->ipo, &m->ring))) {
         next_point(m, &p);
+    }
+    if (ipo_resting(&m->ipo, &m->ring) && !compensate_due(m)) {
+        memset(m->protection.frame, 0, sizeof m->protection.frame);
     }
     if (!ipo_busy(&m->ipo) && m->ring.count == 0 && !m->running) {
         m->ipo.leave = false;

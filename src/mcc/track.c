@@ -416,6 +416,39 @@ void track_drop(struct track *t, struct ring *r)
     }
 }
 
+/* Widen bounds by a command's way from one place on it to another, and by its tolerance, for a
+ * corner leaves it by no more. */
+static void widen(const struct command *c, double from, double to, double low[AXES],
+                  double high[AXES])
+{
+    const double length = c->path.length;
+    double a, b;
+
+    for (int k = 0; k < AXES; k++) {
+        path_extent(&c->path, k, fmax(0.0, from), fmin(length, to), &a, &b);
+        low[k] = fmin(low[k], a - c->tolerance);
+        high[k] = fmax(high[k], b + c->tolerance);
+    }
+}
+
+void track_reach(const struct track *t, const struct ring *r, double low[AXES],
+                 double high[AXES])
+{
+    double dec = INFINITY, base = t->out_base, velocity[AXES];
+
+    track_place(t, r, low, velocity);
+    memcpy(high, low, AXES * sizeof *high);
+    for (int32_t i = t->out; i < t->joined; i++) {
+        dec = fmin(dec, ring_peek(r, i)->command.ramp.dec);
+    }
+    const double end = t->base + t->s + t->v * t->v / (2.0 * dec);
+    for (int32_t i = t->out; i < t->joined && base <= end; i++) {
+        const struct command *c = &ring_peek(r, i)->command;
+        widen(c, t->out_base + t->out_s - base, end - base, low, high);
+        base += c->path.length;
+    }
+}
+
 bool track_rests(const struct track *t)
 {
     return t->v == 0.0 && t->out_base + t->out_s >= t->base + t->s;

@@ -22,6 +22,10 @@ static inline void begin(struct reader *x, const char *text)
     const double zero[AXES] = { 0.0 };
     memset(x, 0, sizeof *x);
     x->machine = mcc_machine();
+    x->machine.axis[2].check_ot = true;     /* Z from -700 mm to 700 mm */
+    x->machine.axis[2].high_limit = 701.0;
+    x->machine.axis[2].low_limit = -700.0;
+    x->machine.axis[2].hot_offset = -1.0;
     x->text = (struct source_text){ text, (int64_t)strlen(text) };
     x->source = source_of(&x->text);
     x->program = (struct program){ .source = &x->source, .machine = &x->machine };

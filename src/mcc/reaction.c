@@ -1,0 +1,275 @@
+#include "reaction.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "compensate.h"
+
+/* Pulses come as planned for the DDA time in progress; then two DDA times tell that none comes. */
+static const int64_t QUIET = 2;     /* [DDA times] */
+
+static const int64_t OUTSIDE = -1;  /* of `settled`: not within the tolerance */
+
+/* Frame of a point from the previous position, uncompensated; false if the card could not take
+ * it. */
+static bool frame(const struct mcc *m, struct point *p)
+{
+    for (int i = 0; i < AXES; i++) {
+        const int64_t pulses = (int64_t)p->pulses[i] - m->ipo.pulses[i];
+        if (llabs(pulses) > m->machine.axis[i].max_dda) {
+            return false;
+        }
+        p->frame[i] = (int32_t)pulses;
+    }
+    return true;
+}
+
+/* First axis that the ramp from here would bring beyond a software limit; -1 none. Where bounds do
+ * not decide, the ramp is driven in a copy; the ring is left as it was. */
+static int ramp(struct mcc *m)
+{
+    double low[AXES], high[AXES];
+    const bool exact = ipo_reach(&m->ipo, &m->ring, low, high);
+    int axis = guard_reach(&m->machine, m->ipo.pulses, low, high);
+
+    if (axis < 0 || exact) {
+        return axis;
+    }
+    const int32_t head = m->ring.head, count = m->ring.count;
+    struct ipo ahead = m->ipo;
+    struct track_mean mean = m->mean;
+    struct point p;
+    ipo_abort(&ahead, &m->ring);
+    do {
+        ipo_advance(&ahead, &m->ring, machine_dda_time(&m->machine));
+        ipo_point(&ahead, &m->ring, &m->machine, &mean, &p);
+        axis = guard_travel(&m->machine, m->ipo.pulses, p.pulses);
+    } while (axis < 0 && !ipo_resting(&ahead, &m->ring));
+    m->ring.head = head;
+    m->ring.count = count;
+    return axis;
+}
+
+/* Error of the way to a point that a limit switch blocks, however small it is; 0 if the mode has
+ * none. *axis is -1 if none does. */
+static int32_t blocked(const struct mcc *m, const struct point *from, const struct point *to,
+                       int *axis)
+{
+    double way[AXES];
+    for (int i = 0; i < AXES; i++) {
+        way[i] = to->place[i] - from->place[i];
+    }
+    *axis = m->dry_run ? -1 : guard_switch(&m->machine, &m->signals, way);
+    return guard_switch_error(&m->machine) ? MCC_ERROR_TRAVEL + *axis : 0;
+}
+
+/* Software limits count from the origin that homing looks for, and it meets limit switches. */
+static bool homing(const struct mcc *m)
+{
+    return m->ipo.free && m->homing.state == HOMING_RUNS;
+}
+
+/* Whether a point keeps within travel and switches; else *error as of reaction_point. */
+static bool within(struct mcc *m, bool ramping, const struct point *p, int32_t *error)
+{
+    const struct queue *q = &m->queue;
+    const struct point *last = q->count > 0 ? queue_peek(q, q->count - 1) : &m->written;
+    int axis = guard_travel(&m->machine, m->ipo.pulses, p->pulses);
+
+    axis = axis < 0 && guard_limited(&m->machine) ? ramp(m) : axis;
+    *error = MCC_ERROR_TRAVEL + axis;
+    if (axis < 0 && !ramping) {
+        *error = blocked(m, last, p, &axis);
+    }
+    return axis < 0;
+}
+
+bool reaction_point(struct mcc *m, bool ramping, struct point *p, int32_t *error)
+{
+    struct comp comp[AXES];
+
+    *error = MCC_ERROR_SPEED;
+    if (!frame(m, p) || (!m->error && !homing(m) && !within(m, ramping, p, error))) {
+        return false;
+    }
+    memcpy(comp, m->comp, sizeof comp);
+    compensate_frame(m, p);
+    if (!m->error && guard_change(&m->machine, m->protection.frame, p->frame) >= 0) {
+        memcpy(m->comp, comp, sizeof comp);
+        *error = MCC_ERROR_ACC;
+        return false;
+    }
+    return true;
+}
+
+void reaction_stop(struct mcc *m, int32_t error)
+{
+    const bool again = m->error != 0;
+
+    m->error = again ? m->error : error;
+    m->running = false;
+    if (again) {
+        ipo_stop(&m->ipo, &m->ring);
+    } else {
+        ipo_abort(&m->ipo, &m->ring);
+    }
+}
+
+int32_t reaction_error_of(const struct fault_report *r)
+{
+    return r->fault == FAULT_TRAVEL ? MCC_ERROR_TRAVEL + r->axis : MCC_ERROR_ARC;
+}
+
+/* Rest in the last of the points that stay. */
+static void stop_at_once(struct mcc *m, int32_t error, int32_t stay)
+{
+    const struct point *last = stay > 0 ? queue_peek(&m->queue, stay - 1) : &m->written;
+
+    m->error = m->error ? m->error : error;
+    m->running = false;
+    ipo_stop(&m->ipo, &m->ring);
+    memcpy(m->ipo.pulses, last->pulses, sizeof m->ipo.pulses);
+    memcpy(m->ipo.rest, last->place, sizeof m->ipo.rest);
+    for (int i = 0; i < AXES; i++) {
+        m->comp[i].added = last->added[i];
+    }
+    queue_keep(&m->queue, stay);
+}
+
+/* Position by the pulses that the card has put out, of which the compensation is no part. */
+static int32_t put_out(const struct mcc *m, int axis)
+{
+    return m->protection.base[axis] + m->signals.pulses[axis] - m->written.added[axis];
+}
+
+/* Take the position from the pulses that the card has put out. Of the compensation counts what the
+ * latest point written had; the rest is driven in when the library goes on. */
+static void follow(struct mcc *m)
+{
+    struct point *w = &m->written;
+
+    for (int i = 0; i < AXES; i++) {
+        if (m->machine.axis[i].used) {
+            w->pulses[i] = m->ipo.pulses[i] = put_out(m, i);
+            w->place[i] = w->pulses[i] / machine_pulses_per_mm(&m->machine.axis[i]);
+        }
+        w->frame[i] = 0;
+        m->comp[i].added = w->added[i];
+    }
+    w->feed = 0.0;
+    w->waits = false;
+    memcpy(m->ipo.rest, w->place, sizeof m->ipo.rest);
+    memcpy(m->end, w->place, sizeof m->end);
+}
+
+static void emergency(struct mcc *m)
+{
+    m->error = MCC_ERROR_STOP;
+    m->running = false;
+    ipo_stop(&m->ipo, &m->ring);
+    queue_clear(&m->queue);
+    m->written.outputs = m->ipo.outputs;    /* off now, not with a point */
+    m->ipo.news = false;
+}
+
+static void note_pulses(struct mcc *m, int64_t clocks)
+{
+    struct protection *p = &m->protection;
+
+    p->quiet += clocks;
+    if (m->signals.stop || memcmp(p->seen, m->signals.pulses, sizeof p->seen) != 0) {
+        p->quiet = 0;
+    }
+    memcpy(p->seen, m->signals.pulses, sizeof p->seen);
+}
+
+bool reaction_arrived(const struct mcc *m)
+{
+    bool all = m->queue.count == 0 && !ipo_busy(&m->ipo);
+    for (int i = 0; i < AXES && !m->dry_run; i++) {
+        all = all && (!m->machine.axis[i].used || m->written.pulses[i] == put_out(m, i));
+    }
+    return all;
+}
+
+/* In-position check of the command that has ended. */
+static void confirm(struct mcc *m, int64_t clocks)
+{
+    const struct machine *machine = &m->machine;
+    const int mode = machine->inpos_mode;
+    const uint32_t watched = guard_watched(machine);
+    struct protection *p = &m->protection;
+
+    if (!reaction_arrived(m)) {
+        p->waited = 0;
+        p->settled = OUTSIDE;
+        return;
+    }
+    p->waited += clocks;
+    if ((guard_within(machine, &m->signals) & watched) != watched) {
+        p->settled = OUTSIDE;
+    } else {
+        p->settled = p->settled == OUTSIDE ? 0 : p->settled + clocks;
+    }
+    const bool once = mode == MACHINE_INPOS_ONCE_BLOCK || mode == MACHINE_INPOS_ONCE_UNBLOCK;
+    const double settle = once ? 0.0 : machine->inpos_settle * CLOCK_HZ;
+    const double timeout = machine->inpos_timeout * CLOCK_HZ;
+    const bool late = timeout > 0.0 && (double)p->waited >= timeout;
+    if (p->settled != OUTSIDE && (double)p->settled >= settle) {
+        m->ipo.confirming = false;
+    } else if (late && (mode == MACHINE_INPOS_ONCE_BLOCK || mode == MACHINE_INPOS_SETTLE_BLOCK)) {
+        reaction_stop(m, MCC_ERROR_IN_POS);
+    } else if (late) {
+        m->ipo.confirming = false;
+    }
+}
+
+void reaction_look(struct mcc *m, const struct reaction_look *l)
+{
+    note_pulses(m, l->clocks);
+    if (m->signals.stop) {
+        emergency(m);
+    }
+    if (m->error == MCC_ERROR_STOP) {
+        follow(m);
+        return;
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (m->machine.axis[i].track_limit > 0 && (l->overflow >> i & 1)) {
+            stop_at_once(m, MCC_ERROR_TRACK + i, l->flying);
+        }
+    }
+    int axis = guard_track(&m->machine, &m->signals);
+    if (axis >= 0 && !m->error) {
+        reaction_stop(m, MCC_ERROR_TRACK + axis);
+    }
+    if (!m->error && !m->ipo.abort && !homing(m) && m->queue.count > 0) {
+        const int32_t error = blocked(m, &m->written, queue_peek(&m->queue, 0), &axis);
+        if (axis >= 0) {
+            reaction_stop(m, error);     /* the newest points may go another way */
+        }
+    }
+    if (m->ipo.confirming) {
+        confirm(m, l->clocks);
+    }
+}
+
+int reaction_clear(struct mcc *m)
+{
+    const bool track = m->error >= MCC_ERROR_TRACK && m->error < MCC_ERROR_TRACK + AXES;
+
+    if (m->signals.stop || (track && guard_track(&m->machine, &m->signals) >= 0)) {
+        return MCC_RUN_TIME;
+    }
+    const bool stop = m->error == MCC_ERROR_STOP;
+    const bool rests = stop ? m->protection.quiet >= QUIET * machine_dda_clocks(&m->machine)
+                            : !m->error || MCC_check_stop(m);
+    if (!rests) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    if (stop) {
+        follow(m);
+    }
+    m->error = 0;
+    return MCC_NO_ERR;
+}
