@@ -21,6 +21,8 @@ class Port:
     ----------
     name, type, causality, doc : str
         FMI name; Float64, Int32, Boolean or String; FMI causality; description.
+    tunable : bool
+        A parameter that may change during a run.
     shape : tuple of int
         Empty for a scalar.
     unit : str or None
@@ -35,6 +37,7 @@ class Port:
     name: str
     type: str
     causality: str
+    tunable: bool
     doc: str
     shape: tuple[int, ...]
     unit: str | None
@@ -133,6 +136,7 @@ def ports(name: str) -> dict[str, Port]:
             v.name,
             v.type,
             v.causality,
+            v.variability == "tunable",
             v.description or "",
             tuple(int(d.start) for d in v.dimensions),
             v.unit,

@@ -131,7 +131,7 @@ def stimuli(resolver: Resolver, step_ns: int) -> list[Stimulus]:
     for number, drive in enumerate(document.body.drive):
         table = f"drive.{number}"
         end = resolver.end(drive.input, table, "input")
-        if end.port.causality != "input":
+        if end.port.causality != "input" and not end.port.tunable:
             raise document.error(f"{end.name} is no input ({end.port.causality})", table, "input")
         if len(drive.at) != len(drive.value):
             raise document.error(
