@@ -24,13 +24,21 @@ static struct machine machine_of(const struct vars *v)
         .dda_time = v->dda_time, .dda_length = v->dda_length, .queue_depth = v->queue_depth,
         .feed = v->feed / 60.0, .max_feed = v->max_feed / 60.0,
         .acc_time = v->acc_time, .dec_time = v->dec_time,
-        .acc_type = v->acc_type[0], .dec_type = v->dec_type[0], .jerk_share = v->jerk_share
+        .acc_type = v->acc_type[0], .dec_type = v->dec_type[0], .jerk_share = v->jerk_share,
+        .limit_check = v->limit_mode >= 0, .limit_mode = v->limit_mode < 0 ? 0 : v->limit_mode,
+        .inpos_mode = v->inpos_mode, .inpos_settle = v->inpos_settle,
+        .inpos_timeout = v->inpos_timeout
     };
     for (int i = 0; i < AXES; i++) {
         m.axis[i] = (struct machine_axis){
             .used = v->active[i], .pitch = v->lead[i], .gear_ratio = v->gear_ratio[i],
             .ppr = v->ppr[i], .rpm = v->max_rpm[i], .p_gain = v->p_gain[i],
-            .inverted = v->pos2encoder_dir[i] == 1
+            .inverted = v->pos2encoder_dir[i] == 1,
+            .max_dda_acc = v->max_dda_acc[i], .check_ot = v->check_over_travel[i],
+            .high_limit = v->high_limit[i], .low_limit = v->low_limit[i],
+            .hot_offset = v->hot_offset[i], .lot_offset = v->lot_offset[i],
+            .track_limit = v->track_error_limit[i], .in_pos = v->in_pos[i],
+            .inpos_tol = v->inpos_tol[i]
         };
     }
     return m;
@@ -59,6 +67,24 @@ static int check_homing(struct fmu *f)
         }
     }
     return v->home_first && !any ? fmu_fail(f, "home_first: home_order names no axis") : 0;
+}
+
+static int check_protection(struct fmu *f)
+{
+    const struct machine machine = machine_of(&f->s.v);
+
+    for (int i = 0; i < AXES; i++) {
+        const struct machine_axis *a = &machine.axis[i];
+        if (a->check_ot && machine_low(a) > machine_high(a)) {
+            return fmu_fail(f, "check_over_travel[%d]: the software limits leave no way, from %g "
+                            "to %g mm", i + 1, machine_low(a), machine_high(a));
+        }
+        if (a->max_dda_acc > 2 * machine_dda_limit(&machine)) {
+            return fmu_fail(f, "max_dda_acc[%d] = %d: a change is at most %d pulses", i + 1,
+                            (int)a->max_dda_acc, (int)(2 * machine_dda_limit(&machine)));
+        }
+    }
+    return 0;
 }
 
 static int check_parameters(struct fmu *f)
@@ -97,7 +123,7 @@ static int check_parameters(struct fmu *f)
     if (v->feed > v->max_feed) {
         return fmu_fail(f, "feed %g mm/min is above max_feed %g mm/min", v->feed, v->max_feed);
     }
-    return 0;
+    return check_protection(f);
 }
 
 static void homing_of(const struct vars *v, struct pc_config *c)

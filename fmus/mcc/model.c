@@ -88,6 +88,9 @@ static int refuse_program(struct fmu *f, const struct fault_report *r)
                  quote(f, r, r->other_at, r->other_length).text);
     } else if (r->fault == FAULT_FEED || r->fault == FAULT_SPEED) {
         snprintf(detail, sizeof detail, " (%.6g, limit %.6g)", r->value, r->limit);
+    } else if (r->fault == FAULT_TRAVEL) {
+        snprintf(detail, sizeof detail, " (%c to %.6g mm, limit %.6g mm)", "XYZUVW"[r->axis],
+                 r->value, r->limit);
     } else if (r->fault == FAULT_ARC_END) {
         snprintf(detail, sizeof detail, " (by %.6g mm)", r->value);
     } else if (r->fault == FAULT_ARC_CHORD) {
@@ -226,7 +229,8 @@ static void read_bus(struct fmu *f, int64_t at)
         .hold = v->hold, .abort = v->abort, .cycle_start = v->cycle_start,
         .single_block = v->single_block,
         .override = v->override, .go_home = v->go_home, .jog_percent = 100.0 * v->jog_speed,
-        .wheel_axis = v->mpg_axis, .wheel_encoder = v->mpg_encoder, .wheel_ratio = v->mpg_ratio
+        .wheel_axis = v->mpg_axis, .wheel_encoder = v->mpg_encoder, .wheel_ratio = v->mpg_ratio,
+        .clear_error = v->clear_error
     };
     memcpy(card.irq_flags, v->card_irq_flags, sizeof card.irq_flags);
     memcpy(panel.software_gain, v->software_gain, sizeof panel.software_gain);
@@ -235,6 +239,7 @@ static void read_bus(struct fmu *f, int64_t at)
         .stop = v->card_stopped, .home = (uint32_t)v->card_home,
         .upper = v->card_over_travel & 0x3f, .lower = (v->card_over_travel >> 8) & 0x3f
     };
+    memcpy(panel.signals.pulses, v->card_pulse_count, sizeof panel.signals.pulses);
     memcpy(panel.signals.enc, v->card_enc_count, sizeof panel.signals.enc);
     memcpy(panel.jog, v->jog, sizeof panel.jog);
     memcpy(panel.signals.enc_aux,
