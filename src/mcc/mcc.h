@@ -50,7 +50,7 @@ enum mcc_error {
 /* State of the reactions: see reaction.h. */
 struct protection {
     int32_t base[AXES];         /* [pulses] position where the card's pulse count is 0 */
-    int32_t frame[AXES];        /* [pulses] of the latest DDA time, 0 at rest */
+    int32_t frame[AXES];        /* [pulses] of the latest DDA time, uncompensated, 0 at rest */
     int32_t seen[AXES];         /* [pulses] the card's count at the latest look */
     int64_t quiet;              /* [clocks] since it changed or the emergency stop acted */
     int64_t waited, settled;    /* [clocks] in-position check: since its begin, within tolerance */

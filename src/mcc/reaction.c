@@ -86,19 +86,19 @@ static bool within(struct mcc *m, bool ramping, const struct point *p, int32_t *
 
 bool reaction_point(struct mcc *m, bool ramping, struct point *p, int32_t *error)
 {
-    struct comp comp[AXES];
-
     *error = MCC_ERROR_SPEED;
-    if (!frame(m, p) || (!m->error && !homing(m) && !within(m, ramping, p, error))) {
+    if (!frame(m, p)) {
         return false;
     }
-    memcpy(comp, m->comp, sizeof comp);
-    compensate_frame(m, p);
-    if (!m->error && guard_change(&m->machine, m->protection.frame, p->frame) >= 0) {
-        memcpy(m->comp, comp, sizeof comp);
+    if (!m->error) {
         *error = MCC_ERROR_ACC;
-        return false;
+        if (guard_change(&m->machine, m->protection.frame, p->frame) >= 0 ||
+            (!homing(m) && !within(m, ramping, p, error))) {
+            return false;
+        }
     }
+    memcpy(m->protection.frame, p->frame, sizeof p->frame);
+    compensate_frame(m, p);
     return true;
 }
 

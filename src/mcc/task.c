@@ -136,7 +136,6 @@ static void next_point(struct mcc *m, const struct program *p)
         reaction_stop(m, error);
         return;
     }
-    memcpy(m->protection.frame, point.frame, sizeof m->protection.frame);
     ipo_accept(&m->ipo, &m->ring, &point);
     queue_push(&m->queue, &point);
 }
