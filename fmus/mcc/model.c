@@ -133,6 +133,27 @@ static void publish_card(struct vars *v, struct model *m)
 _Static_assert(sizeof ((struct vars *)0)->card_cmd_frames == sizeof ((struct pcl *)0)->frames,
                "the wire carries a whole transaction");
 
+static void publish_schedule(struct vars *v, const struct pc *pc)
+{
+    const struct isr *isr = &pc->shown_isr;
+    const struct sched *sched = &pc->shown;
+
+    for (int i = 0; i < ISR_PAGES; i++) {
+        v->served[i] = isr->served[i];
+        v->served_latency[i] = (double)isr->latency[i] / CLOCK_HZ;
+    }
+    v->serving = isr->page + 1;
+    v->module = sched->running + 1;
+    for (int i = 0; i < SCHED_MODULES; i++) {
+        const struct sched_module *m = &sched->module[i];
+        v->module_runs[i] = m->runs;
+        v->module_latency[i] = (double)m->latency / CLOCK_HZ;
+        v->module_response[i] = (double)m->response / CLOCK_HZ;
+        v->module_missed[i] = m->missed;
+        v->module_load[i] = sched->clock > 0 ? (double)m->busy / (double)sched->clock : 0.0;
+    }
+}
+
 static void publish(struct fmu *f)
 {
     struct vars *v = &f->s.v;
@@ -155,11 +176,7 @@ static void publish(struct fmu *f)
     v->starved = m->pc.pcl.starved;
     v->services = m->pc.pcl.services;
     v->latency = (double)m->pc.pcl.latency / CLOCK_HZ;
-    for (int i = 0; i < ISR_PAGES; i++) {
-        v->served[i] = m->pc.pcl.isr.served[i];
-        v->served_latency[i] = (double)m->pc.pcl.isr.latency[i] / CLOCK_HZ;
-    }
-    v->serving = m->pc.pcl.isr.page + 1;
+    publish_schedule(v, &m->pc);
     publish_card(v, m);
     if (v->error != m->told_error) {
         m->told_error = v->error;

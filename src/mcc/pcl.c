@@ -58,10 +58,9 @@ void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t
     }
     if (pcl_interrupt(p, card)) {
         const bool fifo = (card->irq_flags[ISR_FIFO_PAGE] & p->mask) != 0;
-        const int64_t due = isr_read(&p->isr, card->irq_flags, p->mask, card->irq_clock,
-                                     card->irq_clock + latency);
+        isr_read(&p->isr, card->irq_flags, p->mask, card->irq_clock, card->irq_clock + latency);
         if (fifo && p->pending == 0) {
-            p->due = due;
+            p->due = INT64_MAX;
             p->raised = card->irq_clock;
         }
         p->pending += fifo;
@@ -98,7 +97,12 @@ int64_t pcl_due(const struct pcl *p)
     return p->prime > 0 ? 0 : p->pending > 0 ? p->due : INT64_MAX;
 }
 
-void pcl_serve(struct pcl *p, const struct mcc *m, int64_t clock)
+void pcl_turn(struct pcl *p, int64_t clock)
+{
+    p->due = p->due < clock ? p->due : clock;
+}
+
+void pcl_take(struct pcl *p, const struct mcc *m)
 {
     const int32_t want = p->prime > 0 ? p->prime : p->batch;
 
@@ -112,6 +116,10 @@ void pcl_serve(struct pcl *p, const struct mcc *m, int64_t clock)
             p->frames[i][k] = m->machine.axis[k].inverted ? -pulses : pulses;
         }
     }
+}
+
+void pcl_write(struct pcl *p, int64_t clock)
+{
     p->clock = clock;
     p->open = true;
     p->seq++;

@@ -44,7 +44,7 @@ struct pcl {
     bool    halted;             /* emergency stop: the card takes nothing */
     int32_t refusals;           /* transactions in a row of which the card took nothing */
     int64_t pending;            /* interrupts not served */
-    int64_t due;                /* clock of the next service */
+    int64_t due;                /* clock of the next service; INT64_MAX: with its page's */
     int64_t raised;             /* clock of its interrupt, -1 if none asked for it */
     int32_t irq_seq, refused;   /* as seen last */
     int32_t ack_seq;            /* interrupt acknowledge to the card */
@@ -75,7 +75,13 @@ bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card);
 /* Clock of the next service: 0 while the FIFO is primed, INT64_MAX if none can be given now. */
 int64_t pcl_due(const struct pcl *p);
 
-/* Serve: open a transaction that reaches the card at clock. */
-void pcl_serve(struct pcl *p, const struct mcc *m, int64_t clock);
+/* The FIFO's page has its turn: the services that wait are due. */
+void pcl_turn(struct pcl *p, int64_t clock);
+
+/* Serve: take the points there are. */
+void pcl_take(struct pcl *p, const struct mcc *m);
+
+/* What was taken last becomes a transaction that reaches the card at a clock. */
+void pcl_write(struct pcl *p, int64_t clock);
 
 #endif
