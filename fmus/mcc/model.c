@@ -144,8 +144,9 @@ static void publish_schedule(struct vars *v, const struct pc *pc)
     }
     v->serving = isr->page + 1;
     v->module = sched->running + 1;
-    for (int i = 0; i < SCHED_MODULES; i++) {
-        const struct sched_module *m = &sched->module[i];
+    const struct sched_module all = sched_all(sched);
+    for (int i = 0; i <= SCHED_MODULES; i++) {
+        const struct sched_module *m = i < SCHED_MODULES ? &sched->module[i] : &all;
         v->module_runs[i] = m->runs;
         v->module_latency[i] = (double)m->latency / CLOCK_HZ;
         v->module_response[i] = (double)m->response / CLOCK_HZ;

@@ -139,3 +139,18 @@ void sched_end(struct sched *s, int module)
     m->runs++;
     at_least(&m->response, s->clock - m->from);
 }
+
+struct sched_module sched_all(const struct sched *s)
+{
+    struct sched_module all = { .runs = 0 };
+
+    for (int i = 0; i < SCHED_MODULES; i++) {
+        const struct sched_module *m = &s->module[i];
+        all.runs += m->runs;
+        all.missed += m->missed;
+        all.busy += m->busy;
+        at_least(&all.latency, m->latency);
+        at_least(&all.response, m->response);
+    }
+    return all;
+}

@@ -73,4 +73,7 @@ void sched_begin(struct sched *s, int module, int64_t due, int64_t clocks);
 void sched_more(struct sched *s, int module, int64_t clocks);
 void sched_end(struct sched *s, int module);
 
+/* Runs, missed deadlines and clocks of all modules together, the longest latency and response. */
+struct sched_module sched_all(const struct sched *s);
+
 #endif
