@@ -19,7 +19,7 @@ enum pc_module {
     PC_INTERPRETER, /* program to command ring; unit: a command */
     PC_IPO,         /* command ring to point queue; unit: a point */
     PC_PCL,         /* interrupts, point queue to card; unit: a frame; a run: a page, a write */
-    PC_PROCESS      /* program start, hold, abort, override, cycle start; no unit */
+    PC_PROCESS      /* program start, all of the panel; no unit */
 };
 _Static_assert(PC_PROCESS + 1 == SCHED_MODULES, "the scheduler has the modules of the PC");
 
