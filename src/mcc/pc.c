@@ -49,21 +49,6 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     return code;
 }
 
-/* Uniform in [0, 1): SplitMix64, the 53 upper bits. */
-static double uniform(uint64_t *state)
-{
-    uint64_t x = *state += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return ldexp((double)((x ^ (x >> 31)) >> 11), -53);
-}
-
-/* Latency of an interrupt; a number is drawn for each. [clocks] */
-static int64_t latency(struct pc *pc)
-{
-    return (int64_t)llround(pc->config.latency + pc->config.jitter * uniform(&pc->random));
-}
-
 static void read_panel(struct pc *pc, const struct pc_panel *panel)
 {
     const struct machine *m = &pc->mcc.machine;
@@ -124,7 +109,7 @@ static void protect(struct pc *pc)
     const struct isr *isr = &pc->pcl.isr;
     const bool served = isr->served[ISR_LOOP_PAGE] != pc->loop_served;
     const struct reaction_look look = {
-        .clocks = pc->config.bus, .flying = pc->pcl.open || pc->writing ? pc->pcl.points : 0,
+        .clocks = pc->config.bus, .flying = pc->pcl.open || pc->writing ? pc->pcl.part.points : 0,
         .overflow = served ? (uint32_t)isr->sources[ISR_LOOP_PAGE] : 0
     };
 
@@ -185,14 +170,7 @@ static void process_act(struct pc *pc, const struct source *program)
         MCC_motion_abort(m);
     }
     panel_keys(pc, program);
-    /* The level is offered every time: what does not apply is refused. */
-    if (pc->panel.hold) {
-        MCC_motion_hold(m);
-    } else {
-        MCC_motion_conti(m);
-    }
-    MCC_set_over_spd(m, 100.0 * pc->panel.override);
-    MCC_set_ptp_ospd(m, 100.0 * pc->panel.override);
+    task_operate(m, pc->panel.hold, pc->panel.override);
 }
 
 /* May a run begin one more unit? Counts it. */
@@ -370,8 +348,10 @@ void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
                 const struct pc_panel *panel, const struct source *program)
 {
     pc->publish = now + pc->config.bus;
+    /* A number is drawn for each interrupt. */
     pcl_look(&pc->pcl, &pc->mcc, card, now,
-             pcl_interrupt(&pc->pcl, card) ? latency(pc) : 0);
+             pcl_interrupt(&pc->pcl, card)
+                 ? pcl_latency(&pc->random, pc->config.latency, pc->config.jitter) : 0);
     read_panel(pc, panel);
     protect(pc);
     work(pc, pc->publish + 1, panel, program);

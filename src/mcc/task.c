@@ -91,6 +91,17 @@ int task_continue(struct mcc *m)
     return MCC_NO_ERR;
 }
 
+void task_operate(struct mcc *m, bool hold, double override)
+{
+    if (hold) {
+        MCC_motion_hold(m);
+    } else {
+        MCC_motion_conti(m);
+    }
+    MCC_set_over_spd(m, 100.0 * override);
+    MCC_set_ptp_ospd(m, 100.0 * override);
+}
+
 /* The library works: it is open and no emergency stop holds it. */
 static bool works(const struct mcc *m)
 {

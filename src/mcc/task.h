@@ -33,6 +33,9 @@ int task_set_single_block(struct mcc *m, bool on);
  * has been written. */
 int task_continue(struct mcc *m);
 
+/* Hold or go on, and override (1 is 100 %), as a panel has them: what does not apply is refused. */
+void task_operate(struct mcc *m, bool hold, double override);
+
 /* One cycle: fill the point queue as far as commands reach. The text is the one that task_check
  * found good; NULL if no program runs. */
 void task_run(struct mcc *m, const struct source *s);
