@@ -248,15 +248,15 @@ static void undisturbed(void)
 }
 
 /* One group alone is the library of pc, pulse for pulse. */
-static void as_the_single_library(void)
+static void as_the_single_library(int64_t start)
 {
     static struct trace one;
     const struct machine m = *motion();
-    struct job job[GROUPS] = { { .channel = { 0, 1, 2, -1, -1, -1 }, .start = 400000 } };
+    struct job job[GROUPS] = { { .channel = { 0, 1, 2, -1, -1, -1 }, .start = start } };
     const struct group_config g = usual();
     const struct pc_config config = {
         .bus = g.bus, .ipo = g.ipo, .latency = g.latency, .jitter = g.jitter, .seed = g.seed,
-        .min_stock = g.min_stock, .batch = g.batch, .start = 400000
+        .min_stock = g.min_stock, .batch = g.batch, .start = start
     };
     const struct pc_panel panel = { .override = 1.0 };
     struct card c;
@@ -299,7 +299,9 @@ int main(void)
 {
     codes();
     undisturbed();
-    as_the_single_library();
+    as_the_single_library(0);
+    as_the_single_library(400000);
+    as_the_single_library(400001);
     refused();
     return check_result();
 }
