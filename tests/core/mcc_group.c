@@ -272,7 +272,7 @@ static void as_the_single_library(int64_t start)
     CHECK(!memcmp(&one, &alone, sizeof one));
 }
 
-/* A FIFO too small for n + N: frames are refused and come again; every group ends where it should. */
+/* A FIFO too small for n + N: refused frames come again; every group ends where it should. */
 static void refused(void)
 {
     uint64_t seed = 23;
