@@ -79,6 +79,7 @@ def test_bad_program_is_refused_before_anything_moves(
         ({"feed": 700.0, "max_feed": 600.0}, "feed 700 mm/min is above max_feed 600 mm/min"),
         ({"bus_period": 1.1e-7}, "bus_period = "),
         ({"start_delay": 1e12}, "start_delay = 1e+12 s is too long"),
+        ({"module_offset": [0.0, 0.0, 1e-3, 0.0]}, "module_offset[3] = 0.001 s: interrupts wake"),
         ({"program": "no/such.ngc"}, "program: cannot read no/such.ngc: No such file"),
         ({"program": "."}, "program: cannot read .: Is a directory"),
         ({"home_order": [0, 0, 0, 1, 0, 0]}, "home_order[4] = 1: the axis is not active"),

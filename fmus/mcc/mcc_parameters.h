@@ -100,6 +100,10 @@ static int check_parameters(struct fmu *f)
         { "start_delay", v->start_delay }, { "irq_latency", v->irq_latency },
         { "irq_jitter", v->irq_jitter }, { "service_time", v->service_time },
     };
+    if (v->module_offset[PC_PCL] != 0.0) {
+        return fmu_fail(f, "module_offset[%d] = %g s: interrupts wake the position control, it has "
+                        "no cycle", PC_PCL + 1, v->module_offset[PC_PCL]);
+    }
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
         if (!(clocks(times[i].value) < CLOCKS_MAX)) {
             return fmu_fail(f, "%s = %g s is too long", times[i].name, times[i].value);
@@ -141,17 +145,31 @@ static void homing_of(const struct vars *v, struct pc_config *c)
     c->home_settle = v->home_settle;
 }
 
+/* A cycle that is not 0 has a clock at least. */
+static int64_t cycle_of(double seconds)
+{
+    return seconds > 0.0 ? (int64_t)llround(fmax(1.0, clocks(seconds))) : 0;
+}
+
 static struct pc_config config_of(const struct vars *v)
 {
     struct pc_config c = {
         .bus = (int64_t)round(clocks(v->bus_period)),
         .ipo = (int64_t)round(clocks(v->ipo_period)),
+        .interpreter = cycle_of(v->interpreter_period), .process = cycle_of(v->process_period),
         .start = (int64_t)ceil(clocks(v->start_delay) - PERIOD_TOLERANCE),
         .latency = clocks(v->irq_latency), .jitter = clocks(v->irq_jitter), .seed = v->seed,
         .min_stock = v->min_stock, .batch = v->batch,
         .block_delete = v->block_delete, .optional_stop = v->optional_stop,
         .dry_run = v->dry_run
     };
+    for (int i = 0; i < SCHED_MODULES; i++) {
+        c.priority[i] = v->module_priority[i];
+        c.offset[i] = (int64_t)llround(clocks(v->module_offset[i]));
+        c.time[i] = (int64_t)llround(clocks(v->module_time[i]));
+        c.unit[i] = (int64_t)llround(clocks(v->module_unit_time[i]));
+        c.most[i] = v->module_units[i];
+    }
     c.isr.service = (int64_t)llround(clocks(v->service_time));
     memcpy(c.isr.mask, v->irq_sources, sizeof c.isr.mask);
     memcpy(c.isr.priority, v->irq_priority, sizeof c.isr.priority);

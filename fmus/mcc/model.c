@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "pc.h"
-#include "program_file.h"
 #include "vars.h"
 
 struct model {
@@ -19,23 +18,11 @@ struct model {
 #include "comp_file.h"
 #include "mcc_parameters.h"
 #include "path_file.h"
+#include "program_fault.h"
 
 static int cannot_write(struct fmu *f, int error)
 {
     return fmu_fail(f, "path_file: cannot write %s: %s", f->s.v.path_file, strerror(error));
-}
-
-static int open_program(struct fmu *f)
-{
-    const char *name = f->s.v.program;
-    struct program_file *program;
-    const int error = program_open(name, &program);
-
-    f->blob = program;
-    if (error) {
-        return fmu_fail(f, "program: cannot read %s: %s", name, strerror(error));
-    }
-    return program ? 0 : fmu_fail(f, "program: %s is empty", name);
 }
 
 /* A path that cannot be written is told before the run, not after it. */
@@ -47,7 +34,10 @@ static int model_open(struct fmu *f)
     if (error) {
         return cannot_write(f, error);
     }
-    return v->program[0] ? open_program(f) : 0;
+    struct program_file *program;
+    const int code = open_program(f, "program", v->program, &program);
+    f->blob = program;
+    return code;
 }
 
 static void model_close(struct fmu *f)
@@ -58,47 +48,6 @@ static void model_close(struct fmu *f)
 static struct source source_of_program(const struct fmu *f)
 {
     return (struct source){ program_look, f->blob };
-}
-
-/* Some text of the line a report speaks of. */
-struct quote { char text[SOURCE_LINE_MAX + 1]; };
-
-static struct quote quote(const struct fmu *f, const struct fault_report *r, int32_t at,
-                          int32_t length)
-{
-    const char *text = "";
-    const int64_t there = program_look(f->blob, r->offset, &text);
-    struct quote q;
-    snprintf(q.text, sizeof q.text, "%.*s", there < at + length ? 0 : (int)length, text + at);
-    return q;
-}
-
-/* Say what is wrong with the part program, where, and which text. */
-static int refuse_program(struct fmu *f, const struct fault_report *r)
-{
-    const struct program_file *program = f->blob;
-    char detail[SOURCE_LINE_MAX + 96] = "";
-
-    if (r->fault == FAULT_READ) {
-        return fmu_fail(f, "program: cannot read %s: %s", f->s.v.program,
-                        strerror(program->error));
-    }
-    if (r->other_length) {
-        snprintf(detail, sizeof detail, " beside \"%s\"",
-                 quote(f, r, r->other_at, r->other_length).text);
-    } else if (r->fault == FAULT_FEED || r->fault == FAULT_SPEED) {
-        snprintf(detail, sizeof detail, " (%.6g, limit %.6g)", r->value, r->limit);
-    } else if (r->fault == FAULT_TRAVEL) {
-        snprintf(detail, sizeof detail, " (%c to %.6g mm, limit %.6g mm)", "XYZUVW"[r->axis],
-                 r->value, r->limit);
-    } else if (r->fault == FAULT_ARC_END) {
-        snprintf(detail, sizeof detail, " (by %.6g mm)", r->value);
-    } else if (r->fault == FAULT_ARC_CHORD) {
-        snprintf(detail, sizeof detail, " (%.6g mm, half the distance is %.6g mm)", r->value,
-                 r->limit);
-    }
-    return fmu_fail(f, "%s: line %d: %s \"%s\"%s", f->s.v.program, (int)r->line,
-                    fault_text(r->fault), quote(f, r, r->at, r->length).text, detail);
 }
 
 static void publish_card(struct vars *v, struct model *m)
@@ -133,6 +82,28 @@ static void publish_card(struct vars *v, struct model *m)
 _Static_assert(sizeof ((struct vars *)0)->card_cmd_frames == sizeof ((struct pcl *)0)->frames,
                "the wire carries a whole transaction");
 
+static void publish_schedule(struct vars *v, const struct pc *pc)
+{
+    const struct isr *isr = &pc->shown_isr;
+    const struct sched *sched = &pc->shown;
+
+    for (int i = 0; i < ISR_PAGES; i++) {
+        v->served[i] = isr->served[i];
+        v->served_latency[i] = (double)isr->latency[i] / CLOCK_HZ;
+    }
+    v->serving = isr->page + 1;
+    v->module = sched->running + 1;
+    const struct sched_module all = sched_all(sched);
+    for (int i = 0; i <= SCHED_MODULES; i++) {
+        const struct sched_module *m = i < SCHED_MODULES ? &sched->module[i] : &all;
+        v->module_runs[i] = m->runs;
+        v->module_latency[i] = (double)m->latency / CLOCK_HZ;
+        v->module_response[i] = (double)m->response / CLOCK_HZ;
+        v->module_missed[i] = m->missed;
+        v->module_load[i] = sched->clock > 0 ? (double)m->busy / (double)sched->clock : 0.0;
+    }
+}
+
 static void publish(struct fmu *f)
 {
     struct vars *v = &f->s.v;
@@ -155,11 +126,7 @@ static void publish(struct fmu *f)
     v->starved = m->pc.pcl.starved;
     v->services = m->pc.pcl.services;
     v->latency = (double)m->pc.pcl.latency / CLOCK_HZ;
-    for (int i = 0; i < ISR_PAGES; i++) {
-        v->served[i] = m->pc.pcl.isr.served[i];
-        v->served_latency[i] = (double)m->pc.pcl.isr.latency[i] / CLOCK_HZ;
-    }
-    v->serving = m->pc.pcl.isr.page + 1;
+    publish_schedule(v, &m->pc);
     publish_card(v, m);
     if (v->error != m->told_error) {
         m->told_error = v->error;
@@ -205,7 +172,7 @@ static int model_start(struct fmu *f)
         struct fault_report r;
         task_check(&m->pc.mcc, &source, &r);
         if (r.fault != FAULT_NONE) {
-            return refuse_program(f, &r);
+            return refuse_program(f, "program", v->program, f->blob, &r);
         }
     }
     m->bus = c.bus * CLOCK_NS;

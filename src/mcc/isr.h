@@ -2,9 +2,9 @@
  *
  * The card latches sources on nine pages. At an interrupt the host reads them all, acknowledges
  * what it has read, and serves the pages one after another, the lowest priority number first, pages
- * of one number in their order on the card. The first begins after the interrupt latency, each
- * keeps the PC for its service time. Pages of an earlier interrupt that still wait join the new
- * order.
+ * of one number in their order on the card. They may begin when the latency of the interrupt has
+ * passed; pages of an earlier one that still wait join the new order, but for a FIFO that asks. A
+ * page is not interrupted by another. When the PC serves it is for pc and sched to say.
  */
 #ifndef ISR_H
 #define ISR_H
@@ -27,9 +27,8 @@ struct isr {
     struct isr_config config;
     int32_t waiting[ISR_PAGES];     /* sources read and not served */
     int64_t raised[ISR_PAGES];      /* [clock] of the interrupt that brought the first of them */
-    int64_t due[ISR_PAGES];         /* [clock] of the page's service */
-    int64_t busy;                   /* [clock] up to which the PC serves */
-    int     page;                   /* served until then; -1 before the first */
+    int64_t ready[ISR_PAGES];       /* [clock] from which it may be served */
+    int     page;                   /* served last; -1 before the first */
 
     int32_t order;                  /* services begun so far */
     int32_t served[ISR_PAGES];      /* of each page */
@@ -39,13 +38,18 @@ struct isr {
 
 void isr_start(struct isr *q, const struct isr_config *config);
 
-/* These sources were read, `fifo` being the one that asks for commands: line up their pages behind
- * clock `begin`. Returns the clock at which the FIFO's page is served; `begin` if it does not
- * wait. */
-int64_t isr_read(struct isr *q, const int32_t flags[ISR_PAGES], int32_t fifo, int64_t raised,
-                 int64_t begin);
+/* These sources were read, `fifo` being the one that asks for commands: their pages wait, to be
+ * served from clock `ready` on. */
+void isr_read(struct isr *q, const int32_t flags[ISR_PAGES], int32_t fifo, int64_t raised,
+              int64_t ready);
 
-/* Mark the pages served that are due before `end`. */
-void isr_run(struct isr *q, int64_t end);
+/* Clock from which a page may be served; INT64_MAX if none waits. */
+int64_t isr_ready(const struct isr *q);
+
+/* The page to serve next at a clock; -1 if none may be. */
+int isr_next(const struct isr *q, int64_t clock);
+
+/* The service of a page that waits begins. */
+void isr_begin(struct isr *q, int page, int64_t clock);
 
 #endif

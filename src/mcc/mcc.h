@@ -25,13 +25,15 @@ enum mcc_return {
     MCC_COMMAND_NOTACCEPTED = -3,   /* a part program is running, or axes are moved by hand */
     MCC_COMMAND_NOTFINISHED = -4,   /* allowed at standstill only */
     MCC_PARAMETER           = -5,
+    MCC_GROUP_PARAMETER     = -6,   /* no such group, or its channels cannot be */
     MCC_FEED_RATE           = -7,
     MCC_HOME_COMMAND_NOTCALLED = -10,
     MCC_HOLD_ILLEGAL        = -11,
     MCC_CONTI_ILLEGAL       = -12,
     MCC_ABORT_ILLEGAL       = -13,
     MCC_RUN_TIME            = -14,  /* a run-time error waits for MCC_clear_error */
-    MCC_ABORT_NOT_FINISH    = -15
+    MCC_ABORT_NOT_FINISH    = -15,
+    MCC_GROUP_RAN_OUT       = -16
 };
 
 /* Run-time errors. That of homing is ours: 0xF700 + 16 enum home_fault + axis from 1, so 0xF732 is

@@ -7,17 +7,32 @@
 
 static const double VOLTS_MAX = 10.0;   /* [V] range of the card's DAC */
 
+/* What the modules are doing now is what others see. */
+static void show(struct pc *pc)
+{
+    pc->shown = pc->sched;
+    pc->shown_isr = pc->pcl.isr;
+}
+
 int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *config, bool program)
 {
     memset(pc, 0, sizeof *pc);
     pc->config = *config;
     pc->random = (uint64_t)(int64_t)config->seed;
     pc->program = program;
+    pc->deadline = (config->min_stock + 1) * machine_dda_clocks(m);
+    sched_start(&pc->sched, &(struct sched_config){
+        .priority = { config->priority[0], config->priority[1], config->priority[2],
+                      config->priority[3] },
+        .cycle = { config->interpreter, config->ipo, 0, config->process },
+        .offset = { config->offset[0], config->offset[1], 0, config->offset[3] }
+    });
     struct isr_config isr = config->isr;
     for (int i = 0; i < AXES; i++) {
         isr.mask[ISR_LOOP_PAGE] |= (m->axis[i].used && m->axis[i].track_limit > 0) << i;
     }
     pcl_start(&pc->pcl, m, config->min_stock, config->batch, &isr);
+    show(pc);
     const int code = MCC_init_motion(&pc->mcc, m);
     task_set_switches(&pc->mcc, config->block_delete, config->optional_stop);
     for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
@@ -32,21 +47,6 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
         MCC_enable_dry_run(&pc->mcc);
     }
     return code;
-}
-
-/* Uniform in [0, 1): SplitMix64, the 53 upper bits. */
-static double uniform(uint64_t *state)
-{
-    uint64_t x = *state += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return ldexp((double)((x ^ (x >> 31)) >> 11), -53);
-}
-
-/* Latency of an interrupt; a number is drawn for each. [clocks] */
-static int64_t latency(struct pc *pc)
-{
-    return (int64_t)llround(pc->config.latency + pc->config.jitter * uniform(&pc->random));
 }
 
 static void read_panel(struct pc *pc, const struct pc_panel *panel)
@@ -73,11 +73,12 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
 }
 
 /* Homing, jog, hand wheel; the library refuses what cannot be now. */
-static void by_hand(struct pc *pc, const struct pc_panel *panel)
+static void by_hand(struct pc *pc)
 {
+    const struct pc_panel *panel = &pc->panel;
     struct mcc *m = &pc->mcc;
 
-    if (pc->home_due && pc->next_ipo >= pc->config.start) {
+    if (pc->home_due && pc->sched.clock >= pc->config.start) {
         pc->home_due = false;
         MCC_go_home(m, pc->config.home_order);
     }
@@ -98,7 +99,7 @@ static void by_hand(struct pc *pc, const struct pc_panel *panel)
 static bool may_start(const struct pc *pc)
 {
     const int homed = MCC_check_homef(&pc->mcc);
-    return pc->next_ipo >= pc->config.start &&
+    return pc->sched.clock >= pc->config.start &&
            (homed == 1 || (homed < 0 && !pc->config.home_first));
 }
 
@@ -108,12 +109,13 @@ static void protect(struct pc *pc)
     const struct isr *isr = &pc->pcl.isr;
     const bool served = isr->served[ISR_LOOP_PAGE] != pc->loop_served;
     const struct reaction_look look = {
-        .clocks = pc->config.bus, .flying = pc->pcl.open ? pc->pcl.points : 0,
+        .clocks = pc->config.bus, .flying = pc->pcl.open || pc->writing ? pc->pcl.part.points : 0,
         .overflow = served ? (uint32_t)isr->sources[ISR_LOOP_PAGE] : 0
     };
 
     pc->loop_served = isr->served[ISR_LOOP_PAGE];
     pcl_halt(&pc->pcl, pc->mcc.signals.stop);
+    pc->writing = pc->writing && !pc->mcc.signals.stop;
     reaction_look(&pc->mcc, &look);
 }
 
@@ -150,13 +152,13 @@ static void panel_keys(struct pc *pc, const struct source *program)
     }
 }
 
-/* One cycle of the IPO task, with the panel as read last. */
-static void cycle(struct pc *pc, const struct pc_panel *panel, const struct source *program)
+/* What the process control does, with the panel as it read it. */
+static void process_act(struct pc *pc, const struct source *program)
 {
     struct mcc *m = &pc->mcc;
 
-    by_hand(pc, panel);
-    task_set_single_block(m, panel->single_block);
+    by_hand(pc);
+    task_set_single_block(m, pc->panel.single_block);
     if (pc->program && !pc->started && may_start(pc)) {
         task_start(m);
         pc->started = true;
@@ -168,38 +170,193 @@ static void cycle(struct pc *pc, const struct pc_panel *panel, const struct sour
         MCC_motion_abort(m);
     }
     panel_keys(pc, program);
-    /* The level is offered every time: what does not apply is refused. */
-    if (panel->hold) {
-        MCC_motion_hold(m);
-    } else {
-        MCC_motion_conti(m);
+    task_operate(m, pc->panel.hold, pc->panel.override);
+}
+
+/* May a run begin one more unit? Counts it. */
+static bool one_more(struct pc *pc, int module, bool can)
+{
+    const int32_t most = pc->config.most[module];
+    const bool more = can && (most == 0 || pc->units[module] < most);
+
+    pc->units[module] += more;
+    return more;
+}
+
+/* The next command of a run of the interpreter, the next point of the IPO, if there is one: its
+ * time. [clocks] */
+static int64_t next_command(struct pc *pc)
+{
+    pc->reading = one_more(pc, PC_INTERPRETER, task_can_read(&pc->mcc));
+    return pc->reading ? pc->config.unit[PC_INTERPRETER] : 0;
+}
+
+static int64_t next_point(struct pc *pc)
+{
+    pc->computing = one_more(pc, PC_IPO, task_can_point(&pc->mcc));
+    return pc->computing ? pc->config.unit[PC_IPO] : 0;
+}
+
+/* The IPO begins, and with it the modules without a cycle. Returns the time to the first point. */
+static int64_t ipo_begin(struct pc *pc, const struct pc_panel *panel, const struct source *program)
+{
+    const struct pc_config *c = &pc->config;
+    int64_t time = c->time[PC_IPO];
+
+    if (c->process == 0) {
+        pc->panel = *panel;
+        process_act(pc, program);
+        time += c->time[PC_PROCESS];
     }
-    MCC_set_over_spd(m, 100.0 * panel->override);
-    MCC_set_ptp_ospd(m, 100.0 * panel->override);
-    task_run(m, program);
-    pc->next_ipo += pc->config.ipo;
+    if (c->interpreter == 0) {
+        time += c->time[PC_INTERPRETER];
+        time += c->unit[PC_INTERPRETER] * task_read_all(&pc->mcc, program);
+    }
+    return time + next_point(pc);
+}
+
+/* The transaction or page the PCL serves at this clock. */
+static void pcl_begin(struct pc *pc)
+{
+    struct pcl *p = &pc->pcl;
+    const int64_t clock = pc->sched.clock;
+    int64_t due = pcl_due(p), time = 0;
+
+    if (due > clock) {
+        const int page = isr_next(&p->isr, clock);
+        due = p->isr.raised[page];
+        isr_begin(&p->isr, page, clock);
+        if (page == ISR_FIFO_PAGE && (p->isr.sources[page] & p->mask)) {
+            pcl_turn(p, clock);
+        }
+        pc->tail = pc->config.isr.service;
+    } else if (p->raised >= 0) {
+        due = p->raised;
+    }
+    pc->writing = pcl_due(p) <= clock;
+    if (pc->writing) {
+        pcl_take(p, &pc->mcc);
+        time = pc->config.time[PC_PCL] + pc->config.unit[PC_PCL] * p->count;
+    }
+    sched_begin(&pc->sched, PC_PCL, due, time);
+}
+
+static void begin(struct pc *pc, int module, const struct pc_panel *panel,
+                  const struct source *program)
+{
+    const int64_t due = pc->sched.module[module].due;
+    int64_t time = pc->config.time[module];
+
+    pc->units[module] = 0;
+    if (module == PC_PCL) {
+        pcl_begin(pc);
+        return;
+    }
+    if (module == PC_INTERPRETER) {
+        time += next_command(pc);
+    } else if (module == PC_IPO) {
+        time = ipo_begin(pc, panel, program);
+    } else {
+        pc->panel = *panel;
+    }
+    sched_begin(&pc->sched, module, due, time);
+}
+
+/* The time of what the IPO has under way is over. */
+static void ipo_end(struct pc *pc, const struct source *program)
+{
+    if (!pc->computing) {
+        task_settle(&pc->mcc);
+        sched_end(&pc->sched, PC_IPO);
+        return;
+    }
+    int made = 0;
+    if (task_can_point(&pc->mcc)) {         /* an abort may have come meanwhile */
+        made = task_point(&pc->mcc, pc->config.interpreter > 0 ? NULL : program);
+    }
+    sched_more(&pc->sched, PC_IPO, made * pc->config.unit[PC_INTERPRETER] + next_point(pc));
+}
+
+static void pcl_end(struct pc *pc)
+{
+    struct pcl *p = &pc->pcl;
+    const int64_t clock = pc->sched.clock;
+
+    if (pc->writing) {
+        pc->writing = false;
+        pc->sched.module[PC_PCL].missed += p->raised >= 0 && clock - p->raised >= pc->deadline;
+        pcl_write(p, clock < pc->publish ? pc->publish : clock);
+        sched_more(&pc->sched, PC_PCL, pc->tail);
+        pc->tail = 0;
+    } else if (pc->tail > 0) {
+        sched_more(&pc->sched, PC_PCL, pc->tail);
+        pc->tail = 0;
+    } else {
+        sched_end(&pc->sched, PC_PCL);
+    }
+}
+
+static void end(struct pc *pc, int module, const struct source *program)
+{
+    if (module == PC_INTERPRETER && pc->reading) {
+        if (task_can_read(&pc->mcc)) {      /* an abort may have come meanwhile */
+            task_read(&pc->mcc, program);
+        }
+        sched_more(&pc->sched, module, next_command(pc));
+    } else if (module == PC_IPO) {
+        ipo_end(pc, program);
+    } else if (module == PC_PCL) {
+        pcl_end(pc);
+    } else {
+        if (module == PC_PROCESS) {
+            process_act(pc, program);
+        }
+        sched_end(&pc->sched, module);
+    }
+}
+
+/* Ask for the next service of the PCL, unless it is at work. */
+static void wake(struct pc *pc)
+{
+    const int64_t page = isr_ready(&pc->pcl.isr), write = pcl_due(&pc->pcl);
+    const int64_t ready = page < write ? page : write;
+
+    if (!pc->sched.module[PC_PCL].active && ready != INT64_MAX) {
+        sched_wake(&pc->sched, PC_PCL, ready, ready);
+    }
+}
+
+/* All that happens before a clock. */
+static void work(struct pc *pc, int64_t until, const struct pc_panel *panel,
+                 const struct source *program)
+{
+    for (;;) {
+        wake(pc);
+        const struct sched_event e = sched_next(&pc->sched, until);
+        if (e.what == SCHED_NONE) {
+            return;
+        }
+        if (e.what == SCHED_BEGIN) {
+            begin(pc, e.module, panel, program);
+        } else {
+            end(pc, e.module, program);
+        }
+    }
 }
 
 void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
                 const struct pc_panel *panel, const struct source *program)
 {
-    const int64_t publish = now + pc->config.bus, horizon = publish + pc->config.bus;
-
+    pc->publish = now + pc->config.bus;
+    /* A number is drawn for each interrupt. */
     pcl_look(&pc->pcl, &pc->mcc, card, now,
-             pcl_interrupt(&pc->pcl, card) ? latency(pc) : 0);
+             pcl_interrupt(&pc->pcl, card)
+                 ? pcl_latency(&pc->random, pc->config.latency, pc->config.jitter) : 0);
     read_panel(pc, panel);
-    isr_run(&pc->pcl.isr, publish + 1);
     protect(pc);
-    for (;;) {
-        const int64_t due = pcl_due(&pc->pcl);
-        if (pc->next_ipo < horizon && pc->next_ipo <= due) {
-            cycle(pc, panel, program);
-        } else if (due < horizon) {
-            pcl_serve(&pc->pcl, &pc->mcc, due < publish ? publish : due);
-        } else {
-            return;
-        }
-    }
+    work(pc, pc->publish + 1, panel, program);
+    show(pc);
+    work(pc, pc->publish + pc->config.bus, panel, program);
 }
 
 bool pc_done(const struct pc *pc)

@@ -1,19 +1,38 @@
-/* pc - the computer the library runs on: interrupt latency and jitter, task cycle, bus.
+/* pc - the computer the library runs on: its four modules, interrupt latency and jitter, bus.
  *
  * The PC meets the card and its panel on the bus grid k T_b. What it reads at instant k decides all
  * that happens before (k+2) T_b; it is published at (k+1) T_b, frames with the exact clock at which
  * they reach the card. A service due earlier than (k+1) T_b is late: it takes place at (k+1) T_b.
+ *
+ * The modules exchange data through the command ring and the point queue. A command, a point, a
+ * transaction, what the panel asks for: each is handed over when its own time of the processor is
+ * over, and is made of what there is then. A transaction takes the points there are when it begins.
  */
 #ifndef PC_H
 #define PC_H
 
 #include "pcl.h"
+#include "sched.h"
 #include "task.h"
+
+enum pc_module {
+    PC_INTERPRETER, /* program to command ring; unit: a command */
+    PC_IPO,         /* command ring to point queue; unit: a point */
+    PC_PCL,         /* interrupts, point queue to card; unit: a frame; a run: a page, a write */
+    PC_PROCESS      /* program start, all of the panel; no unit */
+};
+_Static_assert(PC_PROCESS + 1 == SCHED_MODULES, "the scheduler has the modules of the PC");
 
 struct pc_config {
     int64_t bus;            /* [clocks] T_b */
     int64_t ipo;            /* [clocks] cycle of the IPO task */
-    int64_t start;          /* [clocks] the program starts at the first IPO cycle from here on */
+    int64_t interpreter, process;   /* [clocks] their cycles; 0: within the IPO, on its time */
+    int32_t priority[SCHED_MODULES];    /* the lowest number first */
+    int64_t offset[SCHED_MODULES];  /* [clocks] of the first cycle */
+    int64_t time[SCHED_MODULES];    /* [clocks] of a run, */
+    int64_t unit[SCHED_MODULES];    /* [clocks] and for each unit more */
+    int32_t most[SCHED_MODULES];    /* units of a run of interpreter or IPO; 0: no limit */
+    int64_t start;          /* [clocks] the program starts at the first cycle from here on */
     double  latency;        /* [clocks] from interrupt to write */
     double  jitter;         /* [clocks] width of the uniform random addition */
     int32_t seed;
@@ -49,7 +68,15 @@ struct pc {
     struct mcc mcc;
     struct pcl pcl;
     uint64_t random;
-    int64_t next_ipo;       /* [clocks] */
+    struct sched sched;
+    int64_t publish;        /* [clocks] of this instant: (k+1) T_b */
+    int64_t deadline;       /* [clocks] interrupt to write, less than (n + 1) T */
+    bool    reading, computing, writing;    /* the run at work has a unit under way */
+    int32_t units[SCHED_MODULES];   /* that it has begun */
+    int64_t tail;           /* [clocks] of the page behind the write */
+    struct pc_panel panel;  /* as the process control read it */
+    struct sched shown;     /* what was so at (k+1) T_b */
+    struct isr shown_isr;
     bool    program;        /* there is one */
     bool    started;        /* it has been started, or dropped by an abort */
     bool    abort_seen, abort_due;

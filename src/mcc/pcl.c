@@ -1,5 +1,6 @@
 #include "pcl.h"
 
+#include <math.h>
 #include <string.h>
 
 void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch,
@@ -29,39 +30,69 @@ bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card)
     return card->irq_seq > p->irq_seq;
 }
 
-/* The card has taken the transaction but for the frames it refused. */
-static void acknowledged(struct pcl *p, struct mcc *m, int64_t refused)
+/* Uniform in [0, 1): SplitMix64, the 53 upper bits. */
+static double uniform(uint64_t *state)
 {
+    uint64_t x = *state += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return ldexp((double)((x ^ (x >> 31)) >> 11), -53);
+}
+
+int64_t pcl_latency(uint64_t *random, double least, double width)
+{
+    return (int64_t)llround(least + width * uniform(random));
+}
+
+int32_t pcl_acknowledged(struct pcl *p, const struct pcl_card *card)
+{
+    if (!p->open || card->cmd_ack != p->seq) {
+        return -1;
+    }
+    /* All but the frames it refused. */
+    const int64_t refused = (int64_t)card->frames_refused - p->refused;
     const int32_t taken = refused < 0 ? p->count
                         : refused > p->count ? 0 : (int32_t)(p->count - refused);
-    const int32_t points = taken < p->points ? taken : p->points;
+    p->prime = p->prime > taken ? p->prime - taken : 0;
+    p->refusals = taken > 0 ? 0 : p->refusals + 1;
+    p->refused = card->frames_refused;
+    p->open = false;
+    return taken;
+}
+
+int32_t pcl_release(struct mcc *m, const struct pcl_part *part, int32_t taken)
+{
+    const int32_t points = taken < part->points ? taken : part->points;
 
     if (points > 0) {
         m->written = *queue_peek(&m->queue, points - 1);
         queue_drop(&m->queue, points);
     }
-    if (taken > points) {
-        m->written.feed = 0.0;
-        p->starved += p->late ? taken - points : 0;
+    if (taken <= points) {
+        return 0;
     }
-    p->prime = p->prime > taken ? p->prime - taken : 0;
-    p->refusals = taken > 0 ? 0 : p->refusals + 1;
-    p->open = false;
+    m->written.feed = 0.0;
+    return part->late ? taken - points : 0;
 }
 
 void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t now,
               int64_t latency)
 {
-    if (p->open && card->cmd_ack == p->seq) {
-        acknowledged(p, m, (int64_t)card->frames_refused - p->refused);
-        p->refused = card->frames_refused;
+    const int32_t taken = pcl_acknowledged(p, card);
+
+    if (taken >= 0) {
+        p->starved += pcl_release(m, &p->part, taken);
     }
+    pcl_notice(p, card, now, latency);
+}
+
+void pcl_notice(struct pcl *p, const struct pcl_card *card, int64_t now, int64_t latency)
+{
     if (pcl_interrupt(p, card)) {
         const bool fifo = (card->irq_flags[ISR_FIFO_PAGE] & p->mask) != 0;
-        const int64_t due = isr_read(&p->isr, card->irq_flags, p->mask, card->irq_clock,
-                                     card->irq_clock + latency);
+        isr_read(&p->isr, card->irq_flags, p->mask, card->irq_clock, card->irq_clock + latency);
         if (fifo && p->pending == 0) {
-            p->due = due;
+            p->due = INT64_MAX;
             p->raised = card->irq_clock;
         }
         p->pending += fifo;
@@ -83,8 +114,8 @@ void pcl_halt(struct pcl *p, bool halted)
     p->halted = halted;
     if (halted) {
         p->prime = p->min_stock + p->batch;
-        p->points = p->refusals = 0;
-        p->late = false;
+        p->part = (struct pcl_part){ 0 };
+        p->refusals = 0;
         p->pending = 0;
         p->raised = -1;
     }
@@ -98,20 +129,45 @@ int64_t pcl_due(const struct pcl *p)
     return p->prime > 0 ? 0 : p->pending > 0 ? p->due : INT64_MAX;
 }
 
-void pcl_serve(struct pcl *p, const struct mcc *m, int64_t clock)
+void pcl_turn(struct pcl *p, int64_t clock)
+{
+    p->due = p->due < clock ? p->due : clock;
+}
+
+void pcl_prepare(struct pcl *p)
 {
     const int32_t want = p->prime > 0 ? p->prime : p->batch;
 
     p->count = want < PCL_FRAMES ? want : PCL_FRAMES;
-    p->points = m->queue.count < p->count ? m->queue.count : p->count;
-    p->late = p->points < p->count && task_moving(m);
     memset(p->frames, 0, sizeof p->frames);
-    for (int i = 0; i < p->points; i++) {
+}
+
+void pcl_merge(struct pcl *p, const struct mcc *m, const int32_t channel[AXES],
+               struct pcl_part *part)
+{
+    part->points = m->queue.count < p->count ? m->queue.count : p->count;
+    part->late = part->points < p->count && task_moving(m);
+    for (int i = 0; i < part->points; i++) {
+        const struct point *point = queue_peek(&m->queue, i);
         for (int k = 0; k < AXES; k++) {
-            const int32_t pulses = queue_peek(&m->queue, i)->frame[k];
-            p->frames[i][k] = m->machine.axis[k].inverted ? -pulses : pulses;
+            if (channel[k] >= 0) {
+                p->frames[i][channel[k]] = m->machine.axis[k].inverted ? -point->frame[k]
+                                                                       : point->frame[k];
+            }
         }
     }
+}
+
+void pcl_take(struct pcl *p, const struct mcc *m)
+{
+    static const int32_t own[AXES] = { 0, 1, 2, 3, 4, 5 };
+
+    pcl_prepare(p);
+    pcl_merge(p, m, own, &p->part);
+}
+
+void pcl_write(struct pcl *p, int64_t clock)
+{
     p->clock = clock;
     p->open = true;
     p->seq++;

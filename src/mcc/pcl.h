@@ -18,6 +18,12 @@ enum {
     PCL_REFUSALS = 3    /* wholly refused transactions in a row that no full FIFO explains */
 };
 
+/* What one library has in a transaction. */
+struct pcl_part {
+    int32_t points;     /* frames from its queue; the others are standstill */
+    bool    late;       /* in the middle of a motion */
+};
+
 /* What the card shows on its bus. */
 struct pcl_card {
     int32_t irq_seq;            /* pulls of the interrupt line */
@@ -37,14 +43,14 @@ struct pcl {
     int32_t seq;                /* the transaction: number, 0 before the first */
     bool    open;               /* not yet acknowledged */
     int64_t clock;              /* when it reaches the card */
-    int32_t count, points;      /* frames in it, and how many of them from the queue */
-    bool    late;               /* the others are standstill in the middle of a motion */
+    int32_t count;              /* frames in it */
+    struct pcl_part part;       /* of a library that has the card for itself */
     int32_t frames[PCL_FRAMES][AXES];
 
     bool    halted;             /* emergency stop: the card takes nothing */
     int32_t refusals;           /* transactions in a row of which the card took nothing */
     int64_t pending;            /* interrupts not served */
-    int64_t due;                /* clock of the next service */
+    int64_t due;                /* clock of the next service; INT64_MAX: with its page's */
     int64_t raised;             /* clock of its interrupt, -1 if none asked for it */
     int32_t irq_seq, refused;   /* as seen last */
     int32_t ack_seq;            /* interrupt acknowledge to the card */
@@ -57,6 +63,9 @@ struct pcl {
 
 void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch,
                const struct isr_config *isr);
+
+/* Uniform random latency of an interrupt, from `least` on over a width. [clocks] */
+int64_t pcl_latency(uint64_t *random, double least, double width);
 
 /* Sources of a page that the library lets through. */
 int32_t pcl_mask(const struct pcl *p, int page);
@@ -72,10 +81,31 @@ void pcl_halt(struct pcl *p, bool halted);
 /* True if an interrupt has come that pcl_look has not seen. */
 bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card);
 
+/* The same in parts, for a card of several libraries. Frames taken of the transaction that the card
+ * has acknowledged, -1 if it has none; give each library its part back; then look at the rest. */
+int32_t pcl_acknowledged(struct pcl *p, const struct pcl_card *card);
+void pcl_notice(struct pcl *p, const struct pcl_card *card, int64_t now, int64_t latency);
+
+/* The card took so many frames: drop the points among them. Returns the frames of standstill that
+ * were too late. */
+int32_t pcl_release(struct mcc *m, const struct pcl_part *part, int32_t taken);
+
 /* Clock of the next service: 0 while the FIFO is primed, INT64_MAX if none can be given now. */
 int64_t pcl_due(const struct pcl *p);
 
-/* Serve: open a transaction that reaches the card at clock. */
-void pcl_serve(struct pcl *p, const struct mcc *m, int64_t clock);
+/* The FIFO's page has its turn: the services that wait are due. */
+void pcl_turn(struct pcl *p, int64_t clock);
+
+/* Serve: take the points there are. */
+void pcl_take(struct pcl *p, const struct mcc *m);
+
+/* The same for several libraries: so many frames of standstill; then the points of each, its axes
+ * on channels of the card (-1: none). */
+void pcl_prepare(struct pcl *p);
+void pcl_merge(struct pcl *p, const struct mcc *m, const int32_t channel[AXES],
+               struct pcl_part *part);
+
+/* What was taken last becomes a transaction that reaches the card at a clock. */
+void pcl_write(struct pcl *p, int64_t clock);
 
 #endif

@@ -91,42 +91,91 @@ int task_continue(struct mcc *m)
     return MCC_NO_ERR;
 }
 
-/* Interpret ahead while the ring has room; what has left it since its head was there is kept. */
-static void refill(struct mcc *m, const struct program *p, int32_t head)
+void task_operate(struct mcc *m, bool hold, double override)
 {
+    if (hold) {
+        MCC_motion_hold(m);
+    } else {
+        MCC_motion_conti(m);
+    }
+    MCC_set_over_spd(m, 100.0 * override);
+    MCC_set_ptp_ospd(m, 100.0 * override);
+}
+
+/* The library works: it is open and no emergency stop holds it. */
+static bool works(const struct mcc *m)
+{
+    return m->open && m->error != MCC_ERROR_STOP;
+}
+
+/* Room for a command, if what has left the ring since its head was there is kept. */
+static bool has_room(const struct mcc *m, int32_t head)
+{
+    return works(m) && m->running &&
+           m->ring.count + (m->ring.head - head + RING_SIZE) % RING_SIZE < RING_SIZE;
+}
+
+bool task_can_read(const struct mcc *m)
+{
+    return has_room(m, m->ring.head);
+}
+
+void task_read(struct mcc *m, const struct source *s)
+{
+    const struct program p = task_program(m, s);
     struct command c;
     struct fault_report r;
 
-    while (m->running &&
-           m->ring.count + (m->ring.head - head + RING_SIZE) % RING_SIZE < RING_SIZE) {
-        switch (interpreter_next(&m->program, p, &c, &r)) {
-        case INTERPRETER_COMMAND:
-            c.index = command_lasts(&c) ? ++m->commands : 0;
-            memcpy(m->end, m->program.point, sizeof m->end);
-            ring_push(&m->ring, &c);
-            break;
-        case INTERPRETER_END:
-            m->running = false;
-            break;
-        case INTERPRETER_FAULT:
-            reaction_stop(m, reaction_error_of(&r));
-            break;
-        }
+    switch (interpreter_next(&m->program, &p, &c, &r)) {
+    case INTERPRETER_COMMAND:
+        c.index = command_lasts(&c) ? ++m->commands : 0;
+        memcpy(m->end, m->program.point, sizeof m->end);
+        ring_push(&m->ring, &c);
+        break;
+    case INTERPRETER_END:
+        m->running = false;
+        break;
+    case INTERPRETER_FAULT:
+        reaction_stop(m, reaction_error_of(&r));
+        break;
     }
 }
 
-/* Let one DDA time pass on the path and queue its point. */
-static void next_point(struct mcc *m, const struct program *p)
+/* Interpret ahead while there is room; how many commands. */
+static int refill(struct mcc *m, const struct source *s, int32_t head)
+{
+    int made = 0;
+
+    while (has_room(m, head)) {
+        task_read(m, s);
+        made++;
+    }
+    return made;
+}
+
+int task_read_all(struct mcc *m, const struct source *s)
+{
+    return refill(m, s, m->ring.head);
+}
+
+bool task_can_point(const struct mcc *m)
+{
+    return works(m) && m->queue.count < m->machine.queue_depth &&
+           (m->ipo.news || compensate_due(m) || !ipo_resting(&m->ipo, &m->ring));
+}
+
+int task_point(struct mcc *m, const struct source *s)
 {
     const struct ipo before = m->ipo;
     const int32_t head = m->ring.head, count = m->ring.count;
     struct point point;
     int32_t error;
     double left = machine_dda_time(&m->machine);
+    int made = 0;
 
     do {
         left = ipo_advance(&m->ipo, &m->ring, left);
-        refill(m, p, head);
+        made += s ? refill(m, s, head) : 0;
     } while (left > 0.0 && !ipo_resting(&m->ipo, &m->ring));
     ipo_point(&m->ipo, &m->ring, &m->machine, &m->mean, &point);
     if (!reaction_point(m, before.abort, &point, &error)) {
@@ -134,23 +183,17 @@ static void next_point(struct mcc *m, const struct program *p)
         m->ring.head = head;
         m->ring.count = count;
         reaction_stop(m, error);
-        return;
+        return made;
     }
     ipo_accept(&m->ipo, &m->ring, &point);
     queue_push(&m->queue, &point);
+    return made;
 }
 
-void task_run(struct mcc *m, const struct source *s)
+void task_settle(struct mcc *m)
 {
-    const struct program p = task_program(m, s);
-
-    if (!m->open || m->error == MCC_ERROR_STOP) {
+    if (!works(m)) {
         return;
-    }
-    refill(m, &p, m->ring.head);
-    while (m->queue.count < m->machine.queue_depth &&
-           (m->ipo.news || compensate_due(m) || !ipo_resting(&m->ipo, &m->ring))) {
-        next_point(m, &p);
     }
     if (ipo_resting(&m->ipo, &m->ring) && !compensate_due(m)) {
         memset(m->protection.frame, 0, sizeof m->protection.frame);
@@ -164,6 +207,15 @@ void task_run(struct mcc *m, const struct source *s)
         m->program.switches.coolant = m->ipo.outputs.coolant;
     }
     manual_end(m);
+}
+
+void task_run(struct mcc *m, const struct source *s)
+{
+    task_read_all(m, s);
+    while (task_can_point(m)) {
+        task_point(m, s);
+    }
+    task_settle(m);
 }
 
 bool task_moving(const struct mcc *m)

@@ -33,9 +33,30 @@ int task_set_single_block(struct mcc *m, bool on);
  * has been written. */
 int task_continue(struct mcc *m);
 
+/* Hold or go on, and override (1 is 100 %), as a panel has them: what does not apply is refused. */
+void task_operate(struct mcc *m, bool hold, double override);
+
 /* One cycle: fill the point queue as far as commands reach. The text is the one that task_check
  * found good; NULL if no program runs. */
 void task_run(struct mcc *m, const struct source *s);
+
+/* The cycle in parts, for a PC on which interpreter and points are modules of their own. Is there a
+ * command to make, a point to compute? */
+bool task_can_read(const struct mcc *m);
+bool task_can_point(const struct mcc *m);
+
+/* Make the next command of the program. Not unless it can. */
+void task_read(struct mcc *m, const struct source *s);
+
+/* Make commands while there is room for them; how many. */
+int task_read_all(struct mcc *m, const struct source *s);
+
+/* Compute a point. Not unless it can. With a source commands are made in the place of those it
+ * took, without (NULL) it takes what the ring has. Returns how many were made. */
+int task_point(struct mcc *m, const struct source *s);
+
+/* Behind the last point: where the next command begins, if all of them are done. */
+void task_settle(struct mcc *m);
 
 /* True while a card that gets no point would stand still in the middle of a motion. */
 bool task_moving(const struct mcc *m);

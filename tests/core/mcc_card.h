@@ -6,6 +6,7 @@
 #include "pc.h"
 
 struct card {
+    const struct pcl *pcl;              /* what serves it */
     int64_t dda;                        /* [clocks] */
     int64_t now;                        /* events up to here are done */
     int32_t n;                          /* minimum stock */
@@ -25,14 +26,21 @@ struct card {
 
 static struct pc pc;    /* 300 kB: not on the stack */
 
+/* An empty card. */
+static void card_begin(struct card *c, const struct pcl *pcl, int64_t dda, int32_t n)
+{
+    memset(c, 0, sizeof *c);
+    c->pcl = pcl;
+    c->dda = dda;
+    c->n = n;
+    c->room = PCL_FIFO;
+}
+
 /* PC and card at clock 0. */
 static void card_start(struct card *c, const struct machine *m, const struct pc_config *config,
                        bool program)
 {
-    memset(c, 0, sizeof *c);
-    c->dda = machine_dda_clocks(m);
-    c->n = config->min_stock;
-    c->room = PCL_FIFO;
+    card_begin(c, &pc.pcl, machine_dda_clocks(m), config->min_stock);
     CHECK_EQ(pc_start(&pc, m, config, program), MCC_NO_ERR);
 }
 
@@ -58,13 +66,13 @@ static void card_boundary(struct card *c)
             c->irq_first = c->irqs++ ? c->irq_first : c->now;
         }
         c->flag = true;
-        c->shows.irq_flags[0] = 1;
+        c->shows.irq_flags[0] = 63;     /* all channels fall together */
     }
 }
 
 static void card_take(struct card *c)
 {
-    const struct pcl *p = &pc.pcl;
+    const struct pcl *p = c->pcl;
     for (int i = 0; i < p->count; i++) {
         if (c->stock == c->room) {
             c->shows.frames_refused += p->count - i;
@@ -100,16 +108,16 @@ static void card_advance(struct card *c, int64_t to)
 /* At a bus instant: read what the PC published. */
 static void card_read(struct card *c)
 {
-    if (pc.pcl.ack_seq != c->last_ack_seq) {
-        c->last_ack_seq = pc.pcl.ack_seq;
-        if (pc.pcl.ack_flags[0] & 1) {
+    if (c->pcl->ack_seq != c->last_ack_seq) {
+        c->last_ack_seq = c->pcl->ack_seq;
+        if (c->pcl->ack_flags[0] & 63) {
             c->flag = false;
             c->shows.irq_flags[0] = 0;
         }
     }
-    if (pc.pcl.open && pc.pcl.seq != c->shows.cmd_ack && !c->coming) {
+    if (c->pcl->open && c->pcl->seq != c->shows.cmd_ack && !c->coming) {
         c->coming = true;
-        c->arrives = pc.pcl.clock > c->now ? pc.pcl.clock : c->now;
+        c->arrives = c->pcl->clock > c->now ? c->pcl->clock : c->now;
         if (c->arrives == c->now) {
             card_take(c);
         }

@@ -374,7 +374,7 @@ static void halted(void)
     power_on(&b, &m, 0, false);
     periods(&b, NULL, 50);
     CHECK(MCC_line_x(&pc.mcc, 30.0) > 0);
-    while (!pc.pcl.open || pc.pcl.points < 4) {
+    while (!pc.pcl.open || pc.pcl.part.points < 4) {
         period(&b, NULL);
     }
     struct pcl_card seen = show(&b);

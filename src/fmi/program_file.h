@@ -1,4 +1,4 @@
-/* Reads the part program of the mcc FMU, through a window of fixed size. */
+/* Reads a part program of an FMU with the mcc core, through a window of fixed size. */
 #ifndef PROGRAM_FILE_H
 #define PROGRAM_FILE_H
 

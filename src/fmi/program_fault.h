@@ -1,0 +1,63 @@
+/* Says what is wrong with a part program, where, and which text. Included behind fmi_model.h. */
+#ifndef PROGRAM_FAULT_H
+#define PROGRAM_FAULT_H
+
+#include "fault.h"
+#include "program_file.h"
+
+/* Some text of the line a report speaks of. */
+struct quote { char text[SOURCE_LINE_MAX + 1]; };
+
+static struct quote quote(struct program_file *program, const struct fault_report *r, int32_t at,
+                          int32_t length)
+{
+    const char *text = "";
+    const int64_t there = program_look(program, r->offset, &text);
+    struct quote q;
+    snprintf(q.text, sizeof q.text, "%.*s", there < at + length ? 0 : (int)length, text + at);
+    return q;
+}
+
+/* Refuse the program that a parameter names. */
+static int refuse_program(struct fmu *f, const char *parameter, const char *name,
+                          struct program_file *program, const struct fault_report *r)
+{
+    char detail[SOURCE_LINE_MAX + 96] = "";
+
+    if (r->fault == FAULT_READ) {
+        return fmu_fail(f, "%s: cannot read %s: %s", parameter, name, strerror(program->error));
+    }
+    if (r->other_length) {
+        snprintf(detail, sizeof detail, " beside \"%s\"",
+                 quote(program, r, r->other_at, r->other_length).text);
+    } else if (r->fault == FAULT_FEED || r->fault == FAULT_SPEED) {
+        snprintf(detail, sizeof detail, " (%.6g, limit %.6g)", r->value, r->limit);
+    } else if (r->fault == FAULT_TRAVEL) {
+        snprintf(detail, sizeof detail, " (%c to %.6g mm, limit %.6g mm)", "XYZUVW"[r->axis],
+                 r->value, r->limit);
+    } else if (r->fault == FAULT_ARC_END) {
+        snprintf(detail, sizeof detail, " (by %.6g mm)", r->value);
+    } else if (r->fault == FAULT_ARC_CHORD) {
+        snprintf(detail, sizeof detail, " (%.6g mm, half the distance is %.6g mm)", r->value,
+                 r->limit);
+    }
+    return fmu_fail(f, "%s: line %d: %s \"%s\"%s", name, (int)r->line, fault_text(r->fault),
+                    quote(program, r, r->at, r->length).text, detail);
+}
+
+/* Open the program that a parameter names; NULL without a name. */
+static int open_program(struct fmu *f, const char *parameter, const char *name,
+                        struct program_file **program)
+{
+    *program = NULL;
+    if (!name[0]) {
+        return 0;
+    }
+    const int error = program_open(name, program);
+    if (error) {
+        return fmu_fail(f, "%s: cannot read %s: %s", parameter, name, strerror(error));
+    }
+    return *program ? 0 : fmu_fail(f, "%s: %s is empty", parameter, name);
+}
+
+#endif

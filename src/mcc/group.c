@@ -1,0 +1,265 @@
+#include "group.h"
+
+#include <string.h>
+
+void groups_init(struct groups *s, const struct group_config *config,
+                 const struct machine card[GROUP_CARDS])
+{
+    memset(s, 0, sizeof *s);
+    s->config = *config;
+    for (int k = 0; k < GROUP_CARDS; k++) {
+        s->card[k].machine = card[k];
+        s->card[k].random = (uint64_t)((int64_t)config->seed + k);
+        for (int i = 0; i < AXES; i++) {
+            s->card[k].machine.axis[i].used = false;
+        }
+    }
+}
+
+/* Channels that exist, that nobody has, at least one and none twice. */
+static bool channels_free(const struct groups *s, int card, const int32_t channel[AXES])
+{
+    bool taken[AXES] = { false };
+    bool any = false;
+
+    for (int i = 0; i < AXES; i++) {
+        const int32_t c = channel[i];
+        if (c == -1) {
+            continue;
+        }
+        if (c < 0 || c >= AXES || taken[c] || s->card[card].machine.axis[c].used) {
+            return false;
+        }
+        taken[c] = any = true;
+    }
+    return any;
+}
+
+static bool valid(const struct groups *s, int group)
+{
+    return group >= 0 && group < GROUP_MAX && s->group[group].used;
+}
+
+/* Channels of a group begin or cease to be used. */
+static void use(struct groups *s, const struct group *g, bool used)
+{
+    for (int i = 0; i < AXES; i++) {
+        if (g->channel[i] >= 0) {
+            s->card[g->card].machine.axis[g->channel[i]].used = used;
+        }
+    }
+}
+
+/* The machine of a group: its motion, the channels' axes, the card's DDA time. */
+static struct machine machine_of(const struct groups *s, int card, const int32_t channel[AXES],
+                                 const struct machine *motion)
+{
+    const struct machine *c = &s->card[card].machine;
+    struct machine m = *motion;
+
+    m.dda_time = c->dda_time;
+    m.dda_length = c->dda_length;
+    for (int i = 0; i < AXES; i++) {
+        m.axis[i] = c->axis[channel[i] < 0 ? 0 : channel[i]];
+        m.axis[i].used = channel[i] >= 0;
+    }
+    return m;
+}
+
+int group_create(struct groups *s, int card, const int32_t channel[AXES],
+                 const struct machine *motion)
+{
+    int n = 0;
+
+    if (s->running) {
+        return MCC_COMMAND_NOTACCEPTED;
+    }
+    if (card < 0 || card >= GROUP_CARDS || !channels_free(s, card, channel)) {
+        return MCC_GROUP_PARAMETER;
+    }
+    while (n < GROUP_MAX && s->group[n].used) {
+        n++;
+    }
+    if (n == GROUP_MAX) {
+        return MCC_GROUP_RAN_OUT;
+    }
+    const struct machine m = machine_of(s, card, channel, motion);
+    struct group *g = &s->group[n];
+    const int code = MCC_init_motion(&g->mcc, &m);
+    if (code != MCC_NO_ERR) {
+        return code;
+    }
+    g->used = true;
+    g->card = card;
+    memcpy(g->channel, channel, sizeof g->channel);
+    use(s, g, true);
+    return n;
+}
+
+int group_close(struct groups *s, int group)
+{
+    if (s->running) {
+        return MCC_COMMAND_NOTACCEPTED;
+    }
+    if (!valid(s, group)) {
+        return MCC_GROUP_PARAMETER;
+    }
+    use(s, &s->group[group], false);
+    memset(&s->group[group], 0, sizeof s->group[group]);
+    return MCC_NO_ERR;
+}
+
+int group_program(struct groups *s, int group, int64_t start)
+{
+    if (s->running) {
+        return MCC_COMMAND_NOTACCEPTED;
+    }
+    if (!valid(s, group)) {
+        return MCC_GROUP_PARAMETER;
+    }
+    s->group[group].program = true;
+    s->group[group].start = start;
+    return MCC_NO_ERR;
+}
+
+bool groups_card_used(const struct groups *s, int card)
+{
+    for (int i = 0; i < AXES; i++) {
+        if (s->card[card].machine.axis[i].used) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int groups_start(struct groups *s)
+{
+    const struct isr_config fifo_only = { .service = 0 };
+    bool any = false;
+
+    if (s->running) {
+        return MCC_COMMAND_NOTACCEPTED;
+    }
+    for (int k = 0; k < GROUP_CARDS; k++) {
+        struct group_card *c = &s->card[k];
+        any = any || groups_card_used(s, k);
+        pcl_start(&c->pcl, &c->machine, s->config.min_stock, s->config.batch, &fifo_only);
+    }
+    s->running = any;
+    return any ? MCC_NO_ERR : MCC_GROUP_PARAMETER;
+}
+
+/* --- What each group does. ------------------------------------------------------------------- */
+
+static void read_panel(struct group *g, const struct group_panel *panel)
+{
+    g->abort_due = g->abort_due || (panel->abort && !g->abort_seen);
+    g->abort_seen = panel->abort;
+    g->cycle_due = g->cycle_due || (panel->cycle_start && !g->cycle_seen);
+    g->cycle_seen = panel->cycle_start;
+}
+
+static void cycle(struct group *g, int64_t clock, const struct group_panel *panel,
+                  const struct source *program)
+{
+    if (g->program && !g->started && clock >= g->start) {
+        task_start(&g->mcc);
+        g->started = true;
+    }
+    if (g->abort_due) {
+        g->started = true;      /* a program that waits for its start is dropped too */
+        g->abort_due = false;
+        MCC_motion_abort(&g->mcc);
+    }
+    if (g->cycle_due) {
+        g->cycle_due = false;
+        task_continue(&g->mcc); /* refused where nothing waits for it */
+    }
+    task_operate(&g->mcc, panel->hold, panel->override);
+    task_run(&g->mcc, g->program ? program : NULL);
+}
+
+/* --- What each card is given. ---------------------------------------------------------------- */
+
+static void look(struct groups *s, int card, const struct pcl_card *shows, int64_t now)
+{
+    struct group_card *c = &s->card[card];
+    const int32_t taken = pcl_acknowledged(&c->pcl, shows);
+
+    for (int n = 0; n < GROUP_MAX && taken >= 0; n++) {
+        struct group *g = &s->group[n];
+        if (g->used && g->card == card) {
+            g->starved += pcl_release(&g->mcc, &g->part, taken);
+        }
+    }
+    const bool interrupt = pcl_interrupt(&c->pcl, shows);
+    pcl_notice(&c->pcl, shows, now,
+               interrupt ? pcl_latency(&c->random, s->config.latency, s->config.jitter) : 0);
+}
+
+/* When a card is to be served; INT64_MAX if not at all. */
+static int64_t due(const struct groups *s, int card)
+{
+    const struct pcl *p = &s->card[card].pcl;
+    const int64_t page = isr_ready(&p->isr), write = pcl_due(p);
+
+    return !groups_card_used(s, card) ? INT64_MAX : page < write ? page : write;
+}
+
+static void serve(struct groups *s, int card, int64_t clock, int64_t publish)
+{
+    struct pcl *p = &s->card[card].pcl;
+
+    if (isr_ready(&p->isr) <= clock) {
+        isr_begin(&p->isr, ISR_FIFO_PAGE, clock);
+        pcl_turn(p, clock);
+    }
+    if (pcl_due(p) > clock) {
+        return;                 /* the transaction before has not been acknowledged */
+    }
+    pcl_prepare(p);
+    for (int n = 0; n < GROUP_MAX; n++) {
+        struct group *g = &s->group[n];
+        if (g->used && g->card == card) {
+            pcl_merge(p, &g->mcc, g->channel, &g->part);
+        }
+    }
+    pcl_write(p, clock < publish ? publish : clock);
+}
+
+void groups_instant(struct groups *s, int64_t now, const struct pcl_card card[GROUP_CARDS],
+                    const struct group_panel panel[GROUP_MAX],
+                    const struct source program[GROUP_MAX])
+{
+    const int64_t publish = now + s->config.bus, horizon = publish + s->config.bus;
+
+    for (int k = 0; k < GROUP_CARDS; k++) {
+        look(s, k, &card[k], now);
+    }
+    for (int n = 0; n < GROUP_MAX; n++) {
+        read_panel(&s->group[n], &panel[n]);
+    }
+    for (;;) {
+        const int first = due(s, 1) < due(s, 0);
+        const int64_t at = due(s, first);
+        if (s->next_ipo < horizon && s->next_ipo <= at) {
+            for (int n = 0; n < GROUP_MAX; n++) {
+                if (s->group[n].used) {
+                    cycle(&s->group[n], s->next_ipo, &panel[n], &program[n]);
+                }
+            }
+            s->next_ipo += s->config.ipo;
+        } else if (at < horizon) {
+            serve(s, first, at < publish ? publish : at, publish);
+        } else {
+            return;
+        }
+    }
+}
+_Static_assert(GROUP_CARDS == 2, "the first of the cards to be served");
+
+bool group_done(const struct groups *s, int group)
+{
+    const struct group *g = &s->group[group];
+    return (g->started || !g->program) && !g->mcc.error && MCC_check_stop(&g->mcc);
+}
