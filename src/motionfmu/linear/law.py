@@ -29,7 +29,7 @@ class Law(BaseModel):
         Sampling period [s].
     inputs, commands : list of str
         Ports that move; signals that come in from the side.
-    let, state, output, early, direct, constant, grain : dict
+    let, state, output, early, direct, constant, grain, still : dict
         See src/motionfmu/linear/README.md.
     """
 
@@ -44,6 +44,7 @@ class Law(BaseModel):
     direct: dict[str, str] = Field(default_factory=dict)
     constant: dict[str, str] = Field(default_factory=dict)
     grain: dict[str, str] = Field(default_factory=dict)
+    still: dict[str, bool | int | float | str] = Field(default_factory=dict)
 
 
 def parse(text: str, file: str = LAW) -> Law:

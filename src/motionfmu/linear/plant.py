@@ -36,15 +36,15 @@ class Point:
         The same by name, and the outputs, in the units of the class.
     stated : dict
         What the user asked for.
-    residual : float
-        Largest rate of change that is not constant, relative; 0 is a uniform motion.
+    rates : dict
+        Rates of the outputs by name, per second: nonzero where the motion goes on.
     """
 
     x: Matrix
     u: Matrix
     values: dict[str, float]
     stated: dict[str, float]
-    residual: float
+    rates: dict[str, float]
 
 
 class Linearised:
@@ -142,13 +142,12 @@ class Linearised:
         if wanted:
             free = [k for k, n in enumerate(inputs) if n not in stated]
             x, u = self._settle((x, u, p), wanted, free)
-        xdot, y, change = (np.array(v.full()).ravel() for v in self._values(x, u, p))
+        xdot, y, _ = (np.array(v.full()).ravel() for v in self._values(x, u, p))
         values = dict(zip((d.name for d in ode.states), x.tolist(), strict=True))
         values |= dict(zip(inputs, u.tolist(), strict=True))
         values |= dict(zip(outputs, y.tolist(), strict=True))
-        worst = float(np.max(np.abs(change), initial=0.0))
-        scale = float(np.max(np.abs(xdot), initial=0.0))
-        return Point(x, u, values, dict(stated), worst / scale if scale > 0.0 else 0.0)
+        rates = self.matrices(x, u, p)[2] @ xdot if stated else np.zeros(len(outputs))
+        return Point(x, u, values, dict(stated), dict(zip(outputs, rates.tolist(), strict=True)))
 
     def _settle(
         self, begin: tuple[Matrix, Matrix, Matrix], wanted: dict[int, float], free: list[int]
