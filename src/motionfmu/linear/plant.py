@@ -17,6 +17,8 @@ H_LAMBDA = 2.0
 _UNIFORM = 1e-9
 # Positions after a second have lost digits to rounding.
 _LASTING = 1e-6
+# Relative distance at which both sides of a point are looked at.
+_HAIR = 1e-13
 _NEWTON_STEPS, _SHORTEST = 60, 1e-6
 
 
@@ -85,6 +87,9 @@ class Linearised:
     def matrices(self, x: Matrix, u: Matrix, p: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
         """Matrices A, B, C, D at a point.
 
+        The mean of both sides of the point, a hair away: where branches meet without a bend (a gap
+        of width 0 at force 0) the point itself has no derivative that CasADi could tell.
+
         Parameters
         ----------
         x, u, p : ndarray
@@ -93,7 +98,12 @@ class Linearised:
         -------
         tuple of ndarray
         """
-        a, b, c, d = (np.array(m.full()) for m in self._matrices(x, u, p))
+        sides = []
+        for hair in (_HAIR, -_HAIR):
+            # unequal, so that no difference of two states stays 0
+            away = [v + hair * np.arange(1, v.size + 1) * (1.0 + np.abs(v)) for v in (x, u)]
+            sides.append([np.array(m.full()) for m in self._matrices(*away, p)])
+        a, b, c, d = (0.5 * (one + other) for one, other in zip(*sides, strict=True))
         return a, b, c, d
 
     def start(self, p: Matrix) -> Matrix:
