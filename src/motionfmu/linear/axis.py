@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import control
+import numpy as np
 
 from motionfmu.errors import InputError
 from motionfmu.linear import law
-from motionfmu.linear.block import Block
+from motionfmu.linear.block import Block, Matrix
 from motionfmu.linear.plant import Linearised, Point
 from motionfmu.linear.wiring import Net, Port, period_map, pruned
 from motionfmu.modelica.ode import Ode
@@ -181,12 +182,9 @@ class AxisModel:
         around = self.system(at, ".".join(source), cut=[at, *_listed(cut)], delays=late)
         if not around.nstates and not around.D.any():
             raise InputError(f"{at}: nothing comes back to it from {'.'.join(source)}")
-        back = -around
-        if own:
-            z = control.TransferFunction.z
-            z.dt = around.dt
-            back = back * control.tf2ss(1 / z**own)
-        back.name = f"loop at {at}"
+        back = replaced(around, c=-around.C, d=-around.D, name=f"loop at {_name(target)}")
+        for k in range(own):
+            back = _delayed(back, f"{'/'.join(target)} delay {k + 1}")
         return back
 
     def _net(self, cut: str | Iterable[str], delays: Mapping[str, int]) -> Net:
@@ -232,6 +230,44 @@ class AxisModel:
 
 def _name(port: Port) -> str:
     return "/".join(port)
+
+
+def replaced(system: control.StateSpace, c: Matrix, d: Matrix, name: str) -> control.StateSpace:
+    """The same states seen otherwise, with their names.
+
+    Parameters
+    ----------
+    system : control.StateSpace
+    c, d : ndarray
+        Output matrices.
+    name : str
+
+    Returns
+    -------
+    control.StateSpace
+    """
+    return control.StateSpace(
+        *(system.A, system.B, c, d, system.dt),
+        inputs=system.input_labels,
+        outputs=system.output_labels,
+        states=system.state_labels,
+        remove_useless_states=False,
+        name=name,
+    )
+
+
+def _delayed(system: control.StateSpace, state: str) -> control.StateSpace:
+    """One period later."""
+    n = system.nstates
+    a = np.block([[system.A, np.zeros((n, 1))], [system.C, np.zeros((1, 1))]])
+    return control.StateSpace(
+        *(a, np.vstack([system.B, system.D]), np.eye(1, n + 1, n), np.zeros((1, 1)), system.dt),
+        inputs=system.input_labels,
+        outputs=system.output_labels,
+        states=[*system.state_labels, state],
+        remove_useless_states=False,
+        name=system.name,
+    )
 
 
 def _listed(names: str | Iterable[str]) -> list[str]:
