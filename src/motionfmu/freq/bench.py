@@ -92,8 +92,9 @@ class Bench:
             and w.target.name not in removed
         ]
         components = {c: f for c, f in system.components.items() if c in self.used}
-        settings = {s.end.name: s for s in (*system.settings, *system.stimuli)}
-        given = {n: s.values for n, s in settings.items() if s.end.component in self.used}
+        given: dict[str, Any] = {s.end.name: s.values for s in system.settings}
+        given |= {s.end.name: s.values for s in system.stimuli}
+        given = {n: v for n, v in given.items() if n.partition(".")[0] in self.used}
         for c, fmu in components.items():
             said = carried(fmu)
             if isinstance(said, Law):
@@ -105,7 +106,8 @@ class Bench:
                 self._from_law(w, given)
         for name, value in self.axis.at.items():
             if name in self.axis.inputs and name not in feeds:
-                given[name] = self._own(*name.split("."), value)
+                component, _, variable = name.partition(".")
+                given[name] = self._own(component, variable, value)
         resolver = self.axis.scenario.resolver
         for c in components:
             if "active" in resolver.ports[c]:
@@ -307,4 +309,5 @@ def setup(
     -------
     Setup
     """
-    return Setup(axis, *((x,) if isinstance(x, str) else tuple(x) for x in (inputs, outputs, cut)))
+    listed = [(x,) if isinstance(x, str) else tuple(x) for x in (inputs, outputs, cut)]
+    return Setup(axis, listed[0], listed[1], listed[2])

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import control
 import numpy as np
@@ -10,10 +11,10 @@ from scipy.optimize import brentq, minimize_scalar
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-System = control.StateSpace | control.TransferFunction
+System: TypeAlias = Any  # control.StateSpace or control.TransferFunction
 # Points of the first grid; crossings and peaks are then refined.
 _POINTS = 2000
-# A pole as near to 1 does not move: it would take 10^6 samples. Rounding splits a double one so far.
+# A pole as near to 1 does not move: it would take 10^6 samples.
 _AT_ONE = 1e-6
 _BANDWIDTH = 1.0 / np.sqrt(2.0)
 
