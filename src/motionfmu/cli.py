@@ -272,8 +272,9 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
         text = json.dumps(numbers(linear, studies), indent=1, allow_nan=False)
         (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
     table = Table(box=None, header_style="dim")
-    for heading in ("loop", "gain", "phase", "delay", "sensitivity", "largest gain", "simulated"):
-        table.add_column(heading)
+    table.add_column("loop", overflow="fold")
+    for heading in ("gain", "phase", "delay", "peak S", "largest", "simulated"):
+        table.add_column(heading, no_wrap=True)
     for s in studies:
         m, ringing = s.margins, s.simulated.gain if s.simulated else math.nan
         cells = (f"x {m.gain:.4g}", f"{m.phase:.4g}°", f"{m.delay * 1e3:.4g} ms")

@@ -51,7 +51,9 @@ class Setup:
 
 
 class Bench:
-    """The FMUs between some inputs and outputs, run as the reference master does.
+    """The FMUs between inputs and outputs, with signals added.
+
+    They run as the reference master runs them.
 
     FMUs that are not on a path from an input to an output do not run; inputs that they would set
     have what their law says. Other axes are switched off.

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from motionfmu.errors import InputError
 from motionfmu.freq.bench import Bench, Setup
-from motionfmu.freq.response import ramp
+from motionfmu.freq.response import gentle, ramp
 from motionfmu.linear import AxisModel
 from motionfmu.linear.block import Sampled
 from motionfmu.linear.loops import Limit, begin, boundary, is_whole, largest_gain, with_gain
@@ -84,7 +84,7 @@ def usual_kick(axis: AxisModel, at: str, cut: tuple[str, ...] = ()) -> float:
 
 
 def ringing(setup: Setup, trial: Trial, omega: float) -> tuple[float, float]:
-    """Rate at which a ringing grows in the running FMUs, and its frequency.
+    """How fast a ringing of the running FMUs grows, and its pitch.
 
     The root of the mean square in windows, on a straight line over time in its logarithm.
 
@@ -115,7 +115,7 @@ def ringing(setup: Setup, trial: Trial, omega: float) -> tuple[float, float]:
     step = bench.step_ns * 1e-9
     cycle = max(4, round(2.0 * math.pi / (omega * step)))
     lead = cycle * trial.cycles // 2
-    way = _moving(ramp(bench, name), lead, lead + cycle * trial.cycles, step)
+    way = gentle(ramp(bench, name) * step, lead, lead + cycle * trial.cycles)
     added = setup.gains.get(name, 1.0) * way[:, None]
     added[lead:] += trial.kick
     count = iter(range(len(added)))
@@ -134,15 +134,6 @@ def ringing(setup: Setup, trial: Trial, omega: float) -> tuple[float, float]:
     return _growth(part, (step, cycle), abs(trial.kick), grain)
 
 
-def _moving(rate: float, lead: int, steps: int, step: float) -> Array:
-    """Position that gently reaches a speed within the lead."""
-    time = np.arange(steps) * step
-    soft = 0.6 * lead * step
-    inside = 0.5 * (time - soft / math.pi * np.sin(np.minimum(time / soft, 1.0) * math.pi))
-    found: Array = rate * np.where(time < soft, inside, time - 0.5 * soft)
-    return found
-
-
 def _growth(
     part: Array, times: tuple[float, int], kick: float, grain: float
 ) -> tuple[float, float]:
@@ -151,16 +142,25 @@ def _growth(
     windows = part[: len(part) // size * size].reshape(-1, size)
     index = np.arange(size)
     flat = np.array([w - np.polyval(np.polyfit(index, w, 1), index) for w in windows])
-    turns = np.count_nonzero(np.signbit(flat[:, 1:]) != np.signbit(flat[:, :-1]), axis=1)
-    omega = math.pi * turns / ((size - 1) * step)
     rms = np.sqrt(np.mean(flat * flat, axis=1))
     good = (rms > _FLOOR * grain) & (rms > 1e-9 * kick) & (rms < _CAP * max(rms[0], 0.1 * kick))
     first = int(np.argmin(good)) if not good.all() else len(good)
     if first < 2:
         up = rms[min(1, len(rms) - 1)] > rms[0]
-        return (1.0 if up else -1.0) * math.log(_RUNAWAY) / (size * step), float(omega[0])
+        return (1.0 if up else -1.0) * math.log(_RUNAWAY) / (size * step), _pitch(
+            flat[:1], cycle
+        ) / step
     slope = np.polyfit(np.arange(first) * size * step, np.log(rms[:first]), 1)[0]
-    return float(slope), float(omega[first - 1])
+    return float(slope), _pitch(flat[:first], cycle) / step
+
+
+def _pitch(windows: Array, cycle: int) -> float:
+    """Frequency [rad/sample]: x(k + m) + x(k - m) = 2 cos(m w) x(k), m a quarter cycle."""
+    m = max(1, cycle // 4)
+    middle = windows[:, m:-m]
+    both = windows[:, 2 * m :] + windows[:, : -2 * m]
+    cosine = float(np.sum(both * middle) / (2.0 * max(np.sum(middle * middle), 1e-300)))
+    return math.acos(max(-1.0, min(1.0, cosine))) / m
 
 
 def simulated_gain(

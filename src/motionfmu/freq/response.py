@@ -1,14 +1,17 @@
 """Frequency responses measured on the running FMUs."""
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
+import control
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.errors import InputError
 from motionfmu.freq.bench import Bench, Setup
 from motionfmu.freq.excitation import Excitation, sine
+from motionfmu.linear.margins import moving
 from motionfmu.linear.plant import Point
 
 Array = NDArray[np.float64]
@@ -34,7 +37,7 @@ class Response:
 
 
 def ramp(bench: Bench, name: str) -> float:
-    """Rate to add at an input so that the axis moves as the operating point says.
+    """Rate to add so that the axis moves as its point says.
 
     A loop that follows its feedback moves the axis by what is added there, the other way round.
 
@@ -54,11 +57,33 @@ def ramp(bench: Bench, name: str) -> float:
     return 0.0 if point is None or source is None else -point.rates.get(source[1], 0.0)
 
 
+def gentle(rate: float, lead: int, steps: int) -> Array:
+    """Position that smoothly reaches a speed within the lead.
+
+    Parameters
+    ----------
+    rate : float
+        Speed, per step.
+    lead, steps : int
+        Steps until well after it moves uniformly, and of all.
+
+    Returns
+    -------
+    ndarray, shape (steps,)
+    """
+    time = np.arange(steps, dtype=float)
+    soft = max(0.6 * lead, 1.0)
+    rising = 0.5 * (time - soft / np.pi * np.sin(np.minimum(time / soft, 1.0) * np.pi))
+    found: Array = rate * np.where(time < soft, rising, time - 0.5 * soft)
+    return found
+
+
 def measure(setup: Setup, excitation: Excitation) -> Response:
-    """Excite the first input and compare the outputs with what was added.
+    """Excite the first input and compare the outputs with it.
 
     Where the operating point has a speed and the input's wire comes from the plant, a ramp is
-    added too, so that the FMUs move at that speed; straight drifts are taken off the outputs.
+    added too, so that the FMUs move at that speed; straight drifts are taken off the outputs,
+    where more than one period is measured.
 
     Parameters
     ----------
@@ -84,14 +109,13 @@ def measure(setup: Setup, excitation: Excitation) -> Response:
     one = np.repeat(np.tile(excitation.signal, repeats), hold)
     added = np.zeros((len(one), len(setup.inputs)))
     added[:, 0] = one
-    time = np.arange(len(one)) * (bench.step_ns * 1e-9)
-    slope = ramp(bench, setup.inputs[0])
-    added[:, 0] += slope * time
+    slope = ramp(bench, setup.inputs[0]) * bench.step_ns * 1e-9
+    way = gentle(slope, n * hold * excitation.settle, len(one))
+    added[:, 0] += way
     shown, used = bench.run(added)
-    shown, used = shown[::hold], used[::hold].copy()
-    used[:, 0] -= slope * time[::hold]
+    shown, excited = shown[::hold], (used[:, 0] - way)[::hold]
     first = n * excitation.settle
-    spectra = [_lines(x[first:], n, excitation.lines) for x in (*shown.T, used[:, 0])]
+    spectra = [_lines(x[first:], n, excitation.lines) for x in (*shown.T, excited)]
     values = np.column_stack([y / spectra[-1] for y in spectra[:-1]])
     omega = 2.0 * np.pi * excitation.lines / (n * period_ns * 1e-9)
     return Response(omega, values, period_ns * 1e-9)
@@ -137,6 +161,23 @@ def measured_loop(setup: Setup, excitation: Excitation) -> Response:
     return Response(closed.omega, -share / (1.0 + share), closed.period)
 
 
+def settling(system: control.StateSpace) -> float:
+    """Samples until a start has died away to a thousandth.
+
+    Parameters
+    ----------
+    system : control.StateSpace
+        Discrete; poles at 1, which only hold a position, do not count.
+
+    Returns
+    -------
+    float
+        Of an unstable system that of one which nearly is.
+    """
+    slow = np.abs(moving(system.poles())).max(initial=1e-3)
+    return 7.0 / -math.log(min(float(slow), 1.0 - 1e-4))
+
+
 def sweep(
     setup: Setup,
     omegas: Iterable[float],
@@ -154,7 +195,7 @@ def sweep(
     peak : float
         In the unit of the input.
     cycles : int
-        Cycles measured; as many before them let the start die away.
+        Cycles measured; as many before them, or more, let the start die away.
     progress : callable
         Called with the share done, 0 to 1.
 
@@ -173,7 +214,8 @@ def sweep(
     for k, omega in enumerate(wanted):
         samples = 2.0 * np.pi / (omega * linear.dt)
         n = max(round(cycles * samples), 2 * cycles)
-        found.append(measure(setup, sine(n, cycles, peak, settle=1, measure=1)))
+        before = max(1, math.ceil(settling(linear) / n))
+        found.append(measure(setup, sine(n, cycles, peak, settle=before, measure=1)))
         progress((k + 1) / len(wanted))
     return Response(
         np.concatenate([r.omega for r in found]),

@@ -11,13 +11,16 @@ from motionfmu.errors import InputError
 from motionfmu.freq.bench import Setup
 from motionfmu.freq.excitation import multisine
 from motionfmu.freq.limit import Trial, simulated_gain, usual_kick
-from motionfmu.freq.response import Response, measured_loop
+from motionfmu.freq.response import Response, measured_loop, settling
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit, feedbacks, largest_gain
-from motionfmu.linear.margins import Margins, closed_poles, margins, moving
+from motionfmu.linear.margins import Margins, margins
+from motionfmu.linear.wiring import Port
 
 # Frequencies measured, samples of a period, periods until the start has died away.
 _LINES, _SAMPLES_MAX, _SETTLE_MAX = 60, 10_000, 6
+# Peak of the multisine, in kicks: it is spread over all lines.
+_PEAK = 4.0
 
 
 @dataclass(frozen=True)
@@ -96,6 +99,8 @@ def study(axis: AxisModel, asked: Asked) -> list[LoopStudy]:
     InputError
         A name is wrong, there is no loop, or an FMU refused something.
     """
+    if asked.kick is not None and not 0.0 < asked.kick < math.inf:
+        raise InputError(f"kick = {asked.kick!r}: a number above 0 wanted")
     every = feedbacks(axis)
     if asked.loop is None:
         chosen = every
@@ -148,7 +153,12 @@ def _measured(
     low = found.omega_phase if math.isfinite(found.omega_phase) else math.pi / (50.0 * loop.dt)
     n = min(_SAMPLES_MAX, max(200, 2 * round(10.0 * math.pi / (low * loop.dt))))
     lines = np.unique(np.round(np.geomspace(1, n // 2 - 1, _LINES)).astype(np.int64))
-    slow = np.abs(moving(closed_poles(loop))).max(initial=0.0)
-    samples = 7.0 / -math.log(min(max(float(slow), 1e-3), 1.0 - 1e-9))
-    settle = min(_SETTLE_MAX, max(1, math.ceil(samples / n)))
-    return measured_loop(Setup(axis, (at,), (), cut), multisine(n, lines, 4.0 * kick, settle, 1))
+    closed = axis.system(at, ".".join(axis.wires[_port(at)]), cut)
+    settle = min(_SETTLE_MAX, max(1, math.ceil(settling(closed) / n)))
+    setup = Setup(axis, (at,), (), cut)
+    return measured_loop(setup, multisine(n, lines, _PEAK * kick, settle, 2))
+
+
+def _port(name: str) -> Port:
+    component, _, variable = name.partition(".")
+    return component, variable

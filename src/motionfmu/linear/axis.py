@@ -17,6 +17,7 @@ from motionfmu.linear.wiring import Net, Port, period_map, pruned
 from motionfmu.modelica.ode import Ode
 from motionfmu.run import Options, Scenario, load
 from motionfmu.system import System
+from motionfmu.values import settings
 
 
 @functools.cache
@@ -28,7 +29,7 @@ def _linearised(fmu: str) -> Linearised:
 
 @dataclass(frozen=True)
 class AxisModel:
-    """Linear blocks of one axis, wired and timed as the scenario's FMUs.
+    """Linear blocks of one axis, wired and timed as its FMUs.
 
     Made by `model`; a gain is changed by `changed`, systems come from `system` and `loop`.
 
@@ -66,7 +67,7 @@ class AxisModel:
 
     @property
     def inputs(self) -> list[str]:
-        """Names of all inputs: ports to which something can be added, and commands."""
+        """Names of ports to which something can be added, and commands."""
         return [f"{c}.{n}" for c, b in self.blocks.items() for n in (*b.inputs, *b.commands)]
 
     @property
@@ -75,7 +76,9 @@ class AxisModel:
         return [f"{c}.{n}" for c, b in self.blocks.items() for n in b.ports]
 
     def changed(self, set: Mapping[str, Any]) -> "AxisModel":
-        """The same model with other values; plants that they do not touch are kept.
+        """The same model with other values.
+
+        Plants that they do not touch are kept.
 
         Parameters
         ----------
@@ -150,7 +153,9 @@ class AxisModel:
         cut: str | Iterable[str] = (),
         delays: Mapping[str, int] | None = None,
     ) -> control.StateSpace:
-        """The open loop at an input: cut there, once around, with the sign of negative feedback.
+        """The open loop at an input, for negative feedback.
+
+        Cut there, once around, with the other sign.
 
         The closed loop is stable if 1 + L has no zero outside the unit circle.
 
@@ -353,7 +358,11 @@ def _build(
     set_: Mapping[str, Any],
     before: AxisModel | None,
 ) -> AxisModel:
-    resolved = scenario._system(Options(set=set_))
+    if before is None:
+        resolved = scenario._system(Options(set=set_))
+    else:
+        given = tuple(settings(scenario.resolver, set_))
+        resolved = replace(before._cache["system"], settings=given)
     components = resolved.components
     said = {c: law.carried(f) for c, f in components.items()}
     every = {c: _Values(resolved, scenario, c, axis) for c in components}
@@ -391,7 +400,7 @@ def _build(
         resolved.step_ns,
         points,
         tuple(c for c in components if said[c] is None),
-        {"values": every, "plants": _keys(blocks, components, at, every)},
+        {"system": resolved, "values": every, "plants": _keys(blocks, components, at, every)},
     )
 
 
@@ -448,9 +457,10 @@ def _check(
     scenario: Scenario, axis: int, at: Mapping[str, float], every: Mapping[str, _Values]
 ) -> None:
     for c, own in every.items():
-        if "active" not in own:
+        switch = scenario.resolver.ports[c].get("active")
+        if switch is None:
             continue
-        count = scenario.resolver.ports[c]["active"].count
+        count = switch.count
         if not 1 <= axis <= count:
             raise InputError(f"axis = {axis}: {c} has axes 1 to {count}")
         if not own["active"]:

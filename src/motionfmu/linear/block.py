@@ -10,7 +10,7 @@ Matrix = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Sampled:
-    """A sampled law: reads at k T, shows what it computed at (k + 1) T.
+    """A sampled law: reads at k T, shows at (k + 1) T.
 
     The input vector is ``inputs`` and then ``commands``. At an instant, from input u and state x:
     [next x; outputs; early] = law [x; u].
@@ -133,7 +133,7 @@ class Sampled:
 
 @dataclass(frozen=True)
 class Plant:
-    """A plant on its micro-grid: holds its input from one instant to the next.
+    """A plant on its micro-grid, which holds its inputs.
 
     Attributes
     ----------

@@ -1,9 +1,11 @@
 """Formulas over numbers and over quantities that move, kept linear."""
 
 import ast
+import functools
 import math
 from collections.abc import Mapping
-from typing import Any, Union
+from types import CodeType
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +68,7 @@ class Form:
     __hash__ = None  # type: ignore[assignment]
 
 
-Quantity = Union[Form, float]  # noqa: UP007  (Form is no type for | at run time in 3.11 aliases)
+Quantity: TypeAlias = Form | float
 
 
 def _bit(value: float, place: float) -> int:
@@ -96,6 +98,16 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Quantity:
     ValueError
         The formula is wrong, or not linear.
     """
+    code = _compiled(text)
+    try:
+        found = eval(code, {"__builtins__": {}}, _Scope(names))
+    except (TypeError, ArithmeticError, ValueError) as error:
+        raise ValueError(f"{text!r}: {error}") from None
+    return found if isinstance(found, Form) else float(found)
+
+
+@functools.cache
+def _compiled(text: str) -> CodeType:
     try:
         tree = ast.parse(text, mode="eval")
     except SyntaxError as error:
@@ -103,14 +115,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Quantity:
     for node in ast.walk(tree):
         if not isinstance(node, _ALLOWED):
             raise ValueError(f"{text!r}: {type(node).__name__} is not allowed in a formula")
-    try:
-        scope = _Scope(names)
-        found = eval(compile(tree, "<formula>", "eval"), {"__builtins__": {}}, scope)
-    except (TypeError, ArithmeticError, OverflowError) as error:
-        raise ValueError(f"{text!r}: {error}") from None
-    except ValueError as error:
-        raise ValueError(f"{text!r}: {error}") from None
-    return found if isinstance(found, Form) else float(found)
+    return compile(tree, "<formula>", "eval")
 
 
 class _Scope(dict[str, Any]):

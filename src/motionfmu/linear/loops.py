@@ -37,7 +37,7 @@ class Limit:
 
 
 def feedbacks(axis: AxisModel) -> dict[str, tuple[str, ...]]:
-    """Inputs through which a plant is fed back, and what is cut to look at each.
+    """Inputs that feed a plant back, and what is cut for each.
 
     An outer loop has the inner ones closed; an inner loop has the outer ones cut, which are
     those of blocks that do not lie on its way to the plant.

@@ -21,7 +21,7 @@ _BANDWIDTH = 1.0 / np.sqrt(2.0)
 
 @dataclass(frozen=True)
 class Crossing:
-    """A frequency at which the loop crosses -180 degrees or magnitude 1.
+    """Where the loop crosses -180 degrees or magnitude 1.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ def response(system: System, omega: Array) -> Complex:
 
 
 def grid(loop: System, points: int = _POINTS) -> Array:
-    """Frequencies that show everything: even on a logarithmic scale, denser at resonances.
+    """Frequencies on a logarithmic scale, denser at resonances.
 
     Parameters
     ----------
@@ -273,7 +273,7 @@ def closed_poles(loop: System, gain: float = 1.0) -> Complex:
 
 
 def moving(poles: Complex) -> Complex:
-    """Discrete poles without those at 1: positions that this loop does not hold.
+    """Discrete poles without those at 1, which hold nothing.
 
     Parameters
     ----------

@@ -223,7 +223,7 @@ class Linearised:
         return found
 
     def block(self, p: Matrix, at: Point, micro_step: float) -> Plant:
-        """The plant between two instants of its grid, as the FMU integrates it.
+        """The plant between two instants, as the FMU integrates it.
 
         The classic Runge-Kutta step of a linear equation is R(hA) x + h S(hA) B u with
         R = 1 + z + z^2/2 + z^3/6 + z^4/24 and S = (R - 1)/z.

@@ -77,7 +77,9 @@ def _closure(arrows: Mapping[Port, set[Port]], start: list[Port]) -> set[Port]:
 
 @dataclass(frozen=True)
 class PeriodMap:
-    """x' = A x + B u, y = C x + D u over the common period of all grids.
+    """A system over the common period of all grids.
+
+    x' = A x + B u, y = C x + D u.
 
     Attributes
     ----------
@@ -97,7 +99,7 @@ class PeriodMap:
 
 
 def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
-    """Step the linear blocks through one common period, as the master does the FMUs.
+    """Step linear blocks through one period as the master does.
 
     Parameters
     ----------

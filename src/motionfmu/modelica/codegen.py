@@ -33,7 +33,7 @@ _ARGUMENTS = "xupc"
 
 
 def write(toml: Path, out: Path) -> None:
-    """Write plant.c, plant.h and ode.json of one FMU, where they differ.
+    """Write plant.c, plant.h and ode.json where they differ.
 
     Parameters
     ----------

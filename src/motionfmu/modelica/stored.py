@@ -15,7 +15,7 @@ _ABOUT = ("name", "type", "kind", "unit", "description")
 
 
 def to_json(ode: Ode) -> str:
-    """Write the equation: names, units and CasADi's own form of the functions.
+    """Write names, units and CasADi's own form of the functions.
 
     Parameters
     ----------

@@ -135,7 +135,8 @@ def _add(page: Sheet, study: LoopStudy, name: str) -> None:
         ("Sensitivity peak", figure(m.sensitivity), _hertz(m.omega_sensitivity)),
         ("Bandwidth", f"{figure(m.bandwidth / (2.0 * math.pi))} Hz", "closed loop, &minus;3 dB"),
     ]
-    boxes = f'<div class="cards">{"".join(_card(*c) for c in cards)}</div>'
+    columns = "grid-template-columns:repeat(auto-fit,minmax(165px,1fr))"
+    boxes = f'<div class="cards" style="{columns}">{"".join(_card(*c) for c in cards)}</div>'
     if not m.stable:
         wrong = '<span class="mark fail">✗ This loop is unstable as it is;</span>'
         boxes = f'<p class="note">{wrong} margins are distances to &minus;1.</p>{boxes}'

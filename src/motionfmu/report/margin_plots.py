@@ -167,9 +167,12 @@ def locus(study: LoopStudy) -> Figure:
     if math.isfinite(study.margins.gain):
         rings = closed_poles(study.loop, top)
         data.append(_marks(rings, f"limit, factor {top:.4g}", RED, "diamond"))
+    slow = flat[(np.abs(flat) > 0.5) & (np.abs(flat) < 1.3)]
+    left = min(float(slow.real.min(initial=0.8)), 0.8) - 0.05
+    high = max(float(np.abs(slow.imag).max(initial=0.1)), 0.1) * 1.1
     more = {
-        "xaxis": axis("real part of z", range=[-1.35, 1.35]),
-        "yaxis": axis("imaginary part of z", range=[-1.2, 1.2], scaleanchor="x"),
+        "xaxis": axis("real part of z", range=[left, 1.1]),
+        "yaxis": axis("imaginary part of z", range=[-high, high], scaleanchor="x"),
         "shapes": [_circle(0.0, 0.0, 1.0, color=INK, width=1)],
     }
     return {"data": data, "layout": layout(440, **more)}
