@@ -68,6 +68,14 @@ def test_linear_model_is_what_the_fmus_do(case: tuple[Any, ...]) -> None:
     assert size < 1.0 and angle < 1.0
 
 
+@pytest.mark.parametrize("tau", [1e-3, 1.5e-5, 5e-6])
+def test_the_integrator_itself_is_in_the_model(tau: float) -> None:
+    """The micro-grid of 25 us is coarse for these lags, the last one gets sub-steps: 12 digits."""
+    model = linear.model(THEORY, set={"machine.tau": tau})
+    setup = freq.setup(model, "machine.voltage", "machine.motor_speed", "machine.voltage")
+    assert max(errors(setup, freq.measure(setup, multisine(5.0)))) < 1e-9
+
+
 @pytest.mark.parametrize("out", ["torque", "speed", "speed_command", "following_error"])
 def test_position_mode_inside_the_drive(out: str) -> None:
     model = linear.model(MODES, 1, set=WIDE | SMOOTH | PULSES)

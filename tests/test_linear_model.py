@@ -183,6 +183,15 @@ def test_a_load_is_carried_on_the_right_side_of_the_gap(backlash: float) -> None
     assert abs(stiff.dcgain()) > 0.9  # it is in contact, not in the gap
 
 
+@pytest.mark.parametrize("speed", [-3.0, 0.01])
+def test_a_motor_that_turns_through_the_gap_is_no_uniform_motion(speed: float) -> None:
+    """For a moment nothing changes there, but the table would stay behind."""
+    axis = linear.model(DEMO, at={"machine.motor_speed": speed}, set={"machine.backlash": 1e-5})
+    values = axis.points["machine"].values
+    assert values["table_speed"] == pytest.approx(speed * 0.01 / (2.0 * math.pi))
+    assert abs(values["screw_force"]) > 40.0  # it pushes the table against its friction
+
+
 def test_only_the_inner_loop_is_left_when_the_outer_is_cut() -> None:
     axis = linear.model(MODES, axis=2)
     assert feedbacks(axis) == {ENC: (), "drives.phase": (ENC,)}

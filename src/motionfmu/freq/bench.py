@@ -71,15 +71,15 @@ class Bench:
     def __init__(self, setup: Setup) -> None:
         axis = setup.axis
         self.setup, self.axis = setup, axis
-        entries = [axis._port(n, axis.inputs, "input") for n in setup.inputs]
-        exits = [axis._port(n, axis.outputs, "output") for n in setup.outputs]
+        entries = [axis.port(n, axis.inputs, "input") for n in setup.inputs]
+        exits = [axis.port(n, axis.outputs, "output") for n in setup.outputs]
         for component, name in entries:
             if name in axis.blocks[component].commands:
                 raise InputError(f"{component}.{name} arises inside: nothing can be added to it")
-        net = axis._net(setup.cut, setup.delays)
+        net = axis.net(setup.cut, setup.delays)
         self.used = net.used(entries, exits) | {c for c, _ in (*entries, *exits)}
         self.entries, self.exits = entries, exits
-        system = axis.scenario._system(Options(set=axis.set))
+        system = axis.scenario.resolved(Options(set=axis.set))
         self.step_ns = system.step_ns
         self.system = self._alone(system)
 
@@ -109,11 +109,11 @@ class Bench:
         for name, value in self.axis.at.items():
             if name in self.axis.inputs and name not in feeds:
                 component, _, variable = name.partition(".")
-                given[name] = self._own(component, variable, value)
+                given[name] = self.own(component, variable, value)
         resolver = self.axis.scenario.resolver
         for c in components:
             if "active" in resolver.ports[c]:
-                given[f"{c}.active"] = self._own(c, "active", True, False)
+                given[f"{c}.active"] = self.own(c, "active", True, False)
         found = [resolver.end(name, "set", name) for name in given]
         self.given = [(end, given[end.name]) for end in found]
         return replace(system, components=components, wires=tuple(joined), stimuli=())
@@ -125,14 +125,28 @@ class Bench:
             value = self.axis.value(f"{component}.{name}")
         except (InputError, ValueError):
             return
-        given[f"{component}.{name}"] = self._own(component, name, value)
+        given[f"{component}.{name}"] = self.own(component, name, value)
 
     def _all(self, component: str, name: str, value: Any) -> Any:
         end = self.axis.scenario.resolver.end(f"{component}.{name}", "set", name)
         return values_of(end, value)
 
-    def _own(self, component: str, name: str, value: Any, others: Any = None) -> Any:
-        """Values of all elements: this axis' own, and start values or `others`."""
+    def own(self, component: str, name: str, value: Any, others: Any = None) -> Any:
+        """Values of all elements: one for this axis, and the rest.
+
+        Parameters
+        ----------
+        component, name : str
+            The variable.
+        value : float, int or bool
+            Of this axis.
+        others : float, int or bool, optional
+            Of the other axes; else their start values.
+
+        Returns
+        -------
+        tuple
+        """
         port = self.axis.scenario.resolver.ports[component][name]
         kind: Any = {"Float64": float, "Int32": round, "Boolean": bool}[port.type]
         read: Any = {"Float64": float, "Int32": int, "Boolean": "true".__eq__}[port.type]
@@ -257,7 +271,7 @@ class _Tap:
         slave = slaves[self.port[0]]
         self.buffer = slave.buffer(declared.type, declared.count)
         given = {end.name: values for end, values in bench.given}
-        start = given.get(name) or bench._own(*self.port, _start(declared, bench.axis.axis))
+        start = given.get(name) or bench.own(*self.port, _start(declared, bench.axis.axis))
         self.buffer[:] = list(start)
         self.place = bench.axis.axis - 1 if declared.shape else 0
         self.base = float(self.buffer[self.place])

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import control
-import numpy as np
 
 from motionfmu.errors import InputError
 from motionfmu.linear import law
-from motionfmu.linear.block import Block, Matrix
+from motionfmu.linear.block import Block
 from motionfmu.linear.plant import Linearised, Point
+from motionfmu.linear.systems import delayed, replaced
 from motionfmu.linear.wiring import Net, Port, period_map, pruned
 from motionfmu.modelica.ode import Ode
 from motionfmu.run import Options, Scenario, load
@@ -128,9 +128,9 @@ class AxisModel:
         InputError
             A name is unknown, or the grids have no common period.
         """
-        entries = [self._port(n, self.inputs, "input") for n in _listed(inputs)]
-        exits = [self._port(n, self.outputs, "output") for n in _listed(outputs)]
-        net = self._net(cut, delays or {})
+        entries = [self.port(n, self.inputs, "input") for n in _listed(inputs)]
+        exits = [self.port(n, self.outputs, "output") for n in _listed(outputs)]
+        net = self.net(cut, delays or {})
         used = net.used(entries, exits) | {c for c, _ in (*entries, *exits)}
         joined = {t: s for t, s in net.wires.items() if t[0] in used and s[0] in used}
         net = replace(net, blocks={c: b for c, b in self.blocks.items() if c in used}, wires=joined)
@@ -178,7 +178,7 @@ class AxisModel:
         InputError
             The input is not wired, or nothing comes back to it.
         """
-        target = self._port(at, self.inputs, "input")
+        target = self.port(at, self.inputs, "input")
         if target not in self.wires:
             raise InputError(f"{at} has no wire: no loop is closed there")
         source = self.wires[target]
@@ -189,16 +189,54 @@ class AxisModel:
             raise InputError(f"{at}: nothing comes back to it from {'.'.join(source)}")
         back = replaced(around, c=-around.C, d=-around.D, name=f"loop at {_name(target)}")
         for k in range(own):
-            back = _delayed(back, f"{'/'.join(target)} delay {k + 1}")
+            back = delayed(back, f"{'/'.join(target)} delay {k + 1}")
         return back
 
-    def _net(self, cut: str | Iterable[str], delays: Mapping[str, int]) -> Net:
-        removed = {self._port(n, self.inputs, "input") for n in _listed(cut)}
-        late = {self._port(n, self.inputs, "input"): int(d) for n, d in delays.items()}
+    def net(self, cut: str | Iterable[str], delays: Mapping[str, int]) -> Net:
+        """Blocks and wires, some cut or delayed.
+
+        Parameters
+        ----------
+        cut : str or iterable of str
+            Inputs whose wire is cut.
+        delays : mapping
+            Communication steps by which the wire of an input is delayed.
+
+        Returns
+        -------
+        Net
+
+        Raises
+        ------
+        InputError
+            A name is unknown.
+        """
+        removed = {self.port(n, self.inputs, "input") for n in _listed(cut)}
+        late = {self.port(n, self.inputs, "input"): int(d) for n, d in delays.items()}
         joined = {t: s for t, s in self.wires.items() if t not in removed}
         return Net(self.blocks, joined, self.step_ns, late)
 
-    def _port(self, name: str, known: list[str], kind: str) -> Port:
+    def port(self, name: str, known: list[str], kind: str) -> Port:
+        """Component and variable of a name.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``.
+        known : list of str
+            `inputs` or `outputs`.
+        kind : str
+            ``input`` or ``output``, for the message.
+
+        Returns
+        -------
+        tuple of str
+
+        Raises
+        ------
+        InputError
+            It is not among them.
+        """
         if name not in known:
             note = f" (no linear law: {', '.join(self.left_out)})" if self.left_out else ""
             raise InputError(
@@ -235,44 +273,6 @@ class AxisModel:
 
 def _name(port: Port) -> str:
     return "/".join(port)
-
-
-def replaced(system: control.StateSpace, c: Matrix, d: Matrix, name: str) -> control.StateSpace:
-    """The same states seen otherwise, with their names.
-
-    Parameters
-    ----------
-    system : control.StateSpace
-    c, d : ndarray
-        Output matrices.
-    name : str
-
-    Returns
-    -------
-    control.StateSpace
-    """
-    return control.StateSpace(
-        *(system.A, system.B, c, d, system.dt),
-        inputs=system.input_labels,
-        outputs=system.output_labels,
-        states=system.state_labels,
-        remove_useless_states=False,
-        name=name,
-    )
-
-
-def _delayed(system: control.StateSpace, state: str) -> control.StateSpace:
-    """One period later."""
-    n = system.nstates
-    a = np.block([[system.A, np.zeros((n, 1))], [system.C, np.zeros((1, 1))]])
-    return control.StateSpace(
-        *(a, np.vstack([system.B, system.D]), np.eye(1, n + 1, n), np.zeros((1, 1)), system.dt),
-        inputs=system.input_labels,
-        outputs=system.output_labels,
-        states=[*system.state_labels, state],
-        remove_useless_states=False,
-        name=system.name,
-    )
 
 
 def _listed(names: str | Iterable[str]) -> list[str]:
@@ -359,7 +359,7 @@ def _build(
     before: AxisModel | None,
 ) -> AxisModel:
     if before is None:
-        resolved = scenario._system(Options(set=set_))
+        resolved = scenario.resolved(Options(set=set_))
     else:
         given = tuple(settings(scenario.resolver, set_))
         resolved = replace(before._cache["system"], settings=given)
