@@ -5,7 +5,7 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -112,12 +112,7 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
     InputError
         The folder cannot be written, or holds something else than a result.
     """
-    folder = usable(folder)
-    part = folder.with_name(f".{folder.name}.part{os.getpid()}")
-    old = folder.with_name(f".{folder.name}.old{os.getpid()}")
-    new_parents = [p for p in part.parents if not p.exists()]
-    try:
-        part.mkdir(parents=True)
+    with whole(folder) as part:
         arrays: dict[str, Any] = {"time": result.time, **result.signals}
         np.savez_compressed(part / SIGNALS, **arrays)
         text = json.dumps(numbers(result, options), indent=1, allow_nan=False)
@@ -128,6 +123,35 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
 
         contour = None if result.scenario.document.body.contour is None else result.contour()
         shown = write_report(result, contour, part).name
+    return folder.resolve() / shown
+
+
+@contextlib.contextmanager
+def whole(folder: Path) -> Iterator[Path]:
+    """Write a folder of results whole or not at all.
+
+    Parameters
+    ----------
+    folder : Path
+        Replaced if it holds an older result.
+
+    Yields
+    ------
+    Path
+        Where to write; it must get a `NUMBERS`.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or holds something else than a result.
+    """
+    folder = usable(folder)
+    part = folder.with_name(f".{folder.name}.part{os.getpid()}")
+    old = folder.with_name(f".{folder.name}.old{os.getpid()}")
+    new_parents = [p for p in part.parents if not p.exists()]
+    try:
+        part.mkdir(parents=True)
+        yield part
         if folder.exists():
             folder.rename(old)
         part.rename(folder)
@@ -139,4 +163,3 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
         for parent in new_parents:
             with contextlib.suppress(OSError):
                 parent.rmdir()  # refused where the result stands
-    return folder / shown

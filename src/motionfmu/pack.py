@@ -17,6 +17,8 @@ from motionfmu.modeldescription import model_description
 SOURCE = Path(__file__).resolve().parent.parent
 # Zip cannot date earlier; a fixed date makes equal FMUs equal files.
 _DATE = (1980, 1, 1, 0, 0, 0)
+# What the linear models are made of goes into the FMU beside what the standard asks for.
+EXTRA = "extra/motionfmu"
 
 
 def _write(path: Path, data: str | bytes) -> None:
@@ -51,7 +53,7 @@ def generate(fmu: Path, out: Path) -> None:
         Folder with fmu.toml (and model.c).
     out : Path
         Receives vars.h, vars.c, fmi2/ and fmi3/ with fmu_main.c and modelDescription.xml,
-        and plant.c, plant.h for a Modelica class.
+        and plant.c, plant.h, ode.json for a Modelica class.
 
     Raises
     ------
@@ -169,6 +171,9 @@ def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> N
     }
     for readme in folder.glob("README.md"):
         files["documentation/README.md"] = readme.read_bytes()
+    if fmi == 3:
+        for extra in (*folder.glob("linear.toml"), *out.glob("*.json")):
+            files[f"{EXTRA}/{extra.name}"] = extra.read_bytes()
     for source, data in _packed_sources(folder, out, fmi).items():
         files[f"sources/{source}"] = data
     target.parent.mkdir(parents=True, exist_ok=True)

@@ -216,7 +216,7 @@ class Scenario:
         drawn = figures.wanted(self.resolver)
         self.ends = list({e.name: e for e in (*listed, *drawn)}.values())
         self.only_drawn = {e.name for e in drawn} - {e.name for e in listed}
-        self._system(Options())
+        self.resolved(Options())
         self._check_checks()
 
     @property
@@ -241,7 +241,22 @@ class Scenario:
             elif (at := self.document.body.check[name].at) is not None and at > stop:
                 raise self.document.error(f"{name}: at = {at!r} s is after the stop", "check", name)
 
-    def _system(self, options: Options) -> system.System:
+    def resolved(self, options: Options) -> system.System:
+        """All that an engine needs, with the options' values.
+
+        Parameters
+        ----------
+        options : Options
+
+        Returns
+        -------
+        System
+
+        Raises
+        ------
+        InputError
+            A value is wrong.
+        """
         document, body = self.document, self.document.body
         step_ns = self._time("step", options.step, body.step)
         stop_ns = self._time("stop", options.stop, body.stop)
@@ -299,7 +314,7 @@ class Scenario:
             library = self._library()
             extra = {f"{library}.path_file": str(folder / "path.csv")} if library else {}
             given = Options(**{**options, "set": {**asked.set, **extra}})
-            plain = self._system(given)
+            plain = self.resolved(given)
             wired, traces = recording.plan(plain, self.ends, folder)
             try:
                 ENGINES[asked.engine](wired, asked.fmi, asked.progress)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import casadi as ca
 
-from motionfmu.modelica import causal, description
+from motionfmu.modelica import causal, description, stored
 from motionfmu.modelica.cprint import statements
 from motionfmu.modelica.flat import Declaration
 from motionfmu.modelica.hoist import Split, split
@@ -33,14 +33,14 @@ _ARGUMENTS = "xupc"
 
 
 def write(toml: Path, out: Path) -> None:
-    """Write plant.c and plant.h of one FMU, where they differ.
+    """Write plant.c, plant.h and ode.json where they differ.
 
     Parameters
     ----------
     toml : Path
         fmus/<name>/fmu.toml with a key ``modelica``.
     out : Path
-        Folder for both files.
+        Folder for the files.
 
     Raises
     ------
@@ -50,7 +50,9 @@ def write(toml: Path, out: Path) -> None:
     packing = description.read(toml)
     ode = causal.load(packing.package, packing.modelica)
     out.mkdir(parents=True, exist_ok=True)
-    for name, text in zip(("plant.c", "plant.h"), generate(ode, packing.instances), strict=True):
+    code, header = generate(ode, packing.instances)
+    texts = {"plant.c": code, "plant.h": header, stored.FILE: stored.to_json(ode)}
+    for name, text in texts.items():
         file = out / name
         if not file.exists() or file.read_text() != text:
             file.write_text(text)

@@ -1,0 +1,329 @@
+"""The FMUs of one loop on a test bench: anything can be added to what a wire brings."""
+
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from fmpy import extract
+from numpy.typing import NDArray
+
+from motionfmu import fmus
+from motionfmu.engines.slave import Slave
+from motionfmu.errors import InputError
+from motionfmu.linear import AxisModel
+from motionfmu.linear.law import Law, carried
+from motionfmu.linear.wiring import Port
+from motionfmu.run import Options
+from motionfmu.system import System, Wire
+from motionfmu.values import values_of
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What is measured.
+
+    Attributes
+    ----------
+    axis : AxisModel
+        Its scenario, axis, values and operating point.
+    inputs, outputs : tuple of str
+        Inputs to which signals are added, outputs that are recorded; ``component.variable``.
+    cut : tuple of str
+        Inputs whose wire is cut.
+    delays : dict
+        Communication steps by which the wire of an input is delayed.
+    gains : dict
+        Factor by which the wire of an input is multiplied.
+    """
+
+    axis: AxisModel
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    cut: tuple[str, ...] = ()
+    delays: dict[str, int] = field(default_factory=dict)
+    gains: dict[str, float] = field(default_factory=dict)
+
+
+class Bench:
+    """The FMUs between inputs and outputs, with signals added.
+
+    They run as the reference master runs them.
+
+    FMUs that are not on a path from an input to an output do not run; inputs that they would set
+    have what their law says. Other axes are switched off.
+
+    Parameters
+    ----------
+    setup : Setup
+
+    Raises
+    ------
+    InputError
+        A name is unknown, or an input is no port of an FMU.
+    """
+
+    def __init__(self, setup: Setup) -> None:
+        axis = setup.axis
+        self.setup, self.axis = setup, axis
+        entries = [axis.port(n, axis.inputs, "input") for n in setup.inputs]
+        exits = [axis.port(n, axis.outputs, "output") for n in setup.outputs]
+        for component, name in entries:
+            if name in axis.blocks[component].commands:
+                raise InputError(f"{component}.{name} arises inside: nothing can be added to it")
+        net = axis.net(setup.cut, setup.delays)
+        self.used = net.used(entries, exits) | {c for c, _ in (*entries, *exits)}
+        self.entries, self.exits = entries, exits
+        system = axis.scenario.resolved(Options(set=axis.set))
+        self.step_ns = system.step_ns
+        self.system = self._alone(system)
+
+    def _alone(self, system: System) -> System:
+        """Only what is used, with every other axis switched off."""
+        removed = set(self.setup.cut)
+        joined = [
+            w
+            for w in system.wires
+            if w.source.component in self.used
+            and w.target.component in self.used
+            and w.target.name not in removed
+        ]
+        components = {c: f for c, f in system.components.items() if c in self.used}
+        given: dict[str, Any] = {s.end.name: s.values for s in system.settings}
+        given |= {s.end.name: s.values for s in system.stimuli}
+        given = {n: v for n, v in given.items() if n.partition(".")[0] in self.used}
+        for c, fmu in components.items():
+            said = carried(fmu)
+            if isinstance(said, Law):
+                given |= {f"{c}.{n}": self._all(c, n, v) for n, v in said.still.items()}
+        feeds = {w.target.name for w in joined}
+        for w in system.wires:
+            name = w.target.name
+            if w.target.component in self.used and name not in feeds and name not in removed:
+                self._from_law(w, given)
+        for name, value in self.axis.at.items():
+            if name in self.axis.inputs and name not in feeds:
+                component, _, variable = name.partition(".")
+                given[name] = self.own(component, variable, value)
+        resolver = self.axis.scenario.resolver
+        for c in components:
+            if "active" in resolver.ports[c]:
+                given[f"{c}.active"] = self.own(c, "active", True, False)
+        found = [resolver.end(name, "set", name) for name in given]
+        self.given = [(end, given[end.name]) for end in found]
+        return replace(system, components=components, wires=tuple(joined), stimuli=())
+
+    def _from_law(self, wire: Wire, given: dict[str, Any]) -> None:
+        """The value that an FMU which does not run would set, where its law says it."""
+        component, name = wire.target.component, wire.target.port.name
+        try:
+            value = self.axis.value(f"{component}.{name}")
+        except (InputError, ValueError):
+            return
+        given[f"{component}.{name}"] = self.own(component, name, value)
+
+    def _all(self, component: str, name: str, value: Any) -> Any:
+        end = self.axis.scenario.resolver.end(f"{component}.{name}", "set", name)
+        return values_of(end, value)
+
+    def own(self, component: str, name: str, value: Any, others: Any = None) -> Any:
+        """Values of all elements: one for this axis, and the rest.
+
+        Parameters
+        ----------
+        component, name : str
+            The variable.
+        value : float, int or bool
+            Of this axis.
+        others : float, int or bool, optional
+            Of the other axes; else their start values.
+
+        Returns
+        -------
+        tuple
+        """
+        port = self.axis.scenario.resolver.ports[component][name]
+        kind: Any = {"Float64": float, "Int32": round, "Boolean": bool}[port.type]
+        read: Any = {"Float64": float, "Int32": int, "Boolean": "true".__eq__}[port.type]
+        listed = [read(x) for x in (port.start or "").split()]
+        if others is not None:
+            listed = [others] * port.count
+        listed[self.axis.axis - 1 if port.shape else 0] = kind(value)
+        return tuple(listed)
+
+    @contextmanager
+    def _slaves(self) -> Iterator[dict[str, Slave]]:
+        with ExitStack() as stack:
+            messages: list[str] = []
+            slaves = {}
+            for name, fmu in self.system.components.items():
+                slaves[name] = Slave(name, _unpacked(fmu), 3, messages)
+                stack.callback(slaves[name].free)
+            for end, values in self.given:
+                slaves[end.component].assign(end.port.type, end.port.reference, values)
+            for slave in slaves.values():
+                slave.initialize()
+            for slave in slaves.values():
+                slave.start()
+            yield slaves
+
+    def run(self, added: Array, stop: Callable[[Array], bool] | None = None) -> tuple[Array, Array]:
+        """Run the FMUs with signals added at the inputs.
+
+        Parameters
+        ----------
+        added : ndarray, shape (steps, n_inputs)
+            A row for each communication step. A whole-number input gets the nearest one.
+        stop : callable, optional
+            Given the outputs at a communication point; True ends the run there.
+
+        Returns
+        -------
+        ndarray, shape (steps, n_outputs)
+            Outputs at each communication point, before its step.
+        ndarray, shape (steps, n_inputs)
+            What was really added.
+
+        Raises
+        ------
+        InputError
+            An FMU refused something; its message.
+        """
+        with self._slaves() as slaves:
+            taps = [_Tap(slaves, self, k) for k in range(len(self.entries))]
+            tapped = {t.port for t in taps}
+            wires = [_Wire(slaves, w) for w in self.system.wires if _target(w) not in tapped]
+            exits = [_Reader(slaves, self, p) for p in self.exits]
+            shown = np.zeros((len(added), len(exits)))
+            used = np.zeros_like(added)
+            step = self.step_ns * 1e-9
+            for k, row in enumerate(added):
+                shown[k] = [r.read() for r in exits]
+                if stop is not None and stop(shown[k]):
+                    return shown[: k + 1], used[: k + 1]
+                for w in wires:
+                    w.get()
+                for t in taps:
+                    t.get()
+                for w in wires:
+                    w.put()
+                used[k] = [t.put(x) for t, x in zip(taps, row, strict=True)]
+                for slave in slaves.values():
+                    slave.step(k * self.step_ns * 1e-9, step)
+            return shown, used
+
+
+def _target(wire: Wire) -> Port:
+    return wire.target.component, wire.target.port.name
+
+
+_folders: dict[Path, tempfile.TemporaryDirectory[str]] = {}
+
+
+def _unpacked(fmu: str) -> Path:
+    """An FMU unpacked once for all runs."""
+    path = fmus.fmu_path(fmu, 3)
+    if path not in _folders:
+        _folders[path] = tempfile.TemporaryDirectory(prefix="motionfmu-")
+        extract(str(path), _folders[path].name)
+    return Path(_folders[path].name)
+
+
+class _Wire:
+    """A wire as it is."""
+
+    def __init__(self, slaves: dict[str, Slave], wire: Wire) -> None:
+        source, target = slaves[wire.source.component], slaves[wire.target.component]
+        a, b = wire.source.port, wire.target.port
+        buffer = source.buffer(a.type, a.count)
+        self.get = source.access("Get", a.type, a.reference, buffer)
+        self.put = target.access("Set", b.type, b.reference, buffer)
+
+
+class _Reader:
+    """One element of an output."""
+
+    def __init__(self, slaves: dict[str, Slave], bench: Bench, port: Port) -> None:
+        component, name = port
+        declared = bench.axis.scenario.resolver.ports[component][name]
+        self.buffer = slaves[component].buffer(declared.type, declared.count)
+        self.get = slaves[component].access("Get", declared.type, declared.reference, self.buffer)
+        self.place = bench.axis.axis - 1 if declared.shape else 0
+
+    def read(self) -> float:
+        """Its value now."""
+        self.get()
+        return float(self.buffer[self.place])
+
+
+class _Tap:
+    """An input with something added to its wire, which may be delayed and multiplied."""
+
+    def __init__(self, slaves: dict[str, Slave], bench: Bench, number: int) -> None:
+        self.port = bench.entries[number]
+        name = ".".join(self.port)
+        declared = bench.axis.scenario.resolver.ports[self.port[0]][self.port[1]]
+        slave = slaves[self.port[0]]
+        self.buffer = slave.buffer(declared.type, declared.count)
+        given = {end.name: values for end, values in bench.given}
+        start = given.get(name) or bench.own(*self.port, _start(declared, bench.axis.axis))
+        self.buffer[:] = list(start)
+        self.place = bench.axis.axis - 1 if declared.shape else 0
+        self.base = float(self.buffer[self.place])
+        self.whole = declared.type == "Int32"
+        self._put = slave.access("Set", declared.type, declared.reference, self.buffer)
+        wire = next((w for w in bench.system.wires if _target(w) == self.port), None)
+        self.source = (
+            None
+            if wire is None
+            else _Reader(slaves, bench, (wire.source.component, wire.source.port.name))
+        )
+        self.gain = bench.setup.gains.get(name, 1.0)
+        self.late = [0.0] * bench.setup.delays.get(name, 0)
+
+    def get(self) -> None:
+        """Read the source."""
+        if self.source is not None:
+            self.late.append(self.gain * self.source.read())
+
+    def put(self, added: float) -> float:
+        """Write the sum; what was added, after rounding."""
+        brought = self.base if self.source is None else self.late.pop(0)
+        value = brought + added
+        if self.whole:
+            value = round(value)
+        self.buffer[self.place] = value
+        self._put()
+        return float(value - brought)
+
+
+def _start(port: fmus.Port, axis: int) -> float:
+    listed = (port.start or "0").split()
+    return float(listed[axis - 1] if port.shape else listed[0])
+
+
+def setup(
+    axis: AxisModel,
+    inputs: str | Iterable[str],
+    outputs: str | Iterable[str],
+    cut: str | Iterable[str] = (),
+) -> Setup:
+    """Say what is measured.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    inputs, outputs, cut : str or iterable of str
+        See `Setup`.
+
+    Returns
+    -------
+    Setup
+    """
+    listed = [(x,) if isinstance(x, str) else tuple(x) for x in (inputs, outputs, cut)]
+    return Setup(axis, listed[0], listed[1], listed[2])

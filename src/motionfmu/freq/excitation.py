@@ -1,0 +1,127 @@
+"""Periodic signals that excite many frequencies at once."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+# Feedback taps of maximum-length shift registers, by length; Golomb, Shift Register Sequences.
+_TAPS = {5: 3, 6: 5, 7: 6, 9: 5, 10: 7, 11: 9, 15: 14}
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """One period of a signal and how often it is repeated.
+
+    Attributes
+    ----------
+    signal : ndarray, shape (n,)
+        One period, a value per sample, in the unit of the input.
+    lines : ndarray of int
+        Whole cycles per period that it excites.
+    settle, measure : int
+        Periods before the measurement, and in it.
+    """
+
+    signal: Array
+    lines: NDArray[np.int64]
+    settle: int = 2
+    measure: int = 2
+
+
+def multisine(
+    n: int, lines: NDArray[np.int64], peak: float, settle: int = 2, measure: int = 2
+) -> Excitation:
+    """Sum of equal sines with a small crest factor.
+
+    Schroeder's phases, -pi k (k - 1)/K: IEEE Trans. Inf. Theory 16 (1970) 85.
+
+    Parameters
+    ----------
+    n : int
+        Samples per period.
+    lines : ndarray of int
+        Cycles per period, above 0 and not above n/2.
+    peak : float
+        Largest magnitude, in the unit of the input.
+    settle, measure : int
+        Periods before the measurement, and in it.
+
+    Returns
+    -------
+    Excitation
+
+    Raises
+    ------
+    ValueError
+        A line is outside the range.
+    """
+    chosen = np.asarray(lines, dtype=np.int64)
+    if not chosen.size or chosen.min() < 1 or chosen.max() > n // 2:
+        raise ValueError(f"lines of a period of {n} samples are 1 to {n // 2}")
+    k = np.arange(chosen.size)
+    spectrum = np.zeros(n // 2 + 1, dtype=complex)
+    spectrum[chosen] = np.exp(-1j * np.pi * k * (k - 1) / chosen.size)
+    signal = np.fft.irfft(spectrum, n)
+    return Excitation(signal * (peak / np.abs(signal).max()), chosen, settle, measure)
+
+
+def prbs(order: int, peak: float, hold: int = 1, settle: int = 2, measure: int = 2) -> Excitation:
+    """Pseudo-random binary sequence of maximum length.
+
+    Parameters
+    ----------
+    order : int
+        Bits of the shift register: 5, 6, 7, 9, 10, 11 or 15.
+    peak : float
+        The value is +peak or -peak.
+    hold : int
+        Samples per bit; what lies above 0.4/hold of the sampling rate is not used.
+    settle, measure : int
+        Periods before the measurement, and in it.
+
+    Returns
+    -------
+    Excitation
+        (2^order - 1) hold samples.
+
+    Raises
+    ------
+    ValueError
+        The order is not in the list.
+    """
+    if order not in _TAPS:
+        raise ValueError(f"order = {order}: one of {', '.join(map(str, _TAPS))} wanted")
+    register, bits = [1] * order, []
+    for _ in range(2**order - 1):
+        bits.append(register[-1])
+        register = [register[-1] ^ register[_TAPS[order] - 1], *register[:-1]]
+    signal = np.repeat(peak * (2.0 * np.array(bits) - 1.0), hold)
+    top = len(signal) // 2 if hold == 1 else int(0.4 * len(signal) / hold)
+    return Excitation(signal, np.arange(1, top + 1), settle, measure)
+
+
+def sine(n: int, line: int, peak: float, settle: int = 2, measure: int = 2) -> Excitation:
+    """One sine: the classic sweep takes one after the other.
+
+    Parameters
+    ----------
+    n : int
+        Samples per period of the signal, which has `line` cycles.
+    line : int
+    peak : float
+        In the unit of the input.
+    settle, measure : int
+        Periods before the measurement, and in it.
+
+    Returns
+    -------
+    Excitation
+
+    Raises
+    ------
+    ValueError
+        The line is outside 1 to n/2.
+    """
+    return multisine(n, np.array([line]), peak, settle, measure)

@@ -1,0 +1,224 @@
+"""Frequency responses measured on the running FMUs."""
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import control
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.errors import InputError
+from motionfmu.freq.bench import Bench, Setup
+from motionfmu.freq.excitation import Excitation, sine
+from motionfmu.linear.margins import moving
+from motionfmu.linear.plant import Point
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Response:
+    """A measured frequency response.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (n,)
+        [rad/s].
+    values : ndarray of complex, shape (n, n_outputs)
+        Output per input, in their units.
+    period : float
+        Sampling period [s]; the response repeats beyond pi/period.
+    """
+
+    omega: Array
+    values: NDArray[np.complex128]
+    period: float
+
+
+def ramp(bench: Bench, name: str) -> float:
+    """Rate to add so that the axis moves as its point says.
+
+    A loop that follows its feedback moves the axis by what is added there, the other way round.
+
+    Parameters
+    ----------
+    bench : Bench
+    name : str
+        A wired input, ``component.variable``.
+
+    Returns
+    -------
+    float
+        [unit of the input/s]; 0 at rest, or if its wire comes from no plant.
+    """
+    source = bench.axis.wires.get((name.partition(".")[0], name.partition(".")[2]))
+    point: Point | None = bench.axis.points.get(source[0]) if source else None
+    return 0.0 if point is None or source is None else -point.rates.get(source[1], 0.0)
+
+
+def gentle(rate: float, lead: int, steps: int) -> Array:
+    """Position that smoothly reaches a speed within the lead.
+
+    Parameters
+    ----------
+    rate : float
+        Speed, per step.
+    lead, steps : int
+        Steps until well after it moves uniformly, and of all.
+
+    Returns
+    -------
+    ndarray, shape (steps,)
+    """
+    time = np.arange(steps, dtype=float)
+    soft = max(0.6 * lead, 1.0)
+    rising = 0.5 * (time - soft / np.pi * np.sin(np.minimum(time / soft, 1.0) * np.pi))
+    found: Array = rate * np.where(time < soft, rising, time - 0.5 * soft)
+    return found
+
+
+def measure(setup: Setup, excitation: Excitation) -> Response:
+    """Excite the first input and compare the outputs with it.
+
+    Where the operating point has a speed and the input's wire comes from the plant, a ramp is
+    added too, so that the FMUs move at that speed; straight drifts are taken off the outputs,
+    where more than one period is measured.
+
+    Parameters
+    ----------
+    setup : Setup
+    excitation : Excitation
+        Its samples are held over the common period of all grids between input and outputs.
+
+    Returns
+    -------
+    Response
+
+    Raises
+    ------
+    InputError
+        A name is unknown, or an FMU refused something.
+    """
+    bench = Bench(setup)
+    linear = setup.axis.system(setup.inputs, setup.outputs, setup.cut, setup.delays)
+    period_ns = round(linear.dt * 1e9)
+    hold = period_ns // bench.step_ns
+    n = len(excitation.signal)
+    repeats = excitation.settle + excitation.measure
+    one = np.repeat(np.tile(excitation.signal, repeats), hold)
+    added = np.zeros((len(one), len(setup.inputs)))
+    added[:, 0] = one
+    slope = ramp(bench, setup.inputs[0]) * bench.step_ns * 1e-9
+    way = gentle(slope, n * hold * excitation.settle, len(one))
+    added[:, 0] += way
+    shown, used = bench.run(added)
+    shown, excited = shown[::hold], (used[:, 0] - way)[::hold]
+    first = n * excitation.settle
+    spectra = [_lines(x[first:], n, excitation.lines) for x in (*shown.T, excited)]
+    values = np.column_stack([y / spectra[-1] for y in spectra[:-1]])
+    omega = 2.0 * np.pi * excitation.lines / (n * period_ns * 1e-9)
+    return Response(omega, values, period_ns * 1e-9)
+
+
+def _lines(x: Array, n: int, lines: NDArray[np.int64]) -> NDArray[np.complex128]:
+    """Spectrum of the mean period, without a straight drift."""
+    periods = len(x) // n
+    if periods > 1:
+        drift = (x[(periods - 1) * n :].mean() - x[:n].mean()) / ((periods - 1) * n)
+        x = x - drift * np.arange(len(x))
+    found: NDArray[np.complex128] = np.fft.rfft(x.reshape(periods, n).mean(axis=0))[lines]
+    return found
+
+
+def measured_loop(setup: Setup, excitation: Excitation) -> Response:
+    """The open loop at an input, measured with the loop closed.
+
+    With e added to what the wire brings, y, the FMU reads u = y + e; L = -y/u.
+
+    Parameters
+    ----------
+    setup : Setup
+        One wired input; outputs are not used.
+    excitation : Excitation
+
+    Returns
+    -------
+    Response
+        One column.
+
+    Raises
+    ------
+    InputError
+        The input is not wired, a name is unknown, or an FMU refused something.
+    """
+    component, _, name = setup.inputs[0].partition(".")
+    source = setup.axis.wires.get((component, name))
+    if source is None:
+        raise InputError(f"{setup.inputs[0]} has no wire: no loop is closed there")
+    closed = measure(replace(setup, outputs=(".".join(source),)), excitation)
+    share = closed.values[:, :1]
+    return Response(closed.omega, -share / (1.0 + share), closed.period)
+
+
+def settling(system: control.StateSpace) -> float:
+    """Samples until a start has died away to a thousandth.
+
+    Parameters
+    ----------
+    system : control.StateSpace
+        Discrete; poles at 1, which only hold a position, do not count.
+
+    Returns
+    -------
+    float
+        Of an unstable system that of one which nearly is.
+    """
+    slow = np.abs(moving(system.poles())).max(initial=1e-3)
+    return 7.0 / -math.log(min(float(slow), 1.0 - 1e-4))
+
+
+def sweep(
+    setup: Setup,
+    omegas: Iterable[float],
+    peak: float,
+    cycles: int = 6,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Response:
+    """One sine after the other, each in a run of its own.
+
+    Parameters
+    ----------
+    setup : Setup
+    omegas : iterable of float
+        [rad/s]; each is moved to the nearest with a whole number of samples in some cycles.
+    peak : float
+        In the unit of the input.
+    cycles : int
+        Cycles measured; as many before them, or more, let the start die away.
+    progress : callable
+        Called with the share done, 0 to 1.
+
+    Returns
+    -------
+    Response
+
+    Raises
+    ------
+    InputError
+        A name is unknown, or an FMU refused something.
+    """
+    linear = setup.axis.system(setup.inputs, setup.outputs, setup.cut, setup.delays)
+    wanted = list(omegas)
+    found = []
+    for k, omega in enumerate(wanted):
+        samples = 2.0 * np.pi / (omega * linear.dt)
+        n = max(round(cycles * samples), 2 * cycles)
+        before = max(1, math.ceil(settling(linear) / n))
+        found.append(measure(setup, sine(n, cycles, peak, settle=before, measure=1)))
+        progress((k + 1) / len(wanted))
+    return Response(
+        np.concatenate([r.omega for r in found]),
+        np.vstack([r.values for r in found]),
+        float(linear.dt),
+    )

@@ -1,0 +1,164 @@
+"""All about one loop: margins, limits both ways, measured response."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import control
+import numpy as np
+
+from motionfmu.errors import InputError
+from motionfmu.freq.bench import Setup
+from motionfmu.freq.excitation import multisine
+from motionfmu.freq.limit import Trial, simulated_gain, usual_kick
+from motionfmu.freq.response import Response, measured_loop, settling
+from motionfmu.linear import AxisModel
+from motionfmu.linear.loops import Limit, feedbacks, largest_gain
+from motionfmu.linear.margins import Margins, margins
+from motionfmu.linear.wiring import Port
+
+# Frequencies measured, samples of a period, periods until the start has died away.
+_LINES, _SAMPLES_MAX, _SETTLE_MAX = 60, 10_000, 6
+# Peak of the multisine, in kicks: it is spread over all lines.
+_PEAK = 4.0
+
+
+@dataclass(frozen=True)
+class LoopStudy:
+    """What was found out about a loop.
+
+    Attributes
+    ----------
+    at : str
+        The input at which it is opened.
+    cut : tuple of str
+        Inputs of other loops that are cut.
+    loop : control.StateSpace
+        Open loop.
+    margins : Margins
+    gain : str or None
+        Parameter whose limit is given; None: a factor on the wire.
+    linear, simulated : Limit
+        Largest stable gain by the poles, and by simulation; None if not asked for.
+    measured : Response or None
+        Open loop of the running FMUs.
+    kick : float
+        Step with which they were made to ring, in the unit of the input.
+    """
+
+    at: str
+    cut: tuple[str, ...]
+    loop: control.StateSpace
+    margins: Margins
+    gain: str | None
+    linear: Limit
+    simulated: Limit | None
+    measured: Response | None
+    kick: float
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What to study.
+
+    Attributes
+    ----------
+    loop : str or None
+        One input; None: every input through which a plant is fed back.
+    gains : dict
+        Parameter whose limit is wanted, by the input of its loop.
+    simulate : bool
+        Run the FMUs too.
+    kick : float or None
+        Step for ringing, in the unit of the input.
+    progress : callable
+        Called with the share done, 0 to 1.
+    """
+
+    loop: str | None = None
+    gains: Mapping[str, str] | None = None
+    simulate: bool = True
+    kick: float | None = None
+    progress: Callable[[float], None] = lambda share: None
+
+
+def study(axis: AxisModel, asked: Asked) -> list[LoopStudy]:
+    """Study the loops of an axis.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    asked : Asked
+
+    Returns
+    -------
+    list of LoopStudy
+
+    Raises
+    ------
+    InputError
+        A name is wrong, there is no loop, or an FMU refused something.
+    """
+    if asked.kick is not None and not 0.0 < asked.kick < math.inf:
+        raise InputError(f"kick = {asked.kick!r}: a number above 0 wanted")
+    every = feedbacks(axis)
+    if asked.loop is None:
+        chosen = every
+        if not chosen:
+            raise InputError(
+                f"{axis.scenario.document.file}: nothing feeds axis {axis.axis} back: no loop"
+            )
+    else:
+        chosen = {asked.loop: every.get(asked.loop, ())}
+    found = []
+    for k, (at, cut) in enumerate(chosen.items()):
+
+        def part(share: float, done: int = k) -> None:
+            asked.progress((done + share) / len(chosen))
+
+        found.append(_one(axis, (at, cut), asked, part))
+    asked.progress(1.0)
+    return found
+
+
+def _one(
+    axis: AxisModel,
+    which: tuple[str, tuple[str, ...]],
+    asked: Asked,
+    progress: Callable[[float], None],
+) -> LoopStudy:
+    at, cut = which
+    loop = axis.loop(at, cut)
+    gain = (asked.gains or {}).get(at)
+    limit = largest_gain(axis, at, cut, gain)
+    kick = usual_kick(axis, at, cut) if asked.kick is None else asked.kick
+    found = margins(loop)
+    ringing, response = None, None
+    if asked.simulate:
+        if found.stable:
+            response = _measured(axis, which, found, kick)
+        progress(0.4)
+        ringing = simulated_gain(
+            axis, which, Trial(kick), gain, lambda n: progress(0.4 + 0.6 * n / (n + 3.0))
+        )
+    progress(1.0)
+    return LoopStudy(at, cut, loop, found, gain, limit, ringing, response, kick)
+
+
+def _measured(
+    axis: AxisModel, which: tuple[str, tuple[str, ...]], found: Margins, kick: float
+) -> Response:
+    at, cut = which
+    loop = axis.loop(at, cut)
+    low = found.omega_phase if math.isfinite(found.omega_phase) else math.pi / (50.0 * loop.dt)
+    n = min(_SAMPLES_MAX, max(200, 2 * round(10.0 * math.pi / (low * loop.dt))))
+    lines = np.unique(np.round(np.geomspace(1, n // 2 - 1, _LINES)).astype(np.int64))
+    closed = axis.system(at, ".".join(axis.wires[_port(at)]), cut)
+    settle = min(_SETTLE_MAX, max(1, math.ceil(settling(closed) / n)))
+    setup = Setup(axis, (at,), (), cut)
+    return measured_loop(setup, multisine(n, lines, _PEAK * kick, settle, 2))
+
+
+def _port(name: str) -> Port:
+    component, _, variable = name.partition(".")
+    return component, variable

@@ -1,0 +1,252 @@
+"""Linear blocks between communication points, timed as the FMUs are."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """A sampled law: reads at k T, shows at (k + 1) T.
+
+    The input vector is ``inputs`` and then ``commands``. At an instant, from input u and state x:
+    [next x; outputs; early] = law [x; u].
+
+    Attributes
+    ----------
+    inputs, commands : tuple of str
+        Ports that move; signals that arise inside and come in from the side.
+    states, outputs, early, direct : tuple of str
+        What is kept; shown one period later; shown at the next communication point; shown at once.
+    grid_ns : int
+        Sampling period T [ns].
+    law : ndarray, shape (n_states + n_outputs + n_early, n_states + n_inputs + n_commands)
+    now : ndarray, shape (n_direct, n_commands)
+        Outputs that follow the commands at once.
+    grain : dict
+        Rounding step of ports, in their units.
+    """
+
+    inputs: tuple[str, ...]
+    commands: tuple[str, ...]
+    states: tuple[str, ...]
+    outputs: tuple[str, ...]
+    early: tuple[str, ...]
+    direct: tuple[str, ...]
+    grid_ns: int
+    law: Matrix
+    now: Matrix
+    grain: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def memory(self) -> tuple[str, ...]:
+        """Names of what it remembers from one grid instant to the next."""
+        return (*self.states, *self.outputs, *self.early)
+
+    @property
+    def ports(self) -> tuple[str, ...]:
+        """Ports that it shows."""
+        return (*self.outputs, *self.early, *self.direct)
+
+    def begin(self, memory: Matrix) -> Matrix:
+        """Working memory at an instant of its grid.
+
+        Parameters
+        ----------
+        memory : ndarray, shape (len(memory), n)
+
+        Returns
+        -------
+        ndarray
+            With a place more for each output: what is shown and what is computed.
+        """
+        n = len(self.states)
+        return np.vstack([memory, memory[n : n + len(self.outputs)]])
+
+    def end(self, work: Matrix) -> Matrix:
+        """Memory again, at an instant of its grid.
+
+        Parameters
+        ----------
+        work : ndarray
+
+        Returns
+        -------
+        ndarray
+        """
+        return work[: len(self.memory)]
+
+    def shown(self, work: Matrix, u: Matrix) -> Matrix:
+        """What its ports show.
+
+        Parameters
+        ----------
+        work : ndarray
+            Working memory.
+        u : ndarray, shape (n_inputs + n_commands, n)
+            Only the commands count.
+
+        Returns
+        -------
+        ndarray, shape (len(ports), n)
+        """
+        return np.vstack([work[len(self.states) : len(self.memory)], self.now @ self._side(u)])
+
+    def _side(self, u: Matrix) -> Matrix:
+        return u[len(self.inputs) :]
+
+    def run(self, work: Matrix, u: Matrix, span: tuple[int, int]) -> Matrix:
+        """Do what the FMU does in one communication step.
+
+        Parameters
+        ----------
+        work : ndarray
+            Working memory.
+        u : ndarray, shape (n_inputs + n_commands, n)
+            Held over the step.
+        span : tuple of int
+            From and to [ns].
+
+        Returns
+        -------
+        ndarray
+            Working memory.
+        """
+        start, stop = span
+        n, m = len(self.states), len(self.outputs)
+        instant = -(-start // self.grid_ns) * self.grid_ns
+        work = work.copy()
+        while instant <= stop:
+            if instant > start:
+                work[n : n + m] = work[len(self.memory) :]
+            if instant < stop:
+                found = self.law @ np.vstack([work[:n], u])
+                work[:n] = found[:n]
+                work[len(self.memory) :] = found[n : n + m]
+                work[n + m : len(self.memory)] = found[n + m :]
+            instant += self.grid_ns
+        return work
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A plant on its micro-grid, which holds its inputs.
+
+    Attributes
+    ----------
+    inputs, states, outputs : tuple of str
+    grid_ns : int
+        Micro step [ns].
+    step : tuple of ndarray
+        State and input matrix of one micro step: x' = F x + G u.
+    show : tuple of ndarray
+        Output matrices: y = C x + D u, with the input held last.
+    """
+
+    inputs: tuple[str, ...]
+    states: tuple[str, ...]
+    outputs: tuple[str, ...]
+    grid_ns: int
+    step: tuple[Matrix, Matrix]
+    show: tuple[Matrix, Matrix]
+    commands: tuple[str, ...] = ()
+
+    @property
+    def memory(self) -> tuple[str, ...]:
+        """Names of what it remembers: its states and the inputs held."""
+        return (*self.states, *(f"{name} held" for name in self.inputs))
+
+    @property
+    def ports(self) -> tuple[str, ...]:
+        """Ports that it shows."""
+        return self.outputs
+
+    def begin(self, memory: Matrix) -> Matrix:
+        """Working memory at an instant of its grid: the same.
+
+        Parameters
+        ----------
+        memory : ndarray, shape (len(memory), n)
+
+        Returns
+        -------
+        ndarray
+        """
+        return memory
+
+    end = begin
+
+    def shown(self, work: Matrix, u: Matrix) -> Matrix:
+        """What its ports show; the inputs of the moment do not count.
+
+        Parameters
+        ----------
+        work : ndarray
+        u : ndarray, shape (n_inputs, n)
+
+        Returns
+        -------
+        ndarray, shape (len(ports), n)
+        """
+        n = len(self.states)
+        return self.show[0] @ work[:n] + self.show[1] @ work[n:]
+
+    def run(self, work: Matrix, u: Matrix, span: tuple[int, int]) -> Matrix:
+        """Do what the FMU does in one communication step.
+
+        Parameters
+        ----------
+        work : ndarray
+        u : ndarray, shape (n_inputs, n)
+            Held over the step.
+        span : tuple of int
+            From and to [ns].
+
+        Returns
+        -------
+        ndarray
+        """
+        n, h = len(self.states), self.grid_ns
+        x, held = work[:n], work[n:]
+        f, g = self.step
+        instant = span[0] // h * h
+        while instant <= span[1]:
+            if instant > span[0]:
+                x = f @ x + g @ held
+            if span[0] <= instant < span[1]:
+                held = u
+            instant += h
+        return np.vstack([x, held])
+
+
+Block = Sampled | Plant
+
+
+def reaches(block: Block) -> NDArray[np.bool_]:
+    """Which ports shown depend on which inputs and commands.
+
+    Parameters
+    ----------
+    block : Sampled or Plant
+
+    Returns
+    -------
+    ndarray of bool, shape (len(ports), n_inputs + n_commands)
+    """
+    if isinstance(block, Plant):
+        a, b = (m != 0.0 for m in block.step)
+        c, d = (m != 0.0 for m in block.show)
+    else:
+        n, m = len(block.states), len(block.outputs) + len(block.early)
+        law = block.law != 0.0
+        a, b, c, d = law[:n, :n], law[:n, n:], law[n : n + m, :n], law[n : n + m, n:]
+        c = np.vstack([c, np.zeros((len(block.direct), n), dtype=bool)])
+        side = np.zeros((len(block.direct), len(block.inputs)), dtype=bool)
+        d = np.vstack([d, np.hstack([side, block.now != 0.0])])
+    for _ in range(len(a)):
+        b = b | (a @ b)
+    found: NDArray[np.bool_] = d | (c @ b)
+    return found

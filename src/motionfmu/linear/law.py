@@ -1,0 +1,197 @@
+"""Read the sampled law that an FMU carries, and make a block of it."""
+
+import functools
+import tomllib
+import zipfile
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from motionfmu import fmus
+from motionfmu.linear.block import Sampled
+from motionfmu.linear.form import Form, Quantity, evaluate
+from motionfmu.modelica import stored
+from motionfmu.modelica.ode import Ode
+from motionfmu.pack import EXTRA
+from motionfmu.system import nanoseconds
+
+LAW = "linear.toml"
+
+
+class Law(BaseModel):
+    """The tables of a linear.toml: formulas by name.
+
+    Attributes
+    ----------
+    period : str
+        Sampling period [s].
+    inputs, commands : list of str
+        Ports that move; signals that come in from the side.
+    let, state, output, early, direct, constant, grain, still : dict
+        See src/motionfmu/linear/README.md.
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+    period: str
+    inputs: list[str]
+    commands: list[str] = Field(default_factory=list)
+    let: dict[str, str] = Field(default_factory=dict)
+    state: dict[str, str] = Field(default_factory=dict)
+    output: dict[str, str] = Field(default_factory=dict)
+    early: dict[str, str] = Field(default_factory=dict)
+    direct: dict[str, str] = Field(default_factory=dict)
+    constant: dict[str, str] = Field(default_factory=dict)
+    grain: dict[str, str] = Field(default_factory=dict)
+    still: dict[str, bool | int | float | str] = Field(default_factory=dict)
+
+
+def parse(text: str, file: str = LAW) -> Law:
+    """Read the text of a linear.toml.
+
+    Parameters
+    ----------
+    text : str
+    file : str
+        Name used in messages.
+
+    Returns
+    -------
+    Law
+
+    Raises
+    ------
+    ValueError
+        ``file: what``.
+    """
+    try:
+        return Law.model_validate(tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{file}: {error}") from None
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(p) for p in first["loc"])
+        raise ValueError(f"{file}: {where}: {first['msg'].lower()}") from None
+
+
+@functools.cache
+def carried(fmu: str) -> Law | Ode | None:
+    """What an FMU says about itself for linear models.
+
+    Parameters
+    ----------
+    fmu : str
+        Folder name under fmus/.
+
+    Returns
+    -------
+    Law, Ode or None
+        A sampled law, a plant's equation, or nothing.
+
+    Raises
+    ------
+    ValueError
+        The law is wrong.
+    InputError
+        There is no such FMU.
+    """
+    with zipfile.ZipFile(fmus.fmu_path(fmu)) as archive:
+        names = archive.namelist()
+        if f"{EXTRA}/{LAW}" in names:
+            return parse(archive.read(f"{EXTRA}/{LAW}").decode(), f"{fmu}: {LAW}")
+        if f"{EXTRA}/{stored.FILE}" in names:
+            return stored.from_json(archive.read(f"{EXTRA}/{stored.FILE}").decode())
+    return None
+
+
+class _Names(Mapping[str, Any]):
+    """Moving quantities first, then formulas of `let`, then values of the FMU's variables."""
+
+    def __init__(self, law: Law, given: Mapping[str, Any], moving: dict[str, Quantity]) -> None:
+        self._law, self._given, self._moving = law, given, moving
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._moving:
+            if name not in self._law.let:
+                return self._given[name]
+            self._moving[name] = evaluate(self._law.let[name], self)
+        return self._moving[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*self._moving, *self._law.let, *self._given))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
+def block(law: Law, values: Mapping[str, Any]) -> Sampled:
+    """Make the block of one axis.
+
+    Parameters
+    ----------
+    law : Law
+    values : mapping
+        Parameters and inputs that stay, of this axis, by name.
+
+    Returns
+    -------
+    Sampled
+
+    Raises
+    ------
+    ValueError
+        A formula is wrong, or not linear.
+    """
+    moving = [*law.state, *law.inputs, *law.commands]
+    unit = np.eye(len(moving))
+    names = _Names(law, values, {m: Form(row) for m, row in zip(moving, unit, strict=True)})
+    later = [*law.state.items(), *law.output.items(), *law.early.items()]
+    rows = [_row(text, names, len(moving)) for _, text in later]
+    now = [_row(text, names, len(moving)) for text in law.direct.values()]
+    first = len(moving) - len(law.commands)
+    for name, row in zip(law.direct, now, strict=True):
+        if row[:first].any():
+            raise ValueError(f"{name} is shown at once and may depend on commands only")
+    return Sampled(
+        inputs=tuple(law.inputs),
+        commands=tuple(law.commands),
+        states=tuple(law.state),
+        outputs=tuple(law.output),
+        early=tuple(law.early),
+        direct=tuple(law.direct),
+        grid_ns=nanoseconds(law.period, float(evaluate(law.period, names))),  # type: ignore[arg-type]
+        law=np.array(rows).reshape(len(rows), len(moving)),
+        now=np.array(now).reshape(len(now), len(moving))[:, first:],
+        grain={n: float(evaluate(text, names)) for n, text in law.grain.items()},  # type: ignore[arg-type]
+    )
+
+
+def _row(text: str, names: _Names, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    found = evaluate(text, names)
+    if isinstance(found, Form):
+        return found.row
+    if found != 0.0:
+        raise ValueError(f"{text!r} is the number {found:g}: only deviations are meant here")
+    return np.zeros(count)
+
+
+def constant(law: Law, values: Mapping[str, Any], name: str) -> float | None:
+    """Value of an output that stays.
+
+    Parameters
+    ----------
+    law : Law
+    values : mapping
+        Of this axis, by name.
+    name : str
+        The output.
+
+    Returns
+    -------
+    float or None
+        None if the law does not give it.
+    """
+    if name not in law.constant:
+        return None
+    return float(evaluate(law.constant[name], _Names(law, values, {})))  # type: ignore[arg-type]

@@ -1,0 +1,216 @@
+"""Blocks, wires and the master's steps, put together to one period map."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from motionfmu.linear.block import Block, Matrix, reaches
+
+# A period of more communication steps than this has grids that do not fit together.
+STEPS_MAX = 20_000
+
+Port = tuple[str, str]  # component, variable
+
+
+@dataclass(frozen=True)
+class Net:
+    """Linear blocks and what joins them.
+
+    Attributes
+    ----------
+    blocks : dict
+        By component.
+    wires : dict
+        Source port by target port.
+    step_ns : int
+        Communication step [ns].
+    delays : dict
+        Communication steps that a wire takes, by target port; 0 where nothing is said.
+    """
+
+    blocks: Mapping[str, Block]
+    wires: Mapping[Port, Port]
+    step_ns: int
+    delays: Mapping[Port, int]
+
+    def used(self, entries: list[Port], exits: list[Port]) -> set[str]:
+        """Components on a path from an entry to an exit.
+
+        Parameters
+        ----------
+        entries : list of tuple
+            Inputs and commands.
+        exits : list of tuple
+            Ports shown.
+
+        Returns
+        -------
+        set of str
+        """
+        forward: dict[Port, set[Port]] = {}
+        for component, block in self.blocks.items():
+            reach = reaches(block)
+            for k, name in enumerate((*block.inputs, *block.commands)):
+                shown = [p for p, there in zip(block.ports, reach[:, k], strict=True) if there]
+                forward[component, name] = {(component, p) for p in shown}
+        for target, source in self.wires.items():
+            forward.setdefault(source, set()).add(target)
+        backward: dict[Port, set[Port]] = {}
+        for source, targets in forward.items():
+            for target in targets:
+                backward.setdefault(target, set()).add(source)
+        on = _closure(forward, entries) & _closure(backward, exits)
+        return {component for component, _ in on}
+
+
+def _closure(arrows: Mapping[Port, set[Port]], start: list[Port]) -> set[Port]:
+    found, left = set(start), list(start)
+    while left:
+        for port in arrows.get(left.pop(), ()):
+            if port not in found:
+                found.add(port)
+                left.append(port)
+    return found
+
+
+@dataclass(frozen=True)
+class PeriodMap:
+    """A system over the common period of all grids.
+
+    x' = A x + B u, y = C x + D u.
+
+    Attributes
+    ----------
+    a, b, c, d : ndarray
+    states : tuple of tuple of str
+        Component and name of each state.
+    period_ns : int
+        [ns]
+    """
+
+    a: Matrix
+    b: Matrix
+    c: Matrix
+    d: Matrix
+    states: tuple[Port, ...]
+    period_ns: int
+
+
+def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
+    """Step linear blocks through one period as the master does.
+
+    Parameters
+    ----------
+    net : Net
+        Only with what is used.
+    entries : list of tuple
+        What u is added to, held over the period.
+    exits : list of tuple
+        What y shows, at the beginning of the period.
+
+    Returns
+    -------
+    PeriodMap
+
+    Raises
+    ------
+    ValueError
+        The grids have no common period within reason.
+    """
+    grids = [net.step_ns, *(b.grid_ns for b in net.blocks.values())]
+    period = math.lcm(*grids)
+    if period // net.step_ns > STEPS_MAX:
+        told = ", ".join(f"{g * 1e-9:g} s" for g in sorted(set(grids)))
+        raise ValueError(f"the grids {told} have a common period of {period * 1e-9:g} s only")
+    names: list[Port] = [(c, n) for c, b in net.blocks.items() for n in b.memory]
+    chains = {t: n for t, n in net.delays.items() if n > 0 and t in net.wires}
+    names += [(t[0], f"{t[1]} delay {k + 1}") for t, n in chains.items() for k in range(n)]
+    width = len(names) + len(entries)
+    unit = np.eye(len(names), width)
+    place, work = 0, {}
+    for component, block in net.blocks.items():
+        work[component] = block.begin(unit[place : place + len(block.memory)])
+        place += len(block.memory)
+    queue = {}
+    for target, n in chains.items():
+        queue[target] = list(unit[place : place + n])
+        place += n
+    injected: dict[Port, Matrix] = {}
+    for k, entry in enumerate(entries):
+        row = np.zeros(width)
+        row[len(names) + k] = 1.0
+        injected[entry] = injected.get(entry, 0.0) + row
+    first = None
+    for start in range(0, period, net.step_ns):
+        fed = _exchange(net, work, queue, injected)
+        first = first if first is not None else _seen(net, fed, exits)
+        for component, block in net.blocks.items():
+            span = start, start + net.step_ns
+            work[component] = block.run(work[component], fed[component][0], span)
+    assert first is not None
+    parts = [block.end(work[component]) for component, block in net.blocks.items()]
+    parts += [np.array(rows).reshape(-1, width) for rows in queue.values()]
+    after = np.vstack([np.zeros((0, width)), *parts])
+    n = len(names)
+    return PeriodMap(after[:, :n], after[:, n:], first[:, :n], first[:, n:], tuple(names), period)
+
+
+def _exchange(
+    net: Net, work: dict[str, Matrix], queue: dict[Port, list[Matrix]], injected: dict[Port, Matrix]
+) -> dict[str, tuple[Matrix, dict[str, Matrix]]]:
+    """What every block is fed and shows at a communication point."""
+    width = next(iter(work.values())).shape[1] if work else 0
+    fed: dict[str, Matrix] = {}
+    shows: dict[Port, Matrix] = {}
+    for component, block in net.blocks.items():
+        names = (*block.inputs, *block.commands)
+        u = np.zeros((len(names), width))
+        for k, name in enumerate(names):
+            if (component, name) in injected:
+                u[k] = injected[component, name]
+        fed[component] = u
+        seen = block.shown(work[component], u)
+        shows |= {(component, p): row for p, row in zip(block.ports, seen, strict=True)}
+    for target, source in net.wires.items():
+        component, name = target
+        row = shows[source]
+        if target in queue:
+            queue[target].append(row)
+            row = queue[target].pop(0)
+        fed[component][net.blocks[component].inputs.index(name)] += row
+    return {c: (fed[c], {p: shows[c, p] for p in b.ports}) for c, b in net.blocks.items()}
+
+
+def _seen(net: Net, fed: dict[str, tuple[Matrix, dict[str, Matrix]]], exits: list[Port]) -> Matrix:
+    rows = [fed[component][1][port] for component, port in exits]
+    return np.vstack(rows)
+
+
+def pruned(whole: PeriodMap) -> PeriodMap:
+    """Leave out states that no input reaches or no output sees.
+
+    Parameters
+    ----------
+    whole : PeriodMap
+
+    Returns
+    -------
+    PeriodMap
+        The same from input to output.
+    """
+    a = whole.a != 0.0
+    reached, seen = (whole.b != 0.0).any(axis=1), (whole.c != 0.0).any(axis=0)
+    for _ in range(len(a)):
+        reached = reached | a[:, reached].any(axis=1)
+        seen = seen | a[seen].any(axis=0)
+    keep = np.flatnonzero(reached & seen)
+    return PeriodMap(
+        whole.a[np.ix_(keep, keep)],
+        whole.b[keep],
+        whole.c[:, keep],
+        whole.d,
+        tuple(whole.states[k] for k in keep),
+        whole.period_ns,
+    )

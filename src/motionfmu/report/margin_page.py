@@ -1,0 +1,223 @@
+"""The report on the loops of an axis."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from motionfmu.freq.study import LoopStudy
+from motionfmu.linear import AxisModel
+from motionfmu.linear.loops import Limit
+from motionfmu.linear.margins import response
+from motionfmu.report.margin_plots import bode, locus, nyquist, sensitivity, step
+from motionfmu.report.numbers import figure
+from motionfmu.report.sheet import Frame, Sheet
+from motionfmu.report.tables import table
+
+FOOTER = (
+    "L is the open loop, cut at the input named, once around, with all delays of the FMUs, of their"
+    " sampling and of the communication step; the feedback is negative. The linear model is the"
+    " plant's own equation at the operating point, on its integrator's grid, and the sampled laws"
+    " that the FMUs carry: no rounding, no limits. Dots are the running FMUs, excited by a"
+    " multisine while the loop is closed. The disk margin is the balanced one,"
+    " 1/max|S &minus; 1/2|."
+    ' Every number is in <a href="result.json">result.json</a>.'
+)
+
+
+def page_text(axis: AxisModel, studies: Sequence[LoopStudy]) -> str:
+    """The whole HTML page.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    studies : sequence of LoopStudy
+
+    Returns
+    -------
+    str
+    """
+    page = Sheet()
+    for k, study in enumerate(studies):
+        _add(page, study, f"loop{k}")
+    page.section("Operating point", _point_note(axis), _points(axis))
+    name = f"{axis.scenario.name}, axis {axis.axis}"
+    frame = Frame(name, axis.scenario.document.about, "margins report", [], FOOTER)
+    return page.text(frame)
+
+
+def numbers(axis: AxisModel, studies: Sequence[LoopStudy]) -> dict[str, Any]:
+    """The machine-readable result.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    studies : sequence of LoopStudy
+
+    Returns
+    -------
+    dict
+        Ready for JSON; what is infinite or not a number is null.
+    """
+    loops = []
+    for s in studies:
+        row: dict[str, Any] = {
+            "at": s.at,
+            "cut": list(s.cut),
+            "period": s.loop.dt,
+            "states": list(s.loop.state_labels),
+            "margins": asdict(s.margins),
+            "gain": s.gain or f"factor on the wire to {s.at}",
+            "largest_gain": asdict(s.linear),
+            "largest_gain_simulated": asdict(s.simulated) if s.simulated else None,
+            "kick": s.kick,
+        }
+        if s.measured is not None:
+            row["measured"] = {
+                "omega": s.measured.omega.tolist(),
+                "real": s.measured.values[:, 0].real.tolist(),
+                "imaginary": s.measured.values[:, 0].imag.tolist(),
+            }
+        loops.append(row)
+    points = {c: {"stated": p.stated, "values": p.values} for c, p in axis.points.items()}
+    told = {
+        "scenario": axis.scenario.name,
+        "about": axis.scenario.document.about,
+        "axis": axis.axis,
+        "set": dict(axis.set),
+        "operating_point": points,
+        "left_out": list(axis.left_out),
+        "loops": loops,
+    }
+    found: dict[str, Any] = _plain(told)
+    return found
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {k: _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    return value.item() if hasattr(value, "item") else value
+
+
+def _hertz(omega: float) -> str:
+    return f"at {figure(omega / (2.0 * math.pi))} Hz" if math.isfinite(omega) else ""
+
+
+def _unlimited(value: float, text: str) -> str:
+    return text if math.isfinite(value) else "unlimited"
+
+
+def _add(page: Sheet, study: LoopStudy, name: str) -> None:
+    m = study.margins
+    decibel = 20.0 * math.log10(m.gain) if 0.0 < m.gain < math.inf else math.inf
+    cards = [
+        ("Gain margin", _unlimited(m.gain, f"{figure(decibel)} dB"), _hertz(m.omega_gain)),
+        ("Phase margin", _unlimited(m.phase, f"{figure(m.phase)}°"), _hertz(m.omega_phase)),
+        (
+            "Delay margin",
+            _unlimited(m.delay, f"{figure(m.delay * 1e3)} ms"),
+            f"{figure(m.delay / study.loop.dt)} periods of {figure(study.loop.dt * 1e6)} µs"
+            if math.isfinite(m.delay)
+            else "",
+        ),
+        (
+            "Disk margin",
+            figure(m.disk),
+            f"gain by {figure(m.disk_gain)} either way and phase ±{figure(m.disk_phase)}°",
+        ),
+        ("Sensitivity peak", figure(m.sensitivity), _hertz(m.omega_sensitivity)),
+        ("Bandwidth", f"{figure(m.bandwidth / (2.0 * math.pi))} Hz", "closed loop, &minus;3 dB"),
+    ]
+    columns = "grid-template-columns:repeat(auto-fit,minmax(165px,1fr))"
+    boxes = f'<div class="cards" style="{columns}">{"".join(_card(*c) for c in cards)}</div>'
+    if not m.stable:
+        wrong = '<span class="mark fail">✗ This loop is unstable as it is;</span>'
+        boxes = f'<p class="note">{wrong} margins are distances to &minus;1.</p>{boxes}'
+    note = f"Opened at <b>{escape(study.at)}</b>"
+    if study.cut:
+        note += f", with {escape(', '.join(study.cut))} cut"
+    states = ", ".join(study.loop.state_labels)
+    note += f". {study.loop.nstates} states: {escape(states)}."
+    page.section(f"Loop at {escape(study.at)}", note, boxes + _limits(study))
+    left = page.place(f"{name}_bode", bode(study))
+    note = "Green: where |L| crosses 1; red: where the phase crosses &minus;180°."
+    page.section("Bode diagram", note + _deviation(study), left)
+    two = page.place(f"{name}_nyquist", nyquist(study)), page.place(f"{name}_locus", locus(study))
+    titles = "Nyquist diagram, and the disk that L keeps out of", "Poles over a factor on the loop"
+    cells = "".join(f"<div><h3>{t}</h3>{p}</div>" for t, p in zip(titles, two, strict=True))
+    page.sections.append(f'<section><div class="two">{cells}</div></section>')
+    two = page.place(f"{name}_step", step(study)), page.place(f"{name}_s", sensitivity(study))
+    titles = "Step response of the closed loop", "Sensitivity"
+    cells = "".join(f"<div><h3>{t}</h3>{p}</div>" for t, p in zip(titles, two, strict=True))
+    page.sections.append(f'<section><div class="two">{cells}</div></section>')
+
+
+def _card(what: str, value: str, where: str) -> str:
+    return (
+        f'<div class="card"><div class="what">{what}</div>'
+        f'<div class="value">{value}</div><div class="where">{where}</div></div>'
+    )
+
+
+def _deviation(study: LoopStudy) -> str:
+    """How far the measured dots are from the line, where the loop has a size worth measuring."""
+    if study.measured is None:
+        return ""
+    expected = response(study.loop, study.measured.omega)
+    worth = np.abs(expected) > 0.1
+    if not worth.any():
+        return ""
+    ratio = study.measured.values[worth, 0] / expected[worth]
+    size = 100.0 * float(np.abs(np.abs(ratio) - 1.0).max())
+    angle = float(np.degrees(np.abs(np.angle(ratio))).max())
+    return (
+        f" Where |L| is above &minus;20 dB, the running FMUs differ by at most {figure(size)} % and"
+        f" {figure(angle)}°."
+    )
+
+
+def _limits(study: LoopStudy) -> str:
+    what = escape(study.gain) if study.gain else f"factor on the wire to {escape(study.at)}"
+    rows = [(f"{what}: by the poles of the linear model", *_limit(study.linear), "")]
+    if study.simulated is not None:
+        share = study.simulated.gain / study.linear.gain - 1.0 if study.linear.gain else math.nan
+        told = f"{figure(100.0 * share, sign=True)} %" if math.isfinite(share) else ""
+        name = f"{what}: by running the FMUs until they ring"
+        rows.append((name, *_limit(study.simulated), told))
+    heads = ("Largest stable gain", "value", "rings at", "difference")
+    return table(heads, rows)
+
+
+def _limit(limit: Limit) -> tuple[str, str]:
+    if not math.isfinite(limit.gain):
+        return "none found", ""
+    ring = limit.omega / (2.0 * math.pi)
+    return f"{limit.gain:.4g}", f"{figure(ring)} Hz" if math.isfinite(ring) else ""
+
+
+def _point_note(axis: AxisModel) -> str:
+    told = [f"{escape(n)} = {v:g}" for n, v in axis.at.items()]
+    if told:
+        return f"Stated: {', '.join(told)}. The rest follows: a uniform motion."
+    return (
+        "Nothing was stated: the state at the start, at rest. Friction there is the steep slope of"
+        " a part that sticks; state a speed to linearise about a motion."
+    )
+
+
+def _points(axis: AxisModel) -> str:
+    rows = [
+        (escape(f"{c}.{name}"), f"{value:.6g}")
+        for c, p in axis.points.items()
+        for name, value in p.values.items()
+    ]
+    half = (len(rows) + 1) // 2
+    heads = ("quantity", "value")
+    return f'<div class="two">{table(heads, rows[:half])}{table(heads, rows[half:])}</div>'

@@ -1,0 +1,260 @@
+"""The linear model of an axis against closed formulas of servo loops."""
+
+import math
+from pathlib import Path
+
+import control
+import numpy as np
+import pytest
+from conftest import ROOT
+from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE, kp_of, theory
+
+from motionfmu import InputError, linear
+from motionfmu.linear import law
+from motionfmu.linear.loops import feedbacks, largest_gain
+from motionfmu.linear.margins import margins
+from motionfmu.modelica import causal, description
+from motionfmu.modelica.ode import Ode
+
+T = 1e-4  # [s] sampling period of card and drives
+ENC = "card.enc_phase"
+PLANTS = sorted(
+    p.parent.name for p in ROOT.glob("fmus/*/fmu.toml") if "\nmodelica" in p.read_text()
+)
+
+
+@pytest.mark.parametrize("more", [0, 1, 4])
+@pytest.mark.parametrize("gain", [20, 200, 4000])
+def test_circle_figure_of_the_sampled_loop(gain: int, more: int) -> None:
+    """|Kp T/(z^d (z - 1) + Kp T)|, d = 1 and the delays put in."""
+    axis = theory(mcc__p_gain=gain)
+    kt, d = kp_of(axis) * T, 1 + more
+    closed = axis.system("card.pulses", "machine.table_position", delays={ENC: more})
+    z = np.exp(1j * np.array([1e-3, 0.1, 1.0, 3.0]))
+    # the delay sits in the feedback: the way forward has d = 1
+    expected = z**more * kt / (z**d * (z - 1.0) + kt)
+    pulse = 0.01 / 10_000  # [m]
+    assert closed(z) / pulse == pytest.approx(expected, rel=1e-9)
+    assert closed.dt == T
+
+
+def test_software_law_has_two_samples_more() -> None:
+    """Output mode 2: the PC reads the error on its bus and writes the voltage a period later."""
+    axis = theory(mcc__output_mode=2, mcc__software_gain=1e-3)
+    kt = 1e-3 * 300.0 / 60.0 * 10_000 * T
+    z = np.exp(1j * np.linspace(0.01, 3.1, 7))
+    assert axis.loop(ENC)(z) == pytest.approx(kt / (z**3 * (z - 1.0)), rel=1e-9)
+    assert "mcc/card_dac_volts" in axis.loop(ENC).state_labels
+
+
+@pytest.mark.parametrize("d", [1, 2, 3, 6])
+def test_stability_limit_with_extra_samples(d: int) -> None:
+    """Kp T < 2 sin(pi/(2 (2 d + 1)))."""
+    axis = theory()
+    loop = axis.loop(ENC, delays={ENC: d - 1})
+    limit = 2.0 * math.sin(math.pi / (2.0 * (2.0 * d + 1.0)))
+    assert margins(loop).gain * kp_of(axis) * T == pytest.approx(limit, rel=1e-9)
+
+
+def test_stability_limit_of_a_parameter() -> None:
+    """The same limit as a gain of the library, interpolated between whole numbers."""
+    axis = theory(card__p_scale=8)
+    found = largest_gain(axis, ENC, (), "mcc.p_gain")
+    kp = kp_of(axis) / axis.value("card.host_p_gain")
+    assert not math.isfinite(found.gain)  # it would be 167,772: more than the register takes
+    axis = theory(card__p_scale=4)
+    found = largest_gain(axis, ENC, (), "mcc.p_gain")
+    kp = kp_of(axis) / axis.value("card.host_p_gain")
+    assert found.gain == pytest.approx(2.0 * math.sin(math.pi / 6.0) / (kp * T), rel=1e-4)
+    assert found.omega * T == pytest.approx(math.pi / 3.0, rel=1e-4)
+
+
+@pytest.mark.parametrize("d", [1, 3])
+def test_gain_for_sixty_degrees(d: int) -> None:
+    """Integrator, hold, d samples: lag 90 degrees + (d + 1/2) w T, |L| = Kp T/(2 sin(wT/2))."""
+    wt = math.pi / 6.0 / (d + 0.5)
+    wanted = 2.0 * math.sin(wt / 2.0) / T
+    axis = theory(mcc__p_gain=1000)
+    lines = round(2500 * wanted / kp_of(axis))
+    axis = axis.changed({"machine.encoder_lines": lines})
+    assert kp_of(axis) == pytest.approx(wanted, rel=1e-3)
+    found = margins(axis.loop(ENC, delays={ENC: d - 1}))
+    kt = kp_of(axis) * T
+    wt = 2.0 * math.asin(kt / 2.0)
+    lag = 90.0 - math.degrees((d + 0.5) * wt)
+    assert found.phase == pytest.approx(lag, rel=1e-9) and found.phase == pytest.approx(60, abs=0.1)
+    assert found.delay == pytest.approx(math.radians(lag) / (wt / T), rel=1e-9)
+
+
+@pytest.mark.parametrize("parts", [4, 1, 0.5, 0.25])
+def test_delay_of_the_communication_step(tmp_path: Path, parts: float) -> None:
+    """The table of the runner's README: a step of n T makes every sample n T long."""
+    text = (THEORY / "scenario.toml").read_text().replace("step = 1e-4", f"step = {T / parts}")
+    (tmp_path / "scenario.toml").write_text(text)
+    (tmp_path / "circle.ngc").write_text("M30\n")
+    axis = linear.model(tmp_path)
+    period = T * max(1.0, 1.0 / parts)
+    loop = axis.loop(ENC)
+    assert loop.dt == pytest.approx(period)
+    z = np.exp(1j * np.array([0.01, 1.0, 3.0]))
+    assert loop(z) == pytest.approx(kp_of(axis) * period / (z * (z - 1.0)), rel=1e-9)
+
+
+def test_unequal_periods_are_joined_to_their_common_one() -> None:
+    """Grids of 75 and 100 us repeat after 300 us."""
+    axis = theory(card__loop_period=7.5e-5, machine__micro_step=2.5e-5)
+    loop = axis.loop(ENC)  # the communication step of 100 us is no multiple
+    assert loop.dt == pytest.approx(3e-4)
+    with pytest.raises(InputError, match=r"have a common period of"):
+        theory(card__loop_period=9.999e-5, machine__micro_step=2.3e-5).loop(ENC)
+
+
+@pytest.mark.parametrize(("k", "c", "m"), [(4e5, 6e2, 400.0), (2e5, 1.5e3, 300.0)])
+def test_two_masses_fed_back_from_the_load(tmp_path: Path, k: float, c: float, m: float) -> None:
+    """Kp < c k/(m k - c^2) with an ideal velocity source; fed back from the motor far more."""
+    fast = 2.5e-5
+    text = (DEMO / "scenario.toml").read_text()
+    head, _, _ = text.replace("step = 1e-4", f"step = {fast}").partition("[contour]")
+    wire = '"card.enc_phase"         = "machine.motor_phase"'
+    assert wire in head
+    (tmp_path / "circle.ngc").write_text("M30\n")
+    given = {
+        **SMOOTH,
+        **WIDE,
+        "card.loop_period": fast,
+        "drives.period": fast,
+        "machine.motor_inertia": 1e4,  # nothing of the load comes back to the motor
+        "drives.velocity_gain": 2e7,
+        "drives.velocity_time": 0.0,
+        "machine.current_time": 0.0,
+        "machine.motor_viscous": 0.0,
+        "machine.table_viscous": 0.0,
+        "machine.screw_stiffness": k,
+        "machine.screw_damping": c,
+        "machine.table_mass": m,
+    }
+    found = {}
+    for source in ("motor_phase", "table_phase"):
+        (tmp_path / "scenario.toml").write_text(
+            head.replace(wire, f'"card.enc_phase" = "machine.{source}"')
+        )
+        axis = linear.model(tmp_path, set=given)
+        lines = 2500 if source == "motor_phase" else 0.01 / axis.value("machine.scale_pitch")
+        volts = axis.value("card.host_p_gain") / 64.0 * 20.0 / 65536.0 * 4 * lines
+        kp = volts * axis.value("drives.speed_per_volt") / 60.0
+        found[source] = largest_gain(axis, ENC).gain * kp
+    assert found["table_phase"] == pytest.approx(c * k / (m * k - c * c), rel=0.01)
+    assert found["motor_phase"] > 20.0 * found["table_phase"]
+
+
+@pytest.mark.parametrize("speed", [0.05, -3.0, 60.0])
+def test_friction_is_its_slope_at_the_stated_speed(speed: float) -> None:
+    """A motor without a screw: its pole is exp(-h slope/J); torque and load are in balance."""
+    loose = {"machine.screw_stiffness": 0.0, "machine.screw_damping": 0.0}
+    axis = linear.model(DEMO, at={"machine.motor_speed": speed}, set=loose)
+    fc, fs, vs, kv, v0, inertia = (
+        axis.value(f"machine.motor_{n}")
+        for n in ("coulomb", "static", "stribeck_speed", "viscous", "rest_speed", "inertia")
+    )
+
+    def friction(v: float) -> float:
+        return v / math.hypot(v, v0) * (fc + (fs - fc) / (1.0 + (v / vs) ** 2)) + kv * v
+
+    slope = (friction(speed + 1e-6) - friction(speed - 1e-6)) / 2e-6
+    drive = axis.system("machine.torque_command", "machine.motor_speed", ["machine.torque_command"])
+    expected = [math.exp(-slope / inertia * T), math.exp(-T / axis.value("machine.current_time"))]
+    assert sorted(drive.poles().real) == pytest.approx(sorted([0.0, *expected])[-2:], abs=1e-4)
+    assert axis.points["machine"].values["torque_command"] == pytest.approx(friction(speed))
+
+
+@pytest.mark.parametrize("backlash", [0.0, 2e-5])
+def test_a_load_is_carried_on_the_right_side_of_the_gap(backlash: float) -> None:
+    at = {"machine.table_speed": -0.02, "machine.force": 300.0, "machine.table_position": 0.1}
+    axis = linear.model(DEMO, at=at, set={"machine.backlash": backlash})
+    v = axis.points["machine"].values
+    assert v["table_position"] == pytest.approx(0.1) and v["force"] == 300.0
+    assert v["motor_speed"] == pytest.approx(-0.02 * 2.0 * math.pi / 0.01)
+    table = -(50.0 + 20.0 / (1.0 + (0.02 / 2e-3) ** 2)) - 200.0 * 0.02
+    assert v["screw_force"] == pytest.approx(table - 300.0, rel=1e-4)
+    nut = v["motor_angle"] * 0.01 / (2.0 * math.pi)
+    push = v["screw_force"] / 1e8  # the spring is pressed to the left
+    assert nut - 0.1 == pytest.approx(push - backlash / 2.0, rel=1e-5)
+    stiff = axis.system("machine.force", "machine.screw_force")
+    assert abs(stiff.dcgain()) > 0.9  # it is in contact, not in the gap
+
+
+@pytest.mark.parametrize("speed", [-3.0, 0.01])
+def test_a_motor_that_turns_through_the_gap_is_no_uniform_motion(speed: float) -> None:
+    """For a moment nothing changes there, but the table would stay behind."""
+    axis = linear.model(DEMO, at={"machine.motor_speed": speed}, set={"machine.backlash": 1e-5})
+    values = axis.points["machine"].values
+    assert values["table_speed"] == pytest.approx(speed * 0.01 / (2.0 * math.pi))
+    assert abs(values["screw_force"]) > 40.0  # it pushes the table against its friction
+
+
+def test_only_the_inner_loop_is_left_when_the_outer_is_cut() -> None:
+    axis = linear.model(MODES, axis=2)
+    assert feedbacks(axis) == {ENC: (), "drives.phase": (ENC,)}
+    inner = axis.loop("drives.phase", cut=ENC)
+    assert not any(s.startswith("card") for s in inner.state_labels)
+    assert "drives/integral" in inner.state_labels
+    # position mode closes both in the drive; the card's counter is read by nobody
+    assert list(feedbacks(linear.model(MODES, axis=1))) == ["drives.phase"]
+
+
+def test_a_changed_gain_keeps_the_plant() -> None:
+    axis = linear.model(DEMO, at={"machine.motor_speed": 10.0})
+    other = axis.changed({"mcc.p_gain": 400})
+    assert other.blocks["machine"] is axis.blocks["machine"]
+    z = np.exp(0.3j)
+    assert other.loop(ENC)(z) == pytest.approx(2.0 * axis.loop(ENC)(z))
+    heavier = axis.changed({"machine.table_mass": 200.0})
+    assert heavier.blocks["machine"] is not axis.blocks["machine"]
+    assert heavier.at == axis.at
+
+
+@pytest.mark.parametrize("name", PLANTS)
+def test_an_fmu_carries_the_equation_of_its_class(name: str) -> None:
+    carried = law.carried(name)
+    assert isinstance(carried, Ode)
+    packing = description.read(ROOT / "fmus" / name / "fmu.toml")
+    fresh = causal.load(packing.package, packing.modelica)
+    assert [d.name for d in carried.states] == [d.name for d in fresh.states]
+    assert carried.p0 == fresh.p0 and carried.limits == fresh.limits
+    rng = np.random.default_rng(1)
+    point = [rng.normal(size=v.shape[0]) for v in (fresh.x, fresh.u)]
+    own, new = (ode.function()(*point, fresh.values()) for ode in (carried, fresh))
+    assert all(np.array_equal(a.full(), b.full()) for a, b in zip(own, new, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda: linear.model(DEMO, axis=7), "axis = 7: mcc has axes 1 to 6"),
+        (lambda: linear.model(DEMO, axis=3), "axis = 3: it is not active in mcc"),
+        (lambda: linear.model(DEMO, at={"card.dac": 1.0}), "'card' is no plant of the scenario"),
+        (lambda: linear.model(DEMO, at={"machine.sped": 1.0}), "machine.sped = 1.0: ball_screw"),
+        (lambda: linear.model(DEMO).loop("card.enc"), "card.enc is no input of the linear model"),
+        (lambda: linear.model(DEMO).loop("card.pulses"), "card.pulses has no wire"),
+        (lambda: linear.model(DEMO).system(ENC, "card.stock"), "card.stock is no output"),
+        (lambda: linear.model(DEMO).changed({"mcc.p_gain": -1}), "set mcc.p_gain = -1: outside"),
+        (lambda: linear.model(DEMO).value("card.nothing"), "card.nothing: nothing says its value"),
+        (lambda: largest_gain(linear.model(DEMO), ENC, (), "mcc.program"), "a number above 0"),
+        (
+            lambda: linear.model(DEMO, at={"machine.table_speed": 0.1, "machine.motor_speed": 1.0}),
+            "no uniform motion with",
+        ),
+    ],
+)
+def test_a_wrong_question_is_named(call, told: str) -> None:
+    with pytest.raises(InputError) as caught:
+        call()
+    assert told in str(caught.value)
+
+
+def test_systems_are_those_of_python_control() -> None:
+    system = theory().system(["card.pulses", ENC], ["machine.table_position", "card.err_count"])
+    assert isinstance(system, control.StateSpace)
+    assert system.input_labels == ["card/pulses", "card/enc_phase"]
+    assert system.output_labels == ["machine/table_position", "card/err_count"]
+    assert all("/" in s for s in system.state_labels)

@@ -1,0 +1,182 @@
+"""Margins against published numbers, and largest gains by poles and by ringing FMUs."""
+
+import json
+import math
+from pathlib import Path
+
+import control
+import numpy as np
+import pytest
+from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE, theory
+from typer.testing import CliRunner
+
+from motionfmu import InputError, linear
+from motionfmu.cli import app
+from motionfmu.freq import limit
+from motionfmu.freq.limit import Trial, simulated_gain, usual_kick
+from motionfmu.linear.loops import Limit, boundary, feedbacks, largest_gain
+from motionfmu.linear.margins import closed_poles, margins
+
+ENC, PHASE = "card.enc_phase", "drives.phase"
+T = 1e-4  # [s]
+
+
+def test_the_allmargin_example_of_mathworks() -> None:
+    """25/(s^3 + 10 s^2 + 10 s + 10): gain 3.6000, phase 29.1104 degrees, delay 0.2847 s."""
+    found = margins(control.tf([25.0], [1.0, 10.0, 10.0, 10.0]))
+    assert found.stable
+    assert found.gain == pytest.approx(3.6, abs=5e-5)
+    assert found.phase == pytest.approx(29.1104, abs=5e-5)
+    assert found.delay == pytest.approx(0.2847, abs=5e-5)
+
+
+LOOPS = [
+    control.tf([25.0], [1.0, 10.0, 10.0, 10.0]),
+    control.tf([5.0, 5.0], [1.0, 2.0, 100.0, 0.0]),  # a resonance that crosses 1 three times
+    control.tf([0.3, 0.1], [1.0, -1.7, 0.72], 0.01),
+    control.tf([0.4], [1.0, -1.0, 0.0, 0.0], 1e-4),
+]
+
+
+@pytest.mark.parametrize("loop", LOOPS)
+def test_margins_are_those_of_python_control(loop: control.TransferFunction) -> None:
+    found, grid = margins(loop), np.geomspace(1e-4, 1.0, 10_001)
+    grid = grid * (np.pi / loop.dt if loop.dt else 1e3)
+    gain, phase, distance, *_ = control.stability_margins(loop)
+    assert found.gain == pytest.approx(gain, rel=1e-6)
+    assert found.phase == pytest.approx(phase, rel=1e-6)
+    assert 1.0 / found.sensitivity == pytest.approx(distance, rel=1e-4)
+    disk, decibel, angle = control.disk_margins(control.ss(loop), grid)
+    assert found.disk == pytest.approx(disk, rel=1e-4)
+    assert 20.0 * math.log10(found.disk_gain) == pytest.approx(decibel, rel=1e-4)
+    assert found.disk_phase == pytest.approx(angle, rel=1e-4)
+    closed = control.feedback(control.ss(loop), 1)
+    assert abs(
+        closed(np.exp(1j * found.bandwidth * loop.dt) if loop.dt else 1j * found.bandwidth)
+    ) == pytest.approx(math.sqrt(0.5))
+
+
+def test_a_gain_beyond_its_margin_is_unstable() -> None:
+    loop = theory(mcc__p_gain=200).loop(ENC)
+    top = margins(loop).gain
+    assert margins(0.999 * loop).stable and not margins(1.001 * top * loop).stable
+    assert np.abs(closed_poles(loop, top)).max() == pytest.approx(1.0, abs=1e-9)
+    assert margins(1.2 * top * loop).gain_down == pytest.approx(1.0 / 1.2)
+
+
+def test_a_loop_that_rings_at_half_the_sampling_rate() -> None:
+    """k/(z - 1) without a delay: k < 2, at z = -1, the end of the curve."""
+    found = margins(control.tf([0.5], [1.0, -1.0], 1e-3))
+    assert found.gain == pytest.approx(4.0)
+    assert found.omega_gain == pytest.approx(math.pi / 1e-3)
+    assert margins(control.tf([0.5], [1.0, 1.0])).gain == math.inf  # a first-order lag: never
+
+
+def test_the_search_for_a_boundary() -> None:
+    found, _ = boundary(lambda v: v - 7.3, 0.02, 1e-9, False)
+    assert found == pytest.approx(7.3)
+    found, _ = boundary(lambda v: v - 7.3, 4000.0, 1e-9, False)
+    assert found == pytest.approx(7.3)
+    found, tried = boundary(lambda v: v - 7.3, 3.0, 1e-9, True)
+    assert found == pytest.approx(7.3) and tried < 8
+    assert boundary(lambda v: -1.0, 1.0, 1e-9, False)[0] == math.inf
+    assert boundary(lambda v: 1.0, 1.0, 1e-9, False)[0] == 0.0
+
+
+CASES = [
+    # scenario, axis, operating point, values, loop, parameter
+    (THEORY, 1, {}, {}, ENC, None),
+    (THEORY, 1, {}, {"machine.tau": 1e-3, "machine.encoder_lines": 2**18}, ENC, "mcc.p_gain"),
+    (MODES, 2, {}, WIDE | SMOOTH, PHASE, "drives.velocity_gain"),
+    (MODES, 1, {}, WIDE | SMOOTH, PHASE, "drives.position_gain"),
+    (DEMO, 1, {"machine.motor_speed": 30.0}, {}, PHASE, None),
+    (DEMO, 2, {"machine.motor_speed": -30.0}, {"drives.velocity_gain": 2.0}, ENC, None),
+]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda c: f"{c[0].name}-{c[1]}-{c[4]}-{c[5]}")
+def test_largest_gain_by_poles_and_by_ringing(case) -> None:
+    scenario, axis, at, set_, loop, gain = case
+    if scenario == MODES:  # the fast loop alone, without the screw's resonance that hides it
+        set_ = set_ | {"machine.screw_damping": 3e4}
+    if set_.get("machine.tau"):
+        set_ = set_ | {"mcc.p_gain": 40, "card.p_scale": 10}
+    model = linear.model(scenario, axis, at, set_)
+    cut = feedbacks(model)[loop]
+    expected = largest_gain(model, loop, cut, gain)
+    found = simulated_gain(model, (loop, cut), Trial(usual_kick(model, loop, cut), 20), gain)
+    assert found.gain == pytest.approx(expected.gain, rel=0.02)
+    assert found.omega == pytest.approx(expected.omega, rel=0.06)
+    assert found.evaluations > 1
+
+
+def test_the_ringing_does_not_follow_the_linear_model_blindly(monkeypatch) -> None:
+    """A search that is told a limit 40 % too large finds the right one as well."""
+    model = theory(machine__tau=1e-3, mcc__p_gain=200)
+    right = largest_gain(model, ENC)
+    wrong = Limit(1.4 * right.gain, right.omega, 0)
+    monkeypatch.setattr(limit, "largest_gain", lambda *_: wrong)
+    found = simulated_gain(model, (ENC, ()), Trial(50.0, 20))
+    assert found.gain == pytest.approx(right.gain, rel=0.02)
+
+
+def run(*arguments: object):
+    return CliRunner().invoke(app, ["margins", *map(str, arguments)])
+
+
+def test_the_command_writes_a_report_with_all_numbers(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    done = run(THEORY, "--set", "machine.tau=1e-3", "--out", out)
+    assert done.exit_code == 0, done.output
+    assert "card.enc_phase" in done.output
+    numbers = json.loads((out / "result.json").read_text())
+    (loop,) = numbers["loops"]
+    model = theory(machine__tau=1e-3)
+    expected = margins(model.loop(ENC))
+    assert loop["margins"]["gain"] == pytest.approx(expected.gain)
+    assert loop["margins"]["phase"] == pytest.approx(expected.phase)
+    assert loop["largest_gain"]["gain"] == pytest.approx(expected.gain, rel=1e-6)
+    assert loop["largest_gain_simulated"]["gain"] == pytest.approx(expected.gain, rel=0.02)
+    omega = np.array(loop["measured"]["omega"])
+    measured = np.array(loop["measured"]["real"]) + 1j * np.array(loop["measured"]["imaginary"])
+    real = model.loop(ENC)(np.exp(1j * omega * T))
+    big = np.abs(real) > 0.1
+    assert np.abs(measured[big] / real[big] - 1.0).max() < 0.03
+    page = (out / "report.html").read_text()
+    for told in (
+        "Phase margin",
+        "Disk margin",
+        "Bode",
+        "Nyquist",
+        "Step response",
+        "at rest",
+    ):
+        assert told in page
+    assert numbers["operating_point"]["machine"]["values"]["motor_speed"] == 0.0
+    assert list(tmp_path.iterdir()) == [out]
+
+
+def test_an_unstable_loop_is_called_so(tmp_path: Path) -> None:
+    done = run(THEORY, "--set", "mcc.p_gain=60000", "--no-simulate", "--out", tmp_path / "out")
+    assert done.exit_code == 0 and "unstable" in done.output
+    assert "unstable as it is" in (tmp_path / "out" / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ([DEMO, "--axis", 9], "axis = 9"),
+        ([DEMO, "--at", "machine.motor_speed"], "COMP.VAR=VALUE wanted"),
+        ([DEMO, "--at", "machine.motor_speed=fast"], "a number wanted"),
+        ([DEMO, "--loop", "card.encphase"], "card.encphase is no input"),
+        ([DEMO, "--gain", "mcc.p_gain"], "say with --loop"),
+        ([DEMO, "--loop", ENC, "--gain", "mcc.gain"], "mcc.gain"),
+        ([DEMO, "--kick", "0"], "kick = 0.0"),
+        ([DEMO.parent / "fifo_one"], "no loop"),
+    ],
+)
+def test_a_wrong_command_is_named_and_writes_nothing(tmp_path, arguments, told) -> None:
+    done = run(*arguments, "--out", tmp_path / "out")
+    assert isinstance(done.exception, InputError)
+    assert told in str(done.exception)
+    assert not list(tmp_path.iterdir())
