@@ -61,7 +61,9 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     pc->home_seen = panel->go_home;
     pc->clear_due = pc->clear_due || (panel->clear_error && !pc->clear_seen);
     pc->clear_seen = panel->clear_error;
-    MCC_set_P_gain(&pc->mcc, panel->p_gain);
+    if (!pc->config.no_panel) {
+        MCC_set_P_gain(&pc->mcc, panel->p_gain);
+    }
     pc->mcc.signals = signals_turned(&panel->signals, m);
     manual_look(&pc->mcc, pc->config.bus);
     for (int i = 0; i < AXES; i++) {
@@ -150,13 +152,27 @@ static void panel_keys(struct pc *pc, const struct source *program)
     }
 }
 
+/* The levels of the panel are offered every time: what does not apply is refused. */
+static void offer_levels(struct mcc *m, const struct pc_panel *panel)
+{
+    if (panel->hold) {
+        MCC_motion_hold(m);
+    } else {
+        MCC_motion_conti(m);
+    }
+    MCC_set_over_spd(m, 100.0 * panel->override);
+    MCC_set_ptp_ospd(m, 100.0 * panel->override);
+}
+
 /* One cycle of the IPO task, with the panel as read last. */
 static void cycle(struct pc *pc, const struct pc_panel *panel, const struct source *program)
 {
     struct mcc *m = &pc->mcc;
 
     by_hand(pc, panel);
-    task_set_single_block(m, panel->single_block);
+    if (!pc->config.no_panel) {
+        task_set_single_block(m, panel->single_block);
+    }
     if (pc->program && !pc->started && may_start(pc)) {
         task_start(m);
         pc->started = true;
@@ -168,14 +184,9 @@ static void cycle(struct pc *pc, const struct pc_panel *panel, const struct sour
         MCC_motion_abort(m);
     }
     panel_keys(pc, program);
-    /* The level is offered every time: what does not apply is refused. */
-    if (panel->hold) {
-        MCC_motion_hold(m);
-    } else {
-        MCC_motion_conti(m);
+    if (!pc->config.no_panel) {
+        offer_levels(m, panel);
     }
-    MCC_set_over_spd(m, 100.0 * panel->override);
-    MCC_set_ptp_ospd(m, 100.0 * panel->override);
     task_run(m, program);
     pc->next_ipo += pc->config.ipo;
 }
