@@ -33,3 +33,9 @@ def test_every_example_is_in_the_readme() -> None:
     text = (ROOT / "examples/README.md").read_text()
     files = {f.name for f in (ROOT / "examples").iterdir()} - {"README.md", "__pycache__"}
     assert files == set(re.findall(r"\]\((.*?)\)", text))
+
+
+def test_the_readme_example_runs() -> None:
+    text = (ROOT / "README.md").read_text()
+    code = re.search(r"```python\n(from motionfmu\.mcc .*?)```", text, re.S)
+    assert code and output(sys.executable, "-c", code[1]).split()[:2] == ["[20000", "5000"]
