@@ -58,8 +58,7 @@ def test_codes_are_those_of_the_header() -> None:
 
 
 def test_every_call_of_the_library_is_a_method() -> None:
-    calls = set(re.findall(r"\bMCC_(\w+)\(struct|\bMCC_(\w+)\(const struct", HEADER))
-    names = {a or b for a, b in calls}
+    names = set(re.findall(r"^\w+ (?:MCC|mcc)_(\w+)\((?:const )?struct mcc \*", HEADER, re.M))
     assert len(names) > 50 and [n for n in names if not callable(getattr(Mcc, n, None))] == []
 
 
@@ -197,7 +196,9 @@ def test_ring_full_and_closed_library() -> None:
     with pytest.raises(MccError, match="let the task run"):
         for k in range(1000):
             library.line_x(k % 2)
-    assert k == 65  # the first is no way; the ring holds 64
+    assert k > 60
+    library.take(10**6)
+    assert library.line_x(5) == k + 1
     library.take(10**6)
     library.close_motion()
     with pytest.raises(MccError, match="init_motion"):

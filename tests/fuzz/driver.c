@@ -65,7 +65,7 @@ static size_t change(uint8_t *data, size_t size, uint64_t *state)
 
     if (what < 2) {
         if (at < size) {
-            data[at] = what ? (uint8_t)pick(state, 256) : data[at] ^ (uint8_t)(1u << pick(state, 8));
+            data[at] = (uint8_t)(what ? pick(state, 256) : data[at] ^ 1u << pick(state, 8));
         }
         return size;
     }

@@ -57,7 +57,7 @@ static int (*const none[])(struct mcc *) = {
 static int (*const one[])(struct mcc *, double) = {
     MCC_line_x, MCC_line_y, MCC_line_z, MCC_ptp_x, MCC_ptp_y, MCC_ptp_z, MCC_motion_delay,
     MCC_set_fspd, MCC_set_ptp_spd, MCC_set_acc_step, MCC_set_dec_step, MCC_set_dda,
-    MCC_set_over_spd, MCC_set_ptp_ospd
+    MCC_set_over_spd, MCC_set_ptp_ospd, mcc_set_tolerance
 };
 static int (*const all[])(struct mcc *, const double *) = { MCC_line, MCC_ptp };
 static int (*const pulses[])(struct mcc *, const int32_t *) = {

@@ -86,7 +86,7 @@ class VirtualCard:
         status = self._library.station_start(self._state.pointer, config.pointer)
         if status:
             raise InputError(_refused(settings))
-        inner = ctypes.c_void_p(self._library.mcc_of(self._state.pointer))
+        inner = ctypes.c_void_p(self._library.binding_mcc(self._state.pointer))
         self.mcc = Mcc._of_card(inner, self._state)
 
     @property
@@ -124,7 +124,7 @@ class VirtualCard:
         """
         text, length = self.mcc._program()
         until = ctypes.c_int64(clock)
-        status = self._library.mcc_run(self._state.pointer, until, text, length)
+        status = self._library.binding_run(self._state.pointer, until, text, length)
         if status:
             raise CardError(
                 "a motor is beyond what its encoder can follow"

@@ -51,7 +51,7 @@ class MccError(RuntimeError):
 
 
 class _Field(ctypes.Structure):
-    """One row of a table in src/python/mcc_python.c."""
+    """One row of a table in src/python/binding.c."""
 
     _fields_ = (
         ("name", ctypes.c_char * 24),
@@ -92,8 +92,8 @@ def library() -> ctypes.CDLL:
     ctypes.CDLL
     """
     c = ctypes.CDLL(str(library_path()))
-    c.mcc_fields.restype = ctypes.POINTER(_Field)
-    c.mcc_of.restype = c.mcc_machine_of.restype = ctypes.c_void_p
+    c.binding_fields.restype = ctypes.POINTER(_Field)
+    c.binding_mcc.restype = c.binding_machine.restype = ctypes.c_void_p
     c.fault_text.restype = ctypes.c_char_p
     for name in ("acc_step", "dec_step", "dda", "over_spd", "ptp_ospd"):
         getattr(c, f"MCC_get_{name}").restype = ctypes.c_double
@@ -106,7 +106,7 @@ def library() -> ctypes.CDLL:
 def _table(of: str) -> tuple[int, dict[str, _Field]]:
     """Size of a struct [byte] and its members."""
     count, size = ctypes.c_int32(), ctypes.c_int64()
-    rows = library().mcc_fields(of.encode(), ctypes.byref(count), ctypes.byref(size))
+    rows = library().binding_fields(of.encode(), ctypes.byref(count), ctypes.byref(size))
     return size.value, {rows[i].name.decode(): rows[i] for i in range(count.value)}
 
 
@@ -126,7 +126,7 @@ class Struct:
     Parameters
     ----------
     of : str
-        Its name in mcc_python.c: config, reading, station, report or mcc.
+        Its name in binding.c: config, reading, station, report or mcc.
     """
 
     def __init__(self, of: str) -> None:

@@ -246,6 +246,16 @@ class Settings(Calls):
         """
         return self._one("MCC_get_ptp_ospd")
 
+    def set_tolerance(self, mm: float) -> None:
+        """Look-ahead over lines, arcs and circles from here on.
+
+        Parameters
+        ----------
+        mm : float
+            Corners are rounded by no more than this [mm]; 0 switches it off.
+        """
+        self._do("mcc_set_tolerance", float(mm))
+
     def task_set_origin(self, system: int, origin: Numbers) -> None:
         """Origin a part program begins with.
 

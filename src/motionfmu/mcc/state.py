@@ -34,7 +34,7 @@ def configuration(settings: dict[str, Any]) -> Struct:
     """
     config = Struct("config")
     config_library = Calls(config.pointer, config)
-    config_library._library.mcc_defaults(config.pointer)
+    config_library._library.binding_defaults(config.pointer)
     for name, value in settings.items():
         config[name] = value
     return config
@@ -95,7 +95,7 @@ class Mcc(Moves, Settings):
             As in `defaults`.
         """
         config = configuration(settings)
-        machine = ctypes.c_void_p(self._library.mcc_machine_of(config.pointer))
+        machine = ctypes.c_void_p(self._library.binding_machine(config.pointer))
         self._do("MCC_init_motion", machine)
 
     def close_motion(self) -> None:
@@ -183,7 +183,7 @@ class Mcc(Moves, Settings):
         """
         text, report = program.encode(), Struct("report")
         size = ctypes.c_int64(len(text))
-        self._library.mcc_check(self._pointer, text, size, report.pointer)
+        self._library.binding_check(self._pointer, text, size, report.pointer)
         if report["fault"]:
             at = report["offset"] + report["at"]
             words = text[at : at + report["length"]].decode(errors="replace")
@@ -224,7 +224,7 @@ class Mcc(Moves, Settings):
         return self._do("task_status")
 
     def _program(self) -> tuple[bytes | None, ctypes.c_int64]:
-        """Text of the program that runs, for the calls of mcc_python.c."""
+        """Text of the program that runs, for the calls of binding.c."""
         return self._text, ctypes.c_int64(len(self._text or b""))
 
     def take(self, count: int) -> np.ndarray:
@@ -244,5 +244,7 @@ class Mcc(Moves, Settings):
         """
         frames = np.zeros((count, AXES), np.int32)
         where = frames.ctypes.data_as(ctypes.c_void_p)
-        n = self._library.mcc_take(self._pointer, *self._program(), where, ctypes.c_int32(count))
+        n = self._library.binding_take(
+            self._pointer, *self._program(), where, ctypes.c_int32(count)
+        )
         return frames[:n]

@@ -1,4 +1,4 @@
-/* mcc_python - where the members of the structs lie that Python fills and reads.
+/* binding - where the members of the structs lie that Python fills and reads.
  *
  * The shared library of motionfmu.mcc is the cores' own functions and these tables, so Python
  * repeats no layout: a member is found under the name, type and unit given here.
@@ -11,7 +11,7 @@
 struct field {
     char    name[24];
     char    unit[16];       /* empty: none */
-    int32_t kind;           /* of an element: i int32, l int64, u uint32, d double, ? bool, c char */
+    int32_t kind;           /* i int32, l int64, u uint32, d double, ? bool, c char */
     int32_t offset, count, stride;  /* [byte], elements, [byte] from one to the next */
 };
 
@@ -76,7 +76,7 @@ static const struct field report_fields[] = {
 _Static_assert(sizeof(enum fault) == sizeof(int32_t), "an enum is read as an int32");
 
 /* Table of a struct and its size in bytes; NULL for a name that is none. */
-const struct field *mcc_fields(const char *of, int32_t *count, int64_t *size)
+const struct field *binding_fields(const char *of, int32_t *count, int64_t *size)
 {
     const struct { const char *name; const struct field *field; size_t bytes, size; } all[] = {
         { "config", config_fields, sizeof config_fields, sizeof(struct station_config) },
@@ -96,39 +96,39 @@ const struct field *mcc_fields(const char *of, int32_t *count, int64_t *size)
     return NULL;
 }
 
-void mcc_defaults(struct station_config *config)
+void binding_defaults(struct station_config *config)
 {
     *config = station_defaults();
 }
 
 /* The library of a station, and the machine of a configuration. */
-struct mcc *mcc_of(struct station *s)
+struct mcc *binding_mcc(struct station *s)
 {
     return &s->pc.mcc;
 }
 
-const struct machine *mcc_machine_of(const struct station_config *config)
+const struct machine *binding_machine(const struct station_config *config)
 {
     return &config->machine;
 }
 
 /* With the text of a part program in memory, NULL for none: run a station, check the program, plan
  * as the task does and take points as a card would: their frames, at most `room`. [pulses] */
-int mcc_run(struct station *s, int64_t until, const char *text, int64_t length)
+int binding_run(struct station *s, int64_t until, const char *text, int64_t length)
 {
     struct source_text t = { text, length };
     const struct source source = source_of(&t);
     return station_run(s, until, text ? &source : NULL);
 }
 
-void mcc_check(const struct mcc *m, const char *text, int64_t length, struct fault_report *r)
+void binding_check(const struct mcc *m, const char *text, int64_t length, struct fault_report *r)
 {
     struct source_text t = { text, length };
     const struct source source = source_of(&t);
     task_check(m, &source, r);
 }
 
-int32_t mcc_take(struct mcc *m, const char *text, int64_t length, int32_t (*frame)[AXES],
+int32_t binding_take(struct mcc *m, const char *text, int64_t length, int32_t (*frame)[AXES],
                  int32_t room)
 {
     struct source_text t = { text, length };
