@@ -128,7 +128,7 @@ static void come_to_rest(void)
 {
     const double seconds = slowest * 4.0 + 1.0;
     const double dda = machine_dda_time(&m.machine);
-    int64_t n = 0;
+    int64_t n = 0, cycles = 0;
     if (!m.open || seconds / dda > REST_POINTS) {
         return;
     }
@@ -136,7 +136,7 @@ static void come_to_rest(void)
     do {
         task_run(&m, NULL);
         n += fuzz_take(&m, sum);
-        HOLDS((double)(n - 2) * dda <= seconds);
+        HOLDS((double)(n - 2) * dda <= seconds && cycles++ < REST_POINTS);
     } while (!MCC_check_stop(&m));
     HOLDS(m.ipo.count == 0 && m.ring.count == 0);
 }
