@@ -114,6 +114,10 @@ static void lag(void)
     CHECK(MCC_line_x(&s.pc.mcc, 20.0) > 0);
     CHECK_EQ(station_run(&s, 15 * (STATION_HZ / 10), NULL), STATION_OK);
     CHECK_NEAR(reading(&s).errors[0], 10000.0 / kv, 10000.0 * 3e-4);
+    int32_t told[AXES];     /* the library's: as of an instant, one bus period old */
+    CHECK_EQ(MCC_get_errcnt(&s.pc.mcc, told), MCC_NO_ERR);
+    CHECK_NEAR(told[0], reading(&s).errors[0], 2.0);
+    CHECK(told[0] > 600 && told[1] == 0);
     until_stop(&s, 5.0);
     CHECK_EQ(station_run(&s, s.clock + STATION_HZ, NULL), STATION_OK);
     CHECK_NEAR(reading(&s).table[0], 20.0, 0.002);
