@@ -24,7 +24,7 @@ def members(header: str, struct: str) -> set[str]:
     """Names of a struct's members, without those that are structs."""
     body = re.search(rf"struct {struct} \{{\n(.*?)\n\}};", header, re.S)
     assert body
-    text = re.sub(r"/\*.*?\*/", "", body[1], flags=re.S)
+    text = re.sub(r"/\*.*?\*/", "", body[1], flags=re.S).replace("enum ", "")
     found = set()
     for line in text.split(";"):
         if (words := line.split()) and words[0] != "struct":
@@ -39,6 +39,9 @@ def test_every_setting_of_library_and_pc_has_its_name() -> None:
     # A program of the FMU, its start and its panel have calls here.
     wanted = members(machine, "machine") | members(machine, "machine_axis")
     wanted |= members(pc, "pc_config") - {"start", "no_panel"}
+    wanted |= {f"asyn_{n}" for n in members(machine, "machine_asyn")}
+    homing = (ROOT / "src/mcc/home.h").read_text()
+    wanted |= {f"home_{n}" for n in members(homing, "home_config")}
     assert wanted <= have, wanted - have
 
 
@@ -297,7 +300,7 @@ def test_part_program_and_its_faults() -> None:
     assert card.mcc.task_status() == mcc.STOPPED
     card.mcc.task_set_origin(1, [1, 0, 0, 0, 0, 0])
     card.mcc.task_start(PART)
-    with pytest.raises(MccError, match="part program is running"):
+    with pytest.raises(MccError, match="part program runs"):
         card.mcc.line_x(1)
     end = card.run_until_stop()
     assert end.pulses[:3].tolist() == [6000, 0, 1000] and end.digital == 8
@@ -333,3 +336,55 @@ def test_binding_works_outside_the_source_tree(tmp_path: Path) -> None:
         [sys.executable, "-c", text], cwd=tmp_path, capture_output=True, text=True, check=True
     )
     assert "pulses=[1000" in run.stdout
+
+
+def test_axes_move_for_themselves() -> None:
+    card = VirtualCard(used=True)
+    card.mcc.set_ptp_asyn_acc_type("TTTSSS")
+    card.mcc.set_ptp_asyn_decc_type("STSTST")
+    card.mcc.set_ptp_asyn_acc_step([50] * 6)
+    card.mcc.set_ptp_asyn_dec_step([80] * 6)
+    assert card.mcc.get_ptp_asyn_acc_type() == "TTTSSS"
+    assert card.mcc.get_ptp_asyn_dec_type() == "STSTST"
+    assert card.mcc.get_ptp_asyn_acc_step() == [50.0] * 6
+    assert card.mcc.get_ptp_asyn_dec_step() == [80.0] * 6
+    card.mcc.ptp_asyn([6, 5, 4, 3, 2, 1])
+    assert card.run_until_stop().pulses.tolist() == [6000, 5000, 4000, 3000, 2000, 1000]
+    card.mcc.jog_i(0, -1.5, 20)
+    card.mcc.jog_s(1, 25)
+    card.mcc.jog_c(2, 1, 10)
+    with pytest.raises(MccError, match="NOTACCEPTED"):
+        card.mcc.line_x(1)
+    card.run(0.5)
+    card.mcc.jog_c(2, 0, 10)
+    end = card.run_until_stop()
+    assert end.pulses[:2].tolist() == [4500, 5025] and end.pulses[2] > 20_000
+
+
+def test_axis_follows_the_hand_wheel() -> None:
+    card = VirtualCard()
+    card.mcc.MPG_set(1, 7, 2.5)
+    for counts in (0, 40, 100, 300):
+        card.set_encoder(7, counts)
+        moved = card.run(0.2)
+    assert moved.pulses[1] == 750 and moved.status == mcc.WHEEL
+    card.mcc.MPG_disable()
+    assert card.run_until_stop().status == mcc.STOPPED
+    with pytest.raises(InputError, match=r"6 \.\. 8"):
+        card.set_encoder(0, 1)
+
+
+def test_homing_finds_switch_and_index() -> None:
+    card = VirtualCard(home_order=[1, 0, 0, 0, 0, 0], home_offset=2.0)
+    with pytest.raises(MccError, match="HOME_COMMAND_NOTCALLED"):
+        card.mcc.check_homef()
+    card.mcc.go_home([1, 0, 0, 0, 0, 0])
+    while not card.mcc.check_homef():
+        reading = card.run(0.001)
+        card.set_switches("home", *([0] if reading.table[0] < -25.0 else []))
+        assert reading.time < 20
+    # the first index beyond the switch at -25 mm is at -20 mm
+    assert card.read().table[0] == pytest.approx(-18.0, abs=1e-3)
+    assert card.mcc.get_cpos()[0] == 0.0
+    with pytest.raises(InputError, match="home_low_speed = 0, home_order = 1"):
+        VirtualCard(home_low_speed=0, home_order=1)

@@ -6,8 +6,10 @@
  *
  * Left out: MCC_InitSystem, whose cards, groups and encoders are other than struct machine
  * (MCC_init_motion); MCC_AbortMotionEx, which is given a deceleration time (MCC_motion_abort uses
- * that of the command); axis masks of MCC_Line and MCC_PtP (the one-axis calls); and what the
- * source document does not have, from helices over custom motion to encoders and I/O.
+ * that of the command); MCC_GoHome with its tolerance and escape time (MCC_Home); the hand wheel's
+ * calls for planes and several axes (MCC_MPG_set); axis masks of MCC_Line and MCC_PtP (the one-axis
+ * calls); and what the source document does not have, from helices over custom motion to encoders
+ * and I/O.
  */
 #ifndef MCCL_H
 #define MCCL_H
@@ -53,6 +55,9 @@
 #define MCC_GetAccTime       MCC_get_acc_step
 #define MCC_SetDecTime       MCC_set_dec_step
 #define MCC_GetDecTime       MCC_get_dec_step
+#define MCC_GetGoHomeStatus  MCC_check_homef
+#define MCC_AbortGoHome      MCC_motion_abort
+#define MCC_DisableMpg       MCC_MPG_disable
 
 /* Group status: 0 running, 1 stopped, 2 hold, 3 delay. MCC_check_stop tells 1 and 0. */
 #define MCC_GetMotionStatus  task_status
@@ -72,6 +77,13 @@ static inline void mccl_give_int(const int32_t from[AXES], int32_t *const to[AXE
     }
 }
 
+static inline void mccl_give_char(const char from[AXES], char *const to[AXES])
+{
+    for (int i = 0; i < AXES; i++) {
+        *to[i] = from[i];
+    }
+}
+
 static inline int MCC_Line(struct mcc *m, double x, double y, double z, double u, double v,
                            double w)
 {
@@ -83,6 +95,35 @@ static inline int MCC_SyncPtP(struct mcc *m, double x, double y, double z, doubl
                               double w)
 {
     return MCC_ptp(m, (const double[AXES]){ x, y, z, u, v, w });
+}
+
+/* Each axis for itself. */
+static inline int MCC_PtP(struct mcc *m, double x, double y, double z, double u, double v,
+                          double w)
+{
+    return MCC_ptp_asyn(m, (const double[AXES]){ x, y, z, u, v, w });
+}
+
+/* Direction -1, +1; 0 stops. */
+static inline int MCC_JogConti(struct mcc *m, int direction, double percent, int axis)
+{
+    return MCC_jog_c(m, axis, direction, percent);
+}
+
+static inline int MCC_JogSpace(struct mcc *m, double offset, double percent, int axis)
+{
+    return MCC_jog_i(m, axis, offset, percent);
+}
+
+static inline int MCC_JogPulse(struct mcc *m, int pulses, int axis)
+{
+    return MCC_jog_s(m, axis, pulses);
+}
+
+/* Axes with order 1 together, then those with 2, ...; 0: not. */
+static inline int MCC_Home(struct mcc *m, int x, int y, int z, int u, int v, int w)
+{
+    return MCC_go_home(m, (const int32_t[AXES]){ x, y, z, u, v, w });
 }
 
 /* An arc through (ra, rb) to (a, b), a circle about (ca, cb), with U V W. */
@@ -127,6 +168,16 @@ MCCL_TURNS(ZX, zx)
 MCCL_SIX(int32_t, mccl_give_int, MCC_SetMaxPulseSpeed, MCC_GetMaxPulseSpeed,
          MCC_set_max_dda_spd, MCC_get_max_dda_spd)
 MCCL_SIX(int32_t, mccl_give_int, MCC_SetPGain, MCC_GetPGain, MCC_set_P_gain, MCC_get_P_gain)
+
+/* Of the axes that move for themselves. */
+MCCL_SIX(char, mccl_give_char, MCC_SetPtPAccType, MCC_GetPtPAccType,
+         MCC_set_ptp_asyn_acc_type, MCC_get_ptp_asyn_acc_type)
+MCCL_SIX(char, mccl_give_char, MCC_SetPtPDecType, MCC_GetPtPDecType,
+         MCC_set_ptp_asyn_decc_type, MCC_get_ptp_asyn_dec_type)
+MCCL_SIX(double, mccl_give, MCC_SetPtPAccTime, MCC_GetPtPAccTime,
+         MCC_set_ptp_asyn_acc_step, MCC_get_ptp_asyn_acc_step)
+MCCL_SIX(double, mccl_give, MCC_SetPtPDecTime, MCC_GetPtPDecTime,
+         MCC_set_ptp_asyn_dec_step, MCC_get_ptp_asyn_dec_step)
 
 /* Of the points the card has taken. */
 MCCL_GET(double, mccl_give, MCC_GetCurPos, MCC_get_cpos)

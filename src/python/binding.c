@@ -30,6 +30,10 @@ struct field {
     { name, unit, KIND(((struct station_config *)0)->machine.axis[0].m), \
       OFFSET(station_config, machine.axis[0].m), AXES, sizeof(struct machine_axis) }
 
+#define HOME(m, unit) \
+    { "home_" #m, unit, KIND(((struct station_config *)0)->pc.home[0].m), \
+      OFFSET(station_config, pc.home[0].m), AXES, sizeof(struct home_config) }
+#define ASYN(m, unit) ROW(station_config, machine.asyn.m, "asyn_" #m, unit)
 #define MACHINE(m, unit) ONE(station_config, machine.m, #m, unit)
 #define PC(m, unit) ONE(station_config, pc.m, #m, unit)
 static const struct field config_fields[] = {
@@ -47,6 +51,14 @@ static const struct field config_fields[] = {
     ROW(station_config, pc.isr.priority, "irq_priority", ""),
     ONE(station_config, pc.isr.service, "service_time", "clocks"),
     ROW(station_config, software_gain, "software_gain", "V"),
+    ASYN(acc_type, ""), ASYN(dec_type, ""), ASYN(acc_time, "s"), ASYN(dec_time, "s"),
+    ROW(station_config, pc.home_order, "home_order", ""), PC(home_first, ""),
+    PC(home_settle, "s"),
+    ROW(station_config, pc.encoder_backward, "encoder_backward", ""),
+    { "home_mode", "", 'i', OFFSET(station_config, pc.home[0].mode), AXES,
+      sizeof(struct home_config) },
+    HOME(direction, "bits"), HOME(sensor_on, ""), HOME(high_speed, "mm/s"),
+    HOME(low_speed, "mm/s"), HOME(offset, "mm"), HOME(search, "mm"), HOME(index_way, "mm"),
 };
 
 #define READ(m, unit) ONE(station_reading, m, #m, unit)
@@ -64,6 +76,7 @@ static const struct field reading_fields[] = {
 
 #define PIN(m) ONE(station, lines.local.m, #m, "")
 static const struct field pin_fields[] = {
+    ROW(station, lines.phase, "phase", "periods"),
     PIN(home), PIN(up), PIN(down), PIN(stop), PIN(ldi), PIN(dfi), PIN(power),
 };
 
@@ -73,7 +86,8 @@ static const struct field report_fields[] = {
     REPORT(line), REPORT(offset), REPORT(at), REPORT(length), REPORT(other_at),
     REPORT(other_length), REPORT(value), REPORT(limit),
 };
-_Static_assert(sizeof(enum fault) == sizeof(int32_t), "an enum is read as an int32");
+_Static_assert(sizeof(enum fault) == sizeof(int32_t) &&
+               sizeof(enum home_mode) == sizeof(int32_t), "an enum is read as an int32");
 
 /* Table of a struct and its size in bytes; NULL for a name that is none. */
 const struct field *binding_fields(const char *of, int32_t *count, int64_t *size)

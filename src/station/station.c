@@ -20,16 +20,27 @@ struct station_config station_defaults(void)
             .dec_type = 'T', .jerk_share = 0.5, .ptp_ratio = 1.0
         },
         .pc = { .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1, .min_stock = 3,
-                .batch = 4, .isr = { .priority = { 3, 4, 4, 4, 6, 6, 5, 2, 1 } } }
+                .batch = 4, .isr = { .priority = { 3, 4, 4, 4, 6, 6, 5, 2, 1 } },
+                .home_settle = 0.05 }
     };
     for (int i = 0; i < AXES; i++) {
         c.machine.axis[i] = (struct machine_axis){
             .used = i < 3, .pitch = 10.0, .gear_ratio = 1.0, .ppr = 10000, .rpm = 3000.0,
             .p_gain = 60
         };
+        c.pc.home[i] = (struct home_config){
+            .mode = HOME_SENSOR_INDEX, .direction = 1, .sensor_on = true, .high_speed = 20.0,
+            .low_speed = 2.0, .search = 1000.0, .index_way = 15.0
+        };
         c.software_gain[i] = 0.01;
     }
     return c;
+}
+
+/* As pc_start will find. */
+static bool can_home(const struct machine_axis *a, const struct home_config *h)
+{
+    return home_valid(h) && fmax(h->high_speed, h->low_speed) <= machine_axis_speed(a);
 }
 
 static enum station_status check(const struct station_config *c)
@@ -41,10 +52,14 @@ static enum station_status check(const struct station_config *c)
     }
     if (p->bus < 1 || p->ipo < 1 || p->min_stock < 0 || p->batch < 1 || p->batch > PCL_FRAMES ||
         p->min_stock + p->batch > PCL_FIFO || !(p->latency >= 0.0 && p->latency < 1e15) ||
-        !(p->jitter >= 0.0 && p->jitter < 1e15)) {
+        !(p->jitter >= 0.0 && p->jitter < 1e15) ||
+        !(p->home_settle >= 0.0 && p->home_settle < 1e6)) {
         return STATION_BAD_PC;
     }
     for (int i = 0; i < AXES; i++) {
+        if (p->home_order[i] > 0 && !can_home(&c->machine.axis[i], &p->home[i])) {
+            return STATION_BAD_HOME;
+        }
         if (p->output_mode[i] < STATION_PULSES || p->output_mode[i] > STATION_SOFTWARE ||
             !isfinite(c->software_gain[i])) {
             return STATION_BAD_MODE;
@@ -106,6 +121,9 @@ static void look(const struct station *s, struct pcl_card *seen, struct pc_panel
         panel->signals.err[i] = card->loop[i].error;
         panel->signals.latch[i] = wrap(card->latch[i].value);
         panel->signals.latched[i] = card->latch[i].seen;
+    }
+    for (int i = 0; i < EPCIO_ENCODERS - AXES; i++) {
+        panel->signals.enc_aux[i] = wrap(card->encoder[AXES + i].count);
     }
 }
 

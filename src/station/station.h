@@ -38,6 +38,7 @@ enum station_status {
     STATION_BAD_MACHINE,            /* the library refuses a value of machine */
     STATION_BAD_PC,                 /* bus or task period below a clock, or n + N > the FIFO */
     STATION_BAD_MODE,               /* no station_mode */
+    STATION_BAD_HOME,               /* an axis with a home_order cannot be homed so */
     STATION_FRAMES_REFUSED,         /* the card takes no frame any more */
     STATION_MOTOR_LOST              /* a motor is beyond what the encoder input can follow */
 };
@@ -45,7 +46,8 @@ enum station_status {
 struct station {
     struct pc pc;                   /* pc.mcc is the library */
     struct epcio card;
-    struct epcio_lines lines;       /* pins: set home, up, down, stop in lines.local as you like */
+    struct epcio_lines lines;       /* pins: set lines.local (home, up, down, stop) and the phase
+                                     * of the spare encoders 6 .. 8 as you like */
     double  software_gain[AXES];
     double  motor[AXES];            /* [counts] at the latest instant */
     double  volts[AXES];            /* [V] since then */
@@ -84,7 +86,8 @@ struct station_reading {
 };
 
 /* Three axes X Y Z of 10 mm and 10,000 pulses a turn, 3000 rpm, that follow their pulses; DDA time
- * 1.024 ms, n = 3 and N = 4, IPO cycle 1 ms, bus 100 us, interrupt latency 200 us. */
+ * 1.024 ms, n = 3 and N = 4, IPO cycle 1 ms, bus 100 us, interrupt latency 200 us. Homing (of axes
+ * whose pc.home_order is not 0): switch at the negative end, left forward, index forward. */
 struct station_config station_defaults(void);
 
 /* Power on at clock 0, everything at rest at the origin. A refused start changes nothing. */

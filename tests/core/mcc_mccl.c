@@ -112,6 +112,41 @@ static void control(void)
     SAME(MCC_close_motion(&a), MCC_CloseSystem(&b));
 }
 
+static void by_hand(void)
+{
+    char k[AXES];
+    double x[AXES];
+    same_start();
+    SAME(MCC_set_ptp_asyn_acc_type(&a, "TSTSTS"),
+         MCC_SetPtPAccType(&b, 'T', 'S', 'T', 'S', 'T', 'S'));
+    SAME(MCC_set_ptp_asyn_decc_type(&a, "SSTTSS"),
+         MCC_SetPtPDecType(&b, 'S', 'S', 'T', 'T', 'S', 'S'));
+    SAME(MCC_set_ptp_asyn_acc_step(&a, (double[AXES]){ 10, 20, 30, 40, 50, 60 }),
+         MCC_SetPtPAccTime(&b, 10, 20, 30, 40, 50, 60));
+    SAME(MCC_set_ptp_asyn_dec_step(&a, (double[AXES]){ 60, 50, 40, 30, 20, 10 }),
+         MCC_SetPtPDecTime(&b, 60, 50, 40, 30, 20, 10));
+    CHECK_EQ(MCC_GetPtPAccType(&b, k, k + 1, k + 2, k + 3, k + 4, k + 5), MCC_NO_ERR);
+    CHECK(memcmp(k, "TSTSTS", AXES) == 0);
+    CHECK_EQ(MCC_GetPtPDecType(&b, k, k + 1, k + 2, k + 3, k + 4, k + 5), MCC_NO_ERR);
+    CHECK(memcmp(k, "SSTTSS", AXES) == 0);
+    CHECK_EQ(MCC_GetPtPAccTime(&b, x, x + 1, x + 2, x + 3, x + 4, x + 5), MCC_NO_ERR);
+    CHECK_NEAR(x[1], 20.0, 1e-9);
+    CHECK_EQ(MCC_GetPtPDecTime(&b, x, x + 1, x + 2, x + 3, x + 4, x + 5), MCC_NO_ERR);
+    CHECK_NEAR(x[1], 50.0, 1e-9);
+    SAME(MCC_jog_s(&a, 2, -30), MCC_JogPulse(&b, -30, 2));
+    SAME(MCC_jog_i(&a, 1, 0.5, 40), MCC_JogSpace(&b, 0.5, 40, 1));
+    SAME(MCC_jog_c(&a, 0, -1, 20), MCC_JogConti(&b, -1, 20, 0));
+    SAME(MCC_MPG_disable(&a), MCC_DisableMpg(&b));
+    SAME(MCC_motion_abort(&a), MCC_AbortGoHome(&b));
+    for (int i = 0; i < 100; i++) {
+        plan();
+    }
+    SAME(MCC_check_homef(&a), MCC_GetGoHomeStatus(&b));
+    SAME(MCC_ptp_asyn(&a, (double[AXES]){ 1, 2, 3, 0, 0, 4 }), MCC_PtP(&b, 1, 2, 3, 0, 0, 4));
+    const int32_t order[AXES] = { 0, 2, 1, 0, 0, 0 };
+    SAME(MCC_go_home(&a, order), MCC_Home(&b, 0, 2, 1, 0, 0, 0));
+}
+
 /* Six values come out in the order of the axes. */
 static void six_values(void)
 {
@@ -144,6 +179,7 @@ int main(void)
     moves_with_uvw();
     settings();
     control();
+    by_hand();
     six_values();
     return check_result();
 }

@@ -155,7 +155,7 @@ static void program(void)
 
 static void refusals(void)
 {
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < 11; i++) {
         struct station_config c = station_defaults();
         enum station_status want = STATION_BAD_PC;
         switch (i) {
@@ -167,6 +167,9 @@ static void refusals(void)
         case 5: c.pc.latency = NAN; break;
         case 6: c.pc.batch = 17; break;
         case 7: c.pc.output_mode[5] = 3; want = STATION_BAD_MODE; break;
+        case 8: c.pc.home_settle = -1.0; break;
+        case 9: c.pc.home_order[0] = 1; c.pc.home[0].low_speed = 501.0; want = STATION_BAD_HOME;
+            break;
         default: c.software_gain[2] = INFINITY; want = STATION_BAD_MODE; break;
         }
         memcpy(&before, &s, sizeof s);

@@ -52,16 +52,22 @@ static struct six six(struct bytes *b)
 /* Calls by the kind of their arguments. */
 static int (*const none[])(struct mcc *) = {
     MCC_set_abs, MCC_set_inc, MCC_enable_quit, MCC_disable_quit, MCC_motion_hold,
-    MCC_motion_conti, MCC_motion_abort, MCC_clear_error, MCC_close_motion, task_continue
+    MCC_motion_conti, MCC_motion_abort, MCC_clear_error, MCC_close_motion, task_continue,
+    MCC_MPG_disable
 };
 static int (*const one[])(struct mcc *, double) = {
     MCC_line_x, MCC_line_y, MCC_line_z, MCC_ptp_x, MCC_ptp_y, MCC_ptp_z, MCC_motion_delay,
     MCC_set_fspd, MCC_set_ptp_spd, MCC_set_acc_step, MCC_set_dec_step, MCC_set_dda,
     MCC_set_over_spd, MCC_set_ptp_ospd, mcc_set_tolerance
 };
-static int (*const all[])(struct mcc *, const double *) = { MCC_line, MCC_ptp };
+static int (*const all[])(struct mcc *, const double *) = {
+    MCC_line, MCC_ptp, MCC_ptp_asyn, MCC_set_ptp_asyn_acc_step, MCC_set_ptp_asyn_dec_step
+};
 static int (*const pulses[])(struct mcc *, const int32_t *) = {
     MCC_set_max_dda_spd, MCC_set_P_gain
+};
+static int (*const letters[])(struct mcc *, const char *) = {
+    MCC_set_ptp_asyn_acc_type, MCC_set_ptp_asyn_decc_type
 };
 static int (*const arc[])(struct mcc *, double, double, double, double) = {
     MCC_arc_xy, MCC_arc_yz, MCC_arc_zx
@@ -77,13 +83,65 @@ static int (*const circle_uvw[])(struct mcc *, const double *, int, const double
 };
 #define PICK(from, i) (from)[(i) % (sizeof (from) / sizeof *(from))]
 
+/* Axes moved by hand, also such as there are not. */
+static int jog(struct bytes *b, uint8_t which)
+{
+    const int axis = (which >> 2) % 8 - 1;
+    switch (which & 3) {
+    case 0: return MCC_jog_c(&m, axis, (byte(b) & 3) - 1, number(b));
+    case 1: { const double way = number(b); return MCC_jog_i(&m, axis, way, number(b)); }
+    case 2: return MCC_jog_s(&m, axis, integer(b));
+    default: return MCC_MPG_set(&m, axis, byte(b) % 11 - 1, number(b));
+    }
+}
+
+static int home(struct bytes *b, uint8_t which)
+{
+    int32_t order[AXES];
+    if (which & 1) {
+        const struct home_config config = {
+            .mode = (enum home_mode)(which >> 1 & 7), .direction = byte(b), .sensor_on = which & 16,
+            .high_speed = number(b), .low_speed = 1.0, .offset = number(b), .search = 20.0,
+            .index_way = 3.0
+        };
+        return homing_set(&m, (which >> 5) - 1, &config, which & 16);
+    }
+    for (int i = 0; i < AXES; i++) {
+        order[i] = (int)(byte(b) & 7) - 1;      /* -1 is no order */
+    }
+    return MCC_go_home(&m, order);
+}
+
+/* The card reports something else: an index has been latched, a switch closes, a wheel turns. */
+static void signals(struct bytes *b)
+{
+    const uint8_t what = byte(b);
+    m.signals.home = byte(b);
+    m.signals.upper = what & 1 ? byte(b) : 0;
+    m.signals.lower = what & 2 ? byte(b) : 0;
+    for (int i = 0; i < AXES; i++) {
+        m.signals.enc[i] = what & 4 ? m.written.pulses[i] : integer(b);
+        m.signals.latch[i] = (int32_t)((uint32_t)m.signals.enc[i] - (what >> 5));
+        m.signals.latched[i] += what >> 4 & 1;
+    }
+    for (int i = 0; i < 3; i++) {
+        m.signals.enc_aux[i] += what & 8 ? (int8_t)byte(b) : 0;
+    }
+    if (m.open) {
+        manual_look(&m, 4000);
+        for (int i = 0; i < AXES && m.homing.state == HOMING_DONE; i++) {
+            sum[i] = m.ipo.pulses[i];       /* the origin may have been set */
+        }
+    }
+}
+
 static int call(struct bytes *b)
 {
     const uint8_t kind = byte(b), which = byte(b);
     const struct machine machine = fuzz_machine();
     struct six s;
 
-    switch (kind % 12) {
+    switch (kind % 16) {
     case 0: return PICK(none, which)(&m);
     case 1: case 2: case 3: return PICK(one, which)(&m, number(b));
     case 4: s = six(b); return PICK(all, which)(&m, s.x);
@@ -94,6 +152,10 @@ static int call(struct bytes *b)
     case 9: s = six(b); return PICK(circle_uvw, which)(&m, s.x, which & 1, s.x + 2);
     case 10: return which & 1 ? MCC_set_acc_type(&m, "TSX"[which % 3])
                               : MCC_set_dec_type(&m, "STX"[which % 3]);
+    case 11: return PICK(letters, which)(&m, which & 16 ? "TSTSTS" : "TTSSXS");
+    case 12: return jog(b, which);
+    case 13: return home(b, which);
+    case 14: signals(b); return 0;
     default:
         if (m.open) {
             s = six(b);
@@ -119,15 +181,18 @@ static void ask(void)
     HOLDS(isfinite(MCC_get_acc_step(&m)) && isfinite(MCC_get_dec_step(&m)));
     HOLDS(isfinite(MCC_get_dda(&m)) && isfinite(MCC_get_over_spd(&m)) &&
           isfinite(MCC_get_ptp_ospd(&m)));
-    HOLDS(task_status(&m) >= TASK_RUNNING && task_status(&m) <= TASK_DELAY);
+    HOLDS(task_status(&m) >= TASK_RUNNING && task_status(&m) <= TASK_WHEEL);
+    HOLDS(MCC_check_homef(&m) <= 1);
     HOLDS(memcmp(&before, &m, sizeof m) == 0);
 }
 
-/* After an abort the axes rest: a ramp takes dec_time at the commanded feed, more above it. */
+/* After an abort the axes rest: a ramp takes dec_time at the commanded feed, more above it; axes
+ * moved by hand have ramps of their own. */
 static void come_to_rest(void)
 {
     const double seconds = slowest * 4.0 + 1.0;
     const double dda = machine_dda_time(&m.machine);
+    const bool by_hand = m.ipo.free;
     int64_t n = 0, cycles = 0;
     if (!m.open || seconds / dda > REST_POINTS) {
         return;
@@ -136,7 +201,7 @@ static void come_to_rest(void)
     do {
         task_run(&m, NULL);
         n += fuzz_take(&m, sum);
-        HOLDS((double)(n - 2) * dda <= seconds && cycles++ < REST_POINTS);
+        HOLDS(cycles++ < REST_POINTS && (by_hand || (double)(n - 2) * dda <= seconds));
     } while (!MCC_check_stop(&m));
     HOLDS(m.ipo.count == 0 && m.ring.count == 0);
 }

@@ -6,7 +6,7 @@ The same C code as in the FMUs; see src/mcc/README.md and src/station/station.h.
 from motionfmu.mcc.card import LOOP, PULSES, SOFTWARE, CardError, Reading, VirtualCard
 from motionfmu.mcc.library import CLOCK_HZ, CODES, MccError
 from motionfmu.mcc.moves import CCW, CW
-from motionfmu.mcc.state import DELAY, HOLD, RUNNING, STOPPED, Mcc, defaults
+from motionfmu.mcc.state import DELAY, HOLD, RUNNING, STOPPED, WHEEL, Mcc, defaults
 
 __all__ = [
     "CCW",
@@ -20,6 +20,7 @@ __all__ = [
     "RUNNING",
     "SOFTWARE",
     "STOPPED",
+    "WHEEL",
     "CardError",
     "Mcc",
     "MccError",

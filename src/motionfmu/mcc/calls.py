@@ -76,6 +76,27 @@ def integers(values: Sequence[int], count: int = AXES) -> Any:
     return _array(ctypes.c_int32, [whole(v) for v in values], count)
 
 
+def letters(values: str, count: int = AXES) -> Any:
+    """Make a C array of characters.
+
+    Parameters
+    ----------
+    values : str
+        As many letters as `count`.
+    count : int
+
+    Returns
+    -------
+    ctypes array of char
+
+    Raises
+    ------
+    InputError
+        There are more or fewer.
+    """
+    return _array(ctypes.c_char, [v.encode() for v in values], count)
+
+
 def _array(kind: Any, values: list[Any], count: int) -> Any:
     if len(values) != count:
         raise InputError(f"{values!r}: {count} values wanted")

@@ -14,7 +14,7 @@ PULSES, LOOP, SOFTWARE = 0, 1, 2
 _SECOND_MAX = 2**62 // CLOCK_HZ
 _MILLISECOND = CLOCK_HZ // 1000
 # Of enum station_status.
-_MOTOR_LOST = 5
+_MOTOR_LOST = 6
 
 
 class CardError(RuntimeError):
@@ -234,6 +234,27 @@ class VirtualCard:
         if name not in ("home", "up", "down") or not set(axes) <= set(range(6)):
             raise InputError(f"switch {name!r} of axes {axes}: home, up or down of 0 .. 5 wanted")
         self._state[name] = sum(1 << a for a in set(axes))
+
+    def set_encoder(self, encoder: int, counts: float) -> None:
+        """Turn a spare encoder, a hand wheel for one.
+
+        Parameters
+        ----------
+        encoder : int
+            6 .. 8.
+        counts : float
+            Where it stands at the next instant [counts], four a line period.
+
+        Raises
+        ------
+        InputError
+            There is no such encoder.
+        """
+        if encoder not in (6, 7, 8):
+            raise InputError(f"encoder {encoder}: 6 .. 8 wanted; 0 .. 5 are the motors'")
+        phase = self._state["phase"]
+        phase[encoder] = counts / 4.0
+        self._state["phase"] = phase
 
     def set_stop(self, pressed: bool) -> None:
         """Emergency stop at the card's terminal.

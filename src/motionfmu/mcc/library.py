@@ -19,7 +19,7 @@ CLOCK_HZ = 40_000_000
 CODES = {
     -1: ("INITIAL_MOTION", "init_motion has not been called"),
     -2: ("COMMAND_BUFFER_FULL", "the command ring is full: let the task run"),
-    -3: ("COMMAND_NOTACCEPTED", "not accepted now, a part program is running"),
+    -3: ("COMMAND_NOTACCEPTED", "not accepted now: a part program runs, or axes are moved by hand"),
     -4: ("COMMAND_NOTFINISHED", "allowed at standstill only"),
     -5: ("PARAMETER", "a value is out of range, or the axis is not used"),
     -6: ("GROUP_PARAMETER", "no such group"),

@@ -8,11 +8,12 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.mcc.calls import Calls
 from motionfmu.mcc.library import AXES, Struct
+from motionfmu.mcc.manual import Manual
 from motionfmu.mcc.moves import Moves
 from motionfmu.mcc.settings import Settings
 
 # Answers of task_status.
-RUNNING, STOPPED, HOLD, DELAY = 0, 1, 2, 3
+RUNNING, STOPPED, HOLD, DELAY, WHEEL = 0, 1, 2, 3, 5
 
 
 def configuration(settings: dict[str, Any]) -> Struct:
@@ -53,7 +54,7 @@ def defaults() -> dict[str, tuple[Any, str]]:
     return {name: (config[name], unit) for name, unit in config.units.items()}
 
 
-class Mcc(Moves, Settings):
+class Mcc(Moves, Manual, Settings):
     """A motion library by itself, without a card.
 
     The functions are those of the source document, without ``MCC_``. A refused call changes
@@ -219,7 +220,7 @@ class Mcc(Moves, Settings):
         Returns
         -------
         int
-            RUNNING, STOPPED, HOLD or DELAY.
+            RUNNING, STOPPED, HOLD, DELAY or WHEEL.
         """
         return self._do("task_status")
 
