@@ -28,7 +28,10 @@ static inline struct machine fuzz_machine(void)
         .acc_time = 0.01, .dec_time = 0.02
     };
     for (int i = 0; i < AXES; i++) {
-        m.axis[i] = (struct machine_axis){ i < 5, 10.0, 1.0, 10000, 3000.0, 60, 0 };
+        m.axis[i] = (struct machine_axis){
+            .used = i < 5, .pitch = 10.0, .gear_ratio = 1.0, .ppr = 10000, .rpm = 3000.0,
+            .p_gain = 60
+        };
     }
     return m;
 }
