@@ -61,7 +61,7 @@ def test_codes_are_those_of_the_header() -> None:
 
 
 def test_every_call_of_the_library_is_a_method() -> None:
-    names = set(re.findall(r"^\w+ (?:MCC|mcc)_(\w+)\((?:const )?struct mcc \*", HEADER, re.M))
+    names = set(re.findall(r"^\w+ (?:MCC|mcc(?=_set))_(\w+)\((?:const )?struct mcc \*", HEADER, re.M))
     assert len(names) > 50 and [n for n in names if not callable(getattr(Mcc, n, None))] == []
 
 
@@ -388,3 +388,58 @@ def test_homing_finds_switch_and_index() -> None:
     assert card.mcc.get_cpos()[0] == 0.0
     with pytest.raises(InputError, match="home_low_speed = 0, home_order = 1"):
         VirtualCard(home_low_speed=0, home_order=1)
+
+
+def test_compensation_is_in_the_pulses_only() -> None:
+    card = VirtualCard()
+    card.mcc.set_comp(0, 1000, 0, [0, 3, 7], [0, 5, 9])
+    card.mcc.line_x(2)
+    end = card.run_until_stop()
+    assert end.pulses[0] == 2007 and end.position[0] == 2.0
+    card.mcc.line_x(1)
+    assert card.run_until_stop().pulses[0] == 1005
+    card.mcc.set_comp(0, 0, 0, [0])
+    assert card.run_until_stop().pulses[0] == 1000
+    with pytest.raises(MccError, match="PARAMETER"):
+        card.mcc.set_comp(0, 1000, 300, [0])
+    with pytest.raises(InputError, match="forward"):
+        card.mcc.set_comp(0, 1000, 0, [0] * 257)
+
+
+def test_dry_run_puts_out_no_pulse() -> None:
+    card = VirtualCard()
+    assert card.mcc.check_dry_run() == 1
+    card.mcc.enable_dry_run()
+    assert card.mcc.check_dry_run() == 0
+    card.mcc.line_x(3)
+    end = card.run_until_stop()
+    assert end.position[0] == 3.0 and end.pulses[0] == 0
+    card.mcc.disable_dry_run()
+    assert card.read().position[0] == 0.0
+
+
+def test_axis_parameters_become_effective_or_none_does() -> None:
+    card = VirtualCard()
+    card.mcc.update_param(pitch=[5, 10, 10, 10, 10, 10], cart_max_speed=50.0)
+    card.mcc.line_x(1)
+    assert card.run_until_stop().pulses[0] == 2000
+    for values in ({"pitch": 4, "PPR": 0}, {"cart_max_speed": 1.0}):
+        with pytest.raises(MccError):
+            card.mcc.update_param(**values)
+    with pytest.raises(InputError, match="did you mean 'pitch'"):
+        card.mcc.update_param(pitsch=4)
+    card.mcc.update_param()
+    card.mcc.line_x(2)
+    assert card.run_until_stop().pulses[0] == 4000
+
+
+def test_single_block_waits_for_leave() -> None:
+    card = VirtualCard()
+    card.mcc.task_set_single_block(True)
+    card.mcc.line_x(1)
+    card.mcc.line_x(2)
+    reading = card.run(1.0)
+    while reading.status == mcc.BLOCK:
+        card.mcc.task_continue()
+        reading = card.run(1.0)
+    assert reading.stopped and reading.pulses[0] == 2000

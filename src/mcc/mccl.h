@@ -55,11 +55,17 @@
 #define MCC_GetAccTime       MCC_get_acc_step
 #define MCC_SetDecTime       MCC_set_dec_step
 #define MCC_GetDecTime       MCC_get_dec_step
+#define MCC_UpdateParam      MCC_update_param
+#define MCC_EnableDryRun     MCC_enable_dry_run
+#define MCC_DisableDryRun    MCC_disable_dry_run
+#define MCC_CheckDryRun      MCC_check_dry_run
+#define MCC_RunSingleBlock   task_continue
 #define MCC_GetGoHomeStatus  MCC_check_homef
 #define MCC_AbortGoHome      MCC_motion_abort
 #define MCC_DisableMpg       MCC_MPG_disable
 
-/* Group status: 0 running, 1 stopped, 2 hold, 3 delay. MCC_check_stop tells 1 and 0. */
+/* Group status: 0 running, 1 stopped, 2 hold, 3 delay, 4 single block, 5 hand wheel;
+ * MCC_check_stop tells 1 and 0. */
 #define MCC_GetMotionStatus  task_status
 
 /* Six values to where the caller wants them. */
@@ -124,6 +130,22 @@ static inline int MCC_JogPulse(struct mcc *m, int pulses, int axis)
 static inline int MCC_Home(struct mcc *m, int x, int y, int z, int u, int v, int w)
 {
     return MCC_go_home(m, (const int32_t[AXES]){ x, y, z, u, v, w });
+}
+
+/* The table counts at once; there, from MCC_UpdateCompParam on. */
+static inline int MCC_SetCompParam(struct mcc *m, const struct comp_table *table, int axis)
+{
+    return MCC_set_comp(m, axis, table);
+}
+
+static inline int MCC_EnableSingleBlock(struct mcc *m)
+{
+    return task_set_single_block(m, true);
+}
+
+static inline int MCC_DisableSingleBlock(struct mcc *m)
+{
+    return task_set_single_block(m, false);
 }
 
 /* An arc through (ra, rb) to (a, b), a circle about (ca, cb), with U V W. */

@@ -39,13 +39,14 @@ struct field {
 static const struct field config_fields[] = {
     AXIS(used, "used", ""), AXIS(pitch, "pitch", "mm"), AXIS(gear_ratio, "gear_ratio", ""),
     AXIS(ppr, "ppr", ""), AXIS(rpm, "rpm", "rpm"), AXIS(p_gain, "p_gain", ""),
-    AXIS(max_dda, "max_dda", "pulses"),
+    AXIS(max_dda, "max_dda", "pulses"), AXIS(inverted, "inverted", ""),
     MACHINE(dda_time, "s"), MACHINE(dda_length, "bit"), MACHINE(queue_depth, ""),
     MACHINE(feed, "mm/s"), MACHINE(max_feed, "mm/s"), MACHINE(acc_time, "s"),
     MACHINE(dec_time, "s"), MACHINE(acc_type, ""), MACHINE(dec_type, ""),
     MACHINE(jerk_share, ""), MACHINE(ptp_ratio, ""),
     PC(bus, "clocks"), PC(ipo, "clocks"), PC(latency, "clocks"), PC(jitter, "clocks"),
     PC(seed, ""), PC(min_stock, ""), PC(batch, ""), PC(block_delete, ""), PC(optional_stop, ""),
+    PC(dry_run, ""),
     ROW(station_config, pc.output_mode, "output_mode", ""),
     ROW(station_config, pc.isr.mask, "irq_sources", ""),
     ROW(station_config, pc.isr.priority, "irq_priority", ""),
@@ -80,6 +81,22 @@ static const struct field pin_fields[] = {
     PIN(home), PIN(up), PIN(down), PIN(stop), PIN(ldi), PIN(dfi), PIN(power),
 };
 
+/* The document's parameters, where they are in struct mcc. */
+#define PARAM(m, unit) \
+    { #m, unit, KIND(((struct mcc *)0)->epcio_axis_param[0].m), \
+      OFFSET(mcc, epcio_axis_param[0].m), AXES, sizeof(MCC_MACH_PARAM) }
+static const struct field param_fields[] = {
+    PARAM(type, ""), PARAM(pos2encoder_dir, ""), PARAM(PPR, ""), PARAM(RPM, "rpm"),
+    PARAM(pitch, "mm"), PARAM(gear_ratio, ""), PARAM(high_limit, "mm"), PARAM(low_limit, "mm"),
+    PARAM(HOT_offset, "mm"), PARAM(LOT_offset, "mm"), PARAM(sensor_on, ""), PARAM(index_on, ""),
+    PARAM(home_dir, "bits"), ONE(mcc, cart_max_speed, "cart_max_speed", "mm/s"),
+};
+
+static const struct field comp_fields[] = {
+    ONE(comp_table, interval, "interval", "pulses"), ONE(comp_table, home, "home", ""),
+    ROW(comp_table, forward, "forward", "pulses"), ROW(comp_table, backward, "backward", "pulses"),
+};
+
 #define REPORT(m) ONE(fault_report, m, #m, "")
 static const struct field report_fields[] = {
     { "fault", "", 'i', OFFSET(fault_report, fault), 1, sizeof(enum fault) },
@@ -98,6 +115,8 @@ const struct field *binding_fields(const char *of, int32_t *count, int64_t *size
         { "station", pin_fields, sizeof pin_fields, sizeof(struct station) },
         { "report", report_fields, sizeof report_fields, sizeof(struct fault_report) },
         { "mcc", NULL, 0, sizeof(struct mcc) },
+        { "param", param_fields, sizeof param_fields, sizeof(struct mcc) },
+        { "comp", comp_fields, sizeof comp_fields, sizeof(struct comp_table) },
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         if (strcmp(of, all[i].name) == 0) {

@@ -272,7 +272,7 @@ static void read_axes(const struct station *s, struct station_reading *r)
         r->motor[i] = s->pc.config.output_mode[i] == STATION_PULSES
                     ? (double)r->pulses[i]
                     : s->motor[i] + speed(a, s->volts[i]) * (double)since / CLOCK_HZ;
-        r->table[i] = r->motor[i] / machine_pulses_per_mm(a);
+        r->table[i] = (a->inverted ? -1.0 : 1.0) * r->motor[i] / machine_pulses_per_mm(a);
         r->stock[i] = card->fifo[i].stock;
         r->underflows[i] = card->underflows[i];
     }

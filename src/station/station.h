@@ -64,7 +64,7 @@ struct station_reading {
     int32_t errors[AXES];           /* [counts] error counters, likewise */
     double  volts[AXES];            /* [V] of the DAC */
     double  motor[AXES];            /* [counts] where the motors are */
-    double  table[AXES];            /* [mm] the same behind gear and screw */
+    double  table[AXES];            /* [mm] the same behind gear and screw, as the axis goes */
     double  position[AXES];         /* [mm] the library's, of the points in the card */
     double  path_feed;              /* [mm/s] */
     int32_t stock[AXES];            /* [commands] in the FIFOs */

@@ -147,6 +147,23 @@ static void by_hand(void)
     SAME(MCC_go_home(&a, order), MCC_Home(&b, 0, 2, 1, 0, 0, 0));
 }
 
+static void axes(void)
+{
+    const struct comp_table table = { .interval = 100, .forward = { 1, 2, 3 } };
+    same_start();
+    SAME(MCC_set_comp(&a, 1, &table), MCC_SetCompParam(&b, &table, 1));
+    SAME(MCC_enable_dry_run(&a), MCC_EnableDryRun(&b));
+    SAME(MCC_check_dry_run(&a), MCC_CheckDryRun(&b));
+    SAME(MCC_disable_dry_run(&a), MCC_DisableDryRun(&b));
+    a.epcio_axis_param[0].RPM = b.epcio_axis_param[0].RPM = 1000.0;
+    SAME(MCC_update_param(&a), MCC_UpdateParam(&b));
+    SAME(task_set_single_block(&a, true), MCC_EnableSingleBlock(&b));
+    SAME(MCC_line_x(&a, 1.0), MCC_LineX(&b, 1.0));
+    a.written = b.written;
+    SAME(task_continue(&a), MCC_RunSingleBlock(&b));
+    SAME(task_set_single_block(&a, false), MCC_DisableSingleBlock(&b));
+}
+
 /* Six values come out in the order of the axes. */
 static void six_values(void)
 {
@@ -180,6 +197,7 @@ int main(void)
     settings();
     control();
     by_hand();
+    axes();
     six_values();
     return check_result();
 }

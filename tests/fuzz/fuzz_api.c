@@ -53,7 +53,7 @@ static struct six six(struct bytes *b)
 static int (*const none[])(struct mcc *) = {
     MCC_set_abs, MCC_set_inc, MCC_enable_quit, MCC_disable_quit, MCC_motion_hold,
     MCC_motion_conti, MCC_motion_abort, MCC_clear_error, MCC_close_motion, task_continue,
-    MCC_MPG_disable
+    MCC_MPG_disable, MCC_enable_dry_run, MCC_disable_dry_run
 };
 static int (*const one[])(struct mcc *, double) = {
     MCC_line_x, MCC_line_y, MCC_line_z, MCC_ptp_x, MCC_ptp_y, MCC_ptp_z, MCC_motion_delay,
@@ -95,6 +95,36 @@ static int jog(struct bytes *b, uint8_t which)
     }
 }
 
+/* A parameter of the user's, then made effective; or a table of compensation. */
+static int axes(struct bytes *b, uint8_t which)
+{
+    static struct comp_table table;
+    MCC_MACH_PARAM *p = &m.epcio_axis_param[(which >> 3) % AXES];
+    double *const real[] = { &p->RPM, &p->pitch, &p->gear_ratio, &m.cart_max_speed };
+    if (which & 1) {
+        table.interval = byte(b) * 16;
+        table.home = (which >> 1 & 3) * 85;
+        for (int i = 0; i < COMP_POINTS; i++) {
+            table.forward[i] = (int8_t)byte(b);
+            table.backward[i] = table.forward[i] + (which & 64 ? 5 : 0);
+        }
+        return MCC_set_comp(&m, (which >> 3) % 8 - 1, &table);
+    }
+    if (which & 2) {
+        *real[which >> 2 & 3] = number(b);
+    } else {
+        p->type = which >> 6;
+        p->pos2encoder_dir = byte(b) & 1;
+        p->PPR = integer(b);
+    }
+    before = m;
+    const int code = MCC_update_param(&m);
+    for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
+        sum[i] = m.ipo.pulses[i] + m.comp[i].added;     /* an axis may have been turned round */
+    }
+    return code;
+}
+
 static int home(struct bytes *b, uint8_t which)
 {
     int32_t order[AXES];
@@ -130,7 +160,7 @@ static void signals(struct bytes *b)
     if (m.open) {
         manual_look(&m, 4000);
         for (int i = 0; i < AXES && m.homing.state == HOMING_DONE; i++) {
-            sum[i] = m.ipo.pulses[i];       /* the origin may have been set */
+            sum[i] = m.ipo.pulses[i] + m.comp[i].added; /* the origin may have been set */
         }
     }
 }
@@ -143,7 +173,7 @@ static int call(struct bytes *b)
 
     switch (kind % 16) {
     case 0: return PICK(none, which)(&m);
-    case 1: case 2: case 3: return PICK(one, which)(&m, number(b));
+    case 1: case 3: return PICK(one, which)(&m, number(b));
     case 4: s = six(b); return PICK(all, which)(&m, s.x);
     case 5: s = six(b); return PICK(pulses, which)(&m, s.n);
     case 6: s = six(b); return PICK(arc, which)(&m, s.x[0], s.x[1], s.x[2], s.x[3]);
@@ -156,6 +186,7 @@ static int call(struct bytes *b)
     case 12: return jog(b, which);
     case 13: return home(b, which);
     case 14: signals(b); return 0;
+    case 2: return axes(b, which);
     default:
         if (m.open) {
             s = six(b);

@@ -126,12 +126,15 @@ class Struct:
     Parameters
     ----------
     of : str
-        Its name in binding.c: config, reading, station, report or mcc.
+        Its name in binding.c: config, reading, station, report, mcc, param or comp.
+    at : ctypes.c_void_p, optional
+        Where it is; memory of its own if not given.
     """
 
-    def __init__(self, of: str) -> None:
+    def __init__(self, of: str, at: ctypes.c_void_p | None = None) -> None:
         size, self._fields = _table(of)
-        self._memory = ctypes.create_string_buffer(size)
+        kind = ctypes.c_char * size
+        self._memory = kind() if at is None else kind.from_address(at.value or 0)
 
     @property
     def pointer(self) -> ctypes.c_void_p:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.errors import InputError
+from motionfmu.mcc.axes import Axes
 from motionfmu.mcc.calls import Calls
 from motionfmu.mcc.library import AXES, Struct
 from motionfmu.mcc.manual import Manual
@@ -13,7 +14,7 @@ from motionfmu.mcc.moves import Moves
 from motionfmu.mcc.settings import Settings
 
 # Answers of task_status.
-RUNNING, STOPPED, HOLD, DELAY, WHEEL = 0, 1, 2, 3, 5
+RUNNING, STOPPED, HOLD, DELAY, BLOCK, WHEEL = range(6)
 
 
 def configuration(settings: dict[str, Any]) -> Struct:
@@ -54,7 +55,7 @@ def defaults() -> dict[str, tuple[Any, str]]:
     return {name: (config[name], unit) for name, unit in config.units.items()}
 
 
-class Mcc(Moves, Manual, Settings):
+class Mcc(Moves, Manual, Settings, Axes):
     """A motion library by itself, without a card.
 
     The functions are those of the source document, without ``MCC_``. A refused call changes
@@ -214,13 +215,23 @@ class Mcc(Moves, Manual, Settings):
         """Go on behind M0 or M1."""
         self._do("task_continue")
 
+    def task_set_single_block(self, on: bool) -> None:
+        """Rest before each line of the program, each call of the API.
+
+        Parameters
+        ----------
+        on : bool
+            `task_continue` lets the next one go.
+        """
+        self._do("task_set_single_block", ctypes.c_bool(on))
+
     def task_status(self) -> int:
         """What the library is doing.
 
         Returns
         -------
         int
-            RUNNING, STOPPED, HOLD, DELAY or WHEEL.
+            RUNNING, STOPPED, HOLD, DELAY, BLOCK (single block waits) or WHEEL.
         """
         return self._do("task_status")
 
