@@ -8,7 +8,10 @@ from motionfmu.mcc.library import Struct
 
 
 class Axes(Calls):
-    """The document's axis parameters, compensation tables and dry run; all at standstill."""
+    """Axis parameters, compensation tables, dry run.
+
+    All are set at standstill only.
+    """
 
     def update_param(self, **values: Any) -> None:
         """Change the axis parameters and make them effective.
