@@ -61,7 +61,9 @@ def test_codes_are_those_of_the_header() -> None:
 
 
 def test_every_call_of_the_library_is_a_method() -> None:
-    names = set(re.findall(r"^\w+ (?:MCC|mcc(?=_set))_(\w+)\((?:const )?struct mcc \*", HEADER, re.M))
+    names = set(
+        re.findall(r"^\w+ (?:MCC|mcc(?=_set))_(\w+)\((?:const )?struct mcc \*", HEADER, re.M)
+    )
     assert len(names) > 50 and [n for n in names if not callable(getattr(Mcc, n, None))] == []
 
 
@@ -263,12 +265,8 @@ def test_hold_override_and_abort_reach_the_card() -> None:
     assert card.mcc.get_over_spd() == 200.0
 
 
-def test_emergency_stop_and_switches() -> None:
+def test_switches_are_named() -> None:
     card = VirtualCard()
-    card.set_stop(True)
-    assert card.run(0.1).pulses[0] == 0
-    card.set_stop(False)
-    card.mcc.clear_error()
     card.set_switches("home", 0, 2)
     with pytest.raises(InputError, match="home, up or down"):
         card.set_switches("Home", 0)
@@ -443,3 +441,39 @@ def test_single_block_waits_for_leave() -> None:
         card.mcc.task_continue()
         reading = card.run(1.0)
     assert reading.stopped and reading.pulses[0] == 2000
+
+
+def test_limits_and_position_reached_can_be_set_and_read() -> None:
+    card = VirtualCard(high_limit=5.0, low_limit=-5.0)
+    assert card.mcc.get_check_OT() == [0] * 6
+    card.mcc.set_check_OT([1, 0, 0, 0, 0, 0])
+    assert card.mcc.get_check_OT() == [1, 0, 0, 0, 0, 0]
+    with pytest.raises(MccError, match="PARAMETER"):
+        card.mcc.line_x(5.001)
+    card.mcc.set_max_dda_acc([50] * 6)
+    card.mcc.set_inpos_tol([0.1, 0.2, 0.3, 0.1, 0.1, 0.1])
+    assert card.mcc.get_max_dda_acc() == [50] * 6
+    assert card.mcc.get_inpos_tol()[:3] == [0.1, 0.2, 0.3]
+    card.mcc.enable_in_pos(3)
+    card.mcc.disable_in_pos(2)
+    card.mcc.line_x(5)
+    assert card.run_until_stop().pulses[0] == 5000
+    card.run(0.1)
+    assert card.mcc.check_in_pos()[:3] == [1, 1, 1]
+
+
+def test_emergency_stop_ends_with_an_error_and_the_true_position() -> None:
+    card = VirtualCard()
+    card.mcc.line_x(50)
+    card.run(1.0)
+    card.set_stop(True)
+    stopped = card.run(0.5)
+    assert stopped.error == 0xF102 and 5000 < stopped.pulses[0] < 15_000
+    with pytest.raises(MccError, match="RUN_TIME"):
+        card.mcc.clear_error()
+    card.set_stop(False)
+    card.run(0.5)
+    card.mcc.clear_error()
+    assert round(card.read().position[0] * 1000) == stopped.pulses[0]
+    card.mcc.line_x(0)
+    assert card.run_until_stop().pulses[0] == 0

@@ -60,6 +60,8 @@
 #define MCC_DisableDryRun    MCC_disable_dry_run
 #define MCC_CheckDryRun      MCC_check_dry_run
 #define MCC_RunSingleBlock   task_continue
+#define MCC_EnableInPos      MCC_enable_in_pos  /* an axis mask, as there */
+#define MCC_DisableInPos     MCC_disable_in_pos
 #define MCC_GetGoHomeStatus  MCC_check_homef
 #define MCC_AbortGoHome      MCC_motion_abort
 #define MCC_DisableMpg       MCC_MPG_disable
@@ -190,6 +192,15 @@ MCCL_TURNS(ZX, zx)
 MCCL_SIX(int32_t, mccl_give_int, MCC_SetMaxPulseSpeed, MCC_GetMaxPulseSpeed,
          MCC_set_max_dda_spd, MCC_get_max_dda_spd)
 MCCL_SIX(int32_t, mccl_give_int, MCC_SetPGain, MCC_GetPGain, MCC_set_P_gain, MCC_get_P_gain)
+
+/* Its largest change from one DDA time to the next; there, from period to period. */
+MCCL_SIX(int32_t, mccl_give_int, MCC_SetMaxPulseAcc, MCC_GetMaxPulseAcc,
+         MCC_set_max_dda_acc, MCC_get_max_dda_acc)
+MCCL_SIX(int, mccl_give_int, MCC_SetOverTravelCheck, MCC_GetOverTravelCheck,
+         MCC_set_check_OT, MCC_get_check_OT)
+MCCL_SIX(double, mccl_give, MCC_SetInPosToleranceEx, MCC_GetInPosToleranceEx,
+         MCC_set_inpos_tol, MCC_get_inpos_tol)
+MCCL_GET(int, mccl_give_int, MCC_GetInPosStatus, MCC_check_in_pos)
 
 /* Of the axes that move for themselves. */
 MCCL_SIX(char, mccl_give_char, MCC_SetPtPAccType, MCC_GetPtPAccType,

@@ -222,6 +222,9 @@ double path_reach(const struct path *p, int axis)
 {
     double low, high;
 
+    if (!isfinite(p->length)) {
+        return INFINITY;
+    }
     path_extent(p, axis, 0.0, p->length, &low, &high);
     return fmax(fabs(low), fabs(high));
 }

@@ -104,6 +104,7 @@ static void look(const struct station *s, struct pcl_card *seen, struct pc_panel
 {
     const struct epcio *card = &s->card;
     const struct local_io_lines *local = &card->local.seen;
+    int64_t pulses[AXES];
 
     *seen = (struct pcl_card){
         .irq_seq = wrap(card->irq.seq), .irq_clock = card->irq.clock, .cmd_ack = card->cmd_ack,
@@ -116,7 +117,9 @@ static void look(const struct station *s, struct pcl_card *seen, struct pc_panel
         .stop = local_io_stopped(&card->local_control, &card->local),
         .home = local->home, .upper = local->up, .lower = local->down
     };
+    epcio_pulses(card, pulses);
     for (int i = 0; i < AXES; i++) {
+        panel->signals.pulses[i] = wrap(pulses[i]);
         panel->signals.enc[i] = wrap(card->encoder[i].count);
         panel->signals.err[i] = card->loop[i].error;
         panel->signals.latch[i] = wrap(card->latch[i].value);

@@ -164,6 +164,27 @@ static void axes(void)
     SAME(task_set_single_block(&a, false), MCC_DisableSingleBlock(&b));
 }
 
+static void protection(void)
+{
+    int32_t n[AXES];
+    int on[AXES];
+    double x[AXES];
+    same_start();
+    SAME(MCC_set_max_dda_acc(&a, (int32_t[AXES]){ 9, 8, 7, 6, 5, 4 }),
+         MCC_SetMaxPulseAcc(&b, 9, 8, 7, 6, 5, 4));
+    SAME(MCC_set_check_OT(&a, (int[AXES]){ 0 }), MCC_SetOverTravelCheck(&b, 0, 0, 0, 0, 0, 0));
+    SAME(MCC_set_inpos_tol(&a, (double[AXES]){ 1, 2, 3, 4, 5, 6 }),
+         MCC_SetInPosToleranceEx(&b, 1, 2, 3, 4, 5, 6));
+    SAME(MCC_enable_in_pos(&a, 5), MCC_EnableInPos(&b, 5));
+    SAME(MCC_disable_in_pos(&a, 1), MCC_DisableInPos(&b, 1));
+    CHECK_EQ(MCC_GetMaxPulseAcc(&b, n, n + 1, n + 2, n + 3, n + 4, n + 5), MCC_NO_ERR);
+    CHECK(n[0] == 9 && n[5] == 4);
+    CHECK_EQ(MCC_GetOverTravelCheck(&b, on, on + 1, on + 2, on + 3, on + 4, on + 5), MCC_NO_ERR);
+    CHECK_EQ(MCC_GetInPosToleranceEx(&b, x, x + 1, x + 2, x + 3, x + 4, x + 5), MCC_NO_ERR);
+    CHECK(x[0] == 1.0 && x[5] == 6.0);
+    CHECK_EQ(MCC_GetInPosStatus(&b, on, on + 1, on + 2, on + 3, on + 4, on + 5), MCC_NO_ERR);
+}
+
 /* Six values come out in the order of the axes. */
 static void six_values(void)
 {
@@ -198,6 +219,7 @@ int main(void)
     control();
     by_hand();
     axes();
+    protection();
     six_values();
     return check_result();
 }

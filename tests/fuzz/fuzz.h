@@ -30,7 +30,7 @@ static inline struct machine fuzz_machine(void)
     for (int i = 0; i < AXES; i++) {
         m.axis[i] = (struct machine_axis){
             .used = i < 5, .pitch = 10.0, .gear_ratio = 1.0, .ppr = 10000, .rpm = 3000.0,
-            .p_gain = 60
+            .p_gain = 60, .high_limit = 100.0, .low_limit = -50.0
         };
     }
     return m;

@@ -1,6 +1,7 @@
 /* Bytes as calls of the library in any order, with the task running between: a call that is
  * refused changes nothing, every point is within the limits, the axes come to rest when told. */
 #include "fuzz.h"
+#include "reaction.h"
 
 enum { CALLS = 200, REST_POINTS = 20000 };
 
@@ -61,11 +62,13 @@ static int (*const one[])(struct mcc *, double) = {
     MCC_set_over_spd, MCC_set_ptp_ospd, mcc_set_tolerance
 };
 static int (*const all[])(struct mcc *, const double *) = {
-    MCC_line, MCC_ptp, MCC_ptp_asyn, MCC_set_ptp_asyn_acc_step, MCC_set_ptp_asyn_dec_step
+    MCC_line, MCC_ptp, MCC_ptp_asyn, MCC_set_ptp_asyn_acc_step, MCC_set_ptp_asyn_dec_step,
+    MCC_set_inpos_tol
 };
 static int (*const pulses[])(struct mcc *, const int32_t *) = {
-    MCC_set_max_dda_spd, MCC_set_P_gain
+    MCC_set_max_dda_spd, MCC_set_P_gain, MCC_set_max_dda_acc
 };
+static int (*const axes_of[])(struct mcc *, int) = { MCC_enable_in_pos, MCC_disable_in_pos };
 static int (*const letters[])(struct mcc *, const char *) = {
     MCC_set_ptp_asyn_acc_type, MCC_set_ptp_asyn_decc_type
 };
@@ -146,27 +149,39 @@ static int home(struct bytes *b, uint8_t which)
     return MCC_go_home(&m, order);
 }
 
-/* The card reports something else: an index has been latched, a switch closes, a wheel turns. */
+/* The card has put out every pulse and looks at its machine. */
+static void look(void)
+{
+    const struct reaction_look l = { .clocks = 4000 };
+    if (m.open) {
+        manual_look(&m, 4000);
+        reaction_look(&m, &l);
+    }
+    for (int i = 0; i < AXES && !m.dry_run; i++) {
+        sum[i] = m.ipo.pulses[i] + m.comp[i].added; /* homing, an emergency stop may set it */
+    }
+}
+
+/* The card reports something else: an index has been latched, a switch closes, a wheel turns, the
+ * emergency stop acts. */
 static void signals(struct bytes *b)
 {
     const uint8_t what = byte(b);
+    m.signals.stop = what == 0xff;
     m.signals.home = byte(b);
     m.signals.upper = what & 1 ? byte(b) : 0;
     m.signals.lower = what & 2 ? byte(b) : 0;
     for (int i = 0; i < AXES; i++) {
         m.signals.enc[i] = what & 4 ? m.written.pulses[i] : integer(b);
         m.signals.latch[i] = (int32_t)((uint32_t)m.signals.enc[i] - (what >> 5));
+        m.signals.err[i] = what & 64 ? integer(b) : 0;
+        m.signals.pulses[i] += m.written.frame[i];
         m.signals.latched[i] += what >> 4 & 1;
     }
     for (int i = 0; i < 3; i++) {
         m.signals.enc_aux[i] += what & 8 ? (int8_t)byte(b) : 0;
     }
-    if (m.open) {
-        manual_look(&m, 4000);
-        for (int i = 0; i < AXES && m.homing.state == HOMING_DONE; i++) {
-            sum[i] = m.ipo.pulses[i] + m.comp[i].added; /* the origin may have been set */
-        }
-    }
+    look();
 }
 
 static int call(struct bytes *b)
@@ -177,7 +192,7 @@ static int call(struct bytes *b)
 
     switch (kind % 16) {
     case 0: return PICK(none, which)(&m);
-    case 1: case 3: return PICK(one, which)(&m, number(b));
+    case 1: return PICK(one, which)(&m, number(b));
     case 4: s = six(b); return PICK(all, which)(&m, s.x);
     case 5: s = six(b); return PICK(pulses, which)(&m, s.n);
     case 6: s = six(b); return PICK(arc, which)(&m, s.x[0], s.x[1], s.x[2], s.x[3]);
@@ -191,6 +206,11 @@ static int call(struct bytes *b)
     case 13: return home(b, which);
     case 14: signals(b); return 0;
     case 2: return axes(b, which);
+    case 3:
+        if (which & 1) {
+            return PICK(axes_of, which >> 1)(&m, byte(b));
+        }
+        return MCC_set_check_OT(&m, (int[]){ which >> 1 & 1, 0, which >> 2 & 1, 0, 1, 0 });
     default:
         if (m.open) {
             s = six(b);
@@ -233,7 +253,9 @@ static void come_to_rest(void)
         return;
     }
     MCC_motion_abort(&m);
+    m.signals = (struct signals){ 0 };
     do {
+        look();
         task_run(&m, NULL);
         n += fuzz_take(&m, sum);
         HOLDS(cycles++ < REST_POINTS && (by_hand || (double)(n - 2) * dda <= seconds));

@@ -11,6 +11,7 @@ from motionfmu.mcc.calls import Calls
 from motionfmu.mcc.library import AXES, Struct
 from motionfmu.mcc.manual import Manual
 from motionfmu.mcc.moves import Moves
+from motionfmu.mcc.protection import Protection
 from motionfmu.mcc.settings import Settings
 
 # Answers of task_status.
@@ -55,7 +56,7 @@ def defaults() -> dict[str, tuple[Any, str]]:
     return {name: (config[name], unit) for name, unit in config.units.items()}
 
 
-class Mcc(Moves, Manual, Settings, Axes):
+class Mcc(Moves, Manual, Settings, Axes, Protection):
     """A motion library by itself, without a card.
 
     The functions are those of the source document, without ``MCC_``. A refused call changes
@@ -105,7 +106,10 @@ class Mcc(Moves, Manual, Settings, Axes):
         self._do("MCC_close_motion")
 
     def clear_error(self) -> None:
-        """Forget the run-time error; commands are taken again."""
+        """Forget the run-time error; commands are taken again.
+
+        Refused while its cause lasts, and until everything has come to rest.
+        """
         self._do("MCC_clear_error")
 
     def get_errcode(self) -> int:
