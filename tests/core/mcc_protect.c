@@ -116,7 +116,8 @@ static void stopped_in_a_chain(void)
 }
 
 /* A chain from a program that keeps the ring full, out to 24 mm and back: what the refused point
- * has taken out of the ring is still there. When the check comes on, all lines outwards are read. */
+ * has taken out of the ring is still there. When the check comes on, all lines outwards are
+ * read. */
 static void stopped_in_a_program(void)
 {
     enum { LINES = 1200 };
