@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: demo test check bench build clean
+.PHONY: demo test check bench fuzz build clean
 
 demo: build                     ## build all and run the demo scenario
 	$(BIN)/motionfmu run scenarios/circle
@@ -20,13 +20,17 @@ test: build check               ## everything: style, C tests (also sanitized), 
 	$(BIN)/python -m pytest -n 2
 
 check: .venv/installed          ## formatting, lint, types
-	$(BIN)/ruff format --check src tests scenarios
-	$(BIN)/ruff check src tests scenarios
+	$(BIN)/ruff format --check src tests scenarios examples
+	$(BIN)/ruff check src tests scenarios examples
 	$(BIN)/mypy
 
 bench: build                    ## speed, as ratios measured in one run
 	@cmake --build build --target fused card_cost interpreter_cost scurve_batch
 	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py
+
+SECONDS ?= 120
+fuzz:                           ## part programs and calls of the API at random, SECONDS each
+	tests/fuzz/run.sh $(SECONDS)
 
 clean:
 	rm -rf build results

@@ -362,7 +362,11 @@ static double advance_chain(struct ipo *p, struct ring *r, double dt)
 double ipo_advance(struct ipo *p, struct ring *r, double dt)
 {
     if (p->track.active) {
-        return advance_chain(p, r, dt);
+        const double left = advance_chain(p, r, dt);
+        if (p->abort && !p->track.active) {
+            ipo_stop(p, r);     /* the ramp of the abort was that to the chain's end */
+        }
+        return left;
     }
     for (;;) {
         const bool startable = may_start(p, r);

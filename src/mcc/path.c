@@ -81,7 +81,7 @@ enum fault path_arc(struct path *p, enum path_plane plane, const double start[AX
     p->sweep = ccw ? turn : -turn;
     const double way[3] = { (r0 + 0.5 * p->growth) * p->sweep, p->growth, end[n] - start[n] };
     p->length = norm3(way);
-    return FAULT_NONE;
+    return p->length > 0.0 ? FAULT_NONE : FAULT_ARC_RADIUS;     /* its square is 0 */
 }
 
 enum fault path_centre_by_radius(enum path_plane plane, const double start[AXES],
@@ -222,6 +222,9 @@ double path_reach(const struct path *p, int axis)
 {
     double low, high;
 
+    if (!isfinite(p->length)) {
+        return INFINITY;
+    }
     path_extent(p, axis, 0.0, p->length, &low, &high);
     return fmax(fabs(low), fabs(high));
 }

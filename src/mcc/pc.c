@@ -61,7 +61,9 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     pc->home_seen = panel->go_home;
     pc->clear_due = pc->clear_due || (panel->clear_error && !pc->clear_seen);
     pc->clear_seen = panel->clear_error;
-    MCC_set_P_gain(&pc->mcc, panel->p_gain);
+    if (!pc->config.no_panel) {
+        MCC_set_P_gain(&pc->mcc, panel->p_gain);
+    }
     pc->mcc.signals = signals_turned(&panel->signals, m);
     manual_look(&pc->mcc, pc->config.bus);
     for (int i = 0; i < AXES; i++) {
@@ -158,7 +160,9 @@ static void process_act(struct pc *pc, const struct source *program)
     struct mcc *m = &pc->mcc;
 
     by_hand(pc);
-    task_set_single_block(m, pc->panel.single_block);
+    if (!pc->config.no_panel) {
+        task_set_single_block(m, pc->panel.single_block);
+    }
     if (pc->program && !pc->started && may_start(pc)) {
         task_start(m);
         pc->started = true;
@@ -170,7 +174,9 @@ static void process_act(struct pc *pc, const struct source *program)
         MCC_motion_abort(m);
     }
     panel_keys(pc, program);
-    task_operate(m, pc->panel.hold, pc->panel.override);
+    if (!pc->config.no_panel) {
+        task_operate(m, pc->panel.hold, pc->panel.override);
+    }
 }
 
 /* May a run begin one more unit? Counts it. */

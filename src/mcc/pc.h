@@ -46,6 +46,7 @@ struct pc_config {
     double  home_settle;        /* [s] as of homing_set_settle */
     bool    encoder_backward[AXES];
     bool    dry_run;        /* from the start on */
+    bool    no_panel;       /* hold, override and P gain are calls of the API, not the panel's */
 };
 
 /* The operator's panel and what else is read on the bus grid. Homing starts at a rising edge, jog

@@ -313,6 +313,29 @@ static void chain_ends(void)
     CHECK(r.last.place[0] == 0.0 && r.last.place[1] == 0.0);
 }
 
+/* An abort at any point brings all to rest and drops what waits, also one whose ramp is that to the
+ * end of the chain. */
+static void abort_anywhere(char type)
+{
+    int stops = 0;
+    for (int k = 1; k < 400; k++) {
+        struct record r = { 0 };
+        begin(mcc_machine());
+        MCC_set_acc_type(&m, type);
+        MCC_set_dec_type(&m, type);
+        CHECK_EQ(mcc_set_tolerance(&m, 0.1), 0);
+        CHECK(MCC_line_x(&m, 1.0) > 0);
+        CHECK(MCC_line_x(&m, 1.5) > 0);
+        CHECK(MCC_motion_delay(&m, 500.0) > 0);
+        while (r.n < k && point(&r)) {
+        }
+        CHECK_EQ(MCC_motion_abort(&m), MCC_NO_ERR);
+        run(&r);
+        stops += MCC_check_stop(&m);
+    }
+    CHECK_EQ(stops, 399);
+}
+
 int main(void)
 {
     corners();
@@ -321,6 +344,8 @@ int main(void)
     pieces(true);
     tolerance();
     chain_ends();
+    abort_anywhere('T');
+    abort_anywhere('S');
     anything(false);
     anything(true);
     return check_result();

@@ -12,7 +12,8 @@ static struct mcc m, before;    /* 300 kB each: not on the stack */
         CHECK(memcmp(&before, &m, sizeof m) == 0); \
     } while (0)
 
-static const double far_away[AXES] = { 1e6 }, nowhere[AXES] = { NAN }, u_axis[AXES] = { [3] = 1.0 };
+static const double far_away[AXES] = { 1e6 }, beyond[AXES] = { 1e308, -1e308 },
+                    nowhere[AXES] = { NAN }, u_axis[AXES] = { [3] = 1.0 };
 
 static void not_open(void)
 {
@@ -62,6 +63,8 @@ static void motion(void)
     CHECK_EQ(MCC_init_motion(&m, &machine), MCC_NO_ERR);
     REFUSED(MCC_line(&m, far_away), MCC_PARAMETER);
     REFUSED(MCC_line(&m, nowhere), MCC_PARAMETER);
+    REFUSED(MCC_line(&m, beyond), MCC_PARAMETER);
+    REFUSED(MCC_ptp(&m, beyond), MCC_PARAMETER);
     REFUSED(MCC_line(&m, u_axis), MCC_PARAMETER);
     REFUSED(MCC_ptp(&m, far_away), MCC_PARAMETER);
     REFUSED(MCC_arc_xy(&m, 1.0, 1.0, 2.0, 2.0), MCC_PARAMETER);     /* three points on a line */

@@ -174,10 +174,11 @@ static void tolerance(void)
             walk(&p, 1e-6);     /* start and end are met; speed errs by less than 0.1 % */
         }
     }
-    const double zero[AXES] = { 0.0 }, centre[2] = { 0.0, 0.0 };
+    const double zero[AXES] = { 0.0 }, centre[2] = { 0.0, 0.0 }, tiny[2] = { 5e-324, 0.0 };
     double miss;
     struct path p;
     CHECK(path_arc(&p, PATH_XY, zero, zero, centre, true, 1, &miss) == FAULT_ARC_RADIUS);
+    CHECK(path_arc(&p, PATH_XY, zero, zero, tiny, true, 1, &miss) == FAULT_ARC_RADIUS);
 }
 
 int main(void)

@@ -1,0 +1,82 @@
+"""Calls about the axes themselves: parameters, compensation, dry run."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from motionfmu.mcc.calls import Calls, whole
+from motionfmu.mcc.library import Struct
+
+
+class Axes(Calls):
+    """Axis parameters, compensation tables, dry run.
+
+    All are set at standstill only.
+    """
+
+    def update_param(self, **values: Any) -> None:
+        """Change the axis parameters and make them effective.
+
+        Parameters
+        ----------
+        **values : dict
+            Members of MCC_MACH_PARAM (type, pos2encoder_dir, PPR, RPM, pitch, gear_ratio, ...), one
+            value or one an axis, and cart_max_speed [mm/s].
+
+        Raises
+        ------
+        InputError
+            There is no such parameter, or it has another type.
+        MccError
+            A value is refused; then none has changed.
+        """
+        param = Struct("param", self._pointer)
+        before = {name: param[name] for name in values}
+        try:
+            for name, value in values.items():
+                param[name] = value
+            self._do("MCC_update_param")
+        except Exception:
+            for name, value in before.items():
+                param[name] = value
+            raise
+
+    def set_comp(self, axis: int, interval: int, home: int, *rows: Sequence[int]) -> None:
+        """Pitch and backlash table of an axis.
+
+        Parameters
+        ----------
+        axis : int
+            0 .. 5.
+        interval : int
+            [pulses] between two points; 0: no compensation.
+        home : int
+            Index of the point at position 0.
+        *rows : sequence of int
+            Correction going forward and going backward [pulses], at most 256 points each; the
+            last one goes on. One row is for both.
+        """
+        table = Struct("comp")
+        table["interval"], table["home"] = whole(interval), whole(home)
+        for name, row in zip(("forward", "backward"), (rows * 2)[:2], strict=True):
+            whole_row = [whole(v) for v in row]
+            count = len(table[name])
+            table[name] = whole_row + whole_row[-1:] * (count - len(whole_row))
+        self._do("MCC_set_comp", whole(axis), table.pointer)
+
+    def enable_dry_run(self) -> None:
+        """From now on the card gets no pulses."""
+        self._do("MCC_enable_dry_run")
+
+    def disable_dry_run(self) -> None:
+        """The card gets pulses again; the position is where the axes are."""
+        self._do("MCC_disable_dry_run")
+
+    def check_dry_run(self) -> int:
+        """Whether the card gets pulses.
+
+        Returns
+        -------
+        int
+            0 a dry run, 1 none: the library's answer.
+        """
+        return self._do("MCC_check_dry_run")

@@ -1,0 +1,136 @@
+"""How Python values become the arguments of a C call."""
+
+import ctypes
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from motionfmu.errors import InputError
+from motionfmu.mcc.library import AXES, MccError, library
+
+Numbers = Sequence[float]
+
+
+def doubles(values: Numbers, count: int = AXES) -> Any:
+    """Make a C array of doubles.
+
+    Parameters
+    ----------
+    values : sequence of float
+        As many as `count`.
+    count : int
+
+    Returns
+    -------
+    ctypes array of double
+
+    Raises
+    ------
+    InputError
+        There are more or fewer.
+    """
+    return _array(ctypes.c_double, [float(v) for v in values], count)
+
+
+def whole(value: float) -> int:
+    """Take a whole number.
+
+    Parameters
+    ----------
+    value : int or float
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InputError
+        It is none, or does not fit 32 bits.
+    """
+    if isinstance(value, int | float | np.number) and -(2**31) <= value < 2**31:
+        if value == int(value):
+            return int(value)
+    raise InputError(f"{value!r}: a whole number of 32 bits wanted")
+
+
+def integers(values: Sequence[int], count: int = AXES) -> Any:
+    """Make a C array of int32.
+
+    Parameters
+    ----------
+    values : sequence of int
+        As many as `count`.
+    count : int
+
+    Returns
+    -------
+    ctypes array of int32
+
+    Raises
+    ------
+    InputError
+        There are more or fewer, or one is not a whole number of 32 bits.
+    """
+    return _array(ctypes.c_int32, [whole(v) for v in values], count)
+
+
+def letters(values: str, count: int = AXES) -> Any:
+    """Make a C array of characters.
+
+    Parameters
+    ----------
+    values : str
+        As many letters as `count`.
+    count : int
+
+    Returns
+    -------
+    ctypes array of char
+
+    Raises
+    ------
+    InputError
+        There are more or fewer.
+    """
+    return _array(ctypes.c_char, [v.encode() for v in values], count)
+
+
+def _array(kind: Any, values: list[Any], count: int) -> Any:
+    if len(values) != count:
+        raise InputError(f"{values!r}: {count} values wanted")
+    return (kind * count)(*values)
+
+
+class Calls:
+    """A library state whose functions can be called by name.
+
+    Parameters
+    ----------
+    pointer : ctypes.c_void_p
+        Address of the struct mcc.
+    owner : object
+        Keeps that memory alive.
+    """
+
+    def __init__(self, pointer: ctypes.c_void_p, owner: object) -> None:
+        self._pointer, self._owner, self._library = pointer, owner, library()
+
+    def _do(self, name: str, *arguments: Any) -> int:
+        """Call a function that returns a code; a float is passed as a double."""
+        converted = [ctypes.c_double(a) if isinstance(a, float) else a for a in arguments]
+        code = getattr(self._library, name)(self._pointer, *converted)
+        if code < 0:
+            raise MccError(name, code)
+        return code
+
+    def _get(self, name: str, kind: Any = ctypes.c_int32) -> list[Any]:
+        """Call a function that fills six values."""
+        six = (kind * AXES)()
+        self._do(name, six)
+        return list(six)
+
+    def _one(self, name: str) -> Any:
+        """Call a function that returns a value instead of a code."""
+        return getattr(self._library, name)(self._pointer)

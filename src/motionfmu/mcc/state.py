@@ -1,0 +1,266 @@
+"""One library: start, program, control and status."""
+
+import ctypes
+from typing import Any
+
+import numpy as np
+
+from motionfmu.errors import InputError
+from motionfmu.mcc.axes import Axes
+from motionfmu.mcc.calls import Calls
+from motionfmu.mcc.library import AXES, Struct
+from motionfmu.mcc.manual import Manual
+from motionfmu.mcc.moves import Moves
+from motionfmu.mcc.protection import Protection
+from motionfmu.mcc.settings import Settings
+
+# Answers of task_status.
+RUNNING, STOPPED, HOLD, DELAY, BLOCK, WHEEL = range(6)
+
+
+def configuration(settings: dict[str, Any]) -> Struct:
+    """Settings as the C library takes them.
+
+    Parameters
+    ----------
+    settings : dict
+        Values by name, as in `defaults`; one value goes to all axes.
+
+    Returns
+    -------
+    Struct
+
+    Raises
+    ------
+    InputError
+        A name is unknown, or a value has the wrong type or length.
+    """
+    config = Struct("config")
+    config_library = Calls(config.pointer, config)
+    config_library._library.binding_defaults(config.pointer)
+    for name, value in settings.items():
+        config[name] = value
+    return config
+
+
+def defaults() -> dict[str, tuple[Any, str]]:
+    """Every setting of a library and a card with its start value.
+
+    Returns
+    -------
+    dict
+        Value and unit by name; arrays have an element an axis (irq_sources and irq_priority: a
+        page of sources). Clocks are 25 ns.
+    """
+    config = configuration({})
+    return {name: (config[name], unit) for name, unit in config.units.items()}
+
+
+class Mcc(Moves, Manual, Settings, Axes, Protection):
+    """A motion library by itself, without a card.
+
+    The functions are those of the source document, without ``MCC_``. A refused call changes
+    nothing and raises MccError. A library of a VirtualCard is its ``mcc``; one by itself plans:
+    `take` gives the pulses of each DDA time.
+
+    Parameters
+    ----------
+    **settings
+        As in `defaults`; those of PC and card have no use here.
+
+    Raises
+    ------
+    InputError
+        A setting is unknown or has the wrong type.
+    MccError
+        The library refuses a value.
+    """
+
+    def __init__(self, **settings: Any) -> None:
+        state = Struct("mcc")
+        super().__init__(state.pointer, state)
+        self._text: bytes | None = None
+        self.init_motion(**settings)
+
+    @classmethod
+    def _of_card(cls, pointer: ctypes.c_void_p, owner: object) -> "Mcc":
+        mcc = cls.__new__(cls)
+        Calls.__init__(mcc, pointer, owner)
+        mcc._text = None
+        return mcc
+
+    def init_motion(self, **settings: Any) -> None:
+        """Start at rest at the origin; everything is forgotten.
+
+        Parameters
+        ----------
+        **settings : dict
+            As in `defaults`.
+        """
+        config = configuration(settings)
+        machine = ctypes.c_void_p(self._library.binding_machine(config.pointer))
+        self._do("MCC_init_motion", machine)
+
+    def close_motion(self) -> None:
+        """End, at standstill only."""
+        self._do("MCC_close_motion")
+
+    def clear_error(self) -> None:
+        """Forget the run-time error; commands are taken again.
+
+        Refused while its cause lasts, and until everything has come to rest.
+        """
+        self._do("MCC_clear_error")
+
+    def get_errcode(self) -> int:
+        """Run-time error.
+
+        Returns
+        -------
+        int
+            0 none; 0xF104, 0xF203, ... as the library numbers them.
+        """
+        return self._do("MCC_get_errcode")
+
+    def motion_hold(self) -> None:
+        """Ramp to rest on the path."""
+        self._do("MCC_motion_hold")
+
+    def motion_conti(self) -> None:
+        """Go on behind motion_hold."""
+        self._do("MCC_motion_conti")
+
+    def motion_abort(self) -> None:
+        """Ramp to rest, drop all commands and the program."""
+        self._do("MCC_motion_abort")
+
+    def check_stop(self) -> int:
+        """Whether all commands are done and every point is written.
+
+        Returns
+        -------
+        int
+            1 they are, 0 not yet.
+        """
+        return self._do("MCC_check_stop")
+
+    def get_cpos(self) -> np.ndarray:
+        """Position of the points the card has taken.
+
+        Returns
+        -------
+        (6,) ndarray of float
+            [mm]
+        """
+        return np.array(self._get("MCC_get_cpos", ctypes.c_double))
+
+    def get_ppos(self) -> np.ndarray:
+        """The same in pulses.
+
+        Returns
+        -------
+        (6,) ndarray of int
+            [pulses]
+        """
+        return np.array(self._get("MCC_get_ppos"))
+
+    def get_errcnt(self) -> np.ndarray:
+        """Error counters of the card as reported last.
+
+        Returns
+        -------
+        (6,) ndarray of int
+            [counts]
+        """
+        return np.array(self._get("MCC_get_errcnt"))
+
+    def task_check(self, program: str) -> None:
+        """Read a whole part program as it would run; nothing moves.
+
+        Parameters
+        ----------
+        program : str
+            Its text.
+
+        Raises
+        ------
+        InputError
+            The first fault, with line and text.
+        """
+        text, report = program.encode(), Struct("report")
+        size = ctypes.c_int64(len(text))
+        self._library.binding_check(self._pointer, text, size, report.pointer)
+        if report["fault"]:
+            at = report["offset"] + report["at"]
+            words = text[at : at + report["length"]].decode(errors="replace")
+            what = self._library.fault_text(report["fault"]).decode()
+            raise InputError(f'line {report["line"]}: {what} "{words}"')
+
+    def task_start(self, program: str) -> None:
+        """Check a part program, then start it.
+
+        Parameters
+        ----------
+        program : str
+            Its text.
+
+        Raises
+        ------
+        InputError
+            The program has a fault; it is not started.
+        MccError
+            The library does not take it now.
+        """
+        self.task_check(program)
+        self._do("task_start")
+        self._text = program.encode()
+
+    def task_continue(self) -> None:
+        """Go on behind M0 or M1."""
+        self._do("task_continue")
+
+    def task_set_single_block(self, on: bool) -> None:
+        """Rest before each line of the program, each call of the API.
+
+        Parameters
+        ----------
+        on : bool
+            `task_continue` lets the next one go.
+        """
+        self._do("task_set_single_block", ctypes.c_bool(on))
+
+    def task_status(self) -> int:
+        """What the library is doing.
+
+        Returns
+        -------
+        int
+            RUNNING, STOPPED, HOLD, DELAY, BLOCK (single block waits) or WHEEL.
+        """
+        return self._do("task_status")
+
+    def _program(self) -> tuple[bytes | None, ctypes.c_int64]:
+        """Text of the program that runs, for the calls of binding.c."""
+        return self._text, ctypes.c_int64(len(self._text or b""))
+
+    def take(self, count: int) -> np.ndarray:
+        """Plan, and take points as a card would.
+
+        Not for the library of a VirtualCard, whose card takes them.
+
+        Parameters
+        ----------
+        count : int
+            At most so many DDA times.
+
+        Returns
+        -------
+        (n, 6) ndarray of int
+            Pulses of each DDA time; n < `count` if the axes rest.
+        """
+        frames = np.zeros((count, AXES), np.int32)
+        where = frames.ctypes.data_as(ctypes.c_void_p)
+        n = self._library.binding_take(
+            self._pointer, *self._program(), where, ctypes.c_int32(count)
+        )
+        return frames[:n]

@@ -1,0 +1,102 @@
+/* station - a whole control station on one clock: the PC with its library, the card, ideal motors.
+ *
+ *     struct station_config config = station_defaults();
+ *     struct station *s = ...;                         160 kB, one struct without pointers
+ *     station_start(s, &config);
+ *     MCC_line(&s->pc.mcc, target);                    any call of the library, between two runs
+ *     station_run(s, s->clock + STATION_HZ, NULL);     one second
+ *     station_read(s, &reading);
+ *
+ * PC and card meet on the bus grid k T_b of pc.h, as the FMUs do whose communication step is T_b:
+ * at an instant the PC reads the card as it is, and the card takes what the PC published there
+ * (what it read one instant before decides it). Pulses, FIFO and interrupts happen at their clock
+ * whatever T_b is, and a run cut in pieces gives the same bits as one in one go.
+ */
+#ifndef STATION_H
+#define STATION_H
+
+#include "epcio.h"
+#include "pc.h"
+
+enum { STATION_HZ = CLOCK_HZ };     /* clocks of a second */
+
+/* What the motor of an axis follows. */
+enum station_mode {
+    STATION_PULSES,         /* the pulse train: it stands where the pulses are */
+    STATION_LOOP,           /* the voltage of the card's position loop */
+    STATION_SOFTWARE        /* the voltage of the library's control law: software_gain * error */
+};
+
+struct station_config {
+    struct machine machine;
+    struct pc_config pc;            /* output_mode as in station_mode; program and panel unused */
+    double software_gain[AXES];     /* [V/count] of STATION_SOFTWARE */
+};
+
+enum station_status {
+    STATION_OK,
+    STATION_BAD_MACHINE,            /* the library refuses a value of machine */
+    STATION_BAD_PC,                 /* bus or task period below a clock, or n + N > the FIFO */
+    STATION_BAD_MODE,               /* no station_mode */
+    STATION_BAD_HOME,               /* an axis with a home_order cannot be homed so */
+    STATION_FRAMES_REFUSED,         /* the card takes no frame any more */
+    STATION_MOTOR_LOST              /* a motor is beyond what the encoder input can follow */
+};
+
+struct station {
+    struct pc pc;                   /* pc.mcc is the library */
+    struct epcio card;
+    struct epcio_lines lines;       /* pins: set lines.local (home, up, down, stop) and the phase
+                                     * of the spare encoders 6 .. 8 as you like */
+    double  software_gain[AXES];
+    double  motor[AXES];            /* [counts] at the latest instant */
+    double  volts[AXES];            /* [V] since then */
+    int64_t clock;                  /* [25 ns] everything up to here has happened */
+    int64_t instant;                /* [clock] next instant of the bus grid */
+    int32_t ack_seq, cmd_seq, latch_seq[AXES];  /* numbers the card has taken */
+};
+
+/* What there is to see at the station's clock. */
+struct station_reading {
+    int64_t clock;                  /* [25 ns] */
+    int64_t pulses[AXES];           /* [pulses] put out */
+    int64_t counts[AXES];           /* [counts] encoder counters, as of the latest instant */
+    int32_t errors[AXES];           /* [counts] error counters, likewise */
+    double  volts[AXES];            /* [V] of the DAC */
+    double  motor[AXES];            /* [counts] where the motors are */
+    double  table[AXES];            /* [mm] the same behind gear and screw, as the axis goes */
+    double  position[AXES];         /* [mm] the library's, of the points in the card */
+    double  path_feed;              /* [mm/s] */
+    int32_t stock[AXES];            /* [commands] in the FIFOs */
+    int32_t underflows[AXES];       /* DDA times begun empty after motion */
+    int32_t frames_taken, frames_refused;   /* by the card */
+    int32_t interrupts;             /* pulls of the interrupt line */
+    int64_t irq_clock;              /* [25 ns] of the latest */
+    int32_t services;               /* refills of the FIFO behind an interrupt */
+    int64_t latency;                /* [25 ns] of the latest */
+    int32_t queue;                  /* interpolation points waiting */
+    int32_t starved;                /* frames of standstill sent in the middle of a motion */
+    int32_t status;                 /* enum task_status */
+    int32_t error;                  /* run-time error, 0 none */
+    int32_t line, command;          /* that moves */
+    int32_t digital;                /* digital outputs of the program, a bit each */
+    int32_t coolant;                /* bits: 0 mist, 1 flood */
+    double  spindle;                /* [rpm] negative: counter-clockwise */
+    bool    stopped;                /* MCC_check_stop, and the card has put out every pulse */
+};
+
+/* Three axes X Y Z of 10 mm and 10,000 pulses a turn, 3000 rpm, that follow their pulses; DDA time
+ * 1.024 ms, n = 3 and N = 4, IPO cycle 1 ms, bus 100 us, interrupt latency 200 us. Homing (of axes
+ * whose pc.home_order is not 0): switch at the negative end, left forward, index forward. */
+struct station_config station_defaults(void);
+
+/* Power on at clock 0, everything at rest at the origin. A refused start changes nothing. */
+enum station_status station_start(struct station *s, const struct station_config *config);
+
+/* Run up to and including clock `until`; nothing if that has passed. The program is the text that
+ * task_check found good and task_start has started, NULL if none runs. */
+enum station_status station_run(struct station *s, int64_t until, const struct source *program);
+
+void station_read(const struct station *s, struct station_reading *r);
+
+#endif

@@ -1,0 +1,98 @@
+/* Bytes as a part program: checked whole, checked again through a window that shows no byte more
+ * than it must, and, if found good, interpreted and planned. */
+#include "fuzz.h"
+
+enum { POINTS = 2000, BYTES = 1 << 16 };
+
+static struct mcc m;        /* 160 kB: not on the stack */
+
+/* A source that shows as little as it may, in a piece of memory of just that size. */
+struct narrow {
+    const uint8_t *text;
+    int64_t length;
+    char *shown;
+};
+
+static int64_t look(void *context, int64_t offset, const char **text)
+{
+    struct narrow *n = context;
+    const int64_t left = n->length - offset;
+    const int64_t size = left < SOURCE_WINDOW ? left : SOURCE_WINDOW;
+    HOLDS(offset >= 0 && left >= 0);
+    free(n->shown);
+    n->shown = malloc((size_t)size);
+    HOLDS(n->shown || size == 0);
+    if (size > 0) {
+        memcpy(n->shown, n->text + offset, (size_t)size);
+    }
+    *text = n->shown;
+    return size;
+}
+
+/* The report of a fault points into its line. */
+static void check_report(const struct fault_report *r, const uint8_t *data, size_t size)
+{
+    int32_t line = 1;
+    HOLDS(r->fault > FAULT_NONE && r->fault < FAULT_COUNT && fault_text(r->fault)[0]);
+    HOLDS(fault_code(r->fault) == MCC_PARAMETER || fault_code(r->fault) == MCC_FEED_RATE);
+    HOLDS(r->offset >= 0 && (size_t)r->offset <= size);
+    HOLDS(r->at >= 0 && r->length >= 0 && r->other_at >= 0 && r->other_length >= 0);
+    HOLDS(r->offset + r->at + r->length <= (int64_t)size);
+    HOLDS(r->offset + r->other_at + r->other_length <= (int64_t)size);
+    for (int64_t i = 0; i < r->offset; i++) {
+        line += data[i] == '\n';
+    }
+    HOLDS(line == r->line);
+}
+
+static enum fault check(const struct source *s, const uint8_t *data, size_t size)
+{
+    struct fault_report r, again;
+    struct narrow narrow = { data, (int64_t)size, NULL };
+    const struct source small = { look, &narrow };
+    memset(&r, 0, sizeof r);
+    memset(&again, 0, sizeof again);
+    task_check(&m, s, &r);
+    task_check(&m, &small, &again);
+    free(narrow.shown);
+    HOLDS(r.fault == again.fault);
+    if (r.fault != FAULT_NONE) {
+        HOLDS(r.line == again.line && r.at == again.at && r.length == again.length);
+        check_report(&r, data, size);
+    }
+    return r.fault;
+}
+
+/* A program found good runs to its end without any error but too many pulses at a time. */
+static void run(const struct source *s)
+{
+    int64_t sum[AXES] = { 0 };
+    HOLDS(task_start(&m) == MCC_NO_ERR);
+    for (int n = 0; n < POINTS;) {
+        task_run(&m, s);
+        const int points = fuzz_take(&m, sum);
+        HOLDS(m.error == 0 || m.error == MCC_ERROR_SPEED);
+        if (points == 0 && task_continue(&m) != MCC_NO_ERR) {
+            HOLDS(MCC_check_stop(&m) && task_status(&m) == TASK_STOPPED);
+            break;
+        }
+        n += points + 1;
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const struct machine machine = fuzz_machine();
+    struct source_text text = { (const char *)data, (int64_t)size };
+    const struct source source = source_of(&text);
+
+    if (size > BYTES) {
+        return 0;
+    }
+    HOLDS(MCC_init_motion(&m, &machine) == MCC_NO_ERR);
+    task_set_switches(&m, size & 1, size & 2);
+    if (check(&source, data, size) == FAULT_NONE) {
+        run(&source);
+    }
+    return 0;
+}
