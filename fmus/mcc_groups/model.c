@@ -52,7 +52,6 @@ static struct wanted wanted(const struct vars *v, int n)
     return all[n];
 }
 
-/* --- Part programs. --------------------------------------------------------------------------- */
 
 struct programs { struct program_file *of[GROUP_MAX]; };
 
@@ -96,7 +95,6 @@ static struct source source_of_group(const struct fmu *f, int n)
     return (struct source){ program_look, p->of[n] };
 }
 
-/* --- Start. ------------------------------------------------------------------------------------ */
 
 static int check_parameters(struct fmu *f)
 {
@@ -222,7 +220,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* --- Outputs. ---------------------------------------------------------------------------------- */
 
 /* The registers and the mailbox of a card, under the names of its outputs. */
 #define PUBLISH_CARD(K) do { \
@@ -291,7 +288,6 @@ static void publish(struct fmu *f)
     PUBLISH_CARD(2);
 }
 
-/* --- Inputs. ----------------------------------------------------------------------------------- */
 
 #define READ_CARD(K) do { \
     card[K - 1] = (struct pcl_card){ \
