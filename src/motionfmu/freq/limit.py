@@ -225,7 +225,7 @@ def small_signal_gain(
     gain: str | None = None,
     progress: Callable[[int], None] = lambda runs: None,
 ) -> tuple[Limit, float]:
-    """As `simulated_gain`, with a step so small that its size does not matter.
+    """As `simulated_gain`, with a step of which the size is all one.
 
     It begins with `usual_kick` and takes a fifth of it until two steps, or a step and the linear
     model, give the same gain within 1 %; a limit that acts, such as that of a torque, would show.
