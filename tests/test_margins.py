@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from motionfmu import InputError, linear
 from motionfmu.cli import app
 from motionfmu.freq import limit
-from motionfmu.freq.limit import Trial, simulated_gain, usual_kick
+from motionfmu.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
 from motionfmu.linear.loops import Limit, boundary, feedbacks, largest_gain
 from motionfmu.linear.margins import closed_poles, margins
 
@@ -118,6 +118,15 @@ def test_the_ringing_does_not_follow_the_linear_model_blindly(monkeypatch) -> No
     monkeypatch.setattr(limit, "largest_gain", lambda *_: wrong)
     found = simulated_gain(model, (ENC, ()), Trial(50.0, 20))
     assert found.gain == pytest.approx(right.gain, rel=0.02)
+
+
+def test_a_torque_limit_makes_the_kick_smaller() -> None:
+    """At twenty times the gain the usual step runs into the drive's 10 N.m, a fifth does not."""
+    model = linear.model(MODES, 2, {"machine.motor_speed": 20.0})
+    expected = largest_gain(model, ENC, (), "mcc.p_gain").gain
+    found, kick = small_signal_gain(model, (ENC, ()), "mcc.p_gain")
+    assert found.gain == pytest.approx(expected, rel=0.02)
+    assert kick < usual_kick(model, ENC)
 
 
 def run(*arguments: object):

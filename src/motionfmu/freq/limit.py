@@ -44,6 +44,8 @@ _RUNAWAY = 300.0
 _CYCLES_PER_WINDOW = 2
 # The usual kick is so many grains, at their largest within so many samples.
 _GRAINS, _LOOK = 200.0, 200
+# A smaller kick is so large a part, tried so often; two gains are the same within this.
+_SMALLER, _SMALLEST, _SAME = 0.2, 2, 0.01
 
 
 def usual_kick(axis: AxisModel, at: str, cut: tuple[str, ...] = ()) -> float:
@@ -215,6 +217,54 @@ def simulated_gain(
         return Limit(found, math.nan, tried)
     nearest = min(heard, key=lambda v: abs(v - found))
     return Limit(found, heard[nearest], tried)
+
+
+def small_signal_gain(
+    axis: AxisModel,
+    loop: tuple[str, tuple[str, ...]],
+    gain: str | None = None,
+    progress: Callable[[int], None] = lambda runs: None,
+) -> tuple[Limit, float]:
+    """As `simulated_gain`, with a step of which the size is all one.
+
+    It begins with `usual_kick` and takes a fifth of it until two steps, or a step and the linear
+    model, give the same gain within 1 %; a limit that acts, such as that of a torque, would show.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    loop : tuple
+        The input at which the loop is closed, and the inputs of other loops that are cut.
+    gain : str, optional
+        A parameter, ``component.variable``; else a factor on the wire.
+    progress : callable
+        Called with the number of runs done.
+
+    Returns
+    -------
+    Limit
+    float
+        The last step tried, in the unit of the input.
+
+    Raises
+    ------
+    InputError
+        A name is unknown, or an FMU refused something.
+    """
+    usual, runs = usual_kick(axis, *loop), 0
+    before = largest_gain(axis, *loop, gain).gain
+    for part in range(_SMALLEST + 1):
+        kick = usual * _SMALLER**part
+
+        def count(n: int, done: int = runs) -> None:
+            progress(done + n)
+
+        found = simulated_gain(axis, loop, Trial(kick), gain, count)
+        runs += found.evaluations
+        if math.isclose(found.gain, before, rel_tol=_SAME):
+            break
+        before = found.gain
+    return replace(found, evaluations=runs), kick
 
 
 def bracketed(

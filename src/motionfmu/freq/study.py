@@ -10,7 +10,7 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.freq.bench import Setup
 from motionfmu.freq.excitation import multisine
-from motionfmu.freq.limit import Trial, simulated_gain, usual_kick
+from motionfmu.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
 from motionfmu.freq.response import Response, measured_loop, settling
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit, feedbacks, largest_gain
@@ -70,7 +70,7 @@ class Asked:
     simulate : bool
         Run the FMUs too.
     kick : float or None
-        Step for ringing, in the unit of the input.
+        Step for ringing, in the unit of the input; None: so small that its size does not matter.
     progress : callable
         Called with the share done, 0 to 1.
     """
@@ -138,9 +138,14 @@ def _one(
         if found.stable:
             response = _measured(axis, which, found, kick)
         progress(0.4)
-        ringing = simulated_gain(
-            axis, which, Trial(kick), gain, lambda n: progress(0.4 + 0.6 * n / (n + 3.0))
-        )
+
+        def tried(runs: int) -> None:
+            progress(0.4 + 0.6 * runs / (runs + 3.0))
+
+        if asked.kick is None:
+            ringing, kick = small_signal_gain(axis, which, gain, tried)
+        else:
+            ringing = simulated_gain(axis, which, Trial(kick), gain, tried)
     progress(1.0)
     return LoopStudy(at, cut, loop, found, gain, limit, ringing, response, kick)
 

@@ -189,7 +189,7 @@ def _limits(study: LoopStudy) -> str:
     if study.simulated is not None:
         share = study.simulated.gain / study.linear.gain - 1.0 if study.linear.gain else math.nan
         told = f"{figure(100.0 * share, sign=True)} %" if math.isfinite(share) else ""
-        name = f"{what}: by running the FMUs until they ring"
+        name = f"{what}: by running the FMUs until they ring after a step of {study.kick:.3g}"
         rows.append((name, *_limit(study.simulated), told))
     heads = ("Largest stable gain", "value", "rings at", "difference")
     return table(heads, rows)
