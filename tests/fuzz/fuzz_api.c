@@ -256,6 +256,9 @@ static void come_to_rest(void)
     m.signals = (struct signals){ 0 };
     do {
         look();
+        if (m.error == MCC_ERROR_STOP) {
+            MCC_clear_error(&m);    /* until then no compensation is driven in */
+        }
         task_run(&m, NULL);
         n += fuzz_take(&m, sum);
         HOLDS(cycles++ < REST_POINTS && (by_hand || (double)(n - 2) * dda <= seconds));
