@@ -52,7 +52,6 @@ static struct wanted wanted(const struct vars *v, int n)
     return all[n];
 }
 
-
 struct programs { struct program_file *of[GROUP_MAX]; };
 
 static int model_open(struct fmu *f)
@@ -94,7 +93,6 @@ static struct source source_of_group(const struct fmu *f, int n)
     const struct programs *p = f->blob;
     return (struct source){ program_look, p->of[n] };
 }
-
 
 static int check_parameters(struct fmu *f)
 {
@@ -220,7 +218,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-
 /* The registers and the mailbox of a card, under the names of its outputs. */
 #define PUBLISH_CARD(K) do { \
     const struct group_card *c = &m->groups.card[K - 1]; \
@@ -287,7 +284,6 @@ static void publish(struct fmu *f)
     PUBLISH_CARD(1);
     PUBLISH_CARD(2);
 }
-
 
 #define READ_CARD(K) do { \
     card[K - 1] = (struct pcl_card){ \
