@@ -3,6 +3,7 @@
 #ifndef RING_H
 #define RING_H
 
+#include "brake.h"
 #include "command.h"
 #include "corner.h"
 
@@ -14,8 +15,8 @@ struct ring_item {
         struct {    /* in a chain (track.h) */
             struct corner corner;   /* at its start, with the command before */
             double body, turn;      /* [mm/s] bends allow so much: of the command, of that corner */
-            double enter, leave;    /* [mm/s] most behind the corner at its start, at its end */
-            double enter_even, leave_even;  /* [mm] before these without a change of speed */
+            struct brake enter, leave;  /* before the end of the corner at its start, the start of
+                                         * that at its end */
         };
         struct axes_limits axis[AXES];      /* of COMMAND_PTP_ASYN */
     };

@@ -49,24 +49,33 @@ static void add(struct track *t, struct ring *r, const struct corner *k)
                        bend_speed(before, k->bend, k->twist));
     }
     t->end += n->command.path.length;
+    t->dec = t->joined ? fmin(t->dec, n->command.ramp.dec) : n->command.ramp.dec;
     t->joined++;
 }
 
-/* Whether the motion, on its way to rest at the end, can still be as slow in the corner. */
+/* Whether the motion, on its way to rest at the end, can still be as slow `way` before that. */
+static bool slow_at(const struct track *t, double speed, double way)
+{
+    const double brake = fmax(0.0, way - speed * t->smooth);
+    return way >= 0.0 && t->v * t->v <= speed * speed + 2.0 * t->dec * brake;
+}
+
+/* Whether the corner with the next command, and that command, are not too slow for the motion. */
 static bool in_time(const struct track *t, const struct ring *r, const struct corner *k,
-                    const struct command *next)
+                    double override)
 {
     const struct command *last = &ring_peek(r, t->joined - 1)->command;
-    const double turn = fmin(bend_speed(next, k->bend, k->twist),
-                             bend_speed(last, k->bend, k->twist));
-    const double way = t->end - (t->base + t->s) - k->half;
-    const double brake = fmax(0.0, way - turn * t->smooth);
+    const struct command *next = &ring_peek(r, t->joined)->command;
+    const double way = t->end - (t->base + t->s), bend = path_bend(&next->path);
+    const double body = fmin(bend_speed(next, bend, bend * bend), command_speed(next, override));
+    double turn = fmin(bend_speed(next, k->bend, k->twist), bend_speed(last, k->bend, k->twist));
 
-    return way > 0.0 && t->v * t->v <= turn * turn + 2.0 * last->ramp.dec * brake;
+    turn = fmin(turn, fmin(command_speed(next, override), command_speed(last, override)));
+    return slow_at(t, body, way + k->half) && (k->half <= 0.0 || slow_at(t, turn, way - k->half));
 }
 
 /* Take commands of the ring into the chain while they fit smoothly. */
-static void join(struct track *t, struct ring *r)
+static void join(struct track *t, struct ring *r, double override)
 {
     while (!t->closed && t->joined < r->count) {
         const struct command *a = &ring_peek(r, t->joined - 1)->command;
@@ -79,7 +88,7 @@ static void join(struct track *t, struct ring *r)
         const double room = 0.5 * fmin(a->path.length, b->path.length);
         if (!corner_make(&k, &a->path, &b->path, fmin(a->tolerance, b->tolerance), room,
                          t->smooth > 0.0) ||
-            !in_time(t, r, &k, b)) {
+            !in_time(t, r, &k, override)) {
             return;
         }
         add(t, r, &k);
@@ -96,28 +105,6 @@ void track_start(struct track *t, struct ring *r)
     t->smooth = ring_head(r)->smooth;
     t->override = -1.0;
     add(t, r, &none);
-}
-
-/* Most speed at a place from which `speed` must be had after a way, the last `even` of it without
- * change. What is left of `even` is returned in it. */
-static double braked(double speed, double *even, double way, double dec)
-{
-    if (way <= *even) {
-        *even -= way;
-        return speed;
-    }
-    const double v = sqrt(speed * speed + 2.0 * dec * (way - *even));
-    *even = 0.0;
-    return v;
-}
-
-/* A lower limit takes the place of a speed; it holds for some way before it too. */
-static void limit(double *speed, double *even, double most, double smooth)
-{
-    if (most < *speed) {
-        *speed = most;
-        *even = fmax(*even, most * smooth);
-    }
 }
 
 static double body_limit(const struct ring_item *n, double override)
@@ -137,23 +124,24 @@ static double turn_limit(const struct ring *r, int32_t i, double override)
 /* From the end backwards. */
 static void plan(struct track *t, struct ring *r, double override)
 {
-    double speed = 0.0, even = 0.0;
+    struct brake b;
 
+    brake_rest(&b);
+    t->dec = INFINITY;
     for (int32_t i = t->joined - 1; i >= t->at; i--) {
         struct ring_item *n = ring_at(r, i);
         const double dec = n->command.ramp.dec, half = half_at(r, t, i);
-        const double body = n->command.path.length - half - half_at(r, t, i + 1);
+        const double body = body_limit(n, override), turn = turn_limit(r, i, override);
 
-        n->leave = speed;
-        n->leave_even = even;
-        speed = braked(speed, &even, body, dec);
-        limit(&speed, &even, body_limit(n, override), t->smooth);
-        n->enter = speed;
-        n->enter_even = even;
+        n->leave = b;
+        brake_back(&b, n->command.path.length - half - half_at(r, t, i + 1), dec);
+        brake_limit(&b, body, body * t->smooth);
+        n->enter = b;
         if (half > 0.0) {
-            speed = braked(speed, &even, 2.0 * half, dec);
-            limit(&speed, &even, turn_limit(r, i, override), t->smooth);
+            brake_back(&b, 2.0 * half, dec);
+            brake_limit(&b, turn, turn * t->smooth);
         }
+        t->dec = fmin(t->dec, dec);
     }
     t->planned = t->joined;
     t->override = override;
@@ -176,25 +164,21 @@ struct piece {
 static struct piece next_piece(const struct track *t, const struct ring *r, double override)
 {
     const struct ring_item *n = ring_peek(r, t->at);
-    const double speed = t->turning ? n->enter : n->leave;
-    const double even = border(t, r) - (t->turning ? n->enter_even : n->leave_even);
-    struct piece p = { border(t, r), t->turning ? turn_limit(r, t->at, override)
-                                          : body_limit(n, override),
-                       speed, n->command.ramp.acc, n->command.ramp.dec };
+    const double most = t->turning ? turn_limit(r, t->at, override) : body_limit(n, override);
+    const struct brake_piece b = brake_next(t->turning ? &n->enter : &n->leave, t->s,
+                                            border(t, r), n->command.ramp.dec);
+    struct piece p = { b.end, fmin(most, b.top), b.leave,
+                       n->command.ramp.acc, n->command.ramp.dec };
 
     for (int32_t i = 0; i < t->caps; i++) {
-        if (t->base + t->s < t->cap[i].until && t->cap[i].speed < p.top) {
+        const double until = t->cap[i].until - t->base;
+        if (t->s < until) {
             p.top = fmin(p.top, t->cap[i].speed);
-            p.end = fmin(p.end, t->cap[i].until - t->base);
+            p.end = fmin(p.end, until);
         }
     }
-    if (t->s < even) {
-        p.end = fmin(p.end, even);
-    } else {
-        p.top = fmin(p.top, fmax(speed, 0.0));
-    }
     /* What can be braked from there on. */
-    p.leave = fmin(p.top, sqrt(speed * speed + 2.0 * p.dec * fmax(0.0, even - p.end)));
+    p.leave = fmin(p.top, sqrt(p.leave * p.leave + 2.0 * p.dec * (b.end - p.end)));
     return p;
 }
 
@@ -227,6 +211,10 @@ static double drive(struct track *t, const struct piece *p, double dt)
         double dec = p->dec;
         if (peak < v && way > 0.0) {    /* rounding has taken some of the way */
             dec = fmin(fmax(dec, (v * v - leave * leave) / (2.0 * way)), (1.0 + ROUNDING) * dec);
+        }
+        if (to >= v) {      /* no way but rounding */
+            t->s = p->end;
+            return dt;
         }
         const double there = v * v - 2.0 * dec * way;       /* square of the speed at the end */
         const bool all = there >= to * to;
@@ -302,7 +290,7 @@ static bool at_end(const struct track *t, const struct ring *r)
 
 double track_advance(struct track *t, struct ring *r, double override, double dt)
 {
-    join(t, r);
+    join(t, r, override > 0.0 ? override : t->override);
     while (dt > 0.0) {
         if (at_end(t, r)) {
             t->v = 0.0;

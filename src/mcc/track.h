@@ -39,6 +39,7 @@ struct track {
     int32_t joined;         /* commands from the head of the ring that are in the chain */
     int32_t planned;        /* of these, known to the latest plan of the speeds */
     double  override;       /* of that plan */
+    double  dec;            /* [mm/s^2] least of the commands that are not behind */
     double  smooth;         /* [s] time of the mean; 0 none */
     double  end;            /* [mm] end of the joined commands on the chain */
 

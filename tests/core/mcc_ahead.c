@@ -1,32 +1,6 @@
 /* Look-ahead: corners within their tolerance, limits at every sample, exact ends, closed forms. */
 #include "corner.h"
-#include "mcc_record.h"
-
-static const double DT = 1.024e-3;      /* [s] of mcc_machine */
-
-static double norm3(const double a[3])
-{
-    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
-
-/* Distance of a point from a path, by sampling and then halving. */
-static double distance(const struct path *p, const double at[AXES])
-{
-    enum { SAMPLES = 60 };
-    double best = INFINITY, where = 0.0, x[AXES], slope[AXES];
-    for (double step = p->length / SAMPLES; step > 1e-9 * p->length; step *= 0.5) {
-        const int wide = best == INFINITY ? SAMPLES : 2;
-        const double from = best == INFINITY ? 0.0 : where - step;
-        for (int i = 0; i <= wide; i++) {
-            const double s = fmin(p->length, fmax(0.0, from + i * step));
-            path_at(p, s, x, slope);
-            const double d = norm3((double[3]){ x[0] - at[0], x[1] - at[1], x[2] - at[2] });
-            where = d < best ? s : where;
-            best = fmin(best, d);
-        }
-    }
-    return best;
-}
+#include "mcc_chain.h"
 
 static void random_path(uint64_t *seed, const double start[AXES], struct path *p)
 {
@@ -105,17 +79,6 @@ static void square(void)
     CHECK(!corner_make(&k, &a, &b, 1.0, 1e-7, true));
 }
 
-static void smooth_ramps(bool on)
-{
-    MCC_set_acc_type(&m, on ? 'S' : 'T');
-    MCC_set_dec_type(&m, on ? 'S' : 'T');
-}
-
-static double way_of_tool(void)
-{
-    return m.ipo.track.out_base + m.ipo.track.out_s;
-}
-
 /* A line in a thousand pieces is the line: same time, no dip. */
 static void pieces(bool smooth)
 {
@@ -144,42 +107,6 @@ static void pieces(bool smooth)
     CHECK_NEAR(r.last.place[0], 60.0, 0.0);
     CHECK_NEAR(r.last.place[1], 80.0, 0.0);
     CHECK(MCC_check_stop(&m));
-}
-
-/* Another one for each chain: the index of its first command. */
-static int chain_number(void)
-{
-    return m.ipo.track.started;
-}
-
-struct limits {
-    double speed, acc, jerk;
-};
-
-/* Stream of the tool's way, differentiated. */
-struct stream {
-    double s[4];
-    int n;
-};
-
-static void look(struct stream *x, double way, const struct limits *l)
-{
-    memmove(x->s + 1, x->s, 3 * sizeof *x->s);
-    x->s[0] = way;
-    x->n++;
-    const double v = x->s[0] - x->s[1], a = v - (x->s[1] - x->s[2]);
-    const double j = a - (x->s[1] - 2.0 * x->s[2] + x->s[3]);
-    const double noise = 1e-12;
-    CHECK(x->n < 2 || (v >= 0.0 && v <= l->speed * DT * (1.0 + 1e-6) + noise));
-    CHECK(x->n < 3 || fabs(a) <= l->acc * DT * DT * (1.0 + 1e-6) + noise);
-    CHECK(x->n < 4 || l->jerk <= 0.0 || fabs(j) <= l->jerk * DT * DT * DT * (1.0 + 1e-6) + noise);
-}
-
-static struct limits limits_at(double feed, bool smooth)
-{
-    /* 0.1 s from rest to the feed; S with share 0.5: acc/0.75, jerk acc/0.025 */
-    const double acc = smooth ? feed / 0.075 : feed / 0.1;
-    return (struct limits){ 2.0 * feed, acc, smooth ? acc / 0.025 : 0.0 };
 }
 
 /* Random chains, twice in a row, under random overrides, holds and at last an abort. */
