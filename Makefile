@@ -25,7 +25,7 @@ check: .venv/installed          ## formatting, lint, types
 	$(BIN)/mypy
 
 bench: build                    ## speed, as ratios measured in one run
-	@cmake --build build --target fused card_cost interpreter_cost scurve_batch
+	@cmake --build build --target fused card_cost interpreter_cost lookahead_cost scurve_batch
 	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py
 
 SECONDS ?= 120

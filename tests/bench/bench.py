@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import plans
 import scurve_moves
+import segments
 from rich.console import Console
 from rich.progress import Progress
 
@@ -185,7 +186,7 @@ def main() -> None:
         plans.Plans("rest to rest", scurve_moves.rest_to_rest),
         plans.Plans("in motion to rest", scurve_moves.to_rest),
     ]
-    rounds([fused, *engines.values(), six, pulses, *cards, interpreter, *curves])
+    rounds([fused, *engines.values(), six, pulses, *cards, interpreter, *curves, *segments.ALL])
     fused.check(native.result)
 
     base = fused.loop / fused.steps
@@ -206,6 +207,7 @@ def main() -> None:
     ratio = interpreter.line / interpreter.strtod
     print(f"{'read, checked, planned':28}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
     plans.table(curves)
+    segments.table(curves[0].ruckig)
     print()
     verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
     verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
@@ -219,6 +221,9 @@ def main() -> None:
     verdict("interpreter, million lines/s", 1e-6 / interpreter.line, least=0.5)
     for curve in curves:
         verdict(f"ruckig / scurve, {curve.name}", curve.ruckig / curve.scurve, least=1.0)
+    for s in segments.ALL:
+        verdict(f"{s.name}, million segments/s", 1e-6 / max(s.cost.values()), least=0.2)
+        verdict(f"{s.name}, 256 over 16 commands", s.growth, most=1.5)
 
 
 if __name__ == "__main__":

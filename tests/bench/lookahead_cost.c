@@ -1,0 +1,93 @@
+/* What one short segment costs by look-ahead: planned as a command, waited in the ring, joined,
+ * planned in its chain, made into points.
+ *
+ *     lookahead_cost <filling> <DDA time [ms]> <T or S>
+ *
+ * A random walk in steps of 0.1 mm, with a constant number of commands in the ring. Prints the
+ * seconds of processor time per segment and the points made per segment.
+ */
+#define _POSIX_C_SOURCE 199309L /* clock_gettime */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "task.h"
+
+enum { SEGMENTS = 100000 };
+
+static const double STEP = 0.1;     /* [mm] */
+static const double FEED = 100.0;   /* [mm/s] */
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static struct machine machine_at(double dda_time, char ramps)
+{
+    struct machine m = {
+        .dda_time = dda_time, .dda_length = 15, .queue_depth = 1,
+        .feed = FEED, .max_feed = 1000.0, .acc_time = 0.05, .dec_time = 0.05,
+        .acc_type = ramps, .dec_type = ramps
+    };
+    for (int i = 0; i < AXES; i++) {
+        m.axis[i] = (struct machine_axis){ i < 3, 10.0, 1.0, 1000, 6000.0, 60, 0 };
+    }
+    return m;
+}
+
+/* Uniform in -1 .. 1 (xorshift64). */
+static double uniform(uint64_t *state)
+{
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return (double)(*state >> 11) * 0x1p-52 - 1.0;
+}
+
+/* Next segment of the walk: turns by up to 0.1 rad, and round in the long run, so not far off. */
+static int send(struct mcc *m, uint64_t *seed, double *angle, double at[AXES])
+{
+    *angle += 0.1 * uniform(seed) + 1e-3;
+    at[0] += STEP * cos(*angle);
+    at[1] += STEP * sin(*angle);
+    return MCC_line(m, at);
+}
+
+int main(int argc, char **argv)
+{
+    static struct mcc m;
+    const int filling = argc > 1 ? atoi(argv[1]) : RING_SIZE;
+    const double dda_time = argc > 2 ? 1e-3 * atof(argv[2]) : 1e-3;
+    const struct machine machine = machine_at(dda_time, argc > 3 ? argv[3][0] : 'T');
+    double at[AXES] = { 0.0 }, angle = 0.0;
+    uint64_t seed = 1;
+    int sent = 0;
+    long points = 0;
+
+    if (MCC_init_motion(&m, &machine) || mcc_set_tolerance(&m, 0.01)) {
+        return 1;
+    }
+    const double begin = now();
+    do {
+        for (; sent < SEGMENTS && m.ring.count < filling; sent++) {
+            if (send(&m, &seed, &angle, at) < 0) {
+                return 1;
+            }
+        }
+        task_run(&m, NULL);
+        points += m.queue.count;
+        queue_drop(&m.queue, m.queue.count);
+    } while (sent < SEGMENTS || !MCC_check_stop(&m));
+    const double used = now() - begin;
+    if (m.error || sent != SEGMENTS) {
+        fprintf(stderr, "error 0x%X after %d segments\n", (unsigned)m.error, sent);
+        return 1;
+    }
+    printf("%.9g %.9g\n", used / SEGMENTS, (double)points / SEGMENTS);
+    return 0;
+}
