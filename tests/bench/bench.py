@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import plans
 import scurve_moves
+import studies
 from rich.console import Console
 from rich.progress import Progress
 
@@ -206,6 +207,9 @@ def main() -> None:
     ratio = interpreter.line / interpreter.strtod
     print(f"{'read, checked, planned':28}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
     plans.table(curves)
+    study = studies.Study()
+    study()
+    study.table()
     print()
     verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
     verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
@@ -219,6 +223,7 @@ def main() -> None:
     verdict("interpreter, million lines/s", 1e-6 / interpreter.line, least=0.5)
     for curve in curves:
         verdict(f"ruckig / scurve, {curve.name}", curve.ruckig / curve.scurve, least=1.0)
+    verdict("sweep, efficiency of all cores", study.efficiency, least=0.9)
 
 
 if __name__ == "__main__":

@@ -188,6 +188,7 @@ def _scale(shown: Dimension, **more: Any) -> Figure:
 
 def _series(name: str, x: Iterable[Any], y: Iterable[Any], marker: Figure) -> Figure:
     point = {"type": "scatter", "mode": "markers", "name": name, "marker": marker}
+    point |= {"cliponaxis": False}
     return point | {"x": list(x), "y": list(y)}
 
 
@@ -215,7 +216,10 @@ def _field(outcome: "Outcome") -> Figure:
     log, steps = logarithmic(found.z), levels(found.z)
     z = np.log10(found.z) if log else found.z
     at = np.log10(steps) if log else steps
-    bar = {"title": {"text": escape(_cost_label(outcome)), "side": "right"}, "outlinewidth": 0}
+    bar = {
+        "title": {"text": escape(_cost_label(outcome)), "side": "right", "font": {"size": 13}},
+        "outlinewidth": 0,
+    }
     bar |= {"tickvals": at.tolist(), "ticktext": [f"{s:g}" for s in steps]}
     size = float(at[1] - at[0]) if len(at) > 1 else 1.0
     even = {"start": float(at[0]), "end": float(at[-1]), "size": size / 2 if log else size}
@@ -236,7 +240,9 @@ def _field(outcome: "Outcome") -> Figure:
     if outcome.study.sampling != "grid":
         dot = {"size": 4, "color": INK, "opacity": 0.5}
         data.append(_series("runs", shown[0].values, shown[1].values, dot))
-    more = {"xaxis": _scale(shown[0]), "yaxis": _scale(shown[1])}
+    ends = ([float(d.even.min()), float(d.even.max())] for d in shown)
+    across, up = (_scale(d, range=e) for d, e in zip(shown, ends, strict=True))
+    more: Figure = {"xaxis": across, "yaxis": up, "showlegend": True}
     return {"data": data + _marks(outcome, shown), "layout": layout(560, **more)}
 
 
@@ -251,7 +257,7 @@ def _curve(outcome: "Outcome") -> Figure:
     if (best := outcome.best) is not None:
         data.append(_series(f"best: run {best}", [shown.values[best]], [float(cost[best])], BEST))
     kinds = {"type": "log" if logarithmic(cost) else "linear", "exponentformat": "power"}
-    more: Figure = {"xaxis": _scale(shown)}
+    more: Figure = {"xaxis": _scale(shown), "showlegend": True}
     more["yaxis"] = axis(escape(_cost_label(outcome)), **kinds)
     if shown.name in outcome.study.tuned:
         tuned = outcome.study.tuned[shown.name]
@@ -270,7 +276,10 @@ def _matrix(outcome: "Outcome") -> Figure:
     log = logarithmic(cost)
     color = np.log10(cost[order]) if log else cost[order]
     steps = levels(cost)
-    bar = {"title": {"text": escape(_cost_label(outcome)), "side": "right"}, "outlinewidth": 0}
+    bar = {
+        "title": {"text": escape(_cost_label(outcome)), "side": "right", "font": {"size": 13}},
+        "outlinewidth": 0,
+    }
     bar |= {"tickvals": (np.log10(steps) if log else steps).tolist()}
     bar |= {"ticktext": [f"{s:g}" for s in steps]}
 

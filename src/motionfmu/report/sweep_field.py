@@ -19,7 +19,16 @@ CURVE, FIELD, MATRIX = "curve", "field", "matrix"
 DECADES = 1.5  # a cost that spreads over more of them is drawn in logarithms
 CELLS = 121  # of the field between scattered points, each way
 LEVELS = 12  # about so many lines
-PER_DECADE = (1.0, 2.0, 5.0)
+STEPS = (1.0, 2.0, 5.0, 10.0)
+# Lines of a decade, by how many decades there are; the last for more.
+PER_DECADE = (
+    (1, 1.5, 2, 2.5, 3, 4, 5, 7),
+    (1, 1.5, 2, 3, 5, 7),
+    (1, 1.5, 2, 3, 5, 7),
+    (1, 2, 5),
+    (1, 2, 5),
+    (1,),
+)
 
 
 @dataclass(frozen=True)
@@ -188,18 +197,19 @@ def levels(cost: Array) -> Array:
     Returns
     -------
     ndarray
-        Increasing; 1, 2, 5 of each decade if the cost is drawn in logarithms.
+        Increasing; the same of each decade if the cost is drawn in logarithms.
     """
     known = cost[np.isfinite(cost)]
     low, high = float(known.min()), float(known.max())
     if logarithmic(cost):
         decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-        steps = PER_DECADE if len(decades) <= LEVELS // 2 else (1.0,)
-        found = np.array([s * 10.0**d for d in decades for s in steps])
+        steps = PER_DECADE[min(len(decades), len(PER_DECADE)) - 1]
+        found = np.array([float(f"{s:g}e{d}") for d in decades for s in steps])
     else:
         width = (high - low) / LEVELS
         unit = 10.0 ** math.floor(math.log10(width)) if width > 0 else 1.0
-        step = next((s * unit for s in (*PER_DECADE, 10.0) if s * unit >= width), unit)
+        step = next((s * unit for s in STEPS if s * unit >= width), unit)
         first, last = math.floor(low / step), math.ceil(high / step)
         found = np.arange(first, last + 1) * step
-    return found
+    below, above = found[found <= low], found[found >= high]
+    return found[(found >= below[-1]) & (found <= above[0])]

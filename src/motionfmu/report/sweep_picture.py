@@ -28,7 +28,14 @@ if TYPE_CHECKING:
 DPI = 110
 SIDE = 2.1  # [inch] of a cell of a scatter matrix
 HEATMAP = LinearSegmentedColormap.from_list("cost", HEAT)
-BEST: dict[str, Any] = {"marker": "*", "s": 210, "color": "white", "edgecolor": INK, "zorder": 5}
+BEST: dict[str, Any] = {
+    "marker": "*",
+    "s": 210,
+    "color": "white",
+    "edgecolor": INK,
+    "zorder": 5,
+    "clip_on": False,
+}
 TUNED: dict[str, Any] = {
     "marker": "D",
     "s": 70,
@@ -69,6 +76,13 @@ def _dress(axes: Any) -> None:
     axes.spines[["left", "bottom"]].set_color(MUTED)
 
 
+def _legend(axes: Any) -> None:
+    """The marks, beside the title."""
+    place: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(**place, ncols=4, frameon=False, fontsize=9)
+
+
 def _title(outcome: "Outcome", axes: Any) -> None:
     what = label(outcome.study.cost, _unit(outcome))
     axes.set_title(f"{outcome.study.name}: {what}", loc="left", fontweight="bold", pad=10)
@@ -83,6 +97,7 @@ def _scales(axes: Any, first: Dimension, second: Dimension) -> None:
         getattr(axes, f"set_{way}label")(dimension.label)
         if dimension.log:
             getattr(axes, f"set_{way}scale")("log")
+            getattr(axes, f"{way}axis").set_major_formatter("{x:g}")
 
 
 def _marks(outcome: "Outcome", axes: Any, shown: list[Dimension]) -> None:
@@ -102,12 +117,19 @@ def _field(outcome: "Outcome") -> Any:
     assert found is not None, "kind() has seen it"
     picture, axes = plt.subplots(figsize=(8.2, 5.6), layout="constrained")
     steps = levels(found.z)
-    whole = np.ma.masked_invalid(found.z)
-    norm = BoundaryNorm(steps, HEATMAP.N) if len(steps) > 1 else None
-    filled = axes.contourf(found.x, found.y, whole, steps, cmap=HEATMAP, norm=norm)
-    lines = axes.contour(found.x, found.y, whole, steps, colors="white", linewidths=0.8)
-    axes.clabel(lines, fmt="%g", fontsize=8)
-    bar = picture.colorbar(filled, ax=axes, ticks=steps, format="%g", aspect=28, pad=0.02)
+    drawn, at = (np.log10(found.z), np.log10(steps)) if logarithmic(found.z) else (found.z, steps)
+    whole, names = (
+        np.ma.masked_invalid(drawn),
+        {k: f"{v:g}" for k, v in zip(at, steps, strict=True)},
+    )
+    norm = BoundaryNorm(at, HEATMAP.N)
+    filled = axes.contourf(found.x, found.y, whole, at, cmap=HEATMAP, norm=norm)
+    lines = axes.contour(
+        found.x, found.y, whole, at, colors="white", linewidths=0.8, linestyles="solid"
+    )
+    axes.clabel(lines, fmt=names, fontsize=8)
+    bar = picture.colorbar(filled, ax=axes, ticks=at, aspect=28, pad=0.02)
+    bar.set_ticklabels(list(names.values()))
     bar.outline.set_visible(False)
     bar.set_label(label(outcome.study.cost, _unit(outcome)))
     if outcome.study.sampling != "grid":
@@ -117,7 +139,7 @@ def _field(outcome: "Outcome") -> Any:
     _marks(outcome, axes, shown)
     _dress(axes)
     _title(outcome, axes)
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, frameon=False, fontsize=9)
+    _legend(axes)
     return picture
 
 
@@ -146,7 +168,7 @@ def _curve(outcome: "Outcome") -> Any:
     axes.set_axisbelow(True)
     _dress(axes)
     _title(outcome, axes)
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, fontsize=9)
+    _legend(axes)
     return picture
 
 

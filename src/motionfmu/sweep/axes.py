@@ -2,15 +2,16 @@
 
 import itertools
 import math
+import sys
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
-from scipy import stats
 
 from motionfmu.errors import InputError
 from motionfmu.system import End
@@ -19,6 +20,7 @@ Value = float | int | bool | str
 Point = tuple[Value, ...]
 SAMPLINGS = ("grid", "random", "latin")
 RUNS_MAX = 10_000_000  # more points than memory and patience hold
+STANDARD = NormalDist()
 _STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
@@ -117,8 +119,11 @@ class Axis:
         if sampling != "grid" and source.n is not None:
             raise ValueError(f"{shown}: n = {source.n} belongs to a grid, not to {sampling}")
         if kind == "Int32":
-            if broken := [x for x in self._even(source) if x != round(x)]:
+            even = self._even(source)
+            if broken := [x for x in (even[0], even[-1]) if x != round(x)]:
                 raise ValueError(f"{shown}: {broken[0]:g} is no whole number")
+            if len(set(map(round, even))) < len(even):
+                raise ValueError(f"{shown}: fewer whole numbers than n = {source.n}")
 
     def _even(self, source: Span) -> list[float]:
         """Values of a grid; the two ends where points are drawn."""
@@ -161,7 +166,7 @@ class Axis:
         if isinstance(source, Listed):
             return [self._typed(source.values[int(u * len(source.values))]) for u in shares]
         if isinstance(source, Normal):
-            return [self._typed(x) for x in stats.norm.ppf(shares, source.mean, source.deviation)]
+            return [self._typed(source.mean + source.deviation * z) for z in _normal(shares)]
         low, high = source.low, source.high
         if whole:  # every whole number has a stretch of its own
             low, high = low - (0.0 if source.log else 0.5), high + (0.0 if source.log else 0.5)
@@ -173,6 +178,12 @@ class Axis:
     def _typed(self, x: Any) -> Value:
         kinds: dict[str, Any] = {"Float64": float, "Int32": round}
         return kinds.get(self.end.port.type, lambda same: same)(x)
+
+
+def _normal(shares: NDArray[np.float64]) -> list[float]:
+    """Quantiles of the standard normal distribution; none is infinite."""
+    inside = shares.clip(sys.float_info.min, 1.0 - sys.float_info.epsilon)
+    return [STANDARD.inv_cdf(u) for u in inside]
 
 
 def option(text: str) -> tuple[str, Any]:
@@ -261,7 +272,9 @@ def points(axes: Sequence[Axis], sampling: str, runs: int, seed: int) -> list[Po
         return list(itertools.product(*(a.grid() for a in axes)))
     random = np.random.default_rng(seed)
     if sampling == "latin":
-        shares = stats.qmc.LatinHypercube(len(axes), rng=random).random(runs)
+        from scipy.stats import qmc  # half a second, which no worker needs
+
+        shares = qmc.LatinHypercube(len(axes), rng=random).random(runs)
     else:
         shares = random.random((runs, len(axes)))
     columns = [axis.drawn(shares[:, i]) for i, axis in enumerate(axes)]
