@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -192,6 +193,17 @@ def test_the_radius_of_each_row_is_the_one_of_theory(tmp_path: Path, here) -> No
     assert [row.checks for row in rows] == [False, True]
 
 
+def test_rows_of_mismatched_gains_are_those_of_theory(tmp_path: Path, here: None) -> None:
+    """Steady contour error V sin a cos a (1/Kx - 1/Ky), V = 100 mm/s, a = 45 degrees."""
+    axis = {f"{GAIN}[1]": [200, 240], f"{GAIN}[2]": [200, 160]}
+    given = {"axis": axis, "results": ["contour.error.max"]}
+    outcome = conduct(study(ROOT / "scenarios/mismatch_line", given), tmp_path / "m")
+    for x, y, found in zip(*map(outcome.axis, axis), outcome.cost, strict=True):
+        theory = 100.0 * 0.5 * abs(200 / x - 200 / y) / 47.684
+        assert found == pytest.approx(theory, rel=0.01, abs=3e-3), (x, y)
+    assert outcome.best == 0 and max(outcome.cost) > 0.4
+
+
 # ---- errors
 
 
@@ -311,9 +323,7 @@ def test_a_start_that_fails_leaves_nothing(tmp_path: Path, monkeypatch) -> None:
     with pytest.raises(motionfmu.InputError, match=r"--scheduler tcp://127\.0\.0\.1:1"):
         conduct(small(), tmp_path / "a/b", Ways(scheduler="tcp://127.0.0.1:1"))
     chosen = small()
-    stale = Study(
-        **{**chosen.__dict__, "job": type(chosen.job)(**{**chosen.job.__dict__, "digest": "0"})}
-    )
+    stale = replace(chosen, job=replace(chosen.job, digest="0"))
     with pytest.raises(motionfmu.InputError, match="other files or FMUs than the study"):
         conduct(stale, tmp_path / "a/b", Ways(workers=2))
     assert list(tmp_path.iterdir()) == []
@@ -341,6 +351,7 @@ results = ["card.err_count.absmax"]
         ("stop = 0.03", 'sampling = "latin"', r":3: sampling 'latin' wants runs|n = 2 belongs"),
         ("stop = 0.03", "runs = 5", r":3: runs: the number of runs of a grid follows"),
         ("stop = 0.03", 'cost = "card.stock.min"', r":3: cost = 'card.stock.min' is none of"),
+        ("stop = 0.03", 'tuned = "study.toml"', r"no value \"mcc.p_gain\" = ... for the tuned"),
         ("stop = 0.03", 'tuned = "none.toml"', r":3: tuned = 'none.toml': No such file"),
         ("err_count.absmax", "err_count.worst", r":4: card.err_count.worst: SIGNAL.STATISTIC"),
         ("err_count.absmax", "err_cont.max", r":4: card.err_cont: .*did you mean 'err_count'"),
@@ -462,11 +473,27 @@ def test_the_page_shows_the_cost_over_what_was_varied(
         assert error.max() < 1e-12 if sampling == "grid" else np.quantile(error, 0.9) < 0.1
 
 
-@pytest.mark.parametrize("cost", [[0.0, 1.0], [3.0, 3.0], [-4e-7, 9e-7], [1e-3, 40.0], [2.0, 2.5]])
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("cost", [0.0, 3.0, None])
+def test_a_page_of_equal_costs_or_of_none_is_written(
+    cost: float | None, count: int, tmp_path: Path
+) -> None:
+    from motionfmu.report import sweep
+
+    names = [f"{GAIN}[{i + 1}]" for i in range(count)]
+    outcome = synthetic(names, "grid", 3, tmp_path)
+    outcome.rows[:] = [replace(r, values=(cost, 0.0, 0.0)) for r in outcome.rows]
+    assert "sweep.parquet" in sweep.write_sweep(outcome, tmp_path).read_text()
+    assert (tmp_path / "sweep.png").exists() == (cost is not None)
+
+
+@pytest.mark.parametrize(
+    "cost", [[0.0, 1.0], [3.0, 3.0], [-4e-7, 9e-7], [1e-3, 40.0], [2.0, 2.5], [0.0, 0.0]]
+)
 def test_levels_are_round_and_span_the_cost(cost: list[float]) -> None:
     from motionfmu.report.sweep_field import levels
 
     found = levels(np.array([*cost, math.nan]))
     assert found[0] <= min(cost) and found[-1] >= max(cost)
-    assert 1 <= len(found) <= 20 and (np.diff(found) > 0).all()
+    assert 2 <= len(found) <= 20 and (np.diff(found) > 0).all()
     assert all(float(f"{v:.3g}") == pytest.approx(v, rel=1e-9, abs=1e-12) for v in found)

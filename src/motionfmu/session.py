@@ -39,7 +39,7 @@ def split(name: str) -> tuple[str, int | None]:
 
 
 class Session:
-    """A scenario in the native engine, ready to be run with other values.
+    """A scenario loaded once, to be run with many values.
 
     FMUs are unpacked, wired and loaded once. A run gives the same bits as `Scenario.run`.
     Use it as a context manager, or call `close`.

@@ -97,7 +97,7 @@ def _give(slave: Slave, end: End, values: tuple[Any, ...]) -> None:
 
 
 class Container:
-    """A system as a container FMU, built once and run as often as one likes.
+    """A system as a container FMU, built once, run many times.
 
     Parameters
     ----------

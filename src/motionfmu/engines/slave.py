@@ -239,7 +239,7 @@ class Slave:
         self._do("terminate")
 
     def renew(self) -> None:
-        """Take a new instance in place of the old one; the library stays loaded."""
+        """Take a new instance; the library stays loaded."""
         old, self.slave.component = self.slave.component, None
         if old:
             getattr(self.slave, f"fmi{self.fmi}FreeInstance")(old)

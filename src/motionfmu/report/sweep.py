@@ -35,6 +35,7 @@ Figure = dict[str, Any]
 PAGE = "report.html"
 BEST_SHOWN, ERRORS_SHOWN = 10, 20
 SCALE = [[i / (len(HEAT) - 1), color] for i, color in enumerate(HEAT)]
+LINES = 18  # of equal cost, where they are even in the logarithm
 CELL = 210  # [pixel] of a scatter matrix
 BEST = {"symbol": "star", "size": 17, "color": "#ffffff", "line": {"color": INK, "width": 1.6}}
 TUNED = {"symbol": "diamond", "size": 12, "color": AXES[0], "line": {"color": "#fff", "width": 1}}
@@ -187,8 +188,8 @@ def _scale(shown: Dimension, **more: Any) -> Figure:
 
 
 def _series(name: str, x: Iterable[Any], y: Iterable[Any], marker: Figure) -> Figure:
-    point = {"type": "scatter", "mode": "markers", "name": name, "marker": marker}
-    point |= {"cliponaxis": False}
+    point: Figure = {"type": "scatter", "mode": "markers", "name": name, "marker": marker}
+    point["cliponaxis"] = False
     return point | {"x": list(x), "y": list(y)}
 
 
@@ -216,13 +217,10 @@ def _field(outcome: "Outcome") -> Figure:
     log, steps = logarithmic(found.z), levels(found.z)
     z = np.log10(found.z) if log else found.z
     at = np.log10(steps) if log else steps
-    bar = {
-        "title": {"text": escape(_cost_label(outcome)), "side": "right", "font": {"size": 13}},
-        "outlinewidth": 0,
-    }
+    bar: Figure = {"outlinewidth": 0}
     bar |= {"tickvals": at.tolist(), "ticktext": [f"{s:g}" for s in steps]}
-    size = float(at[1] - at[0]) if len(at) > 1 else 1.0
-    even = {"start": float(at[0]), "end": float(at[-1]), "size": size / 2 if log else size}
+    size = (at[-1] - at[0]) / LINES if log else at[1] - at[0]
+    even = {"start": float(at[0]), "end": float(at[-1]), "size": float(size)}
     drawn = {
         "type": "contour",
         "x": packed(found.x, exact=True),
@@ -276,10 +274,7 @@ def _matrix(outcome: "Outcome") -> Figure:
     log = logarithmic(cost)
     color = np.log10(cost[order]) if log else cost[order]
     steps = levels(cost)
-    bar = {
-        "title": {"text": escape(_cost_label(outcome)), "side": "right", "font": {"size": 13}},
-        "outlinewidth": 0,
-    }
+    bar: Figure = {"outlinewidth": 0}
     bar |= {"tickvals": (np.log10(steps) if log else steps).tolist()}
     bar |= {"ticktext": [f"{s:g}" for s in steps]}
 
@@ -295,10 +290,10 @@ def _matrix(outcome: "Outcome") -> Figure:
     data = [cloud("runs", columns, [float(cost[i]) for i in order], many)]
     if (best := outcome.best) is not None:
         point = [[v] for v in study.points[best]]
-        data.append(cloud(f"best: run {best}", point, [float(cost[best])], BEST))
+        data.append(cloud(f"best: run {best}", point, [float(cost[best])], BEST | {"size": 13}))
     if study.tuned:
         point = [[study.tuned[d.name]] for d in shown]
-        data.append(cloud("tuned", point, [None], TUNED))
+        data.append(cloud("tuned", point, [None], TUNED | {"size": 9}))
     more: Figure = {}
     for i, d in enumerate(shown):
         key = str(i + 1) if i else ""

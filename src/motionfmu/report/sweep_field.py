@@ -20,15 +20,8 @@ DECADES = 1.5  # a cost that spreads over more of them is drawn in logarithms
 CELLS = 121  # of the field between scattered points, each way
 LEVELS = 12  # about so many lines
 STEPS = (1.0, 2.0, 5.0, 10.0)
-# Lines of a decade, by how many decades there are; the last for more.
-PER_DECADE = (
-    (1, 1.5, 2, 2.5, 3, 4, 5, 7),
-    (1, 1.5, 2, 3, 5, 7),
-    (1, 1.5, 2, 3, 5, 7),
-    (1, 2, 5),
-    (1, 2, 5),
-    (1,),
-)
+# Lines in each decade: while there are fewer than 3 decades, fewer than 6, more.
+FINE, MIDDLE, COARSE = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0), (1.0, 2.0, 5.0), (1.0,)
 
 
 @dataclass(frozen=True)
@@ -61,7 +54,7 @@ class Dimension:
 
     @property
     def even(self) -> Array:
-        """Numbers as they lie on the page: their logarithm if it is logarithmic."""
+        """Numbers as they lie on the page, perhaps logarithms."""
         return np.log10(self.numbers) if self.log else self.numbers
 
 
@@ -192,24 +185,26 @@ def levels(cost: Array) -> Array:
     Parameters
     ----------
     cost : ndarray
-        NaN where there is none; two different values at least.
+        NaN where there is none; not all of it.
 
     Returns
     -------
     ndarray
-        Increasing; the same of each decade if the cost is drawn in logarithms.
+        At least two, increasing; the same of each decade if the cost is drawn in logarithms.
     """
     known = cost[np.isfinite(cost)]
     low, high = float(known.min()), float(known.max())
     if logarithmic(cost):
         decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-        steps = PER_DECADE[min(len(decades), len(PER_DECADE)) - 1]
+        spread = math.log10(high / low)
+        steps = FINE if spread < 3.0 else MIDDLE if spread < 6.0 else COARSE
         found = np.array([float(f"{s:g}e{d}") for d in decades for s in steps])
     else:
         width = (high - low) / LEVELS
         unit = 10.0 ** math.floor(math.log10(width)) if width > 0 else 1.0
         step = next((s * unit for s in STEPS if s * unit >= width), unit)
-        first, last = math.floor(low / step), math.ceil(high / step)
-        found = np.arange(first, last + 1) * step
-    below, above = found[found <= low], found[found >= high]
-    return found[(found >= below[-1]) & (found <= above[0])]
+        first = math.floor(low / step)
+        last = max(math.ceil(high / step), first + 1)
+        found = np.arange(first - 1, last + 2) * step  # rounding may push one out
+    first, last = np.flatnonzero(found <= low)[-1], np.flatnonzero(found >= high)[0]
+    return found[first : max(last, first + 1) + 1]

@@ -7,6 +7,7 @@ import matplotlib
 import numpy as np
 from matplotlib import pyplot as plt
 from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, LogNorm, Normalize
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.style import AXES, GRID, HEAT, INK, MUTED
@@ -76,6 +77,19 @@ def _dress(axes: Any) -> None:
     axes.spines[["left", "bottom"]].set_color(MUTED)
 
 
+def _log(axes: Any, way: str) -> None:
+    """A logarithmic scale with numbers in full."""
+    getattr(axes, f"set_{way}scale")("log")
+    _ticks(getattr(axes, f"{way}axis"))
+
+
+def _ticks(scale: Any) -> None:
+    low, high = scale.get_view_interval()
+    scale.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 200 * low else (1.0,)))
+    scale.set_major_formatter("{x:g}")
+    scale.set_minor_formatter(NullFormatter())
+
+
 def _legend(axes: Any) -> None:
     """The marks, beside the title."""
     place: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
@@ -96,8 +110,7 @@ def _scales(axes: Any, first: Dimension, second: Dimension) -> None:
     for dimension, way in ((first, "x"), (second, "y")):
         getattr(axes, f"set_{way}label")(dimension.label)
         if dimension.log:
-            getattr(axes, f"set_{way}scale")("log")
-            getattr(axes, f"{way}axis").set_major_formatter("{x:g}")
+            _log(axes, way)
 
 
 def _marks(outcome: "Outcome", axes: Any, shown: list[Dimension]) -> None:
@@ -154,14 +167,14 @@ def _curve(outcome: "Outcome") -> Any:
         names = list(dict.fromkeys(map(str, shown.values)))
         axes.set_xticks(range(len(names)), names)
     if logarithmic(cost):
-        axes.set_yscale("log")
+        _log(axes, "y")
     if (best := outcome.best) is not None:
         axes.scatter(x[best], cost[best], **BEST, label=f"best: {cost[best]:.4g}")
     if shown.name in outcome.study.tuned and shown.numeric:
         tuned = float(outcome.study.tuned[shown.name])
         axes.axvline(tuned, color=AXES[0], lw=1.4, ls="--", label="tuned")
     if shown.log:
-        axes.set_xscale("log")
+        _log(axes, "x")
     axes.set_xlabel(shown.label)
     axes.set_ylabel(label(outcome.study.cost, _unit(outcome)))
     axes.grid(color=GRID, lw=0.8)
@@ -194,7 +207,9 @@ def _matrix(outcome: "Outcome") -> Any:
             y = cost[order] if i == j else shown[i].numbers[order]
             points = axes.scatter(x, y, c=cost[order], cmap=HEATMAP, norm=norm, s=12, linewidths=0)
             _cell(outcome, axes, (i, j), shown)
-    bar = picture.colorbar(points, ax=grid, aspect=32, pad=0.02, shrink=0.8)
+    bar = picture.colorbar(points, ax=grid, aspect=32, pad=0.02, shrink=0.8, format="%g")
+    if logarithmic(cost):
+        _ticks(bar.ax.yaxis)
     bar.outline.set_visible(False)
     bar.set_label(label(outcome.study.cost, _unit(outcome)))
     handles, names = grid[-1, 0].get_legend_handles_labels()
@@ -215,9 +230,9 @@ def _cell(outcome: "Outcome", axes: Any, at: tuple[int, int], shown: list[Dimens
         x, y = float(study.tuned[shown[j].name]), float(study.tuned[shown[i].name])
         axes.scatter(x, y, **TUNED | {"s": 40}, label="tuned")
     if shown[j].log:
-        axes.set_xscale("log")
+        _log(axes, "x")
     if logarithmic(cost) if i == j else shown[i].log:
-        axes.set_yscale("log")
+        _log(axes, "y")
     if i == len(shown) - 1:
         axes.set_xlabel(shown[j].label)
     if i == j:

@@ -25,7 +25,7 @@ _STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 class Span(BaseModel):
-    """A range: n even values of a grid, or a uniform distribution; of the logarithm with log."""
+    """A range: n even values of a grid, or a uniform distribution."""
 
     model_config = _STRICT
     low: float = Field(alias="from", strict=True)
@@ -187,7 +187,9 @@ def _normal(shares: NDArray[np.float64]) -> list[float]:
 
 
 def option(text: str) -> tuple[str, Any]:
-    """Read ``comp.var=lo:hi:n``, ``lo:hi``, either with ``:log``, or ``a,b,c``.
+    """Read an axis from the command line.
+
+    ``comp.var=lo:hi:n``, ``lo:hi``, either with ``:log`` after it, or ``a,b,c``.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ class Column:
 
     @property
     def unit(self) -> str:
-        """Unit of the signal, of an error of the contour; empty for others."""
+        """Unit of the signal, or mm of a contour error; else empty."""
         if self.end:
             return self.end.port.unit or ""
         _, table, *_, figure = self.name.split(".")
@@ -114,7 +114,7 @@ def column(scenario: Scenario, name: str) -> Column:
 
 
 def usual(scenario: Scenario) -> list[Column]:
-    """The columns of a study that names none: what the scenario checks.
+    """The columns of a study that names none: what is checked.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def _checked(scenario: Scenario, name: str, check: Check) -> Iterable[str]:
 
 
 def signals(scenario: Scenario, columns: Iterable[Column]) -> list[End]:
-    """All a run must record: for the columns, the checks and the contour.
+    """What a run records: for columns, checks and contour.
 
     Parameters
     ----------

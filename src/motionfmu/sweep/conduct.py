@@ -94,7 +94,7 @@ class Outcome:
 
     @property
     def best(self) -> int | None:
-        """Number of the run of the smallest cost without an error; None if there is none."""
+        """Run of the smallest cost without an error, or None."""
         good = np.array([row.status == OK for row in self.rows], dtype=bool)
         cost = np.where(good, self.cost, np.nan)
         return None if np.isnan(cost).all() else int(np.nanargmin(cost))
@@ -117,7 +117,7 @@ def _rows(study: Study, ways: Ways, done: set[int]) -> Iterator[Row]:
 
 
 def conduct(study: Study, folder: str | Path, ways: Ways | None = None) -> Outcome:
-    """Run all points that are not done yet and write the table and the report.
+    """Run what is not done yet, write the table and the report.
 
     Parameters
     ----------

@@ -208,7 +208,7 @@ def study(path: str | Path, given: Mapping[str, Any] | None = None) -> Study:
 
 
 def digest(scenario: Scenario) -> str:
-    """Fingerprint of a scenario: its folder's files and the FMUs it uses.
+    """Fingerprint of a scenario, the files it names and its FMUs.
 
     Parameters
     ----------
@@ -376,7 +376,8 @@ def _tuned(
         if isinstance(value, list):
             index = element if element is not None else 0
             value = value[index] if index < len(value) else None
-        if not isinstance(value, float | int | str):
+        kinds = {"String": str, "Boolean": bool}
+        if not isinstance(value, kinds.get(axis.end.port.type, float | int)):
             raise InputError(f'{file}: no value "{axis.name}" = ... for the tuned point')
         found[axis.name] = value
     return found

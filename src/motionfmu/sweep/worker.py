@@ -150,7 +150,7 @@ def chunk(job: Job, points: Sequence[tuple[int, Point]]) -> list[Row]:
 
 
 def main(pipe: int) -> None:
-    """Serve the process that started this one, until it closes its end.
+    """Serve the process that started this one until it is gone.
 
     Parameters
     ----------
