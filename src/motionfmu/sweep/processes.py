@@ -20,8 +20,8 @@ from motionfmu.sweep.worker import CRASH, Row
 
 Task = tuple[int, Point]
 
-# Points a worker has: one running, one waiting, so that it never waits for us.
-AHEAD = 2
+# Points a worker has: one running, the others waiting, so that it never waits for us.
+AHEAD = 4
 PATIENCE = 10  # [s] for a worker to remove its files when it is told to end
 # One thread per worker: the workers themselves are what fills the cores.
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -118,7 +118,7 @@ def rows(job: Job, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
 def _deal(running: list[_Process], pending: deque[Task]) -> None:
     """Hand out points; the last ones only to those who have nothing to do."""
     for one in running:
-        ahead = AHEAD if len(pending) > len(running) else 1
+        ahead = AHEAD if len(pending) > AHEAD * len(running) else 1
         while one.ready and pending and len(one.tasks) < ahead:
             one.tasks.append(pending.popleft())
             with contextlib.suppress(BrokenPipeError, ConnectionResetError):

@@ -376,7 +376,7 @@ def _tuned(
         if isinstance(value, list):
             index = element if element is not None else 0
             value = value[index] if index < len(value) else None
-        kinds = {"String": str, "Boolean": bool}
+        kinds: dict[str, Any] = {"String": str, "Boolean": bool}
         if not isinstance(value, kinds.get(axis.end.port.type, float | int)):
             raise InputError(f'{file}: no value "{axis.name}" = ... for the tuned point')
         found[axis.name] = value
