@@ -11,7 +11,7 @@ from motionfmu.sweep import Ways, conduct, processes, study
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios/circle_theory"
 RUNS = 1000
-STOP = 1.2  # [s] simulated: about 0.05 s of work
+STOP = 1.0  # [s] simulated: about 0.05 s of work
 
 
 class Study:
