@@ -4,7 +4,7 @@ import hashlib
 import json
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
@@ -89,6 +89,8 @@ class Job:
         Path of the scenario.toml.
     digest : str
         Of the scenario's files and FMUs; a worker with others refuses.
+    named : tuple of str
+        Texts among the study's values, which may name files.
     axes, columns : tuple of str
         Names.
     set : dict
@@ -99,6 +101,7 @@ class Job:
 
     scenario: str
     digest: str
+    named: tuple[str, ...]
     axes: tuple[str, ...]
     columns: tuple[str, ...]
     set: dict[str, Any]
@@ -193,7 +196,8 @@ def study(path: str | Path, given: Mapping[str, Any] | None = None) -> Study:
         points=ax.points(chosen, body.sampling, runs, body.seed),
         job=Job(
             scenario=str(scenario.document.file),
-            digest=digest(scenario),
+            digest=digest(scenario, _texts(chosen, body.set)),
+            named=_texts(chosen, body.set),
             axes=tuple(a.name for a in chosen),
             columns=tuple(c.name for c in columns),
             set=dict(body.set),
@@ -207,12 +211,14 @@ def study(path: str | Path, given: Mapping[str, Any] | None = None) -> Study:
     )
 
 
-def digest(scenario: Scenario) -> str:
+def digest(scenario: Scenario, given: Iterable[Any] = ()) -> str:
     """Fingerprint of a scenario, the files it names and its FMUs.
 
     Parameters
     ----------
     scenario : Scenario
+    given : iterable
+        More values, which may name files beside the scenario.
 
     Returns
     -------
@@ -221,9 +227,12 @@ def digest(scenario: Scenario) -> str:
     names = sorted({*scenario.document.body.component.values(), "scope"})
     found = hashlib.sha256(scenario.document.file.read_bytes())
     beside = scenario.document.file.parent
-    texts = [v for v in scenario.document.body.set.values() if isinstance(v, str)]
-    files = [beside / t for t in texts if t and (beside / t).is_file()]
-    for file in [*files, *(fmus.fmu_path(name) for name in names)]:
+    files = [fmus.fmu_path(name) for name in names]
+    for value in (*scenario.document.body.set.values(), *given):
+        listed = value if isinstance(value, list) else [value]
+        texts = (x for x in listed if isinstance(x, str) and x)
+        files += [beside / x for x in texts if (beside / x).is_file()]
+    for file in files:
         found.update(hashlib.sha256(file.read_bytes()).digest())
     return found.hexdigest()
 
@@ -315,6 +324,12 @@ def _axis(origin: Origin, scenario: Scenario, name: str, spec: Any) -> ax.Axis:
             raise
         raise origin.error(str(error), "axis", name) from None
     return ax.Axis(name, end, source)
+
+
+def _texts(chosen: tuple[ax.Axis, ...], given: Mapping[str, Any]) -> tuple[str, ...]:
+    lists = [a.source.values for a in chosen if isinstance(a.source, ax.Listed)]
+    lists += [v if isinstance(v, list) else [v] for v in given.values()]
+    return tuple(x for values in lists for x in values if isinstance(x, str))
 
 
 def _runs(origin: Origin, body: Body, chosen: tuple[ax.Axis, ...]) -> int:

@@ -64,7 +64,7 @@ class Worker:
     def __init__(self, job: Job) -> None:
         self.job = job
         scenario = load(job.scenario)
-        if digest(scenario) != job.digest:
+        if digest(scenario, job.named) != job.digest:
             raise InputError(f"{job.scenario}: a worker has other files or FMUs than the study")
         self._columns = [column(scenario, name) for name in job.columns]
         recorded = signals(scenario, self._columns)
