@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -276,7 +277,8 @@ def test_a_kill_loses_and_repeats_nothing_that_was_done(whole: Outcome, tmp_path
         line += ["--result", name]
     kept: list[int] = []
     for least in (1, 5):
-        process = subprocess.Popen(list(map(str, line)), stdout=subprocess.DEVNULL)
+        env = os.environ | {"TMPDIR": str(tmp_path)}
+        process = subprocess.Popen(list(map(str, line)), stdout=subprocess.DEVNULL, env=env)
         while process.poll() is None and len(finished(out)) < least:
             time.sleep(0.002)
         os.kill(process.pid, signal.SIGKILL)
@@ -293,6 +295,25 @@ def test_a_kill_loses_and_repeats_nothing_that_was_done(whole: Outcome, tmp_path
     assert seen == list(range(len(kept), 13))
     assert table(out) == table(whole.folder)
     assert not (out / book.JOURNAL).exists()
+
+
+def test_an_interrupt_says_how_to_go_on(
+    whole: Outcome, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    from motionfmu import cli
+
+    def interrupted(*_: object) -> Iterator[worker.Row]:
+        yield from whole.rows[:3]
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(processes, "rows", interrupted)
+    line = ["motionfmu", "sweep", str(CIRCLE), "--out", str(tmp_path / "o"), "--stop", "0.03"]
+    line += ["--vary", f"{GAIN}=100:600:6", "--result", RESULTS[0], "--result", RESULTS[1]]
+    monkeypatch.setattr(sys, "argv", line)
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    assert end.value.code == 130 and len(finished(tmp_path / "o")) == 3
+    assert "3 of 6 runs are done; the same command goes on" in capsys.readouterr().err
 
 
 def test_a_study_that_is_done_runs_nothing(whole: Outcome, monkeypatch) -> None:

@@ -31,7 +31,7 @@ app = typer.Typer(
 )
 out = Console(highlight=False)
 
-FAILED, WRONG = 1, 2
+FAILED, WRONG, STOPPED = 1, 2, 130
 ScenarioPath = Annotated[Path, typer.Argument(help="Folder of a scenario, or its scenario.toml.")]
 Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
@@ -111,13 +111,19 @@ def _sweep(study: "Study", folder: Path, ways: "Ways") -> "Outcome":
         TextColumn("{task.fields[told]}"),
     )
     with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
-        task = bar.add_task(study.name, total=len(study.points), told="")
+        task, at = bar.add_task(study.name, total=len(study.points), told=""), [0]
 
         def show(done: int, errors: int) -> None:
+            at[0] = done
             told = f"[red]{errors} with an error[/]" if errors else ""
             bar.update(task, completed=done, told=told)
 
-        return conduct(study, folder, replace(ways, progress=show))
+        try:
+            return conduct(study, folder, replace(ways, progress=show))
+        except KeyboardInterrupt:
+            told = f"{at[0]} of {len(study.points)} runs are done; the same command goes on"
+            print(f"motionfmu: stopped: {told}", file=sys.stderr)
+            raise typer.Exit(STOPPED) from None
 
 
 @app.command("list")
