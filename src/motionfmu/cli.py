@@ -7,6 +7,7 @@ import json
 import math
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from motionfmu.freq.study import Asked, LoopStudy
     from motionfmu.linear import AxisModel
     from motionfmu.run import Result, Scenario
+    from motionfmu.sweep import Outcome, Study, Ways
 
 app = typer.Typer(
     help="Motion controllers as FMI co-simulation FMUs.",
@@ -29,7 +31,7 @@ app = typer.Typer(
 )
 out = Console(highlight=False)
 
-FAILED, WRONG = 1, 2
+FAILED, WRONG, STOPPED = 1, 2, 130
 ScenarioPath = Annotated[Path, typer.Argument(help="Folder of a scenario, or its scenario.toml.")]
 Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
@@ -89,6 +91,39 @@ def _run(scenario: "Scenario", options: dict[str, Any]) -> "Result":
     with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
         task = bar.add_task(scenario.name, total=1.0)
         return scenario.run(**options, progress=lambda share: bar.update(task, completed=share))
+
+
+def _sweep(study: "Study", folder: Path, ways: "Ways") -> "Outcome":
+    """Run a study with a progress bar, which shows on a terminal only."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import TimeElapsedColumn as TimeUsed
+    from rich.progress import TimeRemainingColumn as TimeLeft
+
+    from motionfmu.sweep import conduct
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeUsed(),
+        TextColumn("left"),
+        TimeLeft(),
+        TextColumn("{task.fields[told]}"),
+    )
+    with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
+        task, at = bar.add_task(study.name, total=len(study.points), told=""), [0]
+
+        def show(done: int, errors: int) -> None:
+            at[0] = done
+            told = f"[red]{errors} with an error[/]" if errors else ""
+            bar.update(task, completed=done, told=told)
+
+        try:
+            return conduct(study, folder, replace(ways, progress=show))
+        except KeyboardInterrupt:
+            told = f"{at[0]} of {len(study.points)} runs are done; the same command goes on"
+            print(f"motionfmu: stopped: {told}", file=sys.stderr)
+            raise typer.Exit(STOPPED) from None
 
 
 @app.command("list")
@@ -288,8 +323,6 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
 
 def _study(linear: "AxisModel", asked: "Asked") -> "list[LoopStudy]":
     """Study with a progress bar, which shows on a terminal only."""
-    from dataclasses import replace
-
     from rich.progress import Progress
 
     from motionfmu.freq.study import study
@@ -299,6 +332,53 @@ def _study(linear: "AxisModel", asked: "Asked") -> "list[LoopStudy]":
         return study(
             linear, replace(asked, progress=lambda share: bar.update(task, completed=share))
         )
+
+
+@app.command()
+def sweep(  # noqa: PLR0913  (each is an option of the command)
+    path: Annotated[Path, typer.Argument(help="A study's TOML file, or a scenario (folder).")],
+    vary: Annotated[
+        list[str],
+        typer.Option(metavar="COMP.VAR=LO:HI:N", help="Or LO:HI, LO:HI:N:log, a list a,b,c."),
+    ] = [],  # noqa: B006
+    sampling: Annotated[str | None, typer.Option(help="grid, random or latin.")] = None,
+    runs: Annotated[int | None, typer.Option(help="Number of runs, if drawn.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Of the draws.")] = None,
+    result: Annotated[
+        list[str],
+        typer.Option(metavar="NAME", help="contour.error.max, card.stock.min ...; the checks'."),
+    ] = [],  # noqa: B006
+    cost: Annotated[str | None, typer.Option(help="Result that is to be small.")] = None,
+    tuned: Annotated[str | None, typer.Option(help='TOML file of "comp.var" = value.')] = None,
+    set_: Set = [],  # noqa: B006
+    stop: Annotated[float | None, typer.Option(help="Seconds, instead of the scenario's.")] = None,
+    step: Annotated[float | None, typer.Option(help="Seconds, instead of the scenario's.")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; all cores.")] = None,
+    scheduler: Annotated[str | None, typer.Option(help="Address of a dask scheduler.")] = None,
+    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    new: Annotated[bool, typer.Option("--new", help="Begin again, do not resume.")] = False,
+) -> None:
+    """Run a scenario at many points; resumes where an earlier call was ended."""
+    from motionfmu import sweep as sweeps
+    from motionfmu.sweep.axes import option
+
+    given: dict[str, Any] = {"sampling": sampling, "runs": runs, "seed": seed, "cost": cost}
+    given |= {"tuned": tuned, "stop": stop, "step": step, "results": result or None}
+    given["set"] = dict(setting(text) for text in set_) or None
+    given["axis"] = dict(option(text) for text in vary) or None
+    chosen = sweeps.study(path, given)
+    target = folder or Path("results") / f"{chosen.name}.sweep"
+    outcome = _sweep(chosen, target, sweeps.Ways(workers, scheduler, new))
+    before = f", {outcome.resumed} of them before" if outcome.resumed else ""
+    out.print(f"{chosen.name}: {len(outcome.rows)} runs{before}, {outcome.errors} with an error")
+    if (best := outcome.best) is not None:
+        for name, value in zip(chosen.job.axes, chosen.points[best], strict=True):
+            out.print(f"  {name} = {value}", markup=False)
+        out.print(f"  {chosen.cost} = {outcome.cost[best]:.6g}  [dim]smallest, run {best}[/]")
+    out.print(f"table: {outcome.folder / 'sweep.parquet'}", soft_wrap=True)
+    out.print(f"report: {outcome.folder / 'report.html'}", soft_wrap=True)
+    if outcome.best is None:
+        raise typer.Exit(FAILED)
 
 
 def _flat(value: Any, name: str = "") -> list[tuple[str, str]]:

@@ -99,10 +99,7 @@ class Result:
         """
         if name in self.parameters:
             return self.parameters[name]
-        port = self.scenario.resolver.end(name, "set", name).port
-        kind: Any = {"Float64": float, "Int32": int, "Boolean": "true".__eq__}.get(port.type, str)
-        listed = (port.start or "").split() if port.type != "String" else [port.start or ""]
-        return tuple(kind(x) for x in listed)
+        return values.start_values(self.scenario.resolver.end(name, "set", name).port)
 
     def contour(self) -> "ContourResult":
         """The contour error of this run against the planned geometry.
@@ -311,7 +308,7 @@ class Scenario:
             raise InputError(f"FMI {asked.fmi!r}: 2 or 3")
         with tempfile.TemporaryDirectory(prefix="motionfmu-") as name:
             folder = Path(name)
-            library = self._library()
+            library = self.library()
             extra = {f"{library}.path_file": str(folder / "path.csv")} if library else {}
             given = Options(**{**options, "set": {**asked.set, **extra}})
             plain = self.resolved(given)
@@ -319,23 +316,45 @@ class Scenario:
             try:
                 ENGINES[asked.engine](wired, asked.fmi, asked.progress)
             except InputError as error:
-                raise self._located(error, plain, asked) from None
+                raise self.located(error, plain, asked.set) from None
             signals = traces.load()
             geometry = (folder / "path.csv").read_text() if library else None
         time = np.arange(wired.steps, dtype=np.float64) * (wired.step_ns * 1e-9)
         parameters = {s.end.name: s.values for s in plain.settings}
         return Result(self, time, signals, parameters, geometry)
 
-    def _library(self) -> str | None:
-        """The component that plans the path, if the scenario looks at the contour."""
+    def library(self) -> str | None:
+        """The component that plans the path.
+
+        Returns
+        -------
+        str or None
+            None if the scenario does not look at the contour.
+        """
         if self.document.body.contour is None:
             return None
         from motionfmu.contour_of import library_of
 
         return library_of(self)
 
-    def _located(self, error: InputError, plain: system.System, given: Options) -> InputError:
-        """Say where the value stands that an FMU's message names."""
+    def located(
+        self, error: InputError, plain: system.System, given: Mapping[str, Any]
+    ) -> InputError:
+        """Say where the value stands that an FMU's message names.
+
+        Parameters
+        ----------
+        error : InputError
+            The FMU's own.
+        plain : System
+            What was run.
+        given : mapping
+            Values by name that are stronger than the scenario's.
+
+        Returns
+        -------
+        InputError
+        """
         text = str(error)
         component, _, rest = text.partition(": ")
         for s in plain.settings:
@@ -343,7 +362,7 @@ class Scenario:
             if end.component != component or not re.search(rf"\b{end.port.name}\b", rest):
                 continue
             value = s.values[0] if len(set(s.values)) == 1 else list(s.values)
-            if end.name in given.set:
+            if end.name in given:
                 return InputError(f"set {end.name} = {value!r}: {text}")
             if end.name in self.document.body.set:
                 return self.document.error(f"{end.name} = {value!r}: {text}", "set", end.name)

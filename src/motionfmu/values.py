@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from motionfmu.errors import InputError
+from motionfmu.fmus import Port
 from motionfmu.scenario import Document
 from motionfmu.system import NS_TOLERANCE, End, Resolver, Setting, Stimulus, Values
 
@@ -53,6 +54,23 @@ def values_of(end: End, value: Any) -> Values:
                 )
         out.append(float(x) if end.port.type == "Float64" else x)
     return tuple(out)
+
+
+def start_values(port: Port) -> Values:
+    """The values a variable has if nothing sets it.
+
+    Parameters
+    ----------
+    port : Port
+
+    Returns
+    -------
+    tuple
+        One per element.
+    """
+    kind: Any = {"Float64": float, "Int32": int, "Boolean": "true".__eq__}.get(port.type, str)
+    listed = (port.start or "").split() if port.type != "String" else [port.start or ""]
+    return tuple(kind(x) for x in listed)
 
 
 def _file_beside(document: Document, values: Values) -> Values:

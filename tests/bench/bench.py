@@ -18,6 +18,7 @@ import numpy as np
 import plans
 import scurve_moves
 import segments
+import studies
 from rich.console import Console
 from rich.progress import Progress
 
@@ -208,6 +209,9 @@ def main() -> None:
     print(f"{'read, checked, planned':28}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
     plans.table(curves)
     segments.table(curves[0].ruckig)
+    study = studies.Study()
+    study()
+    study.table()
     print()
     verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
     verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
@@ -224,6 +228,7 @@ def main() -> None:
     for s in segments.ALL:
         verdict(f"{s.name}, million segments/s", 1e-6 / max(s.cost.values()), least=0.2)
         verdict(f"{s.name}, 256 over 16 commands", s.growth, most=1.5)
+    verdict("sweep, efficiency of all cores", study.efficiency, least=0.9)
 
 
 if __name__ == "__main__":

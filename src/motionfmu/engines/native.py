@@ -96,6 +96,63 @@ def _give(slave: Slave, end: End, values: tuple[Any, ...]) -> None:
         slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], part)
 
 
+class Container:
+    """A system as a container FMU, built once, run many times.
+
+    Parameters
+    ----------
+    system : System
+        Its settings say what can be set in a run.
+    fmi : int
+        2 or 3: version of the container and of every FMU in it.
+    folder : Path
+        An empty folder; not removed.
+    """
+
+    def __init__(self, system: System, fmi: int, folder: Path) -> None:
+        self._slave = Slave(IDENTIFIER, build(system, fmi, folder), fmi, [])
+        self._used = False
+
+    def run(self, system: System, progress: Callable[[float], None]) -> None:
+        """Run from the start.
+
+        Parameters
+        ----------
+        system : System
+            The one of the constructor, or one that differs in values only.
+        progress : callable
+            Called with the share done, 0 to 1.
+
+        Raises
+        ------
+        InputError
+            An FMU refused something; its message.
+        """
+        slave = self._slave
+        if self._used:
+            slave.renew()
+        self._used = True
+        for s in system.settings:
+            _give(slave, s.end, s.values)
+        slave.initialize()
+        slave.start()
+        part = max(1, system.steps // PARTS)
+        stops = {s.step for s in system.stimuli if s.step < system.steps}
+        cuts = sorted({*range(0, system.steps, part), *stops, 0})
+        pending = list(system.stimuli)
+        for k, following in zip(cuts, [*cuts[1:], system.steps], strict=True):
+            while pending and pending[0].step == k:
+                now = pending.pop(0)
+                _give(slave, now.end, now.values)
+            slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
+            progress(following / system.steps)
+        slave.end()
+
+    def free(self) -> None:
+        """Free the instance and the library."""
+        self._slave.free()
+
+
 def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
     """Run a system inside a container FMU.
 
@@ -114,20 +171,6 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
     """
     with ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
-        slave = Slave(IDENTIFIER, build(system, fmi, Path(folder)), fmi, [])
-        stack.callback(slave.free)
-        for s in system.settings:
-            _give(slave, s.end, s.values)
-        slave.initialize()
-        slave.start()
-        part = max(1, system.steps // PARTS)
-        stops = {s.step for s in system.stimuli if s.step < system.steps}
-        cuts = sorted({*range(0, system.steps, part), *stops, 0})
-        pending = list(system.stimuli)
-        for k, following in zip(cuts, [*cuts[1:], system.steps], strict=True):
-            while pending and pending[0].step == k:
-                now = pending.pop(0)
-                _give(slave, now.end, now.values)
-            slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
-            progress(following / system.steps)
-        slave.end()
+        container = Container(system, fmi, Path(folder))
+        stack.callback(container.free)
+        container.run(system, progress)

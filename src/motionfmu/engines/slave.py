@@ -81,16 +81,18 @@ class Slave:
             "modelIdentifier": cosimulation.modelIdentifier,
             "instanceName": name,
         }
-        if fmi == 3:
-            self.slave: Any = FMU3Slave(**keys)
+        self.slave: Any = FMU3Slave(**keys) if fmi == 3 else FMU2Slave(**keys)
+        self._instantiate()
+
+    def _instantiate(self) -> None:
+        if self.fmi == 3:
             self._do("instantiate", logMessage=self._log3, loggingOn=False)
-        else:
-            self.slave = FMU2Slave(**keys)
-            callbacks = fmi2CallbackFunctions()
-            self._log = fmi2CallbackLoggerTYPE(self._log2)
-            callbacks.logger = self._log
-            addLoggerProxy(byref(callbacks))  # formats the message; Python cannot
-            self._do("instantiate", callbacks=callbacks, loggingOn=False)
+            return
+        callbacks = fmi2CallbackFunctions()
+        self._log = fmi2CallbackLoggerTYPE(self._log2)
+        callbacks.logger = self._log
+        addLoggerProxy(byref(callbacks))  # formats the message; Python cannot
+        self._do("instantiate", callbacks=callbacks, loggingOn=False)
 
     def _log3(self, environment: Any, status: int, category: bytes, message: bytes) -> None:
         self._keep(status, message)
@@ -236,10 +238,21 @@ class Slave:
         """Terminate: the FMU writes its files."""
         self._do("terminate")
 
+    def renew(self) -> None:
+        """Take a new instance; the library stays loaded."""
+        old, self.slave.component = self.slave.component, None
+        if old:
+            getattr(self.slave, f"fmi{self.fmi}FreeInstance")(old)
+        self.messages.clear()
+        self._instantiate()
+
     def free(self) -> None:
         """Free the instance, the library and the unpacked files."""
         try:
-            self.slave.freeInstance()
+            if self.slave.component:
+                self.slave.freeInstance()
+            else:
+                self.slave.freeLibrary()
         finally:
             if self._own:
                 shutil.rmtree(self._own, ignore_errors=True)

@@ -1,0 +1,210 @@
+"""The cost of a study as something to draw: a curve, a field over two axes, or points."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import griddata
+from scipy.spatial import QhullError
+
+if TYPE_CHECKING:
+    from motionfmu.sweep.axes import Value
+    from motionfmu.sweep.conduct import Outcome
+
+Array = NDArray[np.float64]
+
+CURVE, FIELD, MATRIX = "curve", "field", "matrix"
+DECADES = 1.5  # a cost that spreads over more of them is drawn in logarithms
+CELLS = 121  # of the field between scattered points, each way
+LEVELS = 12  # about so many lines
+STEPS = (1.0, 2.0, 5.0, 10.0)
+# Lines in each decade: while there are fewer than 3 decades, fewer than 6, more.
+FINE, MIDDLE, COARSE = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0), (1.0, 2.0, 5.0), (1.0,)
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A varied variable, ready to be drawn.
+
+    Attributes
+    ----------
+    name, label : str
+        The axis, and the axis with its unit.
+    values : list
+        One per row.
+    numeric, log : bool
+        Whether they are numbers; drawn on a logarithmic scale.
+    """
+
+    name: str
+    label: str
+    values: "list[Value]"
+    numeric: bool
+    log: bool
+
+    @property
+    def numbers(self) -> Array:
+        """Values as numbers; texts and Booleans by their order."""
+        if self.numeric:
+            return np.array(self.values, dtype=np.float64)
+        known = list(dict.fromkeys(self.values))
+        return np.array([known.index(v) for v in self.values], dtype=np.float64)
+
+    @property
+    def even(self) -> Array:
+        """Numbers as they lie on the page, perhaps logarithms."""
+        return np.log10(self.numbers) if self.log else self.numbers
+
+
+@dataclass(frozen=True)
+class Field:
+    """Cost on a rectangular grid.
+
+    Attributes
+    ----------
+    x, y : ndarray, shapes (n,) and (m,)
+        In the variables' units.
+    z : ndarray, shape (m, n)
+        Cost; NaN where there is none.
+    """
+
+    x: Array
+    y: Array
+    z: Array
+
+
+def label(name: str, unit: str) -> str:
+    """A quantity with its unit.
+
+    Parameters
+    ----------
+    name, unit : str
+        The unit may be empty.
+
+    Returns
+    -------
+    str
+    """
+    return f"{name} [{unit}]" if unit and unit != "1" else name
+
+
+def dimensions(outcome: "Outcome") -> list[Dimension]:
+    """What was varied.
+
+    Parameters
+    ----------
+    outcome : Outcome
+
+    Returns
+    -------
+    list of Dimension
+    """
+    found = []
+    for axis in outcome.study.axes:
+        values = outcome.axis(axis.name)
+        numeric = axis.end.port.type in ("Float64", "Int32")
+        found.append(Dimension(axis.name, label(axis.name, axis.unit), values, numeric, axis.log))
+    return found
+
+
+def kind(outcome: "Outcome") -> str:
+    """How the cost is drawn.
+
+    Parameters
+    ----------
+    outcome : Outcome
+
+    Returns
+    -------
+    str
+        CURVE over one axis, FIELD over two axes of numbers, MATRIX of points else.
+    """
+    shown = dimensions(outcome)
+    if len(shown) == 2 and all(d.numeric for d in shown) and field(outcome) is not None:
+        return FIELD
+    return CURVE if len(shown) == 1 else MATRIX
+
+
+def field(outcome: "Outcome") -> Field | None:
+    """The cost over two axes.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        Of a study of two axes of numbers.
+
+    Returns
+    -------
+    Field or None
+        A grid as it is; scattered points interpolated linearly inside their hull. None if the
+        points span no area.
+    """
+    first, second = dimensions(outcome)
+    u, v, cost = first.numbers, second.numbers, outcome.cost
+    x, i = np.unique(u, return_inverse=True)
+    y, j = np.unique(v, return_inverse=True)
+    if min(len(x), len(y)) < 2 or np.isfinite(cost).sum() < 3:
+        return None
+    if outcome.study.sampling == "grid":
+        z = np.full((len(y), len(x)), np.nan)
+        z[j, i] = cost
+        return Field(x, y, z)
+    known = np.isfinite(cost)
+    ends = [np.linspace(d.even.min(), d.even.max(), CELLS) for d in (first, second)]
+    try:
+        z = griddata(
+            (first.even[known], second.even[known]), cost[known], np.meshgrid(*ends), rescale=True
+        )
+    except QhullError:
+        return None
+    across, up = (10.0**e if d.log else e for e, d in zip(ends, (first, second), strict=True))
+    return Field(across, up, z)
+
+
+def logarithmic(cost: Array) -> bool:
+    """Whether a cost spreads so far that its logarithm is drawn.
+
+    Parameters
+    ----------
+    cost : ndarray
+        NaN where there is none.
+
+    Returns
+    -------
+    bool
+    """
+    known = cost[np.isfinite(cost)]
+    return bool(len(known) and known.min() > 0 and known.max() > known.min() * 10**DECADES)
+
+
+def levels(cost: Array) -> Array:
+    """Round values for contour lines.
+
+    Parameters
+    ----------
+    cost : ndarray
+        NaN where there is none; not all of it.
+
+    Returns
+    -------
+    ndarray
+        At least two, increasing; the same of each decade if the cost is drawn in logarithms.
+    """
+    known = cost[np.isfinite(cost)]
+    low, high = float(known.min()), float(known.max())
+    if logarithmic(cost):
+        decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+        spread = math.log10(high / low)
+        steps = FINE if spread < 3.0 else MIDDLE if spread < 6.0 else COARSE
+        found = np.array([float(f"{s:g}e{d}") for d in decades for s in steps])
+    else:
+        width = (high - low) / LEVELS
+        unit = 10.0 ** math.floor(math.log10(width)) if width > 0 else 1.0
+        step = next((s * unit for s in STEPS if s * unit >= width), unit)
+        first = math.floor(low / step)
+        last = max(math.ceil(high / step), first + 1)
+        found = np.arange(first - 1, last + 2) * step  # rounding may push one out
+    first, last = np.flatnonzero(found <= low)[-1], np.flatnonzero(found >= high)[0]
+    return found[first : max(last, first + 1) + 1]

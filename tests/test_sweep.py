@@ -1,0 +1,458 @@
+"""Studies: points, rows whatever runs them, resuming after a kill, errors as rows, pictures."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from conftest import ROOT
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import motionfmu
+from motionfmu.session import Session
+from motionfmu.sweep import Outcome, Study, Ways, axes, book, conduct, processes, study, worker
+from motionfmu.system import End
+
+CIRCLE = ROOT / "scenarios/circle_theory"
+GAIN, TAU = "mcc.p_gain", "machine.tau"
+RESULTS = ["card.err_count.absmax", "machine.table_position[1].final", "mcc.starved.max"]
+SHORT = {"stop": 0.03, "results": RESULTS}
+
+
+def small(n: int = 6, **more: object) -> Study:
+    """A grid of 2 n runs of 30 ms."""
+    axis = {GAIN: {"from": 100, "to": 600, "n": n}, "mcc.irq_latency": [2e-4, 3e-3]}
+    return study(CIRCLE, {**SHORT, "axis": axis, **more})
+
+
+def table(folder: Path) -> list[dict]:
+    return pq.read_table(folder / "sweep.parquet").to_pylist()
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
+    return conduct(small(), tmp_path_factory.mktemp("sweep") / "two", Ways(workers=2))
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All runs in this process, without a report: much faster where neither matters."""
+    monkeypatch.setattr(processes, "rows", lambda job, tasks, _: iter(worker.chunk(job, tasks)))
+    monkeypatch.setattr("motionfmu.report.sweep.write_sweep", lambda *_: None)
+
+
+# ---- points
+
+
+def axis(kind: str, spec: object, name: str = "a.b") -> axes.Axis:
+    port = motionfmu.load(CIRCLE).resolver.ports["mcc"]["irq_latency"]
+    kinds = {"port": type(port)(**{**port.__dict__, "type": kind, "shape": ()})}
+    source = (
+        axes.Listed(values=spec)
+        if isinstance(spec, list)
+        else (axes.Normal if "mean" in spec else axes.Span).model_validate(spec)
+    )
+    return axes.Axis(name, End("a", **kinds), source)
+
+
+def test_a_grid_has_every_combination_the_last_axis_fastest() -> None:
+    found = axes.points(
+        [axis("Float64", {"from": 0, "to": 1, "n": 3}), axis("String", ["u", "v"])], "grid", 0, 0
+    )
+    assert found == [(x, t) for x in (0.0, 0.5, 1.0) for t in ("u", "v")]
+    decades = axis("Float64", {"from": 1e-3, "to": 1e3, "n": 7, "log": True}).grid()
+    assert decades == pytest.approx(10.0 ** np.arange(-3, 4), rel=1e-14)
+    assert (decades[0], decades[-1]) == (1e-3, 1e3)
+
+
+@settings(deadline=None, max_examples=25)
+@given(runs=st.integers(1, 200), dimensions=st.integers(1, 5), seed=st.integers(0, 2**32))
+def test_a_latin_hypercube_takes_every_part_of_every_axis_once(
+    runs: int, dimensions: int, seed: int
+) -> None:
+    every = [axis("Float64", {"from": 2.0, "to": 5.0})] * dimensions
+    found = np.array(axes.points(every, "latin", runs, seed))
+    parts = np.floor((found - 2.0) / 3.0 * runs).astype(int).clip(0, runs - 1)
+    assert (np.sort(parts, axis=0) == np.arange(runs)[:, None]).all()
+    assert axes.points(every, "latin", runs, seed) == [tuple(p) for p in found]
+
+
+def test_draws_follow_their_distribution() -> None:
+    from scipy import stats
+
+    specs = [
+        axis("Float64", {"from": 2.0, "to": 5.0}),
+        axis("Float64", {"from": 1e-2, "to": 1e2, "log": True}),
+        axis("Float64", {"mean": 3.0, "deviation": 0.5}),
+        axis("Int32", {"from": 1, "to": 4}),
+        axis("Boolean", [True, False]),
+    ]
+    a, b, c, d, e = zip(*axes.points(specs, "random", 4000, 7), strict=True)
+    for sample, law in (
+        (a, stats.uniform(2, 3)),
+        (b, stats.loguniform(1e-2, 1e2)),
+        (c, stats.norm(3.0, 0.5)),
+    ):
+        assert stats.kstest(sample, law.cdf).pvalue > 1e-3
+    whole = Counter(d)
+    assert set(whole) == {1, 2, 3, 4} and all(isinstance(x, int) for x in d)
+    assert stats.chisquare(list(whole.values())).pvalue > 1e-3
+    assert set(e) == {True, False}
+    assert axes.points(specs, "random", 5, 7) != axes.points(specs, "random", 5, 8)
+
+
+# ---- rows
+
+
+def test_a_session_gives_the_bits_of_a_run_of_its_own() -> None:
+    scenario = motionfmu.load(CIRCLE)
+    with Session(scenario, [GAIN, f"{GAIN}[2]", TAU], stop=0.05) as session:
+        for values, alone in (
+            ({GAIN: 300}, {GAIN: 300}),
+            ({f"{GAIN}[2]": 90, TAU: 0.003}, {GAIN: [200, 90, 200, 200, 200, 200], TAU: 0.003}),
+            ({f"{GAIN}[2]": 90, GAIN: 300}, {GAIN: [300, 90, 300, 300, 300, 300]}),
+            ({}, {}),
+        ):
+            found, single = session.run(values), scenario.run(set=alone, stop=0.05)
+            assert found.signals.keys() == single.signals.keys()
+            for name, signal in single.signals.items():
+                assert np.array_equal(found[name], signal), (name, values)
+            assert found.geometry == single.geometry
+        with pytest.raises(motionfmu.InputError, match=r"set mcc.p_gain = -1: outside 0"):
+            session.run({GAIN: -1})
+        assert session.run({GAIN: 300}).parameters[GAIN] == (300,) * 6
+
+
+def test_rows_are_what_single_runs_give(whole: Outcome) -> None:
+    rows = table(whole.folder)
+    assert [r["run"] for r in rows] == list(range(12)) and {r["status"] for r in rows} == {"ok"}
+    assert [(r[GAIN], r["mcc.irq_latency"]) for r in rows] == [
+        (g, t) for g in range(100, 601, 100) for t in (2e-4, 3e-3)
+    ]
+    scenario = motionfmu.load(CIRCLE)
+    for row in rows[::5]:
+        given = {n: row[n] for n in (GAIN, "mcc.irq_latency")}
+        result = scenario.run(set=given, stop=0.03)
+        assert row[RESULTS[0]] == np.abs(result["card.err_count"]).max()
+        assert row[RESULTS[1]] == result["machine.table_position"][-1, 0]
+        assert row[RESULTS[2]] == result["mcc.starved"].max()
+        assert row["checks"] is None  # 30 ms hold no circle to judge
+    schema = pq.read_schema(whole.folder / "sweep.parquet")
+    assert schema.field(RESULTS[1]).metadata[b"unit"] == b"m"
+    about = json.loads(schema.metadata[b"motionfmu"])
+    assert about["runs"] == 12 and about["axes"] == [GAIN, "mcc.irq_latency"]
+
+
+def test_one_worker_gives_the_same_rows_and_the_journal_is_gone(
+    whole: Outcome, tmp_path: Path
+) -> None:
+    conduct(small(), tmp_path / "one", Ways(workers=1))
+    assert table(tmp_path / "one") == table(whole.folder)
+    names = {p.name for p in (tmp_path / "one").iterdir()}
+    assert names == {"sweep.parquet", "report.html", "sweep.png", "sweep.svg"}
+
+
+def test_a_cluster_gives_the_same_rows(whole: Outcome, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1"
+    ) as cluster:
+        ways = Ways(scheduler=cluster.scheduler_address)
+        conduct(small(), tmp_path / "dask", ways)
+        assert len(cluster.scheduler_info["workers"]) == 2
+    assert table(tmp_path / "dask") == table(whole.folder)
+
+
+def test_contour_figures_and_checks_become_columns() -> None:
+    found = study(CIRCLE, {"axis": {GAIN: [100, 200]}})
+    names = [c.name for c in found.columns]
+    assert names[-1] == "contour.circles.0.ccw.radius_change"
+    assert "mcc.error.absmax" in names and "mcc.done.final" in names
+
+
+def test_the_radius_of_each_row_is_the_one_of_theory(tmp_path: Path, here) -> None:
+    """V = 50 mm/s, R = 10 mm, ideal drive: dR = R (1/sqrt(1 + (V/(R Kp))^2) - 1)."""
+    radius = "contour.circles.0.ccw.radius_change"
+    chosen = study(CIRCLE, {"axis": {GAIN: [100, 200]}, "results": [radius], "set": {TAU: 0.0}})
+    rows = conduct(chosen, tmp_path / "r").rows
+    for row, gain in zip(rows, (47.7 / 2, 47.7), strict=True):
+        z = np.exp(1j * 5.0 * 1e-4)
+        sampled = 10.0 * (abs(gain * 1e-4 / (z * (z - 1) + gain * 1e-4)) - 1.0)
+        assert row.values[0] == pytest.approx(sampled, rel=0.01)
+    assert [row.checks for row in rows] == [False, True]
+
+
+def test_rows_of_mismatched_gains_are_those_of_theory(tmp_path: Path, here: None) -> None:
+    """Steady contour error V sin a cos a (1/Kx - 1/Ky), V = 100 mm/s, a = 45 degrees."""
+    axis = {f"{GAIN}[1]": [200, 240], f"{GAIN}[2]": [200, 160]}
+    given = {"axis": axis, "results": ["contour.error.max"]}
+    outcome = conduct(study(ROOT / "scenarios/mismatch_line", given), tmp_path / "m")
+    for x, y, found in zip(*map(outcome.axis, axis), outcome.cost, strict=True):
+        theory = 100.0 * 0.5 * abs(200 / x - 200 / y) / 47.684
+        assert found == pytest.approx(theory, rel=0.01, abs=3e-3), (x, y)
+    assert outcome.best == 0 and max(outcome.cost) > 0.4
+
+
+# ---- errors
+
+
+def test_a_wrong_run_is_a_row_with_its_error(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(processes, "rows", lambda job, tasks, _: iter(worker.chunk(job, tasks)))
+    axis = {GAIN: [200, -5, 70_000, 300], "mcc.program": ["circle.ngc", "none.ngc"]}
+    chosen = study(CIRCLE, {**SHORT, "axis": axis})
+    outcome = conduct(chosen, tmp_path / "s", Ways(workers=2))
+    rows = table(tmp_path / "s")
+    assert [r["run"] for r in rows if r["status"] == "ok"] == [0, 6]
+    assert {r["status"] for r in rows} == {"ok", "error"} and len(rows) == 8
+    assert "mcc.p_gain = -5: outside 0 .. 65535" in rows[2]["message"]
+    assert "none.ngc" in rows[1]["message"] and rows[1][RESULTS[0]] is None
+    assert outcome.errors == 6 and outcome.best in (0, 6)
+    page = (tmp_path / "s/report.html").read_text()
+    assert "outside 0 .. 65535" in page and "6 with an error" in page
+
+
+def test_a_number_that_is_not_there_is_an_error_beside_the_others(
+    tmp_path: Path, here: None
+) -> None:
+    given = {**SHORT, "axis": {GAIN: [200]}, "results": [RESULTS[0], "contour.circles.0.both.g"]}
+    (row,) = conduct(study(CIRCLE, given), tmp_path / "s", Ways(workers=1)).rows
+    assert row.status == "error" and "circles" in row.message
+    assert row.values[0] > 0 and row.values[1] is None
+
+
+def test_a_run_that_ends_its_process_is_a_row_and_is_tried_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """sitecustomize makes a run of one gain kill its process, as a broken FMU would."""
+    site = tmp_path / "site"
+    site.mkdir()
+    (site / "sitecustomize.py").write_text(
+        "import os, motionfmu.session as s\n"
+        "run = s.Session.run\n"
+        "def deadly(self, given):\n"
+        "    if given.get('mcc.p_gain') == 300: os.kill(os.getpid(), 11)\n"
+        "    return run(self, given)\n"
+        "s.Session.run = deadly\n"
+    )
+    chosen = study(CIRCLE, {**SHORT, "axis": {GAIN: {"from": 100, "to": 600, "n": 6}}})
+    monkeypatch.setenv("PYTHONPATH", str(site))
+    rows = conduct(chosen, tmp_path / "s", Ways(workers=2)).rows
+    assert [r.status for r in rows] == ["ok", "ok", "crash", "ok", "ok", "ok"]
+    assert "signal 11" in rows[2].message
+    monkeypatch.delenv("PYTHONPATH")
+    again = conduct(chosen, tmp_path / "s", Ways(workers=1))
+    assert again.resumed == 5 and [r.status for r in again.rows] == ["ok"] * 6
+    assert again.rows[1] == rows[1]
+
+
+# ---- resuming
+
+
+def finished(folder: Path) -> list[int]:
+    """Runs in the journal, every time they were written."""
+    journal = folder / book.JOURNAL
+    lines = journal.read_bytes().split(b"\n")[1:-1] if journal.exists() else []
+    return [json.loads(line)["run"] for line in lines]
+
+
+def test_a_kill_loses_and_repeats_nothing_that_was_done(whole: Outcome, tmp_path: Path) -> None:
+    """SIGKILL while rows come; the workers end by themselves, the rest is done once."""
+    out = tmp_path / "killed"
+    text = ROOT / "scenarios/circle_theory/scenario.toml"
+    line = [sys.executable, "-m", "motionfmu", "sweep", text, "--out", out, "--workers", "2"]
+    line += ["--stop", "0.03", "--vary", f"{GAIN}=100:600:6", "--vary", "mcc.irq_latency=2e-4,3e-3"]
+    for name in RESULTS:
+        line += ["--result", name]
+    kept: list[int] = []
+    for least in (1, 5):
+        env = os.environ | {"TMPDIR": str(tmp_path)}
+        process = subprocess.Popen(list(map(str, line)), stdout=subprocess.DEVNULL, env=env)
+        while process.poll() is None and len(finished(out)) < least:
+            time.sleep(0.002)
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        folded = [r["run"] for r in table(out)] if (out / book.TABLE).exists() else []
+        assert set(kept) <= set(folded) | set(finished(out))
+        kept = folded + finished(out)
+        assert len(kept) == len(set(kept)), "a run was done twice"
+    with (out / book.JOURNAL).open("ab") as journal:
+        journal.write(b'{"run": 11, "status": "o')  # a line that the kill cut off
+    seen: list[int] = []
+    outcome = conduct(small(), out, Ways(workers=2, progress=lambda done, _: seen.append(done)))
+    assert outcome.resumed == len(kept) >= 5
+    assert seen == list(range(len(kept), 13))
+    assert table(out) == table(whole.folder)
+    assert not (out / book.JOURNAL).exists()
+
+
+def test_an_interrupt_says_how_to_go_on(
+    whole: Outcome, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    from motionfmu import cli
+
+    def interrupted(*_: object) -> Iterator[worker.Row]:
+        yield from whole.rows[:3]
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(processes, "rows", interrupted)
+    line = ["motionfmu", "sweep", str(CIRCLE), "--out", str(tmp_path / "o"), "--stop", "0.03"]
+    line += ["--vary", f"{GAIN}=100:600:6", "--result", RESULTS[0], "--result", RESULTS[1]]
+    monkeypatch.setattr(sys, "argv", line)
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    assert end.value.code == 130 and len(finished(tmp_path / "o")) == 3
+    assert "3 of 6 runs are done; the same command goes on" in capsys.readouterr().err
+
+
+def test_a_study_that_is_done_runs_nothing(whole: Outcome, monkeypatch) -> None:
+    monkeypatch.setattr("motionfmu.sweep.processes.rows", None)
+    before = table(whole.folder)
+    assert conduct(small(), whole.folder).resumed == 12
+    assert table(whole.folder) == before
+
+
+def test_another_study_does_not_mix_with_it(whole: Outcome, tmp_path: Path, here: None) -> None:
+    with pytest.raises(motionfmu.InputError, match=r"sweep.parquet holds another study.*--new"):
+        conduct(small(seed=0, stop=0.02), whole.folder)
+    with book.Book(tmp_path / "s", small()) as held:
+        held.add(whole.rows[0])
+        with pytest.raises(motionfmu.InputError, match="another sweep is running here"):
+            book.Book(tmp_path / "s", small())
+    other = small(4)
+    outcome = conduct(other, tmp_path / "s", Ways(workers=1, fresh=True))
+    assert outcome.resumed == 0 and len(outcome.rows) == 8
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/letter.txt").write_text("dear")
+    with pytest.raises(motionfmu.InputError, match="holds no earlier study"):
+        conduct(other, tmp_path / "mine")
+
+
+def test_a_study_knows_the_files_its_values_name(tmp_path: Path) -> None:
+    shutil.copytree(CIRCLE, tmp_path / "c")
+    (tmp_path / "c/other.ngc").write_text((CIRCLE / "circle.ngc").read_text())
+
+    def now() -> str:
+        axis = {"mcc.program": ["circle.ngc", "other.ngc"]}
+        return study(tmp_path / "c", {**SHORT, "axis": axis}).digest
+
+    first = now()
+    assert now() == first
+    for name in ("circle.ngc", "other.ngc", "scenario.toml"):
+        before = now()
+        with (tmp_path / "c" / name).open("a") as file:
+            file.write("\n")
+        assert now() != before, name
+
+
+def test_a_start_that_fails_leaves_nothing(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr("motionfmu.sweep.cluster.TIMEOUT", 0.5)
+    with pytest.raises(motionfmu.InputError, match=r"--scheduler tcp://127\.0\.0\.1:1"):
+        conduct(small(), tmp_path / "a/b", Ways(scheduler="tcp://127.0.0.1:1"))
+    chosen = small()
+    stale = replace(chosen, job=replace(chosen.job, digest="0"))
+    with pytest.raises(motionfmu.InputError, match="other files or FMUs than the study"):
+        conduct(stale, tmp_path / "a/b", Ways(workers=2))
+    assert list(tmp_path.iterdir()) == []
+
+
+# ---- wrong input
+
+TEXT = """# A study.
+scenario = "%s"
+stop = 0.03
+results = ["card.err_count.absmax"]
+[axis]
+"mcc.p_gain" = { from = 100, to = 200, n = 2 }
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("# A study.", "", r":1: the first line is a comment"),
+        ("stop = 0.03", "stop = ", r":3: "),
+        ("stop = 0.03", "stopp = 0.03", r":3: unknown key 'stopp'"),
+        ("stop = 0.03", "stop = 'x'", r":3: stop = 'x'"),
+        ("stop = 0.03", 'sampling = "dice"', r":3: sampling = 'dice'"),
+        ("stop = 0.03", 'sampling = "latin"', r":3: sampling 'latin' wants runs|n = 2 belongs"),
+        ("stop = 0.03", "runs = 5", r":3: runs: the number of runs of a grid follows"),
+        ("stop = 0.03", 'cost = "card.stock.min"', r":3: cost = 'card.stock.min' is none of"),
+        ("stop = 0.03", 'tuned = "study.toml"', r"no value \"mcc.p_gain\" = ... for the tuned"),
+        ("stop = 0.03", 'tuned = "none.toml"', r":3: tuned = 'none.toml': No such file"),
+        ("err_count.absmax", "err_count.worst", r":4: card.err_count.worst: SIGNAL.STATISTIC"),
+        ("err_count.absmax", "err_cont.max", r":4: card.err_cont: .*did you mean 'err_count'"),
+        ("err_count.absmax", "err_count.final", r":4: .*final value of which element"),
+        ("err_count.absmax", "err_count[7].max", r":4: .*no element 7"),
+        ("mcc.p_gain", "mcc.p_gian", r":6: mcc.p_gian: mcc has no variable .*p_gain"),
+        ("mcc.p_gain", "card.err_count", r":6: card.err_count is an output and cannot be set"),
+        ("mcc.p_gain", "machine.voltage", r":6: machine.voltage is connected"),
+        ("mcc.p_gain", "mcc.p_gain[9]", r":6: mcc.p_gain\[9\]: mcc.p_gain has no element 9"),
+        ("{ from = 100, to = 200, n = 2 }", "3", r":6: mcc.p_gain = 3: a list"),
+        ("to = 200,", "", r":6: mcc.p_gain: to is missing"),
+        ("n = 2", "m = 2", r":6: mcc.p_gain: unknown key 'm'"),
+        (", n = 2", "", r":6: mcc.p_gain = 100 .. 200: a grid wants n"),
+        ("to = 200", "to = 50", r":6: mcc.p_gain = 100 .. 50: from is not below to"),
+        ("to = 200, n = 2", "to = 101, n = 9", r":6: .*fewer whole numbers than n = 9"),
+        ("{ from = 100, to = 200, n = 2 }", "[1.5]", r":6: mcc.p_gain = 1.5: Int32 wanted"),
+        ("{ from = 100, to = 200, n = 2 }", "[]", r":6: mcc.p_gain: values = \[\]"),
+        ("[axis]", "[other]", r"unknown key 'other'"),
+    ],
+)
+def test_a_wrong_study_is_one_message_with_its_line(
+    tmp_path: Path, old: str, new: str, message: str
+) -> None:
+    file = tmp_path / "study.toml"
+    file.write_text((TEXT % CIRCLE).replace(old, new))
+    with pytest.raises(motionfmu.InputError, match=message) as caught:
+        study(file)
+    assert str(file) in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--vary", f"{GAIN}=1:2:x"], r"--vary mcc.p_gain=1:2:x: COMP.VAR=LO:HI:N"),
+        (["--vary", f"{GAIN}=1:2"], r"sweep: mcc.p_gain = 1 .. 2: a grid wants n"),
+        (["--vary", f"{GAIN}=1,2", "--sampling", "dice"], r"sweep: sampling = 'dice'"),
+        (["--vary", f"{GAIN}=1,2", "--set", "mcc.no=1"], r"set mcc.no: mcc has no variable"),
+        ([], r"sweep: nothing is varied"),
+    ],
+)
+def test_the_command_refuses_wrong_options_with_status_2(
+    arguments: list[str], message: str, tmp_path: Path, monkeypatch, capsys
+) -> None:
+    from motionfmu import cli
+
+    line = ["motionfmu", "sweep", str(CIRCLE), "--out", str(tmp_path / "o"), *arguments]
+    monkeypatch.setattr(sys, "argv", line)
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    told = capsys.readouterr().err
+    assert end.value.code == 2 and re.search(message, told), told
+    assert len(told.strip().splitlines()) == 1 and list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "spec"),
+    [
+        ("a.b=1:2:3", {"from": 1.0, "to": 2.0, "n": 3, "log": False}),
+        ("a.b=1:2", {"from": 1.0, "to": 2.0, "log": False}),
+        ("a.b=1e-3:2:log", {"from": 1e-3, "to": 2.0, "log": True}),
+        ("a.b=1:2:3:log", {"from": 1.0, "to": 2.0, "n": 3, "log": True}),
+        ("a.b=1,2.5,true,x.ngc", [1, 2.5, True, "x.ngc"]),
+    ],
+)
+def test_vary_reads(text: str, spec: object) -> None:
+    assert axes.option(text) == ("a.b", spec)

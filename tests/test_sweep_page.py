@@ -1,0 +1,89 @@
+"""The page and the picture of a study."""
+
+import json
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_sweep import CIRCLE, GAIN, SHORT
+
+from motionfmu.sweep import Outcome, study, worker
+
+
+def synthetic(names: list[str], sampling: str, runs: int, folder: Path) -> Outcome:
+    """A study of the real scenario whose rows hold a bowl with its bottom at one point."""
+    span = {"from": 1, "to": 1000, "log": True} | ({"n": runs} if sampling == "grid" else {})
+    given = {**SHORT, "sampling": sampling, "axis": dict.fromkeys(names, span)}
+    if sampling != "grid":
+        given["runs"] = runs
+    chosen = study(CIRCLE, given)
+    cost = [sum((math.log10(x) - 1.5) ** 2 for x in point) for point in chosen.points]
+    rows = [worker.Row(i, "ok", "", True, (c, 0.0, 0.0)) for i, c in enumerate(cost)]
+    rows[0] = worker.Row(0, "error", "broken", None, (None,) * 3)
+    return Outcome(chosen, rows, folder, 0)
+
+
+@pytest.mark.parametrize(
+    ("count", "sampling", "runs", "way"),
+    [
+        (1, "grid", 9, "curve"),
+        (2, "grid", 7, "field"),
+        (2, "latin", 150, "field"),
+        (3, "random", 40, "matrix"),
+    ],
+)
+def test_the_page_shows_the_cost_over_what_was_varied(
+    count: int, sampling: str, runs: int, way: str, tmp_path: Path
+) -> None:
+    from PIL import Image
+
+    from motionfmu.report import sweep, sweep_field
+
+    names = [f"{GAIN}[{i + 1}]" for i in range(count)]
+    outcome = synthetic(names, sampling, runs, tmp_path)
+    assert sweep_field.kind(outcome) == way
+    outcome.study.tuned.update(dict.fromkeys(names, 30))
+    text = sweep.write_sweep(outcome, tmp_path).read_text()
+    data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.S)[1])
+    (drawn,) = data["figures"]
+    marked = {t.get("name") for t in drawn["data"]}
+    assert f"best: run {outcome.best}" in marked
+    assert "tuned" in marked or "shapes" in drawn["layout"]
+    assert Image.open(tmp_path / "sweep.png").width > 600
+    if way == "field":
+        found = sweep_field.field(outcome)
+        x, y = np.log10(np.meshgrid(found.x, found.y))
+        bowl = (x - 1.5) ** 2 + (y - 1.5) ** 2
+        known = np.isfinite(found.z)
+        assert known.mean() > 0.6
+        error = np.abs(found.z - bowl)[known]
+        assert error.max() < 1e-12 if sampling == "grid" else np.quantile(error, 0.9) < 0.1
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("cost", [0.0, 3.0, None])
+def test_a_page_of_equal_costs_or_of_none_is_written(
+    cost: float | None, count: int, tmp_path: Path
+) -> None:
+    from motionfmu.report import sweep
+
+    names = [f"{GAIN}[{i + 1}]" for i in range(count)]
+    outcome = synthetic(names, "grid", 3, tmp_path)
+    outcome.rows[:] = [replace(r, values=(cost, 0.0, 0.0)) for r in outcome.rows]
+    assert "sweep.parquet" in sweep.write_sweep(outcome, tmp_path).read_text()
+    assert (tmp_path / "sweep.png").exists() == (cost is not None)
+
+
+@pytest.mark.parametrize(
+    "cost", [[0.0, 1.0], [3.0, 3.0], [-4e-7, 9e-7], [1e-3, 40.0], [2.0, 2.5], [0.0, 0.0]]
+)
+def test_levels_are_round_and_span_the_cost(cost: list[float]) -> None:
+    from motionfmu.report.sweep_field import levels
+
+    found = levels(np.array([*cost, math.nan]))
+    assert found[0] <= min(cost) and found[-1] >= max(cost)
+    assert 2 <= len(found) <= 20 and (np.diff(found) > 0).all()
+    assert all(float(f"{v:.3g}") == pytest.approx(v, rel=1e-9, abs=1e-12) for v in found)
