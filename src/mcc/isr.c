@@ -1,6 +1,5 @@
 #include "isr.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 void isr_start(struct isr *q, const struct isr_config *config)
@@ -10,17 +9,17 @@ void isr_start(struct isr *q, const struct isr_config *config)
     q->page = -1;
 }
 
-void isr_read(struct isr *q, const int32_t flags[ISR_PAGES], int32_t fifo, int64_t raised,
-              int64_t ready)
+void isr_read(struct isr *q, const int32_t flags[ISR_PAGES], int32_t fifo, bool asks,
+              int64_t raised, int64_t ready)
 {
     for (int i = 0; i < ISR_PAGES; i++) {
         const int32_t read = flags[i] & (q->config.mask[i] | (i == ISR_FIFO_PAGE ? fifo : 0));
-        const bool asks = i == ISR_FIFO_PAGE && (q->waiting[i] & fifo);
+        const bool keep = asks && i == ISR_FIFO_PAGE && (q->waiting[i] & fifo);
         if (read && !q->waiting[i]) {
             q->raised[i] = raised;
         }
         q->waiting[i] |= read;
-        q->ready[i] = asks ? q->ready[i] : ready;
+        q->ready[i] = keep ? q->ready[i] : ready;
     }
 }
 

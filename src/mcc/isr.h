@@ -9,6 +9,7 @@
 #ifndef ISR_H
 #define ISR_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -39,9 +40,9 @@ struct isr {
 void isr_start(struct isr *q, const struct isr_config *config);
 
 /* These sources were read, `fifo` being the one that asks for commands: their pages wait, to be
- * served from clock `ready` on. */
-void isr_read(struct isr *q, const int32_t flags[ISR_PAGES], int32_t fifo, int64_t raised,
-              int64_t ready);
+ * served from clock `ready` on. A FIFO that asks already keeps its clock. */
+void isr_read(struct isr *q, const int32_t flags[ISR_PAGES], int32_t fifo, bool asks,
+              int64_t raised, int64_t ready);
 
 /* Clock from which a page may be served; INT64_MAX if none waits. */
 int64_t isr_ready(const struct isr *q);

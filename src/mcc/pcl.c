@@ -90,7 +90,8 @@ void pcl_notice(struct pcl *p, const struct pcl_card *card, int64_t now, int64_t
 {
     if (pcl_interrupt(p, card)) {
         const bool fifo = (card->irq_flags[ISR_FIFO_PAGE] & p->mask) != 0;
-        isr_read(&p->isr, card->irq_flags, p->mask, card->irq_clock, card->irq_clock + latency);
+        isr_read(&p->isr, card->irq_flags, p->mask, p->pending > 0, card->irq_clock,
+                 card->irq_clock + latency);
         if (fifo && p->pending == 0) {
             p->due = INT64_MAX;
             p->raised = card->irq_clock;

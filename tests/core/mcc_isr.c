@@ -31,7 +31,7 @@ static void all_at_once(void)
 
     isr_start(&q, &ALL);
     CHECK_EQ(isr_ready(&q), INT64_MAX);
-    isr_read(&q, flags, 1, 1000, 1500);
+    isr_read(&q, flags, 1, false, 1000, 1500);
     CHECK_EQ(isr_ready(&q), 1500);
     CHECK_EQ(isr_next(&q, 1499), -1);
     serve(&q, &busy, 1500);
@@ -56,12 +56,12 @@ static void a_later_and_more_urgent_one(void)
     int32_t flags[ISR_PAGES] = { 0, 0, 0, 0, 1, 1 };
 
     isr_start(&q, &ALL);
-    isr_read(&q, flags, 1, 0, 50);
+    isr_read(&q, flags, 1, false, 0, 50);
     serve(&q, &busy, 60);
     CHECK_EQ(q.page, 4);                    /* until 150 */
     flags[4] = flags[5] = 0;
     flags[8] = 1;
-    isr_read(&q, flags, 1, 70, 80);
+    isr_read(&q, flags, 1, false, 70, 80);
     serve(&q, &busy, 151);
     CHECK_EQ(q.page, 8);
     CHECK_EQ(q.latency[8], 80);
@@ -79,11 +79,11 @@ static void masked_and_merged(void)
     int32_t flags[ISR_PAGES] = { 64 + 2, 64 };
 
     isr_start(&q, &ALL);
-    isr_read(&q, flags, 1, 0, 10);
+    isr_read(&q, flags, 1, false, 0, 10);
     CHECK_EQ(q.waiting[0], 64);             /* the FIFO of the second axis is not the watched one */
     CHECK_EQ(q.waiting[1], 0);
     flags[0] = 1;
-    isr_read(&q, flags, 1, 5, 20);
+    isr_read(&q, flags, 1, true, 5, 20);
     serve(&q, &busy, 1000);
     CHECK_EQ(q.served[0], 1);
     CHECK_EQ(q.sources[0], 65);
