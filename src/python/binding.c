@@ -35,6 +35,7 @@ struct field {
       OFFSET(station_config, pc.home[0].m), AXES, sizeof(struct home_config) }
 #define ASYN(m, unit) ROW(station_config, machine.asyn.m, "asyn_" #m, unit)
 #define MACHINE(m, unit) ONE(station_config, machine.m, #m, unit)
+#define MODULE(m, unit) ROW(station_config, pc.m, "module_" #m, unit)
 #define PC(m, unit) ONE(station_config, pc.m, #m, unit)
 static const struct field config_fields[] = {
     AXIS(used, "used", ""), AXIS(pitch, "pitch", "mm"), AXIS(gear_ratio, "gear_ratio", ""),
@@ -58,6 +59,9 @@ static const struct field config_fields[] = {
     ROW(station_config, pc.isr.mask, "irq_sources", ""),
     ROW(station_config, pc.isr.priority, "irq_priority", ""),
     ONE(station_config, pc.isr.service, "service_time", "clocks"),
+    PC(interpreter, "clocks"), PC(process, "clocks"),
+    MODULE(priority, ""), MODULE(offset, "clocks"), MODULE(time, "clocks"),
+    MODULE(unit, "clocks"), MODULE(most, ""),
     ROW(station_config, software_gain, "software_gain", "V"),
     ASYN(acc_type, ""), ASYN(dec_type, ""), ASYN(acc_time, "s"), ASYN(dec_time, "s"),
     ROW(station_config, pc.home_order, "home_order", ""), PC(home_first, ""),
@@ -77,7 +81,8 @@ static const struct field reading_fields[] = {
     READ_ROW(table, "mm"), READ_ROW(position, "mm"), READ(path_feed, "mm/s"),
     READ_ROW(stock, "commands"), READ_ROW(underflows, ""), READ(frames_taken, ""),
     READ(frames_refused, ""), READ(interrupts, ""), READ(irq_clock, "clocks"),
-    READ(services, ""), READ(latency, "clocks"), READ(queue, "points"), READ(starved, ""),
+    READ(services, ""), READ(latency, "clocks"), READ(missed, ""),
+    READ(queue, "points"), READ(starved, ""),
     READ(status, ""), READ(error, ""), READ(line, ""), READ(command, ""), READ(digital, "bits"),
     READ(coolant, "bits"), READ(spindle, "rpm"), READ(stopped, ""),
 };

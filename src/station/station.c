@@ -21,7 +21,7 @@ struct station_config station_defaults(void)
         },
         .pc = { .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1, .min_stock = 3,
                 .batch = 4, .isr = { .priority = { 3, 4, 4, 4, 6, 6, 5, 2, 1 } },
-                .home_settle = 0.05 }
+                .home_settle = 0.05, .priority = { 4, 3, 1, 2 } }
     };
     for (int i = 0; i < AXES; i++) {
         c.machine.axis[i] = (struct machine_axis){
@@ -43,6 +43,18 @@ static bool can_home(const struct machine_axis *a, const struct home_config *h)
     return home_valid(h) && fmax(h->high_speed, h->low_speed) <= machine_axis_speed(a);
 }
 
+/* Times of the modules on the processor; interrupts wake the position control. */
+static bool modules_valid(const struct pc_config *p)
+{
+    bool valid = p->interpreter >= 0 && p->process >= 0 && p->offset[PC_PCL] == 0 &&
+                 p->isr.service >= 0;
+    for (int i = 0; i < SCHED_MODULES; i++) {
+        valid = valid && p->offset[i] >= 0 && p->time[i] >= 0 && p->unit[i] >= 0 &&
+                p->most[i] >= 0;
+    }
+    return valid;
+}
+
 static enum station_status check(const struct station_config *c)
 {
     const struct pc_config *p = &c->pc;
@@ -50,8 +62,9 @@ static enum station_status check(const struct station_config *c)
     if (!machine_valid(&c->machine) || c->machine.queue_depth > QUEUE_SIZE) {
         return STATION_BAD_MACHINE;
     }
-    if (p->bus < 1 || p->ipo < 1 || p->min_stock < 0 || p->batch < 1 || p->batch > PCL_FRAMES ||
-        p->min_stock + p->batch > PCL_FIFO || !(p->latency >= 0.0 && p->latency < 1e15) ||
+    if (!modules_valid(p) || p->bus < 1 || p->ipo < 1 || p->min_stock < 0 || p->batch < 1 ||
+        p->batch > PCL_FRAMES || p->min_stock + p->batch > PCL_FIFO ||
+        !(p->latency >= 0.0 && p->latency < 1e15) ||
         !(p->jitter >= 0.0 && p->jitter < 1e15) ||
         !(p->home_settle >= 0.0 && p->home_settle < 1e6)) {
         return STATION_BAD_PC;
@@ -291,6 +304,7 @@ void station_read(const struct station *s, struct station_reading *r)
         .frames_taken = s->card.frames_taken, .frames_refused = s->card.frames_refused,
         .interrupts = wrap(s->card.irq.seq), .irq_clock = s->card.irq.clock,
         .services = p->services, .latency = p->latency,
+        .missed = sched_all(&s->pc.shown).missed,
         .queue = m->queue.count, .starved = p->starved,
         .status = task_status(m), .error = MCC_get_errcode(m),
         .line = m->written.line, .command = m->written.command,

@@ -36,7 +36,7 @@ struct station_config {
 enum station_status {
     STATION_OK,
     STATION_BAD_MACHINE,            /* the library refuses a value of machine */
-    STATION_BAD_PC,                 /* bus or task period below a clock, or n + N > the FIFO */
+    STATION_BAD_PC,                 /* a time below 0, a period below a clock, n + N > the FIFO */
     STATION_BAD_MODE,               /* no station_mode */
     STATION_BAD_HOME,               /* an axis with a home_order cannot be homed so */
     STATION_FRAMES_REFUSED,         /* the card takes no frame any more */
@@ -74,6 +74,7 @@ struct station_reading {
     int64_t irq_clock;              /* [25 ns] of the latest */
     int32_t services;               /* refills of the FIFO behind an interrupt */
     int64_t latency;                /* [25 ns] of the latest */
+    int32_t missed;                 /* deadlines of the modules on the PC */
     int32_t queue;                  /* interpolation points waiting */
     int32_t starved;                /* frames of standstill sent in the middle of a motion */
     int32_t status;                 /* enum task_status */

@@ -39,6 +39,7 @@ static void line(void)
     CHECK_EQ(r.status, TASK_STOPPED);
     CHECK_EQ(r.underflows[0], 0);
     CHECK_EQ(r.starved, 0);
+    CHECK_EQ(r.missed, 0);
     CHECK_EQ(r.frames_refused, 0);
     CHECK_EQ(r.stock[3], 0);
 }
@@ -155,7 +156,7 @@ static void program(void)
 
 static void refusals(void)
 {
-    for (int i = 0; i < 11; i++) {
+    for (int i = 0; i < 13; i++) {
         struct station_config c = station_defaults();
         enum station_status want = STATION_BAD_PC;
         switch (i) {
@@ -168,6 +169,8 @@ static void refusals(void)
         case 6: c.pc.batch = 17; break;
         case 7: c.pc.output_mode[5] = 3; want = STATION_BAD_MODE; break;
         case 8: c.pc.home_settle = -1.0; break;
+        case 10: c.pc.offset[PC_PCL] = 1; break;
+        case 11: c.pc.unit[PC_IPO] = -1; break;
         case 9: c.pc.home_order[0] = 1; c.pc.home[0].low_speed = 501.0; want = STATION_BAD_HOME;
             break;
         default: c.software_gain[2] = INFINITY; want = STATION_BAD_MODE; break;
@@ -178,8 +181,24 @@ static void refusals(void)
     }
 }
 
+/* A PC whose interpolation needs more than its cycle misses deadlines and starves the
+ * card, and loses no pulse. */
+static void slow_pc(void)
+{
+    struct station_config c = station_defaults();
+    c.pc.time[PC_IPO] = 70000;      /* of a cycle of 40,000 clocks */
+    c.machine.queue_depth = 1;
+    CHECK_EQ(station_start(&s, &c), STATION_OK);
+    CHECK_EQ(MCC_line(&s.pc.mcc, target), 1);
+    until_stop(&s, 20.0);
+    const struct station_reading r = reading(&s);
+    CHECK(r.pulses[0] == 12500 && r.pulses[1] == -7250 && r.pulses[2] == 3000);
+    CHECK(r.missed > 100 && r.starved > 100);
+}
+
 int main(void)
 {
+    slow_pc();
     line();
     fifo();
     pieces();

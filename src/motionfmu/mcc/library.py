@@ -30,6 +30,7 @@ CODES = {
     -13: ("ABORT_ILLEGAL", "nothing moves that could be dropped"),
     -14: ("RUN_TIME", "a run-time error waits for clear_error, or its cause lasts"),
     -15: ("ABORT_NOT_FINISH", "an abort is still ramping to rest"),
+    -16: ("GROUP_RAN_OUT", "there are no more groups"),
 }
 
 
