@@ -109,7 +109,7 @@ def test_list_info_describe_and_check() -> None:
     assert command("describe", "scope", "--xml", "--fmi", "2").stdout.startswith("<?xml")
     checked = command("check", "scenarios/mismatch_line", "scenarios/square")
     assert checked.returncode == 0 and checked.stdout.count("ok ") == 2
-    assert "error.max" in command("contour", "scenarios/mismatch_line").stdout
+    assert "error.max" in command("contour", "scenarios/mismatch_line", "--figures").stdout
 
 
 def test_the_readme_example_runs() -> None:

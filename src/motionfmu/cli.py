@@ -256,18 +256,67 @@ def check(
 
 
 @app.command()
-def contour(path: ScenarioPath, set_: Set = []) -> None:  # noqa: B006
-    """Run a scenario and print its contour figures."""
+def contour(
+    path: ScenarioPath,
+    set_: Set = [],  # noqa: B006  (typer makes a new list)
+    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    figures: Annotated[
+        bool, typer.Option("--figures", help="Only print the contour figures of one run.")
+    ] = False,
+) -> None:
+    """Explain the contour error of a scenario: which cause makes how much of it."""
     from motionfmu.run import load
 
-    result = _run(load(path), {"set": dict(setting(text) for text in set_)})
-    found = result.contour().numbers()
+    settings = dict(setting(text) for text in set_)
+    if figures:
+        found = _run(load(path), {"set": settings}).contour().numbers()
+        table = Table(box=None, header_style="dim")
+        for heading in ("figure", "value"):
+            table.add_column(heading)
+        for name, value in _flat({k: v for k, v in found.items() if k != "commands"}):
+            table.add_row(name, value)
+        out.print(table)
+        return
+    _explain(path, settings, folder)
+
+
+def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+
+    from motionfmu import outcome
+    from motionfmu.explain import explain
+    from motionfmu.explain.page import write_explanation
+    from motionfmu.report.numbers import length
+    from motionfmu.scenario import scenario_file
+
+    name = scenario_file(path).parent.name
+    target = outcome.usable(folder or Path("results") / f"{name}_contour")
+    columns = (BarColumn(), TaskProgressColumn(), TextColumn("{task.description}"))
+    with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
+        task = bar.add_task(name, total=1.0)
+        found = explain(
+            path,
+            set=settings,
+            progress=lambda what, share: bar.update(task, completed=share, description=what),
+        )
     table = Table(box=None, header_style="dim")
-    for heading in ("figure", "value"):
-        table.add_column(heading)
-    for name, value in _flat({k: v for k, v in found.items() if k != "commands"}):
-        table.add_row(name, value)
+    table.add_column("cause")
+    for heading in ("largest", "99 %", "theory", "error without"):
+        table.add_column(heading, justify="right")
+    for e in found.effects:
+        both = ("" if v is None else length(v) for v in (e.theory.value, e.without))
+        table.add_row(e.title, length(e.size), length(e.usual), *both)
+    numbers = found.numbers()
+    for title, key in (("Sum of the effects", "sum_of_effects"), ("Residual", "residual")):
+        table.add_row(f"[dim]{title}[/]", length(numbers[key]["max"]))
+    table.add_row("[bold]Contour error[/]", length(numbers["contour_error"]["max"]))
     out.print(table)
+    for mark in found.signatures:
+        out.print(f"[bold]Ballbar, radius {mark.test.radius:g} mm[/]")
+        for words in mark.words():
+            out.print(f"  {words}")
+    shown = outcome.whole(target, lambda part: write_explanation(found, part))
+    out.print(f"report: {shown}", soft_wrap=True)
 
 
 @app.command()

@@ -1,0 +1,303 @@
+"""A run's contour error taken apart: one cause switched off at a time."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionfmu import recording
+from motionfmu.explain import causes, theory
+from motionfmu.explain.ballbar import Signature, signature
+from motionfmu.explain.causes import Cause, Off
+from motionfmu.explain.servo import Array
+from motionfmu.run import load
+
+if TYPE_CHECKING:
+    from motionfmu.contour import ContourResult
+    from motionfmu.contour.track import Track
+    from motionfmu.run import Result, Scenario
+
+# Places along the path at which runs are compared.
+PLACES = 20_000
+# An effect below this is rounding of the runs, not a cause [mm].
+NOTHING = 1e-6
+# A tool that goes back by more than this has been there before: only its first pass counts [mm].
+STANDS = 1e-6
+PATH, SERVO = "path", "servo"
+TITLES = {PATH: "Path the card was given (blending)", SERVO: "Servo lag"}
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What one cause does to the contour error.
+
+    Attributes
+    ----------
+    name, title : str
+    how : str
+        How it was switched off, or why not.
+    size : float
+        Largest change of the contour error at any place of the path [mm].
+    usual, rms : float
+        99 % of the path see a smaller change; its root mean square [mm].
+    where : int
+        Line of the program at which the change is largest; 0 if there is none.
+    without : float or None
+        Largest contour error of the run without the cause [mm].
+    theory : Theory
+        What a formula says.
+    change : ndarray, shape (n,)
+        Contour error with the cause minus without, along the path [mm].
+    """
+
+    name: str
+    title: str
+    how: str
+    size: float
+    usual: float
+    rms: float
+    where: int
+    without: float | None
+    theory: "theory.Theory"
+    change: Array
+
+    def numbers(self) -> dict[str, Any]:
+        """Its numbers, ready for JSON."""
+        names = ("name", "title", "how", "size", "usual", "rms", "where", "without")
+        out = {k: getattr(self, k) for k in names}
+        return out | {"theory": self.theory.value, "formula": self.theory.formula}
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """The contour error of a run, explained.
+
+    Attributes
+    ----------
+    result : Result
+        The whole run.
+    ideal : ContourResult
+        The run with every cause switched off at once.
+    effects : tuple of Effect
+        The largest first.
+    along : ndarray, shape (n,)
+        Places on the path [mm].
+    whole, together : ndarray, shape (n,)
+        Contour error there, and the sum of all effects [mm].
+    corners : tuple of CornerRow
+    signatures : tuple of Signature
+        Of the circles run both ways round.
+    """
+
+    result: "Result"
+    ideal: "ContourResult"
+    effects: tuple[Effect, ...]
+    along: Array
+    whole: Array
+    together: Array
+    corners: "tuple[theory.CornerRow, ...]"
+    signatures: tuple[Signature, ...]
+
+    @property
+    def residual(self) -> Array:
+        """Contour error minus the sum of the effects, shape (n,) [mm]."""
+        return self.whole - self.together
+
+    def effect(self, name: str) -> Effect:
+        """One effect by its name.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        Effect
+
+        Raises
+        ------
+        KeyError
+            There is no such effect.
+        """
+        found = {e.name: e for e in self.effects}
+        if name not in found:
+            raise KeyError(f"no effect {name!r}, there is {', '.join(found)}")
+        return found[name]
+
+    def numbers(self) -> dict[str, Any]:
+        """Every number, ready for JSON; mm, rad."""
+        return {
+            "contour_error": {"max": _top(self.whole), "rms": _rms(self.whole)},
+            "sum_of_effects": {"max": _top(self.together), "rms": _rms(self.together)},
+            "residual": {"max": _top(self.residual), "rms": _rms(self.residual)},
+            "effects": [e.numbers() for e in self.effects],
+            "corners": [vars(c) for c in self.corners],
+            "circles": [s.numbers() for s in self.signatures],
+        }
+
+
+def explain(
+    path: str | Path,
+    set: Mapping[str, Any] | None = None,
+    stop: float | None = None,
+    progress: Callable[[str, float], None] = lambda what, share: None,
+) -> Explanation:
+    """Explain the contour error of a scenario.
+
+    The scenario runs as it is, once without each cause that acts in it, and once without all of
+    them. What that last run leaves is the servo lag and, where the commands themselves leave the
+    path, blending. All changes are taken at the same places of the path.
+
+    Parameters
+    ----------
+    path : str or Path
+        A scenario with a [contour] table.
+    set : mapping, optional
+        Value by ``component.variable``, stronger than the scenario's.
+    stop : float, optional
+        Instead of the scenario's [s].
+    progress : callable
+        Called with what is under way and the share of all work that is done.
+
+    Returns
+    -------
+    Explanation
+
+    Raises
+    ------
+    InputError
+        The scenario or a setting is wrong, or has no contour; one message.
+    """
+    scenario = load(path)
+    given = dict(set or {})
+    known = causes.causes(scenario)
+    _watch(scenario, causes.watched(known))
+    progress(scenario.name, 0.0)
+    result = scenario.run(set=given, stop=stop)
+    result.contour()
+    states = {c.name: causes.off(c, result, {}) for c in known}
+    acting = [c for c in known if states[c.name].set]
+    runs: dict[str, ContourResult] = {}
+    count = len(acting) + 2
+    for i, cause in enumerate(acting, 1):
+        progress(f"without {cause.title.lower()}", i / count)
+        runs[cause.name] = _run(scenario, given | states[cause.name].set, stop)
+    progress("without all of them", (count - 1) / count)
+    everything: dict[str, Any] = {}
+    for cause in acting:
+        everything |= causes.off(cause, result, everything).set
+    ideal = _run(scenario, given | everything, stop) if everything else result.contour()
+    progress("done", 1.0)
+    return _put_together(result, (known, states), (runs, ideal))
+
+
+def _watch(scenario: "Scenario", names: list[str]) -> None:
+    """Record these too, for no chart."""
+    have = {e.name for e in scenario.ends}
+    if new := [n for n in names if n not in have]:
+        ends = recording.chosen(scenario.resolver, new)
+        scenario.ends = [*scenario.ends, *ends]
+        scenario.only_drawn |= {e.name for e in ends}
+
+
+def _run(scenario: "Scenario", given: Mapping[str, Any], stop: float | None) -> "ContourResult":
+    return scenario.run(set=given, stop=stop).contour()
+
+
+def _put_together(
+    result: "Result",
+    known: tuple[list[Cause], dict[str, Off]],
+    runs: "tuple[dict[str, ContourResult], ContourResult]",
+) -> Explanation:
+    whole_run, ideal = result.contour(), runs[1]
+    along = np.linspace(0.0, float(whole_run.run.path.offsets[-1]), PLACES)
+    whole = _tool(whole_run, along)
+    book = theory.Book(result, ideal)
+    effects = []
+    for cause in known[0]:
+        state, run = known[1][cause.name], runs[0].get(cause.name)
+        change = np.zeros_like(whole) if run is None else whole - _tool(run, along)
+        how = ", ".join(f"{k} = {_short(v)}" for k, v in state.set.items()) or state.why_not
+        said = theory.NONE if state.absent else book.of(cause.name)
+        without = None if run is None else run.error.max
+        effects.append(_effect((cause.name, cause.title, how), whole_run, change, (without, said)))
+    path = _along((ideal.command_track, _blended(ideal)), ideal, along)
+    left = _tool(ideal, along) - path
+    how = "pulses against path, without all causes above"
+    effects.append(_effect((PATH, TITLES[PATH], how), ideal, path, (None, book.of(PATH))))
+    how = "table against pulses, without all causes above"
+    effects.append(_effect((SERVO, TITLES[SERVO], how), ideal, left, (None, book.of(SERVO))))
+    together = np.sum([e.change for e in effects], axis=0)
+    both_ways = [c for c in whole_run.circles if c.ccw and c.cw]
+    return Explanation(
+        result,
+        ideal,
+        tuple(sorted(effects, key=lambda e: -e.size)),
+        along,
+        whole,
+        together,
+        theory.corner_rows(result, ideal, book),
+        tuple(signature(c, whole_run.lag) for c in both_ways),
+    )
+
+
+def _effect(
+    names: tuple[str, str, str],
+    run: "ContourResult",
+    change: Array,
+    rest: "tuple[float | None, theory.Theory]",
+) -> Effect:
+    path, size = run.run.path, _top(change)
+    place = float(path.offsets[-1]) * float(np.argmax(np.abs(change))) / (len(change) - 1)
+    owner = int(np.searchsorted(path.offsets, place, side="right")) - 1
+    line = path.segments[min(owner, len(path.segments) - 1)].label.line if size else 0
+    usual = float(np.percentile(np.abs(change), 99.0))
+    return Effect(*names, size, usual, _rms(change), line, *rest, change)
+
+
+def _top(values: Array) -> float:
+    size = float(np.abs(values).max())
+    return size if size >= NOTHING else 0.0
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _short(value: Any) -> str:
+    if not isinstance(value, list):
+        return f"{value:g}"
+    return (
+        f"{value[0]:g}" if len({*value}) == 1 else "[{}]".format(", ".join(f"{x:g}" for x in value))
+    )
+
+
+def _tool(run: "ContourResult", along: Array) -> Array:
+    track = run.track
+    return _along((track, track.distance if track.signed is None else track.signed), run, along)
+
+
+def _blended(run: "ContourResult") -> Array:
+    """Error of the pulses; where they blend two moves the nearer one counts."""
+    track, segments = run.command_track, run.run.path.segments
+    distance = track.distance.copy()
+    for s in range(len(segments) - 1):
+        own = np.flatnonzero(track.segment == s)
+        there = segments[s + 1].foot(run.run.commanded[own, :3]).distance
+        distance[own] = np.minimum(distance[own], there)
+    return distance if track.signed is None else np.copysign(distance, track.signed)
+
+
+def _along(errors: "tuple[Track, Array]", run: "ContourResult", along: Array) -> Array:
+    """Contour error at places of the path, where a run first comes by."""
+    track, values = errors
+    place, error = track.along[run.cutting], values[run.cutting]
+    first = place >= np.maximum.accumulate(place) - STANDS
+    place, error = place[first], error[first]
+    # A tool that rests has many samples at one place: the largest of them counts.
+    order = np.lexsort((np.abs(error), place))
+    place, error = place[order], error[order]
+    last = np.concatenate([np.diff(place) > 0.0, [True]])
+    return np.interp(along, place[last], error[last])
