@@ -6,8 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motionfmu import recording
+from motionfmu.contour.error import LAGS, WINDOW_MIN
 from motionfmu.explain import causes, theory
 from motionfmu.explain.ballbar import Signature, signature
 from motionfmu.explain.causes import Cause, Off
@@ -25,6 +27,8 @@ PLACES = 20_000
 NOTHING = 1e-6
 # A tool that goes back by more than this has been there before: only its first pass counts [mm].
 STANDS = 1e-6
+# Servo lags that a rest takes at least, and for which its places do not count afterwards.
+RESTS = 3.0
 PATH, SERVO = "path", "servo"
 TITLES = {PATH: "Path the card was given (blending)", SERVO: "Servo lag"}
 
@@ -86,6 +90,8 @@ class Explanation:
         Places on the path [mm].
     whole, together : ndarray, shape (n,)
         Contour error there, and the sum of all effects [mm].
+    counts : ndarray of bool, shape (n,)
+        Places that count: cut, and not the first ones after a rest.
     corners : tuple of CornerRow
     signatures : tuple of Signature
         Of the circles run both ways round.
@@ -97,6 +103,7 @@ class Explanation:
     along: Array
     whole: Array
     together: Array
+    counts: NDArray[np.bool_]
     corners: "tuple[theory.CornerRow, ...]"
     signatures: tuple[Signature, ...]
 
@@ -128,10 +135,15 @@ class Explanation:
 
     def numbers(self) -> dict[str, Any]:
         """Every number, ready for JSON; mm, rad."""
-        return {
-            "contour_error": {"max": _top(self.whole), "rms": _rms(self.whole)},
-            "sum_of_effects": {"max": _top(self.together), "rms": _rms(self.together)},
-            "residual": {"max": _top(self.residual), "rms": _rms(self.residual)},
+        sizes = {
+            name: {"max": _top(values[self.counts]), "rms": _rms(values[self.counts])}
+            for name, values in (
+                ("contour_error", self.whole),
+                ("sum_of_effects", self.together),
+                ("residual", self.residual),
+            )
+        }
+        return sizes | {
             "effects": [e.numbers() for e in self.effects],
             "corners": [vars(c) for c in self.corners],
             "circles": [s.numbers() for s in self.signatures],
@@ -183,7 +195,7 @@ def explain(
     count = len(acting) + 2
     for i, cause in enumerate(acting, 1):
         progress(f"without {cause.title.lower()}", i / count)
-        runs[cause.name] = _run(scenario, given | states[cause.name].set, stop)
+        runs[cause.name] = _run(scenario, {**given, **states[cause.name].set}, stop)
     progress("without all of them", (count - 1) / count)
     everything: dict[str, Any] = {}
     for cause in acting:
@@ -214,6 +226,7 @@ def _put_together(
     whole_run, ideal = result.contour(), runs[1]
     along = np.linspace(0.0, float(whole_run.run.path.offsets[-1]), PLACES)
     whole = _tool(whole_run, along)
+    counts = _counted(whole_run, along)
     book = theory.Book(result, ideal)
     effects = []
     for cause in known[0]:
@@ -222,13 +235,17 @@ def _put_together(
         how = ", ".join(f"{k} = {_short(v)}" for k, v in state.set.items()) or state.why_not
         said = theory.NONE if state.absent else book.of(cause.name)
         without = None if run is None else run.error.max
-        effects.append(_effect((cause.name, cause.title, how), whole_run, change, (without, said)))
+        effects.append(
+            _effect((cause.name, cause.title, how), (whole_run, counts), change, (without, said))
+        )
     path = _along((ideal.command_track, _blended(ideal)), ideal, along)
     left = _tool(ideal, along) - path
     how = "pulses against path, without all causes above"
-    effects.append(_effect((PATH, TITLES[PATH], how), ideal, path, (None, book.of(PATH))))
+    effects.append(_effect((PATH, TITLES[PATH], how), (ideal, counts), path, (None, book.of(PATH))))
     how = "table against pulses, without all causes above"
-    effects.append(_effect((SERVO, TITLES[SERVO], how), ideal, left, (None, book.of(SERVO))))
+    effects.append(
+        _effect((SERVO, TITLES[SERVO], how), (ideal, counts), left, (None, book.of(SERVO)))
+    )
     together = np.sum([e.change for e in effects], axis=0)
     both_ways = [c for c in whole_run.circles if c.ccw and c.cw]
     return Explanation(
@@ -238,6 +255,7 @@ def _put_together(
         along,
         whole,
         together,
+        counts,
         theory.corner_rows(result, ideal, book),
         tuple(signature(c, whole_run.lag) for c in both_ways),
     )
@@ -245,16 +263,36 @@ def _put_together(
 
 def _effect(
     names: tuple[str, str, str],
-    run: "ContourResult",
+    where: "tuple[ContourResult, NDArray[np.bool_]]",
     change: Array,
     rest: "tuple[float | None, theory.Theory]",
 ) -> Effect:
-    path, size = run.run.path, _top(change)
-    place = float(path.offsets[-1]) * float(np.argmax(np.abs(change))) / (len(change) - 1)
+    path, counts = where[0].run.path, where[1]
+    size = _top(change[counts])
+    worst = int(np.argmax(np.where(counts, np.abs(change), -1.0)))
+    place = float(path.offsets[-1]) * worst / (len(change) - 1)
     owner = int(np.searchsorted(path.offsets, place, side="right")) - 1
     line = path.segments[min(owner, len(path.segments) - 1)].label.line if size else 0
-    usual = float(np.percentile(np.abs(change), 99.0))
-    return Effect(*names, size, usual, _rms(change), line, *rest, change)
+    usual = float(np.percentile(np.abs(change[counts]), 99.0))
+    return Effect(*names, size, usual, _rms(change[counts]), line, *rest, change)
+
+
+def _counted(run: "ContourResult", along: Array) -> NDArray[np.bool_]:
+    """Places on lines and arcs, but for the first ones after a rest.
+
+    Where the tool rests, and how it starts from there, depends by friction on all that was before.
+    """
+    time, path, way = run.run.time, run.run.path, run.command_track.along
+    kinds = np.array([s.label.kind != "ptp" for s in path.segments])
+    owner = np.searchsorted(path.offsets, along, side="right") - 1
+    counts = kinds[np.clip(owner, 0, len(kinds) - 1)]
+    span = RESTS * max(run.lag, WINDOW_MIN / LAGS)
+    moves = np.flatnonzero(np.diff(way) > 0.0)
+    for before, after in zip([0, *moves[:-1].tolist()], moves.tolist(), strict=True):
+        if time[after] - time[before] >= span or after == moves[0]:
+            until = min(int(np.searchsorted(time, time[after] + span)), len(time) - 1)
+            counts &= (along < way[after] - STANDS) | (along > run.track.along[until])
+    return counts
 
 
 def _top(values: Array) -> float:

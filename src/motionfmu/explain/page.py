@@ -28,7 +28,8 @@ BAR_HEIGHT = 44  # [pixel]
 FOOTER = (
     "A cause is the change of the contour error between the run and the same run without it, at the"
     " same places of the path. Its size is the largest such change. Servo lag and path are what is"
-    " left with all causes switched off together. The causes interact, so their sum is not"
+    " left with all causes switched off together. The first places after a rest are not counted: how a tool starts"
+    " depends on where friction has left it. The causes interact, so their sum is not"
     ' the whole: the residual says by how much. All numbers are in <a href="result.json">'
     "result.json</a>."
 )
@@ -91,14 +92,14 @@ def page_text(found: Explanation) -> str:
 
 def _cards(found: Explanation) -> str:
     first = found.effects[0]
-    whole, rest = (float(np.abs(v).max()) for v in (found.whole, found.residual))
-    rms = float(np.sqrt(np.mean(found.residual**2)))
+    numbers = found.numbers()
+    whole, total, rest = (numbers[n] for n in ("contour_error", "sum_of_effects", "residual"))
     theory = "" if first.theory.value is None else f"theory {length(first.theory.value)}"
     cards = [
-        ("Largest contour error", length(whole), f"line {found.result.contour().error.line}"),
+        ("Largest contour error", length(whole["max"]), f"RMS {length(whole['rms'])}"),
         (f"First cause: {first.title}", length(first.size), theory),
-        ("Sum of all effects", length(float(np.abs(found.together).max())), "at its largest"),
-        ("Residual", length(rest), f"RMS {length(rms)}"),
+        ("Sum of all effects", length(total["max"]), f"RMS {length(total['rms'])}"),
+        ("Residual: interaction", length(rest["max"]), f"RMS {length(rest['rms'])}"),
     ]
     return '<div class="cards">{}</div>'.format(
         "".join(

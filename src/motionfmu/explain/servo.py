@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 # Terms of the Fourier series of a chord's sag; they fall with the square of their number.
 CHORD_TERMS = 50
-# Steps over which a step response is searched for its peak, and its length in slowest time constants.
+# Steps over which a step response is searched for its peak; its length in slowest time constants.
 PEAK_STEPS, PEAK_LENGTH = 2000, 8.0
 
 

@@ -24,6 +24,8 @@ SLOW = 0.05
 # Servo lags for which the command stays there for the tool to come: exp(-3) of the way is left.
 RESTS = 3.0
 BLENDED = "blended"
+# Causes whose formula asks for the position gain.
+BY_GAIN = ("servo", "chord", "mismatch", "friction")
 
 
 @dataclass(frozen=True)
@@ -142,7 +144,7 @@ class Book:
         method = getattr(self, f"_{name}", None)
         found = NONE if method is None or not self.moves else method()
         assert isinstance(found, Theory)
-        if self.measured_gain and found.value is not None and "Kp" in found.formula:
+        if self.measured_gain and found.value and name in BY_GAIN:
             return replace(found, formula=found.formula + "; Kp measured in the run")
         return found
 
@@ -262,7 +264,7 @@ class Book:
                 mean = self._mean_axis(pair).response(speed / segment.radius)
                 middle = segment.radius * abs(mean)
                 found.append(max(large - middle, middle - small))
-        text = "line V sin a cos a (1/Kx - 1/Ky); circle: ellipse of both responses at V/R; Kp"
+        text = "line V sin a cos a (1/Kx - 1/Ky); circle: ellipse of both responses at V/R"
         return Theory(max(found), text)
 
     def _line_mismatch(self, line: Line, speed: float) -> float:
@@ -287,7 +289,7 @@ class Book:
         integral = any(a.velocity_time > 0.0 for a in self.axes.values())
         text = "reversal 2 Fc/(Kp Kv), half to each side, and the wind-up of the screw"
         if integral:
-            text = "step of 2 Fc on the loop with integral, and the wind-up of the screw; Kp"
+            text = "step of 2 Fc on the loop with integral, and the wind-up of the screw"
         return Theory(max(peaks), text)
 
     def _backlash(self) -> Theory:
@@ -324,5 +326,5 @@ class Book:
             free[:, i] = servo.limited(run.commanded[:, i], run.time, axis, math.inf)
             bound[:, i] = servo.limited(run.commanded[:, i], run.time, axis, limit)
         errors = [analyse(replace(run, actual=x)).error.max for x in (bound, free)]
-        text = "reduced model: |dv/dt| limited to (torque limit - Fc)/J; Kp"
+        text = "reduced model: |dv/dt| limited to (torque limit - Fc)/J"
         return Theory(errors[0] - errors[1], text)
