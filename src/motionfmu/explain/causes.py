@@ -49,6 +49,7 @@ class Switch(BaseModel):
     plus: dict[str, float] = Field(default_factory=dict)
     mean: list[str] = Field(default_factory=list)
     limit: list[str] = Field(default_factory=list)
+    after: str = ""
     reached: dict[str, float] = Field(default_factory=dict)
 
 
@@ -66,6 +67,11 @@ class Cause:
     name: str
     title: str
     switches: Mapping[str, Switch]
+
+    @property
+    def after(self) -> str:
+        """Cause that is off on both sides when this one is judged; empty for none."""
+        return next((s.after for s in self.switches.values() if s.after), "")
 
 
 @dataclass(frozen=True)

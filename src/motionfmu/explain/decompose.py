@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from motionfmu import recording
 from motionfmu.contour.error import LAGS, WINDOW_MIN
+from motionfmu.contour_of import library_of
+from motionfmu.errors import InputError
 from motionfmu.explain import causes, theory
 from motionfmu.explain.ballbar import Signature, signature
 from motionfmu.explain.causes import Cause, Off
@@ -185,7 +187,7 @@ def explain(
     scenario = load(path)
     given = dict(set or {})
     known = causes.causes(scenario)
-    _watch(scenario, causes.watched(known))
+    _watch(scenario, [f"{library_of(scenario)}.error", *causes.watched(known)])
     progress(scenario.name, 0.0)
     result = scenario.run(set=given, stop=stop)
     result.contour()
@@ -195,11 +197,17 @@ def explain(
     count = len(acting) + 2
     for i, cause in enumerate(acting, 1):
         progress(f"without {cause.title.lower()}", i / count)
-        runs[cause.name] = _run(scenario, {**given, **states[cause.name].set}, stop)
+        before = states[cause.after].set if cause.after in states else {}
+        try:
+            changed = causes.off(cause, result, before).set
+            runs[cause.name] = _run(scenario, {**given, **before, **changed}, stop)
+        except InputError as error:
+            states[cause.name] = Off({}, f"does not run without it: {error}")
     progress("without all of them", (count - 1) / count)
     everything: dict[str, Any] = {}
     for cause in acting:
-        everything |= causes.off(cause, result, everything).set
+        if cause.name in runs:
+            everything |= causes.off(cause, result, everything).set
     ideal = _run(scenario, given | everything, stop) if everything else result.contour()
     progress("done", 1.0)
     return _put_together(result, (known, states), (runs, ideal))
@@ -215,7 +223,12 @@ def _watch(scenario: "Scenario", names: list[str]) -> None:
 
 
 def _run(scenario: "Scenario", given: Mapping[str, Any], stop: float | None) -> "ContourResult":
-    return scenario.run(set=given, stop=stop).contour()
+    """Contour of a run without some causes; it must still come to the end of its program."""
+    library = library_of(scenario)
+    result = scenario.run(set=given, stop=stop)
+    if code := int(np.max(result[f"{library}.error"])):
+        raise InputError(f"{scenario.document.file}: {library}.error = {code}")
+    return result.contour()
 
 
 def _put_together(
@@ -231,7 +244,10 @@ def _put_together(
     effects = []
     for cause in known[0]:
         state, run = known[1][cause.name], runs[0].get(cause.name)
-        change = np.zeros_like(whole) if run is None else whole - _tool(run, along)
+        change = np.zeros_like(whole)
+        if run is not None:
+            other = runs[0].get(cause.after)
+            change = (whole if other is None else _tool(other, along)) - _tool(run, along)
         how = ", ".join(f"{k} = {_short(v)}" for k, v in state.set.items()) or state.why_not
         said = theory.NONE if state.absent else book.of(cause.name)
         without = None if run is None else run.error.max

@@ -28,9 +28,9 @@ BAR_HEIGHT = 44  # [pixel]
 FOOTER = (
     "A cause is the change of the contour error between the run and the same run without it, at the"
     " same places of the path. Its size is the largest such change. Servo lag and path are what is"
-    " left with all causes switched off together. The first places after a rest are not counted: how a tool starts"
-    " depends on where friction has left it. The causes interact, so their sum is not"
-    ' the whole: the residual says by how much. All numbers are in <a href="result.json">'
+    " left with all causes switched off together. The first places after a rest are not counted:"
+    " how a tool starts depends on where friction has left it. The causes interact, so their sum is"
+    ' not the whole: the residual says by how much. All numbers are in <a href="result.json">'
     "result.json</a>."
 )
 

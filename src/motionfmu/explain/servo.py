@@ -41,6 +41,8 @@ class Axis:
         Motor, screw and table [kg.m2].
     friction : float
         Coulomb friction at the motor [N.m].
+    viscous : float
+        Viscous friction at the motor [N.m.s/rad].
     travel : float
         Travel per turn [mm].
     """
@@ -53,6 +55,7 @@ class Axis:
     velocity_time: float = 0.0
     inertia: float = 0.0
     friction: float = 0.0
+    viscous: float = 0.0
     travel: float = 0.0
 
     @staticmethod
@@ -366,20 +369,20 @@ def lost_motion_arc(radius: float, backlash: float) -> float:
     return math.acos(max(-1.0, 1.0 - backlash / radius))
 
 
-def limited(command: Array, time: Array, axis: Axis, limit: float) -> Array:
-    """Position behind a loop whose acceleration is limited.
+def limited(command: Array, time: Array, axis: Axis, torque: float) -> Array:
+    """Position of a rigid axis without delays whose torque is limited.
 
-    A reduced model: the velocity loop makes the speed it is asked for as fast as the limit lets
-    it, so ``v = Kp (c - x)`` with ``|dv/dt| <= limit``.
+    ``J dv/dt = T - Fc sign(v) - Fv v`` with T of a PI velocity loop, within the limit, which asks
+    for the speed ``Kp (c - x)``; its integral stands still while the torque is limited.
 
     Parameters
     ----------
     command, time : ndarray, shape (n,)
         [mm], [s] with even steps.
     axis : Axis
-        Only its gain counts.
-    limit : float
-        Largest acceleration [mm/s2]; infinite for none.
+        All but period, delay and lag count.
+    torque : float
+        Largest [N.m]; infinite for no limit.
 
     Returns
     -------
@@ -387,13 +390,18 @@ def limited(command: Array, time: Array, axis: Axis, limit: float) -> Array:
         [mm].
     """
     step = float(time[1] - time[0])
-    reach = limit * step
-    share = -math.expm1(-axis.gain * step) / step  # exact for a command that stands still
-    position, speed = float(command[0]), 0.0
+    turn = 2.0 * math.pi / axis.travel
+    rate = step / axis.velocity_time if axis.velocity_time > 0.0 else 0.0
+    position, speed, integral = float(command[0]), 0.0, 0.0  # [mm], [rad/s], [N.m]
     out = []
     for goal in command.tolist():
-        wanted = share * (goal - position)
-        speed = min(max(wanted, speed - reach), speed + reach)
         out.append(position)
-        position += speed * step
+        ask = axis.velocity_gain * (axis.gain * (goal - position) * turn - speed)
+        if abs(ask + integral) <= torque:
+            integral += rate * ask
+        given = min(max(ask + integral, -torque), torque)
+        free = speed + step / axis.inertia * (given - axis.viscous * speed)
+        hold = step / axis.inertia * axis.friction
+        speed = math.copysign(max(abs(free) - hold, 0.0), free)
+        position += speed / turn * step
     return np.array(out)

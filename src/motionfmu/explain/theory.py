@@ -315,16 +315,16 @@ class Book:
         return Theory(largest, "lead error across the path: slope times position, and the wave")
 
     def _torque(self) -> Theory:
-        """Both loops of a reduced model follow the commands of the run, one of them limited."""
-        if self.measured_gain or not self._told("inertia")[self.used].all():
+        """A reduced model follows the commands of the run, once limited and once not."""
+        needed = ("inertia", "velocity_gain", "travel", "torque_limit")
+        if self.measured_gain or not all(self._told(n)[self.used].all() for n in needed):
             return NONE
         run = self.contour.run
         free, bound = run.actual.copy(), run.actual.copy()
         for i, axis in self.axes.items():
-            torque = float(self._told("torque_limit")[i]) - axis.friction
-            limit = max(torque, 0.0) / axis.inertia * axis.travel / (2.0 * math.pi)
+            limit = float(self._told("torque_limit")[i])
             free[:, i] = servo.limited(run.commanded[:, i], run.time, axis, math.inf)
             bound[:, i] = servo.limited(run.commanded[:, i], run.time, axis, limit)
         errors = [analyse(replace(run, actual=x)).error.max for x in (bound, free)]
-        text = "reduced model: |dv/dt| limited to (torque limit - Fc)/J"
+        text = "rigid axes without delays: J dv/dt + friction = PI torque within the limit"
         return Theory(errors[0] - errors[1], text)
