@@ -8,7 +8,8 @@ fitted by least squares with
       + d g sin 2a                              mismatch of the gains: changes its sign
       + d (bx sign(sin a) cos a - by sign(cos a) sin a)/2        backlash: steps at the quadrants
 
-on the samples that are not just behind a quadrant; what sticks out there is a reversal spike.
+on the samples that are not just behind a quadrant. There a table behind a backlash stands still
+over acos(1 - B/R); what sticks out of that is a reversal spike.
 """
 
 import math
@@ -128,6 +129,10 @@ def signature(test: CircularTest, lag: float = 0.0) -> Signature:
     fitted = ~_behind_quadrant(angle, way)
     basis = _basis(angle, way)
     c = np.linalg.lstsq(basis[fitted], deviation[fitted], rcond=None)[0]
+    for i, start in ((6, 0.0), (7, 0.25 * TURN)):
+        basis[:, i] *= _taken_up(
+            np.mod(way * (angle - start), 0.5 * TURN), test.radius, float(c[i])
+        )
     rest = deviation - basis @ c
     scatter = float(np.sqrt(np.mean(rest[fitted] ** 2)))
     turn = lag * test.ccw.speed / test.radius
@@ -171,6 +176,13 @@ def _basis(angle: Array, way: Array) -> Array:
         -0.5 * way * np.sign(cos) * sin,
     ]
     return np.column_stack(columns)
+
+
+def _taken_up(since: Array, radius: float, width: float) -> Array:
+    """From -1 to 1 while an axis takes up its backlash behind its reversal, at an angle since."""
+    if width == 0.0:
+        return np.ones_like(since)
+    return np.clip(2.0 * radius * (1.0 - np.cos(since)) / abs(width) - 1.0, -1.0, 1.0)
 
 
 def _since_quadrant(angle: Array, way: Array) -> Array:

@@ -185,6 +185,8 @@ def explain(
         The scenario or a setting is wrong, or has no contour; one message.
     """
     scenario = load(path)
+    if scenario.document.body.contour is None:
+        raise InputError(f"{scenario.document.file}: the scenario has no [contour] table")
     given = dict(set or {})
     known = causes.causes(scenario)
     _watch(scenario, [f"{library_of(scenario)}.error", *causes.watched(known)])

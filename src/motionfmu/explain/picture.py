@@ -101,6 +101,7 @@ def _polar(axes: Any, found: "Explanation") -> None:
     axes.grid(color=GRID)
     axes.spines["polar"].set_color(GRID)
     named = [f"{f.name} {length(f.size)}" for f in mark.findings if f.named]
-    words = f"mean radius {length(mark.mean, sign=True)}; " + ", ".join(named)
-    axes.set_title(f"Ballbar R {test.radius:g} mm\n{words}", fontsize=10)
+    pairs = [", ".join(named[i : i + 3]) for i in range(0, len(named), 3)]
+    words = "\n".join([f"mean radius {length(mark.mean, sign=True)}", *pairs])
+    axes.set_title(f"Ballbar R {test.radius:g} mm, {words}", fontsize=10)
     axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(-0.16, -0.08), fontsize=9)
