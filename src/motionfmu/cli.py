@@ -315,8 +315,9 @@ def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
         out.print(f"[bold]Ballbar, radius {mark.test.radius:g} mm[/]")
         for words in mark.words():
             out.print(f"  {words}")
-    shown = outcome.whole(target, lambda part: write_explanation(found, part))
-    out.print(f"report: {shown}", soft_wrap=True)
+    with outcome.whole(target) as part:
+        shown = write_explanation(found, part).name
+    out.print(f"report: {target / shown}", soft_wrap=True)
 
 
 @app.command()

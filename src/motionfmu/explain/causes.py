@@ -17,12 +17,13 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from motionfmu import fmus
 from motionfmu.errors import InputError
 from motionfmu.explain.expression import evaluate
+from motionfmu.pack import EXTRA
 
 if TYPE_CHECKING:
     from motionfmu.fmus import Port
     from motionfmu.run import Result, Scenario
 
-RESOURCE = "resources/causes.toml"
+RESOURCE = f"{EXTRA}/causes.toml"
 THEORY = "theory"
 AXES = 6
 INT_MAX = 2**31 - 1

@@ -29,7 +29,7 @@ PLACES = 20_000
 NOTHING = 1e-6
 # A tool that goes back by more than this has been there before: only its first pass counts [mm].
 STANDS = 1e-6
-# Servo lags that a rest takes at least, and for which its places do not count afterwards.
+# Servo lags that a rest takes at least; the places of a servo window after it do not count.
 RESTS = 3.0
 PATH, SERVO = "path", "servo"
 TITLES = {PATH: "Path the card was given (blending)", SERVO: "Servo lag"}
@@ -308,7 +308,7 @@ def _counted(run: "ContourResult", along: Array) -> NDArray[np.bool_]:
     moves = np.flatnonzero(np.diff(way) > 0.0)
     for before, after in zip([0, *moves[:-1].tolist()], moves.tolist(), strict=True):
         if time[after] - time[before] >= span or after == moves[0]:
-            until = min(int(np.searchsorted(time, time[after] + span)), len(time) - 1)
+            until = min(int(np.searchsorted(time, time[after] + run.window)), len(time) - 1)
             counts &= (along < way[after] - STANDS) | (along > run.track.along[until])
     return counts
 
