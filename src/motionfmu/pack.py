@@ -172,7 +172,11 @@ def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> N
     for readme in folder.glob("README.md"):
         files["documentation/README.md"] = readme.read_bytes()
     if fmi == 3:
-        for extra in (*folder.glob("linear.toml"), *folder.glob("causes.toml"), *out.glob("*.json")):
+        for extra in (
+            *folder.glob("linear.toml"),
+            *folder.glob("causes.toml"),
+            *out.glob("*.json"),
+        ):
             files[f"{EXTRA}/{extra.name}"] = extra.read_bytes()
     for source, data in _packed_sources(folder, out, fmi).items():
         files[f"sources/{source}"] = data

@@ -71,7 +71,7 @@ class Cause:
 
     @property
     def after(self) -> str:
-        """Cause that is off on both sides when this one is judged; empty for none."""
+        """Cause that is off on both sides; empty for none."""
         return next((s.after for s in self.switches.values() if s.after), "")
 
 

@@ -108,7 +108,7 @@ class Axis:
 
 
 def radius_change(radius: float, response: complex) -> float:
-    """Radius that comes out, minus the radius asked for: R (|H| - 1).
+    """Radius that comes out, minus the nominal one: R (|H| - 1).
 
     Parameters
     ----------
@@ -166,12 +166,12 @@ def average_response(speed: float, time: float, times: int = 1) -> complex:
 
 
 def following_radius(radius: float, following: float) -> float:
-    """Radius that a lagging loop runs: sqrt(R^2 - L^2), L the following distance.
+    """Radius that a lagging loop runs: sqrt(R^2 - L^2).
 
     Parameters
     ----------
     radius, following : float
-        [mm].
+        Radius asked for, distance of the tool behind the command [mm].
 
     Returns
     -------
@@ -298,9 +298,9 @@ def corner(feed: float, angle: float, gain: float, acceleration: float = 0.0) ->
 
 
 def blended_corner(feed: float, angle: float, gain: float, acceleration: float) -> float:
-    """Contour error of a corner whose two moves overlap: one brakes while the next speeds up.
+    """Contour error of a corner whose two moves overlap.
 
-    Both distances, ``a (T - t)^2/2 + a (T - t)/Kp`` and ``a t^2/2 - a t/Kp``, each with
+    One brakes while the next speeds up. Both distances, ``a (T - t)^2/2 + a (T - t)/Kp`` and ``a t^2/2 - a t/Kp``, each with
     ``a/Kp^2 (1 - e^(-Kp t))`` more, are equal at t = T/2 + 1/Kp, with T = V/a.
 
     Parameters
@@ -321,9 +321,9 @@ def blended_corner(feed: float, angle: float, gain: float, acceleration: float) 
 
 
 def reversal(axis: Axis) -> tuple[float, float]:
-    """Position error by Coulomb friction: how much it changes at a reversal, and its peak.
+    """Position error by Coulomb friction: step, and peak.
 
-    The torque changes by 2 Fc. A proportional velocity loop keeps 2 Fc/(Kp Kv), half of it to
+    At a reversal the torque changes by 2 Fc. A proportional velocity loop keeps 2 Fc/(Kp Kv), half of it to
     either side; an integral takes it away again, and what is left is the peak of
     ``2 Fc/(J s^3 + Kv (s + 1/Ti) (s + Kp))``, delays left out.
 
@@ -354,7 +354,9 @@ def reversal(axis: Axis) -> tuple[float, float]:
 
 
 def lost_motion_arc(radius: float, backlash: float) -> float:
-    """Angle after a quadrant in which a table behind a backlash stands still: acos(1 - B/R).
+    """Angle of the lost motion: acos(1 - B/R).
+
+    So far behind a quadrant a table behind a backlash stands still.
 
     Parameters
     ----------
