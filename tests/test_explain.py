@@ -355,6 +355,23 @@ def test_an_fmu_brings_its_causes_with_it(text, message, tmp_path, monkeypatch) 
         fmus.ports.cache_clear()
 
 
+def test_a_cause_that_cannot_be_switched_off_says_why() -> None:
+    """16 bit would be wanted for pulses an eighth as long; a late PC must not change the motion."""
+    found = explain(ROOT / "scenarios/interpolation_points", stop=1.3)
+    effect = found.effect("quantisation")
+    assert not effect.judged and "dda_length: 16 would be wanted" in effect.how
+    assert found.effects[0].name == "chord"
+    with pytest.raises(KeyError, match="no effect 'heat', there is chord"):
+        found.effect("heat")
+    # A corner run through without a stop for the tool: 0.2725 a/Kp^2, a = V/t.
+    corner = found.corners[0]
+    gain = 40 * 8 * PER_GAIN
+    assert corner.kind == "stop" and corner.theory == pytest.approx(
+        0.2725 * 100.0 / 0.05 / gain**2, rel=0.001
+    )
+    assert corner.ideal == pytest.approx(corner.theory, rel=0.05)
+
+
 def test_expressions_are_arithmetic_only() -> None:
     values = {"a": np.array([1.0, 2.0]), "m": np.array([1.0, 1.0])}
     assert evaluate("2 * a**2 / 4 + pi - pi if m == 1 else 0", values).tolist() == [0.5, 2.0]

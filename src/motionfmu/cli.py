@@ -305,12 +305,16 @@ def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
         table.add_column(heading, justify="right")
     for e in found.effects:
         both = ("" if v is None else length(v) for v in (e.theory.value, e.without))
-        table.add_row(e.title, length(e.size), length(e.usual), *both)
+        sizes = (length(e.size), length(e.usual)) if e.judged else ("not judged", "")
+        table.add_row(e.title, *sizes, *both)
     numbers = found.numbers()
     for title, key in (("Sum of the effects", "sum_of_effects"), ("Residual", "residual")):
         table.add_row(f"[dim]{title}[/]", length(numbers[key]["max"]))
     table.add_row("[bold]Contour error[/]", length(numbers["contour_error"]["max"]))
     out.print(table)
+    for e in found.effects:
+        if not e.judged:
+            out.print(f"[bold]{e.title}[/] not judged: {e.how.replace('[', chr(92) + '[')}")
     for mark in found.signatures:
         out.print(f"[bold]Ballbar, radius {mark.test.radius:g} mm[/]")
         for words in mark.words():

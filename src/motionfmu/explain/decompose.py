@@ -31,6 +31,8 @@ NOTHING = 1e-6
 STANDS = 1e-6
 # Servo lags that a rest takes at least; the places of a servo window after it do not count.
 RESTS = 3.0
+# A motion is the same if it takes the same time but for this part: delays differ, speeds do not.
+SAME = 0.01
 PATH, SERVO = "path", "servo"
 TITLES = {PATH: "Path the card was given (blending)", SERVO: "Servo lag"}
 
@@ -52,6 +54,8 @@ class Effect:
         Line of the program at which the change is largest; 0 if there is none.
     without : float or None
         Largest contour error of the run without the cause [mm].
+    judged : bool
+        Whether the cause could be switched off, or was not there; else `how` says why.
     theory : Theory
         What a formula says.
     change : ndarray, shape (n,)
@@ -66,12 +70,13 @@ class Effect:
     rms: float
     where: int
     without: float | None
+    judged: bool
     theory: "theory.Theory"
     change: Array
 
     def numbers(self) -> dict[str, Any]:
         """Its numbers, ready for JSON."""
-        names = ("name", "title", "how", "size", "usual", "rms", "where", "without")
+        names = ("name", "title", "how", "size", "usual", "rms", "where", "without", "judged")
         out = {k: getattr(self, k) for k in names}
         return out | {"theory": self.theory.value, "formula": self.theory.formula}
 
@@ -202,9 +207,10 @@ def explain(
         before = states[cause.after].set if cause.after in states else {}
         try:
             changed = causes.off(cause, result, before).set
-            runs[cause.name] = _run(scenario, {**given, **before, **changed}, stop)
+            run = _run(scenario, {**given, **before, **changed}, stop)
+            runs[cause.name] = _same_motion(run, result.contour())
         except InputError as error:
-            states[cause.name] = Off({}, f"does not run without it: {error}")
+            states[cause.name] = Off({}, f"not comparable without it: {error}")
     progress("without all of them", (count - 1) / count)
     everything: dict[str, Any] = {}
     for cause in acting:
@@ -225,12 +231,23 @@ def _watch(scenario: "Scenario", names: list[str]) -> None:
 
 
 def _run(scenario: "Scenario", given: Mapping[str, Any], stop: float | None) -> "ContourResult":
-    """Contour of a run without some causes; it must still come to the end of its program."""
+    """Contour of a run without some causes; the library must still go on without an error."""
     library = library_of(scenario)
     result = scenario.run(set=given, stop=stop)
     if code := int(np.max(result[f"{library}.error"])):
-        raise InputError(f"{scenario.document.file}: {library}.error = {code}")
+        raise InputError(f"{library}.error = {code}")
     return result.contour()
+
+
+def _same_motion(run: "ContourResult", whole: "ContourResult") -> "ContourResult":
+    """Refuse a run whose commands take another time for the same path."""
+    times = []
+    for each in (run, whole):
+        moves = np.flatnonzero(np.diff(each.command_track.along) > 0.0)
+        times.append(float(each.run.time[moves[-1]] - each.run.time[moves[0]]))
+    if abs(times[0] - times[1]) > SAME * times[1] + 2.0 * whole.run.dda_time:
+        raise InputError(f"the motion takes {times[0]:.3g} s instead of {times[1]:.3g} s")
+    return run
 
 
 def _put_together(
@@ -253,16 +270,21 @@ def _put_together(
         how = ", ".join(f"{k} = {_short(v)}" for k, v in state.set.items()) or state.why_not
         said = theory.NONE if state.absent else book.of(cause.name)
         without = None if run is None else run.error.max
+        judged = run is not None or state.absent
         effects.append(
-            _effect((cause.name, cause.title, how), (whole_run, counts), change, (without, said))
+            _effect(
+                (cause.name, cause.title, how), (whole_run, counts), change, (without, judged, said)
+            )
         )
     path = _along((ideal.command_track, _blended(ideal)), ideal, along)
     left = _tool(ideal, along) - path
     how = "pulses against path, without all causes above"
-    effects.append(_effect((PATH, TITLES[PATH], how), (ideal, counts), path, (None, book.of(PATH))))
+    effects.append(
+        _effect((PATH, TITLES[PATH], how), (ideal, counts), path, (None, True, book.of(PATH)))
+    )
     how = "table against pulses, without all causes above"
     effects.append(
-        _effect((SERVO, TITLES[SERVO], how), (ideal, counts), left, (None, book.of(SERVO)))
+        _effect((SERVO, TITLES[SERVO], how), (ideal, counts), left, (None, True, book.of(SERVO)))
     )
     together = np.sum([e.change for e in effects], axis=0)
     both_ways = [c for c in whole_run.circles if c.ccw and c.cw]
@@ -283,7 +305,7 @@ def _effect(
     names: tuple[str, str, str],
     where: "tuple[ContourResult, NDArray[np.bool_]]",
     change: Array,
-    rest: "tuple[float | None, theory.Theory]",
+    rest: "tuple[float | None, bool, theory.Theory]",
 ) -> Effect:
     path, counts = where[0].run.path, where[1]
     size = _top(change[counts])

@@ -82,7 +82,8 @@ def page_text(found: Explanation) -> str:
     if found.corners:
         note = (
             "Theory: first-order axes with the mean gain, the corner run into at the speed of the"
-            " command. A corner at which the command rests until the tool has come has none."
+            " command. A corner at which the command rests until the tool has come has no error;"
+            " moves too short for their ramps have no formula."
         )
         page.section("Corners", note, _corners(found))
     result = found.result
@@ -122,7 +123,7 @@ def shown(found: Explanation) -> list[Effect]:
     list of Effect
         The largest first; all of them if none acts.
     """
-    acting = [e for e in found.effects if e.size > 0.0 or e.theory.value]
+    acting = [e for e in found.effects if e.judged and (e.size > 0.0 or e.theory.value)]
     return acting or list(found.effects)
 
 
@@ -168,6 +169,8 @@ def _effects(found: Explanation) -> str:
         line = str(e.where) if e.where else ""
         without = "" if e.without is None else length(e.without)
         sizes = (length(e.size), line, length(e.usual), length(e.rms), without, said)
+        if not e.judged:
+            sizes = ("not judged", "", "", "", "", said)
         rows.append((title, formula, *sizes))
     heads = ("Cause, and how it is off", "Formula", "Largest", "Line", "99 %", "RMS")
     return table((*heads, "Error without", "Theory"), rows, numeric=2)
@@ -240,7 +243,7 @@ def _corners(found: Explanation) -> str:
             f"{figure(c.speed)} mm/s",
             length(c.error),
             length(c.ideal),
-            length(c.theory),
+            "" if c.theory is None else length(c.theory),
         )
         for c in found.corners
     ]

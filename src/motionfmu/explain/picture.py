@@ -37,7 +37,7 @@ def write_picture(found: "Explanation", folder: Path) -> None:
         drawn = plt.figure(figsize=(11.0, 4.6) if polar else (8.0, 4.0), layout="constrained")
         try:
             left: Any = drawn.add_subplot(1, 2 if polar else 1, 1)
-            _bars(left, [e for e in found.effects if e.size > 0.0 or e.theory.value])
+            _bars(left, [e for e in found.effects if e.judged and (e.size > 0.0 or e.theory.value)])
             left.set_title(f"{found.result.name}: causes of the contour error", loc="left")
             if polar:
                 _polar(drawn.add_subplot(1, 2, 2, projection="polar"), found)

@@ -300,8 +300,9 @@ def corner(feed: float, angle: float, gain: float, acceleration: float = 0.0) ->
 def blended_corner(feed: float, angle: float, gain: float, acceleration: float) -> float:
     """Contour error of a corner whose two moves overlap.
 
-    One brakes while the next speeds up. Both distances, ``a (T - t)^2/2 + a (T - t)/Kp`` and ``a t^2/2 - a t/Kp``, each with
-    ``a/Kp^2 (1 - e^(-Kp t))`` more, are equal at t = T/2 + 1/Kp, with T = V/a.
+    One brakes while the next speeds up. Both distances, ``a (T - t)^2/2 + a (T - t)/Kp`` and
+    ``a t^2/2 - a t/Kp``, each with ``a/Kp^2 (1 - e^(-Kp t))`` more, are equal at t = T/2 + 1/Kp,
+    with T = V/a.
 
     Parameters
     ----------
@@ -323,8 +324,8 @@ def blended_corner(feed: float, angle: float, gain: float, acceleration: float) 
 def reversal(axis: Axis) -> tuple[float, float]:
     """Position error by Coulomb friction: step, and peak.
 
-    At a reversal the torque changes by 2 Fc. A proportional velocity loop keeps 2 Fc/(Kp Kv), half of it to
-    either side; an integral takes it away again, and what is left is the peak of
+    At a reversal the torque changes by 2 Fc. A proportional velocity loop keeps 2 Fc/(Kp Kv), half
+    of it to either side; an integral takes it away again, and what is left is the peak of
     ``2 Fc/(J s^3 + Kv (s + 1/Ti) (s + Kp))``, delays left out.
 
     Parameters

@@ -66,8 +66,8 @@ class CornerRow:
         Of the run [mm].
     ideal : float
         With all causes but path and servo lag switched off [mm].
-    theory : float
-        Of first-order axes with the mean gain [mm].
+    theory : float or None
+        Of first-order axes with the mean gain [mm]; None where a move is too short for its ramps.
     """
 
     lines: tuple[int, int]
@@ -76,7 +76,7 @@ class CornerRow:
     speed: float
     error: float
     ideal: float
-    theory: float
+    theory: float | None
 
 
 def corner_rows(result: "Result", ideal: "ContourResult", book: "Book") -> tuple[CornerRow, ...]:
@@ -98,7 +98,7 @@ def corner_rows(result: "Result", ideal: "ContourResult", book: "Book") -> tuple
     rows = []
     for own, other in zip(result.contour().corners, ideal.corners, strict=False):
         lines = (own.line_before, own.line_after)
-        kind, speed, said = book.corner(own)
+        kind, speed, said = book.corner(other)
         rows.append(CornerRow(lines, kind, own.angle, speed, own.error, other.error, said))
     return tuple(rows)
 
@@ -111,11 +111,12 @@ class Book:
     result : Result
         The whole run.
     ideal : ContourResult
-        Without all causes; gives the position gain if the FMUs do not tell it.
+        Without all causes; gives the corners, and the position gain if the FMUs do not tell it.
     """
 
     def __init__(self, result: "Result", ideal: "ContourResult") -> None:
         self.contour = result.contour()
+        self.ideal = ideal  # where the command shows its corners best
         self.told = causes.quantities(result)
         self.used = [i for i in causes.used(result) if i < 3]
         self.measured_gain = not (self.told.get("gain", np.zeros(6))[self.used] > 0.0).all()
@@ -148,7 +149,7 @@ class Book:
             return replace(found, formula=found.formula + "; Kp measured in the run")
         return found
 
-    def corner(self, corner: "Corner") -> tuple[str, float, float]:
+    def corner(self, corner: "Corner") -> tuple[str, float, float | None]:
         """What kind of corner it is, and what a servo makes of it.
 
         Parameters
@@ -161,20 +162,24 @@ class Book:
             As in `CornerRow`.
         speed : float
             [mm/s].
-        error : float
-            [mm].
+        error : float or None
+            [mm]; None where a move is too short for its ramps.
         """
-        run = self.contour.run
+        run = self.ideal.run
+        both = (corner.line_before, corner.line_after)
+        short = min((s.length for s, _ in self.moves if s.label.line in both), default=0.0)
         feed = next((v for s, v in self.moves if s.label.line == corner.line_after), 0.0)
         times = [float(self._told(n)[0]) for n in ("acc_time", "dec_time")]
         acceleration = feed / max(*times, 1e-6) if min(times) > 0.0 else 0.0
-        near = np.abs(run.time - corner.time) <= self.contour.window + max(times)
+        near = np.abs(run.time - corner.time) <= self.ideal.window + max(times)
         gap = np.linalg.norm(run.commanded[near, :3] - np.array(corner.point), axis=1)
         reach = 2.0 * math.sqrt(2.0) * float(self._told("pulse").max()) + feed * run.dda_time
         rests = float(np.sum(gap <= reach)) * float(np.median(np.diff(run.time)))
         if rests > RESTS * self.contour.lag + math.sqrt(8.0 * reach / max(acceleration, 1.0)):
             return "rest", 0.0, 0.0
         if gap.min() > reach and acceleration > 0.0:
+            if short < 0.5 * feed * sum(times):
+                return BLENDED, feed, None
             said = servo.blended_corner(feed, corner.angle, self.mean_gain, acceleration)
             return BLENDED, feed, said
         # The least speed is a mean over a span: a command that stops for an instant shows so much.
@@ -185,12 +190,12 @@ class Book:
         return ("sharp" if speed else "stop"), speed, said
 
     def _path(self) -> Theory:
-        blended = [c for c in map(self.corner, self.contour.corners) if c[0] == BLENDED]
+        blended = [c for c in map(self.corner, self.ideal.corners) if c[0] == BLENDED]
         if not blended:
             return Theory(0.0, "no blended corners")
         time = float(self._told("acc_time")[0])
         text = "blended corner: sin(θ) a T²/8, T the time of the ramp"
-        angles = [c.angle for c in self.contour.corners if self.corner(c)[0] == BLENDED]
+        angles = [c.angle for c in self.ideal.corners if self.corner(c)[0] == BLENDED]
         pairs = zip(blended, angles, strict=True)
         return Theory(max(abs(math.sin(a)) * b[1] * time / 8.0 for b, a in pairs), text)
 
@@ -222,11 +227,11 @@ class Book:
                 mean = self._mean_axis(pair)
                 change = servo.radius_change(arc.radius, mean.response(speed / arc.radius))
                 found.append(abs(change))
-        sharp = (self.corner(c) for c in self.contour.corners)
-        found += [said for kind, _, said in sharp if kind != BLENDED]
+        sharp = (self.corner(c) for c in self.ideal.corners)
+        found += [said for kind, _, said in sharp if kind != BLENDED and said is not None]
         text = "circles R(|H| - 1), about V²/(2 Kp² R); corners sin(θ) V/(e Kp), from rest"
         text += " 0.27 sin(θ) a/Kp²; lines 0"
-        if any(kind == BLENDED for kind, _, _ in map(self.corner, self.contour.corners)):
+        if any(kind == BLENDED for kind, _, _ in map(self.corner, self.ideal.corners)):
             return Theory(None, "blended corners: only together with the path, see the corners")
         return Theory(max(found), text)
 
