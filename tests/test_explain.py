@@ -189,8 +189,8 @@ def test_a_ballbar_sees_unequal_gains(gains) -> None:
     slow = "X lags Y" if gains[0] < gains[1] else "Y lags X"
     assert mark.findings[0].name == "mismatch" and slow in mark.words()[0]
     assert mark.findings[0].size == pytest.approx(theory, rel=0.05)
-    # Unequal lags make unequal radii too: that is not called a scale.
-    assert not mark.finding("scale").named
+    # Unequal lags make unequal radii too, 4 % of it here: that is not called a scale.
+    assert mark.finding("scale").size < 0.002 * theory
 
 
 def test_a_ballbar_sees_backlash() -> None:
