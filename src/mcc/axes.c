@@ -100,12 +100,27 @@ void axes_stand(struct axes *a, int axis)
     replan(a, x);
 }
 
+/* Limits of an order. Those of a slow one are slow too: an axis under way keeps the steeper ramps,
+ * or it would come down from a fast motion as slowly as it climbs to a slow one. */
+static void set_limits(struct axes *a, int axis, const struct axes_limits *l)
+{
+    const struct axes_limits old = a->axis[axis].limits;
+    struct axes_limits *now = &a->axis[axis].limits;
+
+    *now = *l;
+    if (!axes_rests(a, axis)) {
+        now->acc = fmax(now->acc, old.acc);
+        now->dec = fmax(now->dec, old.dec);
+        now->jerk = fmax(now->jerk, old.jerk);
+    }
+}
+
 void axes_run(struct axes *a, int axis, double speed, const struct axes_limits *l)
 {
     struct axes_axis *x = &a->axis[axis];
     x->order = AXES_RUN;
     x->goal = speed;
-    x->limits = *l;
+    set_limits(a, axis, l);
     replan(a, x);
 }
 
@@ -114,7 +129,7 @@ void axes_go(struct axes *a, int axis, double place, const struct axes_limits *l
     struct axes_axis *x = &a->axis[axis];
     x->order = AXES_GO;
     x->goal = place;
-    x->limits = *l;
+    set_limits(a, axis, l);
     replan(a, x);
 }
 

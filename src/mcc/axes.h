@@ -45,7 +45,8 @@ struct axes_limits axes_limits_of(const struct machine *m, int axis, double spee
 /* All axes stand at a place. [mm] */
 void axes_start(struct axes *a, const double place[AXES], double ratio);
 
-/* Orders to one axis, from now on. The limits of a run need no speed. */
+/* Orders to one axis, from now on. The limits of a run need no speed. An axis under way keeps
+ * acceleration, deceleration and jerk of its latest order where those are higher. */
 void axes_stand(struct axes *a, int axis);
 void axes_run(struct axes *a, int axis, double speed, const struct axes_limits *l);
 void axes_go(struct axes *a, int axis, double place, const struct axes_limits *l);

@@ -260,6 +260,31 @@ static void jog_continuous(void)
 }
 
 /* A limit switch stops the axis that moves onto it, and no other; away from it is allowed. */
+/* From a fast jog to a slow one, and to rest, the axis comes down on the ramps of the fast one. */
+static void jog_slower(void)
+{
+    const struct machine machine = mcc_machine();
+    const double down = machine.dec_time;
+    struct record r = { 0 };
+    begin(machine);
+    CHECK_EQ(MCC_jog_c(&m, 0, 1, 10.0), 0);
+    steps(&r, 200);
+    const double fast = r.last.feed;
+    CHECK_EQ(MCC_jog_c(&m, 0, 1, 0.01), 0);
+    steps(&r, (int)ceil(down / machine_dda_time(&m.machine)) + 1);
+    CHECK_NEAR(r.last.feed, fast / 1000.0, 1e-9 * fast);
+    CHECK_EQ(MCC_jog_c(&m, 0, 1, 10.0), 0);
+    steps(&r, 200);
+    CHECK_EQ(MCC_jog_c(&m, 0, -1, 0.01), 0);
+    CHECK_EQ(MCC_motion_abort(&m), 0);
+    int n = 0;
+    while (n < 1000 && !MCC_check_stop(&m)) {
+        step(&r);
+        n++;
+    }
+    CHECK(n * machine_dda_time(&m.machine) < down + 0.01);
+}
+
 static void jog_limits(void)
 {
     struct record r = { 0 };
@@ -439,6 +464,7 @@ int main(void)
     asyn_calls();
     asyn_reactions();
     jog_continuous();
+    jog_slower();
     jog_limits();
     jog_steps();
     wheel();
