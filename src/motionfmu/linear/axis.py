@@ -11,9 +11,10 @@ import control
 from motionfmu.errors import InputError
 from motionfmu.linear import law
 from motionfmu.linear.block import Block
+from motionfmu.linear.form import Gain
 from motionfmu.linear.plant import Linearised, Point
 from motionfmu.linear.systems import delayed, replaced
-from motionfmu.linear.wiring import Net, Port, period_map, pruned
+from motionfmu.linear.wiring import Net, Port, period_of
 from motionfmu.modelica.ode import Ode
 from motionfmu.run import Options, Scenario, load
 from motionfmu.system import System
@@ -21,7 +22,17 @@ from motionfmu.values import settings
 
 
 @functools.cache
-def _linearised(fmu: str) -> Linearised:
+def equation(fmu: str) -> Linearised:
+    """The functions of a plant's equation, made once.
+
+    Parameters
+    ----------
+    fmu : str
+
+    Returns
+    -------
+    Linearised
+    """
     found = law.carried(fmu)
     assert isinstance(found, Ode)
     return Linearised(found)
@@ -130,14 +141,7 @@ class AxisModel:
         """
         entries = [self.port(n, self.inputs, "input") for n in _listed(inputs)]
         exits = [self.port(n, self.outputs, "output") for n in _listed(outputs)]
-        net = self.net(cut, delays or {})
-        used = net.used(entries, exits) | {c for c, _ in (*entries, *exits)}
-        joined = {t: s for t, s in net.wires.items() if t[0] in used and s[0] in used}
-        net = replace(net, blocks={c: b for c, b in self.blocks.items() if c in used}, wires=joined)
-        try:
-            found = pruned(period_map(net, entries, exits))
-        except ValueError as error:
-            raise InputError(f"{self.scenario.document.file}: {error}") from None
+        found = period_of(self.net(cut, delays or {}), entries, exits, self.scenario.document.file)
         return control.StateSpace(
             *(found.a, found.b, found.c, found.d, found.period_ns * 1e-9),
             inputs=[_name(p) for p in entries],
@@ -245,6 +249,20 @@ class AxisModel:
         component, _, variable = name.partition(".")
         return component, variable
 
+    def values(self, component: str) -> Mapping[str, Any]:
+        """Parameters and inputs that stay of a component.
+
+        Parameters
+        ----------
+        component : str
+
+        Returns
+        -------
+        mapping
+        """
+        found: Mapping[str, Any] = self._cache["values"][component]
+        return found
+
     def value(self, name: str) -> Any:
         """Value of a parameter or of an input that stays, of this axis.
 
@@ -322,8 +340,8 @@ class _Values(Mapping[str, Any]):
     def __init__(self, system: System, scenario: Scenario, component: str, axis: int) -> None:
         self._ports = scenario.resolver.ports[component]
         self._axis, self._component = axis, component
-        self._given = {s.end.port.name: s.values for s in system.settings if self._mine(s.end)}
-        self._given |= {s.end.port.name: s.values for s in system.stimuli if self._mine(s.end)}
+        self.given = {s.end.port.name: s.values for s in system.settings if self._mine(s.end)}
+        self.given |= {s.end.port.name: s.values for s in system.stimuli if self._mine(s.end)}
         self.wired: dict[str, Any] = {}  # functions that give the value at the other end
 
     def _mine(self, end: Any) -> bool:
@@ -333,8 +351,8 @@ class _Values(Mapping[str, Any]):
         port = self._ports[name]
         if name in self.wired:
             return self.wired[name]()
-        if name in self._given:
-            found = self._given[name]
+        if name in self.given:
+            found = self.given[name]
         elif port.type == "String":
             found = (port.start or "",)
         else:
@@ -358,15 +376,20 @@ def _build(
     set_: Mapping[str, Any],
     before: AxisModel | None,
 ) -> AxisModel:
+    numbers = {n: v.plain if isinstance(v, Gain) else v for n, v in set_.items()}
     if before is None:
-        resolved = scenario.resolved(Options(set=set_))
+        resolved = scenario.resolved(Options(set=numbers))
     else:
-        given = tuple(settings(scenario.resolver, set_))
+        given = tuple(settings(scenario.resolver, numbers))
         resolved = replace(before._cache["system"], settings=given)
     components = resolved.components
     said = {c: law.carried(f) for c, f in components.items()}
     every = {c: _Values(resolved, scenario, c, axis) for c in components}
     _check(scenario, axis, at, every)
+    for name, value in set_.items():
+        if isinstance(value, Gain):
+            component, _, variable = name.partition(".")
+            every[component].given[variable] = (value,) * axis
     for w in resolved.wires:
         source, name = w.source.component, w.source.port.name
         every[w.target.component].wired[w.target.port.name] = functools.partial(
@@ -418,7 +441,7 @@ def _is_plant(fmu: str) -> bool:
 
 
 def _key(component: str, fmu: str, at: Mapping[str, float], own: _Values) -> Any:
-    names = [d.name for d in _linearised(fmu).ode.parameters]
+    names = [d.name for d in equation(fmu).ode.parameters]
     asked = sorted((n, v) for n, v in at.items() if n.startswith(f"{component}."))
     return fmu, asked, own["micro_step"], [float(own[n]) for n in names]
 
@@ -435,7 +458,7 @@ def _plant(
         component, fmu, at, own
     ):
         return before.blocks[component], before.points[component]
-    parts = _linearised(fmu)
+    parts = equation(fmu)
     p = parts.parameters({d.name: own[d.name] for d in parts.ode.parameters})
     inputs = {}
     for d in parts.ode.inputs:
@@ -470,7 +493,7 @@ def _check(
         fmu = scenario.document.body.component.get(component)
         if fmu is None or not _is_plant(fmu):
             raise InputError(f"at {name} = {value!r}: {component!r} is no plant of the scenario")
-        known = _linearised(fmu).ode
+        known = equation(fmu).ode
         if variable not in [d.name for d in (*known.inputs, *known.outputs)]:
             raise InputError(f"at {name} = {value!r}: {fmu} has no such input or output")
         if not isinstance(value, int | float):

@@ -2,10 +2,29 @@
 
 from dataclasses import dataclass, field
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 Matrix = NDArray[np.float64]
+
+
+def nonzero(matrix: Matrix) -> NDArray[np.bool_]:
+    """Which elements are not zero, whatever the gains.
+
+    Parameters
+    ----------
+    matrix : ndarray
+        Floats, or floats and CasADi expressions.
+
+    Returns
+    -------
+    ndarray of bool
+    """
+    if matrix.dtype != object:
+        return matrix != 0.0
+    flat = [not (e.is_zero() if isinstance(e, ca.SX) else e == 0.0) for e in matrix.ravel()]
+    return np.array(flat, dtype=bool).reshape(matrix.shape)
 
 
 @dataclass(frozen=True)
@@ -24,6 +43,7 @@ class Sampled:
     grid_ns : int
         Sampling period T [ns].
     law : ndarray, shape (n_states + n_outputs + n_early, n_states + n_inputs + n_commands)
+        Objects if some elements are expressions of gains.
     now : ndarray, shape (n_direct, n_commands)
         Outputs that follow the commands at once.
     grain : dict
@@ -237,15 +257,15 @@ def reaches(block: Block) -> NDArray[np.bool_]:
     ndarray of bool, shape (len(ports), n_inputs + n_commands)
     """
     if isinstance(block, Plant):
-        a, b = (m != 0.0 for m in block.step)
-        c, d = (m != 0.0 for m in block.show)
+        a, b = (nonzero(m) for m in block.step)
+        c, d = (nonzero(m) for m in block.show)
     else:
         n, m = len(block.states), len(block.outputs) + len(block.early)
-        law = block.law != 0.0
+        law = nonzero(block.law)
         a, b, c, d = law[:n, :n], law[:n, n:], law[n : n + m, :n], law[n : n + m, n:]
         c = np.vstack([c, np.zeros((len(block.direct), n), dtype=bool)])
         side = np.zeros((len(block.direct), len(block.inputs)), dtype=bool)
-        d = np.vstack([d, np.hstack([side, block.now != 0.0])])
+        d = np.vstack([d, np.hstack([side, nonzero(block.now)])])
     for _ in range(len(a)):
         b = b | (a @ b)
     found: NDArray[np.bool_] = d | (c @ b)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from types import CodeType
 from typing import Any, TypeAlias
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,13 +17,87 @@ _ALLOWED = (
 )
 
 
+class Gain(float):
+    """A number that is also a CasADi expression of gains.
+
+    Comparisons take the number; sums, products and powers give both.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    symbol : casadi.SX
+        The expression, scalar.
+    plain : bool, int or float, optional
+        The number as a scenario takes it, if that is not a float.
+
+    Attributes
+    ----------
+    symbol : casadi.SX
+    plain : bool, int or float
+    """
+
+    symbol: ca.SX
+    plain: Any
+
+    def __new__(cls, value: float, symbol: ca.SX, plain: Any = None) -> "Gain":
+        """Keep the number in the float itself."""
+        made = super().__new__(cls, value)
+        made.symbol = symbol
+        made.plain = float(value) if plain is None else plain
+        return made
+
+
+def _both(name: str) -> Any:
+    on_number = getattr(float, name)
+
+    def operation(self: Gain, *others: Any) -> Any:
+        if others and not isinstance(others[0], int | float):
+            return NotImplemented
+        value = on_number(float(self), *(float(x) for x in others))
+        symbol = getattr(self.symbol, name)(*(coefficient(x) for x in others))
+        return Gain(value, symbol)
+
+    return operation
+
+
+for _name in ("add", "sub", "mul", "truediv", "pow"):
+    setattr(Gain, f"__{_name}__", _both(f"__{_name}__"))
+    setattr(Gain, f"__r{_name}__", _both(f"__r{_name}__"))
+Gain.__neg__ = _both("__neg__")  # type: ignore[method-assign]
+
+
+def coefficient(value: Any) -> Any:
+    """What a matrix holds of a number.
+
+    The expression of a `Gain`, else a float.
+
+    Parameters
+    ----------
+    value : float or Gain
+
+    Returns
+    -------
+    float or casadi.SX
+    """
+    return value.symbol if isinstance(value, Gain) else float(value)
+
+
+def _scaled(row: NDArray[Any], factor: Any) -> NDArray[Any]:
+    if isinstance(factor, float) and row.dtype != object:
+        return row * factor
+    found = np.empty(len(row), dtype=object)  # element by element: CasADi would take the whole row
+    found[:] = [x * factor for x in row.tolist()]
+    return found
+
+
 class Form:
     """A linear form: one coefficient for each quantity that moves.
 
     Parameters
     ----------
     row : ndarray, shape (n,)
-        Coefficients.
+        Coefficients; objects if some are expressions.
     """
 
     __array_priority__ = 1000
@@ -51,14 +126,17 @@ class Form:
     def __mul__(self, other: Any) -> "Form":
         if isinstance(other, Form):
             raise ValueError("a product of two quantities that move is not linear")
-        return Form(self.row * float(other))
+        return Form(_scaled(self.row, coefficient(other)))
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Any) -> "Form":
         if isinstance(other, Form):
             raise ValueError("a quotient of two quantities that move is not linear")
-        return Form(self.row / float(other))
+        divisor = coefficient(other)
+        if isinstance(divisor, float) and self.row.dtype != object:
+            return Form(self.row / divisor)
+        return Form(_scaled(self.row, 1.0 / divisor))
 
     def _compared(self, *_: Any) -> bool:
         raise ValueError("a comparison of what moves is not linear")
@@ -91,7 +169,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Quantity:
 
     Returns
     -------
-    Form or float
+    Form, Gain or float
 
     Raises
     ------
@@ -103,7 +181,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Quantity:
         found = eval(code, {"__builtins__": {}}, _Scope(names))
     except (TypeError, ArithmeticError, ValueError) as error:
         raise ValueError(f"{text!r}: {error}") from None
-    return found if isinstance(found, Form) else float(found)
+    return found if isinstance(found, Form | Gain) else float(found)
 
 
 @functools.cache

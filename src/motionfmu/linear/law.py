@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu import fmus
 from motionfmu.linear.block import Sampled
-from motionfmu.linear.form import Form, Quantity, evaluate
+from motionfmu.linear.form import Form, Gain, Quantity, evaluate
 from motionfmu.modelica import stored
 from motionfmu.modelica.ode import Ode
 from motionfmu.pack import EXTRA
@@ -29,7 +29,7 @@ class Law(BaseModel):
         Sampling period [s].
     inputs, commands : list of str
         Ports that move; signals that come in from the side.
-    let, state, output, early, direct, constant, grain, still : dict
+    let, state, output, early, direct, constant, grain, gain, limit, still : dict
         See src/motionfmu/linear/README.md.
     """
 
@@ -44,6 +44,8 @@ class Law(BaseModel):
     direct: dict[str, str] = Field(default_factory=dict)
     constant: dict[str, str] = Field(default_factory=dict)
     grain: dict[str, str] = Field(default_factory=dict)
+    gain: dict[str, str] = Field(default_factory=dict)
+    limit: dict[str, str] = Field(default_factory=dict)
     still: dict[str, bool | int | float | str] = Field(default_factory=dict)
 
 
@@ -161,8 +163,8 @@ def block(law: Law, values: Mapping[str, Any]) -> Sampled:
         early=tuple(law.early),
         direct=tuple(law.direct),
         grid_ns=nanoseconds(law.period, float(evaluate(law.period, names))),  # type: ignore[arg-type]
-        law=np.array(rows).reshape(len(rows), len(moving)),
-        now=np.array(now).reshape(len(now), len(moving))[:, first:],
+        law=np.vstack([np.zeros((0, len(moving))), *rows]),
+        now=np.vstack([np.zeros((0, len(moving))), *now])[:, first:],
         grain={n: float(evaluate(text, names)) for n, text in law.grain.items()},  # type: ignore[arg-type]
     )
 
@@ -189,9 +191,27 @@ def constant(law: Law, values: Mapping[str, Any], name: str) -> float | None:
 
     Returns
     -------
-    float or None
+    float, Gain or None
         None if the law does not give it.
     """
     if name not in law.constant:
         return None
-    return float(evaluate(law.constant[name], _Names(law, values, {})))  # type: ignore[arg-type]
+    found = evaluate(law.constant[name], _Names(law, values, {}))
+    return found if isinstance(found, Gain) else float(found)  # type: ignore[arg-type]
+
+
+def number(law: Law, values: Mapping[str, Any], formula: str) -> float:
+    """Value of a formula in which nothing moves.
+
+    Parameters
+    ----------
+    law : Law
+    values : mapping
+        Of this axis, by name.
+    formula : str
+
+    Returns
+    -------
+    float
+    """
+    return float(evaluate(formula, _Names(law, values, {})))  # type: ignore[arg-type]

@@ -2,11 +2,14 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from motionfmu.linear.block import Block, Matrix, reaches
+from motionfmu.errors import InputError
+from motionfmu.linear.block import Block, Matrix, Plant, nonzero, reaches
 
 # A period of more communication steps than this has grids that do not fit together.
 STEPS_MAX = 20_000
@@ -128,7 +131,7 @@ def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
     chains = {t: n for t, n in net.delays.items() if n > 0 and t in net.wires}
     names += [(t[0], f"{t[1]} delay {k + 1}") for t, n in chains.items() for k in range(n)]
     width = len(names) + len(entries)
-    unit = np.eye(len(names), width)
+    unit = np.eye(len(names), width, dtype=_kind(net))
     place, work = 0, {}
     for component, block in net.blocks.items():
         work[component] = block.begin(unit[place : place + len(block.memory)])
@@ -139,7 +142,7 @@ def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
         place += n
     injected: dict[Port, Matrix] = {}
     for k, entry in enumerate(entries):
-        row = np.zeros(width)
+        row = np.zeros(width, dtype=unit.dtype)
         row[len(names) + k] = 1.0
         injected[entry] = injected.get(entry, 0.0) + row
     first = None
@@ -151,10 +154,47 @@ def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
             work[component] = block.run(work[component], fed[component][0], span)
     assert first is not None
     parts = [block.end(work[component]) for component, block in net.blocks.items()]
-    parts += [np.array(rows).reshape(-1, width) for rows in queue.values()]
-    after = np.vstack([np.zeros((0, width)), *parts])
+    parts += [np.array(rows, dtype=unit.dtype).reshape(-1, width) for rows in queue.values()]
+    after = np.vstack([np.zeros((0, width), dtype=unit.dtype), *parts])
     n = len(names)
     return PeriodMap(after[:, :n], after[:, n:], first[:, :n], first[:, n:], tuple(names), period)
+
+
+def period_of(net: Net, entries: list[Port], exits: list[Port], file: Path) -> PeriodMap:
+    """The period map of what lies between entries and exits.
+
+    Parameters
+    ----------
+    net : Net
+        The whole axis.
+    entries, exits : list of tuple
+        As in `period_map`.
+    file : Path
+        The scenario, for messages.
+
+    Returns
+    -------
+    PeriodMap
+        Of objects where a law holds expressions of gains.
+
+    Raises
+    ------
+    InputError
+        The grids have no common period.
+    """
+    used = net.used(entries, exits) | {c for c, _ in (*entries, *exits)}
+    joined = {t: s for t, s in net.wires.items() if t[0] in used and s[0] in used}
+    blocks = {c: b for c, b in net.blocks.items() if c in used}
+    try:
+        return pruned(period_map(replace(net, blocks=blocks, wires=joined), entries, exits))
+    except ValueError as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def _kind(net: Net) -> np.dtype[Any]:
+    """Objects where a law holds expressions of gains."""
+    laws = [b.show[0] if isinstance(b, Plant) else b.law for b in net.blocks.values()]
+    return np.result_type(float, *laws)
 
 
 def _exchange(
@@ -166,7 +206,7 @@ def _exchange(
     shows: dict[Port, Matrix] = {}
     for component, block in net.blocks.items():
         names = (*block.inputs, *block.commands)
-        u = np.zeros((len(names), width))
+        u = np.zeros((len(names), width), dtype=_kind(net))
         for k, name in enumerate(names):
             if (component, name) in injected:
                 u[k] = injected[component, name]
@@ -200,8 +240,8 @@ def pruned(whole: PeriodMap) -> PeriodMap:
     PeriodMap
         The same from input to output.
     """
-    a = whole.a != 0.0
-    reached, seen = (whole.b != 0.0).any(axis=1), (whole.c != 0.0).any(axis=0)
+    a = nonzero(whole.a)
+    reached, seen = nonzero(whole.b).any(axis=1), nonzero(whole.c).any(axis=0)
     for _ in range(len(a)):
         reached = reached | a[:, reached].any(axis=1)
         seen = seen | a[seen].any(axis=0)
