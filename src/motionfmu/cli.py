@@ -36,7 +36,10 @@ ScenarioPath = Annotated[Path, typer.Argument(help="Folder of a scenario, or its
 Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
 Set = Annotated[
-    list[str], typer.Option("--set", metavar="COMP.VAR=VALUE", help="Stronger than the scenario's.")
+    list[str],
+    typer.Option(
+        "--set", metavar="COMP.VAR=VALUE", help="Stronger than the scenario's; or a gains.toml."
+    ),
 ]
 
 
@@ -65,6 +68,38 @@ def setting(text: str) -> tuple[str, Any]:
         return name.strip(), tomllib.loads(f"x = {value}")["x"]
     except tomllib.TOMLDecodeError:
         return name.strip(), value.strip()
+
+
+def settings(texts: list[str]) -> dict[str, Any]:
+    """Values of all ``--set``; a file of values is taken whole.
+
+    Parameters
+    ----------
+    texts : list of str
+        ``comp.var=value``, or a TOML file of ``"comp.var" = value``.
+
+    Returns
+    -------
+    dict
+        By name; a later one counts.
+
+    Raises
+    ------
+    InputError
+        There is no ``=``, or the file is missing or no TOML.
+    """
+    found: dict[str, Any] = {}
+    for text in texts:
+        if "=" in text or not text.endswith(".toml"):
+            found.update([setting(text)])
+            continue
+        try:
+            found.update(tomllib.loads(Path(text).read_text(encoding="utf-8")))
+        except OSError as error:
+            raise InputError(f"--set {text}: {error.strerror}") from None
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise InputError(f"--set {text}: {error}") from None
+    return found
 
 
 def _version(engine: str, fmi: int | None) -> int:
@@ -217,7 +252,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     options: dict[str, Any] = {
         "engine": engine,
         "fmi": _version(engine, fmi),
-        "set": dict(setting(text) for text in set_),
+        "set": settings(set_),
         "stop": stop,
         "step": step,
     }
@@ -267,9 +302,9 @@ def contour(
     """Explain the contour error of a scenario: which cause makes how much of it."""
     from motionfmu.run import load
 
-    settings = dict(setting(text) for text in set_)
+    given = settings(set_)
     if figures:
-        found = _run(load(path), {"set": settings}).contour().numbers()
+        found = _run(load(path), {"set": given}).contour().numbers()
         table = Table(box=None, header_style="dim")
         for heading in ("figure", "value"):
             table.add_column(heading)
@@ -277,7 +312,7 @@ def contour(
             table.add_row(name, value)
         out.print(table)
         return
-    _explain(path, settings, folder)
+    _explain(path, given, folder)
 
 
 def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
@@ -352,7 +387,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     if gain is not None and loop is None:
         raise InputError(f"--gain {gain}: say with --loop which loop it belongs to")
     point = dict(setting(text) for text in at)
-    linear = model(path, axis, point, dict(setting(text) for text in set_))
+    linear = model(path, axis, point, settings(set_))
     target = outcome.usable(folder or Path("results") / f"{linear.scenario.name}-margins")
     gains = {loop: gain} if loop is not None and gain is not None else {}
     studies = _study(linear, Asked(loop, gains, simulate, kick))
@@ -418,7 +453,7 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
 
     given: dict[str, Any] = {"sampling": sampling, "runs": runs, "seed": seed, "cost": cost}
     given |= {"tuned": tuned, "stop": stop, "step": step, "results": result or None}
-    given["set"] = dict(setting(text) for text in set_) or None
+    given["set"] = settings(set_) or None
     given["axis"] = dict(option(text) for text in vary) or None
     chosen = sweeps.study(path, given)
     target = folder or Path("results") / f"{chosen.name}.sweep"
@@ -447,6 +482,8 @@ def _flat(value: Any, name: str = "") -> list[tuple[str, str]]:
 
 def main() -> None:
     """Entry point: one message and status 2 for wrong input."""
+    from motionfmu import cli_tune  # noqa: F401  (its command joins the others)
+
     try:
         app()
     except InputError as error:

@@ -1,0 +1,89 @@
+"""The console command that finds servo gains."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.table import Table
+
+from motionfmu.cli import ScenarioPath, Set, app, out, settings
+
+if TYPE_CHECKING:
+    from motionfmu.run import Scenario
+    from motionfmu.tune import Problem, Tuned
+
+
+@app.command()
+def tune(  # noqa: PLR0913  (each is an option of the command)
+    path: ScenarioPath,
+    file: Annotated[
+        Path | None, typer.Option("--problem", help="Options; else tune.toml beside the scenario.")
+    ] = None,
+    velocity: Annotated[bool, typer.Option("--velocity", help="The velocity loop too.")] = False,
+    forward: Annotated[bool, typer.Option("--feed-forward", help="Feed-forward too.")] = False,
+    equal: Annotated[bool, typer.Option("--equal", help="The same gains on all axes.")] = False,
+    cost: Annotated[
+        str | None, typer.Option(help="contour_rms, contour_max, ise, iae or itae.")
+    ] = None,
+    set_: Set = [],  # noqa: B006
+    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+) -> None:
+    """Find servo gains for a scenario's own path; write gains.toml and a report."""
+    from motionfmu import outcome
+    from motionfmu.report.tune_page import page_text
+    from motionfmu.run import load
+    from motionfmu.tune import problem, read
+    from motionfmu.tune.result import plant_text
+
+    scenario = load(path)
+    beside = scenario.document.file.parent / "tune.toml"
+    values = read(file) if file else read(beside) if beside.is_file() else {}
+    values |= {"velocity": True} if velocity else {}
+    values |= {"feed_forward": True} if forward else {}
+    values |= {"axes": "equal"} if equal else {}
+    values |= {"cost": cost} if cost else {}
+    asked = problem(values)
+    target = outcome.usable(folder or Path("results") / f"{scenario.name}-tune")
+    tuned = _tune(scenario, asked, settings(set_))
+    with outcome.whole(target) as part:
+        (part / "report.html").write_text(page_text(tuned), encoding="utf-8")
+        (part / "gains.toml").write_text(tuned.toml(), encoding="utf-8")
+        text = json.dumps(tuned.numbers(), indent=1, allow_nan=False)
+        (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
+    table = Table(box=None, header_style="dim")
+    for heading in ("plant", "contour error", "before", "after", "by the model"):
+        table.add_column(heading)
+    for before, after in zip(tuned.before, tuned.after, strict=True):
+        old, new = before.result.contour().error, after.result.contour().error
+        for what, a, b, c in (
+            ("rms", old.rms, new.rms, after.model.rms),
+            ("largest", old.max, new.max, after.model.max),
+        ):
+            cells = (f"{x * 1e3:.4g} um" for x in (a, b, c))
+            table.add_row(plant_text(before.plant), what, *cells)
+    out.print(table)
+    for name, value in tuned.settings.items():
+        out.print(f"{name} = {value}".replace("[", r"\["))
+    for text in tuned.stopped_by:
+        out.print(f"stopped by: {text}")
+    out.print(f"gains: {target / 'gains.toml'}", soft_wrap=True)
+    out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+
+
+def _tune(scenario: "Scenario", asked: "Problem", given: dict[str, Any]) -> "Tuned":
+    """Tune with a progress bar, which shows on a terminal only."""
+    from rich.progress import Progress
+
+    from motionfmu.tune import tune
+
+    with Progress(console=out, disable=not out.is_terminal, transient=True) as bar:
+        task = bar.add_task(scenario.name, total=1.0)
+        return tune(
+            scenario,
+            asked,
+            given,
+            lambda what, share: bar.update(
+                task, description=f"{scenario.name}: {what}", completed=share
+            ),
+        )

@@ -1,0 +1,228 @@
+"""The report of a tuning: gains, limits, contour error before and after."""
+
+from collections.abc import Sequence
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from motionfmu.contour.geometry import Array
+from motionfmu.report.decimate import keep_peaks
+from motionfmu.report.numbers import figure, length, unit
+from motionfmu.report.packed import packed
+from motionfmu.report.sheet import Frame, Sheet
+from motionfmu.report.style import AXES, RAPID, axis, layout
+from motionfmu.report.tables import table
+from motionfmu.tune.problem import CONTOUR
+from motionfmu.tune.result import Run, Tuned, assumptions, plant_text, units_of
+
+BEFORE, AFTER = RAPID, AXES[0]
+_BUCKETS = 1200
+_STEPS = 600
+FOOTER = (
+    "Model: the plant's own equation about the operating point with its friction as a disturbance,"
+    " the sampled laws that the FMUs carry, all their delays. FMUs: the scenario run with the gains"
+    " of gains.toml, rounded to the registers. The contour error is the distance from the nearest"
+    ' point of the exact programmed geometry. Every number is in <a href="result.json">'
+    "result.json</a>; use the gains with"
+    " <code>motionfmu run SCENARIO --set gains.toml</code>."
+)
+
+
+def page_text(tuned: Tuned) -> str:
+    """The whole HTML page.
+
+    Parameters
+    ----------
+    tuned : Tuned
+
+    Returns
+    -------
+    str
+    """
+    page = Sheet()
+    page.sections.append(_cards(tuned))
+    page.section("Gains", "", _gains(tuned))
+    note = "The same program, run by the FMUs before and after."
+    page.section("Contour error", note, _runs(tuned) + page.place("error", _errors(tuned), True))
+    page.section("Margins and limits", _limits_note(tuned), _limits(tuned))
+    note = "Position after a small step of the command, linear model, nominal plant."
+    page.section("Step", note, page.place("step", _step(tuned)))
+    page.section("How it was found", _search(tuned), _assumed(tuned))
+    scenario = tuned.study.scenario
+    frame = Frame(scenario.name, scenario.document.about, "tuning report", [], FOOTER)
+    return page.text(frame)
+
+
+def _cards(tuned: Tuned) -> str:
+    before, after = tuned.before[0].result.contour().error, tuned.after[0].result.contour().error
+    least = tuned.margins(tuned.z)
+    tight = max(least, key=lambda m: m.sensitivity)
+    cards = [
+        ("RMS contour error", length(after.rms), f"before {length(before.rms)}"),
+        ("Largest contour error", length(after.max), f"before {length(before.max)}"),
+        ("Largest |1/(1 + L)|", figure(tight.sensitivity), f"axis {tight.axis}, {tight.loop}"),
+        ("Stopped by", _short(tuned), ""),
+    ]
+    return '<div class="cards">{}</div>'.format(
+        "".join(
+            f'<div class="card"><div class="what">{what}</div>'
+            f'<div class="value"{_size(value)}>{value}</div><div class="where">{where}</div></div>'
+            for what, value, where in cards
+        )
+    )
+
+
+def _size(value: str) -> str:
+    return ' style="font-size:15px"' if len(value) > 16 else ""
+
+
+def _short(tuned: Tuned) -> str:
+    words = list(dict.fromkeys(x.what for x in tuned.found.stopped_by))
+    return escape("; ".join(words) or tuned.stopped_by[0])
+
+
+def _gains(tuned: Tuned) -> str:
+    study, rows = tuned.study, []
+    for k, (variable, share) in enumerate(zip(study.variables, tuned.z, strict=True)):
+        port = study.scenario.resolver.end(variable.name, "set", variable.name).port
+        found = tuned.found.z[k]
+        cells = [variable.start, variable.value(float(found)), variable.value(float(share))]
+        bounds = f"{variable.low:.4g} to {variable.high:.4g}"
+        doc = f'{escape(variable.title)}<div class="sub">{escape(port.doc)}</div>'
+        rows.append([doc, port.unit or "", *(f"{c:.6g}" for c in cells), bounds])
+    exact, rounded = tuned.lags(tuned.found.z), tuned.lags(tuned.z)
+    for k, before in tuned.lags(study.present).items():
+        name = f'lag of axis {k}<div class="sub">Following error over speed in slow motion</div>'
+        lags = (f"{1e3 * v:.4g}" for v in (before, exact[k], rounded[k]))
+        rows.append([name, "ms", *lags, ""])
+    heads = ["gain", "unit", "before", "found", "rounded", "searched"]
+    return table(heads, rows, 2)
+
+
+def _runs(tuned: Tuned) -> str:
+    rows = []
+    for before, after in zip(tuned.before, tuned.after, strict=True):
+        name = escape(plant_text(before.plant))
+        for side, run in (("before", before), ("after", after)):
+            error = run.result.contour().error
+            lengths = (error.rms, run.model.rms, error.max, run.model.max)
+            rows.append([name, side, *(length(x) for x in lengths)])
+    heads = ["plant", "gains", "RMS", "by the model", "largest", "by the model"]
+    return table(heads, rows, 2)
+
+
+def _errors(tuned: Tuned) -> dict[str, Any]:
+    runs: Sequence[tuple[str, Run, str]] = (
+        ("before", tuned.before[0], BEFORE),
+        ("after", tuned.after[0], AFTER),
+    )
+    factor, name = unit(max(r.result.contour().error.max for _, r, _ in runs))
+    data = []
+    for title, run, colour in runs:
+        contour = run.result.contour()
+        values = contour.track.distance if contour.track.signed is None else contour.track.signed
+        shown = np.where(contour.cutting, values, np.nan) * factor
+        kept = keep_peaks(np.where(contour.cutting, values, 0.0), _BUCKETS)
+        data.append(_line(contour.run.time[kept], shown[kept], title, colour))
+    titles = {"xaxis": axis("Time [s]"), "yaxis": axis(f"Contour error [{name}]")}
+    return {"data": data, "layout": layout(320, **titles)}
+
+
+def _step(tuned: Tuned) -> dict[str, Any]:
+    study, data = tuned.study, []
+    part_of = study.parts[0]
+    lag = tuned.before[0].result.contour().lag
+    for title, z, dash in (("before", study.present, "dot"), ("after", tuned.z, "solid")):
+        gains = study.gains(z)
+        for k, part in part_of.items():
+            periods = max(1, round(8.0 * max(lag, 1e-3) / _STEPS / part.period))
+            answer = part.step(gains[k], periods, _STEPS, False).outputs[0]
+            time = part.period * periods * 1e3 * np.arange(_STEPS, dtype=np.float64)
+            line = _line(time, answer, f"axis {k} {title}", AXES[(k - 1) % len(AXES)])
+            line["line"]["dash"] = dash
+            data.append(line)
+    titles = {"xaxis": axis("Time [ms]"), "yaxis": axis("Share of the step")}
+    return {"data": data, "layout": layout(300, **titles)}
+
+
+def _line(x: Array, y: Array, name: str, colour: str) -> dict[str, Any]:
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": name,
+        "x": packed(x),
+        "y": packed(y),
+        "line": {"color": colour, "width": 1.6},
+    }
+
+
+def _limits_note(tuned: Tuned) -> str:
+    family = " Least of the family of plants." if tuned.study.problem.family else ""
+    return (
+        "Loops are opened at the input named: the outer one with the inner one closed, the inner"
+        f" one alone.{family} What is reached is marked."
+    )
+
+
+def _limits(tuned: Tuned) -> str:
+    study = tuned.study
+    rows = []
+    pairs = zip(tuned.margins(study.present), tuned.margins(tuned.z), strict=True)
+    for before, after in pairs:
+        asked = study.asked(after.loop)
+        values = (
+            ("largest |1/(1 + L)|", before.sensitivity, after.sensitivity, asked.sensitivity),
+            ("gain margin, factor", before.gain, after.gain, asked.gain),
+            ("phase margin [deg]", before.phase, after.phase, asked.phase),
+        )
+        for what, had, has, wanted in values:
+            sign = "at most " if what.startswith("largest") else "at least "
+            shown = "" if wanted is None else f"{sign}{wanted:g}"
+            name = f"axis {after.axis}, {escape(after.loop)}"
+            rows.append([name, what, figure(had), figure(has), shown])
+    slack = dict(zip(study.limits, tuned.values.slack, strict=True))
+    old = dict(zip(study.limits, study.values(study.present, False).slack, strict=True))
+    reached = {(x.what, x.axis) for x in tuned.found.stopped_by}
+    others = []
+    for what, k in dict.fromkeys((x.what, x.axis) for x in study.limits):
+        if "of the loop at" in what and (what, k) not in reached:
+            continue
+        same = [x for x in study.limits if (x.what, x.axis) == (what, k)]
+        tight = min(same, key=lambda x: slack[x])
+        mark = ' <span class="mark fail">reached</span>' if (what, k) in reached else ""
+        name = f"axis {k}: {escape(what)}{mark}"
+        if study.problem.family:
+            name += f'<div class="sub">{escape(plant_text(study.plants[tight.plant]))}</div>'
+        before = min(old[x] for x in same)
+        others.append([name, f"{100.0 * before:.3g} %", f"{100.0 * slack[tight]:.3g} %"])
+    heads = ["loop", "", "before", "after", "asked"]
+    first = table(heads, rows, 2)
+    second = table(["limit", "room before", "room after"], others, 1)
+    return f'<div class="two"><div>{first}</div><div>{second}</div></div>'
+
+
+def _search(tuned: Tuned) -> str:
+    found, study = tuned.found, tuned.study
+    factor, name = units_of(study.problem.cost)
+    starts = ", ".join(f"{c * factor:.5g}" if np.isfinite(c) else "none" for c in found.starts)
+    text = (
+        f"{study.problem.cost}, worst of {len(study.plants)} plant(s): NLP (CasADi, IPOPT) from"
+        f" {len(found.starts)} start(s) found {starts} {name} with"
+        f" {found.evaluations[0]} evaluations in {found.seconds[0]:.2g} s;"
+    )
+    if np.isfinite(found.check):
+        text += (
+            f" the global search (DIRECT) {found.check * factor:.5g} {name} with"
+            f" {found.evaluations[1]} evaluations in {found.seconds[1]:.2g} s."
+        )
+    else:
+        text += " the global search found nothing within the limits."
+    if study.problem.cost in CONTOUR and len(study.plants) > 1:
+        text += f" Largest cost of a plant: {tuned.values.worst * factor:.5g} {name}."
+    return escape(text)
+
+
+def _assumed(tuned: Tuned) -> str:
+    rows = [[escape(x) for x in text.split(": ", 1)] for text in assumptions(tuned.study)]
+    return table(["assumed", ""], rows, 2)

@@ -1,0 +1,324 @@
+"""One axis with one plant: its motion and its margins as functions of the gains."""
+
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+from scipy.linalg import eig
+
+from motionfmu.linear.axis import AxisModel
+from motionfmu.linear.form import Gain
+from motionfmu.linear.loops import feedbacks
+from motionfmu.linear.opened import listed, matrices
+from motionfmu.linear.residual import Residual, with_residuals
+from motionfmu.linear.wiring import PeriodMap
+from motionfmu.tune.curve import Loop
+from motionfmu.tune.steps import Array, Lifted, lifted, scan
+
+# Between two samples the friction turns within a small part of the way: points that show it.
+_FINE = 64
+# A residual that changes by this share of its size between two samples is looked at finely.
+_TURNS = 0.02
+
+
+class _Matrices:
+    """A, B, C, D and their derivatives, from expressions of the gains."""
+
+    def __init__(self, found: PeriodMap, gains: ca.SX) -> None:
+        parts = [_matrix(m) for m in (found.a, found.b, found.c, found.d)]
+        self.shapes = [p.shape for p in parts]
+        every = ca.densify(ca.vertcat(*(ca.vec(p) for p in parts)))
+        slopes = ca.densify(ca.jacobian(every, gains))
+        self._function = ca.Function("m", [gains], [every, slopes], {"cse": True})
+        self.period = found.period_ns * 1e-9
+
+    def at(self, gains: Array) -> tuple[list[Array], list[Array]]:
+        """Matrices, and derivatives with the gain as the first axis."""
+        values, slopes = (np.asarray(v.full()) for v in self._function(gains))
+        matrices, changes, place = [], [], 0
+        for rows, columns in self.shapes:
+            size = rows * columns
+            part = slice(place, place + size)
+            matrices.append(values[part, 0].reshape(columns, rows).T)
+            changes.append(slopes[part].T.reshape(-1, columns, rows).transpose(0, 2, 1))
+            place += size
+        return matrices, changes
+
+
+def _matrix(m: Array) -> ca.SX:
+    return (
+        ca.SX(ca.vertcat(*(ca.horzcat(*row) for row in m.tolist()))) if m.size else ca.SX(*m.shape)
+    )
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What an axis does on the scenario's path.
+
+    Attributes
+    ----------
+    outputs : ndarray, shape (1 + p, count)
+        Position, then what has a peak limit, in the units of the description.
+    slopes : ndarray, shape (g, 1 + p, count), or None
+        Derivatives to the gains.
+    """
+
+    outputs: Array
+    slopes: Array | None
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Names of what a study looks at.
+
+    Attributes
+    ----------
+    command : str
+        Input of the model that takes the pulses.
+    position : str
+        Output that is judged.
+    peaks : tuple of str
+        Outputs with a limit.
+    """
+
+    command: str
+    position: str
+    peaks: tuple[str, ...]
+
+
+class AxisStudy:
+    """One axis with one plant, its gains left open.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    gains : sequence of str
+        Parameters, ``component.variable``.
+    signals : Signals
+    """
+
+    def __init__(self, axis: AxisModel, gains: Sequence[str], signals: Signals) -> None:
+        symbols = {name: ca.SX.sym(name) for name in gains}
+        self.axis = axis
+        values = {name: axis.value(name) for name in gains}
+        self.opened = axis.changed({n: Gain(float(v), symbols[n], v) for n, v in values.items()})
+        self._gains = ca.vertcat(*symbols.values())
+        self.loops = feedbacks(axis)
+        self._loops = {name: self._loop(name, cut) for name, cut in self.loops.items()}
+        wide, self._rests = with_residuals(self.opened)
+        inputs = [signals.command, *(n for r in self._rests for n in r.inputs)]
+        shown = [signals.position, *signals.peaks]
+        states = [n for r in self._rests for n in r.states]
+        self._count = len(shown)
+        still = dict.fromkeys(listed(axis, "feed_forward"), 0.0)
+        alone = matrices(self.opened.changed(still), [signals.command], [signals.position])
+        self._answer = _Matrices(alone, self._gains)
+        self._motion = _Matrices(matrices(wide, inputs, [*shown, *states]), self._gains)
+        self.period = self._motion.period
+
+    def _loop(self, name: str, cut: tuple[str, ...]) -> _Matrices:
+        component, _, port = name.partition(".")
+        source = ".".join(self.axis.wires[component, port])
+        return _Matrices(matrices(self.opened, [name], [source], [name, *cut]), self._gains)
+
+    def loop(self, name: str, gains: Array) -> Loop:
+        """An open loop.
+
+        Parameters
+        ----------
+        name : str
+            Where it is opened: a key of `loops`.
+        gains : ndarray, shape (g,)
+
+        Returns
+        -------
+        Loop
+        """
+        (a, b, c, d), (da, db, dc, dd) = self._loops[name].at(gains)
+        return Loop(a, b, -c, -d, da, db, -dc, -dd, self._loops[name].period)
+
+    def lag(self, gains: Array) -> float:
+        """Following error over speed in slow motion.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (g,)
+
+        Returns
+        -------
+        float
+            [s]: 1/Kp, the delays, less what is fed forward.
+        """
+        (a, b, c, d), _ = self._motion.at(gains)
+        once = np.linalg.solve(np.eye(len(a)) - a, b[:, :1])
+        twice = np.linalg.solve(np.eye(len(a)) - a, once)
+        return self.period * float(((c[:1] @ twice) / (c[:1] @ once + d[:1, :1]))[0, 0])
+
+    def slowest(self, gains: Array) -> tuple[float, Array]:
+        """Slowest time constant of the closed loop, with derivatives.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (g,)
+
+        Returns
+        -------
+        float
+            [s]; infinite or negative for an unstable loop.
+        ndarray, shape (g,)
+        """
+        (a, *_), (da, *_) = self._motion.at(gains)
+        poles, left, right = eig(a, left=True, right=True)
+        k = int(np.argmax(np.abs(poles)))
+        size = float(abs(poles[k]))
+        if size >= 1.0:
+            return np.inf, np.zeros(len(da))
+        w, v = left[:, k].conj(), right[:, k]
+        turned = np.conj(poles[k]) * (w @ (da @ v).T) / (w @ v) / size
+        rate = np.log(size)
+        return -self.period / rate, self.period / rate**2 * turned.real / size
+
+    def step(self, gains: Array, periods: int, count: int, slopes: bool = True) -> Motion:
+        """Answer to a step of one pulse, as share of its end value.
+
+        Without friction, and without feed-forward, which no step can follow.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (g,)
+        periods : int
+            From one sample to the next.
+        count : int
+            Samples.
+        slopes : bool
+            Also the derivatives.
+
+        Returns
+        -------
+        Motion
+            Of the position alone.
+        """
+        (a, b, c, d), (da, db, dc, dd) = self._answer.at(gains)
+        lift = lifted(a, b, da, db, periods)
+        u = np.ones((1, count))
+        x = lift.states(u)
+        y = c @ x + d
+        rest = np.linalg.solve(np.eye(len(a)) - a, b)
+        end = c @ rest + d
+        if not slopes:
+            return Motion(y / end, None)
+        dy = c @ lift.slopes(x, u) + dc @ x + dd
+        drest = np.linalg.solve(np.eye(len(a)) - a, da @ rest + db)
+        dend = c @ drest + dc @ rest + dd
+        return Motion(y / end, dy / end - y * dend / end**2)
+
+    def motion(self, gains: Array, pulses: Array, periods: int, slopes: bool = True) -> Motion:
+        """Move along commanded pulses.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (g,)
+        pulses : ndarray, shape (count,)
+            Put out so far, at the samples.
+        periods : int
+            From one sample to the next.
+        slopes : bool
+            Also the derivatives.
+
+        Returns
+        -------
+        Motion
+        """
+        (a, b, c, d), (da, db, dc, dd) = self._motion.at(gains)
+        lift = lifted(a, b[:, :1], da, db[:, :, :1], periods)
+        u = pulses[None, :].astype(float)
+        x = lift.states(u)
+        dx = lift.slopes(x, u) if slopes else None
+        if self._rests:
+            seen = c[self._count :] @ x
+            dseen = None
+            if dx is not None:
+                dseen = c[self._count :] @ dx + dc[:, self._count :] @ x
+            w, dw = self._rest(seen, dseen)
+            side = lifted(a, b[:, 1:], da, db[:, :, 1:], periods)
+            extra = _held(side, w)
+            if dx is not None:
+                assert dw is not None
+                dx = dx + _held_slopes(side, (extra, w, dw))
+            x = x + extra
+        shown, direct = c[: self._count], d[: self._count, :1]
+        y = shown @ x + direct @ u
+        if dx is None:
+            return Motion(y, None)
+        dy = shown @ dx + dc[:, : self._count] @ x + dd[:, : self._count, :1] @ u
+        return Motion(y, dy)
+
+    def _rest(self, x: Array, dx: Array | None) -> tuple[Array, Array | None]:
+        """Mean residuals between samples, from the states there, and their derivatives."""
+        values, changes, place = [], [], 0
+        for rest in self._rests:
+            n = len(rest.states)
+            part = slice(place, place + n)
+            w, dw = _mean(rest, x[part], None if dx is None else dx[:, part])
+            values.append(w)
+            changes.append(dw)
+            place += n
+        if dx is None:
+            return np.vstack(values), None
+        return np.vstack(values), np.concatenate(changes, axis=1)  # type: ignore[arg-type]
+
+
+def _held(lift: Lifted, w: Array) -> Array:
+    return scan(lift.a, (lift.begin + lift.end) @ w)
+
+
+def _held_slopes(lift: Lifted, moved: tuple[Array, Array, Array]) -> Array:
+    x, w, dw = moved
+    v = lift.da @ x + (lift.dbegin + lift.dend) @ w + (lift.begin + lift.end) @ dw
+    return scan(lift.a, v)
+
+
+@functools.lru_cache(maxsize=64)
+def _mapped(function: ca.Function, count: int) -> ca.Function:
+    return function.map(count)
+
+
+def _called(rest: Residual, x: Array, slopes: bool) -> tuple[Array, Array]:
+    """Residuals (m, k) and their Jacobians (k, m, n) at states (n, k)."""
+    n, count = x.shape
+    size = 1 << max(count - 1, 1).bit_length()  # few sizes: a map takes longer to make than to use
+    wide = np.zeros((n, size))
+    wide[:, :count] = x
+    if not slopes:
+        values = np.asarray(_mapped(rest.function, size)(wide).full())
+        return values[:, :count], np.empty(0)
+    values, jacobians = (np.asarray(v.full()) for v in _mapped(rest.slopes, size)(wide))
+    jacobians = jacobians.reshape(len(values), size, n).transpose(1, 0, 2)
+    return values[:, :count], jacobians[:count]
+
+
+def _mean(rest: Residual, x: Array, dx: Array | None) -> tuple[Array, Array | None]:
+    """Mean over the way from each sample to the next, taken as straight."""
+    w, jacobian = _called(rest, x, dx is not None)
+    after = np.roll(w, -1, axis=1)
+    mean = 0.5 * (w + after)
+    scale = np.abs(w).max(axis=1, keepdims=True)
+    turning = np.flatnonzero((np.abs(after - w) > _TURNS * scale).any(axis=0))
+    turning = turning[turning < x.shape[1] - 1]
+    share = (np.arange(_FINE) + 0.5) / _FINE
+    begin, end = x[:, turning], x[:, turning + 1]
+    between = begin[:, :, None] + (end - begin)[:, :, None] * share
+    fine, finer = _called(rest, between.reshape(len(x), -1), dx is not None)
+    mean[:, turning] = fine.reshape(len(w), len(turning), _FINE).mean(axis=2)
+    if dx is None:
+        return mean, None
+    at = np.einsum("kmn,gnk->gmk", jacobian, dx)
+    dmean = 0.5 * (at + np.roll(at, -1, axis=2))
+    finer = finer.reshape(len(turning), _FINE, len(w), len(x))
+    first = np.einsum("kfmn,f->kmn", finer, 1.0 - share) / _FINE
+    last = np.einsum("kfmn,f->kmn", finer, share) / _FINE
+    dmean[:, :, turning] = np.einsum("kmn,gnk->gmk", first, dx[:, :, turning])
+    dmean[:, :, turning] += np.einsum("kmn,gnk->gmk", last, dx[:, :, turning + 1])
+    return mean, dmean

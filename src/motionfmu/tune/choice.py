@@ -1,0 +1,303 @@
+"""What a tuning takes from the scenario where the user says nothing."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from motionfmu.errors import InputError
+from motionfmu.linear import law
+from motionfmu.linear.axis import AxisModel
+from motionfmu.linear.block import Plant, Sampled, nonzero
+from motionfmu.linear.form import Gain
+from motionfmu.linear.opened import limit, linearised, listed
+from motionfmu.run import Result, Scenario
+from motionfmu.tune.axis import Signals
+from motionfmu.tune.problem import Problem
+from motionfmu.units import parse
+
+# Without bounds a gain may become this many times as large or as small.
+SPAN = 20.0
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One number that is looked for.
+
+    Attributes
+    ----------
+    name : str
+        ``component.variable``.
+    axes : tuple of int
+        Axes that have it, from 1.
+    low, high : float
+        Its bounds.
+    start : float
+        Present value.
+    whole : bool
+        A register of whole numbers.
+    own : bool
+        The bounds are the parameter's own range, not the search's.
+    """
+
+    name: str
+    axes: tuple[int, ...]
+    low: float
+    high: float
+    start: float
+    whole: bool
+    own: tuple[bool, bool] = (False, False)
+
+    @property
+    def title(self) -> str:
+        """Name with its axes."""
+        return f"{self.name}[{','.join(map(str, self.axes))}]"
+
+    def value(self, z: float) -> float:
+        """Value at a share of the range, even in the logarithm above 0.
+
+        Parameters
+        ----------
+        z : float
+            0 at the low bound, 1 at the high one.
+
+        Returns
+        -------
+        float
+        """
+        if self.low > 0.0:
+            return float(self.low * (self.high / self.low) ** z)
+        return self.low + (self.high - self.low) * z
+
+    def share(self, value: float) -> float:
+        """Inverse of `value`.
+
+        Parameters
+        ----------
+        value : float
+
+        Returns
+        -------
+        float
+        """
+        if self.low > 0.0:
+            return float(np.log(value / self.low) / np.log(self.high / self.low))
+        return (value - self.low) / (self.high - self.low)
+
+    def slope(self, value: float) -> float:
+        """Derivative of the value to the share.
+
+        Parameters
+        ----------
+        value : float
+
+        Returns
+        -------
+        float
+        """
+        if self.low > 0.0:
+            return float(value * np.log(self.high / self.low))
+        return self.high - self.low
+
+
+def _moves(axis: AxisModel, name: str) -> bool:
+    """Whether the linear model depends on a parameter."""
+    value = axis.value(name)
+    if isinstance(value, bool | str):
+        return False
+    opened = axis.changed({name: Gain(float(value), ca.SX.sym("g"), value)})
+    for block in opened.blocks.values():
+        if isinstance(block, Sampled) and block.law.dtype == object:
+            elements: list[Any] = block.law.ravel().tolist()
+            symbolic = [e for e in elements if isinstance(e, ca.SX)]
+            if any(not e.is_constant() for e in symbolic):
+                return True
+    return False
+
+
+def gains(axis: AxisModel, problem: Problem) -> list[str]:
+    """Gains that are looked for.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    problem : Problem
+
+    Returns
+    -------
+    list of str
+        ``component.variable``.
+
+    Raises
+    ------
+    InputError
+        There is none, or one changes nothing.
+    """
+    if problem.gains is not None:
+        for name in problem.gains:
+            if not _moves(axis, name):
+                raise InputError(f"gains: {name} changes nothing in the linear model")
+        return list(dict.fromkeys(problem.gains))
+    wanted = ["position"]
+    wanted += ["velocity"] if problem.velocity else []
+    wanted += ["feed_forward"] if problem.feed_forward else []
+    found: list[str] = []
+    for kind in wanted:
+        names = [n for n in listed(axis, kind) if _moves(axis, n)]
+        if not names:
+            text = kind.replace("_", "-")
+            raise InputError(f"{axis.scenario.document.file}: no {text} gain acts on the axes")
+        found += names
+    return found
+
+
+def signals(axis: AxisModel, problem: Problem) -> tuple[Signals, dict[str, float]]:
+    """What is commanded, judged and limited.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    problem : Problem
+
+    Returns
+    -------
+    Signals
+    dict
+        Limits by output; those of the FMUs and, stronger, those of the problem.
+
+    Raises
+    ------
+    InputError
+        There is no [contour] table, or a name is wrong.
+    """
+    document = axis.scenario.document
+    contour = document.body.contour
+    if contour is None:
+        raise InputError(f"{document.file}: a tuning needs the signals of a [contour] table")
+    card, _, output = contour.pulses.partition(".")
+    block = axis.blocks.get(card)
+    if not isinstance(block, Sampled) or output not in block.direct:
+        raise document.error(f"{contour.pulses} has no linear law", "contour", "pulses")
+    row = nonzero(block.now)[block.direct.index(output)]
+    command = f"{card}.{block.commands[int(np.argmax(row))]}"
+    if contour.position not in axis.outputs:
+        raise document.error(f"{contour.position} has no linear model", "contour", "position")
+    peaks: dict[str, float] = {}
+    for component, found in axis.blocks.items():
+        own = law.carried(document.body.component[component])
+        if isinstance(found, Sampled) and isinstance(own, law.Law):
+            for name in own.limit:
+                if f"{component}.{name}" in axis.outputs and _acts(axis, component, name):
+                    peaks[f"{component}.{name}"] = limit(axis, f"{component}.{name}")
+    for name, value in problem.limits.peak.items():
+        if name not in axis.outputs:
+            raise InputError(f"limits.peak.{name} = {value!r}: no output of the linear model")
+        peaks[name] = value
+    return Signals(command, contour.position, tuple(peaks)), peaks
+
+
+def _acts(axis: AxisModel, component: str, name: str) -> bool:
+    """Whether an output moves when the axis is commanded."""
+    block = axis.blocks[component]
+    assert isinstance(block, Sampled)
+    if name not in block.outputs:
+        return name in block.ports
+    row = block.law[len(block.states) + block.outputs.index(name)]
+    return bool(nonzero(row[None, :]).any())
+
+
+def operating_point(axis: AxisModel, base: Result) -> dict[str, float]:
+    """Mean feed of a run, as a speed output of the plant.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    base : Result
+
+    Returns
+    -------
+    dict
+        Speed by ``component.variable``; empty if the plant shows none, or is linear.
+    """
+    contour = axis.scenario.document.body.contour
+    assert contour is not None
+    component, _, name = contour.position.partition(".")
+    if not isinstance(axis.blocks[component], Plant):
+        return {}
+    ode = linearised(axis, component)[0].ode
+    outputs = [d.name for d in ode.outputs]
+    rate = ca.mtimes(ca.jacobian(ode.y[outputs.index(name)], ode.x), ode.xdot)
+    function = ca.Function("r", [ode.x, ode.u, ode.p], [rate, ode.y])
+    draw = np.random.default_rng(1)
+    x, u = draw.normal(size=len(ode.states)), draw.normal(size=len(ode.inputs))
+    wanted, shown = (np.asarray(v.full()).ravel() for v in function(x, u, np.array(ode.p0)))
+    speeds = [k for k, y in enumerate(shown) if abs(y - wanted[0]) < 1e-9 * abs(wanted[0])]
+    if not speeds:
+        return {}
+    found = base.contour()
+    way = np.linalg.norm(np.diff(found.run.commanded[:, :3], axis=0), axis=1)
+    moving = found.cutting[1:] & (way > 0.0)
+    feed = float(way[moving].sum() / (moving.sum() * np.diff(found.run.time).mean()))  # [mm/s]
+    unit = base.scenario.resolver.end(contour.position, "contour", "position").port.unit or "1"
+    factor = parse("mm").factor / parse(unit).factor
+    return {f"{component}.{outputs[speeds[0]]}": feed * factor}
+
+
+def variables(axes: Mapping[int, AxisModel], names: list[str], problem: Problem) -> list[Variable]:
+    """The numbers that are looked for.
+
+    Parameters
+    ----------
+    axes : mapping
+        Model of each axis.
+    names : list of str
+        Gains.
+    problem : Problem
+
+    Returns
+    -------
+    list of Variable
+
+    Raises
+    ------
+    InputError
+        A bound is wrong, or a value of 0 has none.
+    """
+    scenario = next(iter(axes.values())).scenario
+    for name in problem.bounds:
+        if name not in names:
+            raise InputError(f"bounds.{name}: it is not among the gains: {', '.join(names)}")
+    found = []
+    for name in names:
+        shared = problem.axes == "equal" or not _port(scenario, name).shape
+        groups = [tuple(axes)] if shared else [(k,) for k in axes]
+        found += [_variable(axes, name, group, problem) for group in groups]
+    return found
+
+
+def _port(scenario: Scenario, name: str) -> Any:
+    return scenario.resolver.end(name, "set", name).port
+
+
+def _variable(
+    axes: Mapping[int, AxisModel], name: str, group: tuple[int, ...], problem: Problem
+) -> Variable:
+    port = _port(axes[group[0]].scenario, name)
+    start = float(axes[group[0]].value(name))
+    whole = port.type == "Int32"
+    if name in problem.bounds:
+        low, high = problem.bounds[name]
+        if low < port.low or high > port.high:
+            text = f"[{low!r}, {high!r}]: outside {port.low:g} .. {port.high:g}"
+            raise InputError(f"bounds.{name} = {text}")
+    elif np.isfinite(port.high) and not whole and port.high <= 1.0:
+        low, high = port.low, port.high
+    elif start > 0.0:
+        least = max(port.low, 1.0) if whole else port.low
+        low, high = max(start / SPAN, least), min(start * SPAN, port.high)
+    else:
+        raise InputError(f"bounds: {name} = {start:g} at present, so give its bounds")
+    own = low == port.low, high == port.high
+    return Variable(name, group, float(low), float(high), min(max(start, low), high), whole, own)

@@ -1,0 +1,166 @@
+"""The contour error of a simulated motion, with its derivatives."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu import units
+from motionfmu.contour.assign import assign
+from motionfmu.contour.error import AHEAD
+from motionfmu.run import Result
+from motionfmu.tune.steps import Array
+
+# Distance between two samples of the path [s]: about one command of the card.
+SAMPLE = 1e-3
+# Order of the mean that stands for the largest error.
+_ORDER = 24
+
+
+@dataclass(frozen=True)
+class PathError:
+    """Contour error of a motion.
+
+    Attributes
+    ----------
+    distance : ndarray, shape (count,)
+        From the nearest point of the exact path, where the tool cuts [mm].
+    gap : ndarray, shape (count, 3)
+        From there to the tool [mm].
+    """
+
+    distance: Array
+    gap: Array
+
+    @property
+    def rms(self) -> float:
+        """Root of the mean square [mm]."""
+        return float(np.sqrt(np.mean(self.distance**2)))
+
+    @property
+    def max(self) -> float:
+        """Largest one [mm]."""
+        return float(self.distance.max())
+
+    def cost(self, name: str) -> tuple[float, Array]:
+        """A cost, and its derivative to the positions.
+
+        Parameters
+        ----------
+        name : str
+            ``contour_rms``, or ``contour_max`` for the norm of order 24.
+
+        Returns
+        -------
+        float
+            [mm]
+        ndarray, shape (count, 3)
+        """
+        if name == "contour_rms":
+            value = max(self.rms, 1e-12)
+            return value, self.gap / (value * len(self.gap))
+        top = max(self.max, 1e-12)
+        share = self.distance / top
+        total = float(np.sum(share**_ORDER))
+        value = top * total ** (1.0 / _ORDER)
+        weight = (share ** (_ORDER - 2)) * total ** (1.0 / _ORDER - 1.0) / top
+        return value, self.gap * weight[:, None]
+
+
+class PathCost:
+    """The path of a scenario, from a run of its FMUs.
+
+    Nearest points are those of `motionfmu.contour`: on the exact geometry, each sample within the
+    part of the path that the pulses passed shortly before. To first order a motion of the nearest
+    point along the path does not change the distance: the derivative is the normal.
+
+    Parameters
+    ----------
+    base : Result
+        A run of the scenario.
+    period : float
+        Of the linear model [s].
+
+    Attributes
+    ----------
+    axes : tuple of int
+        Axes of the path in use, from 1.
+    periods : int
+        Periods of the model from one sample to the next.
+    pulses : dict
+        Pulses put out at the samples, by axis.
+    """
+
+    def __init__(self, base: Result, period: float) -> None:
+        contour = base.contour()
+        run, document = contour.run, base.scenario.document
+        assert document.body.contour is not None
+        rows = round(period / (run.time[1] - run.time[0]))
+        self.periods = max(1, round(SAMPLE / period))
+        stride = slice(None, None, rows * self.periods)
+        window = contour.window
+        owners = contour.command_track.segment
+        time = run.time
+        self.time = time[stride]
+        self._first = owners[_held(time, -window)][stride]
+        self._last = owners[_held(time, AHEAD * window)][stride]
+        self._cutting = contour.cutting[stride]
+        self._segments = run.path.segments
+        self.axes = tuple(i + 1 for i in run.axes if i < 3)
+        counts = base[document.body.contour.pulses]
+        self.pulses = {i: counts[stride, i - 1] for i in self.axes}
+        self._rest = run.actual[stride, :3].copy()
+        self._start = {i: float(run.actual[0, i - 1]) for i in self.axes}
+        port = base.scenario.resolver.end(
+            document.body.contour.position, "contour", "position"
+        ).port
+        self.factor = units.parse(port.unit or "1").factor / units.parse("mm").factor
+
+    def error(self, positions: Mapping[int, Array]) -> PathError:
+        """Contour error of a motion.
+
+        Parameters
+        ----------
+        positions : mapping
+            By axis, shape (count,), in the unit of the scenario's position output; from 0.
+
+        Returns
+        -------
+        PathError
+        """
+        points = self._rest.copy()
+        for axis, values in positions.items():
+            points[:, axis - 1] = self._start[axis] + values * self.factor
+        owners = assign(points, self._segments, self._first, self._last)
+        foot, distance = np.empty_like(points), np.empty(len(points))
+        cuts = np.searchsorted(owners, np.arange(len(self._segments) + 1))
+        for s in np.unique(owners).tolist():
+            own = slice(int(cuts[s]), int(cuts[s + 1]))
+            near = self._segments[s].foot(points[own])
+            foot[own], distance[own] = near.point, near.distance
+        cut = self._cutting
+        return PathError(distance[cut], (points - foot)[cut])
+
+    def chain(self, slope: Array, axis: int, changes: Array) -> Array:
+        """Derivatives of a cost to the gains of an axis.
+
+        Parameters
+        ----------
+        slope : ndarray, shape (count, 3)
+            Of the cost to the positions.
+        axis : int
+        changes : ndarray, shape (g, samples)
+            Of the axis' position to its gains.
+
+        Returns
+        -------
+        ndarray, shape (g,)
+        """
+        found: Array = changes[:, self._cutting] @ slope[:, axis - 1] * self.factor
+        return found
+
+
+def _held(time: Array, shift: float) -> NDArray[np.int64]:
+    found = np.searchsorted(time, time + shift, side="right") - 1
+    return np.clip(found, 0, len(time) - 1)

@@ -1,0 +1,200 @@
+"""What a tuning is asked for: gains, cost, limits, family of plants."""
+
+import itertools
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from motionfmu.errors import InputError
+from motionfmu.toml_lines import Lines
+
+_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+# More ranges than this have more corners than a tuning can look at.
+RANGES_MAX = 4
+Cost = Literal["contour_rms", "contour_max", "ise", "iae", "itae"]
+CONTOUR = ("contour_rms", "contour_max")
+
+
+class Margins(BaseModel):
+    """Least margins of a loop; what is not given is not asked for.
+
+    Attributes
+    ----------
+    sensitivity : float
+        Largest |1/(1 + L)|, above 1.
+    gain : float
+        Factor by which the loop may be larger, and smaller, before it rings.
+    phase : float
+        Lag [deg] that it bears.
+    """
+
+    model_config = _STRICT
+    sensitivity: float | None = Field(default=None, gt=1.0)
+    gain: float | None = Field(default=None, gt=1.0)
+    phase: float | None = Field(default=None, gt=0.0, lt=180.0)
+
+
+class Limits(BaseModel):
+    """What the gains must keep.
+
+    Attributes
+    ----------
+    margins : Margins
+        Of every loop.
+    loop : dict
+        Margins of one loop instead, by the input at which it is opened.
+    overshoot : float or None
+        Largest overshoot of the position after a step, share of the step.
+    recovery : float or None
+        Slowest time constant of the closed loop [s]: with it the effect of a load dies away.
+    peak : dict
+        Largest magnitude on the path by output, ``component.variable``, in its unit.
+    """
+
+    model_config = _STRICT
+    margins: Margins = Margins(sensitivity=1.5, gain=3.0, phase=45.0)
+    loop: dict[str, Margins] = Field(default_factory=dict)
+    overshoot: float | None = Field(default=0.05, ge=0.0)
+    recovery: float | None = Field(default=0.05, gt=0.0)
+    peak: dict[str, float] = Field(default_factory=dict)
+
+
+class Problem(BaseModel):
+    """A tuning problem.
+
+    Attributes
+    ----------
+    gains : list of str or None
+        Parameters to be found, ``component.variable``; None: the position gain in use.
+    velocity, feed_forward : bool
+        Also the velocity loop's gain and integral time; also the feed-forward.
+    axes : str
+        ``each`` axis its own gains, or ``equal`` gains.
+    cost : str
+        ``contour_rms`` or ``contour_max`` on the scenario's path; ``ise``, ``iae`` or ``itae``
+        after a step.
+    bounds : dict
+        Least and largest value by gain; else a 20th and 20 times the present one.
+    limits : Limits
+    family : dict
+        Least and largest value of plant parameters: all corners are held.
+    at : dict
+        Operating point of the plants; else the mean feed.
+    starts : int
+        Points from which the NLP begins: the present gains, what the global search found, then
+        points spread over the range.
+    check : int
+        Evaluations of the global search; 0 for none.
+    """
+
+    model_config = _STRICT
+    gains: list[str] | None = None
+    velocity: bool = False
+    feed_forward: bool = False
+    axes: Literal["each", "equal"] = "each"
+    cost: Cost = "contour_rms"
+    bounds: dict[str, tuple[float, float]] = Field(default_factory=dict)
+    limits: Limits = Limits()
+    family: dict[str, tuple[float, float]] = Field(default_factory=dict)
+    at: dict[str, float] = Field(default_factory=dict)
+    starts: int = Field(default=2, ge=1, le=50)
+    check: int = Field(default=40, ge=0, le=100_000)
+
+    def plants(self) -> list[dict[str, float]]:
+        """The nominal plant, then every corner of the family.
+
+        Returns
+        -------
+        list of dict
+            Changed values by ``component.variable``.
+        """
+        corners = itertools.product(*([(n, v) for v in ends] for n, ends in self.family.items()))
+        return [{}, *(dict(corner) for corner in corners)] if self.family else [{}]
+
+
+def problem(values: Mapping[str, Any], lines: Lines | None = None, file: str = "") -> Problem:
+    """Make a problem of the tables of a tune.toml.
+
+    Parameters
+    ----------
+    values : mapping
+        As in the file; what is missing has its default.
+    lines : Lines, optional
+        For messages.
+    file : str
+        For messages.
+
+    Returns
+    -------
+    Problem
+
+    Raises
+    ------
+    InputError
+        One message with file, line, key and value.
+    """
+    try:
+        found = Problem.model_validate(_pairs(dict(values)))
+    except ValidationError as error:
+        first = error.errors()[0]
+        keys = [str(k) for k in first["loc"]]
+        given = "" if isinstance(first["input"], dict) else f" = {first['input']!r}"
+        text = f"{'.'.join(keys)}{given}: {first['msg'].lower()}"
+        raise _located(text, keys, lines, file) from None
+    for table in ("bounds", "family"):
+        for name, (low, high) in getattr(found, table).items():
+            if not low < high:
+                text = f"{table}.{name} = [{low!r}, {high!r}]: the first must be less"
+                raise _located(text, [table, name], lines, file)
+    if len(found.family) > RANGES_MAX:
+        text = f"family: {len(found.family)} ranges, not more than {RANGES_MAX}"
+        raise _located(text, ["family"], lines, file)
+    return found
+
+
+def _pairs(values: dict[str, Any]) -> dict[str, Any]:
+    """TOML has lists where tuples of two numbers are meant."""
+    for table in ("bounds", "family"):
+        if isinstance(values.get(table), dict):
+            values[table] = {
+                k: tuple(v) if isinstance(v, list) else v for k, v in values[table].items()
+            }
+    return values
+
+
+def _located(text: str, keys: list[str], lines: Lines | None, file: str) -> InputError:
+    if lines is None:
+        return InputError(f"{file}: {text}" if file else text)
+    table = ".".join(keys[:-1])
+    return InputError(f"{file}:{lines.of(table, keys[-1])}: {text}")
+
+
+def read(file: str | Path) -> dict[str, Any]:
+    """Read the tables of a tune.toml and check them.
+
+    Parameters
+    ----------
+    file : str or Path
+
+    Returns
+    -------
+    dict
+        As in the file.
+
+    Raises
+    ------
+    InputError
+        The file is missing or wrong.
+    """
+    try:
+        text = Path(file).read_text(encoding="utf-8")
+        values = tomllib.loads(text)
+    except OSError as error:
+        raise InputError(f"{file}: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{file}: {error}") from None
+    problem(values, Lines(text), str(file))
+    return values

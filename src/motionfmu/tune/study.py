@@ -1,0 +1,379 @@
+"""Cost and limits of a tuning as functions of the gains."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from threadpoolctl import ThreadpoolController
+
+from motionfmu import linear
+from motionfmu.errors import InputError
+from motionfmu.linear.axis import AxisModel
+from motionfmu.run import Result, Scenario
+from motionfmu.tune import choice
+from motionfmu.tune.axis import AxisStudy, Motion
+from motionfmu.tune.curve import margin
+from motionfmu.tune.path import PathCost
+from motionfmu.tune.problem import CONTOUR, Margins, Problem
+from motionfmu.tune.steps import Array
+
+# A step is watched for this many servo lags, at this many samples at least.
+_LAGS, _SAMPLES = 20.0, 800
+# Products of matrices as small as these take five times as long on two threads as on one.
+_BLAS = ThreadpoolController()
+# An overshoot limit of 0 means no more than rounding.
+_LEAST_OVERSHOOT = 1e-3
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One of the limits.
+
+    Attributes
+    ----------
+    what : str
+        In words.
+    plant, axis : int
+        Index of the plant, 0 is the nominal one; axis from 1.
+    """
+
+    what: str
+    plant: int
+    axis: int
+
+
+@dataclass(frozen=True)
+class Values:
+    """Cost and limits at a point.
+
+    Attributes
+    ----------
+    costs : ndarray, shape (plants,)
+        NaN where a loop is unstable.
+    slack : ndarray, shape (limits,)
+        Relative distance to each limit; negative beyond it.
+    dcosts, dslack : ndarray, shape (plants, n), (limits, n)
+        Derivatives to the shares of the variables.
+    """
+
+    costs: Array
+    slack: Array
+    dcosts: Array
+    dslack: Array
+
+    @property
+    def worst(self) -> float:
+        """Largest cost of the family."""
+        return float(self.costs.max())
+
+    def feasible(self, tolerance: float = 1e-4) -> bool:
+        """Whether all loops are stable and all limits kept.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative.
+
+        Returns
+        -------
+        bool
+        """
+        return bool(np.isfinite(self.costs).all() and (self.slack > -tolerance).all())
+
+
+class Study:
+    """A tuning problem, ready to be evaluated.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    problem : Problem
+    base : Result
+        A run of the scenario with its present gains.
+    set : mapping, optional
+        Values by ``component.variable`` with which that run was made.
+
+    Attributes
+    ----------
+    variables : list of Variable
+    limits : list of Limit
+        In the order of `Values.slack`.
+    plants : list of dict
+    at : dict
+        Operating point of the plants.
+    axes : dict
+        Linear model of each axis, nominal.
+    evaluations : int
+        How often it was evaluated.
+
+    Raises
+    ------
+    InputError
+        A name or value is wrong.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        problem: Problem,
+        base: Result,
+        set: Mapping[str, Any] | None = None,
+    ) -> None:
+        self.scenario, self.problem, self.base = scenario, problem, base
+        self.set = dict(set or {})
+        used = [i + 1 for i in base.contour().run.axes if i < 3]
+        one = linear.model(scenario, used[0], set=self.set)
+        self.at = dict(problem.at) or choice.operating_point(one, base)
+        self.axes = {k: linear.model(scenario, k, at=self.at, set=self.set) for k in used}
+        names = choice.gains(one, problem)
+        self.variables = choice.variables(self.axes, names, problem)
+        self.names = names
+        self.signals, self.peaks = choice.signals(one, problem)
+        self.plants = problem.plants()
+        self._check_family()
+        self.parts = [
+            {k: AxisStudy(_changed(m, plant), names, self.signals) for k, m in self.axes.items()}
+            for plant in self.plants
+        ]
+        period = self.parts[0][used[0]].period
+        self.path = PathCost(base, period)
+        seconds = _LAGS * max(base.contour().lag, 50.0 * period)
+        self._step = max(1, round(seconds / _SAMPLES / period)), _SAMPLES
+        self._check_loops()
+        self.limits = self._limits()
+        self.evaluations = 0
+
+    def _check_family(self) -> None:
+        one = next(iter(self.axes.values()))
+        for name, ends in self.problem.family.items():
+            component, _, variable = name.partition(".")
+            if component not in one.points or variable not in self.scenario.resolver.ports.get(
+                component, {}
+            ):
+                plants = ", ".join(one.points)
+                raise InputError(
+                    f"family.{name} = {list(ends)}: no parameter of a plant ({plants})"
+                )
+
+    def _check_loops(self) -> None:
+        known = self.parts[0][next(iter(self.axes))].loops
+        for name in self.problem.limits.loop:
+            if name not in known:
+                raise InputError(f"limits.loop.{name}: no loop there ({', '.join(known)})")
+
+    def asked(self, loop: str) -> Margins:
+        """Margins asked of a loop.
+
+        Parameters
+        ----------
+        loop : str
+            Where it is opened.
+
+        Returns
+        -------
+        Margins
+        """
+        return self.problem.limits.loop.get(loop, self.problem.limits.margins)
+
+    def _limits(self) -> list[Limit]:
+        found = []
+        for p, parts in enumerate(self.parts):
+            for k, part in parts.items():
+                texts = []
+                for loop in part.loops:
+                    asked = self.asked(loop)
+                    if asked.sensitivity is not None:
+                        texts.append(f"sensitivity {asked.sensitivity:g} of the loop at {loop}")
+                    if asked.gain is not None:
+                        texts.append(f"gain margin {asked.gain:g} of the loop at {loop}")
+                        texts.append(f"gain reduction 1/{asked.gain:g} of the loop at {loop}")
+                    if asked.phase is not None:
+                        texts.append(f"phase margin {asked.phase:g} deg of the loop at {loop}")
+                if self.problem.limits.overshoot is not None:
+                    texts.append(f"overshoot {100.0 * self.problem.limits.overshoot:g} %")
+                if self.problem.limits.recovery is not None:
+                    texts.append(f"recovery within {self.problem.limits.recovery:g} s")
+                texts += [f"{n} {v:g}" for n, v in self.peaks.items()]
+                found += [Limit(text, p, k) for text in texts]
+        return found
+
+    def gains(self, z: Array) -> dict[int, Array]:
+        """Gains of each axis at a point.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n,)
+            Share of its range of each variable.
+
+        Returns
+        -------
+        dict
+            Array of shape (g,) by axis.
+        """
+        found = {k: np.empty(len(self.names)) for k in self.axes}
+        for variable, share in zip(self.variables, z, strict=True):
+            for k in variable.axes:
+                found[k][self.names.index(variable.name)] = variable.value(float(share))
+        return found
+
+    @property
+    def present(self) -> Array:
+        """The point of the scenario's present gains."""
+        return np.array([v.share(v.start) for v in self.variables])
+
+    def _rates(self, z: Array) -> dict[int, Array]:
+        """Derivatives of each axis' gains to the shares: (g, n)."""
+        found = {k: np.zeros((len(self.names), len(z))) for k in self.axes}
+        for column, (variable, share) in enumerate(zip(self.variables, z, strict=True)):
+            for k in variable.axes:
+                value = variable.value(float(share))
+                found[k][self.names.index(variable.name), column] = variable.slope(value)
+        return found
+
+    def values(self, z: Array, slopes: bool = True) -> Values:
+        """Evaluate.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n,)
+        slopes : bool
+            Also the derivatives; else they are zero.
+
+        Returns
+        -------
+        Values
+        """
+        self.evaluations += 1
+        with _BLAS.limit(limits=1, user_api="blas"):
+            return self._values(z, slopes)
+
+    def _values(self, z: Array, slopes: bool) -> Values:
+        gains, rates = self.gains(z), self._rates(z)
+        costs, dcosts, slack, dslack = [], [], [], []
+        for parts in self.parts:
+            if not all(np.isfinite(part.slowest(gains[k])[0]) for k, part in parts.items()):
+                costs.append(np.nan)
+                dcosts.append(np.zeros(len(z)))
+                count = len(self.limits) // len(self.plants)
+                slack += [-1.0] * count
+                dslack += [np.zeros(len(z))] * count
+                continue
+            cost, dcost, motions = self._cost(parts, (gains, rates), slopes)
+            costs.append(cost)
+            dcosts.append(dcost)
+            for k, part in parts.items():
+                found, changes = self._slack(part, gains[k], (motions.get(k), slopes))
+                slack += found
+                dslack += [c @ rates[k] for c in changes]
+        return Values(
+            np.array(costs),
+            np.array(slack),
+            np.array(dcosts),
+            np.array(dslack).reshape(len(slack), len(z)),
+        )
+
+    def motions(self, z: Array, plant: int = 0) -> dict[int, Array]:
+        """Positions of all axes on the path.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n,)
+        plant : int
+
+        Returns
+        -------
+        dict
+            By axis, shape (count,), in the unit of the scenario's position output; from 0.
+        """
+        gains = self.gains(z)
+        found = {}
+        for k, part in self.parts[plant].items():
+            pulses = self.path.pulses[k]
+            found[k] = part.motion(gains[k], pulses, self.path.periods, False).outputs[0]
+        return found
+
+    def _cost(
+        self,
+        parts: Mapping[int, AxisStudy],
+        where: tuple[dict[int, Array], dict[int, Array]],
+        slopes: bool,
+    ) -> tuple[float, Array, dict[int, Motion]]:
+        gains, rates = where
+        on_path = self.problem.cost in CONTOUR
+        motions = {}
+        if on_path or self.peaks:
+            for k, part in parts.items():
+                pulses = self.path.pulses[k]
+                motions[k] = part.motion(gains[k], pulses, self.path.periods, slopes)
+        total = np.zeros(next(iter(rates.values())).shape[1])
+        if on_path:
+            error = self.path.error({k: m.outputs[0] for k, m in motions.items()})
+            cost, slope = error.cost(self.problem.cost)
+            for k, m in motions.items():
+                if m.slopes is not None:
+                    total += self.path.chain(slope, k, m.slopes[:, 0]) @ rates[k]
+            return cost, total, motions
+        cost = 0.0
+        for k, part in parts.items():
+            value, change = self._after_step(part, gains[k])
+            cost += value
+            total += change @ rates[k]
+        return cost, total, motions
+
+    def _after_step(self, part: AxisStudy, gains: Array) -> tuple[float, Array]:
+        answer = part.step(gains, *self._step)
+        assert answer.slopes is not None
+        e, de = 1.0 - answer.outputs[0], -answer.slopes[:, 0]
+        dt = part.period * self._step[0]
+        t = dt * np.arange(len(e))
+        if self.problem.cost == "ise":
+            return float(np.sum(e * e) * dt), 2.0 * de @ e * dt
+        weight = t if self.problem.cost == "itae" else np.ones(len(e))
+        return float(np.sum(weight * np.abs(e)) * dt), de @ (weight * np.sign(e)) * dt
+
+    def _slack(
+        self, part: AxisStudy, gains: Array, moved: tuple[Motion | None, bool]
+    ) -> tuple[list[float], list[Array]]:
+        motion, slopes = moved
+        found: list[float] = []
+        changes: list[Array] = []
+
+        def add(value: float, slope: Array) -> None:
+            found.append(value)
+            changes.append(slope)
+
+        for name in part.loops:
+            asked, has = self.asked(name), margin(part.loop(name, gains))
+            if asked.sensitivity is not None:
+                add(has.values[0] * asked.sensitivity - 1.0, has.slopes[0] * asked.sensitivity)
+            if asked.gain is not None:
+                wide = np.log(asked.gain)
+                add(has.values[1] / wide - 1.0, has.slopes[1] / wide)
+                add(has.values[2] / wide - 1.0, has.slopes[2] / wide)
+            if asked.phase is not None:
+                wide = np.radians(asked.phase)
+                add(has.values[3] / wide - 1.0, has.slopes[3] / wide)
+        if self.problem.limits.overshoot is not None:
+            most = max(self.problem.limits.overshoot, _LEAST_OVERSHOOT)
+            answer = part.step(gains, *self._step, slopes)
+            top = int(np.argmax(answer.outputs[0]))
+            rate = np.zeros(len(gains)) if answer.slopes is None else answer.slopes[:, 0, top]
+            add(1.0 - (answer.outputs[0, top] - 1.0) / most, -rate / most)
+        if self.problem.limits.recovery is not None:
+            slow, change = part.slowest(gains)
+            most = self.problem.limits.recovery
+            add(1.0 - slow / most, -change / most)
+        for row, most in enumerate(self.peaks.values(), 1):
+            assert motion is not None
+            top = int(np.argmax(np.abs(motion.outputs[row])))
+            value = motion.outputs[row, top]
+            slope = np.zeros(len(gains))
+            if motion.slopes is not None:
+                slope = motion.slopes[:, row, top] * np.sign(value)
+            add(1.0 - abs(value) / most, -slope / most)
+        return found, changes
+
+
+def _changed(axis: AxisModel, plant: Mapping[str, float]) -> AxisModel:
+    return axis.changed(dict(plant)) if plant else axis
