@@ -1,0 +1,322 @@
+"""Tuning: slopes against differences, margins and motions against theory and FMUs, brute force."""
+
+import math
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from linear_rigs import DEMO, THEORY, kp_of
+from test_cli import command
+
+import motionfmu
+from motionfmu import linear
+from motionfmu.cli import settings
+from motionfmu.errors import InputError
+from motionfmu.linear.margins import margins
+from motionfmu.run import Options
+from motionfmu.tune import RanAway, Tuned, problem, read, tune
+from motionfmu.tune.axis import AxisStudy, Signals
+from motionfmu.tune.choice import Variable
+from motionfmu.tune.curve import margin
+from motionfmu.tune.solve import solve
+from motionfmu.tune.steps import lifted, scan
+from motionfmu.tune.study import Study, Values
+
+GAINS = ["mcc.p_gain", "drives.velocity_gain", "drives.velocity_time"]
+SIGNALS = Signals("card.pulses", "machine.table_position", ("drives.torque", "card.dac"))
+POINTS = [np.array(p) for p in ([200.0, 0.5, 0.02], [420.0, 0.85, 0.03], [294.0, 0.99, 0.005])]
+
+
+@pytest.fixture(scope="module")
+def axis() -> AxisStudy:
+    model = linear.model(DEMO, 1, at={"machine.table_speed": 0.1})
+    return AxisStudy(model, GAINS, SIGNALS)
+
+
+@pytest.fixture(scope="module")
+def base() -> motionfmu.Result:
+    return motionfmu.load(DEMO).run()
+
+
+@pytest.fixture(scope="module")
+def tuned() -> Tuned:
+    return tune(DEMO, {"check": 20})
+
+
+def differences(function: Any, at: np.ndarray) -> np.ndarray:
+    """Central differences of a function, one row for each gain."""
+    rows = []
+    for k in range(len(at)):
+        h = np.zeros(len(at))
+        h[k] = 1e-5 * at[k]
+        rows.append((function(at + h) - function(at - h)) / (2.0 * h[k]))
+    return np.array(rows)
+
+
+def agree(slopes: np.ndarray, expected: np.ndarray, share: float) -> None:
+    scale = np.abs(expected).max()
+    assert np.abs(slopes - expected).max() <= share * scale, (slopes, expected)
+
+
+def test_scan_and_lift_are_the_plain_recursion() -> None:
+    draw = np.random.default_rng(1)
+    a, b = draw.normal(size=(5, 5)) * 0.3, draw.normal(size=(5, 2))
+    u = np.cumsum(draw.normal(size=(2, 41)), axis=1)
+    fine = np.stack([np.interp(np.arange(201) / 5.0, np.arange(41), row) for row in u])
+    x, states = np.zeros(5), []
+    for k in range(201):
+        states.append(x)
+        x = a @ x + b @ fine[:, k]
+    found = scan(a, b @ fine)
+    np.testing.assert_allclose(found, np.array(states).T, atol=1e-12)
+    none = np.zeros((0, 5, 5)), np.zeros((0, 5, 2))
+    every = lifted(a, b, *none, 5).states(u)
+    np.testing.assert_allclose(every, np.array(states).T[:, ::5], atol=1e-12)
+
+
+@pytest.mark.parametrize("gains", POINTS, ids=str)
+def test_slopes_are_differences(axis: AxisStudy, gains: np.ndarray) -> None:
+    t = 1e-3 * np.arange(700)
+    pulses = np.round(20_000 * (1.0 - np.cos(9.0 * t)))  # two reversals
+    found = axis.motion(gains, pulses, 10)
+    expected = differences(lambda g: axis.motion(g, pulses, 10, False).outputs, gains)
+    for k in range(3):
+        for row in range(3):
+            agree(found.slopes[k, row], expected[k, row], 2e-3)
+    step = axis.step(gains, 5, 400)
+    agree(step.slopes, differences(lambda g: axis.step(g, 5, 400, False).outputs, gains), 1e-5)
+    agree(axis.slowest(gains)[1], differences(lambda g: np.array(axis.slowest(g)[0]), gains), 1e-4)
+    for name in axis.loops:
+        slopes = margin(axis.loop(name, gains)).slopes.T
+        expected = differences(lambda g, n=name: margin(axis.loop(n, g)).values, gains)
+        agree(slopes, expected, 1e-4)
+
+
+@pytest.mark.parametrize("gains", POINTS, ids=str)
+def test_margins_are_those_of_the_linear_model(axis: AxisStudy, gains: np.ndarray) -> None:
+    model = axis.axis.changed(dict(zip(GAINS, [int(gains[0]), *gains[1:]], strict=True)))
+    for name, cut in axis.loops.items():
+        found, known = margin(axis.loop(name, gains)).values, margins(model.loop(name, cut))
+        assert 1.0 / found[0] == pytest.approx(known.sensitivity, rel=1e-4)
+        assert math.exp(found[1]) == pytest.approx(known.gain, rel=1e-6)
+        assert math.degrees(found[3]) == pytest.approx(known.phase, rel=1e-6)
+
+
+def test_a_circle_has_the_radius_of_theory() -> None:
+    """Ideal drive, one sample of delay: |K T / (z (z - 1) + K T)|, and a lag of 1/K."""
+    model = linear.model(THEORY)
+    study = AxisStudy(model, ["mcc.p_gain"], Signals("card.pulses", "machine.table_position", ()))
+    gains, period = np.array([float(model.value("mcc.p_gain"))]), study.period
+    kp, w = kp_of(model), 8.0
+    t = 10 * period * np.arange(4000)
+    y = study.motion(gains, np.cos(w * t) * 1e6, 10).outputs[0]
+    settled = t > 1.0
+    waves = np.stack([np.cos(w * t), np.sin(w * t)])[:, settled]
+    radius = np.linalg.norm(np.linalg.lstsq(waves.T, y[settled], rcond=None)[0])
+    z = np.exp(1j * w * period)
+    wanted = abs(kp * period / (z * (z - 1.0) + kp * period))
+    lead = 1e6 / 10_000 * 0.01  # [m] of 10^6 pulses
+    # between samples the command is a chord: shorter by (w dt)^2/12
+    chord = 1.0 - (w * 10 * period) ** 2 / 12.0
+    assert radius / lead == pytest.approx(wanted * chord, rel=1e-7)
+    assert study.lag(gains) == pytest.approx(1.0 / kp, rel=1e-9)
+
+
+def test_nearest_points_are_those_of_the_contour_analysis(base: motionfmu.Result) -> None:
+    study = Study(motionfmu.load(DEMO), problem({}), base)
+    contour, stride = base.contour(), slice(None, None, 10)
+    table = base["machine.table_position"]
+    error = study.path.error({k: table[stride, k - 1] - table[0, k - 1] for k in (1, 2)})
+    wanted = contour.track.distance[stride][contour.cutting[stride]]
+    np.testing.assert_allclose(error.distance, wanted, atol=1e-9)
+    for cost in ("contour_rms", "contour_max"):
+        value, slope = error.cost(cost)
+        assert contour.error.rms * 0.99 < value < contour.error.max * 1.6
+        assert np.sum(slope * error.gap) == pytest.approx(value)  # homogeneous of degree one
+    modelled = study.path.error(study.motions(study.present))
+    assert modelled.rms == pytest.approx(contour.error.rms, rel=0.01)
+    assert modelled.max == pytest.approx(contour.error.max, rel=0.03)
+
+
+def test_the_demo_is_tuned_to_its_limit(tuned: Tuned) -> None:
+    assert tuned.stopped_by == ["overshoot 5 %, axes 1, 2"]
+    after, before = (r[0].result.contour().error for r in (tuned.after, tuned.before))
+    assert after.rms < before.rms / 4.0 and after.max < before.max / 3.0
+    assert tuned.after[0].model.rms == pytest.approx(after.rms, rel=0.02)
+    assert tuned.after[0].result["mcc.done"][-1]
+    assert tuned.values.feasible()
+    text = " ".join(tuned.toml().splitlines())
+    for said in ("card.enc_phase reads machine.motor_phase", "card samples every 100 us"):
+        assert said in text
+    first, second = tuned.found.starts
+    assert first == pytest.approx(second, rel=1e-4)
+
+
+def test_the_demo_is_as_good_as_brute_force(tuned: Tuned) -> None:
+    study, best = tuned.study, math.inf
+    for register in range(380, 440, 2):
+        z = np.array([v.share(register) for v in study.variables])
+        values = study.values(z, False)
+        if values.feasible():
+            best = min(best, values.worst)
+    assert tuned.values.worst == pytest.approx(best, rel=5e-3)
+
+
+def test_a_gains_file_is_taken_assettings(tuned: Tuned, tmp_path: Path) -> None:
+    file = tmp_path / "gains.toml"
+    file.write_text(tuned.toml())
+    given = settings([str(file), "mcc.irq_latency=1e-3"])
+    assert given == {**tuned.settings, "mcc.irq_latency": 1e-3}
+    assert tuned.settings["mcc.p_gain"][2:] == [200] * 4
+    motionfmu.load(DEMO).resolved(Options(set=given))
+    with pytest.raises(InputError, match=r"--set .*none\.toml: No such file"):
+        settings([str(tmp_path / "none.toml")])
+
+
+def test_a_family_is_held_at_every_corner(base: motionfmu.Result, tuned: Tuned) -> None:
+    asked = {"axes": "equal", "starts": 1, "check": 0}
+    alone = tuned.found
+    ranges = {"machine.table_mass": [50.0, 250.0]}
+    study = Study(motionfmu.load(DEMO), problem({**asked, "family": ranges}), base)
+    found = solve(study)
+    assert study.plants == [{}, {"machine.table_mass": 50.0}, {"machine.table_mass": 250.0}]
+    assert found.values.feasible() and len(found.values.costs) == 3
+    assert {x.plant for x in found.stopped_by} == {2}  # the heavy one overshoots first
+    assert found.values.costs[0] > 1.01 * alone.values.worst
+    nominal = study.values(alone.z[:1], False)
+    assert nominal.slack[[x.plant == 2 for x in study.limits]].min() < -0.02
+
+
+class Formula:
+    """A study whose cost is a formula of one gain."""
+
+    def __init__(self, cost: Any, bounds: tuple[float, float], limit: float = math.inf) -> None:
+        self.cost, self.limit = cost, limit
+        self.variables = [
+            Variable("card.gain", (1,), *bounds, math.sqrt(bounds[0] * bounds[1]), False)
+        ]
+        self.names, self.plants, self.evaluations = ["card.gain"], [{}], 0
+        self.limits = [SimpleNamespace(what="largest gain", axis=1, plant=0)]
+        self.problem = problem({"cost": "ise", "check": 30})
+        self.scenario = SimpleNamespace(document=SimpleNamespace(file="formula.toml"))
+        self.present = np.array([0.5])
+
+    def values(self, z: np.ndarray, slopes: bool = True) -> Values:
+        self.evaluations += 1
+        variable = self.variables[0]
+        k = variable.value(float(z[0]))
+        rate = (self.cost(k * 1.000001) - self.cost(k * 0.999999)) / (2e-6 * k)
+        slope = variable.slope(k)
+        slack = np.array([1.0 - k / self.limit])
+        room = np.array([[-slope / self.limit]])
+        return Values(np.array([self.cost(k)]), slack, np.array([[rate * slope]]), room)
+
+
+@pytest.mark.parametrize(
+    "cost",
+    [
+        lambda k: (1.0 + 0.005 * k) / (2.0 * k),  # ISE of K/(s (0.005 s + 1))
+        lambda k: 1.0 / k**2,  # ITAE of K/s
+    ],
+    ids=["ise", "itae"],
+)
+def test_a_cost_without_delay_runs_away_and_is_told(cost: Any) -> None:
+    with pytest.raises(RanAway, match=r"card\.gain\[1\] ran to its own upper bound 1000"):
+        solve(Formula(cost, (1.0, 1000.0)))  # type: ignore[arg-type]
+    found = solve(Formula(cost, (1.0, 1000.0), limit=200.0))  # type: ignore[arg-type]
+    assert [x.what for x in found.stopped_by] == ["largest gain"]
+
+
+def test_a_delay_bounds_the_gain_as_theory_says() -> None:
+    """ISE of K exp(-s d)/s is cos(K d) / (2 K (1 - sin(K d))): least at K d = 0.7391."""
+    delay = 1e-3
+
+    def ise(k: float) -> float:
+        return math.cos(k * delay) / (2.0 * k * (1.0 - math.sin(k * delay)))
+
+    study = Formula(ise, (20.0, 1500.0))
+    found = solve(study)  # type: ignore[arg-type]
+    assert not found.stopped_by
+    best = min(ise(k) for k in np.linspace(20.0, 1500.0, 20001))
+    assert found.values.worst == pytest.approx(best, rel=1e-4)
+    gain = study.variables[0].value(float(found.z[0]))
+    assert gain * delay == pytest.approx(0.7391, abs=0.01)
+
+
+def test_the_command_refuses_a_gain_that_ran_away(tmp_path: Path) -> None:
+    file, out = tmp_path / "away.toml", tmp_path / "out"
+    file.write_text(
+        'cost = "itae"\naxes = "equal"\nstarts = 1\ncheck = 0\n[bounds]\n"mcc.p_gain" = [50, 300]\n'
+        "[limits]\novershoot = 1e6\nrecovery = 1e6\n[limits.margins]\n"
+    )
+    done = command("tune", "scenarios/circle", "--problem", file, "--out", out)
+    assert done.returncode == 2
+    assert "mcc.p_gain[1,2] ran to its own upper bound 300" in done.stderr
+    assert not out.exists()
+
+
+def test_feed_forward_shortens_the_lag_and_leaves_the_step(tmp_path: Path) -> None:
+    text = (ROOT / "scenarios/circle/scenario.toml").read_text()
+    for old, new in (
+        (', "drives.pulse_count"]', ', "drives.dac"]'),
+        ('"drives.dac"             = "card.dac"', '"drives.pulse_count" = "card.pulse_count"'),
+        ('"mcc.p_gain"     = 200', '"mcc.output_mode" = 0\n"drives.mode" = 1'),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    (tmp_path / "scenario.toml").write_text(text)
+    (tmp_path / "circle.ngc").write_text((ROOT / "scenarios/circle/circle.ngc").read_text())
+    model = linear.model(tmp_path, 1, at={"machine.table_speed": 0.1})
+    study = AxisStudy(model, ["drives.position_gain", "drives.feed_forward"], SIGNALS)
+    without, full = np.array([60.0, 0.0]), np.array([60.0, 1.0])
+    assert study.lag(without) - study.lag(full) == pytest.approx(1.0 / 60.0, rel=1e-6)
+    answers = [study.step(g, 10, 300, False).outputs for g in (without, full)]
+    np.testing.assert_array_equal(*answers)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('cost = "iso"\n', r"t\.toml:1: cost = 'iso'"),
+        ('axes = "each"\ngain = 3\n', r"t\.toml:2: gain = 3"),
+        ('[bounds]\n"mcc.p_gain" = [5, 2]\n', r"t\.toml:2: bounds\.mcc\.p_gain = \[5.*, 2"),
+        ("[limits]\novershoot = -1\n", r"t\.toml:2: limits\.overshoot = -1"),
+        ("axes = \n", r"t\.toml: "),
+    ],
+)
+def test_a_wrong_problem_file_is_named_with_its_line(
+    text: str, message: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "t.toml"
+    file.write_text(text)
+    with pytest.raises(InputError, match=message):
+        read(file)
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"gains": ["mcc.nothing"]}, "mcc.nothing"),
+        ({"gains": ["mcc.software_gain"]}, "mcc.software_gain changes nothing"),
+        ({"feed_forward": True}, "no feed-forward gain acts"),
+        ({"bounds": {"drives.velocity_gain": (0.1, 1.0)}}, "it is not among the gains"),
+        ({"bounds": {"mcc.p_gain": (10.0, 1e6)}}, "outside 0 .. 65535"),
+        ({"family": {"card.loop_period": (1.0, 2.0)}}, "no parameter of a plant"),
+        ({"limits": {"loop": {"drives.dac": {}}}}, "no loop there"),
+        ({"limits": {"peak": {"machine.colour": 1.0}}}, "no output of the linear model"),
+    ],
+)
+def test_a_wrong_name_or_value_gets_one_message(
+    base: motionfmu.Result, asked: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        Study(motionfmu.load(DEMO), problem(asked), base)
+
+
+def test_limits_that_nothing_keeps_are_told() -> None:
+    study = Formula(lambda k: 1.0 / k, (1.0, 100.0), limit=0.5)
+    with pytest.raises(InputError, match=r"no gains .*; nearest: largest gain, axis 1, plant 0"):
+        solve(study)  # type: ignore[arg-type]
