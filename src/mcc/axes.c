@@ -157,15 +157,19 @@ void axes_state(const struct axes *a, int axis, double *place, double *speed)
     *speed = at.v;
 }
 
-void axes_reach(const struct axes *a, int axis, double *low, double *high)
+void axes_reach(const struct axes *a, int axis, double *low, double *high, double *acc)
 {
     const struct axes_axis *x = &a->axis[axis];
     const struct scurve_start at = state(x);
-    double fastest = fabs(at.v);
+    double fastest = fabs(at.v), begin = 0.0;
 
+    *acc = 0.0;
     for (int i = 0; i < x->plan.count; i++) {
         const struct scurve_phase *h = &x->plan.phase[i];   /* may pass a peak of speed: a = 0 */
         fastest = fmax(fastest, fabs(h->v) + (h->j != 0.0 ? h->a * h->a / fabs(2.0 * h->j) : 0.0));
+        *acc = fmax(*acc, fmax(fabs(h->a + h->j * (begin - h->t)),
+                               fabs(h->a + h->j * (h->end - h->t))));
+        begin = h->end;
     }
     const double left = fmax(0.0, x->plan.total - x->t);
     const double way = x->plan.v1 != 0.0 ? INFINITY : fastest * left;

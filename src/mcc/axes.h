@@ -60,8 +60,9 @@ void axes_advance(struct axes *a, double dt);
 /* Where an axis is and how fast: [mm], [mm/s]. */
 void axes_state(const struct axes *a, int axis, double *place, double *speed);
 
-/* Bounds of where an axis will be, wide rather than exact; without end if it runs. [mm] */
-void axes_reach(const struct axes *a, int axis, double *low, double *high);
+/* Bounds of where an axis will be, wide rather than exact, without end if it runs [mm]; and the
+ * highest acceleration either way of its plan, or above [mm/s^2]. */
+void axes_reach(const struct axes *a, int axis, double *low, double *high, double *acc);
 
 /* True if the axis, or every axis, stays where it is until the next order or ratio. */
 bool axes_rests(const struct axes *a, int axis);

@@ -21,6 +21,11 @@ static bool asyn(const struct ipo *p)
     return p->count > 0 && p->move[0].command.type == COMMAND_PTP_ASYN;
 }
 
+bool ipo_follows_paths(const struct ipo *p)
+{
+    return !p->free && !asyn(p);
+}
+
 static bool move_resting(const struct ipo *p, const struct ipo_move *m)
 {
     if (m->command.type == COMMAND_DELAY) {
@@ -107,7 +112,7 @@ static void start_asyn(struct ipo *p, const struct axes_limits l[AXES])
 /* Plan the newest move afresh from where it is. An older one beside it decelerates to its end. */
 static void replan(struct ipo *p)
 {
-    if (p->free || asyn(p)) {
+    if (!ipo_follows_paths(p)) {
         axes_set_ratio(&p->axes, override_of(p, COMMAND_PTP_ASYN));
         if (asyn(p)) {
             wait_for_axes(p);
@@ -170,44 +175,28 @@ void ipo_leave(struct ipo *p)
     p->leave = p->single;
 }
 
-/* Path mixing: the bounds of each move, the sum of them. Exact if there is one. */
-static void reach_moves(const struct ipo *p, const struct ipo *ahead, double low[AXES],
-                        double high[AXES])
+void ipo_ramp(const struct ipo *p, struct ipo *ramp)
 {
-    memcpy(low, p->rest, AXES * sizeof *low);
-    memcpy(high, p->rest, AXES * sizeof *high);
-    for (int i = 0; i < p->count; i++) {
-        const struct path *way = &p->move[i].command.path;
-        struct profile ramp = ahead->move[i].profile;
-        const double s = profile_state(&ramp).s;
-        ramp.t = ramp.total;
-        const double end = profile_state(&ramp).s;
-        for (int k = 0; k < AXES; k++) {
-            double a, b;
-            path_extent(way, k, s, end, &a, &b);
-            low[k] = i == 0 ? a : low[k] + (a - way->start[k]);
-            high[k] = i == 0 ? b : high[k] + (b - way->start[k]);
-        }
-    }
+    *ramp = *p;
+    ramp->abort = true;
+    replan(ramp);
 }
 
-bool ipo_reach(const struct ipo *p, const struct ring *r, double low[AXES], double high[AXES])
+void ipo_shift(struct ipo *ramp, double dt)
 {
-    struct ipo ahead = *p;
-
-    ahead.abort = true;
-    replan(&ahead);
-    if (p->track.active) {
-        track_reach(&p->track, r, low, high);
-    } else if (p->free || asyn(p)) {
-        for (int i = 0; i < AXES; i++) {
-            axes_reach(&ahead.axes, i, &low[i], &high[i]);
-        }
-    } else {
-        reach_moves(p, &ahead, low, high);
-        return p->count < 2;
+    for (int i = 0; i < ramp->count; i++) {
+        ramp->move[i].profile.t += dt;
     }
-    return false;
+    axes_advance(&ramp->axes, dt);
+}
+
+double ipo_left(const struct ipo *ramp)
+{
+    double left = ipo_follows_paths(ramp) ? 0.0 : axes_left(&ramp->axes);
+    for (int i = 0; i < ramp->count; i++) {
+        left = fmax(left, profile_left(&ramp->move[i].profile));
+    }
+    return left;
 }
 
 void ipo_continue(struct ipo *p)
@@ -225,14 +214,14 @@ void ipo_override(struct ipo *p, double feed, double ptp)
     }
 }
 
-static void place(const struct ipo *p, const struct ring *r, double point[AXES],
-                  double velocity[AXES])
+void ipo_place(const struct ipo *p, const struct ring *r, double point[AXES],
+               double velocity[AXES])
 {
     if (p->track.active) {
         track_place(&p->track, r, point, velocity);
         return;
     }
-    if (p->free || asyn(p)) {
+    if (!ipo_follows_paths(p)) {
         place_of_axes(p, point, velocity);
         return;
     }
@@ -253,7 +242,7 @@ static void place(const struct ipo *p, const struct ring *r, double point[AXES],
 void ipo_stop(struct ipo *p, struct ring *r)
 {
     double velocity[AXES], at[AXES];
-    place(p, r, at, velocity);
+    ipo_place(p, r, at, velocity);
     memcpy(p->rest, at, sizeof p->rest);
     p->count = 0;
     p->track.active = false;
@@ -430,7 +419,7 @@ void ipo_point(struct ipo *p, struct ring *r, const struct machine *m, struct tr
             ipo_stop(p, r);
         }
     }
-    place(p, r, point->place, velocity);
+    ipo_place(p, r, point->place, velocity);
     const double *v = velocity;
     point->feed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     if (point->feed == 0.0) {

@@ -69,9 +69,18 @@ void ipo_bind(struct ipo *p);
 /* Pause on the path, or go on. */
 void ipo_hold(struct ipo *p, bool on);
 
-/* Bounds of where the ramp of an abort would lead from here [mm]; true if they are exact, else they
- * are wide. */
-bool ipo_reach(const struct ipo *p, const struct ring *r, double low[AXES], double high[AXES]);
+/* The motion under way keeps to the paths of commands, else the axes are independent. */
+bool ipo_follows_paths(const struct ipo *p);
+
+/* *ramp becomes the ramp of an abort from here, no chain being under way: nothing is dropped, and
+ * its clocks can be set to any time until it rests and back. [s] */
+void ipo_ramp(const struct ipo *p, struct ipo *ramp);
+void ipo_shift(struct ipo *ramp, double dt);
+double ipo_left(const struct ipo *ramp);
+
+/* Where the tool is [mm] and its velocity [mm/s]. */
+void ipo_place(const struct ipo *p, const struct ring *r, double point[AXES],
+               double velocity[AXES]);
 
 /* Rest before each block (a line of the program, a call of the API), or no longer: what rests then
  * still waits for ipo_continue. */

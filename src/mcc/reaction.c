@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "compensate.h"
+#include "reach.h"
 
 /* Pulses come as planned for the DDA time in progress; then two DDA times tell that none comes. */
 static const int64_t QUIET = 2;     /* [DDA times] */
@@ -22,32 +23,6 @@ static bool frame(const struct mcc *m, struct point *p)
         p->frame[i] = (int32_t)pulses;
     }
     return true;
-}
-
-/* First axis that the ramp from here would bring beyond a software limit; -1 none. Where bounds do
- * not decide, the ramp is driven in a copy; the ring is left as it was. */
-static int ramp(struct mcc *m)
-{
-    double low[AXES], high[AXES];
-    const bool exact = ipo_reach(&m->ipo, &m->ring, low, high);
-    int axis = guard_reach(&m->machine, m->ipo.pulses, low, high);
-
-    if (axis < 0 || exact) {
-        return axis;
-    }
-    const int32_t head = m->ring.head, count = m->ring.count;
-    struct ipo ahead = m->ipo;
-    struct track_mean mean = m->mean;
-    struct point p;
-    ipo_abort(&ahead, &m->ring);
-    do {
-        ipo_advance(&ahead, &m->ring, machine_dda_time(&m->machine));
-        ipo_point(&ahead, &m->ring, &m->machine, &mean, &p);
-        axis = guard_travel(&m->machine, m->ipo.pulses, p.pulses);
-    } while (axis < 0 && !ipo_resting(&ahead, &m->ring));
-    m->ring.head = head;
-    m->ring.count = count;
-    return axis;
 }
 
 /* Error of the way to a point that a limit switch blocks, however small it is; 0 if the mode has
@@ -76,7 +51,9 @@ static bool within(struct mcc *m, bool ramping, const struct point *p, int32_t *
     const struct point *last = q->count > 0 ? queue_peek(q, q->count - 1) : &m->written;
     int axis = guard_travel(&m->machine, m->ipo.pulses, p->pulses);
 
-    axis = axis < 0 && guard_limited(&m->machine) ? ramp(m) : axis;
+    if (axis < 0 && guard_limited(&m->machine)) {
+        axis = reach_beyond(&m->ipo, &m->ring, &m->machine);
+    }
     *error = MCC_ERROR_TRAVEL + axis;
     if (axis < 0 && !ramping) {
         *error = blocked(m, last, p, &axis);

@@ -23,7 +23,7 @@ static double bend_speed(const struct command *c, double bend, double twist)
     return v;
 }
 
-static double half_at(const struct ring *r, const struct track *t, int32_t i)
+double track_half(const struct track *t, const struct ring *r, int32_t i)
 {
     return i > 0 && i < t->joined ? ring_peek(r, i)->corner.half : 0.0;
 }
@@ -130,11 +130,11 @@ static void plan(struct track *t, struct ring *r, double override)
     t->dec = INFINITY;
     for (int32_t i = t->joined - 1; i >= t->at; i--) {
         struct ring_item *n = ring_at(r, i);
-        const double dec = n->command.ramp.dec, half = half_at(r, t, i);
+        const double dec = n->command.ramp.dec, half = track_half(t, r, i);
         const double body = body_limit(n, override), turn = turn_limit(r, i, override);
 
         n->leave = b;
-        brake_back(&b, n->command.path.length - half - half_at(r, t, i + 1), dec);
+        brake_back(&b, n->command.path.length - half - track_half(t, r, i + 1), dec);
         brake_limit(&b, body, body * t->smooth);
         n->enter = b;
         if (half > 0.0) {
@@ -150,8 +150,8 @@ static void plan(struct track *t, struct ring *r, double override)
 /* Where the corner or the command's own part ends. */
 static double border(const struct track *t, const struct ring *r)
 {
-    return t->turning ? half_at(r, t, t->at)
-                      : ring_peek(r, t->at)->command.path.length - half_at(r, t, t->at + 1);
+    return t->turning ? track_half(t, r, t->at)
+                      : ring_peek(r, t->at)->command.path.length - track_half(t, r, t->at + 1);
 }
 
 /* One piece of the way with constant limits: up to `end`, at most `top` fast, and no faster than
@@ -278,7 +278,7 @@ static void cross(struct track *t, const struct ring *r, double override)
         t->base += length;
         t->s -= length;
         t->at++;
-        t->turning = half_at(r, t, t->at) > 0.0;
+        t->turning = track_half(t, r, t->at) > 0.0;
     }
 }
 
@@ -392,7 +392,7 @@ const struct command *track_begun(struct track *t, const struct ring *r)
 void track_drop(struct track *t, struct ring *r)
 {
     /* The corner at the start of a command needs the one before. */
-    const int32_t gone = t->out_s > half_at(r, t, t->out) ? t->out : t->out - 1;
+    const int32_t gone = t->out_s > track_half(t, r, t->out) ? t->out : t->out - 1;
 
     for (int32_t i = 0; i < gone; i++) {
         ring_pop(r);
@@ -404,37 +404,9 @@ void track_drop(struct track *t, struct ring *r)
     }
 }
 
-/* Widen bounds by a command's way from one place on it to another, and by its tolerance, for a
- * corner leaves it by no more. */
-static void widen(const struct command *c, double from, double to, double low[AXES],
-                  double high[AXES])
+void track_to_rest(struct track *t, struct ring *r)
 {
-    const double length = c->path.length;
-    double a, b;
-
-    for (int k = 0; k < AXES; k++) {
-        path_extent(&c->path, k, fmax(0.0, from), fmin(length, to), &a, &b);
-        low[k] = fmin(low[k], a - c->tolerance);
-        high[k] = fmax(high[k], b + c->tolerance);
-    }
-}
-
-void track_reach(const struct track *t, const struct ring *r, double low[AXES],
-                 double high[AXES])
-{
-    double dec = INFINITY, base = t->out_base, velocity[AXES];
-
-    track_place(t, r, low, velocity);
-    memcpy(high, low, AXES * sizeof *high);
-    for (int32_t i = t->out; i < t->joined; i++) {
-        dec = fmin(dec, ring_peek(r, i)->command.ramp.dec);
-    }
-    const double end = t->base + t->s + t->v * t->v / (2.0 * dec);
-    for (int32_t i = t->out; i < t->joined && base <= end; i++) {
-        const struct command *c = &ring_peek(r, i)->command;
-        widen(c, t->out_base + t->out_s - base, end - base, low, high);
-        base += c->path.length;
-    }
+    track_advance(t, r, 0.0, INFINITY);
 }
 
 bool track_rests(const struct track *t)
@@ -459,10 +431,10 @@ void track_place(const struct track *t, const struct ring *r, double point[AXES]
     const double left = fmax(0.0, n->command.path.length - t->out_s);
     double slope[AXES];
 
-    if (t->out_s < half_at(r, t, t->out)) {
+    if (t->out_s < track_half(t, r, t->out)) {
         corner_at(&n->corner, &ring_peek(r, t->out - 1)->command.path, &n->command.path, t->out_s,
                   point, slope);
-    } else if (left < half_at(r, t, t->out + 1)) {
+    } else if (left < track_half(t, r, t->out + 1)) {
         const struct ring_item *b = ring_peek(r, t->out + 1);
         corner_at(&b->corner, &n->command.path, &b->command.path, -left, point, slope);
     } else {

@@ -83,9 +83,11 @@ const struct command *track_begun(struct track *t, const struct ring *r);
 /* Drop commands that the tool has left. */
 void track_drop(struct track *t, struct ring *r);
 
-/* Bounds of where an override of 0 would lead the tool from here, wide rather than exact. [mm] */
-void track_reach(const struct track *t, const struct ring *r, double low[AXES],
-                 double high[AXES]);
+/* The planned motion to where an override of 0 brings it to rest. */
+void track_to_rest(struct track *t, struct ring *r);
+
+/* Half of the corner at the start of a command of the chain; 0 none. [mm] */
+double track_half(const struct track *t, const struct ring *r, int32_t i);
 
 /* The planned motion stands and the tool is there. */
 bool track_rests(const struct track *t);
