@@ -220,7 +220,7 @@ static int model_start(struct fmu *f)
     f->s.m.step_ns = llround(step);
     for (int i = 0; i < PLANT_INSTANCES; i++) {
         plant_show(&f->s.v, i, y);
-        if (f->s.v.active[i] && plant_start_axis(f, i) != 0) {
+        if (plant_active(&f->s.v, i) && plant_start_axis(f, i) != 0) {
             return -1;
         }
     }

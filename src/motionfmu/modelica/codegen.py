@@ -20,7 +20,7 @@ from motionfmu.modelica.hoist import Split, split
 from motionfmu.modelica.nodes import STEPS, Node, Program, program
 from motionfmu.modelica.ode import Ode
 
-# Axes that are integrated together. Measured on SSE2 (per axis and step of BallScrewAxis, 2025-11):
+# Axes that are integrated together, at most. Measured on SSE2 (per axis and step of BallScrewAxis, 2025-11):
 # 1 lane 74 ns, 2 lanes 56 ns, 4 lanes 37 ns, 6 lanes 42 ns; the same bits.
 LANES = 4
 # Every combination of branches is looked at when an FMU starts: 2^8 of them take 0.4 ms per axis.
@@ -65,7 +65,7 @@ def generate(ode: Ode, instances: int) -> tuple[str, str]:
     ----------
     ode : Ode
     instances : int
-        Copies of the class in the FMU.
+        Copies of the class in the FMU; one has scalars, more have arrays.
 
     Returns
     -------
@@ -81,36 +81,47 @@ def generate(ode: Ode, instances: int) -> tuple[str, str]:
     equations = split(program([ode.x, ode.u, ode.p], [ode.xdot, ode.y]), {_X, _U}, _C)
     jacobian = program([ode.x, ode.u, ode.p], [ca.jacobian(ode.xdot, ode.x)])
     branches = _branches(jacobian)
-    if len(branches) > MAX_BRANCHES:
-        raise ValueError(
-            f"{ode.name}: {len(branches)} branches in the Jacobian, at most {MAX_BRANCHES}"
-        )
+    bits = len({bit for bit, _ in branches.values()})
+    if bits > MAX_BRANCHES:
+        raise ValueError(f"{ode.name}: {bits} branches in the Jacobian, at most {MAX_BRANCHES}")
     sizes = {
         "INSTANCES": instances,
-        "LANES": LANES,
+        "LANES": min(LANES, instances),
         "STATES": len(ode.states),
         "INPUTS": len(ode.inputs),
         "OUTPUTS": len(ode.outputs),
         "PARAMETERS": len(ode.parameters),
         "CONSTANTS": len(equations.constants),
-        "BRANCHES": len(branches),
+        "BRANCHES": bits,
     }
     note = _NOTE.format(ode.name)
     return (
         note
         + '#include <math.h>\n#include <stddef.h>\n\n#include "plant.h"\n\n'
-        + "\n".join([_ports(ode), _of_parameters(ode, equations), *_loops(ode, equations)])
+        + "\n".join([_ports(ode, "[instance]" if instances > 1 else ""), _of_parameters(ode, equations), *_loops(ode, equations)])
         + _jacobian(ode, jacobian, branches),
         note + _header(sizes),
     )
 
 
-def _branches(jacobian: Program) -> dict[int, int]:
-    """Comparisons that state or input decides, with their bits."""
+def _branches(jacobian: Program) -> dict[int, tuple[int, bool]]:
+    """Comparisons that state or input decides: bit, and whether its opposite is meant.
+
+    The slope of a minimum or maximum has both a <= b and b <= a: one bit is enough for the two.
+    """
     moving = jacobian.depends({_X, _U})
     logic = {ca.OP_NOT, ca.OP_AND, ca.OP_OR, ca.OP_FLOOR, ca.OP_CEIL}
-    found = [k for k, n in enumerate(jacobian.nodes) if moving[k] and n.op in STEPS - logic]
-    return {k: bit for bit, k in enumerate(found)}
+    found: dict[int, tuple[int, bool]] = {}
+    bits: dict[tuple[int, ...], int] = {}
+    for k, n in enumerate(jacobian.nodes):
+        if not moving[k] or n.op not in STEPS - logic:
+            continue
+        opposite = (n.op, *reversed(n.args))
+        if n.op == ca.OP_LE and opposite in bits:
+            found[k] = bits[opposite], True
+        else:
+            found[k] = bits.setdefault((n.op, *n.args), len(bits)), False
+    return found
 
 
 def _function(head: str, lines: list[str]) -> str:
@@ -129,23 +140,27 @@ def _cast(d: Declaration, text: str) -> str:
     return text
 
 
-def _ports(ode: Ode) -> str:
-    """What connects `struct vars` with the plain arrays."""
+def _ports(ode: Ode, element: str) -> str:
+    """What connects `struct vars` with the plain arrays; `element` follows a member's name."""
     names = ", ".join(f'"{d.name}"' for d in ode.states)
     shown = [
-        f"v->{d.name}[instance] = y[{k} * PLANT_LANES]{' != 0.0' if d.type == 'Boolean' else ''};"
+        f"v->{d.name}{element} = y[{k} * PLANT_LANES]{' != 0.0' if d.type == 'Boolean' else ''};"
         for k, d in enumerate(ode.outputs)
     ]
     parameters = [
-        f"p[{k}] = {_cast(d, f'v->{d.name}[instance]')};" for k, d in enumerate(ode.parameters)
+        f"p[{k}] = {_cast(d, f'v->{d.name}{element}')};" for k, d in enumerate(ode.parameters)
     ]
     inputs = [
-        f"u[{k} * PLANT_LANES] = {_cast(d, f'v->{d.name}[instance]')};"
+        f"u[{k} * PLANT_LANES] = {_cast(d, f'v->{d.name}{element}')};"
         for k, d in enumerate(ode.inputs)
     ]
     return "\n".join(
         [
             f"const char *const plant_state_names[PLANT_STATES] = {{{names}}};\n",
+            _function(
+                "int plant_active(const struct vars *v, int instance)",
+                [f"return v->active{element};"],
+            ),
             _function(
                 "void plant_parameters(const struct vars *v, int instance, double *p)", parameters
             ),
@@ -207,13 +222,14 @@ def _loops(ode: Ode, equations: Split) -> list[str]:
     return texts
 
 
-def _jacobian(ode: Ode, jacobian: Program, branches: dict[int, int]) -> str:
+def _jacobian(ode: Ode, jacobian: Program, branches: dict[int, tuple[int, bool]]) -> str:
     """plant_jacobian: one instance, comparisons decided from outside."""
 
     def leaf(k: int, node: Node) -> str | None:
         if k not in branches:
             return _single(k, node)
-        bit = f"(branches >> {branches[k]} & 1u)"
+        place, inverted = branches[k]
+        bit = f"({'~' if inverted else ''}branches >> {place} & 1u)"
         return f"{bit} ? 1.0 : -1.0" if node.op == ca.OP_SIGN else f"(double){bit}"
 
     (result,) = jacobian.results
@@ -242,6 +258,7 @@ enum {{
 extern const char *const plant_state_names[PLANT_STATES];
 
 /* Between struct vars and plain numbers. u and y step by PLANT_LANES. */
+int plant_active(const struct vars *v, int instance);
 void plant_parameters(const struct vars *v, int instance, double *p);
 void plant_inputs(const struct vars *v, int instance, double *u);
 void plant_show(struct vars *v, int instance, const double *y);

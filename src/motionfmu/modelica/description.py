@@ -31,7 +31,7 @@ class Packing:
     modelica : str
         Full class name.
     instances : int
-        Copies of the class, one per axis.
+        Copies of the class, one per axis; a single one has scalars instead of arrays.
     micro_step : float
         Default grid of the integrator [s].
     package : Path
@@ -107,7 +107,7 @@ def from_modelica(toml: Path) -> describe.Description:
     -------
     Description
         Parameters ``active`` and ``micro_step``, then all that the class declares, one element
-        per instance.
+        per instance (scalars if there is one instance).
 
     Raises
     ------
@@ -141,9 +141,14 @@ def from_modelica(toml: Path) -> describe.Description:
     )
 
 
+def _dims(instances: int) -> list[int]:
+    """One copy of a class has scalars."""
+    return [instances] if instances > 1 else []
+
+
 def _active(instances: int) -> dict[str, Any]:
     doc = "Axis is used; an unused axis costs nothing and its outputs stay 0"
-    return {"type": "bool", "dims": [instances], "start": True, "doc": doc}
+    return {"type": "bool", "dims": _dims(instances), "start": True, "doc": doc}
 
 
 def _micro_step(packing: Packing) -> dict[str, Any]:
@@ -158,7 +163,7 @@ def _micro_step(packing: Packing) -> dict[str, Any]:
 
 def _row(ode: Ode, d: Declaration, instances: int, start: float | None) -> dict[str, Any]:
     """One variable as a row of fmu.toml would say it."""
-    row: dict[str, Any] = {"type": _TYPES[d.type], "dims": [instances], "doc": d.description}
+    row: dict[str, Any] = {"type": _TYPES[d.type], "dims": _dims(instances), "doc": d.description}
     kind = {"Real": float, "Integer": int, "Boolean": bool}[d.type]
     if start is not None:
         row["start"] = kind(start)
