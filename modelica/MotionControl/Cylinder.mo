@@ -10,11 +10,15 @@ model Cylinder "Double-acting cylinder with compressible oil"
   parameter Real leakage(unit = "m3.s-1.Pa-1", min = 0) = 1e-12 "From chamber to chamber per pressure";
   parameter Real start_pressure_a(unit = "Pa") = 0 "Pressure in chamber a at the start";
   parameter Real start_pressure_b(unit = "Pa") = 0 "Pressure in chamber b at the start";
+  parameter Real large_pressure(unit = "Pa", min = 1) = 1e7
+    "What is large for a pressure: for the error of the integrator";
   HydraulicPort a "Chamber a";
   HydraulicPort b "Chamber b";
   TranslationalFlange rod "Where the load is";
-  Real pressure_a(unit = "Pa", start = start_pressure_a, fixed = true) "Pressure in chamber a";
-  Real pressure_b(unit = "Pa", start = start_pressure_b, fixed = true) "Pressure in chamber b";
+  Real pressure_a(unit = "Pa", start = start_pressure_a, fixed = true, nominal = large_pressure)
+    "Pressure in chamber a";
+  Real pressure_b(unit = "Pa", start = start_pressure_b, fixed = true, nominal = large_pressure)
+    "Pressure in chamber b";
 protected
   Real speed(unit = "m/s") "Speed of the piston";
   Real volume_a(unit = "m3") "Oil in chamber a";

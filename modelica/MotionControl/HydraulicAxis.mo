@@ -2,7 +2,7 @@ within MotionControl;
 model HydraulicAxis
   "Hydraulic axis: servo amplifier and valve, double-acting cylinder, mass, end stops, scale"
   parameter Real amplifier_gain(unit = "A/V") = 4e-3 "Valve current per volt of command";
-  parameter Real current_limit(unit = "A", min = 0) = 0.04 "Largest valve current, both ways";
+  parameter Real current_limit(unit = "A", min = 1e-9) = 0.04 "Largest valve current, both ways";
   parameter Real current_time(unit = "s", min = 0) = 2e-4 "Time constant of the valve current";
   parameter Real rated_current(unit = "A", min = 1e-9) = 0.04 "Current for the full spool stroke";
   parameter Real valve_frequency(unit = "rad/s", min = 1e-9) = 500
@@ -70,11 +70,14 @@ protected
   Cylinder cylinder(area_a = area_a, area_b = area_b, lower_end = lower_stop,
     upper_end = upper_stop, dead_volume_a = dead_volume_a, dead_volume_b = dead_volume_b,
     bulk_modulus = bulk_modulus, leakage = cylinder_leakage,
+    large_pressure = supply_pressure,
     start_pressure_a = (supply_pressure + tank_pressure)*area_b/(area_a + area_b),
     start_pressure_b = (supply_pressure + tank_pressure)*area_a/(area_a + area_b)) "Cylinder";
   Slide table(mass = table_mass, coulomb = table_coulomb, static = table_static,
     stribeck_speed = table_stribeck_speed, viscous = table_viscous, rest_speed = table_rest_speed,
-    start_position = start_position) "Table";
+    start_position = start_position, position(nominal = upper_stop - lower_stop),
+    speed(nominal = rated_flow/area_a*sqrt((supply_pressure - tank_pressure)/(2*rated_drop))))
+    "Table";
   EndStops stops(lower = lower_stop, upper = upper_stop, stiffness = stop_stiffness,
     damping = stop_damping) "Both ends";
   LinearScale scale(pitch = scale_pitch, offset = scale_offset) "On the table";

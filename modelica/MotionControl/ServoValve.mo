@@ -17,7 +17,7 @@ model ServoValve "Four-way servo valve: spool of second order, four rounded edge
   Real stroke(unit = "1") "Spool between its stops, of the full stroke";
 protected
   Real spool(unit = "1", start = 0, fixed = true) "Spool as if there were no stops";
-  Real rate(unit = "1/s", start = 0, fixed = true) "Its speed";
+  Real rate(unit = "1/s", start = 0, fixed = true, nominal = frequency) "Its speed";
   Real one_way(unit = "1") "Opening of the edges supply to a and b to tank";
   Real other_way(unit = "1") "Opening of the edges supply to b and a to tank";
   Real supply_a(unit = "m3/s") "Flow from supply to a";

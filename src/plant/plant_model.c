@@ -10,6 +10,11 @@
  * state, where smoothed friction is steepest, and takes n so that (h/n) |lambda| <= 2. A machine
  * that needs no sub-steps gets none; axes do not influence each other's n.
  *
+ * PLANT_CONTROLLED: the method is that of Bogacki and Shampine, order 3(2), and each micro step
+ * is divided as the error asks; an axis is then a block of its own. The division depends on the state
+ * at the grid instant and on the step asked for there, which is part of the state: so it is still
+ * the same for any split of an interval.
+ *
  * Active axes are packed into blocks of PLANT_LANES that are integrated together.
  */
 #include <float.h>
@@ -27,6 +32,8 @@ enum {
     PLANT_SUB_STEPS_MAX = 1000 /* 1000 is 25 ns at 25 us: beyond it a parameter is wrong */
 };
 
+_Static_assert(!PLANT_CONTROLLED || PLANT_LANES == 1, "steps of its own for each axis");
+
 /* Axes with the same number of sub-steps. */
 struct plant_block {
     double x[PLANT_STATE_SIZE];
@@ -35,6 +42,8 @@ struct plant_block {
     int    instance[PLANT_LANES]; /* the last axis fills the lanes that are left */
     int    lanes;                 /* used */
     int    sub_steps;
+    double size[PLANT_STATES]; /* what is large for each state */
+    double asked;              /* [s] step that the error asks for */
 };
 
 struct model {
@@ -123,6 +132,82 @@ static void plant_step(struct plant_block *b, double h)
     }
 }
 
+/* One step of h [s] by Bogacki and Shampine (1989) to y; its error, 1 being allowed. */
+static double plant_trial(const struct plant_block *b, double h, double *y)
+{
+    enum { STAGES = 4 }; /* y stands in the last row: the fourth stage is for the error alone */
+    static const double a[STAGES][STAGES - 1] = {{0.0}, {1.0 / 2.0}, {0.0, 3.0 / 4.0},
+        {2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0}};
+    static const double e[STAGES] = {-5.0 / 72.0, 1.0 / 12.0, 1.0 / 9.0, -1.0 / 8.0};
+    double k[STAGES][PLANT_STATE_SIZE];
+    for (int s = 0; s < STAGES; s++) {
+        for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+            double sum = 0.0;
+            for (int q = 0; q < s; q++) {
+                sum += a[s][q] * k[q][i];
+            }
+            y[i] = b->x[i] + h * sum;
+        }
+        plant_rhs(y, b->u, b->c, k[s]);
+    }
+    double worst = 0.0;
+    for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+        double sum = 0.0;
+        for (int s = 0; s < STAGES; s++) {
+            sum += e[s] * k[s][i];
+        }
+        const double error = fabs(h * sum) / (PLANT_TOLERANCE * b->size[i / PLANT_LANES]);
+        worst = error > worst || isnan(error) ? error : worst;
+    }
+    return worst;
+}
+
+/* A micro step of h [s] in steps that the error allows; -1 if they get too small. */
+static int plant_controlled(struct plant_block *b, double h)
+{
+    static const double safety = 0.9, grow = 5.0, shrink = 0.2;
+    double left = h;
+    for (int n = 0; left > 0.0; n++) {
+        if (n == PLANT_SUB_STEPS_MAX) {
+            return -1;
+        }
+        double step = b->asked < left ? b->asked : left, y[PLANT_STATE_SIZE];
+        if (step < left && 2.0 * step > left) {
+            step = 0.5 * left; /* not a whole one and then a scrap */
+        }
+        const double error = plant_trial(b, step, y);
+        double factor = error > 0.0 ? safety * pow(error, -1.0 / 3.0) : grow;
+        factor = factor < grow ? factor > shrink ? factor : shrink : isnan(factor) ? shrink : grow;
+        if (error <= 1.0) {
+            memcpy(b->x, y, sizeof y);
+            left = step < left ? left - step : 0.0;
+            /* A step cut by the grid says nothing against the larger one asked for before. */
+            b->asked = factor < 1.0 || factor * step > b->asked ? factor * step : b->asked;
+        } else {
+            b->asked = step * (factor < safety ? factor : safety);
+        }
+    }
+    return 0;
+}
+
+/* One micro step of all axes, which ends at `now` [ns]. */
+static int plant_advance(struct fmu *f, int64_t now)
+{
+    const double h = 1e-9 * (double)f->s.m.step_ns;
+    for (int n = 0; n < f->s.m.blocks; n++) {
+        struct plant_block *b = &f->s.m.block[n];
+        if (!PLANT_CONTROLLED) {
+            for (int k = 0; k < b->sub_steps; k++) {
+                plant_step(b, h / b->sub_steps);
+            }
+        } else if (plant_controlled(b, h) != 0) {
+            return fmu_fail(f, "axis %d: too stiff at %.9f s, %g s would need more than %d sub-steps",
+                b->instance[0] + 1, 1e-9 * (double)now, h, PLANT_SUB_STEPS_MAX);
+        }
+    }
+    return 0;
+}
+
 static void plant_read(struct fmu *f)
 {
     for (int n = 0; n < f->s.m.blocks; n++) {
@@ -167,6 +252,8 @@ static void plant_place(struct fmu *f, int instance, int sub_steps, const double
     double x[PLANT_STATES], c[PLANT_CONSTANT_SIZE];
     plant_start(p, x);
     plant_constants(p, c);
+    plant_sizes(p, b->size);
+    b->asked = 1e-9 * (double)m->step_ns;
     b->sub_steps = sub_steps;
     for (int lane = b->lanes; lane < PLANT_LANES; lane++) {
         b->instance[lane] = instance;
@@ -188,6 +275,10 @@ static int plant_start_axis(struct fmu *f, int instance)
     const char *wrong = plant_check(p);
     if (wrong) {
         return fmu_fail(f, "axis %d: %s", instance + 1, wrong);
+    }
+    if (PLANT_CONTROLLED) {
+        plant_place(f, instance, 1, p);
+        return 0;
     }
     plant_start(p, x);
     plant_inputs(&f->s.v, instance, u);
@@ -230,16 +321,10 @@ static int model_start(struct fmu *f)
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
-    struct model *m = &f->s.m;
-    const int64_t h = m->step_ns, first = t0 / h * h, last = t1 / h * h;
+    const int64_t h = f->s.m.step_ns, first = t0 / h * h, last = t1 / h * h;
     for (int64_t now = first; now <= t1; now += h) {
-        if (now > t0) {
-            for (int n = 0; n < m->blocks; n++) {
-                struct plant_block *b = &m->block[n];
-                for (int k = 0; k < b->sub_steps; k++) {
-                    plant_step(b, 1e-9 * (double)h / b->sub_steps);
-                }
-            }
+        if (now > t0 && plant_advance(f, now) != 0) {
+            return -1;
         }
         if (now >= t0 && now < t1) {
             plant_read(f);

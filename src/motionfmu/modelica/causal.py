@@ -70,8 +70,11 @@ def build(flat: Flat) -> Ode:
     y = ca.substitute(names.column(d.name for d in outputs), unknowns, solution)
     start = [names.evaluate(d.start) if d.start else ca.SX(0.0) for d in states]
     checks = tuple((names.evaluate(c), text) for c, text in flat.asserts)
-    for text, e in [*((f"start of {d.name}", s) for d, s in zip(states, start, strict=True))] + [
-        (f'assert "{text}"', c) for c, text in checks
+    sizes = [names.evaluate(d.nominal) if d.nominal else ca.SX(1.0) for d in states]
+    for text, e in [
+        *((f"start of {d.name}", s) for d, s in zip(states, start, strict=True)),
+        *((f"nominal of {d.name}", s) for d, s in zip(states, sizes, strict=True)),
+        *((f'assert "{text}"', c) for c, text in checks),
     ]:
         if ca.depends_on(e, ca.vertcat(x, u, unknowns)):
             raise names.refuse(f"{text} depends on more than parameters, which is not supported")
@@ -89,6 +92,7 @@ def build(flat: Flat) -> Ode:
         y=y,
         start=ca.vertcat(*start),
         checks=checks,
+        sizes=ca.vertcat(*sizes),
         u0=tuple(names.number(d, "start") or 0.0 for d in inputs),
         p0=tuple(names.default(d) for d in names.parameters),
         limits={

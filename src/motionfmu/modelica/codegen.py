@@ -20,8 +20,8 @@ from motionfmu.modelica.hoist import Split, split
 from motionfmu.modelica.nodes import STEPS, Node, Program, program
 from motionfmu.modelica.ode import Ode
 
-# Axes that are integrated together, at most. Measured on SSE2 (per axis and step of BallScrewAxis, 2025-11):
-# 1 lane 74 ns, 2 lanes 56 ns, 4 lanes 37 ns, 6 lanes 42 ns; the same bits.
+# Axes that are integrated together, at most. Measured on SSE2 (per axis and step of BallScrewAxis,
+# 2025-11): 1 lane 74 ns, 2 lanes 56 ns, 4 lanes 37 ns, 6 lanes 42 ns; the same bits.
 LANES = 4
 # Every combination of branches is looked at when an FMU starts: 2^8 of them take 0.4 ms per axis.
 MAX_BRANCHES = 8
@@ -50,7 +50,7 @@ def write(toml: Path, out: Path) -> None:
     packing = description.read(toml)
     ode = causal.load(packing.package, packing.modelica)
     out.mkdir(parents=True, exist_ok=True)
-    code, header = generate(ode, packing.instances)
+    code, header = generate(ode, packing.instances, packing.tolerance)
     texts = {"plant.c": code, "plant.h": header, stored.FILE: stored.to_json(ode)}
     for name, text in texts.items():
         file = out / name
@@ -58,7 +58,7 @@ def write(toml: Path, out: Path) -> None:
             file.write_text(text)
 
 
-def generate(ode: Ode, instances: int) -> tuple[str, str]:
+def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[str, str]:
     """Text of plant.c and plant.h.
 
     Parameters
@@ -66,6 +66,8 @@ def generate(ode: Ode, instances: int) -> tuple[str, str]:
     ode : Ode
     instances : int
         Copies of the class in the FMU; one has scalars, more have arrays.
+    tolerance : float, optional
+        Error of one step if the steps follow the error; each axis then has steps of its own.
 
     Returns
     -------
@@ -86,21 +88,28 @@ def generate(ode: Ode, instances: int) -> tuple[str, str]:
         raise ValueError(f"{ode.name}: {bits} branches in the Jacobian, at most {MAX_BRANCHES}")
     sizes = {
         "INSTANCES": instances,
-        "LANES": min(LANES, instances),
+        "LANES": 1 if tolerance else min(LANES, instances),
         "STATES": len(ode.states),
         "INPUTS": len(ode.inputs),
         "OUTPUTS": len(ode.outputs),
         "PARAMETERS": len(ode.parameters),
         "CONSTANTS": len(equations.constants),
         "BRANCHES": bits,
+        "CONTROLLED": int(tolerance is not None),
     }
     note = _NOTE.format(ode.name)
     return (
         note
         + '#include <math.h>\n#include <stddef.h>\n\n#include "plant.h"\n\n'
-        + "\n".join([_ports(ode, "[instance]" if instances > 1 else ""), _of_parameters(ode, equations), *_loops(ode, equations)])
+        + "\n".join(
+            [
+                _ports(ode, "[instance]" if instances > 1 else ""),
+                _of_parameters(ode, equations),
+                *_loops(ode, equations),
+            ]
+        )
         + _jacobian(ode, jacobian, branches),
-        note + _header(sizes),
+        note + _header(sizes, tolerance),
     )
 
 
@@ -177,10 +186,10 @@ def _single(_: int, node: Node) -> str | None:
 
 
 def _of_parameters(ode: Ode, equations: Split) -> str:
-    """Checks, initial state and constants: of parameters alone."""
+    """Checks, initial state, sizes and constants: of parameters alone."""
     conditions = ca.vertcat(ca.SX(0, 1), *(c for c, _ in ode.checks))
-    early = program([ode.x, ode.u, ode.p], [conditions, ode.start])
-    checks, start = early.results
+    early = program([ode.x, ode.u, ode.p], [conditions, ode.start, ode.sizes])
+    checks, start, sizes = early.results
     lines = statements(early, checks, _single)
     for node, (_, text) in zip(checks, ode.checks, strict=True):
         lines += [f"if (a{node} == 0.0) {{", f"    return {json.dumps(text)};", "}"]
@@ -189,11 +198,15 @@ def _of_parameters(ode: Ode, equations: Split) -> str:
     for k, (node, d) in enumerate(zip(start, ode.states, strict=True)):
         lines.append(f"x[{k}] = a{node}; /* {d.name} */")
     initial = _function("void plant_start(const double *p, double *x)", lines)
+    lines = statements(early, sizes, _single)
+    for k, (node, d) in enumerate(zip(sizes, ode.states, strict=True)):
+        lines.append(f"size[{k}] = a{node}; /* {d.name} */")
+    large = _function("void plant_sizes(const double *p, double *size)", lines)
     lines = statements(equations.early, [node for node, _ in equations.constants], _single)
     for k, (node, inverted) in enumerate(equations.constants):
         lines.append(f"c[{k}] = {'1.0 / ' if inverted else ''}a{node};")
     constants = _function("void plant_constants(const double *p, double *c)", lines)
-    return "\n".join([check, initial, constants])
+    return "\n".join([check, initial, large, constants])
 
 
 def _loops(ode: Ode, equations: Split) -> list[str]:
@@ -244,7 +257,7 @@ def _jacobian(ode: Ode, jacobian: Program, branches: dict[int, tuple[int, bool]]
     return _function(head, lines)
 
 
-def _header(sizes: dict[str, int]) -> str:
+def _header(sizes: dict[str, int], tolerance: float | None) -> str:
     members = "\n".join(f"    PLANT_{name} = {value}," for name, value in sizes.items())
     return f"""#ifndef PLANT_H
 #define PLANT_H
@@ -255,6 +268,9 @@ enum {{
 {members}
 }};
 
+/* [1] Error of a controlled step as a share of a state's size. */
+#define PLANT_TOLERANCE {tolerance or 0.0!r}
+
 extern const char *const plant_state_names[PLANT_STATES];
 
 /* Between struct vars and plain numbers. u and y step by PLANT_LANES. */
@@ -263,9 +279,11 @@ void plant_parameters(const struct vars *v, int instance, double *p);
 void plant_inputs(const struct vars *v, int instance, double *u);
 void plant_show(struct vars *v, int instance, const double *y);
 
-/* Of the parameters alone: NULL or what is wrong with them, initial state, constants of a run. */
+/* Of the parameters alone: NULL or what is wrong with them, initial state, what is large for each
+ * state, constants of a run. */
 const char *plant_check(const double *p);
 void plant_start(const double *p, double *x);
+void plant_sizes(const double *p, double *size);
 void plant_constants(const double *p, double *c);
 
 /* Quantity k of lane i at [k * PLANT_LANES + i]. */

@@ -14,6 +14,7 @@ from motionfmu.modelica.ode import Ode
 
 _TYPES = {"Real": "f64", "Integer": "i32", "Boolean": "bool"}
 _KEYS = ("name", "description", "tick_ns", "experiment", "modelica", "instances", "micro_step")
+_OPTIONAL = ("tolerance",)
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,9 @@ class Packing:
         Default grid of the integrator [s].
     package : Path
         Folder of the Modelica package.
+    tolerance : float, optional
+        Error of one integrator step, as a share of what is large for a state: the steps follow
+        it. None: equal steps.
     """
 
     name: str
@@ -46,6 +50,7 @@ class Packing:
     instances: int
     micro_step: float
     package: Path
+    tolerance: float | None = None
 
 
 def read(toml: Path) -> Packing:
@@ -75,7 +80,7 @@ def read(toml: Path) -> Packing:
         here = [n for n, line in enumerate(lines, 1) if re.match(rf"\s*\[?{key}\b", line)]
         return ValueError(f"{toml}:{here[0] if here else 0}: {what}")
 
-    for key in sorted(set(doc) - set(_KEYS)):
+    for key in sorted(set(doc) - {*_KEYS, *_OPTIONAL}):
         raise refuse(key, f"unknown key {key!r}; the variables come from the Modelica class")
     for key in _KEYS:
         if key not in doc:
@@ -86,6 +91,9 @@ def read(toml: Path) -> Packing:
     step = doc["micro_step"]
     if not isinstance(step, float | int) or not math.isfinite(step) or step <= 0:
         raise refuse("micro_step", f"micro_step {step!r} is not a positive number")
+    tolerance = doc.get("tolerance", 1e-6)
+    if not isinstance(tolerance, float) or not 1e-12 <= tolerance <= 1e-2:
+        raise refuse("tolerance", f"tolerance {tolerance!r} is not a number from 1e-12 to 0.01")
     if not isinstance(doc["modelica"], str):
         raise refuse("modelica", f"modelica {doc['modelica']!r} is not a class name")
     top = doc["modelica"].split(".")[0]

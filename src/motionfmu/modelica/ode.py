@@ -31,6 +31,9 @@ class Ode:
         Asserts: conditions on p, with their messages.
     u0, p0 : tuple of float
         Start values of inputs and parameters.
+    sizes : casadi.SX
+        What is large for each state, of p: its attribute nominal, else 1. All 1 where the
+        equation was read from an FMU.
     limits : dict
         Minimum, maximum and nominal value by name, None where not declared.
     """
@@ -48,6 +51,7 @@ class Ode:
     y: ca.SX
     start: ca.SX
     checks: tuple[tuple[ca.SX, str], ...]
+    sizes: ca.SX
     u0: tuple[float, ...]
     p0: tuple[float, ...]
     limits: dict[str, tuple[float | None, float | None, float | None]]

@@ -51,7 +51,7 @@ def from_json(text: str) -> Ode:
     Returns
     -------
     Ode
-        Without checks and without the expressions of its declarations.
+        Without checks, sizes and the expressions of its declarations.
     """
     data: dict[str, Any] = json.loads(text)
     function = ca.Function.deserialize(data["function"])
@@ -70,6 +70,7 @@ def from_json(text: str) -> Ode:
         y=y,
         start=start,
         checks=(),
+        sizes=ca.SX.ones(x.numel()),
         u0=tuple(data["u0"]),
         p0=tuple(data["p0"]),
         limits={name: tuple(three) for name, three in data["limits"].items()},
