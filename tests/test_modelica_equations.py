@@ -113,7 +113,7 @@ def test_every_declaration_has_a_unit_and_a_description(name):
     kind, _, text = (PACKAGE / f"{name}.mo").read_text().split("\n")[1].partition(f" {name} ")
     assert text.startswith('"') or '\n  "' in (PACKAGE / f"{name}.mo").read_text()
     use = f"model T MotionControl.{name} it; equation it.{{}} = 1; end T;"
-    flow = {"RotationalFlange": "phi", "TranslationalFlange": "s"}
+    flow = {"RotationalFlange": "phi", "TranslationalFlange": "s", "HydraulicPort": "p"}
     session = rumoca.Session(roots=[str(PACKAGE)])
     if kind == "connector":
         found = session.loads(use.format(flow[name]), model="T")
