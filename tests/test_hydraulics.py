@@ -136,6 +136,18 @@ def test_stops_push_back_only(library):
     assert rest * 0.9 < np.abs(s).max() - 0.1 < rest + np.sqrt(rest**2 + 100 * 0.2425**2 / 1e8)
 
 
+def test_a_soft_stop_is_left_without_a_pull(library):
+    """Faster off the stop than 1/damping the force is 0, though the dent is still there."""
+    run = started(library, start_position=0.099, stop_stiffness=1e6, stop_damping=10.0)
+    names = ("position", "velocity", "stop_force")
+    drive(run, 0.1, 1e-3, names, voltage=10.0)
+    s, v, f = drive(run, 0.1, names=names, voltage=-10.0).T
+    quick = (s > 0.1) & (v < -0.1)
+    assert np.count_nonzero(quick) > 100
+    assert np.all(f[quick] == 0.0)
+    assert np.all(f <= 0.0)
+
+
 def test_scale_and_home_switch(library):
     for start, on in ((0.0, 0.0), (-0.0799, 0.0), (-0.08, 1.0), (-0.1, 1.0)):
         run = started(library, start_position=start, scale_pitch=1e-5, scale_offset=-0.02)

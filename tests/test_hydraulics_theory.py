@@ -11,7 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from plant_library import ROOT, Library
 
+from motionfmu.linear.law import carried
 from motionfmu.linear.plant import Linearised
+from motionfmu.modelica.ode import Ode
 
 NO_FRICTION = {"table_coulomb": 0.0, "table_static": 0.0, "table_viscous": 0.0}
 TIGHT = {"valve_leakage": 0.0, "cylinder_leakage": 0.0, "valve_rounding": 1e-7}
@@ -80,6 +82,17 @@ def test_damping_by_leakage_friction_and_valve(opening):
     found = resonance(case.slope(x, [10 * opening, 0]).full())
     assert found == pytest.approx((omega, zeta), rel=1e-5)
     assert 0.05 < zeta < 0.9
+
+
+def test_the_fmu_carries_its_linear_model():
+    """At a speed: oil and mass as in the README, too little damped for a gain of w/3."""
+    ode = carried("hydraulic_axis")
+    assert isinstance(ode, Ode)
+    linear, p = Linearised(ode), np.array(ode.p0)
+    at = linear.point(p, {"velocity": 0.05, "load_force": 0.0})
+    omega, zeta = resonance(linear.matrices(at.x, at.u, p)[0])
+    assert omega == pytest.approx(385.4, rel=5e-3)
+    assert zeta == pytest.approx(0.076, abs=0.002)
 
 
 @pytest.mark.parametrize("areas", [(9.46e-4, 9.46e-4), (1.2e-3, 7e-4), (7e-4, 1.2e-3)])

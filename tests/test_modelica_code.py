@@ -6,7 +6,7 @@ import re
 import casadi as ca
 import numpy as np
 import pytest
-from plant_library import PACKAGE, ROOT, Library, array
+from plant_library import PACKAGE, ROOT, Library, Run, array
 
 from motionfmu import describe
 from motionfmu.modelica import causal, codegen, cprint, description
@@ -178,6 +178,8 @@ def test_a_project_elsewhere_works(small, tmp_path):
         ("Small.Axis", "Small.Axes", r"Small.Axes"),
         ('"Small.Axis"', "7", r"fmu.toml:5: modelica 7 is not a class name"),
         ("instances = 2\n", "", r"fmu.toml: 'instances' is missing"),
+        ("instances = 2", "instances = 2\ntolerance = 0.5", r"fmu.toml:7: tolerance 0.5 is not a"),
+        ("instances = 2", "instances = 2\ntolerance = true", r"fmu.toml:7: tolerance True is not"),
         ("instances = 2", "instances = 2\ncores = []", r"fmu.toml:7: unknown key 'cores'"),
         (
             "micro_step = 25e-6",
@@ -229,6 +231,48 @@ def test_a_class_without_state_is_refused(small):
     text = CLASS.replace(", start = 0, fixed = true", "").replace("tau*der(x) = u - x", "x = tau*u")
     file.write_text(text)
     with pytest.raises(ValueError, match=r"Small\.Axis: a plant needs a state and an output"):
+        codegen.write(small, small.parent)
+
+
+def test_one_instance_has_scalars_and_lanes_of_its_own(small):
+    for instances, dims, lanes in ((1, (), 1), (2, (2,), 2), (6, (6,), codegen.LANES)):
+        small.write_text(TOML.replace("instances = 2", f"instances = {instances}"))
+        by_name = {v.name: v for v in describe.load(small).variables}
+        assert {by_name[n].dims for n in ("active", "tau", "u", "x")} == {dims}
+        codegen.write(small, small.parent)
+        assert f"PLANT_LANES = {lanes}," in (small.parent / "plant.h").read_text()
+
+
+SINE = CLASS.replace("tau*der(x) = u - x", "der(x) = v;\n  tau^2*der(v) = -x").replace(
+    "equation",
+    '  parameter Real v0(unit = "V/s") = 1e3 "Start";\nprotected\n'
+    '  Real v(unit = "V/s", start = v0, fixed = true, nominal = 1/tau) "Speed";\nequation',
+)
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-8])
+def test_controlled_steps_keep_the_tolerance(small, tmp_path, tolerance):
+    """A swing of 1 V at 1000 rad/s for a radian; the speed counts in units of 1/tau."""
+    file = small.parents[2] / "modelica/Small/Axis.mo"
+    file.write_text(SINE.replace("= 1 ", "= 1e-3 "))
+    text = TOML.replace("25e-6", "1e-3") + f"tolerance = {tolerance}\n"
+    small.write_text(text)
+    library = Library(small, tmp_path)
+    errors = []
+    for tau in ([1e-3, 2e-3], [1e-3, 1e-4]):
+        run = Run(library, tau=tau)
+        assert run.start() == 0
+        assert run.step(1e-3) == 0, run.said
+        exact = 1e3 * np.array(tau) * np.sin(1e-3 / np.array(tau))
+        errors.append(np.abs(run.get("x") - exact))
+    assert tolerance / 100 < errors[0][0] < 20 * tolerance
+    assert errors[0][0] == errors[1][0], "an axis does not change another's steps"
+
+
+def test_a_nominal_of_states_is_refused(small):
+    file = small.parents[2] / "modelica/Small/Axis.mo"
+    file.write_text(SINE.replace("nominal = 1/tau", "nominal = 1 + x"))
+    with pytest.raises(ValueError, match="nominal of v depends on more than parameters"):
         codegen.write(small, small.parent)
 
 

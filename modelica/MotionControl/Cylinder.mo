@@ -7,7 +7,8 @@ model Cylinder "Double-acting cylinder with compressible oil"
   parameter Real dead_volume_a(unit = "m3", min = 0) = 5e-5 "Oil from valve to chamber a";
   parameter Real dead_volume_b(unit = "m3", min = 0) = 5e-5 "Oil from valve to chamber b";
   parameter Real bulk_modulus(unit = "Pa", min = 0) = 1.2e9 "Of the oil with its lines";
-  parameter Real leakage(unit = "m3.s-1.Pa-1", min = 0) = 1e-12 "From chamber to chamber per pressure";
+  parameter Real leakage(unit = "m3.s-1.Pa-1", min = 0) = 1e-12
+    "From chamber to chamber per pressure";
   parameter Real start_pressure_a(unit = "Pa") = 0 "Pressure in chamber a at the start";
   parameter Real start_pressure_b(unit = "Pa") = 0 "Pressure in chamber b at the start";
   parameter Real large_pressure(unit = "Pa", min = 1) = 1e7

@@ -3,8 +3,9 @@ model ServoValve "Four-way servo valve: spool of second order, four rounded edge
   parameter Real rated_current(unit = "A", min = 0) = 0.04 "Current for the full stroke";
   parameter Real frequency(unit = "rad/s", min = 0) = 500 "Natural frequency of the spool";
   parameter Real damping(unit = "1", min = 0) = 0.8 "Damping ratio of the spool";
-  parameter Real overlap(unit = "1", min = 0) = 0.03 "Stroke to the opening of an edge, of the full";
-  parameter Real rounding(unit = "1", min = 0) = 2e-3 "Stroke over which an edge begins to open";
+  parameter Real overlap(unit = "1", min = 0) = 0.03
+    "Stroke to the opening of an edge, as a share of the full";
+  parameter Real rounding(unit = "1", min = 0) = 2e-3 "Stroke over which it begins to open";
   parameter Real rated_flow(unit = "m3/s", min = 0) = 1.7e-4 "Flow per edge at the full stroke";
   parameter Real rated_drop(unit = "Pa", min = 0) = 35e5 "Pressure drop per edge at that flow";
   parameter Real laminar_drop(unit = "Pa", min = 0) = 1e5 "Drop below which an edge is laminar";

@@ -10,8 +10,8 @@
  * state, where smoothed friction is steepest, and takes n so that (h/n) |lambda| <= 2. A machine
  * that needs no sub-steps gets none; axes do not influence each other's n.
  *
- * PLANT_CONTROLLED: the method is that of Bogacki and Shampine, order 3(2), and each micro step
- * is divided as the error asks; an axis is then a block of its own. The division depends on the state
+ * PLANT_CONTROLLED: the method is that of Bogacki and Shampine, order 3(2), and each micro step is
+ * divided as the error asks; an axis is then a block of its own. The division depends on the state
  * at the grid instant and on the step asked for there, which is part of the state: so it is still
  * the same for any split of an interval.
  *
@@ -201,7 +201,8 @@ static int plant_advance(struct fmu *f, int64_t now)
                 plant_step(b, h / b->sub_steps);
             }
         } else if (plant_controlled(b, h) != 0) {
-            return fmu_fail(f, "axis %d: too stiff at %.9f s, %g s would need more than %d sub-steps",
+            return fmu_fail(f,
+                "axis %d: too stiff at %.9f s, %g s would need more than %d sub-steps",
                 b->instance[0] + 1, 1e-9 * (double)now, h, PLANT_SUB_STEPS_MAX);
         }
     }
