@@ -85,13 +85,14 @@ static void cross_coupled(const struct law_config *c, struct law *s, const struc
 void law_tick(const struct law_config *c, struct law *s, const struct law_look *look,
               double limit, double volts[AXES])
 {
-    double speed[3] = { 0.0 }, sum[3];
+    double speed[3] = { 0.0 }, sum[3], behind[AXES];
     bool limited = false;
 
     if (!s->begun) {
         s->begun = true;
         memcpy(s->pulses, look->pulses, sizeof s->pulses);
     }
+    memcpy(behind, s->behind, sizeof behind);   /* the errors are of the instant before */
     prefilter(c, s, look);
     memcpy(sum, s->sum, sizeof sum);
     if (law_crosses(c)) {
@@ -102,7 +103,7 @@ void law_tick(const struct law_config *c, struct law *s, const struct law_look *
         if (!a->on) {
             continue;
         }
-        double v = a->gain * (look->error[i] - s->behind[i]);
+        double v = a->gain * (look->error[i] - behind[i]);
         v += a->volts * a->feed_forward * s->speed[i];
         if (i < 3) {
             v += a->volts * c->pulses_per_mm[i] * speed[i];

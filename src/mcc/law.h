@@ -29,7 +29,7 @@ struct law_config {
 /* What the law sees at an instant. */
 struct law_look {
     int32_t pulses[AXES];   /* [pulses] put out */
-    int32_t error[AXES];    /* [pulses] less counts */
+    int32_t error[AXES];    /* [pulses] less counts, at the instant before */
     double  speed[AXES];    /* [pulses/s] of the commanded point */
     struct trail_foot foot; /* for cross-coupled control */
 };

@@ -82,7 +82,7 @@ static struct trail_foot nearest(struct voltage *v, const struct mcc *m)
     double tool[3];
 
     for (int k = 0; k < 3; k++) {
-        const int64_t counts = (int64_t)m->signals.pulses[k] - m->signals.err[k];
+        const int64_t counts = (int64_t)v->law.pulses[k] - m->signals.err[k];
         const int64_t added = (int64_t)at->added[k] - v->added_base[k];
         tool[k] = (double)(counts - v->base[k] - added) / v->config.pulses_per_mm[k];
     }
@@ -104,7 +104,7 @@ void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t s
         if (out) {
             memcpy(look.speed, out->speed, sizeof look.speed);
         }
-        if (law_crosses(&v->config)) {
+        if (law_crosses(&v->config) && v->law.begun) {
             look.foot = nearest(v, m);
         }
     }

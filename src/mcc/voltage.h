@@ -1,8 +1,9 @@
 /* voltage - the control law on the card's wires: what it sees of frames, pulses and counters.
  *
- * At bus instant k the pulses, the error counters and the FIFO's stock are of that instant, and so
- * is the speed of the commanded point: that of the frame being put out, number (frames taken) -
- * (stock). The voltage appears at k + 1 and at the card's DAC one loop period later, all of it.
+ * At bus instant k the library sees pulses and FIFO of k, but the error counters of k - 1: the card
+ * counts at an instant and shows it at the next. The speed of the commanded point is that of k, of
+ * the frame being put out, whose number is (frames taken) - (stock). The voltage appears at k + 1,
+ * at the card's DAC at k + 2. So the error acts three periods late, the speed two.
  */
 #ifndef VOLTAGE_H
 #define VOLTAGE_H
