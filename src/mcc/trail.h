@@ -21,7 +21,7 @@ enum {
 struct trail_point {
     double place[3];        /* [mm] X Y Z, without compensation */
     double speed[AXES];     /* [pulses/s] during the frame, with compensation */
-    int32_t added[3];       /* [pulses] compensation so far */
+    int32_t added[3];       /* [pulses] compensation since the start */
 };
 
 struct trail {

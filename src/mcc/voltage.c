@@ -49,7 +49,7 @@ static void take(struct voltage *v, const struct mcc *m, const struct point *poi
         }
         if (i < 3) {
             p.place[i] = v->place[i] / machine_pulses_per_mm(a);
-            p.added[i] = v->added[i];
+            p.added[i] = v->added[i] - v->added_base[i];
         }
     }
     trail_push(&v->trail, &p);
@@ -76,15 +76,15 @@ static const struct trail_point *now_out(struct voltage *v, int64_t now, int32_t
     return over || frame < v->trail.first ? NULL : trail_at(&v->trail, frame);
 }
 
-static struct trail_foot nearest(struct voltage *v, const struct mcc *m)
+/* Pulses, errors and compensation of the instant before, when that frame was put out. */
+static struct trail_foot nearest(struct voltage *v, const struct mcc *m, int64_t frame)
 {
-    const struct trail_point *at = trail_at(&v->trail, v->frame);
+    const struct trail_point *at = trail_at(&v->trail, frame);
     double tool[3];
 
     for (int k = 0; k < 3; k++) {
         const int64_t counts = (int64_t)v->law.pulses[k] - m->signals.err[k];
-        const int64_t added = (int64_t)at->added[k] - v->added_base[k];
-        tool[k] = (double)(counts - v->base[k] - added) / v->config.pulses_per_mm[k];
+        tool[k] = (double)(counts - v->base[k] - at->added[k]) / v->config.pulses_per_mm[k];
     }
     return trail_nearest(&v->trail, tool, v->frame);
 }
@@ -100,12 +100,13 @@ void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t s
     memcpy(look.pulses, m->signals.pulses, sizeof look.pulses);
     memcpy(look.error, m->signals.err, sizeof look.error);
     if (v->special) {
+        const int64_t before = v->frame;
         const struct trail_point *out = now_out(v, now, stock);
         if (out) {
             memcpy(look.speed, out->speed, sizeof look.speed);
         }
         if (law_crosses(&v->config) && v->law.begun) {
-            look.foot = nearest(v, m);
+            look.foot = nearest(v, m, before);
         }
     }
     law_tick(&v->config, &v->law, &look, limit, volts);

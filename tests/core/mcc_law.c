@@ -1,5 +1,6 @@
 /* The control law: pre-filter, feed-forward and cross-coupled control against closed formulas, and
  * on the PC: the speed fed forward is that of the frame being put out. */
+#include "compensate.h"
 #include "law.h"
 #include "mcc_card.h"
 
@@ -171,6 +172,46 @@ static void speed_of_the_frame(bool inverted)
     CHECK_NEAR(fastest, 50.0 * 1.024 * 20.0 / hypot(20.0, 2.0), 0.02);
 }
 
+/* A tool that is where the pulses are has no contour error but rounding, with a compensation of 60
+ * pulses, an axis turned round, and after an emergency stop that lost what was in the FIFO. */
+static void tool_on_the_path(bool stops)
+{
+    static struct comp_table table = { .interval = 2000, .home = 100 };
+    struct machine m = mcc_machine();
+    struct pc_panel panel = { .override = 1.0 };
+    struct pc_config p = { .bus = 4000, .ipo = 40000, .latency = 8000, .seed = 1, .min_stock = 3,
+                           .batch = 4, .output_mode = { 2, 2, 2 } };
+    struct card c;
+    double most = 0.0, off = 0.0;
+
+    for (int i = 0; i < 3; i++) {
+        p.law.axis[i] = (struct law_axis){ .volts = 1e-3 };
+    }
+    for (int i = 0; i < COMP_POINTS; i++) {
+        table.forward[i] = i < 100 ? 0 : 6 * (i - 100);
+        table.backward[i] = table.forward[i] - 10;
+    }
+    p.law.cross_p = 1.0;        /* a volt per mm at 1000 pulses/mm */
+    m.axis[0].inverted = true;
+    card_start(&c, &m, &p, true);
+    CHECK_EQ(MCC_set_comp(&pc.mcc, 0, &table), 0);
+    for (int k = 0; k < 20000; k++) {
+        panel.signals.stop = stops && k >= 3000 && k < 3500;
+        panel.clear_error = stops && k >= 4000;
+        panel.cycle_start = stops && k >= 4500;
+        memcpy(panel.signals.pulses, c.sum, sizeof c.sum);
+        if (panel.signals.stop) {
+            c.stock = 0;
+        }
+        card_period(&c, k * p.bus, &panel, "G61 G1 F3000\nG2 X20 Y0 I10\nG3 X5 Y5 R40\nM2\n");
+        most = fmax(most, hypot(pc.volts[0], pc.volts[1]));
+        off = fmax(off, fabs((double)pc.mcc.written.added[0]));
+    }
+    CHECK(pc_done(&pc));
+    CHECK(off > 55.0);
+    CHECK(most > 1e-5 && most < 4e-3);      /* [V]: 4 pulses */
+}
+
 int main(void)
 {
     p_law_alone(9);
@@ -179,5 +220,7 @@ int main(void)
     cross_coupling();
     speed_of_the_frame(false);
     speed_of_the_frame(true);
+    tool_on_the_path(false);
+    tool_on_the_path(true);
     return check_result();
 }
