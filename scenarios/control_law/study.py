@@ -2,8 +2,9 @@
 
     .venv/bin/python scenarios/control_law/study.py [picture.png]
 
-Runs the scenario with the P law alone and with feed-forward, matched-lag pre-filter and cross-coupled
-control added to it, and shows the contour error on a line, a square corner and a circle.
+Runs the scenario with the P law alone and with feed-forward, matched-lag pre-filter and
+cross-coupled control added to it, and shows the contour error on a line, a square corner and a
+circle.
 """
 
 import sys
