@@ -69,6 +69,41 @@ def test_sharp_corner(degrees: float) -> None:
     assert corner.speed == pytest.approx(FEED, rel=1e-6) or degrees > 90
 
 
+@pytest.mark.parametrize("degrees", [40, 90, 150])
+def test_mixed_corner_is_measured_from_both_sides(degrees: float) -> None:
+    """Two lines of which the second begins when the first begins to slow down (G64).
+
+    The distances from the lines are the way left on the first, F (T - t)^2 / 2T, and that gone on
+    the second, F t^2 / 2T, times sin th: equal at T/2, where both are F T sin(th) / 8.
+    """
+    th, ramp, fifo = math.radians(degrees), 0.1, 0.004
+    turn = np.array([math.cos(th), math.sin(th)])
+    path = Program(0, 0).line(40, 0).line(40 + 40 * turn[0], 40 * turn[1]).path()
+    time = np.arange(0.0, 1.2, 1e-4)
+    begin = 40.0 / FEED - 0.5 * ramp  # of the second line
+    t = np.clip(time - begin, 0.0, ramp)
+    left = 40.0 - np.minimum(FEED * time, FEED * begin) - FEED * (t - t**2 / (2.0 * ramp))
+    gone = FEED * (t**2 / (2.0 * ramp) + np.clip(time - begin - ramp, 0.0, 0.3))
+    commanded = np.zeros((len(time), 6))
+    commanded[:, :2] = np.outer(40.0 - left, [1.0, 0.0]) + np.outer(gone, turn)
+    command = np.where(time + fifo < begin + ramp, 1, 2)
+    newest = np.where(time + fifo < begin, 1, 2)
+    run = ContourInput(path, time, commanded, commanded, command, newest, window=0.05)
+    run = replace(run, stock=np.full(len(time), 7.0))
+    result = analyse(run)
+
+    mixed = (time >= begin) & (time <= begin + ramp)
+    corner = commanded[mixed, :2] - [40.0, 0.0]
+    first = np.outer(np.minimum(corner[:, 0], 0.0), [1.0, 0.0])
+    second = np.outer(np.maximum(corner @ turn, 0.0), turn)
+    truth = np.linalg.norm([corner - first, corner - second], axis=2).min(axis=0)
+    assert result.command_track.distance[mixed] == pytest.approx(truth, abs=1e-9)
+    most = FEED * ramp / 8.0 * math.sin(th) if degrees <= 90 else truth.max()
+    assert result.command_error.max == pytest.approx(most, rel=1e-4)
+    # with the number of the older command alone, all of the corner would be held against it
+    assert analyse(replace(run, newest=None)).command_error.max > 1.5 * most
+
+
 def test_where_the_largest_error_is() -> None:
     path = Program(0, 0).line(60, 0).line(60, 60).line(0, 60).line(30, 90).path()
     result = analyse(run_along(path, FEED, Machine(gains=(40.0, 40.0, 40.0), step=1e-4)))

@@ -22,7 +22,7 @@ STEPS = 60
 def used(said: law.Law) -> set[str]:
     """Variables that any formula names."""
     tables = (said.let, said.state, said.output, said.early, said.direct, said.constant, said.grain)
-    texts = [said.period, *(t for table in tables for t in table.values())]
+    texts = [said.period, *said.refuse, *(t for table in tables for t in table.values())]
     return {n.id for t in texts for n in ast.walk(ast.parse(t)) if isinstance(n, ast.Name)}
 
 

@@ -87,6 +87,46 @@ static int check_protection(struct fmu *f)
     return 0;
 }
 
+/* What belongs to the software law needs its output mode. */
+static int check_law(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    const struct { const char *name; const double *value; } axis[] = {
+        { "position_gain", v->position_gain }, { "velocity_ff", v->velocity_ff },
+        { "command_lag", v->command_lag }
+    };
+    const struct { const char *name; double value; } cross[] = {
+        { "cross_gain", v->cross_gain }, { "cross_integral", v->cross_integral },
+        { "cross_derivative", v->cross_derivative }
+    };
+    int coupled = 0;
+
+    for (int i = 0; i < AXES; i++) {
+        for (size_t k = 0; k < sizeof axis / sizeof *axis; k++) {
+            if (axis[k].value[i] > 0.0 && v->active[i] && v->output_mode[i] != 2) {
+                return fmu_fail(f, "%s[%d] = %g is of the software law: output_mode[%d] = %d, "
+                                "2 is wanted", axis[k].name, i + 1, axis[k].value[i], i + 1,
+                                (int)v->output_mode[i]);
+            }
+        }
+        coupled += i < 3 && v->active[i];
+    }
+    for (size_t k = 0; k < sizeof cross / sizeof *cross; k++) {
+        for (int i = 0; i < 3 && cross[k].value > 0.0; i++) {
+            if (v->active[i] && v->output_mode[i] != 2) {
+                return fmu_fail(f, "%s = %g couples X Y Z by the software law: output_mode[%d] = "
+                                "%d, 2 is wanted", cross[k].name, cross[k].value, i + 1,
+                                (int)v->output_mode[i]);
+            }
+        }
+        if (cross[k].value > 0.0 && coupled < 2) {
+            return fmu_fail(f, "%s = %g couples X Y Z: only %d of them active", cross[k].name,
+                            cross[k].value, coupled);
+        }
+    }
+    return 0;
+}
+
 static int check_parameters(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -121,7 +161,7 @@ static int check_parameters(struct fmu *f)
             return fmu_fail(f, "%s = \"%s\" is neither T nor S", types[i].name, types[i].value);
         }
     }
-    if (check_homing(f)) {
+    if (check_homing(f) || check_law(f)) {
         return -1;
     }
     if (v->feed > v->max_feed) {
@@ -145,6 +185,22 @@ static void homing_of(const struct vars *v, struct pc_config *c)
     c->home_settle = v->home_settle;
 }
 
+static struct law_config law_of(const struct vars *v)
+{
+    struct law_config c = {
+        .cross_p = v->cross_gain, .cross_i = v->cross_integral, .cross_d = v->cross_derivative
+    };
+
+    for (int i = 0; i < AXES; i++) {
+        const double volts = 60.0 / (v->ppr[i] * v->speed_per_volt[i]);
+        c.axis[i] = (struct law_axis){
+            .gain = v->position_gain[i] * volts, .volts = volts,
+            .feed_forward = v->velocity_ff[i], .lag = v->command_lag[i]
+        };
+    }
+    return c;
+}
+
 /* A cycle that is not 0 has a clock at least. */
 static int64_t cycle_of(double seconds)
 {
@@ -161,7 +217,7 @@ static struct pc_config config_of(const struct vars *v)
         .latency = clocks(v->irq_latency), .jitter = clocks(v->irq_jitter), .seed = v->seed,
         .min_stock = v->min_stock, .batch = v->batch,
         .block_delete = v->block_delete, .optional_stop = v->optional_stop,
-        .dry_run = v->dry_run
+        .dry_run = v->dry_run, .law = law_of(v)
     };
     for (int i = 0; i < SCHED_MODULES; i++) {
         c.priority[i] = v->module_priority[i];

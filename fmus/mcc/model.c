@@ -116,6 +116,7 @@ static void publish(struct fmu *f)
     v->error = MCC_get_errcode(mcc);
     v->line = mcc->written.line;
     v->command = mcc->written.command;
+    v->command_newest = mcc->written.newest;
     v->path_feed = mcc->written.feed;
     MCC_get_cpos(mcc, v->position);
     memcpy(v->compensation, mcc->written.added, sizeof v->compensation);

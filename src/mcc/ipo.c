@@ -431,6 +431,7 @@ void ipo_point(struct ipo *p, struct ring *r, const struct machine *m, struct tr
     }
     point->line = p->count ? p->move[0].command.line : p->line;
     point->command = p->count ? p->move[0].command.index : p->started;
+    point->newest = p->count ? p->move[p->count - 1].command.index : p->started;
     point->waits = p->count && p->move[0].command.type == COMMAND_DELAY;
     point->outputs = p->outputs;
 }

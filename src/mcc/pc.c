@@ -41,6 +41,15 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
             return MCC_PARAMETER;
         }
     }
+    struct law_config law = config->law;
+    law.period = (double)config->bus / CLOCK_HZ;
+    for (int i = 0; i < AXES; i++) {
+        law.axis[i].on = config->output_mode[i] == 2 && m->axis[i].used;
+        if (i < 3) {
+            law.pulses_per_mm[i] = machine_pulses_per_mm(&m->axis[i]);
+        }
+    }
+    voltage_start(&pc->voltage, &law, m);
     homing_set_settle(&pc->mcc, config->home_settle);
     pc->home_due = config->home_first;
     if (config->dry_run) {
@@ -51,8 +60,6 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
 
 static void read_panel(struct pc *pc, const struct pc_panel *panel)
 {
-    const struct machine *m = &pc->mcc.machine;
-
     pc->abort_due = pc->abort_due || (panel->abort && !pc->abort_seen);
     pc->abort_seen = panel->abort;
     pc->cycle_due = pc->cycle_due || (panel->cycle_start && !pc->cycle_seen);
@@ -64,14 +71,47 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     if (!pc->config.no_panel) {
         MCC_set_P_gain(&pc->mcc, panel->p_gain);
     }
-    pc->mcc.signals = signals_turned(&panel->signals, m);
+    pc->mcc.signals = signals_turned(&panel->signals, &pc->mcc.machine);
     manual_look(&pc->mcc, pc->config.bus);
+}
+
+/* Software voltages: the P law alone, or the law of figure 10 with what is added to it. */
+static void control(struct pc *pc, int64_t now, const struct pcl_card *card,
+                    const struct pc_panel *panel)
+{
+    const struct machine *m = &pc->mcc.machine;
+    struct law_axis *axis = pc->voltage.config.axis;
+    double volts[AXES] = { 0.0 };
+
     for (int i = 0; i < AXES; i++) {
-        if (pc->config.output_mode[i] == 2 && m->axis[i].used) {
-            const double v = panel->software_gain[i] * panel->signals.err[i];
+        const double fixed = pc->config.law.axis[i].gain;
+        axis[i].gain = fixed > 0.0 ? fixed : panel->software_gain[i];
+        if (axis[i].on && !pc->voltage.special) {
+            const double v = axis[i].gain * panel->signals.err[i];
             pc->volts[i] = fmax(-VOLTS_MAX, fmin(VOLTS_MAX, v));
         }
     }
+    if (pc->voltage.special) {
+        voltage_tick(&pc->voltage, &pc->mcc, now, card->stock, VOLTS_MAX, volts);
+        for (int i = 0; i < AXES; i++) {
+            pc->volts[i] = m->axis[i].inverted ? -volts[i] : volts[i];
+        }
+    }
+}
+
+/* What the card shows: its frames first, for the law wants to know their points. */
+static void look_at_card(struct pc *pc, const struct pcl_card *card, int64_t now)
+{
+    /* A number is drawn for each interrupt. */
+    const int64_t latency = pcl_interrupt(&pc->pcl, card)
+                          ? pcl_latency(&pc->random, pc->config.latency, pc->config.jitter) : 0;
+    const int32_t taken = pcl_acknowledged(&pc->pcl, card);
+
+    if (taken >= 0) {
+        voltage_taken(&pc->voltage, &pc->mcc, &pc->pcl.part, taken);
+        pc->pcl.starved += pcl_release(&pc->mcc, &pc->pcl.part, taken);
+    }
+    pcl_notice(&pc->pcl, card, now, latency);
 }
 
 /* Homing, jog, hand wheel; the library refuses what cannot be now. */
@@ -354,11 +394,9 @@ void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
                 const struct pc_panel *panel, const struct source *program)
 {
     pc->publish = now + pc->config.bus;
-    /* A number is drawn for each interrupt. */
-    pcl_look(&pc->pcl, &pc->mcc, card, now,
-             pcl_interrupt(&pc->pcl, card)
-                 ? pcl_latency(&pc->random, pc->config.latency, pc->config.jitter) : 0);
+    look_at_card(pc, card, now);
     read_panel(pc, panel);
+    control(pc, now, card, panel);
     protect(pc);
     work(pc, pc->publish + 1, panel, program);
     show(pc);

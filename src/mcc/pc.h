@@ -14,6 +14,7 @@
 #include "pcl.h"
 #include "sched.h"
 #include "task.h"
+#include "voltage.h"
 
 enum pc_module {
     PC_INTERPRETER, /* program to command ring; unit: a command */
@@ -39,6 +40,8 @@ struct pc_config {
     int32_t min_stock, batch;
     struct isr_config isr;
     int32_t output_mode[AXES];  /* 0 pulses, 1 position loop of the card, 2 software voltage */
+    struct law_config law;  /* of output mode 2; gain 0: the panel's, filled in: period, on,
+                             * pulses_per_mm */
     bool    block_delete, optional_stop;    /* as of task_set_switches */
     struct home_config home[AXES];  /* not valid: the axis is not homed */
     int32_t home_order[AXES];   /* as of MCC_go_home */
@@ -87,6 +90,7 @@ struct pc {
     bool    clear_seen, clear_due;
     bool    again;          /* an error has been cleared: cycle_start runs the program anew */
     int32_t loop_served;    /* services of the position loops' page seen */
+    struct voltage voltage;
     double  volts[AXES];    /* [V] software control law */
 };
 

@@ -17,7 +17,8 @@ struct point {
     int32_t added[AXES];    /* [pulses] compensation in all frames up to the end */
     double  place[AXES];    /* [mm] ideal position at the end */
     double  feed;           /* [mm/s] speed along the path at the end */
-    int32_t line, command;  /* that moves at the end */
+    int32_t line, command;  /* that moves at the end; of two that are mixed, the older */
+    int32_t newest;         /* command; of two that are mixed, the newer */
     bool    waits;          /* the end lies in a delay */
     struct outputs outputs; /* at the end */
 };

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 CLOCK = 25e-9  # [s] of the card
 # Outputs the analysis wants beside position and pulses, by their owner.
-LIBRARY = ("command", "path_feed", "card_dda_length", "card_dda_divider")
+LIBRARY = ("command", "command_newest", "path_feed", "card_dda_length", "card_dda_divider")
 CARD = ("stock", "irq_seq", "dac")
 
 
@@ -108,6 +108,7 @@ def contour_of(result: "Result") -> ContourResult:
                 actual=_millimetres(result, contour.position),
                 commanded=result[contour.pulses] / pulses_per_mm,
                 command=result[f"{library}.command"].astype(np.int64),
+                newest=result[f"{library}.command_newest"].astype(np.int64),
                 stock=optional["stock"],
                 interrupts=optional["irq_seq"],
                 feed=result[f"{library}.path_feed"],

@@ -82,7 +82,8 @@ static void mixing_is_smooth(void)
 }
 
 /* A square corner: cut inside by as much as two equal ramps say. At time t of the ramp time T, X
- * lacks v (T-t)^2/(2T) and Y has v t^2/(2T); nearest to the corner at T/2: v T/8 in each. */
+ * lacks v (T-t)^2/(2T) and Y has v t^2/(2T); nearest to the corner at T/2: v T/8 in each. Only
+ * meanwhile two commands are told. */
 static void corner(void)
 {
     struct record r = { 0 };
@@ -95,6 +96,8 @@ static void corner(void)
     while (point(&r)) {
         nearest = fmin(nearest, hypot(r.last.place[0] - 10.0, r.last.place[1]));
         CHECK(r.last.place[0] <= 10.0 && r.last.place[1] >= 0.0);
+        CHECK_EQ(r.last.command, r.last.place[0] < 10.0 ? 1 : 2);
+        CHECK_EQ(r.last.newest, r.last.place[1] > 0.0 ? 2 : 1);
     }
     CHECK_NEAR(nearest, 40.0 * 0.1 / 8.0 * sqrt(2.0), 1e-4);
     CHECK_NEAR(r.last.place[0], 10.0, 0.0);

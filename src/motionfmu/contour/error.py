@@ -58,7 +58,9 @@ class ContourInput:
     actual, commanded : ndarray, shape (n, 6)
         Position of the tool, and pulses put out over pulses per mm [mm].
     command : ndarray of int, shape (n,)
-        Command whose points were written to the card last.
+        Command whose points were written to the card last; of two that are mixed, the older.
+    newest : ndarray of int, shape (n,), optional
+        The same; of two that are mixed, the newer. None: no two are.
     stock : ndarray, shape (n,) or (n, 6), optional
         FIFO stock [commands].
     interrupts : ndarray, shape (n,), optional
@@ -83,6 +85,7 @@ class ContourInput:
     actual: Array
     commanded: Array
     command: NDArray[np.int64]
+    newest: NDArray[np.int64] | None = None
     stock: Array | None = None
     interrupts: Array | None = None
     feed: Array | None = None
@@ -97,6 +100,8 @@ class ContourInput:
         if count < 2 or not (np.diff(self.time) > 0.0).all():
             raise ValueError("time must have two samples or more and increase")
         shapes = {"actual": (count, 6), "commanded": (count, 6), "command": (count,)}
+        if self.newest is not None:
+            shapes["newest"] = (count,)
         for name, shape in shapes.items():
             values = getattr(self, name)
             if values.shape != shape:
@@ -230,7 +235,8 @@ def analyse(run: ContourInput) -> ContourResult:
     """Find the contour error of a run against the exact geometry.
 
     First the pulses put out are followed along the path: each sample may lie on the segments
-    whose points were written to the card within the time a command can wait in the FIFO. Then
+    whose points were written to the card within the time a command can wait in the FIFO, where
+    two commands are mixed on both from the begin of the newer to the end of the older. Then
     the tool: it may lie on the segments where the pulses have been within the servo window.
     Both advance along the path and never return, see `motionfmu.contour.assign`.
 
@@ -249,9 +255,11 @@ def analyse(run: ContourInput) -> ContourResult:
         The run never moves on a line, arc or helix.
     """
     path, time = run.path, run.time
-    written = path.segment_of(np.maximum.accumulate(run.command))
+    older = path.segment_of(np.maximum.accumulate(run.command))
+    newer = older if run.newest is None else path.segment_of(np.maximum.accumulate(run.newest))
+    newer = np.maximum(older, newer)
     wait = run.dda_time * (UNDER_WAY + (FIFO_DEPTH if run.stock is None else np.max(run.stock)))
-    first, last = written[_at(time, -wait)], written[_at(time, wait)]
+    first, last = older[_at(time, -wait)], newer[_at(time, wait)]
     owners = assign(run.commanded[:, :3], path.segments, first, last)
     command_track = _follow(run.commanded, path, owners)
     lag = servo_lag(time, run.commanded[:, :3], run.actual[:, :3])

@@ -29,7 +29,7 @@ class Law(BaseModel):
         Sampling period [s].
     inputs, commands : list of str
         Ports that move; signals that come in from the side.
-    let, state, output, early, direct, constant, grain, gain, limit, still : dict
+    let, state, output, early, direct, constant, grain, gain, limit, still, refuse : dict
         See src/motionfmu/linear/README.md.
     """
 
@@ -47,6 +47,7 @@ class Law(BaseModel):
     gain: dict[str, str] = Field(default_factory=dict)
     limit: dict[str, str] = Field(default_factory=dict)
     still: dict[str, bool | int | float | str] = Field(default_factory=dict)
+    refuse: dict[str, str] = Field(default_factory=dict)
 
 
 def parse(text: str, file: str = LAW) -> Law:
@@ -143,8 +144,11 @@ def block(law: Law, values: Mapping[str, Any]) -> Sampled:
     Raises
     ------
     ValueError
-        A formula is wrong, or not linear.
+        A formula is wrong, or not linear, or the law refuses the values.
     """
+    for formula, reason in law.refuse.items():
+        if number(law, values, formula):
+            raise ValueError(reason)
     moving = [*law.state, *law.inputs, *law.commands]
     unit = np.eye(len(moving))
     names = _Names(law, values, {m: Form(row) for m, row in zip(moving, unit, strict=True)})

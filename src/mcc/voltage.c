@@ -1,0 +1,113 @@
+#include "voltage.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The path begins where the machine is: at the start, and behind an emergency stop. */
+static void begin_trail(struct voltage *v, const struct mcc *m)
+{
+    static const double origin[3] = { 0.0 };
+
+    trail_start(&v->trail, origin);
+    memset(v->sum, 0, sizeof v->sum);
+    memset(v->place, 0, sizeof v->place);
+    memcpy(v->base, m->signals.pulses, sizeof v->base);
+    memcpy(v->added, m->written.added, sizeof v->added);
+    memcpy(v->added_base, v->added, sizeof v->added_base);
+    v->frame = 0;
+}
+
+void voltage_start(struct voltage *v, const struct law_config *c, const struct machine *m)
+{
+    memset(v, 0, sizeof *v);
+    v->config = *c;
+    v->dda_time = machine_dda_time(m);
+    for (int i = 0; i < AXES; i++) {
+        const struct law_axis *a = &c->axis[i];
+        v->special = v->special || (a->on && (a->feed_forward > 0.0 || a->lag > 0.0));
+    }
+    v->special = v->special || law_crosses(c);
+}
+
+/* A frame and its end. Places come from pulses put out, so that a new origin is no motion. */
+static void take(struct voltage *v, const struct mcc *m, const struct point *point)
+{
+    struct trail_point p = { { 0.0 }, { 0.0 }, { 0 } };
+
+    for (int i = 0; i < AXES; i++) {
+        const struct machine_axis *a = &m->machine.axis[i];
+        const int32_t correction = point ? point->added[i] - v->added[i] : 0;
+        const double before = v->place[i];
+        if (point && a->used) {
+            v->sum[i] += (int64_t)point->frame[i] - correction;
+            v->place[i] = (double)v->sum[i];
+            if (!m->dry_run) {
+                v->place[i] += point->place[i] * machine_pulses_per_mm(a) - point->pulses[i];
+            }
+            v->added[i] = point->added[i];
+            p.speed[i] = (v->place[i] - before + correction) / v->dda_time;
+        }
+        if (i < 3) {
+            p.place[i] = v->place[i] / machine_pulses_per_mm(a);
+            p.added[i] = v->added[i] - v->added_base[i];
+        }
+    }
+    trail_push(&v->trail, &p);
+}
+
+void voltage_taken(struct voltage *v, const struct mcc *m, const struct pcl_part *part,
+                   int32_t taken)
+{
+    for (int32_t i = 0; i < taken && v->special; i++) {
+        take(v, m, i < part->points ? queue_peek(&m->queue, i) : NULL);
+    }
+}
+
+/* The frame being put out; an empty FIFO puts nothing out behind it. */
+static const struct trail_point *now_out(struct voltage *v, int64_t now, int32_t stock)
+{
+    const int64_t frame = v->trail.frames - stock;
+
+    if (frame != v->frame) {
+        v->frame = frame;
+        v->since = now;
+    }
+    const bool over = (double)(now - v->since) > v->dda_time * CLOCK_HZ;
+    return over || frame < v->trail.first ? NULL : trail_at(&v->trail, frame);
+}
+
+/* Pulses, errors and compensation of the instant before, when that frame was put out. */
+static struct trail_foot nearest(struct voltage *v, const struct mcc *m, int64_t frame)
+{
+    const struct trail_point *at = trail_at(&v->trail, frame);
+    double tool[3];
+
+    for (int k = 0; k < 3; k++) {
+        const int64_t counts = (int64_t)v->law.pulses[k] - m->signals.err[k];
+        tool[k] = (double)(counts - v->base[k] - at->added[k]) / v->config.pulses_per_mm[k];
+    }
+    return trail_nearest(&v->trail, tool, v->frame);
+}
+
+void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t stock,
+                  double limit, double volts[AXES])
+{
+    struct law_look look = { .foot = { { 0.0 }, { 0.0 } } };
+
+    if (v->special && (!v->law.begun || m->signals.stop)) {
+        begin_trail(v, m);
+    }
+    memcpy(look.pulses, m->signals.pulses, sizeof look.pulses);
+    memcpy(look.error, m->signals.err, sizeof look.error);
+    if (v->special) {
+        const int64_t before = v->frame;
+        const struct trail_point *out = now_out(v, now, stock);
+        if (out) {
+            memcpy(look.speed, out->speed, sizeof look.speed);
+        }
+        if (law_crosses(&v->config) && v->law.begun) {
+            look.foot = nearest(v, m, before);
+        }
+    }
+    law_tick(&v->config, &v->law, &look, limit, volts);
+}
