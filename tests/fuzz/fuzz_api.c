@@ -149,12 +149,12 @@ static int home(struct bytes *b, uint8_t which)
     return MCC_go_home(&m, order);
 }
 
-/* The card has put out every pulse and looks at its machine. */
+/* The card has put out every pulse, for which it had a DDA time, and looks at its machine. */
 static void look(void)
 {
-    const struct reaction_look l = { .clocks = 4000 };
+    const struct reaction_look l = { .clocks = machine_dda_clocks(&m.machine) };
     if (m.open) {
-        manual_look(&m, 4000);
+        manual_look(&m, l.clocks);
         reaction_look(&m, &l);
     }
     for (int i = 0; i < AXES && !m.dry_run; i++) {
