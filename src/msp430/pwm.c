@@ -1,0 +1,104 @@
+#include "pwm.h"
+
+#include <math.h>
+
+static double amplify(const struct pwm_config *c, double filtered)
+{
+    return fmin(fmax(c->gain * (filtered - c->offset), -c->limit), c->limit);
+}
+
+double pwm_voltage(const struct pwm *p, const struct pwm_config *c)
+{
+    return amplify(c, p->filtered);
+}
+
+static void note(struct pwm *p, const struct pwm_config *c)
+{
+    const double v = pwm_voltage(p, c);
+    p->least = fmin(p->least, v);
+    p->most = fmax(p->most, v);
+}
+
+void pwm_reset(struct pwm *p, const struct pwm_config *c, double filtered, int32_t duty)
+{
+    *p = (struct pwm){.wanted = duty, .duty = duty, .filtered = filtered};
+    p->least = p->most = pwm_voltage(p, c);
+}
+
+/* Integral of a straight piece of an exponential from x to y over `time`, of which the asymptote is
+ * `end`: Vc = end + (x - end) e^(-t/tau). */
+static double piece(const struct pwm_config *c, double end, double x, double y, double time)
+{
+    return c->gain * ((end - c->offset) * time + c->tau * (x - y));
+}
+
+/* [clocks] until the exponential from x is at `there`, within 0 .. time. */
+static double crossing(double tau, double end, double x, double there, double time)
+{
+    const double share = (end - there) / (end - x);
+    if (!(share > 0.0 && share < 1.0))
+        return share >= 1.0 ? 0.0 : time;
+    return fmin(-tau * log(share), time);
+}
+
+/* Vc runs towards `end` for `time`; the voltage's integral, cut off at the limit. */
+static void charge(struct pwm *p, const struct pwm_config *c, double end, double time)
+{
+    const double from = p->filtered;
+    const double to = end + (from - end) * exp(-time / c->tau);
+    p->filtered = to;
+    note(p, c);
+    if (from == to) {
+        p->area += pwm_voltage(p, c) * time;
+        return;
+    }
+    const double low = c->offset - c->limit / c->gain, high = c->offset + c->limit / c->gain;
+    if (fmin(from, to) >= low && fmax(from, to) <= high) {
+        p->area += piece(c, end, from, to, time);
+        return;
+    }
+    /* Rising it is below first, then between, then above; falling the other way round. */
+    const double first = to > from ? low : high, last = to > from ? high : low;
+    const double enter = crossing(c->tau, end, from, first, time);
+    const double leave = fmax(crossing(c->tau, end, from, last, time), enter);
+    const double sign = to > from ? 1.0 : -1.0;
+    const double x = enter > 0.0 ? first : from, y = leave < time ? last : to;
+    p->area += sign * c->limit * (time - leave - enter);
+    if (leave > enter)
+        p->area += piece(c, end, x, y, leave - enter);
+}
+
+static void next_period(struct pwm *p, const struct pwm_config *c)
+{
+    p->begin += c->period;
+    p->duty = p->wanted;
+    p->ripple = p->most - p->least;
+    p->least = p->most = pwm_voltage(p, c);
+}
+
+void pwm_run(struct pwm *p, const struct pwm_config *c, int64_t clock)
+{
+    while (p->clock < clock) {
+        const int64_t falls = p->begin + p->duty, ends = p->begin + c->period;
+        const int64_t next = p->clock < falls ? falls : ends;
+        const int64_t to = next < clock ? next : clock;
+        charge(p, c, p->clock < falls ? c->high : 0.0, (double)(to - p->clock));
+        p->clock = to;
+        if (to == ends && to < clock)
+            next_period(p, c);
+    }
+}
+
+void pwm_write(struct pwm *p, const struct pwm_config *c, int32_t duty)
+{
+    p->wanted = duty < 0 ? 0 : duty > c->period ? c->period : duty;
+}
+
+double pwm_mean(struct pwm *p, const struct pwm_config *c)
+{
+    const int64_t time = p->clock - p->area_begin;
+    const double mean = time > 0 ? p->area / (double)time : pwm_voltage(p, c);
+    p->area = 0.0;
+    p->area_begin = p->clock;
+    return mean;
+}
