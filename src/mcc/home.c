@@ -3,16 +3,13 @@
 #include <math.h>
 #include <string.h>
 
-static bool positive(double x)
-{
-    return isfinite(x) && x > 0.0;
-}
+#include "machine.h"
 
 bool home_valid(const struct home_config *c)
 {
     return (int)c->mode >= HOME_SENSOR_INDEX && c->mode <= HOME_LIMIT && c->direction <= 7 &&
-           positive(c->high_speed) && positive(c->low_speed) && isfinite(c->offset) &&
-           positive(c->search) && positive(c->index_way);
+           machine_positive(c->high_speed) && machine_positive(c->low_speed) &&
+           isfinite(c->offset) && machine_positive(c->search) && machine_positive(c->index_way);
 }
 
 static double sign(const struct home_config *c, int bit)

@@ -57,7 +57,7 @@ static enum fault set_feed(struct interpreter *in, const struct program *p, cons
         return FAULT_NONE;
     }
     const double feed = f->value * b->scale / 60.0;
-    if (!(feed > 0.0)) {
+    if (feed < 1e9 && !machine_positive(feed)) {
         return tokens_at_word(r, FAULT_VALUE, f);
     }
     if (feed > p->machine->max_feed) {

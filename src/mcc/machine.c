@@ -4,9 +4,9 @@
 
 static const double JERK_SHARE = 0.5;
 
-static bool positive(double x)
+bool machine_positive(double x)
 {
-    return isfinite(x) && x > 0.0;
+    return x >= 1e-9 && x <= 1e9;
 }
 
 static bool number(double x)
@@ -24,8 +24,8 @@ static bool guard_valid(const struct machine *m, const struct machine_axis *a)
 
 static bool axis_valid(const struct machine *m, const struct machine_axis *a)
 {
-    return positive(a->pitch) && positive(a->gear_ratio) && a->ppr >= 1 && positive(a->rpm) &&
-           a->p_gain >= 0 && a->p_gain <= 65535 &&
+    return machine_positive(a->pitch) && machine_positive(a->gear_ratio) && a->ppr >= 1 &&
+           machine_positive(a->rpm) && a->p_gain >= 0 && a->p_gain <= 65535 &&
            a->max_dda >= 0 && a->max_dda <= machine_dda_limit(m) && guard_valid(m, a);
 }
 
@@ -38,12 +38,18 @@ static bool asyn_valid(const struct machine_asyn *r)
 {
     for (int i = 0; i < AXES; i++) {
         if (!type_valid(r->acc_type[i]) || !type_valid(r->dec_type[i]) ||
-            !(r->acc_time[i] == 0.0 || positive(r->acc_time[i])) ||
-            !(r->dec_time[i] == 0.0 || positive(r->dec_time[i]))) {
+            !(r->acc_time[i] == 0.0 || machine_positive(r->acc_time[i])) ||
+            !(r->dec_time[i] == 0.0 || machine_positive(r->dec_time[i]))) {
             return false;
         }
     }
     return true;
+}
+
+/* 0 takes the library's own. */
+static bool share_valid(double x)
+{
+    return x == 0.0 || (machine_positive(x) && x <= 1.0);
 }
 
 bool machine_valid(const struct machine *m)
@@ -61,11 +67,10 @@ bool machine_valid(const struct machine *m)
         !number(m->inpos_settle) || !number(m->inpos_timeout)) {
         return false;
     }
-    return positive(m->dda_time) && positive(m->feed) && positive(m->max_feed) &&
-           type_valid(m->acc_type) && type_valid(m->dec_type) &&
-           m->jerk_share >= 0.0 && m->jerk_share <= 1.0 && asyn_valid(&m->asyn) &&
-           m->ptp_ratio >= 0.0 && m->ptp_ratio <= 1.0 &&
-           m->feed <= m->max_feed && positive(m->acc_time) && positive(m->dec_time);
+    return machine_positive(m->dda_time) && machine_positive(m->feed) &&
+           machine_positive(m->max_feed) && type_valid(m->acc_type) && type_valid(m->dec_type) &&
+           share_valid(m->jerk_share) && share_valid(m->ptp_ratio) && asyn_valid(&m->asyn) &&
+           m->feed <= m->max_feed && machine_positive(m->acc_time) && machine_positive(m->dec_time);
 }
 
 void machine_complete_asyn(struct machine *m)

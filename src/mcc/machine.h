@@ -71,6 +71,10 @@ struct machine {
 /* True if every value lies in its range and is finite. */
 bool machine_valid(const struct machine *m);
 
+/* Whether a speed [mm/s], time [s], way [mm] or share that must be above 0 is: 1e-9 .. 1e9, so that
+ * their products and quotients stay numbers. */
+bool machine_positive(double x);
+
 /* Ramps of independent axes where none are given. */
 void machine_complete_asyn(struct machine *m);
 

@@ -30,7 +30,7 @@ static int set_times(const struct mcc *m, double to[AXES], const double ms[AXES]
         return MCC_INITIAL_MOTION;
     }
     for (int i = 0; i < AXES; i++) {
-        if (!(isfinite(ms[i]) && ms[i] > 0.0)) {
+        if (!machine_positive(ms[i] / 1000.0)) {
             return MCC_PARAMETER;
         }
     }
@@ -159,7 +159,7 @@ static int movable(const struct mcc *m, int axis, double direction)
 
 static bool percent_valid(double percent)
 {
-    return percent > 0.0 && percent <= 100.0;
+    return machine_positive(percent / 100.0) && percent <= 100.0;
 }
 
 static struct axes_limits jog_limits(const struct mcc *m, int axis, double percent)

@@ -154,7 +154,7 @@ int MCC_motion_abort(struct mcc *m);    /* ramp to rest, drop commands and progr
 int MCC_set_abs(struct mcc *m);
 int MCC_set_inc(struct mcc *m);
 int MCC_get_pos_type(const struct mcc *m);              /* 0 incremental, 1 absolute */
-int MCC_set_fspd(struct mcc *m, double feed);           /* [mm/s] */
+int MCC_set_fspd(struct mcc *m, double feed);           /* [mm/s] at least 1e-9 */
 int MCC_set_ptp_spd(struct mcc *m, double percent);     /* > 0..100 of the safe motor speed */
 int MCC_enable_quit(struct mcc *m);                     /* continuous path */
 int MCC_disable_quit(struct mcc *m);

@@ -31,7 +31,7 @@ int MCC_set_fspd(struct mcc *m, double feed)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!(feed > 0.0 && feed <= m->machine.max_feed)) {
+    if (!(machine_positive(feed) && feed <= m->machine.max_feed)) {
         return MCC_FEED_RATE;
     }
     m->feed = feed;
@@ -43,7 +43,7 @@ int MCC_set_ptp_spd(struct mcc *m, double percent)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!(percent > 0.0 && percent <= 100.0)) {
+    if (!(machine_positive(percent / 100.0) && percent <= 100.0)) {
         return MCC_FEED_RATE;
     }
     m->machine.ptp_ratio = percent / 100.0;
@@ -90,7 +90,7 @@ static int set_time(const struct mcc *m, double *time, double ms)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!(isfinite(ms) && ms > 0.0)) {
+    if (!machine_positive(ms / 1000.0)) {
         return MCC_PARAMETER;
     }
     *time = ms / 1000.0;
@@ -191,11 +191,11 @@ static int set_override(struct mcc *m, double percent, bool ptp)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!(percent >= 0.0 && percent <= 200.0)) {
-        return MCC_PARAMETER;
-    }
     const double *now = m->ipo.override;
     const double ratio = percent / 100.0;
+    if (!(ratio == 0.0 || (machine_positive(ratio) && ratio <= 2.0))) {
+        return MCC_PARAMETER;
+    }
     ipo_override(&m->ipo, ptp ? now[0] : ratio, ptp ? ratio : now[1]);
     return MCC_NO_ERR;
 }

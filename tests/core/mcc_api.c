@@ -76,6 +76,8 @@ static void motion(void)
     REFUSED(MCC_set_fspd(&m, 0.0), MCC_FEED_RATE);
     REFUSED(MCC_set_fspd(&m, 1000.1), MCC_FEED_RATE);
     REFUSED(MCC_set_fspd(&m, NAN), MCC_FEED_RATE);
+    REFUSED(MCC_set_fspd(&m, 5e-324), MCC_FEED_RATE);   /* its ramps would have no numbers */
+    REFUSED(MCC_set_fspd(&m, 0.99e-9), MCC_FEED_RATE);
     REFUSED(MCC_motion_hold(&m), MCC_HOLD_ILLEGAL);
     REFUSED(MCC_motion_conti(&m), MCC_CONTI_ILLEGAL);
     REFUSED(MCC_motion_abort(&m), MCC_ABORT_ILLEGAL);
@@ -133,11 +135,14 @@ static void settings(void)
     CHECK_EQ(MCC_set_dec_type(&m, 'S'), 0);
     CHECK(MCC_get_dec_type(&m) == 'S');
     REFUSED(MCC_set_acc_step(&m, 0.0), MCC_PARAMETER);
+    REFUSED(MCC_set_acc_step(&m, 0.99e-6), MCC_PARAMETER);
+    REFUSED(MCC_set_dec_step(&m, 1.01e12), MCC_PARAMETER);
     CHECK_EQ(MCC_set_acc_step(&m, 250.0), 0);
     CHECK_EQ(MCC_set_dec_step(&m, 150.0), 0);
     CHECK_NEAR(MCC_get_acc_step(&m), 250.0, 1e-12);
     CHECK_NEAR(MCC_get_dec_step(&m), 150.0, 1e-12);
     REFUSED(MCC_set_over_spd(&m, -1.0), MCC_PARAMETER);
+    REFUSED(MCC_set_over_spd(&m, 0.99e-7), MCC_PARAMETER);
     CHECK_EQ(MCC_set_ptp_ospd(&m, 50.0), 0);
     CHECK_NEAR(MCC_get_ptp_ospd(&m), 50.0, 0.0);
     CHECK_NEAR(MCC_get_over_spd(&m), 100.0, 0.0);

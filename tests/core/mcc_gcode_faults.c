@@ -77,6 +77,7 @@ static void faults(void)
         { "G1 X1 P1", 1, "P1", FAULT_UNUSED },
         { "R1", 1, "R1", FAULT_UNUSED },
         { "G1 X1 F0", 1, "F0", FAULT_VALUE },
+        { "G1 X1 F0.00000005", 1, "F0.00000005", FAULT_VALUE },
         { "G1 X1 F-5", 1, "F-5", FAULT_VALUE },
         { "F60000.1", 1, "F60000.1", FAULT_FEED },
         { "G20 F2363", 1, "F2363", FAULT_FEED },
