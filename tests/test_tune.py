@@ -56,6 +56,15 @@ def differences(function: Any, at: np.ndarray) -> np.ndarray:
     return np.array(rows)
 
 
+def stepped(gain: int, tau: float) -> tuple[Study, Values]:
+    """ISE of both axes of the loop of theory at a gain."""
+    chosen = {"machine.tau": tau}
+    asked = problem({"cost": "ise", "bounds": {"mcc.p_gain": [50, 8000]}})
+    loaded = motionfmu.load(THEORY)
+    study = Study(loaded, asked, loaded.run(set=chosen), chosen)
+    return study, study.values(np.array([v.share(gain) for v in study.variables]), False)
+
+
 def agree(slopes: np.ndarray, expected: np.ndarray, share: float) -> None:
     scale = np.abs(expected).max()
     assert np.abs(slopes - expected).max() <= share * scale, (slopes, expected)
@@ -244,6 +253,24 @@ def test_a_delay_bounds_the_gain_as_theory_says() -> None:
     assert found.values.worst == pytest.approx(best, rel=1e-4)
     gain = study.variables[0].value(float(found.z[0]))
     assert gain * delay == pytest.approx(0.7391, abs=0.01)
+
+
+@pytest.mark.parametrize("gain", [200, 1000, 3000])
+def test_the_ise_of_a_step_is_the_sampled_loops(gain: int) -> None:
+    """e[n+1] = e[n] - k e[n-1] from 1, 1: sum of squares (1 + k)/(k (1 - k)(2 + k))."""
+    study, values = stepped(gain, 0.0)
+    k, period = kp_of(study.axes[1]) * gain / 200.0 * 1e-4, 1e-4
+    squares = (1.0 + k) / (k * (1.0 - k) * (2.0 + k))
+    expected = period * (squares - 0.5)  # trapezoids
+    assert values.costs[0] / 2.0 == pytest.approx(expected, rel=2e-3)
+
+
+def test_the_ise_of_a_lag_is_the_published_formula() -> None:
+    """(1 + tau K)/(2 K) without delay; the 1.5 periods of the loop add less than half of them."""
+    study, values = stepped(200, 0.005)
+    k = kp_of(study.axes[1])
+    more = values.costs[0] / 2.0 - (1.0 + 0.005 * k) / (2.0 * k)
+    assert 0.0 < more < 0.75e-4
 
 
 def test_the_command_refuses_a_gain_that_ran_away(tmp_path: Path) -> None:

@@ -92,7 +92,7 @@ class Loop:
         """
         closed = self.a - self.b @ self.c / (1.0 + self.d[0, 0])
         poles = np.concatenate([np.linalg.eigvals(self.a), np.linalg.eigvals(closed)])
-        roots = np.log(poles[np.abs(poles) > 1e-6]) / self.period
+        roots = np.log(poles[np.abs(poles) > 1e-6].astype(complex)) / self.period
         top = np.pi / self.period
         roots = roots[(roots.imag > 0.0) & (roots.imag < 0.99 * top)]
         near = np.abs(roots)[:, None] + np.abs(roots.real)[:, None] * _ABOUT

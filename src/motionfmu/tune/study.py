@@ -325,12 +325,13 @@ class Study:
         answer = part.step(gains, *self._step)
         assert answer.slopes is not None
         e, de = 1.0 - answer.outputs[0], -answer.slopes[:, 0]
-        dt = part.period * self._step[0]
-        t = dt * np.arange(len(e))
+        weight = np.full(len(e), part.period * self._step[0])  # trapezoids, to rest
+        weight[0] *= 0.5
         if self.problem.cost == "ise":
-            return float(np.sum(e * e) * dt), 2.0 * de @ e * dt
-        weight = t if self.problem.cost == "itae" else np.ones(len(e))
-        return float(np.sum(weight * np.abs(e)) * dt), de @ (weight * np.sign(e)) * dt
+            return float(weight @ (e * e)), 2.0 * de @ (weight * e)
+        if self.problem.cost == "itae":
+            weight *= part.period * self._step[0] * np.arange(len(e))
+        return float(weight @ np.abs(e)), de @ (weight * np.sign(e))
 
     def _slack(
         self, part: AxisStudy, gains: Array, moved: tuple[Motion | None, bool]
