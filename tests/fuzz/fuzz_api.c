@@ -7,7 +7,7 @@ enum { CALLS = 200, REST_POINTS = 20000 };
 
 static struct mcc m, before;    /* 160 kB each: not on the stack */
 static int64_t sum[AXES];       /* [pulses] of all frames since the start */
-static double slowest;          /* [s] longest dec_time so far */
+static double slowest;          /* [s] longest deceleration time so far */
 
 /* What is left of the input. */
 struct bytes {
@@ -241,6 +241,15 @@ static void ask(void)
     HOLDS(memcmp(&before, &m, sizeof m) == 0);
 }
 
+static double slowest_of(const struct machine *machine)
+{
+    double time = machine->dec_time;
+    for (int i = 0; i < AXES; i++) {
+        time = fmax(time, machine->asyn.dec_time[i]);
+    }
+    return time;
+}
+
 /* After an abort the axes rest: a ramp takes dec_time at the commanded feed, more above it; axes
  * moved by hand have ramps of their own. */
 static void come_to_rest(void)
@@ -272,7 +281,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct bytes b = { data, data + size };
 
     memset(sum, 0, sizeof sum);
-    slowest = machine.dec_time;
+    slowest = slowest_of(&machine);
     HOLDS(MCC_init_motion(&m, &machine) == MCC_NO_ERR);
     for (int i = 0; i < CALLS && b.at < b.end; i++) {
         int cycles = *b.at & 0x30 ? 0 : *b.at >> 6;
@@ -280,7 +289,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (call(&b) < 0) {
             HOLDS(memcmp(&before, &m, sizeof m) == 0);
         }
-        slowest = fmax(slowest, m.machine.dec_time);
+        slowest = fmax(slowest, slowest_of(&m.machine));
         if (!(slowest < REST_POINTS * machine_dda_time(&m.machine))) {
             continue;       /* its ramps take too many points */
         }
