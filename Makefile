@@ -35,12 +35,12 @@ fuzz:                           ## part programs and calls of the API at random,
 clean:
 	rm -rf build results
 
-.venv/installed: pyproject.toml
+.venv/installed: pyproject.toml Makefile
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	@echo "Installing the Python packages into .venv (once, about a minute) ..."
 	@$(BIN)/python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; \
 	  print(*p['dependencies'], *p['optional-dependencies']['dev'], sep='\n')" > .venv/requirements.txt
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -r .venv/requirements.txt
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation \
-	  -C wheel.cmake=false -e .
+	  -C wheel.cmake=false -C editable.mode=inplace -e .
 	@touch $@

@@ -13,7 +13,7 @@ from test_cli import command
 
 import motionfmu
 from motionfmu import linear
-from motionfmu.cli import settings
+from motionfmu.cli.common import settings
 from motionfmu.errors import InputError
 from motionfmu.linear.margins import margins
 from motionfmu.run import Options

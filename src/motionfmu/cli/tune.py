@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.table import Table
 
-from motionfmu.cli import ScenarioPath, Set, app, out, settings
+from motionfmu.cli.common import ScenarioPath, Set, app, out, settings
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario

@@ -1,0 +1,129 @@
+"""What the commands share: the application, its options, settings, a run with a progress bar."""
+
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.run import Result, Scenario
+
+app = typer.Typer(
+    help="Motion controllers as FMI co-simulation FMUs.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+out = Console(highlight=False)
+
+FAILED, WRONG, STOPPED = 1, 2, 130
+ScenarioPath = Annotated[Path, typer.Argument(help="Folder of a scenario, or its scenario.toml.")]
+Set = Annotated[
+    list[str],
+    typer.Option(
+        "--set", metavar="COMP.VAR=VALUE", help="Stronger than the scenario's; or a gains.toml."
+    ),
+]
+
+
+def setting(text: str) -> tuple[str, Any]:
+    """Read ``comp.var=value``; the value is TOML, a bare word is text.
+
+    Parameters
+    ----------
+    text : str
+        As given on the command line.
+
+    Returns
+    -------
+    str, object
+        Name and value.
+
+    Raises
+    ------
+    InputError
+        There is no ``=``.
+    """
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise InputError(f"--set {text}: COMP.VAR=VALUE wanted")
+    try:
+        return name.strip(), tomllib.loads(f"x = {value}")["x"]
+    except tomllib.TOMLDecodeError:
+        return name.strip(), value.strip()
+
+
+def settings(texts: list[str]) -> dict[str, Any]:
+    """Values of all ``--set``; a file of values is taken whole.
+
+    Parameters
+    ----------
+    texts : list of str
+        ``comp.var=value``, or a TOML file of ``"comp.var" = value``.
+
+    Returns
+    -------
+    dict
+        By name; a later one counts.
+
+    Raises
+    ------
+    InputError
+        There is no ``=``, or the file is missing or no TOML.
+    """
+    found: dict[str, Any] = {}
+    for text in texts:
+        if "=" in text or not text.endswith(".toml"):
+            found.update([setting(text)])
+            continue
+        try:
+            found.update(tomllib.loads(Path(text).read_text(encoding="utf-8")))
+        except OSError as error:
+            raise InputError(f"--set {text}: {error.strerror}") from None
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise InputError(f"--set {text}: {error}") from None
+    return found
+
+
+def bare_table(*headings: str) -> Table:
+    """Table without lines.
+
+    Parameters
+    ----------
+    headings : str
+
+    Returns
+    -------
+    Table
+    """
+    table = Table(box=None, header_style="dim")
+    for heading in headings:
+        table.add_column(heading)
+    return table
+
+
+def run_shown(scenario: "Scenario", options: dict[str, Any]) -> "Result":
+    """Run with a progress bar, which shows on a terminal only.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    options : dict
+        Of `Scenario.run`.
+
+    Returns
+    -------
+    Result
+    """
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+    from rich.progress import TimeRemainingColumn as TimeLeft
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeLeft())
+    with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
+        task = bar.add_task(scenario.name, total=1.0)
+        return scenario.run(**options, progress=lambda share: bar.update(task, completed=share))

@@ -1,0 +1,84 @@
+"""The command that explains a contour error."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from motionfmu.cli.common import ScenarioPath, Set, app, bare_table, out, run_shown, settings
+
+
+@app.command()
+def contour(
+    path: ScenarioPath,
+    set_: Set = [],  # noqa: B006  (typer makes a new list)
+    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    figures: Annotated[
+        bool, typer.Option("--figures", help="Only print the contour figures of one run.")
+    ] = False,
+) -> None:
+    """Explain the contour error of a scenario: which cause makes how much of it."""
+    from motionfmu.run import load
+
+    given = settings(set_)
+    if figures:
+        found = run_shown(load(path), {"set": given}).contour().numbers()
+        table = bare_table("figure", "value")
+        for name, value in _flat({k: v for k, v in found.items() if k != "commands"}):
+            table.add_row(name, value)
+        out.print(table)
+        return
+    _explain(path, given, folder)
+
+
+def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+
+    from motionfmu import outcome
+    from motionfmu.explain import explain
+    from motionfmu.explain.page import write_explanation
+    from motionfmu.report.numbers import length
+    from motionfmu.scenario import scenario_file
+
+    name = scenario_file(path).parent.name
+    target = outcome.usable(folder or Path("results") / f"{name}_contour")
+    columns = (BarColumn(), TaskProgressColumn(), TextColumn("{task.description}"))
+    with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
+        task = bar.add_task(name, total=1.0)
+        found = explain(
+            path,
+            set=settings,
+            progress=lambda what, share: bar.update(task, completed=share, description=what),
+        )
+    table = bare_table("cause")
+    for heading in ("largest", "99 %", "theory", "error without"):
+        table.add_column(heading, justify="right")
+    for e in found.effects:
+        both = ("" if v is None else length(v) for v in (e.theory.value, e.without))
+        sizes = (length(e.size), length(e.usual)) if e.judged else ("not judged", "")
+        table.add_row(e.title, *sizes, *both)
+    numbers = found.numbers()
+    for title, key in (("Sum of the effects", "sum_of_effects"), ("Residual", "residual")):
+        table.add_row(f"[dim]{title}[/]", length(numbers[key]["max"]))
+    table.add_row("[bold]Contour error[/]", length(numbers["contour_error"]["max"]))
+    out.print(table)
+    for e in found.effects:
+        if not e.judged:
+            out.print(f"[bold]{e.title}[/] not judged: {e.how.replace('[', chr(92) + '[')}")
+    for mark in found.signatures:
+        out.print(f"[bold]Ballbar, radius {mark.test.radius:g} mm[/]")
+        for words in mark.words():
+            out.print(f"  {words}")
+    with outcome.whole(target) as part:
+        shown = write_explanation(found, part).name
+    out.print(f"report: {target / shown}", soft_wrap=True)
+
+
+def _flat(value: Any, name: str = "") -> list[tuple[str, str]]:
+    if isinstance(value, dict):
+        pairs = list(value.items())
+    elif isinstance(value, list):
+        pairs = [(str(i), v) for i, v in enumerate(value)]
+    else:
+        return [(name, f"{value:.6g}" if isinstance(value, float) else str(value))]
+    return [row for k, v in pairs for row in _flat(v, f"{name}.{k}" if name else k)]

@@ -1,0 +1,80 @@
+"""The command that shows margins and largest stable gains."""
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from motionfmu.cli.common import ScenarioPath, Set, app, bare_table, out, setting, settings
+from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.freq.study import Asked, LoopStudy
+    from motionfmu.linear import AxisModel
+
+
+@app.command()
+def margins(  # noqa: PLR0913  (each is an option of the command)
+    path: ScenarioPath,
+    axis: Annotated[int, typer.Option(help="Axis, from 1.")] = 1,
+    at: Annotated[
+        list[str],
+        typer.Option("--at", metavar="COMP.VAR=VALUE", help="Operating point of a plant."),
+    ] = [],  # noqa: B006
+    loop: Annotated[str | None, typer.Option(help="Input at which to open; all if none.")] = None,
+    gain: Annotated[
+        str | None, typer.Option(help="With --loop: parameter whose largest value is wanted.")
+    ] = None,
+    kick: Annotated[
+        float | None, typer.Option(help="Step that makes it ring, in the input's unit.")
+    ] = None,
+    simulate: Annotated[bool, typer.Option(help="Also run the FMUs.")] = True,
+    set_: Set = [],  # noqa: B006
+    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+) -> None:
+    """Margins and largest stable gains of a scenario's loops, and their report."""
+    from motionfmu import outcome
+    from motionfmu.freq.study import Asked
+    from motionfmu.linear import model
+    from motionfmu.report.margin_page import numbers, page_text
+
+    if gain is not None and loop is None:
+        raise InputError(f"--gain {gain}: say with --loop which loop it belongs to")
+    point = dict(setting(text) for text in at)
+    linear = model(path, axis, point, settings(set_))
+    target = outcome.usable(folder or Path("results") / f"{linear.scenario.name}-margins")
+    gains = {loop: gain} if loop is not None and gain is not None else {}
+    studies = _study(linear, Asked(loop, gains, simulate, kick))
+    with outcome.whole(target) as part:
+        (part / "report.html").write_text(page_text(linear, studies), encoding="utf-8")
+        text = json.dumps(numbers(linear, studies), indent=1, allow_nan=False)
+        (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
+    table = bare_table()
+    table.add_column("loop", overflow="fold")
+    for heading in ("gain", "phase", "delay", "peak S", "largest", "simulated"):
+        table.add_column(heading, no_wrap=True)
+    for s in studies:
+        m, ringing = s.margins, s.simulated.gain if s.simulated else math.nan
+        cells = (f"x {m.gain:.4g}", f"{m.phase:.4g}°", f"{m.delay * 1e3:.4g} ms")
+        name = s.at if m.stable else f"{s.at} [bold red]unstable[/]"
+        table.add_row(
+            name, *cells, f"{m.sensitivity:.4g}", f"{s.linear.gain:.5g}", f"{ringing:.5g}"
+        )
+    out.print(table)
+    out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+
+
+def _study(linear: "AxisModel", asked: "Asked") -> "list[LoopStudy]":
+    """Study with a progress bar, which shows on a terminal only."""
+    from rich.progress import Progress
+
+    from motionfmu.freq.study import study
+
+    with Progress(console=out, disable=not out.is_terminal, transient=True) as bar:
+        task = bar.add_task(linear.scenario.name, total=1.0)
+        return study(
+            linear, replace(asked, progress=lambda share: bar.update(task, completed=share))
+        )

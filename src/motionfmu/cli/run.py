@@ -1,0 +1,95 @@
+"""The commands that run scenarios and judge them."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from motionfmu.cli.common import (
+    FAILED,
+    ScenarioPath,
+    Set,
+    app,
+    bare_table,
+    out,
+    run_shown,
+    settings,
+)
+from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.run import Result
+
+Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
+Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
+
+
+def _version(engine: str, fmi: int | None) -> int:
+    """FMPy's container runs FMI 2 components only."""
+    return fmi if fmi is not None else 2 if engine == "fmpy" else 3
+
+
+def _verdicts(result: "Result") -> None:
+    table = bare_table("", "check", "found", "asked")
+    for v in result.checks:
+        mark = "[green]ok[/]" if v.ok else "[bold red]FAILED[/]"
+        table.add_row(mark, v.name, f"{v.value:.6g}", v.bounds.replace("[", r"\["))
+    out.print(table)
+
+
+@app.command()
+def run(  # noqa: PLR0913  (each is an option of the command)
+    path: ScenarioPath,
+    engine: Engine = "native",
+    fmi: Fmi = None,
+    set_: Set = [],  # noqa: B006  (typer makes a new list)
+    stop: Annotated[float | None, typer.Option(help="Seconds, instead of the scenario's.")] = None,
+    step: Annotated[float | None, typer.Option(help="Seconds, instead of the scenario's.")] = None,
+    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Also write signals.csv.")] = False,
+) -> None:
+    """Run a scenario, judge it and write its report."""
+    from motionfmu import outcome
+    from motionfmu.run import load
+
+    scenario = load(path)
+    target = outcome.usable(folder or Path("results") / scenario.name)
+    options: dict[str, Any] = {
+        "engine": engine,
+        "fmi": _version(engine, fmi),
+        "set": settings(set_),
+        "stop": stop,
+        "step": step,
+    }
+    result = run_shown(scenario, options)
+    shown = outcome.save(result, target, options, csv)
+    _verdicts(result)
+    out.print(f"{scenario.name}: {'all checks hold' if result.ok else 'a check FAILED'}")
+    out.print(f"report: {shown}", soft_wrap=True)
+    if not result.ok:
+        raise typer.Exit(FAILED)
+
+
+@app.command()
+def check(
+    paths: Annotated[list[Path] | None, typer.Argument(help="Scenarios; all if none.")] = None,
+    engine: Engine = "native",
+    fmi: Fmi = None,
+) -> None:
+    """Run scenarios and judge them; nothing is written."""
+    from motionfmu.run import load
+
+    chosen = paths or sorted(p.parent for p in Path("scenarios").glob("*/scenario.toml"))
+    if not chosen:
+        raise InputError("no scenario here: name one, or run from the project's folder")
+    failed = False
+    for path in chosen:
+        scenario = load(path)
+        result = run_shown(scenario, {"engine": engine, "fmi": _version(engine, fmi)})
+        mark = "[green]ok[/]" if result.ok else "[bold red]FAILED[/]"
+        out.print(f"{mark}  {scenario.name}  [dim]{len(result.checks)} bounds[/]")
+        if not result.ok:
+            failed = True
+            _verdicts(result)
+    if failed:
+        raise typer.Exit(FAILED)
