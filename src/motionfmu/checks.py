@@ -1,6 +1,6 @@
 """Verdicts: bounds of signals and contour figures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -47,6 +47,16 @@ def _final(name: str, last: NDArray[Any], wanted: bool | float | tuple[float, fl
     return _range(name, "final", value, (low, high))
 
 
+def _inside(time: NDArray[Any], windows: tuple[tuple[float, float], ...]) -> NDArray[Any]:
+    """Samples from the start of a window to its end, both included."""
+    return np.any([(time >= a - 1e-12) & (time <= b + 1e-12) for a, b in windows], axis=0)
+
+
+def _where(windows: tuple[tuple[float, float], ...]) -> str:
+    low, high = windows[0]
+    return f", {low:g} to {high:g} s" if len(windows) == 1 else f", in {len(windows)} windows"
+
+
 def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> list[Verdict]:
     """Judge one signal by every bound of its check.
 
@@ -69,6 +79,10 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
     x = np.asarray(data, dtype=float)
     if check.at is not None:
         x = x[[int(np.searchsorted(time, check.at - 1e-12).clip(0, len(time) - 1))]]
+    elif check.windows is not None:
+        x = x[_inside(time, check.windows)]
+        if len(x) == 0:  # a run that ends before
+            x = np.full((1, *x.shape[1:]), np.nan)
     found = []
     if check.min is not None:
         low = float(x.min())
@@ -85,4 +99,5 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
         found.append(_range(name, "rms", float(np.sqrt((x**2).mean())), check.rms))
     if check.final is not None:
         found.append(_final(name, x[-1], check.final))
-    return found
+    where = _where(check.windows) if check.windows is not None else ""
+    return [replace(v, bounds=v.bounds + where) for v in found]

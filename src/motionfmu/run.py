@@ -14,6 +14,7 @@ from motionfmu import figures, recording, scenario, system, values
 from motionfmu.checks import Verdict, judge
 from motionfmu.engines import ENGINES
 from motionfmu.errors import InputError
+from motionfmu.scenario import Check
 
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult
@@ -181,6 +182,18 @@ def _is_axis(name: str, recorded: Mapping[str, system.End]) -> bool:
     return bool(shape) and index.isdigit() and 1 <= int(index) <= shape[0]
 
 
+def _misplaced(check: Check, stop: float) -> str:
+    """What is wrong with the times of a check; empty if nothing is."""
+    if check.at is not None and check.windows is not None:
+        return "at and windows exclude each other"
+    if check.at is not None and check.at > stop:
+        return f"at = {check.at!r} s is after the stop"
+    for low, high in check.windows or ():
+        if not 0.0 <= low <= high <= stop:
+            return f"windows: [{low!r}, {high!r}] s is not within 0 .. {stop!r} s"
+    return ""
+
+
 class Scenario:
     """A scenario ready to run.
 
@@ -229,14 +242,16 @@ class Scenario:
     def _check_checks(self) -> None:
         recorded = {e.name: e for e in self.ends}
         stop = self.document.body.stop
-        for name in self.document.body.check:
+        for name, check in self.document.body.check.items():
             if name.startswith(CONTOUR):
                 if self.document.body.contour is None:
                     raise self.document.error(f"{name}: there is no [contour] table", "check", name)
+                if check.windows is not None:
+                    raise self.document.error(f"{name}: a figure has no windows", "check", name)
             elif name.partition("[")[0] not in recorded or not _is_axis(name, recorded):
                 raise self.document.error(f"{name} is not recorded", "check", name)
-            elif (at := self.document.body.check[name].at) is not None and at > stop:
-                raise self.document.error(f"{name}: at = {at!r} s is after the stop", "check", name)
+            elif told := _misplaced(check, stop):
+                raise self.document.error(f"{name}: {told}", "check", name)
 
     def resolved(self, options: Options) -> system.System:
         """All that an engine needs, with the options' values.

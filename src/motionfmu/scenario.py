@@ -35,6 +35,7 @@ class Check(BaseModel):
     rms: tuple[float, float] | None = None
     final: bool | float | tuple[float, float] | None = None
     at: float | None = None
+    windows: tuple[tuple[float, float], ...] | None = Field(default=None, min_length=1)
 
 
 class Contour(BaseModel):
@@ -198,6 +199,8 @@ def _floats(tables: dict[str, Any]) -> dict[str, Any]:
     """Whole numbers where a time or a bound is meant; pairs become tuples."""
 
     def number(x: Any) -> Any:
+        if isinstance(x, list):
+            return tuple(number(y) for y in x)
         return float(x) if isinstance(x, int) and not isinstance(x, bool) else x
 
     out = dict(tables)
@@ -210,7 +213,7 @@ def _floats(tables: dict[str, Any]) -> dict[str, Any]:
     checks = out.get("check", {})
     for row in checks.values() if isinstance(checks, dict) else []:
         for key, x in list(row.items()) if isinstance(row, dict) else []:
-            row[key] = tuple(number(y) for y in x) if isinstance(x, list) else number(x)
+            row[key] = number(x)
     return out
 
 
