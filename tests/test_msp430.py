@@ -75,6 +75,10 @@ def test_the_decoder_is_the_listing_ticked_clock_by_clock(
             chip.lost,
             chip.turned,
         ], k
+        assert chip.quarter is not None
+        pins = chip.lines(chip.quarter)
+        assert [fmu.get("pin_a")[0], fmu.get("pin_b")[0]] == [bool(pins & 4), bool(pins & 16)], k
+        assert 0 <= fmu.get("interrupt")[0] <= 5
         phase = now
     fmu.free()
 

@@ -11,6 +11,9 @@ struct model {
     int64_t clock_ns;           /* [ns] */
     int64_t period;             /* [clocks] pin grid */
     int64_t instant;            /* [clock] next instant of that grid */
+    double  phase;              /* [line periods] as the chip last saw it */
+    double  missed;             /* [line periods] whole ones, moved while the plug was out */
+    bool    unplugged;          /* at the latest instant */
 };
 
 #include "fmi_model.h"
@@ -112,6 +115,10 @@ static void publish(struct vars *v, const struct model *m)
     v->voltage = m->voltage;
     v->ripple = chip->pwm.ripple;
     v->duty = chip->pwm.duty;
+    v->pin_a = !scale_a(&chip->scale);
+    v->pin_b = !scale_b(&chip->scale);
+    v->interrupt = chip->port.latest;
+    v->interrupts = fixed_saturate32(chip->port.served + chip->port.zeroed);
     v->counter = fixed_word(chip->port.counter);
     v->counter2 = fixed_word(chip->port.counter_2);
     v->edges = fixed_saturate32(scale_edges(&chip->scale));
@@ -171,6 +178,17 @@ static void tell(struct fmu *f, enum sequence_code before)
                   (double)(m->chip.clock * m->clock_ns) * 1e-9, TEXT[code]);
 }
 
+/* The scale as its plug lets it through. */
+static double plugged(struct model *m, const struct vars *v)
+{
+    if (!v->scale_unplugged && m->unplugged)
+        m->missed = round(v->scale_phase - m->phase);
+    if (!v->scale_unplugged)
+        m->phase = v->scale_phase - m->missed;
+    m->unplugged = v->scale_unplugged;
+    return m->phase;
+}
+
 static int sample(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -179,7 +197,8 @@ static int sample(struct fmu *f)
                                      .target = v->target, .volts = v->adc};
     const enum sequence_code code = m->chip.sequence.code;
     m->chip.config.sequence.law = law_of(v);
-    const enum scale_status status = msp430_sample(&m->chip, v->scale_phase, &pins, m->instant);
+    const enum scale_status status = msp430_sample(&m->chip, plugged(m, v), &pins,
+                                                   m->instant);
     if (status == SCALE_TOO_FAST)
         return fmu_fail(f, "scale_phase = %.17g: more than one edge per clock since %.17g",
                         v->scale_phase, m->chip.scale.to);

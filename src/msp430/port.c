@@ -112,6 +112,7 @@ int port_go(struct port *p, bool line_a, bool line_b)
     case PORT_COUNT:
         p->counter = (uint16_t)(p->counter + p->step);
         p->served++;
+        p->latest = p->source + 1;
         p->turned += p->step != p->moved;
         return go_to(p, PORT_COUNT_2, MEMORY);
     case PORT_COUNT_2:
@@ -122,6 +123,7 @@ int port_go(struct port *p, bool line_a, bool line_b)
         return go_to(p, PORT_MARK, MEMORY);
     case PORT_MARK:
         p->zeroed++;
+        p->latest = p->source + 1;
         return leave(p);
     case PORT_WIPE:
         wipe(p);

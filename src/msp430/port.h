@@ -44,6 +44,7 @@ struct port {
     uint16_t counter;           /* wMCounter */
     uint16_t counter_2;         /* wSt */
     int64_t  served;            /* encoder edges counted, either way */
+    int      latest;            /* number of the latest interrupt served, 1 .. 5; 0: none yet */
     int64_t  lost;              /* edges whose flag was up already, or was cleared unserved */
     int64_t  turned;            /* edges counted the wrong way round */
     int64_t  zeroed;            /* home edges served */
