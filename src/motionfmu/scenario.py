@@ -224,12 +224,16 @@ def _first(error: ValidationError, file: Path, lines: Lines) -> str:
     if found["type"] == "missing" and len(place) == 1:
         return f"{file}: {place[0]} is missing"
     table, key = _place(place)
+    if found["type"] == "missing" and isinstance(found["loc"][-1], int):
+        what, few = ".".join(place[:-1]), list(found["input"])
+        return f"{file}:{lines.of(table, key)}: {what} = {few!r}: too few values"
     if found["type"] == "missing":
         return f"{file}:{lines.of(table)}: {place[-1]} is missing"
     name = ".".join(place[1:] if place[0] == "set" else place)
     if found["type"] == "extra_forbidden":
         return f"{file}:{lines.of(table, key)}: unknown key {place[-1]!r}"
     shown = found["input"] if not isinstance(found["input"], dict) else "..."
+    shown = list(shown) if isinstance(shown, tuple) else shown
     return f"{file}:{lines.of(table, key)}: {name} = {shown!r}: {found['msg'].lower()}"
 
 
