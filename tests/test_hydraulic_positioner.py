@@ -80,7 +80,9 @@ SPOILT: list[tuple[str, dict[str, Any], set[str]]] = [
 ]
 
 
-@pytest.mark.parametrize(("name", "values", "checks"), SPOILT, ids=lambda x: str(x)[:40])
+@pytest.mark.parametrize(
+    ("name", "values", "checks"), SPOILT, ids=[f"{name}-{next(iter(v))}" for name, v, _ in SPOILT]
+)
 def test_a_verdict_fails_where_it_should(
     name: str, values: dict[str, Any], checks: set[str]
 ) -> None:
