@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from motionfmu.errors import InputError
 from motionfmu.freq.bench import Bench, Setup
-from motionfmu.freq.response import gentle, ramp
+from motionfmu.freq.response import fastest, gentle, ramp
 from motionfmu.linear import AxisModel
 from motionfmu.linear.block import Sampled
 from motionfmu.linear.loops import Limit, begin, boundary, is_whole, largest_gain, with_gain
@@ -62,7 +62,8 @@ def usual_kick(axis: AxisModel, at: str, cut: tuple[str, ...] = ()) -> float:
     Returns
     -------
     float
-        [unit of the input]; 1 if nothing rounds.
+        [unit of the input]; 1 if nothing rounds. An input that follows no faster than some speed
+        gets less, so that it follows the ringing too.
     """
     component, _, variable = at.partition(".")
     grains = {
@@ -82,7 +83,10 @@ def usual_kick(axis: AxisModel, at: str, cut: tuple[str, ...] = ()) -> float:
             x = system.A @ x + system.B
         if 0.0 < top < math.inf:
             wanted.append(_GRAINS * grain / top)
-    return max(wanted, default=0.0) or 1.0
+    kick, omega = max(wanted, default=0.0) or 1.0, math.nan
+    if fastest(axis, at) < math.inf:
+        omega = largest_gain(axis, at, cut).omega
+    return min(kick, fastest(axis, at) / (_CAP * omega)) if omega > 0.0 else kick
 
 
 def ringing(setup: Setup, trial: Trial, omega: float) -> tuple[float, float]:
@@ -119,7 +123,10 @@ def ringing(setup: Setup, trial: Trial, omega: float) -> tuple[float, float]:
     lead = cycle * trial.cycles // 2
     way = gentle(ramp(bench, name) * step, lead, lead + cycle * trial.cycles)
     added = setup.gains.get(name, 1.0) * way[:, None]
-    added[lead:] += trial.kick
+    rise = math.ceil(abs(trial.kick) / (fastest(setup.axis, name) * step))
+    added[lead:, 0] += trial.kick * np.minimum(
+        np.arange(1, len(added) - lead + 1) / max(rise, 1), 1.0
+    )
     count = iter(range(len(added)))
     far = _RUNAWAY * abs(trial.kick) + abs(way[-1] - way[-2]) / step
 

@@ -11,10 +11,14 @@ from numpy.typing import NDArray
 from motionfmu.errors import InputError
 from motionfmu.freq.bench import Bench, Setup
 from motionfmu.freq.excitation import Excitation, sine
+from motionfmu.linear import AxisModel
+from motionfmu.linear.block import Sampled
 from motionfmu.linear.margins import moving
 from motionfmu.linear.plant import Point
 
 Array = NDArray[np.float64]
+# Share of the speed that an input follows with which it is moved.
+_FOLLOWED = 0.8
 
 
 @dataclass(frozen=True)
@@ -78,8 +82,46 @@ def gentle(rate: float, lead: int, steps: int) -> Array:
     return found
 
 
+def fastest(axis: AxisModel, name: str) -> float:
+    """Speed with which an input may be moved.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    name : str
+        ``component.variable``.
+
+    Returns
+    -------
+    float
+        [unit of the input/s]: most of what its FMU follows; infinite if its law says none.
+    """
+    component, _, variable = name.partition(".")
+    block = axis.blocks[component]
+    found = block.speed.get(variable, math.inf) if isinstance(block, Sampled) else math.inf
+    return _FOLLOWED * found
+
+
+def _held(signal: Array, hold: int, fastest: float) -> Array:
+    """A value per step.
+
+    Held from sample to sample; where an input follows no jump, on a straight line from the sample
+    before, and so small that it follows.
+    """
+    if not fastest < math.inf:
+        return np.repeat(signal, hold)
+    way = float(np.abs(np.diff(signal, prepend=signal[-1])).max()) / hold
+    factor = min(1.0, fastest / way) if way > 0.0 else 1.0
+    place = np.arange(len(signal) * hold) / hold
+    known = np.arange(len(signal) + 1.0), np.append(signal, signal[0])
+    return factor * np.interp(place, *known)
+
+
 def measure(setup: Setup, excitation: Excitation) -> Response:
     """Excite the first input and compare the outputs with it.
+
+    An input that cannot follow jumps is moved on straight lines from sample to sample, and less far
+    where that is too fast.
 
     Where the operating point has a speed and the input's wire comes from the plant, a ramp is
     added too, so that the FMUs move at that speed; straight drifts are taken off the outputs,
@@ -106,7 +148,8 @@ def measure(setup: Setup, excitation: Excitation) -> Response:
     hold = period_ns // bench.step_ns
     n = len(excitation.signal)
     repeats = excitation.settle + excitation.measure
-    one = np.repeat(np.tile(excitation.signal, repeats), hold)
+    speed = fastest(setup.axis, setup.inputs[0]) * bench.step_ns * 1e-9
+    one = _held(np.tile(excitation.signal, repeats), hold, speed)
     added = np.zeros((len(one), len(setup.inputs)))
     added[:, 0] = one
     slope = ramp(bench, setup.inputs[0]) * bench.step_ns * 1e-9

@@ -15,6 +15,7 @@ from motionfmu.freq.response import Response, measured_loop, settling
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit, feedbacks, largest_gain
 from motionfmu.linear.margins import Margins, margins
+from motionfmu.linear.opened import worst
 from motionfmu.linear.wiring import Port
 
 # Frequencies measured, samples of a period, periods until the start has died away.
@@ -68,7 +69,7 @@ class Asked:
     gains : dict
         Parameter whose limit is wanted, by the input of its loop.
     simulate : bool
-        Run the FMUs too.
+        Run the FMUs too, where they do what the model does.
     kick : float or None
         Step for ringing, in the unit of the input; None: so small that its size does not matter.
     progress : callable
@@ -134,7 +135,7 @@ def _one(
     kick = usual_kick(axis, at, cut) if asked.kick is None else asked.kick
     found = margins(loop)
     ringing, response = None, None
-    if asked.simulate:
+    if asked.simulate and not worst(axis):
         if found.stable:
             response = _measured(axis, which, found, kick)
         progress(0.4)

@@ -12,12 +12,13 @@ from motionfmu.errors import InputError
 from motionfmu.linear import law
 from motionfmu.linear.block import Block
 from motionfmu.linear.form import Gain
+from motionfmu.linear.given import Values
 from motionfmu.linear.plant import Linearised, Point
 from motionfmu.linear.systems import delayed, replaced
 from motionfmu.linear.wiring import Net, Port, period_of
 from motionfmu.modelica.ode import Ode
 from motionfmu.run import Options, Scenario, load
-from motionfmu.system import System
+from motionfmu.system import Wire
 from motionfmu.values import settings
 
 
@@ -334,41 +335,6 @@ def model(
     return _build(loaded, axis, dict(at or {}), dict(set or {}), None)
 
 
-class _Values(Mapping[str, Any]):
-    """Values of one axis of one component, asked for one by one."""
-
-    def __init__(self, system: System, scenario: Scenario, component: str, axis: int) -> None:
-        self._ports = scenario.resolver.ports[component]
-        self._axis, self._component = axis, component
-        self.given = {s.end.port.name: s.values for s in system.settings if self._mine(s.end)}
-        self.given |= {s.end.port.name: s.values for s in system.stimuli if self._mine(s.end)}
-        self.wired: dict[str, Any] = {}  # functions that give the value at the other end
-
-    def _mine(self, end: Any) -> bool:
-        return bool(end.component == self._component)
-
-    def __getitem__(self, name: str) -> Any:
-        port = self._ports[name]
-        if name in self.wired:
-            return self.wired[name]()
-        if name in self.given:
-            found = self.given[name]
-        elif port.type == "String":
-            found = (port.start or "",)
-        else:
-            kind: Any = {"Float64": float, "Int32": int, "Boolean": "true".__eq__}[port.type]
-            found = tuple(kind(x) for x in (port.start or "").split())
-        if not found:
-            raise KeyError(name)
-        return found[0] if not port.shape else found[self._axis - 1]
-
-    def __iter__(self) -> Any:
-        return iter(self._ports)
-
-    def __len__(self) -> int:
-        return len(self._ports)
-
-
 def _build(
     scenario: Scenario,
     axis: int,
@@ -384,7 +350,7 @@ def _build(
         resolved = replace(before._cache["system"], settings=given)
     components = resolved.components
     said = {c: law.carried(f) for c, f in components.items()}
-    every = {c: _Values(resolved, scenario, c, axis) for c in components}
+    every = {c: Values(resolved, scenario, c, axis) for c in components}
     _check(scenario, axis, at, every)
     for name, value in set_.items():
         if isinstance(value, Gain):
@@ -397,15 +363,17 @@ def _build(
         )
     blocks: dict[str, Block] = {}
     points: dict[str, Point] = {}
-    for c, fmu in components.items():
+    # plants first: a law may ask for its outputs at their point
+    for c in sorted(components, key=lambda c: isinstance(said[c], law.Law)):
         own = said[c]
         try:
             if isinstance(own, law.Law):
-                blocks[c] = law.block(own, every[c])
+                blocks[c] = law.block(own, every[c], _fed(resolved.wires, c, points))
             elif own is not None:
-                blocks[c], points[c] = _plant(c, fmu, (at, every[c]), before)
+                blocks[c], points[c] = _plant(c, components[c], (at, every[c]), before)
         except ValueError as error:
             raise InputError(f"{scenario.document.file}: {c}: {error}") from None
+    blocks = {c: blocks[c] for c in components if c in blocks}
     joined = {}
     for w in resolved.wires:
         target = w.target.component, w.target.port.name
@@ -427,11 +395,20 @@ def _build(
     )
 
 
+def _fed(wires: Iterable[Wire], component: str, points: Mapping[str, Point]) -> dict[str, float]:
+    """Outputs of a component as the operating points of the plants have them."""
+    found = {}
+    for w in wires:
+        if w.source.component == component and w.target.component in points:
+            found[w.source.port.name] = points[w.target.component].values[w.target.port.name]
+    return found
+
+
 def _keys(
     blocks: Mapping[str, Block],
     components: Mapping[str, str],
     at: Mapping[str, float],
-    every: Mapping[str, _Values],
+    every: Mapping[str, Values],
 ) -> dict[str, Any]:
     return {c: _key(c, components[c], at, every[c]) for c in blocks if _is_plant(components[c])}
 
@@ -440,7 +417,7 @@ def _is_plant(fmu: str) -> bool:
     return isinstance(law.carried(fmu), Ode)
 
 
-def _key(component: str, fmu: str, at: Mapping[str, float], own: _Values) -> Any:
+def _key(component: str, fmu: str, at: Mapping[str, float], own: Values) -> Any:
     names = [d.name for d in equation(fmu).ode.parameters]
     asked = sorted((n, v) for n, v in at.items() if n.startswith(f"{component}."))
     return fmu, asked, own["micro_step"], [float(own[n]) for n in names]
@@ -449,7 +426,7 @@ def _key(component: str, fmu: str, at: Mapping[str, float], own: _Values) -> Any
 def _plant(
     component: str,
     fmu: str,
-    given: tuple[Mapping[str, float], _Values],
+    given: tuple[Mapping[str, float], Values],
     before: AxisModel | None,
 ) -> tuple[Block, Point]:
     """A plant about its point; the one of an earlier model if nothing of it has changed."""
@@ -469,7 +446,7 @@ def _plant(
     return parts.block(p, point, float(own["micro_step"])), point
 
 
-def _constant(said: Any, own: _Values, name: str) -> Any:
+def _constant(said: Any, own: Values, name: str) -> Any:
     found = law.constant(said, own, name.partition(".")[2]) if isinstance(said, law.Law) else None
     if found is None:
         raise ValueError(f"it depends on {name}, of which no law says a value")
@@ -477,7 +454,7 @@ def _constant(said: Any, own: _Values, name: str) -> Any:
 
 
 def _check(
-    scenario: Scenario, axis: int, at: Mapping[str, float], every: Mapping[str, _Values]
+    scenario: Scenario, axis: int, at: Mapping[str, float], every: Mapping[str, Values]
 ) -> None:
     for c, own in every.items():
         switch = scenario.resolver.ports[c].get("active")

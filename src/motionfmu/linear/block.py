@@ -32,7 +32,8 @@ class Sampled:
     """A sampled law: reads at k T, shows at (k + 1) T.
 
     The input vector is ``inputs`` and then ``commands``. At an instant, from input u and state x:
-    [next x; outputs; early] = law [x; u].
+    [next x; outputs; early] = law [x; u]. A law may change from instant to instant, and begins
+    again after a cycle of them.
 
     Attributes
     ----------
@@ -42,12 +43,15 @@ class Sampled:
         What is kept; shown one period later; shown at the next communication point; shown at once.
     grid_ns : int
         Sampling period T [ns].
-    law : ndarray, shape (n_states + n_outputs + n_early, n_states + n_inputs + n_commands)
-        Objects if some elements are expressions of gains.
+    laws : tuple of ndarray
+        One for each instant of the cycle, shape (n_states + n_outputs + n_early, n_states +
+        n_inputs + n_commands). Objects if some elements are expressions of gains.
     now : ndarray, shape (n_direct, n_commands)
         Outputs that follow the commands at once.
     grain : dict
         Rounding step of ports, in their units.
+    speed : dict
+        Fastest change that an input can follow, in its unit per second.
     """
 
     inputs: tuple[str, ...]
@@ -57,9 +61,20 @@ class Sampled:
     early: tuple[str, ...]
     direct: tuple[str, ...]
     grid_ns: int
-    law: Matrix
+    laws: tuple[Matrix, ...]
     now: Matrix
     grain: dict[str, float] = field(default_factory=dict)
+    speed: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def cycle_ns(self) -> int:
+        """Time after which its laws begin again [ns]."""
+        return self.grid_ns * len(self.laws)
+
+    @property
+    def pattern(self) -> NDArray[np.bool_]:
+        """Which elements of the law are not zero at some instant."""
+        return np.any([nonzero(m) for m in self.laws], axis=0)
 
     @property
     def memory(self) -> tuple[str, ...]:
@@ -143,7 +158,8 @@ class Sampled:
             if instant > start:
                 work[n : n + m] = work[len(self.memory) :]
             if instant < stop:
-                found = self.law @ np.vstack([work[:n], u])
+                law = self.laws[instant // self.grid_ns % len(self.laws)]
+                found = law @ np.vstack([work[:n], u])
                 work[:n] = found[:n]
                 work[len(self.memory) :] = found[n : n + m]
                 work[n + m : len(self.memory)] = found[n + m :]
@@ -173,6 +189,11 @@ class Plant:
     step: tuple[Matrix, Matrix]
     show: tuple[Matrix, Matrix]
     commands: tuple[str, ...] = ()
+
+    @property
+    def cycle_ns(self) -> int:
+        """Every micro step is the same [ns]."""
+        return self.grid_ns
 
     @property
     def memory(self) -> tuple[str, ...]:
@@ -261,7 +282,7 @@ def reaches(block: Block) -> NDArray[np.bool_]:
         c, d = (nonzero(m) for m in block.show)
     else:
         n, m = len(block.states), len(block.outputs) + len(block.early)
-        law = nonzero(block.law)
+        law = block.pattern
         a, b, c, d = law[:n, :n], law[:n, n:], law[n : n + m, :n], law[n : n + m, n:]
         c = np.vstack([c, np.zeros((len(block.direct), n), dtype=bool)])
         side = np.zeros((len(block.direct), len(block.inputs)), dtype=bool)

@@ -153,7 +153,7 @@ def _bit(value: float, place: float) -> int:
     return int(value) >> int(place) & 1
 
 
-_KNOWN: dict[str, Any] = {"pi": math.pi, "bit": _bit, "true": True, "false": False}
+_KNOWN: dict[str, Any] = {"pi": math.pi, "bit": _bit, "round": round, "true": True, "false": False}
 
 
 def evaluate(text: str, names: Mapping[str, Any]) -> Quantity:
@@ -162,8 +162,8 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Quantity:
     Parameters
     ----------
     text : str
-        Numbers, names, ``+ - * / ** %``, comparisons, ``a if b else c``, ``and or not``, ``pi``
-        and ``bit(value, place)``.
+        Numbers, names, ``+ - * / ** %``, comparisons, ``a if b else c``, ``and or not``, ``pi``,
+        ``round(value)`` and ``bit(value, place)``.
     names : mapping
         Number or `Form` by name; asked only for what is used.
 

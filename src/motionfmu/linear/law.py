@@ -3,6 +3,7 @@
 import functools
 import tomllib
 import zipfile
+from collections import ChainMap
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -18,6 +19,8 @@ from motionfmu.pack import EXTRA
 from motionfmu.system import nanoseconds
 
 LAW = "linear.toml"
+# Decimal periods are not exact in binary: a quotient is off by far less than this share.
+_WHOLE = 1e-9
 
 
 class Law(BaseModel):
@@ -27,14 +30,19 @@ class Law(BaseModel):
     ----------
     period : str
         Sampling period [s].
+    cycle : str
+        Instants after which the law begins again.
     inputs, commands : list of str
         Ports that move; signals that come in from the side.
     let, state, output, early, direct, constant, grain, gain, limit, still, refuse : dict
         See src/motionfmu/linear/README.md.
+    point, speed, worst : dict
+        The same.
     """
 
     model_config = ConfigDict(extra="forbid", strict=True)
     period: str
+    cycle: str = "1"
     inputs: list[str]
     commands: list[str] = Field(default_factory=list)
     let: dict[str, str] = Field(default_factory=dict)
@@ -48,6 +56,13 @@ class Law(BaseModel):
     limit: dict[str, str] = Field(default_factory=dict)
     still: dict[str, bool | int | float | str] = Field(default_factory=dict)
     refuse: dict[str, str] = Field(default_factory=dict)
+    point: dict[str, str] = Field(default_factory=dict)
+    speed: dict[str, str] = Field(default_factory=dict)
+    worst: dict[str, str] = Field(default_factory=dict)
+
+
+class Refused(ValueError):
+    """A law does not hold for the values given."""
 
 
 def parse(text: str, file: str = LAW) -> Law:
@@ -128,7 +143,7 @@ class _Names(Mapping[str, Any]):
         return sum(1 for _ in self)
 
 
-def block(law: Law, values: Mapping[str, Any]) -> Sampled:
+def block(law: Law, values: Mapping[str, Any], point: Mapping[str, float] | None = None) -> Sampled:
     """Make the block of one axis.
 
     Parameters
@@ -136,6 +151,8 @@ def block(law: Law, values: Mapping[str, Any]) -> Sampled:
     law : Law
     values : mapping
         Parameters and inputs that stay, of this axis, by name.
+    point : mapping, optional
+        Outputs at the operating point; else 0.
 
     Returns
     -------
@@ -143,22 +160,21 @@ def block(law: Law, values: Mapping[str, Any]) -> Sampled:
 
     Raises
     ------
+    Refused
+        The law refuses the values.
     ValueError
-        A formula is wrong, or not linear, or the law refuses the values.
+        A formula is wrong, or not linear.
     """
+    at = {name: (point or {}).get(output, 0.0) for name, output in law.point.items()}
+    given = ChainMap(dict(at), values)  # type: ignore[arg-type]
     for formula, reason in law.refuse.items():
-        if number(law, values, formula):
-            raise ValueError(reason)
-    moving = [*law.state, *law.inputs, *law.commands]
-    unit = np.eye(len(moving))
-    names = _Names(law, values, {m: Form(row) for m, row in zip(moving, unit, strict=True)})
-    later = [*law.state.items(), *law.output.items(), *law.early.items()]
-    rows = [_row(text, names, len(moving)) for _, text in later]
-    now = [_row(text, names, len(moving)) for text in law.direct.values()]
-    first = len(moving) - len(law.commands)
-    for name, row in zip(law.direct, now, strict=True):
-        if row[:first].any():
-            raise ValueError(f"{name} is shown at once and may depend on commands only")
+        if number(law, given, formula):
+            raise Refused(reason)
+    count = number(law, given, law.cycle)
+    if not (round(count) >= 1 and abs(count - round(count)) <= _WHOLE * count):
+        raise ValueError(f"cycle: {law.cycle!r} is {count:g}, a whole number is wanted")
+    made = [_instant(law, given, (k, round(count))) for k in range(round(count))]
+    nothing = _Names(law, given, {})
     return Sampled(
         inputs=tuple(law.inputs),
         commands=tuple(law.commands),
@@ -166,11 +182,32 @@ def block(law: Law, values: Mapping[str, Any]) -> Sampled:
         outputs=tuple(law.output),
         early=tuple(law.early),
         direct=tuple(law.direct),
-        grid_ns=nanoseconds(law.period, float(evaluate(law.period, names))),  # type: ignore[arg-type]
-        law=np.vstack([np.zeros((0, len(moving))), *rows]),
-        now=np.vstack([np.zeros((0, len(moving))), *now])[:, first:],
-        grain={n: float(evaluate(text, names)) for n, text in law.grain.items()},  # type: ignore[arg-type]
+        grid_ns=nanoseconds(law.period, number(law, given, law.period)),
+        laws=tuple(m for m, _ in made),
+        now=made[0][1],
+        grain={n: float(evaluate(text, nothing)) for n, text in law.grain.items()},  # type: ignore[arg-type]
+        speed={n: float(evaluate(text, nothing)) for n, text in law.speed.items()},  # type: ignore[arg-type]
     )
+
+
+def _instant(
+    law: Law, given: Mapping[str, Any], place: tuple[int, int]
+) -> tuple[np.ndarray[Any, np.dtype[np.float64]], np.ndarray[Any, np.dtype[np.float64]]]:
+    """The law at one instant of its cycle, and what it shows at once."""
+    moving = [*law.state, *law.inputs, *law.commands]
+    known: dict[str, Quantity] = dict(zip(("instant", "instants"), place, strict=True))
+    for name, unit in zip(moving, np.eye(len(moving)), strict=True):
+        known[name] = Form(unit)
+    names = _Names(law, given, known)
+    later = [*law.state.items(), *law.output.items(), *law.early.items()]
+    rows = [_row(text, names, len(moving)) for _, text in later]
+    now = [_row(text, names, len(moving)) for text in law.direct.values()]
+    first = len(moving) - len(law.commands)
+    for name, row in zip(law.direct, now, strict=True):
+        if row[:first].any():
+            raise ValueError(f"{name} is shown at once and may depend on commands only")
+    empty = np.zeros((0, len(moving)))
+    return np.vstack([empty, *rows]), np.vstack([empty, *now])[:, first:]
 
 
 def _row(text: str, names: _Names, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:

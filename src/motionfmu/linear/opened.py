@@ -97,3 +97,25 @@ def listed(axis: AxisModel, kind: str) -> list[str]:
         if isinstance(own, law.Law):
             found += [f"{component}.{n}" for n, k in own.gain.items() if k == kind]
     return found
+
+
+def worst(axis: AxisModel) -> list[str]:
+    """Where the model is the worst that an FMU can become, not what it does.
+
+    Parameters
+    ----------
+    axis : AxisModel
+
+    Returns
+    -------
+    list of str
+        ``component: what``; empty if the running FMUs do what the model does.
+    """
+    found = []
+    for component in axis.blocks:
+        own = law.carried(axis.scenario.document.body.component[component])
+        if isinstance(own, law.Law):
+            values = axis.values(component)
+            told = [t for formula, t in own.worst.items() if law.number(own, values, formula)]
+            found += [f"{component}: {t}" for t in told]
+    return found

@@ -1,11 +1,14 @@
 """A plant's equation about an operating point, on its micro-grid."""
 
+import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
+from scipy.optimize import least_squares
 
 from motionfmu.linear.block import Matrix, Plant
 from motionfmu.modelica.ode import Ode
@@ -19,7 +22,9 @@ _UNIFORM = 1e-9
 _LASTING = 1e-6
 # Relative distance at which both sides of a point are looked at.
 _HAIR = 1e-13
-_NEWTON_STEPS, _SHORTEST = 60, 1e-6
+_NEWTON_STEPS, _SHORTEST, _LEVENBERG_STEPS = 60, 1e-6, 200
+# It leads nowhere when so many steps, one after the other, were cut to less than this share.
+_CREEPING, _SHORT = 5, 1e-3
 
 
 def _norm(v: Matrix) -> float:
@@ -47,6 +52,48 @@ class Point:
     values: dict[str, float]
     stated: dict[str, float]
     rates: dict[str, float]
+
+
+_Function = Callable[[Matrix], Matrix]
+
+
+def _newton(rest: _Function, slope: _Function, start: Matrix, columns: Matrix) -> Matrix:
+    """The shortest step, halved until it leads nearer."""
+    z, found, slow = start, rest(start), 0
+    for _ in range(_NEWTON_STEPS):
+        way = np.zeros(len(z))
+        way[columns] = -np.linalg.pinv(slope(z), rcond=1e-13) @ found
+        length = 1.0
+        while length > _SHORTEST and not _norm(rest(z + length * way)) < _norm(found):
+            length /= 2.0
+        slow = slow + 1 if length < _SHORT else 0
+        if length <= _SHORTEST or slow > _CREEPING:
+            break
+        z = z + length * way
+        found = rest(z)
+    return z
+
+
+def _levenberg(rest: _Function, slope: _Function, start: Matrix, columns: Matrix) -> Matrix:
+    """Each unknown in its own measure: pressures beside strokes, fast states beside slow ones."""
+
+    def whole(part: Matrix) -> Matrix:
+        z = start.copy()
+        z[columns] = part
+        return z
+
+    tight: Any = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
+    square = len(rest(start)) >= len(columns)
+    found = least_squares(
+        lambda part: rest(whole(part)),
+        start[columns],
+        lambda part: slope(whole(part)),
+        x_scale="jac",
+        method="lm" if square else "trf",
+        max_nfev=_LEVENBERG_STEPS,
+        **tight,
+    )
+    return whole(found.x)
 
 
 class Linearised:
@@ -162,11 +209,11 @@ class Linearised:
     def _settle(
         self, begin: tuple[Matrix, Matrix, Matrix], wanted: dict[int, float], free: list[int]
     ) -> tuple[Matrix, Matrix]:
-        """Newton with the shortest step, from the start or from near it."""
+        """Newton with the shortest step, then Levenberg and Marquardt, from or near the start."""
         x0, u0, p = begin
         places, targets = list(wanted), np.array(list(wanted.values()))
         n = len(x0)
-        columns = [*range(n), *(n + k for k in free)]
+        columns = np.array([*range(n), *(n + k for k in free)])
         rates = 1.0 + np.abs(self.matrices(x0, u0, p)[0]).sum(axis=1)
         weights = 1.0 / np.concatenate([rates, np.maximum(np.abs(targets), 1.0)])
 
@@ -174,25 +221,30 @@ class Linearised:
             _, y, change = (np.array(v.full()).ravel() for v in self._values(z[:n], z[n:], p))
             return weights * np.concatenate([change, y[places] - targets])
 
-        for guess in self._guesses((x0, u0, p), places, targets):
-            z = np.concatenate([guess, u0])
-            found = rest(z)
-            for _ in range(_NEWTON_STEPS):
-                of_change, of_y = (np.array(m.full()) for m in self._slopes(z[:n], z[n:], p))
-                slope = weights[:, None] * np.vstack([of_change, of_y[places]])
-                way = np.zeros(len(z))
-                way[columns] = -np.linalg.pinv(slope[:, columns], rcond=1e-13) @ found
-                length = 1.0
-                while length > _SHORTEST and not _norm(rest(z + length * way)) < _norm(found):
-                    length /= 2.0
-                if length <= _SHORTEST:
-                    break
-                z = z + length * way
-                found = rest(z)
-            if _norm(found) < _UNIFORM and self._lasts(z[:n], z[n:], p, weights[:n]):
+        def slope(z: Matrix) -> Matrix:
+            of_change, of_y = (np.array(m.full()) for m in self._slopes(z[:n], z[n:], p))
+            found: Matrix = (weights[:, None] * np.vstack([of_change, of_y[places]]))[:, columns]
+            return found
+
+        guesses = self._guesses((x0, u0, p), places, targets)
+        for way, guess in itertools.product((_newton, _levenberg), guesses):
+            z = way(rest, slope, np.concatenate([guess, u0]), columns)
+            if not _norm(rest(z)) < _UNIFORM:
+                continue
+            z = self._back(z, x0, rest)
+            if self._lasts(z[:n], z[n:], p, weights[:n]):
                 return z[:n], z[n:]
         names = [f"{self.ode.outputs[k].name} = {v:g}" for k, v in wanted.items()]
         raise ValueError(f"{self.ode.name} has no uniform motion with {', '.join(names)}")
+
+    def _back(self, z: Matrix, begin: Matrix, rest: _Function) -> Matrix:
+        """A position on which the motion does not depend returns to where it was."""
+        for k in range(len(self.ode.states)):
+            moved = z.copy()
+            moved[k] = begin[k]
+            if _norm(rest(moved)) < _UNIFORM:
+                z = moved
+        return z
 
     def _lasts(self, x: Matrix, u: Matrix, p: Matrix, weights: Matrix) -> bool:
         """Whether the motion goes on so: in a gap it ends where the sides meet."""

@@ -122,7 +122,7 @@ def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
     ValueError
         The grids have no common period within reason.
     """
-    grids = [net.step_ns, *(b.grid_ns for b in net.blocks.values())]
+    grids = [net.step_ns, *(b.cycle_ns for b in net.blocks.values())]
     period = math.lcm(*grids)
     if period // net.step_ns > STEPS_MAX:
         told = ", ".join(f"{g * 1e-9:g} s" for g in sorted(set(grids)))
@@ -193,7 +193,9 @@ def period_of(net: Net, entries: list[Port], exits: list[Port], file: Path) -> P
 
 def _kind(net: Net) -> np.dtype[Any]:
     """Objects where a law holds expressions of gains."""
-    laws = [b.show[0] if isinstance(b, Plant) else b.law for b in net.blocks.values()]
+    laws = [
+        m for b in net.blocks.values() for m in (b.show[:1] if isinstance(b, Plant) else b.laws)
+    ]
     return np.result_type(float, *laws)
 
 

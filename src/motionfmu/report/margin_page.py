@@ -12,6 +12,7 @@ from motionfmu.freq.study import LoopStudy
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit
 from motionfmu.linear.margins import response
+from motionfmu.linear.opened import worst
 from motionfmu.report.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.numbers import figure
 from motionfmu.report.sheet import Frame, Sheet
@@ -41,6 +42,10 @@ def page_text(axis: AxisModel, studies: Sequence[LoopStudy]) -> str:
     str
     """
     page = Sheet()
+    if told := worst(axis):
+        note = "The model is the worst that the FMUs can become; they are not run."
+        rows = [[escape(text)] for text in told]
+        page.section("Worst case", note, table(["taken"], rows, 1))
     for k, study in enumerate(studies):
         _add(page, study, f"loop{k}")
     page.section("Operating point", _point_note(axis), _points(axis))
@@ -90,6 +95,7 @@ def numbers(axis: AxisModel, studies: Sequence[LoopStudy]) -> dict[str, Any]:
         "set": dict(axis.set),
         "operating_point": points,
         "left_out": list(axis.left_out),
+        "worst": worst(axis),
         "loops": loops,
     }
     found: dict[str, Any] = _plain(told)

@@ -109,8 +109,8 @@ def _moves(axis: AxisModel, name: str) -> bool:
         return False
     opened = axis.changed({name: Gain(float(value), ca.SX.sym("g"), value)})
     for block in opened.blocks.values():
-        if isinstance(block, Sampled) and block.law.dtype == object:
-            elements: list[Any] = block.law.ravel().tolist()
+        if isinstance(block, Sampled):
+            elements: list[Any] = [e for m in block.laws for e in m.ravel().tolist()]
             symbolic = [e for e in elements if isinstance(e, ca.SX)]
             if any(not e.is_constant() for e in symbolic):
                 return True
@@ -204,8 +204,7 @@ def _acts(axis: AxisModel, component: str, name: str) -> bool:
     assert isinstance(block, Sampled)
     if name not in block.outputs:
         return name in block.ports
-    row = block.law[len(block.states) + block.outputs.index(name)]
-    return bool(nonzero(row[None, :]).any())
+    return bool(block.pattern[len(block.states) + block.outputs.index(name)].any())
 
 
 def operating_point(axis: AxisModel, base: Result) -> dict[str, float]:

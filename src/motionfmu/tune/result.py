@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.errors import InputError
-from motionfmu.linear.block import Plant, Sampled, nonzero
+from motionfmu.linear.block import Plant, Sampled
 from motionfmu.run import Result, Scenario, load
 from motionfmu.tune.curve import margin
 from motionfmu.tune.path import PathError
@@ -334,7 +334,7 @@ def assumptions(study: Study) -> list[str]:
 def _acts(block: Sampled) -> bool:
     """Whether an output moves at all."""
     first = len(block.states)
-    return bool(nonzero(block.law[first : first + len(block.outputs)]).any())
+    return bool(block.pattern[first : first + len(block.outputs)].any())
 
 
 def plant_text(plant: Mapping[str, float]) -> str:
