@@ -24,7 +24,8 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     forward: Annotated[bool, typer.Option("--feed-forward", help="Feed-forward too.")] = False,
     equal: Annotated[bool, typer.Option("--equal", help="The same gains on all axes.")] = False,
     cost: Annotated[
-        str | None, typer.Option(help="contour_rms, contour_max, ise, iae or itae.")
+        str | None,
+        typer.Option(help="contour_rms, contour_max, error_rms, error_max, ise, iae or itae."),
     ] = None,
     set_: Set = [],  # noqa: B006
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
@@ -52,10 +53,10 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
         text = json.dumps(tuned.numbers(), indent=1, allow_nan=False)
         (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
     table = Table(box=None, header_style="dim")
-    for heading in ("plant", "contour error", "before", "after", "by the model"):
+    for heading in ("plant", tuned.study.path.what, "before", "after", "by the model"):
         table.add_column(heading)
     for before, after in zip(tuned.before, tuned.after, strict=True):
-        old, new = before.result.contour().error, after.result.contour().error
+        old, new = before.fmus, after.fmus
         for what, a, b, c in (
             ("rms", old.rms, new.rms, after.model.rms),
             ("largest", old.max, new.max, after.model.max),

@@ -13,7 +13,7 @@ from motionfmu.report.packed import packed
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, RAPID, axis, layout
 from motionfmu.report.tables import table
-from motionfmu.tune.problem import CONTOUR
+from motionfmu.tune.problem import ON_PATH
 from motionfmu.tune.result import Run, Tuned, assumptions, plant_text, units_of
 
 BEFORE, AFTER = RAPID, AXES[0]
@@ -44,7 +44,11 @@ def page_text(tuned: Tuned) -> str:
     page.sections.append(_cards(tuned))
     page.section("Gains", "", _gains(tuned))
     note = "The same program, run by the FMUs before and after."
-    page.section("Contour error", note, _runs(tuned) + page.place("error", _errors(tuned), True))
+    page.section(
+        tuned.study.path.what.capitalize(),
+        note,
+        _runs(tuned) + page.place("error", _errors(tuned), True),
+    )
     page.section("Margins and limits", _limits_note(tuned), _limits(tuned))
     note = "Position after a small step of the command, linear model, nominal plant."
     page.section("Step", note, page.place("step", _step(tuned)))
@@ -55,12 +59,13 @@ def page_text(tuned: Tuned) -> str:
 
 
 def _cards(tuned: Tuned) -> str:
-    before, after = tuned.before[0].result.contour().error, tuned.after[0].result.contour().error
+    before, after = tuned.before[0].fmus, tuned.after[0].fmus
+    what = tuned.study.path.what
     least = tuned.margins(tuned.z)
     tight = max(least, key=lambda m: m.sensitivity)
     cards = [
-        ("RMS contour error", length(after.rms), f"before {length(before.rms)}"),
-        ("Largest contour error", length(after.max), f"before {length(before.max)}"),
+        (f"RMS {what}", length(after.rms), f"before {length(before.rms)}"),
+        (f"Largest {what}", length(after.max), f"before {length(before.max)}"),
         ("Largest |1/(1 + L)|", figure(tight.sensitivity), f"axis {tight.axis}, {tight.loop}"),
         ("Stopped by", _short(tuned), ""),
     ]
@@ -105,7 +110,7 @@ def _runs(tuned: Tuned) -> str:
     for before, after in zip(tuned.before, tuned.after, strict=True):
         name = escape(plant_text(before.plant))
         for side, run in (("before", before), ("after", after)):
-            error = run.result.contour().error
+            error = run.fmus
             lengths = (error.rms, run.model.rms, error.max, run.model.max)
             rows.append([name, side, *(length(x) for x in lengths)])
     heads = ["plant", "gains", "RMS", "by the model", "largest", "by the model"]
@@ -117,22 +122,21 @@ def _errors(tuned: Tuned) -> dict[str, Any]:
         ("before", tuned.before[0], BEFORE),
         ("after", tuned.after[0], AFTER),
     )
-    factor, name = unit(max(r.result.contour().error.max for _, r, _ in runs))
+    factor, name = unit(max(r.fmus.max for _, r, _ in runs))
     data = []
     for title, run, colour in runs:
-        contour = run.result.contour()
-        values = contour.track.distance if contour.track.signed is None else contour.track.signed
-        shown = np.where(contour.cutting, values, np.nan) * factor
-        kept = keep_peaks(np.where(contour.cutting, values, 0.0), _BUCKETS)
-        data.append(_line(contour.run.time[kept], shown[kept], title, colour))
-    titles = {"xaxis": axis("Time [s]"), "yaxis": axis(f"Contour error [{name}]")}
+        values = run.fmus.values
+        kept = keep_peaks(np.nan_to_num(values), _BUCKETS)
+        data.append(_line(run.fmus.time[kept], values[kept] * factor, title, colour))
+    what = tuned.study.path.what.capitalize()
+    titles = {"xaxis": axis("Time [s]"), "yaxis": axis(f"{what} [{name}]")}
     return {"data": data, "layout": layout(320, **titles)}
 
 
 def _step(tuned: Tuned) -> dict[str, Any]:
     study, data = tuned.study, []
     part_of = study.parts[0]
-    lag = tuned.before[0].result.contour().lag
+    lag = study.lag
     for title, z, dash in (("before", study.present, "dot"), ("after", tuned.z, "solid")):
         gains = study.gains(z)
         for k, part in part_of.items():
@@ -218,7 +222,7 @@ def _search(tuned: Tuned) -> str:
         )
     else:
         text += " the global search found nothing within the limits."
-    if study.problem.cost in CONTOUR and len(study.plants) > 1:
+    if study.problem.cost in ON_PATH and len(study.plants) > 1:
         text += f" Largest cost of a plant: {tuned.values.worst * factor:.5g} {name}."
     return escape(text)
 

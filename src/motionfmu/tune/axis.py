@@ -97,9 +97,13 @@ class AxisStudy:
     gains : sequence of str
         Parameters, ``component.variable``.
     signals : Signals
+    bent : bool
+        The motion along a path has what the plant's equation has beyond its linear part.
     """
 
-    def __init__(self, axis: AxisModel, gains: Sequence[str], signals: Signals) -> None:
+    def __init__(
+        self, axis: AxisModel, gains: Sequence[str], signals: Signals, bent: bool = True
+    ) -> None:
         symbols = {name: ca.SX.sym(name) for name in gains}
         self.axis = axis
         values = {name: axis.value(name) for name in gains}
@@ -107,7 +111,7 @@ class AxisStudy:
         self._gains = ca.vertcat(*symbols.values())
         self.loops = feedbacks(axis)
         self._loops = {name: self._loop(name, cut) for name, cut in self.loops.items()}
-        wide, self._rests = with_residuals(self.opened)
+        wide, self._rests = with_residuals(self.opened) if bent else (self.opened, ())
         inputs = [signals.command, *(n for r in self._rests for n in r.inputs)]
         shown = [signals.position, *signals.peaks]
         states = [n for r in self._rests for n in r.states]
@@ -155,6 +159,21 @@ class AxisStudy:
         once = np.linalg.solve(np.eye(len(a)) - a, b[:, :1])
         twice = np.linalg.solve(np.eye(len(a)) - a, once)
         return self.period * float(((c[:1] @ twice) / (c[:1] @ once + d[:1, :1]))[0, 0])
+
+    def end(self, gains: Array) -> float:
+        """Position for one of the command, at rest.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (g,)
+
+        Returns
+        -------
+        float
+            [unit of the position]
+        """
+        (a, b, c, d), _ = self._answer.at(gains)
+        return float((c @ np.linalg.solve(np.eye(len(a)) - a, b) + d)[0, 0])
 
     def slowest(self, gains: Array) -> tuple[float, Array]:
         """Slowest time constant of the closed loop, with derivatives.

@@ -10,7 +10,7 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.linear import law
 from motionfmu.linear.axis import AxisModel
-from motionfmu.linear.block import Plant, Sampled, nonzero
+from motionfmu.linear.block import Plant, Sampled, nonzero, reaches
 from motionfmu.linear.form import Gain
 from motionfmu.linear.opened import limit, linearised, listed
 from motionfmu.run import Result, Scenario
@@ -20,6 +20,8 @@ from motionfmu.units import parse
 
 # Without bounds a gain may become this many times as large or as small.
 SPAN = 20.0
+# An output shows a command not more periods late than this.
+_LATE_MAX = 8
 
 
 @dataclass(frozen=True)
@@ -170,20 +172,15 @@ def signals(axis: AxisModel, problem: Problem) -> tuple[Signals, dict[str, float
     Raises
     ------
     InputError
-        There is no [contour] table, or a name is wrong.
+        There is no [contour] table and no command is named, or a name is wrong.
     """
     document = axis.scenario.document
-    contour = document.body.contour
-    if contour is None:
-        raise InputError(f"{document.file}: a tuning needs the signals of a [contour] table")
-    card, _, output = contour.pulses.partition(".")
-    block = axis.blocks.get(card)
-    if not isinstance(block, Sampled) or output not in block.direct:
-        raise document.error(f"{contour.pulses} has no linear law", "contour", "pulses")
-    row = nonzero(block.now)[block.direct.index(output)]
-    command = f"{card}.{block.commands[int(np.argmax(row))]}"
-    if contour.position not in axis.outputs:
-        raise document.error(f"{contour.position} has no linear model", "contour", "position")
+    if problem.command is not None and problem.position is not None:
+        command, position = _followed(axis, problem.command), problem.position
+        if position not in axis.outputs:
+            raise InputError(f"position = {position!r}: no output of the linear model")
+    else:
+        command, position = _of_contour(axis)
     peaks: dict[str, float] = {}
     for component, found in axis.blocks.items():
         own = law.carried(document.body.component[component])
@@ -195,7 +192,73 @@ def signals(axis: AxisModel, problem: Problem) -> tuple[Signals, dict[str, float
         if name not in axis.outputs:
             raise InputError(f"limits.peak.{name} = {value!r}: no output of the linear model")
         peaks[name] = value
-    return Signals(command, contour.position, tuple(peaks)), peaks
+    return Signals(command, position, tuple(peaks)), peaks
+
+
+def _of_contour(axis: AxisModel) -> tuple[str, str]:
+    document = axis.scenario.document
+    contour = document.body.contour
+    if contour is None:
+        raise InputError(
+            f"{document.file}: a tuning needs the signals of a [contour] table, or command and"
+            " position in its tune.toml"
+        )
+    card, _, output = contour.pulses.partition(".")
+    block = axis.blocks.get(card)
+    if not isinstance(block, Sampled) or output not in block.direct:
+        raise document.error(f"{contour.pulses} has no linear law", "contour", "pulses")
+    row = nonzero(block.now)[block.direct.index(output)]
+    if contour.position not in axis.outputs:
+        raise document.error(f"{contour.position} has no linear model", "contour", "position")
+    return f"{card}.{block.commands[int(np.argmax(row))]}", contour.position
+
+
+def _followed(axis: AxisModel, name: str) -> str:
+    """The command that an output shows."""
+    component, _, output = name.partition(".")
+    block = axis.blocks.get(component)
+    if isinstance(block, Sampled) and output in block.ports:
+        own = reaches(block)[block.ports.index(output)]
+        first = len(block.inputs)
+        found = np.flatnonzero(own[first:])
+        if len(found) == 1 and not own[:first].any():
+            return f"{component}.{block.commands[int(found[0])]}"
+    raise InputError(f"command = {name!r}: it shows no command of the linear model")
+
+
+def shown(axis: AxisModel, problem: Problem, command: str) -> int:
+    """Periods after which an output shows the command that the axis follows.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    problem : Problem
+        With a command.
+    command : str
+        Input of the model.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InputError
+        It shows something else than the command.
+    """
+    assert problem.command is not None
+    system = axis.system(command, problem.command)
+    for periods in range(_LATE_MAX):
+        gain = system.D if not periods else system.C @ _power(system.A, periods - 1) @ system.B
+        if abs(float(gain[0, 0]) - 1.0) < 1e-9:
+            return periods
+        if abs(float(gain[0, 0])) > 1e-9:
+            break
+    raise InputError(f"command = {problem.command!r}: it is not the command itself")
+
+
+def _power(a: Any, count: int) -> Any:
+    return np.linalg.matrix_power(a, count)
 
 
 def _acts(axis: AxisModel, component: str, name: str) -> bool:
@@ -222,9 +285,34 @@ def operating_point(axis: AxisModel, base: Result) -> dict[str, float]:
     """
     contour = axis.scenario.document.body.contour
     assert contour is not None
-    component, _, name = contour.position.partition(".")
-    if not isinstance(axis.blocks[component], Plant):
+    if not (speed := speed_output(axis, contour.position)):
         return {}
+    found = base.contour()
+    way = np.linalg.norm(np.diff(found.run.commanded[:, :3], axis=0), axis=1)
+    moving = found.cutting[1:] & (way > 0.0)
+    feed = float(way[moving].sum() / (moving.sum() * np.diff(found.run.time).mean()))  # [mm/s]
+    unit = base.scenario.resolver.end(contour.position, "contour", "position").port.unit or "1"
+    factor = parse("mm").factor / parse(unit).factor
+    return {speed: feed * factor}
+
+
+def speed_output(axis: AxisModel, position: str) -> str:
+    """The output that is the speed of another.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    position : str
+        ``component.variable``.
+
+    Returns
+    -------
+    str
+        Empty if the plant shows none, or if it belongs to no plant.
+    """
+    component, _, name = position.partition(".")
+    if not isinstance(axis.blocks[component], Plant):
+        return ""
     ode = linearised(axis, component)[0].ode
     outputs = [d.name for d in ode.outputs]
     rate = ca.mtimes(ca.jacobian(ode.y[outputs.index(name)], ode.x), ode.xdot)
@@ -233,15 +321,7 @@ def operating_point(axis: AxisModel, base: Result) -> dict[str, float]:
     x, u = draw.normal(size=len(ode.states)), draw.normal(size=len(ode.inputs))
     wanted, shown = (np.asarray(v.full()).ravel() for v in function(x, u, np.array(ode.p0)))
     speeds = [k for k, y in enumerate(shown) if abs(y - wanted[0]) < 1e-9 * abs(wanted[0])]
-    if not speeds:
-        return {}
-    found = base.contour()
-    way = np.linalg.norm(np.diff(found.run.commanded[:, :3], axis=0), axis=1)
-    moving = found.cutting[1:] & (way > 0.0)
-    feed = float(way[moving].sum() / (moving.sum() * np.diff(found.run.time).mean()))  # [mm/s]
-    unit = base.scenario.resolver.end(contour.position, "contour", "position").port.unit or "1"
-    factor = parse("mm").factor / parse(unit).factor
-    return {f"{component}.{outputs[speeds[0]]}": feed * factor}
+    return f"{component}.{outputs[speeds[0]]}" if speeds else ""
 
 
 def variables(axes: Mapping[int, AxisModel], names: list[str], problem: Problem) -> list[Variable]:

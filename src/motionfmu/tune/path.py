@@ -1,4 +1,4 @@
-"""The contour error of a simulated motion, with its derivatives."""
+"""The error of a simulated motion, with its derivatives: of a contour, or of one axis."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -49,7 +49,7 @@ class PathError:
         Parameters
         ----------
         name : str
-            ``contour_rms``, or ``contour_max`` for the norm of order 24.
+            ``..._rms``, or ``..._max`` for the norm of order 24.
 
         Returns
         -------
@@ -57,7 +57,7 @@ class PathError:
             [mm]
         ndarray, shape (count, 3)
         """
-        if name == "contour_rms":
+        if name.endswith("rms"):
             value = max(self.rms, 1e-12)
             return value, self.gap / (value * len(self.gap))
         top = max(self.max, 1e-12)
@@ -66,6 +66,24 @@ class PathError:
         value = top * total ** (1.0 / _ORDER)
         weight = (share ** (_ORDER - 2)) * total ** (1.0 / _ORDER - 1.0) / top
         return value, self.gap * weight[:, None]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a run of the FMUs shows.
+
+    Attributes
+    ----------
+    rms, max : float
+        [mm]
+    time, values : ndarray, shape (n,)
+        [s], [mm]; NaN where it does not count.
+    """
+
+    rms: float
+    max: float
+    time: Array
+    values: Array
 
 
 class PathCost:
@@ -91,6 +109,8 @@ class PathCost:
     pulses : dict
         Pulses put out at the samples, by axis.
     """
+
+    what = "contour error"
 
     def __init__(self, base: Result, period: float) -> None:
         contour = base.contour()
@@ -159,6 +179,23 @@ class PathCost:
         """
         found: Array = changes[:, self._cutting] @ slope[:, axis - 1] * self.factor
         return found
+
+    def measured(self, result: Result) -> Measured:
+        """Contour error of a run.
+
+        Parameters
+        ----------
+        result : Result
+
+        Returns
+        -------
+        Measured
+        """
+        contour = result.contour()
+        track = contour.track
+        values = track.distance if track.signed is None else track.signed
+        shown = np.where(contour.cutting, values, np.nan)
+        return Measured(contour.error.rms, contour.error.max, contour.run.time, shown)
 
 
 def _held(time: Array, shift: float) -> NDArray[np.int64]:

@@ -14,8 +14,10 @@ from motionfmu.toml_lines import Lines
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 # More ranges than this have more corners than a tuning can look at.
 RANGES_MAX = 4
-Cost = Literal["contour_rms", "contour_max", "ise", "iae", "itae"]
+Cost = Literal["contour_rms", "contour_max", "error_rms", "error_max", "ise", "iae", "itae"]
 CONTOUR = ("contour_rms", "contour_max")
+# On the scenario's own way; the others after a step.
+ON_PATH = (*CONTOUR, "error_rms", "error_max")
 
 
 class Margins(BaseModel):
@@ -74,8 +76,14 @@ class Problem(BaseModel):
     axes : str
         ``each`` axis its own gains, or ``equal`` gains.
     cost : str
-        ``contour_rms`` or ``contour_max`` on the scenario's path; ``ise``, ``iae`` or ``itae``
-        after a step.
+        ``contour_rms`` or ``contour_max`` on the scenario's path, ``error_rms`` or ``error_max`` on
+        its move; ``ise``, ``iae`` or ``itae`` after a step.
+    command, position : str or None
+        For a scenario without [contour]: the output that says where the axis is to be, and the one
+        that says where it is, ``component.variable``.
+    trial : dict
+        Least and largest value of a parameter that no linear model knows: looked for by running the
+        FMUs with the gains found.
     bounds : dict
         Least and largest value by gain; else a 20th and 20 times the present one.
     limits : Limits
@@ -96,6 +104,9 @@ class Problem(BaseModel):
     feed_forward: bool = False
     axes: Literal["each", "equal"] = "each"
     cost: Cost = "contour_rms"
+    command: str | None = None
+    position: str | None = None
+    trial: dict[str, tuple[float, float]] = Field(default_factory=dict)
     bounds: dict[str, tuple[float, float]] = Field(default_factory=dict)
     limits: Limits = Limits()
     family: dict[str, tuple[float, float]] = Field(default_factory=dict)
@@ -144,11 +155,17 @@ def problem(values: Mapping[str, Any], lines: Lines | None = None, file: str = "
         given = "" if isinstance(first["input"], dict) else f" = {first['input']!r}"
         text = f"{'.'.join(keys)}{given}: {first['msg'].lower()}"
         raise _located(text, keys, lines, file) from None
-    for table in ("bounds", "family"):
+    for table in ("bounds", "family", "trial"):
         for name, (low, high) in getattr(found, table).items():
             if not low < high:
                 text = f"{table}.{name} = [{low!r}, {high!r}]: the first must be less"
                 raise _located(text, [table, name], lines, file)
+    if len(found.trial) > 1:
+        text = f"trial: {', '.join(found.trial)}: one parameter only"
+        raise _located(text, ["trial"], lines, file)
+    if (found.command is None) != (found.position is None):
+        key = "command" if found.position is None else "position"
+        raise _located(f"{key}: command and position go together", [key], lines, file)
     if len(found.family) > RANGES_MAX:
         text = f"family: {len(found.family)} ranges, not more than {RANGES_MAX}"
         raise _located(text, ["family"], lines, file)
@@ -157,7 +174,7 @@ def problem(values: Mapping[str, Any], lines: Lines | None = None, file: str = "
 
 def _pairs(values: dict[str, Any]) -> dict[str, Any]:
     """TOML has lists where tuples of two numbers are meant."""
-    for table in ("bounds", "family"):
+    for table in ("bounds", "family", "trial"):
         if isinstance(values.get(table), dict):
             values[table] = {
                 k: tuple(v) if isinstance(v, list) else v for k, v in values[table].items()

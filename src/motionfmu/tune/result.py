@@ -11,13 +11,16 @@ import numpy as np
 
 from motionfmu.errors import InputError
 from motionfmu.linear.block import Plant, Sampled
+from motionfmu.linear.opened import worst
 from motionfmu.run import Result, Scenario, load
 from motionfmu.tune.curve import margin
-from motionfmu.tune.path import PathError
-from motionfmu.tune.problem import CONTOUR, Problem, problem
+from motionfmu.tune.move import MoveCost
+from motionfmu.tune.path import Measured, PathError
+from motionfmu.tune.problem import ON_PATH, Problem, problem
 from motionfmu.tune.solve import TOLERANCE, Found, merit, solve
 from motionfmu.tune.steps import Array
 from motionfmu.tune.study import Study, Values
+from motionfmu.tune.trial import Trial, tried
 
 # More registers than this are rounded together, not one by one.
 _ONE_BY_ONE = 4
@@ -34,11 +37,14 @@ class Run:
     result : Result
     model : PathError
         What the tuner's model says of the same.
+    fmus : Measured
+        What the run shows.
     """
 
     plant: dict[str, float]
     result: Result
     model: PathError
+    fmus: Measured
 
 
 @dataclass(frozen=True)
@@ -81,6 +87,8 @@ class Tuned:
         FMUs with the present and the found gains: nominal plant, then, with a family, its worst.
     seconds : float
         Of everything.
+    trial : Trial or None
+        The parameter that was looked for by running the FMUs.
     """
 
     study: Study
@@ -90,11 +98,13 @@ class Tuned:
     before: list[Run] = field(default_factory=list)
     after: list[Run] = field(default_factory=list)
     seconds: float = 0.0
+    trial: Trial | None = None
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Gains as the scenario takes them: a value, or one an axis."""
-        return settings(self.study, self.z)
+        """Gains as the scenario takes them: a value, or one an axis; then what was tried."""
+        found = settings(self.study, self.z)
+        return found | ({self.trial.name: self.trial.value} if self.trial else {})
 
     @property
     def stopped_by(self) -> list[str]:
@@ -110,7 +120,8 @@ class Tuned:
                 text += f" and {len(plants) - 1} more" if len(plants) > 1 else ""
             found.append(text)
         found += self.found.ends
-        return found or [f"no limit: {self.study.problem.cost} has its minimum here"]
+        found = found or [f"no limit: {self.study.problem.cost} has its minimum here"]
+        return found + ([self.trial.stopped_by] if self.trial else [])
 
     def cost(self, z: Array) -> Array:
         """Cost of every plant with some gains, from the model.
@@ -197,6 +208,7 @@ class Tuned:
                 "from_each_start": _finite(np.array(found.starts)),
                 "global_search": _finite(np.array([found.check]))[0],
             },
+            "tried": {str(v): cost for v, cost in self.trial.tried.items()} if self.trial else None,
             "seconds": {
                 "nlp": found.seconds[0],
                 "global_search": found.seconds[1],
@@ -211,8 +223,8 @@ class Tuned:
                 side: [
                     {
                         "plant": r.plant,
-                        "rms": r.result.contour().error.rms,
-                        "max": r.result.contour().error.max,
+                        "rms": r.fmus.rms,
+                        "max": r.fmus.max,
                         "model_rms": r.model.rms,
                         "model_max": r.model.max,
                     }
@@ -323,6 +335,7 @@ def assumptions(study: Study) -> list[str]:
         elif isinstance(block, Plant):
             found.append(f"Delay: {name} holds its input over {grid}")
     found.append(f"Delay: the wires none, communication step {axis.step_ns * 1e-3:g} us")
+    found += [f"Worst case: {text}" for text in worst(axis)]
     point = ", ".join(f"{n} = {v:.4g}" for n, v in study.at.items()) or "at rest"
     found.append(f"Operating point: {point}")
     if study.problem.family:
@@ -417,14 +430,25 @@ def tune(
     begun = time.perf_counter()
     loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
     asked = options if isinstance(options, Problem) else problem(options or {})
-    if loaded.document.body.contour is None:
-        raise InputError(f"{loaded.document.file}: a tuning needs the signals of [contour]")
+    if loaded.document.body.contour is None and asked.command is None:
+        raise InputError(
+            f"{loaded.document.file}: a tuning needs the signals of [contour], or command and"
+            " position in its tune.toml"
+        )
+    if asked.trial and asked.command is None:
+        raise InputError("trial: only for a scenario that is judged by command and position")
     given = dict(set or {})
     base = loaded.run(set=given, progress=lambda share: progress("path", share))
     study = Study(loaded, asked, base, given)
     found = solve(study, lambda share: progress("gains", share))
     z, values = rounded(study, found.z)
     tuned = Tuned(study, found, z, values)
+    if isinstance(study.path, MoveCost):
+        for item in asked.trial.items():
+            set_ = {**given, **tuned.settings}
+            tuned.trial = tried(
+                loaded, study.path, item, set_, lambda share: progress("trial", share)
+            )
     plants = [0]
     if len(study.plants) > 1:
         plants.append(1 + int(np.argmax(values.costs[1:])))
@@ -440,7 +464,8 @@ def tune(
 
 
 def _run(study: Study, z: Array, plant: int, result: Result) -> Run:
-    return Run(study.plants[plant], result, study.path.error(study.motions(z, plant)))
+    model = study.path.error(study.motions(z, plant))
+    return Run(study.plants[plant], result, model, study.path.measured(result))
 
 
 def units_of(cost: str) -> tuple[float, str]:
@@ -455,6 +480,6 @@ def units_of(cost: str) -> tuple[float, str]:
     float
     str
     """
-    if cost in CONTOUR:
+    if cost in ON_PATH:
         return 1e3, "µm"
     return {"ise": (1e3, "ms"), "iae": (1e3, "ms"), "itae": (1e6, "ms^2")}[cost]

@@ -14,8 +14,9 @@ from motionfmu.run import Result, Scenario
 from motionfmu.tune import choice
 from motionfmu.tune.axis import AxisStudy, Motion
 from motionfmu.tune.curve import margin
+from motionfmu.tune.move import MoveCost
 from motionfmu.tune.path import PathCost
-from motionfmu.tune.problem import CONTOUR, Margins, Problem
+from motionfmu.tune.problem import CONTOUR, ON_PATH, Margins, Problem
 from motionfmu.tune.steps import Array
 
 # A step is watched for this many servo lags, at this many samples at least.
@@ -104,6 +105,10 @@ class Study:
         Operating point of the plants.
     axes : dict
         Linear model of each axis, nominal.
+    path : PathCost or MoveCost
+        Judges motions.
+    lag : float
+        Following error over speed with the present gains [s].
     evaluations : int
         How often it was evaluated.
 
@@ -122,9 +127,16 @@ class Study:
     ) -> None:
         self.scenario, self.problem, self.base = scenario, problem, base
         self.set = dict(set or {})
-        used = [i + 1 for i in base.contour().run.axes if i < 3]
+        on_contour = problem.command is None
+        used = [i + 1 for i in base.contour().run.axes if i < 3] if on_contour else [1]
         one = linear.model(scenario, used[0], set=self.set)
-        self.at = dict(problem.at) or choice.operating_point(one, base)
+        self.at = dict(problem.at)
+        if on_contour:
+            self.at = self.at or choice.operating_point(one, base)
+        elif (problem.cost in CONTOUR) or problem.position is None:
+            raise InputError(
+                f"cost = {problem.cost!r}: of a [contour]; with command error_rms or so"
+            )
         self.axes = {k: linear.model(scenario, k, at=self.at, set=self.set) for k in used}
         names = choice.gains(one, problem)
         self.variables = choice.variables(self.axes, names, problem)
@@ -133,12 +145,25 @@ class Study:
         self.plants = problem.plants()
         self._check_family()
         self.parts = [
-            {k: AxisStudy(_changed(m, plant), names, self.signals) for k, m in self.axes.items()}
+            {
+                k: AxisStudy(_changed(m, plant), names, self.signals, on_contour)
+                for k, m in self.axes.items()
+            }
             for plant in self.plants
         ]
-        period = self.parts[0][used[0]].period
-        self.path = PathCost(base, period)
-        seconds = _LAGS * max(base.contour().lag, 50.0 * period)
+        first = self.parts[0][used[0]]
+        period, lag = first.period, 0.0
+        self.path: PathCost | MoveCost
+        if problem.command is None or problem.position is None:
+            self.path, lag = PathCost(base, period), base.contour().lag
+        else:
+            ends = problem.command, problem.position
+            gains = self.gains(self.present)[used[0]]
+            late = choice.shown(self.axes[used[0]], problem, self.signals.command)
+            self.path = MoveCost(base, ends, period, (first.end(gains), late))
+            lag = first.lag(gains)
+        self.lag = lag
+        seconds = _LAGS * max(lag, 50.0 * period)
         self._step = max(1, round(seconds / _SAMPLES / period)), _SAMPLES
         self._check_loops()
         self.limits = self._limits()
@@ -300,7 +325,7 @@ class Study:
         slopes: bool,
     ) -> tuple[float, Array, dict[int, Motion]]:
         gains, rates = where
-        on_path = self.problem.cost in CONTOUR
+        on_path = self.problem.cost in ON_PATH
         motions = {}
         if on_path or self.peaks:
             for k, part in parts.items():
