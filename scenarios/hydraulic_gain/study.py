@@ -8,6 +8,7 @@ with all delays, and of the running FMUs; once with a valve and a controller tha
 with those of the article.
 """
 
+import functools
 import sys
 import tomllib
 from dataclasses import dataclass
@@ -91,6 +92,12 @@ def gain_of(axis: linear.AxisModel) -> float:
     return float(abs(loop(np.exp(1j * omega * loop.dt))) * omega)
 
 
+@functools.cache
+def as_it_is(loop: str) -> float:
+    """Velocity gain [1/s] of the axis as it is, with the register of `COMMON` or `FAST`."""
+    return gain_of(axis_of(loop, DAMPED[DEFAULT]))
+
+
 def resonance(axis: linear.AxisModel) -> tuple[float, float]:
     """Frequency [rad/s] and damping ratio of oil and mass, from the poles of the open loop."""
     loop = axis.loop(SCALE)
@@ -112,7 +119,7 @@ def measure(loop: str, damped: tuple[float, float]) -> Row:
 
 def move(loop: str, gain: float) -> tuple[np.ndarray, np.ndarray, int]:
     """Time [s] and speed [mm/s] on the scenario's move, by the FMUs with friction; lost counts."""
-    kp = gain_of(axis_of(loop, DAMPED[DEFAULT]))
+    kp = as_it_is(loop)
     register = round(gain / kp * (COMMON | LOOPS[loop])["controller.p_gain"])
     own = COMMON | LOOPS[loop] | {"controller.p_gain": register}
     own |= {"axis.start_position": -0.02, "axis.table_coulomb": 200.0, "axis.table_static": 300.0}
@@ -180,8 +187,7 @@ def main(folder: Path) -> None:
         print(f"| {r.loop} | {r.damping:.3f} | {' | '.join(f'{x:.0f}' for x in cells)} |")
     picture = folder / "gain.png"
     gains = tomllib.loads((HERE / "gains.toml").read_text(encoding="utf-8"))
-    axis = axis_of(list(LOOPS)[1], DAMPED[DEFAULT])
-    tuned = gain_of(axis) * gains["controller.p_gain"] / COMMON["controller.p_gain"]
+    tuned = as_it_is(list(LOOPS)[1]) * gains["controller.p_gain"] / COMMON["controller.p_gain"]
     for line in draw(rows, tuned, picture):
         print(line)
     print(f"picture: {picture}")

@@ -100,7 +100,9 @@ def listed(axis: AxisModel, kind: str) -> list[str]:
 
 
 def worst(axis: AxisModel) -> list[str]:
-    """Where the model is the worst that an FMU can become, not what it does.
+    """Where the model is a worst case.
+
+    The worst that an FMU can become, not what it does.
 
     Parameters
     ----------

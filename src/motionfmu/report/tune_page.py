@@ -15,6 +15,7 @@ from motionfmu.report.style import AXES, RAPID, axis, layout
 from motionfmu.report.tables import table
 from motionfmu.tune.problem import ON_PATH
 from motionfmu.tune.result import Run, Tuned, assumptions, plant_text, units_of
+from motionfmu.tune.trial import Trial
 
 BEFORE, AFTER = RAPID, AXES[0]
 _BUCKETS = 1200
@@ -43,6 +44,9 @@ def page_text(tuned: Tuned) -> str:
     page = Sheet()
     page.sections.append(_cards(tuned))
     page.section("Gains", "", _gains(tuned))
+    if tuned.trial is not None:
+        note = f"{tuned.trial.stopped_by}. Runs of the FMUs with the gains above."
+        page.section(f"Trial of {tuned.trial.name}", note, _trial(tuned.trial))
     note = "The same program, run by the FMUs before and after."
     page.section(
         tuned.study.path.what.capitalize(),
@@ -103,6 +107,14 @@ def _gains(tuned: Tuned) -> str:
         rows.append([name, "ms", *lags, ""])
     heads = ["gain", "unit", "before", "found", "rounded", "searched"]
     return table(heads, rows, 2)
+
+
+def _trial(trial: Trial) -> str:
+    rows = []
+    for value, look in trial.tried.items():
+        mark = ' <span class="mark">taken</span>' if value == trial.value else ""
+        rows.append([f"{value:g}{mark}", length(look.cost), length(look.beyond)])
+    return table([escape(trial.name), "RMS error at rest", "beyond the target"], rows, 1)
 
 
 def _runs(tuned: Tuned) -> str:

@@ -227,7 +227,9 @@ def _followed(axis: AxisModel, name: str) -> str:
 
 
 def shown(axis: AxisModel, problem: Problem, command: str) -> int:
-    """Periods after which an output shows the command that the axis follows.
+    """Periods after which an output shows the command.
+
+    The command that the axis follows.
 
     Parameters
     ----------

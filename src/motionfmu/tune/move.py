@@ -116,8 +116,26 @@ class MoveCost:
         rms = float(np.sqrt(np.mean(error**2)))
         return Measured(rms, float(np.abs(error).max()), result.time, error)
 
+    def beyond(self, result: Result) -> float:
+        """Way past the ends of the command.
+
+        Parameters
+        ----------
+        result : Result
+
+        Returns
+        -------
+        float
+            [mm]; 0 if the position stays between them.
+        """
+        way = self._scale * self.factor * self._command(result)
+        place = way + self.measured(result).values
+        return max(float(place.max() - way.max()), float(way.min() - place.min()), 0.0)
+
     def standing(self, result: Result) -> float:
-        """RMS of the position error while the axis is to stand, after its first motion.
+        """RMS error while the axis is to stand.
+
+        After its first motion.
 
         Parameters
         ----------

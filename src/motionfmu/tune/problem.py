@@ -52,6 +52,8 @@ class Limits(BaseModel):
         Largest overshoot of the position after a step, share of the step.
     recovery : float or None
         Slowest time constant of the closed loop [s]: with it the effect of a load dies away.
+    beyond : float or None
+        Largest way past the ends of the scenario's own move while a `trial` is made [mm].
     peak : dict
         Largest magnitude on the path by output, ``component.variable``, in its unit.
     """
@@ -61,6 +63,7 @@ class Limits(BaseModel):
     loop: dict[str, Margins] = Field(default_factory=dict)
     overshoot: float | None = Field(default=0.05, ge=0.0)
     recovery: float | None = Field(default=0.05, gt=0.0)
+    beyond: float | None = Field(default=None, gt=0.0)
     peak: dict[str, float] = Field(default_factory=dict)
 
 

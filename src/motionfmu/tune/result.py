@@ -3,7 +3,7 @@
 import itertools
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -102,7 +102,10 @@ class Tuned:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Gains as the scenario takes them: a value, or one an axis; then what was tried."""
+        """Gains as the scenario takes them, and what was tried.
+
+        A value, or one for each axis.
+        """
         found = settings(self.study, self.z)
         return found | ({self.trial.name: self.trial.value} if self.trial else {})
 
@@ -208,7 +211,9 @@ class Tuned:
                 "from_each_start": _finite(np.array(found.starts)),
                 "global_search": _finite(np.array([found.check]))[0],
             },
-            "tried": {str(v): cost for v, cost in self.trial.tried.items()} if self.trial else None,
+            "tried": {str(v): asdict(x) for v, x in self.trial.tried.items()}
+            if self.trial
+            else None,
             "seconds": {
                 "nlp": found.seconds[0],
                 "global_search": found.seconds[1],
@@ -332,6 +337,9 @@ def assumptions(study: Study) -> list[str]:
         grid = f"{block.grid_ns * 1e-3:g} us"
         if isinstance(block, Sampled) and _acts(block):
             found.append(f"Delay: {name} samples every {grid} and shows it one period later")
+            if len(block.laws) > 1:
+                cycle = f"{block.cycle_ns * 1e-3:g} us"
+                found.append(f"Delay: {name} computes its law every {cycle}")
         elif isinstance(block, Plant):
             found.append(f"Delay: {name} holds its input over {grid}")
     found.append(f"Delay: the wires none, communication step {axis.step_ns * 1e-3:g} us")
@@ -437,6 +445,8 @@ def tune(
         )
     if asked.trial and asked.command is None:
         raise InputError("trial: only for a scenario that is judged by command and position")
+    for name in asked.trial:
+        loaded.resolver.end(name, "trial", name)
     given = dict(set or {})
     base = loaded.run(set=given, progress=lambda share: progress("path", share))
     study = Study(loaded, asked, base, given)
@@ -444,8 +454,10 @@ def tune(
     z, values = rounded(study, found.z)
     tuned = Tuned(study, found, z, values)
     if isinstance(study.path, MoveCost):
-        for item in asked.trial.items():
+        for name, ends in asked.trial.items():
             set_ = {**given, **tuned.settings}
+            most = asked.limits.beyond
+            item = name, ends, np.inf if most is None else most
             tuned.trial = tried(
                 loaded, study.path, item, set_, lambda share: progress("trial", share)
             )

@@ -135,7 +135,7 @@ class Study:
             self.at = self.at or choice.operating_point(one, base)
         elif (problem.cost in CONTOUR) or problem.position is None:
             raise InputError(
-                f"cost = {problem.cost!r}: of a [contour]; with command error_rms or so"
+                f"cost = {problem.cost!r}: of [contour] tables; one of the others with command"
             )
         self.axes = {k: linear.model(scenario, k, at=self.at, set=self.set) for k in used}
         names = choice.gains(one, problem)

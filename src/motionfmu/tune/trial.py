@@ -6,12 +6,29 @@ from typing import Any
 
 import numpy as np
 
+from motionfmu.errors import InputError
 from motionfmu.run import Scenario
 from motionfmu.tune.move import MoveCost
 from motionfmu.tune.solve import RanAway
 
 # Values of the first look, and of each finer one; costs within this share are the same.
 _COARSE, _FINE, _ROUNDS, _SAME = 13, 5, 2, 0.05
+
+
+@dataclass(frozen=True)
+class Look:
+    """What the FMUs do with a value.
+
+    Attributes
+    ----------
+    cost : float
+        RMS error while the axis is to stand [mm].
+    beyond : float
+        Way past the ends of the move [mm].
+    """
+
+    cost: float
+    beyond: float
 
 
 @dataclass(frozen=True)
@@ -23,33 +40,42 @@ class Trial:
     name : str
         Parameter, ``component.variable``.
     value : float or int
-        The smallest value with which the cost is as small as with any.
+        The smallest value with which the cost is as small as with any within the limit.
     tried : dict
-        RMS error of the standing axis [mm] by value, in order.
+        `Look` by value, in order.
+    limit : float
+        Largest way beyond that is allowed [mm].
     """
 
     name: str
     value: float
-    tried: Mapping[float, float]
+    tried: Mapping[float, Look]
+    limit: float
 
     @property
     def stopped_by(self) -> str:
         """What it is stopped by, in words."""
         values = list(self.tried)
         k = values.index(self.value)
-        best = self.tried[self.value]
-        text = f"{self.name} = {self.value:g}, tried: {best * 1e3:.3g} um of error at rest"
-        text += f"; {values[k - 1]:g} leaves {self.tried[values[k - 1]] * 1e3:.3g} um"
-        worst = max(values[k:], key=lambda v: self.tried[v])
-        if self.tried[worst] > (1.0 + _SAME) * best:
-            text += f", {worst:g} {self.tried[worst] * 1e3:.3g} um"
-        return text
+        text = (
+            f"{self.name} = {self.value:g}, tried: {_um(self.tried[self.value].cost)} left at rest"
+        )
+        text += f"; {values[k - 1]:g} leaves {_um(self.tried[values[k - 1]].cost)}"
+        for value in values[k:]:
+            if self.tried[value].beyond > self.limit:
+                return f"{text}, {value:g} goes {_um(self.tried[value].beyond)} beyond"
+        worst = max(values[k:], key=lambda v: self.tried[v].cost)
+        return f"{text}, {worst:g} {_um(self.tried[worst].cost)}"
+
+
+def _um(length: float) -> str:
+    return f"{length * 1e3:.3g} um"
 
 
 def tried(
     scenario: Scenario,
     move: MoveCost,
-    asked: tuple[str, tuple[float, float]],
+    asked: tuple[str, tuple[float, float], float],
     set: Mapping[str, Any],
     progress: Callable[[float], None] = lambda share: None,
 ) -> Trial:
@@ -61,7 +87,7 @@ def tried(
     move : MoveCost
         Judges a run.
     asked : tuple
-        The parameter and its bounds.
+        The parameter, its bounds, and the largest way beyond [mm].
     set : mapping
         Values by ``component.variable``, the gains found among them.
     progress : callable
@@ -78,36 +104,41 @@ def tried(
     InputError
         The name or a bound is wrong.
     """
-    name, (low, high) = asked
+    name, (low, high), limit = asked
     port = scenario.resolver.end(name, "trial", name).port
     whole = port.type == "Int32"
-    found: dict[float, float] = {}
+    found: dict[float, Look] = {}
 
     def look(values: Any) -> None:
         for value in values:
             number = round(float(value)) if whole else float(f"{value:.4g}")
             if number not in found:
-                found[number] = move.standing(scenario.run(set={**set, name: number}))
+                ran = scenario.run(set={**set, name: number})
+                found[number] = Look(move.standing(ran), move.beyond(ran))
                 progress(len(found) / (_COARSE + _FINE * _ROUNDS))
 
     look(np.geomspace(low, high, _COARSE))
     for _ in range(_ROUNDS):
         values = sorted(found)
-        k = values.index(_least(found))
+        k = values.index(_least(found, limit))
         around = values[max(k - 1, 0)], values[min(k + 1, len(values) - 1)]
         look(np.geomspace(*around, _FINE + 2)[1:-1])
     values = sorted(found)
-    value = _least(found)
+    value = _least(found, limit)
     if value in (values[0], values[-1]):
         side = "lower" if value == values[0] else "upper"
         raise RanAway(
             f"{scenario.document.file}: {name} ran to its own {side} bound {value:g}: nothing"
             " stops it there, so this is no result; give other bounds"
         )
-    return Trial(name, value, {v: found[v] for v in values})
+    return Trial(name, value, {v: found[v] for v in values}, limit)
 
 
-def _least(found: Mapping[float, float]) -> float:
-    """The smallest value whose cost is as small as any."""
-    best = min(found.values())
-    return min(v for v, cost in found.items() if cost <= (1.0 + _SAME) * best)
+def _least(found: Mapping[float, Look], limit: float) -> float:
+    """The smallest value whose cost is as small as any within the limit."""
+    kept = {v: look.cost for v, look in found.items() if look.beyond <= limit}
+    if not kept:
+        v, look = min(found.items(), key=lambda pair: pair[1].beyond)
+        raise InputError(f"limits.beyond = {limit:g}: missed by all; {v:g} goes {_um(look.beyond)}")
+    best = min(kept.values())
+    return min(v for v, cost in kept.items() if cost <= (1.0 + _SAME) * best)
