@@ -49,7 +49,10 @@ def model(**changed: Any) -> linear.AxisModel:
 
 @pytest.mark.parametrize("case", CASES)
 def test_frequency_response_is_that_of_the_fmus(case: str) -> None:
-    """Sines of 25 line periods on the scale, about a steady speed: within 1 % and 1 degree."""
+    """Sines of 25 line periods on the scale, about a steady speed: within 1 % and 1 degree.
+
+    Not at the resonance itself, 380 to 450 rad/s: it moves by as much while the axis travels.
+    """
     axis = model(**CASES[case])
     outputs = ["axis.velocity", "axis.spool"]
     system = axis.system(SCALE, outputs)
