@@ -54,7 +54,10 @@ int main(void)
         .feed = 10.0, .max_feed = 1000.0, .acc_time = 0.1, .dec_time = 0.1
     };
     for (int i = 0; i < AXES; i++) {
-        machine.axis[i] = (struct machine_axis){ i < 3, 10.0, 1.0, 10000, 3000.0, 60, 0 };
+        machine.axis[i] = (struct machine_axis){
+            .used = i < 3, .pitch = 10.0, .gear_ratio = 1.0, .ppr = 10000, .rpm = 3000.0,
+            .p_gain = 60
+        };
     }
     char *all = malloc((size_t)BLOCKS * LONGEST), *end = all;
     if (!all) {

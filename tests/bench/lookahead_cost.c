@@ -35,7 +35,10 @@ static struct machine machine_at(double dda_time, char ramps)
         .acc_type = ramps, .dec_type = ramps
     };
     for (int i = 0; i < AXES; i++) {
-        m.axis[i] = (struct machine_axis){ i < 3, 10.0, 1.0, 1000, 6000.0, 60, 0 };
+        m.axis[i] = (struct machine_axis){
+            .used = i < 3, .pitch = 10.0, .gear_ratio = 1.0, .ppr = 1000, .rpm = 6000.0,
+            .p_gain = 60
+        };
     }
     return m;
 }
