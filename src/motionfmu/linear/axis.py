@@ -4,9 +4,7 @@ import functools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
-
-import control
+from typing import TYPE_CHECKING, Any
 
 from motionfmu.errors import InputError
 from motionfmu.linear import law
@@ -20,6 +18,9 @@ from motionfmu.modelica.ode import Ode
 from motionfmu.run import Options, Scenario, load
 from motionfmu.system import Wire
 from motionfmu.values import settings
+
+if TYPE_CHECKING:
+    import control  # it takes a second, and a tuning does without
 
 
 @functools.cache
@@ -114,7 +115,7 @@ class AxisModel:
         outputs: str | Iterable[str],
         cut: str | Iterable[str] = (),
         delays: Mapping[str, int] | None = None,
-    ) -> control.StateSpace:
+    ) -> "control.StateSpace":
         """The system from any inputs to any outputs.
 
         An input is added to what the wire brings to that port, and held over a period. An output is
@@ -143,6 +144,8 @@ class AxisModel:
         entries = [self.port(n, self.inputs, "input") for n in _listed(inputs)]
         exits = [self.port(n, self.outputs, "output") for n in _listed(outputs)]
         found = period_of(self.net(cut, delays or {}), entries, exits, self.scenario.document.file)
+        import control
+
         return control.StateSpace(
             *(found.a, found.b, found.c, found.d, found.period_ns * 1e-9),
             inputs=[_name(p) for p in entries],
@@ -157,7 +160,7 @@ class AxisModel:
         at: str,
         cut: str | Iterable[str] = (),
         delays: Mapping[str, int] | None = None,
-    ) -> control.StateSpace:
+    ) -> "control.StateSpace":
         """The open loop at an input, for negative feedback.
 
         Cut there, once around, with the other sign.

@@ -10,6 +10,7 @@ from motionfmu.errors import InputError
 from motionfmu.linear.axis import AxisModel
 from motionfmu.linear.block import Plant
 from motionfmu.linear.margins import closed_poles, moving
+from motionfmu.linear.opened import matrices
 from motionfmu.linear.wiring import Port
 
 # A gain is looked for within this factor of where the search begins.
@@ -63,10 +64,11 @@ def feedbacks(axis: AxisModel) -> dict[str, tuple[str, ...]]:
         cut = tuple(sorted(".".join(t) for t in sensors if t != target and t[0] not in on))
         name = ".".join(target)
         try:
-            axis.loop(name, cut)
+            around = matrices(axis, [name], [".".join(axis.wires[target])], (name, *cut))
         except InputError:
-            continue  # it is read there, but nothing acts on it
-        found[name] = cut
+            continue
+        if around.states or around.d.any():  # else it is read there, but nothing acts on it
+            found[name] = cut
     return dict(sorted(found.items(), key=lambda pair: len(pair[1])))
 
 

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-import control
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
@@ -101,7 +100,7 @@ def response(system: System, omega: Array) -> Complex:
     ndarray of complex, shape (n,)
     """
     s = np.exp(1j * omega * system.dt) if system.isdtime(strict=True) else 1j * omega
-    if isinstance(system, control.TransferFunction):
+    if hasattr(system, "num"):
         found: Complex = np.asarray(system(s), dtype=complex).reshape(len(omega))
         return found
     n = system.nstates
@@ -263,7 +262,7 @@ def closed_poles(loop: System, gain: float = 1.0) -> Complex:
     -------
     ndarray of complex
     """
-    if isinstance(loop, control.TransferFunction):
+    if hasattr(loop, "num"):
         num, den = loop.num[0][0], loop.den[0][0]
         roots: Complex = np.roots(np.polyadd(den, gain * np.asarray(num))).astype(complex)
         return roots

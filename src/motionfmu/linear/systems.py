@@ -1,12 +1,16 @@
 """State-space systems changed with their names kept."""
 
-import control
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from motionfmu.linear.block import Matrix
 
+if TYPE_CHECKING:
+    import control
 
-def replaced(system: control.StateSpace, c: Matrix, d: Matrix, name: str) -> control.StateSpace:
+
+def replaced(system: "control.StateSpace", c: Matrix, d: Matrix, name: str) -> "control.StateSpace":
     """The same states seen otherwise, with their names.
 
     Parameters
@@ -20,6 +24,8 @@ def replaced(system: control.StateSpace, c: Matrix, d: Matrix, name: str) -> con
     -------
     control.StateSpace
     """
+    import control
+
     return control.StateSpace(
         *(system.A, system.B, c, d, system.dt),
         inputs=system.input_labels,
@@ -30,7 +36,7 @@ def replaced(system: control.StateSpace, c: Matrix, d: Matrix, name: str) -> con
     )
 
 
-def delayed(system: control.StateSpace, state: str) -> control.StateSpace:
+def delayed(system: "control.StateSpace", state: str) -> "control.StateSpace":
     """The same output one period later.
 
     Parameters
@@ -46,6 +52,8 @@ def delayed(system: control.StateSpace, state: str) -> control.StateSpace:
     """
     n = system.nstates
     a = np.block([[system.A, np.zeros((n, 1))], [system.C, np.zeros((1, 1))]])
+    import control
+
     return control.StateSpace(
         *(a, np.vstack([system.B, system.D]), np.eye(1, n + 1, n), np.zeros((1, 1)), system.dt),
         inputs=system.input_labels,

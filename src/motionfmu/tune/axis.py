@@ -307,7 +307,9 @@ def _mapped(function: ca.Function, count: int) -> ca.Function:
 def _called(rest: Residual, x: Array, slopes: bool) -> tuple[Array, Array]:
     """Residuals (m, k) and their Jacobians (k, m, n) at states (n, k)."""
     n, count = x.shape
-    size = 1 << max(count - 1, 1).bit_length()  # few sizes: a map takes longer to make than to use
+    # Few sizes, for a map takes longer to make than to use: four to a doubling.
+    unit = 1 << max(count.bit_length() - 3, 0)
+    size = -(-count // unit) * unit
     wide = np.zeros((n, size))
     wide[:, :count] = x
     if not slopes:

@@ -12,7 +12,7 @@ from motionfmu.linear import law
 from motionfmu.linear.axis import AxisModel
 from motionfmu.linear.block import Plant, Sampled, nonzero, reaches
 from motionfmu.linear.form import Gain
-from motionfmu.linear.opened import limit, linearised, listed
+from motionfmu.linear.opened import limit, linearised, listed, matrices
 from motionfmu.run import Result, Scenario
 from motionfmu.tune.axis import Signals
 from motionfmu.tune.problem import Problem
@@ -249,9 +249,9 @@ def shown(axis: AxisModel, problem: Problem, command: str) -> int:
         It shows something else than the command.
     """
     assert problem.command is not None
-    system = axis.system(command, problem.command)
+    system = matrices(axis, [command], [problem.command])
     for periods in range(_LATE_MAX):
-        gain = system.D if not periods else system.C @ _power(system.A, periods - 1) @ system.B
+        gain = system.d if not periods else system.c @ _power(system.a, periods - 1) @ system.b
         if abs(float(gain[0, 0]) - 1.0) < 1e-9:
             return periods
         if abs(float(gain[0, 0])) > 1e-9:

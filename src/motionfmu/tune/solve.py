@@ -8,7 +8,6 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from scipy.optimize import direct
-from scipy.stats import qmc
 
 from motionfmu.errors import InputError
 from motionfmu.tune.choice import Variable
@@ -265,7 +264,9 @@ def solve(study: Study, progress: Callable[[float], None] = lambda share: None) 
         points.append(point)
     spent = time.perf_counter() - begun, study.evaluations - first
     begun, first = time.perf_counter(), study.evaluations
-    points = [*points, *_spread(study)][: study.problem.starts]
+    points = points[: study.problem.starts]
+    if len(points) < study.problem.starts:
+        points = [*points, *_spread(study)][: study.problem.starts]
     candidates: list[tuple[Array, Values]] = []
     costs = []
     for i, start in enumerate(points):
@@ -317,6 +318,8 @@ def _attempt(study: Study, run: _Run, start: Array) -> tuple[Array, Values] | No
 
 def _spread(study: Study) -> list[Array]:
     """Points spread over the range, drawn to the present gains until all loops are stable."""
+    from scipy.stats import qmc  # a third of a second, and seldom needed
+
     present, found = study.present, []
     drawn = qmc.Sobol(len(present), seed=1).random_base2(6)
     for point in drawn[: max(0, study.problem.starts - 1)]:
