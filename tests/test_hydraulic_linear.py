@@ -12,6 +12,7 @@ from motionfmu import InputError, freq, linear
 from motionfmu.cli import app
 from motionfmu.freq.limit import Trial, simulated_gain, usual_kick
 from motionfmu.freq.response import fastest
+from motionfmu.freq.study import Asked, study
 from motionfmu.linear.loops import feedbacks, largest_gain
 from motionfmu.linear.margins import margins
 
@@ -111,6 +112,13 @@ def test_an_input_is_not_moved_faster_than_it_is_followed() -> None:
     assert fastest(axis, SCALE) == pytest.approx(0.8 * 8e6 / 457 / 4)
     ring = largest_gain(axis, SCALE).omega
     assert usual_kick(axis, SCALE) * 4.0 * ring <= 1.001 * fastest(axis, SCALE)
+
+
+def test_fmus_that_would_lose_edges_are_not_run() -> None:
+    """50 mm/s are 10,000 counts/s, and ten times that with the gain at its limit on the wire."""
+    (only,) = study(model(controller__timer_cycles=400), Asked())
+    assert only.simulated is None and only.measured is None
+    assert "faster than its FMU follows" in only.silent
 
 
 @pytest.mark.parametrize(

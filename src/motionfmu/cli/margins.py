@@ -64,6 +64,9 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
             name, *cells, f"{m.sensitivity:.4g}", f"{s.linear.gain:.5g}", f"{ringing:.5g}"
         )
     out.print(table)
+    for s in studies:
+        if s.silent:
+            out.print(f"FMUs not run: {s.silent}", markup=False)
     out.print(f"report: {target / 'report.html'}", soft_wrap=True)
 
 

@@ -56,9 +56,15 @@ def ramp(bench: Bench, name: str) -> float:
     float
         [unit of the input/s]; 0 at rest, or if its wire comes from no plant.
     """
-    source = bench.axis.wires.get((name.partition(".")[0], name.partition(".")[2]))
-    point: Point | None = bench.axis.points.get(source[0]) if source else None
-    return 0.0 if point is None or source is None else -point.rates.get(source[1], 0.0)
+    return -_rate(bench.axis, name)
+
+
+def _rate(axis: AxisModel, name: str) -> float:
+    """How fast an input moves at the operating point."""
+    component, _, variable = name.partition(".")
+    source = axis.wires.get((component, variable))
+    point: Point | None = axis.points.get(source[0]) if source else None
+    return 0.0 if point is None or source is None else point.rates.get(source[1], 0.0)
 
 
 def gentle(rate: float, lead: int, steps: int) -> Array:
@@ -80,6 +86,25 @@ def gentle(rate: float, lead: int, steps: int) -> Array:
     rising = 0.5 * (time - soft / np.pi * np.sin(np.minimum(time / soft, 1.0) * np.pi))
     found: Array = rate * np.where(time < soft, rising, time - 0.5 * soft)
     return found
+
+
+def room(axis: AxisModel, name: str, factor: float = 1.0) -> float:
+    """Speed that an input follows beside its own.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    name : str
+        ``component.variable``.
+    factor : float
+        On its wire.
+
+    Returns
+    -------
+    float
+        [unit of the input/s]: below 0 if the operating point alone is too fast.
+    """
+    return fastest(axis, name) - abs(factor * _rate(axis, name))
 
 
 def fastest(axis: AxisModel, name: str) -> float:

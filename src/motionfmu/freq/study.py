@@ -11,7 +11,7 @@ from motionfmu.errors import InputError
 from motionfmu.freq.bench import Setup
 from motionfmu.freq.excitation import multisine
 from motionfmu.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
-from motionfmu.freq.response import Response, measured_loop, settling
+from motionfmu.freq.response import Response, measured_loop, room, settling
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit, feedbacks, largest_gain
 from motionfmu.linear.margins import Margins, margins
@@ -22,6 +22,8 @@ from motionfmu.linear.wiring import Port
 _LINES, _SAMPLES_MAX, _SETTLE_MAX = 60, 10_000, 6
 # Peak of the multisine, in kicks: it is spread over all lines.
 _PEAK = 4.0
+# A ringing of so many grains must be followed, or edges are lost and not rounded.
+_GRAINS = 20.0
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,8 @@ class LoopStudy:
         Open loop of the running FMUs.
     kick : float
         Step with which they were made to ring, in the unit of the input.
+    silent : str
+        Why they were not run, in words; empty if they were, or were not to be.
     """
 
     at: str
@@ -56,6 +60,7 @@ class LoopStudy:
     simulated: Limit | None
     measured: Response | None
     kick: float
+    silent: str = ""
 
 
 @dataclass(frozen=True)
@@ -135,7 +140,8 @@ def _one(
     kick = usual_kick(axis, at, cut) if asked.kick is None else asked.kick
     found = margins(loop)
     ringing, response = None, None
-    if asked.simulate and not worst(axis):
+    silent = _silent(axis, at, limit, gain) if asked.simulate else ""
+    if asked.simulate and not silent and not worst(axis):
         if found.stable:
             response = _measured(axis, which, found, kick)
         progress(0.4)
@@ -148,7 +154,22 @@ def _one(
         else:
             ringing = simulated_gain(axis, which, Trial(kick), gain, tried)
     progress(1.0)
-    return LoopStudy(at, cut, loop, found, gain, limit, ringing, response, kick)
+    return LoopStudy(at, cut, loop, found, gain, limit, ringing, response, kick, silent)
+
+
+def _silent(axis: AxisModel, at: str, limit: Limit, gain: str | None) -> str:
+    """Why the FMUs would not do what the model does."""
+    component, _, variable = at.partition(".")
+    grain = getattr(axis.blocks[component], "grain", {}).get(variable, 0.0)
+    factor = limit.gain if gain is None and math.isfinite(limit.gain) else 1.0
+    needed = _GRAINS * grain * limit.omega
+    if not room(axis, at, factor) < needed:
+        return ""
+    times = "" if factor == 1.0 else f" with {factor:.4g} on its wire"
+    return (
+        f"{at}{times} would move and ring faster than its FMU follows: name a gain, or state a"
+        " slower operating point"
+    )
 
 
 def _measured(

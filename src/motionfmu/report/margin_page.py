@@ -197,6 +197,8 @@ def _limits(study: LoopStudy) -> str:
         told = f"{figure(100.0 * share, sign=True)} %" if math.isfinite(share) else ""
         name = f"{what}: by running the FMUs until they ring after a step of {study.kick:.3g}"
         rows.append((name, *_limit(study.simulated), told))
+    elif study.silent:
+        rows.append((f"FMUs not run: {escape(study.silent)}", "", "", ""))
     heads = ("Largest stable gain", "value", "rings at", "difference")
     return table(heads, rows)
 
