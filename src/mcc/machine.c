@@ -9,6 +9,11 @@ bool machine_positive(double x)
     return x >= 1e-9 && x <= 1e9;
 }
 
+bool machine_share(double x)
+{
+    return machine_positive(x) && x <= 1.0;
+}
+
 static bool number(double x)
 {
     return isfinite(x) && x >= 0.0;
@@ -49,7 +54,7 @@ static bool asyn_valid(const struct machine_asyn *r)
 /* 0 takes the library's own. */
 static bool share_valid(double x)
 {
-    return x == 0.0 || (machine_positive(x) && x <= 1.0);
+    return x == 0.0 || machine_share(x);
 }
 
 bool machine_valid(const struct machine *m)

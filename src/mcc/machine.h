@@ -75,6 +75,9 @@ bool machine_valid(const struct machine *m);
  * their products and quotients stay numbers. */
 bool machine_positive(double x);
 
+/* The same of a share: up to 1. */
+bool machine_share(double x);
+
 /* Ramps of independent axes where none are given. */
 void machine_complete_asyn(struct machine *m);
 

@@ -157,11 +157,6 @@ static int movable(const struct mcc *m, int axis, double direction)
 
 /* Jog. */
 
-static bool percent_valid(double percent)
-{
-    return machine_positive(percent / 100.0) && percent <= 100.0;
-}
-
 static struct axes_limits jog_limits(const struct mcc *m, int axis, double percent)
 {
     return axes_limits_of(&m->machine, axis,
@@ -175,7 +170,7 @@ int MCC_jog_c(struct mcc *m, int axis, int direction, double percent)
     if (code) {
         return code;
     }
-    if (direction < -1 || direction > 1 || (direction != 0 && !percent_valid(percent))) {
+    if (direction < -1 || direction > 1 || (direction != 0 && !machine_share(percent / 100.0))) {
         return MCC_PARAMETER;
     }
     if (use_of(m, axis) == MANUAL_WHEEL) {
@@ -214,7 +209,7 @@ int MCC_jog_i(struct mcc *m, int axis, double distance, double percent)
     if (code) {
         return code;
     }
-    if (!percent_valid(percent)) {
+    if (!machine_share(percent / 100.0)) {
         return MCC_PARAMETER;
     }
     const struct axes_limits l = jog_limits(m, axis, percent);

@@ -138,6 +138,12 @@ static const struct path *path_of(const struct way *w, int32_t i)
     return &ring_peek(w->ring, i)->command.path;
 }
 
+/* Whether a command, its corner with it, begins before the rest. */
+static bool begins(const struct way *w, int32_t i, double base)
+{
+    return base - track_half(w->t, w->ring, i) <= w->to;
+}
+
 /* A corner takes both of its paths from half before the tool to half after it. Lines it leaves to
  * the inside, arcs by the tolerance at most. */
 static void box_of_chain(const struct way *w, double low[AXES], double high[AXES])
@@ -145,7 +151,7 @@ static void box_of_chain(const struct way *w, double low[AXES], double high[AXES
     const int32_t first = w->t->out > 0 ? w->t->out - 1 : 0;
     double base = w->t->out_base - (first < w->t->out ? path_of(w, first)->length : 0.0);
 
-    for (int32_t i = first; i < w->t->joined; i++) {
+    for (int32_t i = first; i < w->t->joined && begins(w, i, base); i++) {
         const struct path *p = path_of(w, i);
         const double half = track_half(w->t, w->ring, i), next = track_half(w->t, w->ring, i + 1);
         const bool bent = p->arc || (half > 0.0 && path_of(w, i - 1)->arc) ||
@@ -200,7 +206,7 @@ static void extent_of_chain(const struct way *w, double low[AXES], double high[A
 {
     double base = w->t->out_base;
 
-    for (int32_t i = w->t->out; i < w->t->joined; i++) {
+    for (int32_t i = w->t->out; i < w->t->joined && begins(w, i, base); i++) {
         const struct path *p = path_of(w, i);
         const double half = track_half(w->t, w->ring, i), from = w->from - base, to = w->to - base;
         if (half > 0.0 && from < half && to > -half) {

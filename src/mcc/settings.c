@@ -43,7 +43,7 @@ int MCC_set_ptp_spd(struct mcc *m, double percent)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!(machine_positive(percent / 100.0) && percent <= 100.0)) {
+    if (!machine_share(percent / 100.0)) {
         return MCC_FEED_RATE;
     }
     m->machine.ptp_ratio = percent / 100.0;
