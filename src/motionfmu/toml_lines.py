@@ -1,6 +1,8 @@
-"""Line numbers of keys in a TOML file, for messages."""
+"""TOML as people write it: line numbers of keys for messages, words of a command line."""
 
 import re
+import tomllib
+from typing import Any
 
 
 class Lines:
@@ -59,3 +61,21 @@ def _numbered(header: str, counts: dict[str, int]) -> str:
         name += part.strip()
         name += f".{counts[name]}." if name in counts else "."
     return name + own.strip()
+
+
+def word(text: str) -> Any:
+    """Read a value from a command line.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    object
+        What TOML says it is; a bare word is text.
+    """
+    try:
+        return tomllib.loads(f"x = {text}")["x"]
+    except tomllib.TOMLDecodeError:
+        return text

@@ -9,8 +9,11 @@ from rich.console import Console
 from rich.table import Table
 
 from motionfmu.errors import InputError
+from motionfmu.toml_lines import word
 
 if TYPE_CHECKING:
+    from rich.progress import Progress, ProgressColumn
+
     from motionfmu.run import Result, Scenario
 
 app = typer.Typer(
@@ -52,10 +55,7 @@ def setting(text: str) -> tuple[str, Any]:
     name, equals, value = text.partition("=")
     if not equals:
         raise InputError(f"--set {text}: COMP.VAR=VALUE wanted")
-    try:
-        return name.strip(), tomllib.loads(f"x = {value}")["x"]
-    except tomllib.TOMLDecodeError:
-        return name.strip(), value.strip()
+    return name.strip(), word(value.strip())
 
 
 def settings(texts: list[str]) -> dict[str, Any]:
@@ -107,6 +107,23 @@ def bare_table(*headings: str) -> Table:
     return table
 
 
+def progress_bar(*columns: "ProgressColumn") -> "Progress":
+    """Progress bar, which shows on a terminal only.
+
+    Parameters
+    ----------
+    columns : ProgressColumn
+        Those of rich if none.
+
+    Returns
+    -------
+    Progress
+    """
+    from rich.progress import Progress
+
+    return Progress(*columns, console=out, disable=not out.is_terminal, transient=True)
+
+
 def run_shown(scenario: "Scenario", options: dict[str, Any]) -> "Result":
     """Run with a progress bar, which shows on a terminal only.
 
@@ -120,10 +137,10 @@ def run_shown(scenario: "Scenario", options: dict[str, Any]) -> "Result":
     -------
     Result
     """
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn
     from rich.progress import TimeRemainingColumn as TimeLeft
 
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeLeft())
-    with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
+    with progress_bar(*columns) as bar:
         task = bar.add_task(scenario.name, total=1.0)
         return scenario.run(**options, progress=lambda share: bar.update(task, completed=share))

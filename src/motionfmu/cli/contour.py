@@ -5,7 +5,16 @@ from typing import Annotated, Any
 
 import typer
 
-from motionfmu.cli.common import ScenarioPath, Set, app, bare_table, out, run_shown, settings
+from motionfmu.cli.common import (
+    ScenarioPath,
+    Set,
+    app,
+    bare_table,
+    out,
+    progress_bar,
+    run_shown,
+    settings,
+)
 
 
 @app.command()
@@ -32,7 +41,7 @@ def contour(
 
 
 def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn
 
     from motionfmu import outcome
     from motionfmu.explain import explain
@@ -43,7 +52,7 @@ def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
     name = scenario_file(path).parent.name
     target = outcome.usable(folder or Path("results") / f"{name}_contour")
     columns = (BarColumn(), TaskProgressColumn(), TextColumn("{task.description}"))
-    with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
+    with progress_bar(*columns) as bar:
         task = bar.add_task(name, total=1.0)
         found = explain(
             path,

@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from motionfmu.cli.common import ScenarioPath, Set, app, bare_table, out, setting, settings
+from motionfmu.cli.common import (
+    ScenarioPath,
+    Set,
+    app,
+    bare_table,
+    out,
+    progress_bar,
+    setting,
+    settings,
+)
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
@@ -72,11 +81,9 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
 
 def _study(linear: "AxisModel", asked: "Asked") -> "list[LoopStudy]":
     """Study with a progress bar, which shows on a terminal only."""
-    from rich.progress import Progress
-
     from motionfmu.freq.study import study
 
-    with Progress(console=out, disable=not out.is_terminal, transient=True) as bar:
+    with progress_bar() as bar:
         task = bar.add_task(linear.scenario.name, total=1.0)
         return study(
             linear, replace(asked, progress=lambda share: bar.update(task, completed=share))

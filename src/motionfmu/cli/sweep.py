@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from motionfmu.cli.common import FAILED, STOPPED, Set, app, out, settings
+from motionfmu.cli.common import FAILED, STOPPED, Set, app, out, progress_bar, settings
 
 if TYPE_CHECKING:
     from motionfmu.sweep import Outcome, Study, Ways
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def _sweep(study: "Study", folder: Path, ways: "Ways") -> "Outcome":
     """Run a study with a progress bar, which shows on a terminal only."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
     from rich.progress import TimeElapsedColumn as TimeUsed
     from rich.progress import TimeRemainingColumn as TimeLeft
 
@@ -30,7 +30,7 @@ def _sweep(study: "Study", folder: Path, ways: "Ways") -> "Outcome":
         TimeLeft(),
         TextColumn("{task.fields[told]}"),
     )
-    with Progress(*columns, console=out, disable=not out.is_terminal, transient=True) as bar:
+    with progress_bar(*columns) as bar:
         task, at = bar.add_task(study.name, total=len(study.points), told=""), [0]
 
         def show(done: int, errors: int) -> None:

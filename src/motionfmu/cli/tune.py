@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.table import Table
 
-from motionfmu.cli.common import ScenarioPath, Set, app, out, settings
+from motionfmu.cli.common import ScenarioPath, Set, app, bare_table, out, progress_bar, settings
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
@@ -52,9 +51,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
         (part / "gains.toml").write_text(tuned.toml(), encoding="utf-8")
         text = json.dumps(tuned.numbers(), indent=1, allow_nan=False)
         (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
-    table = Table(box=None, header_style="dim")
-    for heading in ("plant", tuned.study.path.what, "before", "after", "by the model"):
-        table.add_column(heading)
+    table = bare_table("plant", tuned.study.path.what, "before", "after", "by the model")
     for before, after in zip(tuned.before, tuned.after, strict=True):
         old, new = before.fmus, after.fmus
         for what, a, b, c in (
@@ -74,11 +71,9 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
 
 def _tune(scenario: "Scenario", asked: "Problem", given: dict[str, Any]) -> "Tuned":
     """Tune with a progress bar, which shows on a terminal only."""
-    from rich.progress import Progress
-
     from motionfmu.tune import tune
 
-    with Progress(console=out, disable=not out.is_terminal, transient=True) as bar:
+    with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=1.0)
         return tune(
             scenario,

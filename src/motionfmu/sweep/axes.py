@@ -3,7 +3,6 @@
 import itertools
 import math
 import sys
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
@@ -15,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from motionfmu.errors import InputError
 from motionfmu.system import End
+from motionfmu.toml_lines import word
 
 Value = float | int | bool | str
 Point = tuple[Value, ...]
@@ -223,11 +223,8 @@ def option(text: str) -> tuple[str, Any]:
 
 
 def _word(text: str) -> Value:
-    """A TOML value; a bare word is text."""
-    try:
-        found = tomllib.loads(f"x = {text}")["x"]
-    except tomllib.TOMLDecodeError:
-        return text
+    """One value; anything else is text."""
+    found = word(text)
     return found if isinstance(found, float | int | str) else text
 
 
