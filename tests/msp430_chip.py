@@ -1,45 +1,36 @@
-"""The listing of the document on a processor that is ticked clock by clock; whole numbers only."""
+"""The document's interrupt routine on a processor that is ticked clock by clock; whole numbers."""
 
 import re
 
 GRAIN = 64  # phases are whole numbers of 1/GRAIN line period
 LATENCY = 6
-# As printed; behind ExitP1Int the home input, which the document demands and does not list.
-LISTING = """
-          bit.b #04H,&P1IFG
-          jz    PGAfall
-          bit.b #10H,&P1IN
-          jz    INCCounter
-          jmp   DECCounter
-PGAfall   bit.b #08H,&P1IFG
-          jz    PGBrising
-          bit.b #10H,&P1IN
-          jz    DECCounter
-          jmp   INCCounter
-PGBrising bit.b #10H,&P1IFG
-          jz    PGBfall
-          bit.b #04H,&P1IN
-          jz    DECCounter
-          jmp   INCCounter
-PGBfall   bit.b #20H,&P1IFG
-          jz    ExitP1Int
-          bit.b #04H,&P1IN
-          jz    INCCounter
-DECCounter dec  wMCounter
-          dec   wSt
-          mov.b #00H,&P1IFG
-          reti
-INCCounter inc  wMCounter
-          inc   wSt
-          mov.b #00H,&P1IFG
-          reti
-ExitP1Int bit.b #01H,&P1IFG
-          jz    Leave
-          clr   wMCounter
-          bis.b #01H,fHome
-Leave     mov.b #00H,&P1IFG
-          reti
-"""
+# Flag, pin whose level tells the direction, and which way a low level counts, in the order tested.
+EDGES = (("04", "10", 1), ("08", "10", -1), ("10", "04", -1), ("20", "04", 1))
+CLEARED = "          mov.b #00H,&P1IFG\n          reti\n"
+
+
+def _routine() -> str:
+    """The routine as the document does it: a chain of tests, one body for each way to count.
+
+    Behind the chain the home input, which the document demands and does not list.
+    """
+    text = ""
+    for k, (flag, pin, low) in enumerate(EDGES):
+        last = k == len(EDGES) - 1
+        text += f"Edge{k}     bit.b #{flag}H,&P1IFG\n"
+        text += f"          jz    {'Home' if last else f'Edge{k + 1}'}\n"
+        text += f"          bit.b #{pin}H,&P1IN\n"
+        text += f"          jz    {'Up' if low > 0 else 'Down'}\n"
+        # the last one runs into Down
+        text += "" if last else f"          jmp   {'Down' if low > 0 else 'Up'}\n"
+    for label, step in (("Down", "dec"), ("Up", "inc")):
+        text += f"{label:10}{step}  wMCounter\n          {step}  wSt\n{CLEARED}"
+    text += "Home      bit.b #01H,&P1IFG\n          jz    Leave\n"
+    text += "          clr   wMCounter\n          bis.b #01H,fHome\n"
+    return text + f"Leave     {CLEARED.lstrip()}"
+
+
+LISTING = _routine()
 
 
 def repaired(listing: str) -> str:
