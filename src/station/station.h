@@ -1,7 +1,7 @@
 /* station - a whole control station on one clock: the PC with its library, the card, ideal motors.
  *
  *     struct station_config config = station_defaults();
- *     struct station *s = ...;                         160 kB, one struct without pointers
+ *     struct station *s = ...;                         400 kB, one struct without pointers
  *     station_start(s, &config);
  *     MCC_line(&s->pc.mcc, target);                    any call of the library, between two runs
  *     station_run(s, s->clock + STATION_HZ, NULL);     one second

@@ -104,6 +104,22 @@ static void corner(void)
     CHECK_NEAR(r.last.place[1], 10.0, 0.0);
 }
 
+/* With path mixing off again the corner is met: every point lies on one of the two lines. */
+static void mixing_off_again(void)
+{
+    struct record r = { 0 };
+    begin(mcc_machine());
+    MCC_set_fspd(&m, 40.0);
+    MCC_enable_quit(&m);
+    CHECK_EQ(MCC_disable_quit(&m), 0);
+    CHECK(MCC_line_x(&m, 10.0) > 0);
+    CHECK(MCC_line_y(&m, 10.0) > 0);
+    while (point(&r)) {
+        CHECK(r.last.place[0] == 10.0 || r.last.place[1] == 0.0);
+    }
+    CHECK_EQ(r.n, (int)ceil(2.0 * (10.0 / 40.0 + 0.1) / 1.024e-3));
+}
+
 /* Speed and acceleration of a circle: v along the true circle, chord error v^2 T^2/(8 R). */
 static void circle(void)
 {
@@ -133,6 +149,7 @@ int main(void)
     s_shaped();
     mixing_is_smooth();
     corner();
+    mixing_off_again();
     circle();
     return check_result();
 }
