@@ -29,7 +29,7 @@ bench: build                    ## speed, as ratios measured in one run
 	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py
 
 SECONDS ?= 120
-fuzz:                           ## part programs and calls of the API at random, SECONDS each
+fuzz:                           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each
 	tests/fuzz/run.sh $(SECONDS)
 
 clean:

@@ -1,6 +1,7 @@
 /* driver - runs a harness without libFuzzer: first its corpus as it is, then seeded mutations of
  * it. It knows nothing of coverage; the same arguments give the same inputs on every machine.
  *
+ *     fuzz_program short corpus/...           as many mutations as the harness's fuzz_count
  *     fuzz_program 20000 corpus/...           20,000 mutations
  *     fuzz_program 600s corpus/...            mutations for 600 s
  *     fuzz_program @1234 corpus/...           mutation 1234 alone, which is also written to stdout
@@ -113,9 +114,10 @@ static void run(long long i, int show)
 
 int main(int argc, char **argv)
 {
-    const char *much = argc > 1 ? argv[1] : "0";
-    const int alone = much[0] == '@', timed = strchr(much, 's') != NULL;
-    const long long n = strtoll(much + alone, NULL, 10);
+    const char *much = argc > 1 ? argv[1] : "short";
+    const int alone = much[0] == '@', brief = strcmp(much, "short") == 0;
+    const int timed = !brief && strchr(much, 's') != NULL;
+    const long long n = brief ? fuzz_count : strtoll(much + alone, NULL, 10);
     const time_t start = time(NULL);
     long long i = 0;
 

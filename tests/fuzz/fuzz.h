@@ -12,6 +12,9 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
+/* Mutations of a short run: about 5 s with sanitizers. */
+extern const int fuzz_count;
+
 #define HOLDS(condition) \
     do { \
         if (!(condition)) { \

@@ -3,6 +3,8 @@
 #include "fuzz.h"
 #include "reaction.h"
 
+const int fuzz_count = 10000;
+
 enum { CALLS = 200, REST_POINTS = 20000 };
 
 static struct mcc m, before;    /* 160 kB each: not on the stack */

@@ -2,6 +2,8 @@
  * than it must, and, if found good, interpreted and planned. */
 #include "fuzz.h"
 
+const int fuzz_count = 60000;
+
 enum { POINTS = 2000, BYTES = 1 << 16 };
 
 static struct mcc m;        /* 160 kB: not on the stack */
