@@ -141,6 +141,16 @@ def test_two_radii_make_g_of_both_and_d_their_mean() -> None:
     assert both.d_nominal == pytest.approx(0.003, abs=1e-9)
 
 
+def test_a_shift_of_both_ways_is_seen_from_the_nominal_centre_only() -> None:
+    # About a centre off by e the mean of R + e cos a + e^2/(2 R) sin^2 a is e^2/(4 R) above R.
+    offset = (0.3, -0.4)
+    big, little = (shape(lambda a, d=d: d + 0.0 * a, offset) for d in (0.01, -0.004))
+    both = both_ways(big, little, R)
+    assert both.d == pytest.approx(0.003, abs=1e-9)
+    assert both.d_nominal - both.d == pytest.approx(0.25 / (4.0 * R), rel=1e-4)
+    assert reading(big, R).radius_change_nominal == pytest.approx(0.01 + 0.25 / (4 * R), abs=1e-7)
+
+
 def test_planes_are_right_handed() -> None:
     for normal, names in (([0, 0, 1], "xy"), ([0, 1, 0], "zx"), ([1, 0, 0], "yz")):
         axes = plane_axes(np.array(normal, dtype=float))

@@ -135,6 +135,28 @@ static void edge_of_the_stock(void)
     CHECK_EQ(card.fifo[0].stock, 0);
 }
 
+/* At one clock the boundary comes before timer and watchdog: the DDA time that ends there is whole
+ * and told, and the next command is in the DDA when the watchdog stops it. A little
+ * earlier the DDA time is cut off and not told. */
+static void watchdog_at_the_boundary(void)
+{
+    for (int early = 0; early < 2; early++) {
+        struct epcio card = card_stocked(3, 0);
+        int64_t pulses[6];
+        CHECK_EQ(epcio_set_timer(&card, true, 2048 - 20 * early), EPCIO_OK);
+        CHECK_EQ(epcio_set_watchdog(&card, true, 1, 500), EPCIO_OK);
+        epcio_advance(&card, 1024);
+        card_acknowledge(&card, IRQ_DDA, 1u << IRQ_DDA_CYCLE, 1);
+        epcio_advance(&card, 2048);
+        CHECK(card.watchdog.expired);
+        CHECK_EQ(card.irq.flags[IRQ_DDA] >> IRQ_DDA_CYCLE & 1, !early);
+        epcio_pulses(&card, pulses);
+        CHECK_EQ(pulses[0], early ? 98 : 100);      /* 100 * 1004 / 1024 = 98.05 */
+        epcio_advance(&card, 9000);
+        CHECK_EQ(card.irq.flags[IRQ_DDA] >> IRQ_DDA_CYCLE & 1, !early);
+    }
+}
+
 int main(void)
 {
     minimum_three_write_four();
@@ -145,5 +167,6 @@ int main(void)
     one_by_one();
     doubled_points();
     edge_of_the_stock();
+    watchdog_at_the_boundary();
     return check_result();
 }

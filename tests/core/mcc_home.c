@@ -4,21 +4,29 @@
 
 static const double CYCLE = 1e-3, ACC = 2000.0;     /* [s], [mm/s^2] */
 
-/* Sensor ON in [on_from, on_to], limits beyond +-limit, an index every pitch. [mm] */
+/* Sensor ON in [on_from, on_to], limits beyond +-limit for the length of a cam, an index every
+ * pitch. [mm] */
 struct axis {
     double position, speed;
-    double on_from, on_to, limit, pitch;
+    double on_from, on_to, limit, cam, pitch;
     bool   sensor_on, dead_sensor, no_index;
+    int    stuck;           /* the upper (1) or lower (-1) limit switch shows always */
     bool   armed, latched;
     double latch;
 };
+
+static bool on_switch(const struct axis *a, int side)
+{
+    const double beyond = side * a->position - a->limit;
+    return a->stuck == side || (beyond >= 0.0 && beyond <= a->cam);
+}
 
 static struct home_inputs show(const struct axis *a)
 {
     const bool on = a->position >= a->on_from && a->position <= a->on_to && !a->dead_sensor;
     return (struct home_inputs){
-        .sensor = on == a->sensor_on, .upper = a->position >= a->limit,
-        .lower = a->position <= -a->limit, .rest = a->speed == 0.0, .position = a->position,
+        .sensor = on == a->sensor_on, .upper = on_switch(a, 1), .lower = on_switch(a, -1),
+        .rest = a->speed == 0.0, .position = a->position,
         .latched = a->latched, .latch = a->latch
     };
 }
@@ -75,8 +83,8 @@ static enum home_phase run(struct axis *a, const struct home_config *c, struct h
 
 static struct axis machine(void)
 {
-    return (struct axis){ .on_from = 20.0, .on_to = 26.0, .limit = 100.0, .pitch = 10.0,
-                          .sensor_on = true };
+    return (struct axis){ .on_from = 20.0, .on_to = 26.0, .limit = 100.0, .cam = 1e3,
+                          .pitch = 10.0, .sensor_on = true };
 }
 
 static struct home_config config(enum home_mode mode, uint32_t direction)
@@ -181,6 +189,70 @@ static void faults(void)
     CHECK_EQ(h.fault, HOME_STUCK);
 }
 
+/* Only the switch that a phase moves onto ends it: index and last way, either way round. */
+static void switches_ahead(void)
+{
+    for (int down = 0; down < 2; down++) {
+        const double side = down ? -1.0 : 1.0;
+        struct axis a = machine();
+        struct home h;
+        struct home_config c = config(HOME_INDEX, down ? 4 : 0);
+
+        a.position = 83.0 * side;           /* the index lies behind the switch */
+        a.limit = 88.0;
+        CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
+        CHECK_EQ(h.fault, HOME_ON_LIMIT);
+        CHECK_NEAR(side * a.position, 88.0, 2.0 * CYCLE + 1e-9);
+
+        a = machine();                      /* on the switch behind it */
+        c = config(HOME_INDEX, down ? 0 : 4);
+        a.position = 109.0 * side;
+        c.offset = 0.0;
+        CHECK_EQ(run(&a, &c, &h), HOME_DONE);
+        CHECK_NEAR(h.place, 100.0 * side, 1e-9);
+
+        a = machine();                      /* an offset that leads onto the switch */
+        a.position = 83.0 * side;
+        c = config(HOME_INDEX, down ? 4 : 0);
+        c.offset = 15.0 * side;
+        CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
+        CHECK_EQ(h.fault, HOME_ON_LIMIT);
+        CHECK_NEAR(side * a.position, 100.0, 2.0 * CYCLE + 1e-9);
+
+        a = machine();                      /* at rest on the switch, and back from there */
+        a.position = 93.0 * side;
+        c.offset = -1.25 * side;
+        CHECK_EQ(run(&a, &c, &h), HOME_DONE);
+        CHECK_NEAR(a.position, 98.75 * side, 1e-9);
+    }
+}
+
+/* A limit switch that is the sensor may be left on its far side if it is a cam; the other one ends
+ * the phase, whatever the sensor says. */
+static void switch_as_sensor(void)
+{
+    for (int down = 0; down < 2; down++) {
+        const double side = down ? -1.0 : 1.0;
+        struct axis a = machine();
+        struct home h;
+        struct home_config c = config(HOME_LIMIT, down ? 3 : 0);
+
+        a.cam = 4.0;
+        a.position = 60.0 * side;
+        c.offset = 2.0 * side;
+        CHECK_EQ(run(&a, &c, &h), HOME_DONE);
+        CHECK_NEAR(h.place, 106.0 * side, 2.0 * CYCLE + 1e-9);
+
+        a = machine();
+        a.stuck = down ? -1 : 1;
+        a.position = -97.0 * side;
+        c = config(HOME_LIMIT, down ? 1 : 2);
+        CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
+        CHECK_EQ(h.fault, HOME_ON_LIMIT);
+        CHECK_NEAR(a.position, -100.0 * side, 2.0 * CYCLE + 1e-9);
+    }
+}
+
 static void refusals(void)
 {
     struct home_config c = config(HOME_SENSOR, 0);
@@ -203,6 +275,8 @@ int main(void)
     run_over();
     logic_and_index_only();
     faults();
+    switches_ahead();
+    switch_as_sensor();
     refusals();
     return check_result();
 }

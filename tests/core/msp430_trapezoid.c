@@ -104,6 +104,30 @@ static void changes(void)
     }
 }
 
+/* A limit lowered under way is reached by the whole acceleration, tick by tick, and then held. */
+static void lowered(void)
+{
+    uint64_t seed = 8;
+    for (int i = 0; i < 300; i++) {
+        const int32_t a = (int32_t)check_random(&seed, ONE / 20, 2 * ONE);
+        const int32_t fast = (int32_t)check_random(&seed, 5 * ONE, 40 * ONE);
+        const int32_t slow = (int32_t)check_random(&seed, 0, fast);
+        const int32_t way = i % 2 ? 1 : -1;
+        struct trapezoid t;
+        trapezoid_put(&t, 0);
+        trapezoid_go(&t, way * 10000000);
+        for (int k = 0; k < 1000; k++)
+            trapezoid_tick(&t, fast, a);
+        CHECK_EQ(t.speed, way * fast);
+        int32_t want = fast;
+        for (int k = 0; k < 1000; k++) {
+            want = want - a > slow ? want - a : slow;
+            trapezoid_tick(&t, slow, a);
+            CHECK_EQ(t.speed, way * want);
+        }
+    }
+}
+
 /* A stop takes v^2/2a and no tick longer. */
 static void stop(void)
 {
@@ -129,6 +153,7 @@ int main(void)
     braking();
     moves();
     changes();
+    lowered();
     stop();
     return check_result();
 }
