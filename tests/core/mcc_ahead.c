@@ -61,6 +61,28 @@ static void corners(void)
     }
 }
 
+/* However large the tolerance, a corner takes half a radian of the sharper of two arcs, no more: the
+ * rest of an arc is driven, one that is far smaller than the tolerance too. */
+static void small_arcs(void)
+{
+    for (int k = 0; k < 4; k++) {
+        const double r = 0.1, other = k % 2 ? 0.4 : 0.05, sharper = fmin(r, other);
+        const double start[AXES] = { 0 }, up[2] = { 0.0, r };
+        const double on[AXES] = { -r, r }, beside[2] = { -r - (k < 2 ? other : -other), r };
+        const double end[AXES] = { beside[0], r - other };
+        struct path a, b;
+        struct corner c;
+        double miss;
+        CHECK_EQ(path_arc(&a, PATH_XY, start, on, up, true, 1, &miss), FAULT_NONE);
+        CHECK_EQ(path_arc(&b, PATH_XY, on, end, beside, k >= 2, 1, &miss), FAULT_NONE);
+        for (double tolerance = 0.01; tolerance < 20.0; tolerance *= 10.0) {
+            CHECK(corner_make(&c, &a, &b, tolerance, 0.5 * fmin(a.length, b.length), true));
+            CHECK(c.half <= 0.5 * sharper * (1.0 + 1e-12));
+        }
+        CHECK_NEAR(c.half, 0.5 * sharper, 1e-12);
+    }
+}
+
 /* A square corner of two lines is cut by sqrt(2) CUT half, all of the tolerance. */
 static void square(void)
 {
@@ -266,6 +288,7 @@ static void abort_anywhere(char type)
 int main(void)
 {
     corners();
+    small_arcs();
     square();
     pieces(false);
     pieces(true);
