@@ -272,6 +272,42 @@ static void hold_and_abort(void)
     CHECK_NEAR(pc.mcc.end[0] * 1000.0, room.motor[0].now + 20000, 0.5);
 }
 
+/* An abort before the search of home_first or within it drops search and program for good: the axes
+ * rest where they are, and a search asked for later moves nothing but its axes. */
+static void abort_of_home_first(void)
+{
+    static const char text[] = "G1 X-3 F6000\nM2\n";
+    for (int within = 0; within < 2; within++) {
+        struct pc_config c = config_of(HOME_SENSOR_INDEX, 2);
+        c.home_first = true;
+        c.start = 2000 * c.bus;
+        start(&c, -8000, true);
+        for (int k = 0; k < (within ? 3000 : 1000); k++) {
+            period(text);
+        }
+        CHECK_EQ(room.motor[0].now != -8000, within);
+        CHECK_EQ(MCC_check_homef(&pc.mcc), within ? 0 : MCC_HOME_COMMAND_NOTCALLED);
+        room.panel.abort = true;
+        for (int k = 0; k < 3000; k++) {
+            period(text);
+        }
+        const int32_t rest = room.motor[0].now;
+        CHECK(within ? rest > -8000 && rest < SENSOR_FROM : rest == -8000);
+        CHECK(MCC_check_stop(&pc.mcc) && pc_done(&pc) && pc.mcc.error == 0);
+        room.panel.abort = false;
+        for (int k = 0; k < 5000; k++) {
+            period(text);
+        }
+        CHECK_EQ(room.motor[0].now, rest);
+        CHECK_EQ(MCC_check_homef(&pc.mcc), MCC_HOME_COMMAND_NOTCALLED);
+        CHECK_EQ(search(), 1);
+        for (int k = 0; k < 5000; k++) {
+            period(text);
+        }
+        CHECK_EQ(room.motor[0].now, 11000);
+    }
+}
+
 /* What is missing is told with its axis; nothing is taken until the error is cleared. */
 static void failures(void)
 {
@@ -330,6 +366,7 @@ int main(void)
     orders();
     before_the_program();
     hold_and_abort();
+    abort_of_home_first();
     failures();
     refusals();
     return check_result();

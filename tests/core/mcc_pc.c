@@ -139,6 +139,32 @@ static void refused(void)
     CHECK(pc_done(&pc));
 }
 
+/* Of a transaction the card has taken all but what its counter of refused frames rose by since the
+ * transaction before; no more than the transaction has, and all if the counter begins anew. */
+static void frames_taken(void)
+{
+    static const struct { int32_t before, now, taken; } row[] = {
+        { 0, 0, 8 }, { 10, 10, 8 }, { 10, 13, 5 }, { 10, 18, 0 }, { 10, 25, 0 }, { 10, 3, 8 },
+        { INT32_MIN, INT32_MAX, 0 }, { INT32_MAX, INT32_MIN, 8 },
+    };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        struct pcl p = { .seq = 1, .open = true, .count = 8, .prime = 20, .refused = row[i].before,
+                         .refusals = 2 };
+        const struct pcl_card other = { .cmd_ack = 0, .frames_refused = row[i].now };
+        const struct pcl_card card = { .cmd_ack = 1, .frames_refused = row[i].now };
+        const struct pcl_card next = { .cmd_ack = 2, .frames_refused = row[i].now };
+        CHECK_EQ(pcl_acknowledged(&p, &other), -1);
+        CHECK(p.open && p.refused == row[i].before);
+        CHECK_EQ(pcl_acknowledged(&p, &card), row[i].taken);
+        CHECK(!p.open && p.prime == 20 - row[i].taken);
+        CHECK_EQ(p.refusals, row[i].taken > 0 ? 0 : 3);
+        p.open = true;                      /* nothing more is refused: all of the next is taken */
+        p.seq = 2;
+        CHECK_EQ(pcl_acknowledged(&p, &next), 8);
+        CHECK_EQ(p.refusals, 0);
+    }
+}
+
 /* The panel: a held program does not start, an abort before the start drops it. */
 static void panel(void)
 {
@@ -295,6 +321,7 @@ int main(void)
     jitter();
     starved();
     refused();
+    frames_taken();
     panel();
     program_stop();
     software_voltage();
