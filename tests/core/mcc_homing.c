@@ -308,6 +308,38 @@ static void abort_of_home_first(void)
     }
 }
 
+/* A program behind home_first waits for a good search: a failed one, its error cleared and a press
+ * of cycle start do not let it run. */
+static void failed_home_first(void)
+{
+    static const char text[] = "G1 X-3 F6000\nM2\n";
+    struct pc_config c = config_of(HOME_SENSOR_INDEX, 2);
+    c.home_first = true;
+    start(&c, -8000, true);
+    room.motor[0].no_sensor = true;
+    for (int k = 0; k < 300000 && pc.mcc.error == 0; k++) {
+        period(text);
+    }
+    CHECK_EQ(MCC_get_errcode(&pc.mcc), 0xF700 + 16 * HOME_NO_SENSOR + 1);
+    for (int k = 0; k < 6000; k++) {
+        room.panel.clear_error = k >= 2000 && k < 2100;
+        room.panel.cycle_start = k >= 3000 && k < 3100;
+        period(text);
+        CHECK(!pc.started && !pc.mcc.running);
+    }
+    CHECK_EQ(pc.mcc.error, 0);
+    room.motor[0].no_sensor = false;
+    room.panel.go_home = true;
+    for (int k = 0; k < 300000 && !pc_done(&pc); k++) {
+        period(text);
+    }
+    for (int k = 0; k < 2000; k++) {
+        period(text);
+    }
+    CHECK(pc_done(&pc));
+    CHECK_EQ(room.motor[0].now, 11000 - 3000);
+}
+
 /* What is missing is told with its axis; nothing is taken until the error is cleared. */
 static void failures(void)
 {
@@ -367,6 +399,7 @@ int main(void)
     before_the_program();
     hold_and_abort();
     abort_of_home_first();
+    failed_home_first();
     failures();
     refusals();
     return check_result();
