@@ -114,6 +114,14 @@ static void lines(void)
     CHECK_EQ(guard_path(&m, &p, &r), FAULT_NONE);
     p = line_x(25.0, -10.001);
     CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
+    p = line_x(-15.0, -12.0);               /* and at the other end */
+    CHECK_EQ(guard_path(&m, &p, &r), FAULT_NONE);
+    p = line_x(-15.0, -15.001);
+    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
+    p = line_x(-15.0, 20.0);
+    CHECK_EQ(guard_path(&m, &p, &r), FAULT_NONE);
+    p = line_x(-15.0, 20.001);
+    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
     CHECK(guard_limited(&m));
     const struct machine off = mcc_machine();
     CHECK_EQ(guard_path(&off, &p, &r), FAULT_NONE);
