@@ -295,9 +295,47 @@ static void refused(void)
     }
 }
 
+/* An IPO of 20 ms that makes 16 points at a time: its own group starves by the frames that are
+ * missing, a group beside it that stands does not. */
+static void too_slow(void)
+{
+    static const int32_t channel[2][AXES] = { { 0, -1, -1, -1, -1, -1 }, { 1, -1, -1, -1, -1, -1 } };
+    struct machine card[GROUP_CARDS], m = mcc_machine();
+    struct group_config config = usual();
+    struct group_panel panel[GROUP_MAX] = { { 0 } };
+    struct source_text text = { "G1 X100 F6000\nM2\n", 18 };
+    struct source source[GROUP_MAX] = { { 0 } };
+    struct card c;
+    cards(card);
+    config.ipo = 800000;
+    config.jitter = 0.0;
+    m.queue_depth = 16;
+    groups_init(&set, &config, card);
+    for (int n = 0; n < 2; n++) {
+        CHECK_EQ(group_create(&set, 0, channel[n], &m), n);
+        panel[n] = calm;
+    }
+    CHECK_EQ(group_program(&set, 0, 0), MCC_NO_ERR);
+    source[0] = source_of(&text);
+    CHECK_EQ(groups_start(&set), MCC_NO_ERR);
+    card_begin(&c, &set.card[0].pcl, machine_dda_clocks(&card[0]), config.min_stock);
+    for (int k = 0; k < 20000 && !group_done(&set, 0); k++) {
+        c.shows.stock = c.stock;
+        const struct pcl_card shows[GROUP_CARDS] = { c.shows };
+        card_read(&c);
+        groups_instant(&set, k * config.bus, shows, panel, source);
+        card_advance(&c, (k + 1) * config.bus);
+    }
+    CHECK(group_done(&set, 0));
+    /* 1.1 s are 1075 points, 16 in 20 ms of 19.53 frames */
+    CHECK_NEAR(set.group[0].starved, 1075 * (20.0 / 1.024 - 16.0) / 16.0, 8.0);
+    CHECK_EQ(set.group[1].starved, 0);
+}
+
 int main(void)
 {
     codes();
+    too_slow();
     undisturbed();
     as_the_single_library(0);
     as_the_single_library(400000);

@@ -1,5 +1,7 @@
 /* Motion that is interfered with: hold, override, abort, too many pulses, all at random. */
 #include "mcc_record.h"
+#include "protect.h"
+#include "reaction.h"
 
 /* Hold: on the path, v^2/(2 d) further; continue: the same end, later by what was lost. */
 static void hold(void)
@@ -204,6 +206,23 @@ static void anything(void)
     }
 }
 
+/* An emergency stop is cleared two DDA times after the release or the last pulse, whichever is
+ * later. */
+static void quiet_after_a_stop(void)
+{
+    enum { BUS = 4000 };
+    const struct machine machine = mcc_machine();
+    const int quiet = (int)ceil(2.0 * (double)machine_dda_clocks(&machine) / BUS);  /* 20.48 */
+    begin(machine);
+    for (int k = -3; k <= 10 + quiet; k++) {
+        m.signals.stop = k <= 0;
+        m.signals.pulses[2] += k == 10;
+        reaction_look(&m, &(struct reaction_look){ .clocks = BUS });
+        CHECK_EQ(MCC_clear_error(&m), k <= 0 ? MCC_RUN_TIME
+                                    : k < 10 + quiet ? MCC_COMMAND_NOTFINISHED : MCC_NO_ERR);
+    }
+}
+
 int main(void)
 {
     hold();
@@ -213,5 +232,6 @@ int main(void)
     pulse_limit_in_a_chain('T');
     pulse_limit_in_a_chain('S');
     anything();
+    quiet_after_a_stop();
     return check_result();
 }

@@ -54,6 +54,33 @@ static void power_up(void)
     CHECK_EQ(r.chip.sequence.code, 0);
 }
 
+/* A press acts in the tick in which the button has been down for as many as asked, after a release
+ * of as many; a tick up in between begins anew. */
+static void debounced_to_the_tick(void)
+{
+    for (int ticks = 1; ticks <= 5; ticks += 2) {
+        struct sequence_config c = rig_config().sequence;
+        struct sequence s;
+        struct sequence_input in = {0};
+        c.debounce = ticks;
+        sequence_reset(&s, false);
+        for (int k = 0; k < ticks; k++)
+            sequence_tick(&c, &s, &in);
+        for (int k = 1; k < ticks; k++) {
+            in.pb1 = true;
+            sequence_tick(&c, &s, &in);
+        }
+        in.pb1 = false;
+        sequence_tick(&c, &s, &in);
+        in.pb1 = true;
+        for (int k = 1; k <= ticks; k++) {
+            CHECK_EQ(s.state, SEQUENCE_UNHOMED);
+            sequence_tick(&c, &s, &in);
+        }
+        CHECK_EQ(s.state, SEQUENCE_SEARCH);
+    }
+}
+
 /* From above: the counter is zero at the switch, constant speed, no bump of the error. */
 static void home_from_above(void)
 {
@@ -346,6 +373,7 @@ int main(void)
 {
     homed_from_the_start();
     power_up();
+    debounced_to_the_tick();
     home_from_above();
     home_from_switch();
     position();

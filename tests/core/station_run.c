@@ -1,5 +1,6 @@
 /* The station: pulses and FIFO at their clock, runs in pieces, motors on voltage, refusals. */
 #include "mcc_check.h"
+#include "registers.h"
 #include "station.h"
 
 static struct station s, other, before;     /* 170 kB each: not on the stack */
@@ -104,6 +105,29 @@ static void pieces(void)
     CHECK(reading(&s).pulses[0] > 0);
 }
 
+/* At an instant the encoder shows where the motor is; between two of them the motor goes on at the
+ * speed of its voltage. */
+static void between_instants(void)
+{
+    struct station_config c = station_defaults();
+    c.pc.output_mode[0] = STATION_LOOP;
+    CHECK_EQ(station_start(&s, &c), STATION_OK);
+    CHECK_EQ(MCC_set_fspd(&s.pc.mcc, 300.0), MCC_NO_ERR);
+    CHECK(MCC_line_x(&s.pc.mcc, 100.0) > 0);
+    CHECK_EQ(station_run(&s, STATION_HZ / 5, NULL), STATION_OK);
+    for (int k = 0; k < 200; k++) {
+        const double at = reading(&s).motor[0];
+        CHECK_EQ(station_run(&s, s.clock + 1, NULL), STATION_OK);
+        CHECK(fabs((double)reading(&s).counts[0] - at) <= 1.0);
+        CHECK_EQ(station_run(&s, s.clock + c.pc.bus / 2 - 1, NULL), STATION_OK);
+        const double half = reading(&s).motor[0];
+        CHECK_EQ(station_run(&s, s.clock + c.pc.bus / 2, NULL), STATION_OK);
+        const double way = reading(&s).motor[0] - at;
+        CHECK_NEAR(half - at, 0.5 * way, 1e-6);
+        CHECK(k < 20 || way > 5.0);     /* [counts], so that a period more or less would be seen */
+    }
+}
+
 /* Loop of the card: gain 60 of scale 2^6 at 50,000 counts/s on 10 V lags by v / Kv in steady
  * motion: Kv = 60 / 64 * 20 V / 65536 * 50,000 counts/s/V. */
 static void lag(void)
@@ -154,6 +178,24 @@ static void program(void)
     CHECK(!s.pc.mcc.signals.stop && !epcio_off(&s.card));
 }
 
+/* A card that its watchdog has stopped takes no frame; that is no fault of the station, which goes on
+ * and moves again once the watchdog is refreshed. */
+static void watchdog(void)
+{
+    const struct station_config c = station_defaults();
+    CHECK_EQ(station_start(&s, &c), STATION_OK);
+    CHECK_EQ(MCC_line_x(&s.pc.mcc, 20.0), 1);
+    CHECK_EQ(epcio_set_timer(&s.card, true, STATION_HZ / 2), EPCIO_OK);
+    CHECK_EQ(epcio_set_watchdog(&s.card, true, 1, 1000), EPCIO_OK);
+    CHECK_EQ(station_run(&s, STATION_HZ, NULL), STATION_OK);
+    const struct station_reading stopped = reading(&s);
+    CHECK(epcio_off(&s.card) && stopped.frames_refused > 100 && stopped.pulses[0] > 1000);
+    CHECK_EQ(epcio_set_timer(&s.card, false, 1), EPCIO_OK);
+    epcio_refresh_watchdog(&s.card);
+    CHECK_EQ(station_run(&s, s.clock + STATION_HZ / 5, NULL), STATION_OK);
+    CHECK(!epcio_off(&s.card) && reading(&s).pulses[0] > stopped.pulses[0] + 1000);
+}
+
 static void refusals(void)
 {
     for (int i = 0; i < 13; i++) {
@@ -202,8 +244,10 @@ int main(void)
     line();
     fifo();
     pieces();
+    between_instants();
     lag();
     program();
+    watchdog();
     refusals();
     return check_result();
 }
