@@ -363,7 +363,7 @@ static double mean_of(struct track *t, struct track_mean *m, double way)
 
 void track_sample(struct track *t, struct track_mean *m, struct ring *r, double dda_time)
 {
-    const double out = t->out_base + t->out_s;
+    const double out = t->way;
     double way = t->base + t->s;
 
     if (t->taps == 0) {
@@ -374,6 +374,7 @@ void track_sample(struct track *t, struct track_mean *m, struct ring *r, double 
         way = fmax(out, mean_of(t, m, way));
         t->out_v = (way - out) / dda_time;
     }
+    t->way = way;
     t->out_s = way - t->out_base;
     while (t->out < t->at && t->out_s >= ring_peek(r, t->out)->command.path.length) {
         const double length = ring_peek(r, t->out)->command.path.length;
@@ -411,7 +412,7 @@ void track_to_rest(struct track *t, struct ring *r)
 
 bool track_rests(const struct track *t)
 {
-    return t->v == 0.0 && t->out_base + t->out_s >= t->base + t->s;
+    return t->v == 0.0 && t->way >= t->base + t->s;
 }
 
 bool track_done(const struct track *t)

@@ -57,7 +57,9 @@ struct track {
     int32_t out;            /* command of the tool, from the head */
     int32_t begun;          /* commands of which track_begun has told */
     double  out_base;       /* [mm] its start on the chain */
-    double  out_s, out_v;   /* [mm], [mm/s] the tool */
+    double  out_s, out_v;   /* [mm], [mm/s] the tool, from there */
+    double  way;            /* [mm] the tool on the chain: base + s of the planned motion once it
+                             * is there, which out_base + out_s need not round to */
 };
 
 /* Whether the first command of the ring begins a chain. */

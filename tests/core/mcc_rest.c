@@ -1,0 +1,59 @@
+/* Rest after an abort or a hold: as soon as the ramp has ended wherever it ends. */
+#include "mcc_chain.h"
+
+/* Points until the axes rest, `most` at most. */
+static int points_to_rest(int most)
+{
+    int n = 0;
+    for (; n < most && task_can_point(&m); n++) {
+        task_run(&m, NULL);
+        queue_drop(&m.queue, m.queue.count);
+    }
+    return n;
+}
+
+/* A chain of random lines, in a hold or an abort after some points: which one rounds so that its
+ * ways along the chain do not add up is a matter of chance, once in some ten thousand. */
+static void chains(bool smooth)
+{
+    /* From the feed to 0; S: at acc/0.75, and the mean's 0.05 s. */
+    const int longest = (int)ceil((smooth ? 0.075 + 0.05 : 0.1) / DT) + 1;
+    uint64_t seed = 17;
+    int late = 0, most = 0;
+
+    for (int i = 0; i < 3000; i++) {
+        begin(mcc_machine());
+        smooth_ramps(smooth);
+        MCC_set_fspd(&m, 50.0);
+        MCC_set_inc(&m);
+        CHECK_EQ(mcc_set_tolerance(&m, 0.1), 0);
+        for (int k = 0; k < 12; k++) {
+            const double x = mcc_random(&seed, 0.01, 3.0), y = mcc_random(&seed, -1.0, 1.0) * x;
+            CHECK(MCC_line(&m, (double[AXES]){ x, y }) > 0);
+        }
+        for (int stops = 0; stops < 6; stops++) {
+            points_to_rest((int)mcc_random(&seed, 100.0, 200.0));
+            if (m.ring.count == 0) {
+                break;
+            }
+            CHECK_EQ(MCC_motion_hold(&m), MCC_NO_ERR);
+            const int n = points_to_rest(2 * longest);
+            late += n > longest;
+            most = n > most ? n : most;
+            MCC_motion_conti(&m);
+        }
+        points_to_rest(30);
+        if (MCC_motion_abort(&m) == MCC_NO_ERR) {
+            late += points_to_rest(2 * longest) > longest || !MCC_check_stop(&m);
+        }
+    }
+    CHECK_EQ(late, 0);
+    CHECK(most > longest - 4);
+}
+
+int main(void)
+{
+    chains(false);
+    chains(true);
+    return check_result();
+}
