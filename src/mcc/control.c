@@ -10,6 +10,19 @@ static bool idle(const struct mcc *m)
            !m->ipo.confirming;
 }
 
+void control_settle(struct mcc *m)
+{
+    if (ipo_busy(&m->ipo) || m->ring.count > 0 || m->running) {
+        return;
+    }
+    m->ipo.leave = false;
+    memcpy(m->end, m->ipo.rest, sizeof m->end);     /* an abort may have moved it, */
+    if (m->ipo.outputs.spindle == 0.0) {
+        m->program.switches.turning = 0;            /* and switched these off */
+    }
+    m->program.switches.coolant = m->ipo.outputs.coolant;
+}
+
 int MCC_motion_hold(struct mcc *m)
 {
     if (!m->open) {
@@ -44,6 +57,7 @@ int MCC_motion_abort(struct mcc *m)
     }
     m->running = false;
     ipo_abort(&m->ipo, &m->ring);
+    control_settle(m);
     return MCC_NO_ERR;
 }
 

@@ -219,4 +219,7 @@ int MCC_check_stop(const struct mcc *m);    /* 1 all commands done and every poi
 /* The same, but that some compensation may be still to be driven in. */
 bool control_rests(const struct mcc *m);
 
+/* With nothing under way and nothing to come, the next command begins where the axes stand. */
+void control_settle(struct mcc *m);
+
 #endif

@@ -90,6 +90,7 @@ void reaction_stop(struct mcc *m, int32_t error)
     } else {
         ipo_abort(&m->ipo, &m->ring);
     }
+    control_settle(m);
 }
 
 int32_t reaction_error_of(const struct fault_report *r)
@@ -111,6 +112,7 @@ static void stop_at_once(struct mcc *m, int32_t error, int32_t stay)
         m->comp[i].added = last->added[i];
     }
     queue_keep(&m->queue, stay);
+    control_settle(m);
 }
 
 /* Position by the pulses that the card has put out, of which the compensation is no part. */

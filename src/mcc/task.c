@@ -198,14 +198,7 @@ void task_settle(struct mcc *m)
     if (ipo_resting(&m->ipo, &m->ring) && !compensate_due(m)) {
         memset(m->protection.frame, 0, sizeof m->protection.frame);
     }
-    if (!ipo_busy(&m->ipo) && m->ring.count == 0 && !m->running) {
-        m->ipo.leave = false;
-        memcpy(m->end, m->ipo.rest, sizeof m->end);     /* an abort may have moved it, */
-        if (m->ipo.outputs.spindle == 0.0) {
-            m->program.switches.turning = 0;            /* and switched these off */
-        }
-        m->program.switches.coolant = m->ipo.outputs.coolant;
-    }
+    control_settle(m);
     manual_end(m);
 }
 

@@ -1,4 +1,5 @@
-/* Rest after an abort or a hold: as soon as the ramp has ended wherever it ends. */
+/* Rest after an abort or a hold: as soon as the ramp has ended wherever it ends, and the next command
+ * begins where the axes stand. */
 #include "mcc_chain.h"
 
 /* Points until the axes rest, `most` at most. */
@@ -51,9 +52,36 @@ static void chains(bool smooth)
     CHECK(most > longest - 4);
 }
 
+/* At rest already, an abort ends at once; a command given in the same instant begins where the
+ * axes stand, not at the target that was dropped. */
+static void abort_at_rest(bool under_way)
+{
+    struct record r = { 0 };
+    begin(mcc_machine());
+    CHECK(MCC_line_x(&m, 20.0) > 0);
+    if (under_way) {
+        while (r.n < 500 && point(&r)) {
+        }
+        CHECK_EQ(MCC_motion_hold(&m), MCC_NO_ERR);
+        run(&r);
+    }
+    const double x = r.last.place[0];
+    CHECK(under_way ? x > 1.0 && x < 19.0 : x == 0.0);
+    CHECK_EQ(MCC_motion_abort(&m), MCC_NO_ERR);
+    CHECK(MCC_check_stop(&m));
+    CHECK(MCC_line_y(&m, 5.0) > 0);
+    while (point(&r)) {
+        CHECK(r.last.place[0] == x);
+    }
+    CHECK_EQ(m.error, 0);
+    CHECK(r.last.place[1] == 5.0 && MCC_check_stop(&m));
+}
+
 int main(void)
 {
     chains(false);
     chains(true);
+    abort_at_rest(false);
+    abort_at_rest(true);
     return check_result();
 }

@@ -1,5 +1,6 @@
 /* Bytes as calls of the library in any order, with the task running between: a call that is
- * refused changes nothing, every point is within the limits, the axes come to rest when told. */
+ * refused changes nothing, every point is within the limits, the axes come to rest when told, and
+ * at rest the next command begins where they stand. */
 #include "fuzz.h"
 #include "reaction.h"
 
@@ -290,6 +291,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         before = m;
         if (call(&b) < 0) {
             HOLDS(memcmp(&before, &m, sizeof m) == 0);
+        }
+        for (int k = 0; k < AXES && m.open && MCC_check_stop(&m); k++) {
+            HOLDS(fabs(m.end[k] - m.ipo.rest[k]) < 1e-12);  /* shorter lines are none */
         }
         slowest = fmax(slowest, slowest_of(&m.machine));
         if (!(slowest < REST_POINTS * machine_dda_time(&m.machine))) {
