@@ -198,6 +198,7 @@ static void fail(struct mcc *m, int i, enum home_fault fault)
     m->error = MCC_ERROR_HOME + 16 * (int32_t)fault + i + 1;
     m->homing.state = HOMING_FAILED;
     ipo_abort(&m->ipo, &m->ring);
+    control_settle(m);
 }
 
 /* All axes stand at their origins, every point is written: here is 0 from now on. */
