@@ -20,7 +20,6 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     pc->config = *config;
     pc->random = (uint64_t)(int64_t)config->seed;
     pc->program = program;
-    pc->deadline = (config->min_stock + 1) * machine_dda_clocks(m);
     sched_start(&pc->sched, &(struct sched_config){
         .priority = { config->priority[0], config->priority[1], config->priority[2],
                       config->priority[3] },
@@ -49,7 +48,7 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
             law.pulses_per_mm[i] = machine_pulses_per_mm(&m->axis[i]);
         }
     }
-    voltage_start(&pc->voltage, &law, m);
+    voltage_start(&pc->voltage, &law);
     homing_set_settle(&pc->mcc, config->home_settle);
     pc->home_due = config->home_first;
     if (config->dry_run) {
@@ -323,6 +322,15 @@ static void ipo_end(struct pc *pc, const struct source *program)
     sched_more(&pc->sched, PC_IPO, made * pc->config.unit[PC_INTERPRETER] + next_point(pc));
 }
 
+/* The latest write came in time: less than (n + 1) T after its interrupt. */
+static bool in_time(const struct pc *pc)
+{
+    const struct pcl *p = &pc->pcl;
+    const int64_t deadline = (p->min_stock + 1) * machine_dda_clocks(&pc->mcc.machine);
+
+    return p->raised < 0 || pc->sched.clock - p->raised < deadline;
+}
+
 static void pcl_end(struct pc *pc)
 {
     struct pcl *p = &pc->pcl;
@@ -330,7 +338,7 @@ static void pcl_end(struct pc *pc)
 
     if (pc->writing) {
         pc->writing = false;
-        pc->sched.module[PC_PCL].missed += p->raised >= 0 && clock - p->raised >= pc->deadline;
+        pc->sched.module[PC_PCL].missed += !in_time(pc);
         pcl_write(p, clock < pc->publish ? pc->publish : clock);
         sched_more(&pc->sched, PC_PCL, pc->tail);
         pc->tail = 0;

@@ -74,7 +74,6 @@ struct pc {
     uint64_t random;
     struct sched sched;
     int64_t publish;        /* [clocks] of this instant: (k+1) T_b */
-    int64_t deadline;       /* [clocks] interrupt to write, less than (n + 1) T */
     bool    reading, computing, writing;    /* the run at work has a unit under way */
     int32_t units[SCHED_MODULES];   /* that it has begun */
     int64_t tail;           /* [clocks] of the page behind the write */

@@ -17,11 +17,10 @@ static void begin_trail(struct voltage *v, const struct mcc *m)
     v->frame = 0;
 }
 
-void voltage_start(struct voltage *v, const struct law_config *c, const struct machine *m)
+void voltage_start(struct voltage *v, const struct law_config *c)
 {
     memset(v, 0, sizeof *v);
     v->config = *c;
-    v->dda_time = machine_dda_time(m);
     for (int i = 0; i < AXES; i++) {
         const struct law_axis *a = &c->axis[i];
         v->special = v->special || (a->on && (a->feed_forward > 0.0 || a->lag > 0.0));
@@ -32,6 +31,7 @@ void voltage_start(struct voltage *v, const struct law_config *c, const struct m
 /* A frame and its end. Places come from pulses put out, so that a new origin is no motion. */
 static void take(struct voltage *v, const struct mcc *m, const struct point *point)
 {
+    const double dda_time = machine_dda_time(&m->machine);
     struct trail_point p = { { 0.0 }, { 0.0 }, { 0 } };
 
     for (int i = 0; i < AXES; i++) {
@@ -45,7 +45,7 @@ static void take(struct voltage *v, const struct mcc *m, const struct point *poi
                 v->place[i] += point->place[i] * machine_pulses_per_mm(a) - point->pulses[i];
             }
             v->added[i] = point->added[i];
-            p.speed[i] = (v->place[i] - before + correction) / v->dda_time;
+            p.speed[i] = (v->place[i] - before + correction) / dda_time;
         }
         if (i < 3) {
             p.place[i] = v->place[i] / machine_pulses_per_mm(a);
@@ -64,7 +64,8 @@ void voltage_taken(struct voltage *v, const struct mcc *m, const struct pcl_part
 }
 
 /* The frame being put out; an empty FIFO puts nothing out behind it. */
-static const struct trail_point *now_out(struct voltage *v, int64_t now, int32_t stock)
+static const struct trail_point *now_out(struct voltage *v, const struct mcc *m, int64_t now,
+                                         int32_t stock)
 {
     const int64_t frame = v->trail.frames - stock;
 
@@ -72,7 +73,7 @@ static const struct trail_point *now_out(struct voltage *v, int64_t now, int32_t
         v->frame = frame;
         v->since = now;
     }
-    const bool over = (double)(now - v->since) > v->dda_time * CLOCK_HZ;
+    const bool over = now - v->since > machine_dda_clocks(&m->machine);
     return over || frame < v->trail.first ? NULL : trail_at(&v->trail, frame);
 }
 
@@ -101,7 +102,7 @@ void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t s
     memcpy(look.error, m->signals.err, sizeof look.error);
     if (v->special) {
         const int64_t before = v->frame;
-        const struct trail_point *out = now_out(v, now, stock);
+        const struct trail_point *out = now_out(v, m, now, stock);
         if (out) {
             memcpy(look.speed, out->speed, sizeof look.speed);
         }

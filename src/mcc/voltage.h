@@ -16,7 +16,6 @@ struct voltage {
     bool    special;        /* more than the P law is wanted */
     struct law law;
     struct trail trail;
-    double  dda_time;       /* [s] */
     int32_t base[3];        /* [pulses] put out where the trail's coordinates are 0 */
     int64_t sum[AXES];      /* [pulses] of the frames taken since, without compensation */
     double  place[AXES];    /* [pulses] the ideal point of it */
@@ -27,7 +26,7 @@ struct voltage {
 };
 
 /* At rest, with these gains; the first look is where the trail begins. */
-void voltage_start(struct voltage *v, const struct law_config *c, const struct machine *m);
+void voltage_start(struct voltage *v, const struct law_config *c);
 
 /* The card has taken so many frames of a transaction, whose points are still in the queue. */
 void voltage_taken(struct voltage *v, const struct mcc *m, const struct pcl_part *part,

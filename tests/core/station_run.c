@@ -1,4 +1,6 @@
 /* The station: pulses and FIFO at their clock, runs in pieces, motors on voltage, refusals. */
+#include <stdlib.h>
+
 #include "mcc_check.h"
 #include "registers.h"
 #include "station.h"
@@ -238,8 +240,50 @@ static void slow_pc(void)
     CHECK(r.missed > 100 && r.starved > 100);
 }
 
+/* At 0.1 s the DDA time becomes 0.512 ms by a call; the other station has it from the start on. Half
+ * a second of uniform motion: missed deadlines in it, error of X at its end. */
+static void both_ways(struct station_config c, int32_t missed[2], int32_t error[2])
+{
+    struct station *both[] = { &s, &other };
+    CHECK_EQ(station_start(&s, &c), STATION_OK);
+    CHECK_EQ(station_run(&s, STATION_HZ / 10, NULL), STATION_OK);
+    CHECK_EQ(MCC_set_dda(&s.pc.mcc, 0.512), MCC_NO_ERR);
+    c.machine.dda_time = 0.512e-3;
+    CHECK_EQ(station_start(&other, &c), STATION_OK);
+    for (int i = 0; i < 2; i++) {
+        struct station *of = both[i];
+        CHECK_EQ(station_run(of, of->clock + STATION_HZ / 10, NULL), STATION_OK);
+        CHECK_EQ(MCC_line(&of->pc.mcc, target), 1);
+        CHECK_EQ(station_run(of, of->clock + STATION_HZ / 10, NULL), STATION_OK);
+        missed[i] = -reading(of).missed;
+        CHECK_EQ(station_run(of, of->clock + STATION_HZ / 2, NULL), STATION_OK);
+        missed[i] += reading(of).missed;
+        error[i] = reading(of).errors[0];
+    }
+}
+
+/* The DDA time set by a call is that of the deadline (n + 1) T of a write, and of the speed of the
+ * frames that is fed forward: all of it, and the error left is that of the acceleration, 0. */
+static void dda_time_by_call(void)
+{
+    struct station_config c = station_defaults();
+    int32_t missed[2], error[2];
+    c.pc.latency = 3e-3 * STATION_HZ;       /* 4 T are 4.096 ms, then 2.048 ms */
+    both_ways(c, missed, error);
+    /* A write each 3 ms + the rest of a DDA time + one on its way, all too late. */
+    CHECK(missed[1] > 120 && missed[1] < 167);
+    CHECK(abs(missed[0] - missed[1]) <= 1);
+    c = station_defaults();
+    c.pc.output_mode[0] = STATION_SOFTWARE;
+    c.pc.law.axis[0] = (struct law_axis){ .gain = 0.01, .volts = 2e-5, .feed_forward = 1.0 };
+    both_ways(c, missed, error);
+    CHECK_EQ(missed[0] + missed[1], 0);
+    CHECK(abs(error[0]) <= 5 && abs(error[1]) <= 5);
+}
+
 int main(void)
 {
+    dda_time_by_call();
     slow_pc();
     line();
     fifo();
