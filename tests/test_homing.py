@@ -50,6 +50,16 @@ def test_index_behind_the_switch_from_many_starts() -> None:
     assert np.abs(found - (mark + OFFSET * 1e-3)).max() < 2 * COUNT  # with the screw's wind-up
 
 
+def test_level_at_which_the_index_is_on() -> None:
+    """The index is one count wide and met upwards: ON when low it begins a count later. An encoder
+    that shows it low, told to the library so, is found where the other one is."""
+    high = origins(run(9.0))
+    low = origins(run(9.0, mcc__index_on=False))
+    inverted = origins(run(9.0, mcc__index_on=False, card__enc_wiring=8))
+    np.testing.assert_allclose(low - high, COUNT, rtol=0, atol=0.1 * COUNT)
+    np.testing.assert_array_equal(inverted, high)
+
+
 def test_switch_alone_repeats_as_well_as_it_is_sampled() -> None:
     found = origins(run(7.0, mcc__home_mode=1))
     # Sampled by the card every 0.1 ms: 0.4 um at 4 mm/s, so the edge lies between two counts.

@@ -13,7 +13,7 @@ import pytest
 from fmi_tools import ERROR, OK, Instance
 
 HOST = """dda_length dda_divider dda_run min_stock irq_mask ack_seq ack_flags p_gain loop_on
-dac_source dac_volts cmd_seq cmd_clock cmd_count cmd_frames latch_seq clear_seq""".split()
+dac_source dac_volts cmd_seq cmd_clock cmd_count cmd_frames index_low latch_seq clear_seq""".split()
 CARD = """irq_seq irq_clock irq_flags cmd_ack frames_refused stock pulse_count enc_count
 err_count latch_value latch_seen home over_travel stopped enc_count_7 enc_count_8
 enc_count_9""".split()

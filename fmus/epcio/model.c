@@ -123,6 +123,7 @@ static int set_levels(struct fmu *f)
         host.loop_on[i] = v->host_loop_on[i];
         host.dac_loop[i] = v->host_dac_source[i] == 1;
         host.volts[i] = v->host_dac_volts[i];
+        host.index_low[i] = v->host_index_low[i];
     }
     for (int i = 0; i < 2; i++)
         host.volts[EPCIO_AXES + i] = v->host_dac_volts_aux[i];

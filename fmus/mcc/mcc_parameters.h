@@ -33,7 +33,7 @@ static struct machine machine_of(const struct vars *v)
         m.axis[i] = (struct machine_axis){
             .used = v->active[i], .pitch = v->lead[i], .gear_ratio = v->gear_ratio[i],
             .ppr = v->ppr[i], .rpm = v->max_rpm[i], .p_gain = v->p_gain[i],
-            .inverted = v->pos2encoder_dir[i] == 1,
+            .inverted = v->pos2encoder_dir[i] == 1, .index_low = !v->index_on[i],
             .max_dda_acc = v->max_dda_acc[i], .check_ot = v->check_over_travel[i],
             .high_limit = v->high_limit[i], .low_limit = v->low_limit[i],
             .hot_offset = v->hot_offset[i], .lot_offset = v->lot_offset[i],

@@ -69,6 +69,7 @@ static void publish_card(struct vars *v, struct model *m)
         v->card_loop_on[i] = pc_loop_on(&m->pc, i);
         v->card_dac_source[i] = pc_dac_source(&m->pc, i);
         v->card_dac_volts[i] = m->pc.volts[i];
+        v->card_index_low[i] = machine->axis[i].index_low;
         v->card_latch_seq[i] = m->pc.mcc.latch_seq[i];
     }
     if (pcl->seq != m->shown_seq) {

@@ -217,7 +217,7 @@ static int index_pulse(struct encoder *e, int64_t clock)
 int encoder_show_index(struct encoder *e, bool level, int64_t clock)
 {
     e->line[C].level = level;
-    bool rises = level != ((e->config.wiring & ENCODER_C_INVERSE) != 0);
+    bool rises = (level != ((e->config.wiring & ENCODER_C_INVERSE) != 0)) != e->index_low;
     return rises ? index_pulse(e, clock) : 0;
 }
 

@@ -57,6 +57,7 @@ struct encoder {
         int64_t edge;           /* [clock] the pin changed last */
     } line[ENCODER_LINES];
 
+    bool    index_low;          /* the index is ON at the other level than the wiring says */
     int64_t zero;               /* edges that count, up to where the counter is zero */
     int64_t count;              /* [counts]; the register shows the low 32 bits */
     bool    too_fast;           /* edges were lost in the filter; stays until cleared */

@@ -63,6 +63,7 @@ struct epcio_host {
     bool    loop_on[EPCIO_AXES];
     bool    dac_loop[EPCIO_AXES];   /* DAC source: position loop, else software */
     double  volts[ANALOG_DACS];     /* [V] software voltage; beyond +-10 V it saturates */
+    bool    index_low[EPCIO_AXES];  /* index ON at the low level, behind the wiring's inversion */
 };
 
 /* The pins: what the machine shows the card at an instant. */

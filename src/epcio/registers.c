@@ -182,6 +182,8 @@ enum epcio_status epcio_set_host(struct epcio *card, const struct epcio_host *ho
         if (!isfinite(host->volts[i]))
             return EPCIO_BAD_VOLTS;
     card->host = *host;
+    for (int i = 0; i < EPCIO_AXES; i++)
+        card->encoder[i].index_low = host->index_low[i];
     return EPCIO_OK;
 }
 

@@ -51,7 +51,7 @@ enum epcio_status epcio_set_latch(struct epcio *card, int encoder, uint32_t sour
 
 /* Loops and analog. */
 
-/* Gains, loops, DAC sources and voltages, at once. */
+/* Gains, loops, DAC sources, voltages and levels of the index, at once. */
 enum epcio_status epcio_set_host(struct epcio *card, const struct epcio_host *host);
 
 /* Error counters begin anew from zero, a bit each. */

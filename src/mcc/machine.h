@@ -18,6 +18,7 @@ struct machine_axis {
     int32_t p_gain;         /* position loop of the card */
     int32_t max_dda;        /* most pulses in one DDA time; 0 at init means 2^dda_length - 1 */
     bool    inverted;       /* pulses and encoder counts of the card run against the position */
+    bool    index_low;      /* the encoder's index is ON at the low level */
     int32_t max_dda_acc;    /* [pulses] largest change of that; 0 at init means no limit */
     bool    check_ot;       /* the software limits are in force: */
     double  high_limit, low_limit;  /* [mm] from the logical origin to the limit switches */

@@ -11,7 +11,7 @@ MCC_MACH_PARAM mcc_param_of(const struct machine_axis *a)
         .type = a->used ? MCC_LINEAR : MCC_UNUSED, .pos2encoder_dir = a->inverted,
         .PPR = a->ppr, .RPM = a->rpm, .pitch = a->pitch, .gear_ratio = a->gear_ratio,
         .high_limit = a->high_limit, .low_limit = a->low_limit,
-        .HOT_offset = a->hot_offset, .LOT_offset = a->lot_offset
+        .HOT_offset = a->hot_offset, .LOT_offset = a->lot_offset, .index_on = !a->index_low
     };
 }
 
@@ -41,6 +41,7 @@ static void set_axis(struct machine_axis *a, const MCC_MACH_PARAM *p)
     a->low_limit = p->low_limit;
     a->hot_offset = p->HOT_offset;
     a->lot_offset = p->LOT_offset;
+    a->index_low = p->index_on == 0;
 }
 
 /* The machine as the user wants it. */

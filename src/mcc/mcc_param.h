@@ -25,7 +25,7 @@ typedef struct {
     double  HOT_offset;         /* [mm] software limit, positive end */
     double  LOT_offset;         /* [mm] negative end */
     int32_t sensor_on;          /* logic state of the home sensor when ON, 0 or 1 */
-    int32_t index_on;           /* of the index */
+    int32_t index_on;           /* of the index; 1 at the start */
     int32_t home_dir;           /* bits 0, 1, 2: direction in phases 1, 2, 3; 0 positive,
                                  * 1 negative */
 } MCC_MACH_PARAM;

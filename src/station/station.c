@@ -178,6 +178,7 @@ static void write_levels(struct station *s)
         host.loop_on[i] = pc_loop_on(&s->pc, i);
         host.dac_loop[i] = pc_dac_source(&s->pc, i) == 1;
         host.volts[i] = s->pc.volts[i];
+        host.index_low[i] = m->axis[i].index_low;
     }
     epcio_set_host(&s->card, &host);
     epcio_set_dda(&s->card, m->dda_length, machine_dda_divider(m));

@@ -50,7 +50,7 @@ static struct ball_screw_axes_vars *machine;
 #define TO_CARD(X)                                                                        \
     X(dda_length) X(dda_divider) X(dda_run) X(min_stock) X(irq_mask) X(ack_seq)           \
     X(ack_flags) X(p_gain) X(loop_on) X(dac_source) X(dac_volts) X(cmd_seq) X(cmd_clock)  \
-    X(cmd_count) X(cmd_frames) X(latch_seq) X(clear_seq)
+    X(cmd_count) X(cmd_frames) X(index_low) X(latch_seq) X(clear_seq)
 
 #define FROM_CARD(X)                                                                      \
     X(irq_seq) X(irq_clock) X(irq_flags) X(cmd_ack) X(frames_refused) X(stock)            \

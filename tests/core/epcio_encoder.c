@@ -44,6 +44,7 @@ static int filtered(struct filter *f, int pin, int clocks)
 
 struct decoder {
     struct encoder_config c;
+    bool low;           /* the index is ON when low, behind the wiring */
     struct filter f[3];
     int a, b, index;
     int64_t x[5];       /* count at rate 1, 2, 4 */
@@ -53,11 +54,13 @@ struct decoder {
     int32_t indices;
 };
 
-static void wire(const struct encoder_config *c, struct pins *p)
+static void wire(const struct decoder *d, struct pins *p)
 {
+    const struct encoder_config *c = &d->c;
     p->a ^= (c->wiring & ENCODER_A_INVERSE) != 0;
     p->b ^= (c->wiring & ENCODER_B_INVERSE) != 0;
     p->c ^= (c->wiring & ENCODER_C_INVERSE) != 0;
+    p->c ^= d->low;
     if (c->wiring & ENCODER_SWAP) {
         int a = p->a;
         p->a = p->b;
@@ -85,7 +88,7 @@ static void count(struct decoder *d, int a, int b)
 
 static void look(struct decoder *d, struct pins p, int64_t clock)
 {
-    wire(&d->c, &p);
+    wire(d, &p);
     int a = filtered(&d->f[0], p.a, d->c.filter), b = filtered(&d->f[1], p.b, d->c.filter);
     int index = filtered(&d->f[2], p.c, d->c.filter);
     count(d, a, b);
@@ -101,10 +104,10 @@ static void look(struct decoder *d, struct pins p, int64_t clock)
     d->index = index;
 }
 
-static void begin(struct decoder *d, const struct encoder_config *c, struct pins p)
+static void begin(struct decoder *d, const struct encoder_config *c, bool low, struct pins p)
 {
-    *d = (struct decoder){.c = *c, .compare_clock = -1, .index_clock = -1};
-    wire(c, &p);
+    *d = (struct decoder){.c = *c, .low = low, .compare_clock = -1, .index_clock = -1};
+    wire(d, &p);
     int pin[3] = {p.a, p.b, p.c};
     for (int i = 0; i < 3; i++)
         d->f[i] = (struct filter){pin[i], pin[i], 1 << 20};
@@ -135,8 +138,9 @@ static void against_brute_force(uint64_t seed, const struct encoder_config *c, b
     struct encoder e;
     struct decoder d;
     encoder_reset(&e, c);
+    e.index_low = seed % 2;
     int64_t at = check_random(&seed, -5000, 5000), clock = check_random(&seed, 0, 1000);
-    begin(&d, c, source(at, 1, c->index_lines));
+    begin(&d, c, e.index_low, source(at, 1, c->index_lines));
     encoder_sample(&e, (double)at / UNIT, clock);
     d.compare = check_random(&seed, 1, 300);
     encoder_set_compare(&e, true, (int32_t)d.compare, clock);

@@ -240,6 +240,38 @@ static void slow_pc(void)
     CHECK(r.missed > 100 && r.starved > 100);
 }
 
+/* Motor position at which X finds its origin, searching the index alone, with the index ON at a level
+ * that MCC_update_param is told, or none. [counts] */
+static double origin_found(int level)
+{
+    struct station_config c = station_defaults();
+    c.pc.home[0].mode = HOME_INDEX;
+    c.pc.home[0].direction = 0;
+    c.pc.home_order[0] = 1;
+    CHECK_EQ(station_start(&s, &c), STATION_OK);
+    CHECK_EQ(s.pc.mcc.epcio_axis_param[0].index_on, 1);
+    CHECK_EQ(MCC_line_x(&s.pc.mcc, 4.0), 1);
+    until_stop(&s, 5.0);
+    if (level >= 0) {
+        s.pc.mcc.epcio_axis_param[0].index_on = level;
+        CHECK_EQ(MCC_update_param(&s.pc.mcc), MCC_NO_ERR);
+        CHECK_EQ(station_run(&s, s.clock + STATION_HZ / 100, NULL), STATION_OK);
+    }
+    CHECK_EQ(MCC_go_home(&s.pc.mcc, c.pc.home_order), MCC_NO_ERR);
+    CHECK_EQ(station_run(&s, s.clock + 10 * (int64_t)STATION_HZ, NULL), STATION_OK);
+    CHECK_EQ(MCC_check_homef(&s.pc.mcc), 1);
+    return s.motor[0];
+}
+
+/* The index pulse is the first count of a turn: ON when high it is met on entering it, ON when low
+ * on leaving it. */
+static void index_level(void)
+{
+    CHECK_NEAR(origin_found(-1), 10000.0, 0.0);
+    CHECK_NEAR(origin_found(1), 10000.0, 0.0);
+    CHECK_NEAR(origin_found(0), 10001.0, 0.0);
+}
+
 /* At 0.1 s the DDA time becomes 0.512 ms by a call; the other station has it from the start on. Half
  * a second of uniform motion: missed deadlines in it, error of X at its end. */
 static void both_ways(struct station_config c, int32_t missed[2], int32_t error[2])
@@ -283,6 +315,7 @@ static void dda_time_by_call(void)
 
 int main(void)
 {
+    index_level();
     dda_time_by_call();
     slow_pc();
     line();
