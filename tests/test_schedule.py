@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
+from fmi_tools import OK, Instance
 
 import motionfmu
 
@@ -81,3 +82,33 @@ def test_an_interpolation_that_is_too_slow_starves_the_interpreter() -> None:
     for result in (good, slow):
         assert result["card.pulse_count"][-1, :2].tolist() == [24000, 0]
         assert not result["card.underflows"].any()
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"ipo_period": 1.024e-3}, ""),
+        ({"ipo_period": 1.02405e-3}, "0.00102405 s is longer than the DDA time 0.001024 s"),
+        ({"module_unit_time": [0.0, 1e-3, 0.0, 0.0]}, ""),
+        ({"module_unit_time": [0.0, 1.00005e-3, 0.0, 0.0]}, "0.001 s is shorter than a run that"),
+    ],
+)
+def test_cycle_of_the_interpolation_outside_the_rule_is_told(
+    values: dict[str, Any], said: str
+) -> None:
+    instance = Instance("mcc", 3)
+    assert instance.call("SetDebugLogging", True, 0, None) == OK
+    instance.initialize(values)
+    warnings = [text for _, kind, text in instance.messages if kind == "logStatusWarning"]
+    assert [said in text for text in warnings] == [True] * bool(said)
+
+
+def test_an_event_makes_up_for_a_slow_timer() -> None:
+    """Queue of 8, cycle of 20 ms: 8 points a cycle, or more whenever the card has taken some."""
+    slow = {"ipo_period": 20e-3, "queue_depth": 8, "module_units": 0}
+    every, timer, event = (run(stop=2.0, **k) for k in ({}, slow, slow | {"ipo_event": True}))
+    ends = [r.time[r["mcc.done"].argmax()] for r in (every, timer, event)]
+    assert 1.9 * ends[0] < ends[1] and ends[0] <= ends[2] < 1.05 * ends[0]
+    assert timer["mcc.starved"][-1] > 500 and event["mcc.starved"][-1] < 50
+    for result in (timer, event):
+        np.testing.assert_array_equal(result["card.pulse_count"][-1], every["card.pulse_count"][-1])

@@ -211,7 +211,7 @@ static struct pc_config config_of(const struct vars *v)
 {
     struct pc_config c = {
         .bus = (int64_t)round(clocks(v->bus_period)),
-        .ipo = (int64_t)round(clocks(v->ipo_period)),
+        .ipo = (int64_t)round(clocks(v->ipo_period)), .ipo_event = v->ipo_event,
         .interpreter = cycle_of(v->interpreter_period), .process = cycle_of(v->process_period),
         .start = (int64_t)ceil(clocks(v->start_delay) - PERIOD_TOLERANCE),
         .latency = clocks(v->irq_latency), .jitter = clocks(v->irq_jitter), .seed = v->seed,

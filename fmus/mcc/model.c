@@ -153,6 +153,24 @@ static int set_compensation(struct fmu *f)
     return 0;
 }
 
+/* The source document's rule for the cycle of the interpolation. */
+static void warn_of_cycle(struct fmu *f)
+{
+    const struct pc *pc = &f->s.m.pc;
+    const double cycle = f->s.v.ipo_period, dda = machine_dda_time(&pc->mcc.machine);
+
+    switch (pc_ipo_cycle(pc)) {
+    case PC_CYCLE_SHORT:
+        fmu_warn(f, "ipo_period %.9g s is shorter than a run that makes one point", cycle);
+        break;
+    case PC_CYCLE_LONG:
+        fmu_warn(f, "ipo_period %.9g s is longer than the DDA time %.9g s", cycle, dda);
+        break;
+    default:
+        break;
+    }
+}
+
 static int model_start(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -179,6 +197,7 @@ static int model_start(struct fmu *f)
     }
     m->bus = c.bus * CLOCK_NS;
     fmu_event(f, "DDA time %.9g s", machine_dda_time(&machine));
+    warn_of_cycle(f);
     publish(f);
     return 0;
 }

@@ -369,6 +369,19 @@ static void end(struct pc *pc, int module, const struct source *program)
     }
 }
 
+/* Timer and event: ask for the IPO when a point has come to be made, unless it is asked already; if
+ * it is at work it sees that itself. */
+static void wake_ipo(struct pc *pc)
+{
+    const struct sched_module *ipo = &pc->sched.module[PC_IPO];
+    const bool due = task_can_point(&pc->mcc);
+
+    if (pc->config.ipo_event && due && !pc->point_due && !ipo->active && !ipo->asked) {
+        sched_wake(&pc->sched, PC_IPO, pc->sched.clock, pc->sched.clock);
+    }
+    pc->point_due = due;
+}
+
 /* Ask for the next service of the PCL, unless it is at work. */
 static void wake(struct pc *pc)
 {
@@ -386,6 +399,7 @@ static void work(struct pc *pc, int64_t until, const struct pc_panel *panel,
 {
     for (;;) {
         wake(pc);
+        wake_ipo(pc);
         const struct sched_event e = sched_next(&pc->sched, until);
         if (e.what == SCHED_NONE) {
             return;
@@ -415,6 +429,17 @@ bool pc_done(const struct pc *pc)
 {
     /* Points leave the queue when the card has acknowledged them. */
     return (pc->started || !pc->program) && !pc->mcc.error && MCC_check_stop(&pc->mcc);
+}
+
+enum pc_cycle pc_ipo_cycle(const struct pc *pc)
+{
+    const struct pc_config *c = &pc->config;
+    int64_t run = c->time[PC_IPO] + c->unit[PC_IPO];
+
+    run += c->interpreter == 0 ? c->time[PC_INTERPRETER] : 0;
+    run += c->process == 0 ? c->time[PC_PROCESS] : 0;
+    return c->ipo < run ? PC_CYCLE_SHORT :
+           c->ipo > machine_dda_clocks(&pc->mcc.machine) ? PC_CYCLE_LONG : PC_CYCLE_KEPT;
 }
 
 bool pc_loop_on(const struct pc *pc, int axis)

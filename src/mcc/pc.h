@@ -26,7 +26,8 @@ _Static_assert(PC_PROCESS + 1 == SCHED_MODULES, "the scheduler has the modules o
 
 struct pc_config {
     int64_t bus;            /* [clocks] T_b */
-    int64_t ipo;            /* [clocks] cycle of the IPO task */
+    int64_t ipo;            /* [clocks] cycle of the IPO task: see pc_ipo_cycle */
+    bool    ipo_event;      /* it runs at once too when there is a point to make and was none */
     int64_t interpreter, process;   /* [clocks] their cycles; 0: within the IPO, on its time */
     int32_t priority[SCHED_MODULES];    /* the lowest number first */
     int64_t offset[SCHED_MODULES];  /* [clocks] of the first cycle */
@@ -74,6 +75,7 @@ struct pc {
     uint64_t random;
     struct sched sched;
     int64_t publish;        /* [clocks] of this instant: (k+1) T_b */
+    bool    point_due;      /* there was a point to make when it was last looked */
     bool    reading, computing, writing;    /* the run at work has a unit under way */
     int32_t units[SCHED_MODULES];   /* that it has begun */
     int64_t tail;           /* [clocks] of the page behind the write */
@@ -102,6 +104,12 @@ void pc_instant(struct pc *pc, int64_t now, const struct pcl_card *card,
 
 /* The program has ended without error and every point is in the card. */
 bool pc_done(const struct pc *pc);
+
+/* The document's rule for the cycle of the IPO: at least the time of a run that makes one point, at
+ * most the DDA time. A longer one still works while the queue is deep enough, as all points there
+ * is room for are made in a run; a shorter one misses deadlines. */
+enum pc_cycle { PC_CYCLE_KEPT, PC_CYCLE_SHORT, PC_CYCLE_LONG };
+enum pc_cycle pc_ipo_cycle(const struct pc *pc);
 
 /* Where the card's DAC and loop take their values from for an axis. */
 bool    pc_loop_on(const struct pc *pc, int axis);

@@ -29,12 +29,11 @@ static void ask(struct sched *s)
         if (m->next > s->clock) {
             continue;
         }
-        m->missed += m->active || m->asked;
-        if (!m->asked) {
-            m->asked = true;
-            m->woken = false;
-            m->due = m->ready = m->next;
-        }
+        m->missed += (m->active && !m->event) || (m->asked && !m->woken);
+        m->due = m->asked && m->due < m->next ? m->due : m->next;
+        m->ready = m->asked && m->ready < m->next ? m->ready : m->next;
+        m->asked = true;
+        m->woken = false;
         m->next += s->config.cycle[i];
     }
 }
@@ -121,6 +120,7 @@ void sched_begin(struct sched *s, int module, int64_t due, int64_t clocks)
 
     m->asked = false;
     m->active = true;
+    m->event = m->woken;
     m->from = due;
     m->left = clocks;
     at_least(&m->latency, s->clock - due);

@@ -7,7 +7,9 @@
  * Among equal priorities what has begun goes on, then what was due first, then the lower number.
  *
  * One run waits while the module is busy; its timer asking once more is lost. A cycle that begins
- * while a run of the module is not finished is a missed deadline, that of the unfinished run.
+ * while a run of the module is not finished is a missed deadline, that of the unfinished run, if
+ * its timer asked for that: a run that an event woke has none. A cycle that begins while such a run
+ * waits is one with it.
  *
  * The time of a run is what the caller says: sched_next tells that a run begins or that its time is
  * over, and the caller answers before it asks again.
@@ -33,6 +35,7 @@ struct sched_module {
     int64_t ready;      /* [clock] at which the run that waits may begin, */
     int64_t due;        /* [clock] and from which its latency counts */
     bool    active;     /* a run has begun, not ended */
+    bool    event;      /* that run was woken */
     int64_t from;       /* [clock] that run was due */
     int64_t left;       /* [clocks] it still needs */
 

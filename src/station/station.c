@@ -306,7 +306,7 @@ void station_read(const struct station *s, struct station_reading *r)
         .interrupts = wrap(s->card.irq.seq), .irq_clock = s->card.irq.clock,
         .services = p->services, .latency = p->latency,
         .missed = sched_all(&s->pc.shown).missed,
-        .queue = m->queue.count, .starved = p->starved,
+        .ipo_cycle = pc_ipo_cycle(&s->pc), .queue = m->queue.count, .starved = p->starved,
         .status = task_status(m), .error = MCC_get_errcode(m),
         .line = m->written.line, .command = m->written.command,
         .digital = (int32_t)m->written.outputs.digital, .coolant = m->written.outputs.coolant,

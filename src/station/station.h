@@ -75,6 +75,7 @@ struct station_reading {
     int32_t services;               /* refills of the FIFO behind an interrupt */
     int64_t latency;                /* [25 ns] of the latest */
     int32_t missed;                 /* deadlines of the modules on the PC */
+    int32_t ipo_cycle;              /* enum pc_cycle: 0 the document's rule is kept */
     int32_t queue;                  /* interpolation points waiting */
     int32_t starved;                /* frames of standstill sent in the middle of a motion */
     int32_t status;                 /* enum task_status */

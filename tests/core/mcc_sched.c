@@ -9,7 +9,8 @@ struct set {
     struct sched_config c;
     int64_t time[N];
     int wakes;
-    int64_t wake[WAKES];    /* module 0 is woken, may begin at these clocks, rising */
+    int woken;              /* module that is woken: 0, or 1, which has a timer too, */
+    int64_t wake[WAKES];    /* and may begin at these clocks, rising */
 };
 
 /* What happens: a run begins or ends. */
@@ -24,7 +25,7 @@ static void note(struct log *l, int64_t clock, int module, enum sched_what what)
 }
 
 /* --- A processor that looks at everything at every clock. ----------------------------------- */
-struct tick { bool waits, begun, interrupt; int64_t since, from, left; };
+struct tick { bool waits, begun, event, run_event; int64_t since, from, left; };
 
 /* The one of the modules allowed that goes first, or -1. */
 static int choose(const struct set *q, const struct tick t[N], int64_t clock, bool interrupts)
@@ -32,7 +33,7 @@ static int choose(const struct set *q, const struct tick t[N], int64_t clock, bo
     int best = -1;
     int64_t rank[4], least[4] = { 0 };
     for (int i = 0; i < N; i++) {
-        const bool fresh = t[i].interrupt && t[i].since == clock;
+        const bool fresh = t[i].event && t[i].since == clock;
         if (!t[i].begun && !(t[i].waits && (interrupts || !fresh))) {
             continue;
         }
@@ -74,19 +75,22 @@ static void brute(const struct set *q, int64_t clocks, struct log *l)
         for (int i = 0; i < N; i++) {
             const int64_t in = clock - q->c.offset[i];
             if (q->c.cycle[i] && in >= 0 && in % q->c.cycle[i] == 0) {
-                l->missed[i] += t[i].begun || t[i].waits;
+                l->missed[i] += (t[i].begun && !t[i].run_event) || (t[i].waits && !t[i].event);
                 t[i].since = t[i].waits ? t[i].since : clock;
                 t[i].waits = true;
+                t[i].event = false;
             }
         }
         for (; next_wake < q->wakes && q->wake[next_wake] <= clock; next_wake++) {
-            t[0].since = t[0].waits ? t[0].since : q->wake[next_wake];
-            t[0].waits = t[0].interrupt = true;
+            struct tick *w = &t[q->woken];
+            w->since = w->waits ? w->since : clock;
+            w->event = w->waits ? w->event : true;
+            w->waits = true;
         }
         for (int interrupts = 0; interrupts < 2; interrupts++) {
             int i;
             while ((i = choose(q, t, clock, interrupts)) >= 0 && !t[i].begun) {
-                t[i] = (struct tick){ .begun = true, .interrupt = t[i].interrupt,
+                t[i] = (struct tick){ .begun = true, .run_event = t[i].event,
                                       .from = t[i].since, .left = q->time[i] };
                 note(l, clock, i, SCHED_BEGIN);
                 finish(l, t, clock);
@@ -101,6 +105,31 @@ static void brute(const struct set *q, int64_t clocks, struct log *l)
     }
 }
 
+/* The next wake of a module without a timer, for a clock to come. */
+static int wake_ahead(const struct set *q, struct sched *s, int wake)
+{
+    if (wake < q->wakes && !s->module[0].asked) {
+        sched_wake(s, 0, q->wake[wake], q->wake[wake]);
+        wake++;
+    }
+    /* Interrupts that come while one waits are one with it. */
+    while (wake < q->wakes && s->module[0].asked && q->wake[wake] <= s->clock) {
+        wake++;
+    }
+    return wake;
+}
+
+/* One of a module with a timer, at its clock. */
+static int wake_now(const struct set *q, struct sched *s, int wake)
+{
+    for (; wake < q->wakes && q->wake[wake] <= s->clock; wake++) {
+        if (!s->module[1].asked) {
+            sched_wake(s, 1, s->clock, s->clock);
+        }
+    }
+    return wake;
+}
+
 /* --- The scheduler, asked in steps of random length. ------------------------------------------ */
 static void scheduled(const struct set *q, int64_t clocks, uint64_t *seed, struct log *l)
 {
@@ -112,15 +141,12 @@ static void scheduled(const struct set *q, int64_t clocks, uint64_t *seed, struc
         until = until + check_random(seed, 1, 50);
         until = until < clocks ? until : clocks;
         for (;;) {
-            if (wake < q->wakes && !s.module[0].asked) {
-                sched_wake(&s, 0, q->wake[wake], q->wake[wake]);
-                wake++;
+            wake = q->woken ? wake_now(q, &s, wake) : wake_ahead(q, &s, wake);
+            const bool soon = q->woken && wake < q->wakes && q->wake[wake] < until;
+            const struct sched_event e = sched_next(&s, soon ? q->wake[wake] : until);
+            if (e.what == SCHED_NONE && soon) {
+                continue;
             }
-            /* Interrupts that come while one waits are one with it. */
-            while (wake < q->wakes && s.module[0].asked && q->wake[wake] <= s.clock) {
-                wake++;
-            }
-            const struct sched_event e = sched_next(&s, until);
             if (e.what == SCHED_NONE) {
                 break;
             }
@@ -129,7 +155,7 @@ static void scheduled(const struct set *q, int64_t clocks, uint64_t *seed, struc
                 sched_end(&s, e.module);
                 continue;
             }
-            if (e.module == 0) {
+            if (e.module == 0 && !q->woken) {
                 while (wake < q->wakes && q->wake[wake] <= s.clock) {
                     wake++;
                 }
@@ -146,7 +172,8 @@ static void scheduled(const struct set *q, int64_t clocks, uint64_t *seed, struc
 
 static struct set random_set(uint64_t *seed)
 {
-    struct set q = { .wakes = (int)check_random(seed, 0, WAKES) };
+    struct set q = { .wakes = (int)check_random(seed, 0, WAKES),
+                     .woken = (int)check_random(seed, 0, 1) };
     for (int i = 0; i < N; i++) {
         q.c.priority[i] = (int32_t)check_random(seed, 1, 4);
         q.c.cycle[i] = i ? check_random(seed, 5, 60) : 0;
