@@ -9,6 +9,7 @@ import pytest
 from contour_runs import Machine, Program, run_along
 
 from motionfmu.contour import ContourInput, Trace, analyse
+from motionfmu.errors import NoNumber
 
 FEED = 100.0  # [mm/s]
 
@@ -221,9 +222,9 @@ def test_numbers_are_json_and_found_by_name() -> None:
     assert json.loads(json.dumps(numbers, allow_nan=False))["error"]["max"] == result.error.max
     assert result.number("error.max") == result.error.max
     assert result.number("circles.0.ccw.g") == result.circles[0].ccw.reading.g
-    with pytest.raises(KeyError, match="no 'cvw', there is centre"):
+    with pytest.raises(NoNumber, match="no 'cvw', there is centre"):
         result.number("circles.0.cvw.g")
-    with pytest.raises(KeyError, match="is not a number"):
+    with pytest.raises(NoNumber, match="is not a number"):
         result.number("circles.0.cw")
 
 

@@ -1,12 +1,16 @@
 """Verdicts: bounds of signals and contour figures."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.scenario import Check
+from motionfmu.scenario import Body, Check
+
+CONTOUR = "contour."
+BOUNDS = ("min", "max", "absmax", "peak", "rms", "final")
 
 
 @dataclass(frozen=True)
@@ -20,14 +24,71 @@ class Verdict:
     bounds : str
         What was asked, in words.
     value : float
-        What was found, the worst over time and axes.
+        What was found, the worst over time and axes; NaN if there is no number.
     ok : bool
+    reason : str
+        Why there is no number; else empty.
     """
 
     name: str
     bounds: str
     value: float
     ok: bool
+    reason: str = ""
+
+
+def misplaced(name: str, body: Body, recorded: Mapping[str, tuple[int, ...]]) -> str:
+    """What is wrong with a line of the [check] table.
+
+    Parameters
+    ----------
+    name : str
+        Its key.
+    body : Body
+        The scenario's tables.
+    recorded : mapping
+        Shape of every recorded signal, by name.
+
+    Returns
+    -------
+    str
+        Empty if nothing is.
+    """
+    check = body.check[name]
+    if all(getattr(check, bound) is None for bound in BOUNDS):
+        return f"{name}: no bound ({', '.join(BOUNDS)})"
+    if name.startswith(CONTOUR):
+        if body.contour is None:
+            return f"{name}: there is no [contour] table"
+        if check.windows is not None or check.at is not None:
+            return f"{name}: a figure has no time and no windows"
+        from motionfmu.contour.names import wrong  # which takes scipy with it
+
+        return wrong(name.removeprefix(CONTOUR))
+    whole, bracket, rest = name.partition("[")
+    if whole not in recorded or (bracket and not _is_axis(rest, recorded[whole])):
+        return f"{name} is not recorded"
+    if told := _no_time(check, body.stop):
+        return f"{name}: {told}"
+    return ""
+
+
+def _is_axis(rest: str, shape: tuple[int, ...]) -> bool:
+    """Whether there is an axis ``i]``, i from 1."""
+    index = rest.removesuffix("]")
+    return bool(shape) and index.isdecimal() and 1 <= int(index) <= shape[0]
+
+
+def _no_time(check: Check, stop: float) -> str:
+    """What is wrong with the times of a check; empty if nothing is."""
+    if check.at is not None and check.windows is not None:
+        return "at and windows exclude each other"
+    if check.at is not None and not 0.0 <= check.at <= stop:
+        return f"at = {check.at!r} s is not within 0 .. {stop!r} s"
+    for low, high in check.windows or ():
+        if not 0.0 <= low <= high <= stop:
+            return f"windows: [{low!r}, {high!r}] s is not within 0 .. {stop!r} s"
+    return ""
 
 
 def _within(value: float, low: float, high: float) -> bool:
@@ -77,12 +138,17 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
         A NaN in the signal fails every bound.
     """
     x = np.asarray(data, dtype=float)
-    if check.at is not None:
+    end = float(time[-1]) + (float(time[-1] - time[-2]) if len(time) > 1 else 0.0)
+    last = check.at if check.at is not None else max((b for _, b in check.windows or ()), default=0)
+    reason = f"the run ends at {end:g} s, before {last:g} s" if last > end + 1e-12 else ""
+    if reason:
+        x = np.full((1, *x.shape[1:]), np.nan)
+    elif check.at is not None:
         x = x[[int(np.searchsorted(time, check.at - 1e-12).clip(0, len(time) - 1))]]
     elif check.windows is not None:
         x = x[_inside(time, check.windows)]
-        if len(x) == 0:  # a run that ends before
-            x = np.full((1, *x.shape[1:]), np.nan)
+        if len(x) == 0:  # between two samples
+            reason, x = "no sample is in a window", np.full((1, *x.shape[1:]), np.nan)
     found = []
     if check.min is not None:
         low = float(x.min())
@@ -100,4 +166,4 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
     if check.final is not None:
         found.append(_final(name, x[-1], check.final))
     where = _where(check.windows) if check.windows is not None else ""
-    return [replace(v, bounds=v.bounds + where) for v in found]
+    return [replace(v, bounds=v.bounds + where, reason=reason) for v in found]

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionfmu import units
+from motionfmu import recording, units
 from motionfmu.contour import ContourInput, ContourResult, Path, Trace, analyse, read_path
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, NoNumber
 
 if TYPE_CHECKING:
-    from motionfmu.run import Result, Scenario
+    from motionfmu.result import Result
+    from motionfmu.run import Scenario
 
 CLOCK = 25e-9  # [s] of the card
 # Outputs the analysis wants beside position and pulses, by their owner.
@@ -56,15 +57,28 @@ def wanted(scenario: "Scenario") -> list[str]:
     contour = scenario.document.body.contour
     if contour is None:
         return []
+    for key, name in (("position", contour.position), ("pulses", contour.pulses)):
+        _check_axes(scenario, key, name)
     library, card = library_of(scenario), contour.pulses.partition(".")[0]
     more = [f"{card}.{name}" for name in CARD if name in scenario.resolver.ports.get(card, {})]
     return [contour.position, contour.pulses, *(f"{library}.{name}" for name in LIBRARY), *more]
 
 
+def _check_axes(scenario: "Scenario", key: str, name: str) -> None:
+    """Refuse what is no row of axes; the position is a length."""
+    document = scenario.document
+    port = recording.output(scenario.resolver, name, "contour", key).port
+    if port.shape != (recording.AXES,):
+        raise document.error(
+            f"{key} = {name!r}: a value for each of six axes wanted", "contour", key
+        )
+    unit = units.parse(port.unit or "1")
+    if key == "position" and unit.exponents != units.parse("m").exponents:
+        raise document.error(f"{name} is no length", "contour", key)
+
+
 def _millimetres(result: "Result", name: str) -> Any:
     unit = units.parse(result.scenario.resolver.end(name, "contour", "position").port.unit or "1")
-    if unit.exponents != units.parse("m").exponents:
-        raise result.scenario.document.error(f"{name} is no length", "contour", "position")
     return result[name] * (unit.factor / units.parse("mm").factor)
 
 
@@ -83,7 +97,9 @@ def contour_of(result: "Result") -> ContourResult:
     Raises
     ------
     InputError
-        There is no [contour] table, or the run has no contour.
+        There is no [contour] table.
+    NoNumber
+        The run has no contour.
     """
     document = result.scenario.document
     contour = document.body.contour
@@ -117,15 +133,20 @@ def contour_of(result: "Result") -> ContourResult:
                 traces=traces,
             )
         )
-    except ValueError as error:
-        raise InputError(f"{document.file}: {error}") from None
+    except (ValueError, ArithmeticError) as error:
+        raise NoNumber(f"no contour: {error}") from None
 
 
 def _path(result: "Result") -> Path:
+    if result.geometry is None:
+        raise ValueError("the library wrote no path")
     with tempfile.TemporaryDirectory(prefix="motionfmu-") as folder:
         file = pathlib.Path(folder) / "path.csv"
-        file.write_text(result.geometry or "", encoding="utf-8")
-        return read_path(file)
+        file.write_text(result.geometry, encoding="utf-8")
+        try:
+            return read_path(file)
+        except ValueError as error:
+            raise ValueError(str(error).replace(str(file), "planned path")) from None
 
 
 def _traces(result: "Result", used: tuple[str, ...]) -> tuple[Trace, ...]:

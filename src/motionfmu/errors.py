@@ -1,4 +1,4 @@
-"""The one exception for everything a user can get wrong."""
+"""The exceptions for everything a user can get wrong, or can miss."""
 
 
 class InputError(ValueError):
@@ -6,4 +6,11 @@ class InputError(ValueError):
 
     The message says file, line and value where they exist. The console command prints it and
     ends with status 2.
+    """
+
+
+class NoNumber(InputError):
+    """A run that was simulated has no such number; the text is the reason.
+
+    A check of it has failed; in a study its cell is empty.
     """

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.errors import InputError
-from motionfmu.run import Result
+from motionfmu.result import Result
 
 SIGNALS, NUMBERS, TABLE = "signals.npz", "result.json", "signals.csv"
 
@@ -38,12 +38,19 @@ def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
         "samples": len(result.time),
         "ok": result.ok,
         "checks": [
-            {"name": v.name, "bounds": v.bounds, "value": _number(v.value), "ok": v.ok}
+            {
+                "name": v.name,
+                "bounds": v.bounds,
+                "value": _number(v.value),
+                "ok": v.ok,
+                "reason": v.reason,
+            }
             for v in result.checks
         ],
     }
     if result.scenario.document.body.contour is not None:
-        found["contour"] = result.contour().numbers()
+        found["contour"] = None if result.no_contour else result.contour().numbers()
+        found["no_contour"] = result.no_contour
     return found
 
 
@@ -121,7 +128,8 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
             _write_csv(result, part / TABLE)
         from motionfmu.report import write_report
 
-        contour = None if result.scenario.document.body.contour is None else result.contour()
+        wanted = result.scenario.document.body.contour is not None and not result.no_contour
+        contour = result.contour() if wanted else None
         shown = write_report(result, contour, part).name
     return folder.resolve() / shown
 

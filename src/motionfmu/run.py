@@ -5,22 +5,17 @@ import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motionfmu import figures, recording, scenario, system, values
-from motionfmu.checks import Verdict, judge
+from motionfmu.checks import misplaced
 from motionfmu.engines import ENGINES
 from motionfmu.errors import InputError
-from motionfmu.scenario import Check
+from motionfmu.result import Result, planned
 
-if TYPE_CHECKING:
-    from motionfmu.contour import ContourResult
-    from motionfmu.figures import Chart
-
-CONTOUR = "contour."
+__all__ = ["Options", "Result", "Scenario", "load"]
 
 
 @dataclass(frozen=True)
@@ -47,151 +42,6 @@ class Options:
     stop: float | None = None
     step: float | None = None
     progress: Callable[[float], None] = lambda share: None
-
-
-@dataclass
-class Result:
-    """What a run gave.
-
-    Attributes
-    ----------
-    scenario : Scenario
-    time : ndarray
-        Times of the samples [s], shape (N,).
-    signals : dict
-        By name: (N, 6) for an array of axes, (N,) for a scalar.
-    parameters : dict
-        Value of every parameter that was set, by name.
-    geometry : str or None
-        The planned path as the library wrote it (CSV), if the scenario has a contour.
-    """
-
-    scenario: "Scenario"
-    time: NDArray[np.float64]
-    signals: dict[str, NDArray[Any]]
-    parameters: dict[str, Any]
-    geometry: str | None = None
-    _contour: "ContourResult | None" = None
-
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        """A signal, or with ``name[i]`` one axis of it, i from 1."""
-        if name in self.signals:
-            return self.signals[name]
-        whole, bracket, rest = name.partition("[")
-        index = rest.removesuffix("]")
-        if bracket and whole in self.signals and index.isdigit():
-            data = self.signals[whole]
-            if data.ndim == 2 and 1 <= int(index) <= data.shape[1]:
-                return data[:, int(index) - 1]
-        raise KeyError(f"{name} is not recorded (recorded: {', '.join(sorted(self.signals))})")
-
-    def parameter(self, name: str) -> Any:
-        """Value of a parameter in this run, set or from its description.
-
-        Parameters
-        ----------
-        name : str
-            ``component.variable``.
-
-        Returns
-        -------
-        tuple
-            One value per element.
-        """
-        if name in self.parameters:
-            return self.parameters[name]
-        return values.start_values(self.scenario.resolver.end(name, "set", name).port)
-
-    def contour(self) -> "ContourResult":
-        """The contour error of this run against the planned geometry.
-
-        Returns
-        -------
-        ContourResult
-
-        Raises
-        ------
-        InputError
-            The scenario has no [contour] table.
-        """
-        if self._contour is None:
-            from motionfmu.contour_of import contour_of
-
-            self._contour = contour_of(self)
-        return self._contour
-
-    def figures(self) -> "list[Chart]":
-        """The figures the scenario asks for, with their curves.
-
-        Returns
-        -------
-        list of Chart
-            Empty if the scenario has no [[figure]].
-        """
-        return figures.charts(self)
-
-    def overview(self) -> "list[Chart]":
-        """One figure for each recorded signal.
-
-        Returns
-        -------
-        list of Chart
-            Not more than `motionfmu.figures.OVERVIEW`.
-        """
-        return figures.overview(self)
-
-    def _figure(self, name: str) -> float:
-        try:
-            return self.contour().number(name.removeprefix(CONTOUR))
-        except KeyError as error:
-            raise self.scenario.document.error(str(error.args[0]), "check", name) from None
-
-    @property
-    def name(self) -> str:
-        """Name of the scenario."""
-        return self.scenario.name
-
-    @property
-    def about(self) -> str:
-        """What the scenario shows: its first line."""
-        return self.scenario.document.about
-
-    @property
-    def checks(self) -> list[Verdict]:
-        """The verdict of every bound in the scenario's [check] table."""
-        found = []
-        for name, check in self.scenario.document.body.check.items():
-            if name.startswith(CONTOUR):
-                found += judge(name, check, np.zeros(1), np.array([self._figure(name)]))
-            else:
-                found += judge(name, check, self.time, self[name])
-        return found
-
-    @property
-    def ok(self) -> bool:
-        """Whether every check holds."""
-        return all(v.ok for v in self.checks)
-
-
-def _is_axis(name: str, recorded: Mapping[str, system.End]) -> bool:
-    """Whether ``signal`` or ``signal[i]`` is there; i from 1."""
-    whole, bracket, rest = name.partition("[")
-    if not bracket:
-        return True
-    index, shape = rest.removesuffix("]"), recorded[whole].port.shape
-    return bool(shape) and index.isdigit() and 1 <= int(index) <= shape[0]
-
-
-def _misplaced(check: Check, stop: float) -> str:
-    """What is wrong with the times of a check; empty if nothing is."""
-    if check.at is not None and check.windows is not None:
-        return "at and windows exclude each other"
-    if check.at is not None and check.at > stop:
-        return f"at = {check.at!r} s is after the stop"
-    for low, high in check.windows or ():
-        if not 0.0 <= low <= high <= stop:
-            return f"windows: [{low!r}, {high!r}] s is not within 0 .. {stop!r} s"
-    return ""
 
 
 class Scenario:
@@ -240,18 +90,10 @@ class Scenario:
         return [*self.document.body.record.signals, *wanted(self)]
 
     def _check_checks(self) -> None:
-        recorded = {e.name: e for e in self.ends}
-        stop = self.document.body.stop
-        for name, check in self.document.body.check.items():
-            if name.startswith(CONTOUR):
-                if self.document.body.contour is None:
-                    raise self.document.error(f"{name}: there is no [contour] table", "check", name)
-                if check.windows is not None:
-                    raise self.document.error(f"{name}: a figure has no windows", "check", name)
-            elif name.partition("[")[0] not in recorded or not _is_axis(name, recorded):
-                raise self.document.error(f"{name} is not recorded", "check", name)
-            elif told := _misplaced(check, stop):
-                raise self.document.error(f"{name}: {told}", "check", name)
+        recorded = {e.name: e.port.shape for e in self.ends}
+        for name in self.document.body.check:
+            if told := misplaced(name, self.document.body, recorded):
+                raise self.document.error(told, "check", name)
 
     def resolved(self, options: Options) -> system.System:
         """All that an engine needs, with the options' values.
@@ -333,7 +175,7 @@ class Scenario:
             except InputError as error:
                 raise self.located(error, plain, asked.set) from None
             signals = traces.load()
-            geometry = (folder / "path.csv").read_text() if library else None
+            geometry = planned(folder / "path.csv") if library else None
         time = np.arange(wired.steps, dtype=np.float64) * (wired.step_ns * 1e-9)
         parameters = {s.end.name: s.values for s in plain.settings}
         return Result(self, time, signals, parameters, geometry)

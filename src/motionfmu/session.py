@@ -11,7 +11,8 @@ import numpy as np
 from motionfmu import recording
 from motionfmu.engines.native import Container
 from motionfmu.errors import InputError
-from motionfmu.run import Options, Result, Scenario
+from motionfmu.result import Result, planned
+from motionfmu.run import Options, Scenario
 from motionfmu.system import End, Setting
 from motionfmu.values import settings, start_values
 
@@ -33,7 +34,7 @@ def split(name: str) -> tuple[str, int | None]:
     """
     whole, bracket, rest = name.partition("[")
     index = rest.removesuffix("]")
-    if bracket and rest.endswith("]") and index.isdigit():
+    if bracket and rest.endswith("]") and index.isdecimal():
         return whole, int(index) - 1
     return name, None
 
@@ -143,7 +144,7 @@ class Session:
         library = self.scenario.library()
         time = np.arange(wired.steps, dtype=np.float64) * (wired.step_ns * 1e-9)
         parameters = {s.end.name: s.values for s in plain.settings}
-        geometry = self._path.read_text() if library else None
+        geometry = planned(self._path) if library else None
         return Result(self.scenario, time, self._traces.load(), parameters, geometry)
 
     def close(self) -> None:

@@ -18,7 +18,7 @@ from motionfmu.cli.common import (
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
-    from motionfmu.run import Result
+    from motionfmu.result import Result
 
 Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
@@ -33,8 +33,20 @@ def _verdicts(result: "Result") -> None:
     table = bare_table("", "check", "found", "asked")
     for v in result.checks:
         mark = "[green]ok[/]" if v.ok else "[bold red]FAILED[/]"
-        table.add_row(mark, v.name, f"{v.value:.6g}", v.bounds.replace("[", r"\["))
+        found = "none" if v.reason else f"{v.value:.6g}"
+        table.add_row(mark, v.name, found, v.bounds.replace("[", r"\["))
     out.print(table)
+    for reason, names in _reasons(result).items():
+        out.print(f"{', '.join(names)}: {reason}", markup=False, soft_wrap=True)
+
+
+def _reasons(result: "Result") -> dict[str, list[str]]:
+    """Names of the checks that have no number, by the reason."""
+    found: dict[str, list[str]] = {}
+    for v in result.checks:
+        if v.reason and v.name not in found.setdefault(v.reason, []):
+            found[v.reason].append(v.name)
+    return found
 
 
 @app.command()

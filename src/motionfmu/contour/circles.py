@@ -1,7 +1,7 @@
 """Circles of a program: where they are, and their circular tests."""
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -74,6 +74,8 @@ class CircularTest:
 
     Attributes
     ----------
+    place : int
+        Number of the circle among those of the path, from 0.
     centre, normal : ndarray, shape (3,)
         [mm]; the normal points to the positive side of its largest component.
     radius : float
@@ -86,13 +88,14 @@ class CircularTest:
         If both directions are there.
     """
 
+    place: int
     centre: Array
     normal: Array
     radius: float
     axes: Array
-    ccw: Way | None
-    cw: Way | None
-    both: BothWays | None
+    ccw: Way | None = None
+    cw: Way | None = None
+    both: BothWays | None = None
 
     def numbers(self) -> dict[str, Any]:
         """Its numbers, ready for JSON."""
@@ -112,7 +115,7 @@ def circular_tests(
     tracks: tuple[Track, Track],
     settle: float,
     run_in: float | None,
-) -> tuple[CircularTest, ...]:
+) -> tuple[tuple[CircularTest, ...], dict[str, str]]:
     """Circular tests of all full circles of a path.
 
     Parameters
@@ -132,43 +135,80 @@ def circular_tests(
     -------
     tuple of CircularTest
         A circle run both ways is one test.
+    dict
+        Reason by ``circles.<place>.<way>``, of each that has none.
     """
-    tests: list[CircularTest] = []
+    circles: list[CircularTest] = []
+    run: list[set[str]] = []  # ways round each that the path has
+    missing: dict[str, str] = {}
     for ends in _full_circles(path.segments):
         arc = path.segments[ends[0]]
         assert isinstance(arc, Arc)
         normal = arc.axis * np.sign(arc.axis[np.argmax(np.abs(arc.axis))])
-        axes = plane_axes(normal)
-        on = np.flatnonzero((tracks[0].segment >= ends[0]) & (tracks[0].segment <= ends[1]))
-        if len(on) < SAMPLES_MIN:
+        name = "ccw" if float(arc.axis @ normal) > 0.0 else "cw"
+        bare = CircularTest(len(circles), arc.centre, normal, arc.radius, plane_axes(normal))
+        others = (c for c in circles if name not in run[c.place] and _same(c, bare))
+        place = next(others, bare).place
+        if place == len(circles):
+            circles.append(bare)
+            run.append(set())
+        run[place].add(name)
+        found = _way(path, ends, samples, tracks, (settle, run_in))
+        if isinstance(found, str):
+            missing[f"circles.{place}.{name}"] = f"line {arc.label.line}: {found}"
             continue
-        span = max(SPEED_SPAN, SPEED_PART * float(samples[0][on[-1]] - samples[0][on[0]]))
-        speed = speed_along(samples[0], tracks[1].along, span)
-        if run_in is None:
-            chosen = _steady(samples[0], speed, (tracks[1].segment, ends), settle)
-        else:
-            low, high = path.offsets[ends[0]], path.offsets[ends[1] + 1]
-            skip = run_in * arc.radius
-            chosen = (tracks[0].along >= low + skip) & (tracks[0].along <= high - skip)
-        points = (samples[1] - arc.centre) @ axes.T
-        kept = _whole_turns(points, on[chosen[on]])
-        steady = _coverage(points, kept) >= COVERAGE_MIN
-        if not steady:
-            kept = _whole_turns(points, on)
-        if _coverage(points, kept) < COVERAGE_MIN:
-            continue
-        way = Way(
-            *ends,
-            lines=(arc.label.line, path.segments[ends[1]].label.line),
-            points=points[kept],
-            time=samples[0][kept],
-            coverage=_coverage(points, kept),
-            steady=steady,
-            speed=float(np.median(speed[kept])),
-            reading=reading(points[kept], arc.radius),
-        )
-        _add(tests, CircularTest(arc.centre, normal, arc.radius, axes, None, None, None), way, arc)
-    return tuple(tests)
+        test = circles[place]
+        test = replace(test, ccw=found) if name == "ccw" else replace(test, cw=found)
+        if test.ccw and test.cw:
+            test = replace(test, both=both_ways(test.ccw.points, test.cw.points, test.radius))
+        circles[place] = test
+    return tuple(c for c in circles if c.ccw or c.cw), missing
+
+
+def _way(
+    path: Path,
+    ends: tuple[int, int],
+    samples: tuple[Array, Array],
+    tracks: tuple[Track, Track],
+    left_out: tuple[float, float | None],
+) -> Way | str:
+    """The circular test of one directed path, or why there is none."""
+    arc, (settle, run_in) = path.segments[ends[0]], left_out
+    assert isinstance(arc, Arc)
+    normal = arc.axis * np.sign(arc.axis[np.argmax(np.abs(arc.axis))])
+    on = np.flatnonzero((tracks[0].segment >= ends[0]) & (tracks[0].segment <= ends[1]))
+    if len(on) < SAMPLES_MIN:
+        return f"{len(on)} samples on it, {SAMPLES_MIN} wanted"
+    span = max(SPEED_SPAN, SPEED_PART * float(samples[0][on[-1]] - samples[0][on[0]]))
+    speed = speed_along(samples[0], tracks[1].along, span)
+    if run_in is None:
+        chosen = _steady(samples[0], speed, (tracks[1].segment, ends), settle)
+    else:
+        low, high = path.offsets[ends[0]], path.offsets[ends[1] + 1]
+        skip = run_in * arc.radius
+        chosen = (tracks[0].along >= low + skip) & (tracks[0].along <= high - skip)
+    points = (samples[1] - arc.centre) @ plane_axes(normal).T
+    kept = _whole_turns(points, on[chosen[on]])
+    steady = _coverage(points, kept) >= COVERAGE_MIN
+    if not steady:
+        kept = _whole_turns(points, on)
+    if (covered := _coverage(points, kept)) < COVERAGE_MIN:
+        wanted = math.degrees(COVERAGE_MIN)
+        return f"the tool covers {math.degrees(covered):.0f} degrees of it, {wanted:.0f} wanted"
+    try:
+        quantities = reading(points[kept], arc.radius)
+    except ArithmeticError as error:
+        return str(error)
+    return Way(
+        *ends,
+        lines=(arc.label.line, path.segments[ends[1]].label.line),
+        points=points[kept],
+        time=samples[0][kept],
+        coverage=covered,
+        steady=steady,
+        speed=float(np.median(speed[kept])),
+        reading=quantities,
+    )
 
 
 def plane_axes(normal: Array) -> Array:
@@ -273,22 +313,9 @@ def _whole_turns(points: Array, chosen: Index) -> Index:
     return chosen[: np.searchsorted(way, turns * TURN, side="right")] if turns else chosen
 
 
-def _add(tests: list[CircularTest], bare: CircularTest, way: Way, arc: Arc) -> None:
-    """Put a directed path into the test of its circle."""
-    name = "ccw" if float(arc.axis @ bare.normal) > 0.0 else "cw"
-    for i, test in enumerate(tests):
-        same = (
-            np.abs(test.centre - bare.centre).max() <= SAME
-            and abs(test.radius - bare.radius) <= SAME
-            and test.normal @ bare.normal >= 1.0 - SAME
-        )
-        if same and getattr(test, name) is None:
-            ccw, cw = (way, test.cw) if name == "ccw" else (test.ccw, way)
-            assert ccw is not None and cw is not None
-            joint = both_ways(ccw.points, cw.points, test.radius)
-            tests[i] = CircularTest(
-                test.centre, test.normal, test.radius, test.axes, ccw, cw, joint
-            )
-            return
-    ccw, cw = (way, None) if name == "ccw" else (None, way)
-    tests.append(CircularTest(bare.centre, bare.normal, bare.radius, bare.axes, ccw, cw, bare.both))
+def _same(one: CircularTest, other: CircularTest) -> bool:
+    return bool(
+        np.abs(one.centre - other.centre).max() <= SAME
+        and abs(one.radius - other.radius) <= SAME
+        and one.normal @ other.normal >= 1.0 - SAME
+    )

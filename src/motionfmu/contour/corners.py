@@ -83,6 +83,8 @@ def find_corners(
         if angle < ANGLE_MIN:
             continue
         passed = int(np.searchsorted(track.segment, after))
+        if passed == len(time):  # the run ends before
+            break
         low = int(np.searchsorted(time, time[passed] - window))
         high = int(np.searchsorted(time, time[passed] + window))
         low = max(low, int(np.searchsorted(track.segment, before)))

@@ -1,6 +1,7 @@
 """The report of a run without a contour: its verdict and its signals over time."""
 
 from collections.abc import Mapping, Sequence
+from html import escape
 from typing import Any, Protocol
 
 from motionfmu.figures import Chart
@@ -22,6 +23,8 @@ class Result(Protocol):
         Its verdicts.
     signals : mapping
         What was recorded, by name.
+    no_contour : str
+        Why the run has no contour; empty if the scenario asks for none.
     """
 
     @property
@@ -39,6 +42,10 @@ class Result(Protocol):
     @property
     def signals(self) -> Mapping[str, Any]:
         """What was recorded, by name."""
+
+    @property
+    def no_contour(self) -> str:
+        """Why the run has no contour; empty if it has one or wants none."""
 
     def figures(self) -> Sequence[Chart]:
         """The figures that the scenario asks for."""
@@ -64,6 +71,8 @@ def plain_text(result: Result, charts: Sequence[Chart]) -> str:
     page = Sheet()
     if result.checks:
         page.section("Verdict", "", check_table(result.checks))
+    if result.no_contour:
+        page.section("Contour error", escape(result.no_contour), "")
     shown = charts or result.overview()
     add_charts(page, shown, pictures=bool(charts))
     footer = FOOTER

@@ -105,7 +105,10 @@ def page(outcome: "Outcome") -> str:
             "Best runs", "Smallest cost first; checks: those of the scenario.", _best(outcome)
         )
     if outcome.errors:
-        sheet.section("Errors", "Runs that gave no whole row, by message.", _errors(outcome))
+        sheet.section("Errors", "Runs that gave no row, by message.", _told(outcome, False))
+    if any(row.status == "ok" and row.message for row in outcome.rows):
+        note = "Runs with an empty cell, by the reason."
+        sheet.section("Missing numbers", note, _told(outcome, True))
     sheet.section("What was varied", "", _varied(outcome))
     footer = f"{escape(study.sampling)} of {len(study.points)} runs"
     footer += "" if study.sampling == "grid" else f", seed {study.seed}"
@@ -159,9 +162,11 @@ def _best(outcome: "Outcome") -> str:
     return table(["Run", "Checks", *map(escape, units)], body, numeric=2)
 
 
-def _errors(outcome: "Outcome") -> str:
-    told = Counter(row.message for row in outcome.rows if row.message)
-    first = {row.message: row.run for row in reversed(outcome.rows)}
+def _told(outcome: "Outcome", ok: bool) -> str:
+    """Messages of the rows that are ok, or of the others."""
+    rows = [row for row in outcome.rows if row.message and (row.status == "ok") is ok]
+    told = Counter(row.message for row in rows)
+    first = {row.message: row.run for row in reversed(rows)}
     body: list[tuple[str, str, str]] = [
         (escape(text), str(n), str(first[text])) for text, n in told.most_common(ERRORS_SHOWN)
     ]

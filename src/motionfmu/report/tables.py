@@ -25,6 +25,8 @@ class Check(Protocol):
         What came out.
     bounds : str
         What was asked for.
+    reason : str
+        Why nothing came out; else empty.
     """
 
     @property
@@ -42,6 +44,10 @@ class Check(Protocol):
     @property
     def bounds(self) -> str:
         """What was asked for."""
+
+    @property
+    def reason(self) -> str:
+        """Why nothing came out; else empty."""
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: int = 1) -> str:
@@ -96,7 +102,7 @@ def check_table(checks: Sequence[Check]) -> str:
                 f'<span class="mark {kind}">{mark}</span>',
                 escape(check.name),
                 escape(text),
-                escape(check.bounds),
+                escape(check.bounds if not check.reason else f"{check.bounds}; {check.reason}"),
             )
         )
     return table(("Verdict", "Check", "Value", "Bounds"), rows, numeric=2)

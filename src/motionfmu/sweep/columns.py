@@ -9,7 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu import recording
-from motionfmu.run import CONTOUR, Result, Scenario
+from motionfmu.checks import CONTOUR
+from motionfmu.contour.names import wrong
+from motionfmu.errors import NoNumber
+from motionfmu.result import Result
+from motionfmu.run import Scenario
 from motionfmu.scenario import Check
 from motionfmu.session import split
 from motionfmu.system import End
@@ -67,13 +71,17 @@ class Column:
 
         Raises
         ------
-        InputError, KeyError
-            The run has no such number.
+        NoNumber
+            The run has no such number, or it is not finite.
         """
         if self.end is None:
-            return result.contour().number(self.name.removeprefix(CONTOUR))
-        signal, _, statistic = self.name.rpartition(".")
-        return STATISTICS[statistic](np.asarray(result[signal], dtype=float))
+            value = result.contour().number(self.name.removeprefix(CONTOUR))
+        else:
+            signal, _, statistic = self.name.rpartition(".")
+            value = STATISTICS[statistic](np.asarray(result[signal], dtype=float))
+        if not math.isfinite(value):
+            raise NoNumber(f"{self.name} is not finite")
+        return value
 
 
 def column(scenario: Scenario, name: str) -> Column:
@@ -94,11 +102,13 @@ def column(scenario: Scenario, name: str) -> Column:
     InputError
         No such signal, or the scenario has no contour.
     ValueError
-        No such statistic.
+        No such statistic or figure.
     """
     if name.startswith(CONTOUR):
         if scenario.document.body.contour is None:
             raise ValueError(f"{name}: the scenario has no [contour] table")
+        if told := wrong(name.removeprefix(CONTOUR)):
+            raise ValueError(told)
         return Column(name)
     signal, _, statistic = name.rpartition(".")
     if statistic not in STATISTICS or "." not in signal:
@@ -166,18 +176,3 @@ def signals(scenario: Scenario, columns: Iterable[Column]) -> list[End]:
     ends = [recording.output(scenario.resolver, n, "check", n) for n in names]
     ends += [c.end for c in columns if c.end]
     return list({e.name: e for e in ends}.values())
-
-
-def finite(value: float) -> float | None:
-    """A number, or nothing.
-
-    Parameters
-    ----------
-    value : float
-
-    Returns
-    -------
-    float or None
-        None for what is not finite.
-    """
-    return value if math.isfinite(value) else None

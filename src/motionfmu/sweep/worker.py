@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Any
 
-from motionfmu.errors import InputError
-from motionfmu.run import Result, load
+from motionfmu.errors import InputError, NoNumber
+from motionfmu.run import load
 from motionfmu.session import Session
 from motionfmu.sweep.axes import Point
-from motionfmu.sweep.columns import column, finite, signals
+from motionfmu.sweep.columns import column, signals
 from motionfmu.sweep.study import Job, digest
 
 OK, ERROR, CRASH = "ok", "error", "crash"
@@ -31,12 +31,12 @@ class Row:
     run : int
         Number of the point, from 0.
     status : str
-        ``ok``; ``error``: a value was refused or a number is missing; ``crash``: the run ended
-        its process, and is tried again when the study is resumed.
+        ``ok``; ``error``: a value was refused; ``crash``: the run ended its process, and is
+        tried again when the study is resumed.
     message : str
-        What went wrong; empty if nothing did.
+        What went wrong, or why a number is missing; empty if nothing did and none is.
     checks : bool or None
-        Whether the scenario's checks hold; None if they could not be judged.
+        Whether the scenario's checks hold; None if it has none or the run gave nothing.
     values : tuple
         One number per column; None where there is none.
     """
@@ -89,17 +89,22 @@ class Worker:
             result = self._session.run(dict(zip(self.job.axes, point, strict=True)))
         except Exception as error:  # the study goes on
             return Row(run, ERROR, _told(error), None, (None,) * len(self._columns))
-        message, values = "", []
+        values: list[float | None] = []
+        missing: dict[str, None] = {}
+        wrong = ""
         for wanted in self._columns:
             value = None
             try:
-                value = finite(wanted.of(result))
-                told = "" if value is not None else f"{wanted.name} is not finite"
+                value = wanted.of(result)
+            except NoNumber as reason:
+                missing[str(reason)] = None
             except Exception as error:
-                told = _told(error)
+                wrong = wrong or _told(error)
             values.append(value)
-            message = message or told
-        return Row(run, ERROR if message else OK, message, _verdict(result), tuple(values))
+        checks = result.ok if result.scenario.document.body.check else None
+        if wrong:
+            return Row(run, ERROR, wrong, checks, tuple(values))
+        return Row(run, OK, "; ".join(missing), checks, tuple(values))
 
     def close(self) -> None:
         """Free the FMUs and their files."""
@@ -108,15 +113,7 @@ class Worker:
 
 def _told(error: Exception) -> str:
     """A message; a mistake of the program also says what kind it is."""
-    text = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
-    return text if isinstance(error, InputError | KeyError) else f"{type(error).__name__}: {text}"
-
-
-def _verdict(result: Result) -> bool | None:
-    try:
-        return result.ok if result.scenario.document.body.check else None
-    except Exception:
-        return None
+    return str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
 
 
 _kept = threading.local()  # one session per thread: a process of a cluster may have several

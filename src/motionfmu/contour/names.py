@@ -1,0 +1,59 @@
+"""Names that a contour number can have; whether a run has it is another question."""
+
+from dataclasses import fields
+from typing import Any, get_type_hints
+
+from motionfmu.contour.corners import Corner
+from motionfmu.contour.iso230 import BothWays, Reading
+from motionfmu.contour.result import AXES
+from motionfmu.contour.statistics import Statistics
+
+NUMBER = (int, float)
+
+
+def _of(kind: type, *more: str) -> dict[str, Any]:
+    """Numbers among the fields of a dataclass."""
+    hints = get_type_hints(kind)
+    return dict.fromkeys([f.name for f in fields(kind) if hints[f.name] in NUMBER] + list(more))
+
+
+def _tree() -> dict[str, Any]:
+    """As `ContourResult.numbers`: None is a number, [x] a list of x."""
+    way = _of(Reading, "coverage", "speed", "samples") | {"lines": [None]}
+    circle = {"centre": [None], "normal": [None], "radius": None, "ccw": way, "cw": way}
+    command = dict.fromkeys(("command", "line", "length", "max", "rms", "time"))
+    return {
+        **dict.fromkeys(("samples", "samples_cutting", "lag", "window")),
+        "error": _of(Statistics, "signed_min", "signed_max"),
+        "command_error": _of(Statistics),
+        "following": {axis: dict.fromkeys(("max", "rms")) for axis in AXES},
+        "circles": [circle | {"both": _of(BothWays)}],
+        "corners": [_of(Corner)],
+        "commands": [command],
+    }
+
+
+def wrong(name: str) -> str:
+    """Why no run can have a contour number of this name.
+
+    Parameters
+    ----------
+    name : str
+        As for `ContourResult.number`.
+
+    Returns
+    -------
+    str
+        Empty if a run can have it.
+    """
+    here: Any = _tree()
+    for part in name.split("."):
+        if isinstance(here, list) and part.isdecimal():
+            here = here[0]
+        elif isinstance(here, dict) and part in here:
+            here = here[part]
+        else:
+            there = ", ".join(here) if isinstance(here, dict) else "a number, from 0"
+            there = "nothing" if here is None else there
+            return f"no contour number {name!r}: no {part!r}, there is {there}"
+    return "" if here is None else f"contour number {name!r} is not a number but several"
