@@ -1,14 +1,20 @@
 """Where the FMUs are and what they declare."""
 
+import _ctypes
+import ctypes
 import functools
 import math
 import os
+import tempfile
+import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
 from fmpy import read_model_description
 
 from motionfmu.errors import InputError
+from motionfmu.pack import platform_folder
 
 PACKAGE = Path(__file__).resolve().parent
 
@@ -103,6 +109,62 @@ def fmu_path(name: str, fmi: int = 3) -> Path:
     return path
 
 
+def runnable(name: str, fmi: int) -> Path:
+    """Find a built FMU whose library loads on this machine.
+
+    A master loads it, too, but where it cannot, it says nothing of the cause or ends the process.
+
+    Parameters
+    ----------
+    name : str
+        Folder name under fmus/.
+    fmi : int
+        2 or 3.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InputError
+        There is no such FMU, or its library does not load; file and cause.
+    """
+    path = fmu_path(name, fmi)
+    try:
+        stat = path.stat()
+        if told := _refused(path, fmi, (stat.st_mtime_ns, stat.st_size)):
+            raise InputError(f"{path}: {told}")
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}") from None
+    return path
+
+
+@functools.cache
+def _refused(path: Path, fmi: int, state: tuple[int, int]) -> str:
+    """Why the library in this state of a file does not load; empty if it does."""
+    folder = f"binaries/{platform_folder(fmi)}/"
+    try:
+        with zipfile.ZipFile(path) as archive:
+            inside = [n for n in archive.namelist() if n.startswith(folder) and n[-1] != "/"]
+            code = archive.read(inside[0]) if inside else b""
+    except (zipfile.BadZipFile, zlib.error) as error:
+        return f"not a whole archive ({error})"
+    if not inside:
+        return f"no library for this machine ({folder} is empty)"
+    with tempfile.TemporaryDirectory(prefix="motionfmu-") as place:
+        library = Path(place) / Path(inside[0]).name
+        library.write_bytes(code)
+        try:
+            loaded = ctypes.CDLL(str(library))
+        except OSError as error:
+            return f"{inside[0]} does not load: {str(error).removeprefix(f'{library}: ')}"
+    wanted = "fmi2Instantiate" if fmi == 2 else "fmi3InstantiateCoSimulation"
+    there = hasattr(loaded, wanted)
+    _ctypes.dlclose(loaded._handle)
+    return "" if there else f"{inside[0]} does not load: it has no {wanted}"
+
+
 @functools.cache
 def ports(name: str) -> dict[str, Port]:
     """Variables of an FMU by name.
@@ -120,9 +182,14 @@ def ports(name: str) -> dict[str, Port]:
     Raises
     ------
     InputError
-        There is no such FMU.
+        There is no such FMU, or it is broken.
     """
-    description = read_model_description(str(fmu_path(name)))
+    path = fmu_path(name)
+    try:
+        description = read_model_description(str(path))
+    except Exception as error:  # of zipfile, lxml or FMPy: the file is not one of ours
+        told = str(error.args[0]) if error.args else type(error).__name__
+        raise InputError(f"{path}: no readable modelDescription.xml ({told})") from None
     found = {}
     for v in description.modelVariables:
         if v.causality == "independent":

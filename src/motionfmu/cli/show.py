@@ -59,8 +59,12 @@ def describe(
 
     from motionfmu import fmus
 
-    with zipfile.ZipFile(fmus.fmu_path(name, fmi)) as archive:
-        print(archive.read("modelDescription.xml").decode(), end="")
+    path = fmus.fmu_path(name, fmi)
+    try:
+        with zipfile.ZipFile(path) as archive:
+            print(archive.read("modelDescription.xml").decode(), end="")
+    except (zipfile.BadZipFile, KeyError) as error:
+        raise InputError(f"{path}: no readable modelDescription.xml ({error.args[0]})") from None
 
 
 def _describe(name: str) -> None:

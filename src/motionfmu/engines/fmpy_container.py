@@ -52,7 +52,7 @@ def _configuration(system: System, folder: Path) -> Configuration:
     variables: dict[str, dict[str, ModelVariable]] = {}
     for name, fmu in system.components.items():
         link = folder / f"{name}.fmu"
-        link.symlink_to(fmus.fmu_path(fmu, 2).resolve())
+        link.symlink_to(fmus.runnable(fmu, 2).resolve())
         components[name] = Component(name, link, read_model_description(str(link)))
         variables[name] = {v.name: v for v in components[name].modelDescription.modelVariables}
         for v in variables[name].values():  # the container knows the type names of FMI 3 only

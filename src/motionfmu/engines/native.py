@@ -71,7 +71,7 @@ def build(system: System, fmi: int, folder: Path) -> Path:
         container = _Folder(IDENTIFIER, folder, fmi_version=fmi)
         container.start_time, container.stop_time = 0.0, system.steps * system.step_ns * 1e-9
         for name, fmu in system.components.items():
-            container.get_fmu(str(_runnable(fmus.fmu_path(fmu, fmi), folder)), name=f"{name}.fmu")
+            container.get_fmu(str(_runnable(fmus.runnable(fmu, fmi), folder)), name=f"{name}.fmu")
         for wire in system.wires:
             container.add_link(
                 f"{wire.source.component}.fmu",

@@ -49,7 +49,7 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
     with ExitStack() as stack:
         slaves: dict[str, Slave] = {}
         for name, fmu in system.components.items():
-            slaves[name] = Slave(name, fmus.fmu_path(fmu, fmi), fmi, messages)
+            slaves[name] = Slave(name, fmus.runnable(fmu, fmi), fmi, messages)
             stack.callback(slaves[name].free)
         for s in system.settings:
             port = s.end.port

@@ -227,7 +227,7 @@ _folders: dict[Path, tempfile.TemporaryDirectory[str]] = {}
 
 def _unpacked(fmu: str) -> Path:
     """An FMU unpacked once for all runs."""
-    path = fmus.fmu_path(fmu, 3)
+    path = fmus.runnable(fmu, 3)
     if path not in _folders:
         _folders[path] = tempfile.TemporaryDirectory(prefix="motionfmu-")
         extract(str(path), _folders[path].name)
