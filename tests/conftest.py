@@ -3,5 +3,12 @@
 import os
 from pathlib import Path
 
+import pytest
+
+import motionfmu
+
 ROOT = Path(__file__).resolve().parent.parent
 FMUS = Path(os.environ.setdefault("MOTIONFMU_FMUS", str(ROOT / "build" / "fmus")))
+
+if Path(motionfmu.__file__).resolve().parent != ROOT / "src/motionfmu":
+    pytest.exit(f"the environment has another motionfmu, {motionfmu.__file__}: make build here", 4)

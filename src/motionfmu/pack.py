@@ -1,7 +1,7 @@
 """Generate an FMU's C and XML, and pack its .fmu files; called by the build.
 
-python -m motionfmu.pack generate fmus/epcio build/gen/epcio
-python -m motionfmu.pack archive  fmus/epcio build/gen/epcio 3 epcio.so epcio.fmi3.fmu
+python src/pack.py generate fmus/epcio build/gen/epcio
+python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.so epcio.fmi3.fmu
 """
 
 import platform
