@@ -10,7 +10,7 @@ class InputError(ValueError):
 
 
 class NoNumber(InputError):
-    """A run that was simulated has no such number; the text is the reason.
+    """A run has no such number; the text is the reason.
 
     A check of it has failed; in a study its cell is empty.
     """

@@ -98,7 +98,7 @@ class Result:
 
     @property
     def no_contour(self) -> str:
-        """Why this run has no contour; empty if it has one, or if none is asked for."""
+        """Why this run has no contour; else empty."""
         try:
             if self.scenario.document.body.contour is not None:
                 self.contour()
