@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu import ctables, describe
+from motionfmu import ctables, fmu_toml
 from motionfmu.modelica import codegen
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -58,7 +58,7 @@ class Library:
     """The compiled plant of one fmu.toml."""
 
     def __init__(self, toml: Path, folder: Path):
-        self.description = describe.load(toml)
+        self.description = fmu_toml.load(toml)
         codegen.write(toml, folder)
         (folder / "vars.h").write_text(ctables.header(self.description))
         (folder / "driver.c").write_text(_DRIVER)

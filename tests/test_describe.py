@@ -10,7 +10,7 @@ import pytest
 from conftest import FMUS, ROOT
 from fmpy import read_model_description
 
-from motionfmu import ctables, describe, pack, units
+from motionfmu import ctables, fmu_toml, pack, units
 from motionfmu.modeldescription import model_description
 
 NAMES = sorted(p.parent.name for p in ROOT.glob("fmus/*/fmu.toml"))
@@ -19,7 +19,7 @@ HEAD = 'name="A"\ndescription="a"\ntick_ns=25\nexperiment={stop=1.0,step=1e-3}\n
 
 def wrong(rows: str) -> str:
     with pytest.raises(ValueError) as caught:
-        describe.parse(HEAD + rows, "a/fmu.toml")
+        fmu_toml.parse(HEAD + rows, "a/fmu.toml")
     return str(caught.value)
 
 
@@ -44,7 +44,7 @@ def wrong(rows: str) -> str:
         ('[output]\nx={type="f64", dox="d"}', "unknown key 'dox'"),
         ('[input]\nx={type="f64",start=0.0,doc="d"}\n[output]\nx={type="f64",doc="d"}', "twice"),
         ("colour=1", "a/fmu.toml:6: unknown key 'colour'"),
-        ("x ==", "a/fmu.toml: Invalid"),
+        ("x ==", "a/fmu.toml:6: "),
     ],
 )
 def test_a_wrong_description_names_the_line_and_the_value(rows: str, message: str) -> None:
@@ -90,7 +90,7 @@ def test_only_equal_units_share_a_wire() -> None:
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", NAMES)
 def test_the_fmu_says_what_the_description_says(name: str, fmi: int) -> None:
-    d = describe.load(ROOT / "fmus" / name / "fmu.toml")
+    d = fmu_toml.load(ROOT / "fmus" / name / "fmu.toml")
     md = read_model_description(str(FMUS / f"{name}.fmi{fmi}.fmu"), validate=True)
     assert (md.guid if fmi == 2 else md.instantiationToken) == d.token
     found = {v.name: v for v in md.modelVariables}
@@ -120,15 +120,15 @@ def test_the_fmu_says_what_the_description_says(name: str, fmi: int) -> None:
 
 
 def test_the_token_changes_with_anything_in_the_description() -> None:
-    a = describe.parse(HEAD + '[output]\nx={type="f64", doc="d"}')
-    b = describe.parse(HEAD + '[output]\nx={type="f64", doc="e"}')
+    a = fmu_toml.parse(HEAD + '[output]\nx={type="f64", doc="d"}')
+    b = fmu_toml.parse(HEAD + '[output]\nx={type="f64", doc="e"}')
     assert re.fullmatch(r"\{[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}\}", a.token)
     assert a.token != b.token
-    assert a.token == describe.parse("# note\n" + HEAD + '[output]\nx={type="f64", doc="d"}').token
+    assert a.token == fmu_toml.parse("# note\n" + HEAD + '[output]\nx={type="f64", doc="d"}').token
 
 
 def test_arrays_become_scalars_with_structured_names_in_fmi_2() -> None:
-    d = describe.parse(HEAD + '[input]\nx={type="i32", dims=[2,3], start=[1,2,3,4,5,6], doc="d"}')
+    d = fmu_toml.parse(HEAD + '[input]\nx={type="i32", dims=[2,3], start=[1,2,3,4,5,6], doc="d"}')
     two, three = model_description(d, 2).decode(), model_description(d, 3).decode()
     assert [f'name="x[{i},{j}]"' in two for i in (1, 2) for j in (1, 2, 3)] == [True] * 6
     assert 'start="1 2 3 4 5 6"' in three and three.count("<Dimension") == 2

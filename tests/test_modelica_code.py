@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from plant_library import PACKAGE, ROOT, Library, Run, array
 
-from motionfmu import describe
+from motionfmu import fmu_toml
 from motionfmu.modelica import causal, codegen, cprint, description
 from motionfmu.modelica.nodes import program
 
@@ -107,7 +107,7 @@ def test_every_operation_in_c_equals_casadi(tmp_path):
 
 
 def test_description_comes_from_the_class():
-    d = describe.load(BALL_SCREW)
+    d = fmu_toml.load(BALL_SCREW)
     by_name = {v.name: v for v in d.variables}
     assert (d.name, d.tick_ns, d.cores) == ("BallScrewAxes", 25, ())
     assert [v.name for v in d.variables][:2] == ["active", "micro_step"]
@@ -160,7 +160,7 @@ def small(tmp_path):
 
 
 def test_a_project_elsewhere_works(small, tmp_path):
-    d = describe.load(small)
+    d = fmu_toml.load(small)
     assert [v.name for v in d.variables] == ["active", "micro_step", "tau", "u", "x"]
     codegen.write(small, tmp_path / "out")
     before = (tmp_path / "out" / "plant.c").stat().st_mtime_ns
@@ -186,13 +186,13 @@ def test_a_project_elsewhere_works(small, tmp_path):
             "micro_step = 25e-6\n[input]\nx = 1",
             r"fmu.toml:8: unknown key 'input'",
         ),
-        ("name = ", "name : ", r"fmu.toml: "),
+        ("name = ", "name : ", r"fmu.toml:1: "),
     ],
 )
 def test_wrong_fmu_toml(small, old, new, message):
     small.write_text(TOML.replace(old, new))
     with pytest.raises(ValueError, match=message):
-        describe.load(small)
+        fmu_toml.load(small)
 
 
 @pytest.mark.parametrize(
@@ -214,7 +214,7 @@ def test_declarations_an_fmu_cannot_carry(small, old, new, message):
         text = text.replace("tau*der", "Tau*der")
     (small.parents[2] / "modelica/Small/Axis.mo").write_text(text)
     with pytest.raises(ValueError, match=re.escape(message)):
-        describe.load(small)
+        fmu_toml.load(small)
 
 
 def test_too_many_branches_are_refused(small):
@@ -237,7 +237,7 @@ def test_a_class_without_state_is_refused(small):
 def test_one_instance_has_scalars_and_lanes_of_its_own(small):
     for instances, dims, lanes in ((1, (), 1), (2, (2,), 2), (6, (6,), codegen.LANES)):
         small.write_text(TOML.replace("instances = 2", f"instances = {instances}"))
-        by_name = {v.name: v for v in describe.load(small).variables}
+        by_name = {v.name: v for v in fmu_toml.load(small).variables}
         assert {by_name[n].dims for n in ("active", "tau", "u", "x")} == {dims}
         codegen.write(small, small.parent)
         assert f"PLANT_LANES = {lanes}," in (small.parent / "plant.h").read_text()

@@ -311,7 +311,7 @@ def test_feed_forward_shortens_the_lag_and_leaves_the_step(tmp_path: Path) -> No
         ('axes = "each"\ngain = 3\n', r"t\.toml:2: gain = 3"),
         ('[bounds]\n"mcc.p_gain" = [5, 2]\n', r"t\.toml:2: bounds\.mcc\.p_gain = \[5.*, 2"),
         ("[limits]\novershoot = -1\n", r"t\.toml:2: limits\.overshoot = -1"),
-        ("axes = \n", r"t\.toml: "),
+        ("axes = \n", r"t\.toml:1: "),
     ],
 )
 def test_a_wrong_problem_file_is_named_with_its_line(

@@ -1,22 +1,22 @@
-"""The description of an FMU: what `fmu.toml` says, parsed and checked."""
+"""The description of an FMU: its variables, checked."""
 
 import hashlib
 import itertools
 import json
 import math
 import re
-import tomllib
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import Any
 
 from motionfmu import units
+from motionfmu.toml_lines import shown
 
 TYPES = ("f64", "i32", "bool", "string")
 CAUSALITIES = ("parameter", "input", "output", "local")
 STRING_MAX = 1024  # bytes of a string variable with its end mark; the state is one struct
+COUNT_MAX = 65536  # elements of a variable; all of them are in that struct
+I32 = 2**31
 _KEYS = {"type", "dims", "unit", "start", "min", "max", "nominal", "tunable", "doc"}
-_HEAD = {"name", "description", "tick_ns", "experiment", "cores"}
 
 Scalar = float | int | bool | str
 
@@ -124,24 +124,63 @@ class Description:
         return sum(v.count for v in self.variables)
 
 
+_KINDS: dict[str, tuple[type, ...]] = {
+    "f64": (float, int),
+    "i32": (int,),
+    "bool": (bool,),
+    "string": (str,),
+}
+
+
+def _of_type(kind: str, what: str, value: Any) -> Any:
+    """A value of one type; `what` is for the message."""
+    fits = isinstance(value, _KINDS[kind]) and (kind == "bool" or not isinstance(value, bool))
+    if not fits:
+        raise ValueError(f"{what} {shown(value)} is not of type {kind}")
+    if kind == "i32" and not -I32 <= value < I32:
+        raise ValueError(f"{what} {value!r} is not within 32 bits")
+    if kind == "string" and ("\0" in value or len(value.encode()) >= STRING_MAX):
+        raise ValueError(f"{what} {shown(value)} is not a text of less than {STRING_MAX} bytes")
+    kinds: dict[str, Any] = {"f64": float, "i32": int, "bool": bool, "string": str}
+    return kinds[kind](value)
+
+
 def _check_value(variable: Variable, value: Any) -> Scalar:
-    kinds: dict[str, tuple[type, ...]] = {
-        "f64": (float, int),
-        "i32": (int,),
-        "bool": (bool,),
-        "string": (str,),
-    }
-    if not isinstance(value, kinds[variable.type]) or (
-        isinstance(value, bool) and variable.type != "bool"
-    ):
-        raise ValueError(f"start {value!r} is not of type {variable.type}")
-    if isinstance(value, float | int) and not isinstance(value, bool):
+    checked = _of_type(variable.type, "start", value)
+    if isinstance(checked, float | int) and not isinstance(checked, bool):
         low = -math.inf if variable.min is None else variable.min
         high = math.inf if variable.max is None else variable.max
-        if not low <= value <= high:
+        if not low <= checked <= high:
             raise ValueError(f"start {value!r} is outside {low} .. {high}")
-        return float(value) if variable.type == "f64" else int(value)
-    return bool(value) if variable.type == "bool" else str(value)
+    return checked
+
+
+def _dims(given: Any) -> tuple[int, ...]:
+    """Array dimensions; a state of all elements has a size."""
+    whole = isinstance(given, list | tuple) and all(type(n) is int and n >= 1 for n in given)
+    if not whole or len(given) > 2 or math.prod(given) > COUNT_MAX:
+        text = f"one or two positive numbers, {COUNT_MAX} elements at most, wanted"
+        raise ValueError(f"dims {shown(given)}: {text}")
+    return tuple(given)
+
+
+def _check_limits(row: dict[str, Any]) -> None:
+    """Limits are numbers of the variable's type; the usual size of an f64 is positive."""
+    numeric = row["type"] in ("f64", "i32")
+    for key in ("min", "max"):
+        if row.get(key) is not None:
+            if not numeric:
+                raise ValueError(f"{key} {shown(row[key])} on type {row['type']}")
+            if not math.isfinite(_of_type(row["type"], key, row[key])):
+                raise ValueError(f"{key} {row[key]!r} is not finite")
+    nominal = row.get("nominal")
+    if nominal is not None:
+        size = _of_type("f64", "nominal", nominal)
+        if row["type"] != "f64" or not 0.0 < float(size) < math.inf:
+            raise ValueError(f"nominal {shown(nominal)} is not a positive size of an f64")
+    for key in ("tunable", "continuous"):
+        if not isinstance(row.get(key, False), bool):
+            raise ValueError(f"{key} {shown(row[key])} is not true or false")
 
 
 def variable(name: str, causality: str, row: dict[str, Any]) -> Variable:
@@ -166,19 +205,24 @@ def variable(name: str, causality: str, row: dict[str, Any]) -> Variable:
         A key, type, unit, start or limit is wrong; the message names the variable and the value.
     """
     try:
+        if not isinstance(row, dict):
+            raise ValueError(f"{shown(row)} is no table")
         if unknown := sorted(set(row) - _KEYS - {"continuous"}):
             raise ValueError(f"unknown key {unknown[0]!r}")
         if row.get("type") not in TYPES:
-            raise ValueError(f"type {row.get('type')!r} is not one of {', '.join(TYPES)}")
+            raise ValueError(f"type {shown(row.get('type'))} is not one of {', '.join(TYPES)}")
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
             raise ValueError("a name is snake_case")
         if not row.get("doc"):
             raise ValueError("doc is missing")
+        if not isinstance(row["doc"], str) or not row["doc"].isprintable():
+            raise ValueError(f"doc {shown(row['doc'])} is not a line of text")
         if row.get("unit") is not None:
-            if row["type"] != "f64":
-                raise ValueError(f"unit {row['unit']!r} on type {row['type']}")
+            if row["type"] != "f64" or not isinstance(row["unit"], str):
+                raise ValueError(f"unit {shown(row['unit'])} on type {row['type']}")
             units.parse(row["unit"])
-        dims = tuple(row.get("dims", ()))
+        dims = _dims(row["dims"]) if row.get("dims") else ()
+        _check_limits(row)
         bare = Variable(name, causality, **{**row, "dims": dims, "start": None})
         start = row.get("start")
         if causality in ("output", "local"):
@@ -194,95 +238,3 @@ def variable(name: str, causality: str, row: dict[str, Any]) -> Variable:
         return Variable(name, causality, **{**row, "dims": dims, "start": checked})
     except ValueError as error:
         raise ValueError(f"{causality} {name}: {error}") from None
-
-
-def parse(text: str, file: str = "fmu.toml") -> Description:
-    """Read the text of an fmu.toml.
-
-    Parameters
-    ----------
-    text : str
-        TOML.
-    file : str
-        Name used in messages.
-
-    Returns
-    -------
-    Description
-
-    Raises
-    ------
-    ValueError
-        Anything wrong, as ``file:line: what``.
-    """
-    try:
-        doc = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{file}: {error}") from None
-    rows = [(c, n, r) for c in CAUSALITIES for n, r in doc.pop(c, {}).items()]
-    if unknown := sorted(set(doc) - _HEAD):
-        raise ValueError(f"{file}:{_line(text, unknown[0])}: unknown key {unknown[0]!r}")
-    if missing := sorted(_HEAD - set(doc)):
-        raise ValueError(f"{file}: {missing[0]!r} is missing")
-    if not isinstance(doc["tick_ns"], int) or doc["tick_ns"] < 1:
-        raise ValueError(
-            f"{file}:{_line(text, 'tick_ns')}: tick_ns {doc['tick_ns']!r} is not a positive integer"
-        )
-    variables = []
-    for causality, name, row in rows:
-        try:
-            variables.append(variable(name, causality, row))
-        except ValueError as error:
-            raise ValueError(f"{file}:{_line(text, name)}: {error}") from None
-    names = [v.name for v in variables]
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"{file}:{_line(text, name)}: {name} is described twice")
-    return Description(**{**doc, "cores": tuple(doc["cores"])}, variables=tuple(variables))
-
-
-def _line(text: str, key: str) -> int:
-    for number, line in enumerate(text.splitlines(), 1):
-        if re.match(rf"\s*{re.escape(key)}\s*=", line):
-            return number
-    return 0
-
-
-def names_modelica(text: str) -> bool:
-    """Whether an fmu.toml takes its variables from a Modelica class.
-
-    Parameters
-    ----------
-    text : str
-        The file's text.
-
-    Returns
-    -------
-    bool
-    """
-    return re.search(r"^modelica\s*=", text, re.MULTILINE) is not None
-
-
-def load(path: str | Path) -> Description:
-    """Read the description of the FMU whose fmu.toml is at `path`.
-
-    Parameters
-    ----------
-    path : str or Path
-        An fmu.toml; one that names a Modelica class takes its variables from there.
-
-    Returns
-    -------
-    Description
-
-    Raises
-    ------
-    ValueError
-        Anything wrong with the file, as ``file:line: what``.
-    """
-    text = Path(path).read_text()
-    if names_modelica(text):
-        from motionfmu.modelica import description
-
-        return description.from_modelica(Path(path))
-    return parse(text, str(path))

@@ -15,6 +15,7 @@ from fmpy import read_model_description
 
 from motionfmu.errors import InputError
 from motionfmu.pack import platform_folder
+from motionfmu.toml_lines import is_file
 
 PACKAGE = Path(__file__).resolve().parent
 
@@ -103,7 +104,7 @@ def fmu_path(name: str, fmi: int = 3) -> Path:
         There is no such FMU; the message lists what there is.
     """
     path = folder() / f"{name}.fmi{fmi}.fmu"
-    if not path.is_file():
+    if "/" in name or not is_file(path):
         known = ", ".join(fmu_names()) or "none is built; run make build"
         raise InputError(f"no FMU {name!r} for FMI {fmi} in {folder()} (there are: {known})")
     return path

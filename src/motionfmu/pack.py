@@ -11,8 +11,9 @@ import zipfile
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from motionfmu import ctables, describe
+from motionfmu import ctables, describe, fmu_toml
 from motionfmu.modeldescription import model_description
+from motionfmu.toml_lines import text_of
 
 SOURCE = Path(__file__).resolve().parent.parent
 # Zip cannot date earlier; a fixed date makes equal FMUs equal files.
@@ -41,7 +42,7 @@ def is_modelica(fmu: Path) -> bool:
     -------
     bool
     """
-    return describe.names_modelica((fmu / "fmu.toml").read_text())
+    return fmu_toml.names_modelica(text_of(fmu / "fmu.toml"))
 
 
 def generate(fmu: Path, out: Path) -> None:
@@ -60,7 +61,7 @@ def generate(fmu: Path, out: Path) -> None:
     ValueError
         The description is wrong; ``file:line: what``.
     """
-    d = describe.load(fmu / "fmu.toml")
+    d = fmu_toml.load(fmu / "fmu.toml")
     _write(out / "vars.h", ctables.header(d))
     _write(out / "vars.c", ctables.table(d))
     if is_modelica(fmu):
@@ -97,7 +98,7 @@ def compiled_sources(fmu: Path, d: describe.Description, out: Path) -> list[Path
 def _packed_sources(fmu: Path, out: Path, fmi: int) -> dict[str, bytes]:
     import fmpy
 
-    d = describe.load(fmu / "fmu.toml")
+    d = fmu_toml.load(fmu / "fmu.toml")
     folders = [SOURCE / "fmi", fmu, *[SOURCE / core for core in d.cores]]
     folders += [SOURCE / "plant"] if is_modelica(fmu) else []
     files = [f for folder in folders for f in sorted(folder.glob("*.[ch]"))]

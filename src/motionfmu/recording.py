@@ -1,5 +1,7 @@
 """Which signals go to which channel of which scope."""
 
+import math
+import os
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,11 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu import fmus
-from motionfmu.system import End, Resolver, Setting, System, Wire
-from motionfmu.values import values_of
+from motionfmu.fmus import Port
+from motionfmu.system import STEPS_MAX, End, Resolver, Setting, System, Wire
+from motionfmu.values import start_values, values_of
 
 AXES = 6
 # Channels of one scope FMU: groups of six and single ones, by the type they hold.
+SIZES = {"Float64": 8, "Int32": 4}  # [bytes]
+# A recording is held in memory, by the scope and then here.
+ROWS_MAX = STEPS_MAX
+BYTES_MAX = 2_000_000_000
 GROUPS = {"Float64": ("axes_real_", 10, "real_", 4), "Int32": ("axes_int_", 9, "int_", 10)}
 
 
@@ -149,6 +156,48 @@ def _allocate(ends: Iterable[End]) -> list[Column]:
         columns.append(Column(end, scope, kind, used.get((scope, kind, wide), 0)))
         used[scope, kind, wide] = used.get((scope, kind, wide), 0) + 1
     return columns
+
+
+def refused(system: System) -> tuple[str, str]:
+    """What is wrong with the scopes of a system, before it is run.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    str, str
+        The setting, ``component.variable``, and the words; empty if nothing is.
+    """
+    files: dict[str, str] = {}
+    total = 0
+    given = {s.end.name: s.values[0] for s in system.settings}
+    for name in (n for n, fmu in system.components.items() if fmu == "scope"):
+        ports = fmus.ports("scope")
+
+        def value(key: str, name: str = name, ports: dict[str, Port] = ports) -> Any:
+            return given.get(f"{name}.{key}", start_values(ports[key])[0])
+
+        if not value("file"):
+            continue
+        file = os.path.realpath(value("file"))
+        if file in files:
+            return f"{name}.file", f"{name} and {files[file]} would both write {file}"
+        files[file] = name
+        rows = math.ceil(system.steps * system.step_ns / (value("period") * 1e9))
+        if rows > ROWS_MAX:
+            text = f"{name} would record {rows} rows; {ROWS_MAX} are the most"
+            return f"{name}.period", text
+        total += rows * sum(
+            SIZES[kind] * (AXES * value(f"{axes}used") + value(f"{single}used"))
+            for kind, (axes, _, single, _) in GROUPS.items()
+        )
+        if total > BYTES_MAX:
+            size, most = total * 1e-9, BYTES_MAX * 1e-9
+            text = f"{rows} rows of {name} make a recording of {size:.3g} GB; {most:g} are the most"
+            return f"{name}.period", text
+    return "", ""
 
 
 def plan(system: System, ends: Iterable[End], folder: Path) -> tuple[System, Recording]:

@@ -76,7 +76,8 @@ class Scenario:
         drawn = figures.wanted(self.resolver)
         self.ends = list({e.name: e for e in (*listed, *drawn)}.values())
         self.only_drawn = {e.name for e in drawn} - {e.name for e in listed}
-        self.resolved(Options())
+        wired, _ = recording.plan(self.resolved(Options()), self.ends, Path())
+        self.check_recording(wired, Options())
         self._check_checks()
 
     @property
@@ -114,10 +115,16 @@ class Scenario:
         document, body = self.document, self.document.body
         step_ns = self._time("step", options.step, body.step)
         stop_ns = self._time("stop", options.stop, body.stop)
+        given = options.stop is not None or options.step is not None
+        if step_ns % system.CLOCK_NS:
+            text = f"step = {step_ns * 1e-9:.9g} s is no whole number of {system.CLOCK_NS} ns"
+            raise InputError(text) if given else document.error(text, "", "step")
         if stop_ns % step_ns:
             text = f"stop = {stop_ns * 1e-9:.9g} s is no whole number of steps"
-            given = options.stop is not None or options.step is not None
             raise InputError(text) if given else document.error(text, "", "stop")
+        if stop_ns // step_ns > system.STEPS_MAX:
+            text = f"{stop_ns // step_ns} steps; {system.STEPS_MAX} are the most"
+            raise InputError(text) if given else document.error(text, "", "step")
         resolved = system.System(
             components=dict(body.component),
             wires=tuple(system.wires(self.resolver)),
@@ -129,6 +136,31 @@ class Scenario:
         system.check_inputs(self.resolver, resolved)
         figures.check(document, step_ns)
         return resolved
+
+    def check_recording(self, wired: system.System, options: Options) -> None:
+        """Refuse a recording that no memory holds, or two of one file.
+
+        Parameters
+        ----------
+        wired : System
+            With the scopes of the run.
+        options : Options
+            How it is run.
+
+        Raises
+        ------
+        InputError
+            Names file and setting, or the option.
+        """
+        name, told = recording.refused(wired)
+        if not told:
+            return
+        body = self.document.body
+        if name in body.set and name not in options.set:
+            raise self.document.error(told, "set", name)
+        if name.partition(".")[0] in body.component or options.stop or options.step:
+            raise InputError(told if name not in options.set else f"set {name}: {told}")
+        raise self.document.error(told, "", "step")
 
     def _time(self, key: str, given: float | None, written: float) -> int:
         """Whole nanoseconds of an option, or of the scenario's own key."""
@@ -170,6 +202,7 @@ class Scenario:
             given = Options(**{**options, "set": {**asked.set, **extra}})
             plain = self.resolved(given)
             wired, traces = recording.plan(plain, self.ends, folder)
+            self.check_recording(wired, given)
             try:
                 ENGINES[asked.engine](wired, asked.fmi, asked.progress)
             except InputError as error:

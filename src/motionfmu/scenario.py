@@ -1,25 +1,32 @@
 """A scenario file: which FMUs, how they are wired, set, driven, recorded and judged."""
 
-import re
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.errors import InputError
-from motionfmu.toml_lines import Lines
+from motionfmu.toml_lines import KEY_MAX, Lines, is_file, shown, tables_of, text_of
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+# Each is an FMU with a library and a folder of its own.
+COMPONENTS_MAX = 64
+# The name becomes that of an instance and of a file; the recorder's own begin with "_".
+Component = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
+# Names and patterns are looked up in all variables of all components.
+LISTED_MAX = 1000
+FIGURES_MAX = 100  # a picture each
+Name = Annotated[str, Field(max_length=KEY_MAX)]
+Names = Annotated[list[Name], Field(max_length=LISTED_MAX)]
 
 
 class Drive(BaseModel):
     """An input that steps to given values at given times [s]."""
 
     model_config = _STRICT
-    input: str
+    input: Name
     at: list[float] = Field(min_length=1)
     value: list[Value] = Field(min_length=1)
 
@@ -42,22 +49,22 @@ class Contour(BaseModel):
     """Which signals hold the actual position and the pulses put out."""
 
     model_config = _STRICT
-    position: str
-    pulses: str
+    position: Name
+    pulses: Name
 
 
 class Record(BaseModel):
     """What is recorded at every step: names or patterns of outputs."""
 
     model_config = _STRICT
-    signals: list[str] = Field(min_length=1)
+    signals: Names = Field(min_length=1)
 
 
 class Plot(BaseModel):
     """One panel of a figure: signals, and how they are shown."""
 
     model_config = _STRICT
-    signals: list[str] = Field(min_length=1)
+    signals: Names = Field(min_length=1)
     label: str = Field(min_length=1)
     steps: bool = False
     rate: float | None = None
@@ -73,7 +80,7 @@ class Figure(BaseModel):
     title: str = Field(min_length=1)
     note: str = ""
     window: list[float] | None = Field(default=None, min_length=2, max_length=2)
-    plot: list[Plot] = Field(min_length=1)
+    plot: list[Plot] = Field(min_length=1, max_length=FIGURES_MAX)
 
 
 class Body(BaseModel):
@@ -82,15 +89,15 @@ class Body(BaseModel):
     model_config = _STRICT
     stop: float = Field(gt=0)
     step: float = Field(gt=0)
-    component: dict[str, str] = Field(min_length=1)
-    connect: dict[str, str] = Field(default_factory=dict)
+    component: dict[Component, Name] = Field(min_length=1, max_length=COMPONENTS_MAX)
+    connect: dict[str, Name] = Field(default_factory=dict, max_length=LISTED_MAX)
     set: dict[str, Value] = Field(default_factory=dict)
-    drive: list[Drive] = Field(default_factory=list)
-    leave: list[str] = Field(default_factory=list)
+    drive: list[Drive] = Field(default_factory=list, max_length=LISTED_MAX)
+    leave: Names = Field(default_factory=list)
     record: Record
     contour: Contour | None = None
-    figure: list[Figure] = Field(default_factory=list)
-    check: dict[str, Check] = Field(default_factory=dict)
+    figure: list[Figure] = Field(default_factory=list, max_length=FIGURES_MAX)
+    check: dict[str, Check] = Field(default_factory=dict, max_length=LISTED_MAX)
 
 
 @dataclass(frozen=True)
@@ -150,8 +157,8 @@ def scenario_file(path: str | Path) -> Path:
         There is no such file.
     """
     file = Path(path)
-    file = file / "scenario.toml" if file.is_dir() else file
-    if not file.is_file():
+    file = file / "scenario.toml" if is_file(file / "scenario.toml") else file
+    if not is_file(file):
         raise InputError(f"{file}: no such scenario")
     return file.resolve()
 
@@ -174,16 +181,8 @@ def read(path: str | Path) -> Document:
         The file is missing, is no TOML, or a key is unknown, missing or of the wrong type.
     """
     file = scenario_file(path)
-    try:
-        text = file.read_text(encoding="utf-8")
-        tables = tomllib.loads(text)
-    except OSError as error:
-        raise InputError(f"{file}: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{file}: not UTF-8 text ({error})") from None
-    except tomllib.TOMLDecodeError as error:
-        where = re.search(r"line (\d+)", str(error))
-        raise InputError(f"{file}:{where[1] if where else 1}: {error}") from None
+    text = text_of(file)
+    tables = tables_of(text, file)
     lines = Lines(text)
     first = text.split("\n", 1)[0]
     if not first.startswith("#"):
@@ -226,15 +225,15 @@ def _first(error: ValidationError, file: Path, lines: Lines) -> str:
     table, key = _place(place)
     if found["type"] == "missing" and isinstance(found["loc"][-1], int):
         what, few = ".".join(place[:-1]), list(found["input"])
-        return f"{file}:{lines.of(table, key)}: {what} = {few!r}: too few values"
+        return f"{file}:{lines.of(table, key)}: {what} = {shown(few)}: too few values"
     if found["type"] == "missing":
         return f"{file}:{lines.of(table)}: {place[-1]} is missing"
     name = ".".join(place[1:] if place[0] == "set" else place)
     if found["type"] == "extra_forbidden":
         return f"{file}:{lines.of(table, key)}: unknown key {place[-1]!r}"
-    shown = found["input"] if not isinstance(found["input"], dict) else "..."
-    shown = list(shown) if isinstance(shown, tuple) else shown
-    return f"{file}:{lines.of(table, key)}: {name} = {shown!r}: {found['msg'].lower()}"
+    value = found["input"] if not isinstance(found["input"], dict) else "..."
+    value = list(value) if isinstance(value, tuple) else value
+    return f"{file}:{lines.of(table, key)}: {name} = {shown(value)}: {found['msg'].lower()}"
 
 
 def _place(place: list[str]) -> tuple[str, str]:

@@ -135,6 +135,7 @@ class Session:
         """
         plain = replace(self._plain, settings=tuple(self._values(given)))
         wired = replace(self._wired, settings=(*plain.settings, *self._scopes))
+        self.scenario.check_recording(wired, replace(self._options, set=given))
         self._path.unlink(missing_ok=True)
         try:
             self._container.run(wired, self._options.progress)

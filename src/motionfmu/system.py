@@ -14,6 +14,11 @@ from motionfmu.scenario import Document
 Values = tuple[float | int | bool | str, ...]
 # A time in decimal seconds is off a whole number of ns by rounding only.
 NS_TOLERANCE = 1e-3
+# Limits of a run: more than a day of machine time, hours of computing.
+TIME_MAX = 1e5  # [s]
+STEPS_MAX = 100_000_000
+# Clock of card and recorder; no FMU here steps by a part of it.
+CLOCK_NS = 25
 
 
 @dataclass(frozen=True)
@@ -95,8 +100,10 @@ def nanoseconds(key: str, seconds: float) -> int:
     Raises
     ------
     ValueError
-        It is not positive or no whole number of ns.
+        It is not positive, more than `TIME_MAX` or no whole number of ns.
     """
+    if seconds > TIME_MAX:
+        raise ValueError(f"{key} = {seconds!r} s: {TIME_MAX:g} s are the most")
     ns = seconds * 1e9
     if not (math.isfinite(ns) and ns >= 1 and abs(ns - round(ns)) <= NS_TOLERANCE):
         raise ValueError(f"{key} = {seconds!r} s is not a whole number of ns")

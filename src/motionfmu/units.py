@@ -80,14 +80,19 @@ def parse(name: str) -> Unit:
     for i, part in enumerate(name.split("/")):
         sign = -1 if i else 1
         for token in part.split("."):
-            match = re.fullmatch(r"([A-Za-z]+|1)(-?\d+)?", token)
+            match = re.fullmatch(r"([A-Za-z]+|1)(-?[0-9]{1,2})?", token)
             if match is None or match[1] not in SYMBOLS:
                 raise ValueError(f'unit "{name}": unknown symbol "{token}"')
             power = sign * int(match[2] or 1)
             scale, exponents = SYMBOLS[match[1]]
-            factor *= scale**power
+            try:
+                factor *= scale**power
+            except OverflowError:
+                factor = math.inf
             for base, e in exponents.items():
                 total[base] += power * e
+    if not 0.0 < factor < math.inf:
+        raise ValueError(f'unit "{name}": beyond all numbers')
     return Unit(name, factor, tuple(total[b] for b in BASE))
 
 

@@ -4,10 +4,12 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from motionfmu.describe import STRING_MAX
 from motionfmu.errors import InputError
 from motionfmu.fmus import Port
 from motionfmu.scenario import Document
-from motionfmu.system import NS_TOLERANCE, End, Resolver, Setting, Stimulus, Values
+from motionfmu.system import NS_TOLERANCE, TIME_MAX, End, Resolver, Setting, Stimulus, Values
+from motionfmu.toml_lines import is_file, shown
 
 
 def values_of(end: End, value: Any) -> Values:
@@ -44,7 +46,10 @@ def values_of(end: End, value: Any) -> Values:
         x: Any = given.item() if hasattr(given, "item") else given
         wrong = isinstance(x, bool) and end.port.type != "Boolean"
         if wrong or not isinstance(x, kinds[end.port.type]):
-            raise ValueError(f"{end.name} = {x!r}: {end.port.type} wanted")
+            raise ValueError(f"{end.name} = {shown(x)}: {end.port.type} wanted")
+        if isinstance(x, str) and ("\0" in x or len(x.encode(errors="replace")) >= STRING_MAX):
+            text = f"no NUL and less than {STRING_MAX} bytes wanted"
+            raise ValueError(f"{end.name} = {shown(x)}: {text}")
         if isinstance(x, int | float) and not isinstance(x, bool):
             if not math.isfinite(x):
                 raise ValueError(f"{end.name} = {x!r}: not a finite number")
@@ -77,8 +82,7 @@ def _file_beside(document: Document, values: Values) -> Values:
     """A string that names a file beside the scenario becomes its path."""
     folder = document.file.parent
     return tuple(
-        str(folder / x) if isinstance(x, str) and x and (folder / x).is_file() else x
-        for x in values
+        str(folder / x) if isinstance(x, str) and x and is_file(folder / x) else x for x in values
     )
 
 
@@ -157,8 +161,11 @@ def stimuli(resolver: Resolver, step_ns: int) -> list[Stimulus]:
             )
         last = -1
         for time, value in zip(drive.at, drive.value, strict=True):
+            if not 0.0 <= time <= TIME_MAX:
+                text = f"at = {time!r} s is not within 0 .. {TIME_MAX:g} s"
+                raise document.error(text, table, "at")
             step = round(time * 1e9 / step_ns)
-            if time < 0 or abs(time * 1e9 - step * step_ns) > NS_TOLERANCE * max(1.0, time):
+            if abs(time * 1e9 - step * step_ns) > NS_TOLERANCE * max(1.0, time):
                 raise document.error(f"at = {time!r} s is no whole number of steps", table, "at")
             if step <= last:
                 raise document.error(

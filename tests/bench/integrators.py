@@ -14,7 +14,7 @@ import numpy as np
 from hydraulic_rig import HARD, START, STEP, Case, reference
 from plant_library import ROOT, Library, array
 
-from motionfmu import ctables, describe
+from motionfmu import ctables, fmu_toml
 from motionfmu.modelica import codegen
 from motionfmu.modelica.cprint import statements
 from motionfmu.modelica.nodes import program
@@ -49,7 +49,7 @@ def build(case):
     folder = Path(tempfile.mkdtemp())
     toml = ROOT / "fmus/hydraulic_axis/fmu.toml"
     codegen.write(toml, folder)
-    (folder / "vars.h").write_text(ctables.header(describe.load(toml)))
+    (folder / "vars.h").write_text(ctables.header(fmu_toml.load(toml)))
     (folder / "slope.c").write_text(slope(case.ode))
     files = [HERE / "integrators.c", folder / "plant.c", folder / "slope.c"]
     Library.compile(files, folder / "bench.so", [folder, ROOT / "src/plant"])

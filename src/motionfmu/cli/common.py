@@ -1,6 +1,5 @@
 """What the commands share: the application, its options, settings, a run with a progress bar."""
 
-import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from motionfmu.errors import InputError
-from motionfmu.toml_lines import word
+from motionfmu.toml_lines import tables_of, text_of, word
 
 if TYPE_CHECKING:
     from rich.progress import Progress, ProgressColumn
@@ -82,11 +81,9 @@ def settings(texts: list[str]) -> dict[str, Any]:
             found.update([setting(text)])
             continue
         try:
-            found.update(tomllib.loads(Path(text).read_text(encoding="utf-8")))
-        except OSError as error:
-            raise InputError(f"--set {text}: {error.strerror}") from None
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise InputError(f"--set {text}: {error}") from None
+            found.update(tables_of(text_of(text), text))
+        except InputError as error:
+            raise InputError(f"--set {error}") from None
     return found
 
 

@@ -5,7 +5,6 @@ scenario is the union over its FMUs.
 """
 
 import functools
-import tomllib
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from motionfmu import fmus
 from motionfmu.errors import InputError
 from motionfmu.explain.expression import evaluate
 from motionfmu.pack import EXTRA
+from motionfmu.toml_lines import tables_of
 
 if TYPE_CHECKING:
     from motionfmu.fmus import Port
@@ -119,11 +119,11 @@ def of_fmu(name: str) -> dict[str, Switch | dict[str, str]]:
         text = archive.read(RESOURCE).decode()
     where = f"fmus/{name}/causes.toml"
     try:
-        tables = tomllib.loads(text)
+        tables = tables_of(text, where)
         theory = tables.pop(THEORY, {})
         found: dict[str, Any] = {k: Switch.model_validate(_floats(v)) for k, v in tables.items()}
         theory = TypeAdapter(dict[str, str]).validate_python(theory, strict=True)
-    except (tomllib.TOMLDecodeError, ValidationError) as error:
+    except ValidationError as error:
         raise InputError(f"{where}: {' '.join(str(error).split())}") from None
     ports = fmus.ports(name)
     for cause, switch in found.items():

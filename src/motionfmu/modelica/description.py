@@ -2,19 +2,22 @@
 
 import math
 import re
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from motionfmu import describe
+from motionfmu.errors import InputError
+from motionfmu.fmu_toml import check_head, line_of
 from motionfmu.modelica import causal
 from motionfmu.modelica.flat import Declaration
 from motionfmu.modelica.ode import Ode
+from motionfmu.toml_lines import shown, tables_of, text_of
 
 _TYPES = {"Real": "f64", "Integer": "i32", "Boolean": "bool"}
 _KEYS = ("name", "description", "tick_ns", "experiment", "modelica", "instances", "micro_step")
 _OPTIONAL = ("tolerance",)
+INSTANCES_MAX = 64
 
 
 @dataclass(frozen=True)
@@ -69,33 +72,31 @@ def read(toml: Path) -> Packing:
     ValueError
         ``file:line: what``.
     """
-    text = toml.read_text()
-    try:
-        doc: dict[str, Any] = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{toml}: {error}") from None
+    text = text_of(toml)
+    doc = tables_of(text, toml)
 
-    def refuse(key: str, what: str) -> ValueError:
-        lines = text.splitlines()
-        here = [n for n, line in enumerate(lines, 1) if re.match(rf"\s*\[?{key}\b", line)]
-        return ValueError(f"{toml}:{here[0] if here else 0}: {what}")
+    def refuse(key: str, what: str) -> InputError:
+        return InputError(f"{toml}:{line_of(text, key)}: {what}")
 
     for key in sorted(set(doc) - {*_KEYS, *_OPTIONAL}):
         raise refuse(key, f"unknown key {key!r}; the variables come from the Modelica class")
     for key in _KEYS:
         if key not in doc:
-            raise ValueError(f"{toml}: {key!r} is missing")
-    for key in ("tick_ns", "instances"):
-        if not isinstance(doc[key], int) or isinstance(doc[key], bool) or doc[key] < 1:
-            raise refuse(key, f"{key} {doc[key]!r} is not a positive integer")
-    step = doc["micro_step"]
-    if not isinstance(step, float | int) or not math.isfinite(step) or step <= 0:
-        raise refuse("micro_step", f"micro_step {step!r} is not a positive number")
+            raise InputError(f"{toml}: {key!r} is missing")
+    check_head(doc, text, str(toml))
+    instances, step = doc["instances"], doc["micro_step"]
+    if type(instances) is not int or not 1 <= instances <= INSTANCES_MAX:
+        what = f"is not a positive integer, {INSTANCES_MAX} at most"
+        raise refuse("instances", f"instances {shown(instances)} {what}")
+    if type(step) not in (float, int) or not math.isfinite(step) or step <= 0:
+        raise refuse("micro_step", f"micro_step {shown(step)} is not a positive number")
     tolerance = doc.get("tolerance", 1e-6)
     if not isinstance(tolerance, float) or not 1e-12 <= tolerance <= 1e-2:
-        raise refuse("tolerance", f"tolerance {tolerance!r} is not a number from 1e-12 to 0.01")
-    if not isinstance(doc["modelica"], str):
-        raise refuse("modelica", f"modelica {doc['modelica']!r} is not a class name")
+        raise refuse(
+            "tolerance", f"tolerance {shown(tolerance)} is not a number from 1e-12 to 0.01"
+        )
+    if not isinstance(doc["modelica"], str) or not re.fullmatch(r"\w+(\.\w+)+", doc["modelica"]):
+        raise refuse("modelica", f"modelica {shown(doc['modelica'])} is not a class name")
     top = doc["modelica"].split(".")[0]
     for folder in toml.resolve().parents:
         if (folder / "modelica" / top / "package.mo").is_file():

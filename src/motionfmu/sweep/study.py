@@ -2,8 +2,6 @@
 
 import hashlib
 import json
-import re
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,7 +17,7 @@ from motionfmu.session import split
 from motionfmu.sweep import axes as ax
 from motionfmu.sweep.columns import Column, column, usual
 from motionfmu.system import End
-from motionfmu.toml_lines import Lines
+from motionfmu.toml_lines import Lines, is_file, shown, tables_of, text_of
 
 FILE = "sweep.toml"
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
@@ -231,7 +229,7 @@ def digest(scenario: Scenario, given: Iterable[Any] = ()) -> str:
     for value in (*scenario.document.body.set.values(), *given):
         listed = value if isinstance(value, list) else [value]
         texts = (x for x in listed if isinstance(x, str) and x)
-        files += [beside / x for x in texts if (beside / x).is_file()]
+        files += [beside / x for x in texts if is_file(beside / x)]
     for file in files:
         found.update(hashlib.sha256(file.read_bytes()).digest())
     return found.hexdigest()
@@ -239,23 +237,15 @@ def digest(scenario: Scenario, given: Iterable[Any] = ()) -> str:
 
 def _read(path: Path, given: Mapping[str, Any]) -> tuple[Origin, Body, str, Path]:
     """The keys of a study, from its file and from the command line."""
-    if path.is_dir() and (path / FILE).is_file():
+    if is_file(path / FILE):
         path = path / FILE
     keys = dict(given)
-    if path.is_dir() or path.name == "scenario.toml":
+    if is_file(path / "scenario.toml") or path.name == "scenario.toml" or path.is_dir():
         keys["scenario"] = str(path)
         origin = Origin(None, Lines(""), frozenset(keys))
         return origin, _body(origin, keys), "", Path()
-    try:
-        text = path.read_text(encoding="utf-8")
-        tables = tomllib.loads(text)
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not UTF-8 text ({error})") from None
-    except tomllib.TOMLDecodeError as error:
-        where = re.search(r"line (\d+)", str(error))
-        raise InputError(f"{path}:{where[1] if where else 1}: {error}") from None
+    text = text_of(path)
+    tables = tables_of(text, path)
     first = text.split("\n", 1)[0]
     if not first.startswith("#"):
         raise InputError(f"{path}:1: the first line is a comment that says what the study shows")
@@ -273,7 +263,7 @@ def _body(origin: Origin, keys: dict[str, Any]) -> Body:
         if found["type"] == "extra_forbidden":
             raise origin.error(f"unknown key {key!r}", "", key) from None
         name = ".".join(str(x) for x in found["loc"][:2]) if key == "set" else key
-        text = f"{name} = {found['input']!r}: {found['msg'].lower()}"
+        text = f"{name} = {shown(found['input'])}: {found['msg'].lower()}"
         raise origin.error(text, *place) from None
 
 
@@ -307,7 +297,7 @@ def _axis(origin: Origin, scenario: Scenario, name: str, spec: Any) -> ax.Axis:
         elif isinstance(spec, dict):
             source = (ax.Normal if "mean" in spec else ax.Span).model_validate(spec)
         else:
-            text = f"{name} = {spec!r}: a list, {{from, to, n}} or {{mean, deviation}} wanted"
+            text = f"{name} = {shown(spec)}: a list, {{from, to, n}} or {{mean, deviation}} wanted"
             raise origin.error(text, "axis", name)
     except ValidationError as error:
         found = error.errors()[0]
@@ -317,7 +307,7 @@ def _axis(origin: Origin, scenario: Scenario, name: str, spec: Any) -> ax.Axis:
         elif found["type"] == "missing":
             text = f"{name}: {key} is missing"
         else:
-            text = f"{name}: {key} = {found['input']!r}: {found['msg'].lower()}"
+            text = f"{name}: {key} = {shown(found['input'])}: {found['msg'].lower()}"
         raise origin.error(text, "axis", name) from None
     except ValueError as error:
         if isinstance(error, InputError):
@@ -379,11 +369,10 @@ def _tuned(
         return {}
     file = Path(body.tuned) if "tuned" in origin.given else folder / body.tuned
     try:
-        values = tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise origin.error(f"tuned = {body.tuned!r}: {error.strerror}", "", "tuned") from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"{file}: {error}") from None
+        text = text_of(file)
+    except InputError as error:
+        raise origin.error(f"tuned = {body.tuned!r}: {error}", "", "tuned") from None
+    values = tables_of(text, file)
     found: dict[str, ax.Value] = {}
     for axis in chosen:
         whole, element = split(axis.name)

@@ -1,7 +1,6 @@
 """What a tuning is asked for: gains, cost, limits, family of plants."""
 
 import itertools
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
@@ -9,7 +8,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.errors import InputError
-from motionfmu.toml_lines import Lines
+from motionfmu.toml_lines import Lines, shown, tables_of, text_of
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 # More ranges than this have more corners than a tuning can look at.
@@ -155,7 +154,7 @@ def problem(values: Mapping[str, Any], lines: Lines | None = None, file: str = "
     except ValidationError as error:
         first = error.errors()[0]
         keys = [str(k) for k in first["loc"]]
-        given = "" if isinstance(first["input"], dict) else f" = {first['input']!r}"
+        given = "" if isinstance(first["input"], dict) else f" = {shown(first['input'])}"
         text = f"{'.'.join(keys)}{given}: {first['msg'].lower()}"
         raise _located(text, keys, lines, file) from None
     for table in ("bounds", "family", "trial"):
@@ -209,12 +208,7 @@ def read(file: str | Path) -> dict[str, Any]:
     InputError
         The file is missing or wrong.
     """
-    try:
-        text = Path(file).read_text(encoding="utf-8")
-        values = tomllib.loads(text)
-    except OSError as error:
-        raise InputError(f"{file}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{file}: {error}") from None
+    text = text_of(file)
+    values = tables_of(text, file)
     problem(values, Lines(text), str(file))
     return values
