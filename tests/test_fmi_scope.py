@@ -1,5 +1,6 @@
 """The scope FMU: what it writes, when, and what it says when it cannot."""
 
+import resource
 from pathlib import Path
 from typing import Any
 
@@ -112,16 +113,28 @@ def test_a_run_that_is_not_terminated_leaves_nothing(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("rows", (1, 50))  # the disk is full when the file is closed, or before
+# Columns with which the file is the first that is larger than 1000 bytes.
+LARGE = {
+    ".real.npy": {"axes_real_used": 10, "axes_int_used": 0},
+    ".int.npy": {"axes_real_used": 0, "real_used": 0, "axes_int_used": 9},
+    ".csv": {"axes_real_used": 0, "real_used": 1, "axes_int_used": 0, "int_used": 1},
+}
+
+
+@pytest.mark.parametrize("rows", (20, 80))  # the disk is full when the file is closed, or before
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_a_full_disk_is_told_and_leaves_nothing(rows: int, ending: str, tmp_path: Path) -> None:
-    scope = started(3, file=str(tmp_path / "full"), csv=True)
-    record(scope, [{"real_1": [1.0]}] * rows, PERIOD)
-    (tmp_path / f"full{ending}.part").symlink_to("/dev/full")
+    scope = started(3, file=str(tmp_path / "full"), csv=True, **LARGE[ending])
+    record(scope, [{"real_1": [1.0 / 3.0]}] * rows, PERIOD)
     count = len(scope.messages)
-    assert scope.call("Terminate") == ERROR
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (600 if rows == 20 else 1000, before[1]))
+    try:
+        assert scope.call("Terminate") == ERROR
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert len(scope.messages) == count + 1
-    assert f"cannot write {tmp_path}/full{ending}: No space left on device" in scope.said
+    assert f"cannot write {tmp_path}/full{ending}: File too large" in scope.said
     assert list(tmp_path.iterdir()) == []
     scope.free()
 

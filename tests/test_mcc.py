@@ -40,7 +40,7 @@ def start(fmi: int, text: str | bytes, folder: Path, **values: Any) -> tuple[int
         ("G2 X10 I6", '"G2 X10 I6" (by 2 mm)'),
         ("F60001", 'feed above max_feed [mm/min] "F60001" (60001, limit 60000)'),
         ("G1 X10 F40000", 'above max_rpm [rpm] "G1 X10 F40000" (4000, limit 3000)'),
-        ("G1 X1\n\x00", "line 2: unexpected character"),
+        ("G1 X1\n\x00", "line 2: byte 0, which no text has, behind"),
         (b"G1 X1 \xff\xfe", "line 1: unexpected character"),
         ("G1 W1", 'axis is not active "W1"'),
         ("G1 X1\nG1 X2 G2\n", 'line 2: second word of one modal group "G2" beside "G1"'),

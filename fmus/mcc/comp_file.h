@@ -11,13 +11,10 @@
 #ifndef COMP_FILE_H
 #define COMP_FILE_H
 
-#include <errno.h>
 #include <limits.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "compensate.h"
+#include "fmu_input.h"
 
 enum { COMP_CELLS = 4, COMP_LINE = 256 };
 
@@ -137,29 +134,48 @@ static int comp_line(struct comp_file *f, const char *text)
     return f->cells == 3 ? comp_axis(f, cell) : comp_point(f, cell);
 }
 
+/* Read a line without its end, 1, or 0 at the end of the file; -1 if it is no line of text. */
+static int comp_next(struct comp_file *f, FILE *file, char text[COMP_LINE])
+{
+    int n = 0, c = getc(file);
+
+    if (c == EOF) {
+        return 0;
+    }
+    f->line++;
+    for (; c != EOF && c != '\n'; c = getc(file)) {
+        if (c == '\0') {
+            snprintf(f->said, sizeof f->said, "line %d: a byte 0: this is no text", f->line);
+            return -1;
+        }
+        if (n == COMP_LINE - 2) {
+            return comp_bad(f, "more than", COMP_LINE - 2, "characters");
+        }
+        text[n++] = (char)c;
+    }
+    text[n - (n > 0 && text[n - 1] == '\r')] = '\0';
+    return 1;
+}
+
 /* Fills the tables; on an error says what is wrong. */
 static int comp_read(struct comp_file *f, const char *name)
 {
     char text[COMP_LINE];
+    FILE *file;
 
     memset(f, 0, sizeof *f);
     memset(f->last, -1, sizeof f->last);
-    FILE *file = fopen(name, "r");
-    if (!file) {
-        snprintf(f->said, sizeof f->said, "cannot read: %s", strerror(errno));
+    const char *why = file_open(name, &file);
+    if (why) {
+        snprintf(f->said, sizeof f->said, "cannot read: %s", why);
         return -1;
     }
-    int bad = 0;
+    int bad = 0, got = 0;
     errno = 0;
-    while (!bad && fgets(text, sizeof text, file)) {
-        f->line++;
-        if (strlen(text) == sizeof text - 1) {
-            bad = comp_bad(f, "more than", COMP_LINE - 2, "characters");
-        } else {
-            text[strcspn(text, "\r\n")] = '\0';
-            bad = comp_line(f, text);
-        }
+    while (!bad && (got = comp_next(f, file, text)) > 0) {
+        bad = comp_line(f, text);
     }
+    bad = bad ? bad : got;
     if (!bad && ferror(file)) {
         snprintf(f->said, sizeof f->said, "cannot read: %s", strerror(errno ? errno : EIO));
         bad = -1;

@@ -20,9 +20,18 @@ struct model {
 #include "path_file.h"
 #include "program_fault.h"
 
-static int cannot_write(struct fmu *f, int error)
+/* What path_file must not replace. */
+enum { INPUTS = 2 };
+struct inputs { struct output_input of[INPUTS]; };
+
+static struct inputs inputs_of(const struct vars *v)
 {
-    return fmu_fail(f, "path_file: cannot write %s: %s", f->s.v.path_file, strerror(error));
+    return (struct inputs){ { { v->program, "it is program" }, { v->comp_file, "it is comp_file" } } };
+}
+
+static int cannot_write(struct fmu *f, const char *why)
+{
+    return fmu_fail(f, "path_file: cannot write %s: %s", f->s.v.path_file, why);
 }
 
 /* A path that cannot be written is told before the run, not after it. */
@@ -30,9 +39,10 @@ static int model_open(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
 
-    const int error = v->path_file[0] ? path_try(v->path_file) : 0;
-    if (error) {
-        return cannot_write(f, error);
+    const struct inputs in = inputs_of(v);
+    const char *why = v->path_file[0] ? output_try(v->path_file, in.of, INPUTS) : NULL;
+    if (why) {
+        return cannot_write(f, why);
     }
     struct program_file *program;
     const int code = open_program(f, "program", v->program, &program);
@@ -289,6 +299,7 @@ static int model_end(struct fmu *f)
     struct interpreter in;
     const double zero[AXES] = { 0.0 };
     interpreter_start(&in, zero, mcc->machine.feed, mcc->offset);
-    const int error = path_write(v->path_file, &in, &program, mcc->ipo.started);
-    return error ? cannot_write(f, error) : 0;
+    const struct inputs inputs = inputs_of(v);
+    const char *why = path_write(v->path_file, inputs.of, INPUTS, &in, &program, mcc->ipo.started);
+    return why ? cannot_write(f, why) : 0;
 }

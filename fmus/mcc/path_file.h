@@ -2,33 +2,8 @@
 #ifndef PATH_FILE_H
 #define PATH_FILE_H
 
-#include <errno.h>
-#include <stdio.h>
-#include <string.h>
-
+#include "fmu_output.h"
 #include "interpreter.h"
-
-/* "<name>.part", where the file is written until it is complete. */
-struct path_part { char name[FMU_STRING_MAX + 8]; };
-
-static struct path_part path_part_of(const char *name)
-{
-    struct path_part p;
-    snprintf(p.name, sizeof p.name, "%s.part", name);
-    return p;
-}
-
-/* Whether the file can be made, as an errno value; nothing is left behind. */
-static int path_try(const char *name)
-{
-    const struct path_part part = path_part_of(name);
-    FILE *file = fopen(part.name, "wb");
-    if (!file) {
-        return errno;
-    }
-    fclose(file);
-    return remove(part.name) == 0 ? 0 : errno;
-}
 
 /* A number with all its digits, whatever decimal sign the host's locale has. */
 static void put(FILE *file, double x)
@@ -92,33 +67,26 @@ static void put_path(FILE *file, struct interpreter in, const struct program *pr
 }
 
 /* Write one row per command up to an index, as the interpreter makes them again from its start.
- * Returns an errno value; on an error there is no new file and the old one is untouched. */
-static int path_write(const char *name, const struct interpreter *start,
-                      const struct program *program, int32_t last)
+ * Returns NULL or what is wrong; then there is no new file and the old one is untouched. */
+static const char *path_write(const char *name, const struct output_input *input, int inputs,
+                              const struct interpreter *start, const struct program *program,
+                              int32_t last)
 {
-    const struct path_part part = path_part_of(name);
-    FILE *file = fopen(part.name, "wb");
-    if (!file) {
-        return errno;
+    struct output o;
+    int bad;
+    const char *why = output_check(name, input, inputs);
+    why = why ? why : output_begin(&o, name);
+    if (why) {
+        return why;
     }
     errno = 0;
-    put_path(file, *start, program, last);
-    int error = ferror(file) ? (errno ? errno : EIO) : 0;
-    if (fclose(file) != 0 && !error) {
-        error = errno;
+    put_path(o.file, *start, program, last);
+    why = output_end(&o, true);
+    why = why ? why : output_show(&o, 1, &bad);
+    if (why) {
+        output_drop(&o, 1);
     }
-#ifdef _WIN32
-    if (!error) {
-        remove(name);       /* rename does not replace there */
-    }
-#endif
-    if (!error && rename(part.name, name) != 0) {
-        error = errno;
-    }
-    if (error) {
-        remove(part.name);
-    }
-    return error;
+    return why;
 }
 
 #endif

@@ -1,8 +1,6 @@
 /* Trace recorder. Row k holds the inputs at k*period; rows wait in memory and become files when
  * the run ends well. */
-#include <errno.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "trace_file.h"
 #include "vars.h"
@@ -13,6 +11,7 @@ struct model {
 
 #define MODEL_BLOB
 #include "fmi_model.h"
+#include "fmu_output.h"
 
 enum {
     GROUP     = 6,   /* channels of an axes_ input */
@@ -29,11 +28,13 @@ struct rows {
     int64_t  held; /* rows recorded */
 };
 
+enum { FILES = 3 };
+
 /* The files, in the order in which they are written; the last one if csv says so. */
 static const struct {
     const char *ending;
     bool (*write)(FILE *file, const struct trace *t);
-} files[] = {
+} files[FILES] = {
     {".real.npy", trace_write_real},
     {".int.npy", trace_write_int},
     {".csv", trace_write_csv},
@@ -61,20 +62,25 @@ static bool recording(const struct vars *v)
     return v->file[0] != '\0';
 }
 
-/* Name of a trace file, or of its place while it is being written. */
+/* Name of a trace file. */
 struct path { char text[FMU_STRING_MAX + 16]; };
 
-static struct path path_of(const struct vars *v, int file, bool part)
+static struct path path_of(const struct vars *v, int file)
 {
     struct path p;
-    snprintf(p.text, sizeof p.text, "%s%s%s", v->file, files[file].ending, part ? ".part" : "");
+    snprintf(p.text, sizeof p.text, "%s%s", v->file, files[file].ending);
     return p;
 }
 
-static int cannot_write(struct fmu *f, int file, int error)
+/* Files that this run writes. */
+static int files_of(const struct vars *v)
 {
-    return fmu_fail(f, "cannot write %s: %s", path_of(&f->s.v, file, false).text,
-                    strerror(error));
+    return v->csv ? FILES : FILES - 1;
+}
+
+static int cannot_write(struct fmu *f, int file, const char *why)
+{
+    return fmu_fail(f, "cannot write %s: %s", path_of(&f->s.v, file).text, why);
 }
 
 /* A path that cannot be written is told before the run, not after it. */
@@ -83,13 +89,12 @@ static int model_open(struct fmu *f)
     if (!recording(&f->s.v)) {
         return 0;
     }
-    struct path part = path_of(&f->s.v, 0, true);
-    FILE *file = fopen(part.text, "wb");
-    if (!file) {
-        return cannot_write(f, 0, errno);
+    for (int k = 0; k < files_of(&f->s.v); k++) {
+        const char *why = output_try(path_of(&f->s.v, k).text, NULL, 0);
+        if (why) {
+            return cannot_write(f, k, why);
+        }
     }
-    fclose(file);
-    remove(part.text);
     f->blob = calloc(1, sizeof(struct rows));
     return f->blob ? 0 : fmu_fail(f, "no memory for the recording");
 }
@@ -189,24 +194,21 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     return 0;
 }
 
-/* Write one file under its temporary name. */
-static int write_part(struct fmu *f, int k, const struct trace *t)
+/* Write one file in full under its temporary name. */
+static const char *write_part(struct fmu *f, int k, const struct trace *t, struct output *o)
 {
-    FILE *file = fopen(path_of(&f->s.v, k, true).text, "wb");
-    if (!file) {
-        return cannot_write(f, k, errno);
+    const struct path path = path_of(&f->s.v, k);
+    const char *why = output_check(path.text, NULL, 0);
+    why = why ? why : output_begin(o, path.text);
+    if (why) {
+        return why;
     }
     errno = 0;
-    bool good = files[k].write(file, t);
-    int error = errno;
-    if (fclose(file) != 0 && good) {
-        good = false;
-        error = errno;
-    }
-    return good ? 0 : cannot_write(f, k, error);
+    const bool good = files[k].write(o->file, t);
+    return output_end(o, good);
 }
 
-/* All files appear, or none and one message: each is written in full under a temporary name. */
+/* All files appear, or none and one message; what was recorded before then stays. */
 static int model_end(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -219,24 +221,18 @@ static int model_end(struct fmu *f)
     }
     fill_gap(v, r, v->rows);
     struct trace t = {r->real, r->ints, v->rows, real_columns(v), int_columns(v), f->s.m.period};
-    int n = v->csv ? 3 : 2, written = 0, result = 0;
-    for (; written < n && result == 0; written++) {
-        result = write_part(f, written, &t);
+    struct output out[FILES] = {0};
+    const int n = files_of(v);
+    const char *why = NULL;
+    int begun = 0, bad = 0;
+    for (; begun < n && !why; begun++) {
+        bad = begun;
+        why = write_part(f, begun, &t, &out[begun]);
     }
-    for (int k = 0; k < n && result == 0; k++) {
-#ifdef _WIN32
-        remove(path_of(v, k, false).text); /* rename does not replace there */
-#endif
-        if (rename(path_of(v, k, true).text, path_of(v, k, false).text) != 0) {
-            result = cannot_write(f, k, errno);
-            while (k-- > 0) {
-                remove(path_of(v, k, false).text);
-            }
-            break;
-        }
+    why = why ? why : output_show(out, n, &bad);
+    if (!why) {
+        return 0;
     }
-    while (result != 0 && written-- > 0) {
-        remove(path_of(v, written, true).text);
-    }
-    return result;
+    output_drop(out, begun);
+    return cannot_write(f, bad, why);
 }

@@ -53,9 +53,9 @@ static int open_program(struct fmu *f, const char *parameter, const char *name,
     if (!name[0]) {
         return 0;
     }
-    const int error = program_open(name, program);
-    if (error) {
-        return fmu_fail(f, "%s: cannot read %s: %s", parameter, name, strerror(error));
+    const char *why = program_open(name, program);
+    if (why) {
+        return fmu_fail(f, "%s: cannot read %s: %s", parameter, name, why);
     }
     return *program ? 0 : fmu_fail(f, "%s: %s is empty", parameter, name);
 }

@@ -2,12 +2,8 @@
 #ifndef PROGRAM_FILE_H
 #define PROGRAM_FILE_H
 
-#include <errno.h>
 #include <limits.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "fmu_input.h"
 #include "source.h"
 
 enum { PROGRAM_WINDOW = 1 << 16 };      /* [byte] some two thousand blocks */
@@ -70,18 +66,19 @@ static int64_t program_look(void *context, int64_t offset, const char **text)
     return p->offset + p->count - offset;
 }
 
-/* Returns an errno value; *program stays NULL if the file is empty. */
-static int program_open(const char *name, struct program_file **program)
+/* Returns NULL or what is wrong; *program stays NULL if the file is empty. */
+static const char *program_open(const char *name, struct program_file **program)
 {
+    FILE *file;
     *program = NULL;
-    FILE *file = fopen(name, "rb");
-    if (!file) {
-        return errno;
+    const char *why = file_open(name, &file);
+    if (why) {
+        return why;
     }
     struct program_file *p = malloc(sizeof *p);
     if (!p) {
         fclose(file);
-        return ENOMEM;
+        return strerror(ENOMEM);
     }
     setvbuf(file, NULL, _IONBF, 0);     /* the window is the buffer */
     p->file = file;
@@ -90,10 +87,10 @@ static int program_open(const char *name, struct program_file **program)
         const int error = p->error;
         fclose(file);
         free(p);
-        return error;
+        return error ? strerror(error) : NULL;
     }
     *program = p;
-    return 0;
+    return NULL;
 }
 
 static void program_close(struct program_file *p)

@@ -15,6 +15,7 @@ const char *fault_text(enum fault f)
     case FAULT_CHARACTER:    return "unexpected character";
     case FAULT_NUMBER:       return "number expected after";
     case FAULT_DIGITS:       return "number with too many digits";
+    case FAULT_ZERO:         return "byte 0, which no text has, behind";
     case FAULT_LINE_LENGTH:  return "line longer than 256 characters";
     case FAULT_WORD_COUNT:   return "too many words in the line";
     case FAULT_READ:         return "the program cannot be read";

@@ -9,6 +9,7 @@ enum fault {
     FAULT_CHARACTER,        /* neither letter, comment nor end of line */
     FAULT_NUMBER,           /* a letter without a number */
     FAULT_DIGITS,           /* a number with too many digits */
+    FAULT_ZERO,             /* a byte 0: no text */
     FAULT_LINE_LENGTH,      /* more than 256 characters */
     FAULT_WORD_COUNT,       /* more words than any line can need */
     FAULT_READ,             /* the text cannot be read */

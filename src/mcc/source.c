@@ -16,6 +16,9 @@ enum fault source_read(const struct source *s, int64_t *offset, struct source_li
     }
     line->text = there > 0 ? text : NULL;
     while (n < window && text[n] != '\n') {
+        if (text[n] == '\0') {
+            return fault_at(r, FAULT_ZERO, 0, n);
+        }
         n++;
     }
     *offset += n + (n < window);

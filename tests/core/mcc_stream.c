@@ -94,6 +94,29 @@ static void longest_line(void)
     }
 }
 
+/* A byte 0 is told with its line wherever it stands, in a comment or a line too long as well. */
+static void zero_bytes(void)
+{
+    char text[] = "G1 X1\n(a comment) ; and another\nX2\n";
+    const int64_t length = (int64_t)sizeof text - 1;
+    for (int64_t i = 0, line = 1, start = 0; i < length; i++) {
+        const char was = text[i];
+        struct source_text bytes = { text, length };
+        const struct source s = source_of(&bytes);
+        struct reader x;
+        struct fault_report r;
+        text[i] = '\0';
+        begin(&x, "");
+        x.program.source = &s;
+        interpreter_check(&x.in, &x.program, &r);
+        CHECK(r.fault == FAULT_ZERO && r.line == line && r.offset == start);
+        CHECK(r.at == 0 && r.length == i - start);
+        text[i] = was;
+        line += was == '\n';
+        start = was == '\n' ? i + 1 : start;
+    }
+}
+
 static void unreadable(void)
 {
     struct reader x;
@@ -227,6 +250,7 @@ int main(void)
     windows();
     longest_line();
     unreadable();
+    zero_bytes();
     million_checked();
     million_interpreted();
     return check_result();

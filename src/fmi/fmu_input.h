@@ -1,0 +1,36 @@
+/* A file that an FMU reads is a regular one. */
+#ifndef FMU_INPUT_H
+#define FMU_INPUT_H
+
+#include "fmu_file.h"
+
+#ifndef _WIN32
+#include <fcntl.h>
+#include <unistd.h>
+#endif
+
+/* Open a regular file; a pipe without a writer is not waited for. Returns NULL, or what is wrong. */
+static const char *file_open(const char *name, FILE **file)
+{
+    file_stat s;
+    *file = NULL;
+#ifdef _WIN32
+    const char *why = FILE_STAT(name, &s) ? strerror(errno) : file_regular(&s);
+    *file = why ? NULL : fopen(name, "rb");
+    return why || *file ? why : strerror(errno);
+#else
+    const int fd = open(name, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (fd < 0) {
+        return strerror(errno);
+    }
+    const char *why = fstat(fd, &s) ? strerror(errno) : file_regular(&s);
+    *file = why ? NULL : fdopen(fd, "rb");
+    if (!*file) {
+        why = why ? why : strerror(errno);
+        close(fd);
+    }
+    return why;
+#endif
+}
+
+#endif
