@@ -333,12 +333,21 @@ def test_position_with_trapezoid_and_limits_at_every_period() -> None:
     axis.fmu.free()
 
 
+# In clocks of 1 s this pin period is 25 times 2^64 ns, less 0.7 s.
+LONGEST = 461168601842.0
+SLOWEST = {"clock": 1.0, "timer_period": 1000.0, "pin_period": LONGEST}
+SLOWEST |= {"speed": 10.0, "home_speed": 1.0, "acceleration": 0.01}
 WRONG = [
     ({"clock": 3e6}, "clock = 3000000 Hz: not a whole number of ns per clock"),
     ({"pin_period": 1.00003e-4}, "pin_period = 0.000100003"),
     ({"pin_period": 1e-12}, "pin_period"),
     ({"timer_period": 1.00001e-3}, "timer_period = 0.00100001"),
     ({"timer_period": 0.1}, "longer than the timer counts, 0.065536 s"),
+    ({"timer_period": 1e9}, "timer_period = 1000000000 is above its maximum 128"),
+    ({"clock": 4095.0}, "clock = 4095 is below its minimum 4096"),
+    (SLOWEST, "clock = 1 is below its minimum 4096"),
+    ({"pin_period": LONGEST}, "pin_period = 461168601842 is above its maximum 128"),
+    ({"pin_period": 0.0655362}, "pin_period = 0.0655362"),
     ({"timer_cycles": 7994}, "timer_cycles = 7994: with the latency of 6 not less than"),
     ({"speed": 0.001}, "speed = 0.001"),
     ({"speed": 2e7}, "speed = 20000000: 20000 counts per timer period, outside"),
@@ -351,7 +360,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("values", "told"), WRONG, ids=lambda x: str(x)[:40])
+@pytest.mark.parametrize(("values", "told"), WRONG, ids=lambda x: str(x)[:60])
 def test_a_wrong_parameter_is_named(values: dict[str, Any], told: str) -> None:
     fmu = Instance(NAME, 3)
     status = OK
@@ -363,6 +372,18 @@ def test_a_wrong_parameter_is_named(values: dict[str, Any], told: str) -> None:
     assert status == ERROR
     said = [text for _, _, text in fmu.messages]
     assert any(told in text for text in said) and len(said) == 1, said
+    fmu.free()
+
+
+@pytest.mark.parametrize("clock_ns", [125, 244125])
+def test_the_longest_periods_are_what_the_timer_counts(clock_ns: int) -> None:
+    """Timer_A has 16 bit and divides by 8; the slowest clock is a watch crystal's eighth."""
+    slow = {"speed": 10.0, "home_speed": 1.0, "acceleration": 0.01, "clock": 1e9 / clock_ns}
+    period = clock_ns * 8 * 65536 * 1e-9
+    fmu = positioner(pin_period=period, timer_period=period, **slow)
+    for served in (0, 0, 1, 2):  # at an instant the timer fires, at the next it shows
+        assert fmu.step(period) == OK, fmu.said
+        assert fmu.get("ticks") == [served]
     fmu.free()
 
 

@@ -21,10 +21,8 @@ struct model {
 /* A decimal time such as 1e-4 s is not exact in binary: off by far less than this share. */
 #define WHOLE_TOLERANCE 1e-9
 
-/* Clocks of a period up to this leave room for 2^53 ns. */
-#define CLOCKS_MAX 1e12
-
-/* Timer_A has 16 bit and divides by 8 at most [clocks]. */
+/* Timer_A has 16 bit and divides by 8 at most [clocks]. A clock has at most 1e9/4096 ns, so that
+ * times in ns are far within 64 bit. */
 #define TIMER_MAX (8.0 * 65536.0)
 
 /* Largest speed and acceleration in Q16.16: their sum fits 32 bit. */
@@ -32,10 +30,24 @@ struct model {
 
 static bool whole(double x, int64_t *n)
 {
-    if (!(x >= 1.0 - WHOLE_TOLERANCE && x < CLOCKS_MAX))
+    if (!(x >= 1.0 - WHOLE_TOLERANCE && x < TIMER_MAX + 1.0))
         return false;
     *n = (int64_t)round(x);
     return fabs(x - round(x)) <= WHOLE_TOLERANCE * x;
+}
+
+/* A period in clocks: a whole number, and no more than the timer counts. */
+static int set_period(struct fmu *f, const char *name, double period, int64_t *clocks)
+{
+    const int64_t ns = f->s.m.clock_ns;
+    const double x = period * 1e9 / (double)ns;
+    if (x > TIMER_MAX * (1.0 + WHOLE_TOLERANCE))
+        return fmu_fail(f, "%s = %.17g s: longer than the timer counts, %.9g s", name, period,
+                        TIMER_MAX * 1e-9 * (double)ns);
+    if (!whole(x, clocks))
+        return fmu_fail(f, "%s = %.17g s: not a whole number of clocks of %d ns", name, period,
+                        (int)ns);
+    return 0;
 }
 
 /* The clock and the two grids in clocks. */
@@ -45,16 +57,12 @@ static int set_times(struct fmu *f, struct msp430_config *c)
     struct model *m = &f->s.m;
     if (!whole(1e9 / v->clock, &m->clock_ns))
         return fmu_fail(f, "clock = %.17g Hz: not a whole number of ns per clock", v->clock);
-    if (!whole(v->pin_period * 1e9 / (double)m->clock_ns, &m->period) ||
-        m->period * m->clock_ns % FMU_TICK_NS)
-        return fmu_fail(f, "pin_period = %.17g s: not a whole number of clocks of %d ns and of "
-                        "%d ns", v->pin_period, (int)m->clock_ns, FMU_TICK_NS);
-    if (!whole(v->timer_period * 1e9 / (double)m->clock_ns, &c->timer_period))
-        return fmu_fail(f, "timer_period = %.17g s: not a whole number of clocks of %d ns",
-                        v->timer_period, (int)m->clock_ns);
-    if ((double)c->timer_period > TIMER_MAX)
-        return fmu_fail(f, "timer_period = %.17g s: longer than the timer counts, %.9g s",
-                        v->timer_period, TIMER_MAX * 1e-9 * (double)m->clock_ns);
+    if (set_period(f, "pin_period", v->pin_period, &m->period) ||
+        set_period(f, "timer_period", v->timer_period, &c->timer_period))
+        return -1;
+    if (m->period * m->clock_ns % FMU_TICK_NS)
+        return fmu_fail(f, "pin_period = %.17g s: not a whole number of %d ns", v->pin_period,
+                        FMU_TICK_NS);
     if (PORT_LATENCY + v->timer_cycles >= c->timer_period)
         return fmu_fail(f, "timer_cycles = %d: with the latency of %d not less than the timer "
                         "period of %d clocks", (int)v->timer_cycles, (int)PORT_LATENCY,
