@@ -219,19 +219,46 @@ static void plant_read(struct fmu *f)
     }
 }
 
-/* Show the state at the grid instant `now` [ns] on the outputs, if it is a number. */
+/* Whether rows of lanes are all numbers: 0 times a number is 0, times infinity or NaN it is NaN. */
+static int plant_finite(const double *a, int rows)
+{
+    double rest[PLANT_LANES] = {0.0}, sum = 0.0;
+    for (int k = 0; k < rows; k++) {
+        for (int lane = 0; lane < PLANT_LANES; lane++) {
+            rest[lane] += 0.0 * a[k * PLANT_LANES + lane];
+        }
+    }
+    for (int lane = 0; lane < PLANT_LANES; lane++) {
+        sum += rest[lane];
+    }
+    return sum == 0.0;
+}
+
+/* Say which row is the first that is no number. */
+static int plant_refuse(struct fmu *f, const struct plant_block *b, const double *a,
+    const char *const *names, int64_t now)
+{
+    int i = 0;
+    while (fabs(a[i]) <= DBL_MAX) {
+        i++;
+    }
+    return fmu_fail(f, "axis %d: %s is %g at %.9f s", b->instance[i % PLANT_LANES] + 1,
+        names[i / PLANT_LANES], isnan(a[i]) ? NAN : a[i], 1e-9 * (double)now);
+}
+
+/* Show the state at the grid instant `now` [ns] on the outputs, if all are numbers. */
 static int plant_publish(struct fmu *f, int64_t now)
 {
     for (int n = 0; n < f->s.m.blocks; n++) {
         const struct plant_block *b = &f->s.m.block[n];
-        for (int i = 0; i < PLANT_STATE_SIZE; i++) {
-            if (!(fabs(b->x[i]) <= DBL_MAX)) {
-                return fmu_fail(f, "axis %d: %s is %g at %.9f s", b->instance[i % PLANT_LANES] + 1,
-                    plant_state_names[i / PLANT_LANES], b->x[i], 1e-9 * (double)now);
-            }
-        }
         double y[PLANT_OUTPUT_SIZE];
         plant_outputs(b->x, b->u, b->c, y);
+        if (!plant_finite(b->x, PLANT_STATES)) {
+            return plant_refuse(f, b, b->x, plant_state_names, now);
+        }
+        if (!plant_finite(y, PLANT_OUTPUTS)) {
+            return plant_refuse(f, b, y, plant_output_names, now);
+        }
         for (int lane = 0; lane < b->lanes; lane++) {
             plant_show(&f->s.v, b->instance[lane], &y[lane]);
         }

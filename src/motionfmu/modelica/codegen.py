@@ -151,7 +151,10 @@ def _cast(d: Declaration, text: str) -> str:
 
 def _ports(ode: Ode, element: str) -> str:
     """What connects `struct vars` with the plain arrays; `element` follows a member's name."""
-    names = ", ".join(f'"{d.name}"' for d in ode.states)
+    names = {
+        kind: ", ".join(f'"{d.name}"' for d in group)
+        for kind, group in (("state", ode.states), ("output", ode.outputs))
+    }
     shown = [
         f"v->{d.name}{element} = y[{k} * PLANT_LANES]{' != 0.0' if d.type == 'Boolean' else ''};"
         for k, d in enumerate(ode.outputs)
@@ -165,7 +168,8 @@ def _ports(ode: Ode, element: str) -> str:
     ]
     return "\n".join(
         [
-            f"const char *const plant_state_names[PLANT_STATES] = {{{names}}};\n",
+            f"const char *const plant_state_names[PLANT_STATES] = {{{names['state']}}};",
+            f"const char *const plant_output_names[PLANT_OUTPUTS] = {{{names['output']}}};\n",
             _function(
                 "int plant_active(const struct vars *v, int instance)",
                 [f"return v->active{element};"],
@@ -272,6 +276,7 @@ enum {{
 #define PLANT_TOLERANCE {tolerance or 0.0!r}
 
 extern const char *const plant_state_names[PLANT_STATES];
+extern const char *const plant_output_names[PLANT_OUTPUTS];
 
 /* Between struct vars and plain numbers. u and y step by PLANT_LANES. */
 int plant_active(const struct vars *v, int instance);
