@@ -56,6 +56,29 @@ def test_stability_limit_with_extra_samples(d: int) -> None:
     assert margins(loop).gain * kp_of(axis) * T == pytest.approx(limit, rel=1e-9)
 
 
+@pytest.mark.parametrize("late", [0, 3, 10, 24])
+def test_a_delay_of_a_loop_counts_communication_steps(late: int) -> None:
+    """Ten steps in a loop period T: between two instants the axis moves on a straight line.
+
+    A delay of (m + f) T makes L = Kp T/(z (z - 1)) z^-m ((1 - f) + f/z).
+    """
+    period = 10 * T
+    axis = theory(card__loop_period=period, mcc__p_gain=200)
+    loop = axis.loop(ENC, delays={ENC: late})
+    m, f = divmod(late, 10)
+    z = np.exp(1j * np.array([0.01, 0.3, 1.0, 3.0]))
+    kt, f = kp_of(axis) * period, f / 10.0
+    assert loop.dt == pytest.approx(period)
+    assert loop(z) == pytest.approx(kt / (z * (z - 1.0)) / z**m * (1.0 - f + f / z), rel=1e-9)
+    # with the largest gain the wired system, with the same delay, rings
+    top = margins(loop).gain
+    shut = axis.changed({"machine.speed_per_volt": top * axis.value("machine.speed_per_volt")})
+    poles = shut.system("card.pulses", "machine.motor_phase", delays={ENC: late}).poles()
+    assert np.abs(poles).max() == pytest.approx(1.0, abs=1e-9)
+    if late == 10:
+        assert top * kp_of(axis) == pytest.approx(2.0 * math.sin(math.pi / 10.0) / period, rel=1e-9)
+
+
 def test_stability_limit_of_a_parameter() -> None:
     """The same limit as a gain of the library, interpolated between whole numbers."""
     axis = theory(card__p_scale=8)

@@ -32,7 +32,7 @@ def test_the_allmargin_example_of_mathworks() -> None:
 
 LOOPS = [
     control.tf([25.0], [1.0, 10.0, 10.0, 10.0]),
-    control.tf([5.0, 5.0], [1.0, 2.0, 100.0, 0.0]),  # a resonance that crosses 1 three times
+    control.tf([5.0, 5.0], [1.0, 2.0, 100.0, 0.0]),  # a resonance
     control.tf([0.3, 0.1], [1.0, -1.7, 0.72], 0.01),
     control.tf([0.4], [1.0, -1.0, 0.0, 0.0], 1e-4),
 ]
@@ -54,6 +54,34 @@ def test_margins_are_those_of_python_control(loop: control.TransferFunction) -> 
     assert abs(
         closed(np.exp(1j * found.bandwidth * loop.dt) if loop.dt else 1j * found.bandwidth)
     ) == pytest.approx(math.sqrt(0.5))
+
+
+OTHERS = [
+    control.tf([60.0, 60.0], [1.0, 2.0, 100.0, 0.0]),  # crosses 1 three times
+    control.tf([0.3, 0.6, 0.3], [1.0, 0.0, 0.0, 0.0]),  # unstable: the phase must go nearly round
+]
+
+
+@pytest.mark.parametrize("loop", [*LOOPS, *OTHERS])
+def test_a_dead_time_of_the_margin_meets_minus_one(loop: control.TransferFunction) -> None:
+    """1 + L e^(-s t) = 0 at each crossing; the margin is the smallest t."""
+    found = margins(loop)
+    assert len(found.phase_crossings) == (3 if loop is OTHERS[0] else 1)
+    for c in found.phase_crossings:
+        value = loop(np.exp(1j * c.omega * loop.dt) if loop.dt else 1j * c.omega)
+        assert 0.0 < c.delay <= 2.0 * math.pi / c.omega
+        assert value * np.exp(-1j * c.omega * c.delay) == pytest.approx(-1.0, abs=1e-9)
+        assert value * np.exp(-1j * math.radians(c.value)) == pytest.approx(-1.0, abs=1e-9)
+    assert found.delay == min(c.delay for c in found.phase_crossings)
+
+
+@pytest.mark.parametrize("late", [1, 7])
+def test_a_loop_rings_with_the_dead_time_of_its_margin(late: int) -> None:
+    """k/(z - 1) with n samples: the margin of the loop is what another n samples leave of it."""
+    loop, shift = control.tf([0.02], [1.0, -1.0], 1e-3), control.tf([1.0], [1.0, 0.0], 1e-3)
+    whole, n = margins(loop).delay, round(margins(loop).delay / 1e-3)
+    assert margins(loop * shift**late).delay == pytest.approx(whole - late * 1e-3, rel=1e-9)
+    assert margins(loop * shift ** (n - 1)).stable and not margins(loop * shift ** (n + 1)).stable
 
 
 def test_a_gain_beyond_its_margin_is_unstable() -> None:

@@ -12,7 +12,7 @@ from motionfmu.linear.block import Block
 from motionfmu.linear.form import Gain
 from motionfmu.linear.given import Values
 from motionfmu.linear.plant import Linearised, Point
-from motionfmu.linear.systems import delayed, replaced
+from motionfmu.linear.systems import backward
 from motionfmu.linear.wiring import Net, Port, period_of
 from motionfmu.modelica.ode import Ode
 from motionfmu.run import Options, Scenario, load
@@ -143,7 +143,10 @@ class AxisModel:
         """
         entries = [self.port(n, self.inputs, "input") for n in _listed(inputs)]
         exits = [self.port(n, self.outputs, "output") for n in _listed(outputs)]
-        found = period_of(self.net(cut, delays or {}), entries, exits, self.scenario.document.file)
+        return self._between(self.net(cut, delays or {}), entries, exits)
+
+    def _between(self, net: Net, entries: list[Port], exits: list[Port]) -> "control.StateSpace":
+        found = period_of(net, entries, exits, self.scenario.document.file)
         import control
 
         return control.StateSpace(
@@ -189,16 +192,12 @@ class AxisModel:
         target = self.port(at, self.inputs, "input")
         if target not in self.wires:
             raise InputError(f"{at} has no wire: no loop is closed there")
-        source = self.wires[target]
-        late = dict(delays or {})
-        own = late.pop(at, 0)
-        around = self.system(at, ".".join(source), cut=[at, *_listed(cut)], delays=late)
+        others = [name for name in _listed(cut) if name != at]
+        net = replace(self.net(others, delays or {}), opened=target)
+        around = self._between(net, [target], [target])
         if not around.nstates and not around.D.any():
-            raise InputError(f"{at}: nothing comes back to it from {'.'.join(source)}")
-        back = replaced(around, c=-around.C, d=-around.D, name=f"loop at {_name(target)}")
-        for k in range(own):
-            back = delayed(back, f"{'/'.join(target)} delay {k + 1}")
-        return back
+            raise InputError(f"{at}: nothing comes back to it from {'.'.join(self.wires[target])}")
+        return backward(around, _name(self.wires[target]), f"loop at {_name(target)}")
 
     def net(self, cut: str | Iterable[str], delays: Mapping[str, int]) -> Net:
         """Blocks and wires, some cut or delayed.

@@ -31,12 +31,16 @@ class Net:
         Communication step [ns].
     delays : dict
         Communication steps that a wire takes, by target port; 0 where nothing is said.
+    opened : Port or None
+        A target whose wire ends before it, after its delay: an exit of this name shows what it
+        brings.
     """
 
     blocks: Mapping[str, Block]
     wires: Mapping[Port, Port]
     step_ns: int
     delays: Mapping[Port, int]
+    opened: Port | None = None
 
     def used(self, entries: list[Port], exits: list[Port]) -> set[str]:
         """Components on a path from an entry to an exit.
@@ -46,7 +50,7 @@ class Net:
         entries : list of tuple
             Inputs and commands.
         exits : list of tuple
-            Ports shown.
+            Ports shown, or the opened one.
 
         Returns
         -------
@@ -59,13 +63,17 @@ class Net:
                 shown = [p for p, there in zip(block.ports, reach[:, k], strict=True) if there]
                 forward[component, name] = {(component, p) for p in shown}
         for target, source in self.wires.items():
-            forward.setdefault(source, set()).add(target)
+            forward.setdefault(source, set()).add(self._end(target))
         backward: dict[Port, set[Port]] = {}
         for source, targets in forward.items():
             for target in targets:
                 backward.setdefault(target, set()).add(source)
-        on = _closure(forward, entries) & _closure(backward, exits)
+        on = _closure(forward, entries) & _closure(backward, [self._end(p) for p in exits])
         return {component for component, _ in on}
+
+    def _end(self, port: Port) -> Port:
+        """The end of a wire: its target, or what is beside the opened one."""
+        return (port[0], f"{port[1]} opened") if port == self.opened else port
 
 
 def _closure(arrows: Mapping[Port, set[Port]], start: list[Port]) -> set[Port]:
@@ -111,7 +119,7 @@ def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
     entries : list of tuple
         What u is added to, held over the period.
     exits : list of tuple
-        What y shows, at the beginning of the period.
+        What y shows, at the beginning of the period: outputs, or the opened input.
 
     Returns
     -------
@@ -147,11 +155,11 @@ def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
         injected[entry] = injected.get(entry, 0.0) + row
     first = None
     for start in range(0, period, net.step_ns):
-        fed = _exchange(net, work, queue, injected)
-        first = first if first is not None else _seen(net, fed, exits)
+        fed, shows = _exchange(net, work, queue, injected)
+        first = first if first is not None else np.vstack([shows[port] for port in exits])
         for component, block in net.blocks.items():
             span = start, start + net.step_ns
-            work[component] = block.run(work[component], fed[component][0], span)
+            work[component] = block.run(work[component], fed[component], span)
     assert first is not None
     parts = [block.end(work[component]) for component, block in net.blocks.items()]
     parts += [np.array(rows, dtype=unit.dtype).reshape(-1, width) for rows in queue.values()]
@@ -201,8 +209,8 @@ def _kind(net: Net) -> np.dtype[Any]:
 
 def _exchange(
     net: Net, work: dict[str, Matrix], queue: dict[Port, list[Matrix]], injected: dict[Port, Matrix]
-) -> dict[str, tuple[Matrix, dict[str, Matrix]]]:
-    """What every block is fed and shows at a communication point."""
+) -> tuple[dict[str, Matrix], dict[Port, Matrix]]:
+    """What every block is fed and every port shows at a communication point."""
     width = next(iter(work.values())).shape[1] if work else 0
     fed: dict[str, Matrix] = {}
     shows: dict[Port, Matrix] = {}
@@ -221,13 +229,11 @@ def _exchange(
         if target in queue:
             queue[target].append(row)
             row = queue[target].pop(0)
-        fed[component][net.blocks[component].inputs.index(name)] += row
-    return {c: (fed[c], {p: shows[c, p] for p in b.ports}) for c, b in net.blocks.items()}
-
-
-def _seen(net: Net, fed: dict[str, tuple[Matrix, dict[str, Matrix]]], exits: list[Port]) -> Matrix:
-    rows = [fed[component][1][port] for component, port in exits]
-    return np.vstack(rows)
+        if target == net.opened:
+            shows[target] = row
+        else:
+            fed[component][net.blocks[component].inputs.index(name)] += row
+    return fed, shows
 
 
 def pruned(whole: PeriodMap) -> PeriodMap:
