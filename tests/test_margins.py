@@ -10,10 +10,11 @@ import pytest
 from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE, theory
 from typer.testing import CliRunner
 
-from motionfmu import InputError, linear
+from motionfmu import InputError, freq, linear
 from motionfmu.cli import app
 from motionfmu.freq import limit
 from motionfmu.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
+from motionfmu.freq.study import Asked, study
 from motionfmu.linear.loops import Limit, boundary, feedbacks, largest_gain
 from motionfmu.linear.margins import closed_poles, margins
 
@@ -191,6 +192,63 @@ def test_the_command_writes_a_report_with_all_numbers(tmp_path: Path) -> None:
         assert told in page
     assert numbers["operating_point"]["machine"]["values"]["motor_speed"] == 0.0
     assert list(tmp_path.iterdir()) == [out]
+
+
+@pytest.mark.parametrize(
+    ("scenario", "axis", "at"),
+    [
+        (DEMO, 1, {"machine.motor_speed": 30.0}),
+        (DEMO, 2, {"machine.motor_speed": -3.0}),
+        (MODES, 2, {"machine.motor_speed": 20.0}),
+        (MODES, 1, {}),  # at rest, within the friction's steep slope
+    ],
+    ids=["demo", "demo slow", "modes", "modes at rest"],
+)
+def test_the_running_fmus_do_what_the_model_says(scenario, axis, at, monkeypatch) -> None:
+    """No limit is reached, nothing turns back or comes loose: within 2 % and 2 degrees."""
+    monkeypatch.setattr("motionfmu.freq.study.small_signal_gain", lambda *_: (None, 0.0))
+    model = linear.model(scenario, axis, at)
+    found = study(model, Asked())
+    assert [s.at for s in found] == list(feedbacks(model))
+    for s in found:
+        assert s.measured is not None and s.difference is not None
+        omega = s.measured.omega
+        assert omega[0] < 1.5 * s.margins.omega_phase and len(omega) > 30
+        real = s.loop(np.exp(1j * omega * s.loop.dt))
+        big = np.abs(real) > 0.1
+        ratio = s.measured.values[big, 0] / real[big]
+        size, angle = np.abs(np.abs(ratio) - 1.0).max(), np.degrees(np.abs(np.angle(ratio))).max()
+        assert s.difference == pytest.approx((100.0 * size, angle))
+        assert size < 0.02 and angle < 2.0
+
+
+def test_what_was_not_excited_is_left_out_and_told(tmp_path: Path) -> None:
+    """A quarter count beside friction that sticks: nothing small enough stands above rounding."""
+    out = tmp_path / "out"
+    done = run(DEMO, "--loop", ENC, "--out", out)
+    told = "53 of 53 frequencies left out"
+    assert done.exit_code == 0 and told in " ".join(done.output.split())
+    (loop,) = json.loads((out / "result.json").read_text())["loops"]
+    assert "measured" not in loop and told in loop["notes"][0]
+    assert told in (out / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("peak", "told"), [(2.0, "reached its limit of 1"), (0.05, "no linear loop")]
+)
+def test_fmus_that_are_not_linear_are_told_of(peak, told, tmp_path, monkeypatch) -> None:
+    """A multisine of the old kind fills the torque at its limit; a smaller one meets friction."""
+
+    def large(axis, loop, size, kick) -> freq.Excitation:
+        return freq.multisine(*size, peak)
+
+    monkeypatch.setattr("motionfmu.freq.study.small", large)
+    at, set_ = "machine.motor_speed=0.5", "drives.torque_limit=1"
+    done = run(
+        DEMO, "--loop", PHASE, "--at", at, "--set", set_, "--out", tmp_path / "out", "--kick", 0.05
+    )
+    assert done.exit_code == 0 and told in " ".join(done.output.split()), done.output
+    assert told in (tmp_path / "out" / "report.html").read_text()
 
 
 def test_an_unstable_loop_is_called_so(tmp_path: Path) -> None:

@@ -69,13 +69,17 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
         m, ringing = s.margins, s.simulated.gain if s.simulated else math.nan
         cells = (f"x {m.gain:.4g}", f"{m.phase:.4g}°", f"{m.delay * 1e3:.4g} ms")
         name = s.at if m.stable else f"{s.at} [bold red]unstable[/]"
-        table.add_row(
-            name, *cells, f"{m.sensitivity:.4g}", f"{s.linear.gain:.5g}", f"{ringing:.5g}"
-        )
+        limits = f"{s.linear.gain:.5g}", f"{ringing:.5g}"
+        table.add_row(name, *cells, f"{m.sensitivity:.4g}", *limits)
     out.print(table)
     for s in studies:
         if s.silent:
             out.print(f"FMUs not run: {s.silent}", markup=False)
+        if s.difference is not None:
+            size, angle = s.difference
+            out.print(f"{s.at}: the running FMUs differ by at most {size:.2g} % and {angle:.2g}°")
+        for note in s.notes:
+            out.print(note, markup=False)
     out.print(f"report: {target / 'report.html'}", soft_wrap=True)
 
 

@@ -1,6 +1,7 @@
 """Periodic signals that excite many frequencies at once."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,11 +61,43 @@ def multisine(
     chosen = np.asarray(lines, dtype=np.int64)
     if not chosen.size or chosen.min() < 1 or chosen.max() > n // 2:
         raise ValueError(f"lines of a period of {n} samples are 1 to {n // 2}")
-    k = np.arange(chosen.size)
-    spectrum = np.zeros(n // 2 + 1, dtype=complex)
-    spectrum[chosen] = np.exp(-1j * np.pi * k * (k - 1) / chosen.size)
-    signal = np.fft.irfft(spectrum, n)
-    return Excitation(signal * (peak / np.abs(signal).max()), chosen, settle, measure)
+    size = np.ones(chosen.size)
+    return replace(shaped(n, chosen, [(peak, size)]), settle=settle, measure=measure)
+
+
+def shaped(n: int, lines: NDArray[np.int64], caps: list[tuple[float, NDArray[Any]]]) -> Excitation:
+    """Sum of sines, each as large as what it may move allows.
+
+    Schroeder's phases for shares p of the power, -2 pi sum (k - l) p_l over l < k.
+
+    Parameters
+    ----------
+    n : int
+        Samples per period.
+    lines : ndarray of int
+        Cycles per period.
+    caps : list of tuple
+        Largest magnitude of something that moves with the signal, and its response at the lines.
+
+    Returns
+    -------
+    Excitation
+        All caps are kept once the start has died away; one is met.
+    """
+    worth = np.max([np.abs(of) / max(cap, 1e-300) for cap, of in caps], axis=0)
+    size = 1.0 / np.maximum(worth, 1e-12 * worth.max())
+    share = size * size / np.sum(size * size)
+    later = np.concatenate([[0.0], np.cumsum(np.cumsum(share))[:-1]])
+    sines = size * np.exp(-2j * np.pi * later)
+
+    def signal(values: NDArray[Any]) -> Array:
+        spectrum = np.zeros(n // 2 + 1, dtype=complex)
+        spectrum[lines] = values
+        found: Array = np.fft.irfft(spectrum, n)
+        return found
+
+    factor = min(cap / np.abs(signal(sines * of)).max() for cap, of in caps)
+    return Excitation(factor * signal(sines), lines)
 
 
 def prbs(order: int, peak: float, hold: int = 1, settle: int = 2, measure: int = 2) -> Excitation:

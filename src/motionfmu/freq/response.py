@@ -33,11 +33,18 @@ class Response:
         Output per input, in their units.
     period : float
         Sampling period [s]; the response repeats beyond pi/period.
+    spread : ndarray, shape (n, n_outputs)
+        Standard error of the mean over the periods, as a share of the value: rounding, what does
+        not repeat. NaN from one period.
+    most : ndarray, shape (n_outputs,)
+        Largest magnitude of each output while it was measured.
     """
 
     omega: Array
     values: NDArray[np.complex128]
     period: float
+    spread: Array
+    most: Array
 
 
 def ramp(bench: Bench, name: str) -> float:
@@ -183,20 +190,28 @@ def measure(setup: Setup, excitation: Excitation) -> Response:
     shown, used = bench.run(added)
     shown, excited = shown[::hold], (used[:, 0] - way)[::hold]
     first = n * excitation.settle
-    spectra = [_lines(x[first:], n, excitation.lines) for x in (*shown.T, excited)]
-    values = np.column_stack([y / spectra[-1] for y in spectra[:-1]])
+    e, _ = _lines(excited[first:], n, excitation.lines)
+    found = [_lines(y[first:], n, excitation.lines) for y in shown.T]
+    values = np.column_stack([y / e for y, _ in found])
+    with np.errstate(divide="ignore", invalid="ignore"):  # an output that does not move
+        spread = np.column_stack([error / np.abs(y) for y, error in found])
     omega = 2.0 * np.pi * excitation.lines / (n * period_ns * 1e-9)
-    return Response(omega, values, period_ns * 1e-9)
+    most = np.abs(shown[first:]).max(axis=0, initial=0.0)
+    return Response(omega, values, period_ns * 1e-9, spread, most)
 
 
-def _lines(x: Array, n: int, lines: NDArray[np.int64]) -> NDArray[np.complex128]:
-    """Spectrum of the mean period, without a straight drift."""
+def _lines(x: Array, n: int, lines: NDArray[np.int64]) -> tuple[NDArray[np.complex128], Array]:
+    """Spectrum of the mean period, without a straight drift, and its standard error."""
     periods = len(x) // n
     if periods > 1:
         drift = (x[(periods - 1) * n :].mean() - x[:n].mean()) / ((periods - 1) * n)
         x = x - drift * np.arange(len(x))
-    found: NDArray[np.complex128] = np.fft.rfft(x.reshape(periods, n).mean(axis=0))[lines]
-    return found
+    each = x.reshape(periods, n)
+    found: NDArray[np.complex128] = np.fft.rfft(each.mean(axis=0))[lines]
+    if periods == 1:
+        return found, np.full(len(lines), math.nan)
+    apart = np.abs(np.fft.rfft(each - each.mean(axis=0))[:, lines]) ** 2
+    return found, np.sqrt(apart.sum(axis=0) / (periods * (periods - 1)))
 
 
 def measured_loop(setup: Setup, excitation: Excitation) -> Response:
@@ -207,13 +222,13 @@ def measured_loop(setup: Setup, excitation: Excitation) -> Response:
     Parameters
     ----------
     setup : Setup
-        One wired input; outputs are not used.
+        One wired input; outputs are only watched.
     excitation : Excitation
 
     Returns
     -------
     Response
-        One column.
+        One column; `Response.most` is that of the outputs of the setup.
 
     Raises
     ------
@@ -224,9 +239,11 @@ def measured_loop(setup: Setup, excitation: Excitation) -> Response:
     source = setup.axis.wires.get((component, name))
     if source is None:
         raise InputError(f"{setup.inputs[0]} has no wire: no loop is closed there")
-    closed = measure(replace(setup, outputs=(".".join(source),)), excitation)
+    closed = measure(replace(setup, outputs=(".".join(source), *setup.outputs)), excitation)
     share = closed.values[:, :1]
-    return Response(closed.omega, -share / (1.0 + share), closed.period)
+    spread = closed.spread[:, :1] / np.abs(1.0 + share)  # dL/L = ds/(s (1 + s))
+    loop = -share / (1.0 + share)
+    return Response(closed.omega, loop, closed.period, spread, closed.most[1:])
 
 
 def settling(system: control.StateSpace) -> float:
@@ -289,4 +306,6 @@ def sweep(
         np.concatenate([r.omega for r in found]),
         np.vstack([r.values for r in found]),
         float(linear.dt),
+        np.vstack([r.spread for r in found]),
+        np.max([r.most for r in found], axis=0),
     )

@@ -2,24 +2,29 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import control
 import numpy as np
 
 from motionfmu.errors import InputError
 from motionfmu.freq.bench import Setup
-from motionfmu.freq.excitation import multisine
 from motionfmu.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
 from motionfmu.freq.response import Response, measured_loop, room, settling
+from motionfmu.freq.shape import WORTH, Loop, limits, small
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit, feedbacks, largest_gain
 from motionfmu.linear.margins import Margins, margins
+from motionfmu.linear.margins import response as gains
 from motionfmu.linear.opened import worst
 from motionfmu.linear.wiring import Port
 
-# Frequencies measured, samples of a period, periods until the start has died away.
-_LINES, _SAMPLES_MAX, _SETTLE_MAX = 60, 10_000, 6
+# Frequencies measured, samples of a period, periods until the start has died away, and measured.
+_LINES, _SAMPLES_MAX, _SETTLE_MAX, _PERIODS = 60, 10_000, 8, 4
+# A frequency whose standard error is a larger share of its value is left out.
+_SPREAD = 0.05
+# Differences from the model are told from so many %, degrees on.
+_APART = 5.0, 5.0
 # Peak of the multisine, in kicks: it is spread over all lines.
 _PEAK = 4.0
 # A ringing of so many grains must be followed, or edges are lost and not rounded.
@@ -49,6 +54,8 @@ class LoopStudy:
         Step with which they were made to ring, in the unit of the input.
     silent : str
         Why they were not run, in words; empty if they were, or were not to be.
+    notes : tuple of str
+        What the measured response leaves out, and where it is not the model's, in words.
     """
 
     at: str
@@ -61,6 +68,12 @@ class LoopStudy:
     measured: Response | None
     kick: float
     silent: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def difference(self) -> tuple[float, float] | None:
+        """How far the FMUs are from the model where |L| is above -20 dB [%], [deg], or None."""
+        return None if self.measured is None else _difference(self.loop, self.measured)
 
 
 @dataclass(frozen=True)
@@ -139,11 +152,12 @@ def _one(
     limit = largest_gain(axis, at, cut, gain)
     kick = usual_kick(axis, at, cut) if asked.kick is None else asked.kick
     found = margins(loop)
-    ringing, response = None, None
+    ringing, measured = None, None
+    notes: tuple[str, ...] = ()
     silent = _silent(axis, at, limit, gain) if asked.simulate else ""
     if asked.simulate and not silent and not worst(axis):
         if found.stable:
-            response = _measured(axis, which, found, kick)
+            measured, notes = _measured(axis, which, found, asked.kick)
         progress(0.4)
 
         def tried(runs: int) -> None:
@@ -154,7 +168,8 @@ def _one(
         else:
             ringing = simulated_gain(axis, which, Trial(kick), gain, tried)
     progress(1.0)
-    return LoopStudy(at, cut, loop, found, gain, limit, ringing, response, kick, silent)
+    parts = at, cut, loop, found, gain, limit, ringing, measured, kick, silent, notes
+    return LoopStudy(*parts)
 
 
 def _silent(axis: AxisModel, at: str, limit: Limit, gain: str | None) -> str:
@@ -173,8 +188,9 @@ def _silent(axis: AxisModel, at: str, limit: Limit, gain: str | None) -> str:
 
 
 def _measured(
-    axis: AxisModel, which: tuple[str, tuple[str, ...]], found: Margins, kick: float
-) -> Response:
+    axis: AxisModel, which: Loop, found: Margins, kick: float | None
+) -> tuple[Response | None, tuple[str, ...]]:
+    """The loop of the FMUs where it can be measured, and what is to be said about it."""
     at, cut = which
     loop = axis.loop(at, cut)
     low = found.omega_phase if math.isfinite(found.omega_phase) else math.pi / (50.0 * loop.dt)
@@ -182,8 +198,45 @@ def _measured(
     lines = np.unique(np.round(np.geomspace(1, n // 2 - 1, _LINES)).astype(np.int64))
     closed = axis.system(at, ".".join(axis.wires[_port(at)]), cut)
     settle = min(_SETTLE_MAX, max(1, math.ceil(settling(closed) / n)))
-    setup = Setup(axis, (at,), (), cut)
-    return measured_loop(setup, multisine(n, lines, _PEAK * kick, settle, 2))
+    limited = limits(axis, which)
+    peak = None if kick is None else _PEAK * kick
+    signal = replace(small(axis, which, (n, lines), peak), settle=settle, measure=_PERIODS)
+    response = measured_loop(Setup(axis, (at,), tuple(limited), cut), signal)
+    for (name, most), reached in zip(limited.items(), response.most, strict=True):
+        if reached >= most:
+            told = f"{name} reached its limit of {most:g}: the response would not be that of a loop"
+            return None, (f"{at}: not measured, {told}",)
+    clear = response.spread[:, 0] < _SPREAD
+    notes = []
+    if not clear.all():
+        kept = f"{np.count_nonzero(~clear)} of {len(clear)} frequencies left out"
+        why = "they stand too little above the rounding, or the start has not died away"
+        notes.append(f"{at}: {kept}: {why}")
+    if not clear.any():
+        return None, tuple(notes)
+    response = replace(
+        response,
+        omega=response.omega[clear],
+        values=response.values[clear],
+        spread=response.spread[clear],
+    )
+    apart = _difference(loop, response)
+    if apart is not None and (apart[0] > _APART[0] or apart[1] > _APART[1]):
+        notes.append(
+            f"{at}: that is no linear loop: a part sticks, a gap opens, a limit acts or counts are"
+            " too coarse"
+        )
+    return response, tuple(notes)
+
+
+def _difference(loop: control.StateSpace, measured: Response) -> tuple[float, float] | None:
+    expected = gains(loop, measured.omega)
+    worth = np.abs(expected) > WORTH
+    if not worth.any():
+        return None
+    ratio = measured.values[worth, 0] / expected[worth]
+    size = 100.0 * float(np.abs(np.abs(ratio) - 1.0).max())
+    return size, float(np.degrees(np.abs(np.angle(ratio))).max())
 
 
 def _port(name: str) -> Port:

@@ -203,7 +203,10 @@ class Linearised:
         values = dict(zip((d.name for d in ode.states), x.tolist(), strict=True))
         values |= dict(zip(inputs, u.tolist(), strict=True))
         values |= dict(zip(outputs, y.tolist(), strict=True))
-        rates = self.matrices(x, u, p)[2] @ xdot if stated else np.zeros(len(outputs))
+        a, b, c, _ = self.matrices(x, u, p)
+        balance = np.abs(a) @ np.abs(x) + np.abs(b) @ np.abs(u)
+        xdot[np.abs(xdot) <= _UNIFORM * balance] = 0.0  # what rounding leaves of a sum of forces
+        rates = c @ xdot if stated else np.zeros(len(outputs))
         return Point(x, u, values, dict(stated), dict(zip(outputs, rates.tolist(), strict=True)))
 
     def _settle(

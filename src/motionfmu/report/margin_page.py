@@ -11,7 +11,6 @@ import numpy as np
 from motionfmu.freq.study import LoopStudy
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit
-from motionfmu.linear.margins import response
 from motionfmu.linear.opened import worst
 from motionfmu.report.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.numbers import figure
@@ -23,8 +22,8 @@ FOOTER = (
     " sampling and of the communication step; the feedback is negative. The linear model is the"
     " plant's own equation at the operating point, on its integrator's grid, and the sampled laws"
     " that the FMUs carry: no rounding, no limits. Dots are the running FMUs, excited by a"
-    " multisine while the loop is closed. The disk margin is the balanced one,"
-    " 1/max|S &minus; 1/2|."
+    " multisine while the loop is closed, so small that no limit is reached. The disk"
+    " margin is the balanced one, 1/max|S &minus; 1/2|."
     ' Every number is in <a href="result.json">result.json</a>.'
 )
 
@@ -79,7 +78,10 @@ def numbers(axis: AxisModel, studies: Sequence[LoopStudy]) -> dict[str, Any]:
             "largest_gain": asdict(s.linear),
             "largest_gain_simulated": asdict(s.simulated) if s.simulated else None,
             "kick": s.kick,
+            "notes": list(s.notes),
         }
+        if s.difference is not None:
+            row["difference"] = dict(zip(("percent", "degrees"), s.difference, strict=True))
         if s.measured is not None:
             row["measured"] = {
                 "omega": s.measured.omega.tolist(),
@@ -173,20 +175,13 @@ def _card(what: str, value: str, where: str) -> str:
 
 
 def _deviation(study: LoopStudy) -> str:
-    """How far the measured dots are from the line, where the loop has a size worth measuring."""
-    if study.measured is None:
-        return ""
-    expected = response(study.loop, study.measured.omega)
-    worth = np.abs(expected) > 0.1
-    if not worth.any():
-        return ""
-    ratio = study.measured.values[worth, 0] / expected[worth]
-    size = 100.0 * float(np.abs(np.abs(ratio) - 1.0).max())
-    angle = float(np.degrees(np.abs(np.angle(ratio))).max())
-    return (
-        f" Where |L| is above &minus;20 dB, the running FMUs differ by at most {figure(size)} % and"
-        f" {figure(angle)}°."
-    )
+    """How far the measured dots are from the line, and what is to be said about them."""
+    told = [f" {escape(note)}." for note in study.notes]
+    if study.difference is not None:
+        size, angle = (figure(value) for value in study.difference)
+        text = f"the running FMUs differ by at most {size} % and {angle}°."
+        told.insert(0, f" Where |L| is above &minus;20 dB, {text}")
+    return "".join(told)
 
 
 def _limits(study: LoopStudy) -> str:
