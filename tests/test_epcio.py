@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 TICK = 25e-9
 TL = 4000  # [clocks] the default loop_period, 100 us
-DDA_PAGE, ENC6_PAGE, LIO_PAGE, PAGES = 0, 3, 7, 9  # pages of the interrupt latch
+DDA_PAGE, ENC6_PAGE, LIO_PAGE, PCL_PAGE, PAGES = 0, 3, 7, 8, 9  # pages of the interrupt latch
 DDA = {"host_dda_length": 10, "host_dda_divider": 4}  # one DDA time is 4096 clocks
 T = 4096
 
@@ -209,6 +209,53 @@ def test_a_voltage_stands_one_period_after_its_cause() -> None:
     fmu.free()
 
 
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_dac_7_and_8_and_encoders_7_to_9_reach_a_plant_of_six_axes(fmi: int) -> None:
+    fmu = card(fmi)
+    assert fmu.set("host_dac_volts_aux", [2.5, -1.25]) == OK
+    assert fmu.set("enc_phase_aux", [0.0, 1.0, 0.0]) == OK
+    assert fmu.set("enc_phase_six_aux", [0.0, 0.0, 0.0, 7.0, 8.0, 9.0]) == OK
+    to_clock(fmu, TL)
+    assert fmu.get("dac_six_aux") == [2.5, -1.25, 0.0, 0.0, 0.0, 0.0]
+    assert fmu.get("dac") == [0.0] * 6
+    assert fmu.set("enc_phase_six_aux", [10.0, 20.0, -30.0, 70.0, 80.0, 90.0]) == OK
+    to_clock(fmu, 2 * TL)
+    counts = [fmu.get(f"enc_count_{n}")[0] for n in (7, 8, 9)]
+    assert counts == [40, 80, -120]
+    assert fmu.get("enc_count") == [0] * 6
+    fmu.free()
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_the_seventh_error_counter_interrupts_at_its_limit(fmi: int) -> None:
+    """What the host commands less the counts of encoder 7, on a bit of its own."""
+    bit = 1 << 6
+    fmu = card(fmi, error_limit=100, host_irq_mask=page(PCL_PAGE, bit))
+    assert fmu.set("host_command_aux", 5000) == OK
+    assert fmu.set("host_loop_on_aux", True) == OK
+    steps = (
+        (5000, 0.0, 0),
+        (5099, 0.0, 99),
+        (5099, -0.25, 100),
+        (5099, -9.0, 135),
+        (4000, 0.0, -1000),
+    )
+    for k, (command, phase, error) in enumerate(steps, 1):
+        fmu.set("host_command_aux", command)
+        fmu.set("enc_phase_aux", [phase, 1000.0, -1000.0])
+        to_clock(fmu, k * TL)
+        assert fmu.get("err_count_7") == [error]
+        over = abs(error) >= 100
+        assert fmu.get("irq_flags")[PCL_PAGE] == (bit if over else 0)
+        assert fmu.get("irq_seq") == [int(over)]
+    assert fmu.get("irq_clock") == [2 * TL]  # the instant that saw the hundredth
+    assert fmu.get("err_count") == [0] * 6
+    fmu.set("host_loop_on_aux", False)
+    to_clock(fmu, 6 * TL)
+    assert fmu.get("err_count_7") == [0]
+    fmu.free()
+
+
 def test_index_interrupt_carries_its_interpolated_clock() -> None:
     fmu = card(host_irq_mask=page(ENC6_PAGE, 1 << 3), index_lines=10)
     to_clock(fmu, TL)
@@ -322,6 +369,10 @@ def test_wrong_parameters_are_named(name: str, value: Any, message: str) -> None
     [
         ({"enc_phase": [0, 0, 1e300, 0, 0, 0]}, "enc_phase[3] = 1e+300: the phase is"),
         ({"enc_phase_aux": [0, -1e17, 0]}, "enc_phase_aux[2] = -1e+17: the phase is"),
+        (
+            {"enc_phase_six_aux": [0, 0, 1e17, 0, 0, 0]},
+            "enc_phase_six_aux[3] = 1e+17: the phase is",
+        ),
         ({"host_cmd_seq": 1, "host_cmd_clock": 1e17}, "host_cmd_clock = 1e+17: not a clock"),
     ],
 )

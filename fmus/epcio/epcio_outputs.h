@@ -129,8 +129,9 @@ static void publish(struct vars *v, const struct epcio *card)
     publish_encoders(v, card);
     publish_adc(v, card);
     publish_local(v, card);
-    v->dac_7 = epcio_volts(card, 6);
-    v->dac_8 = epcio_volts(card, 7);
+    v->err_count_7 = card->loop[EPCIO_AXES].error;
+    v->dac_7 = v->dac_six_aux[0] = epcio_volts(card, 6);
+    v->dac_8 = v->dac_six_aux[1] = epcio_volts(card, 7);
     if (card->remote_used)
         publish_remote(v, card);
 }

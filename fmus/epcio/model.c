@@ -127,6 +127,8 @@ static int set_levels(struct fmu *f)
     }
     for (int i = 0; i < 2; i++)
         host.volts[EPCIO_AXES + i] = v->host_dac_volts_aux[i];
+    host.loop_on[EPCIO_AXES] = v->host_loop_on_aux;
+    host.command = v->host_command_aux;
     enum epcio_status s = epcio_set_host(&f->s.m.card, &host);
     return s == EPCIO_OK ? 0 : fmu_fail(f, "host registers: %s", epcio_status_text(s));
 }
@@ -184,7 +186,7 @@ static void read_pins(const struct vars *v, struct epcio_lines *l)
         l->volts[i] = v->io_volts[i];
     }
     for (int i = 0; i < 3; i++)
-        l->phase[6 + i] = v->enc_phase_aux[i];
+        l->phase[6 + i] = v->enc_phase_aux[i] + v->enc_phase_six_aux[i];
     for (int i = 0; i < 2; i++)
         l->volts[6 + i] = v->io_volts_aux[i];
     l->local = (struct local_io_lines){
@@ -219,7 +221,8 @@ static int sample(struct fmu *f)
         return 0;
     const char *name = s == EPCIO_BAD_PHASE ? "enc_phase" : "io_volts";
     const double *value = s == EPCIO_BAD_PHASE ? lines.phase : lines.volts;
-    return fmu_fail(f, "%s%s[%d] = %g: %s", name, bad < 6 ? "" : "_aux",
+    const bool six = s == EPCIO_BAD_PHASE && bad >= 6 && v->enc_phase_six_aux[bad - 6] != 0.0;
+    return fmu_fail(f, "%s%s[%d] = %g: %s", name, bad < 6 ? "" : six ? "_six_aux" : "_aux",
                     bad < 6 ? bad + 1 : bad - 5, value[bad], epcio_status_text(s));
 }
 

@@ -286,6 +286,16 @@ enum epcio_status epcio_sample(struct epcio *card, const struct epcio_lines *lin
     return EPCIO_OK;
 }
 
+/* The seventh error counter: what the host commands, less the counts of counter 7. */
+static void watch_command(struct epcio *card)
+{
+    const int i = EPCIO_LOOPS - 1;
+    card->command += (int32_t)((uint32_t)card->host.command - (uint32_t)card->command);
+    if (ploop_tick(&card->config.loop, &card->loop[i], card->host.loop_on[i], card->command,
+                   card->encoder[EPCIO_AXES].count))
+        irq_raise(&card->irq, IRQ_PCL, (uint32_t)1 << (IRQ_PCL_OV + i), card->clock);
+}
+
 void epcio_control(struct epcio *card)
 {
     const struct epcio_config *c = &card->config;
@@ -303,6 +313,7 @@ void epcio_control(struct epcio *card)
     }
     for (int i = EPCIO_AXES; i < ANALOG_DACS; i++)
         card->analog.next[i] = analog_code(h->volts[i]);
+    watch_command(card);
 }
 
 void epcio_convert(struct epcio *card)

@@ -38,6 +38,8 @@ enum {
     EPCIO_CLOCK_NS = 25,
     EPCIO_AXES = 6,
     EPCIO_ENCODERS = 9,
+    EPCIO_LOOPS = 7,            /* error counters: one of each axis, and one for a command that
+                                 * comes from the host */
     EPCIO_SETS = 2,             /* of remote I/O slaves */
 };
 _Static_assert((int)DDA_CHANNELS == (int)EPCIO_AXES && (int)BUS_AXES == (int)EPCIO_AXES,
@@ -60,7 +62,8 @@ struct epcio_config {
 /* Level registers of the host: read at each epcio_control(). */
 struct epcio_host {
     int32_t gain[EPCIO_AXES];       /* P gain, 0 .. 65535 */
-    bool    loop_on[EPCIO_AXES];
+    bool    loop_on[EPCIO_LOOPS];
+    int32_t command;                /* [pulses] of the seventh error counter; may wrap */
     bool    dac_loop[EPCIO_AXES];   /* DAC source: position loop, else software */
     double  volts[ANALOG_DACS];     /* [V] software voltage; beyond +-10 V it saturates */
     bool    index_low[EPCIO_AXES];  /* index ON at the low level, behind the wiring's inversion */
@@ -100,7 +103,8 @@ struct epcio {
     struct encoder      encoder[EPCIO_ENCODERS];
     struct latch        latch[EPCIO_ENCODERS];
     struct latch_moments moments;                   /* triggers since the latest instant */
-    struct ploop        loop[EPCIO_AXES];
+    struct ploop        loop[EPCIO_LOOPS];
+    int64_t             command;                    /* [pulses] of the seventh, unwrapped */
     struct analog       analog;
     struct adc_control  adc_control;
     struct adc          adc;

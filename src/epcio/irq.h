@@ -34,7 +34,7 @@ enum {
     IRQ_LIO_LDI = 0,        /* 8: local inputs */
     IRQ_LIO_DFI = 8,        /* 7: dual-function inputs */
     IRQ_LIO_TIMER = 15,
-    IRQ_PCL_OV = 0,         /* 6: error counter overflow */
+    IRQ_PCL_OV = 0,         /* 7: error counter overflow */
 };
 
 struct irq {

@@ -18,7 +18,7 @@
     X(0x160, ENC_COMPARE_ON, 9)     /* 0, 1 */                                                  \
     X(0x170, ENC_LATCH_LAST, 9)     /* 0 first trigger only, 1 every trigger */                 \
     X(0x180, ENC_LATCH, 9)          /* source bits; arms */                                     \
-    X(0x200, PCL_CLEAR, 6)          /* any value: error counter to zero */                      \
+    X(0x200, PCL_CLEAR, 7)          /* any value: error counter to zero */                      \
     X(0x300, DAC_TRIGGER_VOLTS, 8)  /* [V] */                                                   \
     X(0x310, DAC_TRIGGER, 8)        /* source bits; arms; 0 gives the channel back */           \
     X(0x400, ADC_MODE, 1)           /* 0 single, 1 free run */                                  \

@@ -187,12 +187,12 @@ enum epcio_status epcio_set_host(struct epcio *card, const struct epcio_host *ho
     return EPCIO_OK;
 }
 
-enum epcio_status epcio_clear_loops(struct epcio *card, uint32_t axes)
+enum epcio_status epcio_clear_loops(struct epcio *card, uint32_t loops)
 {
-    if (axes >> EPCIO_AXES)
+    if (loops >> EPCIO_LOOPS)
         return EPCIO_BAD_MASK;
-    for (int i = 0; i < EPCIO_AXES; i++)
-        if (axes & (uint32_t)1 << i)
+    for (int i = 0; i < EPCIO_LOOPS; i++)
+        if (loops & (uint32_t)1 << i)
             card->loop[i] = (struct ploop){0};
     return EPCIO_OK;
 }
@@ -342,11 +342,9 @@ static void reset_one(struct epcio *card, enum epcio_module module)
         reset_local(card);
         break;
     case EPCIO_RESET_PCL:
-        for (int i = 0; i < EPCIO_AXES; i++) {
-            card->host.gain[i] = 0;
-            card->host.loop_on[i] = false;
-            card->loop[i] = (struct ploop){0};
-        }
+        memset(card->host.gain, 0, sizeof card->host.gain);
+        memset(card->host.loop_on, 0, sizeof card->host.loop_on);
+        memset(card->loop, 0, sizeof card->loop);
         break;
     case EPCIO_RESET_DAC:
         memset(card->host.dac_loop, 0, sizeof card->host.dac_loop);

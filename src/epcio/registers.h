@@ -55,7 +55,7 @@ enum epcio_status epcio_set_latch(struct epcio *card, int encoder, uint32_t sour
 enum epcio_status epcio_set_host(struct epcio *card, const struct epcio_host *host);
 
 /* Error counters begin anew from zero, a bit each. */
-enum epcio_status epcio_clear_loops(struct epcio *card, uint32_t axes);
+enum epcio_status epcio_clear_loops(struct epcio *card, uint32_t loops);
 
 /* Trigger output of a DAC; source 0 gives the channel back. */
 enum epcio_status epcio_set_trigger(struct epcio *card, int channel,

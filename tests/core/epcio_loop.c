@@ -2,6 +2,7 @@
 #include "epcio_card.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* code = error gain / 2^scale, nearest, halves away from zero, 16 bit, against exact doubles. */
@@ -132,6 +133,59 @@ static void source_select(void)
     CHECK_EQ(card.analog.code[7], -8192);
 }
 
+/* The seventh error counter: the host's command less counter 7, its own overflow bit, whatever the
+ * command does at the ends of its 32 bits; the other six and the voltages do not know of it. */
+static void seventh(int32_t start, int way)
+{
+    enum { LIMIT = 300, BIT = 1u << (IRQ_PCL_OV + 6) };
+    struct epcio_config config = epcio_default_config();
+    config.loop.limit = LIMIT;
+    struct epcio card;
+    double phase[EPCIO_ENCODERS] = {0};
+    int64_t counted = 0, command = 0;   /* since it was switched on */
+    int bad, fired = 0;
+    bool over = false;
+    CHECK_EQ(epcio_reset(&card, &config), EPCIO_OK);
+    for (int k = 1; k >= 0; k--) {                      /* it is off */
+        card.host.command = start - way * 50 * k;
+        card_sample(&card, phase, &bad);
+        epcio_control(&card);
+        CHECK_EQ(card.loop[6].error, 0);
+    }
+    card.host.loop_on[6] = true;
+    for (int k = 0; k < 200; k++) {
+        card_acknowledge(&card, IRQ_PCL, 0x7F, 0x7F);
+        epcio_advance(&card, (k + 1) * 4000);
+        epcio_convert(&card);
+        card_sample(&card, phase, &bad);
+        epcio_control(&card);
+        CHECK_EQ(card.loop[6].error, command - counted);
+        const bool was = over;
+        over = llabs(command - counted) >= LIMIT;
+        CHECK_EQ(card.irq.flags[IRQ_PCL], over && !was ? BIT : 0);
+        CHECK_EQ(card.irq.line, over && !was);
+        fired += over && !was;
+        for (int i = 0; i < ANALOG_DACS; i++)
+            CHECK_EQ(card.analog.code[i], 0);
+        for (int i = 0; i < EPCIO_AXES; i++)
+            CHECK_EQ(card.loop[i].error, 0);
+        command += way * 5 * (k % 7);
+        counted += way * 4 * (k % 50 < 25 ? 0 : 8);     /* standstill, then faster */
+        card.host.command = (int32_t)((uint32_t)start + (uint32_t)(int32_t)command);
+        phase[6] = (double)counted / 4.0;
+        phase[0] = phase[7] = phase[8] = 1000.0;        /* of others */
+    }
+    CHECK(fired > 0);
+    const int32_t error = card.loop[6].error;
+    CHECK(error != 0);
+    CHECK_EQ(epcio_clear_loops(&card, 1u << 6), EPCIO_OK);
+    CHECK_EQ(card.loop[6].error, 0);
+    epcio_control(&card);
+    CHECK_EQ(card.loop[6].error, 0);                    /* begins anew */
+    CHECK_EQ(epcio_reset_module(&card, EPCIO_RESET_PCL), EPCIO_OK);
+    CHECK(!card.host.loop_on[6]);
+}
+
 int main(void)
 {
     code_formula(271828);
@@ -140,5 +194,8 @@ int main(void)
     velocity_error(60);
     velocity_error(200);
     source_select();
+    seventh(0, 1);
+    seventh(INT32_MAX - 100, 1);
+    seventh(INT32_MIN + 100, -1);
     return check_result();
 }

@@ -61,7 +61,7 @@ static void encoders_and_loops(void)
     REFUSED(epcio_set_compare(&card, -1, true, 0), EPCIO_BAD_AXIS);
     REFUSED(epcio_set_latch(&card, 9, 1, false), EPCIO_BAD_AXIS);
     REFUSED(epcio_set_latch(&card, 0, 1u << LATCH_SOURCES, false), EPCIO_BAD_MASK);
-    REFUSED(epcio_clear_loops(&card, 1u << 6), EPCIO_BAD_MASK);
+    REFUSED(epcio_clear_loops(&card, 1u << 7), EPCIO_BAD_MASK);
     struct epcio_host host = {.gain = {65535}};
     CHECK_EQ(epcio_set_host(&card, &host), EPCIO_OK);
     host.gain[5] = 65536;
