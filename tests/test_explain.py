@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import FMUS, ROOT
-from contour_runs import Machine, Program, run_along
+from contour_runs import Machine, Program, lag_error, run_along
 from typer.testing import CliRunner
 
 import motionfmu
 from motionfmu import fmus
-from motionfmu.contour import analyse
+from motionfmu.contour import ContourInput, analyse
 from motionfmu.errors import InputError
-from motionfmu.explain import causes, explain, servo, signature
+from motionfmu.explain import causes, decompose, explain, servo, signature, theory
 from motionfmu.explain.expression import evaluate
 from motionfmu.explain.servo import Axis
 
@@ -126,6 +126,42 @@ def test_an_injected_cause_is_named_first_with_its_size(name: str, tmp_path: Pat
     assert np.allclose(found.together + found.residual, found.whole)
     if effect.without is not None:
         assert effect.without < numbers["contour_error"]["max"]
+
+
+def test_only_what_a_lead_error_does_across_the_path_counts(tmp_path: Path) -> None:
+    """An X that travels too far along X leaves the path where it is; at 45 degrees it does not."""
+    file, slope = tmp_path / "program.ngc", 3e-3
+    for program, expected in (
+        ("G21 G90 G61\nG1 X40 F9000\nM30\n", 0.0),
+        ("G21 G90 G61\nG1 X10 F9000\nX20 Y10\nM30\n", slope * 20.0 * math.sqrt(0.5)),
+    ):
+        file.write_text(program)
+        set_ = {"mcc.program": str(file), "machine.lead_error_slope": first(slope, 0.0)}
+        result = motionfmu.load(ROOT / "scenarios/circle").run(set=set_, stop=0.9)
+        said = theory.Book(result, result.contour()).of("scale").value
+        assert said == pytest.approx(expected, abs=1e-12)
+
+
+def test_places_after_a_rest_do_not_count() -> None:
+    """From a rest on, the places that the tool passes within the servo window are left out."""
+    speed, gain, step = 50.0, 50.0, 1e-3
+    path = Program(0.0, 0.0).line(20.0, 0.0).line(20.0, 20.0).path()
+    ramp = speed * step * np.arange(1, 401)
+    way = np.concatenate([np.zeros(300), ramp, np.full(400, 20.0), 20.0 + ramp, np.full(300, 40.0)])
+    commanded = np.zeros((len(way), 6))
+    commanded[:, 0], commanded[:, 1] = np.minimum(way, 20.0), np.maximum(way - 20.0, 0.0)
+    actual = commanded.copy()
+    for i in range(2):
+        actual[:, i] -= lag_error(commanded[:, i], gain, step)
+    command = np.where(np.arange(len(way)) < 1080, 1, 2)
+    run = analyse(ContourInput(path, step * np.arange(len(way)), actual, commanded, command))
+    along = np.linspace(0.0, 40.0, 4001)
+    counts = decompose._counted(run, along)
+    passed = speed * (run.window - (1.0 - math.exp(-gain * run.window)) / gain)
+    assert 3.5 < passed < 4.5
+    for start in (0.0, 20.0):
+        assert not counts[(along > start) & (along < start + passed - 0.1)].any()
+        assert counts[(along > start + passed + 0.1) & (along < start + 19.9)].all()
 
 
 @pytest.fixture(scope="module")

@@ -25,6 +25,20 @@ def multisine(peak: float, settle: int = 8) -> freq.Excitation:
     return freq.multisine(N, LINES, peak, settle=settle, measure=2)
 
 
+def test_a_multisine_goes_up_to_half_the_sampling_rate() -> None:
+    for n in (8, 9):
+        top = n // 2
+        signal = freq.multisine(n, np.array([top]), 3.0).signal
+        assert np.abs(signal).max() == pytest.approx(3.0)
+        found = np.abs(np.fft.rfft(signal))
+        assert np.delete(found, top) == pytest.approx(0.0, abs=1e-12) and found[top] > n
+        for line in (0, top + 1):
+            with pytest.raises(
+                ValueError, match=f"lines of a period of {n} samples are 1 to {top}"
+            ):
+                freq.multisine(n, np.array([1, line]), 3.0)
+
+
 def errors(
     setup: freq.Setup, response: freq.Response, late: dict[str, int] | None = None
 ) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE, kp_of, theory
 
 from motionfmu import InputError, linear
 from motionfmu.linear import law
+from motionfmu.linear.block import Plant
 from motionfmu.linear.loops import feedbacks, largest_gain
 from motionfmu.linear.margins import margins
 from motionfmu.modelica import causal, description
@@ -21,6 +22,25 @@ ENC = "card.enc_phase"
 PLANTS = sorted(
     p.parent.name for p in ROOT.glob("fmus/*/fmu.toml") if "\nmodelica" in p.read_text()
 )
+
+
+def test_a_plant_is_the_same_in_any_pieces() -> None:
+    """Inputs are read at the instants k h, [from, to) of a step, and held for h: brute force."""
+    draw = np.random.default_rng(3)
+    f, g = draw.normal(size=(2, 2)) * 0.4, draw.normal(size=(2, 1))
+    show = draw.normal(size=(1, 2)), np.zeros((1, 1))
+    plant = Plant(("u",), ("a", "b"), ("y",), 4, (f, g), show)
+    for pieces in ([4] * 12, [8, 12, 28], [1] * 48, [3] * 16, [5, 7, 2, 10, 1, 23], [6] * 8):
+        work, clock = plant.begin(np.zeros((3, 1))), 0
+        x, held = np.zeros((2, 1)), np.zeros((1, 1))
+        for k, piece in enumerate(pieces):
+            u = np.array([[math.sin(1.0 + k)]])
+            work = plant.run(work, u, (clock, clock + piece))
+            for now in range(clock, clock + piece):
+                held = u if now % 4 == 0 else held
+                x = f @ x + g @ held if (now + 1) % 4 == 0 else x
+            clock += piece
+            assert work == pytest.approx(np.vstack([x, held]), rel=1e-12), (pieces, clock)
 
 
 @pytest.mark.parametrize("more", [0, 1, 4])

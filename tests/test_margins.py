@@ -93,6 +93,32 @@ def test_a_gain_beyond_its_margin_is_unstable() -> None:
     assert margins(1.2 * top * loop).gain_down == pytest.approx(1.0 / 1.2)
 
 
+def test_the_margins_are_the_nearest_of_several() -> None:
+    """Three integrators, two leads: stable in two ranges of the gain, by the closed loop's poles."""
+    num = np.poly([-1.0, -1.2, -100.0, -120.0])
+    den = np.poly([0.0, 0.0, 0.0, -10.0, -12.0, -1000.0])
+    at_300 = control.tf(num, den)(300j)
+    num = num / abs(at_300)  # crosses 1 at 300 rad/s, above its three crossings of -180 degrees
+
+    def stable(gain: float) -> bool:
+        return bool(np.roots(np.polyadd(den, gain * num)).real.max() < 0.0)
+
+    def edge(low: float, high: float) -> float:
+        for _ in range(60):
+            middle = math.sqrt(low * high)
+            low, high = (middle, high) if stable(middle) == stable(low) else (low, middle)
+        return low
+
+    edges = [edge(1e-5, 1e-4), edge(1e-4, 1e-2), edge(1e-2, 1.0)]
+    assert [stable(g) for g in (1e-5, 1e-4, 1e-2, 1.0)] == [False, True, False, True]
+    found = margins(control.tf(num, den))
+    assert sorted(c.value for c in found.gain_crossings) == pytest.approx(edges, rel=1e-6)
+    assert found.gain_down == pytest.approx(edges[2], rel=1e-6)
+    found = margins(control.tf(2.0 * edges[0] * num, den))  # between the first two
+    assert found.gain_down == pytest.approx(0.5, rel=1e-6)
+    assert found.gain == pytest.approx(edges[1] / (2.0 * edges[0]), rel=1e-6)
+
+
 def test_a_loop_that_rings_at_half_the_sampling_rate() -> None:
     """k/(z - 1) without a delay: k < 2, at z = -1, the end of the curve."""
     found = margins(control.tf([0.5], [1.0, -1.0], 1e-3))

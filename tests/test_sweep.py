@@ -21,8 +21,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import motionfmu
+from motionfmu.scenario import Check
 from motionfmu.session import Session
-from motionfmu.sweep import Outcome, Study, Ways, axes, book, conduct, processes, study, worker
+from motionfmu.sweep import (
+    Outcome,
+    Study,
+    Ways,
+    axes,
+    book,
+    columns,
+    conduct,
+    processes,
+    study,
+    worker,
+)
 from motionfmu.system import End
 
 CIRCLE = ROOT / "scenarios/circle_theory"
@@ -180,6 +192,21 @@ def test_contour_figures_and_checks_become_columns() -> None:
     names = [c.name for c in found.columns]
     assert names[-1] == "contour.circles.0.ccw.radius_change"
     assert "mcc.error.absmax" in names and "mcc.done.final" in names
+
+
+def test_a_check_of_one_element_becomes_a_column_of_it() -> None:
+    scenario = motionfmu.load(ROOT / "scenarios/fifo_doubled")
+    names = [c.name for c in columns.usual(scenario)]
+    assert [n for n in names if "[" in n] == [
+        "card.pulse_count[1].final",
+        "card.stock[1].min",
+        "card.stock[1].max",
+    ]
+    assert {"card.frames_refused.max", "mcc.services.final"} < {*names}
+    every = Check(final=0.0)
+    scenario.document.body.check["card.err_count"] = every
+    names = [c.name for c in columns.usual(scenario)]
+    assert names[-6:] == [f"card.err_count[{i}].final" for i in range(1, 7)]
 
 
 def test_the_radius_of_each_row_is_the_one_of_theory(tmp_path: Path, here) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import control
 import numpy as np
 import pytest
 from conftest import ROOT
@@ -20,7 +21,7 @@ from motionfmu.run import Options
 from motionfmu.tune import RanAway, Tuned, problem, read, tune
 from motionfmu.tune.axis import AxisStudy, Signals
 from motionfmu.tune.choice import Variable
-from motionfmu.tune.curve import margin
+from motionfmu.tune.curve import Loop, margin
 from motionfmu.tune.solve import solve
 from motionfmu.tune.steps import lifted, scan
 from motionfmu.tune.study import Study, Values
@@ -102,6 +103,27 @@ def test_slopes_are_differences(axis: AxisStudy, gains: np.ndarray) -> None:
         slopes = margin(axis.loop(name, gains)).slopes.T
         expected = differences(lambda g, n=name: margin(axis.loop(n, g)).values, gains)
         agree(slopes, expected, 1e-4)
+
+
+@pytest.mark.parametrize("lead", [0.0, 3.0])
+def test_the_slope_of_a_phase_on_either_side(lead: float) -> None:
+    """1/s^2 held between samples lacks phase; with a lead it has some: both margins by differences."""
+    plant = control.c2d(control.ss([[0, 1], [0, 0]], [[0], [1]], [[1, lead]], 0), 0.01)
+
+    def loop(gain: float) -> Loop:
+        none = np.zeros((1, 2, 2)), np.zeros((1, 2, 1))
+        matrices = plant.A, plant.B, gain * plant.C, gain * plant.D
+        return Loop(*matrices, *none, plant.C[None], plant.D[None], 0.01)
+
+    at, h = 2.0, 1e-5
+    found, up, down = margin(loop(at)), margin(loop(at + h)).values, margin(loop(at - h)).values
+    w = np.geomspace(0.1, 300.0, 100_000)
+    values = loop(at).value(w)
+    crossing = int(np.flatnonzero(np.abs(values) > 1.0)[-1])
+    lag = np.angle(-values[crossing])
+    assert (lag < 0.0) == (lead == 0.0)
+    assert found.values[3] == pytest.approx(abs(lag), rel=1e-3)
+    assert found.slopes[3, 0] == pytest.approx((up[3] - down[3]) / (2.0 * h), rel=1e-4)
 
 
 @pytest.mark.parametrize("gains", POINTS, ids=str)
@@ -310,6 +332,7 @@ def test_feed_forward_shortens_the_lag_and_leaves_the_step(tmp_path: Path) -> No
         ('cost = "iso"\n', r"t\.toml:1: cost = 'iso'"),
         ('axes = "each"\ngain = 3\n', r"t\.toml:2: gain = 3"),
         ('[bounds]\n"mcc.p_gain" = [5, 2]\n', r"t\.toml:2: bounds\.mcc\.p_gain = \[5.*, 2"),
+        ('[family]\n"machine.tau" = [2, 2]\n', r"t\.toml:2: family\.machine\.tau = \[2.*, 2"),
         ("[limits]\novershoot = -1\n", r"t\.toml:2: limits\.overshoot = -1"),
         ("axes = \n", r"t\.toml:1: "),
     ],

@@ -284,6 +284,65 @@ static void test_states(void)
     call_free(b);
 }
 
+/* Equal values are equal bytes: nothing is left of a longer string. */
+static void test_states_of_equal_values(void)
+{
+    void *c[2] = {make(), make()}, *state[2] = {NULL, NULL};
+    char bytes[2][4096];
+    size_t size = 0;
+    CHECK(call_set_name(c[1], "a much longer name than before") == 0);
+    for (int i = 0; i < 2; i++) {
+        CHECK(call_set_name(c[i], "x") == 0);
+        CHECK(call_enter(c[i], 0.0, -1.0) == 0 && call_exit(c[i]) == 0);
+        CHECK(call_get_state(c[i], &state[i]) == 0);
+        size = call_state_size(c[i], state[i]);
+        CHECK(size <= sizeof bytes[i] && call_serialize(c[i], state[i], bytes[i], size) == 0);
+    }
+    CHECK(memcmp(bytes[0], bytes[1], size) == 0);
+    for (int i = 0; i < 2; i++) {
+        call_free_state(c[i], &state[i]);
+        call_free(c[i]);
+    }
+}
+
+/* A tunable parameter is none that a blob is made of: back to another value of it, the blob stays. */
+static void test_state_with_another_tunable(void)
+{
+    void *c = make_running(0.0, -1.0), *state = NULL;
+    const double trim = 7.0;
+    CHECK(call_get_state(c, &state) == 0);
+    CHECK(call_step(c, 0.0, 1e-3) == 0);
+    const double y = y_of(c);
+    CHECK(call_set_state(c, state) == 0 && call_set_real(c, REF_TRIM, 1, &trim) == 0);
+    CHECK(call_step(c, 0.0, 1e-3) == 0 && y_of(c) == y + trim);
+    const int before = opens;
+    CHECK(call_set_state(c, state) == 0 && opens == before);
+    CHECK(call_step(c, 0.0, 1e-3) == 0 && y_of(c) == y);
+    call_free_state(c, &state);
+    call_free(c);
+}
+
+/* Three added steps of 0.1 s end at 0.30000000000000004 s: that is no step beyond 0.3 s; nor are
+ * half a clock more, but a whole one is. */
+static void test_the_last_step(void)
+{
+    void *c = make_running(0.0, 0.3);
+    double time = 0.0;
+    for (int i = 0; i < 3; i++) {
+        CHECK(call_step(c, time, 0.1) == 0);
+        time += 0.1;
+    }
+    CHECK(time > 0.3);
+    CHECK_REFUSED(call_step(c, time, FMU_TICK_NS * 1e-9), "passes stopTime 0.3 s");
+    call_free(c);
+    c = make_running(0.0, 1e-3 - 0.4e-9 * FMU_TICK_NS);
+    CHECK(call_step(c, 0.0, 1e-3) == 0);
+    call_free(c);
+    c = make_running(0.0, 1e-3 - 0.6e-9 * FMU_TICK_NS);
+    CHECK_REFUSED(call_step(c, 0.0, 1e-3), "passes stopTime");
+    call_free(c);
+}
+
 /* A state whose blob cannot be made is refused, and the instance runs on as it was. */
 static void test_state_with_another_blob(void)
 {
@@ -334,6 +393,9 @@ static int test_all(void)
     test_an_hour_of_added_doubles();
     test_logging();
     test_states();
+    test_states_of_equal_values();
+    test_state_with_another_tunable();
+    test_the_last_step();
     test_state_with_another_blob();
     test_own();
     CHECK(blobs_open == 0);
