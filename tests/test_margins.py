@@ -94,7 +94,7 @@ def test_a_gain_beyond_its_margin_is_unstable() -> None:
 
 
 def test_the_margins_are_the_nearest_of_several() -> None:
-    """Three integrators, two leads: stable in two ranges of the gain, by the closed loop's poles."""
+    """Three integrators, two leads: stable in two ranges of the gain, by the closed poles."""
     num = np.poly([-1.0, -1.2, -100.0, -120.0])
     den = np.poly([0.0, 0.0, 0.0, -10.0, -12.0, -1000.0])
     at_300 = control.tf(num, den)(300j)

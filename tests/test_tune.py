@@ -107,7 +107,7 @@ def test_slopes_are_differences(axis: AxisStudy, gains: np.ndarray) -> None:
 
 @pytest.mark.parametrize("lead", [0.0, 3.0])
 def test_the_slope_of_a_phase_on_either_side(lead: float) -> None:
-    """1/s^2 held between samples lacks phase; with a lead it has some: both margins by differences."""
+    """1/s^2 held between samples lacks phase, with a lead it has some: both by differences."""
     plant = control.c2d(control.ss([[0, 1], [0, 0]], [[0], [1]], [[1, lead]], 0), 0.01)
 
     def loop(gain: float) -> Loop:
