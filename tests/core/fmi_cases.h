@@ -305,20 +305,23 @@ static void test_states_of_equal_values(void)
     }
 }
 
-/* A tunable parameter is none that a blob is made of: back to another value of it, the blob stays. */
+/* A tunable parameter is none that a blob is made of: with another value of it the blob stays. */
 static void test_state_with_another_tunable(void)
 {
-    void *c = make_running(0.0, -1.0), *state = NULL;
+    void *c = make_running(0.0, -1.0), *state[2] = {NULL, NULL};
     const double trim = 7.0;
-    CHECK(call_get_state(c, &state) == 0);
-    CHECK(call_step(c, 0.0, 1e-3) == 0);
-    const double y = y_of(c);
-    CHECK(call_set_state(c, state) == 0 && call_set_real(c, REF_TRIM, 1, &trim) == 0);
-    CHECK(call_step(c, 0.0, 1e-3) == 0 && y_of(c) == y + trim);
+    CHECK(call_get_state(c, &state[0]) == 0);
+    CHECK(call_set_real(c, REF_TRIM, 1, &trim) == 0 && call_get_state(c, &state[1]) == 0);
     const int before = opens;
-    CHECK(call_set_state(c, state) == 0 && opens == before);
-    CHECK(call_step(c, 0.0, 1e-3) == 0 && y_of(c) == y);
-    call_free_state(c, &state);
+    double y[2];
+    for (int i = 0; i < 2; i++) {
+        CHECK(call_set_state(c, state[i]) == 0 && opens == before);
+        CHECK(call_step(c, 0.0, 1e-3) == 0);
+        y[i] = y_of(c);
+    }
+    CHECK(y[1] == y[0] + trim);
+    call_free_state(c, &state[0]);
+    call_free_state(c, &state[1]);
     call_free(c);
 }
 
