@@ -155,7 +155,7 @@ def test_stiffness_is_seen_across_the_gap(ball_screw):
     ode = causal.load(PACKAGE, "MotionControl.BallScrewAxis")
     stiff = {"screw_stiffness": 1e13, "table_mass": 10.0}
     touching, largest = ode.initial(ode.values(**stiff)), []
-    touching[[d.name for d in ode.states].index("motor.phi")] = 1e-3  # the screw is stretched
+    touching[[d.name for d in ode.states].index("rotor.angle")] = 1e-3  # the screw is stretched
     for x in (ode.initial(ode.values(**stiff)), touching):
         a = ode.linear(x, np.zeros(2), ode.values(**stiff))[0]
         largest.append(np.abs(np.linalg.eigvals(a)).max())
