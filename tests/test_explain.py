@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shutil
 import zipfile
 from dataclasses import replace
@@ -194,9 +195,12 @@ def test_a_ballbar_sees_squareness(recorded, shear: float) -> None:
     test = changed(recorded, x=lambda x, y: x + shear * y)
     mark = signature(test, recorded.lag)
     assert mark.findings[0].name == "squareness"
-    assert mark.findings[0].size == pytest.approx(abs(shear) * 50.0 / 2.0, rel=0.05)
-    angle = "less" if shear > 0.0 else "more"
-    assert f"at {angle} than 90° by {abs(shear) * 1e6:.2g}"[:20] in mark.words()[0]
+    # x + k y turns r into r (1 + k/2 sin 2a) but for k^2; r is less than nominal by the lag.
+    radius = 50.0 + mark.mean
+    assert mark.findings[0].size == pytest.approx(abs(shear) / 2.0 * radius, rel=1e-4)
+    side, angle = re.search(r"at (\w+) than 90° by (\d+) µrad", mark.words()[0]).groups()
+    assert side == ("less" if shear > 0.0 else "more")
+    assert float(angle) == float(f"{abs(shear) * 1e6 * radius / 50.0:.3g}")
 
 
 @pytest.mark.parametrize(("axis", "slope"), [("X", 1.5e-3), ("Y", 2e-3)])

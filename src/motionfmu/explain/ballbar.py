@@ -226,12 +226,18 @@ def _mismatch(size: float, test: CircularTest, names: tuple[str, str]) -> tuple[
     return "mismatch", abs(size), words
 
 
+def _figures(x: float) -> str:
+    """Three figures, never with a power of ten."""
+    return f"{float(f'{x:.3g}'):.10g}"
+
+
 def _squareness(size: float, radius: float, names: tuple[str, str]) -> tuple[str, float, str]:
     angle = 2.0 * size / radius
+    shown = _figures(abs(angle) * 1e6)
     more = "less" if angle > 0.0 else "more"
     words = (
         f"Squareness, {_um(size)}: an oval at 45° that is the same both ways round. {names[0]} and"
-        f" {names[1]} stand at {more} than 90° by {abs(angle) * 1e6:.3g} µrad: align the axes, or"
+        f" {names[1]} stand at {more} than 90° by {shown} µrad: align the axes, or"
         " compensate."
     )
     return "squareness", abs(size), words
@@ -239,9 +245,10 @@ def _squareness(size: float, radius: float, names: tuple[str, str]) -> tuple[str
 
 def _scale(size: float, radius: float, names: tuple[str, str]) -> tuple[str, float, str]:
     long, short = names if size > 0.0 else names[::-1]
+    share = _figures(2e6 * abs(size) / radius)
     words = (
         f"Scale, {_um(size)}: an oval along the axes, the same both ways round. {long} travels"
-        f" {_um(2.0 * size)} more over the radius than {short}, {2e6 * abs(size) / radius:.3g}"
+        f" {_um(2.0 * size)} more over the radius than {short}, {share}"
         " µm/m: pitch of a screw, temperature, or pulses per mm."
     )
     return "scale", abs(size), words
