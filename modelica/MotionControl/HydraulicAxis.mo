@@ -12,7 +12,7 @@ model HydraulicAxis
     "Deadband: stroke at which an edge opens, as a share of the full stroke";
   parameter Real valve_rounding(unit = "1", min = 1e-9, max = 0.5) = 2e-3
     "Width of the corner of the deadband, as a share of the full stroke";
-  parameter Real rated_flow(unit = "m3/s", min = 0) = 1.667e-4
+  parameter Real rated_flow(unit = "m3/s", min = 1e-15) = 1.667e-4
     "Flow through one edge at the full stroke and the rated drop";
   parameter Real rated_drop(unit = "Pa", min = 1) = 35e5 "Rated pressure drop over one edge";
   parameter Real laminar_drop(unit = "Pa", min = 1) = 1e5
@@ -29,6 +29,11 @@ model HydraulicAxis
   parameter Real cylinder_leakage(unit = "m3.s-1.Pa-1", min = 0) = 1e-12
     "Leakage past the piston per pressure difference";
   parameter Real table_mass(unit = "kg", min = 1e-9) = 100 "Mass of piston, table and load";
+  parameter Real clearance(unit = "m", min = 0) = 0
+    "Lost motion between rod and table; 0: they are one body";
+  parameter Real rod_mass(unit = "kg", min = 1e-9) = 5 "Part of the mass on the rod's side of it";
+  parameter Real joint_stiffness(unit = "N/m", min = 1) = 1e8 "Of rod and table in contact";
+  parameter Real joint_damping(unit = "N.s/m", min = 0) = 1e4 "Of rod and table in contact";
   parameter Real table_coulomb(unit = "N", min = 0) = 200 "Friction while sliding fast";
   parameter Real table_static(unit = "N", min = 0) = 300 "Friction at break-away";
   parameter Real table_stribeck_speed(unit = "m/s", min = 1e-9) = 1e-2
@@ -56,8 +61,10 @@ model HydraulicAxis
   output Real flow_a(unit = "m3/s") "Oil from the valve into chamber a";
   output Real flow_b(unit = "m3/s") "Oil from the valve into chamber b";
   output Real supply_flow(unit = "m3/s") "Oil taken from the pump";
-  output Real stop_force(unit = "N") "Force of the end stops on the table";
+  output Real stop_force(unit = "N") "Force of the end stops on the piston";
   output Boolean home "Home switch: the table is at or below the home position";
+  output Real rod_position(unit = "m") "Position of piston and rod";
+  output Real rod_phase(unit = "1") "A scale like that of the table, on the rod [line periods]";
 protected
   ServoAmplifier amplifier(gain = amplifier_gain, limit = current_limit, tau = current_time)
     "Amplifier of the valve";
@@ -73,30 +80,40 @@ protected
     large_pressure = supply_pressure,
     start_pressure_a = (supply_pressure + tank_pressure)*area_b/(area_a + area_b),
     start_pressure_b = (supply_pressure + tank_pressure)*area_a/(area_a + area_b)) "Cylinder";
-  Slide table(mass = table_mass, coulomb = table_coulomb, static = table_static,
-    stribeck_speed = table_stribeck_speed, viscous = table_viscous, rest_speed = table_rest_speed,
+  Slide table(mass = if clearance > 0 then table_mass - rod_mass else table_mass,
+    coulomb = table_coulomb, static = table_static, stribeck_speed = table_stribeck_speed,
+    viscous = table_viscous, rest_speed = table_rest_speed,
     start_position = start_position, position(nominal = upper_stop - lower_stop),
     speed(nominal = rated_flow/area_a*sqrt((supply_pressure - tank_pressure)/(2*rated_drop))))
     "Table";
+  Clearance joint(mass = rod_mass, stiffness = joint_stiffness, damping = joint_damping,
+    clearance = clearance, ahead(nominal = upper_stop - lower_stop),
+    rate(nominal = rated_flow/area_a*sqrt((supply_pressure - tank_pressure)/(2*rated_drop))))
+    "Between rod and table";
   EndStops stops(lower = lower_stop, upper = upper_stop, stiffness = stop_stiffness,
     damping = stop_damping) "Both ends";
   LinearScale scale(pitch = scale_pitch, offset = scale_offset) "On the table";
+  LinearScale rod_scale(pitch = scale_pitch, offset = scale_offset) "On the rod";
 equation
   assert(table_static >= table_coulomb, "table_static must not be below table_coulomb");
   assert(upper_stop > lower_stop, "upper_stop must be above lower_stop");
   assert(start_position >= lower_stop and start_position <= upper_stop,
     "start_position must be between lower_stop and upper_stop");
+  assert(clearance <= 0 or rod_mass < table_mass, "rod_mass must be below table_mass");
   assert(supply_pressure > tank_pressure, "supply_pressure must be above tank_pressure");
   connect(pump.port, valve.supply);
   connect(tank.port, valve.tank);
   connect(valve.a, cylinder.a);
   connect(valve.b, cylinder.b);
-  connect(cylinder.rod, table.flange);
-  connect(stops.flange, table.flange);
+  connect(cylinder.rod, joint.a);
+  connect(stops.flange, joint.a);
+  connect(joint.b, table.flange);
   amplifier.voltage = voltage;
   valve.current = amplifier.current;
   table.load = load_force;
+  joint.acceleration = der(table.speed);
   scale.position = table.position;
+  rod_scale.position = joint.a.s;
   scale_phase = scale.phase;
   position = table.position;
   velocity = table.speed;
@@ -109,4 +126,6 @@ equation
   supply_flow = valve.supply.q;
   stop_force = stops.force;
   home = table.position <= home_position;
+  rod_position = joint.a.s;
+  rod_phase = rod_scale.phase;
 end HydraulicAxis;
