@@ -39,7 +39,7 @@ RUNS = settings(
 LIBRARY = ctypes.CDLL(os.environ.get("CARD_BRUTE", str(ROOT / "build" / "lib" / "card_brute.so")))
 AXES, ENCODERS, PAGES, DEPTH = 6, 9, 9, 63
 UNIT = 64  # phases are whole 64ths of a line period
-SOURCES = [0x7F, 0x3F, 0x3F, 0x3F, 0, 0, 0, 0xFFFF, 0x3F]
+SOURCES = [0x7F, 0x3F, 0x3F, 0x3F, 0, 0, 0, 0xFFFF, 0x7F]
 BAD_WRITES = 37
 RESET_DDA, RESET_ENC, RESET_LIO, RESET_PCL, RESET_PERI, RESET_ALL = 1, 2, 6, 7, 9, 10
 
@@ -99,7 +99,7 @@ pages = st.sampled_from(["all", "none", "dda", "enc", "cycle", "slow"]).map(
         "dda": [0x3F] + [0] * 8,
         "enc": [0, 0x3F, 0x3F, 0x3F] + [0] * 5,
         "cycle": [0x40] + [0] * 8,
-        "slow": [0] * 7 + [0xFFFF, 0x3F],
+        "slow": [0] * 7 + [0xFFFF, 0x7F],
     }.__getitem__
 )
 # rate, wiring, filter [clocks], index_lines
@@ -154,6 +154,7 @@ class Cards(RuleBasedStateMachine):
         self.seq = 0
         self.sent: dict[int, list[list[int]]] = {}  # transactions on their way
         self.frames_sent = 0
+        self.command = 2**31 - 60  # [pulses] of the seventh error counter, near the end of 32 bits
         self.taken = [0] * AXES  # [pulses] commands of the frames taken
         self.gone = [0] * AXES  # [pulses] commands erased or shifted out
         self.read: tuple[list[int], list[int]] | None = None  # flags and firings at the latest look
@@ -175,6 +176,8 @@ class Cards(RuleBasedStateMachine):
         self.cards = [Card(p, setup, self.phase) for p in ("card", "tick")]
         self.both("set_dda", 10, 1)
         self.both("set_mask", mask)
+        self.both("set_loops", 127)
+        self.both("set_command", self.command)
         for i in range(ENCODERS):
             self.both("set_latch", i, 1 << (i + 3) % 11, i % 2)
         for what in refills:
@@ -342,13 +345,20 @@ class Cards(RuleBasedStateMachine):
         for i in encoders:
             self.both("set_latch", i, source, int(last))
 
-    @rule(axes=st.integers(0, 63))
-    def loops(self, axes) -> None:
-        self.both("set_loops", axes)
+    @rule(loops=st.integers(0, 127))
+    def loops(self, loops) -> None:
+        self.both("set_loops", loops)
 
-    @rule(axes=st.integers(0, 63))
-    def clear_loops(self, axes) -> None:
-        self.both("clear_loops", axes)
+    @rule(loops=st.integers(0, 127))
+    def clear_loops(self, loops) -> None:
+        self.both("clear_loops", loops)
+
+    @rule(by=st.one_of(st.integers(-40, 40), st.sampled_from([-(2**30), 2**30])), clocks=span)
+    def command_moves(self, by, clocks) -> None:
+        """Of the seventh error counter, round the end of its 32 bits too."""
+        self.command += by
+        self.both("set_command", self.command)
+        self.instants(clocks, 1)
 
     # Local I/O, timer, watchdog.
 

@@ -171,17 +171,24 @@ int64_t card_set_latch(void *card, int64_t encoder, int64_t source, int64_t keep
     return plain(epcio_set_latch(card, (int)encoder, (uint32_t)source, keep_last != 0));
 }
 
-int64_t card_set_loops(void *card, int64_t axes)
+int64_t card_set_loops(void *card, int64_t loops)
 {
-    struct epcio_host host = {.gain = {0}};
-    for (int i = 0; i < TICK_AXES; i++)
-        host.loop_on[i] = (axes >> i & 1) != 0;
+    struct epcio_host host = {.command = ((const struct epcio *)card)->host.command};
+    for (int i = 0; i < TICK_LOOPS; i++)
+        host.loop_on[i] = (loops >> i & 1) != 0;
     return plain(epcio_set_host(card, &host));
 }
 
-int64_t card_clear_loops(void *card, int64_t axes)
+int64_t card_clear_loops(void *card, int64_t loops)
 {
-    return plain(epcio_clear_loops(card, (uint32_t)axes));
+    return plain(epcio_clear_loops(card, (uint32_t)loops));
+}
+
+int64_t card_set_command(void *card, int64_t command)
+{
+    struct epcio_host host = ((const struct epcio *)card)->host;
+    host.command = (int32_t)(uint32_t)(uint64_t)command;
+    return plain(epcio_set_host(card, &host));
 }
 
 int64_t card_set_local(void *card, const int64_t *set)
@@ -288,7 +295,7 @@ static enum epcio_status bad_encoder(struct epcio *card, int k, int *want)
     case 8: return epcio_set_compare(card, -1, true, 1);
     case 9: return epcio_set_latch(card, EPCIO_ENCODERS, 1, false);
     case 10: return epcio_set_latch(card, 0, 1u << LATCH_SOURCES, false);
-    default: return epcio_clear_loops(card, 1u << EPCIO_AXES);
+    default: return epcio_clear_loops(card, 1u << EPCIO_LOOPS);
     }
     return epcio_set_encoder(card, 0, &c);
 }
@@ -378,6 +385,8 @@ static void view_axes(const struct epcio *c, struct view *v)
         v->stock[i] = f->stock;
         for (int k = 0; k < f->stock; k++)
             v->queue[TICK_DEPTH * i + k] = f->entry[(f->head + k) % FIFO_DEPTH];
+    }
+    for (int i = 0; i < TICK_LOOPS; i++) {
         v->error[i] = c->loop[i].error;
         v->over[i] = c->loop[i].over;
     }

@@ -106,15 +106,17 @@ int64_t tick_refresh_watchdog(void *card)
 void tick_control(void *card)
 {
     struct tick *m = card;
-    for (int i = 0; i < TICK_AXES; i++) {
+    for (int i = 0; i < TICK_LOOPS; i++) {
         struct loop *p = &m->loop[i];
-        int64_t away = m->pulses[i] - m->encoder[i].count;
-        if (!m->active[i])
+        int64_t away = (i == 6 ? m->told : m->pulses[i]) - m->encoder[i].count;
+        if (i < 6 && !m->active[i])
             continue;
         if (p->wanted && !p->on)
             p->zero = away;
         p->on = p->wanted;
         p->error = p->on ? away - p->zero : 0;
+        if (llabs(p->error) > INT32_MAX)
+            p->error = p->error < 0 ? -INT32_MAX : INT32_MAX;
         bool was_over = p->over;
         p->over = p->on && llabs(p->error) >= m->limit;
         if (p->over && !was_over)
@@ -122,20 +124,26 @@ void tick_control(void *card)
     }
 }
 
-int64_t tick_clear_loops(void *card, int64_t axes)
+int64_t tick_clear_loops(void *card, int64_t loops)
 {
     struct tick *m = card;
-    for (int i = 0; i < TICK_AXES; i++)
-        if (axes >> i & 1)
+    for (int i = 0; i < TICK_LOOPS; i++)
+        if (loops >> i & 1)
             m->loop[i] = (struct loop){.wanted = m->loop[i].wanted};
     return TICK_OK;
 }
 
-int64_t tick_set_loops(void *card, int64_t axes)
+int64_t tick_set_loops(void *card, int64_t loops)
 {
     struct tick *m = card;
-    for (int i = 0; i < TICK_AXES; i++)
-        m->loop[i].wanted = (axes >> i & 1) != 0;
+    for (int i = 0; i < TICK_LOOPS; i++)
+        m->loop[i].wanted = (loops >> i & 1) != 0;
+    return TICK_OK;
+}
+
+int64_t tick_set_command(void *card, int64_t command)
+{
+    ((struct tick *)card)->told = command;
     return TICK_OK;
 }
 
@@ -265,6 +273,8 @@ static void view_axes(const struct tick *m, struct view *v)
         v->stock[i] = m->fifo[i].stock;
         for (int k = 0; k < m->fifo[i].stock; k++)
             v->queue[TICK_DEPTH * i + k] = m->fifo[i].command[k];
+    }
+    for (int i = 0; i < TICK_LOOPS; i++) {
         v->error[i] = m->loop[i].error;
         v->over[i] = m->loop[i].over;
     }

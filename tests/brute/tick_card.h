@@ -11,6 +11,7 @@
 
 enum {
     TICK_AXES = 6,
+    TICK_LOOPS = 7,
     TICK_ENCODERS = 9,
     TICK_DEPTH = 63,        /* commands in a FIFO */
     TICK_FRAMES = 16,       /* frames in a transaction */
@@ -49,7 +50,7 @@ enum tick_status {
     X(index_seen, 9) X(index_clock, 9) X(index_count, 9)                                        \
     X(reached, 9) X(compare_clock, 9)                                                           \
     X(latch_armed, 9) X(latch_seen, 9) X(latch_value, 9) X(latch_clock, 9)                      \
-    X(error, 6) X(over, 6)                                                                      \
+    X(error, 7) X(over, 7)                                                                      \
     X(inputs, 1) X(off, 1)                                                                      \
     X(timer_count, 1) X(timer_now, 1)                                                           \
     X(expired, 1) X(resetting, 1) X(watchdog_count, 1)                                          \
@@ -74,7 +75,8 @@ const char *view_layout(void);
  *              straight line; inputs: ldi, dfi, up, down, stop
  * erase        returns how many
  * shift_out    *command is what came out
- * set_loops    axes (bits) whose error counter is on
+ * set_loops    error counters (bits) that are on
+ * set_command  of the seventh; the card gets its low 32 bits
  * set_local    8 edges LDI, 7 edges DFI (0 rising, 1 falling, 2 both), dedicated, stop_enable, gate
  * reset_module the number as in registers.h */
 #define CARD_FUNCTIONS(P)                                                                       \
@@ -96,8 +98,9 @@ const char *view_layout(void);
     int64_t P##_clear_encoders(void *card, int64_t encoders);                                   \
     int64_t P##_set_compare(void *card, int64_t encoder, int64_t on, int64_t value);            \
     int64_t P##_set_latch(void *card, int64_t encoder, int64_t source, int64_t keep_last);      \
-    int64_t P##_set_loops(void *card, int64_t axes);                                            \
-    int64_t P##_clear_loops(void *card, int64_t axes);                                          \
+    int64_t P##_set_loops(void *card, int64_t loops);                                           \
+    int64_t P##_clear_loops(void *card, int64_t loops);                                         \
+    int64_t P##_set_command(void *card, int64_t command);                                       \
     int64_t P##_set_local(void *card, const int64_t *set);                                      \
     int64_t P##_set_timer(void *card, int64_t on, int64_t period);                              \
     int64_t P##_set_watchdog(void *card, int64_t on, int64_t value, int64_t reset);             \

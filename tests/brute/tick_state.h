@@ -71,7 +71,8 @@ struct tick {
     int64_t arrivals, arrived_seq[TICK_FRAMES], arrived_taken[TICK_FRAMES];
     struct counter encoder[TICK_ENCODERS];
     struct latched latch[TICK_ENCODERS];
-    struct loop loop[TICK_AXES];
+    struct loop loop[TICK_LOOPS];
+    int64_t told;                           /* command of the seventh */
     int64_t limit;
     int64_t edge[LDIS + DFIS], dedicated;
     bool stop_enable, gate, stop;
