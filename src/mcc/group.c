@@ -1,4 +1,4 @@
-#include "group.h"
+#include "group_parts.h"
 
 #include <string.h>
 
@@ -43,57 +43,90 @@ static bool valid(const struct groups *s, int group)
 /* Channels of a group begin or cease to be used. */
 static void use(struct groups *s, const struct group *g, bool used)
 {
+    struct group_card *c = &s->card[g->card];
+
     for (int i = 0; i < AXES; i++) {
-        if (g->channel[i] >= 0) {
-            s->card[g->card].machine.axis[g->channel[i]].used = used;
+        if (g->channel[i] >= 0 && g->voltage) {
+            c->dac[g->channel[i]].axis.used = used;
+            c->volts[g->channel[i]] = 0.0;
+        } else if (g->channel[i] >= 0) {
+            c->machine.axis[g->channel[i]].used = used;
         }
     }
 }
 
-/* The machine of a group: its motion, the channels' axes, the card's DDA time. */
+/* The machine of a group: its motion, the channels' axes, the card's DDA time. An axis it does not
+ * have is like one that it has. */
 static struct machine machine_of(const struct groups *s, int card, const int32_t channel[AXES],
-                                 const struct machine *motion)
+                                 bool voltage, const struct machine *motion)
 {
-    const struct machine *c = &s->card[card].machine;
+    const struct group_card *c = &s->card[card];
     struct machine m = *motion;
+    int32_t any = 0;
 
-    m.dda_time = c->dda_time;
-    m.dda_length = c->dda_length;
+    m.dda_time = c->machine.dda_time;
+    m.dda_length = c->machine.dda_length;
     for (int i = 0; i < AXES; i++) {
-        m.axis[i] = c->axis[channel[i] < 0 ? 0 : channel[i]];
+        any = voltage && channel[i] >= 0 ? channel[i] : any;
+    }
+    for (int i = 0; i < AXES; i++) {
+        const int32_t k = channel[i] < 0 ? any : channel[i];
+        m.axis[i] = voltage ? c->dac[k].axis : c->machine.axis[k];
         m.axis[i].used = channel[i] >= 0;
     }
     return m;
 }
 
-int group_create(struct groups *s, int card, const int32_t channel[AXES],
-                 const struct machine *motion)
+/* A group on channels that it may have. */
+static int create(struct groups *s, int card, const int32_t channel[AXES], bool voltage,
+                  const struct machine *motion)
 {
     int n = 0;
 
-    if (s->running) {
-        return MCC_COMMAND_NOTACCEPTED;
-    }
-    if (card < 0 || card >= GROUP_CARDS || !channels_free(s, card, channel)) {
-        return MCC_GROUP_PARAMETER;
-    }
     while (n < GROUP_MAX && s->group[n].used) {
         n++;
     }
     if (n == GROUP_MAX) {
         return MCC_GROUP_RAN_OUT;
     }
-    const struct machine m = machine_of(s, card, channel, motion);
+    const struct machine m = machine_of(s, card, channel, voltage, motion);
     struct group *g = &s->group[n];
     const int code = MCC_init_motion(&g->mcc, &m);
     if (code != MCC_NO_ERR) {
         return code;
     }
     g->used = true;
+    g->voltage = voltage;
     g->card = card;
     memcpy(g->channel, channel, sizeof g->channel);
     use(s, g, true);
     return n;
+}
+
+int group_create(struct groups *s, int card, const int32_t channel[AXES],
+                 const struct machine *motion)
+{
+    if (s->running) {
+        return MCC_COMMAND_NOTACCEPTED;
+    }
+    if (card < 0 || card >= GROUP_CARDS || !channels_free(s, card, channel)) {
+        return MCC_GROUP_PARAMETER;
+    }
+    const int code = group_dac_check_pulse(s, card, channel);
+    return code ? code : create(s, card, channel, false, motion);
+}
+
+int group_create_voltage(struct groups *s, int card, const int32_t dac[AXES],
+                         const struct machine *motion)
+{
+    if (s->running) {
+        return MCC_COMMAND_NOTACCEPTED;
+    }
+    if (card < 0 || card >= GROUP_CARDS) {
+        return MCC_GROUP_PARAMETER;
+    }
+    const int code = group_dac_check(s, card, dac);
+    return code ? code : create(s, card, dac, true, motion);
 }
 
 int group_close(struct groups *s, int group)
@@ -140,9 +173,15 @@ int groups_start(struct groups *s)
     if (s->running) {
         return MCC_COMMAND_NOTACCEPTED;
     }
+    for (int n = 0; n < GROUP_MAX; n++) {
+        struct group *g = &s->group[n];
+        any = any || g->used;
+        if (g->used && g->voltage) {
+            group_dac_start(s, g);
+        }
+    }
     for (int k = 0; k < GROUP_CARDS; k++) {
         struct group_card *c = &s->card[k];
-        any = any || groups_card_used(s, k);
         pcl_start(&c->pcl, &c->machine, s->config.min_stock, s->config.batch, &fifo_only);
     }
     s->running = any;
@@ -181,6 +220,12 @@ static void cycle(struct group *g, int64_t clock, const struct group_panel *pane
 
 /* --- What each card is given. ---------------------------------------------------------------- */
 
+/* A group whose frames go to the FIFO of a card. */
+static bool on_fifo(const struct group *g, int card)
+{
+    return g->used && !g->voltage && g->card == card;
+}
+
 static void look(struct groups *s, int card, const struct pcl_card *shows, int64_t now)
 {
     struct group_card *c = &s->card[card];
@@ -188,7 +233,7 @@ static void look(struct groups *s, int card, const struct pcl_card *shows, int64
 
     for (int n = 0; n < GROUP_MAX && taken >= 0; n++) {
         struct group *g = &s->group[n];
-        if (g->used && g->card == card) {
+        if (on_fifo(g, card)) {
             g->starved += pcl_release(&g->mcc, &g->part, taken);
         }
     }
@@ -220,7 +265,7 @@ static void serve(struct groups *s, int card, int64_t clock, int64_t publish)
     pcl_prepare(p);
     for (int n = 0; n < GROUP_MAX; n++) {
         struct group *g = &s->group[n];
-        if (g->used && g->card == card) {
+        if (on_fifo(g, card)) {
             pcl_merge(p, &g->mcc, g->channel, &g->part);
         }
     }
@@ -238,6 +283,9 @@ void groups_instant(struct groups *s, int64_t now, const struct pcl_card card[GR
     }
     for (int n = 0; n < GROUP_MAX; n++) {
         read_panel(&s->group[n], &panel[n]);
+        if (s->group[n].used && s->group[n].voltage) {
+            group_dac_instant(s, &s->group[n], now);
+        }
     }
     for (;;) {
         const int first = due(s, 1) < due(s, 0);

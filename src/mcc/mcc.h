@@ -27,6 +27,7 @@ enum mcc_return {
     MCC_PARAMETER           = -5,
     MCC_GROUP_PARAMETER     = -6,   /* no such group, or its channels cannot be */
     MCC_FEED_RATE           = -7,
+    MCC_VOLTAGE_COMMAND_CHANNEL = -9,   /* the DAC is the voltage command of an axis */
     MCC_HOME_COMMAND_NOTCALLED = -10,
     MCC_HOLD_ILLEGAL        = -11,
     MCC_CONTI_ILLEGAL       = -12,

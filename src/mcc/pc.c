@@ -5,7 +5,7 @@
 
 #include "reaction.h"
 
-static const double VOLTS_MAX = 10.0;   /* [V] range of the card's DAC */
+static const double VOLTS_MAX = VOLTAGE_RANGE;  /* [V] */
 
 /* What the modules are doing now is what others see. */
 static void show(struct pc *pc)

@@ -11,6 +11,8 @@
 #include "law.h"
 #include "pcl.h"
 
+enum { VOLTAGE_RANGE = 10 };    /* [V] of the card's DAC, both ways */
+
 struct voltage {
     struct law_config config;
     bool    special;        /* more than the P law is wanted */

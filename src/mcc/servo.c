@@ -1,0 +1,66 @@
+#include "servo.h"
+
+#include <string.h>
+
+#include "reaction.h"
+
+void servo_start(struct servo *s, const struct law_config *law, const struct machine *m,
+                 int64_t bus)
+{
+    struct law_config c = *law;
+
+    memset(s, 0, sizeof *s);
+    c.period = (double)bus / CLOCK_HZ;
+    for (int i = 0; i < AXES; i++) {
+        c.axis[i].on = m->axis[i].used;
+        if (i < 3) {
+            c.pulses_per_mm[i] = machine_pulses_per_mm(&m->axis[i]);
+        }
+    }
+    soft_dda_start(&s->dda, m);
+    voltage_start(&s->voltage, &c);
+}
+
+/* What the library sees of the machine: its own pulses in the place of the card's. */
+static void look(struct servo *s, struct mcc *m, const int32_t counts[AXES])
+{
+    struct signals raw = { 0 };
+
+    memcpy(raw.enc, counts, sizeof raw.enc);
+    memcpy(s->before, s->now, sizeof s->before);
+    memcpy(s->now, s->next, sizeof s->now);
+    m->signals = signals_turned(&raw, &m->machine);
+    for (int i = 0; i < AXES; i++) {
+        m->signals.pulses[i] = s->now[i];
+        m->signals.err[i] = (int32_t)((uint32_t)s->before[i] - (uint32_t)m->signals.enc[i]);
+    }
+}
+
+/* A DDA time begins: the next point, standstill without one. */
+static void take(struct servo *s, struct mcc *m)
+{
+    const bool any = m->queue.count > 0;
+    const struct pcl_part part = { .points = any, .late = !any && task_moving(m) };
+
+    soft_dda_next(&s->dda, &m->machine, any ? queue_peek(&m->queue, 0)->frame : NULL);
+    voltage_taken(&s->voltage, m, &part, 1);
+    s->starved += pcl_release(m, &part, 1);
+}
+
+void servo_instant(struct servo *s, struct mcc *m, int64_t now, int64_t bus,
+                   const int32_t counts[AXES])
+{
+    const struct reaction_look since = { .clocks = bus };
+    double volts[AXES] = { 0.0 };
+
+    look(s, m, counts);
+    voltage_tick(&s->voltage, m, now, 0, VOLTAGE_RANGE, volts);
+    for (int i = 0; i < AXES; i++) {
+        s->volts[i] = m->machine.axis[i].inverted ? -volts[i] : volts[i];
+    }
+    reaction_look(m, &since);
+    while (soft_dda_boundary(&s->dda) <= now + bus) {
+        take(s, m);
+    }
+    soft_dda_pulses(&s->dda, now + bus, s->next);
+}
