@@ -13,11 +13,13 @@ struct model {
     bool    unpublished;    /* what was read last shows at that instant */
     int32_t shown_seq[GROUP_CARDS];     /* transactions whose frames stand in the outputs */
     int32_t told_error[GROUP_MAX];      /* run-time errors that were reported */
+    double  output[GROUP_CARDS][GROUP_DACS];    /* [V] of dac_output, as seen last */
 };
 
 #define MODEL_BLOB
 #include "fmi_model.h"
 #include "program_fault.h"
+#include "dac_axes.h"
 
 enum { CLOCK_NS = 25 };
 
@@ -161,10 +163,11 @@ static int create(struct fmu *f, int n)
     for (int i = 0; i < AXES; i++) {
         channel[i] = w.channel[i] - 1;
     }
-    const int code = group_create(&m->groups, w.card - 1, channel, &motion);
-    if (code == MCC_GROUP_PARAMETER) {
-        return fmu_fail(f, "group%d_channel: no axis at all, or a channel of card %d that is named "
-                        "twice or belongs to another group", n + 1, (int)w.card);
+    const int code = v->voltage[n]
+                   ? group_create_voltage(&m->groups, w.card - 1, channel, &motion)
+                   : group_create(&m->groups, w.card - 1, channel, &motion);
+    if (code == MCC_GROUP_PARAMETER || code == MCC_VOLTAGE_COMMAND_CHANNEL) {
+        return refuse_channels(f, n, (int)w.card, v->voltage[n], code);
     }
     if (code < 0) {
         return fmu_fail(f, "group %d: the library refuses the machine parameters", n + 1);
@@ -205,6 +208,10 @@ static int model_start(struct fmu *f)
     }
     cards_of(v, card);
     groups_init(&m->groups, &config, card);
+    memset(m->output, 0, sizeof m->output);
+    if (set_dacs(f)) {
+        return -1;
+    }
     for (int n = 0; n < GROUP_MAX; n++) {
         if (create(f, n)) {
             return -1;
@@ -212,6 +219,9 @@ static int model_start(struct fmu *f)
     }
     if (groups_start(&m->groups)) {
         return fmu_fail(f, "there is no group: every group*_card is 0");
+    }
+    if (put_out(f, true)) {
+        return -1;
     }
     m->bus = config.bus * CLOCK_NS;
     publish(f);
@@ -233,11 +243,13 @@ static int model_start(struct fmu *f)
         v->card##K##_ack_flags[i] = p->ack_flags[i]; \
     } \
     for (int i = 0; i < AXES; i++) { \
-        const bool loop = c->machine.axis[i].used && v->card##K##_loop[i]; \
+        const bool loop = c->machine.axis[i].used && \
+                          c->command_mode[i] == GROUP_COMMAND_VOLTAGE; \
         v->card##K##_p_gain[i] = c->machine.axis[i].p_gain; \
         v->card##K##_loop_on[i] = loop; \
         v->card##K##_dac_source[i] = loop; \
     } \
+    PUBLISH_DACS(K); \
     if (p->seq != m->shown_seq[K - 1]) { \
         m->shown_seq[K - 1] = p->seq; \
         v->card##K##_cmd_seq = p->seq; \
@@ -305,6 +317,9 @@ static void read_bus(struct fmu *f, int64_t at)
 
     READ_CARD(1);
     READ_CARD(2);
+    COUNT_CARD(1);
+    COUNT_CARD(2);
+    put_out(f, false);
     for (int n = 0; n < GROUP_MAX; n++) {
         if (m->index[n] >= 0) {
             source[m->index[n]] = source_of_group(f, n);

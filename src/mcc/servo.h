@@ -1,8 +1,8 @@
 /* servo - the axes of a library that the PC moves by voltages: their frames, errors and law.
  *
- * At bus instant k the PC takes the frames whose DDA time begins by k + 1 and knows the command c of
- * that instant; what it computes from c and from the counters shows at k + 1. The card shows at k
- * the counts p of k - 1. So the error is that of one instant, e = c(k-1) - p(k-1), and the distance
+ * At bus instant k the PC takes the frames whose DDA time begins by k + 1 and knows the command c
+ * of that instant; what it computes from c and from the counters shows at k + 1. The card shows at
+ * k the counts p of k - 1. So the error is that of one instant, e = c(k-1) - p(k-1), and the lag
  * of a steady motion at speed v with gain Kp is v / Kp exactly, however late the voltage is.
  *
  *     instant   k-1         k               k+1          k+2

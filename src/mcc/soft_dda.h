@@ -1,7 +1,7 @@
 /* soft_dda - frames put out by the PC itself, for axes that have no pulse generator.
  *
- * The DDA of the card in software: one frame each DDA time, spread evenly over it, in the same whole
- * pulses. It runs on the PC's clock, from clock 0 on, and its pulses exist as numbers only.
+ * The DDA of the card in software: one frame each DDA time, spread evenly over it, in the same
+ * whole pulses. It runs on the PC's clock, from clock 0 on, and its pulses exist as numbers only.
  */
 #ifndef SOFT_DDA_H
 #define SOFT_DDA_H

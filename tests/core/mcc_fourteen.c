@@ -157,7 +157,7 @@ static double share(double t, double s, double f)
 
 /* Lines by calls on all three groups at once. The command at an instant is on the trapezium to a
  * pulse; the motor follows c - p = e as x(k+1) = x(k) + Kp T (c - x)(k-3); on the flat part the
- * error is v ((1 - kff) / Kp + lag), and the card's seventh error counter has the error of DAC 7. */
+ * error is v ((1 - kff) / Kp + lag). The card's seventh error counter has the error of DAC 7. */
 static void lines_by_calls(uint32_t inverted, double feed_forward, double lag)
 {
     enum { LAST = 12000 };
