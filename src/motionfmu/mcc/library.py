@@ -24,6 +24,7 @@ CODES = {
     -5: ("PARAMETER", "a value is out of range, or the axis is not used"),
     -6: ("GROUP_PARAMETER", "no such group"),
     -7: ("FEED_RATE", "the feed is out of range or drives an axis above its safe speed"),
+    -9: ("VOLTAGE_COMMAND_CHANNEL", "the DAC is the voltage command of an axis"),
     -10: ("HOME_COMMAND_NOTCALLED", "no search of the origin has been started"),
     -11: ("HOLD_ILLEGAL", "nothing moves that could be held"),
     -12: ("CONTI_ILLEGAL", "nothing is held"),
