@@ -70,6 +70,16 @@ def test_each_group_moves_as_it_does_alone(group: int, together: motionfmu.Resul
     assert not alone.ok
 
 
+@pytest.mark.parametrize(("plant", "axis"), [("mill", 4), ("belts", 5), ("feeders", 2)])
+def test_the_verdict_fails_if_one_axis_stands(plant: str, axis: int) -> None:
+    active = [n != axis and (plant != "feeders" or n < 3) for n in range(1, 7)]
+    scenario = motionfmu.load(ROOT / "scenarios" / "fourteen_axes")
+    result = scenario.run(set={f"{plant}.active": active})
+    failed = {check.name for check in result.checks if not check.ok}
+    assert f"{plant}.table_position[{axis}]" in failed
+    assert not any(name.startswith(plant) and f"[{axis}]" not in name for name in failed)
+
+
 def test_an_axis_turned_round_moves_the_other_way(together: motionfmu.Result) -> None:
     turned = run(card1_dac_pos2encoder_dir=[1, 0, 0, 0, 0, 0, 0, 1])
     for signal, column in (("belts.table_position", 0), ("feeders.table_position", 1)):
