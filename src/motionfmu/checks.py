@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.scenario import Body, Check
+from motionfmu import rates
+from motionfmu.scenario import Body, Check, Pair
 
 CONTOUR = "contour."
-BOUNDS = ("min", "max", "absmax", "peak", "rms", "final")
+BOUNDS = ("min", "max", "absmax", "peak", "rms", "final", "changes", "order")
 
 
 @dataclass(frozen=True)
@@ -54,23 +55,22 @@ def misplaced(name: str, body: Body, recorded: Mapping[str, tuple[int, ...]]) ->
     str
         Empty if nothing is.
     """
-    check = body.check[name]
-    if all(getattr(check, bound) is None for bound in BOUNDS):
+    checks = body.check[name]
+    if any(all(getattr(c, bound) is None for bound in BOUNDS) for c in checks):
         return f"{name}: no bound ({', '.join(BOUNDS)})"
     if name.startswith(CONTOUR):
         if body.contour is None:
             return f"{name}: there is no [contour] table"
-        if check.windows is not None or check.at is not None:
-            return f"{name}: a figure has no time and no windows"
+        if any((c.windows, c.at, c.rate) != (None, None, None) for c in checks):
+            return f"{name}: a figure has no time, no windows and no rate"
         from motionfmu.contour.names import wrong  # which takes scipy with it
 
         return wrong(name.removeprefix(CONTOUR))
     whole, bracket, rest = name.partition("[")
     if whole not in recorded or (bracket and not _is_axis(rest, recorded[whole])):
         return f"{name} is not recorded"
-    if told := _no_time(check, body.stop):
-        return f"{name}: {told}"
-    return ""
+    told = next((text for c in checks if (text := _no_time(c, body.stop))), "")
+    return f"{name}: {told}" if told else ""
 
 
 def _is_axis(rest: str, shape: tuple[int, ...]) -> bool:
@@ -101,11 +101,41 @@ def _range(name: str, words: str, value: float, bounds: tuple[float, float]) -> 
     return Verdict(name, text, value, _within(value, low, high))
 
 
-def _final(name: str, last: NDArray[Any], wanted: bool | float | tuple[float, float]) -> Verdict:
+def _side(name: str, sign: str, value: float, bound: float | Pair) -> Verdict:
+    """The smallest sample (sign ``>=``) or the largest one (``<=``): a bound, or a range."""
+    if isinstance(bound, tuple):
+        words = {">=": "min", "<=": "max", "|.| <=": "absmax"}
+        return _range(name, words[sign], value, bound)
+    ok = value >= bound if sign == ">=" else value <= bound
+    return Verdict(name, f"{sign} {bound:g}", value, ok)
+
+
+def _each(name: str, words: str, found: NDArray[Any], wanted: bool | float | Pair) -> Verdict:
+    """A value of every axis; the one that is farthest out is told."""
     low, high = wanted if isinstance(wanted, tuple) else (float(wanted), float(wanted))
-    outside = np.maximum(low - last, last - high)
-    value = float(last.ravel()[int(np.argmax(outside))])
-    return _range(name, "final", value, (low, high))
+    outside = np.maximum(low - found, found - high)
+    value = float(found.ravel()[int(np.argmax(outside))])
+    return _range(name, words, value, (low, high))
+
+
+def _changes(x: NDArray[Any]) -> NDArray[Any]:
+    """How often each axis takes another value."""
+    found = np.asarray((np.diff(x, axis=0) != 0).sum(axis=0), dtype=float)
+    return np.where(np.isnan(x).any(axis=0), np.nan, found)
+
+
+def _order(name: str, x: NDArray[Any], wanted: tuple[float, ...]) -> Verdict:
+    """The values of every axis one after the other; the first one out of order is told."""
+    text = "order " + ", ".join(f"{w:g}" for w in wanted)
+    for axis in x.reshape(len(x), -1).T:
+        found = axis[np.r_[True, np.diff(axis) != 0]]
+        for i in range(max(len(found), len(wanted))):
+            if i >= len(found):
+                reason = f"nothing follows {found[-1]:g}"
+                return Verdict(name, text, float("nan"), False, reason)
+            if i >= len(wanted) or found[i] != wanted[i]:
+                return Verdict(name, text, float(found[i]), False)
+    return Verdict(name, text, wanted[-1], True)
 
 
 def _inside(time: NDArray[Any], windows: tuple[tuple[float, float], ...]) -> NDArray[Any]:
@@ -141,6 +171,9 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
     end = float(time[-1]) + (float(time[-1] - time[-2]) if len(time) > 1 else 0.0)
     last = check.at if check.at is not None else max((b for _, b in check.windows or ()), default=0)
     reason = f"the run ends at {end:g} s, before {last:g} s" if last > end + 1e-12 else ""
+    if check.rate is not None:
+        time, x = rates.change(time, x, check.rate)
+        reason = reason or ("" if len(x) else f"the run is shorter than {check.rate:g} s")
     if reason:
         x = np.full((1, *x.shape[1:]), np.nan)
     elif check.at is not None:
@@ -151,19 +184,25 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
             reason, x = "no sample is in a window", np.full((1, *x.shape[1:]), np.nan)
     found = []
     if check.min is not None:
-        low = float(x.min())
-        found.append(Verdict(name, f">= {check.min:g}", low, low >= check.min))
+        found.append(_side(name, ">=", float(x.min()), check.min))
     if check.max is not None:
-        high = float(x.max())
-        found.append(Verdict(name, f"<= {check.max:g}", high, high <= check.max))
+        found.append(_side(name, "<=", float(x.max()), check.max))
     if check.absmax is not None:
-        peak = float(np.abs(x).max())
-        found.append(Verdict(name, f"|.| <= {check.absmax:g}", peak, peak <= check.absmax))
+        found.append(_side(name, "|.| <=", float(np.abs(x).max()), check.absmax))
     if check.peak is not None:
         found.append(_range(name, "peak", float(np.abs(x).max()), check.peak))
     if check.rms is not None:
         found.append(_range(name, "rms", float(np.sqrt((x**2).mean())), check.rms))
     if check.final is not None:
-        found.append(_final(name, x[-1], check.final))
+        found.append(_each(name, "final", x[-1], check.final))
+    if check.changes is not None:
+        found.append(_each(name, "changes", _changes(x), check.changes))
+    if check.order is not None:
+        found.append(_order(name, x, check.order))
     where = _where(check.windows) if check.windows is not None else ""
-    return [replace(v, bounds=v.bounds + where, reason=reason) for v in found]
+    where = f", at {check.at:g} s" if check.at is not None else where
+    what = f"rate over {check.rate:g} s " if check.rate is not None else ""
+    bounds = [f"{what}{v.bounds}{where}" for v in found]
+    return [
+        replace(v, bounds=b, reason=reason or v.reason) for v, b in zip(found, bounds, strict=True)
+    ]

@@ -2,14 +2,14 @@
 
 import re
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from motionfmu import figures, recording, scenario, system, values
+from motionfmu import contrary, figures, rates, recording, scenario, system, values
 from motionfmu.checks import misplaced
 from motionfmu.engines import ENGINES
 from motionfmu.errors import InputError
@@ -32,6 +32,8 @@ class Options:
         Value by ``component.variable``, stronger than the scenario's.
     stop, step : float or None
         Instead of the scenario's [s].
+    undriven : collection of str
+        Inputs whose [[drive]] is left out.
     progress : callable
         Called with the share done, 0 to 1.
     """
@@ -41,6 +43,7 @@ class Options:
     set: Mapping[str, Any] = field(default_factory=dict)
     stop: float | None = None
     step: float | None = None
+    undriven: Collection[str] = ()
     progress: Callable[[float], None] = lambda share: None
 
 
@@ -79,6 +82,7 @@ class Scenario:
         wired, _ = recording.plan(self.resolved(Options()), self.ends, Path())
         self.check_recording(wired, Options())
         self._check_checks()
+        contrary.check(self.resolver)
 
     @property
     def name(self) -> str:
@@ -129,12 +133,20 @@ class Scenario:
             components=dict(body.component),
             wires=tuple(system.wires(self.resolver)),
             settings=tuple(values.settings(self.resolver, options.set)),
-            stimuli=tuple(values.stimuli(self.resolver, step_ns)),
+            stimuli=tuple(
+                s
+                for s in values.stimuli(self.resolver, step_ns)
+                if s.end.name not in options.undriven
+            ),
             step_ns=step_ns,
             steps=stop_ns // step_ns,
         )
         system.check_inputs(self.resolver, resolved)
         figures.check(document, step_ns)
+        for name, checks in body.check.items():
+            for rate in (c.rate for c in checks if c.rate is not None):
+                if text := rates.wrong(rate, step_ns, body.stop):
+                    raise document.error(f"{name}: {text}", "check", name)
         return resolved
 
     def check_recording(self, wired: system.System, options: Options) -> None:
@@ -178,7 +190,7 @@ class Scenario:
 
         Parameters
         ----------
-        **options : engine, fmi, set, stop, step, progress
+        **options : engine, fmi, set, stop, step, undriven, progress
             See `Options`.
 
         Returns

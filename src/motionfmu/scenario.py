@@ -4,12 +4,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from motionfmu.errors import InputError
 from motionfmu.toml_lines import KEY_MAX, Lines, is_file, shown, tables_of, text_of
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+Pair = tuple[float, float]
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 # Each is an FMU with a library and a folder of its own.
 COMPONENTS_MAX = 64
@@ -35,14 +36,26 @@ class Check(BaseModel):
     """Bounds of one signal or figure; each one given must hold."""
 
     model_config = _STRICT
-    min: float | None = None
-    max: float | None = None
-    absmax: float | None = None
-    peak: tuple[float, float] | None = None
-    rms: tuple[float, float] | None = None
-    final: bool | float | tuple[float, float] | None = None
+    min: float | Pair | None = None
+    max: float | Pair | None = None
+    absmax: float | Pair | None = None
+    peak: Pair | None = None
+    rms: Pair | None = None
+    final: bool | float | Pair | None = None
+    changes: float | Pair | None = None
+    order: tuple[float, ...] | None = Field(default=None, min_length=1, max_length=LISTED_MAX)
+    rate: float | None = None
     at: float | None = None
-    windows: tuple[tuple[float, float], ...] | None = Field(default=None, min_length=1)
+    windows: tuple[Pair, ...] | None = Field(default=None, min_length=1)
+
+
+class Contrary(BaseModel):
+    """Values that switch off a claim; the checks named must fail."""
+
+    model_config = _STRICT
+    off: str = Field(min_length=1)
+    set: dict[str, Value] = Field(min_length=1)
+    fails: Names = Field(min_length=1)
 
 
 class Contour(BaseModel):
@@ -83,6 +96,16 @@ class Figure(BaseModel):
     plot: list[Plot] = Field(min_length=1, max_length=FIGURES_MAX)
 
 
+def _listed(x: Any) -> Any:
+    """One table of bounds, or several."""
+    return tuple(x) if isinstance(x, list | tuple) else (x,)
+
+
+Checks = Annotated[
+    tuple[Check, ...], BeforeValidator(_listed), Field(min_length=1, max_length=LISTED_MAX)
+]
+
+
 class Body(BaseModel):
     """The tables of a scenario.toml."""
 
@@ -97,7 +120,8 @@ class Body(BaseModel):
     record: Record
     contour: Contour | None = None
     figure: list[Figure] = Field(default_factory=list, max_length=FIGURES_MAX)
-    check: dict[str, Check] = Field(default_factory=dict, max_length=LISTED_MAX)
+    check: dict[str, Checks] = Field(default_factory=dict, max_length=LISTED_MAX)
+    contrary: list[Contrary] = Field(default_factory=list, max_length=LISTED_MAX)
 
 
 @dataclass(frozen=True)
@@ -210,9 +234,10 @@ def _floats(tables: dict[str, Any]) -> dict[str, Any]:
         if isinstance(row, dict) and isinstance(row.get("at"), list):
             row["at"] = [number(x) for x in row["at"]]
     checks = out.get("check", {})
-    for row in checks.values() if isinstance(checks, dict) else []:
-        for key, x in list(row.items()) if isinstance(row, dict) else []:
-            row[key] = number(x)
+    for rows in checks.values() if isinstance(checks, dict) else []:
+        for row in rows if isinstance(rows, list) else [rows]:
+            for key, x in list(row.items()) if isinstance(row, dict) else []:
+                row[key] = number(x)
     return out
 
 
@@ -220,6 +245,8 @@ def _first(error: ValidationError, file: Path, lines: Lines) -> str:
     """One line for the first thing pydantic found."""
     found = error.errors()[0]
     place = [str(p) for p in found["loc"]]
+    if place[0] == "check":
+        del place[2:3]  # number of the table: the key names them all
     if found["type"] == "missing" and len(place) == 1:
         return f"{file}: {place[0]} is missing"
     table, key = _place(place)
@@ -231,7 +258,7 @@ def _first(error: ValidationError, file: Path, lines: Lines) -> str:
     name = ".".join(place[1:] if place[0] == "set" else place)
     if found["type"] == "extra_forbidden":
         return f"{file}:{lines.of(table, key)}: unknown key {place[-1]!r}"
-    value = found["input"] if not isinstance(found["input"], dict) else "..."
+    value = "..." if isinstance(found["input"], dict) and found["input"] else found["input"]
     value = list(value) if isinstance(value, tuple) else value
     return f"{file}:{lines.of(table, key)}: {name} = {shown(value)}: {found['msg'].lower()}"
 
@@ -241,6 +268,6 @@ def _place(place: list[str]) -> tuple[str, str]:
     if len(place) == 1:
         return "", place[0]
     depth = 1
-    if place[0] in ("drive", "figure"):
+    if place[0] in ("drive", "figure", "contrary"):
         depth = 4 if place[2:3] == ["plot"] and len(place) > 3 else 2
     return ".".join(place[:depth]), place[depth] if len(place) > depth else ""

@@ -19,6 +19,7 @@ from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
     from motionfmu.result import Result
+    from motionfmu.run import Scenario
 
 Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
@@ -82,11 +83,37 @@ def run(  # noqa: PLR0913  (each is an option of the command)
         raise typer.Exit(FAILED)
 
 
+def _can_fail(scenario: "Scenario", options: dict[str, Any]) -> bool:
+    """Run every [[contrary]] and show by which checks its verdict fails."""
+    from motionfmu import contrary
+
+    good = bool(scenario.document.body.contrary)
+    if not good:
+        out.print(f"[bold red]FAILED[/]  {scenario.name}  no \\[\\[contrary]]")
+    for case in scenario.document.body.contrary:
+        result = run_shown(scenario, options | contrary.options(scenario.document, case))
+        hold = contrary.survivors(case, result.checks)
+        mark, off = "[bold red]FAILED[/]" if hold else "[green]ok[/]", case.off.replace("[", r"\[")
+        out.print(f"{mark}  {scenario.name}  [dim]off:[/] {off}", soft_wrap=True)
+        for name in hold:
+            out.print(f"    holds: {name}".replace("[", r"\["), soft_wrap=True)
+        for v in result.checks:
+            if v.name in case.fails and not v.ok:
+                why = f" ({v.reason})" if v.reason else ""
+                text = f"    fails: {v.name} = {v.value:.6g}{why}, asked {v.bounds}"
+                out.print(text.replace("[", r"\["), soft_wrap=True)
+        good &= not hold
+    return good
+
+
 @app.command()
 def check(
     paths: Annotated[list[Path] | None, typer.Argument(help="Scenarios; all if none.")] = None,
     engine: Engine = "native",
     fmi: Fmi = None,
+    contrary: Annotated[
+        bool, typer.Option("--contrary", help="Whether verdicts fail with what is shown off.")
+    ] = False,
 ) -> None:
     """Run scenarios and judge them; nothing is written."""
     from motionfmu.run import load
@@ -97,6 +124,9 @@ def check(
     failed = False
     for path in chosen:
         scenario = load(path)
+        if contrary:
+            failed |= not _can_fail(scenario, {"engine": engine, "fmi": _version(engine, fmi)})
+            continue
         result = run_shown(scenario, {"engine": engine, "fmi": _version(engine, fmi)})
         mark = "[green]ok[/]" if result.ok else "[bold red]FAILED[/]"
         out.print(f"{mark}  {scenario.name}  [dim]{len(result.checks)} bounds[/]")

@@ -41,8 +41,11 @@ def info(what: Annotated[str, typer.Argument(help="An FMU's name, or a scenario.
     out.print(f"{body.stop:g} s in steps of {body.step:g} s")
     for name, fmu in body.component.items():
         out.print(f"  {name:12} {fmu}")
-    for check, bounds in body.check.items():
-        out.print(f"  check {check}  [dim]{bounds.model_dump(exclude_none=True)}[/]")
+    for check, tables in body.check.items():
+        for bounds in tables:
+            out.print(f"  check {check}  [dim]{bounds.model_dump(exclude_none=True)}[/]")
+    for case in body.contrary:
+        out.print(f"  contrary: {case.off}  [dim]{case.set}[/]")
 
 
 @app.command()

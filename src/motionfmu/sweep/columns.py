@@ -135,9 +135,10 @@ def usual(scenario: Scenario) -> list[Column]:
     list of Column
     """
     found: dict[str, Column] = {}
-    for name, check in scenario.document.body.check.items():
-        for wanted in [name] if name.startswith(CONTOUR) else _checked(scenario, name, check):
-            found[wanted] = column(scenario, wanted)
+    for name, checks in scenario.document.body.check.items():
+        for check in checks:
+            for wanted in [name] if name.startswith(CONTOUR) else _checked(scenario, name, check):
+                found[wanted] = column(scenario, wanted)
     return list(found.values())
 
 
