@@ -164,6 +164,10 @@ HELD: list[tuple[dict[str, Any], bool, float]] = [
     ({"order": (5.0, 2.0), "windows": ((0.1, 0.3),)}, True, 2.0),
     ({"changes": 0.0, "windows": ((0.1, 0.2),)}, True, 0.0),
     ({"final": 2.0, "at": 0.25}, True, 2.0),
+    ({"max": (50.0, 50.0), "rate": 0.1}, True, 50.0),
+    ({"min": -29.0, "rate": 0.1}, False, -30.0),
+    ({"order": (0.0,), "rate": 0.3, "at": 0.35}, True, 0.0),
+    ({"max": 0.0, "rate": 0.1, "windows": ((0.2, 0.3),)}, True, 0.0),
 ]
 
 
@@ -199,6 +203,10 @@ def test_several_tables_of_one_signal(tmp_path: Path) -> None:
     (tmp_path / "scenario.toml").write_text(text + "[{ min = 0 }, { at = 9.0, min = 0 }]\n")
     with pytest.raises(motionfmu.InputError, match=r"at = 9.0 s is after the stop"):
         motionfmu.load(tmp_path)
+    for rate in ("0.0", "-5e-05", "7e-05", "0.1"):
+        (tmp_path / "scenario.toml").write_text(text + f"{{ rate = {rate}, min = 0 }}\n")
+        with pytest.raises(motionfmu.InputError, match=rf"mcc.serving: rate = {rate} s is "):
+            motionfmu.load(tmp_path)
     (tmp_path / "scenario.toml").write_text(text + "[]\n")
     with pytest.raises(motionfmu.InputError, match=r"check.mcc.serving = \[\]"):
         motionfmu.load(tmp_path)

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu import recording
+from motionfmu import rates, recording
 from motionfmu.scenario import Document, Plot
-from motionfmu.system import NS_TOLERANCE, End, Resolver
+from motionfmu.system import End, Resolver
 
 if TYPE_CHECKING:
     from motionfmu.run import Result
@@ -155,14 +155,7 @@ def check(document: Document, step_ns: int) -> None:
                 text = f"window = {figure.window!r}: from and to within 0 .. {stop:g} s wanted"
                 raise document.error(text, f"figure.{i}", "window")
         for j, plot in enumerate(figure.plot):
-            if plot.rate is None:
-                continue
-            steps = round(plot.rate * 1e9 / step_ns)
-            if steps < 1 or abs(plot.rate * 1e9 - steps * step_ns) > NS_TOLERANCE:
-                text = f"rate = {plot.rate!r} s is no whole number of steps of {step_ns * 1e-9:g} s"
-                raise document.error(text, f"figure.{i}.plot.{j}", "rate")
-            if plot.rate >= stop:
-                text = f"rate = {plot.rate!r} s is longer than the run"
+            if plot.rate is not None and (text := rates.wrong(plot.rate, step_ns, stop)):
                 raise document.error(text, f"figure.{i}.plot.{j}", "rate")
 
 
@@ -210,9 +203,7 @@ def _curve(
     """Samples of a signal in the span, and one on either side of it."""
     time, values = result.time, data.astype(np.float64)
     if plot.rate is not None and len(time) > 1:
-        back = min(len(time), round(plot.rate / (time[1] - time[0])))
-        values = (values[back:] - values[: len(values) - back]) / plot.rate
-        time = time[back:]
+        time, values = rates.change(time, values, plot.rate)
     first = max(0, int(np.searchsorted(time, span[0], side="right")) - 1)
     last = int(np.searchsorted(time, span[1], side="left")) + 1
     part = slice(first, last)

@@ -143,7 +143,7 @@ def usual(scenario: Scenario) -> list[Column]:
 
 
 def _checked(scenario: Scenario, name: str, check: Check) -> Iterable[str]:
-    if check.at is not None or check.windows is not None:
+    if check.at is not None or check.windows is not None or check.rate is not None:
         return
     whole, element = split(name)
     port = scenario.resolver.end(whole, "check", name).port
