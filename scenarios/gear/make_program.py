@@ -53,8 +53,8 @@ def program() -> str:
     x0, y0 = points[0]
     lines = [
         "%",
-        f"(Involute gear outline, module {MODULE:g} mm, {TEETH} teeth, F {FEED} mm/min)",
-        "N10 G21 G17 G90 G64",
+        f"N10 G21 G17 G90 G64 (Gear, module {MODULE:g} mm, {TEETH} teeth, F {FEED} mm/min)",
+        "/N15 G61 (exact stop, with block delete off)",
         f"N20 G0 X{x0:.4f} Y{y0:.4f}",
         "N30 G4 P0.3",
         f"N40 G1 F{FEED}",

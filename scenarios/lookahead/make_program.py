@@ -48,14 +48,16 @@ def edge() -> np.ndarray:
 def program() -> str:
     """Text of the part program."""
     blocks = [
-        f"(Outline of a plate, F {FEED} mm/min, corners rounded within {TOLERANCE:g} mm)",
-        f"G21 G17 G90 G64 P{TOLERANCE:g} F{FEED}",
+        f"G21 G17 G90 G64 P{TOLERANCE:g} F{FEED} (Plate, corners within {TOLERANCE:g} mm)",
+        "G61 (exact stop, with block delete off)",
         *BEFORE.splitlines(),
         *(f"X{x:.4f} Y{y:.4f}" for x, y in edge()),
         *BEHIND.splitlines(),
         "M30",
     ]
-    return "\n".join(["%", *(f"N{10 * n} {b}" for n, b in enumerate(blocks, 1)), "%", ""])
+    numbered = [f"N{10 * n} {b}" for n, b in enumerate(blocks, 1)]
+    numbered[1] = "/" + numbered[1]
+    return "\n".join(["%", *numbered, "%", ""])
 
 
 if __name__ == "__main__":
