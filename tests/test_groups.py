@@ -93,7 +93,7 @@ def test_a_held_group_disturbs_no_other(together: motionfmu.Result, tmp_path: An
         (tmp_path / f"{name}.ngc").write_text(program.read_text())
     (tmp_path / "scenario.toml").write_text(text)
     held = motionfmu.load(tmp_path).run()
-    assert held.ok
+    assert {c.name for c in held.checks if not c.ok} == {"groups.path_feed[2]"}  # it stands
     for card, channels in (CHANNELS[1], CHANNELS[3]):
         pulses = held[f"{card}.pulse_count"][:, channels]
         assert np.array_equal(pulses, together[f"{card}.pulse_count"][:, channels])
