@@ -164,6 +164,8 @@ HELD: list[tuple[dict[str, Any], bool, float]] = [
     ({"order": (5.0, 2.0), "windows": ((0.1, 0.3),)}, True, 2.0),
     ({"changes": 0.0, "windows": ((0.1, 0.2),)}, True, 0.0),
     ({"final": 2.0, "at": 0.25}, True, 2.0),
+    ({"final": 5.0, "at": 2 * 0.1}, True, 5.0),
+    ({"final": 2.0, "at": 3 * 0.1}, True, 2.0),
     ({"max": (50.0, 50.0), "rate": 0.1}, True, 50.0),
     ({"min": -29.0, "rate": 0.1}, False, -30.0),
     ({"order": (0.0,), "rate": 0.3, "at": 0.35}, True, 0.0),
