@@ -105,6 +105,26 @@ def test_the_band_is_what_the_deadband_leaves(tuned: Tuned) -> None:
     assert any("controller.band" in text for text in tuned.stopped_by)
 
 
+@pytest.mark.parametrize("late", [0, 1, 5])
+def test_a_command_that_is_shown_late_is_put_in_earlier(late: int) -> None:
+    """What follows the command at once, and is seen as late as the command is, has no error."""
+    asked, time = problem(read(SCENARIO / "tune.toml")), 1e-3 * np.arange(400)
+    assert asked.command is not None and asked.position is not None
+    shown = np.round(1e4 * np.clip(time - 0.1, 0.0, 0.2) ** 2)
+
+    class Run(dict[str, Any]):
+        scenario = motionfmu.load(SCENARIO)
+
+    base: Any = Run({asked.command: shown})
+    base.time = time
+    move = MoveCost(base, (asked.command, asked.position), 1e-3, (2e-6, late))
+    put_in = move.pulses[1]
+    assert np.ptp(put_in) == np.ptp(shown) and len(put_in) == len(time)
+    position = 2e-6 * np.concatenate([np.full(late, put_in[0]), put_in[: len(time) - late]])
+    assert move.error({1: position}).distance.max() < 1e-12
+    assert move.error({1: 2e-6 * put_in}).distance.max() > (1e-4 if late else -1.0)
+
+
 def test_a_band_at_the_bound_of_its_search_is_an_error(tuned: Tuned) -> None:
     move = tuned.study.path
     assert isinstance(move, MoveCost)
