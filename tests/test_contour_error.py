@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contour_runs import Machine, Program, run_along
+from contour_runs import Machine, Program, lag_error, run_along
 
 from motionfmu.contour import ContourInput, Trace, analyse
+from motionfmu.contour.error import servo_lag
 from motionfmu.errors import NoNumber
 
 FEED = 100.0  # [mm/s]
@@ -256,3 +257,16 @@ def test_following_error_is_speed_over_gain() -> None:
     assert following["y"]["max"] == pytest.approx(60.0 / 50.0, rel=1e-9)
     assert following["z"]["max"] == 0.0
     assert isinstance(run, ContourInput)
+
+
+def test_the_lag_of_a_fast_circle_is_that_of_theory() -> None:
+    """Gap over speed of 1/(1 + jw/K), in phase with the speed: (1/K)/(1 + (w/K)^2)."""
+    gain, step = 50.0, 1e-3
+    time = np.arange(0.0, 3.0, step)
+    for w in (1.0, 10.0, 30.0):
+        angle = w * time
+        commanded = 10.0 * np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+        actual = commanded - np.column_stack([lag_error(c, gain, step) for c in commanded.T])
+        settled = time > 0.5
+        found = servo_lag(time[settled], commanded[settled], actual[settled])
+        assert found == pytest.approx(1.0 / gain / (1.0 + (w / gain) ** 2), rel=0.03)
