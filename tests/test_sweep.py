@@ -204,7 +204,7 @@ def test_a_check_of_one_element_becomes_a_column_of_it() -> None:
     ]
     assert {"card.frames_refused.max", "mcc.services.final"} < {*names}
     every = Check(final=0.0)
-    scenario.document.body.check["card.err_count"] = every
+    scenario.document.body.check["card.err_count"] = [every]
     names = [c.name for c in columns.usual(scenario)]
     assert names[-6:] == [f"card.err_count[{i}].final" for i in range(1, 7)]
 
