@@ -1,5 +1,6 @@
 """Every scenario's verdict fails when what the scenario shows is switched off."""
 
+import functools
 import subprocess
 import sys
 from pathlib import Path
@@ -23,15 +24,17 @@ def numbers(folder: Path) -> list[int | None]:
     return [*range(len(scenario.read(folder).body.contrary))] or [None]
 
 
-def weakness(folder: Path, number: int | None) -> str:
+def weakness(tried: motionfmu.Scenario, number: int | None) -> str:
     """Why a verdict proves nothing; empty if it fails as it must."""
     if number is None:
-        return f"{folder.name}: no [[contrary]] says with which settings its verdict fails"
-    loaded = motionfmu.load(folder)
-    case = loaded.document.body.contrary[number]
-    verdicts = loaded.run(**contrary.options(loaded.document, case)).checks
+        return f"{tried.name}: no [[contrary]] says with which settings its verdict fails"
+    case = tried.document.body.contrary[number]
+    verdicts = tried.run(**contrary.options(tried.document, case)).checks
     hold = contrary.survivors(case, verdicts)
-    return f"{folder.name}: {', '.join(hold)} hold without {case.off}" if hold else ""
+    return f"{tried.name}: {', '.join(hold)} hold without {case.off}" if hold else ""
+
+
+loaded_once = functools.cache(motionfmu.load)
 
 
 CASES = [(f, n) for f in FOLDERS for n in numbers(f)]
@@ -42,7 +45,7 @@ CASES = [(f, n) for f in FOLDERS for n in numbers(f)]
 )
 def test_a_verdict_fails_with_what_is_shown_switched_off(folder: Path, number: int | None) -> None:
     """By the checks it names, not by an error."""
-    assert weakness(folder, number) == ""
+    assert weakness(loaded_once(folder), number) == ""
 
 
 def made_up(folder: Path, cases: str) -> Path:
@@ -56,7 +59,7 @@ def made_up(folder: Path, cases: str) -> Path:
 def test_a_scenario_without_a_case_is_found(tmp_path: Path) -> None:
     folder = made_up(tmp_path, "")
     assert numbers(folder) == [None]
-    assert "no [[contrary]]" in weakness(folder, None)
+    assert "no [[contrary]]" in weakness(motionfmu.load(folder), None)
 
 
 @pytest.mark.parametrize(
@@ -70,7 +73,7 @@ def test_a_scenario_without_a_case_is_found(tmp_path: Path) -> None:
 def test_a_verdict_that_holds_is_found(tmp_path: Path, values: str, told: str) -> None:
     """What fails beside the checks named does not count."""
     case = f'\n[[contrary]]\noff = "nothing"\nset = {{ {values} }}\nfails = ["mcc.serving"]\n'
-    found = weakness(made_up(tmp_path, case), 0)
+    found = weakness(motionfmu.load(made_up(tmp_path, case)), 0)
     assert found.endswith(told) and bool(found) == bool(told)
 
 
@@ -79,7 +82,7 @@ def test_a_case_that_cannot_run_is_an_error(tmp_path: Path) -> None:
         '\n[[contrary]]\noff = "x"\nset = { "mcc.program" = "none.ngc" }\nfails = ["mcc.error"]\n'
     )
     with pytest.raises(motionfmu.InputError, match=r"none\.ngc"):
-        weakness(made_up(tmp_path, case), 0)
+        weakness(motionfmu.load(made_up(tmp_path, case)), 0)
 
 
 def test_a_value_of_a_driven_input_stands_for_the_whole_run(tmp_path: Path) -> None:
@@ -203,7 +206,7 @@ def test_several_tables_of_one_signal(tmp_path: Path) -> None:
     with pytest.raises(motionfmu.InputError, match="unknown key 'mix'"):
         motionfmu.load(tmp_path)
     (tmp_path / "scenario.toml").write_text(text + "[{ min = 0 }, { at = 9.0, min = 0 }]\n")
-    with pytest.raises(motionfmu.InputError, match=r"at = 9.0 s is after the stop"):
+    with pytest.raises(motionfmu.InputError, match=r"at = 9.0 s is not within"):
         motionfmu.load(tmp_path)
     for rate in ("0.0", "-5e-05", "7e-05", "0.1"):
         (tmp_path / "scenario.toml").write_text(text + f"{{ rate = {rate}, min = 0 }}\n")
