@@ -61,17 +61,25 @@ def theory(cycles: int, way: tuple[int, ...], speed: np.ndarray) -> np.ndarray:
     return np.maximum(mean * speed / CLOCK - 1.0, 0.0) / PERIOD
 
 
-def measure(cycles: int, speed: float) -> Rate:
+def held(cycles: int, speed: float) -> motionfmu.Result:
     """Run the axis with the valve held open and a scale that gives about this speed."""
-    pitch = 4 * SPEED / speed
     text = (HERE / "scenario.toml").read_text()
     text = re.sub(r"at    = .*\nvalue = .*\n", f"at = [0.0]\nvalue = [{VOLTS}]\n", text)
     text = text[: text.index("[[figure]]")].replace("stop = 0.9", f"stop = {STOP}")
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "scenario.toml").write_text("# One speed.\n" + text)
-        values = {"axis.scale_pitch": pitch}
+        values = {"axis.scale_pitch": pitch(speed)}
         values |= {f"{n}.timer_cycles": cycles for n in ("written", "repaired")}
-        r = motionfmu.load(folder).run(set=values)
+        return motionfmu.load(folder).run(set=values)
+
+
+def pitch(speed: float) -> float:
+    """Line period of the scale that gives about this speed [m]."""
+    return 4 * SPEED / speed
+
+
+def measure(r: motionfmu.Result) -> Rate:
+    """Rates of a run, once it has settled."""
     first = int(np.searchsorted(r.time, SETTLED))
     time = r.time[-1] - r.time[first]
 
@@ -128,7 +136,7 @@ def main(picture: Path) -> None:
         # Off whole numbers of edges per timer period, which would all fall alike.
         speeds = (np.floor(edge * SHARES * PERIOD) + 0.382) / PERIOD
         what = f"{cycles} cycles"
-        found[cycles] = [measure(cycles, v) for v in track(speeds, what, transient=True)]
+        found[cycles] = [measure(held(cycles, v)) for v in track(speeds, what, transient=True)]
         print(f"{what}: border {edge:.0f} as written, {border(cycles, REPAIRED):.0f} repaired")
         print(f"{'counts/s':>10}{'lost':>8}{'theory':>8}{'behind':>8}   repaired: lost, behind")
         for r in found[cycles]:
