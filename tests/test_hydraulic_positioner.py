@@ -145,7 +145,6 @@ def test_counts_are_lost_beyond_the_border_speed(cycles: int) -> None:
     edge = s.border(cycles, s.WRITTEN)
     below = s.measure(s.held(cycles, 0.99 * edge))
     assert below.lost == (0.0, 0.0) and below.turned == (0.0, 0.0)
-    lost = mean = spread = 0.0
     for share in (1.2, 1.4):
         speed = (np.floor(edge * share * s.PERIOD) + 0.382) / s.PERIOD
         r = s.held(cycles, speed)
