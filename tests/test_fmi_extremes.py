@@ -1,15 +1,13 @@
-"""Every plant at the ends of its parameters and inputs: numbers on all outputs, or one message."""
+"""Every FMU at the ends of its parameters and inputs: numbers on all outputs, or one message."""
 
 import math
-import tomllib
 from typing import Any
 
 import pytest
 from conftest import ROOT
 from fmi_tools import ERROR, OK, Instance, unpacked
 
-FOLDERS = [t.parent for t in sorted((ROOT / "fmus").glob("*/fmu.toml"))]
-PLANTS = [f.name for f in FOLDERS if "modelica" in tomllib.loads((f / "fmu.toml").read_text())]
+NAMES = sorted(t.parent.name for t in (ROOT / "fmus").glob("*/fmu.toml"))
 HUGE = 1e308
 STEP = 1e-3  # [s]
 
@@ -42,9 +40,8 @@ def told(fmu: Instance) -> str | None:
     return texts[0]
 
 
-@pytest.mark.parametrize("name", PLANTS)
+@pytest.mark.parametrize("name", NAMES)
 def test_an_output_is_a_number_or_the_call_says_why_not(name: str) -> None:
-    refused = set()
     for key, v in unpacked(name, 3)[2].items():
         if v.type not in ("f64", "i32") or v.causality not in ("parameter", "input"):
             continue
@@ -52,12 +49,10 @@ def test_an_output_is_a_number_or_the_call_says_why_not(name: str) -> None:
             fmu = Instance(name, 3)
             assert fmu.set(key, int(value) if v.type == "i32" else value) == OK, fmu.said
             try:
-                if told(fmu) is not None:
-                    refused.add(key)
+                told(fmu)
             except AssertionError as error:
                 raise AssertionError(f"{key} = {value:g}: {error}") from None
             fmu.free()
-    assert refused, "some of them are too much"
 
 
 # Set before the start or after a step; the time of the message is that of the first odd output.
