@@ -22,6 +22,9 @@
 
 enum { SCHED_MODULES = 4 };
 
+/* Longest time, offset, cycle, and last clock: more than a thousand years. */
+#define SCHED_LONGEST ((int64_t)1 << 61)
+
 struct sched_config {
     int32_t priority[SCHED_MODULES];
     int64_t cycle[SCHED_MODULES];   /* [clocks]; 0: woken only */

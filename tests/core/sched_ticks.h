@@ -1,0 +1,178 @@
+/* sched_ticks - a processor that is looked at at every clock, and the scheduler asked for the same. */
+#ifndef SCHED_TICKS_H
+#define SCHED_TICKS_H
+
+#include <string.h>
+
+#include "check.h"
+#include "sched.h"
+
+enum { N = SCHED_MODULES, LONGEST = 4000, WAKES = 60, LOG = 20000 };
+
+/* Modules with fixed times; the times of woken ones too. */
+struct set {
+    struct sched_config c;
+    int64_t time[N];
+    int wakes;
+    int woken;              /* module that is woken: 0, or 1, which has a timer too, */
+    int64_t wake[WAKES];    /* and may begin at these clocks, rising */
+};
+
+/* What happens: a run begins or ends. */
+struct entry { int64_t clock; int module; enum sched_what what; };
+struct log { int n; struct entry e[LOG]; int missed[N]; int64_t busy[N], response[N]; };
+
+static void note(struct log *l, int64_t clock, int module, enum sched_what what)
+{
+    if (l->n < LOG) {
+        l->e[l->n++] = (struct entry){ clock, module, what };
+    }
+}
+
+/* --- A processor that looks at everything at every clock. ----------------------------------- */
+struct tick { bool waits, begun, event, run_event; int64_t since, from, left; };
+
+/* The one of the modules allowed that goes first, or -1. */
+static int choose(const struct set *q, const struct tick t[N], int64_t clock, bool interrupts)
+{
+    int best = -1;
+    int64_t rank[4], least[4] = { 0 };
+    for (int i = 0; i < N; i++) {
+        const bool fresh = t[i].event && t[i].since == clock;
+        if (!t[i].begun && !(t[i].waits && (interrupts || !fresh))) {
+            continue;
+        }
+        rank[0] = q->c.priority[i];
+        rank[1] = !t[i].begun;
+        rank[2] = t[i].begun ? 0 : t[i].since;
+        rank[3] = i;
+        int k = 0;
+        while (best >= 0 && k < 3 && rank[k] == least[k]) {
+            k++;
+        }
+        if (best < 0 || rank[k] < least[k]) {
+            best = i;
+            memcpy(least, rank, sizeof least);
+        }
+    }
+    return best;
+}
+
+static void finish(struct log *l, struct tick t[N], int64_t clock)
+{
+    for (int i = 0; i < N; i++) {
+        if (t[i].begun && t[i].left == 0) {
+            t[i].begun = false;
+            note(l, clock, i, SCHED_END);
+            l->response[i] = clock - t[i].from > l->response[i] ? clock - t[i].from
+                                                                : l->response[i];
+        }
+    }
+}
+
+static inline void brute(const struct set *q, int64_t clocks, struct log *l)
+{
+    struct tick t[N] = { { 0 } };
+    memset(l, 0, sizeof *l);
+    int next_wake = 0;
+    for (int64_t clock = 0; clock < clocks; clock++) {
+        finish(l, t, clock);
+        for (int i = 0; i < N; i++) {
+            const int64_t in = clock - q->c.offset[i];
+            if (q->c.cycle[i] && in >= 0 && in % q->c.cycle[i] == 0) {
+                l->missed[i] += (t[i].begun && !t[i].run_event) || (t[i].waits && !t[i].event);
+                t[i].since = t[i].waits ? t[i].since : clock;
+                t[i].waits = true;
+                t[i].event = false;
+            }
+        }
+        for (; next_wake < q->wakes && q->wake[next_wake] <= clock; next_wake++) {
+            struct tick *w = &t[q->woken];
+            w->since = w->waits ? w->since : clock;
+            w->event = w->waits ? w->event : true;
+            w->waits = true;
+        }
+        for (int interrupts = 0; interrupts < 2; interrupts++) {
+            int i;
+            while ((i = choose(q, t, clock, interrupts)) >= 0 && !t[i].begun) {
+                t[i] = (struct tick){ .begun = true, .run_event = t[i].event,
+                                      .from = t[i].since, .left = q->time[i] };
+                note(l, clock, i, SCHED_BEGIN);
+                finish(l, t, clock);
+                interrupts = 0;
+            }
+        }
+        const int running = choose(q, t, clock, true);
+        if (running >= 0) {
+            t[running].left--;
+            l->busy[running]++;
+        }
+    }
+}
+
+/* The next wake of a module without a timer, for a clock to come. */
+static int wake_ahead(const struct set *q, struct sched *s, int wake)
+{
+    if (wake < q->wakes && !s->module[0].asked) {
+        sched_wake(s, 0, q->wake[wake], q->wake[wake]);
+        wake++;
+    }
+    /* Interrupts that come while one waits are one with it. */
+    while (wake < q->wakes && s->module[0].asked && q->wake[wake] <= s->clock) {
+        wake++;
+    }
+    return wake;
+}
+
+/* One of a module with a timer, at its clock. */
+static int wake_now(const struct set *q, struct sched *s, int wake)
+{
+    for (; wake < q->wakes && q->wake[wake] <= s->clock; wake++) {
+        if (!s->module[1].asked) {
+            sched_wake(s, 1, s->clock, s->clock);
+        }
+    }
+    return wake;
+}
+
+/* --- The scheduler, asked in steps of random length. ------------------------------------------ */
+static inline void scheduled(const struct set *q, int64_t clocks, uint64_t *seed, struct log *l)
+{
+    struct sched s;
+    int wake = 0;
+    memset(l, 0, sizeof *l);
+    sched_start(&s, &q->c);
+    for (int64_t until = 0; s.clock < clocks;) {
+        until = until + check_random(seed, 1, 50);
+        until = until < clocks ? until : clocks;
+        for (;;) {
+            wake = q->woken ? wake_now(q, &s, wake) : wake_ahead(q, &s, wake);
+            const bool soon = q->woken && wake < q->wakes && q->wake[wake] < until;
+            const struct sched_event e = sched_next(&s, soon ? q->wake[wake] : until);
+            if (e.what == SCHED_NONE && soon) {
+                continue;
+            }
+            if (e.what == SCHED_NONE) {
+                break;
+            }
+            note(l, s.clock, e.module, e.what);
+            if (e.what == SCHED_END) {
+                sched_end(&s, e.module);
+                continue;
+            }
+            if (e.module == 0 && !q->woken) {
+                while (wake < q->wakes && q->wake[wake] <= s.clock) {
+                    wake++;
+                }
+            }
+            sched_begin(&s, e.module, s.module[e.module].due, q->time[e.module]);
+        }
+    }
+    for (int i = 0; i < N; i++) {
+        l->missed[i] = s.module[i].missed;
+        l->busy[i] = s.module[i].busy;
+        l->response[i] = s.module[i].response;
+    }
+}
+
+#endif
