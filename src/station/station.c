@@ -43,14 +43,20 @@ static bool can_home(const struct machine_axis *a, const struct home_config *h)
     return home_valid(h) && fmax(h->high_speed, h->low_speed) <= machine_axis_speed(a);
 }
 
+/* A number of clocks, of which sums and products with what a run makes stay numbers: 289 days. */
+static bool clocks(int64_t x, int64_t least)
+{
+    return x >= least && x < 1000000000000000;
+}
+
 /* Times of the modules on the processor; interrupts wake the position control. */
 static bool modules_valid(const struct pc_config *p)
 {
-    bool valid = p->interpreter >= 0 && p->process >= 0 && p->offset[PC_PCL] == 0 &&
-                 p->isr.service >= 0;
+    bool valid = clocks(p->bus, 1) && clocks(p->ipo, 1) && clocks(p->interpreter, 0) &&
+                 clocks(p->process, 0) && clocks(p->isr.service, 0) && p->offset[PC_PCL] == 0;
     for (int i = 0; i < SCHED_MODULES; i++) {
-        valid = valid && p->offset[i] >= 0 && p->time[i] >= 0 && p->unit[i] >= 0 &&
-                p->most[i] >= 0;
+        valid = valid && clocks(p->offset[i], 0) && clocks(p->time[i], 0) &&
+                clocks(p->unit[i], 0) && p->most[i] >= 0;
     }
     return valid;
 }
@@ -62,7 +68,7 @@ static enum station_status check(const struct station_config *c)
     if (!machine_valid(&c->machine) || c->machine.queue_depth > QUEUE_SIZE) {
         return STATION_BAD_MACHINE;
     }
-    if (!modules_valid(p) || p->bus < 1 || p->ipo < 1 || p->min_stock < 0 || p->batch < 1 ||
+    if (!modules_valid(p) || p->min_stock < 0 || p->batch < 1 ||
         p->batch > PCL_FRAMES || p->min_stock + p->batch > PCL_FIFO ||
         !(p->latency >= 0.0 && p->latency < 1e15) ||
         !(p->jitter >= 0.0 && p->jitter < 1e15) ||
