@@ -22,7 +22,7 @@ static void chains(bool smooth)
     uint64_t seed = 17;
     int late = 0, most = 0;
 
-    for (int i = 0; i < 3000; i++) {
+    for (int i = 0; i < 1000; i++) {
         begin(mcc_machine());
         smooth_ramps(smooth);
         MCC_set_fspd(&m, 50.0);
