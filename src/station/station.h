@@ -36,7 +36,7 @@ struct station_config {
 enum station_status {
     STATION_OK,
     STATION_BAD_MACHINE,            /* the library refuses a value of machine */
-    STATION_BAD_PC,                 /* a time below 0 or of 1e15 clocks, no period, n + N > the FIFO */
+    STATION_BAD_PC,                 /* a time below 0 or of 1e15 clocks, no period, n + N > FIFO */
     STATION_BAD_MODE,               /* no station_mode */
     STATION_BAD_HOME,               /* an axis with a home_order cannot be homed so */
     STATION_FRAMES_REFUSED,         /* the card takes no frame any more */

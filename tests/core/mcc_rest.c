@@ -1,5 +1,5 @@
-/* Rest after an abort or a hold: as soon as the ramp has ended wherever it ends, and the next command
- * begins where the axes stand. */
+/* Rest after an abort or a hold: as soon as the ramp has ended wherever it ends, and the next
+ * command begins where the axes stand. */
 #include "mcc_chain.h"
 
 /* Points until the axes rest, `most` at most. */

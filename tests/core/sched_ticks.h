@@ -1,4 +1,4 @@
-/* sched_ticks - a processor that is looked at at every clock, and the scheduler asked for the same. */
+/* sched_ticks - a processor looked at at every clock, and the scheduler asked for the same. */
 #ifndef SCHED_TICKS_H
 #define SCHED_TICKS_H
 

@@ -180,8 +180,8 @@ static void program(void)
     CHECK(!s.pc.mcc.signals.stop && !epcio_off(&s.card));
 }
 
-/* A card that its watchdog has stopped takes no frame; that is no fault of the station, which goes on
- * and moves again once the watchdog is refreshed. */
+/* A card that its watchdog has stopped takes no frame; that is no fault of the station, which goes
+ * on and moves again once the watchdog is refreshed. */
 static void watchdog(void)
 {
     const struct station_config c = station_defaults();
@@ -240,8 +240,8 @@ static void slow_pc(void)
     CHECK(r.missed > 100 && r.starved > 100);
 }
 
-/* Motor position at which X finds its origin, searching the index alone, with the index ON at a level
- * that MCC_update_param is told, or none. [counts] */
+/* Motor position at which X finds its origin, searching the index alone, with the index ON at a
+ * level that MCC_update_param is told, or none. [counts] */
 static double origin_found(int level)
 {
     struct station_config c = station_defaults();
@@ -272,8 +272,8 @@ static void index_level(void)
     CHECK_NEAR(origin_found(0), 10001.0, 0.0);
 }
 
-/* At 0.1 s the DDA time becomes 0.512 ms by a call; the other station has it from the start on. Half
- * a second of uniform motion: missed deadlines in it, error of X at its end. */
+/* At 0.1 s the DDA time becomes 0.512 ms by a call; the other station has it from the start on.
+ * Half a second of uniform motion: missed deadlines in it, error of X at its end. */
 static void both_ways(struct station_config c, int32_t missed[2], int32_t error[2])
 {
     struct station *both[] = { &s, &other };

@@ -87,7 +87,7 @@ static void read_bus(struct card *c, const struct pcl *p)
     c->coming = c->coming || (p->open && p->seq != c->shows.cmd_ack);
 }
 
-/* Pulses that the groups say they have given to a channel: points that the card has acknowledged. */
+/* Pulses that the groups have given to a channel: of points that the card has acknowledged. */
 static int64_t given(int k, int channel)
 {
     int64_t sum = 0;

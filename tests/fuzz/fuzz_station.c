@@ -37,7 +37,8 @@ static double number(struct bytes *b, double plain)
 static int64_t whole(struct bytes *b, int64_t plain)
 {
     static const int64_t odd[] = { 0, -1, 1, 2, INT32_MAX, INT32_MIN, INT64_MAX, INT64_MIN,
-                                   INT64_MAX / 2, (int64_t)1 << 61, 63, 64, 1023, 1024, 7, 1000000 };
+                                   INT64_MAX / 2, (int64_t)1 << 61, 63, 64, 1023, 1024, 7,
+                                   1000000 };
     const int64_t x = byte(b);
     return x >= 0xf0 ? odd[x & 15] : plain * (x - 16) / 64;
 }
