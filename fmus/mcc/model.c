@@ -26,7 +26,8 @@ struct inputs { struct output_input of[INPUTS]; };
 
 static struct inputs inputs_of(const struct vars *v)
 {
-    return (struct inputs){ { { v->program, "it is program" }, { v->comp_file, "it is comp_file" } } };
+    return (struct inputs){ { { v->program, "it is program" },
+                              { v->comp_file, "it is comp_file" } } };
 }
 
 static int cannot_write(struct fmu *f, const char *why)

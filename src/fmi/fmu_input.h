@@ -9,7 +9,8 @@
 #include <unistd.h>
 #endif
 
-/* Open a regular file; a pipe without a writer is not waited for. Returns NULL, or what is wrong. */
+/* Open a regular file; a pipe without a writer is not waited for. Returns NULL, or what is
+ * wrong. */
 static const char *file_open(const char *name, FILE **file)
 {
     file_stat s;

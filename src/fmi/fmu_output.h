@@ -1,5 +1,5 @@
-/* A file that an FMU writes takes the place of a regular file or of nothing, in full and at the end.
- * Functions return NULL, or words for what is wrong. */
+/* A file that an FMU writes takes the place of a regular file or of nothing, in full and at the
+ * end. Functions return NULL, or words for what is wrong. */
 #ifndef FMU_OUTPUT_H
 #define FMU_OUTPUT_H
 

@@ -1,4 +1,4 @@
-/* Encoder latches: which of several triggers within a sample a counter keeps, and where it stood. */
+/* Encoder latches: which of several triggers within a sample a counter keeps, where it stood. */
 #include "epcio_card.h"
 
 #include <math.h>
@@ -7,7 +7,8 @@ enum { SPAN = 4000 };       /* [clocks] between two samples */
 
 /* Clock in a sample at which an index line of one line period rises, its phase going from `from` to
  * `to`: on entering the first quarter of a period, going up at its lower end, going down at its
- * upper one; the n-th from 0, or the last but -1 - n. -1: there is none. Looked for clock by clock. */
+ * upper one; the n-th from 0, or the last but -1 - n. -1: there is none. Looked for clock by
+ * clock. */
 static int64_t index_at(double from, double to, int n)
 {
     int64_t found[64], count = 0;

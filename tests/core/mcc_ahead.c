@@ -61,8 +61,8 @@ static void corners(void)
     }
 }
 
-/* However large the tolerance, a corner takes half a radian of the sharper of two arcs, no more: the
- * rest of an arc is driven, one that is far smaller than the tolerance too. */
+/* However large the tolerance, a corner takes half a radian of the sharper of two arcs, no more:
+ * the rest of an arc is driven, one that is far smaller than the tolerance too. */
 static void small_arcs(void)
 {
     for (int k = 0; k < 4; k++) {

@@ -98,7 +98,7 @@ static void numbers(void)
     }
 }
 
-/* A code within 0.0001 of one that exists is that one, below it and above; further off it is none. */
+/* A code within 0.0001 of one that exists is that one, below it and above; further off none. */
 static void almost_codes(void)
 {
     static const double code[] = { 1.0, 17.0, 21.0, 90.1, 61.0, 94.0 };
@@ -107,7 +107,8 @@ static void almost_codes(void)
         for (int far = 0; far < 2; far++) {
             char text[64];
             struct reader x;
-            snprintf(text, sizeof text, "G%.7f\nG1 X1", code[i / 2] + side * (far ? 1.02e-4 : 0.98e-4));
+            snprintf(text, sizeof text, "G%.7f\nG1 X1",
+                     code[i / 2] + side * (far ? 1.02e-4 : 0.98e-4));
             begin(&x, text);
             CHECK_EQ(next(&x), far ? -2 : COMMAND_LINE);
             CHECK_EQ(x.r.fault, far ? FAULT_WORD : FAULT_NONE);

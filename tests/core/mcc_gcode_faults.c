@@ -109,7 +109,8 @@ static void faults(void)
     };
     /* Two have tests of their own below, and mcc_stream.c has those of a source. */
     bool seen[FAULT_COUNT] = { [FAULT_NONE] = true, [FAULT_LINE_LENGTH] = true,
-                               [FAULT_WORD_COUNT] = true, [FAULT_READ] = true, [FAULT_ZERO] = true };
+                               [FAULT_WORD_COUNT] = true, [FAULT_READ] = true,
+                                [FAULT_ZERO] = true };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         fault_is(bad[i].text, bad[i].line, bad[i].at, bad[i].fault);
         seen[bad[i].fault] = true;

@@ -299,7 +299,8 @@ static void refused(void)
  * missing, a group beside it that stands does not. */
 static void too_slow(void)
 {
-    static const int32_t channel[2][AXES] = { { 0, -1, -1, -1, -1, -1 }, { 1, -1, -1, -1, -1, -1 } };
+    static const int32_t channel[2][AXES] = { { 0, -1, -1, -1, -1, -1 },
+                                              { 1, -1, -1, -1, -1, -1 } };
     struct machine card[GROUP_CARDS], m = mcc_machine();
     struct group_config config = usual();
     struct group_panel panel[GROUP_MAX] = { { 0 } };

@@ -77,7 +77,7 @@ static void shifts(void)
     CHECK_EQ(next(&x), -1);     /* G92 begins afresh after G92.2: X4 is 10, Y0 is 0 */
     begin(&x, "G52 X3 Y-2\nG1 X10\nG92 X1 Y5\nX2 Y5\nG52 X0 Y0\nX2 Y5\n");
     expect_move(&x, COMMAND_LINE, 13.0, 0.0, 0.0);
-    expect_move(&x, COMMAND_LINE, 14.0, 0.0, 0.0);      /* 13 is X1, whatever G52 has moved; 0 is Y5 */
+    expect_move(&x, COMMAND_LINE, 14.0, 0.0, 0.0);      /* 13 is X1, whatever G52 moved; 0 is Y5 */
     expect_move(&x, COMMAND_LINE, 11.0, 2.0, 0.0);      /* less what G52 had moved */
     CHECK_EQ(next(&x), -1);
 }
