@@ -4,6 +4,7 @@
  * path. <name>_open gives the variables at their start values; then <name>_start, <name>_step,
  * <name>_end. An error ends the program.
  */
+#define _POSIX_C_SOURCE 200809L /* kinds of files, as in the FMU's own unit */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
