@@ -43,12 +43,9 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     struct law_config law = config->law;
     law.period = (double)config->bus / CLOCK_HZ;
     for (int i = 0; i < AXES; i++) {
-        law.axis[i].on = config->output_mode[i] == 2 && m->axis[i].used;
-        if (i < 3) {
-            law.pulses_per_mm[i] = machine_pulses_per_mm(&m->axis[i]);
-        }
+        law.axis[i].on = config->output_mode[i] == 2;
     }
-    voltage_start(&pc->voltage, &law);
+    voltage_start(&pc->voltage, &law, m);
     homing_set_settle(&pc->mcc, config->home_settle);
     pc->home_due = config->home_first;
     if (config->dry_run) {
@@ -82,6 +79,7 @@ static void control(struct pc *pc, int64_t now, const struct pcl_card *card,
     struct law_axis *axis = pc->voltage.config.axis;
     double volts[AXES] = { 0.0 };
 
+    voltage_follow(&pc->voltage, m);
     for (int i = 0; i < AXES; i++) {
         const double fixed = pc->config.law.axis[i].gain;
         axis[i].gain = fixed > 0.0 ? fixed : panel->software_gain[i];

@@ -12,13 +12,10 @@ void servo_start(struct servo *s, const struct law_config *law, const struct mac
     memset(s, 0, sizeof *s);
     c.period = (double)bus / CLOCK_HZ;
     for (int i = 0; i < AXES; i++) {
-        c.axis[i].on = m->axis[i].used;
-        if (i < 3) {
-            c.pulses_per_mm[i] = machine_pulses_per_mm(&m->axis[i]);
-        }
+        c.axis[i].on = true;
     }
     soft_dda_start(&s->dda, m);
-    voltage_start(&s->voltage, &c);
+    voltage_start(&s->voltage, &c, m);
 }
 
 /* What the library sees of the machine: its own pulses in the place of the card's. */
@@ -54,6 +51,7 @@ void servo_instant(struct servo *s, struct mcc *m, int64_t now, int64_t bus,
     double volts[AXES] = { 0.0 };
 
     look(s, m, counts);
+    voltage_follow(&s->voltage, &m->machine);
     voltage_tick(&s->voltage, m, now, 0, VOLTAGE_RANGE, volts);
     for (int i = 0; i < AXES; i++) {
         s->volts[i] = m->machine.axis[i].inverted ? -volts[i] : volts[i];

@@ -17,15 +17,40 @@ static void begin_trail(struct voltage *v, const struct mcc *m)
     v->frame = 0;
 }
 
-void voltage_start(struct voltage *v, const struct law_config *c)
+void voltage_start(struct voltage *v, const struct law_config *c, const struct machine *m)
 {
     memset(v, 0, sizeof *v);
     v->config = *c;
     for (int i = 0; i < AXES; i++) {
         const struct law_axis *a = &c->axis[i];
+        v->wanted[i] = a->on;
         v->special = v->special || (a->on && (a->feed_forward > 0.0 || a->lag > 0.0));
     }
     v->special = v->special || law_crosses(c);
+    voltage_follow(v, m);
+}
+
+void voltage_follow(struct voltage *v, const struct machine *m)
+{
+    bool other = false;
+
+    for (int i = 0; i < AXES; i++) {
+        if (!v->wanted[i]) {
+            continue;
+        }
+        const struct machine_axis *a = &m->axis[i];
+        const double unit = machine_pulses_per_mm(a);
+        other = other || v->config.axis[i].on != a->used || v->inverted[i] != a->inverted ||
+                (i < 3 && v->config.pulses_per_mm[i] != unit);
+        v->config.axis[i].on = a->used;
+        v->inverted[i] = a->inverted;
+        if (i < 3) {
+            v->config.pulses_per_mm[i] = unit;
+        }
+    }
+    if (other) {
+        memset(&v->law, 0, sizeof v->law);
+    }
 }
 
 /* A frame and its end. Places come from pulses put out, so that a new origin is no motion. */

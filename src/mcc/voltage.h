@@ -14,7 +14,8 @@
 enum { VOLTAGE_RANGE = 10 };    /* [V] of the card's DAC, both ways */
 
 struct voltage {
-    struct law_config config;
+    struct law_config config;   /* its axes and pulses per mm as of the machine now */
+    bool    wanted[AXES], inverted[AXES];
     bool    special;        /* more than the P law is wanted */
     struct law law;
     struct trail trail;
@@ -27,8 +28,13 @@ struct voltage {
     int64_t since;          /* [clock] the instant at which that was first seen */
 };
 
-/* At rest, with these gains; the first look is where the trail begins. */
-void voltage_start(struct voltage *v, const struct law_config *c);
+/* At rest, with these gains; the first look is where the trail begins. Of the axes that are on here
+ * those are on that the machine uses, and pulses per mm are the machine's. */
+void voltage_start(struct voltage *v, const struct law_config *c, const struct machine *m);
+
+/* Before the tick of an instant: the machine may have another lead, direction or use of an axis,
+ * set at standstill; then the law begins anew. */
+void voltage_follow(struct voltage *v, const struct machine *m);
 
 /* The card has taken so many frames of a transaction, whose points are still in the queue. */
 void voltage_taken(struct voltage *v, const struct mcc *m, const struct pcl_part *part,

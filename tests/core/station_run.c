@@ -313,9 +313,48 @@ static void dda_time_by_call(void)
     CHECK(abs(error[0]) <= 5 && abs(error[1]) <= 5);
 }
 
+/* Lead and direction by MCC_update_param hold for the control law: the machine moves
+ * as one that was started with them. */
+static void parameters_by_call(void)
+{
+    struct station_config c = station_defaults();
+    for (int i = 0; i < 3; i++) {
+        c.pc.output_mode[i] = STATION_SOFTWARE;
+        c.pc.law.axis[i] = (struct law_axis){ .gain = 0.005, .volts = 2e-5, .feed_forward = 0.9,
+                                              .lag = 2e-3 };
+    }
+    c.pc.law.cross_p = 60.0;
+    c.pc.law.cross_i = 200.0;
+    CHECK_EQ(station_start(&s, &c), STATION_OK);
+    c.machine.axis[0].pitch = 4.0;
+    c.machine.axis[1].inverted = true;
+    CHECK_EQ(station_start(&other, &c), STATION_OK);
+    for (int i = 0; i < 2; i++) {
+        struct station *of = i ? &other : &s;
+        CHECK_EQ(station_run(of, STATION_HZ / 10, NULL), STATION_OK);
+        MCC_MACH_PARAM *p = of->pc.mcc.epcio_axis_param;
+        p[0].pitch = 4.0;
+        p[1].pos2encoder_dir = 1;
+        CHECK_EQ(MCC_update_param(&of->pc.mcc), MCC_NO_ERR);
+        CHECK_EQ(MCC_line(&of->pc.mcc, (double[AXES]){ 3.0, 2.0, 1.0 }), 1);
+        CHECK_EQ(MCC_circle_xy(&of->pc.mcc, 0.0, 1.0, 1), 2);
+    }
+    double most = 0.0;
+    for (int64_t k = 1; k < 600; k++) {
+        const int64_t until = STATION_HZ / 10 + k * (STATION_HZ / 1000);
+        CHECK_EQ(station_run(&s, until, NULL), STATION_OK);
+        CHECK_EQ(station_run(&other, until, NULL), STATION_OK);
+        CHECK(!memcmp(s.motor, other.motor, sizeof s.motor));
+        CHECK(!memcmp(s.volts, other.volts, sizeof s.volts));
+        most = fmax(most, s.motor[0]);
+    }
+    CHECK(most > 7000.0);       /* 3 mm at 2500 a mm */
+}
+
 int main(void)
 {
     index_level();
+    parameters_by_call();
     dda_time_by_call();
     slow_pc();
     line();
