@@ -79,6 +79,35 @@ def test_only_regular_files_are_read(tmp_path: Path) -> None:
         text_of(tmp_path / "large.toml")
 
 
+@pytest.mark.parametrize(
+    ("given", "what"),
+    [
+        ({"sampling": "random", "runs": 2_000_000}, "2000000 runs of 1 axes; 1000000 are the most"),
+        (
+            {
+                "axis": {f"mcc.p_gain[{i}]": [1, 2, 3] for i in range(1, 7)}
+                | {"mcc.irq_latency": {"from": 1e-4, "to": 1e-3, "n": 2000}}
+            },
+            "1458000 runs of 7 axes; 1000000 are the most",
+        ),
+        (
+            {
+                "sampling": "latin",
+                "runs": 900_000,
+                "axis": {
+                    f"{n}[{i}]": [1, 2] for i in range(1, 7) for n in ("mcc.p_gain", "mcc.ppr")
+                },
+            },
+            "900000 runs of 12 axes; 833333 are the most",
+        ),
+    ],
+)
+def test_a_study_has_no_more_points_than_memory_holds(given: dict, what: str) -> None:
+    axis = {"axis": {"mcc.p_gain": [100, 200]}, "results": ["mcc.error.absmax"]}
+    with pytest.raises(InputError, match=what):
+        sweep.study(ROOT / "scenarios/circle_theory/scenario.toml", axis | given)
+
+
 def test_a_word_of_the_command_line_is_one_value() -> None:
     assert word("1\ny = 2") == "1\ny = 2" and word("[1, 2]") == [1, 2]
     assert word("[" * 5000) == "[" * 5000

@@ -36,6 +36,7 @@ FAST = {"acc_time": 0.01, "dec_time": 0.01}
         (TABLE + "1,5,x,0", 'line 9: not 4 whole numbers: "x,0"'),
         (TABLE + "1,5,32768,0", "line 9: forward 32768 is beyond +-32767"),
         (TABLE + "1,5,0,-32768", "line 9: backward -32768 is beyond +-32767"),
+        (TABLE + f"1,5,{-(2**63)},0", "line 9: forward -9223372036854775808 is beyond +-32767"),
         (AXIS + "2,100,1\n" + POINT + "2,-1,0,0", "line 4: index -1 is not within 0 to 255"),
         ("#" + 300 * "x", "line 1: more than 254 characters"),
     ],

@@ -94,7 +94,7 @@ static int comp_point(struct comp_file *f, const long c[COMP_CELLS])
         return comp_bad(f, "index", c[1], "does not follow the one before");
     }
     for (int i = 2; i < 4; i++) {
-        if (labs(c[i]) > COMP_LARGEST) {
+        if (c[i] < -COMP_LARGEST || c[i] > COMP_LARGEST) { /* labs of the least long is none */
             return comp_bad(f, i == 2 ? "forward" : "backward", c[i], "is beyond +-32767");
         }
     }

@@ -19,7 +19,8 @@ from motionfmu.toml_lines import word
 Value = float | int | bool | str
 Point = tuple[Value, ...]
 SAMPLINGS = ("grid", "random", "latin")
-RUNS_MAX = 10_000_000  # more points than memory and patience hold
+RUNS_MAX = 1_000_000  # a day on forty cores; their table is still a gigabyte at most
+VALUES_MAX = 10_000_000  # runs times axes
 STANDARD = NormalDist()
 _STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 

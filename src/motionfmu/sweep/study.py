@@ -29,7 +29,7 @@ class Body(BaseModel):
     model_config = _STRICT
     scenario: str = "."
     sampling: Literal["grid", "random", "latin"] = "grid"
-    runs: int | None = Field(default=None, ge=1, le=ax.RUNS_MAX)
+    runs: int | None = Field(default=None, ge=1)
     seed: int = Field(default=0, ge=0)
     stop: float | None = None
     step: float | None = None
@@ -326,11 +326,17 @@ def _runs(origin: Origin, body: Body, chosen: tuple[ax.Axis, ...]) -> int:
     if body.sampling != "grid":
         if body.runs is None:
             raise origin.error(f"sampling {body.sampling!r} wants runs, their number", "", "runs")
-        return body.runs
+        return _bounded(origin, body.runs, len(chosen), "runs")
     if body.runs is not None:
         raise origin.error("runs: the number of runs of a grid follows from its axes", "", "runs")
-    if (runs := ax.count(chosen)) > ax.RUNS_MAX:
-        raise origin.error(f"{runs} runs; {ax.RUNS_MAX} are the most", "", "axis")
+    return _bounded(origin, ax.count(chosen), len(chosen), "axis")
+
+
+def _bounded(origin: Origin, runs: int, axes: int, key: str) -> int:
+    """Refuse more points than memory holds."""
+    most = min(ax.RUNS_MAX, ax.VALUES_MAX // axes)
+    if runs > most:
+        raise origin.error(f"{runs} runs of {axes} axes; {most} are the most", "", key)
     return runs
 
 
@@ -371,7 +377,8 @@ def _tuned(
     try:
         text = text_of(file)
     except InputError as error:
-        raise origin.error(f"tuned = {body.tuned!r}: {error}", "", "tuned") from None
+        told = str(error).removeprefix(f"{file}: ")
+        raise origin.error(f"tuned = {shown(body.tuned)}: {told}", "", "tuned") from None
     values = tables_of(text, file)
     found: dict[str, ax.Value] = {}
     for axis in chosen:
