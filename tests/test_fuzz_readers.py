@@ -36,7 +36,11 @@ def fuzz(originals: list[str], body: Callable[[str], Any], examples: int) -> Non
     """Try the originals, which must be valid, then changed ones."""
     for text in (t for o in originals for t in (o, document(tomllib.loads(o)))):
         assert body(text) is not None, text
-    search(either(originals), lambda text: body(text) and None, examples)
+
+    def quiet(text: str) -> None:
+        body(text)
+
+    search(either(originals), quiet, examples)
 
 
 def search(strategy: st.SearchStrategy[Any], body: Callable[[Any], None], examples: int) -> None:
@@ -151,7 +155,7 @@ def test_a_study_is_made_or_refused(tmp_path: Path) -> None:
     scenario = ROOT / "scenarios/circle_theory"
     (tmp_path / "gains.toml").write_text(
         '"mcc.irq_latency" = 2e-4\n"mcc.p_gain" = [100, 1]\n"mcc.acc_type" = "T"\n'
-        '"machine.tau" = 1e-3\n'
+        '"machine.tau" = 1e-3\n"drives.velocity_gain" = 1.0\n'
     )
     written = [STUDY.format(scenario)]
     (text,) = texts("scenarios/circle/sweep.toml")

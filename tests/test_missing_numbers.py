@@ -107,6 +107,16 @@ def test_a_circle_keeps_its_number_when_one_before_it_has_no_test() -> None:
     assert result.number("circles.1.radius") == pytest.approx(20.0)
 
 
+def test_a_circle_run_twice_the_same_way_is_two() -> None:
+    there = Program(30, 0).arc((0, 0), 2 * math.pi).line(40, 0).line(30, 0)
+    back = there.arc((0, 0), 2 * math.pi).line(40, 0).line(30, 0).arc((0, 0), -2 * math.pi)
+    circles = analyse(run_along(back.path(), 50.0, Machine(gains=(200.0,) * 3))).circles
+    assert [(c.place, c.ccw is None, c.cw is None) for c in circles] == [
+        (0, False, False),
+        (1, False, True),
+    ]
+
+
 def test_names_are_those_of_the_analysis() -> None:
     """Every number of an analysis has a possible name, and every possible name is met once."""
     path = Program(30, 0).arc((0, 0), 2 * math.pi).arc((0, 0), -2 * math.pi).line(30, 40)
