@@ -48,6 +48,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu import outcome
     from motionfmu.freq.study import Asked
     from motionfmu.linear import model
+    from motionfmu.linear.opened import held
     from motionfmu.report.margin_page import numbers, page_text
 
     if gain is not None and loop is None:
@@ -72,6 +73,8 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
         limits = f"{s.linear.gain:.5g}", f"{ringing:.5g}"
         table.add_row(name, *cells, f"{m.sensitivity:.4g}", *limits)
     out.print(table)
+    if kept := held(linear):
+        out.print(kept, markup=False)
     for s in studies:
         if s.silent:
             out.print(f"FMUs not run: {s.silent}", markup=False)

@@ -444,7 +444,7 @@ def _plant(
         if d.name not in own.wired:
             inputs[d.name] = float(own[d.name])
     mine = {n.partition(".")[2]: v for n, v in at.items() if n.startswith(f"{component}.")}
-    point = parts.point(p, {**({} if not mine else inputs), **mine})
+    point = parts.point(p, mine, inputs)
     return parts.block(p, point, float(own["micro_step"])), point
 
 

@@ -121,3 +121,19 @@ def worst(axis: AxisModel) -> list[str]:
             told = [t for formula, t in own.worst.items() if law.number(own, values, formula)]
             found += [f"{component}: {t}" for t in told]
     return found
+
+
+def held(axis: AxisModel) -> str:
+    """Inputs of plants that nobody stated beside the operating point, in words.
+
+    Parameters
+    ----------
+    axis : AxisModel
+
+    Returns
+    -------
+    str
+        Empty if there are none.
+    """
+    kept = [f"{c}.{n} = {v:g}" for c, p in axis.points.items() for n, v in p.held.items()]
+    return f"Not stated, kept as the scenario has them: {', '.join(kept)}" if kept else ""

@@ -1,14 +1,12 @@
 """A plant's equation about an operating point, on its micro-grid."""
 
-import itertools
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 
 import casadi as ca
 import numpy as np
-from scipy.optimize import least_squares
+from numpy.typing import NDArray
 
 from motionfmu.linear.block import Matrix, Plant
 from motionfmu.modelica.ode import Ode
@@ -18,13 +16,25 @@ from motionfmu.system import nanoseconds
 H_LAMBDA = 2.0
 # A uniform motion is found when what is left of the balance is below this, relative.
 _UNIFORM = 1e-9
+_EXACT = 1e-15
+# Size of a position on which nothing depends [m, rad]: it shall stay, and end stops are near.
+_FAR = 1e-3
 # Positions after a second have lost digits to rounding.
 _LASTING = 1e-6
+# Times after which a motion is looked at again [s]; one that is over sooner than the first is none.
+_LOOKS = [float(t) for t in np.geomspace(1e-3, 1.0, 61)]
+_SHORTEST_MOTION = _LOOKS[0]
 # Relative distance at which both sides of a point are looked at.
 _HAIR = 1e-13
-_NEWTON_STEPS, _SHORTEST, _LEVENBERG_STEPS = 60, 1e-6, 200
+# Newton's steps and the shortest part of one; fewer where many beginnings are tried.
+_PATIENCE, _GLANCE = (60, 1e-6), (15, 1e-2)
 # It leads nowhere when so many steps, one after the other, were cut to less than this share.
 _CREEPING, _SHORT = 5, 1e-3
+# Parts of the way from rest to a motion: the least, and how many are tried.
+_PART, _PARTS = 1e-6, 80
+# Steps of an input that is followed: the first, the least, the one at which Newton takes over, and
+# the farthest input looked at, in its unit and as a share.
+_FIRST_INPUT, _LEAST_INPUT, _NEAR_INPUT, _LAST_INPUT = 1e-3, 1e-7, 1e-4, 1e4
 
 
 def _norm(v: Matrix) -> float:
@@ -42,9 +52,14 @@ class Point:
     values : dict
         The same by name, and the outputs, in the units of the class.
     stated : dict
-        What the user asked for.
+        What was asked for.
+    held : dict
+        Inputs that nobody stated and that kept their values, where a motion was asked for.
     rates : dict
         Rates of the outputs by name, per second: nonzero where the motion goes on.
+    lasts : float
+        How long the motion goes on so [s]: to an end stop, or where a gap closes. Infinite from a
+        second on.
     """
 
     x: Matrix
@@ -52,48 +67,112 @@ class Point:
     values: dict[str, float]
     stated: dict[str, float]
     rates: dict[str, float]
+    held: dict[str, float] = field(default_factory=dict)
+    lasts: float = math.inf
 
 
 _Function = Callable[[Matrix], Matrix]
 
 
-def _newton(rest: _Function, slope: _Function, start: Matrix, columns: Matrix) -> Matrix:
-    """The shortest step, halved until it leads nearer."""
+def _newton(
+    rest: _Function,
+    slope: _Function,
+    start: Matrix,
+    sizes: Matrix,
+    patience: tuple[int, float] = _PATIENCE,
+) -> Matrix:
+    """The shortest step in sizes of the unknowns, halved until it leads nearer; size 0 stays."""
     z, found, slow = start, rest(start), 0
-    for _ in range(_NEWTON_STEPS):
-        way = np.zeros(len(z))
-        way[columns] = -np.linalg.pinv(slope(z), rcond=1e-13) @ found
-        length = 1.0
-        while length > _SHORTEST and not _norm(rest(z + length * way)) < _norm(found):
+    steps, shortest = patience
+    for _ in range(steps):
+        way = -sizes * (np.linalg.pinv(slope(z) * sizes, rcond=1e-13) @ found)
+        length, there = 1.0, rest(z + way)
+        while length > shortest and not _norm(there) < _norm(found):
             length /= 2.0
+            there = rest(z + length * way)
         slow = slow + 1 if length < _SHORT else 0
-        if length <= _SHORTEST or slow > _CREEPING:
+        if length <= shortest or slow > _CREEPING:
             break
-        z = z + length * way
-        found = rest(z)
+        z, found = z + length * way, there
+        if _norm(found) < _EXACT:
+            break
     return z
 
 
-def _levenberg(rest: _Function, slope: _Function, start: Matrix, columns: Matrix) -> Matrix:
-    """Each unknown in its own measure: pressures beside strokes, fast states beside slow ones."""
+def _continued(
+    motion: Callable[[float], tuple[_Function, _Function]], start: Matrix, sizes: Matrix
+) -> Matrix:
+    """From rest to the motion in parts, each begun where the last ones lead to.
 
-    def whole(part: Matrix) -> Matrix:
-        z = start.copy()
-        z[columns] = part
-        return z
+    Friction and a valve's deadband bend much near rest, a saturation is flat beyond its corner.
+    """
+    z, done, part = _newton(*motion(0.0), start, sizes), 0.0, 1e-2
+    before, last = z, 0.0
+    for _ in range(_PARTS):
+        share = min(done + part, 1.0)
+        ahead = z + (share - done) / (done - last) * (z - before) if done > last else z
+        for guess in (ahead, z):
+            rest, slope = motion(share)
+            found = _newton(rest, slope, guess, sizes)
+            if good := _norm(rest(found)) < _UNIFORM:
+                break
+        if good:
+            before, last, z, done = z, done, found, share
+            part *= 2.0
+            if done == 1.0:
+                break
+        else:
+            part /= 4.0
+            if part < _PART:
+                break
+    return z
 
-    tight: Any = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
-    square = len(rest(start)) >= len(columns)
-    found = least_squares(
-        lambda part: rest(whole(part)),
-        start[columns],
-        lambda part: slope(whole(part)),
-        x_scale="jac",
-        method="lm" if square else "trf",
-        max_nfev=_LEVENBERG_STEPS,
-        **tight,
-    )
-    return whole(found.x)
+
+def _beside(x: Matrix, which: NDArray[np.intp]) -> Iterator[Matrix]:
+    """Some states moved, small and larger steps both ways.
+
+    So that a gap is closed on the side on which the force is carried.
+    """
+    for size in (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0):
+        for k in which:
+            for sign in (1.0, -1.0):
+                moved = x.copy()
+                moved[k] += sign * size
+                yield moved
+
+
+def _bracketed(
+    equations: tuple[_Function, _Function, int], start: Matrix, sizes: Matrix, input_: int
+) -> Matrix:
+    """The input between two, one after the other, whose motions are too slow and too fast.
+
+    Where a valve is shut the input moves nothing and Newton has no way to go. So the motion is
+    followed along the input, from its start both ways, each begun at the one before.
+    """
+    rest, slope, aimed = equations
+    rows = np.delete(np.arange(len(rest(start))), aimed)
+    others = sizes.copy()
+    others[input_] = 0.0
+
+    def motion(value: float, near: Matrix) -> Matrix | None:
+        z = near.copy()
+        z[input_] = value
+        z = _newton(lambda z: rest(z)[rows], lambda z: slope(z)[rows], z, others)
+        return z if _norm(rest(z)[rows]) < _UNIFORM else None
+
+    for sign in (1.0, -1.0):
+        low, step = motion(start[input_], start), _FIRST_INPUT
+        while low is not None and step > _LEAST_INPUT * (1.0 + abs(low[input_])):
+            high = motion(low[input_] + sign * step, low)
+            if high is None or rest(low)[aimed] * rest(high)[aimed] <= 0.0:
+                if high is not None and step <= _NEAR_INPUT * (1.0 + abs(low[input_])):
+                    return high
+                step *= 0.5
+            elif abs(high[input_]) > _LAST_INPUT:
+                break
+            else:
+                low, step = high, 1.5 * step
+    return start
 
 
 class Linearised:
@@ -166,17 +245,22 @@ class Linearised:
         """
         return np.array(self._start(p).full()).ravel()
 
-    def point(self, p: Matrix, stated: Mapping[str, float]) -> Point:
+    def point(
+        self, p: Matrix, stated: Mapping[str, float], left: Mapping[str, float] | None = None
+    ) -> Point:
         """Find the uniform motion that has the stated values.
 
-        Nothing stated: the state and inputs at the start. Inputs that are not stated and not
-        needed keep their start values; the others follow from the balance of forces.
+        Nothing stated: the state and inputs at the start. Else the balance of forces is kept by
+        the first input of the class with which that can be done; all others that are not stated
+        have their start values.
 
         Parameters
         ----------
         p : ndarray
         stated : mapping
             Values of outputs and inputs by name, in their units.
+        left : mapping, optional
+            Inputs that keep a value although nothing is stated of them.
 
         Returns
         -------
@@ -193,52 +277,110 @@ class Linearised:
             if name not in (*inputs, *outputs):
                 raise ValueError(f"{name} is neither an input nor an output of {ode.name}")
         x, u = self.start(p), np.array(ode.u0)
-        for name in set(stated) & set(inputs):
-            u[inputs.index(name)] = stated[name]
+        left = {n: v for n, v in (left or {}).items() if n not in stated} if stated else {}
+        for name, value in {**left, **stated}.items():
+            if name in inputs:
+                u[inputs.index(name)] = value
         wanted = {outputs.index(n): v for n, v in stated.items() if n in outputs}
+        lasts = math.inf
         if wanted:
-            free = [k for k, n in enumerate(inputs) if n not in stated]
-            x, u = self._settle((x, u, p), wanted, free)
-        xdot, y, _ = (np.array(v.full()).ravel() for v in self._values(x, u, p))
+            x, u, lasts = self._settle((x, u, p), wanted, {**left, **stated})
+        y = np.array(self._values(x, u, p)[1].full()).ravel()
         values = dict(zip((d.name for d in ode.states), x.tolist(), strict=True))
         values |= dict(zip(inputs, u.tolist(), strict=True))
         values |= dict(zip(outputs, y.tolist(), strict=True))
-        a, b, c, _ = self.matrices(x, u, p)
+        rates = self.matrices(x, u, p)[2] @ self._moving(x, u, p)
+        rates = rates if stated else np.zeros(len(outputs))
+        told = dict(zip(outputs, rates.tolist(), strict=True))
+        return Point(x, u, values, dict(stated), told, left, lasts)
+
+    def _moving(self, x: Matrix, u: Matrix, p: Matrix) -> Matrix:
+        """Rates of the states, without what rounding leaves of a sum of forces."""
+        xdot = np.array(self._values(x, u, p)[0].full()).ravel()
+        a, b, _, _ = self.matrices(x, u, p)
         balance = np.abs(a) @ np.abs(x) + np.abs(b) @ np.abs(u)
-        xdot[np.abs(xdot) <= _UNIFORM * balance] = 0.0  # what rounding leaves of a sum of forces
-        rates = c @ xdot if stated else np.zeros(len(outputs))
-        return Point(x, u, values, dict(stated), dict(zip(outputs, rates.tolist(), strict=True)))
+        xdot[np.abs(xdot) <= _LASTING * balance] = 0.0
+        return xdot
 
     def _settle(
+        self,
+        begin: tuple[Matrix, Matrix, Matrix],
+        wanted: dict[int, float],
+        stated: Mapping[str, float],
+    ) -> tuple[Matrix, Matrix, float]:
+        """The motion that lasts longest, with the first input that makes one."""
+        inputs = [d.name for d in self.ode.inputs]
+        free = [k for k, name in enumerate(inputs) if name not in stated]
+        for movable in [[k] for k in free] or [[]]:
+            x, u, lasts = self._lasting(begin, wanted, movable)
+            if lasts >= _SHORTEST_MOTION:
+                return x, u, lasts
+        names = [f"{self.ode.outputs[k].name} = {v:g}" for k, v in wanted.items()]
+        kept = [f"{name} = {stated[name]:g}" for name in inputs if name in stated]
+        told = f", while {', '.join(kept)}" if kept else ""
+        raise ValueError(f"{self.ode.name} has no uniform motion with {', '.join(names)}{told}")
+
+    def _lasting(
         self, begin: tuple[Matrix, Matrix, Matrix], wanted: dict[int, float], free: list[int]
-    ) -> tuple[Matrix, Matrix]:
-        """Newton with the shortest step, then Levenberg and Marquardt, from or near the start."""
+    ) -> tuple[Matrix, Matrix, float]:
+        """States and inputs of the motion that lasts longest, and how long; 0 if there is none."""
         x0, u0, p = begin
         places, targets = list(wanted), np.array(list(wanted.values()))
         n = len(x0)
-        columns = np.array([*range(n), *(n + k for k in free)])
+        sizes = np.concatenate([np.maximum(np.abs(x0), 1.0), np.zeros(len(u0))])
+        slopes = np.abs(self.matrices(x0, u0, p)[0]) * sizes[:n]
+        nothing = slopes <= _UNIFORM * slopes.max(axis=1, initial=0.0)[:, None]
+        sizes[:n][nothing.all(axis=0)] = _FAR
+        sizes[[n + k for k in free]] = 1.0
         rates = 1.0 + np.abs(self.matrices(x0, u0, p)[0]).sum(axis=1)
         weights = 1.0 / np.concatenate([rates, np.maximum(np.abs(targets), 1.0)])
+        shown = np.array(self._values(x0, u0, p)[1].full()).ravel()[places]
 
-        def rest(z: Matrix) -> Matrix:
-            _, y, change = (np.array(v.full()).ravel() for v in self._values(z[:n], z[n:], p))
-            return weights * np.concatenate([change, y[places] - targets])
+        def motion(share: float) -> tuple[_Function, _Function]:
+            aim = shown + share * (targets - shown) if share < 1.0 else targets
 
-        def slope(z: Matrix) -> Matrix:
-            of_change, of_y = (np.array(m.full()) for m in self._slopes(z[:n], z[n:], p))
-            found: Matrix = (weights[:, None] * np.vstack([of_change, of_y[places]]))[:, columns]
-            return found
+            def rest(z: Matrix) -> Matrix:
+                _, y, change = (np.array(v.full()).ravel() for v in self._values(z[:n], z[n:], p))
+                return weights * np.concatenate([change, y[places] - aim])
 
-        guesses = self._guesses((x0, u0, p), places, targets)
-        for way, guess in itertools.product((_newton, _levenberg), guesses):
-            z = way(rest, slope, np.concatenate([guess, u0]), columns)
+            def slope(z: Matrix) -> Matrix:
+                of_change, of_y = (np.array(m.full()) for m in self._slopes(z[:n], z[n:], p))
+                found: Matrix = weights[:, None] * np.vstack([of_change, of_y[places]])
+                return found
+
+            return rest, slope
+
+        rest, slope = motion(1.0)
+        best = x0, u0, 0.0
+
+        def looked_at(z: Matrix) -> float:
+            nonlocal best
             if not _norm(rest(z)) < _UNIFORM:
-                continue
+                return 0.0
             z = self._back(z, x0, rest)
-            if self._lasts(z[:n], z[n:], p, weights[:n]):
-                return z[:n], z[n:]
-        names = [f"{self.ode.outputs[k].name} = {v:g}" for k, v in wanted.items()]
-        raise ValueError(f"{self.ode.name} has no uniform motion with {', '.join(names)}")
+            lasts = self._lasts(z[:n], z[n:], p, weights[:n])
+            if lasts > best[2]:
+                best = z[:n], z[n:], lasts
+            return lasts
+
+        def tried(guess: Matrix, patience: tuple[int, float] = _PATIENCE) -> bool:
+            found = _newton(rest, slope, np.concatenate([guess, u0]), sizes, patience)
+            return looked_at(found) == math.inf
+
+        c = self.matrices(x0, u0, p)[2]
+        speeds = x0 + np.linalg.pinv(c[places]) @ targets
+        start = np.concatenate([x0, u0])
+        if tried(x0) or tried(speeds) or looked_at(_continued(motion, start, sizes)) == math.inf:
+            return best
+        for k in range(len(places) if free and best[2] == 0.0 else 0):
+            near = np.concatenate([speeds, u0])
+            z = _bracketed((rest, slope, n + k), near, sizes, n + free[0])
+            looked_at(_newton(rest, slope, z, sizes))
+        # what moves, if something was found that ends: a gap is closed by it; else all
+        which = np.flatnonzero(self._moving(best[0], best[1], p)) if best[2] > 0.0 else np.arange(n)
+        if best[2] < math.inf:
+            any(tried(guess, _GLANCE) for guess in _beside(speeds, which))
+        return best
 
     def _back(self, z: Matrix, begin: Matrix, rest: _Function) -> Matrix:
         """A position on which the motion does not depend returns to where it was."""
@@ -249,33 +391,20 @@ class Linearised:
                 z = moved
         return z
 
-    def _lasts(self, x: Matrix, u: Matrix, p: Matrix, weights: Matrix) -> bool:
-        """Whether the motion goes on so: in a gap it ends where the sides meet."""
+    def _lasts(self, x: Matrix, u: Matrix, p: Matrix, weights: Matrix) -> float:
+        """How long the motion goes on so [s]: in a gap it ends where the sides meet."""
         xdot = np.array(self._values(x, u, p)[0].full()).ravel()
-        later = (x + seconds * xdot for seconds in (1e-3, 1e-2, 0.1, 1.0))
-        changes = (np.array(self._values(at, u, p)[2].full()).ravel() for at in later)
-        return all(_norm(weights * change) < _LASTING for change in changes)
 
-    def _guesses(
-        self, begin: tuple[Matrix, Matrix, Matrix], places: list[int], targets: Matrix
-    ) -> list[Matrix]:
-        """States near which the motion may be found.
+        def goes_on(seconds: float) -> bool:
+            change = np.array(self._values(x + seconds * xdot, u, p)[2].full()).ravel()
+            return _norm(weights * change) < _LASTING
 
-        The start; then the start moved by small and larger steps of each state both ways, so that
-        a gap is closed on the side on which the force is carried.
-        """
-        x0, u0, p = begin
-        found = [x0]
-        c = self.matrices(x0, u0, p)[2]
-        speeds = x0 + np.linalg.pinv(c[places]) @ targets
-        found.append(speeds)
-        for size in (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0):
-            for k in range(len(x0)):
-                for sign in (1.0, -1.0):
-                    moved = speeds.copy()
-                    moved[k] += sign * size
-                    found.append(moved)
-        return found
+        good = 0.0
+        for seconds in _LOOKS:
+            if not goes_on(seconds):
+                return good
+            good = seconds
+        return math.inf
 
     def block(self, p: Matrix, at: Point, micro_step: float) -> Plant:
         """The plant between two instants, as the FMU integrates it.

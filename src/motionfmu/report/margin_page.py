@@ -11,7 +11,7 @@ import numpy as np
 from motionfmu.freq.study import LoopStudy
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit
-from motionfmu.linear.opened import worst
+from motionfmu.linear.opened import held, worst
 from motionfmu.report.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.numbers import figure
 from motionfmu.report.sheet import Frame, Sheet
@@ -89,7 +89,9 @@ def numbers(axis: AxisModel, studies: Sequence[LoopStudy]) -> dict[str, Any]:
                 "imaginary": s.measured.values[:, 0].imag.tolist(),
             }
         loops.append(row)
-    points = {c: {"stated": p.stated, "values": p.values} for c, p in axis.points.items()}
+    points = {
+        c: {"stated": p.stated, "held": p.held, "values": p.values} for c, p in axis.points.items()
+    }
     told = {
         "scenario": axis.scenario.name,
         "about": axis.scenario.document.about,
@@ -208,11 +210,21 @@ def _limit(limit: Limit) -> tuple[str, str]:
 def _point_note(axis: AxisModel) -> str:
     told = [f"{escape(n)} = {v:g}" for n, v in axis.at.items()]
     if told:
-        return f"Stated: {', '.join(told)}. The rest follows: a uniform motion."
+        stated = f"Stated: {', '.join(told)}."
+        kept = f" {escape(text)}." if (text := held(axis)) else ""
+        return f"{stated}{kept} The rest follows: a uniform motion.{_over(axis)}"
     return (
         "Nothing was stated: the state at the start, at rest. Friction there is the steep slope of"
         " a part that sticks; state a speed to linearise about a motion."
     )
+
+
+def _over(axis: AxisModel) -> str:
+    """Where the motion cannot go on."""
+    ends = [p.lasts for p in axis.points.values() if math.isfinite(p.lasts)]
+    if not ends:
+        return ""
+    return f" It goes on for {figure(min(ends))} s, to where parts meet or part."
 
 
 def _points(axis: AxisModel) -> str:

@@ -1,0 +1,101 @@
+"""Uniform motions that linear models are made about, against the running plant."""
+
+import functools
+import json
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+from hydraulic_rig import Case, drive, started
+from plant_library import Library
+from test_hydraulics_theory import INCH, esposito
+from typer.testing import CliRunner
+
+from motionfmu import InputError, linear
+from motionfmu.cli import app
+from motionfmu.linear.plant import Linearised, Point
+
+LOADED = ROOT / "scenarios/hydraulic_gain"
+VISCOUS = esposito() | {"table_viscous": 1000.0}
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory):
+    return Library(ROOT / "fmus/hydraulic_axis/fmu.toml", tmp_path_factory.mktemp("hydraulic"))
+
+
+def found(parameters: dict[str, float], **stated: float) -> Point:
+    case = Case(**parameters)
+    return _linearised().point(case.p, stated)
+
+
+@functools.cache
+def _linearised() -> Linearised:
+    return Linearised(Case().ode)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "speed", "load"),
+    [
+        ({}, 0.105, {}),
+        ({}, 0.2, {"load_force": -800.0}),
+        ({}, -0.235, {"load_force": 0.0}),
+        (esposito(), 0.05, {"load_force": 0.0}),
+        (VISCOUS, 0.0495, {}),
+        (VISCOUS, -0.05, {"load_force": 2000.0}),
+    ],
+    ids=["slow", "load", "fast", "book", "viscous", "viscous and load"],
+)
+def test_the_plant_moves_as_the_motion_says(library, parameters, speed, load) -> None:
+    """With the voltage that was found, the running plant reaches the speed and stays at it."""
+    at = found(parameters, velocity=speed, **load)
+    force = load.get("load_force", 0.0)
+    assert at.values["velocity"] == pytest.approx(speed, rel=1e-9)
+    assert at.values["position"] == 0.0 and at.values["load_force"] == force
+    ends = 4.5 * INCH if parameters else 0.09
+    run = started(library, **parameters, start_position=-ends if speed > 0.0 else ends)
+    run.set(load_force=force)
+    seen = drive(run, 0.35, 1e-3, ("velocity",), voltage=at.values["voltage"])[-50:, 0]
+    assert seen == pytest.approx(speed, rel=2e-4)
+
+
+def test_the_fastest_motion_is_found_and_the_next_is_not(library) -> None:
+    """At 10 V the amplifier gives all it has."""
+    run = started(library, start_position=-0.09)
+    fastest = drive(run, 0.4, 1e-3, ("velocity",), voltage=10.0)[-1, 0]
+    assert 0.24 < fastest < 0.25
+    at = found({}, velocity=0.99 * fastest, load_force=0.0)
+    assert 9.5 < at.values["voltage"] < 10.0
+    with pytest.raises(
+        ValueError, match=r"no uniform motion with velocity = .*, while load_force = 0"
+    ):
+        found({}, velocity=1.01 * fastest, load_force=0.0)
+
+
+@pytest.mark.parametrize("speed", [0.12, 0.24])
+def test_how_long_a_motion_lasts(speed: float) -> None:
+    """From the middle to the end stop, 0.1 m; looked at every 12 %."""
+    lasts = found({}, velocity=speed, load_force=0.0).lasts
+    assert 0.88 * 0.1 / speed < lasts <= 0.1 / speed
+
+
+def test_an_input_that_nobody_stated_is_told(tmp_path: Path) -> None:
+    """What the scenario does with the load is kept, and said on console and page."""
+    at = {"axis.velocity": 0.05, "axis.position": 0.0}
+    point = linear.model(LOADED, at=at).points["axis"]
+    assert point.stated == {"velocity": 0.05, "position": 0.0}
+    assert point.held == {"load_force": -1000.0} and point.values["load_force"] == -1000.0
+    with pytest.raises(
+        InputError, match=r"velocity = 0\.26, position = 0, while load_force = -1000"
+    ):
+        linear.model(LOADED, at=at | {"axis.velocity": 0.26})
+    out = tmp_path / "out"
+    stated = [word for name, value in at.items() for word in ("--at", f"{name}={value}")]
+    done = CliRunner().invoke(
+        app, ["margins", str(LOADED), *stated, "--no-simulate", "--out", str(out)]
+    )
+    told = "Not stated, kept as the scenario has them: axis.load_force = -1000"
+    assert told in " ".join(done.output.split())
+    assert told in (out / "report.html").read_text()
+    numbers = json.loads((out / "result.json").read_text())
+    assert numbers["operating_point"]["axis"]["held"] == {"load_force": -1000.0}
