@@ -14,6 +14,7 @@ from motionfmu.linear import law
 from motionfmu.linear.block import Plant
 from motionfmu.linear.loops import feedbacks, largest_gain
 from motionfmu.linear.margins import margins
+from motionfmu.linear.systems import System
 from motionfmu.modelica import causal, description
 from motionfmu.modelica.ode import Ode
 
@@ -243,6 +244,39 @@ def test_only_the_inner_loop_is_left_when_the_outer_is_cut() -> None:
     assert "drives/integral" in inner.state_labels
     # position mode closes both in the drive; the card's counter is read by nobody
     assert list(feedbacks(linear.model(MODES, axis=1))) == ["drives.phase"]
+
+
+@pytest.mark.parametrize("at", [{}, {"machine.motor_speed": 30.0}, {"machine.table_speed": -0.1}])
+def test_the_gain_at_standstill_in_spite_of_positions(at: dict[str, float]) -> None:
+    """Speeds are 300 rpm/V and 5 mm/s per rpm; forces are those of the slowest of sines."""
+    axis = linear.model(DEMO, at=at)
+    names = ["motor_speed", "table_speed", "screw_force", "motor_torque", "motor_angle"]
+    system = axis.system("drives.dac", [f"machine.{n}" for n in names], "drives.dac")
+    gains = dict(zip(names, system.dcgain()[:, 0], strict=True))
+    per_volt = axis.value("drives.speed_per_volt") * math.pi / 30.0
+    assert gains["motor_speed"] == pytest.approx(per_volt, rel=1e-6)
+    assert gains["table_speed"] == pytest.approx(per_volt * 0.01 / (2.0 * math.pi), rel=1e-6)
+    slow = dict(
+        zip(names, system(np.exp(1e-5j * system.dt), squeeze=False)[:, 0].real, strict=True)
+    )
+    for name in ("screw_force", "motor_torque"):
+        assert gains[name] == pytest.approx(slow[name], rel=1e-3)
+    assert gains["motor_angle"] == math.inf
+    back = axis.loop("drives.phase", cut=ENC)
+    assert back.dcgain() == math.inf
+    one = axis.system("drives.dac", "machine.motor_speed", "drives.dac").dcgain()
+    assert isinstance(one, float) and one == pytest.approx(per_volt, rel=1e-6)
+
+
+def test_poles_at_one_that_matter() -> None:
+    """Two integrators in a row, one of each sign, one that is not moved, one that is not seen."""
+    a = np.array([[1.0, 0, 0, 0], [1, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0.5]])
+    b, c = np.array([[1.0], [0], [0], [1]]), np.array([[-2.0, 0, 0, 0], [0, 3, 0, 0], [0, 0, 1, 1]])
+    change = np.random.default_rng(4).normal(size=(4, 4))
+    turned = change @ a @ np.linalg.inv(change), change @ b, c @ np.linalg.inv(change)
+    found = System(*turned, np.zeros((3, 1)), 1e-3).dcgain()[:, 0]
+    assert found[:2].tolist() == [-math.inf, math.inf] and found[2] == pytest.approx(2.0)
+    assert System(a, b, c[2], [[1.0]], 1e-3).dcgain() == pytest.approx(3.0)
 
 
 def test_a_changed_gain_keeps_the_plant() -> None:

@@ -12,7 +12,6 @@ from motionfmu.linear.block import Block
 from motionfmu.linear.form import Gain
 from motionfmu.linear.given import Values
 from motionfmu.linear.plant import Linearised, Point
-from motionfmu.linear.systems import backward
 from motionfmu.linear.wiring import Net, Port, period_of
 from motionfmu.modelica.ode import Ode
 from motionfmu.run import Options, Scenario, load
@@ -20,7 +19,7 @@ from motionfmu.system import Wire
 from motionfmu.values import settings
 
 if TYPE_CHECKING:
-    import control  # it takes a second, and a tuning does without
+    from motionfmu.linear.systems import System  # its import takes a second, a tuning does without
 
 
 @functools.cache
@@ -115,7 +114,7 @@ class AxisModel:
         outputs: str | Iterable[str],
         cut: str | Iterable[str] = (),
         delays: Mapping[str, int] | None = None,
-    ) -> "control.StateSpace":
+    ) -> "System":
         """The system from any inputs to any outputs.
 
         An input is added to what the wire brings to that port, and held over a period. An output is
@@ -133,8 +132,9 @@ class AxisModel:
 
         Returns
         -------
-        control.StateSpace
-            Discrete; names are ``component/variable``, because python-control allows no dots.
+        System
+            A discrete control.StateSpace; names are ``component/variable``, because python-control
+            allows no dots.
 
         Raises
         ------
@@ -145,11 +145,11 @@ class AxisModel:
         exits = [self.port(n, self.outputs, "output") for n in _listed(outputs)]
         return self._between(self.net(cut, delays or {}), entries, exits)
 
-    def _between(self, net: Net, entries: list[Port], exits: list[Port]) -> "control.StateSpace":
+    def _between(self, net: Net, entries: list[Port], exits: list[Port]) -> "System":
         found = period_of(net, entries, exits, self.scenario.document.file)
-        import control
+        from motionfmu.linear.systems import System
 
-        return control.StateSpace(
+        return System(
             *(found.a, found.b, found.c, found.d, found.period_ns * 1e-9),
             inputs=[_name(p) for p in entries],
             outputs=[_name(p) for p in exits],
@@ -163,7 +163,7 @@ class AxisModel:
         at: str,
         cut: str | Iterable[str] = (),
         delays: Mapping[str, int] | None = None,
-    ) -> "control.StateSpace":
+    ) -> "System":
         """The open loop at an input, for negative feedback.
 
         Cut there, once around, with the other sign.
@@ -181,7 +181,7 @@ class AxisModel:
 
         Returns
         -------
-        control.StateSpace
+        System
             One input, one output.
 
         Raises
@@ -197,6 +197,8 @@ class AxisModel:
         around = self._between(net, [target], [target])
         if not around.nstates and not around.D.any():
             raise InputError(f"{at}: nothing comes back to it from {'.'.join(self.wires[target])}")
+        from motionfmu.linear.systems import backward
+
         return backward(around, _name(self.wires[target]), f"loop at {_name(target)}")
 
     def net(self, cut: str | Iterable[str], delays: Mapping[str, int]) -> Net:

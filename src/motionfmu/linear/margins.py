@@ -14,7 +14,7 @@ System: TypeAlias = Any  # control.StateSpace or control.TransferFunction
 # Points of the first grid; crossings and peaks are then refined.
 _POINTS = 2000
 # A pole as near to 1 does not move: it would take 10^6 samples.
-_AT_ONE = 1e-6
+AT_ONE = 1e-6
 _BANDWIDTH = 1.0 / np.sqrt(2.0)
 
 
@@ -283,7 +283,7 @@ def moving(poles: Complex) -> Complex:
     ndarray of complex
         A velocity loop leaves the position of its axis where it is: no instability.
     """
-    found: Complex = poles[np.abs(poles - 1.0) > _AT_ONE]
+    found: Complex = poles[np.abs(poles - 1.0) > AT_ONE]
     return found
 
 
