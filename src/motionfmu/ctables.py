@@ -47,12 +47,13 @@ def header(d: Description) -> str:
         The FMU_* constants and `struct vars`, one member per variable.
     """
     members = "\n".join(_member(v) for v in d.variables)
+    grid = f"#define FMU_GRID {d.grid} /* [s] */\n" if d.grid else ""
     return (
         f"{_NOTE}#ifndef VARS_H\n#define VARS_H\n"
         "#include <stdbool.h>\n#include <stdint.h>\n\n"
         f'#define FMU_NAME "{d.name}"\n#define FMU_TOKEN "{d.token}"\n'
         f"#define FMU_TICK_NS {d.tick_ns}\n#define FMU_STRING_MAX {STRING_MAX}\n"
-        f"#define FMU_NVARS {len(d.variables)}\n#define FMU_NREFS {d.reference_count}\n\n"
+        f"{grid}#define FMU_NVARS {len(d.variables)}\n#define FMU_NREFS {d.reference_count}\n\n"
         f"struct vars {{\n{members}\n}};\n#endif\n"
     )
 

@@ -97,6 +97,8 @@ class Description:
         Default ``stop`` and ``step`` [s].
     cores : tuple of str
         Folders under src/ whose C files the model needs.
+    grid : str
+        Name of the parameter that is the grid on which it reads inputs and shows outputs; or empty.
     variables : tuple of Variable
     """
 
@@ -105,6 +107,7 @@ class Description:
     tick_ns: int
     experiment: dict[str, float]
     cores: tuple[str, ...] = ()
+    grid: str = ""
     variables: tuple[Variable, ...] = field(default=())
 
     @property

@@ -10,6 +10,7 @@ from motionfmu.errors import InputError
 from motionfmu.toml_lines import shown, tables_of, text_of
 
 HEAD = {"name", "description", "tick_ns", "experiment", "cores"}
+MAY = {"grid"}
 TICK_MAX = 1_000_000_000  # [ns]
 _NAME = r"[A-Z][A-Za-z0-9]{0,63}"  # it is part of the name of C functions and of files
 _CORE = r"[a-z][a-z0-9_]{0,63}"
@@ -42,7 +43,7 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
             where = line_of(text, causality)
             raise InputError(f"{file}:{where}: {causality} = {shown(table)} is no table")
         rows += [(causality, name, row) for name, row in table.items()]
-    if unknown := sorted(set(doc) - HEAD):
+    if unknown := sorted(set(doc) - HEAD - MAY):
         raise InputError(f"{file}:{line_of(text, unknown[0])}: unknown key {unknown[0]!r}")
     if missing := sorted(HEAD - set(doc)):
         raise InputError(f"{file}: {missing[0]!r} is missing")
@@ -60,6 +61,10 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
         if name in names:
             raise InputError(f"{file}:{line_of(text, name)}: {name} is described twice")
         names.add(name)
+    periods = [v.name for v in variables if v.causality == "parameter" and v.type == "f64"]
+    if "grid" in doc and doc["grid"] not in periods:
+        told = f"grid {shown(doc['grid'])}: the name of a parameter of type f64 wanted"
+        raise InputError(f"{file}:{line_of(text, 'grid')}: {told}")
     return Description(**{**doc, "cores": tuple(doc["cores"])}, variables=tuple(variables))
 
 

@@ -37,6 +37,7 @@ def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
         "options": dict(options),
         "samples": len(result.time),
         "ok": result.ok,
+        "warnings": list(result.warnings),
         "checks": [
             {
                 "name": v.name,

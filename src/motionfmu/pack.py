@@ -4,6 +4,7 @@ python src/pack.py generate fmus/epcio build/gen/epcio
 python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.so epcio.fmi3.fmu
 """
 
+import json
 import platform
 import re
 import sys
@@ -20,6 +21,8 @@ SOURCE = Path(__file__).resolve().parent.parent
 _DATE = (1980, 1, 1, 0, 0, 0)
 # What the linear models are made of goes into the FMU beside what the standard asks for.
 EXTRA = "extra/motionfmu"
+# Which parameter is the FMU's grid; carried in EXTRA.
+GRID = "grid.json"
 
 
 def _write(path: Path, data: str | bytes) -> None:
@@ -64,6 +67,7 @@ def generate(fmu: Path, out: Path) -> None:
     d = fmu_toml.load(fmu / "fmu.toml")
     _write(out / "vars.h", ctables.header(d))
     _write(out / "vars.c", ctables.table(d))
+    _write(out / GRID, json.dumps({"grid": d.grid}) + "\n")
     if is_modelica(fmu):
         from motionfmu.modelica import codegen
 

@@ -33,6 +33,8 @@ class Result:
         Value of every parameter that was set, by name.
     geometry : str or None
         The planned path as the library wrote it (CSV), if the scenario has a contour.
+    warnings : tuple of str
+        What the FMUs warned of, and grids that do not divide each other; each once.
     """
 
     scenario: "Scenario"
@@ -40,6 +42,7 @@ class Result:
     signals: dict[str, NDArray[Any]]
     parameters: dict[str, Any]
     geometry: str | None = None
+    warnings: tuple[str, ...] = ()
     _contour: "ContourResult | NoNumber | None" = None
 
     def __getitem__(self, name: str) -> NDArray[Any]:

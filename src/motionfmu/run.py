@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu import contrary, figures, rates, recording, scenario, system, values
+from motionfmu import contrary, figures, grids, rates, recording, scenario, system, values
 from motionfmu.checks import misplaced
 from motionfmu.engines import ENGINES
 from motionfmu.errors import InputError
@@ -216,14 +216,15 @@ class Scenario:
             wired, traces = recording.plan(plain, self.ends, folder)
             self.check_recording(wired, given)
             try:
-                ENGINES[asked.engine](wired, asked.fmi, asked.progress)
+                told = ENGINES[asked.engine](wired, asked.fmi, asked.progress)
             except InputError as error:
                 raise self.located(error, plain, asked.set) from None
             signals = traces.load()
             geometry = planned(folder / "path.csv") if library else None
         time = np.arange(wired.steps, dtype=np.float64) * (wired.step_ns * 1e-9)
         parameters = {s.end.name: s.values for s in plain.settings}
-        return Result(self, time, signals, parameters, geometry)
+        warnings = (*grids.warnings(plain), *told)
+        return Result(self, time, signals, parameters, geometry, warnings)
 
     def library(self) -> str | None:
         """The component that plans the path.

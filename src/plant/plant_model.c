@@ -19,6 +19,7 @@
  */
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "plant.h"
@@ -42,6 +43,7 @@ struct plant_block {
     int    instance[PLANT_LANES]; /* the last axis fills the lanes that are left */
     int    lanes;                 /* used */
     int    sub_steps;
+    double fastest;            /* [1/s] bound of |lambda| at the start, of its stiffest axis */
     double size[PLANT_STATES]; /* what is large for each state */
     double asked;              /* [s] step that the error asks for */
 };
@@ -50,6 +52,7 @@ struct model {
     struct plant_block block[PLANT_INSTANCES];
     int     blocks;
     int64_t step_ns; /* [ns] micro step */
+    bool    watched; /* the first communication step was compared with it */
 };
 
 #include "fmi_model.h"
@@ -266,8 +269,34 @@ static int plant_publish(struct fmu *f, int64_t now)
     return 0;
 }
 
+/* Tell once if steps are coarse for what an importer sees: a lag slower than its communication step
+ * `seen` [s]. A Runge-Kutta step of z time constants makes such a lag wrong by z^4/120 of itself,
+ * 1e-4 at z = 1/3. What is faster has died away between two communication points. */
+static void plant_watch(struct fmu *f, double seen)
+{
+    static const double coarse = 1.0 / 3.0;
+    const double h = 1e-9 * (double)f->s.m.step_ns;
+    const struct plant_block *worst = NULL;
+    double most = coarse;
+    for (int n = 0; n < f->s.m.blocks && !PLANT_CONTROLLED; n++) {
+        const struct plant_block *b = &f->s.m.block[n];
+        const double z = h / b->sub_steps * fmin(b->fastest, 1.0 / seen);
+        if (z > most) {
+            most = z;
+            worst = b;
+        }
+    }
+    if (worst) {
+        fmu_warn(f, "axis %d: micro_step %.9g s (%d sub-steps) is coarse against its shortest time "
+            "constant, %.3g s: lags of %.3g s are off by up to %.2g %%", worst->instance[0] + 1, h,
+            worst->sub_steps, 1.0 / worst->fastest, fmax(1.0 / worst->fastest, seen),
+            100.0 * most * most * most * most / 120.0);
+    }
+}
+
 /* Give an axis its lane: in a block with room and the same sub-steps, else in a new one. */
-static void plant_place(struct fmu *f, int instance, int sub_steps, const double *p)
+static void plant_place(struct fmu *f, int instance, int sub_steps, const double *p,
+    double fastest)
 {
     struct model *m = &f->s.m;
     int n = 0;
@@ -283,6 +312,7 @@ static void plant_place(struct fmu *f, int instance, int sub_steps, const double
     plant_sizes(p, b->size);
     b->asked = 1e-9 * (double)m->step_ns;
     b->sub_steps = sub_steps;
+    b->fastest = fmax(b->fastest, fastest);
     for (int lane = b->lanes; lane < PLANT_LANES; lane++) {
         b->instance[lane] = instance;
         for (int k = 0; k < PLANT_STATES; k++) {
@@ -305,7 +335,7 @@ static int plant_start_axis(struct fmu *f, int instance)
         return fmu_fail(f, "axis %d: %s", instance + 1, wrong);
     }
     if (PLANT_CONTROLLED) {
-        plant_place(f, instance, 1, p);
+        plant_place(f, instance, 1, p, 0.0);
         return 0;
     }
     plant_start(p, x);
@@ -313,7 +343,8 @@ static int plant_start_axis(struct fmu *f, int instance)
     for (int k = 0; k < PLANT_INPUTS; k++) {
         packed[k] = u[k * PLANT_LANES];
     }
-    const double steps = ceil(h * plant_stiffness(x, packed, p) / plant_h_lambda);
+    const double fastest = plant_stiffness(x, packed, p);
+    const double steps = ceil(h * fastest / plant_h_lambda);
     if (!(steps <= PLANT_SUB_STEPS_MAX)) {
         return fmu_fail(f, "axis %d: too stiff, %g s would need %g sub-steps, more than %d",
             instance + 1, h, steps, PLANT_SUB_STEPS_MAX);
@@ -321,7 +352,7 @@ static int plant_start_axis(struct fmu *f, int instance)
     if (steps > 1.0) {
         fmu_event(f, "axis %d: stiff, %g sub-steps per micro step of %g s", instance + 1, steps, h);
     }
-    plant_place(f, instance, steps > 1.0 ? (int)steps : 1, p);
+    plant_place(f, instance, steps > 1.0 ? (int)steps : 1, p, fastest);
     return 0;
 }
 
@@ -350,6 +381,10 @@ static int model_start(struct fmu *f)
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     const int64_t h = f->s.m.step_ns, first = t0 / h * h, last = t1 / h * h;
+    if (!f->s.m.watched) {
+        f->s.m.watched = true;
+        plant_watch(f, 1e-9 * (double)(t1 - t0));
+    }
     for (int64_t now = first; now <= t1; now += h) {
         if (now > t0 && plant_advance(f, now) != 0) {
             return -1;

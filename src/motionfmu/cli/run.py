@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.markup import escape
 
 from motionfmu.cli.common import (
     FAILED,
@@ -39,6 +40,11 @@ def _verdicts(result: "Result") -> None:
     out.print(table)
     for reason, names in _reasons(result).items():
         out.print(f"{', '.join(names)}: {reason}", markup=False, soft_wrap=True)
+
+
+def _warnings(result: "Result") -> None:
+    for told in result.warnings:
+        out.print(f"[yellow]warning[/] {escape(told)}", soft_wrap=True)
 
 
 def _reasons(result: "Result") -> dict[str, list[str]]:
@@ -77,6 +83,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     result = run_shown(scenario, options)
     shown = outcome.save(result, target, options, csv)
     _verdicts(result)
+    _warnings(result)
     out.print(f"{scenario.name}: {'all checks hold' if result.ok else 'a check FAILED'}")
     out.print(f"report: {shown}", soft_wrap=True)
     if not result.ok:
@@ -130,6 +137,7 @@ def check(
         result = run_shown(scenario, {"engine": engine, "fmi": _version(engine, fmi)})
         mark = "[green]ok[/]" if result.ok else "[bold red]FAILED[/]"
         out.print(f"{mark}  {scenario.name}  [dim]{len(result.checks)} bounds[/]")
+        _warnings(result)
         if not result.ok:
             failed = True
             _verdicts(result)

@@ -9,7 +9,7 @@ from motionfmu.engines import fmpy_container, native, reference
 from motionfmu.system import System
 
 Progress = Callable[[float], None]
-Engine = Callable[[System, int, Progress], None]
+Engine = Callable[[System, int, Progress], list[str]]
 
 ENGINES: dict[str, Engine] = {
     "native": native.run,

@@ -105,7 +105,7 @@ def _give(slave: Slave, end: End, values: Iterable[Any]) -> None:
         slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], [value])
 
 
-def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
     """Run a system inside FMPy's container FMU.
 
     Parameters
@@ -115,6 +115,11 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
         Must be 2.
     progress : callable
         Called with the share done, 0 to 1.
+
+    Returns
+    -------
+    list of str
+        What the FMUs warned of.
 
     Raises
     ------
@@ -146,3 +151,4 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
                 progress(k / system.steps)
         slave.end()
         progress(1.0)
+        return [told for told in slave.warnings if not told.startswith(f"{slave.name}: ")]

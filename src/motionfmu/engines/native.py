@@ -113,7 +113,7 @@ class Container:
         self._slave = Slave(IDENTIFIER, build(system, fmi, folder), fmi, [])
         self._used = False
 
-    def run(self, system: System, progress: Callable[[float], None]) -> None:
+    def run(self, system: System, progress: Callable[[float], None]) -> list[str]:
         """Run from the start.
 
         Parameters
@@ -122,6 +122,11 @@ class Container:
             The one of the constructor, or one that differs in values only.
         progress : callable
             Called with the share done, 0 to 1.
+
+        Returns
+        -------
+        list of str
+            What the FMUs warned of.
 
         Raises
         ------
@@ -147,13 +152,14 @@ class Container:
             slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
             progress(following / system.steps)
         slave.end()
+        return [told for told in slave.warnings if not told.startswith(f"{IDENTIFIER}: ")]
 
     def free(self) -> None:
         """Free the instance and the library."""
         self._slave.free()
 
 
-def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
     """Run a system inside a container FMU.
 
     Parameters
@@ -164,6 +170,11 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
     progress : callable
         Called with the share done, 0 to 1.
 
+    Returns
+    -------
+    list of str
+        What the FMUs warned of.
+
     Raises
     ------
     InputError
@@ -173,4 +184,4 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
         container = Container(system, fmi, Path(folder))
         stack.callback(container.free)
-        container.run(system, progress)
+        return container.run(system, progress)

@@ -29,7 +29,7 @@ def _wire(slaves: dict[str, Slave], wire: Wire) -> tuple[Callable[[], None], Cal
     return get, convert
 
 
-def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
     """Run a system with FMPy, one Python call per value.
 
     Parameters
@@ -39,6 +39,11 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
         2 or 3: the version of every FMU.
     progress : callable
         Called with the share done, 0 to 1.
+
+    Returns
+    -------
+    list of str
+        What the FMUs warned of.
 
     Raises
     ------
@@ -77,3 +82,4 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> None:
         for slave in slaves.values():
             slave.end()
         progress(1.0)
+        return [told for slave in slaves.values() for told in slave.warnings]

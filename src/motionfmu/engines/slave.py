@@ -23,6 +23,9 @@ _FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": 
 # fmucontainer puts "mcc.fmu: " before the message of a component, which may name itself again.
 _INNER = re.compile(r"^(\w+)\.fmu: (?:(?:\w+\.)*\w+\.fmu: |\1: )?")
 _NAMED = re.compile(r"^\w+: ")
+_WARNING = 1  # status of both FMI versions
+# A run is not told more than so many different warnings of its FMUs.
+_WARNINGS_MAX = 20
 _ERROR = 3  # status of both FMI versions from which on nothing is good
 
 
@@ -61,10 +64,16 @@ class Slave:
         2 or 3.
     messages : list of str
         Receives what the FMU logs with a status of Error or worse.
+
+    Attributes
+    ----------
+    warnings : list of str
+        What it or the FMUs inside warned of, each once, ``component: what``.
     """
 
     def __init__(self, name: str, source: Path, fmi: int, messages: list[str]) -> None:
         self.name, self.fmi, self.messages = name, fmi, messages
+        self.warnings: list[str] = []
         self._own: str | None = None
         if source.is_dir():
             folder = str(source)
@@ -86,13 +95,13 @@ class Slave:
 
     def _instantiate(self) -> None:
         if self.fmi == 3:
-            self._do("instantiate", logMessage=self._log3, loggingOn=False)
+            self._do("instantiate", logMessage=self._log3, loggingOn=True)
             return
         callbacks = fmi2CallbackFunctions()
         self._log = fmi2CallbackLoggerTYPE(self._log2)
         callbacks.logger = self._log
         addLoggerProxy(byref(callbacks))  # formats the message; Python cannot
-        self._do("instantiate", callbacks=callbacks, loggingOn=False)
+        self._do("instantiate", callbacks=callbacks, loggingOn=True)
 
     def _log3(self, environment: Any, status: int, category: bytes, message: bytes) -> None:
         self._keep(status, message)
@@ -104,10 +113,19 @@ class Slave:
         self._keep(status, told)
 
     def _keep(self, status: int, message: bytes) -> None:
-        """Keep an error; one from inside a container gets its component's name in front."""
+        """Keep an error or a warning; one from inside a container gets its component's name."""
+        if status < _WARNING:
+            return
+        text = _INNER.sub(r"\1: ", message.decode(errors="replace").strip())
         if status >= _ERROR:
-            text = message.decode(errors="replace").strip()
-            self.messages.append(_INNER.sub(r"\1: ", text))
+            self.messages.append(text)
+        elif (
+            status == _WARNING
+            and not _unnamed(text)
+            and text not in self.warnings
+            and len(self.warnings) < _WARNINGS_MAX
+        ):
+            self.warnings.append(text)
 
     def _do(self, call: str, **arguments: Any) -> None:
         """Call a method of FMPy's slave; what it raises becomes the FMU's own message."""
@@ -244,6 +262,7 @@ class Slave:
         if old:
             getattr(self.slave, f"fmi{self.fmi}FreeInstance")(old)
         self.messages.clear()
+        self.warnings.clear()
         self._instantiate()
 
     def free(self) -> None:

@@ -146,6 +146,7 @@ def from_modelica(toml: Path) -> describe.Description:
         packing.description,
         packing.tick_ns,
         packing.experiment,
+        grid="micro_step",
         variables=variables,
     )
 

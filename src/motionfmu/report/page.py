@@ -25,6 +25,7 @@ from motionfmu.report.tables import (
     corner_table,
     error_table,
     line_table,
+    warning_list,
 )
 from motionfmu.report.time_plots import (
     error_figure,
@@ -111,6 +112,8 @@ def page_text(
     _add_path(page, contour, drawing)
     if result.checks:
         page.section("Verdict", "", check_table(result.checks))
+    if result.warnings:
+        page.section("Warnings", "", warning_list(result.warnings))
     for i, test in enumerate(contour.circles[:CIRCLES_SHOWN]):
         _add_circle(page, f"circle{i}", test)
     _add_time(page, contour)

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 from motionfmu.figures import Chart
 from motionfmu.report.charts import add_charts
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.tables import Check, check_table
+from motionfmu.report.tables import Check, check_table, warning_list
 
 FOOTER = "A point holds the outputs at its communication step, before that step was taken."
 
@@ -25,6 +25,8 @@ class Result(Protocol):
         What was recorded, by name.
     no_contour : str
         Why the run has no contour; empty if the scenario asks for none.
+    warnings : sequence of str
+        What FMUs and runner warned of.
     """
 
     @property
@@ -46,6 +48,10 @@ class Result(Protocol):
     @property
     def no_contour(self) -> str:
         """Why the run has no contour; empty if it has one or wants none."""
+
+    @property
+    def warnings(self) -> Sequence[str]:
+        """What FMUs and runner warned of."""
 
     def figures(self) -> Sequence[Chart]:
         """The figures that the scenario asks for."""
@@ -71,6 +77,8 @@ def plain_text(result: Result, charts: Sequence[Chart]) -> str:
     page = Sheet()
     if result.checks:
         page.section("Verdict", "", check_table(result.checks))
+    if result.warnings:
+        page.section("Warnings", "", warning_list(result.warnings))
     if result.no_contour:
         page.section("Contour error", escape(result.no_contour), "")
     shown = charts or result.overview()

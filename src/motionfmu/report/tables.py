@@ -78,6 +78,20 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: int = 1)
     )
 
 
+def warning_list(warnings: Sequence[str]) -> str:
+    """What FMUs and runner warned of.
+
+    Parameters
+    ----------
+    warnings : sequence of str
+
+    Returns
+    -------
+    str
+    """
+    return f"<ul>{''.join(f'<li>{escape(told)}</li>' for told in warnings)}</ul>"
+
+
 def check_table(checks: Sequence[Check]) -> str:
     """Verdicts of the scenario, failures first.
 
