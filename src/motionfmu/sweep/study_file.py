@@ -3,32 +3,34 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.errors import InputError
-from motionfmu.scenario import Value
+from motionfmu.scenario import Name, Names, Value
 from motionfmu.toml_lines import Lines, is_file, shown, tables_of, text_of
 
 FILE = "sweep.toml"
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+# A path is part of messages.
+Place = Annotated[str, Field(max_length=1000)]
 
 
 class Body(BaseModel):
     """The keys of a study file."""
 
     model_config = _STRICT
-    scenario: str = "."
+    scenario: Place = "."
     sampling: Literal["grid", "random", "latin"] = "grid"
     runs: int | None = Field(default=None, ge=1)
     seed: int = Field(default=0, ge=0)
     stop: float | None = None
     step: float | None = None
     set: dict[str, Value] = Field(default_factory=dict)
-    results: list[str] = Field(default_factory=list)
-    cost: str | None = None
-    tuned: str | None = None
+    results: Names = Field(default_factory=list)
+    cost: Name | None = None
+    tuned: Place | None = None
     axis: dict[str, Any] = Field(default_factory=dict)
 
 
