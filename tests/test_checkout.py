@@ -1,5 +1,6 @@
 """The build takes its own sources, whatever `motionfmu` the environment has."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -41,11 +42,13 @@ def test_a_second_checkout_builds_its_own_sources(tmp_path: Path) -> None:
     python.write_text(f'#!/bin/sh\nPYTHONPATH="{site}:$PYTHONPATH" exec {sys.executable} "$@"\n')
     python.chmod(0o755)
     build = second / "build"
+    # cmake and ninja are those of the environment
+    tools = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
     options = [f"-DPython_EXECUTABLE={python}", "-DMOTIONFMU_TESTS=OFF", "-G", "Ninja"]
     for line in (
         ["cmake", "-S", second, "-B", build, *options],
         ["cmake", "--build", build, "--target", "scope_generated"],
     ):
-        done = subprocess.run(line, capture_output=True, text=True)
+        done = subprocess.run(line, capture_output=True, text=True, env=tools)
         assert done.returncode == 0, done.stdout + done.stderr
     assert (build / "gen/scope/vars.h").read_text().startswith(MARK)
