@@ -45,6 +45,14 @@ static void fmu_event(struct fmu *f, const char *format, ...)
     say(format, args);
     va_end(args);
 }
+static void fmu_warn(struct fmu *f, const char *format, ...)
+{
+    (void)f;
+    va_list args;
+    va_start(args, format);
+    say(format, args);
+    va_end(args);
+}
 const size_t run_size = sizeof(struct fmu);
 struct fmu *run_new(void) { return calloc(1, sizeof(struct fmu)); }
 void run_free(struct fmu *f) { free(f); }

@@ -95,3 +95,11 @@ def test_console_page_and_json_have_them(tmp_path: Path) -> None:
     numbers = json.loads((out / "result.json").read_text())
     assert len(numbers["warnings"]) == 1 and text in numbers["warnings"][0]
     assert np.isfinite(numbers["samples"])
+
+
+def test_an_error_that_is_over_is_no_warning() -> None:
+    """Three stops and three recoveries: each error is told, its end is an event."""
+    warned = load(ROOT / "scenarios/protection").run().warnings
+    assert [w.split(" after ")[0] for w in warned] == [
+        f"mcc: run-time error {code}" for code in ("0xF301", "0xF102", "0xF801")
+    ]

@@ -143,7 +143,8 @@ static void publish(struct fmu *f)
     publish_card(v, m);
     if (v->error != m->told_error) {
         m->told_error = v->error;
-        fmu_warn(f, "run-time error 0x%04X after line %d", (unsigned)v->error, (int)v->line);
+        (v->error != 0 ? fmu_warn : fmu_event)(f, "run-time error 0x%04X after line %d",
+                                               (unsigned)v->error, (int)v->line);
     }
 }
 

@@ -280,8 +280,9 @@ static void publish_group(struct fmu *f, int n)
     v->starved[n] = g->starved;
     if (v->error[n] != m->told_error[n]) {
         m->told_error[n] = v->error[n];
-        fmu_warn(f, "group %d: run-time error 0x%04X after line %d", n + 1,
-                 (unsigned)v->error[n], (int)v->line[n]);
+        (v->error[n] != 0 ? fmu_warn : fmu_event)(f,
+            "group %d: run-time error 0x%04X after line %d", n + 1, (unsigned)v->error[n],
+            (int)v->line[n]);
     }
 }
 

@@ -30,7 +30,9 @@ def grid(fmu: str) -> str:
 
 
 def warnings(system: System) -> list[str]:
-    """What is to be said about grids that do not fit, at most one sentence for each reason.
+    """What is to be said about grids that do not fit.
+
+    At most one sentence for each reason.
 
     A wire hands on without a delay if the step divides the grid of its source, which then changes
     at communication points only, or that of its target, which reads at such points only. A grid

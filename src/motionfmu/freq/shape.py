@@ -59,7 +59,7 @@ def limits(axis: AxisModel, loop: Loop) -> dict[str, float]:
 def small(
     axis: AxisModel, loop: Loop, size: tuple[int, NDArray[np.int64]], kick: float | None
 ) -> Excitation:
-    """A multisine that reaches no limit and does not turn the axis back.
+    """A multisine that reaches no limit and turns nothing back.
 
     Each frequency has the size that uses an equal share of what is tightest there, so that slow
     ones stand above the rounding and fast ones do not fill the torque alone.

@@ -72,7 +72,10 @@ class LoopStudy:
 
     @property
     def difference(self) -> tuple[float, float] | None:
-        """How far the FMUs are from the model where |L| is above -20 dB [%], [deg], or None."""
+        """How far the FMUs are from the model [%], [deg].
+
+        Where |L| is above -20 dB and something was measured; else None.
+        """
         return None if self.measured is None else _difference(self.loop, self.measured)
 
 

@@ -124,7 +124,7 @@ def worst(axis: AxisModel) -> list[str]:
 
 
 def held(axis: AxisModel) -> str:
-    """Inputs of plants that nobody stated beside the operating point, in words.
+    """Inputs beside the operating point that nobody stated.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def held(axis: AxisModel) -> str:
     Returns
     -------
     str
-        Empty if there are none.
+        In words; empty if there are none.
     """
     kept = [f"{c}.{n} = {v:g}" for c, p in axis.points.items() for n, v in p.held.items()]
     return f"Not stated, kept as the scenario has them: {', '.join(kept)}" if kept else ""

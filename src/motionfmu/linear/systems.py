@@ -65,7 +65,7 @@ def _static(a: Matrix, b: Matrix, c: Matrix, d: Matrix) -> Matrix:
 
 
 def backward(system: System, output: str, name: str) -> System:
-    """The same with the other sign, under other names; the states keep theirs.
+    """The same with the other sign; the states keep their names.
 
     Parameters
     ----------
