@@ -4,6 +4,7 @@ import functools
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import ROOT
 from hydraulic_rig import Case, drive, started
@@ -99,3 +100,27 @@ def test_an_input_that_nobody_stated_is_told(tmp_path: Path) -> None:
     assert told in (out / "report.html").read_text()
     numbers = json.loads((out / "result.json").read_text())
     assert numbers["operating_point"]["axis"]["held"] == {"load_force": -1000.0}
+
+
+SHARP = {"valve_leakage": 0.0, "cylinder_leakage": 0.0, "valve_rounding": 1e-6}
+
+
+@pytest.mark.parametrize(
+    ("parameters", "speed", "load"),
+    [
+        (SHARP, -0.049, 0.0),
+        (SHARP, 2.4e-4, -108.0),
+        (SHARP, 0.02, -1692.0),
+        ({"table_coulomb": 2000.0, "table_static": 4000.0}, 0.003, 2500.0),
+        ({"area_b": 6e-4}, -0.1, -2000.0),
+    ],
+)
+def test_every_force_and_flow_is_in_balance(parameters, speed, load) -> None:
+    """Shut without leakage, sticking, unequal areas: nothing but the position changes."""
+    at = found(parameters, velocity=speed, load_force=load)
+    rates = Case(**parameters).rhs(at.x, at.u).full().ravel()
+    place = [d.name for d in Case().ode.states].index("table.position")
+    assert rates[place] == pytest.approx(speed, rel=1e-9)
+    terms = np.abs(Case(**parameters).slope(at.x, at.u).full()) @ np.maximum(np.abs(at.x), 1e-9)
+    assert np.delete(np.abs(rates) / terms, place).max() < 1e-6
+    assert abs(at.values["position"]) < 1e-3 and 0.0 < abs(at.values["voltage"]) < 10.0

@@ -1,5 +1,6 @@
 """A plant's equation about an operating point, on its micro-grid."""
 
+import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -30,8 +31,6 @@ _HAIR = 1e-13
 _PATIENCE, _GLANCE = (60, 1e-6), (15, 1e-2)
 # It leads nowhere when so many steps, one after the other, were cut to less than this share.
 _CREEPING, _SHORT = 5, 1e-3
-# Parts of the way from rest to a motion: the least, and how many are tried.
-_PART, _PARTS = 1e-6, 80
 # Steps of an input that is followed: the first, the least, the one at which Newton takes over, and
 # the farthest input looked at, in its unit and as a share.
 _FIRST_INPUT, _LEAST_INPUT, _NEAR_INPUT, _LAST_INPUT = 1e-3, 1e-7, 1e-4, 1e4
@@ -96,35 +95,6 @@ def _newton(
         z, found = z + length * way, there
         if _norm(found) < _EXACT:
             break
-    return z
-
-
-def _continued(
-    motion: Callable[[float], tuple[_Function, _Function]], start: Matrix, sizes: Matrix
-) -> Matrix:
-    """From rest to the motion in parts, each begun where the last ones lead to.
-
-    Friction and a valve's deadband bend much near rest, a saturation is flat beyond its corner.
-    """
-    z, done, part = _newton(*motion(0.0), start, sizes), 0.0, 1e-2
-    before, last = z, 0.0
-    for _ in range(_PARTS):
-        share = min(done + part, 1.0)
-        ahead = z + (share - done) / (done - last) * (z - before) if done > last else z
-        for guess in (ahead, z):
-            rest, slope = motion(share)
-            found = _newton(rest, slope, guess, sizes)
-            if good := _norm(rest(found)) < _UNIFORM:
-                break
-        if good:
-            before, last, z, done = z, done, found, share
-            part *= 2.0
-            if done == 1.0:
-                break
-        else:
-            part /= 4.0
-            if part < _PART:
-                break
     return z
 
 
@@ -334,23 +304,16 @@ class Linearised:
         sizes[[n + k for k in free]] = 1.0
         rates = 1.0 + np.abs(self.matrices(x0, u0, p)[0]).sum(axis=1)
         weights = 1.0 / np.concatenate([rates, np.maximum(np.abs(targets), 1.0)])
-        shown = np.array(self._values(x0, u0, p)[1].full()).ravel()[places]
 
-        def motion(share: float) -> tuple[_Function, _Function]:
-            aim = shown + share * (targets - shown) if share < 1.0 else targets
+        def rest(z: Matrix) -> Matrix:
+            _, y, change = (np.array(v.full()).ravel() for v in self._values(z[:n], z[n:], p))
+            return weights * np.concatenate([change, y[places] - targets])
 
-            def rest(z: Matrix) -> Matrix:
-                _, y, change = (np.array(v.full()).ravel() for v in self._values(z[:n], z[n:], p))
-                return weights * np.concatenate([change, y[places] - aim])
+        def slope(z: Matrix) -> Matrix:
+            of_change, of_y = (np.array(m.full()) for m in self._slopes(z[:n], z[n:], p))
+            found: Matrix = weights[:, None] * np.vstack([of_change, of_y[places]])
+            return found
 
-            def slope(z: Matrix) -> Matrix:
-                of_change, of_y = (np.array(m.full()) for m in self._slopes(z[:n], z[n:], p))
-                found: Matrix = weights[:, None] * np.vstack([of_change, of_y[places]])
-                return found
-
-            return rest, slope
-
-        rest, slope = motion(1.0)
         best = x0, u0, 0.0
 
         def looked_at(z: Matrix) -> float:
@@ -369,13 +332,13 @@ class Linearised:
 
         c = self.matrices(x0, u0, p)[2]
         speeds = x0 + np.linalg.pinv(c[places]) @ targets
-        start = np.concatenate([x0, u0])
-        if tried(x0) or tried(speeds) or looked_at(_continued(motion, start, sizes)) == math.inf:
+        if tried(x0) or tried(speeds):
             return best
-        for k in range(len(places) if free and best[2] == 0.0 else 0):
-            near = np.concatenate([speeds, u0])
-            z = _bracketed((rest, slope, n + k), near, sizes, n + free[0])
-            looked_at(_newton(rest, slope, z, sizes))
+        for k, begun in itertools.product(range(len(places)), (speeds, x0)):
+            if free and best[2] == 0.0:
+                near = np.concatenate([begun, u0])
+                z = _bracketed((rest, slope, n + k), near, sizes, n + free[0])
+                looked_at(_newton(rest, slope, z, sizes))
         # what moves, if something was found that ends: a gap is closed by it; else all
         which = np.flatnonzero(self._moving(best[0], best[1], p)) if best[2] > 0.0 else np.arange(n)
         if best[2] < math.inf:
