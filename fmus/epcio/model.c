@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "epcio_damage.h"
 #include "register_map.h"
 #include "registers.h"
 #include "vars.h"
@@ -48,6 +49,15 @@ static int model_start(struct fmu *f)
     for (int i = 0; i < EPCIO_AXES; i++)
         v->pulse_clock[i] = -1.0;
     return 0;
+}
+
+static const char *model_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+    const int64_t clock = s->now / EPCIO_CLOCK_NS;
+    if (m->period < 1 || m->instant < clock || m->instant - clock >= m->period)
+        return "its next instant is another one";
+    return m->card.clock == clock ? epcio_damage(&m->card, m->period) : "its clock is another one";
 }
 
 static int set_dda(struct fmu *f)

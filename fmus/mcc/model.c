@@ -1,7 +1,7 @@
 /* The motion library on its PC, on the wires of a co-simulation: bus grid, registers, mailboxes. */
 #include <string.h>
 
-#include "pc.h"
+#include "mcc_damage.h"
 #include "vars.h"
 
 struct model {
@@ -212,6 +212,18 @@ static int model_start(struct fmu *f)
     warn_of_cycle(f);
     publish(f);
     return 0;
+}
+
+static const char *model_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+    if (m->bus < CLOCK_NS || m->instant < s->now || m->instant - s->now >= m->bus) {
+        return "its next instant is another one";
+    }
+    if (m->bus != m->pc.config.bus * CLOCK_NS || m->pc.program != (s->v.program[0] != '\0')) {
+        return "its bus period or whether it has a program";
+    }
+    return mcc_damage_pc(&m->pc);
 }
 
 /* Read the wires at an instant of the bus grid and let the PC work. */

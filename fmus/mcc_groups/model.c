@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "group.h"
+#include "mcc_damage.h"
 #include "vars.h"
 
 struct model {
@@ -226,6 +226,25 @@ static int model_start(struct fmu *f)
     m->bus = config.bus * CLOCK_NS;
     publish(f);
     return 0;
+}
+
+static const char *model_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+    if (m->bus < CLOCK_NS || m->instant < s->now || m->instant - s->now >= m->bus
+        || m->bus != m->groups.config.bus * CLOCK_NS) {
+        return "its next instant is another one";
+    }
+    for (int n = 0; n < GROUP_MAX; n++) {
+        const int32_t k = m->index[n];
+        if (k < -1 || k >= GROUP_MAX || (k >= 0 && !m->groups.group[k].used)) {
+            return "the number of a group";
+        }
+        if (k >= 0 && m->groups.group[k].program && !wanted(&s->v, n).program[0]) {
+            return "whether a group has a program";
+        }
+    }
+    return mcc_damage_groups(&m->groups);
 }
 
 /* The registers and the mailbox of a card, under the names of its outputs. */

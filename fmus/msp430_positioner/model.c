@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "fixed.h"
-#include "msp430.h"
+#include "msp430_damage.h"
 #include "vars.h"
 
 struct model {
@@ -195,6 +195,19 @@ static double plugged(struct model *m, const struct vars *v)
         m->phase = v->scale_phase - m->missed;
     m->unplugged = v->scale_unplugged;
     return m->phase;
+}
+
+static const char *model_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+    if (m->clock_ns < 1 || m->period < 1 || m->instant < 0
+        || m->instant > INT64_MAX / 2 / m->clock_ns
+        || m->instant * m->clock_ns < s->now
+        || m->instant * m->clock_ns - s->now >= m->period * m->clock_ns)
+        return "its next instant is another one";
+    if (m->instant > 0 && m->chip.clock != m->instant - m->period)
+        return "its clock is another one";
+    return msp430_damage(&m->chip);
 }
 
 static int sample(struct fmu *f)

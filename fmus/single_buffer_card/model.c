@@ -1,7 +1,7 @@
 /* The single-buffer card on the wires of a co-simulation: bus grid, registers, mailboxes. */
 #include <math.h>
 
-#include "single_buffer.h"
+#include "epcio_damage.h"
 #include "vars.h"
 
 struct model {
@@ -39,6 +39,16 @@ static int model_start(struct fmu *f)
     m->period = (int64_t)round(clocks);
     single_buffer_reset(&m->card, &c);
     return 0;
+}
+
+static const char *model_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+    const int64_t clock = s->now / FMU_TICK_NS;
+    if (m->period < 1 || m->instant < clock || m->instant - clock >= m->period)
+        return "its next instant is another one";
+    return m->card.clock == clock ? epcio_damage_single_buffer(&m->card)
+                                  : "its clock is another one";
 }
 
 static int set_dda(struct fmu *f)

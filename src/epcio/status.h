@@ -35,6 +35,7 @@ enum epcio_status {
     EPCIO_LOCAL_IO = 0x400,
     EPCIO_REMOTE_IO = 0x500,
     EPCIO_TIMER = 0x600,
+    EPCIO_STATUS_LAST = 0x6ff   /* behind a block's number comes its own status */
 };
 
 /* What a status means, for messages. */

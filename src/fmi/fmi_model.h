@@ -41,6 +41,12 @@ static int model_start(struct fmu *f);
  * Any split of an interval into steps must give the same outputs at the common points. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1);
 
+/* Called for a state that came back as bytes and has been started, whose variables, Booleans and
+ * enumerations have been looked at: words for what model_step cannot work with, or NULL. It must
+ * find every index and count that leads beyond its array, and every number that would make a loop
+ * endless. Values that are only wrong it need not see. */
+static const char *model_check(const struct state *s);
+
 #ifdef MODEL_BLOB
 /* Make f->blob from the fixed parameters in f->s.v, nothing else; before model_start. When an FMU
  * state is restored, f->s is replaced and the blob stays if its fixed parameters are the same. */

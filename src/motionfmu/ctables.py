@@ -109,5 +109,6 @@ def main_unit(model: str, fmi: int) -> str:
     return (
         f"{_NOTE}#define FMI_VERSION {fmi}\n"
         "#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */\n"
-        f'#include "{model}"\n#include "vars.c"\n#include "fmi.inc"\n'
+        f'#include "{model}"\n#include "vars.c"\n'
+        '#include "state_flags.h"\n#include "fmi.inc"\n'
     )

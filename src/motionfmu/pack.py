@@ -1,6 +1,7 @@
 """Generate an FMU's C and XML, and pack its .fmu files; called by the build.
 
 python src/pack.py generate fmus/epcio build/gen/epcio
+python src/pack.py flags    fmus/epcio build/gen/epcio
 python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.so epcio.fmi3.fmu
 """
 
@@ -12,7 +13,7 @@ import zipfile
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from motionfmu import ctables, describe, fmu_toml
+from motionfmu import cstructs, ctables, describe, fmu_toml
 from motionfmu.modeldescription import model_description
 from motionfmu.toml_lines import text_of
 
@@ -78,6 +79,30 @@ def generate(fmu: Path, out: Path) -> None:
         _write(out / f"fmi{fmi}/fmu_main.c", ctables.main_unit(model, fmi))
         xml = model_description(d, fmi, ["fmu_main.c", *compiled])
         _write(out / f"fmi{fmi}/modelDescription.xml", xml)
+
+
+def flags(fmu: Path, out: Path) -> None:
+    """Write state_flags.h of one FMU from its C text.
+
+    Parameters
+    ----------
+    fmu : Path
+        Folder with fmu.toml (and model.c).
+    out : Path
+        Has what `generate` wrote.
+
+    Raises
+    ------
+    ValueError
+        A struct of the state has what a state cannot have.
+    """
+    d = fmu_toml.load(fmu / "fmu.toml")
+    files = [f for core in d.cores for f in sorted((SOURCE / core).glob("*.h"))]
+    if is_modelica(fmu):
+        files += [out / "plant.h", SOURCE / "plant" / "plant_model.c"]
+    else:
+        files += [*sorted(fmu.glob("*.h")), fmu / "model.c"]
+    (out / "state_flags.h").write_text(cstructs.flags(f.read_text() for f in files))
 
 
 def compiled_sources(fmu: Path, d: describe.Description, out: Path) -> list[Path]:
@@ -195,7 +220,7 @@ def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> N
 
 
 def main(arguments: list[str]) -> int:
-    """Run ``generate`` or ``archive`` with the arguments of the build.
+    """Run one of the three with the arguments of the build.
 
     Parameters
     ----------
@@ -208,8 +233,9 @@ def main(arguments: list[str]) -> int:
         Exit status: 0, or 2 after one message on stderr.
     """
     try:
-        if arguments[0] == "generate":
-            generate(Path(arguments[1]), Path(arguments[2]))
+        if arguments[0] in ("generate", "flags"):
+            make = generate if arguments[0] == "generate" else flags
+            make(Path(arguments[1]), Path(arguments[2]))
         else:
             fmu, out, fmi, library, target = arguments[1:]
             archive(Path(fmu), Path(out), int(fmi), Path(library), Path(target))

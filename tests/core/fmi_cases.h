@@ -346,6 +346,78 @@ static void test_the_last_step(void)
     call_free(c);
 }
 
+/* Bytes with another value in them and the hash that belongs to it: refused with these words. */
+static void check_forged(void *c, const char *bytes, size_t size, size_t at, const void *value,
+                         size_t n, const char *words)
+{
+    struct fmi_snapshot forged;
+    void *state = NULL;
+    CHECK(size == sizeof forged);
+    memcpy(&forged, bytes, sizeof forged);
+    memcpy((char *)&forged + at, value, n);
+    forged.hash = fmi_hash(&forged);
+    CHECK_REFUSED(call_deserialize(c, (const char *)&forged, size, &state), words);
+    CHECK(state == NULL);
+}
+
+#define FORGED(member, type, value, words)                                                        \
+    check_forged(c, bytes, size, offsetof(struct fmi_snapshot, member), &(type){value},           \
+                 sizeof(type), words)
+
+/* What a state is made of is looked at even if the hash is right; the instance stays as it was. */
+static void test_forged_states(void)
+{
+    void *c = make_running(0.0, -1.0), *state = NULL;
+    char bytes[4096];
+    CHECK(call_step(c, 0.0, 1e-3) == 0 && call_get_state(c, &state) == 0);
+    const size_t size = call_state_size(c, state);
+    CHECK(call_serialize(c, state, bytes, size) == 0);
+    for (size_t i = 0; i < 8 * size; i++) {
+        void *other = NULL;
+        bytes[i / 8] ^= (char)(1 << i % 8);
+        CHECK_REFUSED(call_deserialize(c, bytes, size, &other), "the state is ");
+        bytes[i / 8] ^= (char)(1 << i % 8);
+    }
+    FORGED(mode, int32_t, FMI_FAILED, "damaged");
+    FORGED(mode, int32_t, 3, "damaged");
+    FORGED(mode, int32_t, FMI_INSTANTIATED, "do not belong to its mode");
+    FORGED(stale, int32_t, 1, "do not belong to its mode");
+    FORGED(stale, int32_t, 2, "neither false nor true");
+    FORGED(start, double, NAN, "a time is not a number");
+    FORGED(point, double, INFINITY, "a time is not a number");
+    FORGED(s.now, int64_t, -25, "no number of ticks");
+    FORGED(s.now, int64_t, 1, "no number of ticks");
+    FORGED(s.now, int64_t, INT64_MAX / 25 * 25, "no number of ticks");
+    FORGED(s.v.on[1], char, 2, "on is neither false nor true");
+    FORGED(s.v.gain, double, 100.5, "gain is outside its limits");
+    FORGED(s.v.u[2], double, NAN, "u is outside its limits");
+    FORGED(s.v.n, int32_t, -6, "n is outside its limits");
+    FORGED(s.m.at, int32_t, 2, "at is no index of sum");
+    FORGED(s.m.at, int32_t, -1, "at is no index of sum");
+    FORGED(s.m.odd, char, 2, "a Boolean or an enumeration");
+    char text[FMU_STRING_MAX];
+    memset(text, 'a', sizeof text);
+    check_forged(c, bytes, size, offsetof(struct fmi_snapshot, s.v.name), text, sizeof text,
+                 "name is a string without an end");
+    void *after = NULL;
+    char now[4096];
+    CHECK(call_get_state(c, &after) == 0 && call_serialize(c, after, now, size) == 0);
+    CHECK(memcmp(now, bytes, size) == 0);
+    CHECK(call_set_state(c, state) == 0 && call_step(c, 1e-3, 1e-3) == 0);
+    call_free_state(c, &after);
+    call_free_state(c, &state);
+    call_free(c);
+    /* Before the initialisation there is no time yet and nothing to look at in the model. */
+    c = make();
+    CHECK(call_get_state(c, &state) == 0 && call_serialize(c, state, bytes, size) == 0);
+    FORGED(mode, int32_t, FMI_STEP, "do not belong to its mode");
+    FORGED(stale, int32_t, 0, "do not belong to its mode");
+    FORGED(start, double, 0.0, "a time is not a number");
+    CHECK(call_deserialize(c, bytes, size, &state) == 0 && call_set_state(c, state) == 0);
+    call_free_state(c, &state);
+    call_free(c);
+}
+
 /* A state whose blob cannot be made is refused, and the instance runs on as it was. */
 static void test_state_with_another_blob(void)
 {
@@ -399,6 +471,7 @@ static int test_all(void)
     test_states_of_equal_values();
     test_state_with_another_tunable();
     test_the_last_step();
+    test_forged_states();
     test_state_with_another_blob();
     test_own();
     CHECK(blobs_open == 0);

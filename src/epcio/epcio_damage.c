@@ -1,0 +1,92 @@
+#include "epcio_damage.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+static bool within(int64_t x, int64_t low, int64_t high)
+{
+    return x >= low && x <= high;
+}
+
+/* `ticks`: it runs, so that its boundary lies ahead. */
+static bool dda_good(const struct dda *d, bool ticks, int64_t clock)
+{
+    bool good = within(d->length, DDA_LENGTH_MIN, DDA_LENGTH_MAX) &&
+                within(d->next_length, DDA_LENGTH_MIN, DDA_LENGTH_MAX) &&
+                within(d->divider, 1, DDA_DIVIDER_MAX) &&
+                within(d->next_divider, 1, DDA_DIVIDER_MAX) && within(d->start, 0, clock) &&
+                within(d->stop, 0, clock);
+    for (int i = 0; i < DDA_CHANNELS && good; i++)
+        good = llabs((long long)d->command[i]) <= dda_largest(d->length);
+    return good && (!ticks || dda_boundary(d) > clock);
+}
+
+static bool bus_good(const struct bus *b)
+{
+    bool good = within(b->head, 0, BUS_DEPTH - 1) && within(b->used, 0, BUS_DEPTH);
+    for (int i = 0; i < BUS_DEPTH && good; i++)
+        good = within(b->slot[i].count, 0, BUS_FRAMES);
+    return good;
+}
+
+/* All edges up to the latest sample have been worked off. */
+static bool encoder_good(const struct encoder *e, int64_t clock, int64_t period)
+{
+    if (encoder_check(&e->config) != ENCODER_OK || abs(e->sign) != 1 || !within(e->shift, 0, 3) ||
+        !within(e->share, 1, 4))
+        return false;
+    return !e->primed ||
+           (fabs(e->from) <= ENCODER_PHASE_MAX && fabs(e->to) <= ENCODER_PHASE_MAX &&
+            within(e->clock, clock - period, clock) && within(e->from_clock, 0, e->clock) &&
+            e->raw_end == (int64_t)floor(4.0 * e->to) && e->raw == e->raw_end);
+}
+
+static bool blocks_good(const struct epcio *card)
+{
+    const struct adc *a = &card->adc;
+    bool good = adc_check_control(&card->adc_control) == ADC_OK &&
+                within(a->channel, 0, ADC_CHANNELS - 1) && adc_due(a) > card->clock &&
+                local_io_check_control(&card->local_control) == LOCAL_IO_OK;
+    for (int i = 0; i < EPCIO_SETS && good; i++)
+        good = remote_io_check_control(&card->remote_control[i]) == REMOTE_IO_OK &&
+               card->remote[i].scanned >> REMOTE_IO_SLAVES == 0 &&
+               within(card->remote[i].slave, 0, REMOTE_IO_SLAVES - 1) &&
+               remote_io_due(&card->remote[i]) > card->clock;
+    return good;
+}
+
+static bool clocks_good(const struct epcio *card)
+{
+    const struct timer *t = &card->timer;
+    return card->clock >= 0 &&
+           (!t->on || (within(t->period, 1, TIMER_PERIOD_MAX) && within(t->start, 0, card->clock) &&
+                       timer_due(t) > card->clock));
+}
+
+const char *epcio_damage(const struct epcio *card, int64_t period)
+{
+    struct epcio fresh;
+    if (epcio_reset(&fresh, &card->config) != EPCIO_OK)
+        return "the configuration of the card";
+    if (!clocks_good(card) || !dda_good(&card->dda, card->dda.run, card->clock))
+        return "a time of the card or its DDA";
+    for (int i = 0; i < EPCIO_AXES; i++)
+        if (!within(card->fifo[i].head, 0, FIFO_DEPTH - 1) ||
+            !within(card->fifo[i].stock, 0, FIFO_DEPTH))
+            return "a place or the stock of a FIFO";
+    if (!bus_good(&card->bus))
+        return "a transaction on its way";
+    for (int i = 0; i < EPCIO_ENCODERS; i++)
+        if (!encoder_good(&card->encoder[i], card->clock, period))
+            return "an encoder";
+    return blocks_good(card) ? NULL : "the ADC, local or remote I/O";
+}
+
+const char *epcio_damage_single_buffer(const struct single_buffer *card)
+{
+    const bool ticks = card->config.latched || card->running;
+    if (card->clock < 0 || !dda_good(&card->dda, ticks && card->dda.run, card->clock))
+        return "a time of the card or its DDA";
+    return bus_good(&card->bus) ? NULL : "a transaction on its way";
+}

@@ -1,0 +1,168 @@
+#include "mcc_damage.h"
+
+#include <stddef.h>
+
+static bool within(int64_t x, int64_t low, int64_t high)
+{
+    return x >= low && x <= high;
+}
+
+static bool scurve_good(const struct scurve *s)
+{
+    return within(s->count, 0, SCURVE_PHASES);
+}
+
+static bool ramp_good(const struct ramp *r)
+{
+    return scurve_good(&r->ease) && scurve_good(&r->change);
+}
+
+static bool ring_good(const struct ring *r)
+{
+    for (int i = 0; i < RING_SIZE; i++) {
+        const struct ring_item *item = &r->item[i];
+        if (item->command.type != COMMAND_PTP_ASYN &&
+            !(within(item->enter.count, 0, BRAKE_STEPS) &&
+              within(item->leave.count, 0, BRAKE_STEPS))) {
+            return false;
+        }
+    }
+    return within(r->head, 0, RING_SIZE - 1) && within(r->count, 0, RING_SIZE);
+}
+
+/* The chain under way is the head of the ring; the tool is not ahead of the planned motion. */
+static bool track_good(const struct track *t, const struct ring *r)
+{
+    const int32_t last = t->joined > 0 ? t->joined - 1 : 0;
+    return within(t->caps, 0, TRACK_CAPS) && within(t->taps, 0, TRACK_MEAN) &&
+           within(t->next, 0, t->taps > 0 ? t->taps - 1 : 0) &&
+           (!t->active || (within(t->joined, 1, r->count) && within(t->planned, 0, t->joined) &&
+                           within(t->at, 0, last) && within(t->out, 0, t->at) &&
+                           within(t->begun, 0, t->joined)));
+}
+
+static bool ipo_good(const struct ipo *p)
+{
+    for (int i = 0; i < 2; i++) {
+        if (!ramp_good(&p->move[i].profile.rise) || !ramp_good(&p->move[i].profile.fall)) {
+            return false;
+        }
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (!scurve_good(&p->axes.axis[i].plan)) {
+            return false;
+        }
+    }
+    return within(p->count, 0, 2);
+}
+
+static bool interpreter_good(const struct interpreter *in)
+{
+    return in->offset >= 0 && within(in->motion, -1, 3) &&
+           within(in->system, 0, INTERPRETER_SYSTEMS - 1) &&
+           within(in->count, 0, INTERPRETER_MADE) && within(in->taken, 0, in->count);
+}
+
+static bool machine_good(const struct machine *m)
+{
+    return within(m->dda_length, 10, 15);
+}
+
+static const char *library(const struct mcc *m)
+{
+    if (!machine_good(&m->machine) || !within(m->machine.queue_depth, 1, QUEUE_SIZE)) {
+        return "the DDA length or the depth of the queue";
+    }
+    if (!interpreter_good(&m->program)) {
+        return "the place in the part program";
+    }
+    if (!ring_good(&m->ring) || !ipo_good(&m->ipo) || !track_good(&m->ipo.track, &m->ring)) {
+        return "a count or a place of the commands";
+    }
+    if (!within(m->queue.head, 0, QUEUE_SIZE - 1) || !within(m->queue.count, 0, QUEUE_SIZE)) {
+        return "a count or a place of the queue";
+    }
+    for (int i = 0; i < AXES; i++) {
+        if (!comp_valid(&m->comp_table[i]) ||
+            !within(m->manual.axis[i].encoder, 0, MANUAL_ENCODERS - 1)) {
+            return "a compensation table or a hand wheel";
+        }
+    }
+    return NULL;
+}
+
+static const char *control(const struct pcl *p)
+{
+    const bool good = within(p->axis, 0, AXES - 1) && within(p->count, 0, PCL_FRAMES) &&
+                      within(p->min_stock, 0, PCL_FIFO) && within(p->batch, 1, PCL_FRAMES) &&
+                      within(p->prime, 0, 2 * PCL_FIFO) && within(p->isr.page, -1, ISR_PAGES - 1);
+    return good ? NULL : "a count of the position control or its page";
+}
+
+static bool part_good(const struct pcl_part *part, const struct pcl *p, const struct queue *q)
+{
+    return within(part->points, 0, p->count < q->count ? p->count : q->count);
+}
+
+/* No cycle has begun that has not been seen: its timer is asked at most once a clock. */
+static bool sched_good(const struct sched *s)
+{
+    for (int i = 0; i < SCHED_MODULES; i++) {
+        const struct sched_module *m = &s->module[i];
+        const int64_t cycle = s->config.cycle[i];
+        if (cycle < 0 || (cycle == 0 && m->next != INT64_MAX) ||
+            m->next < s->clock - cycle || m->left < 0) {
+            return false;
+        }
+    }
+    return s->clock >= 0 && within(s->running, -1, SCHED_MODULES - 1);
+}
+
+static bool trail_good(const struct trail *t)
+{
+    return t->first >= 0 && within(t->frames, t->first, t->first + TRAIL_SIZE - 1) &&
+           within(t->foot, t->first, t->frames);
+}
+
+const char *mcc_damage_pc(const struct pc *pc)
+{
+    const char *what = library(&pc->mcc);
+    what = what ? what : control(&pc->pcl);
+    if (what) {
+        return what;
+    }
+    if (pc->config.bus < 1 || !part_good(&pc->pcl.part, &pc->pcl, &pc->mcc.queue)) {
+        return "the bus period or the frames under way";
+    }
+    if (!sched_good(&pc->sched) || !sched_good(&pc->shown)) {
+        return "a time of the modules";
+    }
+    return trail_good(&pc->voltage.trail) ? NULL : "a place on the path behind";
+}
+
+const char *mcc_damage_groups(const struct groups *g)
+{
+    const char *what = NULL;
+    for (int k = 0; k < GROUP_CARDS && !what; k++) {
+        what = machine_good(&g->card[k].machine) ? control(&g->card[k].pcl)
+                                                 : "the DDA length of a card";
+    }
+    for (int n = 0; n < GROUP_MAX && !what; n++) {
+        const struct group *group = &g->group[n];
+        if (!group->used) {
+            continue;
+        }
+        what = within(group->card, 0, GROUP_CARDS - 1) ? library(&group->mcc)
+                                                       : "the card of a group";
+        for (int i = 0; i < AXES && !what; i++) {
+            what = within(group->channel[i], -1, AXES - 1) ? NULL : "a channel of a group";
+        }
+        if (!what && !part_good(&group->part, &g->card[group->card].pcl, &group->mcc.queue)) {
+            what = "the frames under way";
+        }
+    }
+    if (!what && (g->config.ipo < 1 || g->config.bus < 1 || g->next_ipo < 0)) {
+        what = "a period";
+    }
+    return what;
+}

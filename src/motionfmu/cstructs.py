@@ -1,0 +1,166 @@
+"""C text that looks at the Booleans and enumerations of a model's state, made from its structs."""
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+_NOTE = "/* Generated from the structs of the model's state; do not edit. */\n"
+_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*|^[ \t]*#(?:\\\n|[^\n])*", re.DOTALL | re.MULTILINE)
+_TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|\w+|[^\w\s]")
+
+
+@dataclass
+class _Member:
+    """One member; `kind` is bool, enum, struct or other, `of` the name of its enum or struct."""
+
+    name: str
+    kind: str
+    of: str = ""
+
+
+@dataclass
+class _Definitions:
+    structs: dict[str, list[_Member]] = field(default_factory=dict)  # by "struct a" or "A"
+    enums: dict[str, list[str]] = field(default_factory=dict)
+
+
+class _Reader:
+    """Reads the definitions of one file; what is not one is passed over."""
+
+    def __init__(self, text: str, found: _Definitions) -> None:
+        self.tokens = [*_TOKEN.findall(_COMMENT.sub(" ", text)), "", "", ""]
+        self.at = 0
+        self.found = found
+
+    def take(self) -> str:
+        self.at += 1
+        return self.tokens[self.at - 1]
+
+    def next_is(self, *tokens: str) -> bool:
+        return tuple(self.tokens[self.at : self.at + len(tokens)]) == tokens
+
+    def read(self) -> None:
+        while self.tokens[self.at]:
+            word, name = self.tokens[self.at], self.tokens[self.at + 1]
+            if self.next_is("typedef", "struct", "{"):
+                self.at += 3
+                members = list(self.members(""))
+                self.found.structs[self.take()] = members
+            elif word == "struct" and self.tokens[self.at + 2] == "{":
+                self.at += 3
+                self.found.structs[f"struct {name}"] = list(self.members(name))
+            elif word == "enum" and self.tokens[self.at + 2] == "{":
+                self.at += 3
+                self.enumerators(name)
+            else:
+                self.at += 1
+
+    def enumerators(self, name: str) -> None:
+        names, depth, begins = [], 1, True
+        while depth:
+            token = self.take()
+            depth += (token in "({") - (token in ")}") if token else -depth
+            if begins and depth:
+                names.append(token)
+            begins = token == "," and depth == 1
+        self.found.enums[name] = [n for n in names if n != "}"]
+
+    def members(self, owner: str) -> Iterator[_Member]:
+        """The members up to the closing brace, which is taken."""
+        while not self.next_is("}"):
+            yield from self.member(owner)
+        self.at += 1
+
+    def member(self, owner: str) -> Iterator[_Member]:
+        word = self.take()
+        while word in ("const", "unsigned", "signed"):
+            word = self.take()
+        kind, of = ("bool", "") if word == "bool" else ("other", "")
+        if word in ("struct", "union", "enum"):
+            name = "" if self.next_is("{") else self.take()
+            kind, of = word, name if word == "enum" else f"struct {name}"
+            if self.next_is("{"):
+                self.at += 1
+                if word == "enum":
+                    of = name or f"{owner}_{len(self.found.enums)}"
+                    self.enumerators(of)
+                else:
+                    inner = list(self.members(owner))
+                    if self.next_is(";"):  # without a name its members are those around it
+                        self.at += 1
+                        yield from inner if word == "struct" else ()
+                        return
+                    self.found.structs[of] = inner
+            if word == "union":
+                kind, of = "other", ""  # which of its members counts only the model knows
+        elif word not in ("bool",):
+            kind, of = "named", word
+        yield from self.declarators(owner, kind, of)
+
+    def declarators(self, owner: str, kind: str, of: str) -> Iterator[_Member]:
+        while True:
+            name = self.take()
+            if not re.fullmatch(r"\w+", name):  # a pointer
+                while self.take() != ";":
+                    pass
+                yield _Member(owner, "pointer")
+                return
+            yield _Member(name, kind, of)
+            while self.next_is("["):
+                while self.take() != "]":
+                    pass
+            if self.take() == ";":
+                return
+
+
+def _looks(found: _Definitions, name: str, done: dict[str, str]) -> bool:
+    """Fill in the looks at a struct and at those in it; whether there is anything to look at."""
+    if name in done:
+        return bool(done[name])
+    lines = []
+    for m in found.structs[name]:
+        if m.kind == "pointer" or m.of == "struct ":
+            raise ValueError(f"{name}: a state has neither pointers nor structs without a name")
+        if m.kind == "bool":
+            lines.append(f"    FMI_ALL_GOOD(unsigned char, p->{m.name}, fmi_good_bool)\n")
+        elif m.kind == "enum":
+            names = found.enums[m.of]
+            lines.append(f"    FMI_ALL_WITHIN(p->{m.name}, {names[0]}, {names[-1]})\n")
+        elif m.of in found.structs and _looks(found, m.of, done):
+            call = f"fmi_good_{m.of.removeprefix('struct ')}"
+            lines.append(f"    FMI_ALL_GOOD({m.of}, p->{m.name}, {call})\n")
+    done[name] = "".join(lines)
+    return bool(lines)
+
+
+def flags(texts: Iterable[str]) -> str:
+    """Text of state_flags.h.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        C files with all structs of the state; `struct model` is the whole.
+
+    Returns
+    -------
+    str
+        `fmi_good_model`: whether every Boolean of a `struct model` is one and every enumeration
+        lies from its first to its last name. Members of unions are left to the model.
+
+    Raises
+    ------
+    ValueError
+        A struct of the state has a pointer or a struct without a name.
+    """
+    found = _Definitions()
+    for text in texts:
+        _Reader(text, found).read()
+    done: dict[str, str] = {}
+    _looks(found, "struct model", done)
+    parts = [
+        f"static bool fmi_good_{name.removeprefix('struct ')}(const {name} *p)\n"
+        f"{{\n    (void)p;\n{lines}    return true;\n}}\n"
+        for name, lines in done.items()
+        if lines or name == "struct model"
+    ]
+    return "\n".join([_NOTE + '#include "fmi_flags.h"\n', *parts])
