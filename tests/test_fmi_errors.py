@@ -82,6 +82,8 @@ OUT_OF_ORDER: list[tuple[tuple[str, ...], Act, str]] = [
     (RUN, lambda i: i.step(math.inf), "communicationStepSize inf s"),
     (RUN, lambda i: i.step(1e-3, time=0.5), "0.5 s is not where the previous step ended, 0 s"),
     (RUN, lambda i: i.step(1e-3, time=math.nan), "currentCommunicationPoint nan s"),
+    (RUN, lambda i: i.step(1e-3, time=math.inf), "currentCommunicationPoint inf s"),
+    (RUN, lambda i: i.step(1e-3, time=-math.inf), "currentCommunicationPoint -inf s"),
 ]
 
 
