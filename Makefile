@@ -29,7 +29,7 @@ bench: build                    ## speed, as ratios measured in one run
 	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py
 
 SECONDS ?= 120
-fuzz:                           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each
+fuzz: .venv/installed           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each
 	tests/fuzz/run.sh $(SECONDS)
 	MOTIONFMU_FUZZ=$(SECONDS) $(BIN)/python -m pytest -n 2 tests/test_fuzz_readers.py
 

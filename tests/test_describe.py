@@ -143,6 +143,7 @@ def test_equal_input_packs_equal_bytes(fmi: int, tmp_path: Path) -> None:
         library = next(n for n in z.namelist() if n.startswith("binaries/"))
         (tmp_path / "scope.so").write_bytes(z.read(library))
     pack.generate(ROOT / "fmus/scope", tmp_path / "gen")
+    pack.flags(ROOT / "fmus/scope", tmp_path / "gen")
     target = tmp_path / "again.fmu"
     pack.archive(ROOT / "fmus/scope", tmp_path / "gen", fmi, tmp_path / "scope.so", target)
     assert target.read_bytes() == source.read_bytes()

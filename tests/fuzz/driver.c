@@ -9,7 +9,7 @@
 #include <signal.h>
 #include <time.h>
 
-#include "fuzz.h"
+#include "holds.h"
 
 enum { FILES = 256, BYTES_MAX = 4096, CHANGES_MAX = 8 };
 

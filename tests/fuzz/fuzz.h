@@ -1,27 +1,11 @@
-/* fuzz - what the harnesses share: an assertion that ends the run, a machine, points checked. */
+/* fuzz - what the harnesses of the library share: a machine, points checked. */
 #ifndef FUZZ_H
 #define FUZZ_H
 
 #include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "holds.h"
 #include "task.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-/* Mutations of a short run: about 5 s with sanitizers. */
-extern const int fuzz_count;
-
-#define HOLDS(condition) \
-    do { \
-        if (!(condition)) { \
-            fprintf(stderr, "%s:%d: %s does not hold\n", __FILE__, __LINE__, #condition); \
-            abort(); \
-        } \
-    } while (0)
 
 /* Short ramps, so that an input comes far in few points; W is not used. */
 static inline struct machine fuzz_machine(void)

@@ -1,0 +1,94 @@
+/* The FMU itself as FMI 3.0, so that its static names can be seen. */
+#include "fmi3/fmu_main.c"
+
+#include "holds.h"
+#include "inside.h"
+
+/* An input takes as long as its states are large. */
+const int fuzz_count = sizeof(struct fmi_snapshot) < 1 << 15 ? 1000
+                       : sizeof(struct fmi_snapshot) < 1 << 20 ? 150 : 25;
+
+_Static_assert((int)SIDE_REAL == (int)VAR_F64 && (int)SIDE_INTEGER == (int)VAR_I32
+               && (int)SIDE_BOOLEAN == (int)VAR_BOOL && (int)SIDE_STRING == (int)VAR_STRING,
+               "one numbering of types");
+
+size_t inside_count(void)
+{
+    return FMU_NVARS;
+}
+
+struct inside_variable inside_variable(size_t i)
+{
+    const struct var_info *v = &var_table[i];
+    const bool input = v->causality == CAUSE_INPUT;
+    const bool parameter = v->causality == CAUSE_PARAMETER;
+    return (struct inside_variable){
+        v->ref, v->count, v->type, input || parameter,
+        input || (parameter && v->variability == VARY_TUNABLE), v->min, v->max
+    };
+}
+
+union side_value inside_start(size_t i, size_t k)
+{
+    const struct var_info *v = &var_table[i];
+    const char *at = (const char *)&vars_start + v->offset + k * fmi_size_here(v->type);
+    switch (v->type) {
+    case VAR_F64:  return (union side_value){ .real = *(const double *)at };
+    case VAR_I32:  return (union side_value){ .integer = *(const int32_t *)at };
+    case VAR_BOOL: return (union side_value){ .boolean = *(const bool *)at };
+    default:       return (union side_value){ .string = at };
+    }
+}
+
+const char *inside_token(void)
+{
+    return FMU_TOKEN;
+}
+
+int inside_tick(void)
+{
+    return FMU_TICK_NS;
+}
+
+int inside_string_max(void)
+{
+    return FMU_STRING_MAX;
+}
+
+size_t inside_size(void)
+{
+    return sizeof(struct fmi_snapshot);
+}
+
+bool inside_alike(const char *a, const char *b)
+{
+    static struct fmi_snapshot p, q;
+    memcpy(&p, a, sizeof p);
+    memcpy(&q, b, sizeof q);
+    p.hash = q.hash = 0;
+    memset(&p.s.m, 0, sizeof p.s.m);
+    memset(&q.s.m, 0, sizeof q.s.m);
+    return memcmp(&p, &q, sizeof p) == 0;
+}
+
+size_t inside_place(size_t n)
+{
+    const size_t head = offsetof(struct fmi_snapshot, mode);
+    size_t at = head + n % (sizeof(struct fmi_snapshot) - head);
+    for (size_t i = 0; i < FMU_NVARS; i++) {
+        const size_t from = offsetof(struct fmi_snapshot, s.v) + var_table[i].offset;
+        const size_t size = var_table[i].count * FMU_STRING_MAX;
+        if (var_table[i].type == VAR_STRING && at >= from && at < from + size) {
+            at = head + (at - from) % 24; /* mode, stale and times instead */
+        }
+    }
+    return at;
+}
+
+void inside_forge(char *bytes)
+{
+    static struct fmi_snapshot p;
+    memcpy(&p, bytes, sizeof p);
+    p.hash = fmi_hash(&p);
+    memcpy(bytes, &p, sizeof p);
+}
