@@ -18,7 +18,7 @@ const char *const scratch_names[SCRATCH_NAMES] = {
 
 static const struct { const char *name, *text; size_t size; } files[] = {
 #define TEXT(s) s, sizeof s - 1
-    { "good.ngc", TEXT("G90 G0 X0 Y0\nG64 P0.1\nG1 X0.2 F3000\nG2 X0.2 Y0.1 I0.1 J0\n"
+    { "good.ngc", TEXT("G90 G0 X0 Y0\nG64 P0.1\nG1 X0.2 F3000\nG2 X0.3 Y0.1 I0.1 J0\n"
                        "M62 P1\nG1 Y1 Z0.1\nX0 M3 S500\nG4 P0.01\nM2\n") },
     { "bad.ngc", TEXT("G1 X1\nG1 X2 Y3 I4 Q\xff\n") },
     { "table.csv", TEXT("axis,interval,home\n1,800,10\n2,8000,0\naxis,index,forward,backward\n"
