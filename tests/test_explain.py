@@ -364,7 +364,7 @@ def test_the_causes_of_every_fmu_are_in_it_and_name_its_variables(file: Path) ->
         ("[heat]\nset = { tau = 0 }\n", r"own/causes.toml: \[heat\]: .* needs a title"),
         ("[mismatch]\nmean = ['tua']\n", r"\[mismatch\]: own has no variable 'tua'"),
         ("[mismatch]\nmeans = ['tau']\n", r"own/causes.toml: .*means"),
-        ("[mismatch\n", r"own/causes.toml: "),
+        ("[mismatch\n", r"own/causes.toml:1: "),
         ("[heat]\ntitle = 'Heat'\nset = { tau = 0 }\n", None),
     ],
 )
