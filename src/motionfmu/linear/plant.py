@@ -31,6 +31,8 @@ _HAIR = 1e-13
 _PATIENCE, _GLANCE = (60, 1e-6), (15, 1e-2)
 # It leads nowhere when so many steps, one after the other, were cut to less than this share.
 _CREEPING, _SHORT = 5, 1e-3
+# Ways beyond which a gap may be closed, and how much stiffer it is then.
+_GAPS, _CLOSED = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2), 1e3
 # Steps of an input that is followed: the first, the least, the one at which Newton takes over, and
 # the farthest input looked at, in its unit and as a share.
 _FIRST_INPUT, _LEAST_INPUT, _NEAR_INPUT, _LAST_INPUT = 1e-3, 1e-7, 1e-4, 1e4
@@ -334,7 +336,8 @@ class Linearised:
         speeds = x0 + np.linalg.pinv(c[places]) @ targets
         if tried(x0) or tried(speeds):
             return best
-        for k, begun in itertools.product(range(len(places)), (speeds, x0)):
+        across = self._across((x0, u0, p), speeds)
+        for k, begun in itertools.product(range(len(places)), (speeds, x0, *across)):
             if free and best[2] == 0.0:
                 near = np.concatenate([begun, u0])
                 z = _bracketed((rest, slope, n + k), near, sizes, n + free[0])
@@ -344,6 +347,21 @@ class Linearised:
         if best[2] < math.inf:
             any(tried(guess, _GLANCE) for guess in _beside(speeds, which))
         return best
+
+    def _across(self, begin: tuple[Matrix, Matrix, Matrix], x: Matrix) -> Iterator[Matrix]:
+        """States moved just beyond a gap, on either side: the force there is another one."""
+        x0, u0, p = begin
+        before = np.abs(self.matrices(x0, u0, p)[0]).max(axis=1)
+        for k, sign in itertools.product(range(len(x0)), (1.0, -1.0)):
+            for size in _GAPS:
+                moved = x0.copy()
+                moved[k] += sign * size
+                after = np.abs(self.matrices(moved, u0, p)[0]).max(axis=1)
+                if (np.maximum(before, after) > _CLOSED * np.minimum(before, after)).any():
+                    moved = x.copy()
+                    moved[k] += sign * size
+                    yield moved
+                    break
 
     def _back(self, z: Matrix, begin: Matrix, rest: _Function) -> Matrix:
         """A position on which the motion does not depend returns to where it was."""
