@@ -220,7 +220,8 @@ static const char *model_check(const struct state *s)
     if (m->bus < CLOCK_NS || m->instant < s->now || m->instant - s->now >= m->bus) {
         return "its next instant is another one";
     }
-    if (m->bus != m->pc.config.bus * CLOCK_NS || m->pc.program != (s->v.program[0] != '\0')) {
+    if (m->bus % CLOCK_NS != 0 || m->bus / CLOCK_NS != m->pc.config.bus
+        || m->pc.program != (s->v.program[0] != '\0')) {
         return "its bus period or whether it has a program";
     }
     return mcc_damage_pc(&m->pc);

@@ -232,7 +232,7 @@ static const char *model_check(const struct state *s)
 {
     const struct model *m = &s->m;
     if (m->bus < CLOCK_NS || m->instant < s->now || m->instant - s->now >= m->bus
-        || m->bus != m->groups.config.bus * CLOCK_NS) {
+        || m->bus % CLOCK_NS != 0 || m->bus / CLOCK_NS != m->groups.config.bus) {
         return "its next instant is another one";
     }
     for (int n = 0; n < GROUP_MAX; n++) {

@@ -200,8 +200,8 @@ static double plugged(struct model *m, const struct vars *v)
 static const char *model_check(const struct state *s)
 {
     const struct model *m = &s->m;
-    if (m->clock_ns < 1 || m->period < 1 || m->instant < 0
-        || m->instant > INT64_MAX / 2 / m->clock_ns
+    if (m->clock_ns < 1 || m->period < 1 || m->period > INT64_MAX / m->clock_ns
+        || m->instant < 0 || m->instant > INT64_MAX / m->clock_ns
         || m->instant * m->clock_ns < s->now
         || m->instant * m->clock_ns - s->now >= m->period * m->clock_ns)
         return "its next instant is another one";

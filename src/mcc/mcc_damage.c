@@ -107,6 +107,9 @@ static bool part_good(const struct pcl_part *part, const struct pcl *p, const st
 /* No cycle has begun that has not been seen: its timer is asked at most once a clock. */
 static bool sched_good(const struct sched *s)
 {
+    if (s->clock < 0 || !within(s->running, -1, SCHED_MODULES - 1)) {
+        return false;
+    }
     for (int i = 0; i < SCHED_MODULES; i++) {
         const struct sched_module *m = &s->module[i];
         const int64_t cycle = s->config.cycle[i];
@@ -115,12 +118,12 @@ static bool sched_good(const struct sched *s)
             return false;
         }
     }
-    return s->clock >= 0 && within(s->running, -1, SCHED_MODULES - 1);
+    return true;
 }
 
 static bool trail_good(const struct trail *t)
 {
-    return t->first >= 0 && within(t->frames, t->first, t->first + TRAIL_SIZE - 1) &&
+    return t->first >= 0 && t->frames >= t->first && t->frames - t->first < TRAIL_SIZE &&
            within(t->foot, t->first, t->frames);
 }
 

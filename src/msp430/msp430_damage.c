@@ -40,7 +40,7 @@ const char *msp430_damage(const struct msp430 *m)
 {
     const struct msp430_config *c = &m->config;
     if (m->clock < 0 || c->timer_period < 1 || c->timer_cycles < 0 ||
-        !within(m->timer_next, m->clock, m->clock + c->timer_period) ||
+        m->timer_next < m->clock || m->timer_next - m->clock > c->timer_period ||
         (m->routine != MSP430_FREE && m->next < m->clock))
         return "a time of the chip";
     if (!law_good(&c->sequence.law) || c->sequence.acceleration < 1 || c->sequence.speed < 0)
