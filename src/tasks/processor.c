@@ -1,0 +1,69 @@
+#include "processor.h"
+
+#include <string.h>
+
+void processor_start(struct processor *p)
+{
+    memset(p, 0, sizeof *p);
+    p->running = -1;
+}
+
+void processor_wake(struct processor *p, int task, int64_t turn)
+{
+    struct processor_task *t = &p->task[task];
+
+    t->ready = true;
+    t->turn = turn;
+    t->left = 0;
+}
+
+void processor_block(struct processor *p, int task)
+{
+    p->task[task].ready = false;
+}
+
+void processor_compute(struct processor *p, int task, int64_t time)
+{
+    p->task[task].left = time;
+}
+
+int processor_over(const struct processor *p)
+{
+    const int r = p->running;
+    return r >= 0 && p->task[r].ready && p->task[r].left == 0 ? r : -1;
+}
+
+int processor_first(const struct processor *p)
+{
+    int best = -1;
+
+    for (int i = 0; i < PROCESSOR_TASKS; i++) {
+        const struct processor_task *t = &p->task[i], *b = &p->task[best < 0 ? i : best];
+        if (t->ready && (best < 0 || t->priority > b->priority ||
+                         (t->priority == b->priority && t->turn < b->turn))) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+int processor_dispatch(struct processor *p)
+{
+    p->running = processor_first(p);
+    return processor_over(p);
+}
+
+void processor_pass(struct processor *p, int64_t until)
+{
+    int64_t time = until - p->clock;
+
+    if (p->running < 0) {
+        p->idle += time;
+    } else {
+        struct processor_task *t = &p->task[p->running];
+        time = t->left < time ? t->left : time;
+        t->left -= time;
+        t->busy += time;
+    }
+    p->clock += time;
+}
