@@ -98,12 +98,12 @@ enum kernel_status {
 /* KERNEL_RANGE if a priority, level, time or count is out of range; then *k is as it was. */
 enum kernel_status kernel_start(struct kernel *k, const struct kernel_config *config);
 
-/* An interrupt is pending from a clock on, at once if that is behind. One that waits already stays as
- * it is; one that is being served comes once more. */
+/* An interrupt is pending from a clock on, at once if that is behind. One that waits already stays
+ * as it is; one that is being served comes once more. */
 enum kernel_status kernel_pend(struct kernel *k, int interrupt, int64_t clock);
 
-/* Let time pass to where a context is to answer: a task, or KERNEL_TASKS + an interrupt; -1: nothing
- * more before `until`, the clock is there. */
+/* Let time pass to where a context is to answer: a task, or KERNEL_TASKS + an interrupt; -1:
+ * nothing more before `until`, the clock is there. */
 int kernel_next(struct kernel *k, int64_t until);
 
 /* Answers of what was asked. */

@@ -5,8 +5,8 @@
  *            |   --A--'     '--A--           is asked what comes next: more time, or nothing until
  *            +----------------------> t      it is woken again.
  *
- * Among equal priorities the one of the lowest turn has it: a number of the caller's, who may change
- * it. Time is whole units of the caller's clock. Nothing happens by itself: processor_pass lets
+ * Among equal priorities the one of the lowest turn has it: a number of the caller's, who may
+ * change it. Time is whole units of the caller's clock. Nothing happens by itself: processor_pass lets
  * time go by and stops where the running task's is over, so that the caller decides what comes
  * before what at one clock.
  */

@@ -7,7 +7,7 @@
 
 static struct kernel k;
 
-/* --- Scripts: what a task or interrupt does, over and over; an interrupt once each time. -------- */
+/* --- Scripts: what a task or interrupt does, over and over; an interrupt once each time. --- */
 enum what { COMPUTE, GIVE, TAKE, DELAY, PRIORITY, END };
 struct action { enum what what; int32_t value, other; };
 enum { ACTIONS = 6, SCRIPTS = KERNEL_TASKS + KERNEL_INTERRUPTS, MARKS = 60000, PENDS = 40 };
@@ -82,7 +82,7 @@ static void scheduled(const struct set *q, int64_t clocks, uint64_t *seed, struc
     CHECK_EQ(kernel_overhead(&k), 0);
 }
 
-/* --- The model: lists in the order of waiting and of being ready, one clock after another. ------ */
+/* --- The model: lists in the order of waiting and of being ready, one clock after another. --- */
 struct one { bool ready, hidden, delayed; int takes, priority, left; int64_t ends; };
 static struct {
     struct one c[SCRIPTS];
@@ -358,7 +358,7 @@ static void against_brute_force(void)
     CHECK(marks > 250000);
 }
 
-/* --- One by one. --------------------------------------------------------------------------------- */
+/* --- One by one. ------------------------------------------------------------------------------ */
 static int next(int64_t until)
 {
     return kernel_next(&k, until);
@@ -458,7 +458,7 @@ static void overhead(void)
     CHECK_EQ(kernel_idle(&k), 0);
 }
 
-/* An interrupt that waits is one, whatever comes meanwhile; while it is served it comes once more. */
+/* An interrupt that waits is one, whatever comes meanwhile; while it is served it comes again. */
 static void pending_once(void)
 {
     const struct kernel_config c = { .tasks = 0 };

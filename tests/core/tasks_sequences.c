@@ -3,6 +3,7 @@
  * !x an interrupt with packet x; >t task t gets the processor; 5>2 home's priority. */
 #include "check.h"
 
+#include <stdarg.h>
 #include <string.h>
 
 #include "kernel.h"
@@ -26,9 +27,6 @@ static struct {
     int done[TASKS];
 } s;
 
-static void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
-
-#include <stdarg.h>
 static void say(const char *format, ...)
 {
     const size_t n = strlen(s.text);
@@ -69,7 +67,8 @@ static bool unit(enum task t)
 }
 
 /* Parser: take the bytes, give the semaphore of the packet's task. Home lowers itself while it
- * works, `units` long. Pause holds the processor until `released`. Stop works one unit. Run goes on. */
+ * works, `units` long. Pause holds the processor until `released`. Stop works one unit. Run goes
+ * on. */
 static void act(enum task t, const struct packet *packets, int home_units, int64_t released)
 {
     if (!s.working[t]) {
