@@ -6,8 +6,8 @@
  *            +----------------------> t      it is woken again.
  *
  * Among equal priorities the one of the lowest turn has it: a number of the caller's, who may
- * change it. Time is whole units of the caller's clock. Nothing happens by itself: processor_pass lets
- * time go by and stops where the running task's is over, so that the caller decides what comes
+ * change it. Time is whole units of the caller's clock. Nothing happens by itself: processor_pass
+ * lets time go by and stops where the running task's is over, so that the caller decides what comes
  * before what at one clock.
  */
 #ifndef PROCESSOR_H
