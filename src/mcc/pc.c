@@ -371,10 +371,12 @@ static void end(struct pc *pc, int module, const struct source *program)
  * it is at work it sees that itself. */
 static void wake_ipo(struct pc *pc)
 {
+    if (!pc->config.ipo_event) {
+        return;
+    }
     const struct sched_module *ipo = &pc->sched.module[PC_IPO];
     const bool due = task_can_point(&pc->mcc);
-
-    if (pc->config.ipo_event && due && !pc->point_due && !ipo->active && !ipo->asked) {
+    if (due && !pc->point_due && !ipo->active && !ipo->asked) {
         sched_wake(&pc->sched, PC_IPO, pc->sched.clock, pc->sched.clock);
     }
     pc->point_due = due;
