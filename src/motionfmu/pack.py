@@ -13,7 +13,7 @@ import zipfile
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from motionfmu import cstructs, ctables, describe, fmu_toml
+from motionfmu import cores, cstructs, ctables, describe, fmu_toml
 from motionfmu.modeldescription import model_description
 from motionfmu.toml_lines import text_of
 
@@ -97,12 +97,16 @@ def flags(fmu: Path, out: Path) -> None:
         A struct of the state has what a state cannot have.
     """
     d = fmu_toml.load(fmu / "fmu.toml")
-    files = [f for core in d.cores for f in sorted((SOURCE / core).glob("*.h"))]
+    files = [f for f in _core_files(fmu, d) if f.suffix == ".h"]
     if is_modelica(fmu):
         files += [out / "plant.h", SOURCE / "plant" / "plant_model.c"]
     else:
         files += [*sorted(fmu.glob("*.h")), fmu / "model.c"]
     (out / "state_flags.h").write_text(cstructs.flags(f.read_text() for f in files))
+
+
+def _core_files(fmu: Path, d: describe.Description) -> list[Path]:
+    return cores.needed(SOURCE, d.cores, fmu.glob("*.[ch]"))
 
 
 def compiled_sources(fmu: Path, d: describe.Description, out: Path) -> list[Path]:
@@ -120,7 +124,7 @@ def compiled_sources(fmu: Path, d: describe.Description, out: Path) -> list[Path
     -------
     list of Path
     """
-    files = [f for core in d.cores for f in sorted((SOURCE / core).glob("*.c"))]
+    files = [f for f in _core_files(fmu, d) if f.suffix == ".c"]
     return files + ([out / "plant.c"] if is_modelica(fmu) else [])
 
 
@@ -128,10 +132,10 @@ def _packed_sources(fmu: Path, out: Path, fmi: int) -> dict[str, bytes]:
     import fmpy
 
     d = fmu_toml.load(fmu / "fmu.toml")
-    folders = [SOURCE / "fmi", fmu, *[SOURCE / core for core in d.cores]]
+    folders = [SOURCE / "fmi", fmu]
     folders += [SOURCE / "plant"] if is_modelica(fmu) else []
     files = [f for folder in folders for f in sorted(folder.glob("*.[ch]"))]
-    files += sorted((SOURCE / "fmi").glob("*.inc"))
+    files += [*sorted((SOURCE / "fmi").glob("*.inc")), *_core_files(fmu, d)]
     files += [*sorted(out.glob("*.[ch]")), out / f"fmi{fmi}/fmu_main.c"]
     headers = Path(fmpy.__file__).parent / "c-code"
     files += sorted(headers.glob(f"fmi{fmi}*.h"))

@@ -1,0 +1,54 @@
+"""The C cores: which others one uses, and which of their files a model needs.
+
+A folder under src/ with a core.toml is a core: `uses` names the cores whose headers it may include.
+"""
+
+import re
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+
+_INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
+
+
+def uses(core: Path) -> list[str]:
+    """Names of the cores that a core may include."""
+    return tomllib.loads((core / "core.toml").read_text())["uses"]
+
+
+def closure(source: Path, names: Iterable[str]) -> list[str]:
+    """These cores, and those they use, directly or not."""
+    found: list[str] = []
+    waiting = list(names)
+    while waiting:
+        name = waiting.pop(0)
+        if name not in found:
+            found.append(name)
+            waiting += uses(source / name)
+    return sorted(found)
+
+
+def included(file: Path) -> list[str]:
+    """Names of the headers a C file includes, in their order."""
+    return _INCLUDE.findall(file.read_text())
+
+
+def needed(source: Path, names: Iterable[str], roots: Iterable[Path]) -> list[Path]:
+    """Files of the cores that C files need, headers and sources.
+
+    A C file belongs to the header of its own name, or else to the first one it includes.
+    """
+    folders = [source / name for name in closure(source, names)]
+    headers = {f.name: f for folder in folders for f in folder.glob("*.h")}
+    owned: dict[str, list[Path]] = {}
+    for file in (f for folder in folders for f in sorted(folder.glob("*.c"))):
+        own = f"{file.stem}.h"
+        owned.setdefault(own if own in headers else included(file)[0], []).append(file)
+    found: set[Path] = set()
+    waiting = list(roots)
+    while waiting:
+        for name in included(waiting.pop()):
+            new = {headers[name], *owned.get(name, [])} - found if name in headers else set()
+            found |= new
+            waiting += new
+    return sorted(found, key=lambda f: (f.parent.name, f.name))
