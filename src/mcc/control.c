@@ -6,21 +6,21 @@
 /* Nothing under way and nothing to come. */
 static bool idle(const struct mcc *m)
 {
-    return !m->running && m->ring.count == 0 && !ipo_busy(&m->ipo) && !m->ipo.stopped &&
-           !m->ipo.confirming;
+    return !m->running && m->ring.count == 0 && !mover_busy(&m->mover) && !m->mover.stopped &&
+           !m->mover.confirming;
 }
 
 void control_settle(struct mcc *m)
 {
-    if (ipo_busy(&m->ipo) || m->ring.count > 0 || m->running) {
+    if (mover_busy(&m->mover) || m->ring.count > 0 || m->running) {
         return;
     }
-    m->ipo.leave = false;
-    memcpy(m->end, m->ipo.rest, sizeof m->end);     /* an abort may have moved it, */
-    if (m->ipo.outputs.spindle == 0.0) {
+    m->mover.allowed = false;
+    memcpy(m->end, m->mover.rest, sizeof m->end);     /* an abort may have moved it, */
+    if (m->mover.outputs.spindle == 0.0) {
         m->program.switches.turning = 0;            /* and switched these off */
     }
-    m->program.switches.coolant = m->ipo.outputs.coolant;
+    m->program.switches.coolant = m->mover.outputs.coolant;
 }
 
 int MCC_motion_hold(struct mcc *m)
@@ -28,10 +28,10 @@ int MCC_motion_hold(struct mcc *m)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (m->ipo.hold || m->ipo.abort || idle(m)) {
+    if (m->mover.hold || m->mover.abort || idle(m)) {
         return MCC_HOLD_ILLEGAL;
     }
-    ipo_hold(&m->ipo, true);
+    mover_hold(&m->mover, true);
     return MCC_NO_ERR;
 }
 
@@ -40,10 +40,10 @@ int MCC_motion_conti(struct mcc *m)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!m->ipo.hold || m->ipo.abort) {
+    if (!m->mover.hold || m->mover.abort) {
         return MCC_CONTI_ILLEGAL;
     }
-    ipo_hold(&m->ipo, false);
+    mover_hold(&m->mover, false);
     return MCC_NO_ERR;
 }
 
@@ -52,18 +52,18 @@ int MCC_motion_abort(struct mcc *m)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (m->ipo.abort || idle(m)) {
+    if (m->mover.abort || idle(m)) {
         return MCC_ABORT_ILLEGAL;
     }
     m->running = false;
-    ipo_abort(&m->ipo, &m->ring);
+    mover_abort(&m->mover, &m->ring);
     control_settle(m);
     return MCC_NO_ERR;
 }
 
 bool control_rests(const struct mcc *m)
 {
-    return idle(m) && m->queue.count == 0 && !m->ipo.news;
+    return idle(m) && m->queue.count == 0 && !m->mover.untold;
 }
 
 int MCC_check_stop(const struct mcc *m)

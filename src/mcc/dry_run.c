@@ -15,8 +15,8 @@ int MCC_enable_dry_run(struct mcc *m)
         return MCC_COMMAND_NOTFINISHED;
     }
     m->dry_run = true;
-    memcpy(m->dry_place, m->ipo.rest, sizeof m->dry_place);
-    memcpy(m->dry_pulses, m->ipo.pulses, sizeof m->dry_pulses);
+    memcpy(m->dry_place, m->mover.rest, sizeof m->dry_place);
+    memcpy(m->dry_pulses, m->mover.pulses, sizeof m->dry_pulses);
     return MCC_NO_ERR;
 }
 
@@ -33,8 +33,8 @@ int MCC_disable_dry_run(struct mcc *m)
     }
     m->dry_run = false;
     memcpy(m->end, m->dry_place, sizeof m->end);
-    memcpy(m->ipo.rest, m->dry_place, sizeof m->ipo.rest);
-    memcpy(m->ipo.pulses, m->dry_pulses, sizeof m->ipo.pulses);
+    memcpy(m->mover.rest, m->dry_place, sizeof m->mover.rest);
+    memcpy(m->mover.pulses, m->dry_pulses, sizeof m->mover.pulses);
     memcpy(m->written.place, m->dry_place, sizeof m->written.place);
     memcpy(m->written.pulses, m->dry_pulses, sizeof m->written.pulses);
     return MCC_NO_ERR;

@@ -15,7 +15,7 @@ int homing_set(struct mcc *m, int axis, const struct home_config *config, bool b
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (m->ipo.free && m->homing.state == HOMING_RUNS) {
+    if (mover_ordered(&m->mover) && m->homing.state == HOMING_RUNS) {
         return MCC_COMMAND_NOTFINISHED;
     }
     if (axis < 0 || axis >= AXES || !home_valid(config) ||
@@ -54,7 +54,7 @@ static double place_at(const struct mcc *m, int i, int32_t count)
 /* The axis stands: planned so, all its pulses written, and for some time at its encoder. */
 static bool rests(const struct mcc *m, int i)
 {
-    return axes_rests(&m->ipo.axes, i) && m->homing.axis[i].clocks >= m->homing.settle;
+    return axes_rests(&m->mover.axes, i) && m->homing.axis[i].clocks >= m->homing.settle;
 }
 
 static void watch(struct mcc *m, int i, int64_t clocks)
@@ -62,7 +62,7 @@ static void watch(struct mcc *m, int i, int64_t clocks)
     struct homing_axis *x = &m->homing.axis[i];
     const int32_t moved = (int32_t)((uint32_t)m->signals.enc[i] - (uint32_t)x->still);
 
-    if (!axes_rests(&m->ipo.axes, i) || m->written.pulses[i] != m->ipo.pulses[i] ||
+    if (!axes_rests(&m->mover.axes, i) || m->written.pulses[i] != m->mover.pulses[i] ||
         moved < -1 || moved > 1) {
         x->still = m->signals.enc[i];
         x->clocks = 0;
@@ -76,7 +76,7 @@ static struct home_inputs inputs(const struct mcc *m, int i)
     const struct homing_axis *x = &m->homing.axis[i];
     double place, speed;
 
-    axes_state(&m->ipo.axes, i, &place, &speed);
+    axes_state(&m->mover.axes, i, &place, &speed);
     return (struct home_inputs){
         .sensor = (m->signals.home >> i & 1) != 0,
         .upper = (m->signals.upper >> i & 1) != 0, .lower = (m->signals.lower >> i & 1) != 0,
@@ -90,8 +90,8 @@ static struct home_inputs inputs(const struct mcc *m, int i)
 static void obey(struct mcc *m, int i, const struct home_order *o)
 {
     struct homing_axis *x = &m->homing.axis[i];
-    struct axes *axes = &m->ipo.axes;
-    struct axes_limits l = axes_limits_of(&m->machine, i, x->config.high_speed);
+    struct axes *axes = &m->mover.axes;
+    struct axes_limits l = machine_axis_limits(&m->machine, i, x->config.high_speed);
 
     if (o->arm) {
         x->latched = m->signals.latched[i];
@@ -161,7 +161,7 @@ int MCC_go_home(struct mcc *m, const int32_t order[AXES])
     if (bad) {
         return bad;
     }
-    if (m->ipo.free) {
+    if (mover_ordered(&m->mover)) {
         return MCC_COMMAND_NOTFINISHED;
     }
     if (m->dry_run) {
@@ -183,7 +183,7 @@ int MCC_check_homef(const struct mcc *m)
 {
     switch (m->homing.state) {
     case HOMING_RUNS:
-        return m->ipo.free ? 0 : MCC_HOME_COMMAND_NOTCALLED;
+        return mover_ordered(&m->mover) ? 0 : MCC_HOME_COMMAND_NOTCALLED;
     case HOMING_DONE:
         return 1;
     case HOMING_FAILED:
@@ -197,23 +197,23 @@ static void fail(struct mcc *m, int i, enum home_fault fault)
 {
     m->error = MCC_ERROR_HOME + 16 * (int32_t)fault + i + 1;
     m->homing.state = HOMING_FAILED;
-    ipo_abort(&m->ipo, &m->ring);
+    mover_abort(&m->mover, &m->ring);
     control_settle(m);
 }
 
 /* All axes stand at their origins, every point is written: here is 0 from now on. */
 static void set_origin(struct mcc *m)
 {
-    ipo_bind(&m->ipo);
-    memcpy(m->end, m->ipo.rest, sizeof m->end);
+    mover_bind(&m->mover);
+    memcpy(m->end, m->mover.rest, sizeof m->end);
     for (int i = 0; i < AXES; i++) {
         struct homing_axis *x = &m->homing.axis[i];
         if (m->homing.order[i] > 0) {
-            const uint32_t counts = (uint32_t)m->ipo.pulses[i];
+            const uint32_t counts = (uint32_t)m->mover.pulses[i];
             x->zero = (int32_t)((uint32_t)x->zero + (x->backward ? 0u - counts : counts));
-            m->protection.base[i] -= m->ipo.pulses[i];
-            m->ipo.pulses[i] = m->written.pulses[i] = 0;
-            m->ipo.rest[i] = m->written.place[i] = m->end[i] = 0.0;
+            m->protection.base[i] -= m->mover.pulses[i];
+            m->mover.pulses[i] = m->written.pulses[i] = 0;
+            m->mover.rest[i] = m->written.place[i] = m->end[i] = 0.0;
         }
     }
     m->homing.state = HOMING_DONE;

@@ -1,6 +1,7 @@
 #include "machine.h"
 
 #include <math.h>
+#include <stddef.h>
 
 static const double JERK_SHARE = 0.5;
 
@@ -117,23 +118,57 @@ static double jerk_share(const struct machine *m)
     return m->jerk_share > 0.0 ? m->jerk_share : JERK_SHARE;
 }
 
-struct machine_ramp machine_ramp(const struct machine *m, char type, double speed, double time)
+/* A ramp between rest and a speed that takes a time; of type 'T' its jerk has no limit. */
+static struct ramp_rule rule(const struct machine *m, char type, double time)
 {
-    const double share = jerk_share(m);
-
-    if (type != 'S') {
-        return (struct machine_ramp){ speed / time, 0.0 };
-    }
-    /* Half of the share at each end: speed = acc (time - share time / 2). */
-    const double acc = speed / (time * (1.0 - 0.5 * share));
-    return (struct machine_ramp){ acc, acc / (0.5 * share * time) };
+    return (struct ramp_rule){ .time = time, .share = type == 'S' ? jerk_share(m) : 0.0 };
 }
 
-double machine_smooth(const struct machine *m)
+/* Time over which a way with these ramps, at constant acceleration, has to be averaged for a jerk
+ * like theirs; 0 of type 'T'. [s] */
+static double smooth(const struct machine *m)
 {
     const double up = m->acc_type == 'S' ? m->acc_time : 0.0;
     const double down = m->dec_type == 'S' ? m->dec_time : 0.0;
     return 0.5 * jerk_share(m) * (up + down);   /* from +acc to -dec at most: (acc + dec) / jerk */
+}
+
+static double rapid(const struct machine *m)
+{
+    return m->ptp_ratio > 0.0 ? m->ptp_ratio : 1.0;
+}
+
+struct motion_limits machine_limits(const struct machine *m)
+{
+    return (struct motion_limits){
+        .feed = m->max_feed, .rapid = rapid(m), .smooth = smooth(m),
+        .up = rule(m, m->acc_type, m->acc_time), .down = rule(m, m->dec_type, m->dec_time)
+    };
+}
+
+struct mechanism machine_mechanism(const struct machine *m)
+{
+    struct mechanism k = { .kinematics = NULL };
+
+    for (int i = 0; i < AXES; i++) {
+        const struct machine_axis *a = &m->axis[i];
+        if (a->used) {
+            k.axis[i] = true;
+            k.joint[i] = (struct joint){
+                .used = true, .bounded = a->check_ot, .scale = machine_pulses_per_mm(a),
+                .speed = machine_axis_speed(a), .low = machine_low(a), .high = machine_high(a)
+            };
+        }
+    }
+    return k;
+}
+
+struct axes_limits machine_axis_limits(const struct machine *m, int axis, double speed)
+{
+    const struct machine_asyn *r = &m->asyn;
+    const struct ramp_rule up = rule(m, r->acc_type[axis], r->acc_time[axis]);
+    const struct ramp_rule down = rule(m, r->dec_type[axis], r->dec_time[axis]);
+    return axes_limits_of(&up, &down, speed, machine_axis_speed(&m->axis[axis]));
 }
 
 double machine_pulses_per_mm(const struct machine_axis *a)
@@ -148,7 +183,7 @@ double machine_axis_speed(const struct machine_axis *a)
 
 double machine_ptp_speed(const struct machine *m, int axis)
 {
-    return machine_axis_speed(&m->axis[axis]) * (m->ptp_ratio > 0.0 ? m->ptp_ratio : 1.0);
+    return machine_axis_speed(&m->axis[axis]) * rapid(m);
 }
 
 double machine_high(const struct machine_axis *a)

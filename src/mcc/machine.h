@@ -2,10 +2,9 @@
 #ifndef MACHINE_H
 #define MACHINE_H
 
-#include <stdbool.h>
-#include <stdint.h>
+#include "axes.h"
+#include "command.h"
 
-enum { AXES = 6 };              /* X Y Z U V W */
 enum { CLOCK_HZ = 40000000 };   /* clock of the card: one count is 25 ns */
 
 /* One axis; the fields of MCC_MACH_PARAM that have a meaning here. */
@@ -92,17 +91,14 @@ double  machine_dda_time(const struct machine *m);      /* [s] */
 /* Largest command the DDA can take: 2^length - 1. [pulses] */
 int32_t machine_dda_limit(const struct machine *m);
 
-/* A ramp between rest and a speed [mm/s] that takes a time [s]; jerk 0, of type 'T': no limit. */
-struct machine_ramp {
-    double acc;             /* [mm/s^2] */
-    double jerk;            /* [mm/s^3] */
-};
+/* The axes as joints of a Cartesian machine; those not used have no numbers. */
+struct mechanism machine_mechanism(const struct machine *m);
 
-struct machine_ramp machine_ramp(const struct machine *m, char type, double speed, double time);
+/* What motion along paths keeps to. */
+struct motion_limits machine_limits(const struct machine *m);
 
-/* Time over which a way with these ramps, at constant acceleration, has to be averaged for a jerk
- * like theirs; 0 of type 'T'. [s] */
-double machine_smooth(const struct machine *m);
+/* Limits of an axis that moves for itself at a speed [mm/s]. */
+struct axes_limits machine_axis_limits(const struct machine *m, int axis, double speed);
 
 double machine_pulses_per_mm(const struct machine_axis *a);     /* [pulses/mm] */
 double machine_axis_speed(const struct machine_axis *a);        /* [mm/s] at rpm */

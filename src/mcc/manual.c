@@ -100,33 +100,34 @@ int manual_allowed(const struct mcc *m)
 {
     return !m->open ? MCC_INITIAL_MOTION :
            m->error ? MCC_RUN_TIME :
-           m->ipo.abort ? MCC_ABORT_NOT_FINISH :
-           m->running || m->ring.count || m->ipo.stopped || m->ipo.confirming ||
-           (m->ipo.free ? m->homing.state == HOMING_RUNS : ipo_busy(&m->ipo))
+           m->mover.abort ? MCC_ABORT_NOT_FINISH :
+           m->running || m->ring.count || m->mover.stopped || m->mover.confirming ||
+           (mover_ordered(&m->mover) ? m->homing.state == HOMING_RUNS : mover_busy(&m->mover))
            ? MCC_COMMAND_NOTFINISHED : MCC_NO_ERR;
 }
 
 void manual_use(struct mcc *m, int axis, enum manual_use use)
 {
-    if (!m->ipo.free) {
+    if (!mover_ordered(&m->mover)) {
         memset(&m->manual, 0, sizeof m->manual);
-        ipo_free(&m->ipo);
+        const struct mechanism machine = machine_mechanism(&m->machine);
+        mover_order(&m->mover, &machine);
     }
     m->manual.axis[axis].use = use;
 }
 
 static enum manual_use use_of(const struct mcc *m, int axis)
 {
-    return m->ipo.free ? m->manual.axis[axis].use : MANUAL_NONE;
+    return mover_ordered(&m->mover) ? m->manual.axis[axis].use : MANUAL_NONE;
 }
 
 static double place_of(const struct mcc *m, int axis)
 {
     double place, speed;
-    if (!m->ipo.free) {
-        return m->ipo.rest[axis];
+    if (!mover_ordered(&m->mover)) {
+        return m->mover.rest[axis];
     }
-    axes_state(&m->ipo.axes, axis, &place, &speed);
+    axes_state(&m->mover.axes, axis, &place, &speed);
     return place;
 }
 
@@ -159,7 +160,7 @@ static int movable(const struct mcc *m, int axis, double direction)
 
 static struct axes_limits jog_limits(const struct mcc *m, int axis, double percent)
 {
-    return axes_limits_of(&m->machine, axis,
+    return machine_axis_limits(&m->machine, axis,
                           machine_axis_speed(&m->machine.axis[axis]) * percent / 100.0);
 }
 
@@ -178,13 +179,13 @@ int MCC_jog_c(struct mcc *m, int axis, int direction, double percent)
     }
     if (direction == 0) {
         if (use_of(m, axis) == MANUAL_JOG) {
-            axes_stand(&m->ipo.axes, axis);
+            axes_stand(&m->mover.axes, axis);
         }
         return MCC_NO_ERR;
     }
     manual_use(m, axis, MANUAL_JOG);
     const struct axes_limits l = jog_limits(m, axis, percent);
-    axes_run(&m->ipo.axes, axis, direction * l.speed, &l);
+    axes_run(&m->mover.axes, axis, direction * l.speed, &l);
     return MCC_NO_ERR;
 }
 
@@ -199,7 +200,7 @@ static int step(struct mcc *m, int axis, double target, const struct axes_limits
         return MCC_COMMAND_NOTFINISHED;
     }
     manual_use(m, axis, MANUAL_JOG);
-    axes_go(&m->ipo.axes, axis, target, l);
+    axes_go(&m->mover.axes, axis, target, l);
     return MCC_NO_ERR;
 }
 
@@ -223,7 +224,7 @@ int MCC_jog_s(struct mcc *m, int axis, int32_t pulses)
         return code;
     }
     const struct axes_limits l =
-        axes_limits_of(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
+        machine_axis_limits(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
     return step(m, axis, (pulses_of(m, axis) + pulses) /
                          machine_pulses_per_mm(&m->machine.axis[axis]), &l);
 }
@@ -272,7 +273,7 @@ int MCC_MPG_disable(struct mcc *m)
     for (int i = 0; i < AXES; i++) {
         if (use_of(m, i) == MANUAL_WHEEL) {
             m->manual.axis[i].use = MANUAL_JOG;
-            axes_stand(&m->ipo.axes, i);
+            axes_stand(&m->mover.axes, i);
         }
     }
     return MCC_NO_ERR;
@@ -299,13 +300,13 @@ static void follow(struct mcc *m, int axis)
     const double want = round(w->base + w->ratio * (double)w->turned);
     const double target = fmax(-PULSES_MAX, fmin(PULSES_MAX, want)) / scale;
     if (target != place_of(m, axis) && on_limit(m, axis, target - place_of(m, axis))) {
-        axes_stand(&m->ipo.axes, axis);
+        axes_stand(&m->mover.axes, axis);
         rebase(m, axis);
-    } else if (m->ipo.axes.axis[axis].order != AXES_GO ||
-               m->ipo.axes.axis[axis].goal != target) {
+    } else if (m->mover.axes.axis[axis].order != AXES_GO ||
+               m->mover.axes.axis[axis].goal != target) {
         const struct axes_limits l =
-            axes_limits_of(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
-        axes_go(&m->ipo.axes, axis, target, &l);
+            machine_axis_limits(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
+        axes_go(&m->mover.axes, axis, target, &l);
     }
 }
 
@@ -313,17 +314,17 @@ static void follow(struct mcc *m, int axis)
 static void guard(struct mcc *m, int axis)
 {
     double place, speed;
-    axes_state(&m->ipo.axes, axis, &place, &speed);
+    axes_state(&m->mover.axes, axis, &place, &speed);
     const bool far = fabs(pulses_of(m, axis)) > PULSES_MAX && speed * place > 0.0;
-    if (m->ipo.axes.axis[axis].order != AXES_STAND && speed != 0.0 &&
+    if (m->mover.axes.axis[axis].order != AXES_STAND && speed != 0.0 &&
         (far || on_limit(m, axis, speed))) {
-        axes_stand(&m->ipo.axes, axis);
+        axes_stand(&m->mover.axes, axis);
     }
 }
 
 void manual_look(struct mcc *m, int64_t clocks)
 {
-    if (!m->ipo.free || m->ipo.abort) {
+    if (!mover_ordered(&m->mover) || m->mover.abort) {
         return;
     }
     for (int i = 0; i < AXES; i++) {
@@ -345,18 +346,18 @@ void manual_end(struct mcc *m)
 {
     bool used = false;
 
-    if (!m->ipo.free) {
+    if (!mover_ordered(&m->mover)) {
         return;
     }
     for (int i = 0; i < AXES; i++) {
         struct manual_axis *a = &m->manual.axis[i];
-        if (a->use == MANUAL_JOG && axes_done(&m->ipo.axes, i)) {
+        if (a->use == MANUAL_JOG && axes_done(&m->mover.axes, i)) {
             a->use = MANUAL_NONE;
         }
         used = used || a->use != MANUAL_NONE;
     }
     if (!used) {
-        ipo_bind(&m->ipo);
-        memcpy(m->end, m->ipo.rest, sizeof m->end);
+        mover_bind(&m->mover);
+        memcpy(m->end, m->mover.rest, sizeof m->end);
     }
 }

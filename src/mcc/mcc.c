@@ -24,8 +24,8 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
     machine_complete_asyn(&m->machine);
     m->cart_max_speed = machine->max_feed;
     m->feed = machine->feed;
-    ipo_start(&m->ipo);
-    m->ipo.confirm = guard_watched(&m->machine) != 0;
+    mover_start(&m->mover);
+    m->mover.confirm = guard_watched(&m->machine) != 0;
     m->open = true;
     return MCC_NO_ERR;
 }
@@ -52,8 +52,8 @@ static int acceptable(const struct mcc *m)
 {
     return !m->open ? MCC_INITIAL_MOTION :
            m->error ? MCC_RUN_TIME :
-           m->ipo.abort ? MCC_ABORT_NOT_FINISH :
-           m->running || m->ipo.free ? MCC_COMMAND_NOTACCEPTED :
+           m->mover.abort ? MCC_ABORT_NOT_FINISH :
+           m->running || mover_ordered(&m->mover) ? MCC_COMMAND_NOTACCEPTED :
            ring_full(&m->ring) ? MCC_COMMAND_BUFFER_FULL : MCC_NO_ERR;
 }
 
@@ -69,24 +69,39 @@ static bool absolute(const struct mcc *m, const double target[AXES], double end[
     return true;
 }
 
-static int accept(struct mcc *m, struct command *c, enum fault f)
+static int accept(struct mcc *m, struct command *c, enum command_status s)
 {
-    if (f != FAULT_NONE) {
-        return fault_code(f);
+    if (s != COMMAND_OK) {
+        return s == COMMAND_FAST ? MCC_FEED_RATE : MCC_PARAMETER;
     }
     c->index = ++m->commands;
     memcpy(m->end, c->path.end, sizeof m->end);
     if (c->type == COMMAND_PTP_ASYN) {
-        ring_push_asyn(&m->ring, c, &m->machine);
+        struct axes_limits l[AXES];
+        for (int i = 0; i < AXES; i++) {
+            l[i] = machine_axis_limits(&m->machine, i, machine_ptp_speed(&m->machine, i));
+        }
+        ring_push_asyn(&m->ring, c, l);
     } else if (c->path.length > 0.0 || c->type == COMMAND_DELAY) {
         ring_push(&m->ring, c);
     }
     return c->index;
 }
 
+/* Plan a command whose path is set, and take it. */
+static int plan(struct mcc *m, struct command *c, enum command_type type)
+{
+    const struct mechanism machine = machine_mechanism(&m->machine);
+    const struct motion_limits l = machine_limits(&m->machine);
+    struct command_refusal r;
+
+    return accept(m, c, type == COMMAND_PTP ? command_ptp(c, &machine, &l, &r)
+                      : type == COMMAND_PTP_ASYN ? command_ptp_asyn(c, &machine, &r)
+                      : command_move(c, &machine, &l, type, m->feed, &r));
+}
+
 static int straight(struct mcc *m, const double target[AXES], enum command_type type)
 {
-    struct fault_report r;
     struct command c = { .blend = m->blend, .tolerance = m->tolerance };
     double end[AXES];
     const int code = acceptable(m);
@@ -98,12 +113,7 @@ static int straight(struct mcc *m, const double target[AXES], enum command_type 
         return MCC_PARAMETER;
     }
     path_line(&c.path, m->end, end);
-    if (c.path.length == 0.0) {
-        return accept(m, &c, FAULT_NONE);
-    }
-    return accept(m, &c, type == COMMAND_PTP ? command_ptp(&c, &m->machine, &r)
-                       : type == COMMAND_PTP_ASYN ? command_ptp_asyn(&c, &m->machine, &r)
-                       : command_move(&c, &m->machine, type, m->feed, &r));
+    return c.path.length == 0.0 ? accept(m, &c, COMMAND_OK) : plan(m, &c, type);
 }
 
 int MCC_line(struct mcc *m, const double target[AXES])
@@ -207,11 +217,9 @@ static bool turn_end(const struct mcc *m, const struct turn *t, double end[AXES]
 
 static int turn(struct mcc *m, struct turn *t)
 {
-    struct fault_report r;
     struct command c = { .blend = m->blend, .tolerance = m->tolerance };
-    double end[AXES];
+    double end[AXES], miss;
     const int code = acceptable(m);
-    enum fault f = FAULT_NONE;
 
     if (code) {
         return code;
@@ -219,19 +227,13 @@ static int turn(struct mcc *m, struct turn *t)
     if (!turn_end(m, t, end)) {
         return MCC_PARAMETER;
     }
-    if (!t->circle) {
-        f = path_centre_by_point(t->plane, m->end, t->via, end, t->centre, &t->ccw);
-    }
-    if (f == FAULT_NONE && (!isfinite(t->centre[0]) || !isfinite(t->centre[1]))) {
+    if ((!t->circle &&
+         path_centre_by_point(t->plane, m->end, t->via, end, t->centre, &t->ccw) != PATH_OK) ||
+        !isfinite(t->centre[0]) || !isfinite(t->centre[1]) ||
+        path_arc(&c.path, t->plane, m->end, end, t->centre, t->ccw, 1, &miss) != PATH_OK) {
         return MCC_PARAMETER;
     }
-    if (f == FAULT_NONE) {
-        f = path_arc(&c.path, t->plane, m->end, end, t->centre, t->ccw, 1, &r.value);
-    }
-    if (f == FAULT_NONE) {
-        f = command_move(&c, &m->machine, command_arc_type(&c.path), m->feed, &r);
-    }
-    return accept(m, &c, f);
+    return plan(m, &c, command_arc_type(&c.path));
 }
 
 static int arc(struct mcc *m, enum path_plane plane, const double p[4], const double *follow)
@@ -326,5 +328,5 @@ int MCC_motion_delay(struct mcc *m, double ms)
         return MCC_PARAMETER;
     }
     command_delay(&c, m->end, ms / 1000.0);
-    return accept(m, &c, FAULT_NONE);
+    return accept(m, &c, COMMAND_OK);
 }

@@ -11,10 +11,9 @@
 #include "homing.h"
 #include "comp.h"
 #include "interpreter.h"
-#include "ipo.h"
 #include "manual.h"
 #include "mcc_param.h"
-#include "queue.h"
+#include "mover.h"
 #include "signals.h"
 
 /* Return codes of the library that occur here. */
@@ -74,7 +73,7 @@ struct mcc {
     bool    running;            /* the part program has lines to come */
     struct interpreter program;
     struct ring  ring;
-    struct ipo   ipo;
+    struct mover mover;
     struct track_mean mean;
     struct queue queue;
     struct point written;       /* the latest point the card took */

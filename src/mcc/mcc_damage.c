@@ -2,58 +2,11 @@
 
 #include <stddef.h>
 
+#include "mover_damage.h"
+
 static bool within(int64_t x, int64_t low, int64_t high)
 {
     return x >= low && x <= high;
-}
-
-static bool scurve_good(const struct scurve *s)
-{
-    return within(s->count, 0, SCURVE_PHASES);
-}
-
-static bool ramp_good(const struct ramp *r)
-{
-    return scurve_good(&r->ease) && scurve_good(&r->change);
-}
-
-static bool ring_good(const struct ring *r)
-{
-    for (int i = 0; i < RING_SIZE; i++) {
-        const struct ring_item *item = &r->item[i];
-        if (item->command.type != COMMAND_PTP_ASYN &&
-            !(within(item->enter.count, 0, BRAKE_STEPS) &&
-              within(item->leave.count, 0, BRAKE_STEPS))) {
-            return false;
-        }
-    }
-    return within(r->head, 0, RING_SIZE - 1) && within(r->count, 0, RING_SIZE);
-}
-
-/* The chain under way is the head of the ring; the tool is not ahead of the planned motion. */
-static bool track_good(const struct track *t, const struct ring *r)
-{
-    const int32_t last = t->joined > 0 ? t->joined - 1 : 0;
-    return within(t->caps, 0, TRACK_CAPS) && within(t->taps, 0, TRACK_MEAN) &&
-           within(t->next, 0, t->taps > 0 ? t->taps - 1 : 0) &&
-           (!t->active || (within(t->joined, 1, r->count) && within(t->planned, 0, t->joined) &&
-                           within(t->at, 0, last) && within(t->out, 0, t->at) &&
-                           within(t->begun, 0, t->joined)));
-}
-
-static bool ipo_good(const struct ipo *p)
-{
-    for (int i = 0; i < 2; i++) {
-        if (!ramp_good(&p->move[i].profile.rise) || !ramp_good(&p->move[i].profile.fall)) {
-            return false;
-        }
-    }
-    for (int i = 0; i < AXES; i++) {
-        if (!scurve_good(&p->axes.axis[i].plan)) {
-            return false;
-        }
-    }
-    return within(p->count, 0, 2);
 }
 
 static bool interpreter_good(const struct interpreter *in)
@@ -76,10 +29,10 @@ static const char *library(const struct mcc *m)
     if (!interpreter_good(&m->program)) {
         return "the place in the part program";
     }
-    if (!ring_good(&m->ring) || !ipo_good(&m->ipo) || !track_good(&m->ipo.track, &m->ring)) {
+    if (mover_damaged(&m->mover, &m->ring)) {
         return "a count or a place of the commands";
     }
-    if (!within(m->queue.head, 0, QUEUE_SIZE - 1) || !within(m->queue.count, 0, QUEUE_SIZE)) {
+    if (queue_damaged(&m->queue)) {
         return "a count or a place of the queue";
     }
     for (int i = 0; i < AXES; i++) {

@@ -16,7 +16,7 @@ static const int64_t OUTSIDE = -1;  /* of `settled`: not within the tolerance */
 static bool frame(const struct mcc *m, struct point *p)
 {
     for (int i = 0; i < AXES; i++) {
-        const int64_t pulses = (int64_t)p->pulses[i] - m->ipo.pulses[i];
+        const int64_t pulses = (int64_t)p->pulses[i] - m->mover.pulses[i];
         if (llabs(pulses) > m->machine.axis[i].max_dda) {
             return false;
         }
@@ -41,18 +41,21 @@ static int32_t blocked(const struct mcc *m, const struct point *from, const stru
 /* Software limits count from the origin that homing looks for, and it meets limit switches. */
 static bool homing(const struct mcc *m)
 {
-    return m->ipo.free && m->homing.state == HOMING_RUNS;
+    return mover_ordered(&m->mover) && m->homing.state == HOMING_RUNS;
 }
 
 /* Whether a point keeps within travel and switches; else *error as of reaction_point. */
-static bool within(struct mcc *m, bool ramping, const struct point *p, int32_t *error)
+static bool within(struct mcc *m, const struct mechanism *machine, bool ramping,
+                   const struct point *p, int32_t *error)
 {
     const struct queue *q = &m->queue;
     const struct point *last = q->count > 0 ? queue_peek(q, q->count - 1) : &m->written;
-    int axis = guard_travel(&m->machine, m->ipo.pulses, p->pulses);
+    int axis = -1;
 
-    if (axis < 0 && guard_limited(&m->machine)) {
-        axis = reach_beyond(&m->ipo, &m->ring, &m->machine);
+    if (mechanism_bounded(machine)) {
+        axis = mechanism_outside(machine, m->mover.pulses, p->pulses);
+        axis = axis >= 0 ? axis : reach_beyond(&m->mover, &m->ring, machine,
+                                               machine_dda_time(&m->machine));
     }
     *error = MCC_ERROR_TRAVEL + axis;
     if (axis < 0 && !ramping) {
@@ -61,7 +64,8 @@ static bool within(struct mcc *m, bool ramping, const struct point *p, int32_t *
     return axis < 0;
 }
 
-bool reaction_point(struct mcc *m, bool ramping, struct point *p, int32_t *error)
+bool reaction_point(struct mcc *m, const struct mechanism *machine, bool ramping,
+                    struct point *p, int32_t *error)
 {
     *error = MCC_ERROR_SPEED;
     if (!frame(m, p)) {
@@ -70,7 +74,7 @@ bool reaction_point(struct mcc *m, bool ramping, struct point *p, int32_t *error
     if (!m->error) {
         *error = MCC_ERROR_ACC;
         if (guard_change(&m->machine, m->protection.frame, p->frame) >= 0 ||
-            (!homing(m) && !within(m, ramping, p, error))) {
+            (!homing(m) && !within(m, machine, ramping, p, error))) {
             return false;
         }
     }
@@ -86,9 +90,9 @@ void reaction_stop(struct mcc *m, int32_t error)
     m->error = again ? m->error : error;
     m->running = false;
     if (again) {
-        ipo_stop(&m->ipo, &m->ring);
+        mover_stop(&m->mover, &m->ring);
     } else {
-        ipo_abort(&m->ipo, &m->ring);
+        mover_abort(&m->mover, &m->ring);
     }
     control_settle(m);
 }
@@ -105,9 +109,9 @@ static void stop_at_once(struct mcc *m, int32_t error, int32_t stay)
 
     m->error = m->error ? m->error : error;
     m->running = false;
-    ipo_stop(&m->ipo, &m->ring);
-    memcpy(m->ipo.pulses, last->pulses, sizeof m->ipo.pulses);
-    memcpy(m->ipo.rest, last->place, sizeof m->ipo.rest);
+    mover_stop(&m->mover, &m->ring);
+    memcpy(m->mover.pulses, last->pulses, sizeof m->mover.pulses);
+    memcpy(m->mover.rest, last->place, sizeof m->mover.rest);
     for (int i = 0; i < AXES; i++) {
         m->comp[i].added = last->added[i];
     }
@@ -129,7 +133,7 @@ static void follow(struct mcc *m)
 
     for (int i = 0; i < AXES; i++) {
         if (m->machine.axis[i].used) {
-            w->pulses[i] = m->ipo.pulses[i] = put_out(m, i);
+            w->pulses[i] = m->mover.pulses[i] = put_out(m, i);
             w->place[i] = w->pulses[i] / machine_pulses_per_mm(&m->machine.axis[i]);
         }
         w->frame[i] = 0;
@@ -137,7 +141,7 @@ static void follow(struct mcc *m)
     }
     w->feed = 0.0;
     w->waits = false;
-    memcpy(m->ipo.rest, w->place, sizeof m->ipo.rest);
+    memcpy(m->mover.rest, w->place, sizeof m->mover.rest);
     memcpy(m->end, w->place, sizeof m->end);
 }
 
@@ -145,10 +149,10 @@ static void emergency(struct mcc *m)
 {
     m->error = MCC_ERROR_STOP;
     m->running = false;
-    ipo_stop(&m->ipo, &m->ring);
+    mover_stop(&m->mover, &m->ring);
     queue_clear(&m->queue);
-    m->written.outputs = m->ipo.outputs;    /* off now, not with a point */
-    m->ipo.news = false;
+    m->written.outputs = m->mover.outputs;    /* off now, not with a point */
+    m->mover.untold = false;
 }
 
 static void note_pulses(struct mcc *m, int64_t clocks)
@@ -164,7 +168,7 @@ static void note_pulses(struct mcc *m, int64_t clocks)
 
 bool reaction_arrived(const struct mcc *m)
 {
-    bool all = m->queue.count == 0 && !ipo_busy(&m->ipo);
+    bool all = m->queue.count == 0 && !mover_busy(&m->mover);
     for (int i = 0; i < AXES && !m->dry_run; i++) {
         all = all && (!m->machine.axis[i].used || m->written.pulses[i] == put_out(m, i));
     }
@@ -195,11 +199,11 @@ static void confirm(struct mcc *m, int64_t clocks)
     const double timeout = machine->inpos_timeout * CLOCK_HZ;
     const bool late = timeout > 0.0 && (double)p->waited >= timeout;
     if (p->settled != OUTSIDE && (double)p->settled >= settle) {
-        m->ipo.confirming = false;
+        m->mover.confirming = false;
     } else if (late && (mode == MACHINE_INPOS_ONCE_BLOCK || mode == MACHINE_INPOS_SETTLE_BLOCK)) {
         reaction_stop(m, MCC_ERROR_IN_POS);
     } else if (late) {
-        m->ipo.confirming = false;
+        m->mover.confirming = false;
     }
 }
 
@@ -222,13 +226,13 @@ void reaction_look(struct mcc *m, const struct reaction_look *l)
     if (axis >= 0 && !m->error) {
         reaction_stop(m, MCC_ERROR_TRACK + axis);
     }
-    if (!m->error && !m->ipo.abort && !homing(m) && m->queue.count > 0) {
+    if (!m->error && !m->mover.abort && !homing(m) && m->queue.count > 0) {
         const int32_t error = blocked(m, &m->written, queue_peek(&m->queue, 0), &axis);
         if (axis >= 0) {
             reaction_stop(m, error);     /* the newest points may go another way */
         }
     }
-    if (m->ipo.confirming) {
+    if (m->mover.confirming) {
         confirm(m, l->clocks);
     }
 }

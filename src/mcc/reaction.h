@@ -20,9 +20,11 @@
 
 #include "mcc.h"
 
-/* Complete a point with its frame; m->ipo is there, `ramping` if an abort has brought it. False if
- * it must not be queued: then *error is the run-time error to raise, 0 for a stop without one. */
-bool reaction_point(struct mcc *m, bool ramping, struct point *p, int32_t *error);
+/* Complete a point with its frame; m->mover is there, `ramping` if an abort has brought it. False
+ * if it must not be queued: then *error is the run-time error to raise, 0 for a stop without one.
+ * The machine is that of m. */
+bool reaction_point(struct mcc *m, const struct mechanism *machine, bool ramping,
+                    struct point *p, int32_t *error);
 
 /* Ramp to rest; a second error, met on the ramp of the first, stops without a ramp. */
 void reaction_stop(struct mcc *m, int32_t error);

@@ -8,7 +8,8 @@
 
 struct program task_program(const struct mcc *m, const struct source *s)
 {
-    return (struct program){ s, &m->machine, m->block_delete, m->optional_stop };
+    return (struct program){ s, machine_mechanism(&m->machine), machine_limits(&m->machine),
+                             m->block_delete, m->optional_stop };
 }
 
 /* A program begins; what the one before has switched on stays on. */
@@ -25,6 +26,11 @@ void task_check(const struct mcc *m, const struct source *s, struct fault_report
     struct interpreter in;
     begin(m, &in);
     interpreter_check(&in, &p, r);
+    if (r->fault == FAULT_SPEED) {
+        r->value *= m->machine.axis[r->axis].rpm;
+        r->limit *= m->machine.axis[r->axis].rpm;
+        r->axis = 0;
+    }
 }
 
 int task_start(struct mcc *m)
@@ -35,12 +41,12 @@ int task_start(struct mcc *m)
     if (m->error) {
         return MCC_RUN_TIME;
     }
-    if (m->running || m->ipo.abort || m->ipo.free) {
+    if (m->running || m->mover.abort || mover_ordered(&m->mover)) {
         return MCC_COMMAND_NOTACCEPTED;
     }
     begin(m, &m->program);
     m->running = true;
-    ipo_leave(&m->ipo);
+    mover_allow(&m->mover);
     return MCC_NO_ERR;
 }
 
@@ -75,7 +81,7 @@ int task_set_single_block(struct mcc *m, bool on)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    ipo_single(&m->ipo, &m->ring, on);
+    mover_single(&m->mover, &m->ring, on);
     return MCC_NO_ERR;
 }
 
@@ -84,10 +90,10 @@ int task_continue(struct mcc *m)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!ipo_waits(&m->ipo, &m->ring) || m->ipo.news || m->queue.count > 0) {
+    if (!mover_waits(&m->mover, &m->ring) || m->mover.untold || m->queue.count > 0) {
         return MCC_CONTI_ILLEGAL;
     }
-    ipo_continue(&m->ipo);
+    mover_continue(&m->mover);
     return MCC_NO_ERR;
 }
 
@@ -161,31 +167,33 @@ int task_read_all(struct mcc *m, const struct source *s)
 bool task_can_point(const struct mcc *m)
 {
     return works(m) && m->queue.count < m->machine.queue_depth &&
-           (m->ipo.news || compensate_due(m) || !ipo_resting(&m->ipo, &m->ring));
+           (m->mover.untold || compensate_due(m) || !mover_resting(&m->mover, &m->ring));
 }
 
 int task_point(struct mcc *m, const struct source *s)
 {
-    const struct ipo before = m->ipo;
+    const struct mechanism machine = machine_mechanism(&m->machine);
+    const double frame = machine_dda_time(&m->machine);
+    const struct mover before = m->mover;
     const int32_t head = m->ring.head, count = m->ring.count;
     struct point point;
     int32_t error;
-    double left = machine_dda_time(&m->machine);
+    double left = frame;
     int made = 0;
 
     do {
-        left = ipo_advance(&m->ipo, &m->ring, left);
+        left = mover_advance(&m->mover, &m->ring, left);
         made += s ? refill(m, s, head) : 0;
-    } while (left > 0.0 && !ipo_resting(&m->ipo, &m->ring));
-    ipo_point(&m->ipo, &m->ring, &m->machine, &m->mean, &point);
-    if (!reaction_point(m, before.abort, &point, &error)) {
-        m->ipo = before;
+    } while (left > 0.0 && !mover_resting(&m->mover, &m->ring));
+    mover_point(&m->mover, &m->ring, &machine, frame, &m->mean, &point);
+    if (!reaction_point(m, &machine, before.abort, &point, &error)) {
+        m->mover = before;
         m->ring.head = head;
         m->ring.count = count;
         reaction_stop(m, error);
         return made;
     }
-    ipo_accept(&m->ipo, &m->ring, &point);
+    mover_accept(&m->mover, &m->ring, &point);
     queue_push(&m->queue, &point);
     return made;
 }
@@ -195,7 +203,7 @@ void task_settle(struct mcc *m)
     if (!works(m)) {
         return;
     }
-    if (ipo_resting(&m->ipo, &m->ring) && !compensate_due(m)) {
+    if (mover_resting(&m->mover, &m->ring) && !compensate_due(m)) {
         memset(m->protection.frame, 0, sizeof m->protection.frame);
     }
     control_settle(m);
@@ -213,7 +221,7 @@ void task_run(struct mcc *m, const struct source *s)
 
 bool task_moving(const struct mcc *m)
 {
-    return ipo_moving(&m->ipo);
+    return mover_moving(&m->mover);
 }
 
 enum task_status task_status(const struct mcc *m)
@@ -221,11 +229,11 @@ enum task_status task_status(const struct mcc *m)
     if (MCC_check_stop(m)) {
         return TASK_STOPPED;
     }
-    if ((m->ipo.hold || m->ipo.stopped) && m->queue.count == 0 && !m->ipo.news &&
-        ipo_resting(&m->ipo, &m->ring)) {
+    if ((m->mover.hold || m->mover.stopped) && m->queue.count == 0 && !m->mover.untold &&
+        mover_resting(&m->mover, &m->ring)) {
         return TASK_HOLD;
     }
-    if (ipo_waits(&m->ipo, &m->ring) && m->queue.count == 0 && !m->ipo.news) {
+    if (mover_waits(&m->mover, &m->ring) && m->queue.count == 0 && !m->mover.untold) {
         return TASK_BLOCK_HOLD;
     }
     return manual_wheel(m) ? TASK_WHEEL : m->written.waits ? TASK_DELAY : TASK_RUNNING;

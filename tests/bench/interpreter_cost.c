@@ -69,7 +69,8 @@ int main(void)
 
     struct source_text text = { all, end - all };
     const struct source source = source_of(&text);
-    const struct program program = { .source = &source, .machine = &machine };
+    const struct program program = { .source = &source, .machine = machine_mechanism(&machine),
+                                     .limits = machine_limits(&machine) };
     struct interpreter in;
     struct fault_report r;
     interpreter_start(&in, origin[0], machine.feed, origin);

@@ -170,7 +170,7 @@ static void anything(bool smooth)
             } else if (die < 0.0401 && i % 5 == 0 && MCC_motion_abort(&m) == 0) {
                 aborted = true;
             }
-            const int chain = m.ipo.track.active ? chain_number() : 0;
+            const int chain = m.mover.motion == MOVER_CHAIN ? chain_number() : 0;
             if (!point(&r)) {
                 if (MCC_check_stop(&m)) {
                     break;
@@ -178,7 +178,7 @@ static void anything(bool smooth)
                 memset(v0, 0, sizeof v0);
                 continue;
             }
-            if (chain && m.ipo.track.active && chain == chain_number()) {
+            if (chain && m.mover.motion == MOVER_CHAIN && chain == chain_number()) {
                 look(&x, way_of_tool(), &l);
             } else {
                 x.n = 0;
@@ -224,7 +224,7 @@ static void tolerance(void)
             d = fmin(d, distance(&side[i], r.last.place));
         }
         CHECK(d <= 0.1 * (1.0 + 1e-9));
-        slowest = r.n > 100 && r.n < 2000 ? fmin(slowest, m.ipo.track.v) : slowest;
+        slowest = r.n > 100 && r.n < 2000 ? fmin(slowest, m.mover.track.v) : slowest;
     }
     const double half = 0.1 / (0.1875 * sqrt(2.0));
     const double turn = sqrt(500.0 * half / (0.75 * sqrt(2.0)));

@@ -92,11 +92,11 @@ static void motion(void)
     CHECK_EQ(MCC_set_fspd(&m, 100.0), 0);
     CHECK_EQ(MCC_arc_xy(&m, 1.0, 1.0, 2.0, 0.0), 3);    /* through (4, 5) to (5, 4) */
     CHECK_EQ(ring_head(&m.ring)->index, 1);
-    CHECK_EQ(m.ring.item[1].command.type, COMMAND_CW_ARC);
-    CHECK_NEAR(m.ring.item[1].command.path.centre[0], 4.0, 1e-12);
-    CHECK_NEAR(m.ring.item[1].command.path.centre[1], 4.0, 1e-12);
+    CHECK_EQ(m.ring.entry[1].command.type, COMMAND_CW_ARC);
+    CHECK_NEAR(m.ring.entry[1].command.path.centre[0], 4.0, 1e-12);
+    CHECK_NEAR(m.ring.entry[1].command.path.centre[1], 4.0, 1e-12);
     CHECK_EQ(MCC_circle_yz(&m, 0.0, 2.0, 1), 4);
-    CHECK_NEAR(m.ring.item[2].command.path.length, 4.0 * acos(-1.0), 1e-12);
+    CHECK_NEAR(m.ring.entry[2].command.path.length, 4.0 * acos(-1.0), 1e-12);
     CHECK_EQ(MCC_set_abs(&m), 0);
     CHECK_EQ(MCC_get_pos_type(&m), 1);
     REFUSED(MCC_set_dda(&m, 2.0), MCC_COMMAND_NOTFINISHED);
@@ -181,7 +181,7 @@ static void program(void)
     REFUSED(task_start(&m), MCC_COMMAND_NOTACCEPTED);
     REFUSED(task_set_origin(&m, 2, origin), MCC_COMMAND_NOTFINISHED);
     task_run(&m, &source);
-    CHECK_NEAR(m.ring.count + m.ipo.count, 2, 0.0);
+    CHECK_NEAR(m.ring.count + m.mover.mix.count, 2, 0.0);
     while (!MCC_check_stop(&m)) {
         m.written = *queue_peek(&m.queue, 0);
         queue_drop(&m.queue, 1);

@@ -49,7 +49,7 @@ static void check_sample(struct trace *t, double s, const struct axes_limits *l,
 /* One axis to its end; returns the time, from the plan, and checks each sample. */
 static double go(const struct machine *m, int axis, double from, double to)
 {
-    const struct axes_limits l = axes_limits_of(m, axis, machine_ptp_speed(m, axis));
+    const struct axes_limits l = machine_axis_limits(m, axis, machine_ptp_speed(m, axis));
     double start[AXES] = { 0.0 }, s, v;
     struct trace t = { .n = 0 };
     struct axes a;
@@ -88,7 +88,7 @@ static void durations(void)
     for (int k = 0; k < 2; k++) {
         const struct machine m = machine_of(type[k], type[k]);
         for (int i = 0; i < AXES; i++) {
-            const struct axes_limits l = axes_limits_of(&m, i, machine_ptp_speed(&m, i));
+            const struct axes_limits l = machine_axis_limits(&m, i, machine_ptp_speed(&m, i));
             const double up = ramp_time(l.speed, l.acc, l.jerk);
             const double down = ramp_time(l.speed, l.dec, l.jerk);
             const double want = 200.0 / l.speed + (up + down) / 2.0;
@@ -110,7 +110,7 @@ static void ramp_takes_its_time(void)
         struct axes a;
         m.jerk_share = share;
         m.asyn.acc_time[0] = m.asyn.dec_time[0] = 0.2;
-        const struct axes_limits l = axes_limits_of(&m, 0, 100.0);
+        const struct axes_limits l = machine_axis_limits(&m, 0, 100.0);
         axes_start(&a, (double[AXES]){ 0.0 }, 1.0);
         axes_run(&a, 0, -100.0, &l);
         CHECK_NEAR(a.axis[0].plan.total, 0.2, 1e-12);
@@ -134,7 +134,7 @@ static void ramp_takes_its_time(void)
 static void trapezium_error(void)
 {
     const struct machine m = machine_of('T', 'T');
-    const struct axes_limits l = axes_limits_of(&m, 0, 500.0);
+    const struct axes_limits l = machine_axis_limits(&m, 0, 500.0);
     const double up = l.speed / l.acc, down = l.speed / l.dec, way = 400.0;
     const double cruise = way / l.speed - (up + down) / 2.0;
     double worst = 0.0, s, v;
@@ -164,7 +164,7 @@ static void random_orders(char acc_type, char dec_type)
     for (int run = 0; run < 400; run++) {
         const int axis = run % AXES;
         const double full = machine_axis_speed(&m.axis[axis]);
-        const struct axes_limits l = axes_limits_of(&m, axis, 0.8 * full);
+        const struct axes_limits l = machine_axis_limits(&m, axis, 0.8 * full);
         struct trace t = { .n = 0 };
         struct axes a;
         double s, v, goal = 0.0, highest = l.speed;
@@ -202,7 +202,7 @@ static void random_orders(char acc_type, char dec_type)
 static void hold_keeps_the_order(void)
 {
     const struct machine m = machine_of('S', 'T');
-    const struct axes_limits l = axes_limits_of(&m, 2, 300.0);
+    const struct axes_limits l = machine_axis_limits(&m, 2, 300.0);
     double s, v;
     struct axes a;
 
@@ -226,7 +226,7 @@ static void hold_keeps_the_order(void)
 static void one_jerk(void)
 {
     const struct machine m = machine_of('T', 'S');
-    const struct axes_limits l = axes_limits_of(&m, 0, 100.0);
+    const struct axes_limits l = machine_axis_limits(&m, 0, 100.0);
     CHECK_NEAR(l.jerk, l.dec / (0.25 * m.asyn.dec_time[0]), 1e-6);
     CHECK_NEAR(l.acc, 100.0 / m.asyn.acc_time[0], 1e-9);
     CHECK_NEAR(l.cap, 500.0, 1e-9);

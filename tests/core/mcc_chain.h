@@ -38,13 +38,13 @@ static inline void smooth_ramps(bool on)
 
 static inline double way_of_tool(void)
 {
-    return m.ipo.track.out_base + m.ipo.track.out_s;
+    return m.mover.track.out_base + m.mover.track.out_s;
 }
 
 /* Another one for each chain: the index of its first command. */
 static inline int chain_number(void)
 {
-    return m.ipo.track.started;
+    return m.mover.track.started;
 }
 
 struct limits {

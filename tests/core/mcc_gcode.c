@@ -122,8 +122,8 @@ static void values(void)
     begin(&x, "G1 X10 Y0 F45000");
     x.machine.axis[0].rpm = 3000.0;
     CHECK_EQ(next(&x), -2);
-    CHECK_NEAR(x.r.value, 4500.0, 1e-9);    /* 750 mm/s on a screw of 10 mm */
-    CHECK_NEAR(x.r.limit, 3000.0, 0.0);
+    CHECK_NEAR(x.r.value, 1.5.0, 1e-9);    /* 750 mm/s on a screw of 10 mm */
+    CHECK_NEAR(x.r.limit, 1.0, 0.0);
     begin(&x, "G2 X10 Y0 I6");
     CHECK_EQ(next(&x), -2);
     CHECK_NEAR(x.r.value, 2.0, 1e-12);      /* radii 6 and 4 */

@@ -22,8 +22,7 @@ static struct path random_arc(uint64_t *seed, int i)
     b[path_second(plane)] = centre[1] + grown * sin(to);
     b[plane] = mcc_random(seed, -5.0, 5.0);
     b[4] = mcc_random(seed, -5.0, 5.0);
-    const enum fault f = path_arc(&p, plane, a, b, centre, i & 8, 1 + i % 2, &miss);
-    CHECK_EQ(f, FAULT_NONE);
+    CHECK_EQ(path_arc(&p, plane, a, b, centre, i & 8, 1 + i % 2, &miss), PATH_OK);
     return p;
 }
 
@@ -63,7 +62,7 @@ static void extent_of_turns(void)
     const double a[AXES] = { 100.0 }, b[AXES] = { 100.1 }, centre[2] = { 0.0, 0.0 };
     struct path p;
     double miss, low, high;
-    CHECK_EQ(path_arc(&p, PATH_XY, a, b, centre, true, 50, &miss), FAULT_NONE);
+    CHECK_EQ(path_arc(&p, PATH_XY, a, b, centre, true, 50, &miss), PATH_OK);
     path_extent(&p, 0, 0.0, p.length, &low, &high);
     CHECK_NEAR(high, 100.1, 1e-12);
     CHECK_NEAR(low, -100.1 + 0.001, 1e-6);              /* half a turn before the end */
@@ -91,41 +90,75 @@ static struct path line_x(double from, double to)
     return p;
 }
 
+/* What a command along the path would be. */
+static enum command_status judged(const struct machine *m, const struct path *p,
+                                  struct command_refusal *r)
+{
+    const struct mechanism machine = machine_mechanism(m);
+    const struct motion_limits l = machine_limits(m);
+    struct command c = { .path = *p };
+    return command_move(&c, &machine, &l, COMMAND_LINE, 1.0, r);
+}
+
+static int travelled(const struct machine *m, const int32_t from[AXES], const int32_t to[AXES])
+{
+    const struct mechanism machine = machine_mechanism(m);
+    return mechanism_outside(&machine, from, to);
+}
+
+static int reached(const struct machine *m, const int32_t from[AXES], const double low[AXES],
+                   const double high[AXES])
+{
+    const struct mechanism machine = machine_mechanism(m);
+    double at[AXES];
+    int side;
+    for (int i = 0; i < AXES; i++) {
+        at[i] = from[i];
+    }
+    return mechanism_beyond(&machine, at, low, high, &side);
+}
+
+static bool bounded(const struct machine *m)
+{
+    const struct mechanism machine = machine_mechanism(m);
+    return mechanism_bounded(&machine);
+}
+
 static void lines(void)
 {
     const struct machine m = limited(-10.0, 20.0);
-    struct fault_report r;
+    struct command_refusal r;
     struct path p = line_x(0.0, 20.0004);   /* less than half a pulse of 1 um */
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_NONE);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     p = line_x(0.0, 20.0006);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
-    CHECK_EQ(r.axis, 0);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
+    CHECK_EQ(r.joint, 0);
     CHECK_NEAR(r.value, 20.0006, 0.0);
     CHECK_NEAR(r.limit, 20.0, 1e-15);
     p = line_x(0.0, -10.001);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
     CHECK_NEAR(r.value, -10.001, 0.0);
     CHECK_NEAR(r.limit, -10.0, 1e-15);
     p = line_x(25.0, 22.0);                 /* on the way back */
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_NONE);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     p = line_x(25.0, 25.001);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
     p = line_x(25.0, -10.0);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_NONE);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     p = line_x(25.0, -10.001);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
     p = line_x(-15.0, -12.0);               /* and at the other end */
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_NONE);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     p = line_x(-15.0, -15.001);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
     p = line_x(-15.0, 20.0);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_NONE);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     p = line_x(-15.0, 20.001);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
-    CHECK(guard_limited(&m));
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
+    CHECK(bounded(&m));
     const struct machine off = mcc_machine();
-    CHECK_EQ(guard_path(&off, &p, &r), FAULT_NONE);
-    CHECK(!guard_limited(&off));
+    CHECK_EQ(judged(&off, &p, &r), COMMAND_OK);
+    CHECK(!bounded(&off));
 }
 
 /* An arc over the top touches the limit with its extent; its circle is far beyond below. */
@@ -133,17 +166,17 @@ static void arcs(void)
 {
     const double a[AXES] = { 3.0, -4.0 }, b[AXES] = { 3.0, 4.0 }, centre[2] = { 0.0, 0.0 };
     struct path p;
-    struct fault_report r;
+    struct command_refusal r;
     double miss;
-    CHECK_EQ(path_arc(&p, PATH_XY, a, b, centre, true, 1, &miss), FAULT_NONE);
+    CHECK_EQ(path_arc(&p, PATH_XY, a, b, centre, true, 1, &miss), PATH_OK);
     struct machine m = limited(2.999, 5.0);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_NONE);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     m = limited(2.999, 4.999);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
     CHECK_NEAR(r.value, 5.0, 1e-12);
-    CHECK_EQ(path_arc(&p, PATH_XY, a, b, centre, false, 1, &miss), FAULT_NONE);
+    CHECK_EQ(path_arc(&p, PATH_XY, a, b, centre, false, 1, &miss), PATH_OK);
     m = limited(-4.999, 5.0);
-    CHECK_EQ(guard_path(&m, &p, &r), FAULT_TRAVEL);
+    CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
     CHECK_NEAR(r.value, -5.0, 1e-12);
 }
 
@@ -152,14 +185,14 @@ static void travel(void)
     const struct machine m = limited(-10.0, 20.0);
     const int32_t in[AXES] = { 19990, 900000 }, on[AXES] = { 20000 }, out[AXES] = { 20001 };
     const int32_t further[AXES] = { 20002 };
-    CHECK_EQ(guard_travel(&m, in, on), -1);
-    CHECK_EQ(guard_travel(&m, on, out), 0);
-    CHECK_EQ(guard_travel(&m, out, further), 0);
-    CHECK_EQ(guard_travel(&m, further, out), -1);
-    CHECK_EQ(guard_travel(&m, further, further), -1);
+    CHECK_EQ(travelled(&m, in, on), -1);
+    CHECK_EQ(travelled(&m, on, out), 0);
+    CHECK_EQ(travelled(&m, out, further), 0);
+    CHECK_EQ(travelled(&m, further, out), -1);
+    CHECK_EQ(travelled(&m, further, further), -1);
     const double low[AXES] = { -10.001 }, high[AXES] = { 20.0 };
-    CHECK_EQ(guard_reach(&m, in, high, high), -1);
-    CHECK_EQ(guard_reach(&m, in, low, high), 0);
+    CHECK_EQ(reached(&m, in, high, high), -1);
+    CHECK_EQ(reached(&m, in, low, high), 0);
 }
 
 /* Every mode, both switches, both directions. */

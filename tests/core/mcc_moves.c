@@ -77,10 +77,10 @@ static void planes(void)
     CHECK_EQ(MCC_arc_yzuvw(&m, (double[]){ 1.0, 1.0, 2.0, 0.0 }, uvw), 4);
     CHECK_EQ(MCC_arc_zxuvw(&m, (double[]){ 1.0, 1.0, 2.0, 0.0 }, uvw), 5);
     for (int i = 0; i < 2; i++) {
-        CHECK_NEAR(m.ring.item[i].command.path.length, 10.0 * pi, 1e-9);
+        CHECK_NEAR(m.ring.entry[i].command.path.length, 10.0 * pi, 1e-9);
     }
     for (int i = 2; i < 5; i++) {
-        CHECK_NEAR(m.ring.item[i].command.path.length, pi, 1e-9);
+        CHECK_NEAR(m.ring.entry[i].command.path.length, pi, 1e-9);
     }
     run(place, 0.0, 0.0, 1.0, &off, &out);
     const double want[AXES] = { 2.0, 2.0, 2.0, 5.0, 10.0, 15.0 };
@@ -118,8 +118,8 @@ static void point_to_point(void)
     CHECK_EQ(MCC_ptp_z(&m, 30.0), 3);
     CHECK_EQ(MCC_ptp_uvw(&m, 1.0, 2.0, -4.0), 4);
     for (int i = 0; i < 3; i++) {
-        CHECK_NEAR(m.ring.item[i].command.feed, 0.4 * 500.0, 1e-9);
-        CHECK_NEAR(m.ring.item[i].command.path.length, 10.0 * (i + 1), 1e-12);
+        CHECK_NEAR(m.ring.entry[i].command.feed, 0.4 * 500.0, 1e-9);
+        CHECK_NEAR(m.ring.entry[i].command.path.length, 10.0 * (i + 1), 1e-12);
     }
     double place[AXES] = { 0.0 }, off, out;
     run(place, 0.0, 0.0, 1.0, &off, &out);

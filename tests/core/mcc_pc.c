@@ -308,7 +308,7 @@ static void conservation(void)
         MCC_get_ppos(&pc.mcc, ppos);
         for (int k = 0; k < 2; k++) {
             CHECK_EQ(c.sum[k], ppos[k]);
-            CHECK_EQ(c.sum[k], pc.mcc.ipo.pulses[k]);
+            CHECK_EQ(c.sum[k], pc.mcc.mover.pulses[k]);
             CHECK(aborts || c.sum[k] == (int32_t)lround(end[k] * 1000.0));
         }
     }

@@ -33,7 +33,7 @@ static void arcs(void)
         begin(mcc_machine());
         CHECK_EQ(arc[plane](&m, 5.0 * side, 5.0, 0.0, 10.0), 1);
         CHECK_NEAR(sweep(plane, 5.0), side * acos(-1.0), 1e-9);
-        CHECK_NEAR(m.ipo.rest[SECOND[plane]], 10.0, 1e-12);
+        CHECK_NEAR(m.mover.rest[SECOND[plane]], 10.0, 1e-12);
     }
 }
 
@@ -47,7 +47,7 @@ static void circles(void)
         begin(mcc_machine());
         CHECK_EQ(circle[plane](&m, 0.0, -3.0, k % 2), 1);
         CHECK_NEAR(sweep(plane, -3.0), (k % 2 ? 2.0 : -2.0) * acos(-1.0), 1e-9);
-        CHECK(m.ipo.rest[0] == 0.0 && m.ipo.rest[1] == 0.0 && m.ipo.rest[2] == 0.0);
+        CHECK(m.mover.rest[0] == 0.0 && m.mover.rest[1] == 0.0 && m.mover.rest[2] == 0.0);
     }
 }
 

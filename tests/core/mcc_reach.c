@@ -8,15 +8,17 @@ static const double FAR = 1e5;  /* [mm] */
 /* Lowest and highest point of the ramp from here. [pulses] */
 static void drive_ramp(int32_t low[AXES], int32_t high[AXES])
 {
+    const struct mechanism machine = machine_mechanism(&m.machine);
+    const double dda = machine_dda_time(&m.machine);
     struct point p;
 
     before = m;
-    memcpy(low, before.ipo.pulses, sizeof before.ipo.pulses);
-    memcpy(high, before.ipo.pulses, sizeof before.ipo.pulses);
-    ipo_abort(&before.ipo, &before.ring);
-    while (!ipo_resting(&before.ipo, &before.ring)) {
-        ipo_advance(&before.ipo, &before.ring, machine_dda_time(&before.machine));
-        ipo_point(&before.ipo, &before.ring, &before.machine, &before.mean, &p);
+    memcpy(low, before.mover.pulses, sizeof before.mover.pulses);
+    memcpy(high, before.mover.pulses, sizeof before.mover.pulses);
+    mover_abort(&before.mover, &before.ring);
+    while (!mover_resting(&before.mover, &before.ring)) {
+        mover_advance(&before.mover, &before.ring, dda);
+        mover_point(&before.mover, &before.ring, &machine, dda, &before.mean, &p);
         for (int k = 0; k < AXES; k++) {
             low[k] = p.pulses[k] < low[k] ? p.pulses[k] : low[k];
             high[k] = p.pulses[k] > high[k] ? p.pulses[k] : high[k];
@@ -37,7 +39,8 @@ static int judged(int axis, bool upper, int32_t limit)
         machine.axis[k].hot_offset = machine.axis[k].lot_offset = 0.0;
     }
     before = m;
-    return reach_beyond(&before.ipo, &before.ring, &machine);
+    const struct mechanism mechanism = machine_mechanism(&machine);
+    return reach_beyond(&before.mover, &before.ring, &mechanism, machine_dda_time(&machine));
 }
 
 /* A limit on the farthest point holds, one a pulse nearer does not. Points may miss the top of an
@@ -49,12 +52,12 @@ static int compared(bool arcs)
 
     drive_ramp(low, high);
     for (int k = 0; k < 2; k++) {
-        if (high[k] > m.ipo.pulses[k] + 1) {
+        if (high[k] > m.mover.pulses[k] + 1) {
             CHECK_EQ(judged(k, true, high[k] + arcs), -1);
             CHECK_EQ(judged(k, true, high[k] - 1), k);
             n++;
         }
-        if (low[k] < m.ipo.pulses[k] - 1) {
+        if (low[k] < m.mover.pulses[k] - 1) {
             CHECK_EQ(judged(k, false, low[k] - arcs), -1);
             CHECK_EQ(judged(k, false, low[k] + 1), k);
             n++;

@@ -28,7 +28,9 @@ static inline void begin(struct reader *x, const char *text)
     x->machine.axis[2].hot_offset = -1.0;
     x->text = (struct source_text){ text, (int64_t)strlen(text) };
     x->source = source_of(&x->text);
-    x->program = (struct program){ .source = &x->source, .machine = &x->machine };
+    x->program = (struct program){ .source = &x->source,
+                                   .machine = machine_mechanism(&x->machine),
+                                   .limits = machine_limits(&x->machine) };
     interpreter_start(&x->in, zero, x->machine.feed, origins);
 }
 

@@ -128,7 +128,7 @@ static int axes(struct bytes *b, uint8_t which)
     before = m;
     const int code = MCC_update_param(&m);
     for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
-        sum[i] = m.ipo.pulses[i] + m.comp[i].added;     /* an axis may have been turned round */
+        sum[i] = m.mover.pulses[i] + m.comp[i].added;     /* an axis may have been turned round */
     }
     return code;
 }
@@ -161,7 +161,7 @@ static void look(void)
         reaction_look(&m, &l);
     }
     for (int i = 0; i < AXES && !m.dry_run; i++) {
-        sum[i] = m.ipo.pulses[i] + m.comp[i].added; /* homing, an emergency stop may set it */
+        sum[i] = m.mover.pulses[i] + m.comp[i].added; /* homing, an emergency stop may set it */
     }
 }
 
@@ -259,7 +259,7 @@ static void come_to_rest(void)
 {
     const double seconds = slowest * 4.0 + 1.0;
     const double dda = machine_dda_time(&m.machine);
-    const bool by_hand = m.ipo.free;
+    const bool by_hand = mover_ordered(&m.mover);
     int64_t n = 0, cycles = 0;
     if (!m.open || seconds / dda > REST_POINTS) {
         return;
@@ -275,7 +275,7 @@ static void come_to_rest(void)
         n += fuzz_take(&m, sum);
         HOLDS(cycles++ < REST_POINTS && (by_hand || (double)(n - 2) * dda <= seconds));
     } while (!MCC_check_stop(&m));
-    HOLDS(m.ipo.count == 0 && m.ring.count == 0);
+    HOLDS(m.mover.mix.count == 0 && m.ring.count == 0);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -293,7 +293,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             HOLDS(memcmp(&before, &m, sizeof m) == 0);
         }
         for (int k = 0; k < AXES && m.open && MCC_check_stop(&m); k++) {
-            HOLDS(fabs(m.end[k] - m.ipo.rest[k]) < 1e-12);  /* shorter lines are none */
+            HOLDS(fabs(m.end[k] - m.mover.rest[k]) < 1e-12);  /* shorter lines are none */
         }
         slowest = fmax(slowest, slowest_of(&m.machine));
         if (!(slowest < REST_POINTS * machine_dda_time(&m.machine))) {

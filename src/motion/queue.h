@@ -1,11 +1,11 @@
-/* queue - interpolation points between the IPO task, which fills it, and the interrupt service. */
+/* queue - interpolation points between the interpolation, which fills it, and the pulses. */
 #ifndef QUEUE_H
 #define QUEUE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "machine.h"
+#include "axis_count.h"
 #include "outputs.h"
 
 enum { QUEUE_SIZE = 1024 };

@@ -37,7 +37,7 @@ bool track_begins(const struct ring *r)
 /* Limits of a command on its own, and its corner with the one before. */
 static void add(struct track *t, struct ring *r, const struct corner *k)
 {
-    struct ring_item *n = ring_at(r, t->joined);
+    struct ring_entry *n = ring_at(r, t->joined);
     const double bend = path_bend(&n->command.path);
 
     n->body = bend_speed(&n->command, bend, bend * bend);
@@ -100,14 +100,13 @@ void track_start(struct track *t, struct ring *r)
     const struct corner none = { 0.0, 0.0, 0.0 };
 
     memset(t, 0, sizeof *t);
-    t->active = true;
     t->started = ring_head(r)->index;
     t->smooth = ring_head(r)->smooth;
     t->override = -1.0;
     add(t, r, &none);
 }
 
-static double body_limit(const struct ring_item *n, double override)
+static double body_limit(const struct ring_entry *n, double override)
 {
     return fmin(n->body, command_speed(&n->command, override));
 }
@@ -116,7 +115,7 @@ static double body_limit(const struct ring_item *n, double override)
  * the one before. */
 static double turn_limit(const struct ring *r, int32_t i, double override)
 {
-    const struct ring_item *n = ring_peek(r, i);
+    const struct ring_entry *n = ring_peek(r, i);
     const double v = fmin(n->turn, command_speed(&n->command, override));
     return i > 0 ? fmin(v, command_speed(&ring_peek(r, i - 1)->command, override)) : v;
 }
@@ -129,7 +128,7 @@ static void plan(struct track *t, struct ring *r, double override)
     brake_rest(&b);
     t->dec = INFINITY;
     for (int32_t i = t->joined - 1; i >= t->at; i--) {
-        struct ring_item *n = ring_at(r, i);
+        struct ring_entry *n = ring_at(r, i);
         const double dec = n->command.ramp.dec, half = track_half(t, r, i);
         const double body = body_limit(n, override), turn = turn_limit(r, i, override);
 
@@ -163,7 +162,7 @@ struct piece {
 
 static struct piece next_piece(const struct track *t, const struct ring *r, double override)
 {
-    const struct ring_item *n = ring_peek(r, t->at);
+    const struct ring_entry *n = ring_peek(r, t->at);
     const double most = t->turning ? turn_limit(r, t->at, override) : body_limit(n, override);
     const struct brake_piece b = brake_next(t->turning ? &n->enter : &n->leave, t->s,
                                             border(t, r), n->command.ramp.dec);
@@ -196,6 +195,30 @@ static double glide(struct track *t, double acc, double to, double way, double d
 /* A plan met again may be missed by so much. */
 static const double ROUNDING = 1e-7;
 
+/* Too fast for the piece: slower, to the limit or as much as the way allows, at most `leave` at its
+ * end. Returns the time left of dt. */
+static double slow_down(struct track *t, const struct piece *p, double leave, bool fits, double dt)
+{
+    const double way = p->end - t->s, v = t->v;
+    const double to = v > p->top && fits ? p->top : fmin(p->top, leave);
+    double dec = p->dec, done;
+
+    if (!fits && way > 0.0) {   /* rounding has taken some of the way */
+        dec = fmin(fmax(dec, (v * v - leave * leave) / (2.0 * way)), (1.0 + ROUNDING) * dec);
+    }
+    if (to >= v) {      /* no way but rounding */
+        t->s = p->end;
+        return dt;
+    }
+    const double there = v * v - 2.0 * dec * way;       /* square of the speed at the end */
+    const bool all = there >= to * to;
+    const double used = glide(t, -dec, all ? sqrt(there) : to, way, dt, &done);
+    if (all && used < dt) {
+        t->s = p->end;
+    }
+    return dt - used;
+}
+
 /* Drive the piece for up to dt; returns the time left. Ends on the piece's end exactly if it gets
  * there. */
 static double drive(struct track *t, const struct piece *p, double dt)
@@ -206,23 +229,7 @@ static double drive(struct track *t, const struct piece *p, double dt)
                                         p->acc * leave * leave) / (p->acc + p->dec)));
 
     if (v > p->top || peak < v) {
-        /* Slower: to the limit, or as much as the way allows. */
-        const double to = v > p->top && peak >= v ? p->top : fmin(p->top, leave);
-        double dec = p->dec;
-        if (peak < v && way > 0.0) {    /* rounding has taken some of the way */
-            dec = fmin(fmax(dec, (v * v - leave * leave) / (2.0 * way)), (1.0 + ROUNDING) * dec);
-        }
-        if (to >= v) {      /* no way but rounding */
-            t->s = p->end;
-            return dt;
-        }
-        const double there = v * v - 2.0 * dec * way;       /* square of the speed at the end */
-        const bool all = there >= to * to;
-        const double used = glide(t, -dec, all ? sqrt(there) : to, way, dt, &done);
-        if (all && used < dt) {
-            t->s = p->end;
-        }
-        return dt - used;
+        return slow_down(t, p, leave, peak >= v, dt);
     }
     const double top = fmin(p->top, peak);
     const double up = (top * top - v * v) / (2.0 * p->acc);
@@ -282,7 +289,7 @@ static void cross(struct track *t, const struct ring *r, double override)
     }
 }
 
-static bool at_end(const struct track *t, const struct ring *r)
+bool track_at_end(const struct track *t, const struct ring *r)
 {
     return t->at == t->joined - 1 && !t->turning &&
            t->s >= ring_peek(r, t->at)->command.path.length;
@@ -292,7 +299,7 @@ double track_advance(struct track *t, struct ring *r, double override, double dt
 {
     join(t, r, override > 0.0 ? override : t->override);
     while (dt > 0.0) {
-        if (at_end(t, r)) {
+        if (track_at_end(t, r)) {
             t->v = 0.0;
             return dt;
         }
@@ -308,7 +315,7 @@ double track_advance(struct track *t, struct ring *r, double override, double dt
             return 0.0;
         }
         dt = p.end > t->s ? drive(t, &p, dt) : dt;
-        if (t->s >= border(t, r) && !at_end(t, r)) {
+        if (t->s >= border(t, r) && !track_at_end(t, r)) {
             cross(t, r, override);
         }
     }
@@ -333,115 +340,7 @@ void track_close(struct track *t, const struct ring *r)
     }
 }
 
-static void begin_mean(struct track *t, struct track_mean *m, double dda_time)
-{
-    const double taps = round(t->smooth / dda_time);
-    t->taps = taps < 1.0 ? 1 : taps > TRACK_MEAN - 1 ? TRACK_MEAN - 1 : (int32_t)taps;
-    memset(m->sample, 0, sizeof m->sample);
-}
-
-/* Mean of the latest samples, of which `way` is the newest. */
-static double mean_of(struct track *t, struct track_mean *m, double way)
-{
-    const int32_t oldest = (t->next + TRACK_MEAN - t->taps) % TRACK_MEAN;
-    const int32_t newest = (t->next + TRACK_MEAN - 1) % TRACK_MEAN;
-
-    t->still = way == m->sample[newest] ? t->still + 1 : 0;
-    t->sum += way - m->sample[oldest];
-    m->sample[t->next] = way;
-    t->next = (t->next + 1) % TRACK_MEAN;
-    if (t->next == 0) {
-        /* What rounding has left in the sum goes. */
-        t->zero = way;
-        t->sum = 0.0;
-        for (int32_t i = 0; i < t->taps; i++) {
-            t->sum += m->sample[TRACK_MEAN - 1 - i] - t->zero;
-        }
-    }
-    return t->still >= t->taps ? way : fmin(t->zero + t->sum / t->taps, way);
-}
-
-void track_sample(struct track *t, struct track_mean *m, struct ring *r, double dda_time)
-{
-    const double out = t->way;
-    double way = t->base + t->s;
-
-    if (t->taps == 0) {
-        begin_mean(t, m, dda_time);
-    }
-    t->out_v = t->v;
-    if (t->taps > 1) {
-        way = fmax(out, mean_of(t, m, way));
-        t->out_v = (way - out) / dda_time;
-    }
-    t->way = way;
-    t->out_s = way - t->out_base;
-    while (t->out < t->at && t->out_s >= ring_peek(r, t->out)->command.path.length) {
-        const double length = ring_peek(r, t->out)->command.path.length;
-        t->out_base += length;
-        t->out_s -= length;
-        t->out++;
-    }
-}
-
-const struct command *track_begun(struct track *t, const struct ring *r)
-{
-    const int32_t last = at_end(t, r) && t->taps <= 1 ? t->at : t->out;
-    return t->begun <= last ? &ring_peek(r, t->begun++)->command : NULL;
-}
-
-void track_drop(struct track *t, struct ring *r)
-{
-    /* The corner at the start of a command needs the one before. */
-    const int32_t gone = t->out_s > track_half(t, r, t->out) ? t->out : t->out - 1;
-
-    for (int32_t i = 0; i < gone; i++) {
-        ring_pop(r);
-        t->out--;
-        t->at--;
-        t->joined--;
-        t->planned--;
-        t->begun--;
-    }
-}
-
 void track_to_rest(struct track *t, struct ring *r)
 {
     track_advance(t, r, 0.0, INFINITY);
-}
-
-bool track_rests(const struct track *t)
-{
-    return t->v == 0.0 && t->way >= t->base + t->s;
-}
-
-bool track_done(const struct track *t)
-{
-    return track_rests(t) && t->base + t->s >= t->end;
-}
-
-const struct command *track_command(const struct track *t, const struct ring *r)
-{
-    return &ring_peek(r, t->out)->command;
-}
-
-void track_place(const struct track *t, const struct ring *r, double point[AXES],
-                 double velocity[AXES])
-{
-    const struct ring_item *n = ring_peek(r, t->out);
-    const double left = fmax(0.0, n->command.path.length - t->out_s);
-    double slope[AXES];
-
-    if (t->out_s < track_half(t, r, t->out)) {
-        corner_at(&n->corner, &ring_peek(r, t->out - 1)->command.path, &n->command.path, t->out_s,
-                  point, slope);
-    } else if (left < track_half(t, r, t->out + 1)) {
-        const struct ring_item *b = ring_peek(r, t->out + 1);
-        corner_at(&b->corner, &n->command.path, &b->command.path, -left, point, slope);
-    } else {
-        path_at(&n->command.path, t->out_s, point, slope);
-    }
-    for (int k = 0; k < AXES; k++) {
-        velocity[k] = t->out_v * slope[k];
-    }
 }

@@ -44,9 +44,9 @@ void path_line(struct path *p, const double start[AXES], const double end[AXES])
     }
 }
 
-enum fault path_arc(struct path *p, enum path_plane plane, const double start[AXES],
-                    const double end[AXES], const double centre[2], bool ccw, int turns,
-                    double *miss)
+enum path_status path_arc(struct path *p, enum path_plane plane, const double start[AXES],
+                          const double end[AXES], const double centre[2], bool ccw, int turns,
+                          double *miss)
 {
     const int a = path_first(plane), b = path_second(plane), n = (int)plane;
     const double sa = start[a] - centre[0], sb = start[b] - centre[1];
@@ -55,10 +55,10 @@ enum fault path_arc(struct path *p, enum path_plane plane, const double start[AX
 
     *miss = fabs(r1 - r0);
     if (r0 == 0.0 || r1 == 0.0) {
-        return FAULT_ARC_RADIUS;
+        return PATH_NO_RADIUS;
     }
     if (*miss > MISS_MAX || (*miss > MISS_MIN && *miss > MISS_RATIO * r0)) {
-        return FAULT_ARC_END;
+        return PATH_MISSES_END;
     }
     path_line(p, start, end);
     p->arc = true;
@@ -81,12 +81,12 @@ enum fault path_arc(struct path *p, enum path_plane plane, const double start[AX
     p->sweep = ccw ? turn : -turn;
     const double way[3] = { (r0 + 0.5 * p->growth) * p->sweep, p->growth, end[n] - start[n] };
     p->length = norm3(way);
-    return p->length > 0.0 ? FAULT_NONE : FAULT_ARC_RADIUS;     /* its square is 0 */
+    return p->length > 0.0 ? PATH_OK : PATH_NO_RADIUS;     /* its square is 0 */
 }
 
-enum fault path_centre_by_radius(enum path_plane plane, const double start[AXES],
-                                 const double end[AXES], double r, bool ccw, double centre[2],
-                                 double *half)
+enum path_status path_centre_by_radius(enum path_plane plane, const double start[AXES],
+                                       const double end[AXES], double r, bool ccw,
+                                       double centre[2], double *half)
 {
     const int a = path_first(plane), b = path_second(plane);
     const double da = end[a] - start[a], db = end[b] - start[b];
@@ -94,13 +94,13 @@ enum fault path_centre_by_radius(enum path_plane plane, const double start[AXES]
 
     *half = 0.5 * chord;
     if (chord == 0.0) {
-        return FAULT_ARC_CLOSED;
+        return PATH_OPEN;
     }
     if (r == 0.0) {
-        return FAULT_ARC_RADIUS;
+        return PATH_NO_RADIUS;
     }
     if (*half - fabs(r) > MISS_MIN) {
-        return FAULT_ARC_CHORD;
+        return PATH_SHORT_RADIUS;
     }
     /* The centre lies on the perpendicular bisector: left of the way for a ccw arc of less than
      * half a turn. A radius short of half the chord by the rounding of the program: half turn. */
@@ -108,12 +108,12 @@ enum fault path_centre_by_radius(enum path_plane plane, const double start[AXES]
     const double side = (ccw == (r > 0.0) ? rise : -rise) / chord;
     centre[0] = start[a] + 0.5 * da - side * db;
     centre[1] = start[b] + 0.5 * db + side * da;
-    return FAULT_NONE;
+    return PATH_OK;
 }
 
-enum fault path_centre_by_point(enum path_plane plane, const double start[AXES],
-                                const double via[2], const double end[AXES], double centre[2],
-                                bool *ccw)
+enum path_status path_centre_by_point(enum path_plane plane, const double start[AXES],
+                                      const double via[2], const double end[AXES],
+                                      double centre[2], bool *ccw)
 {
     const double xa = via[0] - start[path_first(plane)], xb = via[1] - start[path_second(plane)];
     const double ya = end[path_first(plane)] - start[path_first(plane)];
@@ -122,12 +122,12 @@ enum fault path_centre_by_point(enum path_plane plane, const double start[AXES],
     const double xx = xa * xa + xb * xb, yy = ya * ya + yb * yb;
 
     if (!(fabs(cross) > 1e-12 * (xx + yy))) {   /* flatter than rounding: radius unknown */
-        return FAULT_ARC_CLOSED;
+        return PATH_OPEN;
     }
     centre[0] = start[path_first(plane)] + (xx * yb - yy * xb) / (2.0 * cross);
     centre[1] = start[path_second(plane)] + (yy * xa - xx * ya) / (2.0 * cross);
     *ccw = cross > 0.0;
-    return FAULT_NONE;
+    return PATH_OK;
 }
 
 void path_at(const struct path *p, double s, double point[AXES], double slope[AXES])
@@ -216,15 +216,4 @@ void path_extent(const struct path *p, int axis, double from, double to, double 
     if (p->arc && axis < 3 && axis != (int)p->plane) {
         turnings(p, axis, from / p->length, to / p->length, low, high);
     }
-}
-
-double path_reach(const struct path *p, int axis)
-{
-    double low, high;
-
-    if (!isfinite(p->length)) {
-        return INFINITY;
-    }
-    path_extent(p, axis, 0.0, p->length, &low, &high);
-    return fmax(fabs(low), fabs(high));
 }

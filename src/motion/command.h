@@ -1,21 +1,26 @@
-/* command - one planned motion command, and the ring it waits in. */
+/* command - one planned motion command. */
 #ifndef COMMAND_H
 #define COMMAND_H
 
 #include "axes.h"
-#include "fault.h"
-#include "machine.h"
-#include "path.h"
+#include "mechanism.h"
 #include "profile.h"
 
-/* nType of the library's COMMAND_INFO, which ends at 10, and ours: two that take no time, and
- * point-to-point with independent axes. */
+/* Two of them take no time. Those up to 10 have the numbers that libraries show them by. */
 enum command_type {
     COMMAND_PTP, COMMAND_LINE, COMMAND_CW_ARC, COMMAND_CCW_ARC, COMMAND_CW_HELIX,
     COMMAND_CCW_HELIX, COMMAND_DELAY,
     COMMAND_OUTPUTS = 11,   /* switch spindle, coolant, digital outputs */
     COMMAND_STOP,           /* M0, M1: wait for the operator */
     COMMAND_PTP_ASYN
+};
+
+/* What a controller allows its motion, beside the bounds of the joints. */
+struct motion_limits {
+    double feed;            /* [mm/s] highest along a path */
+    double rapid;           /* > 0..1 share of the joints' highest speeds for rapids */
+    struct ramp_rule up, down;
+    double smooth;          /* [s] time of the mean for S-shaped ramps of look-ahead; 0 none */
 };
 
 struct command {
@@ -27,7 +32,7 @@ struct command {
     double  smooth;     /* [s] time of the mean that makes a chain's ramps S-shaped */
     double  feed;       /* [mm/s] programmed */
     double  cap;        /* [mm/s] highest speed any override may bring */
-    struct ramp_limits ramp;    /* of its feed in acc_time, dec_time */
+    struct ramp_limits ramp;    /* for its feed */
     double  dwell;      /* [s] of a delay */
     uint32_t set, clear;    /* digital outputs that its start switches on, off */
     double  spindle;    /* [rpm] of COMMAND_OUTPUTS */
@@ -35,16 +40,32 @@ struct command {
     struct path path;
 };
 
+/* Why there is no such command. */
+enum command_status {
+    COMMAND_OK,
+    COMMAND_FAST,       /* it drives a joint above its highest speed */
+    COMMAND_FAR,        /* a position that does not fit a pulse counter of 32 bits, or any joint */
+    COMMAND_OUTSIDE     /* it leaves the bounds of a joint */
+};
+
+struct command_refusal {
+    int joint;
+    double value, limit;    /* FAST [of the highest speed] and 1; OUTSIDE [mm] */
+};
+
 /* Complete a command whose path is set (and is not a point): type and feed [mm/s] given; cap, acc
- * and dec found. Refuses what the machine cannot do; FAULT_SPEED, FAULT_TRAVEL complete *r. */
-enum fault command_move(struct command *c, const struct machine *m, enum command_type type,
-                        double feed, struct fault_report *r);
+ * and dec found. FAST and OUTSIDE complete *r. */
+enum command_status command_move(struct command *c, const struct mechanism *m,
+                                 const struct motion_limits *l, enum command_type type,
+                                 double feed, struct command_refusal *r);
 
-/* Rapid positioning: all axes together, the slowest at its share of the safe motor speed. */
-enum fault command_ptp(struct command *c, const struct machine *m, struct fault_report *r);
+/* Rapid positioning on a straight line, the slowest joint at its share of its highest speed. */
+enum command_status command_ptp(struct command *c, const struct mechanism *m,
+                                const struct motion_limits *l, struct command_refusal *r);
 
-/* Rapid positioning, each axis for itself. */
-enum fault command_ptp_asyn(struct command *c, const struct machine *m, struct fault_report *r);
+/* Rapid positioning, each joint for itself. Start and end of its path are joints. */
+enum command_status command_ptp_asyn(struct command *c, const struct mechanism *m,
+                                     struct command_refusal *r);
 
 /* Wait for so many seconds at a point. */
 void command_delay(struct command *c, const double point[AXES], double seconds);

@@ -3,25 +3,18 @@
 #include <math.h>
 #include <string.h>
 
-/* A type 'T' ramp is an S-shaped one whose acceleration takes 1 ns to rise and to fall: far below a
- * clock of the card. It takes 1 ns longer, and ends half the speed times 1 ns (0.25 nm at 500 mm/s)
- * from where the trapezium's would. [s] */
+/* A ramp without limit of jerk is one whose acceleration takes 1 ns to rise and to fall. It takes
+ * 1 ns longer, and ends half the speed times 1 ns (0.25 nm at 500 mm/s) from where the trapezium's
+ * would. [s] */
 static const double AT_ONCE = 1e-9;
 
-static struct machine_ramp ramp(const struct machine *m, char type, double speed, double time)
+struct axes_limits axes_limits_of(const struct ramp_rule *up, const struct ramp_rule *down,
+                                  double speed, double cap)
 {
-    struct machine_ramp r = machine_ramp(m, type, speed, time);
-    r.jerk = r.jerk > 0.0 ? r.jerk : r.acc / AT_ONCE;
-    return r;
-}
-
-struct axes_limits axes_limits_of(const struct machine *m, int axis, double speed)
-{
-    const struct machine_asyn *r = &m->asyn;
-    const struct machine_ramp up = ramp(m, r->acc_type[axis], speed, r->acc_time[axis]);
-    const struct machine_ramp down = ramp(m, r->dec_type[axis], speed, r->dec_time[axis]);
-    return (struct axes_limits){ speed, machine_axis_speed(&m->axis[axis]), up.acc, down.acc,
-                                 fmin(up.jerk, down.jerk) };
+    struct ramp_limits l = ramp_both(up, down, speed);
+    l.acc_jerk = l.acc_jerk > 0.0 ? l.acc_jerk : l.acc / AT_ONCE;
+    l.dec_jerk = l.dec_jerk > 0.0 ? l.dec_jerk : l.dec / AT_ONCE;
+    return (struct axes_limits){ speed, cap, l.acc, l.dec, fmin(l.acc_jerk, l.dec_jerk) };
 }
 
 void axes_start(struct axes *a, const double place[AXES], double ratio)

@@ -9,7 +9,7 @@
 
 enum { RING_SIZE = 256 };
 
-struct ring_item {
+struct ring_entry {
     struct command command;
     union {
         struct {    /* in a chain (track.h) */
@@ -23,20 +23,20 @@ struct ring_item {
 };
 
 struct ring {
-    struct ring_item item[RING_SIZE];
+    struct ring_entry entry[RING_SIZE];
     int32_t head, count;
 };
 
 void ring_clear(struct ring *r);
 bool ring_full(const struct ring *r);
 void ring_push(struct ring *r, const struct command *c);    /* not when full */
-/* The same for COMMAND_PTP_ASYN, the axes at their share of the safe motor speed. */
-void ring_push_asyn(struct ring *r, const struct command *c, const struct machine *m);
+/* The same for COMMAND_PTP_ASYN, with limits of each axis. */
+void ring_push_asyn(struct ring *r, const struct command *c, const struct axes_limits axis[AXES]);
 const struct command *ring_head(const struct ring *r);      /* NULL when empty */
 void ring_pop(struct ring *r);                              /* not when empty */
 
-/* Item i from the head, 0 .. count - 1. */
-struct ring_item *ring_at(struct ring *r, int32_t i);
-const struct ring_item *ring_peek(const struct ring *r, int32_t i);
+/* Entry i from the head, 0 .. count - 1. */
+struct ring_entry *ring_at(struct ring *r, int32_t i);
+const struct ring_entry *ring_peek(const struct ring *r, int32_t i);
 
 #endif

@@ -10,12 +10,27 @@
 
 #include "scurve.h"
 
-/* Acceleration and deceleration, both > 0, each with its own jerk; a jerk of 0 means unlimited ('T'
- * of the library), else the ramp is S-shaped ('S'). */
+/* Acceleration and deceleration, both > 0, each with its own jerk; a jerk of 0 means unlimited (a
+ * trapezium), else the ramp is S-shaped. */
 struct ramp_limits {
     double acc, dec;            /* [mm/s^2] */
     double acc_jerk, dec_jerk;  /* [mm/s^3] */
 };
+
+/* What one change of speed keeps to, given by numbers, or by the time it takes. */
+struct ramp_rule {
+    double acc;             /* [mm/s^2] */
+    double jerk;            /* [mm/s^3]; 0 unlimited */
+    double time;            /* [s] > 0: from rest to any speed; acc and jerk follow from it, and */
+    double share;           /* 0..1 part of it in which the acceleration changes; 0: at once */
+};
+
+/* The numbers of a rule for a speed [mm/s]; its time, if it has one, is 0 then. */
+struct ramp_rule ramp_to(const struct ramp_rule *r, double speed);
+
+/* Both rules for a speed. */
+struct ramp_limits ramp_both(const struct ramp_rule *up, const struct ramp_rule *down,
+                             double speed);
 
 struct ramp {
     struct scurve ease, change;

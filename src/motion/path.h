@@ -9,11 +9,19 @@
 
 #include <stdbool.h>
 
-#include "fault.h"
-#include "machine.h"
+#include "axis_count.h"
 
 /* Plane by its normal's index: YZ 0 (normal X), ZX 1 (normal Y), XY 2 (normal Z). */
 enum path_plane { PATH_YZ, PATH_ZX, PATH_XY };
+
+/* Why there is no arc. */
+enum path_status {
+    PATH_OK,
+    PATH_NO_RADIUS,     /* radius zero */
+    PATH_MISSES_END,    /* start and end have different distances from the centre */
+    PATH_SHORT_RADIUS,  /* radius smaller than half the distance start - end */
+    PATH_OPEN           /* R form with end = start, or three points on one line */
+};
 
 struct path {
     bool   arc;
@@ -35,22 +43,22 @@ int path_second(enum path_plane p);
 void path_line(struct path *p, const double start[AXES], const double end[AXES]);
 
 /* Arc about a centre (in the plane's axes); ccw seen from the normal's positive end; turns >= 1,
- * each one above 1 adds a full circle. Same start and end make a full circle. On a fault *p is
+ * each one above 1 adds a full circle. Same start and end make a full circle. Refused, *p is
  * undefined and *miss [mm] says by how much the end misses the circle. */
-enum fault path_arc(struct path *p, enum path_plane plane, const double start[AXES],
-                    const double end[AXES], const double centre[2], bool ccw, int turns,
-                    double *miss);
+enum path_status path_arc(struct path *p, enum path_plane plane, const double start[AXES],
+                          const double end[AXES], const double centre[2], bool ccw, int turns,
+                          double *miss);
 
 /* Centre of the arc of radius |r|; r < 0 takes the one of more than half a turn.
  * *half is half the distance from start to end [mm]. */
-enum fault path_centre_by_radius(enum path_plane plane, const double start[AXES],
-                                 const double end[AXES], double r, bool ccw, double centre[2],
-                                 double *half);
+enum path_status path_centre_by_radius(enum path_plane plane, const double start[AXES],
+                                       const double end[AXES], double r, bool ccw,
+                                       double centre[2], double *half);
 
 /* Centre and direction of the arc start - via - end. */
-enum fault path_centre_by_point(enum path_plane plane, const double start[AXES],
-                                const double via[2], const double end[AXES], double centre[2],
-                                bool *ccw);
+enum path_status path_centre_by_point(enum path_plane plane, const double start[AXES],
+                                      const double via[2], const double end[AXES],
+                                      double centre[2], bool *ccw);
 
 /* Point at arc length s, 0..length, and d(point)/ds; s = length gives the end exactly. */
 void path_at(const struct path *p, double s, double point[AXES], double slope[AXES]);
@@ -64,8 +72,5 @@ double path_bend(const struct path *p);
 /* Smallest and largest coordinate of one axis between two arc lengths, the exact ones. [mm] */
 void path_extent(const struct path *p, int axis, double from, double to, double *low,
                  double *high);
-
-/* Largest |coordinate| of one axis anywhere on the path. [mm] */
-double path_reach(const struct path *p, int axis);
 
 #endif

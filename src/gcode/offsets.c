@@ -55,7 +55,7 @@ static enum fault set_axes(struct interpreter *in, const struct program *p, cons
         if (!w) {
             continue;
         }
-        if (!p->machine->axis[i].used) {
+        if (!p->machine.axis[i]) {
             return tokens_at_word(r, FAULT_AXIS, w);
         }
         const double value = w->value * b->scale;

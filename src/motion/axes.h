@@ -11,8 +11,8 @@
 
 #include <stdbool.h>
 
-#include "machine.h"
-#include "scurve.h"
+#include "axis_count.h"
+#include "ramp.h"
 
 struct axes_limits {
     double speed;       /* [mm/s] at ratio 1 */
@@ -37,10 +37,11 @@ struct axes {
     double ratio;
 };
 
-/* Limits of an axis for motion at a speed [mm/s], its ramps as set for asynchronous motion. scurve
- * has one jerk: of those of acceleration and deceleration the smaller is taken, so that with types
- * 'T' and 'S' mixed both ramps are rounded. */
-struct axes_limits axes_limits_of(const struct machine *m, int axis, double speed);
+/* Limits of an axis for motion at a speed [mm/s], at no ratio above a cap, with ramps up and down.
+ * scurve has one jerk: of both ramps the smaller is taken, so that one without limit beside one
+ * with is rounded too. */
+struct axes_limits axes_limits_of(const struct ramp_rule *up, const struct ramp_rule *down,
+                                  double speed, double cap);
 
 /* All axes stand at a place. [mm] */
 void axes_start(struct axes *a, const double place[AXES], double ratio);

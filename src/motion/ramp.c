@@ -86,3 +86,23 @@ struct scurve_start ramp_state(const struct ramp *r, double t)
     }
     return x;
 }
+
+struct ramp_rule ramp_to(const struct ramp_rule *r, double speed)
+{
+    if (r->time <= 0.0) {
+        return *r;
+    }
+    if (r->share <= 0.0) {
+        return (struct ramp_rule){ .acc = speed / r->time };
+    }
+    /* Half of the share at each end: speed = acc (time - share time / 2). */
+    const double acc = speed / (r->time * (1.0 - 0.5 * r->share));
+    return (struct ramp_rule){ .acc = acc, .jerk = acc / (0.5 * r->share * r->time) };
+}
+
+struct ramp_limits ramp_both(const struct ramp_rule *up, const struct ramp_rule *down,
+                             double speed)
+{
+    const struct ramp_rule acc = ramp_to(up, speed), dec = ramp_to(down, speed);
+    return (struct ramp_limits){ acc.acc, dec.acc, acc.jerk, dec.jerk };
+}

@@ -16,8 +16,9 @@ enum {
 
 /* What a program is read against; all of it constant while it runs. */
 struct program {
-    const struct source  *source;
-    const struct machine *machine;
+    const struct source *source;
+    struct mechanism machine;
+    struct motion_limits limits;
     bool block_delete;      /* lines that begin with / are passed over */
     bool optional_stop;     /* M1 stops */
 };

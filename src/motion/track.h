@@ -18,7 +18,7 @@
 #include "ring.h"
 
 enum {
-    TRACK_MEAN = 2048,      /* DDA times of the mean, and one more */
+    TRACK_MEAN = 2048,      /* frames of the mean, and one more */
     TRACK_CAPS = 8
 };
 
@@ -29,11 +29,10 @@ struct track_cap {
 };
 
 struct track_mean {
-    double sample[TRACK_MEAN];  /* [mm] way at the latest DDA boundaries */
+    double sample[TRACK_MEAN];  /* [mm] way at the latest points */
 };
 
 struct track {
-    bool    active;
     bool    closed;         /* no further command joins */
     int32_t started;        /* index of its first command */
     int32_t joined;         /* commands from the head of the ring that are in the chain */
@@ -75,8 +74,8 @@ double track_advance(struct track *t, struct ring *r, double override, double dt
 /* End with the first command in which the motion can still be brought to rest. */
 void track_close(struct track *t, const struct ring *r);
 
-/* A DDA boundary: the tool follows the planned motion. */
-void track_sample(struct track *t, struct track_mean *m, struct ring *r, double dda_time);
+/* A frame of dt seconds ends: the tool follows the planned motion. */
+void track_sample(struct track *t, struct track_mean *m, struct ring *r, double dt);
 
 /* The next command that the tool has begun since it was asked last, or NULL; all of them once the
  * planned motion has ended. */
@@ -94,11 +93,14 @@ double track_half(const struct track *t, const struct ring *r, int32_t i);
 /* The planned motion stands and the tool is there. */
 bool track_rests(const struct track *t);
 
-/* That, and at the end of the chain. */
+/* The planned motion is at the end of what is joined. */
+bool track_at_end(const struct track *t, const struct ring *r);
+
+/* That it stands there, and the tool too. */
 bool track_done(const struct track *t);
 
-/* The command the tool is in. */
-const struct command *track_command(const struct track *t, const struct ring *r);
+/* The tool to a place further on the chain. [mm] */
+void track_go(struct track *t, const struct ring *r, double way);
 
 /* Place of the tool [mm] and its velocity [mm/s]. */
 void track_place(const struct track *t, const struct ring *r, double point[AXES],

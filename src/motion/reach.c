@@ -3,57 +3,56 @@
 #include <math.h>
 #include <string.h>
 
-#include "guard.h"
-
 /* An extent of a corner may be told by so much too wide: far below a pulse. [mm] */
 static const double NEAR = 1e-6;
 
 /* The ramp at a time after now. */
 struct instant {
     double t;                               /* [s] */
-    double place[AXES];                     /* [mm] */
+    double joint[AXES];                     /* [mm] */
+    bool   reached;
     struct scurve_start move[2];            /* along each move */
 };
 
 struct ramp_view {
-    struct ipo ramp;                        /* its clocks at `at` */
+    struct mover ramp;                      /* its clocks at `at` */
     double at;                              /* [s] */
+    double dt;                              /* [s] from point to point */
     double acc[AXES];                       /* [mm/s^2] highest of independent axes */
-    const struct ipo *now;
+    double from[AXES];                      /* [pulses] */
     const struct ring *ring;
-    const struct machine *machine;
+    const struct mechanism *machine;
 };
 
-/* Bounds of each move, the sum of them. Exact if there is one. */
-static void box_of_moves(const struct ipo *ramp, double low[AXES], double high[AXES])
+static int beyond(const struct ramp_view *v, const double low[AXES], const double high[AXES])
 {
-    memcpy(low, ramp->rest, AXES * sizeof *low);
-    memcpy(high, ramp->rest, AXES * sizeof *high);
-    for (int i = 0; i < ramp->count; i++) {
-        const struct path *way = &ramp->move[i].command.path;
-        struct profile left = ramp->move[i].profile;
-        const double s = profile_state(&left).s;
-        left.t = left.total;
-        const double end = profile_state(&left).s;
-        for (int k = 0; k < AXES; k++) {
-            double a, b;
-            path_extent(way, k, s, end, &a, &b);
-            low[k] = i == 0 ? a : low[k] + (a - way->start[k]);
-            high[k] = i == 0 ? b : high[k] + (b - way->start[k]);
-        }
-    }
+    int side;
+    return mechanism_beyond(v->machine, v->from, low, high, &side);
 }
 
-static struct instant instant_at(struct ramp_view *v, double t)
+/* The place of the mover as one of joints, joint[] nearby before. */
+static bool joints_of(const struct mover *p, const struct mechanism *m, const double place[AXES],
+                      double joint[AXES])
+{
+    if (mover_in_joints(p)) {
+        memcpy(joint, place, AXES * sizeof *joint);
+        return true;
+    }
+    return mechanism_joints(m, place, joint);
+}
+
+static struct instant instant_at(struct ramp_view *v, double t, const double near[AXES])
 {
     struct instant x = { .t = t };
-    double velocity[AXES];
+    double place[AXES], velocity[AXES];
 
-    ipo_shift(&v->ramp, t - v->at);
+    mover_shift(&v->ramp, t - v->at);
     v->at = t;
-    ipo_place(&v->ramp, v->ring, x.place, velocity);
-    for (int i = 0; i < v->ramp.count; i++) {
-        x.move[i] = profile_state(&v->ramp.move[i].profile);
+    mover_place(&v->ramp, v->ring, place, velocity);
+    memcpy(x.joint, near, sizeof x.joint);
+    x.reached = joints_of(&v->ramp, v->machine, place, x.joint);
+    for (int i = 0; i < v->ramp.mix.count; i++) {
+        x.move[i] = profile_state(&v->ramp.mix.move[i].profile);
     }
     return x;
 }
@@ -70,45 +69,61 @@ static double move_strays(const struct path *way, const struct scurve_start *a,
     return uneven * path_share(way, axis) + 0.125 * path_bend(way) * ds * ds;
 }
 
-/* Whether what lies between two instants is certainly within the limits. */
+/* Whether what lies between two instants is certainly within the bounds. Through kinematics a joint
+ * goes no further than at its highest speed. */
 static bool between(const struct ramp_view *v, const struct instant *a, const struct instant *b)
 {
+    const bool paths = v->ramp.motion == MOVER_MIX;
     const double dt = b->t - a->t;
     double low[AXES], high[AXES];
 
     for (int k = 0; k < AXES; k++) {
         double strays = 0.125 * v->acc[k] * dt * dt;
-        for (int i = 0; i < v->ramp.count && ipo_follows_paths(&v->ramp); i++) {
-            strays += move_strays(&v->ramp.move[i].command.path, &a->move[i], &b->move[i], dt, k);
+        for (int i = 0; i < v->ramp.mix.count && paths; i++) {
+            strays += move_strays(&v->ramp.mix.move[i].command.path, &a->move[i], &b->move[i], dt,
+                                  k);
         }
-        low[k] = fmin(a->place[k], b->place[k]) - strays;
-        high[k] = fmax(a->place[k], b->place[k]) + strays;
+        if (v->machine->kinematics && paths) {
+            strays = 0.5 * fmax(0.0, v->machine->joint[k].speed * dt -
+                                     fabs(b->joint[k] - a->joint[k]));
+        }
+        low[k] = fmin(a->joint[k], b->joint[k]) - strays;
+        high[k] = fmax(a->joint[k], b->joint[k]) + strays;
     }
-    return guard_reach(v->machine, v->now->pulses, low, high) < 0;
+    return beyond(v, low, high) < 0;
 }
 
-/* First axis beyond at the DDA boundaries i + 1 .. j, whose first and last places are known. */
+/* First joint beyond at the points i + 1 .. j, whose first and last places are known. */
 static int search(struct ramp_view *v, int64_t i, const struct instant *a, int64_t j,
                   const struct instant *b)
 {
+    if (!b->reached) {
+        return 0;
+    }
     if (between(v, a, b)) {
         return -1;
     }
     if (j - i <= 1) {
-        return guard_reach(v->machine, v->now->pulses, b->place, b->place);
+        return beyond(v, b->joint, b->joint);
     }
     const int64_t half = i + (j - i) / 2;
-    const struct instant mid = instant_at(v, (double)half * machine_dda_time(v->machine));
+    const struct instant mid = instant_at(v, (double)half * v->dt, a->joint);
     const int axis = search(v, i, a, half, &mid);
     return axis >= 0 ? axis : search(v, half, &mid, j, b);
 }
 
 static int beyond_in_time(struct ramp_view *v)
 {
-    const double time = ipo_left(&v->ramp), dda = machine_dda_time(v->machine);
-    const int64_t last = (int64_t)fmin(ceil(time / dda), 1e15) + 1;
-    const struct instant first = instant_at(v, 0.0);
-    const struct instant end = instant_at(v, (double)last * dda);
+    const double time = mover_left(&v->ramp);
+    const int64_t last = (int64_t)fmin(ceil(time / v->dt), 1e15) + 1;
+    double near[AXES];
+
+    for (int i = 0; i < AXES; i++) {
+        const struct joint *j = &v->machine->joint[i];
+        near[i] = j->used ? v->from[i] / j->scale : 0.0;
+    }
+    const struct instant first = instant_at(v, 0.0, near);
+    const struct instant end = instant_at(v, (double)last * v->dt, first.joint);
 
     return search(v, 0, &first, last, &end);
 }
@@ -222,7 +237,33 @@ static void extent_of_chain(const struct way *w, double low[AXES], double high[A
     }
 }
 
-static int beyond_in_chain(const struct ipo *p, struct ring *r, const struct machine *m)
+/* Places on the way of a chain as far apart as the fastest joint goes in dt. */
+static int beyond_on_way(const struct way *w, const struct ramp_view *v)
+{
+    struct track tool = *w->t;
+    double joint[AXES], place[AXES], velocity[AXES], step = INFINITY;
+
+    for (int32_t i = w->t->out; i < w->t->joined; i++) {
+        step = fmin(step, ring_peek(w->ring, i)->command.cap * v->dt);
+    }
+    for (int i = 0; i < AXES; i++) {
+        const struct joint *j = &v->machine->joint[i];
+        joint[i] = j->used ? v->from[i] / j->scale : 0.0;
+    }
+    for (double at = w->from; at < w->to; ) {
+        at = fmin(at + step, w->to);
+        track_go(&tool, w->ring, at);
+        track_place(&tool, w->ring, place, velocity);
+        const bool reached = mechanism_joints(v->machine, place, joint);
+        const int axis = reached ? beyond(v, joint, joint) : 0;
+        if (axis >= 0) {
+            return axis;
+        }
+    }
+    return -1;
+}
+
+static int beyond_in_chain(const struct mover *p, struct ring *r, const struct ramp_view *v)
 {
     struct track rest = p->track;
     const double from = rest.out_base + rest.out_s;
@@ -230,35 +271,45 @@ static int beyond_in_chain(const struct ipo *p, struct ring *r, const struct mac
 
     track_to_rest(&rest, r);
     const struct way w = { &rest, r, from, rest.base + rest.s };
+    if (v->machine->kinematics) {
+        return beyond_on_way(&w, v);
+    }
     track_place(&p->track, r, place, velocity);
     memcpy(low, place, sizeof low);
     memcpy(high, place, sizeof high);
     box_of_chain(&w, low, high);
-    if (guard_reach(m, p->pulses, low, high) < 0) {
+    if (beyond(v, low, high) < 0) {
         return -1;
     }
     memcpy(low, place, sizeof low);
     memcpy(high, place, sizeof high);
     extent_of_chain(&w, low, high);
-    return guard_reach(m, p->pulses, low, high);
+    return beyond(v, low, high);
 }
 
-int reach_beyond(const struct ipo *p, struct ring *r, const struct machine *m)
+int reach_beyond(const struct mover *p, struct ring *r, const struct mechanism *m, double dt)
 {
-    if (p->track.active) {
-        return beyond_in_chain(p, r, m);
-    }
-    struct ramp_view v = { .now = p, .ring = r, .machine = m };
-    ipo_ramp(p, &v.ramp);
+    struct ramp_view v = { .dt = dt, .ring = r, .machine = m };
     double low[AXES], high[AXES];
-    const bool paths = ipo_follows_paths(&v.ramp);
+
+    for (int i = 0; i < AXES; i++) {
+        v.from[i] = p->pulses[i];
+    }
+    if (p->motion == MOVER_CHAIN) {
+        return beyond_in_chain(p, r, &v);
+    }
+    mover_ramp(p, &v.ramp);
+    const bool paths = p->motion == MOVER_MIX;
+    if (paths && m->kinematics) {
+        return beyond_in_time(&v);
+    }
     if (paths) {
-        box_of_moves(&v.ramp, low, high);
+        mix_extent(&v.ramp.mix, v.ramp.rest, low, high);
     } else {
         for (int i = 0; i < AXES; i++) {
             axes_reach(&v.ramp.axes, i, &low[i], &high[i], &v.acc[i]);
         }
     }
-    const int axis = guard_reach(m, p->pulses, low, high);
-    return axis < 0 || (paths && p->count < 2) ? axis : beyond_in_time(&v);
+    const int axis = beyond(&v, low, high);
+    return axis < 0 || (paths && p->mix.count < 2) ? axis : beyond_in_time(&v);
 }

@@ -27,6 +27,28 @@ static void accept(struct interpreter *in, struct command *c)
     in->count++;
 }
 
+/* The fault of an arc or of a command, and what is known of it. */
+static enum fault of_path(enum path_status s)
+{
+    return s == PATH_NO_RADIUS ? FAULT_ARC_RADIUS
+         : s == PATH_MISSES_END ? FAULT_ARC_END
+         : s == PATH_SHORT_RADIUS ? FAULT_ARC_CHORD
+         : s == PATH_OPEN ? FAULT_ARC_CLOSED : FAULT_NONE;
+}
+
+static enum fault of_command(enum command_status s, const struct command_refusal *why,
+                             struct fault_report *r)
+{
+    if (s == COMMAND_FAST || s == COMMAND_OUTSIDE) {
+        r->axis = why->joint;
+        r->value = why->value;
+        r->limit = why->limit;
+    }
+    return s == COMMAND_FAST ? FAULT_SPEED
+         : s == COMMAND_FAR ? FAULT_RANGE
+         : s == COMMAND_OUTSIDE ? FAULT_TRAVEL : FAULT_NONE;
+}
+
 /* End point of the block in machine coordinates. */
 static enum fault end_point(const struct interpreter *in, const struct program *p,
                             const struct block *b, double end[AXES], struct fault_report *r)
@@ -39,7 +61,7 @@ static enum fault end_point(const struct interpreter *in, const struct program *
         if (!w) {
             continue;
         }
-        if (!p->machine->axis[i].used) {
+        if (!p->machine.axis[i]) {
             return tokens_at_word(r, FAULT_AXIS, w);
         }
         const double value = w->value * b->scale;
@@ -65,10 +87,10 @@ static enum fault arc_centre(const struct interpreter *in, const struct block *b
     }
     if (radius) {
         r->value = fabs(radius->value * b->scale);
-        const enum fault f = path_centre_by_radius(in->plane, in->point, end,
-                                                   radius->value * b->scale, in->motion == 3,
-                                                   centre, &r->limit);
-        return tokens_at_line(r, f, &b->tokens);
+        const enum path_status s =
+            path_centre_by_radius(in->plane, in->point, end, radius->value * b->scale,
+                                  in->motion == 3, centre, &r->limit);
+        return tokens_at_line(r, of_path(s), &b->tokens);
     }
     for (int i = 0; i < 2; i++) {
         const struct token *w = gcode_word(&b->g, CENTRE_LETTERS[axis[i]]);
@@ -88,8 +110,8 @@ static enum fault arc(const struct interpreter *in, const struct program *p, con
     const struct token *turns = gcode_word(&b->g, 'P');
     double centre[2];
 
-    if (!p->machine->axis[path_first(in->plane)].used ||
-        !p->machine->axis[path_second(in->plane)].used) {
+    if (!p->machine.axis[path_first(in->plane)] ||
+        !p->machine.axis[path_second(in->plane)]) {
         return tokens_at_line(r, FAULT_AXIS, &b->tokens);
     }
     if (turns && (turns->value < 1.0 || turns->value > TURNS_MAX ||
@@ -98,8 +120,8 @@ static enum fault arc(const struct interpreter *in, const struct program *p, con
     }
     enum fault f = arc_centre(in, b, end, centre, r);
     if (f == FAULT_NONE) {
-        f = path_arc(path, in->plane, in->point, end, centre, in->motion == 3,
-                     turns ? (int)turns->value : 1, &r->value);
+        f = of_path(path_arc(path, in->plane, in->point, end, centre, in->motion == 3,
+                             turns ? (int)turns->value : 1, &r->value));
         tokens_at_line(r, f, &b->tokens);
     }
     return f;
@@ -122,14 +144,16 @@ enum fault block_motion(struct interpreter *in, const struct program *p, const s
     }
     c->blend = in->blend;
     c->tolerance = in->tolerance;
+    struct command_refusal why;
+    enum command_status s;
     if (in->motion == 0) {
-        f = command_ptp(c, p->machine, r);
+        s = command_ptp(c, &p->machine, &p->limits, &why);
     } else {
-        f = command_move(c, p->machine,
-                         in->motion == 1 ? COMMAND_LINE : command_arc_type(&c->path), in->feed, r);
+        const enum command_type type = in->motion == 1 ? COMMAND_LINE : command_arc_type(&c->path);
+        s = command_move(c, &p->machine, &p->limits, type, in->feed, &why);
     }
     accept(in, c);
-    return tokens_at_line(r, f, &b->tokens);
+    return tokens_at_line(r, of_command(s, &why, r), &b->tokens);
 }
 
 static enum fault rapid(struct interpreter *in, const struct program *p, const struct block *b,
@@ -141,9 +165,10 @@ static enum fault rapid(struct interpreter *in, const struct program *p, const s
     if (c->path.length == 0.0) {
         return FAULT_NONE;
     }
-    const enum fault f = command_ptp(c, p->machine, r);
+    struct command_refusal why;
+    const enum command_status s = command_ptp(c, &p->machine, &p->limits, &why);
     accept(in, c);
-    return tokens_at_line(r, f, &b->tokens);
+    return tokens_at_line(r, of_command(s, &why, r), &b->tokens);
 }
 
 enum fault block_home(struct interpreter *in, const struct program *p, const struct block *b,
@@ -154,7 +179,7 @@ enum fault block_home(struct interpreter *in, const struct program *p, const str
     enum fault f = end_point(in, p, b, via, r);
 
     for (int i = 0; i < AXES; i++) {
-        const bool goes = all ? p->machine->axis[i].used
+        const bool goes = all ? p->machine.axis[i]
                               : gcode_word(&b->g, BLOCK_AXES[i]) != NULL;
         home[i] = goes ? 0.0 : via[i];
     }

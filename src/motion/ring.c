@@ -1,6 +1,7 @@
 #include "ring.h"
 
 #include <stddef.h>
+#include <string.h>
 
 void ring_clear(struct ring *r)
 {
@@ -18,12 +19,10 @@ void ring_push(struct ring *r, const struct command *c)
     ring_at(r, r->count - 1)->command = *c;
 }
 
-void ring_push_asyn(struct ring *r, const struct command *c, const struct machine *m)
+void ring_push_asyn(struct ring *r, const struct command *c, const struct axes_limits axis[AXES])
 {
     ring_push(r, c);
-    for (int i = 0; i < AXES; i++) {
-        ring_at(r, r->count - 1)->axis[i] = axes_limits_of(m, i, machine_ptp_speed(m, i));
-    }
+    memcpy(ring_at(r, r->count - 1)->axis, axis, AXES * sizeof *axis);
 }
 
 const struct command *ring_head(const struct ring *r)
@@ -37,12 +36,12 @@ void ring_pop(struct ring *r)
     r->count--;
 }
 
-struct ring_item *ring_at(struct ring *r, int32_t i)
+struct ring_entry *ring_at(struct ring *r, int32_t i)
 {
-    return &r->item[(r->head + i) % RING_SIZE];
+    return &r->entry[(r->head + i) % RING_SIZE];
 }
 
-const struct ring_item *ring_peek(const struct ring *r, int32_t i)
+const struct ring_entry *ring_peek(const struct ring *r, int32_t i)
 {
-    return &r->item[(r->head + i) % RING_SIZE];
+    return &r->entry[(r->head + i) % RING_SIZE];
 }

@@ -48,8 +48,9 @@ struct fault_report {
     int64_t    offset;      /* [byte] where that line begins in the program */
     int32_t    at, length;  /* offending text in the line */
     int32_t    other_at, other_length;  /* of GROUP, SHARED: the word it does not agree with */
-    int32_t    axis;            /* of TRAVEL */
-    double     value, limit;    /* ARC_END, ARC_CHORD, TRAVEL [mm], FEED [mm/min], SPEED [rpm] */
+    int32_t    axis;            /* of TRAVEL, SPEED: the joint */
+    double     value, limit;    /* ARC_END, ARC_CHORD, TRAVEL [mm], FEED [mm/min];
+                                 * SPEED: of the joint's highest, and 1 */
 };
 
 /* Note where the offending text stands in its line; returns f. */
@@ -57,8 +58,5 @@ enum fault fault_at(struct fault_report *r, enum fault f, int32_t at, int32_t le
 
 /* What a fault means, in words; fits behind "line 12: ". */
 const char *fault_text(enum fault f);
-
-/* The library's return code for it: -7 FEED_RATE or -5 PARAMETER. */
-int fault_code(enum fault f);
 
 #endif

@@ -6,6 +6,9 @@
 #include "offsets.h"
 #include "switching.h"
 
+/* So that a path of any length has an end. [mm/s] */
+static const double FEED_MIN = 1e-9;
+
 void interpreter_start(struct interpreter *in, const double point[AXES], double feed,
                        const double origin[INTERPRETER_SYSTEMS][AXES])
 {
@@ -57,12 +60,12 @@ static enum fault set_feed(struct interpreter *in, const struct program *p, cons
         return FAULT_NONE;
     }
     const double feed = f->value * b->scale / 60.0;
-    if (feed < 1e9 && !machine_positive(feed)) {
+    if (feed < FEED_MIN) {
         return tokens_at_word(r, FAULT_VALUE, f);
     }
-    if (feed > p->machine->max_feed) {
+    if (feed > p->limits.feed) {
         r->value = feed * 60.0;
-        r->limit = p->machine->max_feed * 60.0;
+        r->limit = p->limits.feed * 60.0;
         return tokens_at_word(r, FAULT_FEED, f);
     }
     in->feed = feed;

@@ -48,8 +48,3 @@ const char *fault_text(enum fault f)
     }
     return "";
 }
-
-int fault_code(enum fault f)
-{
-    return f == FAULT_NONE ? 0 : f == FAULT_FEED || f == FAULT_SPEED ? -7 : -5;
-}
