@@ -120,7 +120,6 @@ static void values(void)
 {
     struct reader x;
     begin(&x, "G1 X10 Y0 F45000");
-    x.machine.axis[0].rpm = 3000.0;
     CHECK_EQ(next(&x), -2);
     CHECK_NEAR(x.r.value, 1.5.0, 1e-9);    /* 750 mm/s on a screw of 10 mm */
     CHECK_NEAR(x.r.limit, 1.0, 0.0);
