@@ -121,7 +121,7 @@ static void values(void)
     struct reader x;
     begin(&x, "G1 X10 Y0 F45000");
     CHECK_EQ(next(&x), -2);
-    CHECK_NEAR(x.r.value, 1.5.0, 1e-9);    /* 750 mm/s on a screw of 10 mm */
+    CHECK_NEAR(x.r.value, 1.5, 1e-12);      /* 750 mm/s on a screw of 10 mm are 4500 rpm */
     CHECK_NEAR(x.r.limit, 1.0, 0.0);
     begin(&x, "G2 X10 Y0 I6");
     CHECK_EQ(next(&x), -2);
