@@ -152,12 +152,17 @@ struct mechanism machine_mechanism(const struct machine *m)
 
     for (int i = 0; i < AXES; i++) {
         const struct machine_axis *a = &m->axis[i];
-        if (a->used) {
-            k.axis[i] = true;
-            k.joint[i] = (struct joint){
-                .used = true, .bounded = a->check_ot, .scale = machine_pulses_per_mm(a),
-                .speed = machine_axis_speed(a), .low = machine_low(a), .high = machine_high(a)
-            };
+        struct joint *j = &k.joint[i];
+        if (!a->used) {
+            continue;
+        }
+        k.axis[i] = j->used = true;
+        j->scale = machine_pulses_per_mm(a);
+        j->speed = machine_axis_speed(a);
+        j->bounded = a->check_ot;
+        if (j->bounded) {
+            j->low = machine_low(a);
+            j->high = machine_high(a);
         }
     }
     return k;

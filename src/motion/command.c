@@ -23,8 +23,7 @@ static enum command_status check_range(const struct path *p, const struct mechan
     if (!mechanism_bounded(m)) {
         return COMMAND_OK;
     }
-    memcpy(start, m->near, sizeof start);
-    mechanism_joints(m, p->start, start);
+    mechanism_first(m, p->start, start);
     for (int i = 0; i < AXES; i++) {
         start[i] = round(start[i] * m->joint[i].scale);
     }

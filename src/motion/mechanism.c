@@ -15,6 +15,14 @@ bool mechanism_joints(const struct mechanism *m, const double place[AXES], doubl
     return true;
 }
 
+bool mechanism_first(const struct mechanism *m, const double place[AXES], double joint[AXES])
+{
+    if (m->kinematics) {
+        memcpy(joint, m->near, AXES * sizeof *joint);
+    }
+    return mechanism_joints(m, place, joint);
+}
+
 void mechanism_place(const struct mechanism *m, const double joint[AXES], double place[AXES])
 {
     if (m->kinematics) {

@@ -41,11 +41,14 @@ struct mechanism {
     struct joint joint[AXES];
     const struct kinematics *kinematics;    /* NULL: joints are coordinates */
     const void *geometry;                   /* what its functions know of the mechanism */
-    double near[AXES];      /* [mm] joints from which the branch of a path is looked for */
+    const double *near;     /* [mm] joints, from which the branch of a path is looked for */
 };
 
 /* Joints of a place, joint[] nearby before. False: out of reach. */
 bool mechanism_joints(const struct mechanism *m, const double place[AXES], double joint[AXES]);
+
+/* The same of a first place, joints near m->near. */
+bool mechanism_first(const struct mechanism *m, const double place[AXES], double joint[AXES]);
 
 /* Place of joints. */
 void mechanism_place(const struct mechanism *m, const double joint[AXES], double place[AXES]);

@@ -13,8 +13,7 @@ bool mover_stand(struct mover *p, const struct mechanism *m, const double place[
 {
     double joint[AXES];
 
-    memcpy(joint, m->near, sizeof joint);
-    if (!mechanism_joints(m, place, joint)) {
+    if (!mechanism_first(m, place, joint)) {
         return false;
     }
     memcpy(p->rest, place, sizeof p->rest);

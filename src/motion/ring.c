@@ -35,13 +35,3 @@ void ring_pop(struct ring *r)
     r->head = (r->head + 1) % RING_SIZE;
     r->count--;
 }
-
-struct ring_entry *ring_at(struct ring *r, int32_t i)
-{
-    return &r->entry[(r->head + i) % RING_SIZE];
-}
-
-const struct ring_entry *ring_peek(const struct ring *r, int32_t i)
-{
-    return &r->entry[(r->head + i) % RING_SIZE];
-}

@@ -36,7 +36,14 @@ const struct command *ring_head(const struct ring *r);      /* NULL when empty *
 void ring_pop(struct ring *r);                              /* not when empty */
 
 /* Entry i from the head, 0 .. count - 1. */
-struct ring_entry *ring_at(struct ring *r, int32_t i);
-const struct ring_entry *ring_peek(const struct ring *r, int32_t i);
+static inline struct ring_entry *ring_at(struct ring *r, int32_t i)
+{
+    return &r->entry[(uint32_t)(r->head + i) % RING_SIZE];
+}
+
+static inline const struct ring_entry *ring_peek(const struct ring *r, int32_t i)
+{
+    return &r->entry[(uint32_t)(r->head + i) % RING_SIZE];
+}
 
 #endif

@@ -10,6 +10,7 @@
 #include <time.h>
 
 #include "interpreter.h"
+#include "machine.h"
 
 enum { BLOCKS = 40000, LONGEST = 512 };     /* each of ten lines */
 
