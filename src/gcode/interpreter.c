@@ -250,3 +250,10 @@ void interpreter_check(const struct interpreter *from, const struct program *p,
     while (interpreter_next(&in, p, &c, r) == INTERPRETER_COMMAND) {
     }
 }
+
+bool interpreter_damaged(const struct interpreter *in)
+{
+    return in->offset < 0 || in->motion < -1 || in->motion > 3 || in->system < 0 ||
+           in->system >= INTERPRETER_SYSTEMS || in->count < 0 || in->count > INTERPRETER_MADE ||
+           in->taken < 0 || in->taken > in->count;
+}

@@ -67,4 +67,7 @@ enum interpreter_result interpreter_next(struct interpreter *in, const struct pr
 void interpreter_check(const struct interpreter *from, const struct program *p,
                        struct fault_report *r);
 
+/* Whether places and numbers of a state are none that it can have. */
+bool interpreter_damaged(const struct interpreter *in);
+
 #endif

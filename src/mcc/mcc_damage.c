@@ -9,13 +9,6 @@ static bool within(int64_t x, int64_t low, int64_t high)
     return x >= low && x <= high;
 }
 
-static bool interpreter_good(const struct interpreter *in)
-{
-    return in->offset >= 0 && within(in->motion, -1, 3) &&
-           within(in->system, 0, INTERPRETER_SYSTEMS - 1) &&
-           within(in->count, 0, INTERPRETER_MADE) && within(in->taken, 0, in->count);
-}
-
 static bool machine_good(const struct machine *m)
 {
     return within(m->dda_length, 10, 15);
@@ -26,7 +19,7 @@ static const char *library(const struct mcc *m)
     if (!machine_good(&m->machine) || !within(m->machine.queue_depth, 1, QUEUE_SIZE)) {
         return "the DDA length or the depth of the queue";
     }
-    if (!interpreter_good(&m->program)) {
+    if (interpreter_damaged(&m->program)) {
         return "the place in the part program";
     }
     if (mover_damaged(&m->mover, &m->ring)) {
