@@ -1,6 +1,7 @@
 /* manual - axes moved by hand, one by one: jog and hand wheel. The calls stand in mcc.h.
  *
- * While an axis is in use here, or in homing, commands are refused and the mover's axes follow orders.
+ * While an axis is in use here, or in homing, commands are refused and the mover's axes follow
+ * orders.
  */
 #ifndef MANUAL_H
 #define MANUAL_H

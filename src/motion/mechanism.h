@@ -64,7 +64,7 @@ struct mechanism_way {
 };
 
 /* Without kinematics exact. With them found at places no further apart than 1/MECHANISM_PLACES of
- * the path, of an arc of so many parts of a radian, and at the tops of the parabolas through them. */
+ * the path, of an arc of so much of a radian, and at the tops of the parabolas through them. */
 enum { MECHANISM_PLACES = 64 };
 void mechanism_way(const struct mechanism *m, const struct path *p, struct mechanism_way *w);
 

@@ -113,7 +113,8 @@ static void feeds(bool smooth)
                 const double b = mcc_random(&seed, -0.1, 0.1) * size;
                 CHECK(MCC_line(&m, (double[AXES]){ a, b }) > 0);
             }
-            const int chain = m.mover.motion == MOVER_CHAIN ? chain_number() : 0, was = r.last.command;
+            const int chain = m.mover.motion == MOVER_CHAIN ? chain_number() : 0;
+            const int was = r.last.command;
             if (!point(&r)) {
                 break;
             }
