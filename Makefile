@@ -20,8 +20,8 @@ test: build check               ## everything: style, C tests (also sanitized), 
 	$(BIN)/python -m pytest -n 2
 
 check: .venv/installed          ## formatting, lint, types
-	$(BIN)/ruff format --check src tests scenarios examples
-	$(BIN)/ruff check src tests scenarios examples
+	$(BIN)/ruff format --check src tests scenarios
+	$(BIN)/ruff check src tests scenarios
 	$(BIN)/mypy
 
 bench: build                    ## speed, as ratios measured in one run

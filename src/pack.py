@@ -1,4 +1,4 @@
-"""Runs motionfmu.pack of the sources beside this file, whatever motionfmu the environment has."""
+"""Runs motionfmu.fmu.pack beside this file, whatever motionfmu the environment has."""
 
 import sys
 from importlib.machinery import ModuleSpec, PathFinder
@@ -20,6 +20,6 @@ class Own:
 sys.meta_path.insert(0, Own)  # type: ignore[arg-type]
 
 if __name__ == "__main__":
-    from motionfmu.pack import main
+    from motionfmu.fmu.pack import main
 
     sys.exit(main(sys.argv[1:]))

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from fmpy import extract
 
-from motionfmu import fmus
-from motionfmu.engines.slave import Slave
+from motionfmu.run.engines.slave import Slave
+from motionfmu.scenario import fmus
 
 STEP = 1e-4  # [s] communication step and bus period
 CLOCK = 25e-9  # [s]

@@ -7,7 +7,7 @@ import numpy as np
 from plant_library import PACKAGE, Run
 from scipy.integrate import solve_ivp
 
-from motionfmu.modelica import causal
+from motionfmu.fmu.modelica import causal
 
 # Until t [s]: voltage [V], load force [N]. A step and its reversal, crawling both ways just beyond
 # the deadband of 0.3 V, load steps while the valve is shut, full speed into the stop, away from it.

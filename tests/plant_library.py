@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu import ctables, fmu_toml
-from motionfmu.modelica import codegen
+from motionfmu.fmu import ctables, fmu_toml
+from motionfmu.fmu.modelica import codegen
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "modelica" / "MotionControl"

@@ -9,7 +9,8 @@ import pytest
 from conftest import FMUS, ROOT
 
 import motionfmu
-from motionfmu import fmus, sweep
+from motionfmu import sweep
+from motionfmu.scenario import fmus
 
 NAME = "velocity_axes"
 Files = dict[str, bytes]

@@ -28,7 +28,7 @@ def test_a_second_checkout_builds_its_own_sources(tmp_path: Path) -> None:
         shutil.copytree(ROOT / part, second / part, ignore=shutil.ignore_patterns("__pycache__"))
     for file in ("CMakeLists.txt", "LICENSE"):
         shutil.copy(ROOT / file, second)
-    tables = second / "src/motionfmu/ctables.py"
+    tables = second / "src/motionfmu/fmu/ctables.py"
     text = tables.read_text()
     assert text.count("def header(") == 1
     tables.write_text(

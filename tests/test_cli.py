@@ -11,7 +11,7 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu.outcome import save
+from motionfmu.report.outcome import save
 
 
 def command(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -133,7 +133,7 @@ def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch) -
         raise OSError(28, "No space left on device")
 
     result = motionfmu.load(ROOT / "scenarios/circle").run(stop=0.01)
-    monkeypatch.setattr("motionfmu.outcome.np.savez_compressed", full)
+    monkeypatch.setattr("motionfmu.report.outcome.np.savez_compressed", full)
     with pytest.raises(motionfmu.InputError, match=r"cannot write .*No space left on device"):
         save(result, tmp_path / "a/b/result", {})
     assert list(tmp_path.iterdir()) == []

@@ -11,9 +11,10 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu import contrary, scenario
-from motionfmu.checks import judge
-from motionfmu.scenario import Check
+from motionfmu.run import contrary
+from motionfmu.run.checks import judge
+from motionfmu.scenario import document
+from motionfmu.scenario.document import Check
 
 FOLDERS = sorted(p.parent for p in ROOT.glob("scenarios/*/scenario.toml"))
 SMALL = ROOT / "scenarios/interrupt_sources/scenario.toml"
@@ -21,7 +22,7 @@ SMALL = ROOT / "scenarios/interrupt_sources/scenario.toml"
 
 def numbers(folder: Path) -> list[int | None]:
     """The cases of a scenario; None if it has none, so that it has a test to fail."""
-    return [*range(len(scenario.read(folder).body.contrary))] or [None]
+    return [*range(len(document.read(folder).body.contrary))] or [None]
 
 
 def weakness(tried: motionfmu.Scenario, number: int | None) -> str:

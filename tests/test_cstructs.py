@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-from motionfmu import cstructs
+from motionfmu.fmu import cstructs
 
 TEXT = """
 #include <stdint.h>   /* struct model { char not_this; }; */

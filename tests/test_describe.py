@@ -10,8 +10,9 @@ import pytest
 from conftest import FMUS, ROOT
 from fmpy import read_model_description
 
-from motionfmu import ctables, fmu_toml, pack, units
-from motionfmu.modeldescription import model_description
+from motionfmu import units
+from motionfmu.fmu import ctables, fmu_toml, pack
+from motionfmu.fmu.modeldescription import model_description
 
 NAMES = sorted(p.parent.name for p in ROOT.glob("fmus/*/fmu.toml"))
 HEAD = 'name="A"\ndescription="a"\ntick_ns=25\nexperiment={stop=1.0,step=1e-3}\ncores=[]\n'
@@ -53,7 +54,7 @@ def test_a_wrong_description_names_the_line_and_the_value(rows: str, message: st
 
 def test_a_wrong_file_stops_the_build_with_status_2_and_writes_nothing(tmp_path: Path) -> None:
     (tmp_path / "fmu.toml").write_text(HEAD + '[input]\nx={type="f64", start=true, doc="d"}')
-    command = [sys.executable, "-m", "motionfmu.pack", "generate", tmp_path, tmp_path / "out"]
+    command = [sys.executable, "-m", "motionfmu.fmu.pack", "generate", tmp_path, tmp_path / "out"]
     run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "src")
     assert run.returncode == 2
     assert run.stderr == f"{tmp_path}/fmu.toml:7: input x: start True is not of type f64\n"

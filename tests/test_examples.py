@@ -7,7 +7,8 @@ from pathlib import Path
 
 from conftest import ROOT
 
-PART = "examples/part.ngc"
+FOLDER = "src/station/example"
+PART = f"{FOLDER}/part.ngc"
 
 
 def output(*command: str | Path) -> str:
@@ -17,22 +18,22 @@ def output(*command: str | Path) -> str:
 
 
 def test_c_and_python_print_the_same_numbers(tmp_path: Path) -> None:
-    head = (ROOT / "examples/virtual_card.c").read_text().split("*/")[0]
+    head = (ROOT / FOLDER / "virtual_card.c").read_text().split("*/")[0]
     build = re.search(r"gcc .*?-o virtual_card", head, re.S)
     assert build
     line = build[0].replace("\\\n *", "").replace("-o virtual_card", f"-o {tmp_path / 'card'}")
     output("sh", "-c", line)
     in_c = output(tmp_path / "card", PART)
-    assert in_c == output(sys.executable, "examples/virtual_card.py", PART)
+    assert in_c == output(sys.executable, "-m", "motionfmu.mcc.example", PART)
     assert re.findall(r"pulses (.*), int", in_c) == ["0 0 0", "15000 12000 5000"]
     assert re.findall(r"underflows (.*)", in_c) == ["0", "0"]
     assert "refused: -7" in in_c
 
 
 def test_every_example_is_in_the_readme() -> None:
-    text = (ROOT / "examples/README.md").read_text()
-    files = {f.name for f in (ROOT / "examples").iterdir()} - {"README.md", "__pycache__"}
-    assert files == set(re.findall(r"\]\((.*?)\)", text))
+    text = (ROOT / FOLDER / "README.md").read_text()
+    files = {f.name for f in (ROOT / FOLDER).iterdir()} - {"README.md"}
+    assert files == set(re.findall(r"\]\(([\w.]+)\)", text))
 
 
 def test_the_readme_example_runs() -> None:

@@ -15,12 +15,12 @@ from contour_runs import Machine, Program, lag_error, run_along
 from typer.testing import CliRunner
 
 import motionfmu
-from motionfmu import fmus
 from motionfmu.contour import ContourInput, analyse
 from motionfmu.errors import InputError
 from motionfmu.explain import causes, decompose, explain, servo, signature, theory
 from motionfmu.explain.expression import evaluate
 from motionfmu.explain.servo import Axis
+from motionfmu.scenario import fmus
 
 RADIUS, FEED, GAIN = 10.0, 30.0, 400  # [mm], [mm/s], register
 PER_GAIN = 20.0 / 65536.0 * 300.0 / 60.0 * 10_000 / 2**6  # [1/s] position gain per register unit

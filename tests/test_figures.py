@@ -11,10 +11,10 @@ import pytest
 from matplotlib import pyplot as plt
 
 import motionfmu
-from motionfmu.figures import OVERVIEW, Chart, Curve, Panel
-from motionfmu.outcome import save
 from motionfmu.report.chart_pictures import chart_picture
 from motionfmu.report.charts import BUCKETS, chart_figure, shown
+from motionfmu.report.outcome import save
+from motionfmu.run.figures import OVERVIEW, Chart, Curve, Panel
 from motionfmu.toml_lines import Lines
 
 # 1 V is 300 rpm: 5 turns of 10 mm, 50 000 encoder counts per second.

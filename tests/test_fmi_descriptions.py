@@ -12,7 +12,7 @@ import pytest
 from fmi_tools import unpacked
 from fmpy.validation import validate_fmu
 
-from motionfmu.fmus import fmu_names, fmu_path
+from motionfmu.scenario.fmus import fmu_names, fmu_path
 
 every_fmu = pytest.mark.parametrize("name", fmu_names())
 both = pytest.mark.parametrize("fmi", (2, 3))

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from fmi_tools import ERROR, OK, Instance, start_values
 
-from motionfmu.fmus import fmu_names
+from motionfmu.scenario.fmus import fmu_names
 
 STEP = 1e-3  # [s]
 

@@ -20,12 +20,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import motionfmu
-from motionfmu import fmu_toml, sweep, tune
+from motionfmu import sweep, tune
 from motionfmu.cli.common import settings as gains
-from motionfmu.engines.slave import Slave
 from motionfmu.errors import InputError
-from motionfmu.fmus import fmu_path
-from motionfmu.modelica import description
+from motionfmu.fmu import fmu_toml
+from motionfmu.fmu.modelica import description
+from motionfmu.run.engines.slave import Slave
+from motionfmu.scenario.fmus import fmu_path
 
 SECONDS = float(os.environ.get("MOTIONFMU_FUZZ", "0"))
 ROUND = 500  # examples between two looks at the clock

@@ -8,9 +8,10 @@ from conftest import ROOT
 from test_bad_input import message, scenario
 
 import motionfmu
-from motionfmu import recording, sweep, toml_lines, tune
+from motionfmu import sweep, toml_lines, tune
 from motionfmu.errors import InputError
-from motionfmu.session import Session
+from motionfmu.run.session import Session
+from motionfmu.scenario import recording
 from motionfmu.toml_lines import SIZE_MAX, tables_of, text_of, word
 
 TRACE = '[component]\ntrace = "scope"\n'

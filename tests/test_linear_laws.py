@@ -10,10 +10,10 @@ import pytest
 from conftest import ROOT
 from fmi_tools import OK, Instance
 
-from motionfmu import fmus
 from motionfmu.linear import law
 from motionfmu.linear.block import Sampled, reaches
 from motionfmu.linear.form import Form, evaluate
+from motionfmu.scenario import fmus
 
 LAWS = sorted(p.parent.name for p in ROOT.glob("fmus/*/linear.toml"))
 AXIS = 2

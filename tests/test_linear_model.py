@@ -10,13 +10,13 @@ from conftest import ROOT
 from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE, kp_of, theory
 
 from motionfmu import InputError, linear
+from motionfmu.fmu.modelica import causal, description
+from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear import law
 from motionfmu.linear.block import Plant
 from motionfmu.linear.loops import feedbacks, largest_gain
 from motionfmu.linear.margins import margins
 from motionfmu.linear.systems import System
-from motionfmu.modelica import causal, description
-from motionfmu.modelica.ode import Ode
 
 T = 1e-4  # [s] sampling period of card and drives
 ENC = "card.enc_phase"

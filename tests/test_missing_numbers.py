@@ -11,13 +11,14 @@ from contour_runs import Machine, Program, run_along
 from test_cli import command
 
 import motionfmu
-from motionfmu.checks import judge
 from motionfmu.contour import analyse
 from motionfmu.contour.names import wrong
 from motionfmu.errors import NoNumber
-from motionfmu.outcome import save
-from motionfmu.scenario import Check
-from motionfmu.sweep import Ways, conduct, processes, study, worker
+from motionfmu.report.outcome import save
+from motionfmu.run.checks import judge
+from motionfmu.scenario.document import Check
+from motionfmu.study import processes, worker
+from motionfmu.sweep import Ways, conduct, study
 
 TORQUE = [1e-6] * 6  # [N.m] less than friction: the table stands still
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from plant_library import PACKAGE, ROOT, Library, Run, array
 
-from motionfmu import fmu_toml
-from motionfmu.modelica import causal, codegen, cprint, description
-from motionfmu.modelica.nodes import program
+from motionfmu.fmu import fmu_toml
+from motionfmu.fmu.modelica import causal, codegen, cprint, description
+from motionfmu.fmu.modelica.nodes import program
 
 BALL_SCREW = ROOT / "fmus/ball_screw_axes/fmu.toml"
 

@@ -7,7 +7,7 @@ import pytest
 import rumoca
 from plant_library import PACKAGE
 
-from motionfmu.modelica import causal, flat
+from motionfmu.fmu.modelica import causal, flat
 
 FUNCTION = "function f input Real a; input Real b = 2; output Real y; algorithm y := a*b; end f; "
 STATE = "Real x(start = 0.5, fixed = true); "

@@ -7,7 +7,7 @@ import rumoca
 from plant_library import PACKAGE, ROOT, Library, Run
 from scipy.integrate import solve_ivp
 
-from motionfmu.modelica import causal
+from motionfmu.fmu.modelica import causal
 
 FRICTIONLESS = {
     f"{side}_{kind}": 0.0

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from plant_library import PACKAGE, ROOT, Library, Run, array
 
-from motionfmu.modelica import causal
+from motionfmu.fmu.modelica import causal
 
 HORIZON = 1000_000  # [ns]
 INSIDE = st.integers(1, HORIZON // 25 - 1)  # [25 ns]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-from motionfmu import cores
+from motionfmu.fmu import cores
 
 PYTHON = sorted(ROOT.glob("src/motionfmu/**/*.py"))
 LIBRARIES = sorted((ROOT / "build").glob("lib*.a"))

@@ -21,21 +21,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import motionfmu
-from motionfmu.scenario import Check
-from motionfmu.session import Session
-from motionfmu.sweep import (
-    Outcome,
-    Study,
-    Ways,
-    axes,
-    book,
-    columns,
-    conduct,
-    processes,
-    study,
-    worker,
-)
-from motionfmu.system import End
+from motionfmu.run.session import Session
+from motionfmu.scenario.document import Check
+from motionfmu.scenario.system import End
+from motionfmu.study import axes, book, columns, processes, worker
+from motionfmu.sweep import Outcome, Study, Ways, conduct, study
 
 CIRCLE = ROOT / "scenarios/circle_theory"
 GAIN, TAU = "mcc.p_gain", "machine.tau"
@@ -266,7 +256,7 @@ def test_a_run_that_ends_its_process_is_a_row_and_is_tried_again(
     site = tmp_path / "site"
     site.mkdir()
     (site / "sitecustomize.py").write_text(
-        "import os, motionfmu.session as s\n"
+        "import os, motionfmu.run.session as s\n"
         "run = s.Session.run\n"
         "def deadly(self, given):\n"
         "    if given.get('mcc.p_gain') == 300: os.kill(os.getpid(), 11)\n"
@@ -344,7 +334,7 @@ def test_an_interrupt_says_how_to_go_on(
 
 
 def test_a_study_that_is_done_runs_nothing(whole: Outcome, monkeypatch) -> None:
-    monkeypatch.setattr("motionfmu.sweep.processes.rows", None)
+    monkeypatch.setattr("motionfmu.study.processes.rows", None)
     before = table(whole.folder)
     assert conduct(small(), whole.folder).resumed == 12
     assert table(whole.folder) == before
@@ -384,7 +374,7 @@ def test_a_study_knows_the_files_its_values_name(tmp_path: Path) -> None:
 
 
 def test_a_start_that_fails_leaves_nothing(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr("motionfmu.sweep.cluster.TIMEOUT", 0.5)
+    monkeypatch.setattr("motionfmu.study.cluster.TIMEOUT", 0.5)
     with pytest.raises(motionfmu.InputError, match=r"--scheduler tcp://127\.0\.0\.1:1"):
         conduct(small(), tmp_path / "a/b", Ways(scheduler="tcp://127.0.0.1:1"))
     chosen = small()

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from test_sweep import CIRCLE, GAIN, SHORT
 
-from motionfmu.sweep import Outcome, study, worker
+from motionfmu.study import worker
+from motionfmu.sweep import Outcome, study
 
 
 def synthetic(names: list[str], sampling: str, runs: int, folder: Path) -> Outcome:

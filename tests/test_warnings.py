@@ -9,9 +9,10 @@ import pytest
 from conftest import ROOT
 from typer.testing import CliRunner
 
-from motionfmu import fmus, load
+from motionfmu import load
 from motionfmu.cli import app
-from motionfmu.grids import grid
+from motionfmu.scenario import fmus
+from motionfmu.scenario.grids import grid
 
 THEORY = ROOT / "scenarios/circle_theory"
 LAG, H = 5e-3, 2e-3

@@ -14,10 +14,10 @@ import numpy as np
 from hydraulic_rig import HARD, START, STEP, Case, reference
 from plant_library import ROOT, Library, array
 
-from motionfmu import ctables, fmu_toml
-from motionfmu.modelica import codegen
-from motionfmu.modelica.cprint import statements
-from motionfmu.modelica.nodes import program
+from motionfmu.fmu import ctables, fmu_toml
+from motionfmu.fmu.modelica import codegen
+from motionfmu.fmu.modelica.cprint import statements
+from motionfmu.fmu.modelica.nodes import program
 
 HERE = Path(__file__).parent
 METHODS = ("RK4", "Bogacki-Shampine 3(2)", "Dormand-Prince 5(4)", "RODAS 4(3)")

@@ -7,7 +7,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from motionfmu.sweep import Ways, conduct, processes, study
+from motionfmu.study import processes
+from motionfmu.sweep import Ways, conduct, study
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios/circle_theory"
 RUNS = 1000

@@ -43,11 +43,11 @@ def contour(
 def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
     from rich.progress import BarColumn, TaskProgressColumn, TextColumn
 
-    from motionfmu import outcome
     from motionfmu.explain import explain
-    from motionfmu.explain.page import write_explanation
+    from motionfmu.report import outcome
+    from motionfmu.report.explain_page import write_explanation
     from motionfmu.report.numbers import length
-    from motionfmu.scenario import scenario_file
+    from motionfmu.scenario.document import scenario_file
 
     name = scenario_file(path).parent.name
     target = outcome.usable(folder or Path("results") / f"{name}_contour")

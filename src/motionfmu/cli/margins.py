@@ -45,10 +45,10 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
 ) -> None:
     """Margins and largest stable gains of a scenario's loops, and their report."""
-    from motionfmu import outcome
     from motionfmu.freq.study import Asked
     from motionfmu.linear import model
     from motionfmu.linear.opened import held
+    from motionfmu.report import outcome
     from motionfmu.report.margin_page import numbers, page_text
 
     if gain is not None and loop is None:

@@ -19,8 +19,8 @@ from motionfmu.cli.common import (
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
-    from motionfmu.result import Result
     from motionfmu.run import Scenario
+    from motionfmu.run.result import Result
 
 Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
@@ -68,7 +68,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     csv: Annotated[bool, typer.Option("--csv", help="Also write signals.csv.")] = False,
 ) -> None:
     """Run a scenario, judge it and write its report."""
-    from motionfmu import outcome
+    from motionfmu.report import outcome
     from motionfmu.run import load
 
     scenario = load(path)
@@ -92,7 +92,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
 
 def _can_fail(scenario: "Scenario", options: dict[str, Any]) -> bool:
     """Run every [[contrary]] and show by which checks its verdict fails."""
-    from motionfmu import contrary
+    from motionfmu.run import contrary
 
     good = bool(scenario.document.body.contrary)
     if not good:

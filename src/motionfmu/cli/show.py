@@ -12,20 +12,20 @@ from motionfmu.errors import InputError
 @app.command("list")
 def list_all() -> None:
     """List the FMUs that are built and the scenarios of this project."""
-    from motionfmu import fmus, scenario
+    from motionfmu.scenario import document, fmus
 
     out.print("[bold]FMUs[/]")
     for name in fmus.fmu_names():
         out.print(f"  {name}")
     out.print("[bold]Scenarios[/]")
     for file in sorted(Path("scenarios").glob("*/scenario.toml")):
-        out.print(f"  {file.parent}  [dim]{scenario.read(file).about}[/]")
+        out.print(f"  {file.parent}  [dim]{document.read(file).about}[/]")
 
 
 @app.command()
 def info(what: Annotated[str, typer.Argument(help="An FMU's name, or a scenario.")]) -> None:
     """Show the variables of an FMU, or what a scenario is made of."""
-    from motionfmu import fmus
+    from motionfmu.scenario import fmus
 
     if what in fmus.fmu_names():
         _describe(what)
@@ -60,7 +60,7 @@ def describe(
         return
     import zipfile
 
-    from motionfmu import fmus
+    from motionfmu.scenario import fmus
 
     path = fmus.fmu_path(name, fmi)
     try:
@@ -71,7 +71,7 @@ def describe(
 
 
 def _describe(name: str) -> None:
-    from motionfmu import fmus
+    from motionfmu.scenario import fmus
 
     table = bare_table()
     for heading in ("", "variable", "type", "unit"):

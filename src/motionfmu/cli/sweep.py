@@ -72,7 +72,7 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Run a scenario at many points; resumes where an earlier call was ended."""
     from motionfmu import sweep as sweeps
-    from motionfmu.sweep.axes import option
+    from motionfmu.study.axes import option
 
     given: dict[str, Any] = {"sampling": sampling, "runs": runs, "seed": seed, "cost": cost}
     given |= {"tuned": tuned, "stop": stop, "step": step, "results": result or None}

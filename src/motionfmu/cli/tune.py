@@ -30,7 +30,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
 ) -> None:
     """Find servo gains for a scenario's own path; write gains.toml and a report."""
-    from motionfmu import outcome
+    from motionfmu.report import outcome
     from motionfmu.report.tune_page import page_text
     from motionfmu.run import load
     from motionfmu.tune import problem, read

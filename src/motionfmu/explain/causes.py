@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from motionfmu import fmus
 from motionfmu.errors import InputError
 from motionfmu.explain.expression import evaluate
-from motionfmu.pack import EXTRA
+from motionfmu.fmu.pack import EXTRA
+from motionfmu.scenario import fmus
 from motionfmu.toml_lines import tables_of
 
 if TYPE_CHECKING:
-    from motionfmu.fmus import Port
     from motionfmu.run import Result, Scenario
+    from motionfmu.scenario.fmus import Port
 
 RESOURCE = f"{EXTRA}/causes.toml"
 THEORY = "theory"
@@ -234,9 +234,9 @@ def used(result: "Result") -> list[int]:
     -------
     list of int
     """
-    from motionfmu.contour_of import library_of
+    from motionfmu.scenario.contour_signals import library_of
 
-    active = result.parameter(f"{library_of(result.scenario)}.active")
+    active = result.parameter(f"{library_of(result.resolver)}.active")
     return [i for i, on in enumerate(active) if on]
 
 

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu import recording
 from motionfmu.contour.error import LAGS, WINDOW_MIN
-from motionfmu.contour_of import library_of
 from motionfmu.errors import InputError
 from motionfmu.explain import causes, theory
 from motionfmu.explain.ballbar import Signature, signature
 from motionfmu.explain.causes import Cause, Off
 from motionfmu.explain.servo import Array
 from motionfmu.run import load
+from motionfmu.scenario import recording
+from motionfmu.scenario.contour_signals import library_of
 
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult
@@ -194,7 +194,7 @@ def explain(
         raise InputError(f"{scenario.document.file}: the scenario has no [contour] table")
     given = dict(set or {})
     known = causes.causes(scenario)
-    _watch(scenario, [f"{library_of(scenario)}.error", *causes.watched(known)])
+    _watch(scenario, [f"{library_of(scenario.resolver)}.error", *causes.watched(known)])
     progress(scenario.name, 0.0)
     result = scenario.run(set=given, stop=stop)
     result.contour()
@@ -232,7 +232,7 @@ def _watch(scenario: "Scenario", names: list[str]) -> None:
 
 def _run(scenario: "Scenario", given: Mapping[str, Any], stop: float | None) -> "ContourResult":
     """Contour of a run without some causes; the library must still go on without an error."""
-    library = library_of(scenario)
+    library = library_of(scenario.resolver)
     result = scenario.run(set=given, stop=stop)
     if code := int(np.max(result[f"{library}.error"])):
         raise InputError(f"{library}.error = {code}")

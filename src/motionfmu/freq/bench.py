@@ -11,15 +11,15 @@ import numpy as np
 from fmpy import extract
 from numpy.typing import NDArray
 
-from motionfmu import fmus
-from motionfmu.engines.slave import Slave
 from motionfmu.errors import InputError
 from motionfmu.linear import AxisModel
 from motionfmu.linear.law import Law, carried
 from motionfmu.linear.wiring import Port
 from motionfmu.run import Options
-from motionfmu.system import System, Wire
-from motionfmu.values import values_of
+from motionfmu.run.engines.slave import Slave
+from motionfmu.scenario import fmus
+from motionfmu.scenario.system import System, Wire
+from motionfmu.scenario.values import values_of
 
 Array = NDArray[np.float64]
 

@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from motionfmu.errors import InputError
+from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear import law
 from motionfmu.linear.block import Block
 from motionfmu.linear.form import Gain
 from motionfmu.linear.given import Values
 from motionfmu.linear.plant import Linearised, Point
 from motionfmu.linear.wiring import Net, Port, period_of
-from motionfmu.modelica.ode import Ode
 from motionfmu.run import Options, Scenario, load
-from motionfmu.system import Wire
-from motionfmu.values import settings
+from motionfmu.scenario.system import Wire
+from motionfmu.scenario.values import settings
 
 if TYPE_CHECKING:
     from motionfmu.linear.systems import System  # its import takes a second, a tuning does without

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from motionfmu.run import Scenario
-from motionfmu.system import System
+from motionfmu.scenario.system import System
 
 
 class Values(Mapping[str, Any]):

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from motionfmu import fmus
+from motionfmu.fmu.modelica import stored
+from motionfmu.fmu.modelica.ode import Ode
+from motionfmu.fmu.pack import EXTRA
 from motionfmu.linear.block import Sampled
 from motionfmu.linear.form import Form, Gain, Quantity, evaluate
-from motionfmu.modelica import stored
-from motionfmu.modelica.ode import Ode
-from motionfmu.pack import EXTRA
-from motionfmu.system import nanoseconds
+from motionfmu.scenario import fmus
+from motionfmu.scenario.system import nanoseconds
 
 LAW = "linear.toml"
 # Decimal periods are not exact in binary: a quotient is off by far less than this share.

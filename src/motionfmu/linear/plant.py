@@ -9,9 +9,9 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear.block import Matrix, Plant
-from motionfmu.modelica.ode import Ode
-from motionfmu.system import nanoseconds
+from motionfmu.scenario.system import nanoseconds
 
 # As src/plant/plant_model.c chooses its sub-steps: (h/n) |lambda| <= 2.
 H_LAMBDA = 2.0

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
+from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear.axis import AxisModel
 from motionfmu.linear.block import Matrix, Plant
 from motionfmu.linear.opened import linearised
-from motionfmu.modelica.ode import Ode
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator, ScalarFormatter
 
-from motionfmu.figures import Chart, Panel
 from motionfmu.report.charts import extent, heights, shown, spacing
 from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.style import AXES, GRID, INK, MUTED
+from motionfmu.run.figures import Chart, Panel
 
 WIDTH = 9.0  # [inch]
 DPI = 130

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.figures import Chart, Curve, Panel
 from motionfmu.report.decimate import keep_peaks, keep_steps
 from motionfmu.report.packed import packed
 from motionfmu.report.sheet import Sheet
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout
+from motionfmu.run.figures import Chart, Curve, Panel
 
 Figure = dict[str, Any]
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from motionfmu.contour import ContourResult
 from motionfmu.contour.circles import CircularTest
-from motionfmu.figures import Chart
 from motionfmu.report.chart_pictures import write_charts
 from motionfmu.report.charts import add_charts
 from motionfmu.report.drawing import Drawing, draw
@@ -33,6 +32,7 @@ from motionfmu.report.time_plots import (
     following_figure,
     trace_figures,
 )
+from motionfmu.run.figures import Chart
 
 PAGE = "report.html"
 NUMBERS = "contour.json"

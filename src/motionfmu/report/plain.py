@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any, Protocol
 
-from motionfmu.figures import Chart
 from motionfmu.report.charts import add_charts
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.tables import Check, check_table, warning_list
+from motionfmu.run.figures import Chart
 
 FOOTER = "A point holds the outputs at its communication step, before that step was taken."
 

@@ -28,7 +28,7 @@ from motionfmu.report.sweep_field import (
 from motionfmu.report.tables import table
 
 if TYPE_CHECKING:
-    from motionfmu.sweep.conduct import Outcome
+    from motionfmu.study.outcome import Outcome
 
 Figure = dict[str, Any]
 

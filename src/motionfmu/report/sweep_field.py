@@ -10,8 +10,8 @@ from scipy.interpolate import griddata
 from scipy.spatial import QhullError
 
 if TYPE_CHECKING:
-    from motionfmu.sweep.axes import Value
-    from motionfmu.sweep.conduct import Outcome
+    from motionfmu.study.axes import Value
+    from motionfmu.study.outcome import Outcome
 
 Array = NDArray[np.float64]
 

@@ -24,7 +24,7 @@ from motionfmu.report.sweep_field import (
 )
 
 if TYPE_CHECKING:
-    from motionfmu.sweep.conduct import Outcome
+    from motionfmu.study.outcome import Outcome
 
 DPI = 110
 SIDE = 2.1  # [inch] of a cell of a scatter matrix

@@ -1,6 +1,7 @@
 """Studies: one scenario run at many points, on all cores or a cluster."""
 
-from motionfmu.sweep.conduct import Outcome, Ways, conduct
-from motionfmu.sweep.study import Study, study
+from motionfmu.study.outcome import Outcome, Ways
+from motionfmu.study.study import Study, study
+from motionfmu.sweep.conduct import conduct
 
 __all__ = ["Outcome", "Study", "Ways", "conduct", "study"]

@@ -1,108 +1,13 @@
 """Run a study to its end: resume, hand out, keep, report."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from motionfmu.sweep import processes
-from motionfmu.sweep.axes import Value
-from motionfmu.sweep.book import Book
-from motionfmu.sweep.study import Study
-from motionfmu.sweep.worker import ERROR, OK, Row
-
-
-@dataclass(frozen=True)
-class Ways:
-    """How a study is run; its rows are the same in all ways.
-
-    Attributes
-    ----------
-    workers : int or None
-        Processes on this machine; None for one per core.
-    scheduler : str or None
-        Address of a dask.distributed scheduler, instead of processes here.
-    fresh : bool
-        Begin again instead of resuming.
-    progress : callable
-        Called with the number of rows done and, among them, of those with an error.
-    """
-
-    workers: int | None = None
-    scheduler: str | None = None
-    fresh: bool = False
-    progress: Callable[[int, int], None] = lambda done, errors: None
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """A study that has ended.
-
-    Attributes
-    ----------
-    study : Study
-    rows : list of Row
-        One per point, in order.
-    folder : Path
-        Holds sweep.parquet and the report.
-    resumed : int
-        Rows that were there before.
-    """
-
-    study: Study
-    rows: list[Row] = field(repr=False)
-    folder: Path
-    resumed: int
-
-    def axis(self, name: str) -> list[Value]:
-        """Values of an axis.
-
-        Parameters
-        ----------
-        name : str
-
-        Returns
-        -------
-        list
-            One per row, in the variable's unit.
-        """
-        i = self.study.job.axes.index(name)
-        return [self.study.points[row.run][i] for row in self.rows]
-
-    def column(self, name: str) -> NDArray[np.float64]:
-        """Values of a result.
-
-        Parameters
-        ----------
-        name : str
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            NaN where a run gave none.
-        """
-        i = self.study.job.columns.index(name)
-        values = (row.values[i] for row in self.rows)
-        return np.array([np.nan if v is None else v for v in values], dtype=np.float64)
-
-    @property
-    def cost(self) -> NDArray[np.float64]:
-        """The study's cost, shape (n,); NaN where a run gave none."""
-        return self.column(self.study.cost)
-
-    @property
-    def best(self) -> int | None:
-        """Run of the smallest cost without an error, or None."""
-        good = np.array([row.status == OK for row in self.rows], dtype=bool)
-        cost = np.where(good, self.cost, np.nan)
-        return None if np.isnan(cost).all() else int(np.nanargmin(cost))
-
-    @property
-    def errors(self) -> int:
-        """Number of rows that are not ok."""
-        return sum(row.status != OK for row in self.rows)
+from motionfmu.study import processes
+from motionfmu.study.book import Book
+from motionfmu.study.outcome import Outcome, Ways
+from motionfmu.study.study import Study
+from motionfmu.study.worker import ERROR, OK, Row
 
 
 def _rows(study: Study, ways: Ways, done: set[int]) -> Iterator[Row]:
@@ -110,7 +15,7 @@ def _rows(study: Study, ways: Ways, done: set[int]) -> Iterator[Row]:
     if not tasks:
         return iter(())
     if ways.scheduler:
-        from motionfmu.sweep import cluster
+        from motionfmu.study import cluster
 
         return cluster.rows(study.job, tasks, ways.scheduler)
     return processes.rows(study.job, tasks, ways.workers or processes.cores())

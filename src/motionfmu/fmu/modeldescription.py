@@ -1,0 +1,173 @@
+"""modelDescription.xml for FMI 2.0 and 3.0 from one Description."""
+
+from collections.abc import Iterable
+from xml.etree import ElementTree as ET
+
+from motionfmu import units
+from motionfmu.fmu.describe import Description, Variable
+
+_TYPE = {
+    2: {"f64": "Real", "i32": "Integer", "bool": "Boolean", "string": "String"},
+    3: {"f64": "Float64", "i32": "Int32", "bool": "Boolean", "string": "String"},
+}
+_CATEGORIES = {
+    "logStatusError": "What went wrong, with the value",
+    "logStatusWarning": "What runs on, but not as asked",
+    "logEvents": "What the model did",
+}
+
+
+def _text(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return value if isinstance(value, str) else repr(value)
+
+
+def _add(parent: ET.Element, tag: str, **attributes: object) -> ET.Element:
+    kept = {k: _text(v) for k, v in attributes.items() if v is not None}
+    return ET.SubElement(parent, tag, kept)
+
+
+def _units(root: ET.Element, d: Description) -> None:
+    names = sorted({v.unit for v in d.variables if v.unit})
+    if names:
+        parent = _add(root, "UnitDefinitions")
+        for name in names:
+            unit = units.parse(name)
+            ET.SubElement(_add(parent, "Unit", name=name), "BaseUnit", unit.attributes())
+
+
+def _head(root: ET.Element, d: Description, fmi: int, sources: Iterable[str]) -> None:
+    state = "state" if fmi == 2 else "State"
+    cs = _add(
+        root,
+        "CoSimulation",
+        modelIdentifier=d.name,
+        canHandleVariableCommunicationStepSize=True,
+        **{f"canGetAndSetFMU{state}": True, f"canSerializeFMU{state}": True},
+    )
+    if fmi == 2:
+        cs.set("canNotUseMemoryManagementFunctions", "true")
+        files = _add(cs, "SourceFiles")
+        for name in sources:
+            _add(files, "File", name=name)
+    _units(root, d)
+    categories = _add(root, "LogCategories")
+    for name, text in _CATEGORIES.items():
+        _add(categories, "Category", name=name, description=text)
+    _add(
+        root,
+        "DefaultExperiment",
+        startTime=0.0,
+        stopTime=float(d.experiment["stop"]),
+        stepSize=float(d.experiment["step"]),
+    )
+
+
+def _limits(v: Variable) -> dict[str, object]:
+    kind = float if v.type == "f64" else int
+    found: dict[str, object] = {"unit": v.unit}
+    for key in ("min", "max"):
+        limit = getattr(v, key)
+        found[key] = None if limit is None else kind(limit)
+    found["nominal"] = v.nominal
+    return found
+
+
+def _variables2(parent: ET.Element, d: Description) -> list[int]:
+    calculated, index = [], 0
+    for v, first in zip(d.variables, d.references(), strict=True):
+        for i, name in enumerate(v.element_names()):
+            index += 1
+            scalar = _add(
+                parent,
+                "ScalarVariable",
+                name=name,
+                valueReference=first + i,
+                description=v.doc,
+                causality=v.causality,
+                variability=v.variability,
+                initial=v.initial,
+            )
+            start = None if v.start is None else v.start[i]
+            _add(scalar, _TYPE[2][v.type], **_limits(v), start=start)
+            if v.causality == "output":
+                calculated.append(index)
+    return calculated
+
+
+def _variables3(parent: ET.Element, d: Description) -> list[int]:
+    _add(
+        parent,
+        "Float64",
+        name="time",
+        valueReference=d.reference_count,
+        causality="independent",
+        variability="continuous",
+        description="Simulation time",
+        unit=None,
+    )
+    calculated = []
+    for v, ref in zip(d.variables, d.references(), strict=True):
+        start = None if v.start is None or v.type == "string" else " ".join(map(_text, v.start))
+        element = _add(
+            parent,
+            _TYPE[3][v.type],
+            name=v.name,
+            valueReference=ref,
+            description=v.doc,
+            causality=v.causality,
+            variability=v.variability,
+            initial=v.initial,
+            **_limits(v),
+            start=start,
+        )
+        for size in v.dims:
+            _add(element, "Dimension", start=size)
+        if v.type == "string":
+            for value in v.start or []:
+                _add(element, "Start", value=value)
+        if v.causality == "output":
+            calculated.append(ref)
+    return calculated
+
+
+def model_description(d: Description, fmi: int, sources: Iterable[str] = ()) -> bytes:
+    """Make the text of modelDescription.xml.
+
+    Parameters
+    ----------
+    d : Description
+    fmi : int
+        2 or 3.
+    sources : iterable of str
+        C files to compile, for FMI 2's list of source files.
+
+    Returns
+    -------
+    bytes
+        UTF-8 XML. Outputs depend on no input at the same instant: every block samples.
+    """
+    root = ET.Element("fmiModelDescription", fmiVersion=f"{fmi}.0", modelName=d.name)
+    root.set("guid" if fmi == 2 else "instantiationToken", d.token)
+    root.set("description", d.description)
+    root.set("generationTool", "motionfmu")
+    root.set("variableNamingConvention", "structured")
+    _head(root, d, fmi, sources)
+    variables = _add(root, "ModelVariables")
+    structure_of = {2: _variables2, 3: _variables3}
+    calculated = structure_of[fmi](variables, d)
+    structure = _add(root, "ModelStructure")
+    if fmi == 2:
+        for tag in ("Outputs", "InitialUnknowns"):
+            parent = _add(structure, tag) if calculated else structure
+            for index in calculated:
+                direct = "" if tag == "Outputs" else None
+                _add(parent, "Unknown", index=index, dependencies=direct)
+    else:
+        for ref in calculated:
+            _add(structure, "Output", valueReference=ref, dependencies="")
+        for ref in calculated:
+            _add(structure, "InitialUnknown", valueReference=ref)
+    ET.indent(root)
+    return ET.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"

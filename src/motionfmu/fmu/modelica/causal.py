@@ -1,0 +1,266 @@
+"""From flat equations to dx/dt = xdot(x, u, p), block by block."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import casadi as ca
+
+from motionfmu.fmu.modelica.expression import Evaluator
+from motionfmu.fmu.modelica.flat import Declaration, Expression, Flat, Unsupported, flatten
+from motionfmu.fmu.modelica.nodes import steps_on
+from motionfmu.fmu.modelica.ode import Ode
+
+
+def load(package: Path, name: str) -> Ode:
+    """Flatten a class and make its differential equation.
+
+    Parameters
+    ----------
+    package : Path
+        Folder with package.mo, or one .mo file.
+    name : str
+        Full class name.
+
+    Returns
+    -------
+    Ode
+
+    Raises
+    ------
+    ValueError
+        The class does not compile, or has a construct that is not supported.
+    """
+    return build(flatten(package, name))
+
+
+def build(flat: Flat) -> Ode:
+    """Make the differential equation of a flat class.
+
+    Parameters
+    ----------
+    flat : Flat
+
+    Returns
+    -------
+    Ode
+
+    Raises
+    ------
+    Unsupported
+        The message names the class and the construct.
+    """
+    names = _Names(flat)
+    declared = list(flat.declarations.values())
+    residuals = [names.evaluate(e) for e in _residuals(flat)]
+    inputs = [d for d in declared if d.kind == "input"]
+    outputs = [d for d in declared if d.kind == "output"]
+    moving = [d for d in declared if d.kind in ("variable", "output")]
+    states = [d for d in moving if d.fixed]
+    for d in states:
+        if d.name not in names.derivatives:
+            raise names.refuse(f"{d.name} has fixed = true but no derivative")
+    x, u, p = (names.column(d.name for d in g) for g in (states, inputs, names.parameters))
+    slopes = ca.vertcat(*(names.derivatives[d.name] for d in states))
+    others = names.column(d.name for d in moving if not d.fixed)
+    dummies = [d.name for d in moving if not d.fixed and d.name in names.derivatives]
+    residuals += _dummy_derivatives(names, residuals, dummies, (x, slopes, others))
+    unknowns = ca.vertcat(slopes, others, *(names.derivatives[n] for n in dummies))
+    solution = _solve(names, ca.vertcat(*residuals), unknowns)
+    xdot = solution[: len(states)]
+    y = ca.substitute(names.column(d.name for d in outputs), unknowns, solution)
+    start = [names.evaluate(d.start) if d.start else ca.SX(0.0) for d in states]
+    checks = tuple((names.evaluate(c), text) for c, text in flat.asserts)
+    sizes = [names.evaluate(d.nominal) if d.nominal else ca.SX(1.0) for d in states]
+    for text, e in [
+        *((f"start of {d.name}", s) for d, s in zip(states, start, strict=True)),
+        *((f"nominal of {d.name}", s) for d, s in zip(states, sizes, strict=True)),
+        *((f'assert "{text}"', c) for c, text in checks),
+    ]:
+        if ca.depends_on(e, ca.vertcat(x, u, unknowns)):
+            raise names.refuse(f"{text} depends on more than parameters, which is not supported")
+    return Ode(
+        name=flat.name,
+        description=flat.description,
+        states=tuple(states),
+        inputs=tuple(inputs),
+        parameters=tuple(names.parameters),
+        outputs=tuple(outputs),
+        x=x,
+        u=u,
+        p=p,
+        xdot=xdot,
+        y=y,
+        start=ca.vertcat(*start),
+        checks=checks,
+        sizes=ca.vertcat(*sizes),
+        u0=tuple(names.number(d, "start") or 0.0 for d in inputs),
+        p0=tuple(names.default(d) for d in names.parameters),
+        limits={
+            d.name: (names.number(d, "min"), names.number(d, "max"), names.number(d, "nominal"))
+            for d in [*inputs, *outputs, *names.parameters]
+        },
+    )
+
+
+class _Names:
+    """Symbols and parameter values by flat name."""
+
+    def __init__(self, flat: Flat):
+        self.flat = flat
+        self.evaluate = Evaluator(flat, self.symbol, self.derivative)
+        declared = flat.declarations.values()
+        self.parameters = [d for d in declared if d.kind == "parameter" and d.top and not d.final]
+        self.derivatives: dict[str, ca.SX] = {}
+        self._pending: list[str] = []  # parameters whose binding is being evaluated
+        own = [d for d in declared if d.kind != "parameter"] + self.parameters
+        self._known = {d.name: ca.SX.sym(d.name) for d in own}
+
+    def refuse(self, what: str) -> Unsupported:
+        """The error to raise."""
+        return Unsupported(f"{self.flat.name}: {what}")
+
+    def column(self, names: Iterable[str]) -> ca.SX:
+        """Symbols of some names."""
+        return ca.vertcat(ca.SX(0, 1), *(self._known[n] for n in names))
+
+    def symbol(self, name: str) -> ca.SX:
+        """Symbol of a variable, value of a bound parameter."""
+        if name in self._known:
+            return self._known[name]
+        d = self.flat.declarations.get(name)
+        if d is None:
+            raise self.refuse(f"{name} is not supported here")
+        if d.binding is None:  # a start is no value: rumoca makes one up
+            raise self.refuse(f"parameter {name} has no value")
+        if name in self._pending:
+            raise self.refuse(f"parameter {name} depends on itself")
+        self._pending.append(name)
+        self._known[name] = self.evaluate(d.binding)
+        self._pending.pop()
+        return self._known[name]
+
+    def derivative(self, name: str) -> ca.SX:
+        """Symbol of der(name)."""
+        d = self.flat.declarations[name]
+        if d.kind not in ("variable", "output"):
+            raise self.refuse(f"der({name}) of a {d.kind} is not supported")
+        return self.derivatives.setdefault(name, ca.SX.sym(f"der({name})"))
+
+    def number(self, d: Declaration, attribute: str) -> float | None:
+        """Value of an attribute; None where it is not declared."""
+        expression = getattr(d, attribute)
+        if expression is None:
+            return None
+        value = self.evaluate(expression)
+        if not value.is_constant():
+            raise self.refuse(
+                f"{attribute} of {d.name} depends on other variables: make it a number,"
+                " or the parameter final"
+            )
+        return float(value)
+
+    def default(self, d: Declaration) -> float:
+        """Value of a parameter as declared."""
+        value = self.number(d, "binding")
+        if value is None:
+            raise self.refuse(f"parameter {d.name} has no value")
+        return value
+
+
+def _residuals(flat: Flat) -> list[Expression]:
+    """Residuals of all equations; ``Real y = e`` gives y - e."""
+    found = [e.residual for e in flat.equations]
+    for d in flat.declarations.values():
+        if d.kind in ("variable", "output") and d.binding is not None:
+            own = {"VarRef": {"name": {"name": d.name}, "subscripts": []}}
+            found.append({"Binary": {"op": "Sub", "lhs": own, "rhs": d.binding}})
+    return found
+
+
+def _linear_parts(names: _Names, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """A and b of e = A v + b."""
+    a = ca.jacobian(e, v)
+    if ca.depends_on(a, v) or steps_on(e, v):
+        unknowns = ", ".join(map(str, ca.symvar(v)))
+        raise names.refuse(f"nonlinear equations for {unknowns} are not supported")
+    return a, ca.substitute(e, v, ca.SX.zeros(v.numel()))
+
+
+def _dummy_derivatives(
+    names: _Names, residuals: list[ca.SX], dummies: list[str], symbols: tuple[ca.SX, ca.SX, ca.SX]
+) -> list[ca.SX]:
+    """Equations for der(z) of variables z that are no states.
+
+    Parameters
+    ----------
+    names : _Names
+    residuals : list of SX
+    dummies : list of str
+        Names of these variables.
+    symbols : tuple of SX
+        States, their derivatives, and all other unknowns.
+
+    Returns
+    -------
+    list of SX
+        der(z) - dz/dx xdot, with z(x) from equations without derivatives.
+    """
+    x, slopes, others = symbols
+    derivatives = ca.vertcat(*names.derivatives.values())
+    left = {i: e for i, e in enumerate(residuals) if not ca.depends_on(e, derivatives)}
+    wanted = set(dummies)
+    found: dict[str, ca.SX] = {}
+    unknown = set(map(str, ca.symvar(others)))
+    progress = True
+    while progress and wanted - found.keys():
+        progress = False
+        for i, e in list(left.items()):
+            missing = {str(s) for s in ca.symvar(e)} & unknown - found.keys()
+            if len(missing) > 1:
+                continue
+            del left[i]
+            if missing:
+                (name,) = missing
+                v = names.symbol(name)
+                known = ca.vertcat(ca.SX(0, 1), *map(names.symbol, found))
+                e = ca.substitute(e, known, ca.vertcat(ca.SX(0, 1), *found.values()))
+                if ca.depends_on(ca.jacobian(e, v), v) or steps_on(e, v):
+                    continue
+                a, b = _linear_parts(names, e, v)
+                found[name] = -b / a
+                progress = True
+    for name in dummies:
+        if name not in found:
+            raise names.refuse(
+                f"der({name}): {name} is neither a state (fixed = true) nor given by states"
+            )
+        if ca.depends_on(found[name], names.column(d for d in _inputs(names.flat))):
+            raise names.refuse(f"der({name}) asks for the derivative of an input")
+    return [names.derivatives[n] - ca.jtimes(found[n], x, slopes) for n in dummies]
+
+
+def _inputs(flat: Flat) -> list[str]:
+    return [d.name for d in flat.declarations.values() if d.kind == "input"]
+
+
+def _solve(names: _Names, residuals: ca.SX, unknowns: ca.SX) -> ca.SX:
+    """Solve residuals = 0 by its block lower triangular form."""
+    labels = [str(unknowns[i]) for i in range(unknowns.numel())]
+    if residuals.numel() != unknowns.numel():
+        raise names.refuse(f"{residuals.numel()} equations for {len(labels)} unknowns")
+    pattern = ca.jacobian(residuals, unknowns).sparsity()
+    if ca.sprank(ca.DM(pattern)) < len(labels):
+        raise names.refuse("the equations are structurally singular (a constraint on states?)")
+    blocks, rows, columns, row_start, column_start, _, _ = pattern.btf()
+    values: dict[int, ca.SX] = {}
+    for k in range(blocks):
+        mine = columns[column_start[k] : column_start[k + 1]]
+        e = ca.vertcat(*(residuals[r] for r in rows[row_start[k] : row_start[k + 1]]))
+        v = ca.vertcat(*(unknowns[c] for c in mine))
+        if values:
+            known = ca.vertcat(*(unknowns[c] for c in values))
+            e = ca.substitute(e, known, ca.vertcat(*values.values()))
+        a, b = _linear_parts(names, e, v)
+        solved = -b / a if len(mine) == 1 else ca.solve(a, -b)
+        values.update((c, solved[i]) for i, c in enumerate(mine))
+    return ca.vertcat(*(values[c] for c in range(len(labels))))

@@ -1,0 +1,306 @@
+"""Write a Modelica class as plant.c and plant.h.
+
+They are what plant_model.c integrates.
+
+CasADi's own C text serves one point per call, and its null checks keep compilers from doing
+two points at once. Here quantity k of lane i stands at [k * PLANT_LANES + i], each function is one
+loop over lanes, and what depends on parameters only is computed once (`plant_constants`).
+"""
+
+import json
+import re
+from pathlib import Path
+
+import casadi as ca
+
+from motionfmu.fmu.modelica import causal, description, stored
+from motionfmu.fmu.modelica.cprint import statements
+from motionfmu.fmu.modelica.flat import Declaration
+from motionfmu.fmu.modelica.hoist import Split, split
+from motionfmu.fmu.modelica.nodes import STEPS, Node, Program, program
+from motionfmu.fmu.modelica.ode import Ode
+
+# Axes that are integrated together, at most. Measured on SSE2 (per axis and step of BallScrewAxis,
+# 2025-11): 1 lane 74 ns, 2 lanes 56 ns, 4 lanes 37 ns, 6 lanes 42 ns; the same bits.
+LANES = 4
+# Every combination of branches is looked at when an FMU with equal steps starts: 2^8 of them take
+# 0.4 ms per axis.
+MAX_BRANCHES = 8
+
+_NOTE = "/* Generated from {}; do not edit. */\n"
+# Positions of the arguments of every program here, and their names in C.
+_X, _U, _P, _C = range(4)
+_ARGUMENTS = "xupc"
+
+
+def write(toml: Path, out: Path) -> None:
+    """Write plant.c, plant.h and ode.json where they differ.
+
+    Parameters
+    ----------
+    toml : Path
+        fmus/<name>/fmu.toml with a key ``modelica``.
+    out : Path
+        Folder for the files.
+
+    Raises
+    ------
+    ValueError
+        The file or the class is wrong or not supported.
+    """
+    packing = description.read(toml)
+    ode = causal.load(packing.package, packing.modelica)
+    out.mkdir(parents=True, exist_ok=True)
+    code, header = generate(ode, packing.instances, packing.tolerance)
+    texts = {"plant.c": code, "plant.h": header, stored.FILE: stored.to_json(ode)}
+    for name, text in texts.items():
+        file = out / name
+        if not file.exists() or file.read_text() != text:
+            file.write_text(text)
+
+
+def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[str, str]:
+    """Text of plant.c and plant.h.
+
+    Parameters
+    ----------
+    ode : Ode
+    instances : int
+        Copies of the class in the FMU; one has scalars, more have arrays.
+    tolerance : float, optional
+        Error of one step if the steps follow the error; each axis then has steps of its own.
+
+    Returns
+    -------
+    tuple of str
+
+    Raises
+    ------
+    ValueError
+        The class has too many branches, or an operation without a form in C.
+    """
+    if not ode.states or not ode.outputs:
+        raise ValueError(f"{ode.name}: a plant needs a state and an output")
+    equations = split(program([ode.x, ode.u, ode.p], [ode.xdot, ode.y]), {_X, _U}, _C)
+    jacobian = program([ode.x, ode.u, ode.p], [ca.jacobian(ode.xdot, ode.x)])
+    branches = _branches(jacobian)
+    bits = len({bit for bit, _ in branches.values()})
+    if tolerance is None and bits > MAX_BRANCHES:
+        raise ValueError(f"{ode.name}: {bits} branches in the Jacobian, at most {MAX_BRANCHES}")
+    sizes = {
+        "INSTANCES": instances,
+        "LANES": 1 if tolerance else min(LANES, instances),
+        "STATES": len(ode.states),
+        "INPUTS": len(ode.inputs),
+        "OUTPUTS": len(ode.outputs),
+        "PARAMETERS": len(ode.parameters),
+        "CONSTANTS": len(equations.constants),
+        "BRANCHES": bits,
+        "CONTROLLED": int(tolerance is not None),
+    }
+    note = _NOTE.format(ode.name)
+    return (
+        note
+        + '#include <math.h>\n#include <stddef.h>\n\n#include "plant.h"\n\n'
+        + "\n".join(
+            [
+                _ports(ode, "[instance]" if instances > 1 else ""),
+                _of_parameters(ode, equations),
+                *_loops(ode, equations),
+            ]
+        )
+        + _jacobian(ode, jacobian, branches),
+        note + _header(sizes, tolerance),
+    )
+
+
+def _branches(jacobian: Program) -> dict[int, tuple[int, bool]]:
+    """Comparisons that state or input decides: bit, and whether its opposite is meant.
+
+    The slope of a minimum or maximum has both a <= b and b <= a: one bit is enough for the two.
+    """
+    moving = jacobian.depends({_X, _U})
+    logic = {ca.OP_NOT, ca.OP_AND, ca.OP_OR, ca.OP_FLOOR, ca.OP_CEIL}
+    found: dict[int, tuple[int, bool]] = {}
+    bits: dict[tuple[int, ...], int] = {}
+    for k, n in enumerate(jacobian.nodes):
+        if not moving[k] or n.op not in STEPS - logic:
+            continue
+        opposite = (n.op, *reversed(n.args))
+        if n.op == ca.OP_LE and opposite in bits:
+            found[k] = bits[opposite], True
+        else:
+            found[k] = bits.setdefault((n.op, *n.args), len(bits)), False
+    return found
+
+
+def _function(head: str, lines: list[str]) -> str:
+    """A C function; arguments it does not use are named as such."""
+    body = "\n".join(lines)
+    arguments = re.findall(r"(\w+)[,)]", head)
+    unused = [a for a in arguments if not re.search(rf"\b{a}\b", body)]
+    lines = [f"(void){a};" for a in unused] + lines
+    return f"{head}\n{{\n" + "".join(f"    {line}\n" for line in lines) + "}\n"
+
+
+def _cast(d: Declaration, text: str) -> str:
+    """A member of struct vars as a double."""
+    if d.type == "Boolean":
+        return f"{text} ? 1.0 : 0.0"
+    return text
+
+
+def _ports(ode: Ode, element: str) -> str:
+    """What connects `struct vars` with the plain arrays; `element` follows a member's name."""
+    names = {
+        kind: ", ".join(f'"{d.name}"' for d in group)
+        for kind, group in (("state", ode.states), ("output", ode.outputs))
+    }
+    shown = [
+        f"v->{d.name}{element} = y[{k} * PLANT_LANES]{' != 0.0' if d.type == 'Boolean' else ''};"
+        for k, d in enumerate(ode.outputs)
+    ]
+    parameters = [
+        f"p[{k}] = {_cast(d, f'v->{d.name}{element}')};" for k, d in enumerate(ode.parameters)
+    ]
+    inputs = [
+        f"u[{k} * PLANT_LANES] = {_cast(d, f'v->{d.name}{element}')};"
+        for k, d in enumerate(ode.inputs)
+    ]
+    return "\n".join(
+        [
+            f"const char *const plant_state_names[PLANT_STATES] = {{{names['state']}}};",
+            f"const char *const plant_output_names[PLANT_OUTPUTS] = {{{names['output']}}};\n",
+            _function(
+                "int plant_active(const struct vars *v, int instance)",
+                [f"return v->active{element};"],
+            ),
+            _function(
+                "void plant_parameters(const struct vars *v, int instance, double *p)", parameters
+            ),
+            _function("void plant_inputs(const struct vars *v, int instance, double *u)", inputs),
+            _function("void plant_show(struct vars *v, int instance, const double *y)", shown),
+        ]
+    )
+
+
+def _single(_: int, node: Node) -> str | None:
+    """An input of a program for one instance."""
+    group, place = node.input
+    return f"{_ARGUMENTS[group]}[{place}]" if node.op == ca.OP_INPUT else None
+
+
+def _of_parameters(ode: Ode, equations: Split) -> str:
+    """Checks, initial state, sizes and constants: of parameters alone."""
+    conditions = ca.vertcat(ca.SX(0, 1), *(c for c, _ in ode.checks))
+    early = program([ode.x, ode.u, ode.p], [conditions, ode.start, ode.sizes])
+    checks, start, sizes = early.results
+    lines = statements(early, checks, _single)
+    for node, (_, text) in zip(checks, ode.checks, strict=True):
+        lines += [f"if (a{node} == 0.0) {{", f"    return {json.dumps(text)};", "}"]
+    check = _function("const char *plant_check(const double *p)", [*lines, "return NULL;"])
+    lines = statements(early, start, _single)
+    for k, (node, d) in enumerate(zip(start, ode.states, strict=True)):
+        lines.append(f"x[{k}] = a{node}; /* {d.name} */")
+    initial = _function("void plant_start(const double *p, double *x)", lines)
+    lines = statements(early, sizes, _single)
+    for k, (node, d) in enumerate(zip(sizes, ode.states, strict=True)):
+        lines.append(f"size[{k}] = a{node}; /* {d.name} */")
+    large = _function("void plant_sizes(const double *p, double *size)", lines)
+    lines = statements(equations.early, [node for node, _ in equations.constants], _single)
+    for k, (node, inverted) in enumerate(equations.constants):
+        lines.append(f"c[{k}] = {'1.0 / ' if inverted else ''}a{node};")
+    constants = _function("void plant_constants(const double *p, double *c)", lines)
+    return "\n".join([check, initial, large, constants])
+
+
+def _loops(ode: Ode, equations: Split) -> list[str]:
+    """plant_rhs and plant_outputs: one loop over lanes each."""
+    names = {_X: ode.states, _U: ode.inputs}
+
+    def lane(_: int, node: Node) -> str | None:
+        if node.op != ca.OP_INPUT:
+            return None
+        group, place = node.input
+        name = f" /* {names[group][place].name} */" if group in names else ""
+        return f"{_ARGUMENTS[group]}[{place} * PLANT_LANES + i]{name}"
+
+    texts = []
+    for name, to, result in zip(
+        ("rhs", "outputs"), ("dx", "y"), equations.late.results, strict=True
+    ):
+        lines = statements(equations.late, result, lane)
+        lines += [f"{to}[{k} * PLANT_LANES + i] = a{node};" for k, node in enumerate(result)]
+        head = (
+            f"void plant_{name}(const double *restrict x, const double *restrict u,\n"
+            f"    const double *restrict c, double *restrict {to})"
+        )
+        loop = "for (int i = 0; i < PLANT_LANES; i++) {"
+        texts.append(_function(head, [loop, *(f"    {line}" for line in lines), "}"]))
+    return texts
+
+
+def _jacobian(ode: Ode, jacobian: Program, branches: dict[int, tuple[int, bool]]) -> str:
+    """plant_jacobian: one instance, comparisons decided from outside."""
+
+    def leaf(k: int, node: Node) -> str | None:
+        if k not in branches:
+            return _single(k, node)
+        place, inverted = branches[k]
+        bit = f"({'~' if inverted else ''}branches >> {place} & 1u)"
+        return f"{bit} ? 1.0 : -1.0" if node.op == ca.OP_SIGN else f"(double){bit}"
+
+    (result,) = jacobian.results
+    n = len(ode.states)
+    lines = statements(jacobian, result, leaf)
+    for k, node in enumerate(result):  # CasADi counts column by column
+        lines.append(f"jacobian[{k % n * n + k // n}] = a{node};")
+    head = (
+        "\nvoid plant_jacobian(const double *x, const double *u, const double *p,\n"
+        "    unsigned branches, double *jacobian)"
+    )
+    return _function(head, lines)
+
+
+def _header(sizes: dict[str, int], tolerance: float | None) -> str:
+    members = "\n".join(f"    PLANT_{name} = {value}," for name, value in sizes.items())
+    return f"""#ifndef PLANT_H
+#define PLANT_H
+
+#include "vars.h"
+
+enum {{
+{members}
+}};
+
+/* [1] Error of a controlled step as a share of a state's size. */
+#define PLANT_TOLERANCE {tolerance or 0.0!r}
+
+extern const char *const plant_state_names[PLANT_STATES];
+extern const char *const plant_output_names[PLANT_OUTPUTS];
+
+/* Between struct vars and plain numbers. u and y step by PLANT_LANES. */
+int plant_active(const struct vars *v, int instance);
+void plant_parameters(const struct vars *v, int instance, double *p);
+void plant_inputs(const struct vars *v, int instance, double *u);
+void plant_show(struct vars *v, int instance, const double *y);
+
+/* Of the parameters alone: NULL or what is wrong with them, initial state, what is large for each
+ * state, constants of a run. */
+const char *plant_check(const double *p);
+void plant_start(const double *p, double *x);
+void plant_sizes(const double *p, double *size);
+void plant_constants(const double *p, double *c);
+
+/* Quantity k of lane i at [k * PLANT_LANES + i]. */
+void plant_rhs(const double *restrict x, const double *restrict u, const double *restrict c,
+    double *restrict dx);
+void plant_outputs(const double *restrict x, const double *restrict u, const double *restrict c,
+    double *restrict y);
+
+/* d(rhs)/dx row by row, with each comparison decided by a bit of `branches`. */
+void plant_jacobian(const double *x, const double *u, const double *p, unsigned branches,
+    double *jacobian);
+
+#endif
+"""

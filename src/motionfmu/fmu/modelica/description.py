@@ -1,0 +1,189 @@
+"""The description of an FMU made from a Modelica class."""
+
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from motionfmu.errors import InputError
+from motionfmu.fmu import describe
+from motionfmu.fmu.head import check_head, line_of
+from motionfmu.fmu.modelica import causal
+from motionfmu.fmu.modelica.flat import Declaration
+from motionfmu.fmu.modelica.ode import Ode
+from motionfmu.toml_lines import shown, tables_of, text_of
+
+_TYPES = {"Real": "f64", "Integer": "i32", "Boolean": "bool"}
+_KEYS = ("name", "description", "tick_ns", "experiment", "modelica", "instances", "micro_step")
+_OPTIONAL = ("tolerance",)
+INSTANCES_MAX = 64
+
+
+@dataclass(frozen=True)
+class Packing:
+    """What fmu.toml says about a Modelica FMU.
+
+    Attributes
+    ----------
+    name, description : str
+        Of the FMU.
+    tick_ns : int
+        Every communication step is a whole multiple of it [ns].
+    experiment : dict
+        Default ``stop`` and ``step`` [s].
+    modelica : str
+        Full class name.
+    instances : int
+        Copies of the class, one per axis; a single one has scalars instead of arrays.
+    micro_step : float
+        Default grid of the integrator [s].
+    package : Path
+        Folder of the Modelica package.
+    tolerance : float, optional
+        Error of one integrator step, as a share of what is large for a state: the steps follow
+        it. None: equal steps.
+    """
+
+    name: str
+    description: str
+    tick_ns: int
+    experiment: dict[str, float]
+    modelica: str
+    instances: int
+    micro_step: float
+    package: Path
+    tolerance: float | None = None
+
+
+def read(toml: Path) -> Packing:
+    """Read an fmu.toml with a key ``modelica``.
+
+    Parameters
+    ----------
+    toml : Path
+
+    Returns
+    -------
+    Packing
+
+    Raises
+    ------
+    ValueError
+        ``file:line: what``.
+    """
+    text = text_of(toml)
+    doc = tables_of(text, toml)
+
+    def refuse(key: str, what: str) -> InputError:
+        return InputError(f"{toml}:{line_of(text, key)}: {what}")
+
+    for key in sorted(set(doc) - {*_KEYS, *_OPTIONAL}):
+        raise refuse(key, f"unknown key {key!r}; the variables come from the Modelica class")
+    for key in _KEYS:
+        if key not in doc:
+            raise InputError(f"{toml}: {key!r} is missing")
+    check_head(doc, text, str(toml))
+    instances, step = doc["instances"], doc["micro_step"]
+    if type(instances) is not int or not 1 <= instances <= INSTANCES_MAX:
+        what = f"is not a positive integer, {INSTANCES_MAX} at most"
+        raise refuse("instances", f"instances {shown(instances)} {what}")
+    if type(step) not in (float, int) or not math.isfinite(step) or step <= 0:
+        raise refuse("micro_step", f"micro_step {shown(step)} is not a positive number")
+    tolerance = doc.get("tolerance", 1e-6)
+    if not isinstance(tolerance, float) or not 1e-12 <= tolerance <= 1e-2:
+        raise refuse(
+            "tolerance", f"tolerance {shown(tolerance)} is not a number from 1e-12 to 0.01"
+        )
+    if not isinstance(doc["modelica"], str) or not re.fullmatch(r"\w+(\.\w+)+", doc["modelica"]):
+        raise refuse("modelica", f"modelica {shown(doc['modelica'])} is not a class name")
+    top = doc["modelica"].split(".")[0]
+    for folder in toml.resolve().parents:
+        if (folder / "modelica" / top / "package.mo").is_file():
+            return Packing(**doc, package=folder / "modelica" / top)
+    raise refuse("modelica", f"there is no package modelica/{top} above this file")
+
+
+def from_modelica(toml: Path) -> describe.Description:
+    """Make the description of a Modelica FMU.
+
+    Parameters
+    ----------
+    toml : Path
+        fmus/<name>/fmu.toml.
+
+    Returns
+    -------
+    Description
+        Parameters ``active`` and ``micro_step``, then all that the class declares, one element
+        per instance (scalars if there is one instance).
+
+    Raises
+    ------
+    ValueError
+        The file or the class is wrong.
+    """
+    packing = read(toml)
+    ode = causal.load(packing.package, packing.modelica)
+    own: list[tuple[str, str, dict[str, Any]]] = [
+        ("active", "parameter", _active(packing.instances)),
+        ("micro_step", "parameter", _micro_step(packing)),
+    ]
+    for group, values in ((ode.parameters, ode.p0), (ode.inputs, ode.u0), (ode.outputs, None)):
+        for k, d in enumerate(group):
+            start = None if values is None else values[k]
+            own.append((d.name, d.kind, _row(ode, d, packing.instances, start)))
+    names = [name for name, _, _ in own]
+    try:
+        for name in ("active", "micro_step"):
+            if names.count(name) > 1:
+                raise ValueError(f"the name {name} is taken: every plant has it")
+        variables = tuple(describe.variable(*row) for row in own)
+    except ValueError as error:
+        raise ValueError(f"{toml}: {packing.modelica}: {error}") from None
+    return describe.Description(
+        packing.name,
+        packing.description,
+        packing.tick_ns,
+        packing.experiment,
+        grid="micro_step",
+        variables=variables,
+    )
+
+
+def _dims(instances: int) -> list[int]:
+    """One copy of a class has scalars."""
+    return [instances] if instances > 1 else []
+
+
+def _active(instances: int) -> dict[str, Any]:
+    doc = "Axis is used; an unused axis costs nothing and its outputs stay 0"
+    return {"type": "bool", "dims": _dims(instances), "start": True, "doc": doc}
+
+
+def _micro_step(packing: Packing) -> dict[str, Any]:
+    return {
+        "type": "f64",
+        "unit": "s",
+        "start": packing.micro_step,
+        "min": packing.tick_ns * 1e-9,
+        "doc": f"Fixed grid of the integrator; a whole number of {packing.tick_ns} ns",
+    }
+
+
+def _row(ode: Ode, d: Declaration, instances: int, start: float | None) -> dict[str, Any]:
+    """One variable as a row of fmu.toml would say it."""
+    row: dict[str, Any] = {"type": _TYPES[d.type], "dims": _dims(instances), "doc": d.description}
+    kind = {"Real": float, "Integer": int, "Boolean": bool}[d.type]
+    if start is not None:
+        row["start"] = kind(start)
+    if d.type == "Real":
+        if not d.unit:
+            raise ValueError(f"{ode.name}: {d.name} has no unit")
+        row["unit"] = None if d.unit == "1" else d.unit
+        row["continuous"] = d.kind != "parameter"
+    if d.type != "Boolean":
+        for key, value in zip(("min", "max", "nominal"), ode.limits[d.name], strict=True):
+            if value is not None and (key != "nominal" or d.type == "Real"):
+                row[key] = kind(value)
+    return row

@@ -1,0 +1,76 @@
+"""Take out of a program what stays constant during a run."""
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from motionfmu.fmu.modelica.nodes import Node, Program
+
+
+@dataclass(frozen=True)
+class Split:
+    """A program in two parts.
+
+    Attributes
+    ----------
+    early : Program
+        All operations; only what `constants` needs is to be computed, once.
+    constants : tuple of (int, bool)
+        Nodes of `early`, and whether the inverse is meant: a division by a constant becomes
+        a multiplication.
+    late : Program
+        The rest. Constant k is its input (group, k).
+    group : int
+        Argument position that stands for the constants in `late`.
+    """
+
+    early: Program
+    constants: tuple[tuple[int, bool], ...]
+    late: Program
+    group: int
+
+
+def split(early: Program, varying: set[int], group: int) -> Split:
+    """Split a program by what varies during a run.
+
+    Parameters
+    ----------
+    early : Program
+    varying : set of int
+        Positions of the arguments that vary.
+    group : int
+        A free argument position for the constants.
+
+    Returns
+    -------
+    Split
+    """
+    moving = early.depends(varying)
+    places: dict[tuple[int, bool], int] = {}
+    late: list[Node] = []
+    at: dict[tuple[int, bool], int] = {}  # (old node, inverted) -> node of `late`
+
+    def fetch(k: int, inverted: bool = False) -> int:
+        """Position of a node in `late`; a new one is a constant."""
+        if (k, inverted) not in at:
+            node = early.nodes[k]
+            if node.op == ca.OP_CONST:
+                late.append(Node(ca.OP_CONST, value=1.0 / node.value if inverted else node.value))
+            else:
+                place = places.setdefault((k, inverted), len(places))
+                late.append(Node(ca.OP_INPUT, input=(group, place)))
+            at[k, inverted] = len(late) - 1
+        return at[k, inverted]
+
+    for k, node in enumerate(early.nodes):
+        if not moving[k]:
+            continue
+        if node.op == ca.OP_DIV and not moving[node.args[1]]:
+            args = (fetch(node.args[0]), fetch(node.args[1], inverted=True))
+            node = Node(ca.OP_MUL, args)
+        else:
+            node = Node(node.op, tuple(fetch(a) for a in node.args), node.value, node.input)
+        late.append(node)
+        at[k, False] = len(late) - 1
+    results = tuple(tuple(fetch(k) for k in result) for result in early.results)
+    return Split(early, tuple(places), Program(tuple(late), results), group)

@@ -1,0 +1,253 @@
+"""Generate an FMU's C and XML, and pack its .fmu files; called by the build.
+
+python src/pack.py generate fmus/epcio build/gen/epcio
+python src/pack.py flags    fmus/epcio build/gen/epcio
+python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.so epcio.fmi3.fmu
+"""
+
+import json
+import platform
+import re
+import sys
+import zipfile
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+from motionfmu.fmu import cores, cstructs, ctables, describe, fmu_toml
+from motionfmu.fmu.modeldescription import model_description
+from motionfmu.toml_lines import text_of
+
+SOURCE = Path(__file__).resolve().parents[2]
+# Zip cannot date earlier; a fixed date makes equal FMUs equal files.
+_DATE = (1980, 1, 1, 0, 0, 0)
+# What the linear models are made of goes into the FMU beside what the standard asks for.
+EXTRA = "extra/motionfmu"
+# Which parameter is the FMU's grid; carried in EXTRA.
+GRID = "grid.json"
+
+
+def _write(path: Path, data: str | bytes) -> None:
+    """Write only what differs, so that nothing is compiled for nothing."""
+    raw = data.encode() if isinstance(data, str) else data
+    if not path.exists() or path.read_bytes() != raw:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(raw)
+
+
+def is_modelica(fmu: Path) -> bool:
+    """Whether the FMU in this folder is made from a Modelica class.
+
+    Parameters
+    ----------
+    fmu : Path
+        Folder with fmu.toml.
+
+    Returns
+    -------
+    bool
+    """
+    return fmu_toml.names_modelica(text_of(fmu / "fmu.toml"))
+
+
+def generate(fmu: Path, out: Path) -> None:
+    """Write all generated text of one FMU.
+
+    Parameters
+    ----------
+    fmu : Path
+        Folder with fmu.toml (and model.c).
+    out : Path
+        Receives vars.h, vars.c, fmi2/ and fmi3/ with fmu_main.c and modelDescription.xml,
+        and plant.c, plant.h, ode.json for a Modelica class.
+
+    Raises
+    ------
+    ValueError
+        The description is wrong; ``file:line: what``.
+    """
+    d = fmu_toml.load(fmu / "fmu.toml")
+    _write(out / "vars.h", ctables.header(d))
+    _write(out / "vars.c", ctables.table(d))
+    _write(out / GRID, json.dumps({"grid": d.grid}) + "\n")
+    if is_modelica(fmu):
+        from motionfmu.fmu.modelica import codegen
+
+        codegen.write(fmu / "fmu.toml", out)
+    compiled = [f.name for f in compiled_sources(fmu, d, out)]
+    for fmi in (2, 3):
+        model = "plant_model.c" if is_modelica(fmu) else "model.c"
+        _write(out / f"fmi{fmi}/fmu_main.c", ctables.main_unit(model, fmi))
+        xml = model_description(d, fmi, ["fmu_main.c", *compiled])
+        _write(out / f"fmi{fmi}/modelDescription.xml", xml)
+
+
+def flags(fmu: Path, out: Path) -> None:
+    """Write state_flags.h of one FMU from its C text.
+
+    Parameters
+    ----------
+    fmu : Path
+        Folder with fmu.toml (and model.c).
+    out : Path
+        Has what `generate` wrote.
+
+    Raises
+    ------
+    ValueError
+        A struct of the state has what a state cannot have.
+    """
+    d = fmu_toml.load(fmu / "fmu.toml")
+    files = [f for f in _core_files(fmu, d) if f.suffix == ".h"]
+    if is_modelica(fmu):
+        files += [out / "plant.h", SOURCE / "plant" / "plant_model.c"]
+    else:
+        files += [*sorted(fmu.glob("*.h")), fmu / "model.c"]
+    (out / "state_flags.h").write_text(cstructs.flags(f.read_text() for f in files))
+
+
+def _core_files(fmu: Path, d: describe.Description) -> list[Path]:
+    return cores.needed(SOURCE, d.cores, fmu.glob("*.[ch]"))
+
+
+def compiled_sources(fmu: Path, d: describe.Description, out: Path) -> list[Path]:
+    """C files that are compiled beside fmu_main.c.
+
+    Parameters
+    ----------
+    fmu : Path
+        Folder with fmu.toml.
+    d : Description
+    out : Path
+        Folder of the generated text.
+
+    Returns
+    -------
+    list of Path
+    """
+    files = [f for f in _core_files(fmu, d) if f.suffix == ".c"]
+    return files + ([out / "plant.c"] if is_modelica(fmu) else [])
+
+
+def _packed_sources(fmu: Path, out: Path, fmi: int) -> dict[str, bytes]:
+    import fmpy
+
+    d = fmu_toml.load(fmu / "fmu.toml")
+    folders = [SOURCE / "fmi", fmu]
+    folders += [SOURCE / "plant"] if is_modelica(fmu) else []
+    files = [f for folder in folders for f in sorted(folder.glob("*.[ch]"))]
+    files += [*sorted((SOURCE / "fmi").glob("*.inc")), *_core_files(fmu, d)]
+    files += [*sorted(out.glob("*.[ch]")), out / f"fmi{fmi}/fmu_main.c"]
+    headers = Path(fmpy.__file__).parent / "c-code"
+    files += sorted(headers.glob(f"fmi{fmi}*.h"))
+    packed = {f.name: f.read_bytes() for f in files}
+    if fmi == 3:
+        names = ["fmu_main.c", *[f.name for f in compiled_sources(fmu, d, out)]]
+        packed["buildDescription.xml"] = _build_description(d.name, names)
+    return packed
+
+
+def _build_description(identifier: str, names: list[str]) -> bytes:
+    root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
+    configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=identifier)
+    file_set = ET.SubElement(configuration, "SourceFileSet", language="C11")
+    for name in names:
+        ET.SubElement(file_set, "SourceFile", name=name)
+    if sys.platform.startswith("linux"):
+        ET.SubElement(configuration, "Library", name="m")
+    ET.indent(root)
+    return ET.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+
+
+def platform_folder(fmi: int) -> str:
+    """Name of the folder for this machine's binaries inside an FMU.
+
+    Parameters
+    ----------
+    fmi : int
+        2 or 3.
+
+    Returns
+    -------
+    str
+        For example ``linux64`` or ``x86_64-linux``.
+    """
+    system = {"linux": "linux", "darwin": "darwin", "win32": "windows"}[sys.platform]
+    machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
+    if fmi == 3:
+        return f"{machine}-{system}"
+    return {"windows": "win64"}.get(system, f"{system}64")
+
+
+def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> None:
+    """Pack one .fmu; equal input gives equal bytes.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the FMU with fmu.toml and README.md.
+    out : Path
+        Folder of its generated text.
+    fmi : int
+        2 or 3.
+    library : Path
+        The shared library.
+    target : Path
+        The .fmu to write.
+    """
+    xml = (out / f"fmi{fmi}/modelDescription.xml").read_bytes()
+    match = re.search(rb'modelIdentifier="(\w+)"', xml)
+    assert match, "the generated description has a model identifier"
+    name = match[1].decode() + library.suffix
+    files = {
+        "modelDescription.xml": xml,
+        f"binaries/{platform_folder(fmi)}/{name}": library.read_bytes(),
+        "documentation/LICENSE": (SOURCE.parent / "LICENSE").read_bytes(),
+    }
+    for readme in folder.glob("README.md"):
+        files["documentation/README.md"] = readme.read_bytes()
+    if fmi == 3:
+        for extra in (
+            *folder.glob("linear.toml"),
+            *folder.glob("causes.toml"),
+            *out.glob("*.json"),
+        ):
+            files[f"{EXTRA}/{extra.name}"] = extra.read_bytes()
+    for source, data in _packed_sources(folder, out, fmi).items():
+        files[f"sources/{source}"] = data
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(target, "w") as archive_file:
+        for path, data in sorted(files.items()):
+            info = zipfile.ZipInfo(path, _DATE)
+            info.compress_type = zipfile.ZIP_DEFLATED
+            info.external_attr = 0o644 << 16
+            archive_file.writestr(info, data)
+
+
+def main(arguments: list[str]) -> int:
+    """Run one of the three with the arguments of the build.
+
+    Parameters
+    ----------
+    arguments : list of str
+        As in the module's first lines.
+
+    Returns
+    -------
+    int
+        Exit status: 0, or 2 after one message on stderr.
+    """
+    try:
+        if arguments[0] in ("generate", "flags"):
+            make = generate if arguments[0] == "generate" else flags
+            make(Path(arguments[1]), Path(arguments[2]))
+        else:
+            fmu, out, fmi, library, target = arguments[1:]
+            archive(Path(fmu), Path(out), int(fmi), Path(library), Path(target))
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,251 @@
+"""The explanation as one HTML page, with its picture and numbers beside it."""
+
+import json
+import math
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motionfmu.contour.circles import CircularTest
+from motionfmu.explain import ballbar
+from motionfmu.explain.ballbar import Signature
+from motionfmu.explain.decompose import Effect, Explanation
+from motionfmu.report.decimate import keep_peaks
+from motionfmu.report.explain_picture import CAUSE, FORMULA, write_picture
+from motionfmu.report.numbers import figure, length, unit
+from motionfmu.report.packed import packed
+from motionfmu.report.polar_plot import polar_figure
+from motionfmu.report.sheet import Frame, Sheet
+from motionfmu.report.style import AXES, INK, MUTED, axis, layout
+from motionfmu.report.tables import circle_table, table
+
+PAGE, NUMBERS = "report.html", "result.json"
+# Points of a curve over the path: twice as many as a screen has columns.
+BUCKETS = 1200
+BAR_HEIGHT = 44  # [pixel]
+FOOTER = (
+    "A cause is the change of the contour error between the run and the same run without it, at the"
+    " same places of the path. Its size is the largest such change. Servo lag and path are what is"
+    " left with all causes switched off together. The first places after a rest are not counted:"
+    " how a tool starts depends on where friction has left it. The causes interact, so their sum is"
+    ' not the whole: the residual says by how much. All numbers are in <a href="result.json">'
+    "result.json</a>."
+)
+
+
+def write_explanation(found: Explanation, folder: Path) -> Path:
+    """Write the page, the picture and the numbers.
+
+    Parameters
+    ----------
+    found : Explanation
+    folder : Path
+        There already; gets report.html, result.json, causes.png and causes.svg.
+
+    Returns
+    -------
+    Path
+        The page.
+    """
+    text = json.dumps({"scenario": found.result.name} | found.numbers(), indent=1)
+    (folder / NUMBERS).write_text(text + "\n", encoding="utf-8")
+    write_picture(found, folder)
+    (folder / PAGE).write_text(page_text(found), encoding="utf-8")
+    return folder / PAGE
+
+
+def page_text(found: Explanation) -> str:
+    """The whole HTML page.
+
+    Parameters
+    ----------
+    found : Explanation
+
+    Returns
+    -------
+    str
+    """
+    page = Sheet()
+    page.sections.append(_cards(found))
+    note = "Largest change of the contour error by each cause: simulated beside theory."
+    content = page.place("causes", _bars(found)) + _effects(found)
+    page.section("Causes", note, content)
+    note = (
+        "The contour error of the run, the sum of all single effects, and what the sum leaves:"
+        " interaction of the causes."
+    )
+    page.section("Along the path", note, page.place("along", _curves(found)))
+    for i, mark in enumerate(found.signatures):
+        _add_circle(page, f"circle{i}", mark)
+    if found.corners:
+        note = (
+            "Theory: first-order axes with the mean gain, the corner run into at the speed of the"
+            " command. A corner at which the command rests until the tool has come has no error;"
+            " moves too short for their ramps have no formula."
+        )
+        page.section("Corners", note, _corners(found))
+    result = found.result
+    frame = Frame(result.name, result.about, "contour error explained", (), FOOTER)
+    return page.text(frame)
+
+
+def _cards(found: Explanation) -> str:
+    first = found.effects[0]
+    numbers = found.numbers()
+    whole, total, rest = (numbers[n] for n in ("contour_error", "sum_of_effects", "residual"))
+    theory = "" if first.theory.value is None else f"theory {length(first.theory.value)}"
+    cards = [
+        ("Largest contour error", length(whole["max"]), f"RMS {length(whole['rms'])}"),
+        (f"First cause: {first.title}", length(first.size), theory),
+        ("Sum of all effects", length(total["max"]), f"RMS {length(total['rms'])}"),
+        ("Residual: interaction", length(rest["max"]), f"RMS {length(rest['rms'])}"),
+    ]
+    return '<div class="cards">{}</div>'.format(
+        "".join(
+            f'<div class="card"><div class="what">{escape(what)}</div>'
+            f'<div class="value">{value}</div><div class="where">{where}</div></div>'
+            for what, value, where in cards
+        )
+    )
+
+
+def shown(found: Explanation) -> list[Effect]:
+    """Effects that a chart shows: those that act, or should.
+
+    Parameters
+    ----------
+    found : Explanation
+
+    Returns
+    -------
+    list of Effect
+        The largest first; all of them if none acts.
+    """
+    acting = [e for e in found.effects if e.judged and (e.size > 0.0 or e.theory.value)]
+    return acting or list(found.effects)
+
+
+def _bars(found: Explanation) -> dict[str, Any]:
+    effects = shown(found)[::-1]
+    factor, name = unit(max(max(e.size, e.theory.value or 0.0) for e in effects))
+    titles = [e.title for e in effects]
+    theory = [None if e.theory.value is None else e.theory.value * factor for e in effects]
+    size = [e.size * factor for e in effects]
+
+    def bar(what: str, values: list[Any], color: str) -> dict[str, Any]:
+        return {
+            "type": "bar",
+            "orientation": "h",
+            "name": what,
+            "y": titles,
+            "x": values,
+            "text": ["" if v is None else f"{figure(v)} {name}" for v in values],
+            "textposition": "outside",
+            "cliponaxis": False,
+            "marker": {"color": color},
+            "hovertemplate": "%{y}: %{x:.3g} " + name + f"<extra>{what}</extra>",
+        }
+
+    more = {
+        "barmode": "group",
+        "bargap": 0.3,
+        "margin": {"l": 210, "r": 90, "t": 34, "b": 48},
+        "xaxis": axis(f"Largest change of the contour error [{name}]", rangemode="tozero"),
+        "yaxis": axis("", automargin=True),
+        "legend": layout(0)["legend"] | {"traceorder": "reversed"},
+    }
+    data = [bar("theory", theory, FORMULA), bar("simulated", size, CAUSE)]
+    return {"data": data, "layout": layout(110 + BAR_HEIGHT * len(effects), **more)}
+
+
+def _effects(found: Explanation) -> str:
+    rows = []
+    for e in found.effects:
+        said = "" if e.theory.value is None else length(e.theory.value)
+        title = f'{escape(e.title)}<br><span class="sub">{escape(_wrap(e.how))}</span>'
+        formula = f'<span class="sub">{escape(e.theory.formula)}</span>'
+        line = str(e.where) if e.where else ""
+        without = "" if e.without is None else length(e.without)
+        sizes = (length(e.size), line, length(e.usual), length(e.rms), without, said)
+        if not e.judged:
+            sizes = ("not judged", "", "", "", "", said)
+        rows.append((title, formula, *sizes))
+    heads = ("Cause, and how it is off", "Formula", "Largest", "Line", "99 %", "RMS")
+    return table((*heads, "Error without", "Theory"), rows, numeric=2)
+
+
+def _wrap(text: str, most: int = 5) -> str:
+    parts = text.split(", ")
+    whole = text.count("[") or len(parts) <= most
+    return text if whole else ", ".join(parts[:most]) + f" and {len(parts) - most} more"
+
+
+def _curves(found: Explanation) -> dict[str, Any]:
+    factor, name = unit(float(np.abs(found.whole).max()))
+    data = []
+    curves = (
+        ("contour error", found.whole, INK, 2.4),
+        ("sum of the effects", found.together, AXES[1], 1.2),
+        ("residual", found.residual, MUTED, 1.0),
+    )
+    for what, values, color, width in curves:
+        kept = keep_peaks(values, BUCKETS)
+        line = {"color": color, "width": width}
+        series = {"type": "scatter", "mode": "lines", "name": what, "line": line}
+        data.append(series | {"x": packed(found.along[kept]), "y": packed(values[kept] * factor)})
+    more = {
+        "xaxis": axis("Place on the path [mm]"),
+        "yaxis": axis(f"Contour error [{name}]"),
+        "hovermode": "x",
+    }
+    return {"data": data, "layout": layout(320, **more)}
+
+
+def _add_circle(page: Sheet, name: str, mark: Signature) -> None:
+    plot = page.place(name, polar_figure(mark.test))
+    words = "".join(f"<li>{escape(w)}</li>" for w in mark.words())
+    rows = [
+        (f"<b>{f.name}</b>" if f.named else f.name, length(f.size), "named" if f.named else "")
+        for f in mark.findings
+    ]
+    mean = f"Mean radius {length(mark.mean, sign=True)}: servo lag, or both axes' scale alike."
+    right = (
+        f"<h3>Diagnosis</h3><ul><li>{mean}</li>{words}</ul>"
+        f"{table(('Part of the signature', 'Size', ''), rows)}"
+        f'<p class="note">Largest radial deviation of each part. Named from'
+        f" {ballbar.NAMED_MIN * 1e3:g} µm and {ballbar.NAMED_SHARE:.0%} of the largest on; spikes"
+        f" also from {ballbar.SPIKE_SCATTER:g} times the {length(mark.rest)} RMS that the fit"
+        " leaves.</p>"
+    )
+    note = (
+        "Radial deviation about the nominal centre, both ways round. The fit: least squares of"
+        " harmonics and backlash steps, without the"
+        f" {math.degrees(ballbar.SPIKE_BEHIND):.0f}° behind each quadrant. ISO 230-4: G and G(b)"
+        " about the centre of minimum zone, F about the nominal centre, D about the least-squares"
+        " centre."
+    )
+    content = f'<div class="two">{plot}<div>{right}</div></div>{circle_table(mark.test)}'
+    page.section(_circle_title(mark.test), note, content)
+
+
+def _circle_title(test: CircularTest) -> str:
+    return f"Ballbar, radius {test.radius:g} mm"
+
+
+def _corners(found: Explanation) -> str:
+    rows = [
+        (
+            f"{c.lines[0]} to {c.lines[1]}",
+            c.kind,
+            f"{math.degrees(c.angle):.0f}°",
+            f"{figure(c.speed)} mm/s",
+            length(c.error),
+            length(c.ideal),
+            "" if c.theory is None else length(c.theory),
+        )
+        for c in found.corners
+    ]
+    heads = ("Lines", "Kind", "Angle", "Speed", "Error", "Servo and path only", "Theory")
+    return table(heads, rows, numeric=2)

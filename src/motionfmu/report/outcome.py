@@ -1,0 +1,174 @@
+"""What a run leaves on disk: signals, numbers, report."""
+
+import contextlib
+import json
+import math
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motionfmu.errors import InputError
+from motionfmu.run.result import Result
+
+SIGNALS, NUMBERS, TABLE = "signals.npz", "result.json", "signals.csv"
+
+
+def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
+    """The machine-readable result.
+
+    Parameters
+    ----------
+    result : Result
+    options : mapping
+        How it was run; kept as given.
+
+    Returns
+    -------
+    dict
+        Ready for JSON.
+    """
+    found: dict[str, Any] = {
+        "scenario": result.name,
+        "about": result.about,
+        "options": dict(options),
+        "samples": len(result.time),
+        "ok": result.ok,
+        "warnings": list(result.warnings),
+        "checks": [
+            {
+                "name": v.name,
+                "bounds": v.bounds,
+                "value": _number(v.value),
+                "ok": v.ok,
+                "reason": v.reason,
+            }
+            for v in result.checks
+        ],
+    }
+    if result.scenario.document.body.contour is not None:
+        found["contour"] = None if result.no_contour else result.contour().numbers()
+        found["no_contour"] = result.no_contour
+    return found
+
+
+def _write_csv(result: Result, file: Path) -> None:
+    names, columns = ["time"], [result.time]
+    for name, data in result.signals.items():
+        wide = data.reshape(len(data), -1)
+        for i in range(wide.shape[1]):
+            names.append(f"{name}[{i + 1}]" if data.ndim == 2 else name)
+            columns.append(wide[:, i])
+    table = np.column_stack(columns)
+    np.savetxt(file, table, delimiter=",", header=",".join(names), comments="", fmt="%.17g")
+
+
+def usable(folder: Path) -> Path:
+    """Check that a result may be written to this folder.
+
+    Parameters
+    ----------
+    folder : Path
+        New, empty, or with an older result.
+
+    Returns
+    -------
+    Path
+        The folder, absolute.
+
+    Raises
+    ------
+    InputError
+        It holds something else than a result, or is a file.
+    """
+    folder = folder.resolve()
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file, not a folder")
+    if folder.exists() and not (folder / NUMBERS).is_file() and any(folder.iterdir()):
+        raise InputError(f"{folder} holds no earlier result; it is left as it is")
+    return folder
+
+
+def _number(value: float) -> float | None:
+    """JSON has no NaN."""
+    return value if math.isfinite(value) else None
+
+
+def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = False) -> Path:
+    """Write a run's folder, whole or not at all.
+
+    Parameters
+    ----------
+    result : Result
+    folder : Path
+        Replaced if it holds an older result.
+    options : mapping
+        How it was run.
+    csv : bool
+        Also write signals.csv.
+
+    Returns
+    -------
+    Path
+        The report.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or holds something else than a result.
+    """
+    with whole(folder) as part:
+        arrays: dict[str, Any] = {"time": result.time, **result.signals}
+        np.savez_compressed(part / SIGNALS, **arrays)
+        text = json.dumps(numbers(result, options), indent=1, allow_nan=False)
+        (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
+        if csv:
+            _write_csv(result, part / TABLE)
+        from motionfmu.report import write_report
+
+        wanted = result.scenario.document.body.contour is not None and not result.no_contour
+        contour = result.contour() if wanted else None
+        shown = write_report(result, contour, part).name
+    return folder.resolve() / shown
+
+
+@contextlib.contextmanager
+def whole(folder: Path) -> Iterator[Path]:
+    """Write a folder of results whole or not at all.
+
+    Parameters
+    ----------
+    folder : Path
+        Replaced if it holds an older result.
+
+    Yields
+    ------
+    Path
+        Where to write; it must get a `NUMBERS`.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or holds something else than a result.
+    """
+    folder = usable(folder)
+    part = folder.with_name(f".{folder.name}.part{os.getpid()}")
+    old = folder.with_name(f".{folder.name}.old{os.getpid()}")
+    new_parents = [p for p in part.parents if not p.exists()]
+    try:
+        part.mkdir(parents=True)
+        yield part
+        if folder.exists():
+            folder.rename(old)
+        part.rename(folder)
+    except OSError as error:
+        raise InputError(f"cannot write {folder}: {error.strerror or error}") from None
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+        shutil.rmtree(old, ignore_errors=True)
+        for parent in new_parents:
+            with contextlib.suppress(OSError):
+                parent.rmdir()  # refused where the result stands

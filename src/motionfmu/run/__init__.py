@@ -1,0 +1,8 @@
+"""How a scenario runs, and what a run gave."""
+
+from motionfmu.run.prepared import Options
+from motionfmu.run.result import Result
+from motionfmu.run.runner import Scenario, load
+from motionfmu.run.session import Session
+
+__all__ = ["Options", "Result", "Scenario", "Session", "load"]

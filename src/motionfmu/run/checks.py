@@ -1,0 +1,208 @@
+"""Verdicts: bounds of signals and contour figures."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.scenario import rates
+from motionfmu.scenario.document import Body, Check, Pair
+
+CONTOUR = "contour."
+BOUNDS = ("min", "max", "absmax", "peak", "rms", "final", "changes", "order")
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One bound of a ``[check]`` line and what was found.
+
+    Attributes
+    ----------
+    name : str
+        Signal or figure.
+    bounds : str
+        What was asked, in words.
+    value : float
+        What was found, the worst over time and axes; NaN if there is no number.
+    ok : bool
+    reason : str
+        Why there is no number; else empty.
+    """
+
+    name: str
+    bounds: str
+    value: float
+    ok: bool
+    reason: str = ""
+
+
+def misplaced(name: str, body: Body, recorded: Mapping[str, tuple[int, ...]]) -> str:
+    """What is wrong with a line of the [check] table.
+
+    Parameters
+    ----------
+    name : str
+        Its key.
+    body : Body
+        The scenario's tables.
+    recorded : mapping
+        Shape of every recorded signal, by name.
+
+    Returns
+    -------
+    str
+        Empty if nothing is.
+    """
+    checks = body.check[name]
+    if any(all(getattr(c, bound) is None for bound in BOUNDS) for c in checks):
+        return f"{name}: no bound ({', '.join(BOUNDS)})"
+    if name.startswith(CONTOUR):
+        if body.contour is None:
+            return f"{name}: there is no [contour] table"
+        if any((c.windows, c.at, c.rate) != (None, None, None) for c in checks):
+            return f"{name}: a figure has no time, no windows and no rate"
+        from motionfmu.contour.names import wrong  # which takes scipy with it
+
+        return wrong(name.removeprefix(CONTOUR))
+    whole, bracket, rest = name.partition("[")
+    if whole not in recorded or (bracket and not _is_axis(rest, recorded[whole])):
+        return f"{name} is not recorded"
+    told = next((text for c in checks if (text := _no_time(c, body.stop))), "")
+    return f"{name}: {told}" if told else ""
+
+
+def _is_axis(rest: str, shape: tuple[int, ...]) -> bool:
+    """Whether there is an axis ``i]``, i from 1."""
+    index = rest.removesuffix("]")
+    return bool(shape) and index.isdecimal() and 1 <= int(index) <= shape[0]
+
+
+def _no_time(check: Check, stop: float) -> str:
+    """What is wrong with the times of a check; empty if nothing is."""
+    if check.at is not None and check.windows is not None:
+        return "at and windows exclude each other"
+    if check.at is not None and not 0.0 <= check.at <= stop:
+        return f"at = {check.at!r} s is not within 0 .. {stop!r} s"
+    for low, high in check.windows or ():
+        if not 0.0 <= low <= high <= stop:
+            return f"windows: [{low!r}, {high!r}] s is not within 0 .. {stop!r} s"
+    return ""
+
+
+def _within(value: float, low: float, high: float) -> bool:
+    return bool(low <= value <= high)
+
+
+def _range(name: str, words: str, value: float, bounds: tuple[float, float]) -> Verdict:
+    low, high = bounds
+    text = f"{words} = {low:g}" if low == high else f"{words} in {low:g} .. {high:g}"
+    return Verdict(name, text, value, _within(value, low, high))
+
+
+def _side(name: str, sign: str, value: float, bound: float | Pair) -> Verdict:
+    """The smallest sample (sign ``>=``) or the largest one (``<=``): a bound, or a range."""
+    if isinstance(bound, tuple):
+        words = {">=": "min", "<=": "max", "|.| <=": "absmax"}
+        return _range(name, words[sign], value, bound)
+    ok = value >= bound if sign == ">=" else value <= bound
+    return Verdict(name, f"{sign} {bound:g}", value, ok)
+
+
+def _each(name: str, words: str, found: NDArray[Any], wanted: bool | float | Pair) -> Verdict:
+    """A value of every axis; the one that is farthest out is told."""
+    low, high = wanted if isinstance(wanted, tuple) else (float(wanted), float(wanted))
+    outside = np.maximum(low - found, found - high)
+    value = float(found.ravel()[int(np.argmax(outside))])
+    return _range(name, words, value, (low, high))
+
+
+def _changes(x: NDArray[Any]) -> NDArray[Any]:
+    """How often each axis takes another value."""
+    found = np.asarray((np.diff(x, axis=0) != 0).sum(axis=0), dtype=float)
+    return np.where(np.isnan(x).any(axis=0), np.nan, found)
+
+
+def _order(name: str, x: NDArray[Any], wanted: tuple[float, ...]) -> Verdict:
+    """The values of every axis one after the other; the first one out of order is told."""
+    text = "order " + ", ".join(f"{w:g}" for w in wanted)
+    for axis in x.reshape(len(x), -1).T:
+        found = axis[np.r_[True, np.diff(axis) != 0]]
+        for i in range(max(len(found), len(wanted))):
+            if i >= len(found):
+                reason = f"nothing follows {found[-1]:g}"
+                return Verdict(name, text, float("nan"), False, reason)
+            if i >= len(wanted) or found[i] != wanted[i]:
+                return Verdict(name, text, float(found[i]), False)
+    return Verdict(name, text, wanted[-1], True)
+
+
+def _inside(time: NDArray[Any], windows: tuple[tuple[float, float], ...]) -> NDArray[Any]:
+    """Samples from the start of a window to its end, both included."""
+    return np.any([(time >= a - 1e-12) & (time <= b + 1e-12) for a, b in windows], axis=0)
+
+
+def _where(windows: tuple[tuple[float, float], ...]) -> str:
+    low, high = windows[0]
+    return f", {low:g} to {high:g} s" if len(windows) == 1 else f", in {len(windows)} windows"
+
+
+def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> list[Verdict]:
+    """Judge one signal by every bound of its check.
+
+    Parameters
+    ----------
+    name : str
+        Signal name.
+    check : Check
+        Bounds, in the signal's unit.
+    time : ndarray
+        Times of the samples [s].
+    data : ndarray
+        One row per sample.
+
+    Returns
+    -------
+    list of Verdict
+        A NaN in the signal fails every bound.
+    """
+    x = np.asarray(data, dtype=float)
+    end = float(time[-1]) + (float(time[-1] - time[-2]) if len(time) > 1 else 0.0)
+    last = check.at if check.at is not None else max((b for _, b in check.windows or ()), default=0)
+    reason = f"the run ends at {end:g} s, before {last:g} s" if last > end + 1e-12 else ""
+    if check.rate is not None:
+        time, x = rates.change(time, x, check.rate)
+        reason = reason or ("" if len(x) else f"the run is shorter than {check.rate:g} s")
+    if reason:
+        x = np.full((1, *x.shape[1:]), np.nan)
+    elif check.at is not None:
+        x = x[[int(np.searchsorted(time, check.at - 1e-12).clip(0, len(time) - 1))]]
+    elif check.windows is not None:
+        x = x[_inside(time, check.windows)]
+        if len(x) == 0:  # between two samples
+            reason, x = "no sample is in a window", np.full((1, *x.shape[1:]), np.nan)
+    found = []
+    if check.min is not None:
+        found.append(_side(name, ">=", float(x.min()), check.min))
+    if check.max is not None:
+        found.append(_side(name, "<=", float(x.max()), check.max))
+    if check.absmax is not None:
+        found.append(_side(name, "|.| <=", float(np.abs(x).max()), check.absmax))
+    if check.peak is not None:
+        found.append(_range(name, "peak", float(np.abs(x).max()), check.peak))
+    if check.rms is not None:
+        found.append(_range(name, "rms", float(np.sqrt((x**2).mean())), check.rms))
+    if check.final is not None:
+        found.append(_each(name, "final", x[-1], check.final))
+    if check.changes is not None:
+        found.append(_each(name, "changes", _changes(x), check.changes))
+    if check.order is not None:
+        found.append(_order(name, x, check.order))
+    where = _where(check.windows) if check.windows is not None else ""
+    where = f", at {check.at:g} s" if check.at is not None else where
+    what = f"rate over {check.rate:g} s " if check.rate is not None else ""
+    bounds = [f"{what}{v.bounds}{where}" for v in found]
+    return [
+        replace(v, bounds=b, reason=reason or v.reason) for v, b in zip(found, bounds, strict=True)
+    ]

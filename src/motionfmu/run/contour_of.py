@@ -1,0 +1,101 @@
+"""From a run to its contour analysis: which signal is what, in mm."""
+
+import pathlib
+import tempfile
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+
+from motionfmu import units
+from motionfmu.contour import ContourInput, ContourResult, Path, Trace, analyse, read_path
+from motionfmu.errors import InputError, NoNumber
+from motionfmu.run.recorded import Recorded
+from motionfmu.scenario.contour_signals import CARD, library_of
+
+CLOCK = 25e-9  # [s] of the card
+
+
+def _millimetres(run: Recorded, name: str) -> Any:
+    unit = units.parse(run.resolver.end(name, "contour", "position").port.unit or "1")
+    return run[name] * (unit.factor / units.parse("mm").factor)
+
+
+def contour_of(run: Recorded, only_drawn: Collection[str]) -> ContourResult:
+    """Analyse the contour of a run.
+
+    Parameters
+    ----------
+    run : Recorded
+        Of a scenario with a [contour] table.
+    only_drawn : collection of str
+        Signals that nothing but a figure of the scenario asks for.
+
+    Returns
+    -------
+    ContourResult
+
+    Raises
+    ------
+    InputError
+        There is no [contour] table.
+    NoNumber
+        The run has no contour.
+    """
+    document = run.resolver.document
+    contour = document.body.contour
+    if contour is None:
+        raise InputError(f"{document.file}: the scenario has no [contour] table")
+    library, card = library_of(run.resolver), contour.pulses.partition(".")[0]
+
+    def axes(name: str) -> Any:
+        return np.asarray(run.parameter(f"{library}.{name}"))
+
+    pulses_per_mm = axes("ppr") * axes("gear_ratio") / axes("lead")
+    length = int(run[f"{library}.card_dda_length"][-1])
+    divider = int(run[f"{library}.card_dda_divider"][-1])
+    optional = {name: run.signals.get(f"{card}.{name}") for name in CARD}
+    used = tuple(int(i) for i in np.flatnonzero(axes("active")))
+    traces = _traces(run, {contour.position, contour.pulses, *only_drawn})
+    try:
+        return analyse(
+            ContourInput(
+                path=_path(run),
+                time=run.time,
+                actual=_millimetres(run, contour.position),
+                commanded=run[contour.pulses] / pulses_per_mm,
+                command=run[f"{library}.command"].astype(np.int64),
+                newest=run[f"{library}.command_newest"].astype(np.int64),
+                stock=optional["stock"],
+                interrupts=optional["irq_seq"],
+                feed=run[f"{library}.path_feed"],
+                axes=used,
+                dda_time=2**length * divider * CLOCK,
+                traces=traces,
+            )
+        )
+    except (ValueError, ArithmeticError) as error:
+        raise NoNumber(f"no contour: {error}") from None
+
+
+def _path(run: Recorded) -> Path:
+    if run.geometry is None:
+        raise ValueError("the library wrote no path")
+    with tempfile.TemporaryDirectory(prefix="motionfmu-") as folder:
+        file = pathlib.Path(folder) / "path.csv"
+        file.write_text(run.geometry, encoding="utf-8")
+        try:
+            return read_path(file)
+        except ValueError as error:
+            raise ValueError(str(error).replace(str(file), "planned path")) from None
+
+
+def _traces(run: Recorded, hidden: Collection[str]) -> tuple[Trace, ...]:
+    """Real signals of the drives and the card that the report also draws."""
+    found = []
+    for name, values in run.signals.items():
+        port = run.resolver.end(name, "record", "signals").port
+        if name in hidden or port.type != "Float64" or not port.shape or port.unit is None:
+            continue
+        found.append(Trace(name, port.unit, values))
+    return tuple(found)

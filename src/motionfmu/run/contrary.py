@@ -1,0 +1,80 @@
+"""Whether a verdict can fail: settings that switch off what a scenario shows."""
+
+from typing import Any
+
+from motionfmu.errors import InputError
+from motionfmu.run.checks import Verdict
+from motionfmu.scenario import system
+from motionfmu.scenario.document import Contrary, Document
+from motionfmu.scenario.values import settings
+
+
+def check(resolver: system.Resolver) -> None:
+    """Refuse a wrong [[contrary]] of a scenario.
+
+    Parameters
+    ----------
+    resolver : Resolver
+        Of the scenario.
+
+    Raises
+    ------
+    InputError
+        A name or value is wrong, a value has no effect, a check is none, or a case has the
+        name of another.
+    """
+    document, seen = resolver.document, set()
+    wired = {w.target.name for w in system.wires(resolver)} if document.body.contrary else ()
+    for number, case in enumerate(document.body.contrary):
+        table = f"contrary.{number}"
+        if case.off in seen:
+            raise document.error(f"off = {case.off!r} is there twice", table, "off")
+        seen.add(case.off)
+        for name in case.fails:
+            if name not in document.body.check:
+                raise document.error(f"fails: {name} is not in [check]", table, "fails")
+        for name, value in case.set.items():
+            if name in wired:
+                text = f"{name} is connected: a value has no effect"
+                raise document.error(text, f"{table}.set", name)
+            try:
+                settings(resolver, {name: value})
+            except InputError as error:
+                raise document.error(str(error), f"{table}.set", name) from None
+
+
+def options(document: Document, case: Contrary) -> dict[str, Any]:
+    """How a case is run.
+
+    Parameters
+    ----------
+    document : Document
+        The scenario.
+    case : Contrary
+        One of its own. A value of an input that is driven stands for the whole run.
+
+    Returns
+    -------
+    dict
+        Options of `Scenario.run`.
+    """
+    driven = {d.input for d in document.body.drive}
+    return {"set": case.set, "undriven": driven & set(case.set)}
+
+
+def survivors(case: Contrary, verdicts: list[Verdict]) -> list[str]:
+    """Checks that hold although they are to fail.
+
+    Parameters
+    ----------
+    case : Contrary
+    verdicts : list of Verdict
+        Of the run with its values.
+
+    Returns
+    -------
+    list of str
+        Empty if the verdict fails as it must.
+    """
+    failed = {v.name for v in verdicts if not v.ok}
+    return [name for name in case.fails if name not in failed]

@@ -1,0 +1,18 @@
+"""Engines that run a System; all give the same bits.
+
+Each is a module with ``run(system, fmi, progress)``; ENGINES finds them by name.
+"""
+
+from collections.abc import Callable
+
+from motionfmu.run.engines import fmpy_container, native, reference
+from motionfmu.scenario.system import System
+
+Progress = Callable[[float], None]
+Engine = Callable[[System, int, Progress], list[str]]
+
+ENGINES: dict[str, Engine] = {
+    "native": native.run,
+    "python": reference.run,
+    "fmpy": fmpy_container.run,
+}

@@ -1,0 +1,154 @@
+"""FMPy's own container as an engine: a third opinion for tests.
+
+It has no type conversion, so a Boolean is not recorded (it reads as false). It cannot set an array,
+so its components are the FMI 2 FMUs, whose elements are variables of their own.
+"""
+
+import tempfile
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from fmpy import read_model_description
+from fmpy.container_fmu.cli import create_container_fmu
+from fmpy.container_fmu.config import Component, Configuration, Connection
+from fmpy.model_description import (
+    CoSimulation,
+    DefaultExperiment,
+    ModelDescription,
+    ModelVariable,
+)
+
+from motionfmu.errors import InputError
+from motionfmu.run.engines.slave import Slave, element_names
+from motionfmu.scenario import fmus
+from motionfmu.scenario.system import End, System
+
+TOKEN = "{6d6f7469-6f6e-666d-7500-636f6e746169}"
+
+
+def _outer(name: str, kind: str, reference: int, start: str | None) -> ModelVariable:
+    """The container's variable for one element; text can be given by its start value only."""
+    return ModelVariable(
+        type=kind,
+        name=name,
+        valueReference=reference,
+        causality="input",
+        variability="discrete",
+        start=start,
+    )
+
+
+def _elements(variables: dict[str, ModelVariable], end: End) -> list[ModelVariable]:
+    """The FMI 2 scalars of a port."""
+    first = end.port.reference
+    by_reference = {v.valueReference: v for v in variables.values()}
+    return [by_reference[first + i] for i in range(end.port.count)]
+
+
+def _configuration(system: System, folder: Path) -> Configuration:
+    components: dict[str, Component] = {}
+    variables: dict[str, dict[str, ModelVariable]] = {}
+    for name, fmu in system.components.items():
+        link = folder / f"{name}.fmu"
+        link.symlink_to(fmus.runnable(fmu, 2).resolve())
+        components[name] = Component(name, link, read_model_description(str(link)))
+        variables[name] = {v.name: v for v in components[name].modelDescription.modelVariables}
+        for v in variables[name].values():  # the container knows the type names of FMI 3 only
+            v.type = {"Real": "Float64", "Integer": "Int32"}.get(v.type, v.type)
+    ends = [*(s.end for s in system.settings), *(s.end for s in system.stimuli)]
+    texts = {s.end.name: str(s.values[0]) for s in system.settings if s.end.port.type == "String"}
+    # The container counts its variables from the one after time.
+    time = ModelVariable(
+        type="Float64",
+        name="time",
+        valueReference=0,
+        causality="independent",
+        variability="continuous",
+    )
+    outer: dict[ModelVariable, list[tuple[Component, ModelVariable]]] = {}
+    for end in {e.name: e for e in ends}.values():
+        for inner in _elements(variables[end.component], end):
+            name = f"{end.component}.{inner.name}"
+            shown = _outer(name, end.port.type, len(outer) + 1, texts.get(end.name))
+            outer[shown] = [(components[end.component], inner)]
+    step = system.step_ns * 1e-9
+    description = ModelDescription(
+        fmiVersion="3.0",
+        modelName="Container",
+        instantiationToken=TOKEN,
+        coSimulation=CoSimulation(modelIdentifier="container_fmu", fixedInternalStepSize=step),
+        defaultExperiment=DefaultExperiment(startTime="0", stepSize=str(step)),
+        modelVariables=[time, *outer],
+    )
+    return Configuration(
+        parallelDoStep=False,
+        modelDescription=description,
+        components=list(components.values()),
+        connections=[
+            Connection(
+                components[w.source.component],
+                _elements(variables[w.source.component], w.source),
+                components[w.target.component],
+                _elements(variables[w.target.component], w.target),
+            )
+            for w in system.wires
+            if w.source.port.type == w.target.port.type
+        ],
+        variableMappings=outer,
+    )
+
+
+def _give(slave: Slave, end: End, values: Iterable[Any]) -> None:
+    for name, value in zip(element_names(end), values, strict=True):
+        slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], [value])
+
+
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
+    """Run a system inside FMPy's container FMU.
+
+    Parameters
+    ----------
+    system : System
+    fmi : int
+        Must be 2.
+    progress : callable
+        Called with the share done, 0 to 1.
+
+    Returns
+    -------
+    list of str
+        What the FMUs warned of.
+
+    Raises
+    ------
+    InputError
+        `fmi` is not 2, or an FMU refused something.
+    """
+    if fmi != 2:
+        raise InputError(f"engine fmpy runs FMI 2 components only, not FMI {fmi}")
+    with ExitStack() as stack:
+        name = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
+        folder = Path(name)
+        (folder / "unzipped").mkdir()
+        configuration = _configuration(system, folder)
+        create_container_fmu(configuration, folder / "unzipped", folder / "container.fmu")
+        slave = Slave("container_fmu", folder / "container.fmu", 3, [])
+        stack.callback(slave.free)
+        for s in (s for s in system.settings if s.end.port.type != "String"):
+            _give(slave, s.end, s.values)
+        slave.initialize()
+        slave.start()
+        pending = list(system.stimuli)
+        step = system.step_ns * 1e-9
+        for k in range(system.steps):
+            while pending and pending[0].step == k:
+                now = pending.pop(0)
+                _give(slave, now.end, now.values)
+            slave.step(k * system.step_ns * 1e-9, step)
+            if k % max(1, system.steps // 100) == 0:
+                progress(k / system.steps)
+        slave.end()
+        progress(1.0)
+        return [told for told in slave.warnings if not told.startswith(f"{slave.name}: ")]

@@ -1,0 +1,187 @@
+"""The native engine: the system becomes one container FMU whose master is C.
+
+The container is made by fmucontainer of the FMU manipulation toolbox in its parallel mode, which
+exchanges all values and then steps all FMUs (Jacobi). It is run by FMPy in few long steps.
+"""
+
+import logging
+import tempfile
+import zipfile
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from fmu_manipulation_toolbox.container import FMUContainer
+
+from motionfmu.run.engines.slave import Slave, element_names
+from motionfmu.scenario import fmus
+from motionfmu.scenario.system import End, System
+
+IDENTIFIER = "system"
+# A run is cut into at least so many steps of the container, so that progress shows.
+PARTS = 100
+
+
+def _exposed(end: End, fmi: int) -> list[str]:
+    """Names of a port, by element in FMI 2."""
+    return [end.port.name] if fmi == 3 else element_names(end)
+
+
+class _Folder(FMUContainer):
+    """A container that stays a folder: it is run here, so nobody needs its archive."""
+
+    def make_fmu_package(self, base_directory: Path, fmu_filename: Path) -> None:
+        """Do nothing; the base class compresses everything."""
+
+
+def _runnable(source: Path, folder: Path) -> Path:
+    """A copy of an FMU with only what runs: most of an FMU's files are its C sources."""
+    target = folder / source.name
+    if not target.exists():
+        with zipfile.ZipFile(source) as whole, zipfile.ZipFile(target, "w") as part:
+            for entry in whole.namelist():
+                if not entry.startswith(("sources/", "documentation/")):
+                    part.writestr(entry, whole.read(entry))
+    return target
+
+
+def build(system: System, fmi: int, folder: Path) -> Path:
+    """Make the container FMU, unpacked.
+
+    Settings and stimuli become inputs of the container, ``component.variable``, because its own
+    start values cannot carry arrays of Boolean nor text with spaces.
+
+    Parameters
+    ----------
+    system : System
+    fmi : int
+        2 or 3: version of the container and of every FMU in it.
+    folder : Path
+        An empty folder.
+
+    Returns
+    -------
+    Path
+        Folder of the unpacked container FMU.
+    """
+    log = logging.getLogger("fmu_manipulation_toolbox")
+    before, log.disabled = log.disabled, True  # it warns of every output that nothing reads
+    try:
+        container = _Folder(IDENTIFIER, folder, fmi_version=fmi)
+        container.start_time, container.stop_time = 0.0, system.steps * system.step_ns * 1e-9
+        for name, fmu in system.components.items():
+            container.get_fmu(str(_runnable(fmus.runnable(fmu, fmi), folder)), name=f"{name}.fmu")
+        for wire in system.wires:
+            container.add_link(
+                f"{wire.source.component}.fmu",
+                wire.source.port.name,
+                f"{wire.target.component}.fmu",
+                wire.target.port.name,
+            )
+        ends = [*(s.end for s in system.settings), *(s.end for s in system.stimuli)]
+        for end in {e.name: e for e in ends}.values():
+            for name in _exposed(end, fmi):
+                container.add_input(f"{end.component}.{name}", f"{end.component}.fmu", name)
+        container.make_fmu(f"{IDENTIFIER}.fmu", step_size=system.step_ns * 1e-9, debug=True)
+    finally:
+        log.disabled = before
+    return folder / IDENTIFIER
+
+
+def _give(slave: Slave, end: End, values: tuple[Any, ...]) -> None:
+    names = _exposed(end, slave.fmi)
+    parts = [values] if len(names) == 1 else [(v,) for v in values]
+    for name, part in zip(names, parts, strict=True):
+        slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], part)
+
+
+class Container:
+    """A system as a container FMU, built once, run many times.
+
+    Parameters
+    ----------
+    system : System
+        Its settings say what can be set in a run.
+    fmi : int
+        2 or 3: version of the container and of every FMU in it.
+    folder : Path
+        An empty folder; not removed.
+    """
+
+    def __init__(self, system: System, fmi: int, folder: Path) -> None:
+        self._slave = Slave(IDENTIFIER, build(system, fmi, folder), fmi, [])
+        self._used = False
+
+    def run(self, system: System, progress: Callable[[float], None]) -> list[str]:
+        """Run from the start.
+
+        Parameters
+        ----------
+        system : System
+            The one of the constructor, or one that differs in values only.
+        progress : callable
+            Called with the share done, 0 to 1.
+
+        Returns
+        -------
+        list of str
+            What the FMUs warned of.
+
+        Raises
+        ------
+        InputError
+            An FMU refused something; its message.
+        """
+        slave = self._slave
+        if self._used:
+            slave.renew()
+        self._used = True
+        for s in system.settings:
+            _give(slave, s.end, s.values)
+        slave.initialize()
+        slave.start()
+        part = max(1, system.steps // PARTS)
+        stops = {s.step for s in system.stimuli if s.step < system.steps}
+        cuts = sorted({*range(0, system.steps, part), *stops, 0})
+        pending = list(system.stimuli)
+        for k, following in zip(cuts, [*cuts[1:], system.steps], strict=True):
+            while pending and pending[0].step == k:
+                now = pending.pop(0)
+                _give(slave, now.end, now.values)
+            slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
+            progress(following / system.steps)
+        slave.end()
+        return [told for told in slave.warnings if not told.startswith(f"{IDENTIFIER}: ")]
+
+    def free(self) -> None:
+        """Free the instance and the library."""
+        self._slave.free()
+
+
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
+    """Run a system inside a container FMU.
+
+    Parameters
+    ----------
+    system : System
+    fmi : int
+        2 or 3: version of the container and of every FMU in it.
+    progress : callable
+        Called with the share done, 0 to 1.
+
+    Returns
+    -------
+    list of str
+        What the FMUs warned of.
+
+    Raises
+    ------
+    InputError
+        An FMU refused something; its message.
+    """
+    with ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
+        container = Container(system, fmi, Path(folder))
+        stack.callback(container.free)
+        return container.run(system, progress)

@@ -1,0 +1,85 @@
+"""The reference master: a Jacobi co-simulation in a page of Python.
+
+At each communication point all outputs are read, then all inputs written, then every FMU steps.
+"""
+
+from collections.abc import Callable
+from contextlib import ExitStack
+
+from motionfmu.run.engines.slave import Slave
+from motionfmu.scenario import fmus
+from motionfmu.scenario.system import System, Wire
+
+
+def _wire(slaves: dict[str, Slave], wire: Wire) -> tuple[Callable[[], None], Callable[[], None]]:
+    """The two functions that read the output and write the input of a wire."""
+    source, target = slaves[wire.source.component], slaves[wire.target.component]
+    a, b = wire.source.port, wire.target.port
+    buffer = source.buffer(a.type, a.count)
+    get = source.access("Get", a.type, a.reference, buffer)
+    if a.type == b.type:
+        return get, target.access("Set", b.type, b.reference, buffer)
+    converted = target.buffer(b.type, b.count)  # a Boolean recorded as 0 and 1
+    put = target.access("Set", b.type, b.reference, converted)
+
+    def convert() -> None:
+        converted[:] = [int(x) for x in buffer]
+        put()
+
+    return get, convert
+
+
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
+    """Run a system with FMPy, one Python call per value.
+
+    Parameters
+    ----------
+    system : System
+    fmi : int
+        2 or 3: the version of every FMU.
+    progress : callable
+        Called with the share done, 0 to 1.
+
+    Returns
+    -------
+    list of str
+        What the FMUs warned of.
+
+    Raises
+    ------
+    InputError
+        An FMU refused something; its message.
+    """
+    messages: list[str] = []
+    with ExitStack() as stack:
+        slaves: dict[str, Slave] = {}
+        for name, fmu in system.components.items():
+            slaves[name] = Slave(name, fmus.runnable(fmu, fmi), fmi, messages)
+            stack.callback(slaves[name].free)
+        for s in system.settings:
+            port = s.end.port
+            slaves[s.end.component].assign(port.type, port.reference, s.values)
+        for slave in slaves.values():
+            slave.initialize()
+        for slave in slaves.values():
+            slave.start()
+        wires = [_wire(slaves, w) for w in system.wires]
+        pending = list(system.stimuli)
+        step = system.step_ns * 1e-9
+        for k in range(system.steps):
+            while pending and pending[0].step == k:
+                now = pending.pop(0)
+                port = now.end.port
+                slaves[now.end.component].assign(port.type, port.reference, now.values)
+            for get, _ in wires:
+                get()
+            for _, put in wires:
+                put()
+            for slave in slaves.values():
+                slave.step(k * system.step_ns * 1e-9, step)
+            if k % max(1, system.steps // 100) == 0:
+                progress(k / system.steps)
+        for slave in slaves.values():
+            slave.end()
+        progress(1.0)
+        return [told for slave in slaves.values() for told in slave.warnings]

@@ -1,0 +1,277 @@
+"""One FMU opened with FMPy, with fast access to its variables."""
+
+import ctypes
+import itertools
+import re
+import shutil
+import tempfile
+from collections.abc import Iterable
+from ctypes import byref
+from pathlib import Path
+from typing import Any
+
+from fmpy import extract, read_model_description
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.fmi3 import FMU3Slave
+from fmpy.logging import addLoggerProxy
+
+from motionfmu.errors import InputError
+from motionfmu.scenario.system import End
+
+_C = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_bool}
+_FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
+# fmucontainer puts "mcc.fmu: " before the message of a component, which may name itself again.
+_INNER = re.compile(r"^(\w+)\.fmu: (?:(?:\w+\.)*\w+\.fmu: |\1: )?")
+_NAMED = re.compile(r"^\w+: ")
+_WARNING = 1  # status of both FMI versions
+# A run is not told more than so many different warnings of its FMUs.
+_WARNINGS_MAX = 20
+_ERROR = 3  # status of both FMI versions from which on nothing is good
+
+
+def element_names(end: End) -> list[str]:
+    """FMI 2 names of the elements of a port, in order.
+
+    Parameters
+    ----------
+    end : End
+
+    Returns
+    -------
+    list of str
+        ``name`` or ``name[1]``, ``name[1,2]``.
+    """
+    if not end.port.shape:
+        return [end.port.name]
+    indices = itertools.product(*(range(1, n + 1) for n in end.port.shape))
+    return [f"{end.port.name}[{','.join(map(str, index))}]" for index in indices]
+
+
+def _unnamed(message: str) -> bool:
+    return _NAMED.match(message) is None
+
+
+class Slave:
+    """A co-simulation FMU of either version.
+
+    Parameters
+    ----------
+    name : str
+        Instance name.
+    source : Path
+        An .fmu, or a folder that holds an unpacked one.
+    fmi : int
+        2 or 3.
+    messages : list of str
+        Receives what the FMU logs with a status of Error or worse.
+
+    Attributes
+    ----------
+    warnings : list of str
+        What it or the FMUs inside warned of, each once, ``component: what``.
+    """
+
+    def __init__(self, name: str, source: Path, fmi: int, messages: list[str]) -> None:
+        self.name, self.fmi, self.messages = name, fmi, messages
+        self.warnings: list[str] = []
+        self._own: str | None = None
+        if source.is_dir():
+            folder = str(source)
+        else:
+            folder = self._own = tempfile.mkdtemp(prefix="motionfmu-")
+            extract(str(source), folder)
+        self.description = read_model_description(folder, validate=False)
+        cosimulation = self.description.coSimulation
+        assert cosimulation, "every FMU here is made for co-simulation"
+        self.references = {v.name: v.valueReference for v in self.description.modelVariables}
+        keys = {
+            "guid": self.description.guid or self.description.instantiationToken,
+            "unzipDirectory": folder,
+            "modelIdentifier": cosimulation.modelIdentifier,
+            "instanceName": name,
+        }
+        self.slave: Any = FMU3Slave(**keys) if fmi == 3 else FMU2Slave(**keys)
+        self._instantiate()
+
+    def _instantiate(self) -> None:
+        if self.fmi == 3:
+            self._do("instantiate", logMessage=self._log3, loggingOn=True)
+            return
+        callbacks = fmi2CallbackFunctions()
+        self._log = fmi2CallbackLoggerTYPE(self._log2)
+        callbacks.logger = self._log
+        addLoggerProxy(byref(callbacks))  # formats the message; Python cannot
+        self._do("instantiate", callbacks=callbacks, loggingOn=True)
+
+    def _log3(self, environment: Any, status: int, category: bytes, message: bytes) -> None:
+        self._keep(status, message)
+
+    def _log2(self, environment: Any, name: Any, status: int, category: Any, text: Any) -> None:
+        told = text if isinstance(text, bytes) else str(text).encode()
+        if _unnamed(told.decode(errors="replace")) and b".fmu: " not in told:
+            told = name + b": " + told
+        self._keep(status, told)
+
+    def _keep(self, status: int, message: bytes) -> None:
+        """Keep an error or a warning; one from inside a container gets its component's name."""
+        if status < _WARNING:
+            return
+        text = _INNER.sub(r"\1: ", message.decode(errors="replace").strip())
+        if status >= _ERROR:
+            self.messages.append(text)
+        elif (
+            status == _WARNING
+            and not _unnamed(text)
+            and text not in self.warnings
+            and len(self.warnings) < _WARNINGS_MAX
+        ):
+            self.warnings.append(text)
+
+    def _do(self, call: str, **arguments: Any) -> None:
+        """Call a method of FMPy's slave; what it raises becomes the FMU's own message."""
+        try:
+            getattr(self.slave, call)(**arguments)
+        except Exception as error:
+            raise self.failure(call) from error
+
+    def failure(self, call: str) -> InputError:
+        """The error for a call that did not return OK.
+
+        Parameters
+        ----------
+        call : str
+            Name of the call.
+
+        Returns
+        -------
+        InputError
+            With the first error that names a component, which is the cause.
+        """
+        own = f"{self.name}: "
+        inner = [m for m in self.messages if not m.startswith(own)]
+        told = [*inner, *self.messages, f"{own}{call} failed without a message"]
+        return InputError(sorted(told[: len(inner)] or told[:1], key=_unnamed)[0])
+
+    def buffer(self, kind: str, count: int) -> Any:
+        """Memory for values of a type, as the FMU has them.
+
+        Parameters
+        ----------
+        kind : str
+            Float64, Int32 or Boolean.
+        count : int
+            Number of elements.
+
+        Returns
+        -------
+        ctypes array
+        """
+        c: Any = ctypes.c_int32 if self.fmi == 2 and kind == "Boolean" else _C[kind]
+        return (c * count)()
+
+    def access(self, verb: str, kind: str, reference: int, buffer: Any) -> Any:
+        """A function that gets or sets one variable through its buffer.
+
+        Parameters
+        ----------
+        verb : str
+            ``Get`` or ``Set``.
+        kind : str
+            Float64, Int32 or Boolean.
+        reference : int
+            First value reference.
+        buffer : ctypes array
+            From `buffer`.
+
+        Returns
+        -------
+        callable
+            Without arguments; raises InputError when the FMU refuses.
+        """
+        count = len(buffer)
+        if self.fmi == 3:
+            call = getattr(self.slave.dll, f"fmi3{verb}{kind}")
+            one = (ctypes.c_uint32 * 1)(reference)
+            sizes = ctypes.c_size_t(1), ctypes.c_size_t(count)
+            arguments: tuple[Any, ...] = (self.slave.component, one, sizes[0], buffer, sizes[1])
+        else:
+            call = getattr(self.slave.dll, f"fmi2{verb}{_FMI2[kind]}")
+            references = (ctypes.c_uint32 * count)(*range(reference, reference + count))
+            arguments = (self.slave.component, references, ctypes.c_size_t(count), buffer)
+
+        def run() -> None:
+            if call(*arguments) >= _ERROR:
+                raise self.failure(f"{verb}{kind}")
+
+        return run
+
+    def assign(self, kind: str, reference: int, values: Iterable[Any]) -> None:
+        """Set a variable once.
+
+        Parameters
+        ----------
+        kind : str
+            Float64, Int32, Boolean or String.
+        reference : int
+            First value reference.
+        values : iterable
+            One per element.
+        """
+        listed = list(values)
+        if kind == "String":
+            references = (
+                [reference] if self.fmi == 3 else [*range(reference, reference + len(listed))]
+            )
+            self._do("setString", vr=references, **{"values" if self.fmi == 3 else "value": listed})
+            return
+        buffer = self.buffer(kind, len(listed))
+        buffer[:] = listed
+        self.access("Set", kind, reference, buffer)()
+
+    def initialize(self) -> None:
+        """Enter Initialization Mode at time 0."""
+        if self.fmi == 2:
+            self._do("setupExperiment", startTime=0.0)
+            self._do("enterInitializationMode")
+        else:
+            self._do("enterInitializationMode", startTime=0.0)
+
+    def start(self) -> None:
+        """Leave Initialization Mode."""
+        self._do("exitInitializationMode")
+
+    def step(self, time: float, size: float) -> None:
+        """Advance by one communication step.
+
+        Parameters
+        ----------
+        time : float
+            Communication point [s].
+        size : float
+            Step [s].
+        """
+        self._do("doStep", currentCommunicationPoint=time, communicationStepSize=size)
+
+    def end(self) -> None:
+        """Terminate: the FMU writes its files."""
+        self._do("terminate")
+
+    def renew(self) -> None:
+        """Take a new instance; the library stays loaded."""
+        old, self.slave.component = self.slave.component, None
+        if old:
+            getattr(self.slave, f"fmi{self.fmi}FreeInstance")(old)
+        self.messages.clear()
+        self.warnings.clear()
+        self._instantiate()
+
+    def free(self) -> None:
+        """Free the instance, the library and the unpacked files."""
+        try:
+            if self.slave.component:
+                self.slave.freeInstance()
+            else:
+                self.slave.freeLibrary()
+        finally:
+            if self._own:
+                shutil.rmtree(self._own, ignore_errors=True)

@@ -1,0 +1,234 @@
+"""The figures a scenario asks for: which signals, checked, and their curves after the run."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.run.recorded import Recorded
+from motionfmu.scenario import rates, recording
+from motionfmu.scenario.document import Document, Plot
+from motionfmu.scenario.system import End, Resolver
+
+# Signals that a report without figures shows.
+OVERVIEW = 12
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a panel.
+
+    Attributes
+    ----------
+    name : str
+        For the legend.
+    time : ndarray, shape (n,)
+        [s].
+    values : ndarray, shape (n,)
+        As shown, in the unit of the panel's label.
+    steps : bool
+        A value holds until the next one.
+    """
+
+    name: str
+    time: NDArray[np.float64]
+    values: NDArray[np.float64]
+    steps: bool
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Curves on one pair of axes.
+
+    Attributes
+    ----------
+    label : str
+        Vertical axis: quantity and unit.
+    curves : tuple of Curve
+    levels : dict
+        Value of a horizontal line by its name.
+    legend : bool
+        The curves need their names.
+    logic : bool
+        All curves are Booleans.
+    """
+
+    label: str
+    curves: tuple[Curve, ...]
+    levels: dict[str, float]
+    legend: bool
+    logic: bool = False
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A figure ready to draw.
+
+    Attributes
+    ----------
+    title, note : str
+    span : tuple of float
+        From and to [s].
+    whole : bool
+        It shows the whole run.
+    panels : tuple of Panel
+        From top to bottom, with a common time axis.
+    """
+
+    title: str
+    note: str
+    span: tuple[float, float]
+    whole: bool
+    panels: tuple[Panel, ...]
+
+
+def _elements(resolver: Resolver, name: str, table: str) -> tuple[End, tuple[int, ...]]:
+    """The output that a signal of a figure names, and which of its elements, from 1."""
+    whole, bracket, rest = name.partition("[")
+    end = recording.output(resolver, whole, table, "signals")
+    shape = end.port.shape
+    if not bracket:
+        return end, tuple(range(1, end.port.count + 1)) if shape else ()
+    index = rest.removesuffix("]")
+    if not (shape and rest.endswith("]") and index.isascii() and index.isdigit()):
+        kind = f"an array of {shape[0]}" if shape else "a single value"
+        raise resolver.document.error(f"{name}: {whole} is {kind}", table, "signals")
+    if not 1 <= int(index) <= shape[0]:
+        text = f"{name}: {whole} has elements 1 to {shape[0]}"
+        raise resolver.document.error(text, table, "signals")
+    return end, (int(index),)
+
+
+def wanted(resolver: Resolver) -> list[End]:
+    """Outputs that the figures show, for recording.
+
+    Parameters
+    ----------
+    resolver : Resolver
+
+    Returns
+    -------
+    list of End
+        Empty if the scenario has no [[figure]].
+
+    Raises
+    ------
+    InputError
+        A signal or element is not there or cannot be recorded, or there are too few names.
+    """
+    found = []
+    for i, figure in enumerate(resolver.document.body.figure):
+        for j, plot in enumerate(figure.plot):
+            table = f"figure.{i}.plot.{j}"
+            named = [_elements(resolver, name, table) for name in plot.signals]
+            count = sum(max(1, len(elements)) for _, elements in named)
+            if plot.names is not None and len(plot.names) != count:
+                text = f"names = {plot.names!r}: {len(plot.names)} names for {count} curves"
+                raise resolver.document.error(text, table, "names")
+            found += [end for end, _ in named]
+    return found
+
+
+def check(document: Document, step_ns: int) -> None:
+    """Refuse a window or a rate that does not fit the run.
+
+    Parameters
+    ----------
+    document : Document
+        The scenario.
+    step_ns : int
+        Communication step [ns].
+
+    Raises
+    ------
+    InputError
+        Names the value.
+    """
+    stop = document.body.stop
+    for i, figure in enumerate(document.body.figure):
+        if figure.window is not None:
+            start, end = figure.window
+            if not 0.0 <= start < end <= stop:
+                text = f"window = {figure.window!r}: from and to within 0 .. {stop:g} s wanted"
+                raise document.error(text, f"figure.{i}", "window")
+        for j, plot in enumerate(figure.plot):
+            if plot.rate is not None and (text := rates.wrong(plot.rate, step_ns, stop)):
+                raise document.error(text, f"figure.{i}.plot.{j}", "rate")
+
+
+def charts(run: Recorded) -> list[Chart]:
+    """The figures of a run with their curves.
+
+    Parameters
+    ----------
+    run : Recorded
+
+    Returns
+    -------
+    list of Chart
+        In the order of the scenario.
+    """
+    found = []
+    for i, figure in enumerate(run.resolver.document.body.figure):
+        whole = (float(run.time[0]), float(run.time[-1]))
+        span = whole if figure.window is None else (figure.window[0], figure.window[1])
+        tables = [f"figure.{i}.plot.{j}" for j in range(len(figure.plot))]
+        panels = [_panel(run, p, t, span) for p, t in zip(figure.plot, tables, strict=True)]
+        found.append(Chart(figure.title, figure.note, span, figure.window is None, tuple(panels)))
+    return found
+
+
+def _panel(run: Recorded, plot: Plot, table: str, span: tuple[float, float]) -> Panel:
+    names, columns = [], []
+    for signal in plot.signals:
+        end, elements = _elements(run.resolver, signal, table)
+        data = run.signals[end.name]
+        names += [f"{end.name}[{k}]" for k in elements] or [end.name]
+        columns += [data[:, k - 1] for k in elements] or [data]
+    curves = [
+        _curve(run, plot, name, column, span)
+        for name, column in zip(plot.names or names, columns, strict=True)
+    ]
+    legend = plot.names is not None or len(curves) > 1
+    logic = plot.rate is None and plot.scale == 1.0 and all(c.dtype == bool for c in columns)
+    return Panel(plot.label, tuple(curves), dict(plot.levels), legend, logic)
+
+
+def _curve(
+    run: Recorded, plot: Plot, name: str, data: NDArray[Any], span: tuple[float, float]
+) -> Curve:
+    """Samples of a signal in the span, and one on either side of it."""
+    time, values = run.time, data.astype(np.float64)
+    if plot.rate is not None and len(time) > 1:
+        time, values = rates.change(time, values, plot.rate)
+    first = max(0, int(np.searchsorted(time, span[0], side="right")) - 1)
+    last = int(np.searchsorted(time, span[1], side="left")) + 1
+    part = slice(first, last)
+    return Curve(name, time[part], plot.scale * values[part], plot.steps or data.dtype == bool)
+
+
+def overview(run: Recorded, ends: Sequence[End]) -> list[Chart]:
+    """A figure of each recorded signal, its elements together.
+
+    Parameters
+    ----------
+    run : Recorded
+    ends : sequence of End
+        The signals.
+
+    Returns
+    -------
+    list of Chart
+        The first `OVERVIEW` signals over the whole run.
+    """
+    span = (float(run.time[0]), float(run.time[-1]))
+    found = []
+    for end in ends[:OVERVIEW]:
+        label = f"{end.name} [{end.port.unit}]" if end.port.unit else end.name
+        steps = end.port.type != "Float64"
+        plot = Plot(signals=[end.name], label=label, steps=steps)
+        panel = _panel(run, plot, "record", span)
+        found.append(Chart(end.name, end.port.doc, span, True, (panel,)))
+    return found

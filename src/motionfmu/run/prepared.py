@@ -1,0 +1,200 @@
+"""A scenario read and checked against its FMUs."""
+
+import re
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from motionfmu.errors import InputError
+from motionfmu.run import contrary, figures
+from motionfmu.run.checks import misplaced
+from motionfmu.scenario import contour_signals, rates, recording, system, values
+from motionfmu.scenario import document as files
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to run.
+
+    Attributes
+    ----------
+    engine : str
+        A name of `motionfmu.run.engines.ENGINES`.
+    fmi : int
+        2 or 3.
+    set : mapping
+        Value by ``component.variable``, stronger than the scenario's.
+    stop, step : float or None
+        Instead of the scenario's [s].
+    undriven : collection of str
+        Inputs whose [[drive]] is left out.
+    progress : callable
+        Called with the share done, 0 to 1.
+    """
+
+    engine: str = "native"
+    fmi: int = 3
+    set: Mapping[str, Any] = field(default_factory=dict)
+    stop: float | None = None
+    step: float | None = None
+    undriven: Collection[str] = ()
+    progress: Callable[[float], None] = lambda share: None
+
+
+class Prepared:
+    """A scenario with its FMUs, and what is recorded of it; checked."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.document = files.read(path)
+        self.resolver = system.Resolver(self.document)
+        listed = recording.chosen(self.resolver, self._recorded())
+        drawn = figures.wanted(self.resolver)
+        self.ends = list({e.name: e for e in (*listed, *drawn)}.values())
+        self.only_drawn = {e.name for e in drawn} - {e.name for e in listed}
+        wired, _ = recording.plan(self.resolved(Options()), self.ends, Path())
+        self.check_recording(wired, Options())
+        self._check_checks()
+        contrary.check(self.resolver)
+
+    @property
+    def name(self) -> str:
+        """Name of the scenario's folder."""
+        return self.document.file.parent.name
+
+    def _recorded(self) -> list[str]:
+        return [*self.document.body.record.signals, *contour_signals.wanted(self.resolver)]
+
+    def _check_checks(self) -> None:
+        recorded = {e.name: e.port.shape for e in self.ends}
+        for name in self.document.body.check:
+            if told := misplaced(name, self.document.body, recorded):
+                raise self.document.error(told, "check", name)
+
+    def resolved(self, options: Options) -> system.System:
+        """All that an engine needs, with the options' values.
+
+        Parameters
+        ----------
+        options : Options
+
+        Returns
+        -------
+        System
+
+        Raises
+        ------
+        InputError
+            A value is wrong.
+        """
+        document, body = self.document, self.document.body
+        step_ns = self._time("step", options.step, body.step)
+        stop_ns = self._time("stop", options.stop, body.stop)
+        given = options.stop is not None or options.step is not None
+        if step_ns % system.CLOCK_NS:
+            text = f"step = {step_ns * 1e-9:.9g} s is no whole number of {system.CLOCK_NS} ns"
+            raise InputError(text) if given else document.error(text, "", "step")
+        if stop_ns % step_ns:
+            text = f"stop = {stop_ns * 1e-9:.9g} s is no whole number of steps"
+            raise InputError(text) if given else document.error(text, "", "stop")
+        if stop_ns // step_ns > system.STEPS_MAX:
+            text = f"{stop_ns // step_ns} steps; {system.STEPS_MAX} are the most"
+            raise InputError(text) if given else document.error(text, "", "step")
+        resolved = system.System(
+            components=dict(body.component),
+            wires=tuple(system.wires(self.resolver)),
+            settings=tuple(values.settings(self.resolver, options.set)),
+            stimuli=tuple(
+                s
+                for s in values.stimuli(self.resolver, step_ns)
+                if s.end.name not in options.undriven
+            ),
+            step_ns=step_ns,
+            steps=stop_ns // step_ns,
+        )
+        system.check_inputs(self.resolver, resolved)
+        figures.check(document, step_ns)
+        for name, checks in body.check.items():
+            for rate in (c.rate for c in checks if c.rate is not None):
+                if text := rates.wrong(rate, step_ns, body.stop):
+                    raise document.error(f"{name}: {text}", "check", name)
+        return resolved
+
+    def check_recording(self, wired: system.System, options: Options) -> None:
+        """Refuse a recording that no memory holds, or two of one file.
+
+        Parameters
+        ----------
+        wired : System
+            With the scopes of the run.
+        options : Options
+            How it is run.
+
+        Raises
+        ------
+        InputError
+            Names file and setting, or the option.
+        """
+        name, told = recording.refused(wired)
+        if not told:
+            return
+        body = self.document.body
+        if name in body.set and name not in options.set:
+            raise self.document.error(told, "set", name)
+        if name.partition(".")[0] in body.component or options.stop or options.step:
+            raise InputError(told if name not in options.set else f"set {name}: {told}")
+        raise self.document.error(told, "", "step")
+
+    def _time(self, key: str, given: float | None, written: float) -> int:
+        """Whole nanoseconds of an option, or of the scenario's own key."""
+        try:
+            return system.nanoseconds(key, written if given is None else given)
+        except ValueError as error:
+            raise (
+                self.document.error(str(error), "", key)
+                if given is None
+                else InputError(str(error))
+            ) from None
+
+    def library(self) -> str | None:
+        """The component that plans the path.
+
+        Returns
+        -------
+        str or None
+            None if the scenario does not look at the contour.
+        """
+        if self.document.body.contour is None:
+            return None
+        return contour_signals.library_of(self.resolver)
+
+    def located(
+        self, error: InputError, plain: system.System, given: Mapping[str, Any]
+    ) -> InputError:
+        """Say where the value stands that an FMU's message names.
+
+        Parameters
+        ----------
+        error : InputError
+            The FMU's own.
+        plain : System
+            What was run.
+        given : mapping
+            Values by name that are stronger than the scenario's.
+
+        Returns
+        -------
+        InputError
+        """
+        text = str(error)
+        component, _, rest = text.partition(": ")
+        for s in plain.settings:
+            end = s.end
+            if end.component != component or not re.search(rf"\b{end.port.name}\b", rest):
+                continue
+            value = s.values[0] if len(set(s.values)) == 1 else list(s.values)
+            if end.name in given:
+                return InputError(f"set {end.name} = {value!r}: {text}")
+            if end.name in self.document.body.set:
+                return self.document.error(f"{end.name} = {value!r}: {text}", "set", end.name)
+        return InputError(f"{self.document.file}: {text}")

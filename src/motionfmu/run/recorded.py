@@ -1,0 +1,26 @@
+"""What figures and contour analysis read of a run."""
+
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.scenario.system import Resolver
+
+
+class Recorded(Protocol):
+    """A run's signals and parameters; `Result` is one."""
+
+    time: NDArray[np.float64]  # [s], shape (N,)
+    signals: dict[str, NDArray[Any]]
+    geometry: str | None
+
+    @property
+    def resolver(self) -> Resolver:
+        """The scenario's FMUs and file."""
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A signal, or one axis of it."""
+
+    def parameter(self, name: str) -> Any:
+        """Value of a parameter in this run."""

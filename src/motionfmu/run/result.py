@@ -1,0 +1,172 @@
+"""What a run gave: signals, contour, verdicts."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.errors import NoNumber
+from motionfmu.run import figures
+from motionfmu.run.checks import CONTOUR, Verdict, judge
+from motionfmu.run.figures import Chart
+from motionfmu.run.prepared import Prepared
+from motionfmu.scenario import values
+from motionfmu.scenario.system import Resolver
+
+if TYPE_CHECKING:
+    from motionfmu.contour import ContourResult
+
+
+@dataclass
+class Result:
+    """What a run gave.
+
+    Attributes
+    ----------
+    scenario : Scenario
+    time : ndarray
+        Times of the samples [s], shape (N,).
+    signals : dict
+        By name: (N, 6) for an array of axes, (N,) for a scalar.
+    parameters : dict
+        Value of every parameter that was set, by name.
+    geometry : str or None
+        The planned path as the library wrote it (CSV), if the scenario has a contour.
+    warnings : tuple of str
+        What the FMUs warned of, and grids that do not divide each other; each once.
+    """
+
+    scenario: Prepared
+    time: NDArray[np.float64]
+    signals: dict[str, NDArray[Any]]
+    parameters: dict[str, Any]
+    geometry: str | None = None
+    warnings: tuple[str, ...] = ()
+    _contour: "ContourResult | NoNumber | None" = None
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A signal, or with ``name[i]`` one axis of it, i from 1."""
+        if name in self.signals:
+            return self.signals[name]
+        whole, bracket, rest = name.partition("[")
+        index = rest.removesuffix("]")
+        if bracket and whole in self.signals and index.isdecimal():
+            data = self.signals[whole]
+            if data.ndim == 2 and 1 <= int(index) <= data.shape[1]:
+                return data[:, int(index) - 1]
+        raise KeyError(f"{name} is not recorded (recorded: {', '.join(sorted(self.signals))})")
+
+    def parameter(self, name: str) -> Any:
+        """Value of a parameter in this run, set or from its description.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``.
+
+        Returns
+        -------
+        tuple
+            One value per element.
+        """
+        if name in self.parameters:
+            return self.parameters[name]
+        return values.start_values(self.resolver.end(name, "set", name).port)
+
+    def contour(self) -> "ContourResult":
+        """The contour error of this run against the planned geometry.
+
+        Returns
+        -------
+        ContourResult
+
+        Raises
+        ------
+        InputError
+            The scenario has no [contour] table.
+        NoNumber
+            This run has no contour; the reason.
+        """
+        if self._contour is None:
+            from motionfmu.run.contour_of import contour_of
+
+            try:
+                self._contour = contour_of(self, self.scenario.only_drawn)
+            except NoNumber as reason:
+                self._contour = reason
+        if isinstance(self._contour, NoNumber):
+            raise self._contour
+        return self._contour
+
+    @property
+    def no_contour(self) -> str:
+        """Why this run has no contour; else empty."""
+        try:
+            if self.scenario.document.body.contour is not None:
+                self.contour()
+        except NoNumber as reason:
+            return str(reason)
+        return ""
+
+    def figures(self) -> list[Chart]:
+        """The figures the scenario asks for, with their curves.
+
+        Returns
+        -------
+        list of Chart
+            Empty if the scenario has no [[figure]].
+        """
+        return figures.charts(self)
+
+    def overview(self) -> list[Chart]:
+        """One figure for each recorded signal.
+
+        Returns
+        -------
+        list of Chart
+            Not more than `motionfmu.run.figures.OVERVIEW`.
+        """
+        return figures.overview(self, self.scenario.ends)
+
+    @property
+    def resolver(self) -> Resolver:
+        """The scenario's FMUs and file."""
+        return self.scenario.resolver
+
+    @property
+    def name(self) -> str:
+        """Name of the scenario."""
+        return self.scenario.name
+
+    @property
+    def about(self) -> str:
+        """What the scenario shows: its first line."""
+        return self.scenario.document.about
+
+    @property
+    def checks(self) -> list[Verdict]:
+        """The verdict of every bound in the scenario's [check] table.
+
+        A number that this run does not have is a failed check with its reason.
+        """
+        found = []
+        listed = self.scenario.document.body.check.items()
+        for name, check in ((n, c) for n, checks in listed for c in checks):
+            if not name.startswith(CONTOUR):
+                found += judge(name, check, self.time, self[name])
+                continue
+            value, reason = math.nan, ""
+            try:
+                value = self.contour().number(name.removeprefix(CONTOUR))
+            except NoNumber as told:
+                reason = str(told)
+            verdicts = judge(name, check, np.zeros(1), np.array([value]))
+            found += [replace(v, reason=reason) for v in verdicts]
+        return found
+
+    @property
+    def ok(self) -> bool:
+        """Whether every check holds."""
+        return all(v.ok for v in self.checks)

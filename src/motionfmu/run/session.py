@@ -1,0 +1,153 @@
+"""One scenario run many times: its container is built once."""
+
+import tempfile
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from motionfmu.run.engines.native import Container
+from motionfmu.run.prepared import Options, Prepared
+from motionfmu.run.result import Result
+from motionfmu.run.wired import Wired, own_settings
+from motionfmu.scenario.system import End, Setting, System
+from motionfmu.scenario.values import settings, start_values
+
+FMI = 3
+
+
+def split(name: str) -> tuple[str, int | None]:
+    """Part a name into a variable and an element of it.
+
+    Parameters
+    ----------
+    name : str
+        ``component.variable`` or ``component.variable[i]``, i from 1.
+
+    Returns
+    -------
+    str, int or None
+        The variable; the element, from 0.
+    """
+    whole, bracket, rest = name.partition("[")
+    index = rest.removesuffix("]")
+    if bracket and rest.endswith("]") and index.isdecimal():
+        return whole, int(index) - 1
+    return name, None
+
+
+class Session:
+    """A scenario loaded once, to be run with many values.
+
+    FMUs are unpacked, wired and loaded once. A run gives the same bits as `Scenario.run`.
+    Use it as a context manager, or call `close`.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    varied : iterable of str
+        Names of the parameters and inputs that runs may set, ``component.variable`` or
+        ``component.variable[i]``.
+    signals : iterable of End, optional
+        Outputs to record; the scenario's own if none are given.
+    **options : set, stop, step
+        For all runs; see `Options`.
+
+    Raises
+    ------
+    InputError
+        A name or an option is wrong.
+    """
+
+    def __init__(
+        self,
+        scenario: Prepared,
+        varied: Iterable[str],
+        signals: Iterable[End] | None = None,
+        **options: Any,
+    ) -> None:
+        self.scenario, self._options = scenario, Options(**options)
+        self._temporary = tempfile.TemporaryDirectory(prefix="motionfmu-")
+        try:
+            self._folder = Path(self._temporary.name)
+            (self._folder / "container").mkdir()
+            self._container = self._prepare(varied, signals)
+        except BaseException:
+            self._temporary.cleanup()
+            raise
+
+    def _prepare(self, varied: Iterable[str], signals: Iterable[End] | None) -> Container:
+        scenario = self.scenario
+        self._given = {**self._options.set, **own_settings(scenario, self._folder)}
+        ends = [scenario.resolver.end(split(n)[0], "set", n) for n in varied]
+        usual = {e.name: start_values(e.port) for e in ends}
+        written = scenario.document.body.set
+        usual = {n: v for n, v in usual.items() if n not in {**written, **self._given}}
+        base = replace(self._options, set={**usual, **self._given})
+        used = scenario.ends if signals is None else list(signals)
+        self._wired = Wired.plan(scenario, base, used, self._folder)
+        plain, system = self._wired.plain, self._wired.system
+        self._usual = {s.end.name: s.values for s in plain.settings}
+        self._scopes = system.settings[len(plain.settings) :]
+        return Container(system, FMI, self._folder / "container")
+
+    def _values(self, given: Mapping[str, Any]) -> list[Setting]:
+        """All settings of a run; a value for one element leaves the others as they are."""
+        merged: dict[str, Any] = {}
+        for name, value in sorted(given.items(), key=lambda pair: split(pair[0])[1] is not None):
+            whole, element = split(name)
+            if element is None:
+                merged[name] = value
+                continue
+            before = merged.get(whole, self._usual[whole])
+            every = (
+                [*before]
+                if isinstance(before, tuple | list)
+                else [before] * len(self._usual[whole])
+            )
+            every[element] = value
+            merged[whole] = every
+        usual = {n: v for n, v in self._usual.items() if n not in self.scenario.document.body.set}
+        return settings(self.scenario.resolver, {**usual, **self._given, **merged})
+
+    def run(self, given: Mapping[str, Any]) -> Result:
+        """Run once.
+
+        Parameters
+        ----------
+        given : mapping
+            Value by name; names among those of the constructor.
+
+        Returns
+        -------
+        Result
+
+        Raises
+        ------
+        InputError
+            A value is wrong, or an FMU refused something; one message.
+        """
+        plain = replace(self._wired.plain, settings=tuple(self._values(given)))
+        system = replace(self._wired.system, settings=(*plain.settings, *self._scopes))
+        self.scenario.check_recording(system, replace(self._options, set=given))
+
+        def engine(system: System) -> tuple[str, ...]:
+            self._container.run(system, self._options.progress)
+            return ()
+
+        names = {split(n)[0] for n in given} | set(self._options.set)
+        run = replace(self._wired, plain=plain, system=system)
+        return run.run(engine, dict.fromkeys(names))
+
+    def close(self) -> None:
+        """Free the FMUs and their files."""
+        try:
+            self._container.free()
+        finally:
+            self._temporary.cleanup()
+
+    def __enter__(self) -> "Session":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()

@@ -1,0 +1,57 @@
+"""A scenario with the scopes that record it: what an engine runs, and the result made of it."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motionfmu.errors import InputError
+from motionfmu.run.prepared import Options, Prepared
+from motionfmu.run.result import Result
+from motionfmu.scenario import recording
+from motionfmu.scenario.system import End, System
+
+PLANNED = "path.csv"
+
+
+def own_settings(scenario: Prepared, folder: Path) -> dict[str, Any]:
+    """Where the library writes the path that it plans."""
+    library = scenario.library()
+    return {f"{library}.path_file": str(folder / PLANNED)} if library else {}
+
+
+@dataclass(frozen=True)
+class Wired:
+    """One run, ready for an engine."""
+
+    scenario: Prepared
+    plain: System  # without scopes
+    system: System  # with them
+    traces: recording.Recording
+
+    @classmethod
+    def plan(
+        cls, scenario: Prepared, options: Options, ends: Iterable[End], folder: Path
+    ) -> "Wired":
+        """Add the scopes that record these outputs in files of a folder."""
+        plain = scenario.resolved(options)
+        return cls(scenario, plain, *recording.plan(plain, ends, folder))
+
+    def run(self, engine: Callable[[System], Iterable[str]], given: Mapping[str, Any]) -> Result:
+        """Run it; an FMU's message says where its value stands."""
+        planned = self.traces.folder / PLANNED
+        planned.unlink(missing_ok=True)
+        try:
+            warnings = engine(self.system)
+        except InputError as error:
+            raise self.scenario.located(error, self.plain, given) from None
+        return Result(
+            self.scenario,
+            np.arange(self.system.steps, dtype=np.float64) * (self.system.step_ns * 1e-9),
+            self.traces.load(),
+            {s.end.name: s.values for s in self.plain.settings},
+            planned.read_text(encoding="utf-8") if planned.is_file() else None,
+            tuple(warnings),
+        )

@@ -1,0 +1,1 @@
+"""What a scenario is: its file, its FMUs, wires, values and recording."""

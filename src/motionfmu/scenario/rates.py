@@ -1,0 +1,55 @@
+"""How fast a recorded signal changes: for figures and checks."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.scenario.system import NS_TOLERANCE
+
+
+def change(
+    time: NDArray[Any], x: NDArray[Any], rate: float
+) -> tuple[NDArray[Any], NDArray[np.float64]]:
+    """(x(t) - x(t - rate)) / rate, from t = rate on.
+
+    Parameters
+    ----------
+    time : ndarray
+        Times of the samples [s].
+    x : ndarray
+        One row per sample.
+    rate : float
+        Whole number of steps [s].
+
+    Returns
+    -------
+    ndarray, ndarray
+        Times [s] and rates [1/s]; both empty if the run is shorter.
+    """
+    back = min(len(time), round(rate / (time[1] - time[0]))) if len(time) > 1 else len(time)
+    values = np.asarray(x, dtype=np.float64)
+    return time[back:], (values[back:] - values[: len(values) - back]) / rate
+
+
+def wrong(rate: float, step_ns: int, stop: float) -> str:
+    """What does not fit the run.
+
+    Parameters
+    ----------
+    rate : float
+        [s].
+    step_ns : int
+        Communication step [ns].
+    stop : float
+        Of the scenario [s].
+
+    Returns
+    -------
+    str
+        Empty if nothing.
+    """
+    steps = round(rate * 1e9 / step_ns)
+    if steps < 1 or abs(rate * 1e9 - steps * step_ns) > NS_TOLERANCE:
+        return f"rate = {rate!r} s is no whole number of steps of {step_ns * 1e-9:g} s"
+    return f"rate = {rate!r} s is longer than the run" if rate >= stop else ""

@@ -1,0 +1,241 @@
+"""Which signals go to which channel of which scope."""
+
+import math
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.scenario import fmus
+from motionfmu.scenario.fmus import Port
+from motionfmu.scenario.system import STEPS_MAX, End, Resolver, Setting, System, Wire
+from motionfmu.scenario.values import start_values, values_of
+
+AXES = 6
+# Channels of one scope FMU: groups of six and single ones, by the type they hold.
+SIZES = {"Float64": 8, "Int32": 4}  # [bytes]
+# A recording is held in memory, by the scope and then here.
+ROWS_MAX = STEPS_MAX
+BYTES_MAX = 2_000_000_000
+GROUPS = {"Float64": ("axes_real_", 10, "real_", 4), "Int32": ("axes_int_", 9, "int_", 10)}
+
+
+@dataclass(frozen=True)
+class Column:
+    """Where the trace files hold a signal."""
+
+    end: End
+    scope: int
+    kind: str  # Float64 or Int32; a Boolean is recorded as Int32
+    group: int  # counts from 0 within its width
+
+
+@dataclass(frozen=True)
+class Recording:
+    """All columns and the folder of the trace files."""
+
+    columns: tuple[Column, ...]
+    folder: Path
+    scopes: int
+
+    def load(self) -> dict[str, NDArray[Any]]:
+        """Read the trace files of a run that has ended.
+
+        Returns
+        -------
+        dict
+            By signal name: rows x 6 for an array, rows for a scalar.
+        """
+        files = {
+            (scope, kind): np.load(self.folder / f"scope{scope + 1}.{kind_name}.npy")
+            for scope in range(self.scopes)
+            for kind, kind_name in (("Float64", "real"), ("Int32", "int"))
+        }
+        found = {}
+        for c in self.columns:
+            data = files[c.scope, c.kind]
+            groups = sum(
+                1
+                for o in self.columns
+                if (o.scope, o.kind) == (c.scope, c.kind) and o.end.port.shape
+            )
+            first = AXES * c.group if c.end.port.shape else AXES * groups + c.group
+            part = data[:, first : first + AXES] if c.end.port.shape else data[:, first]
+            found[c.end.name] = part.astype(bool) if c.end.port.type == "Boolean" else part
+        return found
+
+
+def recordable(end: End) -> bool:
+    """Whether the scope has a channel of this type and width.
+
+    Parameters
+    ----------
+    end : End
+
+    Returns
+    -------
+    bool
+    """
+    return end.port.shape in ((), (AXES,)) and end.port.type in ("Float64", "Int32", "Boolean")
+
+
+def output(resolver: Resolver, name: str, table: str, key: str) -> End:
+    """Find an output that can be recorded.
+
+    Parameters
+    ----------
+    resolver : Resolver
+    name : str
+        ``component.variable``.
+    table, key : str
+        Where it is written, for the message.
+
+    Returns
+    -------
+    End
+
+    Raises
+    ------
+    InputError
+        The name is unknown, no output, or not recordable.
+    """
+    end = resolver.end(name, table, key)
+    if end.port.causality != "output":
+        text = f"{name} is no output ({end.port.causality})"
+        raise resolver.document.error(text, table, key)
+    if not recordable(end):
+        text = f"{name}: only numbers, single or in groups of six, can be recorded"
+        raise resolver.document.error(text, table, key)
+    return end
+
+
+def chosen(resolver: Resolver, patterns: Iterable[str]) -> list[End]:
+    """Outputs that the patterns name, each once.
+
+    Parameters
+    ----------
+    resolver : Resolver
+    patterns : iterable of str
+        Names or patterns; a pattern passes over what cannot be recorded.
+
+    Returns
+    -------
+    list of End
+
+    Raises
+    ------
+    InputError
+        A name is unknown, no output, or not recordable; a pattern matches nothing.
+    """
+    document, found = resolver.document, {}
+    for pattern in patterns:
+        if "*" in pattern or "?" in pattern:
+            ends = [e for e in resolver.matching(pattern, "output") if recordable(e)]
+            if not ends:
+                raise document.error(f"{pattern!r} matches no output", "record", "signals")
+        else:
+            ends = [output(resolver, pattern, "record", "signals")]
+        found.update({e.name: e for e in ends})
+    return list(found.values())
+
+
+def _allocate(ends: Iterable[End]) -> list[Column]:
+    columns: list[Column] = []
+    used: dict[tuple[int, str, bool], int] = {}
+    for end in ends:
+        kind = "Float64" if end.port.type == "Float64" else "Int32"
+        wide = bool(end.port.shape)
+        room = GROUPS[kind][1 if wide else 3]
+        scope = 0
+        while used.get((scope, kind, wide), 0) == room:
+            scope += 1
+        columns.append(Column(end, scope, kind, used.get((scope, kind, wide), 0)))
+        used[scope, kind, wide] = used.get((scope, kind, wide), 0) + 1
+    return columns
+
+
+def refused(system: System) -> tuple[str, str]:
+    """What is wrong with the scopes of a system, before it is run.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    str, str
+        The setting, ``component.variable``, and the words; empty if nothing is.
+    """
+    files: dict[str, str] = {}
+    total = 0
+    given = {s.end.name: s.values[0] for s in system.settings}
+    for name in (n for n, fmu in system.components.items() if fmu == "scope"):
+        ports = fmus.ports("scope")
+
+        def value(key: str, name: str = name, ports: dict[str, Port] = ports) -> Any:
+            return given.get(f"{name}.{key}", start_values(ports[key])[0])
+
+        if not value("file"):
+            continue
+        file = os.path.realpath(value("file"))
+        if file in files:
+            return f"{name}.file", f"{name} and {files[file]} would both write {file}"
+        files[file] = name
+        rows = math.ceil(system.steps * system.step_ns / (value("period") * 1e9))
+        if rows > ROWS_MAX:
+            text = f"{name} would record {rows} rows; {ROWS_MAX} are the most"
+            return f"{name}.period", text
+        total += rows * sum(
+            SIZES[kind] * (AXES * value(f"{axes}used") + value(f"{single}used"))
+            for kind, (axes, _, single, _) in GROUPS.items()
+        )
+        if total > BYTES_MAX:
+            size, most = total * 1e-9, BYTES_MAX * 1e-9
+            text = f"{rows} rows of {name} make a recording of {size:.3g} GB; {most:g} are the most"
+            return f"{name}.period", text
+    return "", ""
+
+
+def plan(system: System, ends: Iterable[End], folder: Path) -> tuple[System, Recording]:
+    """Add scopes that record these outputs.
+
+    Parameters
+    ----------
+    system : System
+    ends : iterable of End
+        Outputs to record at every step.
+    folder : Path
+        Receives the trace files.
+
+    Returns
+    -------
+    System, Recording
+        The system with as many scopes as needed, and where the signals will be.
+    """
+    columns = _allocate(ends)
+    scopes = 1 + max((c.scope for c in columns), default=-1)
+    ports = fmus.ports("scope") if scopes else {}
+    components, wires, settings = dict(system.components), list(system.wires), list(system.settings)
+    for scope in range(scopes):
+        name = f"_scope{scope + 1}"
+        components[name] = "scope"
+        given: dict[str, Any] = {
+            "file": str(folder / f"scope{scope + 1}"),
+            "period": system.step_ns * 1e-9,
+        }
+        for kind, (axes, _, single, _) in GROUPS.items():
+            mine = [c for c in columns if (c.scope, c.kind) == (scope, kind)]
+            given[f"{axes}used"] = sum(1 for c in mine if c.end.port.shape)
+            given[f"{single}used"] = sum(1 for c in mine if not c.end.port.shape)
+            for c in mine:
+                channel = f"{axes if c.end.port.shape else single}{c.group + 1}"
+                wires.append(Wire(c.end, End(name, ports[channel])))
+        for key, value in given.items():
+            end = End(name, ports[key])
+            settings.append(Setting(end, values_of(end, value)))
+    added = replace(system, components=components, wires=tuple(wires), settings=tuple(settings))
+    return added, Recording(tuple(columns), folder, scopes)

@@ -1,0 +1,178 @@
+"""What of a run becomes a column: contour figures and statistics of signals."""
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.contour.names import wrong
+from motionfmu.errors import NoNumber
+from motionfmu.run import Scenario
+from motionfmu.run.checks import CONTOUR
+from motionfmu.run.result import Result
+from motionfmu.run.session import split
+from motionfmu.scenario import recording
+from motionfmu.scenario.contour_signals import wanted as of_contour
+from motionfmu.scenario.document import Check
+from motionfmu.scenario.system import End
+
+Array = NDArray[Any]
+
+LENGTHS = ("error", "command_error", "following")  # tables of contour figures in mm
+# Over all samples and all elements.
+STATISTICS: dict[str, Callable[[Array], float]] = {
+    "final": lambda x: float(x[-1]),
+    "min": lambda x: float(x.min()),
+    "max": lambda x: float(x.max()),
+    "absmax": lambda x: float(np.abs(x).max()),
+    "rms": lambda x: float(np.sqrt((x**2).mean())),
+    "mean": lambda x: float(x.mean()),
+    "span": lambda x: float(np.ptp(x)),
+}
+
+
+@dataclass(frozen=True)
+class Column:
+    """A number of a run.
+
+    Attributes
+    ----------
+    name : str
+        ``contour.<figure>``, or a signal and a name of STATISTICS:
+        ``card.stock.min``, ``card.err_count[1].final``.
+    end : End or None
+        The signal; None for a figure of the contour.
+    """
+
+    name: str
+    end: End | None = None
+
+    @property
+    def unit(self) -> str:
+        """Unit of the signal, or mm of a contour error; else empty."""
+        if self.end:
+            return self.end.port.unit or ""
+        _, table, *_, figure = self.name.split(".")
+        return "mm" if table in LENGTHS and figure not in ("time", "line", "command") else ""
+
+    def of(self, result: Result) -> float:
+        """The number.
+
+        Parameters
+        ----------
+        result : Result
+
+        Returns
+        -------
+        float
+            In the signal's unit, or as in ContourResult.numbers.
+
+        Raises
+        ------
+        NoNumber
+            The run has no such number, or it is not finite.
+        """
+        if self.end is None:
+            value = result.contour().number(self.name.removeprefix(CONTOUR))
+        else:
+            signal, _, statistic = self.name.rpartition(".")
+            value = STATISTICS[statistic](np.asarray(result[signal], dtype=float))
+        if not math.isfinite(value):
+            raise NoNumber(f"{self.name} is not finite")
+        return value
+
+
+def column(scenario: Scenario, name: str) -> Column:
+    """Check the name of a column.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    name : str
+        See `Column`.
+
+    Returns
+    -------
+    Column
+
+    Raises
+    ------
+    InputError
+        No such signal, or the scenario has no contour.
+    ValueError
+        No such statistic or figure.
+    """
+    if name.startswith(CONTOUR):
+        if scenario.document.body.contour is None:
+            raise ValueError(f"{name}: the scenario has no [contour] table")
+        if told := wrong(name.removeprefix(CONTOUR)):
+            raise ValueError(told)
+        return Column(name)
+    signal, _, statistic = name.rpartition(".")
+    if statistic not in STATISTICS or "." not in signal:
+        known = ", ".join(STATISTICS)
+        raise ValueError(f"{name}: SIGNAL.STATISTIC (one of {known}) or contour.FIGURE wanted")
+    whole, element = split(signal)
+    end = recording.output(scenario.resolver, whole, "", "")
+    if element is not None and not 0 <= element < end.port.count * bool(end.port.shape):
+        raise ValueError(f"{name}: {whole} has no element {element + 1}")
+    if statistic == "final" and element is None and end.port.shape:
+        raise ValueError(f"{name}: the final value of which element, {whole}[1]?")
+    return Column(name, end)
+
+
+def usual(scenario: Scenario) -> list[Column]:
+    """The columns of a study that names none: what is checked.
+
+    Parameters
+    ----------
+    scenario : Scenario
+
+    Returns
+    -------
+    list of Column
+    """
+    found: dict[str, Column] = {}
+    for name, checks in scenario.document.body.check.items():
+        for check in checks:
+            for wanted in [name] if name.startswith(CONTOUR) else _checked(scenario, name, check):
+                found[wanted] = column(scenario, wanted)
+    return list(found.values())
+
+
+def _checked(scenario: Scenario, name: str, check: Check) -> Iterable[str]:
+    if check.at is not None or check.windows is not None or check.rate is not None:
+        return
+    whole, element = split(name)
+    port = scenario.resolver.end(whole, "check", name).port
+    for bound in ("min", "max", "absmax", "rms", "final"):
+        if getattr(check, bound) is None:
+            continue
+        several = bound == "final" and element is None and port.shape
+        for signal in [f"{name}[{i + 1}]" for i in range(port.count)] if several else [name]:
+            yield f"{signal}.{bound}"
+    if check.peak is not None:
+        yield f"{name}.absmax"
+
+
+def signals(scenario: Scenario, columns: Iterable[Column]) -> list[End]:
+    """What a run records: for columns, checks and contour.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    columns : iterable of Column
+
+    Returns
+    -------
+    list of End
+        Each once.
+    """
+    checked = [n for n in scenario.document.body.check if not n.startswith(CONTOUR)]
+    names = [*of_contour(scenario.resolver), *(split(n)[0] for n in checked)]
+    ends = [recording.output(scenario.resolver, n, "check", n) for n in names]
+    ends += [c.end for c in columns if c.end]
+    return list({e.name: e for e in ends}.values())

@@ -1,0 +1,157 @@
+"""The workers on this machine: one process each, every run handed out by itself."""
+
+import contextlib
+import os
+import subprocess
+import sys
+import tempfile
+from collections import deque
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection, wait
+from typing import Any
+
+from motionfmu.errors import InputError
+from motionfmu.scenario.fmus import PACKAGE
+from motionfmu.study.axes import Point
+from motionfmu.study.study import Job
+from motionfmu.study.worker import CRASH, Row
+
+Task = tuple[int, Point]
+
+# Points a worker has: one running, the others waiting, so that it never waits for us.
+AHEAD = 4
+PATIENCE = 10  # [s] for a worker to remove its files when it is told to end
+# One thread per worker: the workers themselves are what fills the cores.
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+def cores() -> int:
+    """Number of processors this process may use.
+
+    Returns
+    -------
+    int
+    """
+    return len(os.sched_getaffinity(0))
+
+
+@dataclass
+class _Process:
+    """A worker's process, our end of its pipe, and the points it has, the running one first."""
+
+    process: "subprocess.Popen[bytes]"
+    pipe: Connection
+    tasks: deque[Task] = field(default_factory=deque)
+    ready: bool = False
+
+
+def _start(job: Job, temporary: str) -> _Process:
+    ours, theirs = Pipe()
+    own = {"TMPDIR": temporary, **dict.fromkeys(THREADS, "1")}
+    path = [str(PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])]
+    with theirs:
+        number = theirs.fileno()
+        program = f"from motionfmu.study.worker import main; main({number})"
+        process = subprocess.Popen(
+            [sys.executable, "-P", "-c", program],
+            pass_fds=[number],
+            stdin=subprocess.DEVNULL,
+            env={**os.environ, **own, "PYTHONPATH": os.pathsep.join(path)},
+            start_new_session=True,  # an interrupt from the keyboard is for us alone
+        )
+    ours.send(job)
+    return _Process(process, ours)
+
+
+def rows(job: Job, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
+    """Run points on this machine.
+
+    Parameters
+    ----------
+    job : Job
+    tasks : sequence of (int, tuple)
+        Number and values of each point.
+    workers : int
+        Number of processes.
+
+    Yields
+    ------
+    Row
+        As they come. A run that ends its process gives a row that says so.
+
+    Raises
+    ------
+    InputError
+        A worker could not begin.
+    """
+    pending = deque(tasks)
+    running: list[_Process] = []
+    with tempfile.TemporaryDirectory(prefix="motionfmu-", ignore_cleanup_errors=True) as temporary:
+        try:
+            while pending or any(p.tasks for p in running):
+                while len(running) < min(workers, len(pending) + len(running)):
+                    running.append(_start(job, temporary))
+                _deal(running, pending)
+                for pipe in wait([p.pipe for p in running]):
+                    one = next(p for p in running if p.pipe is pipe)
+                    told = _receive(one)
+                    if isinstance(told, InputError):
+                        raise told
+                    if isinstance(told, Row):
+                        one.tasks.popleft()
+                        yield told
+                    elif told is None:
+                        running.remove(one)
+                        lost = _crashed(one, job)
+                        pending.extendleft(reversed(one.tasks))
+                        if lost:
+                            yield lost
+                    else:
+                        one.ready = True
+        finally:
+            for one in running:
+                _end(one)
+
+
+def _deal(running: list[_Process], pending: deque[Task]) -> None:
+    """Hand out points; the last ones only to those who have nothing to do."""
+    for one in running:
+        ahead = AHEAD if len(pending) > AHEAD * len(running) else 1
+        while one.ready and pending and len(one.tasks) < ahead:
+            one.tasks.append(pending.popleft())
+            with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                one.pipe.send(one.tasks[-1])  # its end is seen when we receive
+
+
+def _end(one: _Process) -> None:
+    one.pipe.close()
+    if one.tasks or not one.ready:
+        one.process.terminate()
+    try:
+        one.process.wait(PATIENCE)
+    except subprocess.TimeoutExpired:
+        one.process.kill()
+        one.process.wait()
+
+
+def _receive(one: _Process) -> Any:
+    """A message; None when the process has ended."""
+    try:
+        return one.pipe.recv()
+    except (EOFError, ConnectionResetError):
+        return None
+
+
+def _crashed(one: _Process, job: Job) -> Row | None:
+    """The row of the run that ended its process; the tasks that follow remain."""
+    one.pipe.close()
+    code = one.process.wait()
+    how = f"signal {-code}" if code < 0 else f"status {code}"
+    if not one.ready:
+        raise InputError(f"{job.scenario}: a worker ended with {how} before its first run")
+    if not one.tasks:
+        return None
+    run, _ = one.tasks.popleft()
+    return Row(run, CRASH, f"the run ended its process ({how})", None, (None,) * len(job.columns))

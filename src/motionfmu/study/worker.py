@@ -1,0 +1,171 @@
+"""Runs points of a study, one after another, in a process of its own.
+
+The row of a run is a `Row`, whatever happened in it. `motionfmu.study.processes` starts `main`,
+`motionfmu.study.cluster` calls `chunk`.
+"""
+
+import signal
+import sys
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from typing import Any
+
+from motionfmu.errors import InputError, NoNumber
+from motionfmu.run import load
+from motionfmu.run.session import Session
+from motionfmu.study.axes import Point
+from motionfmu.study.columns import column, signals
+from motionfmu.study.study import Job, digest
+
+OK, ERROR, CRASH = "ok", "error", "crash"
+
+
+@dataclass(frozen=True)
+class Row:
+    """What a run gave.
+
+    Attributes
+    ----------
+    run : int
+        Number of the point, from 0.
+    status : str
+        ``ok``; ``error``: a value was refused; ``crash``: the run ended its process, and is
+        tried again when the study is resumed.
+    message : str
+        What went wrong, or why a number is missing; empty if nothing did and none is.
+    checks : bool or None
+        Whether the scenario's checks hold; None if it has none or the run gave nothing.
+    values : tuple
+        One number per column; None where there is none.
+    """
+
+    run: int
+    status: str
+    message: str
+    checks: bool | None
+    values: tuple[float | None, ...]
+
+
+class Worker:
+    """A session of a study's scenario.
+
+    Parameters
+    ----------
+    job : Job
+
+    Raises
+    ------
+    InputError
+        The scenario or the FMUs here are not those of the study.
+    """
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        scenario = load(job.scenario)
+        if digest(scenario, job.named) != job.digest:
+            raise InputError(f"{job.scenario}: a worker has other files or FMUs than the study")
+        self._columns = [column(scenario, name) for name in job.columns]
+        recorded = signals(scenario, self._columns)
+        options: dict[str, Any] = {"set": job.set, "stop": job.stop, "step": job.step}
+        self._session = Session(scenario, job.axes, recorded, **options)
+
+    def row(self, run: int, point: Point) -> Row:
+        """Run one point.
+
+        Parameters
+        ----------
+        run : int
+            Its number.
+        point : tuple
+            One value per axis.
+
+        Returns
+        -------
+        Row
+        """
+        try:
+            result = self._session.run(dict(zip(self.job.axes, point, strict=True)))
+        except Exception as error:  # the study goes on
+            return Row(run, ERROR, _told(error), None, (None,) * len(self._columns))
+        values: list[float | None] = []
+        missing: dict[str, None] = {}
+        wrong = ""
+        for wanted in self._columns:
+            value = None
+            try:
+                value = wanted.of(result)
+            except NoNumber as reason:
+                missing[str(reason)] = None
+            except Exception as error:
+                wrong = wrong or _told(error)
+            values.append(value)
+        checks = result.ok if result.scenario.document.body.check else None
+        if wrong:
+            return Row(run, ERROR, wrong, checks, tuple(values))
+        return Row(run, OK, "; ".join(missing), checks, tuple(values))
+
+    def close(self) -> None:
+        """Free the FMUs and their files."""
+        self._session.close()
+
+
+def _told(error: Exception) -> str:
+    """A message; a mistake of the program also says what kind it is."""
+    return str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+
+
+_kept = threading.local()  # one session per thread: a process of a cluster may have several
+
+
+def chunk(job: Job, points: Sequence[tuple[int, Point]]) -> list[Row]:
+    """Run some points; the session stays for the next call.
+
+    Parameters
+    ----------
+    job : Job
+    points : sequence of (int, tuple)
+        Number and values of each.
+
+    Returns
+    -------
+    list of Row
+
+    Raises
+    ------
+    InputError
+        The scenario or the FMUs here are not those of the study.
+    """
+    worker: Worker | None = getattr(_kept, "worker", None)
+    if worker is None or worker.job != job:
+        if worker is not None:
+            _kept.worker = None
+            worker.close()
+        worker = _kept.worker = Worker(job)
+    return [worker.row(run, point) for run, point in points]
+
+
+def main(pipe: int) -> None:
+    """Serve the process that started this one until it is gone.
+
+    Parameters
+    ----------
+    pipe : int
+        File descriptor: brings the job, then points; takes "ready" or an error, then rows.
+    """
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # files are removed on the way out
+    with Connection(pipe) as connection:
+        try:
+            worker = Worker(connection.recv())
+        except InputError as error:
+            connection.send(error)
+            return
+        try:
+            connection.send("ready")
+            while True:
+                connection.send(worker.row(*connection.recv()))
+        except (EOFError, BrokenPipeError, ConnectionResetError):
+            pass  # the study has ended, or its process
+        finally:
+            worker.close()
