@@ -1,0 +1,102 @@
+"""Where things stand: the folders of the root, and the way of the data through the package."""
+
+import ast
+import graphlib
+import re
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+PACKAGE = ROOT / "src/motionfmu"
+Graph = dict[str, set[str]]
+
+
+def modules() -> dict[str, Path]:
+    """File of each module by its name, a folder's own file by the folder's."""
+    names = {f: f.relative_to(PACKAGE.parent).with_suffix("").parts for f in PACKAGE.rglob("*.py")}
+    return {".".join(p for p in parts if p != "__init__"): f for f, parts in names.items()}
+
+
+def imported(text: str) -> Iterator[tuple[str, str]]:
+    """Every import of a module, those inside functions too: from where, and which name."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            yield from ((a.name, "") for a in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "a relative import"
+            yield from ((node.module or "", a.name) for a in node.names)
+
+
+def graph(texts: dict[str, str]) -> Graph:
+    """Which modules each module of the package imports."""
+    return {
+        name: {
+            f"{where}.{what}" if f"{where}.{what}" in texts else where
+            for where, what in imported(text)
+            if where in texts
+        }
+        for name, text in texts.items()
+    }
+
+
+def circle(found: Graph) -> list[str]:
+    """Modules that import each other in turn; empty if none do."""
+    try:
+        graphlib.TopologicalSorter(found).prepare()
+    except graphlib.CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def way() -> list[str]:
+    """Modules and folders of the package in the order of the table in its README."""
+    table = re.search(r"## The way of the data\n[^|]*((?:\|.*\n)+)", README)
+    assert table
+    cells = [row.split("|")[1] for row in table[1].splitlines()[2:]]
+    return [name for cell in cells for name in re.findall(r"`(\w+)/?`", cell)]
+
+
+def against(found: Graph, order: list[str]) -> list[str]:
+    """Imports from a later place of the way; the package's own front is its end."""
+    place = {name: k for k, name in enumerate(order)}
+
+    def rank(module: str) -> int:
+        parts = module.split(".")
+        return place.get(parts[1], len(order)) if len(parts) > 1 else len(order)
+
+    return [f"{m} imports {n}" for m, ns in found.items() for n in sorted(ns) if rank(n) > rank(m)]
+
+
+README = (PACKAGE / "README.md").read_text()
+IMPORTS = graph({name: file.read_text() for name, file in modules().items()})
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    assert circle(IMPORTS) == []
+
+
+def test_no_module_imports_what_comes_later_on_the_way() -> None:
+    assert against(IMPORTS, way()) == []
+
+
+def test_every_part_of_the_package_has_its_place_on_the_way() -> None:
+    own = {f.parent.name for f in PACKAGE.glob("*/*.py")} | {f.stem for f in PACKAGE.glob("*.py")}
+    assert sorted(way()) == sorted(own - {"__init__", "__main__", "motionfmu"})
+
+
+@pytest.mark.parametrize("line", ["from p.b import y", "def f():\n    from p import b"])
+def test_a_circle_and_an_import_of_what_is_later_are_found(line: str) -> None:
+    found = graph({"p": "", "p.a": line, "p.b": "import p.a"})
+    assert sorted(set(circle(found))) == ["p.a", "p.b"]
+    assert against(found, ["a", "b"]) == ["p.a imports p.b"]
+
+
+def test_the_root_holds_the_folders_it_was_designed_with() -> None:
+    listed = subprocess.run(
+        ["git", "ls-files", "*/*"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.split("\n")
+    folders = {n.split("/")[0] for n in listed if n and not n.startswith(".")}
+    assert folders == {"fmus", "modelica", "scenarios", "src", "tests"}
