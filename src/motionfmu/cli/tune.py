@@ -34,7 +34,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.report.tune_page import page_text
     from motionfmu.run import load
     from motionfmu.tune import problem, read
-    from motionfmu.tune.result import plant_text
+    from motionfmu.tune.words import plant_text
 
     scenario = load(path)
     beside = scenario.document.file.parent / "tune.toml"

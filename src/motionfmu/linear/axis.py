@@ -1,42 +1,19 @@
 """The linear model of one axis of a scenario."""
 
-import functools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from motionfmu.errors import InputError
-from motionfmu.fmu.modelica.ode import Ode
-from motionfmu.linear import law
 from motionfmu.linear.block import Block
-from motionfmu.linear.form import Gain
-from motionfmu.linear.given import Values
-from motionfmu.linear.plant import Linearised, Point
+from motionfmu.linear.parts import Parts, parts
+from motionfmu.linear.plant import Point
 from motionfmu.linear.wiring import Net, Port, period_of
-from motionfmu.run import Options, Scenario, load
-from motionfmu.scenario.system import Wire
-from motionfmu.scenario.values import settings
+from motionfmu.run import Scenario, load
 
 if TYPE_CHECKING:
     from motionfmu.linear.systems import System  # its import takes a second, a tuning does without
-
-
-@functools.cache
-def equation(fmu: str) -> Linearised:
-    """The functions of a plant's equation, made once.
-
-    Parameters
-    ----------
-    fmu : str
-
-    Returns
-    -------
-    Linearised
-    """
-    found = law.carried(fmu)
-    assert isinstance(found, Ode)
-    return Linearised(found)
 
 
 @dataclass(frozen=True)
@@ -74,8 +51,8 @@ class AxisModel:
     wires: Mapping[Port, Port]
     step_ns: int
     points: Mapping[str, Point]
-    left_out: tuple[str, ...] = ()
-    _cache: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
+    left_out: tuple[str, ...]
+    _parts: Parts = field(repr=False, compare=False)
 
     @property
     def inputs(self) -> list[str]:
@@ -106,7 +83,7 @@ class AxisModel:
         InputError
             A name or value is wrong.
         """
-        return _build(self.scenario, self.axis, self.at, {**self.set, **set}, self)
+        return _build(self.scenario, self.axis, self.at, {**self.set, **set}, self._parts)
 
     def system(
         self,
@@ -265,8 +242,7 @@ class AxisModel:
         -------
         mapping
         """
-        found: Mapping[str, Any] = self._cache["values"][component]
-        return found
+        return self._parts.values[component]
 
     def value(self, name: str) -> Any:
         """Value of a parameter or of an input that stays, of this axis.
@@ -286,10 +262,10 @@ class AxisModel:
             There is no such variable, or nothing says its value.
         """
         component, _, variable = name.partition(".")
-        if component not in self._cache["values"]:
+        if component not in self._parts.values:
             raise InputError(f"{name}: no component {component!r} in the linear model")
         try:
-            return self._cache["values"][component][variable]
+            return self._parts.values[component][variable]
         except KeyError:
             raise InputError(f"{name}: nothing says its value") from None
 
@@ -344,138 +320,18 @@ def _build(
     axis: int,
     at: Mapping[str, float],
     set_: Mapping[str, Any],
-    before: AxisModel | None,
+    before: Parts | None,
 ) -> AxisModel:
-    numbers = {n: v.plain if isinstance(v, Gain) else v for n, v in set_.items()}
-    if before is None:
-        resolved = scenario.resolved(Options(set=numbers))
-    else:
-        given = tuple(settings(scenario.resolver, numbers))
-        resolved = replace(before._cache["system"], settings=given)
-    components = resolved.components
-    said = {c: law.carried(f) for c, f in components.items()}
-    every = {c: Values(resolved, scenario, c, axis) for c in components}
-    _check(scenario, axis, at, every)
-    for name, value in set_.items():
-        if isinstance(value, Gain):
-            component, _, variable = name.partition(".")
-            every[component].given[variable] = (value,) * axis
-    for w in resolved.wires:
-        source, name = w.source.component, w.source.port.name
-        every[w.target.component].wired[w.target.port.name] = functools.partial(
-            _constant, said[source], every[source], f"{source}.{name}"
-        )
-    blocks: dict[str, Block] = {}
-    points: dict[str, Point] = {}
-    # plants first: a law may ask for its outputs at their point
-    for c in sorted(components, key=lambda c: isinstance(said[c], law.Law)):
-        own = said[c]
-        try:
-            if isinstance(own, law.Law):
-                blocks[c] = law.block(own, every[c], _fed(resolved.wires, c, points))
-            elif own is not None:
-                blocks[c], points[c] = _plant(c, components[c], (at, every[c]), before)
-        except ValueError as error:
-            raise InputError(f"{scenario.document.file}: {c}: {error}") from None
-    blocks = {c: blocks[c] for c in components if c in blocks}
-    joined = {}
-    for w in resolved.wires:
-        target = w.target.component, w.target.port.name
-        from_ = w.source.component, w.source.port.name
-        b, a = blocks.get(target[0]), blocks.get(from_[0])
-        if b is not None and a is not None and target[1] in b.inputs and from_[1] in a.ports:
-            joined[target] = from_
+    made = parts(scenario, axis, at, set_, before)
     return AxisModel(
         scenario,
         axis,
         at,
         set_,
-        blocks,
-        joined,
-        resolved.step_ns,
-        points,
-        tuple(c for c in components if said[c] is None),
-        {"system": resolved, "values": every, "plants": _keys(blocks, components, at, every)},
+        made.blocks,
+        made.wires(),
+        made.system.step_ns,
+        made.points,
+        made.left_out,
+        made,
     )
-
-
-def _fed(wires: Iterable[Wire], component: str, points: Mapping[str, Point]) -> dict[str, float]:
-    """Outputs of a component as the operating points of the plants have them."""
-    found = {}
-    for w in wires:
-        if w.source.component == component and w.target.component in points:
-            found[w.source.port.name] = points[w.target.component].values[w.target.port.name]
-    return found
-
-
-def _keys(
-    blocks: Mapping[str, Block],
-    components: Mapping[str, str],
-    at: Mapping[str, float],
-    every: Mapping[str, Values],
-) -> dict[str, Any]:
-    return {c: _key(c, components[c], at, every[c]) for c in blocks if _is_plant(components[c])}
-
-
-def _is_plant(fmu: str) -> bool:
-    return isinstance(law.carried(fmu), Ode)
-
-
-def _key(component: str, fmu: str, at: Mapping[str, float], own: Values) -> Any:
-    names = [d.name for d in equation(fmu).ode.parameters]
-    asked = sorted((n, v) for n, v in at.items() if n.startswith(f"{component}."))
-    return fmu, asked, own["micro_step"], [float(own[n]) for n in names]
-
-
-def _plant(
-    component: str,
-    fmu: str,
-    given: tuple[Mapping[str, float], Values],
-    before: AxisModel | None,
-) -> tuple[Block, Point]:
-    """A plant about its point; the one of an earlier model if nothing of it has changed."""
-    at, own = given
-    if before is not None and before._cache["plants"].get(component) == _key(
-        component, fmu, at, own
-    ):
-        return before.blocks[component], before.points[component]
-    parts = equation(fmu)
-    p = parts.parameters({d.name: own[d.name] for d in parts.ode.parameters})
-    inputs = {}
-    for d in parts.ode.inputs:
-        if d.name not in own.wired:
-            inputs[d.name] = float(own[d.name])
-    mine = {n.partition(".")[2]: v for n, v in at.items() if n.startswith(f"{component}.")}
-    point = parts.point(p, mine, inputs)
-    return parts.block(p, point, float(own["micro_step"])), point
-
-
-def _constant(said: Any, own: Values, name: str) -> Any:
-    found = law.constant(said, own, name.partition(".")[2]) if isinstance(said, law.Law) else None
-    if found is None:
-        raise ValueError(f"it depends on {name}, of which no law says a value")
-    return found
-
-
-def _check(
-    scenario: Scenario, axis: int, at: Mapping[str, float], every: Mapping[str, Values]
-) -> None:
-    for c, own in every.items():
-        switch = scenario.resolver.ports[c].get("active")
-        if switch is None:
-            continue
-        count = switch.count
-        if not 1 <= axis <= count:
-            raise InputError(f"axis = {axis}: {c} has axes 1 to {count}")
-        if not own["active"]:
-            raise InputError(f"axis = {axis}: it is not active in {c} ({c}.active)")
-    for name, value in at.items():
-        component, _, variable = name.partition(".")
-        fmu = scenario.document.body.component.get(component)
-        if fmu is None or not _is_plant(fmu):
-            raise InputError(f"at {name} = {value!r}: {component!r} is no plant of the scenario")
-        known = equation(fmu).ode
-        if variable not in [d.name for d in (*known.inputs, *known.outputs)]:
-            raise InputError(f"at {name} = {value!r}: {fmu} has no such input or output")
-        if not isinstance(value, int | float):
-            raise InputError(f"at {name} = {value!r}: a number wanted")

@@ -4,8 +4,9 @@ import math
 from collections.abc import Iterable
 
 from motionfmu.linear import law
-from motionfmu.linear.axis import AxisModel, equation
+from motionfmu.linear.axis import AxisModel
 from motionfmu.linear.block import Matrix
+from motionfmu.linear.parts import equation
 from motionfmu.linear.plant import Linearised
 from motionfmu.linear.wiring import PeriodMap, period_of
 

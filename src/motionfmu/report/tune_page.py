@@ -14,8 +14,9 @@ from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, RAPID, axis, layout
 from motionfmu.report.tables import table
 from motionfmu.tune.problem import ON_PATH
-from motionfmu.tune.result import Run, Tuned, assumptions, plant_text, units_of
+from motionfmu.tune.result import Run, Tuned
 from motionfmu.tune.trial import Trial
+from motionfmu.tune.words import assumptions, plant_text, units_of
 
 BEFORE, AFTER = RAPID, AXES[0]
 _BUCKETS = 1200

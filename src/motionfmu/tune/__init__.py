@@ -1,7 +1,8 @@
 """Servo gains for a scenario's own path: NLP, global check, FMU verification."""
 
 from motionfmu.tune.problem import Problem, problem, read
-from motionfmu.tune.result import Tuned, tune
+from motionfmu.tune.result import Tuned
 from motionfmu.tune.solve import RanAway
+from motionfmu.tune.tuning import tune
 
 __all__ = ["Problem", "RanAway", "Tuned", "problem", "read", "tune"]

@@ -7,16 +7,15 @@ from typing import Any
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from motionfmu import linear
 from motionfmu.errors import InputError
-from motionfmu.linear.axis import AxisModel
 from motionfmu.run import Result, Scenario
 from motionfmu.tune import choice
 from motionfmu.tune.axis import AxisStudy, Motion
 from motionfmu.tune.curve import margin
+from motionfmu.tune.family import Family
 from motionfmu.tune.move import MoveCost
 from motionfmu.tune.path import PathCost
-from motionfmu.tune.problem import CONTOUR, ON_PATH, Margins, Problem
+from motionfmu.tune.problem import ON_PATH, Margins, Problem
 from motionfmu.tune.steps import Array
 
 # A step is watched for this many servo lags, at this many samples at least.
@@ -83,7 +82,7 @@ class Values:
         return bool(np.isfinite(self.costs).all() and (self.slack > -tolerance).all())
 
 
-class Study:
+class Study(Family):
     """A tuning problem, ready to be evaluated.
 
     Parameters
@@ -125,61 +124,26 @@ class Study:
         base: Result,
         set: Mapping[str, Any] | None = None,
     ) -> None:
-        self.scenario, self.problem, self.base = scenario, problem, base
-        self.set = dict(set or {})
-        on_contour = problem.command is None
-        used = [i + 1 for i in base.contour().run.axes if i < 3] if on_contour else [1]
-        one = linear.model(scenario, used[0], set=self.set)
-        self.at = dict(problem.at)
-        if on_contour:
-            self.at = self.at or choice.operating_point(one, base)
-        elif (problem.cost in CONTOUR) or problem.position is None:
-            raise InputError(
-                f"cost = {problem.cost!r}: of [contour] tables; one of the others with command"
-            )
-        self.axes = {k: linear.model(scenario, k, at=self.at, set=self.set) for k in used}
-        names = choice.gains(one, problem)
-        self.variables = choice.variables(self.axes, names, problem)
-        self.names = names
-        self.signals, self.peaks = choice.signals(one, problem)
-        self.plants = problem.plants()
-        self._check_family()
-        self.parts = [
-            {
-                k: AxisStudy(_changed(m, plant), names, self.signals, on_contour)
-                for k, m in self.axes.items()
-            }
-            for plant in self.plants
-        ]
-        first = self.parts[0][used[0]]
-        period, lag = first.period, 0.0
-        self.path: PathCost | MoveCost
-        if problem.command is None or problem.position is None:
-            self.path, lag = PathCost(base, period), base.contour().lag
-        else:
-            ends = problem.command, problem.position
-            gains = self.gains(self.present)[used[0]]
-            late = choice.shown(self.axes[used[0]], problem, self.signals.command)
-            self.path = MoveCost(base, ends, period, (first.end(gains), late))
-            lag = first.lag(gains)
-        self.lag = lag
-        seconds = _LAGS * max(lag, 50.0 * period)
+        super().__init__(scenario, problem, base, set or {})
+        first = next(iter(self.axes))
+        self.path, self.lag = self._path(first, self.parts[0][first])
+        period = self.parts[0][first].period
+        seconds = _LAGS * max(self.lag, 50.0 * period)
         self._step = max(1, round(seconds / _SAMPLES / period)), _SAMPLES
         self._check_loops()
         self.limits = self._limits()
         self.evaluations = 0
 
-    def _check_family(self) -> None:
-        one = next(iter(self.axes.values()))
-        for name, ends in self.problem.family.items():
-            component, _, variable = name.partition(".")
-            if component not in one.points or variable not in self.scenario.resolver.ports.get(
-                component, {}
-            ):
-                plants = ", ".join(one.points)
-                raise InputError(
-                    f"family.{name} = {list(ends)}: no parameter of a plant ({plants})"
-                )
+    def _path(self, axis: int, part: AxisStudy) -> tuple[PathCost | MoveCost, float]:
+        """What judges motions, and the lag [s] with the present gains."""
+        problem, base = self.problem, self.base
+        if problem.command is None or problem.position is None:
+            return PathCost(base, part.period), base.contour().lag
+        ends = problem.command, problem.position
+        gains = self.gains(self.present)[axis]
+        late = choice.shown(self.axes[axis], problem, self.signals.command)
+        move = MoveCost(base, ends, part.period, (part.end(gains), late))
+        return move, part.lag(gains)
 
     def _check_loops(self) -> None:
         known = self.parts[0][next(iter(self.axes))].loops
@@ -223,39 +187,6 @@ class Study:
                 found += [Limit(text, p, k) for text in texts]
         return found
 
-    def gains(self, z: Array) -> dict[int, Array]:
-        """Gains of each axis at a point.
-
-        Parameters
-        ----------
-        z : ndarray, shape (n,)
-            Share of its range of each variable.
-
-        Returns
-        -------
-        dict
-            Array of shape (g,) by axis.
-        """
-        found = {k: np.empty(len(self.names)) for k in self.axes}
-        for variable, share in zip(self.variables, z, strict=True):
-            for k in variable.axes:
-                found[k][self.names.index(variable.name)] = variable.value(float(share))
-        return found
-
-    @property
-    def present(self) -> Array:
-        """The point of the scenario's present gains."""
-        return np.array([v.share(v.start) for v in self.variables])
-
-    def _rates(self, z: Array) -> dict[int, Array]:
-        """Derivatives of each axis' gains to the shares: (g, n)."""
-        found = {k: np.zeros((len(self.names), len(z))) for k in self.axes}
-        for column, (variable, share) in enumerate(zip(self.variables, z, strict=True)):
-            for k in variable.axes:
-                value = variable.value(float(share))
-                found[k][self.names.index(variable.name), column] = variable.slope(value)
-        return found
-
     def values(self, z: Array, slopes: bool = True) -> Values:
         """Evaluate.
 
@@ -274,7 +205,7 @@ class Study:
             return self._values(z, slopes)
 
     def _values(self, z: Array, slopes: bool) -> Values:
-        gains, rates = self.gains(z), self._rates(z)
+        gains, rates = self.gains(z), self.rates(z)
         costs, dcosts, slack, dslack = [], [], [], []
         for parts in self.parts:
             if not all(np.isfinite(part.slowest(gains[k])[0]) for k, part in parts.items()):
@@ -399,7 +330,3 @@ class Study:
                 slope = motion.slopes[:, row, top] * np.sign(value)
             add(1.0 - abs(value) / most, -slope / most)
         return found, changes
-
-
-def _changed(axis: AxisModel, plant: Mapping[str, float]) -> AxisModel:
-    return axis.changed(dict(plant)) if plant else axis
