@@ -12,64 +12,9 @@ class Moves(Calls):
     """Lines, arcs, circles, rapids, dwell.
 
     Each call returns the command's index, from 1 on, and raises MccError if it is refused. Targets
-    are absolute or incremental as set_abs and set_inc say.
+    are absolute or incremental as set_abs and set_inc say: X Y Z U V W, those of an arc or a circle
+    two axes in the order of its plane, and U V W, all in mm. A direction is CW (0) or CCW (1).
     """
-
-    def line(self, target: Numbers) -> int:
-        """Straight line of all axes.
-
-        Parameters
-        ----------
-        target : (6,) sequence of float
-            X Y Z U V W [mm].
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_line", doubles(target))
-
-    def line_x(self, x: float) -> int:
-        """Straight line of X.
-
-        Parameters
-        ----------
-        x : float
-            [mm]
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_line_x", float(x))
-
-    def line_y(self, y: float) -> int:
-        """Straight line of Y.
-
-        Parameters
-        ----------
-        y : float
-            [mm]
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_line_y", float(y))
-
-    def line_z(self, z: float) -> int:
-        """Straight line of Z.
-
-        Parameters
-        ----------
-        z : float
-            [mm]
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_line_z", float(z))
 
     def _arc(self, plane: str, via: Numbers, end: Numbers) -> int:
         return self._do(f"MCC_arc_{plane}", *doubles([*via, *end], 4))
@@ -78,278 +23,97 @@ class Moves(Calls):
         flat = doubles([*points[0], *points[1]], 4)
         return self._do(f"MCC_arc_{plane}uvw", flat, doubles(uvw, 3))
 
+    def _circle(self, plane: str, centre: Numbers, direction: int) -> int:
+        return self._do(f"MCC_circle_{plane}", *doubles(centre, 2), whole(direction))
+
+    def _circle_uvw(self, plane: str, at: tuple[Numbers, int], uvw: Numbers) -> int:
+        centre, direction = doubles(at[0], 2), whole(at[1])
+        return self._do(f"MCC_circle_{plane}uvw", centre, direction, doubles(uvw, 3))
+
+    def line(self, target: Numbers) -> int:
+        """Straight line of all six axes [mm]."""
+        return self._do("MCC_line", doubles(target))
+
+    def line_x(self, x: float) -> int:
+        """Straight line of X [mm]."""
+        return self._do("MCC_line_x", float(x))
+
+    def line_y(self, y: float) -> int:
+        """Straight line of Y [mm]."""
+        return self._do("MCC_line_y", float(y))
+
+    def line_z(self, z: float) -> int:
+        """Straight line of Z [mm]."""
+        return self._do("MCC_line_z", float(z))
+
     def arc_xy(self, via: Numbers, end: Numbers) -> int:
-        """Arc in the plane X Y through a point to its end.
-
-        Parameters
-        ----------
-        via, end : (2,) sequence of float
-            X Y [mm].
-
-        Returns
-        -------
-        int
-        """
+        """Arc in the plane X Y through a point to its end [mm]."""
         return self._arc("xy", via, end)
 
     def arc_yz(self, via: Numbers, end: Numbers) -> int:
-        """Arc in the plane Y Z through a point to its end.
-
-        Parameters
-        ----------
-        via, end : (2,) sequence of float
-            Y Z [mm].
-
-        Returns
-        -------
-        int
-        """
+        """Arc in the plane Y Z through a point to its end [mm]."""
         return self._arc("yz", via, end)
 
     def arc_zx(self, via: Numbers, end: Numbers) -> int:
-        """Arc in the plane Z X through a point to its end.
-
-        Parameters
-        ----------
-        via, end : (2,) sequence of float
-            Z X [mm].
-
-        Returns
-        -------
-        int
-        """
+        """Arc in the plane Z X through a point to its end [mm]."""
         return self._arc("zx", via, end)
 
     def arc_xyuvw(self, via: Numbers, end: Numbers, uvw: Numbers) -> int:
-        """Arc in the plane X Y while U V W follow in proportion.
-
-        Parameters
-        ----------
-        via, end : (2,) sequence of float
-            X Y [mm].
-        uvw : (3,) sequence of float
-            Their target [mm].
-
-        Returns
-        -------
-        int
-        """
+        """Arc in the plane X Y while U V W follow [mm]."""
         return self._arc_uvw("xy", (via, end), uvw)
 
     def arc_yzuvw(self, via: Numbers, end: Numbers, uvw: Numbers) -> int:
-        """Arc in the plane Y Z while U V W follow in proportion.
-
-        Parameters
-        ----------
-        via, end : (2,) sequence of float
-            Y Z [mm].
-        uvw : (3,) sequence of float
-            Their target [mm].
-
-        Returns
-        -------
-        int
-        """
+        """Arc in the plane Y Z while U V W follow [mm]."""
         return self._arc_uvw("yz", (via, end), uvw)
 
     def arc_zxuvw(self, via: Numbers, end: Numbers, uvw: Numbers) -> int:
-        """Arc in the plane Z X while U V W follow in proportion.
-
-        Parameters
-        ----------
-        via, end : (2,) sequence of float
-            Z X [mm].
-        uvw : (3,) sequence of float
-            Their target [mm].
-
-        Returns
-        -------
-        int
-        """
+        """Arc in the plane Z X while U V W follow [mm]."""
         return self._arc_uvw("zx", (via, end), uvw)
 
     def circle_xy(self, centre: Numbers, direction: int) -> int:
-        """Full circle in the plane X Y.
-
-        Parameters
-        ----------
-        centre : (2,) sequence of float
-            X Y [mm].
-        direction : int
-            CW (0) or CCW (1).
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_circle_xy", *doubles(centre, 2), whole(direction))
+        """Full circle in the plane X Y [mm]."""
+        return self._circle("xy", centre, direction)
 
     def circle_yz(self, centre: Numbers, direction: int) -> int:
-        """Full circle in the plane Y Z.
-
-        Parameters
-        ----------
-        centre : (2,) sequence of float
-            Y Z [mm].
-        direction : int
-            CW (0) or CCW (1).
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_circle_yz", *doubles(centre, 2), whole(direction))
+        """Full circle in the plane Y Z [mm]."""
+        return self._circle("yz", centre, direction)
 
     def circle_zx(self, centre: Numbers, direction: int) -> int:
-        """Full circle in the plane Z X.
-
-        Parameters
-        ----------
-        centre : (2,) sequence of float
-            Z X [mm].
-        direction : int
-            CW (0) or CCW (1).
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_circle_zx", *doubles(centre, 2), whole(direction))
+        """Full circle in the plane Z X [mm]."""
+        return self._circle("zx", centre, direction)
 
     def circle_xyuvw(self, centre: Numbers, direction: int, uvw: Numbers) -> int:
-        """Full circle in the plane X Y while U V W follow.
-
-        Parameters
-        ----------
-        centre : (2,) sequence of float
-            X Y [mm].
-        direction : int
-            CW (0) or CCW (1).
-        uvw : (3,) sequence of float
-            Their target [mm].
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_circle_xyuvw", doubles(centre, 2), whole(direction), doubles(uvw, 3))
+        """Full circle in the plane X Y while U V W follow [mm]."""
+        return self._circle_uvw("xy", (centre, direction), uvw)
 
     def circle_yzuvw(self, centre: Numbers, direction: int, uvw: Numbers) -> int:
-        """Full circle in the plane Y Z while U V W follow.
-
-        Parameters
-        ----------
-        centre : (2,) sequence of float
-            Y Z [mm].
-        direction : int
-            CW (0) or CCW (1).
-        uvw : (3,) sequence of float
-            Their target [mm].
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_circle_yzuvw", doubles(centre, 2), whole(direction), doubles(uvw, 3))
+        """Full circle in the plane Y Z while U V W follow [mm]."""
+        return self._circle_uvw("yz", (centre, direction), uvw)
 
     def circle_zxuvw(self, centre: Numbers, direction: int, uvw: Numbers) -> int:
-        """Full circle in the plane Z X while U V W follow.
-
-        Parameters
-        ----------
-        centre : (2,) sequence of float
-            Z X [mm].
-        direction : int
-            CW (0) or CCW (1).
-        uvw : (3,) sequence of float
-            Their target [mm].
-
-        Returns
-        -------
-        int
-        """
-        return self._do("MCC_circle_zxuvw", doubles(centre, 2), whole(direction), doubles(uvw, 3))
+        """Full circle in the plane Z X while U V W follow [mm]."""
+        return self._circle_uvw("zx", (centre, direction), uvw)
 
     def ptp(self, target: Numbers) -> int:
-        """Rapid of all axes, which arrive together.
-
-        Parameters
-        ----------
-        target : (6,) sequence of float
-            X Y Z U V W [mm].
-
-        Returns
-        -------
-        int
-        """
+        """Rapid of all six axes, which arrive together [mm]."""
         return self._do("MCC_ptp", doubles(target))
 
     def ptp_x(self, x: float) -> int:
-        """Rapid of X.
-
-        Parameters
-        ----------
-        x : float
-            [mm]
-
-        Returns
-        -------
-        int
-        """
+        """Rapid of X [mm]."""
         return self._do("MCC_ptp_x", float(x))
 
     def ptp_y(self, y: float) -> int:
-        """Rapid of Y.
-
-        Parameters
-        ----------
-        y : float
-            [mm]
-
-        Returns
-        -------
-        int
-        """
+        """Rapid of Y [mm]."""
         return self._do("MCC_ptp_y", float(y))
 
     def ptp_z(self, z: float) -> int:
-        """Rapid of Z.
-
-        Parameters
-        ----------
-        z : float
-            [mm]
-
-        Returns
-        -------
-        int
-        """
+        """Rapid of Z [mm]."""
         return self._do("MCC_ptp_z", float(z))
 
     def ptp_uvw(self, u: float, v: float, w: float) -> int:
-        """Rapid of U V W, which arrive together.
-
-        Parameters
-        ----------
-        u, v, w : float
-            [mm]
-
-        Returns
-        -------
-        int
-        """
+        """Rapid of U V W, which arrive together [mm]."""
         return self._do("MCC_ptp_uvw", float(u), float(v), float(w))
 
     def motion_delay(self, ms: float) -> int:
-        """Dwell.
-
-        Parameters
-        ----------
-        ms : float
-            [ms]
-
-        Returns
-        -------
-        int
-        """
+        """Dwell [ms]."""
         return self._do("MCC_motion_delay", float(ms))
