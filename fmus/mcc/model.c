@@ -315,6 +315,7 @@ static int model_end(struct fmu *f)
     const double zero[AXES] = { 0.0 };
     interpreter_start(&in, zero, mcc->machine.feed, mcc->offset);
     const struct inputs inputs = inputs_of(v);
-    const char *why = path_write(v->path_file, inputs.of, INPUTS, &in, &program, mcc->mover.started);
+    const char *why = path_write(v->path_file, inputs.of, INPUTS, &in, &program,
+                                 mcc->mover.started);
     return why ? cannot_write(f, why) : 0;
 }
