@@ -32,8 +32,8 @@ static void publish_axes(struct vars *v, const struct epcio *card)
 static void publish_pulse_lines(struct vars *v, const struct epcio *card)
 {
     for (int i = 0; i < EPCIO_AXES; i++) {
-        const struct pulse_lines l = pulse_at(&card->config.pulse[i], &card->pulse[i], &card->dda,
-                                              i, card->clock);
+        const struct lines l = pulse_at(&card->config.pulse[i], &card->pulse[i], &card->dda, i,
+                                        card->clock);
         v->pulse_a[i] = l.a;
         v->pulse_b[i] = l.b;
         v->pulse_clock[i] = (double)pulse_latest(&card->pulse[i], &card->dda, i, card->clock);
@@ -121,7 +121,7 @@ static void publish(struct vars *v, const struct epcio *card)
     v->frames_taken = card->frames_taken;
     v->frames_refused = card->frames_refused;
     v->overflows = card->overflows;
-    v->dda_time = (double)dda_time(card->dda.length, card->dda.divider) / EPCIO_CLOCK_HZ;
+    v->dda_time = (double)dda_time(card->dda.ticks, card->dda.divider) / EPCIO_CLOCK_HZ;
     v->dac_fired = (int32_t)card->analog.fired;
     publish_axes(v, card);
     if (v->pulse_lines)

@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { CLOCK_NS = 25 };
-
 /* A decimal period such as 1e-4 s is not exact in binary: off by far less than this. [clocks] */
 static const double PERIOD_TOLERANCE = 1e-6;
 

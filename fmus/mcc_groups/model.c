@@ -21,8 +21,6 @@ struct model {
 #include "program_fault.h"
 #include "dac_axes.h"
 
-enum { CLOCK_NS = 25 };
-
 /* A decimal period such as 1e-4 s is not exact in binary: off by far less than this. [clocks] */
 static const double PERIOD_TOLERANCE = 1e-6;
 

@@ -123,13 +123,14 @@ static void publish(struct vars *v, const struct model *m)
     v->voltage = m->voltage;
     v->ripple = chip->pwm.ripple;
     v->duty = chip->pwm.duty;
-    v->pin_a = !scale_a(&chip->scale);
-    v->pin_b = !scale_b(&chip->scale);
+    const struct lines scale = quadrature_lines(&chip->scale);
+    v->pin_a = !scale.a;
+    v->pin_b = !scale.b;
     v->interrupt = chip->port.latest;
     v->interrupts = fixed_saturate32(chip->port.served + chip->port.zeroed);
     v->counter = fixed_word(chip->port.counter);
     v->counter2 = fixed_word(chip->port.counter_2);
-    v->edges = fixed_saturate32(scale_edges(&chip->scale));
+    v->edges = fixed_saturate32(quadrature_edges(&chip->scale));
     v->lost = fixed_saturate32(chip->port.lost);
     v->turned = fixed_saturate32(chip->port.turned);
     v->home_lost = fixed_saturate32(chip->port.home_lost);
@@ -218,12 +219,12 @@ static int sample(struct fmu *f)
                                      .target = v->target, .volts = v->adc};
     const enum sequence_code code = m->chip.sequence.code;
     m->chip.config.sequence.law = law_of(v);
-    const enum scale_status status = msp430_sample(&m->chip, plugged(m, v), &pins,
+    const enum quadrature_status status = msp430_sample(&m->chip, plugged(m, v), &pins,
                                                    m->instant);
-    if (status == SCALE_TOO_FAST)
+    if (status == QUADRATURE_TOO_FAST)
         return fmu_fail(f, "scale_phase = %.17g: more than one edge per clock since %.17g",
                         v->scale_phase, m->chip.scale.to);
-    if (status != SCALE_OK)
+    if (status != QUADRATURE_OK)
         return fmu_fail(f, "scale_phase = %.17g: more edges than a number can hold exactly",
                         v->scale_phase);
     m->voltage = pwm_mean(&m->chip.pwm, &m->chip.config.pwm);

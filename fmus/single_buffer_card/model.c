@@ -17,8 +17,6 @@ struct model {
 
 #include "fmi_model.h"
 
-#define CLOCK_HZ (1e9 / FMU_TICK_NS)
-
 /* A decimal period such as 1e-4 s is not exact in binary: off by far less than this [clocks]. */
 #define PERIOD_TOLERANCE 1e-6
 
@@ -29,12 +27,12 @@ static int model_start(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
-    double clocks = v->loop_period * CLOCK_HZ;
+    double clocks = v->loop_period * EPCIO_CLOCK_HZ;
     if (!(clocks >= 1.0 && clocks < CLOCK_MAX && fabs(clocks - round(clocks)) < PERIOD_TOLERANCE))
         return fmu_fail(f, "loop_period = %.17g s: not a whole number of 25 ns clocks",
                         v->loop_period);
     struct single_buffer_config c = {.latched = v->latched};
-    for (int i = 0; i < SINGLE_BUFFER_AXES; i++)
+    for (int i = 0; i < EPCIO_AXES; i++)
         c.active[i] = v->active[i];
     m->period = (int64_t)round(clocks);
     single_buffer_reset(&m->card, &c);
@@ -44,7 +42,7 @@ static int model_start(struct fmu *f)
 static const char *model_check(const struct state *s)
 {
     const struct model *m = &s->m;
-    const int64_t clock = s->now / FMU_TICK_NS;
+    const int64_t clock = s->now / EPCIO_CLOCK_NS;
     if (m->period < 1 || m->instant < clock || m->instant - clock >= m->period)
         return "its next instant is another one";
     return m->card.clock == clock ? epcio_damage_single_buffer(&m->card)
@@ -85,7 +83,7 @@ static int take_command(struct fmu *f)
     struct bus_write w = {.seq = v->host_cmd_seq, .clock = (int64_t)ceil(v->host_cmd_clock),
                           .count = v->host_cmd_count};
     for (int k = 0; k < BUS_FRAMES; k++)
-        for (int i = 0; i < SINGLE_BUFFER_AXES; i++)
+        for (int i = 0; i < EPCIO_AXES; i++)
             w.frame[k][i] = v->host_cmd_frames[k][i];
     enum single_buffer_status s = single_buffer_post(&m->card, &w);
     if (s == SINGLE_BUFFER_BAD_COUNT)
@@ -159,9 +157,9 @@ static void publish(struct fmu *f)
     v->cmd_ack = card->cmd_ack;
     v->frames_taken = card->frames_taken;
     v->frames_refused = card->frames_refused;
-    int64_t pulses[SINGLE_BUFFER_AXES];
+    int64_t pulses[EPCIO_AXES];
     single_buffer_pulses(card, pulses);
-    for (int i = 0; i < SINGLE_BUFFER_AXES; i++) {
+    for (int i = 0; i < EPCIO_AXES; i++) {
         v->stock[i] = card->config.active[i] ? single_buffer_stock(card) : 0;
         v->underflows[i] = single_buffer_underflows(card, i);
         v->gap_clocks[i] = (double)card->gap[i];
@@ -176,7 +174,7 @@ _Static_assert(sizeof ((struct vars *)0)->irq_flags == IRQ_PAGES * sizeof(int32_
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;
-    int64_t end = t1 / FMU_TICK_NS;
+    int64_t end = t1 / EPCIO_CLOCK_NS;
     (void)t0;
     for (; m->instant < end; m->instant += m->period) {
         single_buffer_advance(&m->card, m->instant);

@@ -5,8 +5,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "card.h"
+
 enum {
-    BUS_AXES = 6,
     BUS_FRAMES = 16,    /* frames in one transaction */
     BUS_DEPTH = 8,      /* transactions on their way; the host sends one per bus period and at most
                            two periods ahead, so two would do */
@@ -16,7 +17,7 @@ struct bus_write {
     int32_t seq;                            /* number the host gave it */
     int64_t clock;                          /* [clock] of its arrival */
     int32_t count;                          /* frames used */
-    int32_t frame[BUS_FRAMES][BUS_AXES];    /* [pulses] per DDA time */
+    int32_t frame[BUS_FRAMES][EPCIO_AXES];  /* [pulses] per DDA time */
 };
 
 struct bus {

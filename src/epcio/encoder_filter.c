@@ -1,4 +1,4 @@
-#include "encoder_parts.h"
+#include "encoder_filter.h"
 
 #include <math.h>
 
@@ -19,25 +19,25 @@ static void pin_edge(struct encoder_line *l, int64_t clock)
 
 static void raw_edge(struct encoder *e, int way, int64_t clock)
 {
-    int64_t upper = way > 0 ? e->raw + 1 : e->raw;
-    pin_edge(&e->line[upper & 1 ? B : A], clock);
-    e->raw += way;
+    int64_t upper = way > 0 ? e->pins.quarter + 1 : e->pins.quarter;
+    pin_edge(upper & 1 ? &e->b : &e->a, clock);
+    e->pins.quarter += way;
     e->walked++;
-    if (encoder_index_high(e, e->raw) != e->line[C].pin)
-        pin_edge(&e->line[C], clock);
+    if (encoder_index_high(e, e->pins.quarter) != e->index.pin)
+        pin_edge(&e->index, clock);
 }
 
 /* [clock] at which a line's latest edge is seen; INT64_MAX if there is nothing to see. */
-static int64_t sight(const struct encoder *e, int line)
+static int64_t sight(const struct encoder *e, const struct encoder_line *l)
 {
-    const struct encoder_line *l = &e->line[line];
     return l->pin != l->level ? l->edge + e->config.filter : INT64_MAX;
 }
 
 /* Lines change behind the filter at `clock`. Both at once is no step of the code: no count. */
 static int see(struct encoder *e, int64_t clock)
 {
-    bool a = sight(e, A) == clock, b = sight(e, B) == clock, index = sight(e, C) == clock;
+    bool a = sight(e, &e->a) == clock, b = sight(e, &e->b) == clock;
+    bool index = sight(e, &e->index) == clock;
     int events = 0;
     if (a && b) {
         int64_t before = encoder_counting_edges(e);
@@ -45,19 +45,20 @@ static int see(struct encoder *e, int64_t clock)
         e->zero += encoder_counting_edges(e) - before;
         e->too_fast = true;
     } else if (a || b) {
-        bool rises = a ? e->line[A].pin : e->line[B].pin;
-        bool up = a ? rises != e->line[B].level : rises == e->line[A].level;
+        bool rises = a ? e->a.pin : e->b.pin;
+        bool up = a ? rises != e->b.level : rises == e->a.level;
         e->seen += up ? 1 : -1;
     }
-    for (int i = A; i <= B; i++)
-        if (i == A ? a : b)
-            e->line[i].level = e->line[i].pin;
+    if (a)
+        e->a.level = e->a.pin;
+    if (b)
+        e->b.level = e->b.pin;
     if (a || b) {
         e->count = encoder_counting_edges(e) - e->zero;
         events |= encoder_compare(e, clock);
     }
     if (index)
-        events |= encoder_show_index(e, e->line[C].pin, clock);
+        events |= encoder_show_index(e, e->index.pin, clock);
     return events;
 }
 
@@ -66,23 +67,25 @@ static int see(struct encoder *e, int64_t clock)
 static void skip(struct encoder *e, int way, int64_t left)
 {
     enum { MARGIN = 8, SETTLED = 4 };
-    if (e->walked < SETTLED || e->line[C].pin || e->line[C].level)
+    if (e->walked < SETTLED || e->index.pin || e->index.level)
         return;     /* what came before may still stand in the filter */
-    double half = 0.5 * (double)(e->clock - e->from_clock) / fabs(e->to - e->from);  /* [clocks] */
+    const struct quadrature *q = &e->pins;
+    double half = 0.5 * (double)(q->clock - q->from_clock) / fabs(q->to - q->from); /* [clocks] */
     bool all = half >= e->config.filter;
     bool none = half <= e->config.filter - 1;
     if (all)
         left = least(left, least(encoder_edges_to_index(e, way), encoder_edges_to_compare(e, way)));
-    int64_t many = (left - MARGIN) & ~(int64_t)3, waiting = way * (e->raw - e->seen - e->lost);
-    if (encoder_index_high(e, e->raw + way * many))
+    int64_t many = (left - MARGIN) & ~(int64_t)3;
+    int64_t waiting = way * (q->quarter - e->seen - e->lost);
+    if (encoder_index_high(e, e->pins.quarter + way * many))
         many -= 4;
     if (many < 4 || !(all || none) || (all && waiting < 0))
         return;
-    e->raw += way * many;
+    e->pins.quarter += way * many;
     for (int n = -1; n <= 0; n++) {         /* the two edges just passed */
-        int64_t upper = way > 0 ? e->raw + n : e->raw - n + 1;
-        struct encoder_line *l = &e->line[upper & 1 ? B : A];
-        l->edge = encoder_edge_clock(e, upper);
+        int64_t upper = way > 0 ? e->pins.quarter + n : e->pins.quarter - n + 1;
+        struct encoder_line *l = upper & 1 ? &e->b : &e->a;
+        l->edge = quadrature_clock(&e->pins, upper);
         if (all)
             l->level = !l->pin;             /* both still to be seen */
     }
@@ -98,24 +101,24 @@ static void skip(struct encoder *e, int way, int64_t left)
 /* More than an edge a clock: nothing stands long enough to be seen, and the pins start anew. */
 int encoder_run_blind(struct encoder *e, int way, int64_t until)
 {
-    int64_t n = encoder_edges_until(e, way, until);
+    int64_t n = quadrature_until(&e->pins, way, until);
     if (n == 0)
         return 0;
     e->too_fast = true;
-    e->raw += way * n;
-    e->line[A].pin = encoder_a_high(e->raw);
-    e->line[B].pin = encoder_b_high(e->raw);
-    e->line[C].pin = encoder_index_high(e, e->raw);
-    for (int i = A; i <= C; i++)
-        e->line[i].edge = until;
-    e->lost = (e->raw - e->seen) & ~(int64_t)3;
+    e->pins.quarter += way * n;
+    const struct lines l = quadrature_lines(&e->pins);
+    e->a.pin = l.a;
+    e->b.pin = l.b;
+    e->index.pin = encoder_index_high(e, e->pins.quarter);
+    e->a.edge = e->b.edge = e->index.edge = until;
+    e->lost = (e->pins.quarter - e->seen) & ~(int64_t)3;
     return 0;
 }
 
 /* At most one edge of A and one of B wait to be seen: with three behind, a line period is lost. */
 static void note_loss(struct encoder *e)
 {
-    int64_t behind = e->raw - e->seen - e->lost;
+    int64_t behind = e->pins.quarter - e->seen - e->lost;
     if (behind > 2 || behind < -2) {
         e->too_fast = true;
         e->lost += behind > 0 ? 4 : -4;
@@ -125,10 +128,10 @@ static void note_loss(struct encoder *e)
 int encoder_run_filtered(struct encoder *e, int way, int64_t until)
 {
     int events = 0;
-    int64_t left = encoder_edges_until(e, way, until);
+    int64_t left = quadrature_until(&e->pins, way, until);
     for (;;) {
-        int64_t due = least(least(sight(e, A), sight(e, B)), sight(e, C));
-        int64_t next = left > 0 ? encoder_nth_clock(e, way, 1) : INT64_MAX;
+        int64_t due = least(least(sight(e, &e->a), sight(e, &e->b)), sight(e, &e->index));
+        int64_t next = left > 0 ? quadrature_nth(&e->pins, way, 1) : INT64_MAX;
         if (least(due, next) > until)
             return events;
         if (due <= next) {
@@ -138,8 +141,8 @@ int encoder_run_filtered(struct encoder *e, int way, int64_t until)
         raw_edge(e, way, next);
         left--;
         note_loss(e);
-        int64_t before = e->raw;
+        int64_t before = e->pins.quarter;
         skip(e, way, left);
-        left -= way * (e->raw - before);
+        left -= way * (e->pins.quarter - before);
     }
 }

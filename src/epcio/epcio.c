@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "registers.h"
-
 _Static_assert((int)ADC_EVENT_COMPARE == (int)IRQ_ADC_COMP &&
                (int)ADC_EVENT_DONE == (int)IRQ_ADC_CONV && (int)ADC_EVENT_TAG == (int)IRQ_ADC_TAG,
                "events of the ADC are the bits of its page");
@@ -38,7 +36,7 @@ static enum epcio_status check(const struct epcio_config *c)
 {
     int status;
     for (int i = 0; i < EPCIO_AXES; i++)
-        if ((status = pulse_check(&c->pulse[i])) != 0)
+        if ((status = pulse_check(&c->pulse[i], EPCIO_WIDTH_MAX)) != 0)
             return (enum epcio_status)(EPCIO_PULSE + status);
     for (int i = 0; i < EPCIO_ENCODERS; i++)
         if ((status = encoder_check(&c->encoder[i])) != 0)
@@ -63,9 +61,11 @@ enum epcio_status epcio_reset(struct epcio *card, const struct epcio_config *con
     if (status != EPCIO_OK)
         return status;
     *card = (struct epcio){.config = *config, .run = true, .local_control.gate = true};
-    dda_reset(&card->dda, EPCIO_RESET_LENGTH, EPCIO_RESET_DIVIDER);
-    for (int i = 0; i < EPCIO_AXES; i++)
+    dda_reset(&card->dda, EPCIO_AXES, 1 << EPCIO_RESET_LENGTH, EPCIO_RESET_DIVIDER);
+    for (int i = 0; i < EPCIO_AXES; i++) {
+        fifo_reset(&card->fifo[i], EPCIO_FIFO_DEPTH);
         pulse_reset(&card->pulse[i]);
+    }
     for (int i = 0; i < EPCIO_ENCODERS; i++)
         encoder_reset(&card->encoder[i], &config->encoder[i]);
     epcio_plan(card);
@@ -105,7 +105,7 @@ static void boundary(struct epcio *card)
     for (int i = 0; i < EPCIO_AXES; i++) {
         if (!card->config.active[i])
             continue;
-        if (!fifo_pop(&card->fifo[i], &next[i]) && card->dda.command[i] != 0)
+        if (!fifo_pop(&card->fifo[i], card->entry[i], &next[i]) && card->dda.command[i] != 0)
             card->underflows[i]++;
         if (card->dda.command[i] != 0)
             pulse_boundary(&card->config.pulse[i], &card->pulse[i], &card->dda, i);
@@ -271,12 +271,16 @@ static void sample_local(struct epcio *card, const struct local_io_lines *lines)
 
 enum epcio_status epcio_sample(struct epcio *card, const struct epcio_lines *lines, int *bad)
 {
-    for (*bad = 0; *bad < ADC_CHANNELS; ++*bad)
-        if (!isfinite(lines->volts[*bad]))
+    for (int i = 0; i < ADC_CHANNELS; i++)
+        if (!isfinite(lines->volts[i])) {
+            *bad = i;
             return EPCIO_BAD_VOLTS;
-    for (*bad = 0; *bad < EPCIO_ENCODERS; ++*bad)
-        if (counts(card, *bad) && !(fabs(lines->phase[*bad]) <= ENCODER_PHASE_MAX))
+        }
+    for (int i = 0; i < EPCIO_ENCODERS; i++)
+        if (counts(card, i) && !(fabs(lines->phase[i]) <= QUADRATURE_PHASE_MAX)) {
+            *bad = i;
             return EPCIO_BAD_PHASE;
+        }
     card->lines = *lines;
     for (int i = 0; i < EPCIO_ENCODERS; i++)
         if (counts(card, i))

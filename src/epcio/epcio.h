@@ -21,6 +21,7 @@
 #include "adc.h"
 #include "analog.h"
 #include "bus.h"
+#include "card.h"
 #include "dda.h"
 #include "encoder.h"
 #include "fifo.h"
@@ -34,19 +35,14 @@
 #include "timer.h"
 
 enum {
-    EPCIO_CLOCK_HZ = 40000000,
-    EPCIO_CLOCK_NS = 25,
-    EPCIO_AXES = 6,
     EPCIO_ENCODERS = 9,
     EPCIO_LOOPS = 7,            /* error counters: one of each axis, and one for a command that
                                  * comes from the host */
     EPCIO_SETS = 2,             /* of remote I/O slaves */
+    EPCIO_FIFO_DEPTH = 63,
+    EPCIO_WIDTH_MAX = 65535,    /* [clocks] of a pulse: 16-bit register */
 };
-_Static_assert((int)DDA_CHANNELS == (int)EPCIO_AXES && (int)BUS_AXES == (int)EPCIO_AXES,
-               "a DDA channel per axis");
-
-/* DDA length and divider after reset: one DDA time is 2^12 * 10 clocks = 1.024 ms. */
-enum { EPCIO_RESET_LENGTH = 12, EPCIO_RESET_DIVIDER = 10 };
+_Static_assert((int)EPCIO_AXES <= (int)DDA_CHANNELS_MAX, "a DDA channel per axis");
 
 /* What is wired and set before power on. */
 struct epcio_config {
@@ -92,6 +88,7 @@ struct epcio {
     struct dda          dda;
     struct pulse        pulse[EPCIO_AXES];
     struct fifo         fifo[EPCIO_AXES];
+    int32_t             entry[EPCIO_AXES][EPCIO_FIFO_DEPTH];    /* [pulses] commands in them */
     int32_t             minimum;                    /* minimum stock */
     int32_t             underflows[EPCIO_AXES];     /* DDA times begun empty after motion */
     int32_t             overflows;                  /* frames refused because a FIFO was full */
@@ -127,6 +124,13 @@ struct epcio_config epcio_default_config(void);
 /* Power on at clock 0: DDA running with the reset length and divider, FIFOs empty, mask 0, outputs
  * let through. A wrong configuration is refused and nothing done. */
 enum epcio_status epcio_reset(struct epcio *card, const struct epcio_config *config);
+
+/* Write one command per axis to the FIFOs, all or none. */
+enum epcio_status epcio_write_frame(struct epcio *card, const int32_t frame[EPCIO_AXES]);
+
+/* Emergency stop: empty the FIFOs and drop the transactions on their way, whose frames count as
+ * refused. The DDA time in progress ends as commanded. */
+void epcio_clear(struct epcio *card);
 
 /* Do all that happens up to and including `clock`. At one clock, in this order: DDA boundary;
  * timer, watchdog, ADC, remote I/O; arriving transactions. Costs per event, not per clock. */

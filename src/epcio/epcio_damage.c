@@ -9,16 +9,21 @@ static bool within(int64_t x, int64_t low, int64_t high)
     return x >= low && x <= high;
 }
 
+/* A power of two. */
+static bool ticks_good(int32_t ticks)
+{
+    return within(ticks, 1 << EPCIO_LENGTH_MIN, 1 << EPCIO_LENGTH_MAX) && !(ticks & (ticks - 1));
+}
+
 /* `ticks`: it runs, so that its boundary lies ahead. */
 static bool dda_good(const struct dda *d, bool ticks, int64_t clock)
 {
-    bool good = within(d->length, DDA_LENGTH_MIN, DDA_LENGTH_MAX) &&
-                within(d->next_length, DDA_LENGTH_MIN, DDA_LENGTH_MAX) &&
-                within(d->divider, 1, DDA_DIVIDER_MAX) &&
-                within(d->next_divider, 1, DDA_DIVIDER_MAX) && within(d->start, 0, clock) &&
+    bool good = d->channels == EPCIO_AXES && ticks_good(d->ticks) && ticks_good(d->next_ticks) &&
+                within(d->divider, 1, EPCIO_DIVIDER_MAX) &&
+                within(d->next_divider, 1, EPCIO_DIVIDER_MAX) && within(d->start, 0, clock) &&
                 within(d->stop, 0, clock);
-    for (int i = 0; i < DDA_CHANNELS && good; i++)
-        good = llabs((long long)d->command[i]) <= dda_largest(d->length);
+    for (int i = 0; i < EPCIO_AXES && good; i++)
+        good = llabs((long long)d->command[i]) <= dda_largest(d->ticks);
     return good && (!ticks || dda_boundary(d) > clock);
 }
 
@@ -36,10 +41,11 @@ static bool encoder_good(const struct encoder *e, int64_t clock, int64_t period)
     if (encoder_check(&e->config) != ENCODER_OK || abs(e->sign) != 1 || !within(e->shift, 0, 3) ||
         !within(e->share, 1, 4))
         return false;
-    return !e->primed ||
-           (fabs(e->from) <= ENCODER_PHASE_MAX && fabs(e->to) <= ENCODER_PHASE_MAX &&
-            within(e->clock, clock - period, clock) && within(e->from_clock, 0, e->clock) &&
-            e->raw_end == (int64_t)floor(4.0 * e->to) && e->raw == e->raw_end);
+    const struct quadrature *q = &e->pins;
+    return !q->primed ||
+           (fabs(q->from) <= QUADRATURE_PHASE_MAX && fabs(q->to) <= QUADRATURE_PHASE_MAX &&
+            within(q->clock, clock - period, clock) && within(q->from_clock, 0, q->clock) &&
+            q->end == (int64_t)floor(4.0 * q->to) && q->quarter == q->end);
 }
 
 static bool blocks_good(const struct epcio *card)
@@ -72,8 +78,9 @@ const char *epcio_damage(const struct epcio *card, int64_t period)
     if (!clocks_good(card) || !dda_good(&card->dda, card->dda.run, card->clock))
         return "a time of the card or its DDA";
     for (int i = 0; i < EPCIO_AXES; i++)
-        if (!within(card->fifo[i].head, 0, FIFO_DEPTH - 1) ||
-            !within(card->fifo[i].stock, 0, FIFO_DEPTH))
+        if (card->fifo[i].depth != EPCIO_FIFO_DEPTH ||
+            !within(card->fifo[i].head, 0, EPCIO_FIFO_DEPTH - 1) ||
+            !within(card->fifo[i].stock, 0, EPCIO_FIFO_DEPTH))
             return "a place or the stock of a FIFO";
     if (!bus_good(&card->bus))
         return "a transaction on its way";

@@ -12,7 +12,8 @@
 static enum epcio_status write_fifo_erase(struct epcio *card, int i, double value)
 {
     int32_t erased;
-    return epcio_erase_last(card, i, value > FIFO_DEPTH ? FIFO_DEPTH : (int32_t)value, &erased);
+    const int32_t n = value > EPCIO_FIFO_DEPTH ? EPCIO_FIFO_DEPTH : (int32_t)value;
+    return epcio_erase_last(card, i, n, &erased);
 }
 
 static enum epcio_status write_fifo_shift_out(struct epcio *card, int i)

@@ -17,16 +17,17 @@ static bool within(int number, int count)
 
 enum epcio_status epcio_set_dda(struct epcio *card, int32_t length, int32_t divider)
 {
-    if (length == card->dda.next_length && divider == card->dda.next_divider)
-        return EPCIO_OK;
-    if (length < DDA_LENGTH_MIN || length > DDA_LENGTH_MAX)
+    if (length < EPCIO_LENGTH_MIN || length > EPCIO_LENGTH_MAX)
         return EPCIO_BAD_LENGTH;
-    if (divider < 1 || divider > DDA_DIVIDER_MAX)
+    if (divider < 1 || divider > EPCIO_DIVIDER_MAX)
         return EPCIO_BAD_DIVIDER;
-    for (int i = 0; i < EPCIO_AXES && length < card->dda.next_length; i++)
-        if (fifo_largest(&card->fifo[i]) > dda_largest(length))
+    int32_t ticks = 1 << length;
+    if (ticks == card->dda.next_ticks && divider == card->dda.next_divider)
+        return EPCIO_OK;
+    for (int i = 0; i < EPCIO_AXES && ticks < card->dda.next_ticks; i++)
+        if (fifo_largest(&card->fifo[i], card->entry[i]) > dda_largest(ticks))
             return EPCIO_STOCK_TOO_LARGE;
-    dda_set_time(&card->dda, length, divider, card->clock);
+    dda_set_time(&card->dda, ticks, divider, card->clock);
     return EPCIO_OK;
 }
 
@@ -40,7 +41,7 @@ enum epcio_status epcio_set_minimum(struct epcio *card, int32_t minimum)
 {
     if (minimum == card->minimum)
         return EPCIO_OK;
-    if (!within(minimum, FIFO_DEPTH))
+    if (!within(minimum, EPCIO_FIFO_DEPTH))
         return EPCIO_BAD_MINIMUM;
     card->minimum = minimum;
     for (int i = 0; i < EPCIO_AXES; i++)
@@ -55,41 +56,6 @@ enum epcio_status epcio_post(struct epcio *card, const struct bus_write *write)
     if (!bus_post(&card->bus, write))
         return EPCIO_BUS_FULL;
     epcio_advance(card, card->clock);
-    return EPCIO_OK;
-}
-
-static enum epcio_status refuse(struct epcio *card, enum epcio_status status, int axis,
-                                int32_t command)
-{
-    card->refusal = (struct epcio_refusal){status, axis, command};
-    return status;
-}
-
-static bool closed(const struct epcio *card)
-{
-    return card->watchdog.expired || local_io_stopped(&card->local_control, &card->local);
-}
-
-enum epcio_status epcio_write_frame(struct epcio *card, const int32_t frame[EPCIO_AXES])
-{
-    int32_t largest = dda_largest(card->dda.next_length);
-    if (closed(card))
-        return refuse(card, EPCIO_STOPPED, 0, frame[0]);
-    for (int i = 0; i < EPCIO_AXES; i++) {
-        if (!card->config.active[i] && frame[i] != 0)
-            return refuse(card, EPCIO_AXIS_UNUSED, i, frame[i]);
-        if (frame[i] > largest || frame[i] < -largest)
-            return refuse(card, EPCIO_COMMAND_TOO_LARGE, i, frame[i]);
-        if (card->fifo[i].stock == FIFO_DEPTH) {
-            card->overflows++;
-            return refuse(card, EPCIO_FIFO_FULL, i, frame[i]);
-        }
-    }
-    for (int i = 0; i < EPCIO_AXES; i++)
-        if (card->config.active[i]) {
-            fifo_push(&card->fifo[i], frame[i]);
-            epcio_watch_stock(card, i);
-        }
     return EPCIO_OK;
 }
 
@@ -108,25 +74,10 @@ enum epcio_status epcio_shift_out(struct epcio *card, int axis, int32_t *command
 {
     if (!within(axis, EPCIO_AXES))
         return EPCIO_BAD_AXIS;
-    if (!fifo_pop(&card->fifo[axis], command))
+    if (!fifo_pop(&card->fifo[axis], card->entry[axis], command))
         return EPCIO_FIFO_EMPTY;
     epcio_watch_stock(card, axis);
     return EPCIO_OK;
-}
-
-void epcio_clear(struct epcio *card)
-{
-    while (bus_due(&card->bus) != INT64_MAX) {
-        struct bus_write w = bus_take(&card->bus);
-        card->cmd_ack = w.seq;
-        card->frames_refused += w.count;
-        if (w.count > 0)
-            refuse(card, EPCIO_DROPPED, 0, w.frame[0][0]);
-    }
-    for (int i = 0; i < EPCIO_AXES; i++) {
-        fifo_clear(&card->fifo[i]);
-        epcio_watch_stock(card, i);
-    }
 }
 
 /* Encoders. */
@@ -292,7 +243,7 @@ void epcio_acknowledge(struct epcio *card, const uint32_t flags[IRQ_PAGES],
 static void reset_dda(struct epcio *card)
 {
     epcio_clear(card);
-    dda_set_time(&card->dda, EPCIO_RESET_LENGTH, EPCIO_RESET_DIVIDER, card->clock);
+    dda_set_time(&card->dda, 1 << EPCIO_RESET_LENGTH, EPCIO_RESET_DIVIDER, card->clock);
 }
 
 static void reset_encoders(struct epcio *card)

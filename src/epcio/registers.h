@@ -20,18 +20,11 @@ enum epcio_status epcio_set_minimum(struct epcio *card, int32_t minimum);
 /* Send a transaction; it is applied at its clock, now if that has passed. */
 enum epcio_status epcio_post(struct epcio *card, const struct bus_write *write);
 
-/* Write one command per axis to the FIFOs, all or none. */
-enum epcio_status epcio_write_frame(struct epcio *card, const int32_t frame[EPCIO_AXES]);
-
 /* Take back the newest commands of an axis, at most n; *erased tells how many. */
 enum epcio_status epcio_erase_last(struct epcio *card, int axis, int32_t n, int32_t *erased);
 
 /* Shift the oldest command of an axis out unused; EPCIO_FIFO_EMPTY if there is none. */
 enum epcio_status epcio_shift_out(struct epcio *card, int axis, int32_t *command);
-
-/* Emergency stop: empty the FIFOs and drop the transactions on their way, whose frames count as
- * refused. The DDA time in progress ends as commanded. */
-void epcio_clear(struct epcio *card);
 
 /* Encoders. */
 

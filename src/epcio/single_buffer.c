@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const int32_t NO_COMMAND[SINGLE_BUFFER_AXES];
+static const int32_t NO_COMMAND[EPCIO_AXES];
 
 const char *single_buffer_status_text(enum single_buffer_status status)
 {
@@ -37,14 +37,14 @@ void single_buffer_reset(struct single_buffer *card, const struct single_buffer_
 {
     memset(card, 0, sizeof *card);
     card->config = *config;
-    dda_reset(&card->dda, SINGLE_BUFFER_RESET_LENGTH, SINGLE_BUFFER_RESET_DIVIDER);
+    dda_reset(&card->dda, EPCIO_AXES, 1 << EPCIO_RESET_LENGTH, EPCIO_RESET_DIVIDER);
 }
 
 /* FIFO bits of the active axes. */
 static uint32_t fifo_bits(const struct single_buffer *card)
 {
     uint32_t bits = 0;
-    for (int i = 0; i < SINGLE_BUFFER_AXES; i++)
+    for (int i = 0; i < EPCIO_AXES; i++)
         if (card->config.active[i])
             bits |= 1u << (IRQ_DDA_FIFO + i);
     return bits;
@@ -68,9 +68,9 @@ int32_t single_buffer_underflows(const struct single_buffer *card, int axis)
 }
 
 /* A command goes into the DDA. */
-static void take(struct single_buffer *card, const int32_t command[SINGLE_BUFFER_AXES])
+static void take(struct single_buffer *card, const int32_t command[EPCIO_AXES])
 {
-    for (int i = 0; i < SINGLE_BUFFER_AXES; i++) {
+    for (int i = 0; i < EPCIO_AXES; i++) {
         if (!card->stopped && card->last[i] != 0 && command[i] != 0)
             card->gap[i] += card->stood;
         card->last[i] = command[i];
@@ -82,13 +82,13 @@ static void take(struct single_buffer *card, const int32_t command[SINGLE_BUFFER
 }
 
 /* Direct: the command starts the next DDA time at this clock. */
-static void start(struct single_buffer *card, const int32_t command[SINGLE_BUFFER_AXES])
+static void start(struct single_buffer *card, const int32_t command[EPCIO_AXES])
 {
     struct dda *d = &card->dda;
-    for (int i = 0; i < SINGLE_BUFFER_AXES; i++)
+    for (int i = 0; i < EPCIO_AXES; i++)
         card->underflows[i] = single_buffer_underflows(card, i);
     card->stood = waited(card);
-    d->start = dda_clock(card) - dda_time(d->length, d->divider);   /* as if one ended now */
+    d->start = dda_clock(card) - dda_time(d->ticks, d->divider);   /* as if one ended now */
     take(card, command);
 }
 
@@ -105,13 +105,13 @@ static uint32_t end_latched(struct single_buffer *card)
 {
     struct dda *d = &card->dda;
     if (!card->running)
-        card->stood += dda_time(d->length, d->divider);
+        card->stood += dda_time(d->ticks, d->divider);
     if (card->waits) {
         card->waits = false;
         take(card, card->command);
         return fifo_bits(card);
     }
-    for (int i = 0; i < SINGLE_BUFFER_AXES; i++)
+    for (int i = 0; i < EPCIO_AXES; i++)
         card->underflows[i] += d->command[i] != 0 ? 1 : 0;
     card->running = false;
     dda_begin(d, NO_COMMAND);
@@ -159,16 +159,16 @@ void single_buffer_advance(struct single_buffer *card, int64_t clock)
 enum single_buffer_status single_buffer_set_dda(struct single_buffer *card, int32_t length,
                                                 int32_t divider)
 {
-    if (length == card->dda.next_length && divider == card->dda.next_divider)
+    if (length == card->dda.next_ticks && divider == card->dda.next_divider)
         return SINGLE_BUFFER_OK;
-    if (length < DDA_LENGTH_MIN || length > DDA_LENGTH_MAX)
+    if (length < EPCIO_LENGTH_MIN || length > EPCIO_LENGTH_MAX)
         return SINGLE_BUFFER_BAD_LENGTH;
-    if (divider < 1 || divider > DDA_DIVIDER_MAX)
+    if (divider < 1 || divider > EPCIO_DIVIDER_MAX)
         return SINGLE_BUFFER_BAD_DIVIDER;
-    for (int i = 0; i < SINGLE_BUFFER_AXES && card->waits; i++)
-        if (abs(card->command[i]) > dda_largest(length))
+    for (int i = 0; i < EPCIO_AXES && card->waits; i++)
+        if (abs(card->command[i]) > dda_largest(1 << length))
             return SINGLE_BUFFER_COMMAND_WAITS;
-    dda_set_time(&card->dda, length, divider, card->clock);
+    dda_set_time(&card->dda, 1 << length, divider, card->clock);
     return SINGLE_BUFFER_OK;
 }
 
@@ -197,11 +197,11 @@ static enum single_buffer_status refuse(struct single_buffer *card,
 }
 
 enum single_buffer_status single_buffer_write_frame(struct single_buffer *card,
-                                                    const int32_t frame[SINGLE_BUFFER_AXES])
+                                                    const int32_t frame[EPCIO_AXES])
 {
-    int32_t largest = dda_largest(card->dda.next_length);
+    int32_t largest = dda_largest(card->dda.next_ticks);
     int first = -1;     /* active axis */
-    for (int i = 0; i < SINGLE_BUFFER_AXES; i++) {
+    for (int i = 0; i < EPCIO_AXES; i++) {
         if (!card->config.active[i] && frame[i] != 0)
             return refuse(card, SINGLE_BUFFER_AXIS_UNUSED, i, frame[i]);
         if (frame[i] > largest || frame[i] < -largest)
@@ -251,7 +251,7 @@ int32_t single_buffer_stock(const struct single_buffer *card)
     return card->config.latched ? card->waits : card->running;
 }
 
-void single_buffer_pulses(const struct single_buffer *card, int64_t pulses[SINGLE_BUFFER_AXES])
+void single_buffer_pulses(const struct single_buffer *card, int64_t pulses[EPCIO_AXES])
 {
     dda_counts(&card->dda, card->clock, pulses);
 }

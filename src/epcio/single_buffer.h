@@ -27,15 +27,11 @@
 #include <stdint.h>
 
 #include "bus.h"
+#include "card.h"
 #include "dda.h"
 #include "irq.h"
 
-enum { SINGLE_BUFFER_AXES = 6 };
-_Static_assert((int)DDA_CHANNELS == (int)SINGLE_BUFFER_AXES &&
-               (int)BUS_AXES == (int)SINGLE_BUFFER_AXES, "a DDA channel per axis");
-
-/* After reset one DDA time is 2^12 * 10 clocks = 1.024 ms, as on the EPCIO. */
-enum { SINGLE_BUFFER_RESET_LENGTH = 12, SINGLE_BUFFER_RESET_DIVIDER = 10 };
+_Static_assert((int)EPCIO_AXES <= (int)DDA_CHANNELS_MAX, "a DDA channel per axis");
 
 enum single_buffer_status {
     SINGLE_BUFFER_OK,
@@ -51,7 +47,7 @@ enum single_buffer_status {
 };
 
 struct single_buffer_config {
-    bool active[SINGLE_BUFFER_AXES];
+    bool active[EPCIO_AXES];
     bool latched;                       /* a register before the DDA, else the DDA is the buffer */
 };
 
@@ -68,12 +64,12 @@ struct single_buffer {
     struct dda dda;         /* direct, without command: its start is when the wait began */
     bool       running;     /* the DDA has a command, perhaps of 0 pulses */
     bool       waits;       /* latched: the register holds a command */
-    int32_t    command[SINGLE_BUFFER_AXES];     /* [pulses] that command */
-    int32_t    last[SINGLE_BUFFER_AXES];        /* [pulses] command that went into the DDA last */
+    int32_t    command[EPCIO_AXES];     /* [pulses] that command */
+    int32_t    last[EPCIO_AXES];        /* [pulses] command that went into the DDA last */
     bool       stopped;     /* emergency stop since then: what follows is no gap */
     int64_t    stood;       /* [clocks] of the DDA times without command since then; latched */
-    int32_t    underflows[SINGLE_BUFFER_AXES];  /* without the wait in progress */
-    int64_t    gap[SINGLE_BUFFER_AXES];         /* [clocks] stood still between two commands that
+    int32_t    underflows[EPCIO_AXES];  /* without the wait in progress */
+    int64_t    gap[EPCIO_AXES];         /* [clocks] stood still between two commands that
                                                    both move the axis */
     struct bus bus;
     int32_t    cmd_ack;     /* latest transaction that arrived */
@@ -117,7 +113,7 @@ enum single_buffer_status single_buffer_post(struct single_buffer *card,
 /* Write one command per axis, |command| <= 2^length - 1 [pulses], now; all or none. Refused with
  * AXIS_UNUSED, COMMAND_TOO_LARGE (the first such axis) or else NOT_FREE. */
 enum single_buffer_status single_buffer_write_frame(struct single_buffer *card,
-                                                    const int32_t frame[SINGLE_BUFFER_AXES]);
+                                                    const int32_t frame[EPCIO_AXES]);
 
 /* Emergency stop: drop the waiting command (the buffer becomes free: interrupt) and the
  * transactions on their way, whose frames count as refused. The command in the DDA ends as
@@ -137,6 +133,6 @@ int32_t single_buffer_stock(const struct single_buffer *card);
 int32_t single_buffer_underflows(const struct single_buffer *card, int axis);
 
 /* Pulses put out up to and including the card's clock, forward minus backward [pulses]. */
-void single_buffer_pulses(const struct single_buffer *card, int64_t pulses[SINGLE_BUFFER_AXES]);
+void single_buffer_pulses(const struct single_buffer *card, int64_t pulses[EPCIO_AXES]);
 
 #endif

@@ -63,6 +63,18 @@ static const char *card_text(int status)
     }
 }
 
+static const char *pulse_text(int status)
+{
+    switch (status) {
+    case PULSE_BAD_FORMAT:
+        return "the pulse format is 0 to 3";
+    case PULSE_BAD_WIRING:
+        return "the pulse wiring is a sum of 1, 2, 4";
+    default:
+        return "the pulse width is 1 to 65535 clocks";
+    }
+}
+
 static const char *encoder_text(int status)
 {
     switch (status) {
@@ -134,7 +146,7 @@ const char *epcio_status_text(enum epcio_status status)
     int number = (int)status & 0xFF;
     switch ((int)status & ~0xFF) {
     case EPCIO_PULSE:
-        return pulse_status_text((enum pulse_status)number);
+        return pulse_text(number);
     case EPCIO_ENCODER:
         return encoder_text(number);
     case EPCIO_ADC:

@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "floor_divide.h"
+
 bool comp_valid(const struct comp_table *t)
 {
     if (t->interval < 0 || t->home < 0 || t->home >= COMP_POINTS) {
@@ -13,11 +15,6 @@ bool comp_valid(const struct comp_table *t)
         }
     }
     return true;
-}
-
-static int64_t floor_divide(int64_t a, int64_t b)
-{
-    return a / b - (a % b < 0);
 }
 
 int32_t comp_wanted(const struct comp_table *t, int64_t position, bool backward)

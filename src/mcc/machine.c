@@ -3,6 +3,10 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "dda.h"
+
+enum { DIVIDER_MAX = 65535 };   /* 16-bit register of the card */
+
 static const double JERK_SHARE = 0.5;
 
 bool machine_positive(double x)
@@ -93,14 +97,12 @@ void machine_complete_asyn(struct machine *m)
 
 int32_t machine_dda_divider(const struct machine *m)
 {
-    const double one = ldexp(1.0, m->dda_length) / CLOCK_HZ;    /* [s] at divider 1 */
-    const double n = round(m->dda_time / one);
-    return n < 1.0 ? 1 : n > 65535.0 ? 65535 : (int32_t)n;
+    return dda_divider(1 << m->dda_length, m->dda_time * CLOCK_HZ, DIVIDER_MAX);
 }
 
 int64_t machine_dda_clocks(const struct machine *m)
 {
-    return ((int64_t)1 << m->dda_length) * machine_dda_divider(m);
+    return dda_time(1 << m->dda_length, machine_dda_divider(m));
 }
 
 double machine_dda_time(const struct machine *m)
@@ -110,7 +112,7 @@ double machine_dda_time(const struct machine *m)
 
 int32_t machine_dda_limit(const struct machine *m)
 {
-    return (int32_t)((1u << m->dda_length) - 1u);
+    return dda_largest(1 << m->dda_length);
 }
 
 static double jerk_share(const struct machine *m)

@@ -5,7 +5,7 @@
 #include "axes.h"
 #include "command.h"
 
-enum { CLOCK_HZ = 40000000 };   /* clock of the card: one count is 25 ns */
+enum { CLOCK_HZ = 40000000, CLOCK_NS = 1000000000 / CLOCK_HZ };  /* clock of the card */
 
 /* One axis; the fields of MCC_MACH_PARAM that have a meaning here. */
 struct machine_axis {
@@ -81,7 +81,8 @@ bool machine_share(double x);
 /* Ramps of independent axes where none are given. */
 void machine_complete_asyn(struct machine *m);
 
-/* Divider, 1..65535, that brings 2^length * divider * 25 ns nearest to dda_time. */
+/* Divider, 1..65535, that brings 2^length * divider * 25 ns nearest to dda_time; the
+ * shorter time if two are as near. */
 int32_t machine_dda_divider(const struct machine *m);
 
 /* DDA time the card really has. */

@@ -14,7 +14,7 @@ void servo_start(struct servo *s, const struct law_config *law, const struct mac
     for (int i = 0; i < AXES; i++) {
         c.axis[i].on = true;
     }
-    soft_dda_start(&s->dda, m);
+    dda_reset(&s->dda, AXES, 1 << m->dda_length, machine_dda_divider(m));
     voltage_start(&s->voltage, &c, m);
 }
 
@@ -33,13 +33,16 @@ static void look(struct servo *s, struct mcc *m, const int32_t counts[AXES])
     }
 }
 
-/* A DDA time begins: the next point, standstill without one. */
+/* A DDA time begins, as long as the machine has it: the next point, standstill without one. */
 static void take(struct servo *s, struct mcc *m)
 {
+    static const int32_t STANDSTILL[AXES];
     const bool any = m->queue.count > 0;
     const struct pcl_part part = { .points = any, .late = !any && task_moving(m) };
 
-    soft_dda_next(&s->dda, &m->machine, any ? queue_peek(&m->queue, 0)->frame : NULL);
+    dda_set_time(&s->dda, 1 << m->machine.dda_length, machine_dda_divider(&m->machine),
+                 dda_boundary(&s->dda));
+    dda_begin(&s->dda, any ? queue_peek(&m->queue, 0)->frame : STANDSTILL);
     voltage_taken(&s->voltage, m, &part, 1);
     s->starved += pcl_release(m, &part, 1);
 }
@@ -49,6 +52,7 @@ void servo_instant(struct servo *s, struct mcc *m, int64_t now, int64_t bus,
 {
     const struct reaction_look since = { .clocks = bus };
     double volts[AXES] = { 0.0 };
+    int64_t next[AXES];
 
     look(s, m, counts);
     voltage_follow(&s->voltage, &m->machine);
@@ -57,8 +61,11 @@ void servo_instant(struct servo *s, struct mcc *m, int64_t now, int64_t bus,
         s->volts[i] = m->machine.axis[i].inverted ? -volts[i] : volts[i];
     }
     reaction_look(m, &since);
-    while (soft_dda_boundary(&s->dda) <= now + bus) {
+    while (dda_boundary(&s->dda) <= now + bus) {
         take(s, m);
     }
-    soft_dda_pulses(&s->dda, now + bus, s->next);
+    dda_counts(&s->dda, now + bus, next);
+    for (int i = 0; i < AXES; i++) {
+        s->next[i] = (int32_t)(uint64_t)next[i];    /* counters of 32 bit wrap */
+    }
 }

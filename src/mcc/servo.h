@@ -13,11 +13,11 @@
 #ifndef SERVO_H
 #define SERVO_H
 
-#include "soft_dda.h"
+#include "dda.h"
 #include "voltage.h"
 
 struct servo {
-    struct soft_dda dda;
+    struct dda dda;         /* in software: its pulses exist as numbers only */
     struct voltage voltage;
     int32_t before[AXES];   /* [pulses] command at k - 1, */
     int32_t now[AXES];      /* at k */

@@ -43,7 +43,8 @@ static void accept(struct msp430 *m)
 static void work(struct msp430 *m)
 {
     if (m->routine == MSP430_PORT) {
-        const int cycles = port_go(&m->port, scale_a(&m->scale), scale_b(&m->scale));
+        const struct lines l = quadrature_lines(&m->scale);
+        const int cycles = port_go(&m->port, l.a, l.b);
         m->next = m->clock + cycles;
         m->routine = cycles > 0 ? MSP430_PORT : MSP430_FREE;
     } else if (m->routine == MSP430_READ) {
@@ -60,15 +61,16 @@ static void work(struct msp430 *m)
 
 static void pass_edge(struct msp430 *m)
 {
-    const bool a = scale_a(&m->scale), b = scale_b(&m->scale);
-    const int way = scale_pass(&m->scale);
-    const bool line_b = scale_a(&m->scale) == a;
-    port_edge(&m->port, line_b, line_b ? !b : !a, way);
+    const struct lines before = quadrature_lines(&m->scale);
+    const int way = quadrature_pass(&m->scale);
+    const struct lines now = quadrature_lines(&m->scale);
+    const bool line_b = now.a == before.a;
+    port_edge(&m->port, line_b, line_b ? now.b : now.a, way);
 }
 
 static int64_t earliest(const struct msp430 *m)
 {
-    const int64_t edge = scale_next(&m->scale);
+    const int64_t edge = quadrature_next(&m->scale);
     const int64_t next = edge < m->timer_next ? edge : m->timer_next;
     return m->routine != MSP430_FREE && m->next < next ? m->next : next;
 }
@@ -78,7 +80,7 @@ static void run(struct msp430 *m, int64_t until)
     accept(m);
     for (int64_t next = earliest(m); next <= until; next = earliest(m)) {
         m->clock = next;
-        while (scale_next(&m->scale) == next)
+        while (quadrature_next(&m->scale) == next)
             pass_edge(m);
         if (m->timer_next == next) {
             m->overruns += m->timer_flag;
@@ -93,17 +95,18 @@ static void run(struct msp430 *m, int64_t until)
     pwm_run(&m->pwm, &m->config.pwm, until);
 }
 
-enum scale_status msp430_sample(struct msp430 *m, double phase, const struct msp430_pins *pins,
-                                int64_t clock)
+enum quadrature_status msp430_sample(struct msp430 *m, double phase,
+                                     const struct msp430_pins *pins, int64_t clock)
 {
     const bool first = !m->scale.primed;
-    const enum scale_status status = scale_sample(&m->scale, phase, clock);
-    if (status != SCALE_OK)
+    const enum quadrature_status status = quadrature_check(&m->scale, phase, clock);
+    if (status != QUADRATURE_OK)
         return status;
+    quadrature_sample(&m->scale, phase, clock);
     run(m, clock);
     const bool enabled = m->config.home_always || m->sequence.state == SEQUENCE_SEARCH;
     if (!first && enabled && pins->home && !m->pins.home)
         port_home(&m->port);
     m->pins = *pins;
-    return SCALE_OK;
+    return QUADRATURE_OK;
 }

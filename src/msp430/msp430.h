@@ -10,7 +10,7 @@
 
 #include "port.h"
 #include "pwm.h"
-#include "scale.h"
+#include "quadrature.h"
 #include "sequence.h"
 
 struct msp430_config {
@@ -38,7 +38,7 @@ struct msp430 {
     struct msp430_config config;
     int64_t clock;
     struct msp430_pins pins;
-    struct scale scale;
+    struct quadrature scale;
     struct port port;
     struct sequence sequence;
     struct pwm pwm;
@@ -54,7 +54,7 @@ void msp430_reset(struct msp430 *m, const struct msp430_config *c);
 
 /* An instant at `clock`: the scale's phase there; everything is carried to `clock` with the phase
  * on a straight line and the other pins as they were; then the pins are as given. */
-enum scale_status msp430_sample(struct msp430 *m, double phase, const struct msp430_pins *pins,
-                                int64_t clock);
+enum quadrature_status msp430_sample(struct msp430 *m, double phase,
+                                     const struct msp430_pins *pins, int64_t clock);
 
 #endif

@@ -16,10 +16,10 @@ static bool port_good(const struct port *p)
 }
 
 /* All edges up to the latest sample have been passed. */
-static bool scale_good(const struct scale *s, int64_t clock)
+static bool scale_good(const struct quadrature *s, int64_t clock)
 {
     return !s->primed ||
-           (fabs(s->from) <= SCALE_PHASE_MAX && fabs(s->to) <= SCALE_PHASE_MAX &&
+           (fabs(s->from) <= QUADRATURE_PHASE_MAX && fabs(s->to) <= QUADRATURE_PHASE_MAX &&
             s->clock == clock && within(s->from_clock, 0, clock) && s->quarter == s->end &&
             s->end == (int64_t)floor(4.0 * s->to));
 }

@@ -275,7 +275,7 @@ static bool card_rests(const struct epcio *card)
 
     for (int i = 0; i < AXES; i++) {
         due += card->dda.command[i] != 0;
-        due += fifo_largest(&card->fifo[i]) != 0;
+        due += fifo_largest(&card->fifo[i], card->entry[i]) != 0;
     }
     return due == 0;
 }

@@ -258,12 +258,12 @@ static enum epcio_status bad_dda(struct epcio *card, int k, int *want)
     int32_t out;
     *want = WANT[k];
     switch (k) {
-    case 0: return epcio_set_dda(card, DDA_LENGTH_MIN - 1, 1);
-    case 1: return epcio_set_dda(card, DDA_LENGTH_MAX + 1, 1);
+    case 0: return epcio_set_dda(card, EPCIO_LENGTH_MIN - 1, 1);
+    case 1: return epcio_set_dda(card, EPCIO_LENGTH_MAX + 1, 1);
     case 2: return epcio_set_dda(card, 10, 0);
-    case 3: return epcio_set_dda(card, 10, DDA_DIVIDER_MAX + 1);
+    case 3: return epcio_set_dda(card, 10, EPCIO_DIVIDER_MAX + 1);
     case 4: return epcio_set_minimum(card, -1);
-    case 5: return epcio_set_minimum(card, FIFO_DEPTH);
+    case 5: return epcio_set_minimum(card, EPCIO_FIFO_DEPTH);
     case 6: return epcio_post(card, &w);
     case 7: return epcio_post(card, &w);
     case 8: return epcio_erase_last(card, EPCIO_AXES, 1, &out);
@@ -353,6 +353,15 @@ int64_t card_write_badly(void *card, int64_t k)
 
 /* What can be seen. */
 
+/* [bit] */
+static int64_t length_of(int32_t ticks)
+{
+    int64_t length = 0;
+    while (ticks >> length > 1)
+        length++;
+    return length;
+}
+
 static void view_counters(const struct epcio *c, struct view *v)
 {
     for (int i = 0; i < TICK_ENCODERS; i++) {
@@ -384,7 +393,7 @@ static void view_axes(const struct epcio *c, struct view *v)
         v->underflows[i] = c->underflows[i];
         v->stock[i] = f->stock;
         for (int k = 0; k < f->stock; k++)
-            v->queue[TICK_DEPTH * i + k] = f->entry[(f->head + k) % FIFO_DEPTH];
+            v->queue[TICK_DEPTH * i + k] = c->entry[i][(f->head + k) % EPCIO_FIFO_DEPTH];
     }
     for (int i = 0; i < TICK_LOOPS; i++) {
         v->error[i] = c->loop[i].error;
@@ -397,9 +406,9 @@ void card_view(const void *card, struct view *v)
     const struct epcio *c = card;
     memset(v, 0, sizeof *v);
     *v->clock = c->clock;
-    *v->length = c->dda.length;
+    *v->length = length_of(c->dda.ticks);
     *v->divider = c->dda.divider;
-    *v->next_length = c->dda.next_length;
+    *v->next_length = length_of(c->dda.next_ticks);
     *v->next_divider = c->dda.next_divider;
     *v->minimum = c->minimum;
     *v->overflows = c->overflows;

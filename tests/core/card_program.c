@@ -30,7 +30,7 @@ static struct epcio power_on(void)
     CHECK_EQ(epcio_reset(&card, &config), EPCIO_OK);
     const uint32_t mask[IRQ_PAGES] = {[IRQ_DDA] = 1, [IRQ_ENC0] = 1u << IRQ_ENC_INDEX};
     const struct epcio_host host = {.gain = {GAIN}, .loop_on = {true}, .dac_loop = {true}};
-    CHECK_EQ(epcio_set_dda(&card, 12, dda_divider(12, 20480)), EPCIO_OK);
+    CHECK_EQ(epcio_set_dda(&card, 12, 5), EPCIO_OK);
     CHECK_EQ(epcio_set_minimum(&card, 3), EPCIO_OK);
     CHECK_EQ(epcio_set_latch(&card, 0, 1u << LATCH_INDEX, true), EPCIO_OK);
     CHECK_EQ(epcio_set_host(&card, &host), EPCIO_OK);

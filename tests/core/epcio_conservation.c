@@ -54,6 +54,12 @@ static void refusals(void)
     CHECK_EQ(epcio_set_dda(&card, 10, 1), EPCIO_OK);
 }
 
+/* The k-th command in stock. */
+static int32_t waiting(const struct epcio *card, int axis, int k)
+{
+    return card->entry[axis][(card->fifo[axis].head + k) % EPCIO_FIFO_DEPTH];
+}
+
 /* Whatever comes (stops, changes of the DDA time, overflow, underflow, clears, late and early
  * transactions): pulses out = commands taken, axis by axis, and every frame is accounted for. */
 static void conservation(uint64_t seed)
@@ -81,7 +87,7 @@ static void conservation(uint64_t seed)
             if (event % 10 == 0) {
                 for (int i = 0; i < 6; i++)
                     for (int k = 0; k < card.fifo[i].stock; k++)
-                        popped[i] -= card.fifo[i].entry[(card.fifo[i].head + k) % FIFO_DEPTH];
+                        popped[i] -= waiting(&card, i, k);
                 epcio_clear(&card);
             }
             break;
@@ -105,7 +111,7 @@ static void conservation(uint64_t seed)
             popped[i] += sum[i];
             int64_t stock = 0;
             for (int k = 0; k < card.fifo[i].stock; k++)
-                stock += card.fifo[i].entry[(card.fifo[i].head + k) % FIFO_DEPTH];
+                stock += waiting(&card, i, k);
             /* taken = put out by past DDA times + in the DDA + in stock */
             CHECK_EQ(popped[i], card.dda.before[i] + card.dda.command[i] + stock);
             CHECK(llabs(pulses[i] - card.dda.before[i]) <= llabs(card.dda.command[i]));

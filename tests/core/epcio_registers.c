@@ -244,7 +244,7 @@ static void module_resets(void)
     CHECK_EQ(card.fifo[0].stock, 6);
     CHECK_EQ(epcio_reset_module(&card, EPCIO_RESET_ALL), EPCIO_OK);
     CHECK_EQ(card.fifo[0].stock, 0);
-    CHECK_EQ(card.dda.next_length, EPCIO_RESET_LENGTH);
+    CHECK_EQ(card.dda.next_ticks, 1 << EPCIO_RESET_LENGTH);
     CHECK_EQ(card.host.gain[2], 0);
     CHECK(memcmp(&card.adc_control, &fresh.adc_control, sizeof fresh.adc_control) == 0);
     CHECK(memcmp(&card.analog, &fresh.analog, sizeof fresh.analog) == 0);
@@ -253,22 +253,6 @@ static void module_resets(void)
     int64_t pulses[EPCIO_AXES];
     epcio_pulses(&card, pulses);
     CHECK_EQ(pulses[0], 300);                       /* the DDA time in progress ended */
-}
-
-/* The nearest divider: no other is nearer. */
-static void nearest_dda_time(uint64_t seed)
-{
-    for (int trial = 0; trial < 2000; trial++) {
-        int32_t length = (int32_t)check_random(&seed, 10, 15);
-        int64_t wanted = check_random(&seed, 1, trial % 2 ? 200000 : 3000000000);
-        int32_t d = dda_divider(length, wanted);
-        int64_t off = llabs(dda_time(length, d) - wanted);
-        CHECK(d >= 1 && d <= DDA_DIVIDER_MAX);
-        CHECK(d == 1 || llabs(dda_time(length, d - 1) - wanted) > off);
-        CHECK(d == DDA_DIVIDER_MAX || llabs(dda_time(length, d + 1) - wanted) >= off);
-    }
-    CHECK_EQ(dda_divider(12, 40960), 10);
-    CHECK_EQ(dda_divider(12, -5), 1);
 }
 
 int main(void)
@@ -280,6 +264,5 @@ int main(void)
     map();
     map_is_disjoint();
     module_resets();
-    nearest_dda_time(1618);
     return check_result();
 }

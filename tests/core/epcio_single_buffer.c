@@ -17,7 +17,7 @@ static struct single_buffer power_on(bool latched, const uint32_t mask[IRQ_PAGES
     struct single_buffer_config config = all_axes;
     config.latched = latched;
     single_buffer_reset(&card, &config);
-    CHECK_EQ(card.dda.length, 12);
+    CHECK_EQ(card.dda.ticks, 1 << 12);
     CHECK_EQ(card.dda.divider, 10);
     CHECK_EQ(single_buffer_set_dda(&card, LENGTH, 1), SINGLE_BUFFER_OK);
     single_buffer_set_mask(&card, mask);

@@ -250,12 +250,12 @@ static void frames_are_those_of_pulses(void)
     program(two, "G91 F3000\nG2 I5\nG2 X5 Y5 I5\nM30\n");
     CHECK_EQ(groups_start(&set), MCC_NO_ERR);
     for (int k = 0; k < 25000; k++) {
-        const struct soft_dda *soft = &set.group[six].servo.dda;
+        const struct dda *soft = &set.group[six].servo.dda;
         const int64_t start = card.dda.start;
-        const bool new_soft = soft->begin > begun;
-        begun = soft->begin;
-        if (new_soft && (count[1] || memcmp(soft->frame, put[1][0], sizeof soft->frame))) {
-            memcpy(put[1][count[1]++], soft->frame, sizeof soft->frame);
+        const bool new_soft = soft->start > begun;
+        begun = soft->start;
+        if (new_soft && (count[1] || memcmp(soft->command, put[1][0], sizeof put[1][0]))) {
+            memcpy(put[1][count[1]++], soft->command, sizeof put[1][0]);
         }
         period();
         if (card.dda.start > start && (count[0] || card.dda.command[0] || card.dda.command[1])) {

@@ -1,8 +1,6 @@
-/* Voltage groups: what may have which DAC, and frames put out as the card's own DDA does. */
-#include "dda.h"
+/* Voltage groups: what may have which DAC. */
 #include "group.h"
 #include "mcc_check.h"
-#include "servo.h"
 
 static struct groups set;       /* 2 MB: not on the stack */
 static struct groups before;
@@ -163,50 +161,11 @@ static void counters(void)
             MCC_GROUP_PARAMETER);
 }
 
-/* The same frames on the card's DDA: the same pulses at every clock looked at. */
-static void as_the_card(uint64_t seed)
-{
-    struct machine m = mcc_machine();
-    struct soft_dda soft;
-    struct dda hard;
-    m.dda_length = (int32_t)check_random(&seed, 10, 15);
-    m.dda_time = mcc_random(&seed, 5e-4, 3e-3);
-    soft_dda_start(&soft, &m);
-    dda_reset(&hard, m.dda_length, machine_dda_divider(&m));
-    for (int n = 0; n < 200; n++) {
-        const int64_t end = dda_boundary(&hard);
-        CHECK_EQ(soft_dda_boundary(&soft), end);
-        for (int k = 0; k < 20; k++) {
-            const int64_t clock = k ? check_random(&seed, hard.start, end) : end;
-            int64_t want[DDA_CHANNELS];
-            int32_t got[AXES];
-            dda_counts(&hard, clock, want);
-            soft_dda_pulses(&soft, clock, got);
-            for (int i = 0; i < AXES; i++) {
-                CHECK_EQ(got[i], want[i]);
-            }
-        }
-        int32_t frame[AXES];
-        for (int i = 0; i < AXES; i++) {
-            frame[i] = (int32_t)check_random(&seed, -machine_dda_limit(&m), machine_dda_limit(&m));
-        }
-        if (n % 50 == 49) {                     /* another DDA time from the boundary on */
-            m.dda_time = mcc_random(&seed, 5e-4, 3e-3);
-            dda_set_time(&hard, m.dda_length, machine_dda_divider(&m), end - 1);
-        }
-        soft_dda_next(&soft, &m, n % 7 ? frame : NULL);
-        dda_begin(&hard, n % 7 ? frame : (const int32_t[AXES]){ 0 });
-    }
-}
-
 int main(void)
 {
     channels();
     values();
     voltage_command_channel();
     counters();
-    for (uint64_t seed = 1; seed <= 20; seed++) {
-        as_the_card(seed * 7919);
-    }
     return check_result();
 }

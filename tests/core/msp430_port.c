@@ -78,9 +78,9 @@ static void accounts(void)
         for (int k = 0; k < 300; k++, clock += 200) {
             /* At most 20 edges in 200 clocks; none in the last pieces. */
             const double step = 0.01 * (double)check_random(&seed, -50, 50) * (i % 10);
-            CHECK_EQ(msp430_sample(&m, phase, &pins, clock), SCALE_OK);
-            passed += llabs(scale_edges(&m.scale) - before);
-            before = scale_edges(&m.scale);
+            CHECK_EQ(msp430_sample(&m, phase, &pins, clock), QUADRATURE_OK);
+            passed += llabs(quadrature_edges(&m.scale) - before);
+            before = quadrature_edges(&m.scale);
             phase += k < 290 ? step : 0.0;
         }
         CHECK(m.routine != MSP430_PORT);
@@ -94,29 +94,10 @@ static void accounts(void)
     CHECK(lost > 1000 && turned > 1000);
 }
 
-/* A phase that cannot be taken changes nothing. */
-static void refused(void)
-{
-    struct scale s = {0};
-    CHECK_EQ(scale_sample(&s, NAN, 0), SCALE_BAD_PHASE);
-    CHECK_EQ(scale_sample(&s, 2e15, 0), SCALE_BAD_PHASE);
-    CHECK(!s.primed);
-    CHECK_EQ(scale_sample(&s, 3.0, 0), SCALE_OK);
-    CHECK_EQ(scale_sample(&s, 3.0 + 25.25, 100), SCALE_TOO_FAST);
-    CHECK_EQ(scale_sample(&s, 3.0 + 25.0, 100), SCALE_OK);
-    CHECK_EQ(scale_sample(&s, -INFINITY, 200), SCALE_BAD_PHASE);
-    for (int edges = 1; edges <= 100; edges++) {    /* one a clock */
-        CHECK_EQ(scale_next(&s), edges);
-        CHECK_EQ(scale_pass(&s), 1);
-    }
-    CHECK_EQ(scale_next(&s), INT64_MAX);
-}
-
 int main(void)
 {
     paths();
     home_path();
     accounts();
-    refused();
     return check_result();
 }

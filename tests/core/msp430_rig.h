@@ -67,7 +67,7 @@ static inline void rig_run(struct rig *r, double seconds)
     for (int64_t n = (int64_t)(seconds * 8e6 / RIG_PIN + 0.5); n > 0; n--) {
         r->phase = r->unplugged ? r->phase : 0.25 * r->place;
         r->pins.home = r->stuck || r->place <= r->home_at;
-        CHECK_EQ(msp430_sample(&r->chip, r->phase, &r->pins, r->clock), SCALE_OK);
+        CHECK_EQ(msp430_sample(&r->chip, r->phase, &r->pins, r->clock), QUADRATURE_OK);
         r->clock += RIG_PIN;
         r->states |= 1 << rig_state(r);
         r->place += r->speed_per_volt * pwm_mean(&r->chip.pwm, &r->chip.config.pwm) * RIG_PIN / 8e6;

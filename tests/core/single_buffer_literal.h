@@ -8,7 +8,7 @@
 
 #include "single_buffer.h"
 
-enum { AXES = SINGLE_BUFFER_AXES, LITERAL_UNUSED = 5, LITERAL_FIFO = 0x1F };
+enum { AXES = EPCIO_AXES, LITERAL_UNUSED = 5, LITERAL_FIFO = 0x1F };
 
 struct literal {
     bool    latched, run, running, waits, stopped;

@@ -2,21 +2,33 @@
 
 #include <stdlib.h>
 
-bool fifo_push(struct fifo *f, int32_t command)
+/* Place of the n-th entry, n = 0 for the oldest. */
+static int32_t place(const struct fifo *f, int32_t n)
 {
-    if (f->stock == FIFO_DEPTH)
+    int32_t p = f->head + n;
+    return p < f->depth ? p : p - f->depth;
+}
+
+void fifo_reset(struct fifo *f, int32_t depth)
+{
+    *f = (struct fifo){.depth = depth};
+}
+
+bool fifo_push(struct fifo *f, int32_t *entry, int32_t command)
+{
+    if (f->stock == f->depth)
         return false;
-    f->entry[(f->head + f->stock) % FIFO_DEPTH] = command;
+    entry[place(f, f->stock)] = command;
     f->stock++;
     return true;
 }
 
-bool fifo_pop(struct fifo *f, int32_t *command)
+bool fifo_pop(struct fifo *f, const int32_t *entry, int32_t *command)
 {
     if (f->stock == 0)
         return false;
-    *command = f->entry[f->head];
-    f->head = (f->head + 1) % FIFO_DEPTH;
+    *command = entry[f->head];
+    f->head = place(f, 1);
     f->stock--;
     return true;
 }
@@ -34,11 +46,11 @@ void fifo_clear(struct fifo *f)
     f->stock = 0;
 }
 
-int32_t fifo_largest(const struct fifo *f)
+int32_t fifo_largest(const struct fifo *f, const int32_t *entry)
 {
     int32_t largest = 0;
     for (int i = 0; i < f->stock; i++) {
-        int32_t size = abs(f->entry[(f->head + i) % FIFO_DEPTH]);
+        int32_t size = abs(entry[place(f, i)]);
         largest = size > largest ? size : largest;
     }
     return largest;

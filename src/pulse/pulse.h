@@ -6,8 +6,7 @@
 #include <stdint.h>
 
 #include "dda.h"
-
-enum { PULSE_WIDTH_MAX = 65535 };   /* 16-bit register [clocks] */
+#include "lines.h"
 
 enum pulse_format {
     PULSE_DIRECTION,        /* a pulse on A; B is the direction, high = backward */
@@ -16,20 +15,17 @@ enum pulse_format {
     PULSE_NONE,             /* both low */
 };
 
-/* Bits of `wiring`; inversion comes before the swap. */
-enum { PULSE_A_INVERSE = 1, PULSE_B_INVERSE = 2, PULSE_SWAP = 4 };
-
 struct pulse_config {
     enum pulse_format format;
-    uint32_t wiring;
-    int32_t  width;         /* [clocks] a pulse is high, 1 .. 65535; PULSE_AB does not use it */
+    uint32_t wiring;        /* see lines.h */
+    int32_t  width;         /* [clocks] a pulse is high, 1 or more; PULSE_AB does not use it */
 };
 
 enum pulse_status {
     PULSE_OK,
     PULSE_BAD_FORMAT,       /* no such format */
     PULSE_BAD_WIRING,       /* no such bit */
-    PULSE_BAD_WIDTH,        /* not 1 .. 65535 clocks */
+    PULSE_BAD_WIDTH,        /* not 1 .. the largest */
 };
 
 /* What is left of the DDA times before; `struct dda` has the one in progress. */
@@ -39,15 +35,8 @@ struct pulse {
     bool    backward;       /* its direction */
 };
 
-struct pulse_lines {
-    bool a, b;              /* at the terminals, after inversion and swap */
-};
-
-/* PULSE_OK, or the first member that is out of range. */
-enum pulse_status pulse_check(const struct pulse_config *c);
-
-/* A sentence for the user. */
-const char *pulse_status_text(enum pulse_status status);
+/* PULSE_OK, or the first member that is out of range; `widest` is the largest width [clocks]. */
+enum pulse_status pulse_check(const struct pulse_config *c, int32_t widest);
 
 /* As after dda_reset(): no pulse yet, direction forward. */
 void pulse_reset(struct pulse *p);
@@ -57,9 +46,9 @@ void pulse_reset(struct pulse *p);
 void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct dda *d,
                     int channel);
 
-/* The lines at `clock` of the DDA time in progress: start <= clock < boundary; the boundary's own
- * clock belongs to the next DDA time, after dda_begin(). At the clock of a pulse its line is high
- * (before inversion) already.
+/* The lines at the terminals, at `clock` of the DDA time in progress: start <= clock < boundary; the
+ * boundary's own clock belongs to the next DDA time, after dda_begin(). At the clock of a pulse its
+ * line is high (before inversion) already.
  *
  * High lasts `width` clocks, but at most half the distance to the channel's next pulse, rounded
  * down, and at least one clock. After the last pulse of a DDA time the next one is taken to come a
@@ -69,8 +58,8 @@ void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct 
  * While the DDA is stopped the lines stand as they were at the clock of the stop, a pulse in
  * progress stays high; then its rest follows. Only a pulse on the first clock of the DDA time that
  * is cut by a stop ends when the DDA goes on. */
-struct pulse_lines pulse_at(const struct pulse_config *c, const struct pulse *p,
-                            const struct dda *d, int channel, int64_t clock);
+struct lines pulse_at(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
+                      int channel, int64_t clock);
 
 /* Clock of the next change of a line after `clock` and before the boundary, start <= clock;
  * INT64_MAX if there is none or the DDA is stopped. What changes at the boundary itself depends on
@@ -84,8 +73,8 @@ int64_t pulse_next(const struct pulse_config *c, const struct pulse *p, const st
 int64_t pulse_latest(const struct pulse *p, const struct dda *d, int channel, int64_t clock);
 
 /* Two pulses of the DDA time in progress, its first clock included, come one clock apart on one
- * line, so that a receiver sees one: divider 1 and a command above 2^(length-1), or just that large
- * behind a pulse on the first clock. Never in PULSE_AB and PULSE_NONE. */
+ * line, so that a receiver sees one: divider 1 and a command above half the ticks, rounded up,
+ * or just that large behind a pulse on the first clock. Never in PULSE_AB and PULSE_NONE. */
 bool pulse_merges(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
                   int channel);
 

@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-/* divider 4, width 3 or more; 2^length - 1 forward, whose last pulse lies on the boundary, and then
- * as many backward; one column is one clock
+/* divider 4, width 3 or more; a pulse less than there are ticks, forward, whose last lies on the
+ * boundary, and then as many backward; one column is one clock
  *
  *     boundary            |
  *     A         __/`\_/`\_/`\_/`\_/`    high for half of 4 clocks
@@ -19,29 +19,13 @@ struct high {
     bool    backward;
 };
 
-enum pulse_status pulse_check(const struct pulse_config *c)
+enum pulse_status pulse_check(const struct pulse_config *c, int32_t widest)
 {
     if ((int)c->format < PULSE_DIRECTION || c->format > PULSE_NONE)
         return PULSE_BAD_FORMAT;
-    if (c->wiring > (PULSE_A_INVERSE | PULSE_B_INVERSE | PULSE_SWAP))
+    if (c->wiring > (LINES_A_INVERSE | LINES_B_INVERSE | LINES_SWAP))
         return PULSE_BAD_WIRING;
-    return c->width < 1 || c->width > PULSE_WIDTH_MAX ? PULSE_BAD_WIDTH : PULSE_OK;
-}
-
-const char *pulse_status_text(enum pulse_status status)
-{
-    switch (status) {
-    case PULSE_OK:
-        return "ok";
-    case PULSE_BAD_FORMAT:
-        return "the pulse format is 0 to 3";
-    case PULSE_BAD_WIRING:
-        return "the pulse wiring is a sum of 1, 2, 4";
-    case PULSE_BAD_WIDTH:
-        return "the pulse width is 1 to 65535 clocks";
-    default:
-        return "unknown status";
-    }
+    return c->width < 1 || c->width > widest ? PULSE_BAD_WIDTH : PULSE_OK;
 }
 
 /* [clocks] a pulse is high whose next one comes `distance` clocks later. */
@@ -54,14 +38,14 @@ static int32_t high_time(const struct pulse_config *c, int64_t distance)
 /* [clock] of the j-th pulse of the DDA time in progress, stopped or not. */
 static int64_t edge(const struct dda *d, int channel, int32_t j)
 {
-    return d->start + d->divider * dda_edge_tick(d->command[channel], d->length, j);
+    return d->start + d->divider * dda_edge_tick(d->command[channel], d->ticks, j);
 }
 
 /* Pulses of the DDA time in progress up to and including `clock`. */
 static int32_t pulses_until(const struct dda *d, int channel, int64_t clock)
 {
     int64_t tick = ((d->run ? clock : d->stop) - d->start) / d->divider;
-    return (int32_t)llabs(dda_pulses(d->command[channel], d->length, tick));
+    return (int32_t)llabs(dda_pulses(d->command[channel], d->ticks, tick));
 }
 
 void pulse_reset(struct pulse *p)
@@ -91,50 +75,43 @@ static struct high nth_pulse(const struct pulse_config *c, const struct pulse *p
                              p->backward};
     int64_t rise = edge(d, channel, n);
     int64_t next = n < abs(command) ? edge(d, channel, n + 1)
-                                    : d->start + dda_time(d->length, d->divider) + d->divider;
+                                    : d->start + dda_time(d->ticks, d->divider) + d->divider;
     return (struct high){rise, rise + high_time(c, next - rise), command < 0};
 }
 
-static struct pulse_lines wired(uint32_t wiring, bool a, bool b)
-{
-    a = a != ((wiring & PULSE_A_INVERSE) != 0);
-    b = b != ((wiring & PULSE_B_INVERSE) != 0);
-    return wiring & PULSE_SWAP ? (struct pulse_lines){b, a} : (struct pulse_lines){a, b};
-}
-
-struct pulse_lines pulse_at(const struct pulse_config *c, const struct pulse *p,
-                            const struct dda *d, int channel, int64_t clock)
+struct lines pulse_at(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
+                      int channel, int64_t clock)
 {
     int32_t command = d->command[channel];
     int32_t n = pulses_until(d, channel, clock);
     if (c->format == PULSE_NONE)
-        return wired(c->wiring, false, false);
+        return lines_wired((struct lines){false, false}, c->wiring);
     if (c->format == PULSE_AB) {
-        /* as the card's encoder inputs at phase = count / 4; the low two bits are count mod 4 */
-        uint64_t count = (uint64_t)(d->before[channel] + (command < 0 ? -n : n));
-        return wired(c->wiring, (count & 2) == 0, ((count + 1) & 2) != 0);
+        const int64_t count = d->before[channel] + (command < 0 ? -n : n);
+        return lines_wired(lines_of_quarter(count), c->wiring);
     }
     struct high h = nth_pulse(c, p, d, channel, n);
     bool on = (d->run ? clock : d->stop) < h.fall;
-    if (c->format == PULSE_CW_CCW)
-        return wired(c->wiring, on && !h.backward, on && h.backward);
-    return wired(c->wiring, on, on || command == 0 ? h.backward : command < 0);
+    struct lines l = {on && !h.backward, on && h.backward};
+    if (c->format == PULSE_DIRECTION)
+        l = (struct lines){on, on || command == 0 ? h.backward : command < 0};
+    return lines_wired(l, c->wiring);
 }
 
-/* First tick after `tick` without a pulse; beyond 2^length if there is none. i ticks have
- * ceil((i left - half) / 2^length) of them, left = 2^length - |command|. */
-static int64_t gap_tick(int32_t command, int32_t length, int64_t tick)
+/* First tick after `tick` without a pulse; beyond the last if there is none. i ticks have
+ * ceil((i left - floor(ticks / 2)) / ticks) of them, left = ticks - |command|. */
+static int64_t gap_tick(int32_t command, int32_t ticks, int64_t tick)
 {
-    int64_t half = (int64_t)1 << (length - 1), left = 2 * half - llabs(command);
-    int64_t j = tick - llabs(dda_pulses(command, length, tick)) + 1;
-    return (2 * j - 1) * half / left + 1;
+    int64_t left = ticks - llabs(command);
+    int64_t j = tick - llabs(dda_pulses(command, ticks, tick)) + 1;
+    return ((j - 1) * ticks + ticks / 2) / left + 1;
 }
 
 int64_t pulse_next(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
                    int channel, int64_t clock)
 {
     int32_t command = d->command[channel];
-    int64_t boundary = d->start + dda_time(d->length, d->divider);
+    int64_t boundary = d->start + dda_time(d->ticks, d->divider);
     if (!d->run || c->format == PULSE_NONE)
         return INT64_MAX;
     int32_t n = pulses_until(d, channel, clock);
@@ -145,10 +122,10 @@ int64_t pulse_next(const struct pulse_config *c, const struct pulse *p, const st
             next = h.fall;  /* at the latest where the next pulse comes */
         if (next >= boundary)
             return INT64_MAX;
-        struct pulse_lines now = pulse_at(c, p, d, channel, clock);
-        struct pulse_lines then = pulse_at(c, p, d, channel, next);
+        struct lines now = pulse_at(c, p, d, channel, clock);
+        struct lines then = pulse_at(c, p, d, channel, next);
         if (now.a == then.a && now.b == then.b)     /* merged: one clock is one tick */
-            next = d->start + gap_tick(command, d->length, next - d->start);
+            next = d->start + gap_tick(command, d->ticks, next - d->start);
     }
     return next < boundary ? next : INT64_MAX;
 }
@@ -162,11 +139,11 @@ int64_t pulse_latest(const struct pulse *p, const struct dda *d, int channel, in
 bool pulse_merges(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
                   int channel)
 {
-    int32_t command = d->command[channel], ticks = 1 << d->length;
+    int32_t command = d->command[channel], half = (d->ticks + 1) / 2;
     if (c->format == PULSE_AB || c->format == PULSE_NONE || d->divider > 1)
         return false;
-    if (2 * abs(command) > ticks)
+    if (abs(command) > half)
         return true;
     bool same_line = c->format == PULSE_DIRECTION || p->backward == (command < 0);
-    return 2 * abs(command) == ticks && p->last == d->start && same_line;
+    return abs(command) == half && p->last == d->start && same_line;
 }

@@ -1,24 +1,26 @@
-/* FIFO of DDA commands of one axis: 63 deep, with the minimum-stock comparator. */
+/* FIFO of the commands of a channel, with the minimum-stock comparator. The commands stand in an
+ * array of the caller's, `depth` long. */
 #ifndef FIFO_H
 #define FIFO_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { FIFO_DEPTH = 63 };
-
 struct fifo {
-    int32_t entry[FIFO_DEPTH];  /* [pulses] ring */
-    int32_t head;               /* place of the oldest entry */
-    int32_t stock;              /* entries held */
-    bool    high;               /* comparator: stock was above the minimum at the last look */
+    int32_t depth;      /* entries it can hold */
+    int32_t head;       /* place of the oldest entry */
+    int32_t stock;      /* entries held */
+    bool    high;       /* comparator: stock was above the minimum at the last look */
 };
 
+/* Empty, of this depth. */
+void fifo_reset(struct fifo *f, int32_t depth);
+
 /* Append a command; false, and nothing changed, if the FIFO is full (overflow). */
-bool fifo_push(struct fifo *f, int32_t command);
+bool fifo_push(struct fifo *f, int32_t *entry, int32_t command);
 
 /* Take the oldest command; false, and *command untouched, if the FIFO is empty (underflow). */
-bool fifo_pop(struct fifo *f, int32_t *command);
+bool fifo_pop(struct fifo *f, const int32_t *entry, int32_t *command);
 
 /* Take back the newest commands, at most n; returns how many. */
 int32_t fifo_erase_last(struct fifo *f, int32_t n);
@@ -27,7 +29,7 @@ int32_t fifo_erase_last(struct fifo *f, int32_t n);
 void fifo_clear(struct fifo *f);
 
 /* Largest |command| in stock [pulses]. */
-int32_t fifo_largest(const struct fifo *f);
+int32_t fifo_largest(const struct fifo *f, const int32_t *entry);
 
 /* Comparator: true once each time the condition stock <= minimum becomes true. Call it after every
  * change of the stock or the minimum. An empty FIFO starts with the condition true. */
