@@ -1,14 +1,8 @@
-/* The card's state as outputs of the description. */
+/* The card's state as outputs of the description, behind card_wires.h. */
 #ifndef EPCIO_OUTPUTS_H
 #define EPCIO_OUTPUTS_H
 
 #include "epcio.h"
-
-/* Counters are 32-bit registers: they wrap. */
-static int32_t wrap(int64_t count)
-{
-    return (int32_t)(uint32_t)(uint64_t)count;
-}
 
 static void publish_axes(struct vars *v, const struct epcio *card)
 {
@@ -110,16 +104,9 @@ static void publish_remote(struct vars *v, const struct epcio *card)
 
 static void publish(struct vars *v, const struct epcio *card)
 {
-    v->irq = card->irq.line;
-    v->irq_seq = wrap(card->irq.seq);
-    v->irq_clock = (double)card->irq.clock;
-    memcpy(v->irq_flags, card->irq.flags, sizeof v->irq_flags);
     v->irq_pages = 0;
     for (int i = 0; i < IRQ_PAGES; i++)
         v->irq_pages |= (int32_t)((card->irq.flags[i] & card->irq.mask[i]) != 0) << i;
-    v->cmd_ack = card->cmd_ack;
-    v->frames_taken = card->frames_taken;
-    v->frames_refused = card->frames_refused;
     v->overflows = card->overflows;
     v->dda_time = (double)dda_time(card->dda.ticks, card->dda.divider) / EPCIO_CLOCK_HZ;
     v->dac_fired = (int32_t)card->analog.fired;
@@ -135,7 +122,5 @@ static void publish(struct vars *v, const struct epcio *card)
     if (card->remote_used)
         publish_remote(v, card);
 }
-_Static_assert(sizeof ((struct vars *)0)->irq_flags == sizeof ((struct irq *)0)->flags,
-               "a page an element");
 
 #endif

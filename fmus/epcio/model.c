@@ -22,25 +22,18 @@ struct model {
 };
 
 #include "fmi_model.h"
+#include "card_wires.h"
 #include "epcio_outputs.h"
 #include "epcio_power_on.h"
-
-/* A decimal period such as 1e-4 s is not exact in binary: off by far less than this [clocks]. */
-#define PERIOD_TOLERANCE 1e-6
-
-/* Clocks beyond this are not whole numbers in a double any more (2^53). */
-#define CLOCK_MAX 9007199254740992.0
 
 static int model_start(struct fmu *f)
 {
     struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
-    double clocks = v->loop_period * EPCIO_CLOCK_HZ;
-    if (!(clocks >= 1.0 && clocks < CLOCK_MAX && fabs(clocks - round(clocks)) < PERIOD_TOLERANCE))
-        return fmu_fail(f, "loop_period = %.17g s: not a whole number of 25 ns clocks",
-                        v->loop_period);
     const struct epcio_config c = config_of(v);
-    *m = (struct model){.period = (int64_t)round(clocks)};
+    *m = (struct model){.period = wires_period(f)};
+    if (m->period == 0)
+        return -1;
     enum epcio_status s = epcio_reset(&m->card, &c);
     if (s != EPCIO_OK)
         return refuse_config(f, s);
@@ -53,55 +46,8 @@ static int model_start(struct fmu *f)
 
 static const char *model_check(const struct state *s)
 {
-    const struct model *m = &s->m;
-    const int64_t clock = s->now / EPCIO_CLOCK_NS;
-    if (m->period < 1 || m->instant < clock || m->instant - clock >= m->period)
-        return "its next instant is another one";
-    return m->card.clock == clock ? epcio_damage(&m->card, m->period) : "its clock is another one";
-}
-
-static int set_dda(struct fmu *f)
-{
-    const struct vars *v = &f->s.v;
-    struct model *m = &f->s.m;
-    enum epcio_status s = epcio_set_dda(&m->card, v->host_dda_length, v->host_dda_divider);
-    if (s == EPCIO_BAD_LENGTH)
-        return fmu_fail(f, "host_dda_length = %d: %s", (int)v->host_dda_length,
-                        epcio_status_text(s));
-    if (s == EPCIO_BAD_DIVIDER)
-        return fmu_fail(f, "host_dda_divider = %d: %s", (int)v->host_dda_divider,
-                        epcio_status_text(s));
-    if (s == EPCIO_STOCK_TOO_LARGE && m->warned_length != v->host_dda_length) {
-        m->warned_length = v->host_dda_length;
-        fmu_warn(f, "host_dda_length = %d waits: %s", (int)v->host_dda_length,
-                 epcio_status_text(s));
-    }
-    if (s == EPCIO_OK)
-        m->warned_length = 0;
-    return 0;
-}
-
-/* A new number in the command mailbox sends one transaction on its way. */
-static int take_command(struct fmu *f)
-{
-    const struct vars *v = &f->s.v;
-    struct model *m = &f->s.m;
-    if (v->host_cmd_seq == m->cmd_seq)
-        return 0;
-    if (!(fabs(v->host_cmd_clock) < CLOCK_MAX))
-        return fmu_fail(f, "host_cmd_clock = %g: not a clock", v->host_cmd_clock);
-    struct bus_write w = {.seq = v->host_cmd_seq, .clock = (int64_t)ceil(v->host_cmd_clock),
-                          .count = v->host_cmd_count};
-    for (int k = 0; k < BUS_FRAMES && k < w.count; k++)
-        for (int i = 0; i < 6; i++)
-            w.frame[k][i] = v->host_cmd_frames[k][i];
-    enum epcio_status s = epcio_post(&m->card, &w);
-    if (s == EPCIO_BAD_COUNT)
-        return fmu_fail(f, "host_cmd_count = %d: %s", (int)w.count, epcio_status_text(s));
-    if (s != EPCIO_OK)
-        return fmu_fail(f, "host_cmd_seq = %d: %s", (int)w.seq, epcio_status_text(s));
-    m->cmd_seq = v->host_cmd_seq;
-    return 0;
+    const char *what = wires_check(s);
+    return what ? what : epcio_damage(&s->m.card, s->m.period);
 }
 
 /* A new number in the register mailbox writes its registers in order, now, up to the first that the
@@ -149,25 +95,19 @@ static int read_host(struct fmu *f)
     struct model *m = &f->s.m;
     struct epcio *card = &m->card;
     uint32_t mask[IRQ_PAGES], flags[IRQ_PAGES];
-    memcpy(mask, v->host_irq_mask, sizeof mask);
-    memcpy(flags, v->host_ack_flags, sizeof flags);
-    if (v->host_ack_seq != m->ack_seq) {
-        m->ack_seq = v->host_ack_seq;
+    if (wires_acknowledge(f, flags, mask))
         epcio_acknowledge(card, flags, mask);
-    } else {
+    else
         epcio_set_mask(card, mask);
-    }
-    if (v->host_clear_seq != m->clear_seq) {
-        m->clear_seq = v->host_clear_seq;
+    if (wires_clear(f))
         epcio_clear(card);
-    }
     for (int i = 0; i < EPCIO_AXES; i++) {
         if (v->host_latch_seq[i] != m->latch_seq[i]) {
             m->latch_seq[i] = v->host_latch_seq[i];
             epcio_set_latch(card, i, 1u << (LATCH_INDEX + i), false);
         }
     }
-    if (set_dda(f))
+    if (wires_dda(f, epcio_set_dda(card, v->host_dda_length, v->host_dda_divider)))
         return -1;
     if (card->run != v->host_dda_run)
         epcio_set_run(card, v->host_dda_run);
@@ -178,7 +118,9 @@ static int read_host(struct fmu *f)
     if (set_levels(f))
         return -1;
     take_registers(f);
-    return take_command(f);
+    struct bus_write w;
+    const int command = wires_command(f, &w);
+    return command > 0 ? wires_sent(f, &w, epcio_post(card, &w)) : command;
 }
 
 static uint32_t bits_of(const bool *level, int count)
@@ -250,19 +192,6 @@ static int power_on(struct fmu *f)
     return 0;
 }
 
-static void warn_refused(struct fmu *f)
-{
-    struct model *m = &f->s.m;
-    const struct epcio *card = &m->card;
-    if (card->frames_refused == m->warned_frames)
-        return;
-    fmu_warn(f, "%d frames refused up to transaction %d; axis %d, command %d: %s",
-             (int)(card->frames_refused - m->warned_frames), (int)card->cmd_ack,
-             (int)card->refusal.axis + 1, (int)card->refusal.command,
-             epcio_status_text(card->refusal.status));
-    m->warned_frames = card->frames_refused;
-}
-
 /* Instants in [t0, t1) read the inputs; the state shown is that at t1, with the DAC codes of the
  * latest instant before t1 if t1 is an instant itself. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
@@ -280,9 +209,10 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     epcio_advance(&m->card, end);
     if (m->instant == end)
         epcio_convert(&m->card);
-    warn_refused(f);
+    wires_refused(f);
     f->s.v.reg_ack = m->reg_seq;
     f->s.v.reg_status = (int32_t)m->reg_status;
+    wires_publish(f);
     publish(&f->s.v, &m->card);
     return 0;
 }

@@ -73,13 +73,6 @@ struct epcio_lines {
     struct remote_io_lines remote[EPCIO_SETS];  /* held likewise */
 };
 
-/* Why the latest refused frame was refused. */
-struct epcio_refusal {
-    enum epcio_status status;
-    int32_t axis;                   /* 0 .. 5 */
-    int32_t command;                /* [pulses] */
-};
-
 struct epcio {
     struct epcio_config config;
     struct epcio_host   host;

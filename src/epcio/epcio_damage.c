@@ -18,12 +18,10 @@ static bool ticks_good(int32_t ticks)
 /* `ticks`: it runs, so that its boundary lies ahead. */
 static bool dda_good(const struct dda *d, bool ticks, int64_t clock)
 {
-    bool good = d->channels == EPCIO_AXES && ticks_good(d->ticks) && ticks_good(d->next_ticks) &&
+    bool good = dda_sound(d, EPCIO_AXES) && ticks_good(d->ticks) && ticks_good(d->next_ticks) &&
                 within(d->divider, 1, EPCIO_DIVIDER_MAX) &&
                 within(d->next_divider, 1, EPCIO_DIVIDER_MAX) && within(d->start, 0, clock) &&
                 within(d->stop, 0, clock);
-    for (int i = 0; i < EPCIO_AXES && good; i++)
-        good = llabs((long long)d->command[i]) <= dda_largest(d->ticks);
     return good && (!ticks || dda_boundary(d) > clock);
 }
 

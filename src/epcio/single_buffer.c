@@ -5,34 +5,6 @@
 
 static const int32_t NO_COMMAND[EPCIO_AXES];
 
-const char *single_buffer_status_text(enum single_buffer_status status)
-{
-    switch (status) {
-    case SINGLE_BUFFER_OK:
-        return "ok";
-    case SINGLE_BUFFER_NOT_FREE:
-        return "the buffer holds a command already";
-    case SINGLE_BUFFER_COMMAND_TOO_LARGE:
-        return "the command is larger than the DDA length allows";
-    case SINGLE_BUFFER_AXIS_UNUSED:
-        return "the axis is not active";
-    case SINGLE_BUFFER_DROPPED:
-        return "an emergency stop caught the frame on its way";
-    case SINGLE_BUFFER_BAD_LENGTH:
-        return "the DDA length is 10 to 15 bit";
-    case SINGLE_BUFFER_BAD_DIVIDER:
-        return "the DDA divider is 1 to 65535";
-    case SINGLE_BUFFER_COMMAND_WAITS:
-        return "the waiting command is too large for the shorter DDA length";
-    case SINGLE_BUFFER_BAD_COUNT:
-        return "a transaction has 0 to 16 frames";
-    case SINGLE_BUFFER_BUS_FULL:
-        return "eight transactions are on their way to the card already";
-    }
-    return "unknown status";
-}
-_Static_assert(BUS_FRAMES == 16 && BUS_DEPTH == 8, "the texts name these numbers");
-
 void single_buffer_reset(struct single_buffer *card, const struct single_buffer_config *config)
 {
     memset(card, 0, sizeof *card);
@@ -129,7 +101,7 @@ static void arrive(struct single_buffer *card)
     struct bus_write w = bus_take(&card->bus);
     bool refused = false;   /* what follows a refused frame is refused: nothing overtakes */
     for (int k = 0; k < w.count; k++) {
-        refused = refused || single_buffer_write_frame(card, w.frame[k]) != SINGLE_BUFFER_OK;
+        refused = refused || single_buffer_write_frame(card, w.frame[k]) != EPCIO_OK;
         if (refused)
             card->frames_refused++;
         else
@@ -156,20 +128,21 @@ void single_buffer_advance(struct single_buffer *card, int64_t clock)
     card->clock = clock;
 }
 
-enum single_buffer_status single_buffer_set_dda(struct single_buffer *card, int32_t length,
-                                                int32_t divider)
+enum epcio_status single_buffer_set_dda(struct single_buffer *card, int32_t length,
+                                        int32_t divider)
 {
-    if (length == card->dda.next_ticks && divider == card->dda.next_divider)
-        return SINGLE_BUFFER_OK;
     if (length < EPCIO_LENGTH_MIN || length > EPCIO_LENGTH_MAX)
-        return SINGLE_BUFFER_BAD_LENGTH;
+        return EPCIO_BAD_LENGTH;
     if (divider < 1 || divider > EPCIO_DIVIDER_MAX)
-        return SINGLE_BUFFER_BAD_DIVIDER;
+        return EPCIO_BAD_DIVIDER;
+    int32_t ticks = 1 << length;
+    if (ticks == card->dda.next_ticks && divider == card->dda.next_divider)
+        return EPCIO_OK;
     for (int i = 0; i < EPCIO_AXES && card->waits; i++)
-        if (abs(card->command[i]) > dda_largest(1 << length))
-            return SINGLE_BUFFER_COMMAND_WAITS;
-    dda_set_time(&card->dda, 1 << length, divider, card->clock);
-    return SINGLE_BUFFER_OK;
+        if (abs(card->command[i]) > dda_largest(ticks))
+            return EPCIO_COMMAND_WAITS;
+    dda_set_time(&card->dda, ticks, divider, card->clock);
+    return EPCIO_OK;
 }
 
 void single_buffer_set_run(struct single_buffer *card, bool run)
@@ -177,47 +150,45 @@ void single_buffer_set_run(struct single_buffer *card, bool run)
     dda_set_run(&card->dda, run, card->clock);
 }
 
-enum single_buffer_status single_buffer_post(struct single_buffer *card,
-                                             const struct bus_write *write)
+enum epcio_status single_buffer_post(struct single_buffer *card, const struct bus_write *write)
 {
     if (write->count < 0 || write->count > BUS_FRAMES)
-        return SINGLE_BUFFER_BAD_COUNT;
+        return EPCIO_BAD_COUNT;
     if (!bus_post(&card->bus, write))
-        return SINGLE_BUFFER_BUS_FULL;
+        return EPCIO_BUS_FULL;
     single_buffer_advance(card, card->clock);
-    return SINGLE_BUFFER_OK;
+    return EPCIO_OK;
 }
 
-static enum single_buffer_status refuse(struct single_buffer *card,
-                                        enum single_buffer_status status, int axis,
-                                        int32_t command)
+static enum epcio_status refuse(struct single_buffer *card, enum epcio_status status, int axis,
+                                int32_t command)
 {
-    card->refusal = (struct single_buffer_refusal){status, axis, command};
+    card->refusal = (struct epcio_refusal){status, axis, command};
     return status;
 }
 
-enum single_buffer_status single_buffer_write_frame(struct single_buffer *card,
-                                                    const int32_t frame[EPCIO_AXES])
+enum epcio_status single_buffer_write_frame(struct single_buffer *card,
+                                            const int32_t frame[EPCIO_AXES])
 {
     int32_t largest = dda_largest(card->dda.next_ticks);
     int first = -1;     /* active axis */
     for (int i = 0; i < EPCIO_AXES; i++) {
         if (!card->config.active[i] && frame[i] != 0)
-            return refuse(card, SINGLE_BUFFER_AXIS_UNUSED, i, frame[i]);
+            return refuse(card, EPCIO_AXIS_UNUSED, i, frame[i]);
         if (frame[i] > largest || frame[i] < -largest)
-            return refuse(card, SINGLE_BUFFER_COMMAND_TOO_LARGE, i, frame[i]);
+            return refuse(card, EPCIO_COMMAND_TOO_LARGE, i, frame[i]);
         first = card->config.active[i] && first < 0 ? i : first;
     }
     first = first < 0 ? 0 : first;
     if (single_buffer_stock(card) > 0)
-        return refuse(card, SINGLE_BUFFER_NOT_FREE, first, frame[first]);
+        return refuse(card, EPCIO_NOT_FREE, first, frame[first]);
     if (card->config.latched) {
         memcpy(card->command, frame, sizeof card->command);
         card->waits = true;
     } else {
         start(card, frame);
     }
-    return SINGLE_BUFFER_OK;
+    return EPCIO_OK;
 }
 
 void single_buffer_clear(struct single_buffer *card)
@@ -227,7 +198,7 @@ void single_buffer_clear(struct single_buffer *card)
         card->cmd_ack = w.seq;
         card->frames_refused += w.count;
         if (w.count > 0)
-            refuse(card, SINGLE_BUFFER_DROPPED, 0, w.frame[0][0]);
+            refuse(card, EPCIO_DROPPED, 0, w.frame[0][0]);
     }
     if (card->waits)
         irq_raise(&card->irq, IRQ_DDA, fifo_bits(card), card->clock);

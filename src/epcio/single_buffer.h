@@ -30,32 +30,13 @@
 #include "card.h"
 #include "dda.h"
 #include "irq.h"
+#include "status.h"
 
 _Static_assert((int)EPCIO_AXES <= (int)DDA_CHANNELS_MAX, "a DDA channel per axis");
-
-enum single_buffer_status {
-    SINGLE_BUFFER_OK,
-    SINGLE_BUFFER_NOT_FREE,             /* direct: a command runs; latched: a command waits */
-    SINGLE_BUFFER_COMMAND_TOO_LARGE,    /* |command| > 2^length - 1 */
-    SINGLE_BUFFER_AXIS_UNUSED,          /* pulses for an axis that is not active */
-    SINGLE_BUFFER_DROPPED,              /* an emergency stop caught the frame on its way */
-    SINGLE_BUFFER_BAD_LENGTH,           /* not 10 .. 15 bit */
-    SINGLE_BUFFER_BAD_DIVIDER,          /* not 1 .. 65535 */
-    SINGLE_BUFFER_COMMAND_WAITS,        /* the waiting command does not fit the shorter length */
-    SINGLE_BUFFER_BAD_COUNT,            /* not 0 .. BUS_FRAMES frames */
-    SINGLE_BUFFER_BUS_FULL,             /* BUS_DEPTH transactions are on their way */
-};
 
 struct single_buffer_config {
     bool active[EPCIO_AXES];
     bool latched;                       /* a register before the DDA, else the DDA is the buffer */
-};
-
-/* Why the latest refused frame was refused. */
-struct single_buffer_refusal {
-    enum single_buffer_status status;
-    int32_t axis;                       /* 0 .. 5 */
-    int32_t command;                    /* [pulses] */
 };
 
 struct single_buffer {
@@ -75,12 +56,9 @@ struct single_buffer {
     int32_t    cmd_ack;     /* latest transaction that arrived */
     int32_t    frames_taken;
     int32_t    frames_refused;
-    struct single_buffer_refusal refusal;
+    struct epcio_refusal refusal;
     struct irq irq;         /* only page IRQ_DDA is used */
 };
-
-/* What a status means, for messages. */
-const char *single_buffer_status_text(enum single_buffer_status status);
 
 /* Power on at clock 0: buffer free, no command in the DDA, the reset length and divider, DDA
  * running, mask 0. Latched, the first boundary is one DDA time later. */
@@ -97,8 +75,8 @@ void single_buffer_advance(struct single_buffer *card, int64_t clock);
 /* DDA length [10 .. 15 bit] and divider [1 .. 65535]. They hold for the DDA times that begin from
  * now on, and for one of no pulses that begins at this very clock (see dda_set_time). Refused, and
  * nothing changed: BAD_LENGTH, BAD_DIVIDER, COMMAND_WAITS. */
-enum single_buffer_status single_buffer_set_dda(struct single_buffer *card, int32_t length,
-                                                int32_t divider);
+enum epcio_status single_buffer_set_dda(struct single_buffer *card, int32_t length,
+                                        int32_t divider);
 
 /* Switch the DDA: off, it freezes and its time stands, so that is no gap. A direct card takes a
  * command meanwhile, which begins when it is switched on. */
@@ -107,13 +85,12 @@ void single_buffer_set_run(struct single_buffer *card, bool run);
 /* Send a transaction of 0 .. BUS_FRAMES frames; it arrives at its clock, now if that has passed,
  * and not before those sent earlier. Its frames are written in order; after a refused one the rest
  * is refused too, so of several all but the first are. BAD_COUNT or BUS_FULL: nothing sent. */
-enum single_buffer_status single_buffer_post(struct single_buffer *card,
-                                             const struct bus_write *write);
+enum epcio_status single_buffer_post(struct single_buffer *card, const struct bus_write *write);
 
 /* Write one command per axis, |command| <= 2^length - 1 [pulses], now; all or none. Refused with
  * AXIS_UNUSED, COMMAND_TOO_LARGE (the first such axis) or else NOT_FREE. */
-enum single_buffer_status single_buffer_write_frame(struct single_buffer *card,
-                                                    const int32_t frame[EPCIO_AXES]);
+enum epcio_status single_buffer_write_frame(struct single_buffer *card,
+                                            const int32_t frame[EPCIO_AXES]);
 
 /* Emergency stop: drop the waiting command (the buffer becomes free: interrupt) and the
  * transactions on their way, whose frames count as refused. The command in the DDA ends as

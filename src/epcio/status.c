@@ -1,6 +1,7 @@
 #include "status.h"
 
 #include "adc.h"
+#include "bus.h"
 #include "encoder.h"
 #include "local_io.h"
 #include "pulse.h"
@@ -58,10 +59,16 @@ static const char *card_text(int status)
         return "there is no register at this address";
     case EPCIO_BAD_VALUE:
         return "the value is no number, fractional or out of range";
+    case EPCIO_NOT_FREE:
+        return "the buffer holds a command already";
+    case EPCIO_COMMAND_WAITS:
+        return "the waiting command is too large for the shorter DDA length";
     default:
         return "unknown status";
     }
 }
+
+_Static_assert(BUS_FRAMES == 16 && BUS_DEPTH == 8, "the texts name these numbers");
 
 static const char *pulse_text(int status)
 {

@@ -2,6 +2,8 @@
 #ifndef STATUS_H
 #define STATUS_H
 
+#include <stdint.h>
+
 /* The status of a block is its own enum on top of the block's base: EPCIO_ENCODER +
  * ENCODER_BAD_RATE. */
 enum epcio_status {
@@ -29,6 +31,8 @@ enum epcio_status {
     EPCIO_BAD_MODULE,           /* no such module to reset */
     EPCIO_BAD_REGISTER,         /* no register at that address */
     EPCIO_BAD_VALUE,            /* a register value that is no number, fractional or out of range */
+    EPCIO_NOT_FREE,             /* single buffer: it holds a command already */
+    EPCIO_COMMAND_WAITS,        /* single buffer: its command does not fit the shorter length */
     EPCIO_PULSE = 0x100,
     EPCIO_ENCODER = 0x200,
     EPCIO_ADC = 0x300,
@@ -36,6 +40,13 @@ enum epcio_status {
     EPCIO_REMOTE_IO = 0x500,
     EPCIO_TIMER = 0x600,
     EPCIO_STATUS_LAST = 0x6ff   /* behind a block's number comes its own status */
+};
+
+/* Why the latest refused frame was refused. */
+struct epcio_refusal {
+    enum epcio_status status;
+    int32_t axis;                   /* 0 .. 5 */
+    int32_t command;                /* [pulses] */
 };
 
 /* What a status means, for messages. */

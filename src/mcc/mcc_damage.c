@@ -109,6 +109,7 @@ const char *mcc_damage_groups(const struct groups *g)
         if (!what && !part_good(&group->part, &g->card[group->card].pcl, &group->mcc.queue)) {
             what = "the frames under way";
         }
+        what = !what && group->voltage ? servo_damage(&group->servo) : what;
     }
     if (!what && (g->config.ipo < 1 || g->config.bus < 1 || g->next_ipo < 0)) {
         what = "a period";

@@ -1,0 +1,143 @@
+/* The wires that both generations of the card have: grid of the host bus, DDA time, mailbox of
+ * commands, interrupts. Included behind fmi_model.h by a model whose struct has the members card,
+ * period, instant, cmd_seq, ack_seq, clear_seq, warned_length and warned_frames. */
+#ifndef CARD_WIRES_H
+#define CARD_WIRES_H
+
+#include <math.h>
+
+#include "bus.h"
+#include "irq.h"
+#include "status.h"
+
+/* A decimal period such as 1e-4 s is not exact in binary: off by far less than this [clocks]. */
+#define PERIOD_TOLERANCE 1e-6
+
+/* Clocks beyond this are not whole numbers in a double any more (2^53). */
+#define CLOCK_MAX 9007199254740992.0
+
+/* Clocks of loop_period; 0 after fmu_fail(). */
+static int64_t wires_period(struct fmu *f)
+{
+    const double period = f->s.v.loop_period, clocks = period * EPCIO_CLOCK_HZ;
+    if (clocks >= 1.0 && clocks < CLOCK_MAX && fabs(clocks - round(clocks)) < PERIOD_TOLERANCE)
+        return (int64_t)round(clocks);
+    fmu_fail(f, "loop_period = %.17g s: not a whole number of 25 ns clocks", period);
+    return 0;
+}
+
+/* What model_check() says of the grid and the card's clock. */
+static const char *wires_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+    const int64_t clock = s->now / EPCIO_CLOCK_NS;
+    if (m->period < 1 || m->instant < clock || m->instant - clock >= m->period)
+        return "its next instant is another one";
+    return m->card.clock == clock ? NULL : "its clock is another one";
+}
+
+/* What the card says of the DDA time on the wires. A length that must wait is told once. */
+static int wires_dda(struct fmu *f, enum epcio_status s)
+{
+    const struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    const bool waits = s == EPCIO_STOCK_TOO_LARGE || s == EPCIO_COMMAND_WAITS;
+    if (s == EPCIO_BAD_LENGTH)
+        return fmu_fail(f, "host_dda_length = %d: %s", (int)v->host_dda_length,
+                        epcio_status_text(s));
+    if (s == EPCIO_BAD_DIVIDER)
+        return fmu_fail(f, "host_dda_divider = %d: %s", (int)v->host_dda_divider,
+                        epcio_status_text(s));
+    if (waits && m->warned_length != v->host_dda_length)
+        fmu_warn(f, "host_dda_length = %d waits: %s", (int)v->host_dda_length,
+                 epcio_status_text(s));
+    m->warned_length = waits ? v->host_dda_length : 0;
+    return 0;
+}
+
+/* A new number in the command mailbox brings a transaction: 1, 0 without one, -1 after
+ * fmu_fail(). */
+static int wires_command(struct fmu *f, struct bus_write *w)
+{
+    const struct vars *v = &f->s.v;
+    if (v->host_cmd_seq == f->s.m.cmd_seq)
+        return 0;
+    if (!(fabs(v->host_cmd_clock) < CLOCK_MAX))
+        return fmu_fail(f, "host_cmd_clock = %g: not a clock", v->host_cmd_clock);
+    w->seq = v->host_cmd_seq;
+    w->clock = (int64_t)ceil(v->host_cmd_clock);
+    w->count = v->host_cmd_count;
+    for (int k = 0; k < BUS_FRAMES; k++)
+        for (int i = 0; i < EPCIO_AXES; i++)
+            w->frame[k][i] = k < w->count ? v->host_cmd_frames[k][i] : 0;
+    return 1;
+}
+
+/* What the card says when it is sent. */
+static int wires_sent(struct fmu *f, const struct bus_write *w, enum epcio_status s)
+{
+    if (s == EPCIO_BAD_COUNT)
+        return fmu_fail(f, "host_cmd_count = %d: %s", (int)w->count, epcio_status_text(s));
+    if (s != EPCIO_OK)
+        return fmu_fail(f, "host_cmd_seq = %d: %s", (int)w->seq, epcio_status_text(s));
+    f->s.m.cmd_seq = w->seq;
+    return 0;
+}
+
+/* Mask on the wires; true if they bring an acknowledge too, with its flags. */
+static bool wires_acknowledge(struct fmu *f, uint32_t flags[IRQ_PAGES], uint32_t mask[IRQ_PAGES])
+{
+    const struct vars *v = &f->s.v;
+    const bool fresh = v->host_ack_seq != f->s.m.ack_seq;
+    memcpy(mask, v->host_irq_mask, sizeof v->host_irq_mask);
+    memcpy(flags, v->host_ack_flags, sizeof v->host_ack_flags);
+    f->s.m.ack_seq = v->host_ack_seq;
+    return fresh;
+}
+
+/* True once for each new number of the emergency stop. */
+static bool wires_clear(struct fmu *f)
+{
+    const bool fresh = f->s.v.host_clear_seq != f->s.m.clear_seq;
+    f->s.m.clear_seq = f->s.v.host_clear_seq;
+    return fresh;
+}
+
+/* Frames that the card has refused since this was last asked. */
+static void wires_refused(struct fmu *f)
+{
+    struct model *m = &f->s.m;
+    const struct epcio_refusal *r = &m->card.refusal;
+    if (m->card.frames_refused == m->warned_frames)
+        return;
+    fmu_warn(f, "%d frames refused up to transaction %d; axis %d, command %d: %s",
+             (int)(m->card.frames_refused - m->warned_frames), (int)m->card.cmd_ack,
+             (int)r->axis + 1, (int)r->command, epcio_status_text(r->status));
+    m->warned_frames = m->card.frames_refused;
+}
+
+/* Counters are 32-bit registers: they wrap. */
+static int32_t wrap(int64_t count)
+{
+    return (int32_t)(uint32_t)(uint64_t)count;
+}
+
+/* Interrupts and what became of the transactions. */
+static void wires_publish(struct fmu *f)
+{
+    struct vars *v = &f->s.v;
+    const struct irq *irq = &f->s.m.card.irq;
+    v->irq = irq->line;
+    v->irq_seq = wrap(irq->seq);
+    v->irq_clock = (double)irq->clock;
+    memcpy(v->irq_flags, irq->flags, sizeof v->irq_flags);
+    v->cmd_ack = f->s.m.card.cmd_ack;
+    v->frames_taken = f->s.m.card.frames_taken;
+    v->frames_refused = f->s.m.card.frames_refused;
+}
+_Static_assert(sizeof ((struct vars *)0)->irq_flags == sizeof ((struct irq *)0)->flags &&
+               sizeof ((struct vars *)0)->host_irq_mask == sizeof ((struct irq *)0)->mask &&
+               sizeof ((struct vars *)0)->host_cmd_frames == sizeof ((struct bus_write *)0)->frame,
+               "the wires are as wide as the card's registers");
+
+#endif
