@@ -13,9 +13,9 @@
  * divider, is high for (x + divider) / 2 <= x clocks at most.
  */
 
-/* When a pulse is on its line. */
+/* A pulse on its line. */
 struct high {
-    int64_t rise, fall;     /* [clock] */
+    int64_t fall;           /* [clock] it ends */
     bool    backward;
 };
 
@@ -71,12 +71,11 @@ static struct high nth_pulse(const struct pulse_config *c, const struct pulse *p
 {
     int32_t command = d->command[channel];
     if (n == 0)
-        return (struct high){p->last, p->last == d->start ? p->last + p->high : d->start,
-                             p->backward};
+        return (struct high){p->last == d->start ? p->last + p->high : d->start, p->backward};
     int64_t rise = edge(d, channel, n);
     int64_t next = n < abs(command) ? edge(d, channel, n + 1)
                                     : d->start + dda_time(d->ticks, d->divider) + d->divider;
-    return (struct high){rise, rise + high_time(c, next - rise), command < 0};
+    return (struct high){rise + high_time(c, next - rise), command < 0};
 }
 
 struct lines pulse_at(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
@@ -98,52 +97,8 @@ struct lines pulse_at(const struct pulse_config *c, const struct pulse *p, const
     return lines_wired(l, c->wiring);
 }
 
-/* First tick after `tick` without a pulse; beyond the last if there is none. i ticks have
- * ceil((i left - floor(ticks / 2)) / ticks) of them, left = ticks - |command|. */
-static int64_t gap_tick(int32_t command, int32_t ticks, int64_t tick)
-{
-    int64_t left = ticks - llabs(command);
-    int64_t j = tick - llabs(dda_pulses(command, ticks, tick)) + 1;
-    return ((j - 1) * ticks + ticks / 2) / left + 1;
-}
-
-int64_t pulse_next(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
-                   int channel, int64_t clock)
-{
-    int32_t command = d->command[channel];
-    int64_t boundary = d->start + dda_time(d->ticks, d->divider);
-    if (!d->run || c->format == PULSE_NONE)
-        return INT64_MAX;
-    int32_t n = pulses_until(d, channel, clock);
-    int64_t next = n < abs(command) ? edge(d, channel, n + 1) : INT64_MAX;
-    if (c->format != PULSE_AB) {
-        struct high h = nth_pulse(c, p, d, channel, n);
-        if (clock < h.fall)
-            next = h.fall;  /* at the latest where the next pulse comes */
-        if (next >= boundary)
-            return INT64_MAX;
-        struct lines now = pulse_at(c, p, d, channel, clock);
-        struct lines then = pulse_at(c, p, d, channel, next);
-        if (now.a == then.a && now.b == then.b)     /* merged: one clock is one tick */
-            next = d->start + gap_tick(command, d->ticks, next - d->start);
-    }
-    return next < boundary ? next : INT64_MAX;
-}
-
 int64_t pulse_latest(const struct pulse *p, const struct dda *d, int channel, int64_t clock)
 {
     int32_t n = pulses_until(d, channel, clock);
     return n > 0 ? edge(d, channel, n) : p->last;
-}
-
-bool pulse_merges(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
-                  int channel)
-{
-    int32_t command = d->command[channel], half = (d->ticks + 1) / 2;
-    if (c->format == PULSE_AB || c->format == PULSE_NONE || d->divider > 1)
-        return false;
-    if (abs(command) > half)
-        return true;
-    bool same_line = c->format == PULSE_DIRECTION || p->backward == (command < 0);
-    return abs(command) == half && p->last == d->start && same_line;
 }

@@ -46,9 +46,10 @@ void pulse_reset(struct pulse *p);
 void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct dda *d,
                     int channel);
 
-/* The lines at the terminals, at `clock` of the DDA time in progress: start <= clock < boundary; the
- * boundary's own clock belongs to the next DDA time, after dda_begin(). At the clock of a pulse its
- * line is high (before inversion) already.
+/* The lines at the terminals, at `clock` of the DDA time in progress: start <= clock < boundary;
+ * the boundary's own clock belongs to the next DDA time, after dda_begin(). At the clock of a pulse
+ * its line is high (before inversion) already. Pulses one clock apart (divider 1, a command above
+ * half the ticks) are one on the line.
  *
  * High lasts `width` clocks, but at most half the distance to the channel's next pulse, rounded
  * down, and at least one clock. After the last pulse of a DDA time the next one is taken to come a
@@ -61,21 +62,9 @@ void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct 
 struct lines pulse_at(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
                       int channel, int64_t clock);
 
-/* Clock of the next change of a line after `clock` and before the boundary, start <= clock;
- * INT64_MAX if there is none or the DDA is stopped. What changes at the boundary itself depends on
- * the next command: compare pulse_at() there. */
-int64_t pulse_next(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
-                   int channel, int64_t clock);
-
 /* Clock of the channel's latest pulse up to and including `clock` >= start, whatever the format;
  * -1 if there was none since reset. A stop moves the pulses of the DDA time it interrupts: once it
  * goes on, their clocks count from the shifted start, as in dda_edge_clock(). */
 int64_t pulse_latest(const struct pulse *p, const struct dda *d, int channel, int64_t clock);
-
-/* Two pulses of the DDA time in progress, its first clock included, come one clock apart on one
- * line, so that a receiver sees one: divider 1 and a command above half the ticks, rounded up,
- * or just that large behind a pulse on the first clock. Never in PULSE_AB and PULSE_NONE. */
-bool pulse_merges(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
-                  int channel);
 
 #endif

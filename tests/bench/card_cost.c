@@ -48,7 +48,7 @@ int main(int argc, char **argv)
         host.gain[i] = 60;
         host.loop_on[i] = host.dac_loop[i] = i < axes;
         if (i < axes)
-            frame[i] = (int32_t)(atof(argv[2]) * 25e-9 * (double)dda_time(1 << LENGTH, DIVIDER) + 0.5);
+            frame[i] = (int32_t)(atof(argv[2]) * 25e-9 * DIVIDER * (1 << LENGTH) + 0.5);
     }
     if (epcio_reset(&card, &config) || epcio_set_dda(&card, LENGTH, DIVIDER) ||
         epcio_set_host(&card, &host))

@@ -1,6 +1,6 @@
-/* The pulse core as a card of four channels would use it: FIFOs of 512, a clock of 20 ns, a DDA time
- * of any number of clocks, which grows and shrinks while pulses are put out (a rate that pauses on
- * the path). Against accumulators stepped clock by clock. */
+/* The pulse core as a card of four channels would use it: FIFOs of 512, a clock of 20 ns, a DDA
+ * time of any number of clocks, which grows and shrinks while pulses are put out (a rate that
+ * pauses on the path). Against accumulators stepped clock by clock. */
 #include "check.h"
 #include "fifo.h"
 #include "pulse.h"
@@ -34,7 +34,7 @@ struct rig {
     int32_t entry[CHANNELS][DEPTH];
     struct pulse pulse[CHANNELS];
     struct literal literal[CHANNELS];
-    int32_t falls[CHANNELS], foreseen[CHANNELS];    /* of the stock to half */
+    int32_t falls;                  /* of a stock to half */
 };
 
 static const struct pulse_config CONFIG[CHANNELS] = {
@@ -62,8 +62,9 @@ static void power_on(struct rig *r, int32_t ticks)
 static void watch(struct rig *r, int i, int32_t before)
 {
     const struct literal *m = &r->literal[i];
-    r->falls[i] += fifo_fell(&r->fifo[i], HALF);
-    r->foreseen[i] += before > HALF && m->written - m->taken <= HALF;
+    const bool fell = fifo_fell(&r->fifo[i], HALF);
+    CHECK_EQ(fell, before > HALF && m->written - m->taken <= HALF);
+    r->falls += fell;
     CHECK_EQ(r->fifo[i].stock, m->written - m->taken);
 }
 
@@ -178,8 +179,6 @@ static void run(uint64_t seed, int32_t ticks, int times)
             CHECK_EQ(r->literal[i].received, r->literal[i].count);
         }
     }
-    for (int i = 0; i < CHANNELS; i++)
-        CHECK_EQ(r->falls[i], r->foreseen[i]);
 }
 
 int main(void)
@@ -188,7 +187,7 @@ int main(void)
     run(1, TIME, 8);
     for (uint64_t seed = 2; seed < 12; seed++) {
         run(seed * 7919, (int32_t)seed * 97, 60);
-        falls += rig.falls[0];
+        falls += rig.falls;
     }
     CHECK(falls > 10);
     return check_result();

@@ -53,7 +53,8 @@ static void levels(void)
 {
     const char a[] = "1100", b[] = "0110";
     for (int64_t q = -8; q < 8; q++) {
-        const struct lines l = lines_of_quarter(q), w = lines_wired(l, LINES_A_INVERSE | LINES_SWAP);
+        const struct lines l = lines_of_quarter(q);
+        const struct lines w = lines_wired(l, LINES_A_INVERSE | LINES_SWAP);
         CHECK_EQ(l.a, a[(q + 8) % 4] - '0');
         CHECK_EQ(l.b, b[(q + 8) % 4] - '0');
         CHECK(w.a == l.b && w.b == !l.a);
