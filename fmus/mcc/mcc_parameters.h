@@ -217,7 +217,7 @@ static struct pc_config config_of(const struct vars *v)
         .block_delete = v->block_delete, .optional_stop = v->optional_stop,
         .dry_run = v->dry_run, .law = law_of(v)
     };
-    for (int i = 0; i < SCHED_MODULES; i++) {
+    for (int i = 0; i < PC_MODULES; i++) {
         c.priority[i] = v->module_priority[i];
         c.offset[i] = (int64_t)llround(clocks(v->module_offset[i]));
         c.time[i] = (int64_t)llround(clocks(v->module_time[i]));

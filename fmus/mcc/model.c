@@ -97,22 +97,21 @@ _Static_assert(sizeof ((struct vars *)0)->card_cmd_frames == sizeof ((struct pcl
 static void publish_schedule(struct vars *v, const struct pc *pc)
 {
     const struct isr *isr = &pc->shown_isr;
-    const struct sched *sched = &pc->shown;
+    const struct cyclic_report *r = &pc->shown;
 
     for (int i = 0; i < ISR_PAGES; i++) {
         v->served[i] = isr->served[i];
         v->served_latency[i] = (double)isr->latency[i] / CLOCK_HZ;
     }
     v->serving = isr->page + 1;
-    v->module = sched->running + 1;
-    const struct sched_module all = sched_all(sched);
-    for (int i = 0; i <= SCHED_MODULES; i++) {
-        const struct sched_module *m = i < SCHED_MODULES ? &sched->module[i] : &all;
-        v->module_runs[i] = m->runs;
-        v->module_latency[i] = (double)m->latency / CLOCK_HZ;
-        v->module_response[i] = (double)m->response / CLOCK_HZ;
-        v->module_missed[i] = m->missed;
-        v->module_load[i] = sched->clock > 0 ? (double)m->busy / (double)sched->clock : 0.0;
+    v->module = r->running + 1;
+    for (int i = 0; i <= PC_MODULES; i++) {
+        const struct cyclic_use *u = i < PC_MODULES ? &r->task[i] : &r->all;
+        v->module_runs[i] = u->runs;
+        v->module_latency[i] = (double)u->latency / CLOCK_HZ;
+        v->module_response[i] = (double)u->response / CLOCK_HZ;
+        v->module_missed[i] = u->missed;
+        v->module_load[i] = r->clock > 0 ? (double)u->busy / (double)r->clock : 0.0;
     }
 }
 

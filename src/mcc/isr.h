@@ -4,7 +4,7 @@
  * what it has read, and serves the pages one after another, the lowest priority number first, pages
  * of one number in their order on the card. They may begin when the latency of the interrupt has
  * passed; pages of an earlier one that still wait join the new order, but for a FIFO that asks. A
- * page is not interrupted by another. When the PC serves it is for pc and sched to say.
+ * page is not interrupted by another. When the PC serves it is for pc to say.
  */
 #ifndef ISR_H
 #define ISR_H

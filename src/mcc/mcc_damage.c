@@ -51,16 +51,17 @@ static bool part_good(const struct pcl_part *part, const struct pcl *p, const st
 }
 
 /* No cycle has begun that has not been seen: its timer is asked at most once a clock. */
-static bool sched_good(const struct sched *s)
+static bool modules_good(const struct cyclic *s)
 {
-    if (s->clock < 0 || !within(s->running, -1, SCHED_MODULES - 1)) {
+    const struct processor *p = &s->processor;
+
+    if (p->clock < 0 || p->tasks != PC_MODULES || !within(p->running, -1, PC_MODULES - 1)) {
         return false;
     }
-    for (int i = 0; i < SCHED_MODULES; i++) {
-        const struct sched_module *m = &s->module[i];
-        const int64_t cycle = s->config.cycle[i];
-        if (cycle < 0 || (cycle == 0 && m->next != INT64_MAX) ||
-            m->next < s->clock - cycle || m->left < 0) {
+    for (int i = 0; i < PC_MODULES; i++) {
+        const struct cyclic_task *t = &s->task[i];
+        if (t->cycle < 0 || (t->cycle == 0 && t->next != INT64_MAX) ||
+            t->next < p->clock - t->cycle || p->task[i].left < 0) {
             return false;
         }
     }
@@ -83,7 +84,7 @@ const char *mcc_damage_pc(const struct pc *pc)
     if (pc->config.bus < 1 || !part_good(&pc->pcl.part, &pc->pcl, &pc->mcc.queue)) {
         return "the bus period or the frames under way";
     }
-    if (!sched_good(&pc->sched) || !sched_good(&pc->shown)) {
+    if (!modules_good(&pc->modules)) {
         return "a time of the modules";
     }
     return trail_good(&pc->voltage.trail) ? NULL : "a place on the path behind";

@@ -10,7 +10,7 @@ static const double VOLTS_MAX = VOLTAGE_RANGE;  /* [V] */
 /* What the modules are doing now is what others see. */
 static void show(struct pc *pc)
 {
-    pc->shown = pc->sched;
+    cyclic_tell(&pc->modules, &pc->shown);
     pc->shown_isr = pc->pcl.isr;
 }
 
@@ -20,7 +20,8 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     pc->config = *config;
     pc->random = (uint64_t)(int64_t)config->seed;
     pc->program = program;
-    sched_start(&pc->sched, &(struct sched_config){
+    cyclic_start(&pc->modules, &(struct cyclic_config){
+        .tasks = PC_MODULES,
         .priority = { config->priority[0], config->priority[1], config->priority[2],
                       config->priority[3] },
         .cycle = { config->interpreter, config->ipo, 0, config->process },
@@ -117,7 +118,7 @@ static void by_hand(struct pc *pc)
     const struct pc_panel *panel = &pc->panel;
     struct mcc *m = &pc->mcc;
 
-    if (pc->home_due && pc->sched.clock >= pc->config.start) {
+    if (pc->home_due && pc->modules.processor.clock >= pc->config.start) {
         pc->home_due = false;
         MCC_go_home(m, pc->config.home_order);
     }
@@ -138,7 +139,7 @@ static void by_hand(struct pc *pc)
 static bool may_start(const struct pc *pc)
 {
     const int homed = MCC_check_homef(&pc->mcc);
-    return pc->sched.clock >= pc->config.start &&
+    return pc->modules.processor.clock >= pc->config.start &&
            (homed == 1 || (homed < 0 && !pc->config.home_first));
 }
 
@@ -262,7 +263,7 @@ static int64_t ipo_begin(struct pc *pc, const struct pc_panel *panel, const stru
 static void pcl_begin(struct pc *pc)
 {
     struct pcl *p = &pc->pcl;
-    const int64_t clock = pc->sched.clock;
+    const int64_t clock = pc->modules.processor.clock;
     int64_t due = pcl_due(p), time = 0;
 
     if (due > clock) {
@@ -281,13 +282,13 @@ static void pcl_begin(struct pc *pc)
         pcl_take(p, &pc->mcc);
         time = pc->config.time[PC_PCL] + pc->config.unit[PC_PCL] * p->count;
     }
-    sched_begin(&pc->sched, PC_PCL, due, time);
+    cyclic_begin(&pc->modules, PC_PCL, due, time);
 }
 
 static void begin(struct pc *pc, int module, const struct pc_panel *panel,
                   const struct source *program)
 {
-    const int64_t due = pc->sched.module[module].due;
+    const int64_t due = pc->modules.task[module].due;
     int64_t time = pc->config.time[module];
 
     pc->units[module] = 0;
@@ -302,7 +303,7 @@ static void begin(struct pc *pc, int module, const struct pc_panel *panel,
     } else {
         pc->panel = *panel;
     }
-    sched_begin(&pc->sched, module, due, time);
+    cyclic_begin(&pc->modules, module, due, time);
 }
 
 /* The time of what the IPO has under way is over. */
@@ -310,14 +311,14 @@ static void ipo_end(struct pc *pc, const struct source *program)
 {
     if (!pc->computing) {
         task_settle(&pc->mcc);
-        sched_end(&pc->sched, PC_IPO);
+        cyclic_end(&pc->modules, PC_IPO);
         return;
     }
     int made = 0;
     if (task_can_point(&pc->mcc)) {         /* an abort may have come meanwhile */
         made = task_point(&pc->mcc, pc->config.interpreter > 0 ? NULL : program);
     }
-    sched_more(&pc->sched, PC_IPO, made * pc->config.unit[PC_INTERPRETER] + next_point(pc));
+    cyclic_more(&pc->modules, PC_IPO, made * pc->config.unit[PC_INTERPRETER] + next_point(pc));
 }
 
 /* The latest write came in time: less than (n + 1) T after its interrupt. */
@@ -326,25 +327,25 @@ static bool in_time(const struct pc *pc)
     const struct pcl *p = &pc->pcl;
     const int64_t deadline = (p->min_stock + 1) * machine_dda_clocks(&pc->mcc.machine);
 
-    return p->raised < 0 || pc->sched.clock - p->raised < deadline;
+    return p->raised < 0 || pc->modules.processor.clock - p->raised < deadline;
 }
 
 static void pcl_end(struct pc *pc)
 {
     struct pcl *p = &pc->pcl;
-    const int64_t clock = pc->sched.clock;
+    const int64_t clock = pc->modules.processor.clock;
 
     if (pc->writing) {
         pc->writing = false;
-        pc->sched.module[PC_PCL].missed += !in_time(pc);
+        pc->modules.task[PC_PCL].use.missed += !in_time(pc);
         pcl_write(p, clock < pc->publish ? pc->publish : clock);
-        sched_more(&pc->sched, PC_PCL, pc->tail);
+        cyclic_more(&pc->modules, PC_PCL, pc->tail);
         pc->tail = 0;
     } else if (pc->tail > 0) {
-        sched_more(&pc->sched, PC_PCL, pc->tail);
+        cyclic_more(&pc->modules, PC_PCL, pc->tail);
         pc->tail = 0;
     } else {
-        sched_end(&pc->sched, PC_PCL);
+        cyclic_end(&pc->modules, PC_PCL);
     }
 }
 
@@ -354,7 +355,7 @@ static void end(struct pc *pc, int module, const struct source *program)
         if (task_can_read(&pc->mcc)) {      /* an abort may have come meanwhile */
             task_read(&pc->mcc, program);
         }
-        sched_more(&pc->sched, module, next_command(pc));
+        cyclic_more(&pc->modules, module, next_command(pc));
     } else if (module == PC_IPO) {
         ipo_end(pc, program);
     } else if (module == PC_PCL) {
@@ -363,7 +364,7 @@ static void end(struct pc *pc, int module, const struct source *program)
         if (module == PC_PROCESS) {
             process_act(pc, program);
         }
-        sched_end(&pc->sched, module);
+        cyclic_end(&pc->modules, module);
     }
 }
 
@@ -374,10 +375,10 @@ static void wake_ipo(struct pc *pc)
     if (!pc->config.ipo_event) {
         return;
     }
-    const struct sched_module *ipo = &pc->sched.module[PC_IPO];
+    const struct cyclic_task *ipo = &pc->modules.task[PC_IPO];
     const bool due = task_can_point(&pc->mcc);
     if (due && !pc->point_due && !ipo->active && !ipo->asked) {
-        sched_wake(&pc->sched, PC_IPO, pc->sched.clock, pc->sched.clock);
+        cyclic_wake(&pc->modules, PC_IPO, pc->modules.processor.clock, pc->modules.processor.clock);
     }
     pc->point_due = due;
 }
@@ -388,8 +389,8 @@ static void wake(struct pc *pc)
     const int64_t page = isr_ready(&pc->pcl.isr), write = pcl_due(&pc->pcl);
     const int64_t ready = page < write ? page : write;
 
-    if (!pc->sched.module[PC_PCL].active && ready != INT64_MAX) {
-        sched_wake(&pc->sched, PC_PCL, ready, ready);
+    if (!pc->modules.task[PC_PCL].active && ready != INT64_MAX) {
+        cyclic_wake(&pc->modules, PC_PCL, ready, ready);
     }
 }
 
@@ -400,14 +401,14 @@ static void work(struct pc *pc, int64_t until, const struct pc_panel *panel,
     for (;;) {
         wake(pc);
         wake_ipo(pc);
-        const struct sched_event e = sched_next(&pc->sched, until);
-        if (e.what == SCHED_NONE) {
+        const struct cyclic_event e = cyclic_next(&pc->modules, until);
+        if (e.what == CYCLIC_NONE) {
             return;
         }
-        if (e.what == SCHED_BEGIN) {
-            begin(pc, e.module, panel, program);
+        if (e.what == CYCLIC_BEGIN) {
+            begin(pc, e.task, panel, program);
         } else {
-            end(pc, e.module, program);
+            end(pc, e.task, program);
         }
     }
 }

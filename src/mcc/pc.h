@@ -12,7 +12,7 @@
 #define PC_H
 
 #include "pcl.h"
-#include "sched.h"
+#include "cyclic.h"
 #include "task.h"
 #include "voltage.h"
 
@@ -20,20 +20,20 @@ enum pc_module {
     PC_INTERPRETER, /* program to command ring; unit: a command */
     PC_IPO,         /* command ring to point queue; unit: a point */
     PC_PCL,         /* interrupts, point queue to card; unit: a frame; a run: a page, a write */
-    PC_PROCESS      /* program start, all of the panel; no unit */
+    PC_PROCESS,     /* program start, all of the panel; no unit */
+    PC_MODULES
 };
-_Static_assert(PC_PROCESS + 1 == SCHED_MODULES, "the scheduler has the modules of the PC");
 
 struct pc_config {
     int64_t bus;            /* [clocks] T_b */
     int64_t ipo;            /* [clocks] cycle of the IPO task: see pc_ipo_cycle */
     bool    ipo_event;      /* it runs at once too when there is a point to make and was none */
     int64_t interpreter, process;   /* [clocks] their cycles; 0: within the IPO, on its time */
-    int32_t priority[SCHED_MODULES];    /* the lowest number first */
-    int64_t offset[SCHED_MODULES];  /* [clocks] of the first cycle */
-    int64_t time[SCHED_MODULES];    /* [clocks] of a run, */
-    int64_t unit[SCHED_MODULES];    /* [clocks] and for each unit more */
-    int32_t most[SCHED_MODULES];    /* units of a run of interpreter or IPO; 0: no limit */
+    int32_t priority[PC_MODULES];    /* the lowest number first */
+    int64_t offset[PC_MODULES];  /* [clocks] of the first cycle */
+    int64_t time[PC_MODULES];    /* [clocks] of a run, */
+    int64_t unit[PC_MODULES];    /* [clocks] and for each unit more */
+    int32_t most[PC_MODULES];    /* units of a run of interpreter or IPO; 0: no limit */
     int64_t start;          /* [clocks] the program starts at the first cycle from here on */
     double  latency;        /* [clocks] from interrupt to write */
     double  jitter;         /* [clocks] width of the uniform random addition */
@@ -73,14 +73,14 @@ struct pc {
     struct mcc mcc;
     struct pcl pcl;
     uint64_t random;
-    struct sched sched;
+    struct cyclic modules;
     int64_t publish;        /* [clocks] of this instant: (k+1) T_b */
     bool    point_due;      /* there was a point to make when it was last looked */
     bool    reading, computing, writing;    /* the run at work has a unit under way */
-    int32_t units[SCHED_MODULES];   /* that it has begun */
+    int32_t units[PC_MODULES];   /* that it has begun */
     int64_t tail;           /* [clocks] of the page behind the write */
     struct pc_panel panel;  /* as the process control read it */
-    struct sched shown;     /* what was so at (k+1) T_b */
+    struct cyclic_report shown; /* what was so at (k+1) T_b */
     struct isr shown_isr;
     bool    program;        /* there is one */
     bool    started;        /* it has been started, or dropped by an abort */

@@ -54,7 +54,7 @@ static bool modules_valid(const struct pc_config *p)
 {
     bool valid = clocks(p->bus, 1) && clocks(p->ipo, 1) && clocks(p->interpreter, 0) &&
                  clocks(p->process, 0) && clocks(p->isr.service, 0) && p->offset[PC_PCL] == 0;
-    for (int i = 0; i < SCHED_MODULES; i++) {
+    for (int i = 0; i < PC_MODULES; i++) {
         valid = valid && clocks(p->offset[i], 0) && clocks(p->time[i], 0) &&
                 clocks(p->unit[i], 0) && p->most[i] >= 0;
     }
@@ -311,7 +311,7 @@ void station_read(const struct station *s, struct station_reading *r)
         .frames_taken = s->card.frames_taken, .frames_refused = s->card.frames_refused,
         .interrupts = wrap(s->card.irq.seq), .irq_clock = s->card.irq.clock,
         .services = p->services, .latency = p->latency,
-        .missed = sched_all(&s->pc.shown).missed,
+        .missed = s->pc.shown.all.missed,
         .ipo_cycle = pc_ipo_cycle(&s->pc), .queue = m->queue.count, .starved = p->starved,
         .status = task_status(m), .error = MCC_get_errcode(m),
         .line = m->written.line, .command = m->written.command,

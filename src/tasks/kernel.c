@@ -30,7 +30,7 @@ enum kernel_status kernel_start(struct kernel *k, const struct kernel_config *co
     k->config = *config;
     k->current = k->asked = -1;
     k->next_tick = config->tick > 0 ? config->tick : INT64_MAX;
-    processor_start(&k->processor);
+    processor_start(&k->processor, PROCESSOR_TASKS);
     for (int i = 0; i < KERNEL_TASKS; i++) {
         k->processor.task[i].priority = config->priority[i];
         k->task[i].wait = i < config->tasks ? KERNEL_READY : KERNEL_ABSENT;

@@ -2,9 +2,10 @@
 
 #include <string.h>
 
-void processor_start(struct processor *p)
+void processor_start(struct processor *p, int tasks)
 {
     memset(p, 0, sizeof *p);
+    p->tasks = tasks;
     p->running = -1;
 }
 
@@ -37,7 +38,7 @@ int processor_first(const struct processor *p)
 {
     int best = -1;
 
-    for (int i = 0; i < PROCESSOR_TASKS; i++) {
+    for (int i = 0; i < p->tasks; i++) {
         const struct processor_task *t = &p->task[i], *b = &p->task[best < 0 ? i : best];
         if (t->ready && (best < 0 || t->priority > b->priority ||
                          (t->priority == b->priority && t->turn < b->turn))) {

@@ -27,14 +27,15 @@ struct processor_task {
 };
 
 struct processor {
+    int     tasks;          /* the first so many are there */
     struct processor_task task[PROCESSOR_TASKS];
     int64_t clock;
     int64_t idle;           /* time that nobody had it */
     int     running;        /* that has the processor; -1 none */
 };
 
-/* Nothing is ready, clock 0. */
-void processor_start(struct processor *p);
+/* So many tasks, at most PROCESSOR_TASKS; nothing is ready, clock 0. */
+void processor_start(struct processor *p, int tasks);
 
 /* A task becomes ready, or no longer is. What is woken has its time over: it is to be asked. */
 void processor_wake(struct processor *p, int task, int64_t turn);

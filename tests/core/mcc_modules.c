@@ -34,14 +34,14 @@ static void time_of_a_write(void)
     run(&c, line_100, 20000);
     CHECK(pc_done(&pc) && pc.pcl.services > 200);
     CHECK_EQ(pc.pcl.latency, 10000 + 1000 + 4 * 300);
-    CHECK_EQ(pc.sched.module[PC_PCL].missed, 0);
+    CHECK_EQ(pc.modules.task[PC_PCL].use.missed, 0);
     CHECK_EQ(pc.pcl.starved + c.underflows, 0);
     /* An IPO that must not be interrupted keeps the write waiting. */
     config.priority[PC_PCL] = 5;
     card_start(&c, &m, &config, true);
     run(&c, line_100, 20000);
     CHECK(pc_done(&pc));
-    CHECK(pc.sched.module[PC_PCL].latency > 10000 && pc.sched.module[PC_PCL].latency < 30000);
+    CHECK(pc.modules.task[PC_PCL].use.latency > 10000 && pc.modules.task[PC_PCL].use.latency < 30000);
 }
 
 /* The deadline of a write is (n + 1) T from the interrupt: boundary first, so less than it. */
@@ -56,7 +56,7 @@ static void deadline_of_a_write(void)
         for (int k = 0; k < 2000; k++) {
             card_period(&c, k * config.bus, &calm, NULL);
         }
-        CHECK_EQ(pc.sched.module[PC_PCL].missed > 0, late);
+        CHECK_EQ(pc.modules.task[PC_PCL].use.missed > 0, late);
     }
 }
 
@@ -117,8 +117,8 @@ static void apart(void)
         config.unit[PC_INTERPRETER] = k ? 5000 : 0;
         card_start(&c, &m, &config, true);
         record(&s[k], text, &c);
-        CHECK_EQ(pc.sched.module[PC_INTERPRETER].runs > 0, k);
-        CHECK_EQ(pc.sched.module[PC_PROCESS].runs > 0, k);
+        CHECK_EQ(pc.modules.task[PC_INTERPRETER].use.runs > 0, k);
+        CHECK_EQ(pc.modules.task[PC_PROCESS].use.runs > 0, k);
     }
     CHECK(s[0].n > 400 && s[0].n < 4000);
     CHECK(s[0].n == s[1].n && !memcmp(&s[0], &s[1], sizeof s[0]));
@@ -149,7 +149,7 @@ static struct pc_config random_config(uint64_t *seed)
     c.min_stock = (int32_t)check_random(seed, 0, 30);
     c.batch = (int32_t)check_random(seed, 1, 16);
     c.isr.service = check_random(seed, 0, 3000);
-    for (int i = 0; i < SCHED_MODULES; i++) {
+    for (int i = 0; i < PC_MODULES; i++) {
         c.priority[i] = (int32_t)check_random(seed, 0, 4);
         c.offset[i] = i == PC_PCL ? 0 : check_random(seed, 0, 100000);
         c.time[i] = check_random(seed, 0, 4000);
@@ -184,9 +184,10 @@ static void conservation(void)
         for (int k = 0; k < 2; k++) {
             CHECK_EQ(c.sum[k], (int32_t)lround(end[k] * 1000.0));
         }
-        const struct sched_module all = sched_all(&pc.sched);
-        CHECK(all.busy <= pc.sched.clock && all.runs > 0);
-        missed += all.missed;
+        struct cyclic_report r;
+        cyclic_tell(&pc.modules, &r);
+        CHECK(r.all.busy <= r.clock && r.all.runs > 0);
+        missed += r.all.missed;
     }
     CHECK(missed > 100);
 }

@@ -35,7 +35,7 @@ static void start_of_motion(bool event)
     /* What an instant decides comes before the end of the second period from there. */
     const int64_t due = event ? given : c.pc.ipo;
     CHECK(s.clock >= due - 2 * c.pc.bus && s.clock <= due + c.pc.bus);
-    CHECK_EQ(s.pc.sched.module[PC_IPO].missed, 0);
+    CHECK_EQ(s.pc.modules.task[PC_IPO].use.missed, 0);
 }
 
 /* 12.5 mm at 10 mm/s with ramps of 0.1 s: 1.35 s if the queue never runs dry. */

@@ -1,38 +1,38 @@
-/* sched_ticks - a processor looked at at every clock, and the scheduler asked for the same. */
-#ifndef SCHED_TICKS_H
-#define SCHED_TICKS_H
+/* cyclic_ticks - a processor looked at at every clock, and the scheduler asked for the same. */
+#ifndef CYCLIC_TICKS_H
+#define CYCLIC_TICKS_H
 
 #include <string.h>
 
 #include "check.h"
-#include "sched.h"
+#include "cyclic.h"
 
-enum { N = SCHED_MODULES, LONGEST = 4000, WAKES = 60, LOG = 20000 };
+enum { N = 5, LONGEST = 4000, WAKES = 60, LOG = 20000 };
 
-/* Modules with fixed times; the times of woken ones too. */
+/* Tasks with fixed times; the times of woken ones too. */
 struct set {
-    struct sched_config c;
+    struct cyclic_config c;
     int64_t time[N];
     int wakes;
-    int woken;              /* module that is woken: 0, or 1, which has a timer too, */
+    int woken;              /* task that is woken: 0, or 1, which has a timer too, */
     int64_t wake[WAKES];    /* and may begin at these clocks, rising */
 };
 
 /* What happens: a run begins or ends. */
-struct entry { int64_t clock; int module; enum sched_what what; };
+struct entry { int64_t clock; int task; enum cyclic_what what; };
 struct log { int n; struct entry e[LOG]; int missed[N]; int64_t busy[N], response[N]; };
 
-static void note(struct log *l, int64_t clock, int module, enum sched_what what)
+static void note(struct log *l, int64_t clock, int task, enum cyclic_what what)
 {
     if (l->n < LOG) {
-        l->e[l->n++] = (struct entry){ clock, module, what };
+        l->e[l->n++] = (struct entry){ clock, task, what };
     }
 }
 
 /* --- A processor that looks at everything at every clock. ----------------------------------- */
 struct tick { bool waits, begun, event, run_event; int64_t since, from, left; };
 
-/* The one of the modules allowed that goes first, or -1. */
+/* The one of the tasks allowed that goes first, or -1. */
 static int choose(const struct set *q, const struct tick t[N], int64_t clock, bool interrupts)
 {
     int best = -1;
@@ -63,7 +63,7 @@ static void finish(struct log *l, struct tick t[N], int64_t clock)
     for (int i = 0; i < N; i++) {
         if (t[i].begun && t[i].left == 0) {
             t[i].begun = false;
-            note(l, clock, i, SCHED_END);
+            note(l, clock, i, CYCLIC_END);
             l->response[i] = clock - t[i].from > l->response[i] ? clock - t[i].from
                                                                 : l->response[i];
         }
@@ -97,7 +97,7 @@ static inline void brute(const struct set *q, int64_t clocks, struct log *l)
             while ((i = choose(q, t, clock, interrupts)) >= 0 && !t[i].begun) {
                 t[i] = (struct tick){ .begun = true, .run_event = t[i].event,
                                       .from = t[i].since, .left = q->time[i] };
-                note(l, clock, i, SCHED_BEGIN);
+                note(l, clock, i, CYCLIC_BEGIN);
                 finish(l, t, clock);
                 interrupts = 0;
             }
@@ -110,26 +110,26 @@ static inline void brute(const struct set *q, int64_t clocks, struct log *l)
     }
 }
 
-/* The next wake of a module without a timer, for a clock to come. */
-static int wake_ahead(const struct set *q, struct sched *s, int wake)
+/* The next wake of a task without a timer, for a clock to come. */
+static int wake_ahead(const struct set *q, struct cyclic *s, int wake)
 {
-    if (wake < q->wakes && !s->module[0].asked) {
-        sched_wake(s, 0, q->wake[wake], q->wake[wake]);
+    if (wake < q->wakes && !s->task[0].asked) {
+        cyclic_wake(s, 0, q->wake[wake], q->wake[wake]);
         wake++;
     }
     /* Interrupts that come while one waits are one with it. */
-    while (wake < q->wakes && s->module[0].asked && q->wake[wake] <= s->clock) {
+    while (wake < q->wakes && s->task[0].asked && q->wake[wake] <= s->processor.clock) {
         wake++;
     }
     return wake;
 }
 
-/* One of a module with a timer, at its clock. */
-static int wake_now(const struct set *q, struct sched *s, int wake)
+/* One of a task with a timer, at its clock. */
+static int wake_now(const struct set *q, struct cyclic *s, int wake)
 {
-    for (; wake < q->wakes && q->wake[wake] <= s->clock; wake++) {
-        if (!s->module[1].asked) {
-            sched_wake(s, 1, s->clock, s->clock);
+    for (; wake < q->wakes && q->wake[wake] <= s->processor.clock; wake++) {
+        if (!s->task[1].asked) {
+            cyclic_wake(s, 1, s->processor.clock, s->processor.clock);
         }
     }
     return wake;
@@ -138,40 +138,42 @@ static int wake_now(const struct set *q, struct sched *s, int wake)
 /* --- The scheduler, asked in steps of random length. ------------------------------------------ */
 static inline void scheduled(const struct set *q, int64_t clocks, uint64_t *seed, struct log *l)
 {
-    struct sched s;
+    struct cyclic s;
+    struct cyclic_config config = q->c;
     int wake = 0;
     memset(l, 0, sizeof *l);
-    sched_start(&s, &q->c);
-    for (int64_t until = 0; s.clock < clocks;) {
+    config.tasks = N;
+    cyclic_start(&s, &config);
+    for (int64_t until = 0; s.processor.clock < clocks;) {
         until = until + check_random(seed, 1, 50);
         until = until < clocks ? until : clocks;
         for (;;) {
             wake = q->woken ? wake_now(q, &s, wake) : wake_ahead(q, &s, wake);
             const bool soon = q->woken && wake < q->wakes && q->wake[wake] < until;
-            const struct sched_event e = sched_next(&s, soon ? q->wake[wake] : until);
-            if (e.what == SCHED_NONE && soon) {
+            const struct cyclic_event e = cyclic_next(&s, soon ? q->wake[wake] : until);
+            if (e.what == CYCLIC_NONE && soon) {
                 continue;
             }
-            if (e.what == SCHED_NONE) {
+            if (e.what == CYCLIC_NONE) {
                 break;
             }
-            note(l, s.clock, e.module, e.what);
-            if (e.what == SCHED_END) {
-                sched_end(&s, e.module);
+            note(l, s.processor.clock, e.task, e.what);
+            if (e.what == CYCLIC_END) {
+                cyclic_end(&s, e.task);
                 continue;
             }
-            if (e.module == 0 && !q->woken) {
-                while (wake < q->wakes && q->wake[wake] <= s.clock) {
+            if (e.task == 0 && !q->woken) {
+                while (wake < q->wakes && q->wake[wake] <= s.processor.clock) {
                     wake++;
                 }
             }
-            sched_begin(&s, e.module, s.module[e.module].due, q->time[e.module]);
+            cyclic_begin(&s, e.task, s.task[e.task].due, q->time[e.task]);
         }
     }
     for (int i = 0; i < N; i++) {
-        l->missed[i] = s.module[i].missed;
-        l->busy[i] = s.module[i].busy;
-        l->response[i] = s.module[i].response;
+        l->missed[i] = s.task[i].use.missed;
+        l->busy[i] = s.processor.task[i].busy;
+        l->response[i] = s.task[i].use.response;
     }
 }
 
