@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mcc_damage.h"
+#include "groups_damage.h"
 #include "vars.h"
 
 struct model {
@@ -242,7 +242,7 @@ static const char *model_check(const struct state *s)
             return "whether a group has a program";
         }
     }
-    return mcc_damage_groups(&m->groups);
+    return groups_damage(&m->groups);
 }
 
 /* The registers and the mailbox of a card, under the names of its outputs. */

@@ -9,14 +9,14 @@ static bool within(int64_t x, int64_t low, int64_t high)
     return x >= low && x <= high;
 }
 
-static bool machine_good(const struct machine *m)
+const char *mcc_damage_machine(const struct machine *m)
 {
-    return within(m->dda_length, 10, 15);
+    return within(m->dda_length, 10, 15) ? NULL : "the DDA length";
 }
 
-static const char *library(const struct mcc *m)
+const char *mcc_damage_library(const struct mcc *m)
 {
-    if (!machine_good(&m->machine) || !within(m->machine.queue_depth, 1, QUEUE_SIZE)) {
+    if (mcc_damage_machine(&m->machine) || !within(m->machine.queue_depth, 1, QUEUE_SIZE)) {
         return "the DDA length or the depth of the queue";
     }
     if (interpreter_damaged(&m->program)) {
@@ -37,7 +37,7 @@ static const char *library(const struct mcc *m)
     return NULL;
 }
 
-static const char *control(const struct pcl *p)
+const char *mcc_damage_control(const struct pcl *p)
 {
     const bool good = within(p->axis, 0, AXES - 1) && within(p->count, 0, PCL_FRAMES) &&
                       within(p->min_stock, 0, PCL_FIFO) && within(p->batch, 1, PCL_FRAMES) &&
@@ -45,9 +45,11 @@ static const char *control(const struct pcl *p)
     return good ? NULL : "a count of the position control or its page";
 }
 
-static bool part_good(const struct pcl_part *part, const struct pcl *p, const struct queue *q)
+const char *mcc_damage_part(const struct pcl_part *part, const struct pcl *p,
+                            const struct queue *q)
 {
-    return within(part->points, 0, p->count < q->count ? p->count : q->count);
+    const int32_t most = p->count < q->count ? p->count : q->count;
+    return within(part->points, 0, most) ? NULL : "the frames under way";
 }
 
 /* No cycle has begun that has not been seen: its timer is asked at most once a clock. */
@@ -68,52 +70,26 @@ static bool modules_good(const struct cyclic *s)
     return true;
 }
 
-static bool trail_good(const struct trail *t)
+const char *mcc_damage_voltage(const struct voltage *v)
 {
+    const struct trail *t = &v->trail;
     return t->first >= 0 && t->frames >= t->first && t->frames - t->first < TRAIL_SIZE &&
-           within(t->foot, t->first, t->frames);
+           within(t->foot, t->first, t->frames) ? NULL : "a place on the path behind";
 }
 
 const char *mcc_damage_pc(const struct pc *pc)
 {
-    const char *what = library(&pc->mcc);
-    what = what ? what : control(&pc->pcl);
+    const char *what = mcc_damage_library(&pc->mcc);
+    what = what ? what : mcc_damage_control(&pc->pcl);
+    what = what ? what : mcc_damage_part(&pc->pcl.part, &pc->pcl, &pc->mcc.queue);
     if (what) {
         return what;
     }
-    if (pc->config.bus < 1 || !part_good(&pc->pcl.part, &pc->pcl, &pc->mcc.queue)) {
-        return "the bus period or the frames under way";
+    if (pc->config.bus < 1) {
+        return "the bus period";
     }
     if (!modules_good(&pc->modules)) {
         return "a time of the modules";
     }
-    return trail_good(&pc->voltage.trail) ? NULL : "a place on the path behind";
-}
-
-const char *mcc_damage_groups(const struct groups *g)
-{
-    const char *what = NULL;
-    for (int k = 0; k < GROUP_CARDS && !what; k++) {
-        what = machine_good(&g->card[k].machine) ? control(&g->card[k].pcl)
-                                                 : "the DDA length of a card";
-    }
-    for (int n = 0; n < GROUP_MAX && !what; n++) {
-        const struct group *group = &g->group[n];
-        if (!group->used) {
-            continue;
-        }
-        what = within(group->card, 0, GROUP_CARDS - 1) ? library(&group->mcc)
-                                                       : "the card of a group";
-        for (int i = 0; i < AXES && !what; i++) {
-            what = within(group->channel[i], -1, AXES - 1) ? NULL : "a channel of a group";
-        }
-        if (!what && !part_good(&group->part, &g->card[group->card].pcl, &group->mcc.queue)) {
-            what = "the frames under way";
-        }
-        what = !what && group->voltage ? servo_damage(&group->servo) : what;
-    }
-    if (!what && (g->config.ipo < 1 || g->config.bus < 1 || g->next_ipo < 0)) {
-        what = "a period";
-    }
-    return what;
+    return mcc_damage_voltage(&pc->voltage);
 }

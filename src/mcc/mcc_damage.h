@@ -4,11 +4,18 @@
 #ifndef MCC_DAMAGE_H
 #define MCC_DAMAGE_H
 
-#include "group.h"
 #include "pc.h"
 
 /* What is wrong, in words, or NULL. */
 const char *mcc_damage_pc(const struct pc *pc);
-const char *mcc_damage_groups(const struct groups *g);
+
+/* The same of parts: a library, the DDA of its machine, a position control, what a library has in
+ * its transaction, a law. */
+const char *mcc_damage_library(const struct mcc *m);
+const char *mcc_damage_machine(const struct machine *m);
+const char *mcc_damage_control(const struct pcl *p);
+const char *mcc_damage_part(const struct pcl_part *part, const struct pcl *p,
+                            const struct queue *q);
+const char *mcc_damage_voltage(const struct voltage *v);
 
 #endif
