@@ -190,14 +190,6 @@ int groups_start(struct groups *s)
 
 /* --- What each group does. ------------------------------------------------------------------- */
 
-static void read_panel(struct group *g, const struct group_panel *panel)
-{
-    g->abort_due = g->abort_due || (panel->abort && !g->abort_seen);
-    g->abort_seen = panel->abort;
-    g->cycle_due = g->cycle_due || (panel->cycle_start && !g->cycle_seen);
-    g->cycle_seen = panel->cycle_start;
-}
-
 static void cycle(struct group *g, int64_t clock, const struct group_panel *panel,
                   const struct source *program)
 {
@@ -205,13 +197,11 @@ static void cycle(struct group *g, int64_t clock, const struct group_panel *pane
         task_start(&g->mcc);
         g->started = true;
     }
-    if (g->abort_due) {
+    if (key_take(&g->abort)) {
         g->started = true;      /* a program that waits for its start is dropped too */
-        g->abort_due = false;
         MCC_motion_abort(&g->mcc);
     }
-    if (g->cycle_due) {
-        g->cycle_due = false;
+    if (key_take(&g->cycle_start)) {
         task_continue(&g->mcc); /* refused where nothing waits for it */
     }
     task_operate(&g->mcc, panel->hold, panel->override);
@@ -282,7 +272,8 @@ void groups_instant(struct groups *s, int64_t now, const struct pcl_card card[GR
         look(s, k, &card[k], now);
     }
     for (int n = 0; n < GROUP_MAX; n++) {
-        read_panel(&s->group[n], &panel[n]);
+        key_look(&s->group[n].abort, panel[n].abort);
+        key_look(&s->group[n].cycle_start, panel[n].cycle_start);
         if (s->group[n].used && s->group[n].voltage) {
             group_dac_instant(s, &s->group[n], now);
         }

@@ -16,6 +16,7 @@
 #ifndef GROUP_H
 #define GROUP_H
 
+#include "key.h"
 #include "pcl.h"
 #include "servo.h"
 #include "task.h"
@@ -63,7 +64,7 @@ struct group {
     bool    program;        /* there is one */
     int64_t start;          /* [clocks] it starts at the first cycle from here on */
     bool    started;        /* or dropped by an abort */
-    bool    abort_seen, abort_due, cycle_seen, cycle_due;
+    struct key abort, cycle_start;
 };
 
 struct group_card {

@@ -8,8 +8,8 @@
  * (MCC_init_motion); MCC_AbortMotionEx, which is given a deceleration time (MCC_motion_abort uses
  * that of the command); MCC_GoHome with its tolerance and escape time (MCC_Home); the hand wheel's
  * calls for planes and several axes (MCC_MPG_set); axis masks of MCC_Line and MCC_PtP (the one-axis
- * calls); groups, command modes and DAC outputs (core groups); and what the source document does not
- * have, from helices over custom motion to encoders and I/O.
+ * calls); groups, command modes and DAC outputs (src/groups); and what the source document does
+ * not have, from helices over custom motion to encoders and I/O.
  */
 #ifndef MCCL_H
 #define MCCL_H

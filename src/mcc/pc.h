@@ -11,8 +11,9 @@
 #ifndef PC_H
 #define PC_H
 
-#include "pcl.h"
 #include "cyclic.h"
+#include "key.h"
+#include "pcl.h"
 #include "task.h"
 #include "voltage.h"
 
@@ -68,31 +69,37 @@ struct pc_panel {
     struct signals signals;
 };
 
+/* The process control. */
+struct pc_process {
+    struct key abort, cycle_start, go_home, clear_error;
+    int32_t jog[AXES], wheel_axis;      /* obeyed last */
+    bool    started;        /* the program has been, or was dropped by an abort */
+    bool    anew;           /* an error has been cleared: cycle_start runs it from its begin */
+};
+
+/* A run of a module. */
+struct pc_run {
+    int32_t units;          /* that it has begun */
+    bool    unit;           /* the latest is under way; of the PCL: a write */
+};
+
 struct pc {
     struct pc_config config;
     struct mcc mcc;
     struct pcl pcl;
     uint64_t random;
     struct cyclic modules;
-    int64_t publish;        /* [clocks] of this instant: (k+1) T_b */
+    struct pc_run run[PC_MODULES];
+    bool    page;           /* the PCL has the rest of a page to serve */
     bool    point_due;      /* there was a point to make when it was last looked */
-    bool    reading, computing, writing;    /* the run at work has a unit under way */
-    int32_t units[PC_MODULES];   /* that it has begun */
-    int64_t tail;           /* [clocks] of the page behind the write */
-    struct pc_panel panel;  /* as the process control read it */
-    struct cyclic_report shown; /* what was so at (k+1) T_b */
-    struct isr shown_isr;
     bool    program;        /* there is one */
-    bool    started;        /* it has been started, or dropped by an abort */
-    bool    abort_seen, abort_due;
-    bool    cycle_seen, cycle_due;
-    bool    home_seen, home_due;
-    int32_t jog_seen[AXES], wheel_seen;
-    bool    clear_seen, clear_due;
-    bool    again;          /* an error has been cleared: cycle_start runs the program anew */
+    struct pc_process process;
+    struct pc_panel panel;  /* as a run of the process control read it when it began */
     int32_t loop_served;    /* services of the position loops' page seen */
     struct voltage voltage;
     double  volts[AXES];    /* [V] software control law */
+    struct cyclic_report shown;     /* what was so at (k+1) T_b */
+    struct isr shown_isr;
 };
 
 /* Everything at rest at clock 0. Returns a library code. */

@@ -215,7 +215,7 @@ static void before_the_program(void)
     c.home_first = true;
     start(&c, -8000, true);
     for (int k = 0; k < 300000 && !pc_done(&pc); k++) {
-        CHECK(!pc.started || MCC_check_homef(&pc.mcc) == 1);
+        CHECK(!pc.process.started || MCC_check_homef(&pc.mcc) == 1);
         period("G1 X-3 F6000\nM2\n");
     }
     CHECK(pc_done(&pc));
@@ -325,7 +325,7 @@ static void failed_home_first(void)
         room.panel.clear_error = k >= 2000 && k < 2100;
         room.panel.cycle_start = k >= 3000 && k < 3100;
         period(text);
-        CHECK(!pc.started && !pc.mcc.running);
+        CHECK(!pc.process.started && !pc.mcc.running);
     }
     CHECK_EQ(pc.mcc.error, 0);
     room.motor[0].no_sensor = false;

@@ -41,7 +41,8 @@ static void time_of_a_write(void)
     card_start(&c, &m, &config, true);
     run(&c, line_100, 20000);
     CHECK(pc_done(&pc));
-    CHECK(pc.modules.task[PC_PCL].use.latency > 10000 && pc.modules.task[PC_PCL].use.latency < 30000);
+    const int64_t latency = pc.modules.task[PC_PCL].use.latency;
+    CHECK(latency > 10000 && latency < 30000);
 }
 
 /* The deadline of a write is (n + 1) T from the interrupt: boundary first, so less than it. */
