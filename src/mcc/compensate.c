@@ -2,21 +2,6 @@
 
 #include <math.h>
 
-int MCC_set_comp(struct mcc *m, int axis, const struct comp_table *table)
-{
-    if (!m->open) {
-        return MCC_INITIAL_MOTION;
-    }
-    if (!control_rests(m)) {
-        return MCC_COMMAND_NOTFINISHED;
-    }
-    if (axis < 0 || axis >= AXES || !m->machine.axis[axis].used || !comp_valid(table)) {
-        return MCC_PARAMETER;
-    }
-    m->comp_table[axis] = *table;
-    return MCC_NO_ERR;
-}
-
 /* The correction of a DDA time changes the speed by no more than the axis gains in a DDA time when
  * it takes acc_time to its safe speed; one pulse always fits. */
 static struct comp_limits limits(const struct machine *m, const struct machine_axis *a)

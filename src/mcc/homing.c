@@ -10,7 +10,7 @@ static double scale(const struct mcc *m, int i)
     return machine_pulses_per_mm(&m->machine.axis[i]);
 }
 
-int homing_set(struct mcc *m, int axis, const struct home_config *config, bool backward)
+int homing_set(struct mcc *m, int axis, const struct home_config *config, bool inverted)
 {
     if (!m->open) {
         return MCC_INITIAL_MOTION;
@@ -26,7 +26,7 @@ int homing_set(struct mcc *m, int axis, const struct home_config *config, bool b
     struct homing_axis *x = &m->homing.axis[axis];
     x->config = *config;
     x->config.offset = round(config->offset * scale(m, axis)) / scale(m, axis);
-    x->backward = backward;
+    x->inverted = inverted;
     mcc_param_home(m, axis);
     return MCC_NO_ERR;
 }
@@ -48,7 +48,7 @@ static double place_at(const struct mcc *m, int i, int32_t count)
 {
     const struct homing_axis *x = &m->homing.axis[i];
     const int32_t from_zero = (int32_t)((uint32_t)count - (uint32_t)x->zero);
-    return (x->backward ? -1.0 : 1.0) * from_zero / scale(m, i);
+    return (x->inverted ? -1.0 : 1.0) * from_zero / scale(m, i);
 }
 
 /* The axis stands: planned so, all its pulses written, and for some time at its encoder. */
@@ -210,7 +210,7 @@ static void set_origin(struct mcc *m)
         struct homing_axis *x = &m->homing.axis[i];
         if (m->homing.order[i] > 0) {
             const uint32_t counts = (uint32_t)m->mover.pulses[i];
-            x->zero = (int32_t)((uint32_t)x->zero + (x->backward ? 0u - counts : counts));
+            x->zero = (int32_t)((uint32_t)x->zero + (x->inverted ? 0u - counts : counts));
             m->protection.base[i] -= m->mover.pulses[i];
             m->mover.pulses[i] = m->written.pulses[i] = 0;
             m->mover.rest[i] = m->written.place[i] = m->end[i] = 0.0;
@@ -224,7 +224,7 @@ void homing_look(struct mcc *m, int64_t clocks)
     struct homing *h = &m->homing;
     bool done = true;
 
-    if (h->state != HOMING_RUNS) {
+    if (!mover_ordered(&m->mover) || m->mover.abort || h->state != HOMING_RUNS) {
         return;
     }
     for (int i = 0; i < AXES; i++) {

@@ -16,7 +16,7 @@ enum homing_state { HOMING_NEVER, HOMING_RUNS, HOMING_DONE, HOMING_FAILED };
 
 struct homing_axis {
     struct home_config config;  /* mode, ways, speeds; not valid: the axis cannot be homed */
-    bool    backward;           /* the encoder counts down when the axis moves up */
+    bool    inverted;           /* the encoder counts down when the axis moves up */
     int32_t zero;               /* [counts] of the encoder where the axis is at 0 */
     struct home home;
     struct home_order order;    /* that the mover has */
@@ -33,16 +33,17 @@ struct homing {
     struct homing_axis axis[AXES];
 };
 
-/* How an axis is homed; `backward` as above. The offset counts in whole pulses. Refused with
+/* How an axis is homed; `inverted` as above. The offset counts in whole pulses. Refused with
  * MCC_PARAMETER if a value is out of range, or a speed above the safe speed, and with
  * MCC_COMMAND_NOTFINISHED while homing runs. */
-int homing_set(struct mcc *m, int axis, const struct home_config *config, bool backward);
+int homing_set(struct mcc *m, int axis, const struct home_config *config, bool inverted);
 
 /* Time that an axis must stand still behind its pulses to count as at rest: longer than the card's
  * FIFO lasts and the drive needs. [s] */
 int homing_set_settle(struct mcc *m, double seconds);
 
-/* The card has reported its signals, `clocks` after the report before. */
+/* The card has reported its signals, `clocks` after the report before: the search takes its next
+ * step. */
 void homing_look(struct mcc *m, int64_t clocks);
 
 #endif

@@ -322,7 +322,7 @@ static void guard(struct mcc *m, int axis)
     }
 }
 
-void manual_look(struct mcc *m, int64_t clocks)
+void manual_look(struct mcc *m)
 {
     if (!mover_ordered(&m->mover) || m->mover.abort) {
         return;
@@ -339,7 +339,6 @@ void manual_look(struct mcc *m, int64_t clocks)
             break;
         }
     }
-    homing_look(m, clocks);
 }
 
 void manual_end(struct mcc *m)

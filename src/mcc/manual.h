@@ -36,9 +36,9 @@ void manual_use(struct mcc *m, int axis, enum manual_use use);
 /* True while an axis follows a hand wheel. */
 bool manual_wheel(const struct mcc *m);
 
-/* The card has reported its signals, `clocks` after the report before: limit switches stop axes
- * that move onto them, axes follow their hand wheels, homing takes its next step. */
-void manual_look(struct mcc *m, int64_t clocks);
+/* The card has reported its signals: limit switches stop axes that move onto them, axes follow their
+ * hand wheels. */
+void manual_look(struct mcc *m);
 
 /* After an IPO cycle: axes that have done what they should are out of use; the last one brings
  * back commands. */

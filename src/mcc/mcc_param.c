@@ -136,3 +136,18 @@ int MCC_update_param(struct mcc *m)
     m->signals = signals_turned(&card, &w);
     return MCC_NO_ERR;
 }
+
+int MCC_set_comp(struct mcc *m, int axis, const struct comp_table *table)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (!control_rests(m)) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    if (axis < 0 || axis >= AXES || !m->machine.axis[axis].used || !comp_valid(table)) {
+        return MCC_PARAMETER;
+    }
+    m->comp_table[axis] = *table;
+    return MCC_NO_ERR;
+}

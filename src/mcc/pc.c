@@ -37,7 +37,7 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     task_set_switches(&pc->mcc, config->block_delete, config->optional_stop);
     for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
         if (config->home_order[i] > 0 &&
-            homing_set(&pc->mcc, i, &config->home[i], config->encoder_backward[i])) {
+            homing_set(&pc->mcc, i, &config->home[i], config->encoder_inverted[i])) {
             return MCC_PARAMETER;
         }
     }
@@ -62,7 +62,8 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
         MCC_set_P_gain(&pc->mcc, panel->p_gain);
     }
     pc->mcc.signals = signals_turned(&panel->signals, &pc->mcc.machine);
-    manual_look(&pc->mcc, pc->config.bus);
+    manual_look(&pc->mcc);
+    homing_look(&pc->mcc, pc->config.bus);
 }
 
 /* Software voltages: the P law alone, or the law of figure 10 with what is added to it. */

@@ -4,6 +4,7 @@
 #undef FMU_NAME
 #undef FMU_TOKEN
 #undef FMU_TICK_NS
+#undef FMU_GRID
 #undef FMU_STRING_MAX
 #undef FMU_NVARS
 #undef FMU_NREFS

@@ -11,12 +11,11 @@ static struct mcc before;
         CHECK(memcmp(&before, &m, sizeof m) == 0); \
     } while (0)
 
-static const double LOOK = 1e-3;    /* [s] between two reports of the card */
 
 /* One report of the card and one point. */
 static bool step(struct record *r)
 {
-    manual_look(&m, (int64_t)(LOOK * CLOCK_HZ));
+    manual_look(&m);
     return point(r);
 }
 
@@ -448,7 +447,7 @@ static void range(void)
     begin(machine);
     CHECK_EQ(MCC_jog_c(&m, 0, -1, 90.0), 0);
     for (int k = 0; k < 60000 && !MCC_check_stop(&m); k++) {
-        manual_look(&m, 1);
+        manual_look(&m);
         task_run(&m, NULL);
         queue_drop(&m.queue, m.queue.count);
     }

@@ -40,7 +40,8 @@ static inline struct machine one_ahead(void)
 /* What the PC does with new signals. */
 static inline void look(void)
 {
-    manual_look(&m, BUS);
+    manual_look(&m);
+    homing_look(&m, BUS);
     reaction_look(&m, &(struct reaction_look){ .clocks = BUS });
 }
 

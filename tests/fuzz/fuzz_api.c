@@ -157,7 +157,8 @@ static void look(void)
 {
     const struct reaction_look l = { .clocks = machine_dda_clocks(&m.machine) };
     if (m.open) {
-        manual_look(&m, l.clocks);
+        manual_look(&m);
+        homing_look(&m, l.clocks);
         reaction_look(&m, &l);
     }
     for (int i = 0; i < AXES && !m.dry_run; i++) {
