@@ -41,23 +41,27 @@ static void ask(struct cyclic *s)
 }
 
 /* The runs that wait and may begin now can have the processor; those of this clock's interrupts
- * too? */
-static void release(struct cyclic *s, bool interrupts)
+ * too? Returns true if such a one is left out. */
+static bool release(struct cyclic *s, bool interrupts)
 {
     const int64_t clock = s->processor.clock;
+    bool out = false;
 
     for (int i = 0; i < s->processor.tasks; i++) {
         const struct cyclic_task *t = &s->task[i];
-        const bool fresh = t->woken && t->ready == clock;
         if (t->active) {
             continue;
         }
-        if (t->asked && t->ready <= clock && (interrupts || !fresh)) {
+        const bool may = t->asked && t->ready <= clock;
+        const bool fresh = may && t->woken && t->ready == clock && !interrupts;
+        out = out || fresh;
+        if (may && !fresh) {
             processor_wake(&s->processor, i, t->due);
         } else {
             processor_block(&s->processor, i);
         }
     }
+    return out;
 }
 
 /* The processor works up to the next clock at which something may happen. */
@@ -80,12 +84,14 @@ struct cyclic_event cyclic_next(struct cyclic *s, int64_t until)
             return (struct cyclic_event){ CYCLIC_END, over };
         }
         ask(s);
-        for (int interrupts = 0; interrupts < 2; interrupts++) {
-            release(s, interrupts);
-            const int first = processor_dispatch(&s->processor);
-            if (first >= 0) {
-                return (struct cyclic_event){ CYCLIC_BEGIN, first };
-            }
+        const bool interrupts = release(s, false);
+        int first = processor_dispatch(&s->processor);
+        if (first < 0 && interrupts) {
+            release(s, true);
+            first = processor_dispatch(&s->processor);
+        }
+        if (first >= 0) {
+            return (struct cyclic_event){ CYCLIC_BEGIN, first };
         }
         pass(s, until);
     }
@@ -127,7 +133,9 @@ void cyclic_end(struct cyclic *s, int task)
 
 void cyclic_tell(const struct cyclic *s, struct cyclic_report *r)
 {
-    *r = (struct cyclic_report){ .clock = s->processor.clock, .running = s->running };
+    r->clock = s->processor.clock;
+    r->running = s->running;
+    r->all = (struct cyclic_use){ 0 };
     for (int i = 0; i < s->processor.tasks; i++) {
         struct cyclic_use *u = &r->task[i];
         *u = s->task[i].use;

@@ -9,31 +9,6 @@ void processor_start(struct processor *p, int tasks)
     p->running = -1;
 }
 
-void processor_wake(struct processor *p, int task, int64_t turn)
-{
-    struct processor_task *t = &p->task[task];
-
-    t->ready = true;
-    t->turn = turn;
-    t->left = 0;
-}
-
-void processor_block(struct processor *p, int task)
-{
-    p->task[task].ready = false;
-}
-
-void processor_compute(struct processor *p, int task, int64_t time)
-{
-    p->task[task].left = time;
-}
-
-int processor_over(const struct processor *p)
-{
-    const int r = p->running;
-    return r >= 0 && p->task[r].ready && p->task[r].left == 0 ? r : -1;
-}
-
 int processor_first(const struct processor *p)
 {
     int best = -1;

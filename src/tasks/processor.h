@@ -38,14 +38,32 @@ struct processor {
 void processor_start(struct processor *p, int tasks);
 
 /* A task becomes ready, or no longer is. What is woken has its time over: it is to be asked. */
-void processor_wake(struct processor *p, int task, int64_t turn);
-void processor_block(struct processor *p, int task);
+static inline void processor_wake(struct processor *p, int task, int64_t turn)
+{
+    struct processor_task *t = &p->task[task];
+
+    t->ready = true;
+    t->turn = turn;
+    t->left = 0;
+}
+
+static inline void processor_block(struct processor *p, int task)
+{
+    p->task[task].ready = false;
+}
 
 /* Answer of a task: it needs so much time. */
-void processor_compute(struct processor *p, int task, int64_t time);
+static inline void processor_compute(struct processor *p, int task, int64_t time)
+{
+    p->task[task].left = time;
+}
 
 /* The running task, if it is ready and its time is over; else -1. */
-int processor_over(const struct processor *p);
+static inline int processor_over(const struct processor *p)
+{
+    const int r = p->running;
+    return r >= 0 && p->task[r].ready && p->task[r].left == 0 ? r : -1;
+}
 
 /* The most urgent task that is ready; -1 none. */
 int processor_first(const struct processor *p);
