@@ -9,7 +9,6 @@ struct model {
     int64_t bus;            /* [ns] */
     int64_t instant;        /* [ns] next instant of the bus grid that reads */
     bool    unpublished;    /* what was read last shows at that instant */
-    int32_t shown_seq;      /* transaction whose frames stand in the outputs */
     int32_t told_error;     /* run-time error that was reported */
 };
 
@@ -61,38 +60,18 @@ static struct source source_of_program(const struct fmu *f)
     return (struct source){ program_look, f->blob };
 }
 
-static void publish_card(struct vars *v, struct model *m)
+static void publish_card(struct vars *v, const struct pc *pc)
 {
-    const struct machine *machine = &m->pc.mcc.machine;
-    const struct pcl *pcl = &m->pc.pcl;
+    struct link_host link;
 
-    v->card_dda_length = machine->dda_length;
-    v->card_dda_divider = machine_dda_divider(machine);
-    v->card_dda_run = true;
-    v->card_min_stock = pcl->min_stock;
-    v->card_ack_seq = pcl->ack_seq;
-    for (int i = 0; i < ISR_PAGES; i++) {
-        v->card_irq_mask[i] = pcl_mask(pcl, i);
-        v->card_ack_flags[i] = pcl->ack_flags[i];
-    }
-    for (int i = 0; i < AXES; i++) {
-        v->card_p_gain[i] = machine->axis[i].p_gain;
-        v->card_loop_on[i] = pc_loop_on(&m->pc, i);
-        v->card_dac_source[i] = pc_dac_source(&m->pc, i);
-        v->card_dac_volts[i] = m->pc.volts[i];
-        v->card_index_low[i] = machine->axis[i].index_low;
-        v->card_latch_seq[i] = m->pc.mcc.latch_seq[i];
-    }
-    if (pcl->seq != m->shown_seq) {
-        m->shown_seq = pcl->seq;
-        v->card_cmd_seq = pcl->seq;
-        v->card_cmd_clock = (double)pcl->clock;
-        v->card_cmd_count = pcl->count;
-        memcpy(v->card_cmd_frames, pcl->frames, sizeof v->card_cmd_frames);
+    link.cmd_seq = v->card_cmd_seq;
+    pc_publish(pc, &link);
+#define SHOW(type, name, elements) LINK_CARRY(v->card_##name, link.name)
+    LINK_LEVELS(SHOW)
+    if (link.cmd_seq != v->card_cmd_seq) {
+        LINK_WRITE(SHOW)
     }
 }
-_Static_assert(sizeof ((struct vars *)0)->card_cmd_frames == sizeof ((struct pcl *)0)->frames,
-               "the wire carries a whole transaction");
 
 static void publish_schedule(struct vars *v, const struct pc *pc)
 {
@@ -139,7 +118,7 @@ static void publish(struct fmu *f)
     v->services = m->pc.pcl.services;
     v->latency = (double)m->pc.pcl.latency / CLOCK_HZ;
     publish_schedule(v, &m->pc);
-    publish_card(v, m);
+    publish_card(v, &m->pc);
     if (v->error != m->told_error) {
         m->told_error = v->error;
         (v->error != 0 ? fmu_warn : fmu_event)(f, "run-time error 0x%04X after line %d",
@@ -232,11 +211,6 @@ static void read_bus(struct fmu *f, int64_t at)
     const struct vars *v = &f->s.v;
     struct pc *pc = &f->s.m.pc;
     const struct source source = source_of_program(f);
-    struct pcl_card card = {
-        .irq_seq = v->card_irq_seq, .irq_clock = (int64_t)v->card_irq_clock,
-        .cmd_ack = v->card_cmd_ack,
-        .frames_refused = v->card_frames_refused, .stock = v->card_stock[pc->pcl.axis]
-    };
     struct pc_panel panel = {
         .hold = v->hold, .abort = v->abort, .cycle_start = v->cycle_start,
         .single_block = v->single_block,
@@ -244,22 +218,15 @@ static void read_bus(struct fmu *f, int64_t at)
         .wheel_axis = v->mpg_axis, .wheel_encoder = v->mpg_encoder, .wheel_ratio = v->mpg_ratio,
         .clear_error = v->clear_error
     };
-    memcpy(card.irq_flags, v->card_irq_flags, sizeof card.irq_flags);
     memcpy(panel.software_gain, v->software_gain, sizeof panel.software_gain);
     memcpy(panel.p_gain, v->p_gain, sizeof panel.p_gain);
-    panel.signals = (struct signals){
-        .stop = v->card_stopped, .home = (uint32_t)v->card_home,
-        .upper = v->card_over_travel & 0x3f, .lower = (v->card_over_travel >> 8) & 0x3f
-    };
-    memcpy(panel.signals.pulses, v->card_pulse_count, sizeof panel.signals.pulses);
-    memcpy(panel.signals.enc, v->card_enc_count, sizeof panel.signals.enc);
     memcpy(panel.jog, v->jog, sizeof panel.jog);
-    memcpy(panel.signals.enc_aux,
-           (int32_t[]){ v->card_enc_count_7, v->card_enc_count_8, v->card_enc_count_9 },
-           sizeof panel.signals.enc_aux);
-    memcpy(panel.signals.err, v->card_err_count, sizeof panel.signals.err);
-    memcpy(panel.signals.latch, v->card_latch_value, sizeof panel.signals.latch);
-    memcpy(panel.signals.latched, v->card_latch_seen, sizeof panel.signals.latched);
+    struct link_card link;
+#define READ(type, name, elements) LINK_CARRY(link.name, v->card_##name)
+    LINK_SHOWN(READ)
+    LINK_SHOWN_MACHINE(READ)
+    panel.signals = card_signals(&link);
+    const struct pcl_card card = card_of(&pc->pcl, &link);
     pc_instant(pc, at / CLOCK_NS, &card, &panel, &source);
 }
 

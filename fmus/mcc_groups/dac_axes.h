@@ -92,26 +92,14 @@ static int put_out(struct fmu *f, bool start)
     return 0;
 }
 
-#define COUNT_CARD(K) do { \
-    int32_t counts[GROUP_COUNTERS] = { [6] = v->card##K##_enc_count_7, v->card##K##_enc_count_8, \
-                                       v->card##K##_enc_count_9 }; \
-    memcpy(counts, v->card##K##_enc_count, sizeof v->card##K##_enc_count); \
-    groups_counters(&m->groups, K - 1, counts); \
-} while (0)
-
 #define PUBLISH_DACS(K) do { \
     const struct group_card *d = &m->groups.card[K - 1]; \
-    memcpy(v->card##K##_dac_volts, d->volts, sizeof v->card##K##_dac_volts); \
-    memcpy(v->card##K##_dac_volts_aux, d->volts + AXES, sizeof v->card##K##_dac_volts_aux); \
     memcpy(v->card##K##_dac_command, d->command, sizeof v->card##K##_dac_command); \
     memcpy(v->card##K##_dac_error, d->error, sizeof v->card##K##_dac_error); \
     v->card##K##_dac_command_7 = d->command[6]; \
     v->card##K##_dac_command_8 = d->command[7]; \
     v->card##K##_dac_error_7 = d->error[6]; \
     v->card##K##_dac_error_8 = d->error[7]; \
-    v->card##K##_loop_on_aux = groups_watched(&m->groups, K - 1, &v->card##K##_command_aux); \
 } while (0)
-_Static_assert(sizeof ((struct vars *)0)->card1_dac_volts_aux / sizeof(double) ==
-               GROUP_DACS - AXES, "the DAC behind those of the axes");
 
 #endif

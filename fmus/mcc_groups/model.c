@@ -11,7 +11,6 @@ struct model {
     int64_t bus;            /* [ns] */
     int64_t instant;        /* [ns] next instant of the bus grid that reads */
     bool    unpublished;    /* what was read last shows at that instant */
-    int32_t shown_seq[GROUP_CARDS];     /* transactions whose frames stand in the outputs */
     int32_t told_error[GROUP_MAX];      /* run-time errors that were reported */
     double  output[GROUP_CARDS][GROUP_DACS];    /* [V] of dac_output, as seen last */
 };
@@ -245,38 +244,23 @@ static const char *model_check(const struct state *s)
     return groups_damage(&m->groups);
 }
 
-/* The registers and the mailbox of a card, under the names of its outputs. */
+/* What a card is given, under the names of its outputs; it keeps its command_aux while no axis has
+ * the seventh error counter. */
+#define SHOW_1(type, name, elements) LINK_CARRY(v->card1_##name, link.name)
+#define SHOW_2(type, name, elements) LINK_CARRY(v->card2_##name, link.name)
 #define PUBLISH_CARD(K) do { \
-    const struct group_card *c = &m->groups.card[K - 1]; \
-    const struct pcl *p = &c->pcl; \
-    v->card##K##_services = p->services; \
-    v->card##K##_dda_length = c->machine.dda_length; \
-    v->card##K##_dda_divider = machine_dda_divider(&c->machine); \
-    v->card##K##_dda_run = groups_card_used(&m->groups, K - 1); \
-    v->card##K##_min_stock = p->min_stock; \
-    v->card##K##_ack_seq = p->ack_seq; \
-    for (int i = 0; i < ISR_PAGES; i++) { \
-        v->card##K##_irq_mask[i] = v->card##K##_dda_run ? pcl_mask(p, i) : 0; \
-        v->card##K##_ack_flags[i] = p->ack_flags[i]; \
+    struct link_host link; \
+    link.cmd_seq = v->card##K##_cmd_seq; \
+    link.command_aux = v->card##K##_command_aux; \
+    groups_publish(&m->groups, K - 1, &link); \
+    LINK_LEVELS(SHOW_##K) \
+    LINK_LEVELS_AUX(SHOW_##K) \
+    if (link.cmd_seq != v->card##K##_cmd_seq) { \
+        LINK_WRITE(SHOW_##K) \
     } \
-    for (int i = 0; i < AXES; i++) { \
-        const bool loop = c->machine.axis[i].used && \
-                          c->command_mode[i] == GROUP_COMMAND_VOLTAGE; \
-        v->card##K##_p_gain[i] = c->machine.axis[i].p_gain; \
-        v->card##K##_loop_on[i] = loop; \
-        v->card##K##_dac_source[i] = loop; \
-    } \
+    v->card##K##_services = m->groups.card[K - 1].pcl.services; \
     PUBLISH_DACS(K); \
-    if (p->seq != m->shown_seq[K - 1]) { \
-        m->shown_seq[K - 1] = p->seq; \
-        v->card##K##_cmd_seq = p->seq; \
-        v->card##K##_cmd_clock = (double)p->clock; \
-        v->card##K##_cmd_count = p->count; \
-        memcpy(v->card##K##_cmd_frames, p->frames, sizeof v->card##K##_cmd_frames); \
-    } \
 } while (0)
-_Static_assert(sizeof ((struct vars *)0)->card1_cmd_frames == sizeof ((struct pcl *)0)->frames,
-               "the wire carries a whole transaction");
 
 static void publish_group(struct fmu *f, int n)
 {
@@ -315,13 +299,13 @@ static void publish(struct fmu *f)
     PUBLISH_CARD(2);
 }
 
+#define READ_1(type, name, elements) LINK_CARRY(link.name, v->card1_##name)
+#define READ_2(type, name, elements) LINK_CARRY(link.name, v->card2_##name)
 #define READ_CARD(K) do { \
-    card[K - 1] = (struct pcl_card){ \
-        .irq_seq = v->card##K##_irq_seq, .irq_clock = (int64_t)v->card##K##_irq_clock, \
-        .cmd_ack = v->card##K##_cmd_ack, .frames_refused = v->card##K##_frames_refused, \
-        .stock = v->card##K##_stock[m->groups.card[K - 1].pcl.axis] \
-    }; \
-    memcpy(card[K - 1].irq_flags, v->card##K##_irq_flags, sizeof card[K - 1].irq_flags); \
+    struct link_card link; \
+    LINK_SHOWN(READ_##K) \
+    card[K - 1] = card_of(&m->groups.card[K - 1].pcl, &link); \
+    groups_counters(&m->groups, K - 1, &link); \
 } while (0)
 
 /* Read the wires at an instant of the bus grid and let the PC work. */
@@ -335,8 +319,6 @@ static void read_bus(struct fmu *f, int64_t at)
 
     READ_CARD(1);
     READ_CARD(2);
-    COUNT_CARD(1);
-    COUNT_CARD(2);
     put_out(f, false);
     for (int n = 0; n < GROUP_MAX; n++) {
         if (m->index[n] >= 0) {

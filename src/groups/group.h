@@ -16,6 +16,7 @@
 #ifndef GROUP_H
 #define GROUP_H
 
+#include "card.h"
 #include "key.h"
 #include "pcl.h"
 #include "servo.h"
@@ -123,8 +124,8 @@ int group_program(struct groups *s, int group, int64_t start);
 /* Everything at rest at clock 0. -6 there is no group, -3 it runs already. */
 int groups_start(struct groups *s);
 
-/* What the encoder counters of a card show at the next groups_instant. [counts] */
-void groups_counters(struct groups *s, int card, const int32_t counts[GROUP_COUNTERS]);
+/* What the encoder counters of a card show at the next groups_instant. */
+void groups_counters(struct groups *s, int card, const struct link_card *link);
 
 /* One bus instant, at clock now = k T_b, as of pc_instant; a panel and a program for each group. */
 void groups_instant(struct groups *s, int64_t now, const struct pcl_card card[GROUP_CARDS],
@@ -133,6 +134,9 @@ void groups_instant(struct groups *s, int64_t now, const struct pcl_card card[GR
 
 /* A card whose pulse channels some group has. */
 bool groups_card_used(const struct groups *s, int card);
+
+/* What a card is given, on the link; frames if they are new there. */
+void groups_publish(const struct groups *s, int card, struct link_host *link);
 
 /* Whether the axis of a voltage group has the encoder counter that the card's seventh error counter
  * looks at; its command is *command [pulses], as the counter runs. */

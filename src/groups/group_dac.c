@@ -141,11 +141,6 @@ int groups_set_dac_output(struct groups *s, int card, int dac, double volts)
     return MCC_NO_ERR;
 }
 
-void groups_counters(struct groups *s, int card, const int32_t counts[GROUP_COUNTERS])
-{
-    memcpy(s->card[card].counts, counts, sizeof s->card[card].counts);
-}
-
 bool groups_watched(const struct groups *s, int card, int32_t *command)
 {
     const struct group_card *c = &s->card[card];

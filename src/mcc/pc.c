@@ -154,12 +154,16 @@ enum pc_cycle pc_ipo_cycle(const struct pc *pc)
            c->ipo > machine_dda_clocks(&pc->mcc.machine) ? PC_CYCLE_LONG : PC_CYCLE_KEPT;
 }
 
-bool pc_loop_on(const struct pc *pc, int axis)
+void pc_publish(const struct pc *pc, struct link_host *link)
 {
-    return pc->mcc.machine.axis[axis].used && pc->config.output_mode[axis] != 0;
-}
+    const struct machine *m = &pc->mcc.machine;
 
-int32_t pc_dac_source(const struct pc *pc, int axis)
-{
-    return pc->config.output_mode[axis] == 1 ? 1 : 0;
+    card_write(&pc->pcl, m, true, link);
+    for (int i = 0; i < AXES; i++) {
+        link->loop_on[i] = m->axis[i].used && pc->config.output_mode[i] != 0;
+        link->dac_source[i] = pc->config.output_mode[i] == 1;
+        link->index_low[i] = m->axis[i].index_low;
+    }
+    memcpy(link->dac_volts, pc->volts, sizeof link->dac_volts);
+    memcpy(link->latch_seq, pc->mcc.latch_seq, sizeof link->latch_seq);
 }

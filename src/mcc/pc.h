@@ -11,6 +11,7 @@
 #ifndef PC_H
 #define PC_H
 
+#include "card.h"
 #include "cyclic.h"
 #include "key.h"
 #include "pcl.h"
@@ -118,8 +119,7 @@ bool pc_done(const struct pc *pc);
 enum pc_cycle { PC_CYCLE_KEPT, PC_CYCLE_SHORT, PC_CYCLE_LONG };
 enum pc_cycle pc_ipo_cycle(const struct pc *pc);
 
-/* Where the card's DAC and loop take their values from for an axis. */
-bool    pc_loop_on(const struct pc *pc, int axis);
-int32_t pc_dac_source(const struct pc *pc, int axis);
+/* What the card is given, on the link; frames if they are new there. */
+void pc_publish(const struct pc *pc, struct link_host *link);
 
 #endif

@@ -20,11 +20,6 @@ void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_
     isr_start(&p->isr, isr);
 }
 
-int32_t pcl_mask(const struct pcl *p, int page)
-{
-    return p->isr.config.mask[page] | (page == ISR_FIFO_PAGE ? p->mask : 0);
-}
-
 bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card)
 {
     return card->irq_seq > p->irq_seq;

@@ -68,7 +68,10 @@ void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_
 int64_t pcl_latency(uint64_t *random, double least, double width);
 
 /* Sources of a page that the library lets through. */
-int32_t pcl_mask(const struct pcl *p, int page);
+static inline int32_t pcl_mask(const struct pcl *p, int page)
+{
+    return p->isr.config.mask[page] | (page == ISR_FIFO_PAGE ? p->mask : 0);
+}
 
 /* Look at the card at bus instant now [clock]; an interrupt seen now has this latency [clocks]. */
 void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t now,

@@ -5,12 +5,6 @@
 
 #include "registers.h"
 
-/* Counters of the card are 32-bit registers on the bus: they wrap. */
-static int32_t wrap(int64_t count)
-{
-    return (int32_t)(uint32_t)(uint64_t)count;
-}
-
 struct station_config station_defaults(void)
 {
     struct station_config c = {
@@ -121,32 +115,12 @@ enum station_status station_start(struct station *s, const struct station_config
 /* What the PC sees of the card and of the machine. */
 static void look(const struct station *s, struct pcl_card *seen, struct pc_panel *panel)
 {
-    const struct epcio *card = &s->card;
-    const struct local_io_lines *local = &card->local.seen;
-    int64_t pulses[AXES];
+    struct link_card link;
 
-    *seen = (struct pcl_card){
-        .irq_seq = wrap(card->irq.seq), .irq_clock = card->irq.clock, .cmd_ack = card->cmd_ack,
-        .frames_refused = card->frames_refused, .stock = card->fifo[s->pc.pcl.axis].stock
-    };
-    memcpy(seen->irq_flags, card->irq.flags, sizeof seen->irq_flags);
-    *panel = (struct pc_panel){ .override = 1.0 };
+    host_show(&s->card, &link);
+    *seen = card_of(&s->pc.pcl, &link);
+    *panel = (struct pc_panel){ .override = 1.0, .signals = card_signals(&link) };
     memcpy(panel->software_gain, s->software_gain, sizeof panel->software_gain);
-    panel->signals = (struct signals){
-        .stop = local_io_stopped(&card->local_control, &card->local),
-        .home = local->home, .upper = local->up, .lower = local->down
-    };
-    epcio_pulses(card, pulses);
-    for (int i = 0; i < AXES; i++) {
-        panel->signals.pulses[i] = wrap(pulses[i]);
-        panel->signals.enc[i] = wrap(card->encoder[i].count);
-        panel->signals.err[i] = card->loop[i].error;
-        panel->signals.latch[i] = wrap(card->latch[i].value);
-        panel->signals.latched[i] = card->latch[i].seen;
-    }
-    for (int i = 0; i < EPCIO_ENCODERS - AXES; i++) {
-        panel->signals.enc_aux[i] = wrap(card->encoder[AXES + i].count);
-    }
 }
 
 /* Speed of an ideal motor: its safe speed at 10 V. [counts/s] */
@@ -173,57 +147,15 @@ static void move(struct station *s)
     }
 }
 
-/* Level registers: what the PC has published. */
-static void write_levels(struct station *s)
-{
-    const struct machine *m = &s->pc.mcc.machine;
-    struct epcio_host host = { 0 };
-
-    for (int i = 0; i < AXES; i++) {
-        host.gain[i] = m->axis[i].p_gain;
-        host.loop_on[i] = pc_loop_on(&s->pc, i);
-        host.dac_loop[i] = pc_dac_source(&s->pc, i) == 1;
-        host.volts[i] = s->pc.volts[i];
-        host.index_low[i] = m->axis[i].index_low;
-    }
-    epcio_set_host(&s->card, &host);
-    epcio_set_dda(&s->card, m->dda_length, machine_dda_divider(m));
-    epcio_set_minimum(&s->card, s->pc.pcl.min_stock);
-    for (int i = 0; i < AXES; i++) {
-        if (s->pc.mcc.latch_seq[i] != s->latch_seq[i]) {
-            s->latch_seq[i] = s->pc.mcc.latch_seq[i];
-            epcio_set_latch(&s->card, i, 1u << (LATCH_INDEX + i), false);
-        }
-    }
-}
-
 /* The card takes what the PC has published. */
 static void take(struct station *s)
 {
-    const struct pcl *p = &s->pc.pcl;
-    uint32_t mask[IRQ_PAGES], flags[IRQ_PAGES];
+    struct link_host link = { .cmd_seq = s->host.cmd_seq };
 
-    for (int i = 0; i < IRQ_PAGES; i++) {
-        mask[i] = (uint32_t)pcl_mask(p, i);
-        flags[i] = (uint32_t)p->ack_flags[i];
-    }
-    if (p->ack_seq != s->ack_seq) {
-        s->ack_seq = p->ack_seq;
-        epcio_acknowledge(&s->card, flags, mask);
-    } else {
-        epcio_set_mask(&s->card, mask);
-    }
-    write_levels(s);
-    if (p->seq != s->cmd_seq) {
-        struct bus_write w = { .seq = p->seq, .clock = p->clock, .count = p->count };
-        memcpy(w.frame, p->frames, sizeof p->frames);
-        epcio_post(&s->card, &w);
-        s->cmd_seq = p->seq;
-    }
+    pc_publish(&s->pc, &link);
+    host_take_levels(&s->host, &s->card, &link);
+    host_take_write(&s->host, &s->card, &link);
 }
-_Static_assert(sizeof ((struct bus_write *)0)->frame == sizeof ((struct pcl *)0)->frames &&
-               (int)IRQ_PAGES == (int)ISR_PAGES && (int)EPCIO_AXES == (int)AXES,
-               "library and card speak of the same frames, pages and axes");
 
 /* One instant of the bus grid: see station.h. */
 static enum station_status instant(struct station *s, const struct source *program)
@@ -309,7 +241,7 @@ void station_read(const struct station *s, struct station_reading *r)
     *r = (struct station_reading){
         .clock = s->clock, .path_feed = m->written.feed,
         .frames_taken = s->card.frames_taken, .frames_refused = s->card.frames_refused,
-        .interrupts = wrap(s->card.irq.seq), .irq_clock = s->card.irq.clock,
+        .interrupts = link_wrap(s->card.irq.seq), .irq_clock = s->card.irq.clock,
         .services = p->services, .latency = p->latency,
         .missed = s->pc.shown.all.missed,
         .ipo_cycle = pc_ipo_cycle(&s->pc), .queue = m->queue.count, .starved = p->starved,

@@ -15,7 +15,7 @@
 #ifndef STATION_H
 #define STATION_H
 
-#include "epcio.h"
+#include "host.h"
 #include "pc.h"
 
 enum { STATION_HZ = CLOCK_HZ };     /* clocks of a second */
@@ -53,7 +53,7 @@ struct station {
     double  volts[AXES];            /* [V] since then */
     int64_t clock;                  /* [25 ns] everything up to here has happened */
     int64_t instant;                /* [clock] next instant of the bus grid */
-    int32_t ack_seq, cmd_seq, latch_seq[AXES];  /* numbers the card has taken */
+    struct host host;               /* what the card has taken of the PC */
 };
 
 /* What there is to see at the station's clock. */

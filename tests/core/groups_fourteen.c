@@ -3,6 +3,7 @@
  * that follows the voltage exactly. */
 #include "epcio_card.h"
 #include "groups_damage.h"
+#include "host.h"
 #include "mcc_check.h"
 
 enum { BUS = 4000, DDA = 40960, DELAY = 3 };
@@ -69,33 +70,14 @@ static void program(int group, const char *lines)
 /* The card reads what the PC published. */
 static void card_reads(void)
 {
-    const struct group_card *c = &set.card[0];
-    const struct pcl *p = &c->pcl;
-    static int32_t acknowledged, posted;
-    uint32_t mask[IRQ_PAGES], flags[IRQ_PAGES];
-    struct epcio_host host = { .gain = { 0 } };
-    struct bus_write w = { .seq = p->seq, .clock = p->clock, .count = p->count };
+    static struct host taken;
     if (now == 0) {
-        acknowledged = posted = 0;
+        taken = (struct host){ 0 };
     }
-    for (int i = 0; i < IRQ_PAGES; i++) {
-        mask[i] = (uint32_t)pcl_mask(p, i);
-        flags[i] = (uint32_t)p->ack_flags[i];
-    }
-    if (p->ack_seq != acknowledged) {
-        epcio_acknowledge(&card, flags, mask);
-        acknowledged = p->ack_seq;
-    }
-    epcio_set_mask(&card, mask);
-    CHECK_EQ(epcio_set_minimum(&card, p->min_stock), EPCIO_OK);
-    memcpy(host.volts, c->volts, sizeof host.volts);
-    host.loop_on[6] = groups_watched(&set, 0, &host.command);
-    CHECK_EQ(epcio_set_host(&card, &host), EPCIO_OK);
-    if (p->seq != posted) {
-        memcpy(w.frame, p->frames, sizeof w.frame);
-        CHECK_EQ(epcio_post(&card, &w), EPCIO_OK);
-        posted = p->seq;
-    }
+    struct link_host link = { .cmd_seq = taken.cmd_seq };
+    groups_publish(&set, 0, &link);
+    CHECK_EQ(host_take_levels(&taken, &card, &link), EPCIO_OK);
+    CHECK_EQ(host_take_write(&taken, &card, &link), EPCIO_OK);
 }
 
 /* One bus period of card, PC and motors. */
@@ -106,7 +88,7 @@ static void period(void)
     struct group_panel panel[GROUP_MAX];
     struct source source[GROUP_MAX] = { { 0 } };
     double phase[EPCIO_ENCODERS] = { 0.0 };
-    int32_t counts[GROUP_COUNTERS];
+    struct link_card link;
     int bad;
     epcio_advance(&card, now);
     epcio_convert(&card);
@@ -117,14 +99,8 @@ static void period(void)
             CHECK_EQ(set.card[0].command[i], out[i]);
         }
     }
-    shows[0] = (struct pcl_card){
-        .irq_seq = (int32_t)card.irq.seq, .irq_clock = card.irq.clock, .cmd_ack = card.cmd_ack,
-        .frames_refused = card.frames_refused, .stock = card.fifo[0].stock
-    };
-    memcpy(shows[0].irq_flags, card.irq.flags, sizeof shows[0].irq_flags);
-    for (int i = 0; i < GROUP_COUNTERS; i++) {
-        counts[i] = (int32_t)card.encoder[i].count;
-    }
+    host_show(&card, &link);
+    shows[0] = card_of(&set.card[0].pcl, &link);
     for (int i = 0; i < GROUP_DACS; i++) {
         phase[i == 7 ? LAST_ENCODER : i] = way[i] * place[i] / 4.0;
     }
@@ -136,7 +112,7 @@ static void period(void)
         panel[n] = calm;
         source[n] = source_of(&text[n]);
     }
-    groups_counters(&set, 0, counts);
+    groups_counters(&set, 0, &link);
     groups_instant(&set, now, shows, panel, source);
     for (int i = 0; i < GROUP_DACS; i++) {
         place[i] += way[i] * epcio_volts(&card, i) * COUNTS_PER_VOLT * TB;

@@ -2,6 +2,7 @@
  * in-position through queue and FIFO; the position to the pulse. */
 #include <stdlib.h>
 
+#include "host.h"
 #include "mcc_check.h"
 #include "pc.h"
 #include "registers.h"
@@ -13,7 +14,7 @@ struct bench {
     struct epcio_lines lines;
     struct pc_panel panel;
     int64_t now;
-    int32_t seq, ack;       /* of the library, taken by the card */
+    struct host host;       /* what it has taken of the library */
     double  lag;            /* share of the following error that the motors catch up each period */
     double  motor[AXES];    /* [pulses] */
     int32_t moved;          /* [pulses] of axis 1 in the latest period */
@@ -42,66 +43,38 @@ static void power_on(struct bench *b, const struct machine *m, int mode, bool pr
     }
     CHECK_EQ(epcio_reset(&b->card, &config), EPCIO_OK);
     CHECK_EQ(pc_start(&pc, m, &c, program), MCC_NO_ERR);
-    CHECK_EQ(epcio_set_dda(&b->card, m->dda_length, machine_dda_divider(m)), EPCIO_OK);
-    CHECK_EQ(epcio_set_minimum(&b->card, c.min_stock), EPCIO_OK);
-    struct epcio_host host = { .gain = { 0 } };
     struct local_io_control io = { .gate = true, .stop_enable = true };
-    for (int i = 0; i < AXES; i++) {
-        host.loop_on[i] = pc_loop_on(&pc, i);
-    }
-    CHECK_EQ(epcio_set_host(&b->card, &host), EPCIO_OK);
     CHECK_EQ(epcio_set_local_io(&b->card, &io), EPCIO_OK);
     b->lines.local.power = true;
     b->panel.override = 1.0;
     b->lag = 1.0;
 }
 
-/* What the card shows at this instant. */
+/* What the card shows at this instant; the encoders without the delay of an instant, the home switch
+ * as the test has it. */
 static struct pcl_card show(struct bench *b)
 {
-    const struct epcio *c = &b->card;
-    struct pcl_card seen = {
-        .irq_seq = (int32_t)c->irq.seq, .irq_clock = c->irq.clock, .cmd_ack = c->cmd_ack,
-        .frames_refused = c->frames_refused, .stock = c->fifo[0].stock
-    };
-    int64_t pulses[AXES];
-    epcio_pulses(c, pulses);
-    for (int i = 0; i < ISR_PAGES; i++) {
-        seen.irq_flags[i] = (int32_t)c->irq.flags[i];
-    }
-    b->moved = (int32_t)pulses[0] - b->panel.signals.pulses[0];
-    b->panel.signals.stop = local_io_stopped(&c->local_control, &c->local);
-    b->panel.signals.upper = c->local.seen.up;
+    const struct signals before = b->panel.signals;
+    struct link_card link;
+    host_show(&b->card, &link);
+    b->panel.signals = card_signals(&link);
+    b->panel.signals.home = before.home;
+    b->moved = b->panel.signals.pulses[0] - before.pulses[0];
     for (int i = 0; i < AXES; i++) {
-        b->panel.signals.pulses[i] = (int32_t)pulses[i];
-        b->panel.signals.err[i] = c->loop[i].error;
-        b->motor[i] += b->lag * ((double)pulses[i] - b->motor[i]);
+        b->motor[i] += b->lag * (b->panel.signals.pulses[i] - b->motor[i]);
         b->lines.phase[i] = b->motor[i] / 4.0;
         b->panel.signals.enc[i] = (int32_t)lround(b->motor[i]);
     }
-    return seen;
+    return card_of(&pc.pcl, &link);
 }
 
 /* What the library has published one period before. */
 static void host_writes(struct bench *b)
 {
-    uint32_t mask[IRQ_PAGES], flags[IRQ_PAGES];
-    for (int i = 0; i < ISR_PAGES; i++) {
-        mask[i] = (uint32_t)pcl_mask(&pc.pcl, i);
-        flags[i] = (uint32_t)pc.pcl.ack_flags[i];
-    }
-    if (pc.pcl.ack_seq != b->ack) {
-        epcio_acknowledge(&b->card, flags, mask);
-    } else {
-        epcio_set_mask(&b->card, mask);
-    }
-    b->ack = pc.pcl.ack_seq;
-    if (pc.pcl.seq != b->seq) {
-        struct bus_write w = { .seq = pc.pcl.seq, .clock = pc.pcl.clock, .count = pc.pcl.count };
-        memcpy(w.frame, pc.pcl.frames, sizeof w.frame);
-        CHECK_EQ(epcio_post(&b->card, &w), EPCIO_OK);
-        b->seq = pc.pcl.seq;
-    }
+    struct link_host link = { .cmd_seq = b->host.cmd_seq };
+    pc_publish(&pc, &link);
+    CHECK_EQ(host_take_levels(&b->host, &b->card, &link), EPCIO_OK);
+    CHECK_EQ(host_take_write(&b->host, &b->card, &link), EPCIO_OK);
 }
 
 /* One bus period of both. */

@@ -250,8 +250,11 @@ static void software_voltage(void)
     p.signals.err[1] = -5000;
     card_period(&c, config.bus, &p, NULL);
     CHECK_NEAR(pc.volts[1], -10.0, 0.0);
-    CHECK(!pc_loop_on(&pc, 0) && pc_loop_on(&pc, 1) && pc_loop_on(&pc, 2) && !pc_loop_on(&pc, 4));
-    CHECK(pc_dac_source(&pc, 0) == 0 && pc_dac_source(&pc, 1) == 0 && pc_dac_source(&pc, 2) == 1);
+    struct link_host link = { 0 };
+    pc_publish(&pc, &link);
+    CHECK(!link.loop_on[0] && link.loop_on[1] && link.loop_on[2] && !link.loop_on[4]);
+    CHECK(link.dac_source[0] == 0 && link.dac_source[1] == 0 && link.dac_source[2] == 1);
+    CHECK_NEAR(link.dac_volts[1], -10.0, 0.0);
 }
 
 /* Any program, FIFO setting, latency, hold and abort: what the card puts out is what the library

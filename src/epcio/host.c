@@ -1,0 +1,103 @@
+#include "host.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "registers.h"
+
+_Static_assert((int)LINK_AXES == (int)EPCIO_AXES && (int)LINK_PAGES == (int)IRQ_PAGES &&
+               (int)LINK_FRAMES == (int)BUS_FRAMES, "the card is that of the link");
+
+static void take_interrupts(struct host *host, struct epcio *card, const struct link_host *link)
+{
+    uint32_t mask[IRQ_PAGES], flags[IRQ_PAGES];
+
+    memcpy(mask, link->irq_mask, sizeof mask);
+    memcpy(flags, link->ack_flags, sizeof flags);
+    if (link_new(&host->ack_seq, link->ack_seq))
+        epcio_acknowledge(card, flags, mask);
+    else
+        epcio_set_mask(card, mask);
+}
+
+static enum epcio_status take_loops(struct epcio *card, const struct link_host *link)
+{
+    struct epcio_host h = {.command = link->command_aux};
+
+    memcpy(h.gain, link->p_gain, sizeof h.gain);
+    memcpy(h.loop_on, link->loop_on, sizeof link->loop_on);
+    h.loop_on[EPCIO_AXES] = link->loop_on_aux;
+    for (int i = 0; i < EPCIO_AXES; i++)
+        h.dac_loop[i] = link->dac_source[i] == 1;
+    memcpy(h.volts, link->dac_volts, sizeof link->dac_volts);
+    memcpy(h.volts + EPCIO_AXES, link->dac_volts_aux, sizeof link->dac_volts_aux);
+    memcpy(h.index_low, link->index_low, sizeof h.index_low);
+    return epcio_set_host(card, &h);
+}
+
+enum epcio_status host_take_levels(struct host *host, struct epcio *card,
+                                   const struct link_host *link)
+{
+    take_interrupts(host, card, link);
+    if (link_new(&host->clear_seq, link->clear_seq))
+        epcio_clear(card);
+    for (int i = 0; i < EPCIO_AXES; i++)
+        if (link_new(&host->latch_seq[i], link->latch_seq[i]))
+            epcio_set_latch(card, i, 1u << (LATCH_INDEX + i), false);
+    const enum epcio_status dda = epcio_set_dda(card, link->dda_length, link->dda_divider);
+    if (dda != EPCIO_OK && dda != EPCIO_STOCK_TOO_LARGE)
+        return dda;
+    if (card->run != link->dda_run)
+        epcio_set_run(card, link->dda_run);
+    enum epcio_status bad = epcio_set_minimum(card, link->min_stock);
+    if (bad == EPCIO_OK)
+        bad = take_loops(card, link);
+    return bad == EPCIO_OK ? dda : bad;
+}
+
+enum epcio_status host_take_write(struct host *host, struct epcio *card,
+                                  const struct link_host *link)
+{
+    struct bus_write w = {.seq = link->cmd_seq, .count = link->cmd_count};
+
+    if (link->cmd_seq == host->cmd_seq)
+        return EPCIO_OK;
+    w.clock = (int64_t)ceil(link->cmd_clock);
+    for (int k = 0; k < BUS_FRAMES && k < w.count; k++)
+        memcpy(w.frame[k], link->cmd_frames[k], sizeof w.frame[k]);
+    const enum epcio_status bad = epcio_post(card, &w);
+    if (bad == EPCIO_OK)
+        host->cmd_seq = link->cmd_seq;
+    return bad;
+}
+
+static void show_axis(const struct epcio *card, int i, int64_t pulses, struct link_card *link)
+{
+    link->stock[i] = card->fifo[i].stock;
+    link->pulse_count[i] = link_wrap(pulses);
+    link->enc_count[i] = link_wrap(card->encoder[i].count);
+    link->err_count[i] = card->loop[i].error;
+    link->latch_value[i] = link_wrap(card->latch[i].value);
+    link->latch_seen[i] = card->latch[i].seen;
+}
+
+void host_show(const struct epcio *card, struct link_card *link)
+{
+    const struct local_io_lines *local = &card->local.seen;
+    int64_t pulses[EPCIO_AXES];
+
+    *link = (struct link_card){
+        .irq_seq = link_wrap(card->irq.seq), .irq_clock = (double)card->irq.clock,
+        .cmd_ack = card->cmd_ack, .frames_refused = card->frames_refused,
+        .enc_count_7 = link_wrap(card->encoder[6].count),
+        .enc_count_8 = link_wrap(card->encoder[7].count),
+        .enc_count_9 = link_wrap(card->encoder[8].count), .home = (int32_t)local->home,
+        .over_travel = (int32_t)(local->up | local->down << 8),
+        .stopped = local_io_stopped(&card->local_control, &card->local)
+    };
+    memcpy(link->irq_flags, card->irq.flags, sizeof link->irq_flags);
+    epcio_pulses(card, pulses);
+    for (int i = 0; i < EPCIO_AXES; i++)
+        if (card->config.active[i])
+            show_axis(card, i, pulses[i], link);
+}
