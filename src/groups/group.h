@@ -16,7 +16,7 @@
 #ifndef GROUP_H
 #define GROUP_H
 
-#include "card.h"
+#include "card_view.h"
 #include "key.h"
 #include "pcl.h"
 #include "servo.h"

@@ -11,7 +11,7 @@
 #ifndef PC_H
 #define PC_H
 
-#include "card.h"
+#include "card_view.h"
 #include "cyclic.h"
 #include "key.h"
 #include "pcl.h"

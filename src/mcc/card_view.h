@@ -1,6 +1,6 @@
-/* card - the library's side of the link: what the card shows, what it is given. */
-#ifndef CARD_H
-#define CARD_H
+/* card_view - the library's side of the link: what the card shows, what it is given. */
+#ifndef CARD_VIEW_H
+#define CARD_VIEW_H
 
 #include "link.h"
 #include "pcl.h"
