@@ -1,8 +1,8 @@
 /* A program of the MCC library on the virtual card: lines and a circle by calls of the API, then a
  * part program. motionfmu.mcc.example does the same.
  *
- *     gcc -O2 -Isrc/mcc -Isrc/epcio -Isrc/station src/station/example/virtual_card.c \
- *         src/mcc/[a-z]*.c src/epcio/[a-z]*.c src/station/[a-z]*.c -lm -o virtual_card
+ *     gcc -O2 $(find src -name core.toml -printf '-I%h %h/[a-z]*.c ') \
+ *         src/station/example/virtual_card.c -lm -o virtual_card
  *     ./virtual_card src/station/example/part.ngc
  */
 #include <stdio.h>
