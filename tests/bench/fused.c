@@ -15,6 +15,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "link.h"
 #include "parts.h"
 
 enum { STEP_NS = 100000, AXES = 6, USED = 2 };
@@ -47,22 +48,14 @@ static struct ball_screw_axes_vars *machine;
         memcpy(&(to)->input, &(from)->output, sizeof (to)->input);                        \
     } while (0)
 
-#define TO_CARD(X)                                                                        \
-    X(dda_length) X(dda_divider) X(dda_run) X(min_stock) X(irq_mask) X(ack_seq)           \
-    X(ack_flags) X(p_gain) X(loop_on) X(dac_source) X(dac_volts) X(cmd_seq) X(cmd_clock)  \
-    X(cmd_count) X(cmd_frames) X(index_low) X(latch_seq) X(clear_seq)
-
-#define FROM_CARD(X)                                                                      \
-    X(irq_seq) X(irq_clock) X(irq_flags) X(cmd_ack) X(frames_refused) X(stock)            \
-    X(pulse_count) X(enc_count) X(err_count) X(latch_value) X(latch_seen) X(home)         \
-    X(over_travel) X(stopped)
-
 static void carry(void)
 {
-#define HOST(name) CARRY(card, host_##name, mcc, card_##name);
-    TO_CARD(HOST)
-#define BACK(name) CARRY(mcc, card_##name, card, name);
-    FROM_CARD(BACK)
+#define HOST(type, name, elements) LINK_CARRY(card->host_##name, mcc->card_##name)
+    LINK_LEVELS(HOST)
+    LINK_WRITE(HOST)
+#define BACK(type, name, elements) LINK_CARRY(mcc->card_##name, card->name)
+    LINK_SHOWN(BACK)
+    LINK_SHOWN_MACHINE(BACK)
     CARRY(card, enc_phase, machine, motor_phase);
     CARRY(drives, dac, card, dac);
     CARRY(drives, phase, machine, motor_phase);

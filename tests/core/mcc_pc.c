@@ -165,6 +165,20 @@ static void frames_taken(void)
     }
 }
 
+/* A key counts once however often it went down, and not for being held. */
+static void keys(void)
+{
+    struct key k = { .down = false };
+    for (int i = 0; i < 4; i++) {
+        key_look(&k, i % 2 == 0);
+    }
+    CHECK(key_take(&k) && !key_take(&k));
+    key_look(&k, true);
+    CHECK(key_take(&k));
+    key_look(&k, true);
+    CHECK(!key_take(&k));
+}
+
 /* The panel: a held program does not start, an abort before the start drops it. */
 static void panel(void)
 {
@@ -325,6 +339,7 @@ int main(void)
     starved();
     refused();
     frames_taken();
+    keys();
     panel();
     program_stop();
     software_voltage();
