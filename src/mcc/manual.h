@@ -36,8 +36,8 @@ void manual_use(struct mcc *m, int axis, enum manual_use use);
 /* True while an axis follows a hand wheel. */
 bool manual_wheel(const struct mcc *m);
 
-/* The card has reported its signals: limit switches stop axes that move onto them, axes follow their
- * hand wheels. */
+/* The card has reported its signals: limit switches stop axes that move onto them, axes follow
+ * their hand wheels. */
 void manual_look(struct mcc *m);
 
 /* After an IPO cycle: axes that have done what they should are out of use; the last one brings

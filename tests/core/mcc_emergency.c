@@ -50,8 +50,8 @@ static void power_on(struct bench *b, const struct machine *m, int mode, bool pr
     b->lag = 1.0;
 }
 
-/* What the card shows at this instant; the encoders without the delay of an instant, the home switch
- * as the test has it. */
+/* What the card shows at this instant; the encoders without the delay of an instant, the home
+ * switch as the test has it. */
 static struct pcl_card show(struct bench *b)
 {
     const struct signals before = b->panel.signals;
