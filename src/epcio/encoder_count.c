@@ -1,7 +1,5 @@
 #include "encoder_count.h"
 
-#include "floor_divide.h"
-
 /* The lines as a function of phase, in quarters q = floor(4 phase): A and B as in lines.h; the
  * index is high in the first quarter of every index_lines.
  *

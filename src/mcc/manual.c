@@ -5,9 +5,6 @@
 
 #include "mcc.h"
 
-/* The counters are 32-bit; far enough inside that an axis can still come to rest. [pulses] */
-static const double PULSES_MAX = 2147483647.0 / 3.0;
-
 /* Settings of asynchronous point-to-point. */
 
 static int set_types(const struct mcc *m, char to[AXES], const char types[AXES])
@@ -193,7 +190,7 @@ int MCC_jog_c(struct mcc *m, int axis, int direction, double percent)
 static int step(struct mcc *m, int axis, double target, const struct axes_limits *l)
 {
     const double pulses = target * machine_pulses_per_mm(&m->machine.axis[axis]);
-    if (!(fabs(pulses) < PULSES_MAX)) {
+    if (!(fabs(pulses) < COMMAND_PULSES_MAX)) {
         return MCC_PARAMETER;
     }
     if (use_of(m, axis) != MANUAL_NONE) {
@@ -298,7 +295,7 @@ static void follow(struct mcc *m, int axis)
     w->turned += (int32_t)((uint32_t)now - (uint32_t)w->count);
     w->count = now;
     const double want = round(w->base + w->ratio * (double)w->turned);
-    const double target = fmax(-PULSES_MAX, fmin(PULSES_MAX, want)) / scale;
+    const double target = fmax(-COMMAND_PULSES_MAX, fmin(COMMAND_PULSES_MAX, want)) / scale;
     if (target != place_of(m, axis) && on_limit(m, axis, target - place_of(m, axis))) {
         axes_stand(&m->mover.axes, axis);
         rebase(m, axis);
@@ -315,7 +312,7 @@ static void guard(struct mcc *m, int axis)
 {
     double place, speed;
     axes_state(&m->mover.axes, axis, &place, &speed);
-    const bool far = fabs(pulses_of(m, axis)) > PULSES_MAX && speed * place > 0.0;
+    const bool far = fabs(pulses_of(m, axis)) > COMMAND_PULSES_MAX && speed * place > 0.0;
     if (m->mover.axes.axis[axis].order != AXES_STAND && speed != 0.0 &&
         (far || on_limit(m, axis, speed))) {
         axes_stand(&m->mover.axes, axis);

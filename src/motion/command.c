@@ -3,9 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Counters are 32-bit, and path mixing adds up three positions. [pulses] */
-static const double PULSES_MAX = 2147483647.0 / 3.0;
-
 /* Whether the joints can take a way. */
 static enum command_status check_range(const struct path *p, const struct mechanism *m,
                                        const struct mechanism_way *w, struct command_refusal *r)
@@ -16,7 +13,7 @@ static enum command_status check_range(const struct path *p, const struct mechan
     for (int i = 0; i < AXES; i++) {
         const struct joint *j = &m->joint[i];
         const double most = fmax(fabs(w->low[i]), fabs(w->high[i]));
-        if (j->used && !(most * j->scale < PULSES_MAX)) {
+        if (j->used && !(most * j->scale < COMMAND_PULSES_MAX)) {
             return COMMAND_FAR;
         }
     }

@@ -6,6 +6,10 @@
 #include "mechanism.h"
 #include "profile.h"
 
+/* Farthest place of a joint: counters are 32-bit, path mixing adds up three positions, and an axis
+ * out there can still come to rest. [pulses] */
+#define COMMAND_PULSES_MAX (2147483647.0 / 3.0)
+
 /* Two of them take no time. Those up to 10 have the numbers that libraries show them by. */
 enum command_type {
     COMMAND_PTP, COMMAND_LINE, COMMAND_CW_ARC, COMMAND_CCW_ARC, COMMAND_CW_HELIX,

@@ -156,6 +156,8 @@ static void take(struct station *s)
     host_take_levels(&s->host, &s->card, &link);
     host_take_write(&s->host, &s->card, &link);
 }
+_Static_assert((int)EPCIO_FIFO_DEPTH == (int)PCL_FIFO && (int)EPCIO_CLOCK_HZ == (int)CLOCK_HZ,
+               "library and card speak of the same FIFOs and clock");
 
 /* One instant of the bus grid: see station.h. */
 static enum station_status instant(struct station *s, const struct source *program)
