@@ -29,11 +29,6 @@ void timer_fire(struct timer *t)
     t->count++;
 }
 
-int64_t timer_now(const struct timer *t, int64_t clock)
-{
-    return t->on ? clock - t->start : 0;
-}
-
 enum timer_status watchdog_set(struct watchdog *w, bool on, int32_t value, int64_t reset_period)
 {
     if (value < 1 || value > WATCHDOG_VALUE_MAX)

@@ -50,10 +50,6 @@ int64_t timer_due(const struct timer *t);
 /* Fire; call it once at each clock timer_due(). Off: nothing happens. */
 void timer_fire(struct timer *t);
 
-/* Clocks since the latest firing or start, 0 .. period - 1; 0 while off. `clock` is now, with the
- * firings up to it done. */
-int64_t timer_now(const struct timer *t, int64_t clock);
-
 /* Set the watchdog: it expires at the value-th timer firing without a refresh, and then resets for
  * `reset_period` clocks. It counts nothing but firings: with the timer off it never expires, and a
  * restart of the timer delays the next firing but keeps the count.

@@ -424,7 +424,7 @@ void card_view(const void *card, struct view *v)
     *v->inputs = c->local.inputs;
     *v->off = epcio_off(c);
     *v->timer_count = c->timer.count;
-    *v->timer_now = timer_now(&c->timer, c->clock);
+    *v->timer_now = c->timer.on ? c->clock - c->timer.start : 0;
     *v->expired = c->watchdog.expired;
     *v->resetting = c->watchdog.resetting;
     *v->watchdog_count = c->watchdog.count;
