@@ -11,20 +11,6 @@ enum quadrature_status quadrature_check(const struct quadrature *q, double phase
     return fast ? QUADRATURE_TOO_FAST : QUADRATURE_OK;
 }
 
-void quadrature_sample(struct quadrature *q, double phase, int64_t clock)
-{
-    const int64_t quarter = (int64_t)floor(4.0 * phase);
-    q->from = q->to;
-    q->from_clock = q->clock;
-    q->to = phase;
-    q->clock = clock;
-    q->end = quarter;
-    if (!q->primed)
-        *q = (struct quadrature){.primed = true, .from = phase, .to = phase, .from_clock = clock,
-                                 .clock = clock, .quarter = quarter, .end = quarter,
-                                 .start = quarter};
-}
-
 /* The phase moves on a straight line from `from` at clock 0 to `to` at clock `span`: first clock,
  * in 1 .. span, at which it has passed `edge`, which lies between them. Going up the edge itself
  * belongs to the quarter above; going down it must be left behind. */

@@ -3,6 +3,7 @@
 #ifndef QUADRATURE_H
 #define QUADRATURE_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -30,9 +31,21 @@ struct quadrature {
 /* What is wrong with a sample at `clock`, later than the latest. */
 enum quadrature_status quadrature_check(const struct quadrature *q, double phase, int64_t clock);
 
-/* The phase at `clock`, no QUADRATURE_BAD_PHASE; the first sample sets the lines without an
- * edge. */
-void quadrature_sample(struct quadrature *q, double phase, int64_t clock);
+/* The phase at `clock`, no QUADRATURE_BAD_PHASE; the first sample sets the lines without an edge.
+ * In line, for it is called for each counter at each instant. */
+static inline void quadrature_sample(struct quadrature *q, double phase, int64_t clock)
+{
+    const int64_t quarter = (int64_t)floor(4.0 * phase);
+    q->from = q->to;
+    q->from_clock = q->clock;
+    q->to = phase;
+    q->clock = clock;
+    q->end = quarter;
+    if (!q->primed)
+        *q = (struct quadrature){.primed = true, .from = phase, .to = phase, .from_clock = clock,
+                                 .clock = clock, .quarter = quarter, .end = quarter,
+                                 .start = quarter};
+}
 
 /* [clock] of the next edge: the first clock at which it has passed; INT64_MAX if there is none. */
 int64_t quadrature_next(const struct quadrature *q);
