@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "outputs.h"
+#include "queue.h"
 
 /* The outputs as they are to be from here on, and digital ones that change. */
 static void make(struct interpreter *in, uint32_t set, uint32_t clear)

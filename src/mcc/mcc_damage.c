@@ -2,8 +2,6 @@
 
 #include <stddef.h>
 
-#include "mover_damage.h"
-
 static bool within(int64_t x, int64_t low, int64_t high)
 {
     return x >= low && x <= high;

@@ -123,4 +123,8 @@ bool mover_point(struct mover *p, struct ring *r, const struct mechanism *m, dou
 /* The point is taken. Until then an earlier *p can be put back: the chain keeps its commands. */
 void mover_accept(struct mover *p, struct ring *r, const struct point *point);
 
+/* Whether counts and places of a state, which came from outside, lead out of its arrays. */
+bool mover_damaged(const struct mover *p, const struct ring *r);
+bool queue_damaged(const struct queue *q);
+
 #endif

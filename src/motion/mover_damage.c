@@ -1,4 +1,5 @@
-#include "mover_damage.h"
+/* mover_damage - whether counts and places of a motion are such that it stays within its arrays. */
+#include "mover.h"
 
 static bool within(int64_t x, int64_t low, int64_t high)
 {

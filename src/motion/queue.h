@@ -1,4 +1,5 @@
-/* queue - interpolation points between the interpolation, which fills it, and the pulses. */
+/* queue - interpolation points between the interpolation, which fills it, and the pulses, with what
+ * a part program switches beside the axes. */
 #ifndef QUEUE_H
 #define QUEUE_H
 
@@ -6,7 +7,16 @@
 #include <stdint.h>
 
 #include "axis_count.h"
-#include "outputs.h"
+
+enum { OUTPUTS_DIGITAL = 32 };      /* P0 .. P31 of M62 to M65 */
+
+enum outputs_coolant { OUTPUTS_MIST = 1, OUTPUTS_FLOOD = 2 };   /* bits: M7, M8 */
+
+struct outputs {
+    double   spindle;   /* [rpm] M3 positive, M4 negative */
+    uint32_t digital;   /* bit n is output Pn */
+    int32_t  coolant;   /* enum outputs_coolant */
+};
 
 enum { QUEUE_SIZE = 1024 };
 

@@ -1,8 +1,7 @@
 #include "scurve_reach.h"
 
+#include <float.h>
 #include <math.h>
-
-#include "scurve_root.h"
 
 /* How the times are found.
  *
@@ -26,6 +25,39 @@
  * w = base + x^2. Along T, d way'/dT = w + x y/2; it never falls but within a sag. For v1 >= 0 it
  * is never below 0. So the first T that meets the target lies before a local maximum within a sag
  * that is far enough, else between two corners of the cases (x = acc, y = dec, x = 0). */
+
+/* Most roots take 4 or 5 steps. Where rounding leads them astray the bounds are halved instead. */
+enum { FREE_STEPS = 12, STEPS = 100 };
+
+/* Where z^4 + c[3] z^3 + c[2] z^2 + c[1] z + c[0] turns from negative to positive between low and
+ * high, to the last digits; the bound itself if it does not. A good guess saves time; one outside
+ * the bounds stands for high. */
+static double root(const double c[4], double low, double guess, double high)
+{
+    double z = guess > low && guess < high ? guess : high;
+    for (int i = 0; i < STEPS; i++) {
+        const double f = (((z + c[3]) * z + c[2]) * z + c[1]) * z + c[0];
+        const double d = ((4.0 * z + 3.0 * c[3]) * z + 2.0 * c[2]) * z + c[1];
+        const double h = (12.0 * z + 6.0 * c[3]) * z + 2.0 * c[2];
+        /* Laguerre's step, n = 4: n f/(f' +- sqrt((n - 1)^2 f'^2 - n (n - 1) f f'')). It triples
+         * the correct digits, and from far away it still goes at once to where the root may be. */
+        const double r = sqrt(fmax(0.0, 9.0 * d * d - 12.0 * f * h));
+        double next = z - 4.0 * f / (d + (d < 0.0 ? -r : r));
+        if (f > 0.0) {
+            high = z;
+        } else {
+            low = z;
+        }
+        if (i >= FREE_STEPS || !(next >= low && next <= high)) {
+            next = low + (high - low) / 2.0;
+        }
+        if (fabs(next - z) <= 4.0 * DBL_EPSILON * fabs(z)) {
+            return next;
+        }
+        z = next;
+    }
+    return z;
+}
 
 struct pulses {
     double base, v1, acc, dec;      /* see above */
@@ -63,7 +95,7 @@ static struct shape triangles(const struct pulses *p, struct range range)
     const double d = p->v1 - p->base;
     const double c[4] = { -d * d, -4.0 * p->way, 4.0 * (p->base + p->v1), 0.0 };
     const double rest = cbrt(4.0 * p->way);     /* the root if base = v1 = 0 */
-    const double u = scurve_root(c, range.low, rest, range.high);
+    const double u = root(c, range.low, rest, range.high);
     const double skew = u > 0.0 ? d / u : 0.0;
     return (struct shape){ .x = (u + skew) / 2.0, .y = (u - skew) / 2.0 };
 }
@@ -77,7 +109,7 @@ static double held(double flat, double free, double m, double way, struct range 
                           4.0 * m * free, 2.0 * free + m * m, 2.0 * m };
     /* The root if flat = free = 0: z^2 + m z = sqrt(2 m way). */
     const double q = sqrt(fmax(0.0, -c[0])), rest = q / (m / 2.0 + sqrt(m * m / 4.0 + q));
-    return scurve_root(c, z.low, rest, z.high);
+    return root(c, z.low, rest, z.high);
 }
 
 static struct shape acc_held(const struct pulses *p, struct range range)

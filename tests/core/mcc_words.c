@@ -1,6 +1,6 @@
 /* Offsets, home, stops and outputs: what the interpreter makes of each word. */
 #include "mcc_reader.h"
-#include "outputs.h"
+#include "queue.h"
 
 /* The next command is a motion to a point. */
 static void expect_move(struct reader *x, enum command_type type, double a, double b, double c)

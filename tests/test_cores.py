@@ -1,0 +1,117 @@
+"""The C cores: who uses whom. `python tests/test_cores.py` draws it."""
+
+import graphlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "src"))
+
+from motionfmu.fmu import cores  # noqa: E402
+
+SOURCE = ROOT / "src"
+CORES = sorted(f.parent.name for f in SOURCE.glob("*/core.toml"))
+USES = {core: set(cores.uses(SOURCE / core)) for core in CORES}
+# Those that know no controller, and what they may not even mention.
+SHARED = ("motion", "gcode", "pulse", "tasks")
+WORDS = re.compile(r"(?<![a-z])(mcc|mccl|epcio|msp430|fmi|fmu)(?![a-z])", re.IGNORECASE)
+Graph = dict[str, set[str]]
+
+
+def files(core: str) -> list[Path]:
+    return [*SOURCE.glob(f"{core}/*.[ch]")]
+
+
+def core_of() -> dict[str, str]:
+    """The core of each header."""
+    return {f.name: core for core in CORES for f in files(core) if f.suffix == ".h"}
+
+
+def included(core: str) -> set[str]:
+    """The cores whose headers the files of a core include; a header of none by its own name."""
+    found = {core_of().get(name, name) for f in files(core) for name in cores.included(f)}
+    return found - {core}
+
+
+def circle(graph: Graph) -> list[str]:
+    """What uses each other in turn; empty if nothing does."""
+    try:
+        graphlib.TopologicalSorter(graph).prepare()
+    except graphlib.CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def drawing(uses: Graph) -> str:
+    """Each core above all that it uses, with its arrows."""
+    level: dict[str, int] = {}
+    for core in graphlib.TopologicalSorter(uses).static_order():
+        level[core] = 1 + max((level[u] for u in uses[core]), default=-1)
+    rows = sorted(uses, key=lambda core: (-level[core], core))
+    width = max(map(len, rows))
+    return "\n".join(
+        f"{level[c]}  {c:<{width}}{' -> ' + ' '.join(sorted(uses[c])) if uses[c] else ''}".rstrip()
+        for c in rows
+    )
+
+
+def test_no_cores_use_each_other_in_a_circle() -> None:
+    assert circle(USES) == []
+
+
+def test_a_circle_is_found() -> None:
+    assert set(circle({"a": {"b"}, "b": {"c"}, "c": {"a"}})) == {"a", "b", "c"}
+
+
+def test_no_files_include_each_other_in_a_circle() -> None:
+    headers = {f.name: set(cores.included(f)) for c in CORES for f in files(c) if f.suffix == ".h"}
+    assert circle(headers) == []
+
+
+@pytest.mark.parametrize("core", CORES)
+def test_a_core_uses_what_it_includes_and_nothing_else(core: str) -> None:
+    assert included(core) == USES[core]
+
+
+@pytest.mark.parametrize("core", SHARED)
+def test_a_shared_core_knows_no_controller(core: str) -> None:
+    assert set(cores.closure(SOURCE, [core])) <= set(SHARED)
+    told = [
+        f"{f.relative_to(ROOT)}:{n}: {line}"
+        for f in sorted(SOURCE.glob(f"{core}/*"))
+        for n, line in enumerate(f.read_text().splitlines(), 1)
+        if WORDS.search(line)
+    ]
+    assert told == []
+
+
+def test_a_word_of_a_controller_is_found() -> None:
+    assert all(WORDS.search(t) for t in ("the MCC library", "epcio_step", "an FMU", "FMI 3"))
+    assert not WORDS.search("fmin(l.acc, l.dec)")
+
+
+@pytest.mark.parametrize("core", CORES)
+def test_a_core_stands_alone(core: str, tmp_path: Path) -> None:
+    """Its headers each by itself, and with what it uses a library without a gap."""
+    names = cores.closure(SOURCE, [core])
+    alone = tmp_path / "alone.c"
+    alone.write_text("")
+    for header in sorted(SOURCE.glob(f"{core}/*.h")):
+        alone.write_text(f'#include "{header.name}"\n')
+        see = [f"-I{SOURCE / name}" for name in names]
+        subprocess.run(["cc", "-std=c11", "-fsyntax-only", *see, alone], check=True)
+    whole = ["-Wl,--whole-archive", *[ROOT / f"build/lib{n}.a" for n in names]]
+    link = ["-shared", "-Wl,--no-undefined", *whole, "-Wl,--no-whole-archive", "-lm"]
+    subprocess.run(["cc", *link, "-o", tmp_path / "core.so"], check=True)
+
+
+def test_the_design_draws_the_cores_as_they_are() -> None:
+    assert f"```\n{drawing(USES)}\n```" in (ROOT / "DESIGN.md").read_text()
+
+
+if __name__ == "__main__":
+    print(drawing(USES))
