@@ -134,7 +134,8 @@ static void refusals(void)
     CHECK(command_move(&c, &m, &limits, COMMAND_LINE, 0.1, &why) == COMMAND_FAR);
     path_line(&c.path, near, across);
     CHECK(command_move(&c, &m, &limits, COMMAND_LINE, 0.1, &why) == COMMAND_OK);
-    /* The elbow is bent most where the line is nearest to the shoulder, between two places looked at. */
+    /* The elbow is bent most where the line is nearest to the shoulder, between two places that
+     * are looked at. */
     const double bent = -acos((0.36 - 9.0 - 6.25) / 15.0) * 360.0 / TURN;
     m.joint[1].bounded = true;
     m.joint[1].high = 0.0;

@@ -2,6 +2,7 @@
 #ifndef CHECK_H
 #define CHECK_H
 
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -27,6 +28,17 @@ static int check_failures;
         } \
     } while (0)
 
+/* Two numbers may differ by so much. */
+#define CHECK_NEAR(got, want, tolerance) \
+    do { \
+        const double check_got = (got), check_want = (want); \
+        if (!(fabs(check_got - check_want) <= (tolerance))) { \
+            check_failures++; \
+            printf("%s:%d: %s = %.17g, want %.17g\n", __FILE__, __LINE__, #got, check_got, \
+                   check_want); \
+        } \
+    } while (0)
+
 static inline int check_result(void)
 {
     if (check_failures > 0)
@@ -41,6 +53,15 @@ static inline int64_t check_random(uint64_t *state, int64_t low, int64_t high)
     *state ^= *state >> 7;
     *state ^= *state << 17;
     return low + (int64_t)(*state % (uint64_t)(high - low + 1));
+}
+
+/* Uniform in [low, high), the same sequence on every machine (xorshift64). */
+static inline double check_real(uint64_t *state, double low, double high)
+{
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return low + (high - low) * ((double)(*state >> 11) * 0x1p-53);
 }
 
 #endif

@@ -1,7 +1,7 @@
 /* Bytes as cycles and events of tasks: small ones against a processor that is ticked clock by
  * clock; any others by what must hold of each event: the most urgent task has the processor,
  * every run gets its time, no request is lost but to one that waits. */
-#include "../core/cyclic_ticks.h"
+#include "../core/tasks/cyclic_ticks.h"
 #include "fuzz.h"
 
 const int fuzz_count = 15000;

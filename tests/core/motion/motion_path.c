@@ -1,5 +1,7 @@
 /* Geometry of lines, arcs and helices against trigonometry of its own. */
-#include "mcc_check.h"
+#include <string.h>
+
+#include "check.h"
 #include "path.h"
 
 static const double PI = 3.14159265358979323846;
@@ -109,13 +111,13 @@ static void by_radius(void)
     uint64_t seed = 3;
     for (int i = 0; i < 500; i++) {
         double start[AXES] = { 0 }, end[AXES] = { 0 }, centre[2], half, miss;
-        start[0] = mcc_random(&seed, -50, 50);
-        start[1] = mcc_random(&seed, -50, 50);
-        end[0] = mcc_random(&seed, -50, 50);
-        end[1] = mcc_random(&seed, -50, 50);
+        start[0] = check_real(&seed, -50, 50);
+        start[1] = check_real(&seed, -50, 50);
+        end[0] = check_real(&seed, -50, 50);
+        end[1] = check_real(&seed, -50, 50);
         const double chord = hypot(end[0] - start[0], end[1] - start[1]);
-        const double r = chord / 2.0 * mcc_random(&seed, 1.001, 5.0);
-        const bool ccw = mcc_random(&seed, 0, 1) < 0.5, large = mcc_random(&seed, 0, 1) < 0.5;
+        const double r = chord / 2.0 * check_real(&seed, 1.001, 5.0);
+        const bool ccw = check_real(&seed, 0, 1) < 0.5, large = check_real(&seed, 0, 1) < 0.5;
         struct path p;
         CHECK(path_centre_by_radius(PATH_XY, start, end, large ? -r : r, ccw, centre, &half) ==
               PATH_OK);
@@ -132,9 +134,9 @@ static void by_point(void)
 {
     uint64_t seed = 4;
     for (int i = 0; i < 500; i++) {
-        const double r = mcc_random(&seed, 0.5, 80.0), a0 = mcc_random(&seed, -3.0, 3.0);
-        const double turn = mcc_random(&seed, 0.1, 6.0) * (i % 2 ? 1.0 : -1.0);
-        const double part = mcc_random(&seed, 0.1, 0.9), c0 = mcc_random(&seed, -9, 9);
+        const double r = check_real(&seed, 0.5, 80.0), a0 = check_real(&seed, -3.0, 3.0);
+        const double turn = check_real(&seed, 0.1, 6.0) * (i % 2 ? 1.0 : -1.0);
+        const double part = check_real(&seed, 0.1, 0.9), c0 = check_real(&seed, -9, 9);
         double start[AXES] = { 0 }, end[AXES] = { 0 }, centre[2], miss;
         const double via[2] = { c0 + r * cos(a0 + part * turn), r * sin(a0 + part * turn) };
         bool ccw;

@@ -20,7 +20,7 @@ static void no_time_is_lost(void)
     CHECK_EQ(MCC_set_fspd(&m, 20.0), 0);
     CHECK_EQ(MCC_set_inc(&m), 0);
     for (int i = 0; i < 60; i++) {
-        const double way = mcc_random(&seed, 0.01, 0.4);
+        const double way = check_real(&seed, 0.01, 0.4);
         CHECK(MCC_line_x(&m, way) > 0);
         want += time_of(way, 20.0, 0.004, 0.003);
     }

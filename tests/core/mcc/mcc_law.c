@@ -28,7 +28,7 @@ static void p_law_alone(uint64_t seed)
         for (int i = 0; i < AXES; i++) {
             look.error[i] = (int32_t)check_random(&seed, -20000, 20000);
             look.pulses[i] = (int32_t)check_random(&seed, -1000000, 1000000);
-            look.speed[i] = mcc_random(&seed, -1e5, 1e5);
+            look.speed[i] = check_real(&seed, -1e5, 1e5);
         }
         law_tick(&c, &s, &look, 10.0, volts);
         for (int i = 0; i < 3; i++) {

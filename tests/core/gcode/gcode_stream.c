@@ -1,7 +1,7 @@
 /* A program is read through a window: any length, any place to go on from, at a known speed. */
 #include <time.h>
 
-#include "mcc_reader.h"
+#include "gcode_reader.h"
 
 /* A source that shows no byte more than it must, in a buffer that the next call spoils. */
 struct narrow {

@@ -1,5 +1,5 @@
 /* Every way in which a part program can be wrong: which fault, in which line, at which text. */
-#include "mcc_reader.h"
+#include "gcode_reader.h"
 
 static void faults(void)
 {
@@ -107,7 +107,7 @@ static void faults(void)
         { "G3 I5 P1.5", 1, "P1.5", FAULT_VALUE },
         { "G3 I5 P0", 1, "P0", FAULT_VALUE },
     };
-    /* Two have tests of their own below, and mcc_stream.c has those of a source. */
+    /* Two have tests of their own below, and gcode_stream.c has those of a source. */
     bool seen[FAULT_COUNT] = { [FAULT_NONE] = true, [FAULT_LINE_LENGTH] = true,
                                [FAULT_WORD_COUNT] = true, [FAULT_READ] = true,
                                 [FAULT_ZERO] = true };

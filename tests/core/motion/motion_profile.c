@@ -1,5 +1,5 @@
 /* Trapezoidal profile: closed-form durations, limits under any sequence of replanning. */
-#include "mcc_check.h"
+#include "check.h"
 #include "profile.h"
 
 /* T of a rest-to-rest move: L/v + v (1/a + 1/d)/2 if v is reached, else the triangle. */
@@ -26,9 +26,9 @@ static void rest_to_rest(void)
 {
     uint64_t seed = 1;
     for (int i = 0; i < 2000; i++) {
-        const double way = pow(10.0, mcc_random(&seed, -6.0, 4.0));
-        const double acc = mcc_random(&seed, 10.0, 5000.0), dec = mcc_random(&seed, 10.0, 5000.0);
-        const struct profile_limits l = { mcc_random(&seed, 0.1, 500.0), { acc, dec, 0.0, 0.0 } };
+        const double way = pow(10.0, check_real(&seed, -6.0, 4.0));
+        const double acc = check_real(&seed, 10.0, 5000.0), dec = check_real(&seed, 10.0, 5000.0);
+        const struct profile_limits l = { check_real(&seed, 0.1, 500.0), { acc, dec, 0.0, 0.0 } };
         struct profile p;
         plan(&p, 0.0, 0.0, way, &l);
         const double want = duration(way, l.speed, acc, dec);
@@ -49,13 +49,13 @@ static void replanned(void)
 {
     uint64_t seed = 2;
     for (int i = 0; i < 500; i++) {
-        const double way = mcc_random(&seed, 0.01, 200.0);
-        const double acc = mcc_random(&seed, 50.0, 3000.0), dec = mcc_random(&seed, 50.0, 3000.0);
+        const double way = check_real(&seed, 0.01, 200.0);
+        const double acc = check_real(&seed, 50.0, 3000.0), dec = check_real(&seed, 50.0, 3000.0);
         struct profile p;
         double s = 0.0, v = 0.0, fastest = 0.0;
         for (int k = 0; k < 8; k++) {
-            const double target = k == 7 ? 50.0 : mcc_random(&seed, 0.0, 1.0) < 0.3
-                                ? 0.0 : mcc_random(&seed, 1.0, 300.0);
+            const double target = k == 7 ? 50.0 : check_real(&seed, 0.0, 1.0) < 0.3
+                                ? 0.0 : check_real(&seed, 1.0, 300.0);
             const struct profile_limits l = { target, { acc, dec, 0.0, 0.0 } };
             const double s0 = s, v0 = v;
             fastest = fmax(fastest, target);
@@ -70,7 +70,7 @@ static void replanned(void)
                 CHECK(p.acc[j] <= acc * (1.0 + 1e-9));
                 CHECK(p.time[j] == 0.0 || !far || p.acc[j] >= -dec * (1.0 + 1e-6));
             }
-            const double t1 = k == 7 ? p.total : mcc_random(&seed, 0.0, 1.1) * p.total;
+            const double t1 = k == 7 ? p.total : check_real(&seed, 0.0, 1.1) * p.total;
             double last_s = s;
             for (int j = 1; j <= 50; j++) {
                 s = at(&p, j < 50 ? t1 * j / 50.0 : t1).s;

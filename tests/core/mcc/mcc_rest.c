@@ -29,11 +29,11 @@ static void chains(bool smooth)
         MCC_set_inc(&m);
         CHECK_EQ(mcc_set_tolerance(&m, 0.1), 0);
         for (int k = 0; k < 12; k++) {
-            const double x = mcc_random(&seed, 0.01, 3.0), y = mcc_random(&seed, -1.0, 1.0) * x;
+            const double x = check_real(&seed, 0.01, 3.0), y = check_real(&seed, -1.0, 1.0) * x;
             CHECK(MCC_line(&m, (double[AXES]){ x, y }) > 0);
         }
         for (int stops = 0; stops < 6; stops++) {
-            points_to_rest((int)mcc_random(&seed, 100.0, 200.0));
+            points_to_rest((int)check_real(&seed, 100.0, 200.0));
             if (m.ring.count == 0) {
                 break;
             }

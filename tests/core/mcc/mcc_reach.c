@@ -72,7 +72,7 @@ static int whole_motion(uint64_t *seed, bool arcs)
     struct run r = { 0 };
     int n = 0;
     while (r.n < LONGEST && point(&r)) {
-        if (mcc_random(seed, 0.0, 1.0) < 0.02) {
+        if (check_real(seed, 0.0, 1.0) < 0.02) {
             n += compared(arcs);
         }
     }
@@ -82,11 +82,11 @@ static int whole_motion(uint64_t *seed, bool arcs)
 
 static void random_ramps(uint64_t *seed)
 {
-    MCC_set_acc_type(&m, mcc_random(seed, 0.0, 1.0) < 0.5 ? 'S' : 'T');
-    MCC_set_dec_type(&m, mcc_random(seed, 0.0, 1.0) < 0.5 ? 'S' : 'T');
-    MCC_set_acc_step(&m, mcc_random(seed, 5.0, 100.0));
-    MCC_set_dec_step(&m, mcc_random(seed, 5.0, 100.0));
-    MCC_set_fspd(&m, mcc_random(seed, 5.0, 60.0));
+    MCC_set_acc_type(&m, check_real(seed, 0.0, 1.0) < 0.5 ? 'S' : 'T');
+    MCC_set_dec_type(&m, check_real(seed, 0.0, 1.0) < 0.5 ? 'S' : 'T');
+    MCC_set_acc_step(&m, check_real(seed, 5.0, 100.0));
+    MCC_set_dec_step(&m, check_real(seed, 5.0, 100.0));
+    MCC_set_fspd(&m, check_real(seed, 5.0, 60.0));
 }
 
 /* Lines and circles: one after the other, mixed at their corners, or in a chain. */
@@ -103,7 +103,7 @@ static void on_paths(bool quit, double tolerance)
             if (tolerance == 0.0 || k == 0) {
                 random_ramps(&seed);
             }
-            const double x = mcc_random(&seed, -10.0, 10.0), y = mcc_random(&seed, -3.0, 3.0);
+            const double x = check_real(&seed, -10.0, 10.0), y = check_real(&seed, -3.0, 3.0);
             CHECK((k % 4 == 3 ? MCC_circle_xy(&m, x, y, k % 8 == 3)
                               : MCC_line(&m, (double[AXES]){ x, y })) > 0);
         }
@@ -122,18 +122,18 @@ static void on_their_own(void)
         for (int k = 0; k < AXES; k++) {
             machine.asyn.acc_type[k] = i & 1 ? 'S' : 'T';
             machine.asyn.dec_type[k] = i & 2 ? 'S' : 'T';
-            machine.asyn.acc_time[k] = mcc_random(&seed, 0.02, 0.4);
-            machine.asyn.dec_time[k] = mcc_random(&seed, 0.02, 0.4);
+            machine.asyn.acc_time[k] = check_real(&seed, 0.02, 0.4);
+            machine.asyn.dec_time[k] = check_real(&seed, 0.02, 0.4);
         }
         open_machine(&machine);
-        CHECK(MCC_ptp_asyn(&m, (double[AXES]){ mcc_random(&seed, -40.0, 40.0),
-                                               mcc_random(&seed, -40.0, 40.0) }) > 0);
+        CHECK(MCC_ptp_asyn(&m, (double[AXES]){ check_real(&seed, -40.0, 40.0),
+                                               check_real(&seed, -40.0, 40.0) }) > 0);
         n += whole_motion(&seed, false);
         struct run r = { 0 };
         for (int k = 0; k < 20; k++) {
-            CHECK_EQ(MCC_jog_c(&m, k % 2, mcc_random(&seed, 0.0, 1.0) < 0.5 ? 1 : -1,
-                               mcc_random(&seed, 1.0, 30.0)), 0);
-            points(&r, r.n + (int)mcc_random(&seed, 1.0, 300.0));
+            CHECK_EQ(MCC_jog_c(&m, k % 2, check_real(&seed, 0.0, 1.0) < 0.5 ? 1 : -1,
+                               check_real(&seed, 1.0, 30.0)), 0);
+            points(&r, r.n + (int)check_real(&seed, 1.0, 300.0));
             n += compared(false);
         }
     }

@@ -11,17 +11,17 @@ static struct path random_arc(uint64_t *seed, int i)
     struct path p;
     double a[AXES] = { 0.0 }, b[AXES] = { 0.0 }, centre[2], miss;
     const enum path_plane plane = (enum path_plane)(i % 3);
-    const double r = mcc_random(seed, 0.1, 80.0), at = mcc_random(seed, 0.0, TAU);
-    const double to = mcc_random(seed, 0.0, TAU), grown = r + mcc_random(seed, -1e-3, 1e-3) * r;
+    const double r = check_real(seed, 0.1, 80.0), at = check_real(seed, 0.0, TAU);
+    const double to = check_real(seed, 0.0, TAU), grown = r + check_real(seed, -1e-3, 1e-3) * r;
 
-    centre[0] = mcc_random(seed, -50.0, 50.0);
-    centre[1] = mcc_random(seed, -50.0, 50.0);
+    centre[0] = check_real(seed, -50.0, 50.0);
+    centre[1] = check_real(seed, -50.0, 50.0);
     a[path_first(plane)] = centre[0] + r * cos(at);
     a[path_second(plane)] = centre[1] + r * sin(at);
     b[path_first(plane)] = centre[0] + grown * cos(to);
     b[path_second(plane)] = centre[1] + grown * sin(to);
-    b[plane] = mcc_random(seed, -5.0, 5.0);
-    b[4] = mcc_random(seed, -5.0, 5.0);
+    b[plane] = check_real(seed, -5.0, 5.0);
+    b[4] = check_real(seed, -5.0, 5.0);
     CHECK_EQ(path_arc(&p, plane, a, b, centre, i & 8, 1 + i % 2, &miss), PATH_OK);
     return p;
 }
@@ -33,7 +33,7 @@ static void extent_is_exact(void)
     uint64_t seed = 3;
     for (int i = 0; i < 400; i++) {
         const struct path p = random_arc(&seed, i);
-        double from = mcc_random(&seed, 0.0, p.length), to = mcc_random(&seed, from, p.length);
+        double from = check_real(&seed, 0.0, p.length), to = check_real(&seed, from, p.length);
         if (i % 4 == 0) {
             from = 0.0;
             to = p.length;

@@ -9,7 +9,7 @@ enum { COUNT = 200 };
 static void send(uint64_t *seed, int i, double at[AXES], struct path *side)
 {
     const double size = i % 50 < 25 ? 0.3 : 8.0;
-    const double a = mcc_random(seed, 0.2, 1.0) * size, b = mcc_random(seed, -1.0, 1.0) * size;
+    const double a = check_real(seed, 0.2, 1.0) * size, b = check_real(seed, -1.0, 1.0) * size;
     const double end[AXES] = { at[0] + a, at[1] + b };
     const double via[2] = { at[0] + 0.5 * a + 0.1 * b, at[1] + 0.5 * b - 0.1 * a };
 
@@ -104,13 +104,13 @@ static void feeds(bool smooth)
         CHECK_EQ(mcc_set_tolerance(&m, 0.05), 0);
         MCC_set_inc(&m);
         while (r.n < LONGEST) {
-            const int keep = (int)mcc_random(&seed, 1.0, 6.0);
+            const int keep = (int)check_real(&seed, 1.0, 6.0);
             while (sent < COUNT && m.ring.count < keep) {
-                const bool fast = mcc_random(&seed, 0.0, 1.0) < 0.5;
-                feed[++sent] = fast ? 100.0 : mcc_random(&seed, 3.0, 100.0);
+                const bool fast = check_real(&seed, 0.0, 1.0) < 0.5;
+                feed[++sent] = fast ? 100.0 : check_real(&seed, 3.0, 100.0);
                 MCC_set_fspd(&m, feed[sent]);
-                const double a = mcc_random(&seed, 0.1, 1.0) * size;
-                const double b = mcc_random(&seed, -0.1, 0.1) * size;
+                const double a = check_real(&seed, 0.1, 1.0) * size;
+                const double b = check_real(&seed, -0.1, 0.1) * size;
                 CHECK(MCC_line(&m, (double[AXES]){ a, b }) > 0);
             }
             const int chain = m.mover.motion == MOVER_CHAIN ? chain_number() : 0;
@@ -211,13 +211,13 @@ static void brakes(void)
     uint64_t seed = 9;
     for (int n = 0; n < 2000; n++) {
         const bool many = n % 2;
-        const double dec = mcc_random(&seed, 100.0, 1000.0);
+        const double dec = check_real(&seed, 100.0, 1000.0);
         struct one all[LIMITS + 1] = { { 0.0, 0.0 } };
         struct brake b;
         int count = 1;
         brake_rest(&b);
         while (count <= (many ? LIMITS : BRAKE_STEPS - 1)) {
-            const double speed = mcc_random(&seed, 1.0, 60.0), way = mcc_random(&seed, 0.0, 0.4);
+            const double speed = check_real(&seed, 1.0, 60.0), way = check_real(&seed, 0.0, 0.4);
             all[count++] = (struct one){ speed, 0.05 * speed };
             brake_limit(&b, speed, 0.05 * speed);
             for (int i = 0; i < count; i++) {

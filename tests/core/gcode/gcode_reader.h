@@ -1,6 +1,6 @@
-/* mcc_reader - a part program in memory and its commands one by one, for the tests. */
-#ifndef MCC_READER_H
-#define MCC_READER_H
+/* gcode_reader - a part program in memory and its commands one by one, for the tests. */
+#ifndef GCODE_READER_H
+#define GCODE_READER_H
 
 #include "interpreter.h"
 #include "mcc_check.h"

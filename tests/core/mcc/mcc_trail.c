@@ -14,22 +14,22 @@ static void push(double x, double y, double z)
 static void circle_is_exact(uint64_t seed)
 {
     for (int trial = 0; trial < 40; trial++) {
-        const double radius = exp(mcc_random(&seed, log(0.5), log(2000.0)));
-        const double step = exp(mcc_random(&seed, log(1e-5), log(0.3)));    /* [rad] */
-        const double lag = mcc_random(&seed, 2.0, 8.0);                     /* frames */
+        const double radius = exp(check_real(&seed, log(0.5), log(2000.0)));
+        const double step = exp(check_real(&seed, log(1e-5), log(0.3)));    /* [rad] */
+        const double lag = check_real(&seed, 2.0, 8.0);                     /* frames */
         const double tilt = trial % 2 ? 0.7 : 0.0, c = cos(tilt), s = sin(tilt);
         double angle = 0.0, before[10] = { 0.0 };
         trail_start(&t, (double[3]){ radius, 0.0, 0.0 });
         for (int n = 1; n <= 400; n++) {
             memmove(before + 1, before, 9 * sizeof *before);
             before[0] = angle;
-            angle += step * mcc_random(&seed, 0.7, 1.3);
+            angle += step * check_real(&seed, 0.7, 1.3);
             push(radius * cos(angle), radius * sin(angle) * c, radius * sin(angle) * s);
             if (n < 12) {
                 continue;
             }
             const double at = before[(int)lag] + (lag - (int)lag) * 0.5 * step;
-            const double off = radius * mcc_random(&seed, -0.02, 0.02), r = radius + off;
+            const double off = radius * check_real(&seed, -0.02, 0.02), r = radius + off;
             const double tool[3] = { r * cos(at), r * sin(at) * c, r * sin(at) * s };
             const struct trail_foot f = trail_nearest(&t, tool, n);
             const double want[3] = { -off * cos(at), -off * sin(at) * c, -off * sin(at) * s };
@@ -46,14 +46,14 @@ static void circle_is_exact(uint64_t seed)
 static void line_is_exact(uint64_t seed)
 {
     for (int trial = 0; trial < 200; trial++) {
-        const double a = mcc_random(&seed, -3.0, 3.0), b = mcc_random(&seed, -1.5, 1.5);
+        const double a = check_real(&seed, -3.0, 3.0), b = check_real(&seed, -1.5, 1.5);
         const double way[3] = { cos(a) * cos(b), sin(a) * cos(b), sin(b) };
         const double side[3] = { -sin(a), cos(a), 0.0 };
-        const double off = mcc_random(&seed, -1.0, 1.0);
+        const double off = check_real(&seed, -1.0, 1.0);
         double s = 0.0, tool[3];
         trail_start(&t, (double[3]){ 0.0 });
         for (int n = 0; n < 60; n++) {
-            s += mcc_random(&seed, 1e-4, 0.2);
+            s += check_real(&seed, 1e-4, 0.2);
             push(s * way[0], s * way[1], s * way[2]);
         }
         for (int k = 0; k < 3; k++) {

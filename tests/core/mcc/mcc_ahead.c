@@ -6,15 +6,15 @@ static void random_path(uint64_t *seed, const double start[AXES], struct path *p
 {
     double end[AXES] = { 0 }, miss;
     for (int i = 0; i < 3; i++) {
-        end[i] = start[i] + mcc_random(seed, -10.0, 10.0);
+        end[i] = start[i] + check_real(seed, -10.0, 10.0);
     }
-    if (mcc_random(seed, 0.0, 1.0) < 0.5) {
+    if (check_real(seed, 0.0, 1.0) < 0.5) {
         path_line(p, start, end);
         return;
     }
-    const double r = mcc_random(seed, 1.0, 20.0), a = mcc_random(seed, 0.0, 6.28);
+    const double r = check_real(seed, 1.0, 20.0), a = check_real(seed, 0.0, 6.28);
     const double centre[2] = { start[0] + r * cos(a), start[1] + r * sin(a) };
-    const double b = a + mcc_random(seed, 1.0, 5.0);
+    const double b = a + check_real(seed, 1.0, 5.0);
     end[0] = centre[0] - r * cos(b);
     end[1] = centre[1] - r * sin(b);
     CHECK_EQ(path_arc(p, PATH_XY, start, end, centre, true, 1, &miss), FAULT_NONE);
@@ -25,8 +25,8 @@ static void corners(void)
 {
     uint64_t seed = 1;
     for (int i = 0; i < 300; i++) {
-        const double start[AXES] = { mcc_random(&seed, -5.0, 5.0) };
-        const double tolerance = pow(10.0, mcc_random(&seed, -4.0, 0.0));
+        const double start[AXES] = { check_real(&seed, -5.0, 5.0) };
+        const double tolerance = pow(10.0, check_real(&seed, -4.0, 0.0));
         struct path a, b;
         struct corner k;
         double x[4][AXES], slope[AXES], end[AXES], way[AXES];
@@ -136,7 +136,7 @@ static void anything(bool smooth)
 {
     uint64_t seed = 5;
     for (int i = 0; i < 40; i++) {
-        const double feed = mcc_random(&seed, 10.0, 100.0), size = i % 2 ? 5.0 : 0.05;
+        const double feed = check_real(&seed, 10.0, 100.0), size = i % 2 ? 5.0 : 0.05;
         const struct limits l = limits_at(feed, smooth);
         struct record r = { 0 };
         struct stream x = { 0 };
@@ -154,19 +154,19 @@ static void anything(bool smooth)
                     CHECK(MCC_motion_delay(&m, 20.0) > 0);
                     continue;
                 }
-                const double a = mcc_random(&seed, 0.2, 1.0) * size;
-                const double b = mcc_random(&seed, -1.0, 1.0) * size;
+                const double a = check_real(&seed, 0.2, 1.0) * size;
+                const double b = check_real(&seed, -1.0, 1.0) * size;
                 CHECK((sent % 5 == 4 && i % 4 == 0
                        ? MCC_arc_xy(&m, a, b, 2.0 * a, 0.0)
                        : MCC_line(&m, (double[AXES]){ a, b, 0.3 * b })) > 0);
             }
-            const double die = mcc_random(&seed, 0, 1);
+            const double die = check_real(&seed, 0, 1);
             if (die < 0.005) {
                 MCC_motion_hold(&m);
             } else if (die < 0.03) {
                 MCC_motion_conti(&m);
             } else if (die < 0.04) {
-                MCC_set_over_spd(&m, mcc_random(&seed, 0.0, 200.0));
+                MCC_set_over_spd(&m, check_real(&seed, 0.0, 200.0));
             } else if (die < 0.0401 && i % 5 == 0 && MCC_motion_abort(&m) == 0) {
                 aborted = true;
             }

@@ -1,5 +1,5 @@
 /* Profiles with S-shaped ramps: durations, limits at every sample under any replanning, joints. */
-#include "mcc_check.h"
+#include "check.h"
 #include "profile.h"
 
 static struct scurve_start at(struct profile *p, double t)
@@ -10,7 +10,7 @@ static struct scurve_start at(struct profile *p, double t)
 
 static double any(uint64_t *seed, double low, double high)
 {
-    return exp(mcc_random(seed, log(low), log(high)));
+    return exp(check_real(seed, log(low), log(high)));
 }
 
 static struct ramp_limits random_ramp(uint64_t *seed, int kind)
@@ -36,7 +36,7 @@ static void optimal(void)
         profile_plan(&p, &rest, way, &l);
         CHECK(scurve_plan(&best, &rest, way, &own) == SCURVE_OK);
         CHECK_NEAR(p.total, best.total, 1e-9 * best.total);
-        const double t = mcc_random(&seed, 0.0, 1.0) * p.total;
+        const double t = check_real(&seed, 0.0, 1.0) * p.total;
         const struct scurve_start on = at(&p, t);
         profile_plan(&p, &on, way, &l);
         CHECK_NEAR(t + p.total, best.total, 1e-6 * best.total);
@@ -71,8 +71,8 @@ static void replanned(void)
         struct profile p;
         double fastest = 0.0;
         for (int k = 0; k < 8; k++) {
-            const double target = k == 7 ? 50.0 : mcc_random(&seed, 0.0, 1.0) < 0.3
-                                ? 0.0 : mcc_random(&seed, 1.0, 300.0);
+            const double target = k == 7 ? 50.0 : check_real(&seed, 0.0, 1.0) < 0.3
+                                ? 0.0 : check_real(&seed, 1.0, 300.0);
             const struct profile_limits l = { target, r };
             const struct scurve_start before = x;
             fastest = fmax(fastest, target);
@@ -82,7 +82,7 @@ static void replanned(void)
             CHECK_NEAR(x.s, before.s, 1e-9 * way + 2e-9 * fastest);   /* 1 ns of a jump of a */
             CHECK(!far || fabs(x.v - before.v) <= 1e-6 * fastest);
             CHECK(!far || i % 3 != 2 || fabs(x.a - before.a) <= 1e-6 * (r.acc + r.dec));
-            const double t1 = k == 7 ? p.total : mcc_random(&seed, 0.0, 1.1) * p.total;
+            const double t1 = k == 7 ? p.total : check_real(&seed, 0.0, 1.1) * p.total;
             const double dt = t1 / 60.0;
             struct scurve_start last = x;
             for (int j = 1; j <= 60; j++) {

@@ -162,8 +162,8 @@ static void asyn_reactions(void)
         const bool s = run_no % 2 == 1;
         struct motion w[2] = { { .n = 0 } };
         struct record r = { 0 };
-        const double target[AXES] = { mcc_random(&random, -90.0, 90.0),
-                                      mcc_random(&random, -90.0, 90.0) };
+        const double target[AXES] = { check_real(&random, -90.0, 90.0),
+                                      check_real(&random, -90.0, 90.0) };
         const double acc = s ? 5000.0 / 0.75 : 5000.0, jerk = acc / 0.025;
         bool aborted = false;
 
@@ -172,13 +172,13 @@ static void asyn_reactions(void)
         CHECK_EQ(MCC_set_ptp_asyn_decc_type(&m, s ? "SSSSSS" : "TTTTTT"), 0);
         CHECK_EQ(MCC_ptp_asyn(&m, target), 1);
         for (int k = 0; k < 2000 && !aborted; k++) {
-            const double what = mcc_random(&random, 0.0, 1.0);
+            const double what = check_real(&random, 0.0, 1.0);
             if (what < 0.02) {
                 MCC_motion_hold(&m);
             } else if (what < 0.05) {
                 MCC_motion_conti(&m);
             } else if (what < 0.07) {
-                MCC_set_ptp_ospd(&m, mcc_random(&random, 0.0, 200.0));
+                MCC_set_ptp_ospd(&m, check_real(&random, 0.0, 200.0));
             } else if (what < 0.071) {
                 aborted = MCC_motion_abort(&m) == 0;
             }
@@ -329,7 +329,7 @@ static void jog_steps(void)
     CHECK(MCC_check_stop(&m) && r.last.place[0] == 0.12345 && r.last.place[1] == -3.0);
     pulses = 123;
     for (int k = 0; k < 50; k++) {
-        const int32_t n = (int32_t)mcc_random(&random, -3000.0, 3000.0);
+        const int32_t n = (int32_t)check_real(&random, -3000.0, 3000.0);
         CHECK_EQ(MCC_jog_s(&m, 0, n), 0);
         run(&r);
         pulses += n;
@@ -365,7 +365,7 @@ static void wheel(void)
         REFUSED(MCC_line_x(&m, 1.0), MCC_COMMAND_NOTACCEPTED);
         CHECK_EQ(task_status(&m), TASK_WHEEL);
         for (int j = 0; j < 3000; j++) {
-            const int32_t n = (int32_t)mcc_random(&random, -60.0, 90.0);
+            const int32_t n = (int32_t)check_real(&random, -60.0, 90.0);
             counts += n;
             m.signals.enc_aux[1] = (int32_t)((uint32_t)m.signals.enc_aux[1] + (uint32_t)n);
             if (step(&r)) {

@@ -159,26 +159,26 @@ static void anything(void)
         MCC_set_acc_step(&m, 20.0);
         MCC_set_dec_step(&m, 30.0);
         for (int k = 0; k < 40; k++) {
-            MCC_set_fspd(&m, mcc_random(&seed, 5.0, 60.0));
-            if (mcc_random(&seed, 0, 1) < 0.5) {
+            MCC_set_fspd(&m, check_real(&seed, 5.0, 60.0));
+            if (check_real(&seed, 0, 1) < 0.5) {
                 MCC_enable_quit(&m);
             } else {
                 MCC_disable_quit(&m);
             }
-            const double a = mcc_random(&seed, -5, 5), b = mcc_random(&seed, -5, 5);
+            const double a = check_real(&seed, -5, 5), b = check_real(&seed, -5, 5);
             const int code = k % 3 == 0 ? MCC_circle_xy(&m, a, b, k % 2)
                                         : MCC_line(&m, (double[AXES]){ a, b, a - b });
             CHECK(code == k + 1);
         }
         const double target[3] = { m.end[0], m.end[1], m.end[2] };
         for (int k = 0; k < LONGEST; k++) {
-            const double die = mcc_random(&seed, 0, 1);
+            const double die = check_real(&seed, 0, 1);
             if (die < 0.01) {
                 MCC_motion_hold(&m);
             } else if (die < 0.03) {
                 MCC_motion_conti(&m);
             } else if (die < 0.05) {
-                MCC_set_over_spd(&m, mcc_random(&seed, -50.0, 200.0));
+                MCC_set_over_spd(&m, check_real(&seed, -50.0, 200.0));
             } else if (die < 0.0501 && MCC_motion_abort(&m) == 0) {
                 aborted = true;
             }

@@ -53,13 +53,13 @@ static void stopped_in_time(void)
 {
     uint64_t seed = 11;
     for (int i = 0; i < 100; i++) {
-        struct machine machine = limited(-1000.0, mcc_random(&seed, 5.0, 60.0));
+        struct machine machine = limited(-1000.0, check_real(&seed, 5.0, 60.0));
         struct run r = { 0 };
         machine.axis[0].check_ot = machine.axis[1].check_ot = false;
         open_machine(&machine);
         CHECK(MCC_line(&m, (double[AXES]){ 80.0, -160.0 }) > 0);
         const double high = machine.axis[0].high_limit;
-        while (r.last.place[0] < mcc_random(&seed, 0.0, high - 3.0)) {
+        while (r.last.place[0] < check_real(&seed, 0.0, high - 3.0)) {
             point(&r);
         }
         CHECK_EQ(MCC_set_check_OT(&m, (int[AXES]){ 1, 1 }), 0);
@@ -84,7 +84,7 @@ static void stopped_in_a_chain(void)
 {
     uint64_t seed = 17;
     for (int i = 0; i < 60; i++) {
-        struct machine machine = limited(-1000.0, mcc_random(&seed, 10.0, 60.0));
+        struct machine machine = limited(-1000.0, check_real(&seed, 10.0, 60.0));
         struct run r = { 0 };
         machine.axis[0].check_ot = machine.axis[1].check_ot = false;
         open_machine(&machine);
@@ -96,7 +96,7 @@ static void stopped_in_a_chain(void)
             CHECK(MCC_line(&m, (double[AXES]){ 0.4 * k, k % 2 ? 0.0 : 0.01 }) > 0);
         }
         const double high = machine.axis[0].high_limit;
-        const double at = mcc_random(&seed, 0.0, high - 8.0);
+        const double at = check_real(&seed, 0.0, high - 8.0);
         while (r.last.place[0] < at) {
             point(&r);
         }
@@ -154,14 +154,14 @@ static void by_hand(void)
 {
     uint64_t seed = 23;
     for (int i = 0; i < 60; i++) {
-        struct machine machine = limited(-1000.0, mcc_random(&seed, 2.0, 30.0));
+        struct machine machine = limited(-1000.0, check_real(&seed, 2.0, 30.0));
         const double high = machine.axis[0].high_limit;
         struct run r = { 0 };
         for (int k = 0; k < AXES; k++) {
             machine.asyn.acc_type[k] = i & 1 ? 'S' : 'T';
             machine.asyn.dec_type[k] = i & 2 ? 'S' : 'T';
-            machine.asyn.acc_time[k] = mcc_random(&seed, 0.02, 0.2);
-            machine.asyn.dec_time[k] = mcc_random(&seed, 0.02, 0.2);
+            machine.asyn.acc_time[k] = check_real(&seed, 0.02, 0.2);
+            machine.asyn.dec_time[k] = check_real(&seed, 0.02, 0.2);
         }
         open_machine(&machine);
         REFUSED(MCC_ptp_asyn(&m, (double[AXES]){ high + 0.001 }), MCC_PARAMETER);
@@ -170,7 +170,7 @@ static void by_hand(void)
             CHECK_EQ(MCC_MPG_set(&m, 0, 6, 100.0), 0);
             m.signals.enc_aux[0] = 1000;        /* 100 mm further */
         } else {
-            CHECK_EQ(MCC_jog_c(&m, 0, 1, mcc_random(&seed, 1.0, 30.0)), 0);
+            CHECK_EQ(MCC_jog_c(&m, 0, 1, check_real(&seed, 1.0, 30.0)), 0);
         }
         run(&r);
         CHECK(MCC_get_errcode(&m) == MCC_ERROR_TRAVEL ||
@@ -205,14 +205,14 @@ static bool mixed(uint64_t seed, bool check, struct run *r)
     MCC_enable_quit(&m);
     CHECK_EQ(mcc_set_tolerance(&m, seed % 4 == 0 ? 0.2 : 0.0), 0);
     for (int k = 0; k < 30; k++) {
-        MCC_set_acc_type(&m, mcc_random(&seed, 0.0, 1.0) < 0.5 ? 'S' : 'T');
-        MCC_set_dec_type(&m, mcc_random(&seed, 0.0, 1.0) < 0.5 ? 'S' : 'T');
-        const double inside = k % 2 ? mcc_random(&seed, 0.0, 2.0) : 0.0;
-        const double y = fmax(-10.0, fmin(10.0, m.end[1] + mcc_random(&seed, -1.0, 1.0)));
-        MCC_set_acc_step(&m, mcc_random(&seed, 5.0, 100.0));
-        MCC_set_dec_step(&m, mcc_random(&seed, 5.0, 100.0));
-        MCC_set_fspd(&m, mcc_random(&seed, 5.0, 100.0));
-        const double radius = mcc_random(&seed, 0.2, 3.0), x = m.end[0];
+        MCC_set_acc_type(&m, check_real(&seed, 0.0, 1.0) < 0.5 ? 'S' : 'T');
+        MCC_set_dec_type(&m, check_real(&seed, 0.0, 1.0) < 0.5 ? 'S' : 'T');
+        const double inside = k % 2 ? check_real(&seed, 0.0, 2.0) : 0.0;
+        const double y = fmax(-10.0, fmin(10.0, m.end[1] + check_real(&seed, -1.0, 1.0)));
+        MCC_set_acc_step(&m, check_real(&seed, 5.0, 100.0));
+        MCC_set_dec_step(&m, check_real(&seed, 5.0, 100.0));
+        MCC_set_fspd(&m, check_real(&seed, 5.0, 100.0));
+        const double radius = check_real(&seed, 0.2, 3.0), x = m.end[0];
         const int code = k % 5 == 4
             ? MCC_circle_xy(&m, x > 0.0 ? x - radius : x + radius, m.end[1], k % 2)
             : MCC_line(&m, (double[AXES]){ 10.0 - inside, y });
@@ -331,7 +331,7 @@ static void switch_closes(void)
         CHECK_EQ(protect_set_limit_mode(&m, mode), 0);
         CHECK(MCC_line(&m, (double[AXES]){ 20.0, -40.0 }) > 0);
         CHECK(MCC_line_x(&m, 0.0) > 0);
-        points(&r, 100 + (int)mcc_random(&seed, 0.0, 700.0));
+        points(&r, 100 + (int)check_real(&seed, 0.0, 700.0));
         const double at = r.last.place[1];
         m.signals.lower = 2;
         run(&r);

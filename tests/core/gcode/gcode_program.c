@@ -1,7 +1,7 @@
 /* Part program interpreter: what a program means. */
 #include <stdlib.h>
 
-#include "mcc_reader.h"
+#include "gcode_reader.h"
 
 static void lines_and_modes(void)
 {
@@ -86,7 +86,7 @@ static void numbers(void)
     for (int i = 0; i < 2000; i++) {
         char text[64], digits[32];
         struct reader x;
-        snprintf(digits, sizeof digits, "%.*f", (int)(i % 10), mcc_random(&seed, 0.001, 99999.0));
+        snprintf(digits, sizeof digits, "%.*f", (int)(i % 10), check_real(&seed, 0.001, 99999.0));
         snprintf(text, sizeof text, "G1 X%s", digits);
         begin(&x, text);
         if (strtod(digits, NULL) == 0.0) {

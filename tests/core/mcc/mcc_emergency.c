@@ -166,7 +166,7 @@ static void emergency_stop(void)
         if (i % 7 < 3) {
             CHECK_EQ(MCC_set_comp(&pc.mcc, 1, &backlash), 0);
         }
-        periods(&b, part, (int)mcc_random(&seed, 10.0, 14000.0));
+        periods(&b, part, (int)check_real(&seed, 10.0, 14000.0));
         b.lines.local.stop = true;
         periods(&b, part, 3 + 11);      /* seen after two periods; a DDA time is 10.24 of them */
         CHECK_EQ(MCC_get_errcode(&pc.mcc), MCC_ERROR_STOP);
@@ -175,7 +175,7 @@ static void emergency_stop(void)
         CHECK(pc.mcc.written.outputs.spindle == 0.0);
         const int32_t x = b.panel.signals.pulses[0];
         const int32_t seq = pc.pcl.seq;
-        const int pressed = (int)mcc_random(&seed, 0.0, 3000.0);
+        const int pressed = (int)check_real(&seed, 0.0, 3000.0);
         for (int k = 0; k < pressed; k++) {
             period(&b, part);
             CHECK(b.moved == 0 && pc.pcl.seq == seq);

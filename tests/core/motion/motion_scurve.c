@@ -1,6 +1,9 @@
 /* S-curve: limits, joints and ends of random plans, symmetries, closed forms, unusable input.
  * That no plan takes longer than it must is tested against ruckig, in tests/test_scurve.py. */
-#include "mcc_check.h"
+#include <stdbool.h>
+#include <string.h>
+
+#include "check.h"
 #include "scurve.h"
 
 /* Rounding of a plan, as a part of its greatest length, speed, acceleration. */
@@ -17,7 +20,7 @@ struct move {
 
 static double decade(uint64_t *seed, double low, double high)
 {
-    return pow(10.0, mcc_random(seed, low, high));
+    return pow(10.0, check_real(seed, low, high));
 }
 
 /* Limits and ways from "never reached" to "reached at once", about the acceleration
@@ -28,12 +31,12 @@ static struct move random_move(uint64_t *seed, enum kind kind, double spread)
     struct move m = { .l = { v, a * decade(seed, -1.0, 1.0), a * decade(seed, -1.0, 1.0), j },
                       .kind = kind };
     m.s1 = v * sqrt(v / j) * decade(seed, -spread, spread);
-    m.s1 = mcc_random(seed, 0.0, 1.0) < 0.5 ? -m.s1 : m.s1;
+    m.s1 = check_real(seed, 0.0, 1.0) < 0.5 ? -m.s1 : m.s1;
     if (kind != REST) {
-        m.from.s = mcc_random(seed, -1.0, 1.0) * fabs(m.s1);
-        m.from.v = mcc_random(seed, -1.5, 1.5) * v;
-        m.from.a = mcc_random(seed, -fmin(a, m.l.dec), fmin(a, m.l.acc));
-        m.v1 = kind == MOVING ? 0.0 : mcc_random(seed, 0.0, 1.0) * v;
+        m.from.s = check_real(seed, -1.0, 1.0) * fabs(m.s1);
+        m.from.v = check_real(seed, -1.5, 1.5) * v;
+        m.from.a = check_real(seed, -fmin(a, m.l.dec), fmin(a, m.l.acc));
+        m.v1 = kind == MOVING ? 0.0 : check_real(seed, 0.0, 1.0) * v;
     }
     return m;
 }
@@ -185,7 +188,7 @@ static void replanned(void)
         const struct move m = random_move(&seed, (enum kind)(i % KINDS), 2.0);
         struct scurve p, q;
         CHECK(plan(&p, &m) == SCURVE_OK);
-        const double t = mcc_random(&seed, 0.0, 1.0) * p.total;
+        const double t = check_real(&seed, 0.0, 1.0) * p.total;
         const struct state x = at(&p, t);
         const struct move n = { { x.s, x.v, x.a }, m.s1, m.v1, m.l, m.kind };
         CHECK(plan(&q, &n) == SCURVE_OK);
@@ -201,9 +204,9 @@ static void by_hand(void)
     for (int i = 0; i < 50000; i++) {
         struct move m = random_move(&seed, MOVING, 0.0);
         const double j = m.l.jerk, least = i % 2 ? -m.l.dec : fmin(0.0, m.from.a);
-        const double x = mcc_random(&seed, least, i % 2 ? m.l.acc : 0.0);
-        const double y = mcc_random(&seed, -m.l.dec, m.l.acc), edge[] = { x, x, y, y, 0.0 };
-        const double hold = m.l.dec / j * (i / 2 % 2 ? 0.0 : mcc_random(&seed, 0.0, 1.0));
+        const double x = check_real(&seed, least, i % 2 ? m.l.acc : 0.0);
+        const double y = check_real(&seed, -m.l.dec, m.l.acc), edge[] = { x, x, y, y, 0.0 };
+        const double hold = m.l.dec / j * (i / 2 % 2 ? 0.0 : check_real(&seed, 0.0, 1.0));
         double total = 0.0, s = m.from.s, v = m.from.v, a = m.from.a;
         m.l.speed = fabs(v);
         for (int k = 0; k < 5; k++) {
@@ -232,7 +235,7 @@ static void ways(void)
     for (int i = 0; i < 5000; i++) {
         struct move m = random_move(&seed, SPEED, 1.0);
         struct scurve p, q;
-        m.from.v = mcc_random(&seed, 0.0, 1.0) * m.l.speed;
+        m.from.v = check_real(&seed, 0.0, 1.0) * m.l.speed;
         m.from.a *= 0.5 * fmin(1.0, sqrt(m.l.speed - m.from.v) / sqrt(m.l.speed));
         CHECK(plan(&p, &m) == SCURVE_OK);
         CHECK_NEAR(scurve_way(&m.from, m.v1, &m.l), p.s1 - m.from.s,
@@ -312,7 +315,7 @@ static void extremes(void)
         const double wide = i % 2 ? 300.0 : 30.0;
         double x[9];
         for (int k = 0; k < 9; k++) {
-            const double dice = mcc_random(&seed, 0.0, 1.0);
+            const double dice = check_real(&seed, 0.0, 1.0);
             x[k] = dice < 0.3 ? pow(10.0, (int)(10 * dice)) : decade(&seed, -wide, wide);
             x[k] = k < 5 && dice > 0.9 ? 0.0 : k < 5 && dice > 0.6 ? -x[k] : x[k];
         }

@@ -171,9 +171,9 @@ static void random_orders(char acc_type, char dec_type)
 
         axes_start(&a, (double[AXES]){ 0.0 }, 1.0);
         for (int k = 0; k < 600; k++) {
-            if (k < 500 && mcc_random(&random, 0.0, 1.0) < 0.03) {
-                const double what = mcc_random(&random, 0.0, 1.0);
-                goal = mcc_random(&random, -100.0, 100.0);
+            if (k < 500 && check_real(&random, 0.0, 1.0) < 0.03) {
+                const double what = check_real(&random, 0.0, 1.0);
+                goal = check_real(&random, -100.0, 100.0);
                 if (what < 0.3) {
                     axes_go(&a, axis, goal, &l);
                 } else if (what < 0.5) {
@@ -181,7 +181,7 @@ static void random_orders(char acc_type, char dec_type)
                 } else if (what < 0.6) {
                     axes_stand(&a, axis);
                 } else {
-                    const double ratio = what < 0.75 ? 0.0 : mcc_random(&random, 0.0, 2.0);
+                    const double ratio = what < 0.75 ? 0.0 : check_real(&random, 0.0, 2.0);
                     axes_set_ratio(&a, ratio);
                     highest = fmax(highest, fmin(full, ratio * l.speed));
                 }

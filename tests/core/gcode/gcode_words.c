@@ -1,5 +1,5 @@
 /* Offsets, home, stops and outputs: what the interpreter makes of each word. */
-#include "mcc_reader.h"
+#include "gcode_reader.h"
 #include "queue.h"
 
 /* The next command is a motion to a point. */
