@@ -14,11 +14,11 @@ static void publish_axes(struct vars *v, const struct epcio *card)
         v->stock[i] = card->fifo[i].stock;
         v->underflows[i] = card->underflows[i];
         v->dda_command[i] = card->dda.command[i];
-        v->pulse_count[i] = wrap(pulses[i]);
-        v->enc_count[i] = wrap(card->encoder[i].count);
+        v->pulse_count[i] = link_wrap(pulses[i]);
+        v->enc_count[i] = link_wrap(card->encoder[i].count);
         v->err_count[i] = card->loop[i].error;
         v->dac[i] = epcio_volts(card, i);
-        v->latch_value[i] = wrap(card->latch[i].value);
+        v->latch_value[i] = link_wrap(card->latch[i].value);
         v->latch_seen[i] = card->latch[i].seen;
     }
 }
@@ -39,12 +39,12 @@ static void publish_encoders(struct vars *v, const struct epcio *card)
     v->enc_too_fast = 0;
     for (int i = 0; i < EPCIO_ENCODERS; i++)
         v->enc_too_fast |= (int32_t)card->encoder[i].too_fast << i;
-    v->enc_count_7 = wrap(card->encoder[6].count);
-    v->enc_count_8 = wrap(card->encoder[7].count);
-    v->enc_count_9 = wrap(card->encoder[8].count);
-    v->latch_value_7 = wrap(card->latch[6].value);
-    v->latch_value_8 = wrap(card->latch[7].value);
-    v->latch_value_9 = wrap(card->latch[8].value);
+    v->enc_count_7 = link_wrap(card->encoder[6].count);
+    v->enc_count_8 = link_wrap(card->encoder[7].count);
+    v->enc_count_9 = link_wrap(card->encoder[8].count);
+    v->latch_value_7 = link_wrap(card->latch[6].value);
+    v->latch_value_8 = link_wrap(card->latch[7].value);
+    v->latch_value_9 = link_wrap(card->latch[8].value);
     v->latch_seen_7 = card->latch[6].seen;
     v->latch_seen_8 = card->latch[7].seen;
     v->latch_seen_9 = card->latch[8].seen;
@@ -79,7 +79,7 @@ static void publish_local(struct vars *v, const struct epcio *card)
     v->position_ready = o.position_ready;
     for (int i = 0; i < EPCIO_AXES; i++)
         v->servo_on[i] = (o.servo_on >> i & 1u) != 0;
-    v->timer_fired = wrap(card->timer.count);
+    v->timer_fired = link_wrap(card->timer.count);
     v->watchdog_expired = card->watchdog.expired;
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "epcio_damage.h"
+#include "host.h"
 #include "register_map.h"
 #include "registers.h"
 #include "vars.h"
@@ -12,10 +13,8 @@ struct model {
     int64_t period;         /* [clocks] sampling grid of loops and host bus */
     int64_t instant;        /* [clock] next instant of that grid */
     bool    powered;        /* the first instant has passed */
-    int32_t cmd_seq;        /* numbers taken last from the mailboxes */
-    int32_t ack_seq;
-    int32_t clear_seq, latch_seq[6];
-    int32_t reg_seq;
+    struct mailbox taken;   /* numbers taken last of the host */
+    int32_t reg_seq;        /* taken last from the mailbox of registers */
     enum epcio_status reg_status;   /* of that transaction */
     int32_t warned_length;  /* DDA length that was refused last, to say so once */
     int32_t warned_frames;  /* frames refused when that was last said */
@@ -70,57 +69,25 @@ static void take_registers(struct fmu *f)
     m->reg_status = s;
 }
 
-static int set_levels(struct fmu *f)
-{
-    const struct vars *v = &f->s.v;
-    struct epcio_host host;
-    for (int i = 0; i < EPCIO_AXES; i++) {
-        host.gain[i] = v->host_p_gain[i];
-        host.loop_on[i] = v->host_loop_on[i];
-        host.dac_loop[i] = v->host_dac_source[i] == 1;
-        host.volts[i] = v->host_dac_volts[i];
-        host.index_low[i] = v->host_index_low[i];
-    }
-    for (int i = 0; i < 2; i++)
-        host.volts[EPCIO_AXES + i] = v->host_dac_volts_aux[i];
-    host.loop_on[EPCIO_AXES] = v->host_loop_on_aux;
-    host.command = v->host_command_aux;
-    enum epcio_status s = epcio_set_host(&f->s.m.card, &host);
-    return s == EPCIO_OK ? 0 : fmu_fail(f, "host registers: %s", epcio_status_text(s));
-}
-
 static int read_host(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
-    struct epcio *card = &m->card;
-    uint32_t mask[IRQ_PAGES], flags[IRQ_PAGES];
-    if (wires_acknowledge(f, flags, mask))
-        epcio_acknowledge(card, flags, mask);
-    else
-        epcio_set_mask(card, mask);
-    if (wires_clear(f))
-        epcio_clear(card);
-    for (int i = 0; i < EPCIO_AXES; i++) {
-        if (v->host_latch_seq[i] != m->latch_seq[i]) {
-            m->latch_seq[i] = v->host_latch_seq[i];
-            epcio_set_latch(card, i, 1u << (LATCH_INDEX + i), false);
-        }
-    }
-    if (wires_dda(f, epcio_set_dda(card, v->host_dda_length, v->host_dda_divider)))
-        return -1;
-    if (card->run != v->host_dda_run)
-        epcio_set_run(card, v->host_dda_run);
-    enum epcio_status s = epcio_set_minimum(card, v->host_min_stock);
-    if (s != EPCIO_OK)
+    struct link_host link;
+    LINK_LEVELS(WIRES_READ)
+    LINK_LEVELS_AUX(WIRES_READ)
+    const enum epcio_status s = host_take_levels(&m->taken, &m->card, &link);
+    if (s == EPCIO_BAD_MINIMUM)
         return fmu_fail(f, "host_min_stock = %d: %s", (int)v->host_min_stock,
                         epcio_status_text(s));
-    if (set_levels(f))
+    if (s == EPCIO_BAD_GAIN || s == EPCIO_BAD_VOLTS)
+        return fmu_fail(f, "host registers: %s", epcio_status_text(s));
+    if (wires_dda(f, s))
         return -1;
     take_registers(f);
     struct bus_write w;
     const int command = wires_command(f, &w);
-    return command > 0 ? wires_sent(f, &w, epcio_post(card, &w)) : command;
+    return command > 0 ? wires_sent(f, &w, epcio_post(&m->card, &w)) : command;
 }
 
 static uint32_t bits_of(const bool *level, int count)

@@ -2,15 +2,14 @@
 #include <string.h>
 
 #include "epcio_damage.h"
+#include "mailbox.h"
 #include "vars.h"
 
 struct model {
     struct single_buffer card;
     int64_t period;         /* [clocks] grid of the host bus */
     int64_t instant;        /* [clock] next instant of that grid */
-    int32_t cmd_seq;        /* numbers taken last from the mailboxes */
-    int32_t ack_seq;
-    int32_t clear_seq;
+    struct mailbox taken;   /* numbers taken last of the host */
     int32_t warned_length;  /* DDA length that was refused last, to say so once */
     int32_t warned_frames;  /* frames refused when that was last said */
 };
@@ -42,16 +41,19 @@ static int read_host(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     struct single_buffer *card = &f->s.m.card;
-    uint32_t mask[IRQ_PAGES], flags[IRQ_PAGES];
-    if (wires_acknowledge(f, flags, mask))
-        single_buffer_acknowledge(card, flags, mask);
+    struct mailbox *taken = &f->s.m.taken;
+    struct link_host link;
+    LINK_DDA(WIRES_READ)
+    const uint32_t *mask = mailbox_pages(link.irq_mask);
+    if (link_new(&taken->ack_seq, link.ack_seq))
+        single_buffer_acknowledge(card, mailbox_pages(link.ack_flags), mask);
     else
         single_buffer_set_mask(card, mask);
-    if (wires_clear(f))
+    if (link_new(&taken->clear_seq, link.clear_seq))
         single_buffer_clear(card);
-    if (wires_dda(f, single_buffer_set_dda(card, v->host_dda_length, v->host_dda_divider)))
+    if (wires_dda(f, single_buffer_set_dda(card, link.dda_length, link.dda_divider)))
         return -1;
-    single_buffer_set_run(card, v->host_dda_run);
+    single_buffer_set_run(card, link.dda_run);
     struct bus_write w;
     const int command = wires_command(f, &w);
     return command > 0 ? wires_sent(f, &w, single_buffer_post(card, &w)) : command;
@@ -67,7 +69,7 @@ static void publish(struct fmu *f)
         v->stock[i] = card->config.active[i] ? single_buffer_stock(card) : 0;
         v->underflows[i] = single_buffer_underflows(card, i);
         v->gap_clocks[i] = (double)card->gap[i];
-        v->pulse_count[i] = wrap(pulses[i]);
+        v->pulse_count[i] = link_wrap(pulses[i]);
     }
 }
 

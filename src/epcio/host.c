@@ -1,29 +1,25 @@
 #include "host.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "registers.h"
 
-_Static_assert((int)LINK_AXES == (int)EPCIO_AXES && (int)LINK_PAGES == (int)IRQ_PAGES &&
-               (int)LINK_FRAMES == (int)BUS_FRAMES, "the card is that of the link");
-
-static void take_interrupts(struct host *host, struct epcio *card, const struct link_host *link)
+static void take_interrupts(struct mailbox *taken, struct epcio *card,
+                            const struct link_host *link)
 {
-    uint32_t mask[IRQ_PAGES], flags[IRQ_PAGES];
+    const uint32_t *mask = mailbox_pages(link->irq_mask);
 
-    memcpy(mask, link->irq_mask, sizeof mask);
-    memcpy(flags, link->ack_flags, sizeof flags);
-    if (link_new(&host->ack_seq, link->ack_seq))
-        epcio_acknowledge(card, flags, mask);
+    if (link_new(&taken->ack_seq, link->ack_seq))
+        epcio_acknowledge(card, mailbox_pages(link->ack_flags), mask);
     else
         epcio_set_mask(card, mask);
 }
 
 static enum epcio_status take_loops(struct epcio *card, const struct link_host *link)
 {
-    struct epcio_host h = {.command = link->command_aux};
+    struct epcio_host h;
 
+    h.command = link->command_aux;
     memcpy(h.gain, link->p_gain, sizeof h.gain);
     memcpy(h.loop_on, link->loop_on, sizeof link->loop_on);
     h.loop_on[EPCIO_AXES] = link->loop_on_aux;
@@ -35,14 +31,14 @@ static enum epcio_status take_loops(struct epcio *card, const struct link_host *
     return epcio_set_host(card, &h);
 }
 
-enum epcio_status host_take_levels(struct host *host, struct epcio *card,
+enum epcio_status host_take_levels(struct mailbox *taken, struct epcio *card,
                                    const struct link_host *link)
 {
-    take_interrupts(host, card, link);
-    if (link_new(&host->clear_seq, link->clear_seq))
+    take_interrupts(taken, card, link);
+    if (link_new(&taken->clear_seq, link->clear_seq))
         epcio_clear(card);
     for (int i = 0; i < EPCIO_AXES; i++)
-        if (link_new(&host->latch_seq[i], link->latch_seq[i]))
+        if (link_new(&taken->latch_seq[i], link->latch_seq[i]))
             epcio_set_latch(card, i, 1u << (LATCH_INDEX + i), false);
     const enum epcio_status dda = epcio_set_dda(card, link->dda_length, link->dda_divider);
     if (dda != EPCIO_OK && dda != EPCIO_STOCK_TOO_LARGE)
@@ -55,19 +51,16 @@ enum epcio_status host_take_levels(struct host *host, struct epcio *card,
     return bad == EPCIO_OK ? dda : bad;
 }
 
-enum epcio_status host_take_write(struct host *host, struct epcio *card,
+enum epcio_status host_take_write(struct mailbox *taken, struct epcio *card,
                                   const struct link_host *link)
 {
-    struct bus_write w = {.seq = link->cmd_seq, .count = link->cmd_count};
+    struct bus_write w;
 
-    if (link->cmd_seq == host->cmd_seq)
+    if (!mailbox_write(taken, link, &w))
         return EPCIO_OK;
-    w.clock = (int64_t)ceil(link->cmd_clock);
-    for (int k = 0; k < BUS_FRAMES && k < w.count; k++)
-        memcpy(w.frame[k], link->cmd_frames[k], sizeof w.frame[k]);
     const enum epcio_status bad = epcio_post(card, &w);
     if (bad == EPCIO_OK)
-        host->cmd_seq = link->cmd_seq;
+        taken->cmd_seq = w.seq;
     return bad;
 }
 

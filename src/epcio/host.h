@@ -3,21 +3,15 @@
 #define HOST_H
 
 #include "epcio.h"
-#include "link.h"
-
-/* Numbers of the mailboxes taken last. */
-struct host {
-    int32_t ack_seq, cmd_seq, clear_seq;
-    int32_t latch_seq[EPCIO_AXES];
-};
+#include "mailbox.h"
 
 /* Take all but the frames. The first value out of range is refused with its status and ends it; but
  * EPCIO_STOCK_TOO_LARGE only says that the DDA length waits. */
-enum epcio_status host_take_levels(struct host *host, struct epcio *card,
+enum epcio_status host_take_levels(struct mailbox *taken, struct epcio *card,
                                    const struct link_host *link);
 
 /* Take new frames. A transaction that is refused is none. */
-enum epcio_status host_take_write(struct host *host, struct epcio *card,
+enum epcio_status host_take_write(struct mailbox *taken, struct epcio *card,
                                   const struct link_host *link);
 
 void host_show(const struct epcio *card, struct link_card *link);

@@ -1,13 +1,12 @@
 /* The wires that both generations of the card have: grid of the host bus, DDA time, mailbox of
  * commands, interrupts. Included behind fmi_model.h by a model whose struct has the members card,
- * period, instant, cmd_seq, ack_seq, clear_seq, warned_length and warned_frames. */
+ * period, instant, taken, warned_length and warned_frames. */
 #ifndef CARD_WIRES_H
 #define CARD_WIRES_H
 
 #include <math.h>
 
-#include "bus.h"
-#include "irq.h"
+#include "mailbox.h"
 #include "status.h"
 
 /* A decimal period such as 1e-4 s is not exact in binary: off by far less than this [clocks]. */
@@ -15,6 +14,9 @@
 
 /* Clocks beyond this are not whole numbers in a double any more (2^53). */
 #define CLOCK_MAX 9007199254740992.0
+
+/* A member of a struct link_host from the input of its name. */
+#define WIRES_READ(type, name, elements) LINK_CARRY(link.name, v->host_##name)
 
 /* Clocks of loop_period; 0 after fmu_fail(). */
 static int64_t wires_period(struct fmu *f)
@@ -60,17 +62,13 @@ static int wires_dda(struct fmu *f, enum epcio_status s)
 static int wires_command(struct fmu *f, struct bus_write *w)
 {
     const struct vars *v = &f->s.v;
-    if (v->host_cmd_seq == f->s.m.cmd_seq)
+    struct link_host link;
+    if (v->host_cmd_seq == f->s.m.taken.cmd_seq)
         return 0;
     if (!(fabs(v->host_cmd_clock) < CLOCK_MAX))
         return fmu_fail(f, "host_cmd_clock = %g: not a clock", v->host_cmd_clock);
-    w->seq = v->host_cmd_seq;
-    w->clock = (int64_t)ceil(v->host_cmd_clock);
-    w->count = v->host_cmd_count;
-    for (int k = 0; k < BUS_FRAMES; k++)
-        for (int i = 0; i < EPCIO_AXES; i++)
-            w->frame[k][i] = k < w->count ? v->host_cmd_frames[k][i] : 0;
-    return 1;
+    LINK_WRITE(WIRES_READ)
+    return mailbox_write(&f->s.m.taken, &link, w);
 }
 
 /* What the card says when it is sent. */
@@ -80,27 +78,8 @@ static int wires_sent(struct fmu *f, const struct bus_write *w, enum epcio_statu
         return fmu_fail(f, "host_cmd_count = %d: %s", (int)w->count, epcio_status_text(s));
     if (s != EPCIO_OK)
         return fmu_fail(f, "host_cmd_seq = %d: %s", (int)w->seq, epcio_status_text(s));
-    f->s.m.cmd_seq = w->seq;
+    f->s.m.taken.cmd_seq = w->seq;
     return 0;
-}
-
-/* Mask on the wires; true if they bring an acknowledge too, with its flags. */
-static bool wires_acknowledge(struct fmu *f, uint32_t flags[IRQ_PAGES], uint32_t mask[IRQ_PAGES])
-{
-    const struct vars *v = &f->s.v;
-    const bool fresh = v->host_ack_seq != f->s.m.ack_seq;
-    memcpy(mask, v->host_irq_mask, sizeof v->host_irq_mask);
-    memcpy(flags, v->host_ack_flags, sizeof v->host_ack_flags);
-    f->s.m.ack_seq = v->host_ack_seq;
-    return fresh;
-}
-
-/* True once for each new number of the emergency stop. */
-static bool wires_clear(struct fmu *f)
-{
-    const bool fresh = f->s.v.host_clear_seq != f->s.m.clear_seq;
-    f->s.m.clear_seq = f->s.v.host_clear_seq;
-    return fresh;
 }
 
 /* Frames that the card has refused since this was last asked. */
@@ -116,28 +95,20 @@ static void wires_refused(struct fmu *f)
     m->warned_frames = m->card.frames_refused;
 }
 
-/* Counters are 32-bit registers: they wrap. */
-static int32_t wrap(int64_t count)
-{
-    return (int32_t)(uint32_t)(uint64_t)count;
-}
-
 /* Interrupts and what became of the transactions. */
 static void wires_publish(struct fmu *f)
 {
     struct vars *v = &f->s.v;
     const struct irq *irq = &f->s.m.card.irq;
     v->irq = irq->line;
-    v->irq_seq = wrap(irq->seq);
+    v->irq_seq = link_wrap(irq->seq);
     v->irq_clock = (double)irq->clock;
     memcpy(v->irq_flags, irq->flags, sizeof v->irq_flags);
     v->cmd_ack = f->s.m.card.cmd_ack;
     v->frames_taken = f->s.m.card.frames_taken;
     v->frames_refused = f->s.m.card.frames_refused;
 }
-_Static_assert(sizeof ((struct vars *)0)->irq_flags == sizeof ((struct irq *)0)->flags &&
-               sizeof ((struct vars *)0)->host_irq_mask == sizeof ((struct irq *)0)->mask &&
-               sizeof ((struct vars *)0)->host_cmd_frames == sizeof ((struct bus_write *)0)->frame,
+_Static_assert(sizeof ((struct vars *)0)->irq_flags == sizeof ((struct irq *)0)->flags,
                "the wires are as wide as the card's registers");
 
 #endif

@@ -19,23 +19,26 @@
 
 enum { LINK_AXES = 6, LINK_PAGES = 9, LINK_FRAMES = 16 };
 
-/* Levels, and the numbers of the mailboxes: interrupt flags to clear, latches to arm for the next
- * index, FIFOs to empty. */
-#define LINK_LEVELS(X) \
+/* DDA and interrupts: levels, and the numbers of the mailboxes that clear flags and empty FIFOs. */
+#define LINK_DDA(X) \
     X(int32_t, dda_length, )            /* [bit] */ \
     X(int32_t, dda_divider, ) \
     X(bool,    dda_run, ) \
-    X(int32_t, min_stock, )             /* [commands] */ \
     X(int32_t, irq_mask, [LINK_PAGES])  /* sources that pull the line */ \
     X(int32_t, ack_seq, ) \
     X(int32_t, ack_flags, [LINK_PAGES]) \
+    X(int32_t, clear_seq, )
+
+/* FIFO, position loops, DAC and counters; the number arms a latch for the next index. */
+#define LINK_LOOPS(X) \
+    X(int32_t, min_stock, )             /* [commands] */ \
     X(int32_t, p_gain, [LINK_AXES]) \
     X(bool,    loop_on, [LINK_AXES]) \
     X(int32_t, dac_source, [LINK_AXES]) /* 0 the host's voltage, 1 position loop */ \
     X(double,  dac_volts, [LINK_AXES])  /* [V] */ \
     X(bool,    index_low, [LINK_AXES])  /* the index is on at the low level */ \
-    X(int32_t, latch_seq, [LINK_AXES]) \
-    X(int32_t, clear_seq, )
+    X(int32_t, latch_seq, [LINK_AXES])
+#define LINK_LEVELS(X) LINK_DDA(X) LINK_LOOPS(X)
 
 /* Levels of what is no axis of pulses: DAC 7 and 8, the seventh error counter. */
 #define LINK_LEVELS_AUX(X) \
@@ -86,9 +89,18 @@ LINK_STRUCT(link_card, LINK_SHOWN(LINK_MEMBER) LINK_SHOWN_MACHINE(LINK_MEMBER));
     } while (0);
 
 /* Counters and numbers are 32-bit on the link: they wrap. */
-int32_t link_wrap(int64_t count);
+inline int32_t link_wrap(int64_t count)
+{
+    return (int32_t)(uint32_t)(uint64_t)count;
+}
 
 /* Has a mailbox a number that was not taken yet? It is now. */
-bool link_new(int32_t *taken, int32_t number);
+inline bool link_new(int32_t *taken, int32_t number)
+{
+    const bool new = number != *taken;
+
+    *taken = number;
+    return new;
+}
 
 #endif

@@ -150,11 +150,11 @@ static void move(struct station *s)
 /* The card takes what the PC has published. */
 static void take(struct station *s)
 {
-    struct link_host link = { .cmd_seq = s->host.cmd_seq };
+    struct link_host link = { .cmd_seq = s->taken.cmd_seq };
 
     pc_publish(&s->pc, &link);
-    host_take_levels(&s->host, &s->card, &link);
-    host_take_write(&s->host, &s->card, &link);
+    host_take_levels(&s->taken, &s->card, &link);
+    host_take_write(&s->taken, &s->card, &link);
 }
 _Static_assert((int)EPCIO_FIFO_DEPTH == (int)PCL_FIFO && (int)EPCIO_CLOCK_HZ == (int)CLOCK_HZ,
                "library and card speak of the same FIFOs and clock");

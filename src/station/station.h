@@ -53,7 +53,7 @@ struct station {
     double  volts[AXES];            /* [V] since then */
     int64_t clock;                  /* [25 ns] everything up to here has happened */
     int64_t instant;                /* [clock] next instant of the bus grid */
-    struct host host;               /* what the card has taken of the PC */
+    struct mailbox taken;             /* what the card has taken of the PC */
 };
 
 /* What there is to see at the station's clock. */

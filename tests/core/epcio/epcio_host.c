@@ -4,21 +4,21 @@
 #include "host.h"
 
 static struct epcio card;
-static struct host host;
+static struct mailbox taken;
 
 /* A link whose levels the card takes. */
 static struct link_host start(void)
 {
     const struct epcio_config config = epcio_default_config();
     CHECK_EQ(epcio_reset(&card, &config), EPCIO_OK);
-    host = (struct host){0};
+    taken = (struct mailbox){0};
     return (struct link_host){.dda_length = 12, .dda_divider = 10, .dda_run = true, .min_stock = 3};
 }
 
 static enum epcio_status take(const struct link_host *link)
 {
-    const enum epcio_status levels = host_take_levels(&host, &card, link);
-    return levels == EPCIO_OK ? host_take_write(&host, &card, link) : levels;
+    const enum epcio_status levels = host_take_levels(&taken, &card, link);
+    return levels == EPCIO_OK ? host_take_write(&taken, &card, link) : levels;
 }
 
 /* A transaction, an acknowledge, an armed latch, an emptied FIFO: once for each number. */
@@ -82,14 +82,14 @@ static void refused(void)
     link.cmd_seq = 1;
     link.cmd_count = 17;
     CHECK_EQ(take(&link), EPCIO_BAD_COUNT);
-    CHECK_EQ(host.cmd_seq, 0);      /* it may come again, mended */
+    CHECK_EQ(taken.cmd_seq, 0);      /* it may come again, mended */
     link.cmd_count = 16;
     link.cmd_frames[15][0] = 4000;
     CHECK_EQ(take(&link), EPCIO_OK);
     epcio_advance(&card, 1);
     link.dda_length = 10;
     link.min_stock = 9;
-    CHECK_EQ(host_take_levels(&host, &card, &link), EPCIO_STOCK_TOO_LARGE);
+    CHECK_EQ(host_take_levels(&taken, &card, &link), EPCIO_STOCK_TOO_LARGE);
     CHECK_EQ(card.minimum, 9);
 }
 

@@ -70,9 +70,9 @@ static void program(int group, const char *lines)
 /* The card reads what the PC published. */
 static void card_reads(void)
 {
-    static struct host taken;
+    static struct mailbox taken;
     if (now == 0) {
-        taken = (struct host){ 0 };
+        taken = (struct mailbox){ 0 };
     }
     struct link_host link = { .cmd_seq = taken.cmd_seq };
     groups_publish(&set, 0, &link);

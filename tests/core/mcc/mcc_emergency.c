@@ -14,7 +14,7 @@ struct bench {
     struct epcio_lines lines;
     struct pc_panel panel;
     int64_t now;
-    struct host host;       /* what it has taken of the library */
+    struct mailbox taken;     /* what it has taken of the library */
     double  lag;            /* share of the following error that the motors catch up each period */
     double  motor[AXES];    /* [pulses] */
     int32_t moved;          /* [pulses] of axis 1 in the latest period */
@@ -71,10 +71,10 @@ static struct pcl_card show(struct bench *b)
 /* What the library has published one period before. */
 static void host_writes(struct bench *b)
 {
-    struct link_host link = { .cmd_seq = b->host.cmd_seq };
+    struct link_host link = { .cmd_seq = b->taken.cmd_seq };
     pc_publish(&pc, &link);
-    CHECK_EQ(host_take_levels(&b->host, &b->card, &link), EPCIO_OK);
-    CHECK_EQ(host_take_write(&b->host, &b->card, &link), EPCIO_OK);
+    CHECK_EQ(host_take_levels(&b->taken, &b->card, &link), EPCIO_OK);
+    CHECK_EQ(host_take_write(&b->taken, &b->card, &link), EPCIO_OK);
 }
 
 /* One bus period of both. */
