@@ -37,7 +37,7 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     task_set_switches(&pc->mcc, config->block_delete, config->optional_stop);
     for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
         if (config->home_order[i] > 0 &&
-            homing_set(&pc->mcc, i, &config->home[i], config->encoder_inverted[i])) {
+            homing_set(&pc->mcc, i, &config->home[i], config->encoder_backward[i])) {
             return MCC_PARAMETER;
         }
     }

@@ -50,7 +50,7 @@ struct pc_config {
     int32_t home_order[AXES];   /* as of MCC_go_home */
     bool    home_first;         /* home before the program */
     double  home_settle;        /* [s] as of homing_set_settle */
-    bool    encoder_inverted[AXES]; /* as of homing_set */
+    bool    encoder_backward[AXES]; /* as of homing_set */
     bool    dry_run;        /* from the start on */
     bool    no_panel;       /* hold, override and P gain are calls of the API, not the panel's */
 };

@@ -68,7 +68,7 @@ static const struct field config_fields[] = {
     ASYN(acc_type, ""), ASYN(dec_type, ""), ASYN(acc_time, "s"), ASYN(dec_time, "s"),
     ROW(station_config, pc.home_order, "home_order", ""), PC(home_first, ""),
     PC(home_settle, "s"),
-    ROW(station_config, pc.encoder_inverted, "encoder_backward", ""),
+    ROW(station_config, pc.encoder_backward, "encoder_backward", ""),
     { "home_mode", "", 'i', OFFSET(station_config, pc.home[0].mode), AXES,
       sizeof(struct home_config) },
     HOME(direction, "bits"), HOME(sensor_on, ""), HOME(high_speed, "mm/s"),

@@ -140,7 +140,7 @@ static void pc_setting(struct bytes *b, struct pc_config *c)
     case 16: c->dry_run = byte(b) & 1; break;
     case 17: c->start = whole(b, 40000); break;
     case 18: c->home_first = byte(b) & 1; break;
-    default: c->encoder_inverted[k] = byte(b) & 1; break;
+    default: c->encoder_backward[k] = byte(b) & 1; break;
     }
 }
 

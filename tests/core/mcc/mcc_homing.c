@@ -160,7 +160,7 @@ static void index_only(void)
 static void backward_and_again(void)
 {
     struct pc_config c = config_of(HOME_SENSOR_INDEX, 6);
-    c.encoder_inverted[0] = true;
+    c.encoder_backward[0] = true;
     c.home[0].offset = 2.0;
     depth = 300;        /* far longer than an axis has to stand still */
     c.home[0].high_speed = 20.0;
