@@ -1,6 +1,6 @@
 """The words of a line are those that gcodeparser, another program, finds in it.
 
-Random lines go to `src/mcc/tokens.h` and to gcodeparser 0.3. That one reads the dialect of
+Random lines go to `src/gcode/tokens.h` and to gcodeparser 0.3. That one reads the dialect of
 printers, so half of the lines are written in what both have in common and reach it as they are, and
 the other half may use all of RS-274 and are put into its dialect by `plain`.
 

@@ -35,7 +35,7 @@ def members(header: str, struct: str) -> set[str]:
 def test_every_setting_of_library_and_pc_has_its_name() -> None:
     have = set(mcc.defaults())
     machine = (ROOT / "src/mcc/machine.h").read_text()
-    pc = (ROOT / "src/mcc/pc.h").read_text()
+    pc = (ROOT / "src/pc/pc.h").read_text()
     # A program of the FMU, its start and its panel have calls here.
     wanted = members(machine, "machine") | members(machine, "machine_axis")
     modules = {"priority", "offset", "time", "unit", "most"}

@@ -13,7 +13,7 @@
 
 #include <limits.h>
 
-#include "compensate.h"
+#include "mcc.h"
 #include "fmu_input.h"
 
 enum { COMP_CELLS = 4, COMP_LINE = 256 };

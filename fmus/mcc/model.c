@@ -1,7 +1,7 @@
 /* The motion library on its PC, on the wires of a co-simulation: bus grid, registers, mailboxes. */
 #include <string.h>
 
-#include "mcc_damage.h"
+#include "pc.h"
 #include "vars.h"
 
 struct model {
@@ -202,7 +202,7 @@ static const char *model_check(const struct state *s)
         || m->pc.program != (s->v.program[0] != '\0')) {
         return "its bus period or whether it has a program";
     }
-    return mcc_damage_pc(&m->pc);
+    return pc_damage(&m->pc);
 }
 
 /* Read the wires at an instant of the bus grid and let the PC work. */

@@ -3,7 +3,7 @@
 #define BLOCK_H
 
 #include "gcode.h"
-#include "interpreter.h"
+#include "modes.h"
 
 /* The axis words in the order of the axes. */
 #define BLOCK_AXES "XYZUVW"

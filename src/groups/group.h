@@ -17,7 +17,6 @@
 #define GROUP_H
 
 #include "card_view.h"
-#include "key.h"
 #include "pcl.h"
 #include "servo.h"
 #include "task.h"

@@ -2,7 +2,6 @@
 
 #include <stddef.h>
 
-#include "mcc_damage.h"
 
 static const char *card_damage(const struct group_card *c)
 {
@@ -11,8 +10,8 @@ static const char *card_damage(const struct group_card *c)
             return "the counter of a DAC";
         }
     }
-    const char *what = mcc_damage_machine(&c->machine);
-    return what ? what : mcc_damage_control(&c->pcl);
+    const char *what = machine_damage(&c->machine);
+    return what ? what : pcl_damage(&c->pcl);
 }
 
 static const char *group_damage(const struct groups *g, const struct group *group)
@@ -27,11 +26,11 @@ static const char *group_damage(const struct groups *g, const struct group *grou
             return "a channel of a group";
         }
     }
-    const char *what = mcc_damage_library(&group->mcc);
-    what = what ? what : mcc_damage_voltage(&group->servo.voltage);
+    const char *what = mcc_damage(&group->mcc);
+    what = what ? what : voltage_damage(&group->servo.voltage);
     what = what || !group->voltage ? what : servo_damage(&group->servo);
     return what ? what
-                : mcc_damage_part(&group->part, &g->card[group->card].pcl, &group->mcc.queue);
+                : pcl_part_damage(&group->part, &g->card[group->card].pcl, &group->mcc.queue);
 }
 
 const char *groups_damage(const struct groups *g)

@@ -1,4 +1,4 @@
-#include "compensate.h"
+#include "mcc.h"
 
 #include <math.h>
 

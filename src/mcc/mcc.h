@@ -12,7 +12,6 @@
 #include "comp.h"
 #include "interpreter.h"
 #include "manual.h"
-#include "mcc_param.h"
 #include "mover.h"
 #include "signals.h"
 
@@ -48,6 +47,32 @@ enum mcc_error {
     MCC_ERROR_HOME   = 0xF700,
     MCC_ERROR_TRACK  = 0xF801       /* following error of axis 1 too large; .. 0xF806 */
 };
+
+/* The axes as the source document's library is told of them: the user fills epcio_axis_param[] and
+ * cart_max_speed, and MCC_update_param makes them effective. Names and meaning are the document's;
+ * numbers of the types, and units not given here, are ours. */
+
+/* Kind of an axis. A rotary one has degrees for mm. A spindle takes no part in the motion, so it
+ * gets no pulses, as an unused axis. */
+enum mcc_axis_type { MCC_LINEAR, MCC_ROTARY, MCC_SPINDLE, MCC_UNUSED };
+
+typedef struct {
+    int32_t type;               /* enum mcc_axis_type */
+    int32_t pos2encoder_dir;    /* 0: encoder counts up when the position grows; 1: down, and the
+                                 * pulses of the card are inverted likewise */
+    int32_t PPR;                /* pulses of the motor per turn that reach the position loop */
+    double  RPM;                /* [rpm] highest safe motor speed */
+    double  pitch;              /* [mm] lead of the screw */
+    double  gear_ratio;         /* motor turns per screw turn */
+    double  high_limit;         /* [mm] from the logical origin to the positive limit switch */
+    double  low_limit;          /* [mm] to the negative one */
+    double  HOT_offset;         /* [mm] software limit, positive end */
+    double  LOT_offset;         /* [mm] negative end */
+    int32_t sensor_on;          /* logic state of the home sensor when ON, 0 or 1 */
+    int32_t index_on;           /* of the index; 1 at the start */
+    int32_t home_dir;           /* bits 0, 1, 2: direction in phases 1, 2, 3; 0 positive,
+                                 * 1 negative */
+} MCC_MACH_PARAM;
 
 /* State of the reactions: see reaction.h. */
 struct protection {
@@ -216,10 +241,29 @@ int MCC_get_ppos(const struct mcc *m, int32_t pulses[AXES]);    /* [pulses] */
 int MCC_get_errcnt(const struct mcc *m, int32_t counts[AXES]);  /* [counts] */
 int MCC_check_stop(const struct mcc *m);    /* 1 all commands done and every point written */
 
-/* The same, but that some compensation may be still to be driven in. */
+/* What the limit switches do: enum machine_limit, -1 nothing. The document has no such call, nor
+ * one for the largest following errors, 0: not watched. [counts] */
+int protect_set_limit_mode(struct mcc *m, int mode);
+int protect_set_track_limit(struct mcc *m, const int32_t counts[AXES]);
+
+/* Compensation. The position of the library, in mm and in pulses, is the uncompensated one; only
+ * the frames of the card carry the correction. When motion ends, frames go on until all of it has
+ * been driven in. Is some to be where the axes stand? */
+bool compensate_due(const struct mcc *m);
+
+/* Add what fits to the frames of the next point, whose pulses and frames are uncompensated;
+ * in a dry run the frames become zero. */
+void compensate_frame(struct mcc *m, struct point *p);
+
+/* As MCC_check_stop, but that some compensation may be still to be driven in. */
 bool control_rests(const struct mcc *m);
 
 /* With nothing under way and nothing to come, the next command begins where the axes stand. */
 void control_settle(struct mcc *m);
+
+/* What is wrong with a state that comes back from outside, in words, or NULL if every index and
+ * count lies within its array. Booleans and enumerations must have been looked at; values that are
+ * only wrong are not seen. */
+const char *mcc_damage(const struct mcc *m);
 
 #endif

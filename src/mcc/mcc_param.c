@@ -1,9 +1,7 @@
-#include "mcc_param.h"
+#include "mcc.h"
 
 #include <math.h>
 #include <string.h>
-
-#include "mcc.h"
 
 MCC_MACH_PARAM mcc_param_of(const struct machine_axis *a)
 {

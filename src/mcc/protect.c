@@ -1,4 +1,4 @@
-#include "protect.h"
+#include "mcc.h"
 
 #include <math.h>
 

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compensate.h"
 #include "reach.h"
 
 /* Pulses come as planned for the DDA time in progress; then two DDA times tell that none comes. */

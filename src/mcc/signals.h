@@ -19,7 +19,27 @@ struct signals {
     int32_t  latched[AXES]; /* how often it has latched */
 };
 
+/* The counters wrap, so the lowest value has itself as its opposite. */
+static inline int32_t signals_opposite(int32_t count)
+{
+    return (int32_t)(0u - (uint32_t)count);
+}
+
 /* The counts of the card as counts of the library, or back: of an inverted axis they turn round. */
-struct signals signals_turned(const struct signals *s, const struct machine *m);
+static inline struct signals signals_turned(const struct signals *s,
+                                            const struct machine *m)
+{
+    struct signals t = *s;
+
+    for (int i = 0; i < AXES; i++) {
+        if (m->axis[i].inverted) {
+            t.pulses[i] = signals_opposite(t.pulses[i]);
+            t.enc[i] = signals_opposite(t.enc[i]);
+            t.err[i] = signals_opposite(t.err[i]);
+            t.latch[i] = signals_opposite(t.latch[i]);
+        }
+    }
+    return t;
+}
 
 #endif

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "compensate.h"
 #include "reaction.h"
 
 struct program task_program(const struct mcc *m, const struct source *s)

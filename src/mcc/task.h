@@ -63,4 +63,25 @@ bool task_moving(const struct mcc *m);
 
 enum task_status task_status(const struct mcc *m);
 
+/* A key of a panel: it counts as pressed when it goes down, until somebody takes that. */
+struct key {
+    bool down;          /* when it was looked at last */
+    bool pressed;       /* since it was taken last */
+};
+
+static inline void key_look(struct key *k, bool down)
+{
+    k->pressed = k->pressed || (down && !k->down);
+    k->down = down;
+}
+
+/* Has it been pressed? Once for all times that it was. */
+static inline bool key_take(struct key *k)
+{
+    const bool pressed = k->pressed;
+
+    k->pressed = false;
+    return pressed;
+}
+
 #endif

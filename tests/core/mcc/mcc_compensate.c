@@ -1,7 +1,6 @@
 /* Compensation on the way to the card: what comes out is the ideal position and the table. */
 #include <stdlib.h>
 
-#include "compensate.h"
 #include "mcc_card.h"
 
 static const struct pc_panel calm = { .override = 1.0 };

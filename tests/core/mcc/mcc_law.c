@@ -1,6 +1,5 @@
 /* The control law: pre-filter, feed-forward and cross-coupled control against closed formulas, and
  * on the PC: the speed fed forward is that of the frame being put out. */
-#include "compensate.h"
 #include "law.h"
 #include "mcc_card.h"
 

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "mcc_check.h"
-#include "protect.h"
 #include "reaction.h"
 #include "task.h"
 

@@ -1,6 +1,5 @@
 /* Motion that is interfered with: hold, override, abort, too many pulses, all at random. */
 #include "mcc_record.h"
-#include "protect.h"
 #include "reaction.h"
 
 /* Hold: on the path, v^2/(2 d) further; continue: the same end, later by what was lost. */
