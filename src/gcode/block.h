@@ -5,16 +5,6 @@
 #include "gcode.h"
 #include "modes.h"
 
-/* The axis words in the order of the axes. */
-#define BLOCK_AXES "XYZUVW"
-
-/* One block on its way through the interpreter. */
-struct block {
-    struct tokens tokens;
-    struct gcode g;
-    double scale;       /* [mm] per unit of the program */
-};
-
 /* The next command of the block, cleared but for its line; it counts once in->count is raised. */
 struct command *block_command(struct interpreter *in);
 

@@ -36,6 +36,16 @@ struct gcode {
     int code[GCODE_GROUPS];                 /* ten times the number of G or M, or GCODE_ABSENT */
 };
 
+/* The axis words in the order of the axes. */
+#define BLOCK_AXES "XYZUVW"
+
+/* One block on its way through the interpreter. */
+struct block {
+    struct tokens tokens;
+    struct gcode g;
+    double scale;       /* [mm] per unit of the program */
+};
+
 /* Sort the words of a line; *r gets the place of a fault. */
 enum fault gcode_sort(struct gcode *g, const struct tokens *t, struct fault_report *r);
 

@@ -5,7 +5,8 @@
 #ifndef OFFSETS_H
 #define OFFSETS_H
 
-#include "block.h"
+#include "gcode.h"
+#include "modes.h"
 
 /* The program's zero of one axis in machine coordinates. [mm] */
 double offsets_zero(const struct interpreter *in, int axis);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "block.h"
 #include "queue.h"
 
 /* The outputs as they are to be from here on, and digital ones that change. */

@@ -2,7 +2,8 @@
 #ifndef SWITCHING_H
 #define SWITCHING_H
 
-#include "block.h"
+#include "gcode.h"
+#include "modes.h"
 
 /* Execute them. Makes a command if something is to be switched when the motion so far has ended. */
 enum fault switching_block(struct interpreter *in, const struct block *b, struct fault_report *r);
