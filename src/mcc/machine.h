@@ -85,7 +85,7 @@ bool machine_share(double x);
 void machine_complete_asyn(struct machine *m);
 
 /* Divider, 1..65535, that brings 2^length * divider * 25 ns nearest to dda_time; the
- * shorter time if two are as near. */
+ * longer time if two are as near. */
 int32_t machine_dda_divider(const struct machine *m);
 
 /* DDA time the card really has. */

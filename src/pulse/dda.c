@@ -18,7 +18,7 @@ int64_t dda_time(int32_t ticks, int32_t divider)
 
 int32_t dda_divider(int32_t ticks, double wanted, int32_t largest)
 {
-    double divider = ceil(wanted / ticks - 0.5);
+    double divider = round(wanted / ticks);
     return divider > 1.0 ? divider < largest ? (int32_t)divider : largest : 1;
 }
 

@@ -27,8 +27,8 @@ struct dda {
 /* One DDA time [clocks]. */
 int64_t dda_time(int32_t ticks, int32_t divider);
 
-/* Divider whose DDA time is nearest to the wanted one [clocks], within 1 .. largest; the shorter
- * time if two are as near. dda_time() of it is what the hardware can do. */
+/* Divider whose DDA time is nearest to the wanted one [clocks], within 1 .. largest; the longer
+ * time if two are as near, which asks less of the host. dda_time() of it is what the hardware can do. */
 int32_t dda_divider(int32_t ticks, double wanted, int32_t largest);
 
 /* Largest command: a pulse less than there are ticks, forward or backward [pulses]. */

@@ -127,7 +127,7 @@ static void change_of_time(void)
     CHECK_EQ(dda_boundary(&d), 1024 + 65536 + 1024);
 }
 
-/* The nearest divider: no other is nearer; of two as near, the shorter time. */
+/* The nearest divider: no other is nearer; of two as near, the longer time. */
 static void nearest_time(uint64_t seed)
 {
     enum { LARGEST = 65535 };
@@ -137,11 +137,11 @@ static void nearest_time(uint64_t seed)
         int32_t d = dda_divider(ticks, (double)wanted, LARGEST);
         int64_t off = llabs(dda_time(ticks, d) - wanted);
         CHECK(d >= 1 && d <= LARGEST);
-        CHECK(d == 1 || llabs(dda_time(ticks, d - 1) - wanted) > off);
-        CHECK(d == LARGEST || llabs(dda_time(ticks, d + 1) - wanted) >= off);
+        CHECK(d == 1 || llabs(dda_time(ticks, d - 1) - wanted) >= off);
+        CHECK(d == LARGEST || llabs(dda_time(ticks, d + 1) - wanted) > off);
     }
     for (int32_t d = 1; d < 1000; d++)
-        CHECK_EQ(dda_divider(4096, 4096 * (d + 0.5), LARGEST), d);
+        CHECK_EQ(dda_divider(4096, 4096 * (d + 0.5), LARGEST), d + 1);
     CHECK_EQ(dda_divider(4096, 4096 * 7.5, 5), 5);
     CHECK_EQ(dda_divider(4096, 40960, LARGEST), 10);
     CHECK_EQ(dda_divider(4096, -5, LARGEST), 1);
