@@ -17,3 +17,8 @@ def __getattr__(name: str) -> Any:
 
         return getattr(run, name)
     raise AttributeError(f"module 'motionfmu' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """Names of `__all__`, though the runner is not imported yet."""
+    return __all__

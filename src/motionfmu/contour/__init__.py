@@ -3,5 +3,14 @@
 from motionfmu.contour.error import analyse
 from motionfmu.contour.path import Path, read_path
 from motionfmu.contour.result import ContourInput, ContourResult, Trace
+from motionfmu.errors import NoNumber
 
-__all__ = ["ContourInput", "ContourResult", "Path", "Trace", "analyse", "read_path"]
+__all__ = [
+    "ContourInput",
+    "ContourResult",
+    "NoNumber",
+    "Path",
+    "Trace",
+    "analyse",
+    "read_path",
+]
