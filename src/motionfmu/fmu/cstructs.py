@@ -134,23 +134,11 @@ def _looks(found: _Definitions, name: str, done: dict[str, str]) -> bool:
 
 
 def flags(texts: Iterable[str]) -> str:
-    """Text of state_flags.h.
+    """Text of state_flags.h, from C files with all structs of the state.
 
-    Parameters
-    ----------
-    texts : iterable of str
-        C files with all structs of the state; `struct model` is the whole.
-
-    Returns
-    -------
-    str
-        `fmi_good_model`: whether every Boolean of a `struct model` is one and every enumeration
-        lies from its first to its last name. Members of unions are left to the model.
-
-    Raises
-    ------
-    ValueError
-        A struct of the state has a pointer or a struct without a name.
+    Its `fmi_good_model` tells whether every Boolean of a `struct model`, the whole, is one and
+    every enumeration lies from its first to its last name. Members of unions are left to the model.
+    A struct with a pointer or without a name is a ValueError.
     """
     found = _Definitions()
     for text in texts:

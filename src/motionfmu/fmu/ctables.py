@@ -35,17 +35,7 @@ def _nested(values: list[str], dims: tuple[int, ...]) -> str:
 
 
 def header(d: Description) -> str:
-    """Text of vars.h.
-
-    Parameters
-    ----------
-    d : Description
-
-    Returns
-    -------
-    str
-        The FMU_* constants and `struct vars`, one member per variable.
-    """
+    """Text of vars.h: the FMU_* constants and `struct vars`, one member per variable."""
     members = "\n".join(_member(v) for v in d.variables)
     grid = f"#define FMU_GRID {d.grid} /* [s] */\n" if d.grid else ""
     return (
@@ -59,17 +49,7 @@ def header(d: Description) -> str:
 
 
 def table(d: Description) -> str:
-    """Text of vars.c.
-
-    Parameters
-    ----------
-    d : Description
-
-    Returns
-    -------
-    str
-        `vars_start`, `var_table` and `var_of_ref`.
-    """
+    """Text of vars.c: `vars_start`, `var_table` and `var_of_ref`."""
     starts, rows, refs = [], [], []
     for row, (v, ref) in enumerate(zip(d.variables, d.references(), strict=True)):
         if v.start is not None:
@@ -93,19 +73,7 @@ def table(d: Description) -> str:
 
 
 def main_unit(model: str, fmi: int) -> str:
-    """Text of fmu_main.c, which joins model and FMI layer.
-
-    Parameters
-    ----------
-    model : str
-        File name of the model's C source.
-    fmi : int
-        2 or 3.
-
-    Returns
-    -------
-    str
-    """
+    """Text of fmu_main.c, which joins the model, by the name of its C file, and the FMI layer."""
     return (
         f"{_NOTE}#define FMI_VERSION {fmi}\n"
         "#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */\n"

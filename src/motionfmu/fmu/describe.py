@@ -23,37 +23,20 @@ Scalar = float | int | bool | str
 
 @dataclass(frozen=True)
 class Variable:
-    """One variable of an FMU.
+    """One variable of an FMU."""
 
-    Attributes
-    ----------
-    name, causality, type, doc : str
-        Name (snake_case), one of `CAUSALITIES`, one of `TYPES`, description.
-    dims : tuple of int
-        Array dimensions, empty for a scalar.
-    unit : str or None
-        See `motionfmu.units.parse`; f64 only.
-    start : list or None
-        Start values, one per element (row-major); None for outputs and locals.
-    min, max, nominal : float, int or None
-        Limits that a set call must keep, and the usual size.
-    tunable : bool
-        A parameter that may change while running.
-    continuous : bool
-        An f64 that changes between communication points (plants); else discrete.
-    """
-
-    name: str
-    causality: str
-    type: str
+    name: str  # snake_case
+    causality: str  # one of `CAUSALITIES`
+    type: str  # one of `TYPES`
     doc: str
-    dims: tuple[int, ...] = ()
-    unit: str | None = None
-    start: list[Any] | None = None
-    min: float | int | None = None
+    dims: tuple[int, ...] = ()  # empty for a scalar
+    unit: str | None = None  # see `motionfmu.units.parse`; f64 only
+    start: list[Any] | None = None  # one per element (row-major); None for outputs and locals
+    min: float | int | None = None  # limits that a set call must keep
     max: float | int | None = None
-    nominal: float | None = None
-    tunable: bool = False
+    nominal: float | None = None  # the usual size
+    tunable: bool = False  # a parameter that may change while running
+    # an f64 that changes between communication points (plants); else discrete
     continuous: bool = False
 
     @property
@@ -85,28 +68,14 @@ class Variable:
 
 @dataclass(frozen=True)
 class Description:
-    """All that an importing tool may know about an FMU.
+    """All that an importing tool may know about an FMU."""
 
-    Attributes
-    ----------
-    name, description : str
-        Model name (CamelCase, also the model identifier) and what it is.
-    tick_ns : int
-        Every communication step is a whole multiple of it [ns].
-    experiment : dict
-        Default ``stop`` and ``step`` [s].
-    cores : tuple of str
-        Folders under src/ whose C files the model needs.
-    grid : str
-        Name of the parameter that is the grid on which it reads inputs and shows outputs; or empty.
-    variables : tuple of Variable
-    """
-
-    name: str
+    name: str  # CamelCase, also the model identifier
     description: str
-    tick_ns: int
-    experiment: dict[str, float]
-    cores: tuple[str, ...] = ()
+    tick_ns: int  # every communication step is a whole multiple of it [ns]
+    experiment: dict[str, float]  # default `stop` and `step` [s]
+    cores: tuple[str, ...] = ()  # folders under src/ whose C files the model needs
+    # name of the parameter that is the grid on which it reads inputs and shows outputs; or empty
     grid: str = ""
     variables: tuple[Variable, ...] = field(default=())
 
@@ -187,26 +156,7 @@ def _check_limits(row: dict[str, Any]) -> None:
 
 
 def variable(name: str, causality: str, row: dict[str, Any]) -> Variable:
-    """Make a Variable from one row of a description.
-
-    Parameters
-    ----------
-    name : str
-        Variable name.
-    causality : str
-        One of `CAUSALITIES`.
-    row : dict
-        Keys as in fmu.toml.
-
-    Returns
-    -------
-    Variable
-
-    Raises
-    ------
-    ValueError
-        A key, type, unit, start or limit is wrong; the message names the variable and the value.
-    """
+    """Make a Variable from a row as in fmu.toml; a ValueError names the variable and the value."""
     try:
         if not isinstance(row, dict):
             raise ValueError(f"{shown(row)} is no table")

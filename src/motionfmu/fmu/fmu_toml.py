@@ -14,24 +14,7 @@ _CORE = r"[a-z][a-z0-9_]{0,63}"
 
 
 def parse(text: str, file: str = "fmu.toml") -> Description:
-    """Read the text of an fmu.toml.
-
-    Parameters
-    ----------
-    text : str
-        TOML.
-    file : str
-        Name used in messages.
-
-    Returns
-    -------
-    Description
-
-    Raises
-    ------
-    ValueError
-        Anything wrong, as ``file:line: what``.
-    """
+    """Read the text of an fmu.toml; anything wrong is a ValueError, ``file:line: what``."""
     doc = tables_of(text, file)
     rows = []
     for causality in CAUSALITIES:
@@ -66,37 +49,12 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
 
 
 def names_modelica(text: str) -> bool:
-    """Whether an fmu.toml takes its variables from a Modelica class.
-
-    Parameters
-    ----------
-    text : str
-        The file's text.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether the text of an fmu.toml takes its variables from a Modelica class."""
     return re.search(r"^modelica\s*=", text, re.MULTILINE) is not None
 
 
 def load(path: str | Path) -> Description:
-    """Read the description of the FMU whose fmu.toml is at `path`.
-
-    Parameters
-    ----------
-    path : str or Path
-        An fmu.toml; one that names a Modelica class takes its variables from there.
-
-    Returns
-    -------
-    Description
-
-    Raises
-    ------
-    ValueError
-        Anything wrong with the file, as ``file:line: what``.
-    """
+    """Read the description in an fmu.toml, or of the Modelica class that it names."""
     text = text_of(path)
     if names_modelica(text):
         from motionfmu.fmu.modelica import description

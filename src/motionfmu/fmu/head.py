@@ -12,20 +12,7 @@ _NAME = r"[A-Z][A-Za-z0-9]{0,63}"  # it is part of the name of C functions and o
 
 
 def check_head(doc: dict[str, Any], text: str, file: str) -> None:
-    """Check what an fmu.toml says about the FMU as a whole.
-
-    Parameters
-    ----------
-    doc : dict
-        With name, description, tick_ns and experiment.
-    text, file : str
-        For the line and the name of the file in messages.
-
-    Raises
-    ------
-    InputError
-        ``file:line: what``.
-    """
+    """Check an fmu.toml's name, description, tick_ns and experiment; else ``file:line: what``."""
 
     def refuse(key: str, what: str) -> InputError:
         return InputError(f"{file}:{line_of(text, key)}: {key} {shown(doc[key])} {what}")
@@ -54,19 +41,7 @@ def matches(pattern: str, x: Any) -> bool:
 
 
 def line_of(text: str, key: str) -> int:
-    """Line of a key or table.
-
-    Parameters
-    ----------
-    text : str
-        The file.
-    key : str
-
-    Returns
-    -------
-    int
-        0 if there is none.
-    """
+    """Line of a key or table in a text; 0 if there is none."""
     for number, line in enumerate(text.split("\n"), 1):
         if re.match(rf"\s*\[?[\"']?{re.escape(key)}[\"']?\s*[=\].]", line):
             return number

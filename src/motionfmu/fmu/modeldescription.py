@@ -64,6 +64,17 @@ def _head(root: ET.Element, d: Description, fmi: int, sources: Iterable[str]) ->
     )
 
 
+def _about(v: Variable, name: str, reference: int) -> dict[str, object]:
+    return {
+        "name": name,
+        "valueReference": reference,
+        "description": v.doc,
+        "causality": v.causality,
+        "variability": v.variability,
+        "initial": v.initial,
+    }
+
+
 def _limits(v: Variable) -> dict[str, object]:
     kind = float if v.type == "f64" else int
     found: dict[str, object] = {"unit": v.unit}
@@ -82,12 +93,7 @@ def _variables2(parent: ET.Element, d: Description) -> list[int]:
             scalar = _add(
                 parent,
                 "ScalarVariable",
-                name=name,
-                valueReference=first + i,
-                description=v.doc,
-                causality=v.causality,
-                variability=v.variability,
-                initial=v.initial,
+                **_about(v, name, first + i),
             )
             start = None if v.start is None else v.start[i]
             _add(scalar, _TYPE[2][v.type], **_limits(v), start=start)
@@ -113,12 +119,7 @@ def _variables3(parent: ET.Element, d: Description) -> list[int]:
         element = _add(
             parent,
             _TYPE[3][v.type],
-            name=v.name,
-            valueReference=ref,
-            description=v.doc,
-            causality=v.causality,
-            variability=v.variability,
-            initial=v.initial,
+            **_about(v, v.name, ref),
             **_limits(v),
             start=start,
         )
@@ -133,20 +134,9 @@ def _variables3(parent: ET.Element, d: Description) -> list[int]:
 
 
 def model_description(d: Description, fmi: int, sources: Iterable[str] = ()) -> bytes:
-    """Make the text of modelDescription.xml.
+    """Make the text of modelDescription.xml, UTF-8; FMI 2's has the list of C files to compile.
 
-    Parameters
-    ----------
-    d : Description
-    fmi : int
-        2 or 3.
-    sources : iterable of str
-        C files to compile, for FMI 2's list of source files.
-
-    Returns
-    -------
-    bytes
-        UTF-8 XML. Outputs depend on no input at the same instant: every block samples.
+    Outputs depend on no input at the same instant: every block samples.
     """
     root = ET.Element("fmiModelDescription", fmiVersion=f"{fmi}.0", modelName=d.name)
     root.set("guid" if fmi == 2 else "instantiationToken", d.token)

@@ -35,35 +35,15 @@ def _write(path: Path, data: str | bytes) -> None:
 
 
 def is_modelica(fmu: Path) -> bool:
-    """Whether the FMU in this folder is made from a Modelica class.
-
-    Parameters
-    ----------
-    fmu : Path
-        Folder with fmu.toml.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether the FMU in this folder is made from a Modelica class."""
     return fmu_toml.names_modelica(text_of(fmu / "fmu.toml"))
 
 
 def generate(fmu: Path, out: Path) -> None:
-    """Write all generated text of one FMU.
+    """Write all generated text of one FMU, from a folder with fmu.toml (and model.c).
 
-    Parameters
-    ----------
-    fmu : Path
-        Folder with fmu.toml (and model.c).
-    out : Path
-        Receives vars.h, vars.c, fmi2/ and fmi3/ with fmu_main.c and modelDescription.xml,
-        and plant.c, plant.h, ode.json for a Modelica class.
-
-    Raises
-    ------
-    ValueError
-        The description is wrong; ``file:line: what``.
+    `out` receives vars.h, vars.c, fmi2/ and fmi3/ with fmu_main.c and modelDescription.xml, and
+    plant.c, plant.h, ode.json for a Modelica class.
     """
     d = fmu_toml.load(fmu / "fmu.toml")
     _write(out / "vars.h", ctables.header(d))
@@ -82,20 +62,7 @@ def generate(fmu: Path, out: Path) -> None:
 
 
 def flags(fmu: Path, out: Path) -> None:
-    """Write state_flags.h of one FMU from its C text.
-
-    Parameters
-    ----------
-    fmu : Path
-        Folder with fmu.toml (and model.c).
-    out : Path
-        Has what `generate` wrote.
-
-    Raises
-    ------
-    ValueError
-        A struct of the state has what a state cannot have.
-    """
+    """Write state_flags.h of one FMU from its C text; `out` has what `generate` wrote."""
     d = fmu_toml.load(fmu / "fmu.toml")
     files = [f for f in _core_files(fmu, d) if f.suffix == ".h"]
     if is_modelica(fmu):
@@ -110,20 +77,7 @@ def _core_files(fmu: Path, d: describe.Description) -> list[Path]:
 
 
 def compiled_sources(fmu: Path, d: describe.Description, out: Path) -> list[Path]:
-    """C files that are compiled beside fmu_main.c.
-
-    Parameters
-    ----------
-    fmu : Path
-        Folder with fmu.toml.
-    d : Description
-    out : Path
-        Folder of the generated text.
-
-    Returns
-    -------
-    list of Path
-    """
+    """C files that are compiled beside fmu_main.c; `out` is the folder of the generated text."""
     files = [f for f in _core_files(fmu, d) if f.suffix == ".c"]
     return files + ([out / "plant.c"] if is_modelica(fmu) else [])
 
@@ -159,18 +113,7 @@ def _build_description(identifier: str, names: list[str]) -> bytes:
 
 
 def platform_folder(fmi: int) -> str:
-    """Name of the folder for this machine's binaries inside an FMU.
-
-    Parameters
-    ----------
-    fmi : int
-        2 or 3.
-
-    Returns
-    -------
-    str
-        For example ``linux64`` or ``x86_64-linux``.
-    """
+    """Folder of this machine's binaries in an FMU: ``linux64`` or ``x86_64-linux``, for example."""
     system = {"linux": "linux", "darwin": "darwin", "win32": "windows"}[sys.platform]
     machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
     if fmi == 3:
@@ -179,21 +122,7 @@ def platform_folder(fmi: int) -> str:
 
 
 def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> None:
-    """Pack one .fmu; equal input gives equal bytes.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of the FMU with fmu.toml and README.md.
-    out : Path
-        Folder of its generated text.
-    fmi : int
-        2 or 3.
-    library : Path
-        The shared library.
-    target : Path
-        The .fmu to write.
-    """
+    """Pack one .fmu of its folder, generated text and library; equal input gives equal bytes."""
     xml = (out / f"fmi{fmi}/modelDescription.xml").read_bytes()
     match = re.search(rb'modelIdentifier="(\w+)"', xml)
     assert match, "the generated description has a model identifier"
@@ -224,18 +153,7 @@ def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> N
 
 
 def main(arguments: list[str]) -> int:
-    """Run one of the three with the arguments of the build.
-
-    Parameters
-    ----------
-    arguments : list of str
-        As in the module's first lines.
-
-    Returns
-    -------
-    int
-        Exit status: 0, or 2 after one message on stderr.
-    """
+    """Run one of the three as in the module's first lines; 0, or 2 after one message on stderr."""
     try:
         if arguments[0] in ("generate", "flags"):
             make = generate if arguments[0] == "generate" else flags

@@ -12,43 +12,12 @@ from motionfmu.fmu.modelica.ode import Ode
 
 
 def load(package: Path, name: str) -> Ode:
-    """Flatten a class and make its differential equation.
-
-    Parameters
-    ----------
-    package : Path
-        Folder with package.mo, or one .mo file.
-    name : str
-        Full class name.
-
-    Returns
-    -------
-    Ode
-
-    Raises
-    ------
-    ValueError
-        The class does not compile, or has a construct that is not supported.
-    """
+    """Flatten a class, by its full name, and make its differential equation; see `flatten`."""
     return build(flatten(package, name))
 
 
 def build(flat: Flat) -> Ode:
-    """Make the differential equation of a flat class.
-
-    Parameters
-    ----------
-    flat : Flat
-
-    Returns
-    -------
-    Ode
-
-    Raises
-    ------
-    Unsupported
-        The message names the class and the construct.
-    """
+    """Make the differential equation of a flat class; Unsupported names class and construct."""
     names = _Names(flat)
     declared = list(flat.declarations.values())
     residuals = [names.evaluate(e) for e in _residuals(flat)]
@@ -191,19 +160,8 @@ def _dummy_derivatives(
 ) -> list[ca.SX]:
     """Equations for der(z) of variables z that are no states.
 
-    Parameters
-    ----------
-    names : _Names
-    residuals : list of SX
-    dummies : list of str
-        Names of these variables.
-    symbols : tuple of SX
-        States, their derivatives, and all other unknowns.
-
-    Returns
-    -------
-    list of SX
-        der(z) - dz/dx xdot, with z(x) from equations without derivatives.
+    ``der(z) - dz/dx xdot``, with z(x) from equations without derivatives; `symbols` are states,
+    their derivatives, and all other unknowns.
     """
     x, slopes, others = symbols
     derivatives = ca.vertcat(*names.derivatives.values())

@@ -34,20 +34,7 @@ _ARGUMENTS = "xupc"
 
 
 def write(toml: Path, out: Path) -> None:
-    """Write plant.c, plant.h and ode.json where they differ.
-
-    Parameters
-    ----------
-    toml : Path
-        fmus/<name>/fmu.toml with a key ``modelica``.
-    out : Path
-        Folder for the files.
-
-    Raises
-    ------
-    ValueError
-        The file or the class is wrong or not supported.
-    """
+    """Write plant.c, plant.h, ode.json of an fmu.toml with the key ``modelica``, where changed."""
     packing = description.read(toml)
     ode = causal.load(packing.package, packing.modelica)
     out.mkdir(parents=True, exist_ok=True)
@@ -60,24 +47,10 @@ def write(toml: Path, out: Path) -> None:
 
 
 def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[str, str]:
-    """Text of plant.c and plant.h.
+    """Text of plant.c and plant.h; one instance has scalars, more have arrays.
 
-    Parameters
-    ----------
-    ode : Ode
-    instances : int
-        Copies of the class in the FMU; one has scalars, more have arrays.
-    tolerance : float, optional
-        Error of one step if the steps follow the error; each axis then has steps of its own.
-
-    Returns
-    -------
-    tuple of str
-
-    Raises
-    ------
-    ValueError
-        The class has too many branches, or an operation without a form in C.
+    With a tolerance, the error of one step, the steps follow the error, and each axis has steps of
+    its own. A ValueError tells of too many branches, or an operation without a form in C.
     """
     if not ode.states or not ode.outputs:
         raise ValueError(f"{ode.name}: a plant needs a state and an output")
@@ -199,14 +172,14 @@ def _of_parameters(ode: Ode, equations: Split) -> str:
     for node, (_, text) in zip(checks, ode.checks, strict=True):
         lines += [f"if (a{node} == 0.0) {{", f"    return {json.dumps(text)};", "}"]
     check = _function("const char *plant_check(const double *p)", [*lines, "return NULL;"])
-    lines = statements(early, start, _single)
-    for k, (node, d) in enumerate(zip(start, ode.states, strict=True)):
-        lines.append(f"x[{k}] = a{node}; /* {d.name} */")
-    initial = _function("void plant_start(const double *p, double *x)", lines)
-    lines = statements(early, sizes, _single)
-    for k, (node, d) in enumerate(zip(sizes, ode.states, strict=True)):
-        lines.append(f"size[{k}] = a{node}; /* {d.name} */")
-    large = _function("void plant_sizes(const double *p, double *size)", lines)
+
+    def of_states(name: str, nodes: tuple[int, ...]) -> list[str]:
+        rows = enumerate(zip(nodes, ode.states, strict=True))
+        filled = [f"{name}[{k}] = a{node}; /* {d.name} */" for k, (node, d) in rows]
+        return [*statements(early, nodes, _single), *filled]
+
+    initial = _function("void plant_start(const double *p, double *x)", of_states("x", start))
+    large = _function("void plant_sizes(const double *p, double *size)", of_states("size", sizes))
     lines = statements(equations.early, [node for node, _ in equations.constants], _single)
     for k, (node, inverted) in enumerate(equations.constants):
         lines.append(f"c[{k}] = {'1.0 / ' if inverted else ''}a{node};")

@@ -39,16 +39,7 @@ _TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f + "({0})" for f in _LIBRARY
 
 
 def literal(value: float) -> str:
-    """C text of a double, exact.
-
-    Parameters
-    ----------
-    value : float
-
-    Returns
-    -------
-    str
-    """
+    """C text of a double, exact."""
     if math.isnan(value):
         return "NAN"
     text = "INFINITY" if math.isinf(value) else repr(abs(value))
@@ -58,26 +49,10 @@ def literal(value: float) -> str:
 def statements(
     program: Program, roots: Iterable[int], leaf: Callable[[int, Node], str | None]
 ) -> list[str]:
-    """Statements ``const double aN = ...;`` that some nodes need.
+    """Statements ``const double aN = ...;`` that the nodes `roots` need, in order of evaluation.
 
-    Parameters
-    ----------
-    program : Program
-    roots : iterable of int
-        Nodes wanted.
-    leaf : callable
-        Gives the C text of a node that stands for something already known, else None;
-        it must know all inputs.
-
-    Returns
-    -------
-    list of str
-        In order of evaluation, without indentation.
-
-    Raises
-    ------
-    ValueError
-        An operation has no C form.
+    `leaf` gives the C text of a node that stands for something already known, else None; it must
+    know all inputs. An operation without a form in C is a ValueError.
     """
     needed, stack, known = set(roots), list(roots), {}
     while stack:

@@ -22,56 +22,23 @@ INSTANCES_MAX = 64
 
 @dataclass(frozen=True)
 class Packing:
-    """What fmu.toml says about a Modelica FMU.
+    """What fmu.toml says about a Modelica FMU."""
 
-    Attributes
-    ----------
-    name, description : str
-        Of the FMU.
-    tick_ns : int
-        Every communication step is a whole multiple of it [ns].
-    experiment : dict
-        Default ``stop`` and ``step`` [s].
-    modelica : str
-        Full class name.
-    instances : int
-        Copies of the class, one per axis; a single one has scalars instead of arrays.
-    micro_step : float
-        Default grid of the integrator [s].
-    package : Path
-        Folder of the Modelica package.
-    tolerance : float, optional
-        Error of one integrator step, as a share of what is large for a state: the steps follow
-        it. None: equal steps.
-    """
-
-    name: str
+    name: str  # of the FMU
     description: str
-    tick_ns: int
-    experiment: dict[str, float]
-    modelica: str
-    instances: int
-    micro_step: float
-    package: Path
+    tick_ns: int  # every communication step is a whole multiple of it [ns]
+    experiment: dict[str, float]  # default `stop` and `step` [s]
+    modelica: str  # full class name
+    instances: int  # copies of the class, one per axis; a single one has scalars instead of arrays
+    micro_step: float  # default grid of the integrator [s]
+    package: Path  # folder of the Modelica package
+    # error of one integrator step, as a share of what is large for a state: the steps follow it.
+    # None: equal steps
     tolerance: float | None = None
 
 
 def read(toml: Path) -> Packing:
-    """Read an fmu.toml with a key ``modelica``.
-
-    Parameters
-    ----------
-    toml : Path
-
-    Returns
-    -------
-    Packing
-
-    Raises
-    ------
-    ValueError
-        ``file:line: what``.
-    """
+    """Read an fmu.toml with a key ``modelica``; a ValueError is ``file:line: what``."""
     text = text_of(toml)
     doc = tables_of(text, toml)
 
@@ -105,23 +72,10 @@ def read(toml: Path) -> Packing:
 
 
 def from_modelica(toml: Path) -> describe.Description:
-    """Make the description of a Modelica FMU.
+    """Make the description of the Modelica FMU of an fmu.toml.
 
-    Parameters
-    ----------
-    toml : Path
-        fmus/<name>/fmu.toml.
-
-    Returns
-    -------
-    Description
-        Parameters ``active`` and ``micro_step``, then all that the class declares, one element
-        per instance (scalars if there is one instance).
-
-    Raises
-    ------
-    ValueError
-        The file or the class is wrong.
+    Its parameters ``active`` and ``micro_step``, then all that the class declares, one element per
+    instance (scalars if there is one instance).
     """
     packing = read(toml)
     ode = causal.load(packing.package, packing.modelica)

@@ -53,17 +53,7 @@ _SIGN: dict[str, Callable[[ca.SX], ca.SX]] = {
 
 
 class Evaluator:
-    """Evaluates the expressions of one flat class.
-
-    Parameters
-    ----------
-    flat : Flat
-        For its functions and for messages.
-    lookup : callable
-        Gives the SX scalar of a flat name.
-    derivative : callable
-        Gives the SX scalar of der(name).
-    """
+    """Evaluates expressions of one flat class, with SX scalars of its names and derivatives."""
 
     def __init__(
         self, flat: Flat, lookup: Callable[[str], ca.SX], derivative: Callable[[str], ca.SX]
@@ -76,24 +66,10 @@ class Evaluator:
         return Unsupported(f"{self._flat.name}: {what} is not supported")
 
     def __call__(self, e: Expression, local: Mapping[str, ca.SX] | None = None) -> ca.SX:
-        """Value of an expression.
+        """Value of an expression, a scalar; Booleans are 0 and 1.
 
-        Parameters
-        ----------
-        e : dict
-            Flat expression.
-        local : mapping, optional
-            Variables of the function that is being inlined.
-
-        Returns
-        -------
-        casadi.SX
-            A scalar; Booleans are 0 and 1.
-
-        Raises
-        ------
-        Unsupported
-            The message names the construct.
+        `local` has the variables of a function that is being inlined; Unsupported names the
+        construct.
         """
         ((kind, d),) = e.items()
         if kind == "Literal":

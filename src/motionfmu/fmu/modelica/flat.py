@@ -30,33 +30,15 @@ class Unsupported(ValueError):
 
 @dataclass(frozen=True)
 class Declaration:
-    """One scalar component of the flat class.
+    """One scalar component of the flat class."""
 
-    Attributes
-    ----------
-    name : str
-        Flat name, for example ``rotor.speed``.
-    type : str
-        Real, Integer or Boolean.
-    kind : str
-        parameter, input, output (both only at the top level) or variable.
-    unit, description : str
-        As declared, empty where nothing is.
-    final : bool
-        A final parameter, or a constant: nobody may set it.
-    fixed : bool
-        Its start value is an initial condition.
-    binding, start, min, max, nominal : dict or None
-        Flat expressions.
-    """
-
-    name: str
-    type: str
-    kind: str
-    unit: str
+    name: str  # flat, for example rotor.speed
+    type: str  # Real, Integer or Boolean
+    kind: str  # parameter, input, output (both only at the top level) or variable
+    unit: str  # empty where nothing is declared
     description: str
-    final: bool
-    fixed: bool
+    final: bool  # a final parameter, or a constant: nobody may set it
+    fixed: bool  # its start value is an initial condition
     binding: Expression | None
     start: Expression | None
     min: Expression | None
@@ -71,65 +53,29 @@ class Declaration:
 
 @dataclass(frozen=True)
 class Equation:
-    """One equation, residual = 0.
+    """One equation, residual = 0."""
 
-    Attributes
-    ----------
-    component : str
-        Component it stands in, empty for the class itself.
-    residual : dict
-        Flat expression.
-    """
-
-    component: str
+    component: str  # it stands in; empty for the class itself
     residual: Expression
 
 
 @dataclass(frozen=True)
 class Flat:
-    """A flattened class.
+    """A flattened class."""
 
-    Attributes
-    ----------
-    name, description : str
-        Full class name and its description.
-    declarations : dict of Declaration
-        By flat name, in the order of the source.
-    equations : tuple of Equation
-    asserts : tuple of (Expression, str)
-        Conditions with their messages.
-    functions : dict
-        Flat functions by name.
-    """
-
-    name: str
+    name: str  # full name of the class
     description: str
-    declarations: dict[str, Declaration]
+    declarations: dict[str, Declaration]  # by flat name, in the order of the source
     equations: tuple[Equation, ...]
-    asserts: tuple[tuple[Expression, str], ...]
-    functions: dict[str, Any]
+    asserts: tuple[tuple[Expression, str], ...]  # conditions with their messages
+    functions: dict[str, Any]  # flat, by name
 
 
 def flatten(package: Path, name: str) -> Flat:
-    """Flatten one class of a package.
+    """Flatten one class, by its full name, of a folder with package.mo or one .mo file.
 
-    Parameters
-    ----------
-    package : Path
-        Folder with package.mo, or one .mo file.
-    name : str
-        Full class name, for example ``MotionControl.VelocityAxis``.
-
-    Returns
-    -------
-    Flat
-
-    Raises
-    ------
-    ValueError
-        The class does not compile; the message has rumoca's file, line and reason.
-    Unsupported
-        It compiles and has a construct that is not handled; the message names both.
+    A class that does not compile is a ValueError with rumoca's file, line and reason; one with a
+    construct that is not handled is Unsupported, which names both.
     """
     import rumoca
 
@@ -148,24 +94,7 @@ def flatten(package: Path, name: str) -> Flat:
 
 
 def read(doc: dict[str, Any], name: str) -> Flat:
-    """Read rumoca's flat form.
-
-    Parameters
-    ----------
-    doc : dict
-        Parsed JSON.
-    name : str
-        Class name for messages.
-
-    Returns
-    -------
-    Flat
-
-    Raises
-    ------
-    Unsupported
-        As in `flatten`.
-    """
+    """Read rumoca's flat form, parsed JSON; the class name is for messages, as in `flatten`."""
     if doc["is_partial"]:
         raise Unsupported(f"{name}: a partial class cannot be simulated")
     for section, construct in _REFUSED.items():

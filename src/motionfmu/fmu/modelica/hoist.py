@@ -9,42 +9,18 @@ from motionfmu.fmu.modelica.nodes import Node, Program
 
 @dataclass(frozen=True)
 class Split:
-    """A program in two parts.
+    """A program in two parts."""
 
-    Attributes
-    ----------
-    early : Program
-        All operations; only what `constants` needs is to be computed, once.
-    constants : tuple of (int, bool)
-        Nodes of `early`, and whether the inverse is meant: a division by a constant becomes
-        a multiplication.
-    late : Program
-        The rest. Constant k is its input (group, k).
-    group : int
-        Argument position that stands for the constants in `late`.
-    """
-
-    early: Program
+    early: Program  # all operations; only what `constants` needs is to be computed, once
+    # nodes of `early`, and whether the inverse is meant: a division by a constant becomes a
+    # multiplication
     constants: tuple[tuple[int, bool], ...]
-    late: Program
-    group: int
+    late: Program  # the rest; constant k is its input (group, k)
+    group: int  # argument position that stands for the constants in `late`
 
 
 def split(early: Program, varying: set[int], group: int) -> Split:
-    """Split a program by what varies during a run.
-
-    Parameters
-    ----------
-    early : Program
-    varying : set of int
-        Positions of the arguments that vary.
-    group : int
-        A free argument position for the constants.
-
-    Returns
-    -------
-    Split
-    """
+    """Split a program by which arguments vary during a run; the constants get position `group`."""
     moving = early.depends(varying)
     places: dict[tuple[int, bool], int] = {}
     late: list[Node] = []

@@ -13,51 +13,24 @@ STEPS = frozenset(
 
 @dataclass(frozen=True)
 class Node:
-    """One operation.
+    """One operation."""
 
-    Attributes
-    ----------
-    op : int
-        CasADi's operation code.
-    args : tuple of int
-        Positions of the operands in the list.
-    value : float
-        Of a constant.
-    input : tuple of int
-        Argument and element, of an input.
-    """
-
-    op: int
-    args: tuple[int, ...] = ()
-    value: float = 0.0
-    input: tuple[int, int] = (-1, -1)
+    op: int  # CasADi's operation code
+    args: tuple[int, ...] = ()  # positions of the operands in the list
+    value: float = 0.0  # of a constant
+    input: tuple[int, int] = (-1, -1)  # argument and element, of an input
 
 
 @dataclass(frozen=True)
 class Program:
-    """All operations of a function.
-
-    Attributes
-    ----------
-    nodes : tuple of Node
-    results : tuple of tuple of int
-        For each output of the function the node of each of its elements; dense.
-    """
+    """All operations of a function."""
 
     nodes: tuple[Node, ...]
+    # for each output of the function the node of each of its elements; dense
     results: tuple[tuple[int, ...], ...]
 
     def depends(self, arguments: set[int]) -> list[bool]:
-        """Whether each node depends on any of these arguments.
-
-        Parameters
-        ----------
-        arguments : set of int
-
-        Returns
-        -------
-        list of bool
-        """
+        """Whether each node depends on any of these arguments."""
         found: list[bool] = []
         for n in self.nodes:
             own = n.op == ca.OP_INPUT and n.input[0] in arguments
@@ -66,19 +39,7 @@ class Program:
 
 
 def program(arguments: list[ca.SX], results: list[ca.SX]) -> Program:
-    """List the operations that compute some expressions.
-
-    Parameters
-    ----------
-    arguments : list of casadi.SX
-        Column vectors of symbols.
-    results : list of casadi.SX
-        Expressions of these symbols only.
-
-    Returns
-    -------
-    Program
-    """
+    """List the operations that compute expressions of columns of symbols, and of these only."""
     f = ca.Function("f", arguments, [ca.densify(r) for r in results], {"cse": True})
     nodes: list[Node] = []
     register: dict[int, int] = {}  # the function reuses registers; each node stays
@@ -104,18 +65,7 @@ def program(arguments: list[ca.SX], results: list[ca.SX]) -> Program:
 
 
 def steps_on(expression: ca.SX, variables: ca.SX) -> bool:
-    """Whether a comparison, sign or rounding depends on variables.
-
-    Parameters
-    ----------
-    expression : casadi.SX
-    variables : casadi.SX
-        Column of symbols.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a comparison, sign or rounding depends on a column of symbols."""
     others = [s for s in ca.symvar(expression) if not ca.depends_on(s, variables)]
     p = program([variables, ca.vertcat(*others)], [expression])
     depends = p.depends({0})

@@ -15,17 +15,7 @@ _ABOUT = ("name", "type", "kind", "unit", "description")
 
 
 def to_json(ode: Ode) -> str:
-    """Write names, units and CasADi's own form of the functions.
-
-    Parameters
-    ----------
-    ode : Ode
-
-    Returns
-    -------
-    str
-        Equal for equal equations.
-    """
+    """Write names, units and CasADi's own form of the functions; equal for equal equations."""
     results = [ode.xdot, ode.y, ode.start]
     function = ca.Function("ode", [ode.x, ode.u, ode.p], results, {"allow_free": False})
     groups = {g: [[getattr(d, a) for a in _ABOUT] for d in getattr(ode, g)] for g in _GROUPS}
@@ -42,17 +32,7 @@ def to_json(ode: Ode) -> str:
 
 
 def from_json(text: str) -> Ode:
-    """Read what `to_json` wrote.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    Ode
-        Without checks, sizes and the expressions of its declarations.
-    """
+    """Read what `to_json` wrote: no checks, no sizes, no expressions in its declarations."""
     data: dict[str, Any] = json.loads(text)
     function = ca.Function.deserialize(data["function"])
     x, u, p = (ca.SX.sym(s, function.size1_in(k)) for k, s in enumerate("xup"))
