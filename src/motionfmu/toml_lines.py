@@ -26,13 +26,7 @@ _TOKEN = re.compile(
 
 
 class Lines:
-    """Finds the line on which a key of a TOML text stands.
-
-    Parameters
-    ----------
-    text : str
-        The whole file.
-    """
+    """Finds the line on which a key of a TOML text stands."""
 
     def __init__(self, text: str) -> None:
         self._at: dict[tuple[str, str], int] = {}
@@ -53,17 +47,9 @@ class Lines:
     def of(self, table: str, key: str = "") -> int:
         """Line of a key, else of the nearest table around it, else 1.
 
-        Parameters
-        ----------
-        table : str
-            Table name, empty for the top; ``drive.0`` for the first ``[[drive]]``,
-            ``figure.0.plot.1`` for the second ``[[figure.plot]]`` of the first ``[[figure]]``.
-        key : str
-            Key without quotes, or table at the top; empty for the table itself.
-
-        Returns
-        -------
-        int
+        A table is empty for the top, ``drive.0`` for the first ``[[drive]]``, ``figure.0.plot.1``
+        for the second ``[[figure.plot]]`` of the first ``[[figure]]``; a key without quotes, or a
+        table at the top, or empty for the table itself.
         """
         while table:
             if found := self._at.get((table, key)) or self._at.get((table, "")):
@@ -84,17 +70,7 @@ def _numbered(header: str, counts: dict[str, int]) -> str:
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is a regular file of this name.
-
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    bool
-        False also for a name that no file can have.
-    """
+    """Whether there is a regular file of this name; false also for a name that no file can have."""
     try:
         return path.is_file()
     except (OSError, ValueError):  # too long, or a NUL
@@ -102,21 +78,7 @@ def is_file(path: Path) -> bool:
 
 
 def text_of(file: str | Path) -> str:
-    """Read a text file.
-
-    Parameters
-    ----------
-    file : str or Path
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    InputError
-        It is missing, no regular file, too large or not UTF-8; the message names it.
-    """
+    """Read a text file; one that is missing, irregular, too large or not UTF-8 is refused."""
     try:
         # A pipe would be waited for, a device may have no end.
         if not stat.S_ISREG(Path(file).stat().st_mode):
@@ -136,23 +98,7 @@ def text_of(file: str | Path) -> str:
 
 
 def tables_of(text: str, file: str | Path) -> dict[str, Any]:
-    """Parse a TOML text within the limits of this module.
-
-    Parameters
-    ----------
-    text : str
-    file : str or Path
-        Its name, for messages.
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    InputError
-        It is no TOML or beyond a limit; ``file:line: what``.
-    """
+    """Parse a TOML text within the limits of this module; else ``file:line: what``."""
     if len(text) > SIZE_MAX:
         raise InputError(f"{file}: more than {SIZE_MAX} characters")
     if told := _too_deep(text):
@@ -213,32 +159,13 @@ def _beyond(tables: dict[str, Any], text: str) -> str:
 
 
 def shown(value: Any) -> str:
-    """A value for a message, not longer than a person reads.
-
-    Parameters
-    ----------
-    value : object
-
-    Returns
-    -------
-    str
-    """
+    """A value for a message, not longer than a person reads."""
     text = repr(value)
     return text if len(text) <= SHOWN_MAX else f"{text[:SHOWN_MAX]}..."
 
 
 def word(text: str) -> Any:
-    """Read a value from a command line.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    object
-        What TOML says it is; a bare word is text.
-    """
+    """Read a value from a command line: what TOML says it is; a bare word is text."""
     try:
         found = tables_of(f"x = {text}", "")
     except InputError:

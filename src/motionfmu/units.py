@@ -35,21 +35,11 @@ SYMBOLS: dict[str, tuple[float, dict[str, int]]] = {
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit by its factor to SI and its base-unit exponents.
+    """A unit by its factor to SI and its base-unit exponents."""
 
-    Attributes
-    ----------
-    name : str
-        As written, for example ``N.m.s/rad``.
-    factor : float
-        Value in SI = factor * value in this unit.
-    exponents : tuple of int
-        Exponents in the order of `BASE`.
-    """
-
-    name: str
-    factor: float
-    exponents: tuple[int, ...]
+    name: str  # as written, for example N.m.s/rad
+    factor: float  # value in SI = factor * value in this unit
+    exponents: tuple[int, ...]  # in the order of `BASE`
 
     def attributes(self) -> dict[str, str]:
         """Attributes of the FMI element BaseUnit."""
@@ -62,19 +52,8 @@ class Unit:
 def parse(name: str) -> Unit:
     """Read a unit such as ``mm/min``, ``N.m`` or ``kg.m2``.
 
-    Parameters
-    ----------
-    name : str
-        Symbols joined by ``.`` (product) and ``/`` (each divides once), with integer exponents.
-
-    Returns
-    -------
-    Unit
-
-    Raises
-    ------
-    ValueError
-        A symbol is not in `SYMBOLS`; the message names it.
+    Symbols are joined by ``.`` (product) and ``/`` (each divides once), with integer exponents; a
+    ValueError names a symbol that is not in `SYMBOLS`.
     """
     factor, total = 1.0, dict.fromkeys(BASE, 0)
     for i, part in enumerate(name.split("/")):
@@ -97,17 +76,6 @@ def parse(name: str) -> Unit:
 
 
 def convertible(a: str | None, b: str | None) -> bool:
-    """Whether a value may cross a wire between these units unchanged.
-
-    Parameters
-    ----------
-    a, b : str or None
-        Units; None stands for no unit, which goes only with none or ``1``.
-
-    Returns
-    -------
-    bool
-        True if both have the same dimension and the same factor.
-    """
+    """Whether a value may cross a wire unchanged: same dimension and factor; None goes as ``1``."""
     ua, ub = parse(a or "1"), parse(b or "1")
     return ua.exponents == ub.exponents and math.isclose(ua.factor, ub.factor, rel_tol=1e-12)

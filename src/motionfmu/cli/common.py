@@ -34,23 +34,7 @@ Set = Annotated[
 
 
 def setting(text: str) -> tuple[str, Any]:
-    """Read ``comp.var=value``; the value is TOML, a bare word is text.
-
-    Parameters
-    ----------
-    text : str
-        As given on the command line.
-
-    Returns
-    -------
-    str, object
-        Name and value.
-
-    Raises
-    ------
-    InputError
-        There is no ``=``.
-    """
+    """Read ``comp.var=value``; the value is TOML, a bare word is text."""
     name, equals, value = text.partition("=")
     if not equals:
         raise InputError(f"--set {text}: COMP.VAR=VALUE wanted")
@@ -58,23 +42,7 @@ def setting(text: str) -> tuple[str, Any]:
 
 
 def settings(texts: list[str]) -> dict[str, Any]:
-    """Values of all ``--set``; a file of values is taken whole.
-
-    Parameters
-    ----------
-    texts : list of str
-        ``comp.var=value``, or a TOML file of ``"comp.var" = value``.
-
-    Returns
-    -------
-    dict
-        By name; a later one counts.
-
-    Raises
-    ------
-    InputError
-        There is no ``=``, or the file is missing or no TOML.
-    """
+    """Values by name of all ``--set``, the later one counts; a TOML file is taken whole."""
     found: dict[str, Any] = {}
     for text in texts:
         if "=" in text or not text.endswith(".toml"):
@@ -88,16 +56,7 @@ def settings(texts: list[str]) -> dict[str, Any]:
 
 
 def bare_table(*headings: str) -> Table:
-    """Table without lines.
-
-    Parameters
-    ----------
-    headings : str
-
-    Returns
-    -------
-    Table
-    """
+    """Table without lines."""
     table = Table(box=None, header_style="dim")
     for heading in headings:
         table.add_column(heading)
@@ -105,35 +64,14 @@ def bare_table(*headings: str) -> Table:
 
 
 def progress_bar(*columns: "ProgressColumn") -> "Progress":
-    """Progress bar, which shows on a terminal only.
-
-    Parameters
-    ----------
-    columns : ProgressColumn
-        Those of rich if none.
-
-    Returns
-    -------
-    Progress
-    """
+    """Progress bar with these columns, or those of rich if none, which shows on a terminal only."""
     from rich.progress import Progress
 
     return Progress(*columns, console=out, disable=not out.is_terminal, transient=True)
 
 
 def run_shown(scenario: "Scenario", options: dict[str, Any]) -> "Result":
-    """Run with a progress bar, which shows on a terminal only.
-
-    Parameters
-    ----------
-    scenario : Scenario
-    options : dict
-        Of `Scenario.run`.
-
-    Returns
-    -------
-    Result
-    """
+    """Run, options as of `Scenario.run`, with a progress bar, which shows on a terminal only."""
     from rich.progress import BarColumn, TaskProgressColumn, TextColumn
     from rich.progress import TimeRemainingColumn as TimeLeft
 

@@ -16,45 +16,17 @@ BOUNDS = ("min", "max", "absmax", "peak", "rms", "final", "changes", "order")
 
 @dataclass(frozen=True)
 class Verdict:
-    """One bound of a ``[check]`` line and what was found.
+    """One bound of a ``[check]`` line and what was found."""
 
-    Attributes
-    ----------
-    name : str
-        Signal or figure.
-    bounds : str
-        What was asked, in words.
-    value : float
-        What was found, the worst over time and axes; NaN if there is no number.
-    ok : bool
-    reason : str
-        Why there is no number; else empty.
-    """
-
-    name: str
-    bounds: str
-    value: float
+    name: str  # signal or figure
+    bounds: str  # what was asked, in words
+    value: float  # the worst over time and axes; NaN if there is no number
     ok: bool
-    reason: str = ""
+    reason: str = ""  # why there is no number; else empty
 
 
 def misplaced(name: str, body: Body, recorded: Mapping[str, tuple[int, ...]]) -> str:
-    """What is wrong with a line of the [check] table.
-
-    Parameters
-    ----------
-    name : str
-        Its key.
-    body : Body
-        The scenario's tables.
-    recorded : mapping
-        Shape of every recorded signal, by name.
-
-    Returns
-    -------
-    str
-        Empty if nothing is.
-    """
+    """What is wrong with a [check] line, given the shapes of recorded signals; empty if nothing."""
     checks = body.check[name]
     if any(all(getattr(c, bound) is None for bound in BOUNDS) for c in checks):
         return f"{name}: no bound ({', '.join(BOUNDS)})"
@@ -149,24 +121,7 @@ def _where(windows: tuple[tuple[float, float], ...]) -> str:
 
 
 def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> list[Verdict]:
-    """Judge one signal by every bound of its check.
-
-    Parameters
-    ----------
-    name : str
-        Signal name.
-    check : Check
-        Bounds, in the signal's unit.
-    time : ndarray
-        Times of the samples [s].
-    data : ndarray
-        One row per sample.
-
-    Returns
-    -------
-    list of Verdict
-        A NaN in the signal fails every bound.
-    """
+    """Judge one signal, a row per sample, by every bound of its check; a NaN fails them all."""
     x = np.asarray(data, dtype=float)
     end = float(time[-1]) + (float(time[-1] - time[-2]) if len(time) > 1 else 0.0)
     last = check.at if check.at is not None else max((b for _, b in check.windows or ()), default=0)

@@ -22,25 +22,9 @@ def _millimetres(run: Recorded, name: str) -> Any:
 
 
 def contour_of(run: Recorded, only_drawn: Collection[str]) -> ContourResult:
-    """Analyse the contour of a run.
+    """Analyse the contour of a run; signals that only figures ask for are no traces.
 
-    Parameters
-    ----------
-    run : Recorded
-        Of a scenario with a [contour] table.
-    only_drawn : collection of str
-        Signals that nothing but a figure of the scenario asks for.
-
-    Returns
-    -------
-    ContourResult
-
-    Raises
-    ------
-    InputError
-        There is no [contour] table.
-    NoNumber
-        The run has no contour.
+    It is an InputError if there is no [contour] table, NoNumber if the run has no contour.
     """
     document = run.resolver.document
     contour = document.body.contour

@@ -10,18 +10,8 @@ from motionfmu.scenario.values import settings
 
 
 def check(resolver: system.Resolver) -> None:
-    """Refuse a wrong [[contrary]] of a scenario.
-
-    Parameters
-    ----------
-    resolver : Resolver
-        Of the scenario.
-
-    Raises
-    ------
-    InputError
-        A name or value is wrong, a value has no effect, a check is none, or a case has the
-        name of another.
+    """Refuse a [[contrary]] with a wrong name, value or check, of no effect, or named as
+    another.
     """
     document, seen = resolver.document, set()
     wired = {w.target.name for w in system.wires(resolver)} if document.body.contrary else ()
@@ -44,37 +34,12 @@ def check(resolver: system.Resolver) -> None:
 
 
 def options(document: Document, case: Contrary) -> dict[str, Any]:
-    """How a case is run.
-
-    Parameters
-    ----------
-    document : Document
-        The scenario.
-    case : Contrary
-        One of its own. A value of an input that is driven stands for the whole run.
-
-    Returns
-    -------
-    dict
-        Options of `Scenario.run`.
-    """
+    """Options of `Scenario.run` for a case; a value of a driven input stands for the whole run."""
     driven = {d.input for d in document.body.drive}
     return {"set": case.set, "undriven": driven & set(case.set)}
 
 
 def survivors(case: Contrary, verdicts: list[Verdict]) -> list[str]:
-    """Checks that hold although they are to fail.
-
-    Parameters
-    ----------
-    case : Contrary
-    verdicts : list of Verdict
-        Of the run with its values.
-
-    Returns
-    -------
-    list of str
-        Empty if the verdict fails as it must.
-    """
+    """Checks that hold although they are to fail; none if the verdict fails as it must."""
     failed = {v.name for v in verdicts if not v.ok}
     return [name for name in case.fails if name not in failed]

@@ -18,70 +18,34 @@ OVERVIEW = 12
 
 @dataclass(frozen=True)
 class Curve:
-    """One line of a panel.
+    """One line of a panel."""
 
-    Attributes
-    ----------
-    name : str
-        For the legend.
-    time : ndarray, shape (n,)
-        [s].
-    values : ndarray, shape (n,)
-        As shown, in the unit of the panel's label.
-    steps : bool
-        A value holds until the next one.
-    """
-
-    name: str
-    time: NDArray[np.float64]
-    values: NDArray[np.float64]
-    steps: bool
+    name: str  # for the legend
+    time: NDArray[np.float64]  # (n,) [s]
+    values: NDArray[np.float64]  # (n,) as shown, in the unit of the panel's label
+    steps: bool  # a value holds until the next one
 
 
 @dataclass(frozen=True)
 class Panel:
-    """Curves on one pair of axes.
+    """Curves on one pair of axes."""
 
-    Attributes
-    ----------
-    label : str
-        Vertical axis: quantity and unit.
-    curves : tuple of Curve
-    levels : dict
-        Value of a horizontal line by its name.
-    legend : bool
-        The curves need their names.
-    logic : bool
-        All curves are Booleans.
-    """
-
-    label: str
+    label: str  # vertical axis: quantity and unit
     curves: tuple[Curve, ...]
-    levels: dict[str, float]
-    legend: bool
-    logic: bool = False
+    levels: dict[str, float]  # value of a horizontal line by its name
+    legend: bool  # the curves need their names
+    logic: bool = False  # all curves are Booleans
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A figure ready to draw.
-
-    Attributes
-    ----------
-    title, note : str
-    span : tuple of float
-        From and to [s].
-    whole : bool
-        It shows the whole run.
-    panels : tuple of Panel
-        From top to bottom, with a common time axis.
-    """
+    """A figure ready to draw."""
 
     title: str
     note: str
-    span: tuple[float, float]
-    whole: bool
-    panels: tuple[Panel, ...]
+    span: tuple[float, float]  # from and to [s]
+    whole: bool  # it shows the whole run
+    panels: tuple[Panel, ...]  # from top to bottom, with a common time axis
 
 
 def _elements(resolver: Resolver, name: str, table: str) -> tuple[End, tuple[int, ...]]:
@@ -102,22 +66,7 @@ def _elements(resolver: Resolver, name: str, table: str) -> tuple[End, tuple[int
 
 
 def wanted(resolver: Resolver) -> list[End]:
-    """Outputs that the figures show, for recording.
-
-    Parameters
-    ----------
-    resolver : Resolver
-
-    Returns
-    -------
-    list of End
-        Empty if the scenario has no [[figure]].
-
-    Raises
-    ------
-    InputError
-        A signal or element is not there or cannot be recorded, or there are too few names.
-    """
+    """Outputs that figures show, for recording; a wrong element or too few names are refused."""
     found = []
     for i, figure in enumerate(resolver.document.body.figure):
         for j, plot in enumerate(figure.plot):
@@ -132,20 +81,7 @@ def wanted(resolver: Resolver) -> list[End]:
 
 
 def check(document: Document, step_ns: int) -> None:
-    """Refuse a window or a rate that does not fit the run.
-
-    Parameters
-    ----------
-    document : Document
-        The scenario.
-    step_ns : int
-        Communication step [ns].
-
-    Raises
-    ------
-    InputError
-        Names the value.
-    """
+    """Refuse a window or a rate that does not fit a run of such steps."""
     stop = document.body.stop
     for i, figure in enumerate(document.body.figure):
         if figure.window is not None:
@@ -159,17 +95,7 @@ def check(document: Document, step_ns: int) -> None:
 
 
 def charts(run: Recorded) -> list[Chart]:
-    """The figures of a run with their curves.
-
-    Parameters
-    ----------
-    run : Recorded
-
-    Returns
-    -------
-    list of Chart
-        In the order of the scenario.
-    """
+    """The figures of a run with their curves, in the order of the scenario."""
     found = []
     for i, figure in enumerate(run.resolver.document.body.figure):
         whole = (float(run.time[0]), float(run.time[-1]))
@@ -210,19 +136,7 @@ def _curve(
 
 
 def overview(run: Recorded, ends: Sequence[End]) -> list[Chart]:
-    """A figure of each recorded signal, its elements together.
-
-    Parameters
-    ----------
-    run : Recorded
-    ends : sequence of End
-        The signals.
-
-    Returns
-    -------
-    list of Chart
-        The first `OVERVIEW` signals over the whole run.
-    """
+    """A figure over the whole run of each of the first `OVERVIEW` signals, elements together."""
     span = (float(run.time[0]), float(run.time[-1]))
     found = []
     for end in ends[:OVERVIEW]:

@@ -72,21 +72,7 @@ class Prepared:
                 raise self.document.error(told, "check", name)
 
     def resolved(self, options: Options) -> system.System:
-        """All that an engine needs, with the options' values.
-
-        Parameters
-        ----------
-        options : Options
-
-        Returns
-        -------
-        System
-
-        Raises
-        ------
-        InputError
-            A value is wrong.
-        """
+        """All that an engine needs, with the options' values."""
         document, body = self.document, self.document.body
         step_ns = self._time("step", options.step, body.step)
         stop_ns = self._time("stop", options.stop, body.stop)
@@ -121,20 +107,7 @@ class Prepared:
         return resolved
 
     def check_recording(self, wired: system.System, options: Options) -> None:
-        """Refuse a recording that no memory holds, or two of one file.
-
-        Parameters
-        ----------
-        wired : System
-            With the scopes of the run.
-        options : Options
-            How it is run.
-
-        Raises
-        ------
-        InputError
-            Names file and setting, or the option.
-        """
+        """Refuse a recording that no memory holds, or two of one file; names setting or option."""
         name, told = recording.refused(wired)
         if not told:
             return
@@ -157,13 +130,7 @@ class Prepared:
             ) from None
 
     def library(self) -> str | None:
-        """The component that plans the path.
-
-        Returns
-        -------
-        str or None
-            None if the scenario does not look at the contour.
-        """
+        """The component that plans the path; None if the scenario does not look at the contour."""
         if self.document.body.contour is None:
             return None
         return contour_signals.library_of(self.resolver)
@@ -171,21 +138,7 @@ class Prepared:
     def located(
         self, error: InputError, plain: system.System, given: Mapping[str, Any]
     ) -> InputError:
-        """Say where the value stands that an FMU's message names.
-
-        Parameters
-        ----------
-        error : InputError
-            The FMU's own.
-        plain : System
-            What was run.
-        given : mapping
-            Values by name that are stronger than the scenario's.
-
-        Returns
-        -------
-        InputError
-        """
+        """An FMU's error with the place of its value: the scenario's, or `given`, the stronger."""
         text = str(error)
         component, _, rest = text.partition(": ")
         for s in plain.settings:

@@ -78,10 +78,6 @@ class Result:
     def contour(self) -> "ContourResult":
         """The contour error of this run against the planned geometry.
 
-        Returns
-        -------
-        ContourResult
-
         Raises
         ------
         InputError

@@ -47,10 +47,6 @@ class Scenario(Prepared):
         **options : engine, fmi, set, stop, step, undriven, progress
             See `Options`.
 
-        Returns
-        -------
-        Result
-
         Raises
         ------
         InputError
@@ -81,10 +77,6 @@ def load(path: str | Path) -> Scenario:
     ----------
     path : str or Path
         A scenario.toml or the folder that holds it, anywhere.
-
-    Returns
-    -------
-    Scenario
 
     Raises
     ------

@@ -17,18 +17,7 @@ FMI = 3
 
 
 def split(name: str) -> tuple[str, int | None]:
-    """Part a name into a variable and an element of it.
-
-    Parameters
-    ----------
-    name : str
-        ``component.variable`` or ``component.variable[i]``, i from 1.
-
-    Returns
-    -------
-    str, int or None
-        The variable; the element, from 0.
-    """
+    """Part ``component.variable[i]``, i from 1, into variable and element, from 0 or None."""
     whole, bracket, rest = name.partition("[")
     index = rest.removesuffix("]")
     if bracket and rest.endswith("]") and index.isdecimal():
@@ -117,10 +106,6 @@ class Session:
         ----------
         given : mapping
             Value by name; names among those of the constructor.
-
-        Returns
-        -------
-        Result
 
         Raises
         ------

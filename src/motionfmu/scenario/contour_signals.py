@@ -10,21 +10,7 @@ CARD = ("stock", "irq_seq", "dac")
 
 
 def library_of(resolver: Resolver) -> str:
-    """Name of the component that plans the path.
-
-    Parameters
-    ----------
-    resolver : Resolver
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    InputError
-        No component plans a path.
-    """
+    """Name of the component that plans the path; InputError if none does."""
     for name, ports in resolver.ports.items():
         if "path_file" in ports:
             return name
@@ -32,17 +18,7 @@ def library_of(resolver: Resolver) -> str:
 
 
 def wanted(resolver: Resolver) -> list[str]:
-    """Signals the contour analysis needs, for recording.
-
-    Parameters
-    ----------
-    resolver : Resolver
-
-    Returns
-    -------
-    list of str
-        Empty if the scenario has no [contour] table.
-    """
+    """Signals the contour analysis needs, for recording; none without a [contour] table."""
     contour = resolver.document.body.contour
     if contour is None:
         return []

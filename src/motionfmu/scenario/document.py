@@ -126,60 +126,20 @@ class Body(BaseModel):
 
 @dataclass(frozen=True)
 class Document:
-    """A scenario as read: tables, file and line numbers.
+    """A scenario as read: tables, file and line numbers."""
 
-    Attributes
-    ----------
-    file : Path
-        The scenario.toml.
-    about : str
-        What its first line says.
-    body : Body
-        The tables.
-    lines : Lines
-        Line numbers of the keys.
-    """
-
-    file: Path
-    about: str
+    file: Path  # the scenario.toml
+    about: str  # what its first line says
     body: Body
-    lines: Lines
+    lines: Lines  # line numbers of the keys
 
     def error(self, text: str, table: str = "", key: str = "") -> InputError:
-        """Make the error for a key of this file.
-
-        Parameters
-        ----------
-        text : str
-            What is wrong, with the value.
-        table, key : str
-            Where; see `Lines.of`.
-
-        Returns
-        -------
-        InputError
-        """
+        """Make the error for a key of this file; where it stands as in `Lines.of`."""
         return InputError(f"{self.file}:{self.lines.of(table, key)}: {text}")
 
 
 def scenario_file(path: str | Path) -> Path:
-    """The scenario.toml that a user's path means.
-
-    Parameters
-    ----------
-    path : str or Path
-        A scenario.toml or the folder that holds it.
-
-    Returns
-    -------
-    Path
-        Absolute.
-
-    Raises
-    ------
-    InputError
-        There is no such file.
-    """
+    """The scenario.toml, absolute, that a user's path means: itself or the folder that holds it."""
     file = Path(path)
     file = file / "scenario.toml" if is_file(file / "scenario.toml") else file
     if not is_file(file):
@@ -188,22 +148,7 @@ def scenario_file(path: str | Path) -> Path:
 
 
 def read(path: str | Path) -> Document:
-    """Read and check the form of a scenario file.
-
-    Parameters
-    ----------
-    path : str or Path
-        A scenario.toml or the folder that holds it.
-
-    Returns
-    -------
-    Document
-
-    Raises
-    ------
-    InputError
-        The file is missing, is no TOML, or a key is unknown, missing or of the wrong type.
-    """
+    """Read a scenario.toml, or the folder that holds it, and check its keys and their types."""
     file = scenario_file(path)
     text = text_of(file)
     tables = tables_of(text, file)

@@ -22,35 +22,18 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 @dataclass(frozen=True)
 class Port:
-    """One variable of an FMU as its description declares it.
-
-    Attributes
-    ----------
-    name, type, causality, doc : str
-        FMI name; Float64, Int32, Boolean or String; FMI causality; description.
-    tunable : bool
-        A parameter that may change during a run.
-    shape : tuple of int
-        Empty for a scalar.
-    unit : str or None
-    reference : int
-        First value reference; elements take successive ones.
-    start : str or None
-        Start values as written in the description.
-    low, high : float
-        Limits; infinite if none are declared.
-    """
+    """One variable of an FMU as its description declares it."""
 
     name: str
-    type: str
-    causality: str
-    tunable: bool
+    type: str  # Float64, Int32, Boolean or String
+    causality: str  # as FMI says
+    tunable: bool  # a parameter that may change during a run
     doc: str
-    shape: tuple[int, ...]
+    shape: tuple[int, ...]  # empty for a scalar
     unit: str | None
-    reference: int
-    start: str | None
-    low: float
+    reference: int  # the first value reference; elements take successive ones
+    start: str | None  # values as written in the description
+    low: float  # limits, infinite if not declared
     high: float
 
     @property
@@ -60,13 +43,7 @@ class Port:
 
 
 def folder() -> Path:
-    """Folder with the built .fmu files.
-
-    Returns
-    -------
-    Path
-        ``$MOTIONFMU_FMUS``, the installed package's own, or ``build/fmus`` of the source tree.
-    """
+    """Folder of the built FMUs: ``$MOTIONFMU_FMUS``, the installed package's or ``build/fmus``."""
     if named := os.environ.get("MOTIONFMU_FMUS"):
         return Path(named)
     installed = PACKAGE / "fmus"
@@ -74,35 +51,12 @@ def folder() -> Path:
 
 
 def fmu_names() -> list[str]:
-    """Names of the FMUs that are built.
-
-    Returns
-    -------
-    list of str
-        Sorted; the folder names under fmus/.
-    """
+    """Names of the FMUs that are built, sorted: the folder names under fmus/."""
     return sorted(p.name.removesuffix(".fmi3.fmu") for p in folder().glob("*.fmi3.fmu"))
 
 
 def fmu_path(name: str, fmi: int = 3) -> Path:
-    """Find a built FMU.
-
-    Parameters
-    ----------
-    name : str
-        Folder name under fmus/.
-    fmi : int
-        2 or 3.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    InputError
-        There is no such FMU; the message lists what there is.
-    """
+    """Find a built FMU by its folder's name under fmus/; else the message lists what there is."""
     path = folder() / f"{name}.fmi{fmi}.fmu"
     if "/" in name or not is_file(path):
         known = ", ".join(fmu_names()) or "none is built; run make build"
@@ -111,25 +65,9 @@ def fmu_path(name: str, fmi: int = 3) -> Path:
 
 
 def runnable(name: str, fmi: int) -> Path:
-    """Find a built FMU whose library loads on this machine.
+    """Find a built FMU whose library loads on this machine; else an InputError with file and cause.
 
     A master loads it, too, but where it cannot, it says nothing of the cause or ends the process.
-
-    Parameters
-    ----------
-    name : str
-        Folder name under fmus/.
-    fmi : int
-        2 or 3.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    InputError
-        There is no such FMU, or its library does not load; file and cause.
     """
     path = fmu_path(name, fmi)
     try:
@@ -168,23 +106,7 @@ def _refused(path: Path, fmi: int, state: tuple[int, int]) -> str:
 
 @functools.cache
 def ports(name: str) -> dict[str, Port]:
-    """Variables of an FMU by name.
-
-    Parameters
-    ----------
-    name : str
-        Folder name under fmus/.
-
-    Returns
-    -------
-    dict
-        Port by variable name, from the FMI 3 description, without the independent variable.
-
-    Raises
-    ------
-    InputError
-        There is no such FMU, or it is broken.
-    """
+    """Variables of an FMU by name, from the FMI 3 description, without the independent variable."""
     path = fmu_path(name)
     try:
         description = read_model_description(str(path))

@@ -13,38 +13,17 @@ from motionfmu.scenario.values import start_values
 
 @functools.cache
 def grid(fmu: str) -> str:
-    """The parameter that is an FMU's grid.
-
-    Parameters
-    ----------
-    fmu : str
-        Folder name under fmus/.
-
-    Returns
-    -------
-    str
-        Empty if it says none.
-    """
+    """The parameter that is an FMU's grid; empty if it says none."""
     with zipfile.ZipFile(fmus.fmu_path(fmu)) as archive:
         return str(json.loads(archive.read(f"{EXTRA}/{GRID}"))["grid"])
 
 
 def warnings(system: System) -> list[str]:
-    """What is to be said about grids that do not fit.
-
-    At most one sentence for each reason.
+    """What is to be said about grids that do not fit, at most one sentence for each reason.
 
     A wire hands on without a delay if the step divides the grid of its source, which then changes
-    at communication points only, or that of its target, which reads at such points only. A grid
-    and a step of which neither divides the other are told of by the FMU itself.
-
-    Parameters
-    ----------
-    system : System
-
-    Returns
-    -------
-    list of str
+    at communication points only, or that of its target, which reads at such points only. A grid and
+    a step of which neither divides the other are told of by the FMU itself.
     """
     given = {s.end.name: s.values[0] for s in system.settings}
     periods = {}

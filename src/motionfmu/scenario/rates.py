@@ -11,21 +11,9 @@ from motionfmu.scenario.system import NS_TOLERANCE
 def change(
     time: NDArray[Any], x: NDArray[Any], rate: float
 ) -> tuple[NDArray[Any], NDArray[np.float64]]:
-    """(x(t) - x(t - rate)) / rate, from t = rate on.
+    """Times [s] and (x(t) - x(t - rate)) / rate [1/s], from t = rate on.
 
-    Parameters
-    ----------
-    time : ndarray
-        Times of the samples [s].
-    x : ndarray
-        One row per sample.
-    rate : float
-        Whole number of steps [s].
-
-    Returns
-    -------
-    ndarray, ndarray
-        Times [s] and rates [1/s]; both empty if the run is shorter.
+    A row per sample, none if the run is shorter; the rate is a whole number of steps [s].
     """
     back = min(len(time), round(rate / (time[1] - time[0]))) if len(time) > 1 else len(time)
     values = np.asarray(x, dtype=np.float64)
@@ -33,22 +21,7 @@ def change(
 
 
 def wrong(rate: float, step_ns: int, stop: float) -> str:
-    """What does not fit the run.
-
-    Parameters
-    ----------
-    rate : float
-        [s].
-    step_ns : int
-        Communication step [ns].
-    stop : float
-        Of the scenario [s].
-
-    Returns
-    -------
-    str
-        Empty if nothing.
-    """
+    """What of a rate [s] does not fit a run of such steps up to `stop` [s]; empty if nothing."""
     steps = round(rate * 1e9 / step_ns)
     if steps < 1 or abs(rate * 1e9 - steps * step_ns) > NS_TOLERANCE:
         return f"rate = {rate!r} s is no whole number of steps of {step_ns * 1e-9:g} s"

@@ -43,13 +43,7 @@ class Recording:
     scopes: int
 
     def load(self) -> dict[str, NDArray[Any]]:
-        """Read the trace files of a run that has ended.
-
-        Returns
-        -------
-        dict
-            By signal name: rows x 6 for an array, rows for a scalar.
-        """
+        """Read the files of an ended run, by signal: rows x 6 for an array, rows for a scalar."""
         files = {
             (scope, kind): np.load(self.folder / f"scope{scope + 1}.{kind_name}.npy")
             for scope in range(self.scopes)
@@ -70,39 +64,12 @@ class Recording:
 
 
 def recordable(end: End) -> bool:
-    """Whether the scope has a channel of this type and width.
-
-    Parameters
-    ----------
-    end : End
-
-    Returns
-    -------
-    bool
-    """
+    """Whether the scope has a channel of this type and width."""
     return end.port.shape in ((), (AXES,)) and end.port.type in ("Float64", "Int32", "Boolean")
 
 
 def output(resolver: Resolver, name: str, table: str, key: str) -> End:
-    """Find an output that can be recorded.
-
-    Parameters
-    ----------
-    resolver : Resolver
-    name : str
-        ``component.variable``.
-    table, key : str
-        Where it is written, for the message.
-
-    Returns
-    -------
-    End
-
-    Raises
-    ------
-    InputError
-        The name is unknown, no output, or not recordable.
-    """
+    """Find an output that can be recorded; the message says where it is written, table and key."""
     end = resolver.end(name, table, key)
     if end.port.causality != "output":
         text = f"{name} is no output ({end.port.causality})"
@@ -114,23 +81,7 @@ def output(resolver: Resolver, name: str, table: str, key: str) -> End:
 
 
 def chosen(resolver: Resolver, patterns: Iterable[str]) -> list[End]:
-    """Outputs that the patterns name, each once.
-
-    Parameters
-    ----------
-    resolver : Resolver
-    patterns : iterable of str
-        Names or patterns; a pattern passes over what cannot be recorded.
-
-    Returns
-    -------
-    list of End
-
-    Raises
-    ------
-    InputError
-        A name is unknown, no output, or not recordable; a pattern matches nothing.
-    """
+    """Outputs that names and patterns name, each once; a pattern passes over the unrecordable."""
     document, found = resolver.document, {}
     for pattern in patterns:
         if "*" in pattern or "?" in pattern:
@@ -159,17 +110,7 @@ def _allocate(ends: Iterable[End]) -> list[Column]:
 
 
 def refused(system: System) -> tuple[str, str]:
-    """What is wrong with the scopes of a system, before it is run.
-
-    Parameters
-    ----------
-    system : System
-
-    Returns
-    -------
-    str, str
-        The setting, ``component.variable``, and the words; empty if nothing is.
-    """
+    """What is wrong with a system's scopes before it runs: setting and words; empty if nothing."""
     files: dict[str, str] = {}
     total = 0
     given = {s.end.name: s.values[0] for s in system.settings}
@@ -201,21 +142,7 @@ def refused(system: System) -> tuple[str, str]:
 
 
 def plan(system: System, ends: Iterable[End], folder: Path) -> tuple[System, Recording]:
-    """Add scopes that record these outputs.
-
-    Parameters
-    ----------
-    system : System
-    ends : iterable of End
-        Outputs to record at every step.
-    folder : Path
-        Receives the trace files.
-
-    Returns
-    -------
-    System, Recording
-        The system with as many scopes as needed, and where the signals will be.
-    """
+    """Add as many scopes as record these outputs at every step, and say where they will be."""
     columns = _allocate(ends)
     scopes = 1 + max((c.scope for c in columns), default=-1)
     ports = fmus.ports("scope") if scopes else {}

@@ -62,47 +62,25 @@ class Stimulus:
 
 @dataclass(frozen=True)
 class System:
-    """All that an engine needs.
+    """All that an engine needs."""
 
-    Attributes
-    ----------
-    components : dict
-        FMU name by component name.
-    wires : tuple of Wire
-    settings : tuple of Setting
-    stimuli : tuple of Stimulus
-        Ordered by step.
-    step_ns, steps : int
-        Communication step [ns] and number of steps.
-    """
-
-    components: dict[str, str]
+    components: dict[str, str]  # FMU by component
     wires: tuple[Wire, ...]
     settings: tuple[Setting, ...]
-    stimuli: tuple[Stimulus, ...]
-    step_ns: int
-    steps: int
+    stimuli: tuple[Stimulus, ...]  # ordered by step
+    step_ns: int  # communication step [ns]
+    steps: int  # how many
+
+    def due(self) -> dict[int, list[Stimulus]]:
+        """Stimuli by the step before which they act."""
+        found: dict[int, list[Stimulus]] = {}
+        for stimulus in self.stimuli:
+            found.setdefault(stimulus.step, []).append(stimulus)
+        return found
 
 
 def nanoseconds(key: str, seconds: float) -> int:
-    """Whole nanoseconds of a positive time.
-
-    Parameters
-    ----------
-    key : str
-        Its name, for the message.
-    seconds : float
-        Time [s].
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    ValueError
-        It is not positive, more than `TIME_MAX` or no whole number of ns.
-    """
+    """Whole nanoseconds of a time [s], positive, up to `TIME_MAX`; a ValueError names the key."""
     if seconds > TIME_MAX:
         raise ValueError(f"{key} = {seconds!r} s: {TIME_MAX:g} s are the most")
     ns = seconds * 1e9
@@ -112,18 +90,7 @@ def nanoseconds(key: str, seconds: float) -> int:
 
 
 class Resolver:
-    """Looks names up in the FMUs a scenario uses.
-
-    Parameters
-    ----------
-    document : Document
-        The scenario.
-
-    Raises
-    ------
-    InputError
-        A component names an FMU that does not exist.
-    """
+    """Looks names up in the FMUs a scenario uses."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
@@ -135,24 +102,7 @@ class Resolver:
                 raise document.error(str(error), "component", name) from None
 
     def end(self, name: str, table: str, key: str) -> End:
-        """Find ``component.variable``.
-
-        Parameters
-        ----------
-        name : str
-            As written.
-        table, key : str
-            Where it is written, for the message.
-
-        Returns
-        -------
-        End
-
-        Raises
-        ------
-        InputError
-            No such component or variable; the message suggests the nearest name.
-        """
+        """Find ``component.variable``, written at table and key, or suggest the nearest."""
         component, _, variable = name.partition(".")
         if component not in self.ports:
             raise self.document.error(
@@ -172,19 +122,7 @@ class Resolver:
         return End(component, self.ports[component][variable])
 
     def matching(self, pattern: str, causality: str) -> list[End]:
-        """All variables of one causality whose name matches a pattern.
-
-        Parameters
-        ----------
-        pattern : str
-            With ``*`` and ``?``.
-        causality : str
-            FMI causality.
-
-        Returns
-        -------
-        list of End
-        """
+        """All variables of one causality whose name matches a pattern with ``*`` and ``?``."""
         return [
             End(component, port)
             for component, ports in self.ports.items()
@@ -222,21 +160,7 @@ def _kind(port: Port) -> str:
 
 
 def wires(resolver: Resolver) -> list[Wire]:
-    """All wires of the scenario, wildcards expanded.
-
-    Parameters
-    ----------
-    resolver : Resolver
-
-    Returns
-    -------
-    list of Wire
-
-    Raises
-    ------
-    InputError
-        A name, type, shape, unit or direction is wrong, or an input has two sources.
-    """
+    """All wires of the scenario, wildcards expanded; types, shapes, units, directions checked."""
     document, found = resolver.document, {}
     for left, right in document.body.connect.items():
         if left.endswith("*") != right.endswith("*"):
@@ -266,18 +190,7 @@ def wires(resolver: Resolver) -> list[Wire]:
 
 
 def check_inputs(resolver: Resolver, system: System) -> None:
-    """Refuse an input that nothing or two things feed.
-
-    Parameters
-    ----------
-    resolver : Resolver
-    system : System
-
-    Raises
-    ------
-    InputError
-        Names the input.
-    """
+    """Refuse an input that nothing or two things feed; the message names it."""
     document = resolver.document
     wired = {w.target.name for w in system.wires}
     driven = {s.end.name for s in system.stimuli}

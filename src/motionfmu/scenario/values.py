@@ -21,25 +21,7 @@ from motionfmu.toml_lines import is_file, shown
 
 
 def values_of(end: End, value: Any) -> Values:
-    """Check a value; a single one goes to every element.
-
-    Parameters
-    ----------
-    end : End
-        The variable.
-    value : bool, int, float, str or list
-        As given.
-
-    Returns
-    -------
-    tuple
-        One value per element.
-
-    Raises
-    ------
-    ValueError
-        Wrong type, number of elements or range; the message names the variable and the value.
-    """
+    """Check a value; a single one goes to every element. A ValueError names variable and value."""
     listed = list(value) if isinstance(value, list | tuple) else [value] * end.port.count
     if len(listed) != end.port.count:
         raise ValueError(f"{end.name} has {end.port.count} elements, not {len(listed)}")
@@ -70,17 +52,7 @@ def values_of(end: End, value: Any) -> Values:
 
 
 def start_values(port: Port) -> Values:
-    """The values a variable has if nothing sets it.
-
-    Parameters
-    ----------
-    port : Port
-
-    Returns
-    -------
-    tuple
-        One per element.
-    """
+    """The values a variable has if nothing sets it, one per element."""
     kind: Any = {"Float64": float, "Int32": int, "Boolean": "true".__eq__}.get(port.type, str)
     listed = (port.start or "").split() if port.type != "String" else [port.start or ""]
     return tuple(kind(x) for x in listed)
@@ -95,23 +67,7 @@ def _file_beside(document: Document, values: Values) -> Values:
 
 
 def settings(resolver: Resolver, overrides: Mapping[str, Any]) -> list[Setting]:
-    """Values set before the run: the scenario's, then the caller's.
-
-    Parameters
-    ----------
-    resolver : Resolver
-    overrides : mapping
-        Value by ``component.variable``, stronger than the scenario's.
-
-    Returns
-    -------
-    list of Setting
-
-    Raises
-    ------
-    InputError
-        A name or value is wrong.
-    """
+    """Values set before the run: the scenario's, then the caller's, which are stronger."""
     document, found = resolver.document, {}
     for source, pairs in (("set", document.body.set), ("", overrides)):
         for name, value in pairs.items():
@@ -139,24 +95,7 @@ def _override_end(resolver: Resolver, name: str) -> End:
 
 
 def stimuli(resolver: Resolver, step_ns: int) -> list[Stimulus]:
-    """Stimuli of the scenario on its communication steps.
-
-    Parameters
-    ----------
-    resolver : Resolver
-    step_ns : int
-        Communication step [ns].
-
-    Returns
-    -------
-    list of Stimulus
-        Ordered by step.
-
-    Raises
-    ------
-    InputError
-        A name, value or time is wrong.
-    """
+    """Stimuli of the scenario on its communication steps, ordered by step."""
     document, found = resolver.document, []
     for number, drive in enumerate(document.body.drive):
         table = f"drive.{number}"

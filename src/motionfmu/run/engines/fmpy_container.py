@@ -106,26 +106,7 @@ def _give(slave: Slave, end: End, values: Iterable[Any]) -> None:
 
 
 def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
-    """Run a system inside FMPy's container FMU.
-
-    Parameters
-    ----------
-    system : System
-    fmi : int
-        Must be 2.
-    progress : callable
-        Called with the share done, 0 to 1.
-
-    Returns
-    -------
-    list of str
-        What the FMUs warned of.
-
-    Raises
-    ------
-    InputError
-        `fmi` is not 2, or an FMU refused something.
-    """
+    """Run a system inside FMPy's container FMU, FMI 2 only; returns what the FMUs warned of."""
     if fmi != 2:
         raise InputError(f"engine fmpy runs FMI 2 components only, not FMI {fmi}")
     with ExitStack() as stack:
@@ -140,11 +121,10 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str
             _give(slave, s.end, s.values)
         slave.initialize()
         slave.start()
-        pending = list(system.stimuli)
+        due = system.due()
         step = system.step_ns * 1e-9
         for k in range(system.steps):
-            while pending and pending[0].step == k:
-                now = pending.pop(0)
+            for now in due.get(k, ()):
                 _give(slave, now.end, now.values)
             slave.step(k * system.step_ns * 1e-9, step)
             if k % max(1, system.steps // 100) == 0:

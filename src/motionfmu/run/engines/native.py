@@ -47,23 +47,10 @@ def _runnable(source: Path, folder: Path) -> Path:
 
 
 def build(system: System, fmi: int, folder: Path) -> Path:
-    """Make the container FMU, unpacked.
+    """Make the container FMU, unpacked in an empty folder; returns its own folder.
 
     Settings and stimuli become inputs of the container, ``component.variable``, because its own
     start values cannot carry arrays of Boolean nor text with spaces.
-
-    Parameters
-    ----------
-    system : System
-    fmi : int
-        2 or 3: version of the container and of every FMU in it.
-    folder : Path
-        An empty folder.
-
-    Returns
-    -------
-    Path
-        Folder of the unpacked container FMU.
     """
     log = logging.getLogger("fmu_manipulation_toolbox")
     before, log.disabled = log.disabled, True  # it warns of every output that nothing reads
@@ -99,14 +86,7 @@ def _give(slave: Slave, end: End, values: tuple[Any, ...]) -> None:
 class Container:
     """A system as a container FMU, built once, run many times.
 
-    Parameters
-    ----------
-    system : System
-        Its settings say what can be set in a run.
-    fmi : int
-        2 or 3: version of the container and of every FMU in it.
-    folder : Path
-        An empty folder; not removed.
+    The system's settings say what can be set in a run; the folder, an empty one, is not removed.
     """
 
     def __init__(self, system: System, fmi: int, folder: Path) -> None:
@@ -114,24 +94,9 @@ class Container:
         self._used = False
 
     def run(self, system: System, progress: Callable[[float], None]) -> list[str]:
-        """Run from the start.
+        """Run from the start; returns what the FMUs warned of.
 
-        Parameters
-        ----------
-        system : System
-            The one of the constructor, or one that differs in values only.
-        progress : callable
-            Called with the share done, 0 to 1.
-
-        Returns
-        -------
-        list of str
-            What the FMUs warned of.
-
-        Raises
-        ------
-        InputError
-            An FMU refused something; its message.
+        The system is the one of the constructor, or one that differs in values only.
         """
         slave = self._slave
         if self._used:
@@ -142,12 +107,10 @@ class Container:
         slave.initialize()
         slave.start()
         part = max(1, system.steps // PARTS)
-        stops = {s.step for s in system.stimuli if s.step < system.steps}
-        cuts = sorted({*range(0, system.steps, part), *stops, 0})
-        pending = list(system.stimuli)
+        due = system.due()
+        cuts = sorted({0, *range(0, system.steps, part), *(k for k in due if k < system.steps)})
         for k, following in zip(cuts, [*cuts[1:], system.steps], strict=True):
-            while pending and pending[0].step == k:
-                now = pending.pop(0)
+            for now in due.get(k, ()):
                 _give(slave, now.end, now.values)
             slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
             progress(following / system.steps)
@@ -160,26 +123,7 @@ class Container:
 
 
 def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
-    """Run a system inside a container FMU.
-
-    Parameters
-    ----------
-    system : System
-    fmi : int
-        2 or 3: version of the container and of every FMU in it.
-    progress : callable
-        Called with the share done, 0 to 1.
-
-    Returns
-    -------
-    list of str
-        What the FMUs warned of.
-
-    Raises
-    ------
-    InputError
-        An FMU refused something; its message.
-    """
+    """Run a system inside a container FMU; returns what the FMUs warned of."""
     with ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
         container = Container(system, fmi, Path(folder))

@@ -30,26 +30,7 @@ def _wire(slaves: dict[str, Slave], wire: Wire) -> tuple[Callable[[], None], Cal
 
 
 def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
-    """Run a system with FMPy, one Python call per value.
-
-    Parameters
-    ----------
-    system : System
-    fmi : int
-        2 or 3: the version of every FMU.
-    progress : callable
-        Called with the share done, 0 to 1.
-
-    Returns
-    -------
-    list of str
-        What the FMUs warned of.
-
-    Raises
-    ------
-    InputError
-        An FMU refused something; its message.
-    """
+    """Run a system with FMPy, one Python call per value; returns what the FMUs warned of."""
     messages: list[str] = []
     with ExitStack() as stack:
         slaves: dict[str, Slave] = {}
@@ -64,11 +45,10 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str
         for slave in slaves.values():
             slave.start()
         wires = [_wire(slaves, w) for w in system.wires]
-        pending = list(system.stimuli)
+        due = system.due()
         step = system.step_ns * 1e-9
         for k in range(system.steps):
-            while pending and pending[0].step == k:
-                now = pending.pop(0)
+            for now in due.get(k, ()):
                 port = now.end.port
                 slaves[now.end.component].assign(port.type, port.reference, now.values)
             for get, _ in wires:

@@ -30,17 +30,7 @@ _ERROR = 3  # status of both FMI versions from which on nothing is good
 
 
 def element_names(end: End) -> list[str]:
-    """FMI 2 names of the elements of a port, in order.
-
-    Parameters
-    ----------
-    end : End
-
-    Returns
-    -------
-    list of str
-        ``name`` or ``name[1]``, ``name[1,2]``.
-    """
+    """FMI 2 names of the elements of a port, in order: ``name`` or ``name[1]``, ``name[1,2]``."""
     if not end.port.shape:
         return [end.port.name]
     indices = itertools.product(*(range(1, n + 1) for n in end.port.shape))
@@ -52,23 +42,10 @@ def _unnamed(message: str) -> bool:
 
 
 class Slave:
-    """A co-simulation FMU of either version.
+    """A co-simulation FMU of either version, from an .fmu or a folder that holds an unpacked one.
 
-    Parameters
-    ----------
-    name : str
-        Instance name.
-    source : Path
-        An .fmu, or a folder that holds an unpacked one.
-    fmi : int
-        2 or 3.
-    messages : list of str
-        Receives what the FMU logs with a status of Error or worse.
-
-    Attributes
-    ----------
-    warnings : list of str
-        What it or the FMUs inside warned of, each once, ``component: what``.
+    `messages` receives what the FMU logs with a status of Error or worse; `warnings` holds what it
+    or the FMUs inside warned of, each once, as ``component: what``.
     """
 
     def __init__(self, name: str, source: Path, fmi: int, messages: list[str]) -> None:
@@ -135,58 +112,21 @@ class Slave:
             raise self.failure(call) from error
 
     def failure(self, call: str) -> InputError:
-        """The error for a call that did not return OK.
-
-        Parameters
-        ----------
-        call : str
-            Name of the call.
-
-        Returns
-        -------
-        InputError
-            With the first error that names a component, which is the cause.
-        """
+        """The error for a call that failed: the first that names a component, as the cause."""
         own = f"{self.name}: "
         inner = [m for m in self.messages if not m.startswith(own)]
         told = [*inner, *self.messages, f"{own}{call} failed without a message"]
         return InputError(sorted(told[: len(inner)] or told[:1], key=_unnamed)[0])
 
     def buffer(self, kind: str, count: int) -> Any:
-        """Memory for values of a type, as the FMU has them.
-
-        Parameters
-        ----------
-        kind : str
-            Float64, Int32 or Boolean.
-        count : int
-            Number of elements.
-
-        Returns
-        -------
-        ctypes array
-        """
+        """Memory for values of Float64, Int32 or Boolean, as the FMU has them."""
         c: Any = ctypes.c_int32 if self.fmi == 2 and kind == "Boolean" else _C[kind]
         return (c * count)()
 
     def access(self, verb: str, kind: str, reference: int, buffer: Any) -> Any:
-        """A function that gets or sets one variable through its buffer.
+        """A function without arguments that gets or sets one variable through its buffer.
 
-        Parameters
-        ----------
-        verb : str
-            ``Get`` or ``Set``.
-        kind : str
-            Float64, Int32 or Boolean.
-        reference : int
-            First value reference.
-        buffer : ctypes array
-            From `buffer`.
-
-        Returns
-        -------
-        callable
-            Without arguments; raises InputError when the FMU refuses.
+        The verb is ``Get`` or ``Set``; the function raises InputError when the FMU refuses.
         """
         count = len(buffer)
         if self.fmi == 3:
@@ -206,17 +146,7 @@ class Slave:
         return run
 
     def assign(self, kind: str, reference: int, values: Iterable[Any]) -> None:
-        """Set a variable once.
-
-        Parameters
-        ----------
-        kind : str
-            Float64, Int32, Boolean or String.
-        reference : int
-            First value reference.
-        values : iterable
-            One per element.
-        """
+        """Set a variable of any kind, by its first reference, once."""
         listed = list(values)
         if kind == "String":
             references = (
@@ -241,15 +171,7 @@ class Slave:
         self._do("exitInitializationMode")
 
     def step(self, time: float, size: float) -> None:
-        """Advance by one communication step.
-
-        Parameters
-        ----------
-        time : float
-            Communication point [s].
-        size : float
-            Step [s].
-        """
+        """Advance from a communication point by one step [s]."""
         self._do("doStep", currentCommunicationPoint=time, communicationStepSize=size)
 
     def end(self) -> None:
