@@ -11,35 +11,17 @@ Row = tuple[int, NDArray[np.int32], NDArray[np.int32]]
 
 
 def assign(points: Array, segments: tuple[Segment, ...], first: Index, last: Index) -> Index:
-    """Give each sample its segment, never going back.
+    """Give each sample (n, 3) one segment of its candidates, first to last (n,), never going back.
 
-    Of all assignments that stay within the candidates and never return to an earlier segment,
-    the one with the least sum of squared distances is found, exactly, by dynamic programming
-    along the segments. So a path that crosses itself, or touches itself, attracts no sample to
-    the wrong branch: jumping ahead would have to be paid for by all samples that follow.
+    Of all assignments that stay within the candidates and never return to an earlier segment, the
+    one with the least sum of squared distances is found, exactly, by dynamic programming along the
+    segments. So a path that crosses itself, or touches itself, attracts no sample to the wrong
+    branch: jumping ahead would have to be paid for by all samples that follow. It is a ValueError
+    if candidates decrease or are missing.
 
-    With C(s, t) the least cost when sample t is on segment s, and D the running sum of its
-    squared distances, ``C(s, t) = D(t) + min over u <= t of (M(u - 1) - D(u - 1))``, where M is
-    the least C of all earlier segments: one running minimum per segment.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Samples in the order of time [mm].
-    segments : tuple of Segment
-        In the order of travel.
-    first, last : ndarray of int, shape (n,)
-        First and last candidate of each sample; neither ever decreases.
-
-    Returns
-    -------
-    ndarray of int, shape (n,)
-        Never decreasing.
-
-    Raises
-    ------
-    ValueError
-        The candidates are empty somewhere, or decrease.
+    With C(s, t) the least cost when sample t is on segment s, and D the running sum of its squared
+    distances, ``C(s, t) = D(t) + min over u <= t of (M(u - 1) - D(u - 1))``, where M is the least C
+    of all earlier segments: one running minimum per segment.
     """
     if (first > last).any() or (np.diff(first) < 0).any() or (np.diff(last) < 0).any():
         raise ValueError("candidates must not be empty nor decrease with time")

@@ -29,36 +29,16 @@ SAMPLES_MIN = 10
 
 @dataclass(frozen=True)
 class Way:
-    """One directed path round a circle.
+    """One directed path round a circle."""
 
-    Attributes
-    ----------
-    first, last : int
-        Segments of the path.
-    lines : tuple of int
-        First and last line of the program.
-    points : ndarray, shape (n, 2)
-        The samples that count, from the nominal centre in the plane's axes [mm].
-    time : ndarray, shape (n,)
-        Their time [s].
-    coverage : float
-        Angle they cover [rad].
-    steady : bool
-        Whether run-in and run-out are left out; false if the circle is too short for that.
-    speed : float
-        Median speed of the command over them [mm/s].
-    reading : Reading
-        The quantities.
-    """
-
-    first: int
-    last: int
-    lines: tuple[int, int]
-    points: Array
-    time: Array
-    coverage: float
-    steady: bool
-    speed: float
+    first: int  # first segment
+    last: int  # last segment
+    lines: tuple[int, int]  # first and last line of the program
+    points: Array  # (n, 2) samples that count, from the nominal centre in the plane's axes [mm]
+    time: Array  # (n,) of these samples [s]
+    coverage: float  # angle they cover [rad]
+    steady: bool  # run-in and run-out are left out; false if the circle is too short for that
+    speed: float  # median of the command's over them [mm/s]
     reading: Reading
 
     def numbers(self) -> dict[str, Any]:
@@ -70,32 +50,16 @@ class Way:
 
 @dataclass(frozen=True)
 class CircularTest:
-    """Circular test of one circle, in one direction or both.
+    """Circular test of one circle, in one direction or both."""
 
-    Attributes
-    ----------
-    place : int
-        Number of the circle among those of the path, from 0.
-    centre, normal : ndarray, shape (3,)
-        [mm]; the normal points to the positive side of its largest component.
-    radius : float
-        [mm].
-    axes : ndarray, shape (2, 3)
-        First and second axis of the plane: XY, YZ or ZX for the main planes.
-    ccw, cw : Way, optional
-        Seen from the positive end of the normal.
-    both : BothWays, optional
-        If both directions are there.
-    """
-
-    place: int
-    centre: Array
-    normal: Array
-    radius: float
-    axes: Array
-    ccw: Way | None = None
+    place: int  # number of the circle among those of the path, from 0
+    centre: Array  # (3,) [mm]
+    normal: Array  # (3,) points to the positive side of its largest component
+    radius: float  # [mm]
+    axes: Array  # (2, 3) first and second axis of the plane: XY, YZ or ZX for the main planes
+    ccw: Way | None = None  # seen from the positive end of the normal
     cw: Way | None = None
-    both: BothWays | None = None
+    both: BothWays | None = None  # if both directions are there
 
     def numbers(self) -> dict[str, Any]:
         """Its numbers, ready for JSON."""
@@ -116,27 +80,12 @@ def circular_tests(
     settle: float,
     run_in: float | None,
 ) -> tuple[tuple[CircularTest, ...], dict[str, str]]:
-    """Circular tests of all full circles of a path.
+    """Circular tests of all full circles of a path; a circle run both ways is one.
 
-    Parameters
-    ----------
-    path : Path
-        The planned geometry.
-    samples : tuple of two ndarray, shapes (n,) and (n, 3)
-        Time [s] and actual position [mm].
-    tracks : tuple of two Track
-        Of the actual position and of the pulses put out.
-    settle : float
-        Time left out after the speed or the curvature has changed [s].
-    run_in : float or None
-        Angle left out at both ends [rad]; None leaves out what is not steady.
-
-    Returns
-    -------
-    tuple of CircularTest
-        A circle run both ways is one test.
-    dict
-        Reason by ``circles.<place>.<way>``, of each that has none.
+    `samples` are time (n,) [s] and actual position (n, 3) [mm], `tracks` those of the actual
+    position and of the pulses put out. Left out are `settle` [s] after the speed or the curvature
+    has changed and `run_in` [rad] at both ends; None leaves out what is not steady. The second
+    result is the reason by ``circles.<place>.<way>`` of each that has no test.
     """
     circles: list[CircularTest] = []
     run: list[set[str]] = []  # ways round each that the path has
@@ -212,18 +161,7 @@ def _way(
 
 
 def plane_axes(normal: Array) -> Array:
-    """First and second axis of the plane with a normal.
-
-    Parameters
-    ----------
-    normal : ndarray, shape (3,)
-        Unit vector.
-
-    Returns
-    -------
-    ndarray, shape (2, 3)
-        Unit vectors, right-handed with the normal: XY, YZ and ZX for the main planes.
-    """
+    """Axes (2, 3) of the plane with a unit normal, right-handed; for main planes XY, YZ or ZX."""
     main = int(np.argmax(np.abs(normal)))
     first = np.eye(3)[(main + 1) % 3]
     first = first - (first @ normal) * normal
@@ -275,22 +213,7 @@ def _steady(
 
 
 def speed_along(time: Array, along: Array, span: float) -> Array:
-    """Speed along the path, averaged.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        [s].
-    along : ndarray, shape (n,)
-        Way along the path [mm].
-    span : float
-        Time over which it is averaged [s].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [mm/s].
-    """
+    """Speed [mm/s] of a way along the path [mm], averaged over `span` [s]."""
     low = np.maximum(time - 0.5 * span, time[0])
     high = np.minimum(time + 0.5 * span, time[-1])
     return (np.interp(high, time, along) - np.interp(low, time, along)) / (high - low)

@@ -18,31 +18,15 @@ ANGLE_MIN = math.radians(10.0)
 
 @dataclass(frozen=True)
 class Corner:
-    """A corner between two cutting moves.
+    """A corner between two cutting moves."""
 
-    Attributes
-    ----------
-    line_before, line_after : int
-        Lines of the program.
-    point : tuple of float
-        [mm].
-    angle : float
-        Change of direction; pi turns back [rad].
-    error : float
-        Largest contour error on the two moves within the servo window [mm].
-    time : float
-        When it is largest [s].
-    speed : float
-        Least commanded speed within the servo window [mm/s].
-    """
-
-    line_before: int
+    line_before: int  # of the program
     line_after: int
-    point: tuple[float, float, float]
-    angle: float
-    error: float
-    time: float
-    speed: float
+    point: tuple[float, float, float]  # [mm]
+    angle: float  # change of direction; pi turns back [rad]
+    error: float  # largest contour error on the two moves within the servo window [mm]
+    time: float  # when it is largest [s]
+    speed: float  # least commanded speed within the servo window [mm/s]
 
 
 def find_corners(
@@ -54,22 +38,8 @@ def find_corners(
 ) -> tuple[Corner, ...]:
     """Corners of the cutting moves, in the order of travel.
 
-    Parameters
-    ----------
-    path : Path
-        The planned geometry.
-    time : ndarray, shape (n,)
-        [s].
-    tracks : tuple of two Track
-        Of the actual position and of the pulses put out.
-    cutting : ndarray of bool, shape (n,)
-        Samples that count.
-    window : float
-        Time before and after the corner that belongs to it [s].
-
-    Returns
-    -------
-    tuple of Corner
+    To each belongs the time `window` [s] before and after it; `tracks` are those of the actual
+    position and of the pulses put out, `cutting` are the samples that count.
     """
     track, command = tracks
     speed = speed_along(time, command.along, SPEED_SPAN)
@@ -109,19 +79,7 @@ def find_corners(
 
 
 def cutting_move(path: Path, segment: int) -> bool:
-    """Whether a segment is cut: a line, arc or helix.
-
-    Parameters
-    ----------
-    path : Path
-        The planned geometry.
-    segment : int
-        Its index.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a segment is cut: a line, arc or helix."""
     return path.segments[segment].label.kind != "ptp"
 
 

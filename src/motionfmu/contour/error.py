@@ -38,10 +38,6 @@ def analyse(run: ContourInput) -> ContourResult:
     run : ContourInput
         Geometry and signals.
 
-    Returns
-    -------
-    ContourResult
-
     Raises
     ------
     ValueError
@@ -86,20 +82,7 @@ def analyse(run: ContourInput) -> ContourResult:
 
 
 def servo_lag(time: Array, commanded: Array, actual: Array) -> float:
-    """Following distance over speed, in the least-squares sense.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        [s].
-    commanded, actual : ndarray, shape (n, 3)
-        [mm].
-
-    Returns
-    -------
-    float
-        [s]; 0 if nothing moves or the tool leads.
-    """
+    """Following distance over speed [s], by least squares; 0 if nothing moves or the tool leads."""
     span = min(max(1, round(0.002 / float(np.median(np.diff(time))))), len(time) - 1)
     speed = (commanded[span:] - commanded[:-span]) / (time[span:] - time[:-span])[:, None]
     gap = (commanded - actual)[span:]

@@ -20,57 +20,30 @@ STEP_DONE = 4.0 * EPS
 
 @dataclass(frozen=True)
 class Foot:
-    """Nearest points of a segment to some query points.
+    """Nearest points of a segment to some query points."""
 
-    Attributes
-    ----------
-    point : ndarray, shape (n, 3)
-        Nearest points [mm].
-    along : ndarray, shape (n,)
-        Their distance from the segment's start, measured along it [mm].
-    distance : ndarray, shape (n,)
-        Distance of the query points to them [mm].
-    """
-
-    point: Array
-    along: Array
-    distance: Array
+    point: Array  # (n, 3) nearest points [mm]
+    along: Array  # (n,) their distance from the segment's start, measured along it [mm]
+    distance: Array  # (n,) of the query points to them [mm]
 
 
 @dataclass(frozen=True)
 class Label:
-    """What a segment is in the part program.
+    """What a segment is in the part program."""
 
-    Attributes
-    ----------
-    command, line : int
-        Index of the library's command, line of the part program.
-    kind : str
-        ``ptp``, ``line``, ``arc`` or ``helix``.
-    feed : float
-        Programmed feed [mm/s].
-    """
-
-    command: int
-    line: int
-    kind: str
-    feed: float
+    command: int  # index of the library's command
+    line: int  # of the part program
+    kind: str  # ptp, line, arc or helix
+    feed: float  # as programmed [mm/s]
 
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A straight segment; start and end may be the same point.
-
-    Attributes
-    ----------
-    label : Label
-    start, end : ndarray, shape (3,)
-        [mm].
-    """
+    """A straight segment; start and end may be the same point."""
 
     label: Label
-    start: Array
-    end: Array
+    start: Array  # (3,) [mm]
+    end: Array  # (3,) [mm]
 
     @cached_property
     def length(self) -> float:
@@ -82,46 +55,15 @@ class Line:
         return (self.end - self.start) / (self.length or 1.0)
 
     def at(self, along: Array) -> Array:
-        """Points of the segment.
-
-        Parameters
-        ----------
-        along : ndarray, shape (n,)
-            Distance from the start [mm].
-
-        Returns
-        -------
-        ndarray, shape (n, 3)
-            [mm].
-        """
+        """Points (n, 3) of the segment at distances (n,) from the start [mm]."""
         return self.start + np.multiply.outer(along, self._direction)
 
     def tangent(self, along: Array) -> Array:
-        """Unit tangents; zero for a segment without length.
-
-        Parameters
-        ----------
-        along : ndarray, shape (n,)
-            Distance from the start [mm].
-
-        Returns
-        -------
-        ndarray, shape (n, 3)
-        """
+        """Unit tangents (n, 3) at distances from the start [mm]; zero for a line without length."""
         return np.broadcast_to(self._direction, (len(along), 3))
 
     def foot(self, points: Array) -> Foot:
-        """Nearest points of the segment.
-
-        Parameters
-        ----------
-        points : ndarray, shape (n, 3)
-            Query points [mm].
-
-        Returns
-        -------
-        Foot
-        """
+        """Nearest points of the segment to points (n, 3) [mm]."""
         along = np.clip((points - self.start) @ self._direction, 0.0, self.length)
         point = self.at(along)
         point[along >= self.length] = self.end
@@ -136,27 +78,15 @@ class Arc:
     ``centre + (radius + growth a/angle) u(a) + rise a/angle axis`` with the unit radius u turning
     from the start about `axis`. A growth other than zero is the rounding of a part program whose
     end misses the circle a little; the library spreads it over the arc, and so is it here.
-
-    Attributes
-    ----------
-    label : Label
-    start, centre : ndarray, shape (3,)
-        [mm]; the centre lies in the plane of the start that is normal to the axis.
-    axis : ndarray, shape (3,)
-        Unit vector about which the arc turns counter-clockwise.
-    angle : float
-        Angle turned through, positive [rad].
-    rise, growth : float
-        Way along the axis and change of the radius from start to end [mm].
     """
 
     label: Label
-    start: Array
-    centre: Array
-    axis: Array
-    angle: float
-    rise: float = 0.0
-    growth: float = 0.0
+    start: Array  # (3,) [mm]
+    centre: Array  # (3,) [mm], in the plane of the start that is normal to the axis
+    axis: Array  # (3,) unit vector about which the arc turns counter-clockwise
+    angle: float  # turned through, positive [rad]
+    rise: float = 0.0  # way along the axis from start to end [mm]
+    growth: float = 0.0  # change of the radius from start to end [mm]
 
     @cached_property
     def radius(self) -> float:
@@ -187,47 +117,16 @@ class Arc:
         return self.centre + out + np.outer(self.rise * part, self.axis)
 
     def at(self, along: Array) -> Array:
-        """Points of the segment.
-
-        Parameters
-        ----------
-        along : ndarray, shape (n,)
-            Distance from the start [mm].
-
-        Returns
-        -------
-        ndarray, shape (n, 3)
-            [mm].
-        """
+        """Points (n, 3) of the segment at distances (n,) from the start [mm]."""
         return self._points(np.asarray(along) / self.length * self.angle)
 
     def tangent(self, along: Array) -> Array:
-        """Unit tangents.
-
-        Parameters
-        ----------
-        along : ndarray, shape (n,)
-            Distance from the start [mm].
-
-        Returns
-        -------
-        ndarray, shape (n, 3)
-        """
+        """Unit tangents (n, 3) at distances (n,) from the start [mm]."""
         slope = self._slopes(np.asarray(along) / self.length * self.angle)[0]
         return slope / _norm(slope)[:, None]
 
     def foot(self, points: Array) -> Foot:
-        """Nearest points of the segment.
-
-        Parameters
-        ----------
-        points : ndarray, shape (n, 3)
-            Query points [mm].
-
-        Returns
-        -------
-        Foot
-        """
+        """Nearest points of the segment to points (n, 3) [mm]."""
         best = np.zeros(len(points))
         distance = _norm(points - self.start)
         for angle in (np.full(len(points), self.angle), *self._candidates(points)):
@@ -307,26 +206,11 @@ Segment = Line | Arc
 
 
 def kepler_root(pull: Array, stiff: float, way: Array, reach: Array) -> Array:
-    """Solve ``pull sin(w) + stiff (w - way) = 0`` between 0 and `way`.
+    """Solve ``pull sin(w) + stiff (w - way) = 0`` for w (n,) between 0 and `way` [rad].
 
-    Newton, with bisection where it would leave the bracket. Where the bracket holds no root,
-    the result is a point of it.
-
-    Parameters
-    ----------
-    pull : ndarray, shape (n,)
-        Not negative.
-    stiff : float
-        Positive.
-    way : ndarray, shape (n,)
-        Where the linear term vanishes [rad].
-    reach : ndarray, shape (n,)
-        Size of the bracket, which starts at 0 and goes towards `way` [rad].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Roots [rad].
+    Newton, with bisection where it would leave the bracket, which starts at 0 and goes `reach`
+    [rad] towards `way`, where the linear term vanishes. Where the bracket holds no root, the result
+    is a point of it. `pull` is not negative, `stiff` is positive.
     """
     goal = np.abs(way)
     high = reach.copy()

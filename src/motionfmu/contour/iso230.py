@@ -21,19 +21,11 @@ ZONE_DONE = 1e-6
 
 @dataclass(frozen=True)
 class Zone:
-    """Two concentric circles that enclose all points.
+    """Two concentric circles that enclose all points."""
 
-    Attributes
-    ----------
-    centre : tuple of float
-        [mm].
-    inner, outer : float
-        Radii [mm].
-    """
-
-    centre: tuple[float, float]
-    inner: float
-    outer: float
+    centre: tuple[float, float]  # [mm]
+    inner: float  # radius [mm]
+    outer: float  # radius [mm]
 
     @property
     def width(self) -> float:
@@ -43,38 +35,17 @@ class Zone:
 
 @dataclass(frozen=True)
 class Ellipse:
-    """An ellipse in the plane of a circle.
+    """An ellipse in the plane of a circle."""
 
-    Attributes
-    ----------
-    centre : tuple of float
-        [mm].
-    major, minor : float
-        Semi-axes [mm].
-    orientation : float
-        Of the major axis from the plane's first axis, -pi/2 to pi/2 [rad].
-    """
-
-    centre: tuple[float, float]
-    major: float
-    minor: float
-    orientation: float
+    centre: tuple[float, float]  # [mm]
+    major: float  # semi-axis [mm]
+    minor: float  # semi-axis [mm]
+    orientation: float  # of the major axis from the plane's first axis, -pi/2 to pi/2 [rad]
 
 
 def least_squares_circle(points: Array) -> tuple[Array, float]:
-    """Circle with the least sum of squared radial distances.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        [mm], n >= 3, not on a straight line.
-
-    Returns
-    -------
-    centre : ndarray, shape (2,)
-        [mm].
-    radius : float
-        [mm].
+    """Centre (2,) and radius of the circle with the least sum of squared radial distances from
+    points (n, 2), three at least and not on a straight line [mm].
     """
     origin = points.mean(axis=0)
     shifted = points - origin
@@ -94,22 +65,14 @@ def least_squares_circle(points: Array) -> tuple[Array, float]:
 
 
 def minimum_zone(points: Array) -> Zone:
-    """Two concentric circles of least radial separation.
+    """Two concentric circles of least radial separation, about points (n, 2) [mm].
 
-    Each round linearises the radii about the present centre and finds the minimax step by linear
-    programming: least h with ``|r_i - u_i . dc - R| <= h`` over dc and R. Only the points that
-    bind are given to the program; those that its solution violates are added until there are
-    none. For points near a circle, as here, the problem is convex but for terms of the order
-    of deviation over radius, and the rounds converge quadratically to the one minimum.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        [mm], all round or at least over half a circle.
-
-    Returns
-    -------
-    Zone
+    They lie all round or at least over half a circle. Each round linearises the radii about the
+    present centre and finds the minimax step by linear programming: least h with
+    ``|r_i - u_i . dc - R| <= h`` over dc and R. Only the points that bind are given to the program;
+    those that its solution violates are added until there are none. For points near a circle, as
+    here, the problem is convex but for terms of the order of deviation over radius, and the rounds
+    converge quadratically to the one minimum.
     """
     centre, radius = least_squares_circle(points)
     best = _zone_about(points, centre)
@@ -167,20 +130,11 @@ def _minimax_step(gap: Array, scale: float) -> Array:
 
 
 def fit_ellipse(points: Array) -> Ellipse:
-    """Ellipse through points near a circle, by least squares.
+    """Ellipse by least squares through points (n, 2) [mm] near a circle, five at least, all round.
 
     The general conic ``a x^2 + b xy + c y^2 + d x + e y = 1`` about the points' middle, scaled to
     unit size: exact for points on an ellipse, and for small deviations the same as the second
     harmonic of the radius.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        [mm], n >= 5, all round.
-
-    Returns
-    -------
-    Ellipse
     """
     origin, radius = least_squares_circle(points)
     x, y = ((points - origin) / radius).T
@@ -202,79 +156,40 @@ def fit_ellipse(points: Array) -> Ellipse:
 
 @dataclass(frozen=True)
 class Reading:
-    """Circular test of one directed path.
+    """Circular test of one directed path [mm]."""
 
-    Attributes
-    ----------
-    g : float
-        Circular deviation G: minimum radial separation of two concentric circles (minimum zone,
-        own centre) that envelop the path [mm].
-    g_least_squares : float
-        Range of the radii about the least-squares centre [mm].
-    f_max, f_min : float
-        Radial deviation F: largest and smallest distance from the nominal centre, minus the
-        nominal radius [mm].
-    f_max_centred, f_min_centred : float
-        The same about the least-squares centre, set-up errors removed [mm].
-    radius_change, radius_change_nominal : float
-        Mean radius about the least-squares and the nominal centre, minus nominal radius [mm].
-    offset : tuple of float
-        Least-squares centre minus nominal centre, in the plane's axes [mm].
-    major_change, minor_change : float
-        Semi-axes of the fitted ellipse minus the nominal radius [mm].
-    orientation : float
-        Of the major axis from the plane's first axis [rad].
-    """
-
+    # circular deviation G: minimum radial separation of two concentric circles (minimum zone, own
+    # centre) that envelop the path
     g: float
-    g_least_squares: float
+    g_least_squares: float  # range of the radii about the least-squares centre
+    # radial deviation F: largest distance from the nominal centre, minus the nominal radius
     f_max: float
-    f_min: float
-    f_max_centred: float
+    f_min: float  # with the smallest distance
+    f_max_centred: float  # the same about the least-squares centre, set-up errors removed
     f_min_centred: float
-    radius_change: float
-    radius_change_nominal: float
-    offset: tuple[float, float]
-    major_change: float
+    radius_change: float  # mean radius about the least-squares centre, minus the nominal radius
+    radius_change_nominal: float  # about the nominal centre
+    offset: tuple[float, float]  # least-squares centre minus nominal centre, in the plane's axes
+    major_change: float  # semi-axes of the fitted ellipse minus the nominal radius
     minor_change: float
-    orientation: float
+    orientation: float  # of the major axis from the plane's first axis [rad]
 
 
 @dataclass(frozen=True)
 class BothWays:
-    """Circular test of both directions together.
+    """Circular test of both directions together [mm]."""
 
-    Attributes
-    ----------
-    g : float
-        Bi-directional circular deviation G(b): minimum radial separation of two concentric
-        circles (minimum zone) that envelop both paths [mm].
-    d : float
-        Mean bi-directional radial deviation D: mean of both directions' mean radii about their
-        common least-squares centre, minus the nominal radius [mm].
-    d_nominal : float
-        The same about the nominal centre [mm].
-    """
-
+    # bi-directional circular deviation G(b): minimum radial separation of two concentric circles
+    # (minimum zone) that envelop both paths
     g: float
+    # mean bi-directional radial deviation D: mean of both directions' mean radii about their common
+    # least-squares centre, minus the nominal radius
     d: float
-    d_nominal: float
+    d_nominal: float  # the same about the nominal centre
 
 
 def reading(points: Array, radius: float) -> Reading:
-    """Quantities of one directed path.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        From the nominal centre, in the plane's axes [mm].
-    radius : float
-        Nominal radius [mm].
-
-    Returns
-    -------
-    Reading
-    """
+    """Quantities of one directed path (n, 2) from the nominal centre, in the plane's axes [mm]."""
     centre, mean = least_squares_circle(points)
     about_nominal = np.hypot(points[:, 0], points[:, 1]) - radius
     about_own = np.hypot(points[:, 0] - centre[0], points[:, 1] - centre[1]) - radius
@@ -296,19 +211,7 @@ def reading(points: Array, radius: float) -> Reading:
 
 
 def both_ways(first: Array, second: Array, radius: float) -> BothWays:
-    """Quantities of two opposite directed paths.
-
-    Parameters
-    ----------
-    first, second : ndarray, shape (n, 2)
-        The two paths, from the nominal centre [mm]; they may differ in number of samples.
-    radius : float
-        Nominal radius [mm].
-
-    Returns
-    -------
-    BothWays
-    """
+    """Quantities of two opposite paths (n, 2), (m, 2) from the nominal centre [mm]."""
     points = np.concatenate([first, second])
     centre, _ = least_squares_circle(points)
 

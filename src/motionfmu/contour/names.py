@@ -34,18 +34,7 @@ def _tree() -> dict[str, Any]:
 
 
 def wrong(name: str) -> str:
-    """Why no run can have a contour number of this name.
-
-    Parameters
-    ----------
-    name : str
-        As for `ContourResult.number`.
-
-    Returns
-    -------
-    str
-        Empty if a run can have it.
-    """
+    """Why no run can have a number of this name, as in `ContourResult.number`; empty if one can."""
     here: Any = _tree()
     for part in name.split("."):
         if isinstance(here, list) and part.isdecimal():

@@ -92,30 +92,13 @@ class Path:
         ----------
         command : ndarray of int, shape (n,)
             Command indices; a delay stands for the segment before it.
-
-        Returns
-        -------
-        ndarray of int, shape (n,)
         """
         found = np.searchsorted(self.commands, command, side="right") - 1
         return np.clip(found, 0, len(self.segments) - 1)
 
 
 def outline(segments: Sequence[Segment], steps: int = 90) -> Array:
-    """Points along the exact geometry, for drawing.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-        In the order of travel.
-    steps : int
-        Points per full turn of an arc; a line has its two ends.
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        [mm].
-    """
+    """Points (n, 3) [mm] to draw a path: `steps` per full turn of an arc, a line's two ends."""
     parts = []
     for segment in segments:
         count = 2
@@ -140,10 +123,6 @@ def read_path(file: str | File) -> Path:
     ----------
     file : str or Path
         CSV with the columns of `COLUMNS`, in any order; further columns are not read.
-
-    Returns
-    -------
-    Path
 
     Raises
     ------
@@ -188,27 +167,11 @@ def _segment(row: dict[str, str]) -> Segment | None:
 def make_arc(
     label: Label, ends: tuple[Array, Array], about: tuple[Array, Array], sweep: float
 ) -> Arc:
-    """Arc or helix from its end points, centre and sweep.
+    """Arc or helix from its end points (start and end [mm]), centre and sweep.
 
-    Parameters
-    ----------
-    label : Label
-        What it is in the program.
-    ends : tuple of two ndarray, shape (3,)
-        Start and end [mm]. The part of the way along the normal is the rise of a helix.
-    about : tuple of two ndarray, shape (3,)
-        A point of the axis [mm] and the normal.
-    sweep : float
-        Angle turned through, positive counter-clockwise about the normal [rad].
-
-    Returns
-    -------
-    Arc
-
-    Raises
-    ------
-    ValueError
-        The normal or the sweep is zero, the radius is zero, or the arc misses the end.
+    `about` is a point of the axis [mm] and the normal; the part of the way along the normal is the
+    rise of a helix. The sweep [rad] is positive counter-clockwise about the normal. A ValueError
+    says that the normal, the sweep or the radius is zero, or that the arc misses the end.
     """
     start, end = ends
     size = float(np.linalg.norm(about[1]))

@@ -182,10 +182,6 @@ class ContourResult:
         name : str
             As in `numbers`, list items by index: ``error.max``, ``circles.0.ccw.g``.
 
-        Returns
-        -------
-        float
-
         Raises
         ------
         NoNumber

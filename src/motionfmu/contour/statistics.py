@@ -12,19 +12,7 @@ from motionfmu.contour.track import Track
 
 @dataclass(frozen=True)
 class Statistics:
-    """Size of an error over many samples.
-
-    Attributes
-    ----------
-    max, rms, mean, p50, p95, p99 : float
-        Maximum, root mean square, mean, percentiles of the magnitude [mm].
-    time : float
-        When it is largest [s].
-    line, command : int
-        Line of the program and command where it is largest.
-    point : tuple of float
-        Point of the path where it is largest [mm].
-    """
+    """Size of an error over many samples: its magnitude [mm], and where it is largest."""
 
     max: float
     rms: float
@@ -32,30 +20,14 @@ class Statistics:
     p50: float
     p95: float
     p99: float
-    time: float
-    line: int
+    time: float  # when it is largest [s]
+    line: int  # of the program, and command, where it is largest
     command: int
-    point: tuple[float, float, float]
+    point: tuple[float, float, float]  # of the path where it is largest [mm]
 
 
 def statistics(path: Path, time: Array, track: Track, chosen: NDArray[np.bool_]) -> Statistics:
-    """Statistics of the distance over chosen samples.
-
-    Parameters
-    ----------
-    path : Path
-        The planned geometry.
-    time : ndarray, shape (n,)
-        [s].
-    track : Track
-        Nearest points of all samples.
-    chosen : ndarray of bool, shape (n,)
-        At least one is true.
-
-    Returns
-    -------
-    Statistics
-    """
+    """Statistics of the distance over chosen samples, one at least."""
     size = track.distance[chosen]
     worst = int(np.flatnonzero(chosen)[np.argmax(size)])
     label = path.segments[int(track.segment[worst])].label

@@ -8,24 +8,11 @@ from motionfmu.contour.geometry import Array
 
 @dataclass(frozen=True)
 class Track:
-    """Nearest points of some samples on the path.
+    """Nearest points of some samples on the path."""
 
-    Attributes
-    ----------
-    segment : ndarray of int, shape (n,)
-        Index of the segment; never decreases.
-    along : ndarray, shape (n,)
-        Way along the whole path [mm].
-    foot : ndarray, shape (n, 3)
-        Nearest points [mm].
-    distance : ndarray, shape (n,)
-        Distance to them [mm].
-    signed : ndarray, shape (n,), optional
-        The same, negative to the right of the direction of travel; None for a path in space.
-    """
-
-    segment: Index
-    along: Array
-    foot: Array
-    distance: Array
+    segment: Index  # (n,) index; never decreases
+    along: Array  # (n,) way along the whole path [mm]
+    foot: Array  # (n, 3) nearest points [mm]
+    distance: Array  # (n,) to them [mm]
+    # (n,) the same, negative to the right of the direction of travel; None for a path in space
     signed: Array | None
