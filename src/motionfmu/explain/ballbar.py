@@ -34,24 +34,12 @@ AXES = "XYZ"
 
 @dataclass(frozen=True)
 class Finding:
-    """One part of the signature.
+    """One part of the signature."""
 
-    Attributes
-    ----------
-    name : str
-        ``mismatch``, ``squareness``, ``scale``, ``backlash``, ``spikes`` or ``centre``.
-    size : float
-        Largest radial deviation it makes [mm].
-    words : str
-        What it is, how large, and its likely cause.
-    named : bool
-        Above the thresholds.
-    """
-
-    name: str
-    size: float
-    words: str
-    named: bool
+    name: str  # mismatch, squareness, scale, backlash, spikes or centre
+    size: float  # largest radial deviation it makes [mm]
+    words: str  # what it is, how large, and its likely cause
+    named: bool  # above the thresholds
 
 
 @dataclass(frozen=True)
@@ -80,10 +68,6 @@ class Signature:
         Parameters
         ----------
         name : str
-
-        Returns
-        -------
-        Finding
         """
         return next(f for f in self.findings if f.name == name)
 
@@ -112,10 +96,6 @@ def signature(test: CircularTest, lag: float = 0.0) -> Signature:
     lag : float
         Servo lag 1/Kp [s]. Axes that lag by different times also get different radii, which would
         look like a scale; with the lag known that part is counted to the mismatch.
-
-    Returns
-    -------
-    Signature
 
     Raises
     ------

@@ -56,18 +56,11 @@ class Switch(BaseModel):
 
 @dataclass(frozen=True)
 class Cause:
-    """A cause of contour error in a scenario.
-
-    Attributes
-    ----------
-    name, title : str
-    switches : dict
-        Switch by component.
-    """
+    """A cause of contour error in a scenario."""
 
     name: str
     title: str
-    switches: Mapping[str, Switch]
+    switches: Mapping[str, Switch]  # by component
 
     @property
     def after(self) -> str:
@@ -77,42 +70,16 @@ class Cause:
 
 @dataclass(frozen=True)
 class Off:
-    """A cause that is switched off.
+    """A cause that is switched off."""
 
-    Attributes
-    ----------
-    set : dict
-        Value by ``component.variable``; empty if nothing changes.
-    why_not : str
-        Why nothing changes: the cause is absent, or cannot be switched off.
-    absent : bool
-        The cause does nothing in this run.
-    """
-
-    set: Mapping[str, Any]
-    why_not: str = ""
-    absent: bool = False
+    set: Mapping[str, Any]  # value by `component.variable`; empty if nothing changes
+    why_not: str = ""  # why nothing changes: the cause is absent, or cannot be switched off
+    absent: bool = False  # the cause does nothing in this run
 
 
 @functools.cache
 def of_fmu(name: str) -> dict[str, Switch | dict[str, str]]:
-    """The causes.toml of a built FMU.
-
-    Parameters
-    ----------
-    name : str
-        Folder name under fmus/.
-
-    Returns
-    -------
-    dict
-        Switch by cause, and the expressions under ``theory``; empty if the FMU has no such file.
-
-    Raises
-    ------
-    InputError
-        The file is wrong; the message names FMU, key and value.
-    """
+    """A built FMU's causes.toml, if any: switch by cause, and the expressions under ``theory``."""
     with zipfile.ZipFile(fmus.fmu_path(name)) as archive:
         if RESOURCE not in archive.namelist():
             return {}
@@ -143,17 +110,7 @@ def _floats(value: Any) -> Any:
 
 
 def causes(scenario: "Scenario") -> list[Cause]:
-    """All causes that the FMUs of a scenario can switch off.
-
-    Parameters
-    ----------
-    scenario : Scenario
-
-    Returns
-    -------
-    list of Cause
-        In the order of `TITLES`; causes of an FMU's own follow.
-    """
+    """Causes that the FMUs of a scenario can switch off: `TITLES` in order, then an FMU's own."""
     found: dict[str, dict[str, Switch]] = {}
     for component, fmu in scenario.document.body.component.items():
         for name, switch in of_fmu(fmu).items():
@@ -165,35 +122,12 @@ def causes(scenario: "Scenario") -> list[Cause]:
 
 
 def watched(found: list[Cause]) -> list[str]:
-    """Outputs that tell whether a cause acts, to be recorded.
-
-    Parameters
-    ----------
-    found : list of Cause
-
-    Returns
-    -------
-    list of str
-        ``component.variable``.
-    """
+    """Outputs ``component.variable`` that tell whether a cause acts, to be recorded."""
     return [f"{c}.{n}" for cause in found for c, s in cause.switches.items() for n in s.reached]
 
 
 def off(cause: Cause, result: "Result", base: Mapping[str, Any]) -> Off:
-    """The settings that switch a cause off.
-
-    Parameters
-    ----------
-    cause : Cause
-    result : Result
-        The whole run: its parameters and watched outputs.
-    base : mapping
-        Values that are set already, by other causes; the switch works on them.
-
-    Returns
-    -------
-    Off
-    """
+    """Settings that switch a cause off after the run `result`, on top of those of other causes."""
     for component, switch in cause.switches.items():
         for name, level in switch.reached.items():
             largest = float(np.abs(result[f"{component}.{name}"]).max())
@@ -224,16 +158,7 @@ def off(cause: Cause, result: "Result", base: Mapping[str, Any]) -> Off:
 
 
 def used(result: "Result") -> list[int]:
-    """Axes in use, from 0.
-
-    Parameters
-    ----------
-    result : Result
-
-    Returns
-    -------
-    list of int
-    """
+    """Axes in use, from 0."""
     from motionfmu.scenario.contour_signals import library_of
 
     active = result.parameter(f"{library_of(result.resolver)}.active")
@@ -265,21 +190,8 @@ def _within(values: np.ndarray, port: "Port", limit: bool) -> tuple[list[Any], s
 
 
 def quantities(result: "Result") -> dict[str, np.ndarray]:
-    """What the FMUs tell theory, combined over the scenario.
-
-    Parameters
-    ----------
-    result : Result
-
-    Returns
-    -------
-    dict
-        Six axes by name: ``gain`` is a product over the FMUs, all others are sums.
-
-    Raises
-    ------
-    InputError
-        An expression is wrong.
+    """What the FMUs tell theory, six axes by name: ``gain`` is a product over FMUs, others a
+    sum.
     """
     found: dict[str, np.ndarray] = {}
     for component, fmu in result.scenario.document.body.component.items():

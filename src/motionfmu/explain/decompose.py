@@ -39,40 +39,19 @@ TITLES = {PATH: "Path the card was given (blending)", SERVO: "Servo lag"}
 
 @dataclass(frozen=True)
 class Effect:
-    """What one cause does to the contour error.
-
-    Attributes
-    ----------
-    name, title : str
-    how : str
-        How it was switched off, or why not.
-    size : float
-        Largest change of the contour error at any place of the path [mm].
-    usual, rms : float
-        99 % of the path see a smaller change; its root mean square [mm].
-    where : int
-        Line of the program at which the change is largest; 0 if there is none.
-    without : float or None
-        Largest contour error of the run without the cause [mm].
-    judged : bool
-        Whether the cause could be switched off, or was not there; else `how` says why.
-    theory : Theory
-        What a formula says.
-    change : ndarray, shape (n,)
-        Contour error with the cause minus without, along the path [mm].
-    """
+    """What one cause does to the contour error."""
 
     name: str
     title: str
-    how: str
-    size: float
-    usual: float
-    rms: float
-    where: int
-    without: float | None
-    judged: bool
+    how: str  # how it was switched off, or why not
+    size: float  # largest change of the contour error at any place of the path [mm]
+    usual: float  # 99 % of the path see a smaller change [mm]
+    rms: float  # root mean square of the change [mm]
+    where: int  # line of the program at which the change is largest; 0 if there is none
+    without: float | None  # largest contour error of the run without the cause [mm]
+    judged: bool  # it could be switched off, or was not there; else `how` says why
     theory: "theory.Theory"
-    change: Array
+    change: Array  # (n,) contour error with the cause minus without, along the path [mm]
 
     def numbers(self) -> dict[str, Any]:
         """Its numbers, ready for JSON."""
@@ -126,10 +105,6 @@ class Explanation:
         ----------
         name : str
 
-        Returns
-        -------
-        Effect
-
         Raises
         ------
         KeyError
@@ -179,10 +154,6 @@ def explain(
         Instead of the scenario's [s].
     progress : callable
         Called with what is under way and the share of all work that is done.
-
-    Returns
-    -------
-    Explanation
 
     Raises
     ------

@@ -19,23 +19,10 @@ _BINARY: dict[type, Callable[[Any, Any], Any]] = {
 
 
 def evaluate(text: str, values: Mapping[str, Any]) -> Any:
-    """Value of an expression of parameters.
+    """Value of an expression of parameters; arrays hold one element per axis.
 
-    Parameters
-    ----------
-    text : str
-        Numbers, pi, parameters, ``+ - * / **``, ``a if b == c else d``.
-    values : mapping
-        Value by name; arrays hold one element per axis.
-
-    Returns
-    -------
-    ndarray or float
-
-    Raises
-    ------
-    ValueError
-        A name is unknown, or the text says something else; the message holds both.
+    It has numbers, pi, names in `values`, ``+ - * / **``, ``a if b == c else d``; anything else is
+    a ValueError with name and text.
     """
     try:
         return _value(ast.parse(text, mode="eval").body, values)

@@ -1,6 +1,7 @@
 """Closed formulas of servo contouring: frequency responses and what follows from them.
 
 V feed [mm/s], R radius [mm], w = V/R [rad/s], Kp position gain [1/s], T sampling time [s].
+Other lengths are in mm, times in s, angles in rad.
 A circle comes out with the radius R |H(jw)|, whatever H is: servo, interpolation or filter.
 """
 
@@ -23,72 +24,29 @@ PEAK_STEPS, PEAK_LENGTH = 2000, 8.0
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis as theory sees it.
+    """One axis as theory sees it."""
 
-    Attributes
-    ----------
-    gain : float
-        Position gain Kp [1/s].
-    period, delay : float
-        Sampling time of the position loop and computation delay in it [s].
-    lag : float
-        First-order lag of the speed [s].
-    velocity_gain : float
-        Of the velocity loop [N.m.s/rad]; 0 for an ideal one.
-    velocity_time : float
-        Its integral time [s]; 0 for none.
-    inertia : float
-        Motor, screw and table [kg.m2].
-    friction : float
-        Coulomb friction at the motor [N.m].
-    viscous : float
-        Viscous friction at the motor [N.m.s/rad].
-    travel : float
-        Travel per turn [mm].
-    """
-
-    gain: float
-    period: float = 0.0
-    delay: float = 0.0
-    lag: float = 0.0
-    velocity_gain: float = 0.0
-    velocity_time: float = 0.0
-    inertia: float = 0.0
-    friction: float = 0.0
-    viscous: float = 0.0
-    travel: float = 0.0
+    gain: float  # position gain Kp [1/s]
+    period: float = 0.0  # sampling time of the position loop [s]
+    delay: float = 0.0  # computation delay in it [s]
+    lag: float = 0.0  # first-order lag of the speed [s]
+    velocity_gain: float = 0.0  # of the velocity loop [N.m.s/rad]; 0 for an ideal one
+    velocity_time: float = 0.0  # its integral time [s]; 0 for none
+    inertia: float = 0.0  # motor, screw and table [kg.m2]
+    friction: float = 0.0  # Coulomb friction at the motor [N.m]
+    viscous: float = 0.0  # viscous friction at the motor [N.m.s/rad]
+    travel: float = 0.0  # per turn [mm]
 
     @staticmethod
     def of(quantities: Mapping[str, Array], axis: int) -> "Axis":
-        """The axis that an FMU's quantities describe.
-
-        Parameters
-        ----------
-        quantities : mapping
-            Six axes by name.
-        axis : int
-            From 0.
-
-        Returns
-        -------
-        Axis
-        """
+        """The axis, from 0, that an FMU's quantities (six axes by name) describe."""
         names = Axis.__dataclass_fields__
         return Axis(**{n: float(quantities[n][axis]) for n in names if n in quantities})
 
     def response(self, speed: float) -> complex:
-        """Position over command at an angular frequency.
+        """Position over command at an angular frequency [rad/s].
 
         The sampled loop ``K T g / (z^d (z - 1) + K T g)`` with g of the velocity loop.
-
-        Parameters
-        ----------
-        speed : float
-            [rad/s].
-
-        Returns
-        -------
-        complex
         """
         s = 1j * speed
         inner = self._velocity(s)
@@ -108,114 +66,42 @@ class Axis:
 
 
 def radius_change(radius: float, response: complex) -> float:
-    """Radius that comes out, minus the nominal one: R (|H| - 1).
-
-    Parameters
-    ----------
-    radius : float
-        [mm].
-    response : complex
-        At w = V/R; a product of several in series.
-
-    Returns
-    -------
-    float
-        [mm].
-    """
+    """Radius that comes out, minus the nominal one: R (|H| - 1) [mm], H of all in series at V/R."""
     return radius * (abs(response) - 1.0)
 
 
 def lag_response(speed: float, time: float) -> complex:
-    """First-order lag, or exponential acceleration: 1/(1 + jw T).
+    """First-order lag, or exponential acceleration: 1/(1 + jw T), w in rad/s.
 
-    Parameters
-    ----------
-    speed : float
-        [rad/s].
-    time : float
-        Time constant [s]; 1/Kp of an ideal position loop.
-
-    Returns
-    -------
-    complex
+    T [s] is 1/Kp of an ideal position loop.
     """
     return 1.0 / (1.0 + 1j * speed * time)
 
 
 def average_response(speed: float, time: float, times: int = 1) -> complex:
-    """Moving average over a time, repeated.
+    """Moving average over a time [s], repeated, without its delay, at a frequency [rad/s].
 
     Once it is linear acceleration after interpolation; twice the linear interpolation of points T
     apart; four times the cubic B-spline through them.
-
-    Parameters
-    ----------
-    speed : float
-        [rad/s].
-    time : float
-        Length of the average [s].
-    times : int
-        How often.
-
-    Returns
-    -------
-    complex
-        Without its delay.
     """
     return complex(np.sinc(speed * time / (2.0 * math.pi)) ** times)
 
 
 def following_radius(radius: float, following: float) -> float:
-    """Radius that a lagging loop runs: sqrt(R^2 - L^2).
-
-    Parameters
-    ----------
-    radius, following : float
-        Radius asked for, distance of the tool behind the command [mm].
-
-    Returns
-    -------
-    float
-        [mm].
-    """
+    """Radius that a loop runs which follows the command at a distance L: sqrt(R^2 - L^2) [mm]."""
     return math.sqrt(radius * radius - following * following)
 
 
 def chord(radius: float, feed: float, time: float) -> float:
-    """Sag of a chord: R (1 - cos(V T/(2 R))), about V^2 T^2/(8 R).
-
-    Parameters
-    ----------
-    radius, feed, time : float
-        [mm], [mm/s], time between two points [s].
-
-    Returns
-    -------
-    float
-        [mm].
-    """
+    """Sag [mm] of a chord run in a time [s]: R (1 - cos(V T/(2 R))), about ``V^2 T^2/(8 R)``."""
     return radius * (1.0 - math.cos(min(feed * time / (2.0 * radius), math.pi)))
 
 
 def chord_behind_servo(sag: float, time: float, axis: Axis) -> float:
-    """What a table shows of the sag of chords that follow each other.
+    """Largest distance inwards [mm] that a table shows of the sag of chords, each a time [s] long.
 
     The sag is a parabola of time: its mean, 2/3, passes the servo, its ripple
     ``4/(pi k)^2 cos(2 pi k t/T)`` does as far as the response lets it.
-
-    Parameters
-    ----------
-    sag : float
-        Of a chord [mm].
-    time : float
-        Between two points [s].
-    axis : Axis
-        The servo.
-
-    Returns
-    -------
-    float
-        Largest distance inwards [mm].
     """
     terms = np.arange(1, CHORD_TERMS + 1)
     size = [abs(axis.response(2.0 * math.pi * k / time)) for k in terms.tolist()]
@@ -226,38 +112,15 @@ def chord_behind_servo(sag: float, time: float, axis: Axis) -> float:
 
 
 def line_mismatch(feed: float, angle: float, gains: tuple[float, float]) -> float:
-    """Steady contour error of a line: V sin(a) cos(a) (1/Kx - 1/Ky).
+    """Steady contour error of a line: ``V sin(a) cos(a) (1/Kx - 1/Ky)`` [mm].
 
-    Parameters
-    ----------
-    feed, angle : float
-        [mm/s], direction from the first axis [rad].
-    gains : tuple of two float
-        Position gains [1/s].
-
-    Returns
-    -------
-    float
-        [mm].
+    The angle [rad] is its direction from the first axis.
     """
     return feed * math.sin(angle) * math.cos(angle) * (1.0 / gains[0] - 1.0 / gains[1])
 
 
 def ellipse(radius: float, responses: tuple[complex, complex]) -> tuple[float, float]:
-    """Semi-axes of the ellipse that a circle becomes.
-
-    Parameters
-    ----------
-    radius : float
-        [mm].
-    responses : tuple of two complex
-        Of both axes at w = V/R.
-
-    Returns
-    -------
-    float, float
-        The larger and the smaller [mm].
-    """
+    """Larger and smaller semi-axis [mm] of what two responses at w = V/R make of a circle."""
     x, y = responses
     # x = R Re(Hx e^jt), y = R Im(Hy e^jt): columns for cos t and sin t.
     matrix = radius * np.array([[x.real, -x.imag], [y.imag, y.real]])
@@ -266,25 +129,13 @@ def ellipse(radius: float, responses: tuple[complex, complex]) -> tuple[float, f
 
 
 def corner(feed: float, angle: float, gain: float, acceleration: float = 0.0) -> float:
-    """Contour error of a corner that the command runs into at a feed.
+    """Contour error [mm] of a corner that the command runs into at a feed [mm/s].
 
     At constant feed sin(th) V/(e Kp), reached at Kp t = 1 behind the corner. With a command that
-    brakes to the feed and speeds up again, with u = Kp t, v = V/Kp and w = a/Kp^2, the tool
-    is ``(v + w) e^-u`` before the corner on the first move and ``v (u - 1 + e^-u) +
-    w (u^2/2 - u + 1 - e^-u)`` behind it on the second: the error is largest where both are equal.
-    From rest that is 0.2725 sin(th) a/Kp^2, at u = 1.30.
-
-    Parameters
-    ----------
-    feed, angle, gain : float
-        At the corner [mm/s], change of direction [rad], position gain [1/s].
-    acceleration : float
-        Of the command before and behind the corner [mm/s2].
-
-    Returns
-    -------
-    float
-        [mm].
+    brakes to the feed and speeds up again [mm/s2], with u = Kp t, v = V/Kp and w = a/Kp^2, the tool
+    is ``(v + w) e^-u`` before the corner on the first move and
+    ``v (u - 1 + e^-u) + w (u^2/2 - u + 1 - e^-u)`` behind it on the second: the error is largest
+    where both are equal. From rest that is 0.2725 sin(th) a/Kp^2, at u = 1.30.
     """
     v, w = feed / gain, acceleration / gain**2
     if v + w <= 0.0:
@@ -298,23 +149,11 @@ def corner(feed: float, angle: float, gain: float, acceleration: float = 0.0) ->
 
 
 def blended_corner(feed: float, angle: float, gain: float, acceleration: float) -> float:
-    """Contour error of a corner whose two moves overlap.
+    """Contour error [mm] of a corner whose two moves, at a feed [mm/s], overlap.
 
-    One brakes while the next speeds up. Both distances, ``a (T - t)^2/2 + a (T - t)/Kp`` and
-    ``a t^2/2 - a t/Kp``, each with ``a/Kp^2 (1 - e^(-Kp t))`` more, are equal at t = T/2 + 1/Kp,
-    with T = V/a.
-
-    Parameters
-    ----------
-    feed, angle, gain : float
-        [mm/s], change of direction [rad], position gain [1/s].
-    acceleration : float
-        Of both moves [mm/s2].
-
-    Returns
-    -------
-    float
-        [mm].
+    One brakes while the next speeds up [mm/s2]. Both distances, ``a (T - t)^2/2 + a (T - t)/Kp``
+    and ``a t^2/2 - a t/Kp``, each with ``a/Kp^2 (1 - e^(-Kp t))`` more, are equal at t = T/2 +
+    1/Kp, with T = V/a.
     """
     time = 0.5 * feed / acceleration + 1.0 / gain
     own = 0.5 * time * time - time / gain - math.expm1(-gain * time) / gain**2
@@ -322,20 +161,11 @@ def blended_corner(feed: float, angle: float, gain: float, acceleration: float) 
 
 
 def reversal(axis: Axis) -> tuple[float, float]:
-    """Position error by Coulomb friction: step, and peak.
+    """Position error by Coulomb friction [mm]: step, and peak.
 
     At a reversal the torque changes by 2 Fc. A proportional velocity loop keeps 2 Fc/(Kp Kv), half
     of it to either side; an integral takes it away again, and what is left is the peak of
     ``2 Fc/(J s^3 + Kv (s + 1/Ti) (s + Kp))``, delays left out.
-
-    Parameters
-    ----------
-    axis : Axis
-
-    Returns
-    -------
-    step, peak : float
-        [mm].
     """
     if min(axis.velocity_gain, axis.inertia, axis.gain) <= 0.0:
         return 0.0, 0.0
@@ -355,42 +185,17 @@ def reversal(axis: Axis) -> tuple[float, float]:
 
 
 def lost_motion_arc(radius: float, backlash: float) -> float:
-    """Angle of the lost motion: acos(1 - B/R).
-
-    So far behind a quadrant a table behind a backlash stands still.
-
-    Parameters
-    ----------
-    radius, backlash : float
-        [mm].
-
-    Returns
-    -------
-    float
-        [rad].
-    """
+    """Angle [rad] behind a quadrant at which a table behind a backlash stands: acos(1 - B/R)."""
     return math.acos(max(-1.0, 1.0 - backlash / radius))
 
 
 def limited(command: Array, time: Array, axis: Axis, torque: float) -> Array:
-    """Position of a rigid axis without delays whose torque is limited.
+    """Position [mm] of a rigid axis without delays whose torque [N.m] is limited.
 
     ``J dv/dt = T - Fc sign(v) - Fv v`` with T of a PI velocity loop, within the limit, which asks
-    for the speed ``Kp (c - x)``; its integral stands still while the torque is limited.
-
-    Parameters
-    ----------
-    command, time : ndarray, shape (n,)
-        [mm], [s] with even steps.
-    axis : Axis
-        All but period, delay and lag count.
-    torque : float
-        Largest [N.m]; infinite for no limit.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [mm].
+    for the speed ``Kp (c - x)``; its integral stands still while the torque is limited. Times are
+    evenly spaced [s]; an infinite torque is no limit; of the axis all but period, delay and lag
+    count.
     """
     step = float(time[1] - time[0])
     turn = 2.0 * math.pi / axis.travel

@@ -30,18 +30,11 @@ BY_GAIN = ("servo", "chord", "mismatch", "friction")
 
 @dataclass(frozen=True)
 class Theory:
-    """What a formula says.
+    """What a formula says."""
 
-    Attributes
-    ----------
-    value : float or None
-        Largest contour error by the cause [mm]; None without a formula for this geometry.
-    formula : str
-        The formula, with what it leaves out.
-    """
-
+    # largest contour error by the cause [mm]; None without a formula for this geometry
     value: float | None
-    formula: str
+    formula: str  # and what it leaves out
 
 
 NONE = Theory(None, "")
@@ -49,52 +42,22 @@ NONE = Theory(None, "")
 
 @dataclass(frozen=True)
 class CornerRow:
-    """A corner: what was found beside what a servo alone does.
+    """A corner: what was found beside what a servo alone does."""
 
-    Attributes
-    ----------
-    lines : tuple of int
-        Of the program, before and behind.
-    kind : str
-        ``sharp`` at a feed; ``stop`` for an instant; ``rest`` until the tool has come; or
-        ``blended``: the pulses do not come to the corner.
-    angle : float
-        Change of direction [rad].
-    speed : float
-        Of the command at the corner; the feed of a blended one [mm/s].
-    error : float
-        Of the run [mm].
-    ideal : float
-        With all causes but path and servo lag switched off [mm].
-    theory : float or None
-        Of first-order axes with the mean gain [mm]; None where a move is too short for its ramps.
-    """
-
-    lines: tuple[int, int]
+    lines: tuple[int, int]  # of the program, before and behind
+    # "sharp" at a feed; "stop" for an instant; "rest" until the tool has come; or "blended": the
+    # pulses do not come to the corner
     kind: str
-    angle: float
-    speed: float
-    error: float
-    ideal: float
+    angle: float  # change of direction [rad]
+    speed: float  # of the command at the corner; the feed of a blended one [mm/s]
+    error: float  # of the run [mm]
+    ideal: float  # with all causes but path and servo lag switched off [mm]
+    # of first-order axes with the mean gain [mm]; None where a move is too short for its ramps
     theory: float | None
 
 
 def corner_rows(result: "Result", ideal: "ContourResult", book: "Book") -> tuple[CornerRow, ...]:
-    """All corners of a run.
-
-    Parameters
-    ----------
-    result : Result
-        The whole run.
-    ideal : ContourResult
-        Without all causes.
-    book : Book
-        Formulas for it.
-
-    Returns
-    -------
-    tuple of CornerRow
-    """
+    """All corners of a run, beside those without all causes."""
     rows = []
     for own, other in zip(result.contour().corners, ideal.corners, strict=False):
         lines = (own.line_before, own.line_after)
@@ -106,12 +69,8 @@ def corner_rows(result: "Result", ideal: "ContourResult", book: "Book") -> tuple
 class Book:
     """Formulas applied to one run.
 
-    Parameters
-    ----------
-    result : Result
-        The whole run.
-    ideal : ContourResult
-        Without all causes; gives the corners, and the position gain if the FMUs do not tell it.
+    The run without all causes, `ideal`, gives the corners, and the position gain if the FMUs do not
+    tell it.
     """
 
     def __init__(self, result: "Result", ideal: "ContourResult") -> None:
@@ -131,17 +90,7 @@ class Book:
         ]
 
     def of(self, name: str) -> Theory:
-        """What theory says of a cause.
-
-        Parameters
-        ----------
-        name : str
-            As in causes.toml, or ``servo``.
-
-        Returns
-        -------
-        Theory
-        """
+        """What theory says of a cause, named as in causes.toml, or of ``servo``."""
         method = getattr(self, f"_{name}", None)
         found = NONE if method is None or not self.moves else method()
         assert isinstance(found, Theory)
@@ -150,20 +99,8 @@ class Book:
         return found
 
     def corner(self, corner: "Corner") -> tuple[str, float, float | None]:
-        """What kind of corner it is, and what a servo makes of it.
-
-        Parameters
-        ----------
-        corner : Corner
-
-        Returns
-        -------
-        kind : str
-            As in `CornerRow`.
-        speed : float
-            [mm/s].
-        error : float or None
-            [mm]; None where a move is too short for its ramps.
+        """Kind of a corner as in `CornerRow`, its speed [mm/s], and the error that a servo
+        makes of it [mm], None where a move is too short for its ramps.
         """
         run = self.ideal.run
         both = (corner.line_before, corner.line_after)
