@@ -14,20 +14,10 @@ class Axes(Calls):
     """
 
     def update_param(self, **values: Any) -> None:
-        """Change the axis parameters and make them effective.
+        """Change axis parameters and make them effective; if one is refused, none has changed.
 
-        Parameters
-        ----------
-        **values : dict
-            Members of MCC_MACH_PARAM (type, pos2encoder_dir, PPR, RPM, pitch, gear_ratio, ...), one
-            value or one an axis, and cart_max_speed [mm/s].
-
-        Raises
-        ------
-        InputError
-            There is no such parameter, or it has another type.
-        MccError
-            A value is refused; then none has changed.
+        Members of MCC_MACH_PARAM (type, pos2encoder_dir, PPR, RPM, pitch, gear_ratio, ...), one
+        value or one an axis, and cart_max_speed [mm/s].
         """
         param = Struct("param", self._pointer)
         before = {name: param[name] for name in values}
@@ -41,19 +31,11 @@ class Axes(Calls):
             raise
 
     def set_comp(self, axis: int, interval: int, home: int, *rows: Sequence[int]) -> None:
-        """Pitch and backlash table of an axis.
+        """Pitch and backlash table of an axis, 0 .. 5.
 
-        Parameters
-        ----------
-        axis : int
-            0 .. 5.
-        interval : int
-            [pulses] between two points; 0: no compensation.
-        home : int
-            Index of the point at position 0.
-        *rows : sequence of int
-            Correction going forward and going backward [pulses], at most 256 points each; the
-            last one goes on. One row is for both.
+        The points are `interval` [pulses] apart, 0 for no compensation; the point `home`, from 0,
+        is at position 0. Rows are the correction going forward and going backward [pulses], at most
+        256 points each; the last one goes on. One row is for both.
         """
         table = Struct("comp")
         table["interval"], table["home"] = whole(interval), whole(home)
@@ -72,11 +54,5 @@ class Axes(Calls):
         self._do("MCC_disable_dry_run")
 
     def check_dry_run(self) -> int:
-        """Whether the card gets pulses.
-
-        Returns
-        -------
-        int
-            0 a dry run, 1 none: the library's answer.
-        """
+        """Whether the card gets pulses: 0 a dry run, 1 none: the library's answer."""
         return self._do("MCC_check_dry_run")

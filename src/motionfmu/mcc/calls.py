@@ -13,42 +13,12 @@ Numbers = Sequence[float]
 
 
 def doubles(values: Numbers, count: int = AXES) -> Any:
-    """Make a C array of doubles.
-
-    Parameters
-    ----------
-    values : sequence of float
-        As many as `count`.
-    count : int
-
-    Returns
-    -------
-    ctypes array of double
-
-    Raises
-    ------
-    InputError
-        There are more or fewer.
-    """
+    """Make a C array of doubles, of just so many."""
     return _array(ctypes.c_double, [float(v) for v in values], count)
 
 
 def whole(value: float) -> int:
-    """Take a whole number.
-
-    Parameters
-    ----------
-    value : int or float
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    InputError
-        It is none, or does not fit 32 bits.
-    """
+    """Take a whole number of 32 bits; InputError if it is none."""
     if isinstance(value, int | float | np.number) and -(2**31) <= value < 2**31:
         if value == int(value):
             return int(value)
@@ -56,44 +26,12 @@ def whole(value: float) -> int:
 
 
 def integers(values: Sequence[int], count: int = AXES) -> Any:
-    """Make a C array of int32.
-
-    Parameters
-    ----------
-    values : sequence of int
-        As many as `count`.
-    count : int
-
-    Returns
-    -------
-    ctypes array of int32
-
-    Raises
-    ------
-    InputError
-        There are more or fewer, or one is not a whole number of 32 bits.
-    """
+    """Make a C array of int32, of just so many."""
     return _array(ctypes.c_int32, [whole(v) for v in values], count)
 
 
 def letters(values: str, count: int = AXES) -> Any:
-    """Make a C array of characters.
-
-    Parameters
-    ----------
-    values : str
-        As many letters as `count`.
-    count : int
-
-    Returns
-    -------
-    ctypes array of char
-
-    Raises
-    ------
-    InputError
-        There are more or fewer.
-    """
+    """Make a C array of characters, of just so many letters."""
     return _array(ctypes.c_char, [v.encode() for v in values], count)
 
 
@@ -104,15 +42,7 @@ def _array(kind: Any, values: list[Any], count: int) -> Any:
 
 
 class Calls:
-    """A library state whose functions can be called by name.
-
-    Parameters
-    ----------
-    pointer : ctypes.c_void_p
-        Address of the struct mcc.
-    owner : object
-        Keeps that memory alive.
-    """
+    """A library state by its address, with functions called by name; the owner keeps it alive."""
 
     def __init__(self, pointer: ctypes.c_void_p, owner: object) -> None:
         self._pointer, self._owner, self._library = pointer, owner, library()

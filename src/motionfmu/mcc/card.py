@@ -95,12 +95,7 @@ class VirtualCard:
         return self.read().clock
 
     def read(self) -> Reading:
-        """What there is to see now.
-
-        Returns
-        -------
-        Reading
-        """
+        """What there is to see now."""
         reading = Struct("reading")
         self._library.station_read(self._state.pointer, reading.pointer)
         return Reading({name: reading[name] for name in reading})
@@ -112,10 +107,6 @@ class VirtualCard:
         ----------
         clock : int
             [25 ns]; nothing happens if it has passed.
-
-        Returns
-        -------
-        Reading
 
         Raises
         ------
@@ -140,10 +131,6 @@ class VirtualCard:
         ----------
         seconds : float
             [s], rounded to 25 ns.
-
-        Returns
-        -------
-        Reading
 
         Raises
         ------

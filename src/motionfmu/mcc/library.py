@@ -66,18 +66,7 @@ class _Field(ctypes.Structure):
 
 
 def library_path() -> Path:
-    """Where the shared library is.
-
-    Returns
-    -------
-    Path
-        In the installed package, or ``build/lib`` of the source tree.
-
-    Raises
-    ------
-    InputError
-        It has not been built.
-    """
+    """Where the shared library is: in the installed package, or the source tree's ``build/lib``."""
     name = Path("lib") / "motionfmu_mcc.so"
     for folder in (PACKAGE, PACKAGE.parent.parent / "build"):
         if (folder / name).is_file():
@@ -87,12 +76,7 @@ def library_path() -> Path:
 
 @functools.cache
 def library() -> ctypes.CDLL:
-    """Load the shared library once.
-
-    Returns
-    -------
-    ctypes.CDLL
-    """
+    """Load the shared library once."""
     c = ctypes.CDLL(str(library_path()))
     c.binding_fields.restype = ctypes.POINTER(_Field)
     c.binding_mcc.restype = c.binding_machine.restype = ctypes.c_void_p
@@ -125,12 +109,8 @@ _TYPES: dict[str, Any] = {
 class Struct:
     """A struct of the C library; ``s["name"]`` reads and writes.
 
-    Parameters
-    ----------
-    of : str
-        Its name in binding.c: config, reading, station, report, mcc, param or comp.
-    at : ctypes.c_void_p, optional
-        Where it is; memory of its own if not given.
+    Its name is one of binding.c: config, reading, station, report, mcc, param or comp; without `at`
+    it has memory of its own.
     """
 
     def __init__(self, of: str, at: ctypes.c_void_p | None = None) -> None:

@@ -19,22 +19,7 @@ RUNNING, STOPPED, HOLD, DELAY, BLOCK, WHEEL = range(6)
 
 
 def configuration(settings: dict[str, Any]) -> Struct:
-    """Settings as the C library takes them.
-
-    Parameters
-    ----------
-    settings : dict
-        Values by name, as in `defaults`; one value goes to all axes.
-
-    Returns
-    -------
-    Struct
-
-    Raises
-    ------
-    InputError
-        A name is unknown, or a value has the wrong type or length.
-    """
+    """Settings as the C library takes them, names as in `defaults`; one value goes to all axes."""
     config = Struct("config")
     config_library = Calls(config.pointer, config)
     config_library._library.binding_defaults(config.pointer)
