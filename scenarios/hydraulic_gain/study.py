@@ -25,7 +25,7 @@ from rich.progress import track
 import motionfmu
 from motionfmu import linear
 from motionfmu.freq.limit import Trial, simulated_gain
-from motionfmu.linear.loops import largest_gain
+from motionfmu.linear import largest_gain
 
 HERE = Path(__file__).parent
 SCALE = "controller.scale_phase"

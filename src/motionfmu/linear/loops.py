@@ -136,37 +136,12 @@ def largest_gain(
 
 
 def is_whole(axis: AxisModel, gain: str | None) -> bool:
-    """Whether a gain takes whole numbers only.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    gain : str or None
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a gain takes whole numbers only."""
     return gain is not None and isinstance(axis.value(gain), int)
 
 
 def begin(axis: AxisModel, gain: str | None) -> float:
-    """Where a search for a gain begins: its present value.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    gain : str or None
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InputError
-        It is no number, or not above 0.
-    """
+    """Where a search for a gain begins: its value, which must be > 0."""
     if gain is None:
         return 1.0
     value = axis.value(gain)
@@ -189,50 +164,17 @@ def _of_axis(axis: AxisModel, gain: str, value: float) -> list[float] | float:
 
 
 def with_gain(axis: AxisModel, gain: str, value: float) -> AxisModel:
-    """The model with another value of a parameter.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    gain : str
-        ``component.variable``.
-    value : float
-        Rounded for a whole-number parameter.
-
-    Returns
-    -------
-    AxisModel
-
-    Raises
-    ------
-    InputError
-        The name is unknown, or the value is not allowed.
-    """
+    """The model with a value for this axis alone, rounded if whole."""
     return axis.changed({gain: _of_axis(axis, gain, value)})
 
 
 def boundary(
     growth: Callable[[float], float], start: float, tolerance: float, whole: bool
 ) -> tuple[float, int]:
-    """The value at which a growth changes from negative to positive.
+    """The value at which a growth [1/s] turns positive, and the calls.
 
-    Parameters
-    ----------
-    growth : callable
-        Rate of growth [1/s] of a gain.
-    start : float
-        Where the search begins, above 0.
-    tolerance : float
-        Relative width at which it ends; the rest is interpolated.
-    whole : bool
-        Only whole numbers are tried.
-
-    Returns
-    -------
-    float
-        Infinite if it is stable to `FACTOR_MAX` times the start, 0 if it is never stable.
-    int
-        How often `growth` was called.
+    The value is infinite if all is stable to `FACTOR_MAX` times the start, and 0 if nothing is.
+    The search ends at a relative width; the rest is interpolated.
     """
     tried: dict[float, float] = {}
 

@@ -20,21 +20,11 @@ _BANDWIDTH = 1.0 / np.sqrt(2.0)
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where the loop crosses -180 degrees or magnitude 1.
+    """Where the loop crosses -180 degrees or magnitude 1."""
 
-    Attributes
-    ----------
-    omega : float
-        [rad/s].
-    value : float
-        Gain factor that brings the loop to -1, or phase lag that does [deg].
-    delay : float
-        Dead time that does [s]; NaN for a gain.
-    """
-
-    omega: float
-    value: float
-    delay: float = float("nan")
+    omega: float  # [rad/s]
+    value: float  # factor that brings the loop to -1, or phase lag that does [deg]
+    delay: float = float("nan")  # dead time that does [s]; NaN for a gain
 
 
 @dataclass(frozen=True)
@@ -86,19 +76,7 @@ class Margins:
 
 
 def response(system: System, omega: Array) -> Complex:
-    """Frequency response of a single-input single-output system.
-
-    Parameters
-    ----------
-    system : StateSpace or TransferFunction
-        Continuous or discrete.
-    omega : ndarray, shape (n,)
-        [rad/s].
-
-    Returns
-    -------
-    ndarray of complex, shape (n,)
-    """
+    """Frequency response, at omega [rad/s], of one input and output."""
     s = np.exp(1j * omega * system.dt) if system.isdtime(strict=True) else 1j * omega
     if hasattr(system, "num"):
         found: Complex = np.asarray(system(s), dtype=complex).reshape(len(omega))
@@ -113,18 +91,8 @@ def response(system: System, omega: Array) -> Complex:
 
 
 def grid(loop: System, points: int = _POINTS) -> Array:
-    """Frequencies on a logarithmic scale, denser at resonances.
-
-    Parameters
-    ----------
-    loop : StateSpace or TransferFunction
-    points : int
-
-    Returns
-    -------
-    ndarray
-        [rad/s], up to half the sampling rate.
-    """
+    """Frequencies [rad/s], logarithmic, denser at resonances."""
+    # Up to half the sampling rate.
     roots = np.concatenate([loop.poles(), loop.zeros()]).astype(complex)
     discrete = loop.isdtime(strict=True)
     if discrete:
@@ -251,17 +219,7 @@ def _bandwidth(omega: Array, values: Complex, at: Callable[[float], complex]) ->
 
 
 def closed_poles(loop: System, gain: float = 1.0) -> Complex:
-    """Poles of the loop closed with a gain.
-
-    Parameters
-    ----------
-    loop : StateSpace or TransferFunction
-    gain : float
-
-    Returns
-    -------
-    ndarray of complex
-    """
+    """Poles of the loop closed with a gain."""
     if hasattr(loop, "num"):
         num, den = loop.num[0][0], loop.den[0][0]
         roots: Complex = np.roots(np.polyadd(den, gain * np.asarray(num))).astype(complex)
@@ -272,17 +230,8 @@ def closed_poles(loop: System, gain: float = 1.0) -> Complex:
 
 
 def moving(poles: Complex) -> Complex:
-    """Discrete poles without those at 1, which hold nothing.
-
-    Parameters
-    ----------
-    poles : ndarray of complex
-
-    Returns
-    -------
-    ndarray of complex
-        A velocity loop leaves the position of its axis where it is: no instability.
-    """
+    """Discrete poles without those at 1, which hold nothing."""
+    # A velocity loop leaves the position of its axis where it is: no instability.
     found: Complex = poles[np.abs(poles - 1.0) > AT_ONE]
     return found
 
