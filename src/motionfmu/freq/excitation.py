@@ -68,21 +68,9 @@ def multisine(
 def shaped(n: int, lines: NDArray[np.int64], caps: list[tuple[float, NDArray[Any]]]) -> Excitation:
     """Sum of sines, each as large as what it may move allows.
 
-    Schroeder's phases for shares p of the power, -2 pi sum (k - l) p_l over l < k.
-
-    Parameters
-    ----------
-    n : int
-        Samples per period.
-    lines : ndarray of int
-        Cycles per period.
-    caps : list of tuple
-        Largest magnitude of something that moves with the signal, and its response at the lines.
-
-    Returns
-    -------
-    Excitation
-        All caps are kept once the start has died away; one is met.
+    Schroeder's phases for shares p of the power, -2 pi sum (k - l) p_l over l < k. A cap is the
+    largest magnitude of something that moves with the signal, and its response at the lines; all
+    caps are kept once the start has died away, and one is met.
     """
     worth = np.max([np.abs(of) / max(cap, 1e-300) for cap, of in caps], axis=0)
     size = 1.0 / np.maximum(worth, 1e-12 * worth.max())

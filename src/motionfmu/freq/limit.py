@@ -19,21 +19,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Trial:
-    """How a loop is made to ring.
+    """How a loop is made to ring."""
 
-    Attributes
-    ----------
-    kick : float
-        Step added at the input, in its unit: many of its grains, far from every limit.
-    cycles : int
-        Cycles of the ringing that are watched, after half as many.
-    tolerance : float
-        Relative width at which the search ends; the rest is interpolated.
-    """
-
-    kick: float
-    cycles: int = 30
-    tolerance: float = 0.01
+    kick: float  # step, in the unit of the input: many of its grains, far from every limit
+    cycles: int = 30  # of the ringing that are watched, after half as many
+    tolerance: float = 0.01  # relative width at which the search ends; the rest is interpolated
 
 
 # What is watched lies between these multiples of the kick's own ringing and of the grain: above it
@@ -49,22 +39,9 @@ _SMALLER, _SMALLEST, _SAME = 0.2, 2, 0.01
 
 
 def usual_kick(axis: AxisModel, at: str, cut: tuple[str, ...] = ()) -> float:
-    """A step that is some hundred grains at every port that rounds.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    at : str
-        The input at which it is added.
-    cut : tuple of str
-        Inputs of other loops that are cut.
-
-    Returns
-    -------
-    float
-        [unit of the input]; 1 if nothing rounds. An input that follows no faster than some speed
-        gets less, so that it follows the ringing too.
-    """
+    """A step, in the input's unit, of 200 grains where a port rounds."""
+    # 1 if nothing rounds. An input that follows no faster than some speed gets less, so that it
+    # follows the ringing too.
     component, _, variable = at.partition(".")
     grains = {
         f"{c}.{p}": b.grain[p]
@@ -90,29 +67,10 @@ def usual_kick(axis: AxisModel, at: str, cut: tuple[str, ...] = ()) -> float:
 
 
 def ringing(setup: Setup, trial: Trial, omega: float) -> tuple[float, float]:
-    """How fast a ringing of the running FMUs grows, and its pitch.
+    """Growth [1/s] and pitch [rad/s] of a ringing of the running FMUs.
 
-    The root of the mean square in windows, on a straight line over time in its logarithm.
-
-    Parameters
-    ----------
-    setup : Setup
-        One wired input; outputs are not used.
-    trial : Trial
-    omega : float
-        About where it rings [rad/s]: sets the length of the run only.
-
-    Returns
-    -------
-    float
-        [1/s]
-    float
-        [rad/s]
-
-    Raises
-    ------
-    InputError
-        The input is not wired, or an FMU refused something.
+    The root of the mean square in windows, on a straight line over time in its logarithm. The pitch
+    `omega` expected [rad/s] sets the length of the run only. A refusal of an FMU is an InputError.
     """
     name = setup.inputs[0]
     component, _, variable = name.partition(".")
@@ -181,26 +139,8 @@ def simulated_gain(
 ) -> Limit:
     """The largest gain of a loop, by running its FMUs until they ring.
 
-    Parameters
-    ----------
-    axis : AxisModel
-    loop : tuple
-        The input at which the loop is closed, and the inputs of other loops that are cut.
-    trial : Trial
-    gain : str, optional
-        A parameter, ``component.variable``; else a factor on the wire.
-    progress : callable
-        Called with the number of runs done.
-
-    Returns
-    -------
-    Limit
-        The search begins at the linear model's limit, and finds its own.
-
-    Raises
-    ------
-    InputError
-        A name is unknown, or an FMU refused something.
+    The loop is an input and the inputs of other loops that are cut; without a parameter the gain is
+    a factor on the wire. The search begins at the linear model's limit, and finds its own.
     """
     at, cut = loop
     expected = largest_gain(axis, at, cut, gain)
@@ -236,27 +176,7 @@ def small_signal_gain(
 
     It begins with `usual_kick` and takes a fifth of it until two steps, or a step and the linear
     model, give the same gain within 1 %; a limit that acts, such as that of a torque, would show.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    loop : tuple
-        The input at which the loop is closed, and the inputs of other loops that are cut.
-    gain : str, optional
-        A parameter, ``component.variable``; else a factor on the wire.
-    progress : callable
-        Called with the number of runs done.
-
-    Returns
-    -------
-    Limit
-    float
-        The last step tried, in the unit of the input.
-
-    Raises
-    ------
-    InputError
-        A name is unknown, or an FMU refused something.
+    The last step tried, in the unit of the input, is given too.
     """
     usual, runs = usual_kick(axis, *loop), 0
     before = largest_gain(axis, *loop, gain).gain
@@ -277,25 +197,7 @@ def small_signal_gain(
 def bracketed(
     growth: Callable[[float], float], start: float, tolerance: float, whole: bool
 ) -> tuple[float, int]:
-    """As `boundary`, with few calls where the start is near.
-
-    Parameters
-    ----------
-    growth : callable
-        Rate of growth [1/s] of a gain.
-    start : float
-        Where the search begins.
-    tolerance : float
-        Relative width at which it ends.
-    whole : bool
-        Only whole numbers are tried.
-
-    Returns
-    -------
-    float
-    int
-        As `boundary`.
-    """
+    """As `boundary`, with few calls where the start is near."""
     known: dict[float, float] = {}
 
     def rate(value: float) -> float:

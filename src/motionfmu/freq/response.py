@@ -48,20 +48,10 @@ class Response:
 
 
 def ramp(bench: Bench, name: str) -> float:
-    """Rate to add so that the axis moves as its point says.
+    """Rate to add [input's unit/s] so that the axis moves as stated.
 
     A loop that follows its feedback moves the axis by what is added there, the other way round.
-
-    Parameters
-    ----------
-    bench : Bench
-    name : str
-        A wired input, ``component.variable``.
-
-    Returns
-    -------
-    float
-        [unit of the input/s]; 0 at rest, or if its wire comes from no plant.
+    0 at rest, or if its wire comes from no plant.
     """
     return -_rate(bench.axis, name)
 
@@ -75,19 +65,7 @@ def _rate(axis: AxisModel, name: str) -> float:
 
 
 def gentle(rate: float, lead: int, steps: int) -> Array:
-    """Position that smoothly reaches a speed within the lead.
-
-    Parameters
-    ----------
-    rate : float
-        Speed, per step.
-    lead, steps : int
-        Steps until well after it moves uniformly, and of all.
-
-    Returns
-    -------
-    ndarray, shape (steps,)
-    """
+    """Position that reaches a rate per step within the lead smoothly."""
     time = np.arange(steps, dtype=float)
     soft = max(0.6 * lead, 1.0)
     rising = 0.5 * (time - soft / np.pi * np.sin(np.minimum(time / soft, 1.0) * np.pi))
@@ -96,38 +74,13 @@ def gentle(rate: float, lead: int, steps: int) -> Array:
 
 
 def room(axis: AxisModel, name: str, factor: float = 1.0) -> float:
-    """Speed that an input follows beside its own.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    name : str
-        ``component.variable``.
-    factor : float
-        On its wire.
-
-    Returns
-    -------
-    float
-        [unit of the input/s]: below 0 if the operating point alone is too fast.
-    """
+    """Speed that an input follows beside its own [its unit/s]."""
+    # Below 0 if the operating point alone is too fast.
     return fastest(axis, name) - abs(factor * _rate(axis, name))
 
 
 def fastest(axis: AxisModel, name: str) -> float:
-    """Speed with which an input may be moved.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    name : str
-        ``component.variable``.
-
-    Returns
-    -------
-    float
-        [unit of the input/s]: most of what its FMU follows; infinite if its law says none.
-    """
+    """Most of the speed that an input follows; infinite if unlimited."""
     component, _, variable = name.partition(".")
     block = axis.blocks[component]
     found = block.speed.get(variable, math.inf) if isinstance(block, Sampled) else math.inf
@@ -135,10 +88,9 @@ def fastest(axis: AxisModel, name: str) -> float:
 
 
 def _held(signal: Array, hold: int, fastest: float) -> Array:
-    """A value per step.
+    """Held from sample to sample.
 
-    Held from sample to sample; where an input follows no jump, on a straight line from the sample
-    before, and so small that it follows.
+    Where an input follows no jump: straight from the sample before, and so small that it follows.
     """
     if not fastest < math.inf:
         return np.repeat(signal, hold)
@@ -247,18 +199,8 @@ def measured_loop(setup: Setup, excitation: Excitation) -> Response:
 
 
 def settling(system: control.StateSpace) -> float:
-    """Samples until a start has died away to a thousandth.
-
-    Parameters
-    ----------
-    system : control.StateSpace
-        Discrete; poles at 1, which only hold a position, do not count.
-
-    Returns
-    -------
-    float
-        Of an unstable system that of one which nearly is.
-    """
+    """Samples until a start has died away to a thousandth."""
+    # Poles at 1 only hold a position and do not count. An unstable system: as one which nearly is.
     slow = np.abs(moving(system.poles())).max(initial=1e-3)
     return 7.0 / -math.log(min(float(slow), 1.0 - 1e-4))
 

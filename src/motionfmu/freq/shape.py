@@ -28,19 +28,7 @@ WORTH, _BEYOND, _HALVINGS = 0.1, 0.005, 40
 
 
 def limits(axis: AxisModel, loop: Loop) -> dict[str, float]:
-    """Outputs that move with the input and have a limit.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    loop : tuple
-        The input, and the inputs of other loops that are cut.
-
-    Returns
-    -------
-    dict
-        Largest magnitude by ``component.variable``.
-    """
+    """Largest magnitude of the outputs that move and have a limit."""
     at, cut = loop
     found = {}
     for component, block in axis.blocks.items():
@@ -62,21 +50,8 @@ def small(
     """A multisine that reaches no limit and turns nothing back.
 
     Each frequency has the size that uses an equal share of what is tightest there, so that slow
-    ones stand above the rounding and fast ones do not fill the torque alone.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    loop : tuple
-        The input, and the inputs of other loops that are cut.
-    size : tuple
-        Samples of a period, and the cycles per period that it has.
-    kick : float or None
-        Largest magnitude in the unit of the input, if nothing else bounds it sooner.
-
-    Returns
-    -------
-    Excitation
+    ones stand above the rounding and fast ones do not fill the torque alone. The size is samples of
+    a period and its cycles; a kick is the largest magnitude if nothing bounds it sooner.
     """
     at, cut = loop
     n, lines = size

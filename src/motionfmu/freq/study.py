@@ -33,75 +33,37 @@ _GRAINS = 20.0
 
 @dataclass(frozen=True)
 class LoopStudy:
-    """What was found out about a loop.
+    """What was found out about a loop."""
 
-    Attributes
-    ----------
-    at : str
-        The input at which it is opened.
-    cut : tuple of str
-        Inputs of other loops that are cut.
-    loop : control.StateSpace
-        Open loop.
-    margins : Margins
-    gain : str or None
-        Parameter whose limit is given; None: a factor on the wire.
-    linear, simulated : Limit
-        Largest stable gain by the poles, and by simulation; None if not asked for.
-    measured : Response or None
-        Open loop of the running FMUs.
-    kick : float
-        Step with which they were made to ring, in the unit of the input.
-    silent : str
-        Why they were not run, in words; empty if they were, or were not to be.
-    notes : tuple of str
-        What the measured response leaves out, and where it is not the model's, in words.
-    """
-
-    at: str
-    cut: tuple[str, ...]
-    loop: control.StateSpace
+    at: str  # the input at which it is opened
+    cut: tuple[str, ...]  # inputs of other loops that are cut
+    loop: control.StateSpace  # open
     margins: Margins
-    gain: str | None
-    linear: Limit
-    simulated: Limit | None
-    measured: Response | None
-    kick: float
-    silent: str = ""
-    notes: tuple[str, ...] = ()
+    gain: str | None  # parameter whose limit is given; None: a factor on the wire
+    linear: Limit  # largest stable gain by the poles
+    simulated: Limit | None  # the same by simulation; None if not asked for
+    measured: Response | None  # open loop of the running FMUs
+    kick: float  # step with which they were made to ring, in the unit of the input
+    silent: str = ""  # why they were not run; empty if they were, or were not to be
+    notes: tuple[str, ...] = ()  # what the response leaves out, and where it is not the model's
 
     @property
     def difference(self) -> tuple[float, float] | None:
-        """How far the FMUs are from the model [%], [deg].
-
-        Where |L| is above -20 dB and something was measured; else None.
-        """
+        """How far the FMUs are from the model [%], [deg]."""
+        # Where |L| is above -20 dB and something was measured; else None.
         return None if self.measured is None else _difference(self.loop, self.measured)
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What to study.
+    """What to study."""
 
-    Attributes
-    ----------
-    loop : str or None
-        One input; None: every input through which a plant is fed back.
-    gains : dict
-        Parameter whose limit is wanted, by the input of its loop.
-    simulate : bool
-        Run the FMUs too, where they do what the model does.
-    kick : float or None
-        Step for ringing, in the unit of the input; None: so small that its size does not matter.
-    progress : callable
-        Called with the share done, 0 to 1.
-    """
-
-    loop: str | None = None
-    gains: Mapping[str, str] | None = None
-    simulate: bool = True
+    loop: str | None = None  # one input; None: every input through which a plant is fed back
+    gains: Mapping[str, str] | None = None  # parameter whose limit is wanted, by its loop's input
+    simulate: bool = True  # run the FMUs too, where they do what the model does
+    # Step for ringing, in the unit of the input; None: so small that its size does not matter.
     kick: float | None = None
-    progress: Callable[[float], None] = lambda share: None
+    progress: Callable[[float], None] = lambda share: None  # share done, 0 to 1
 
 
 def study(axis: AxisModel, asked: Asked) -> list[LoopStudy]:

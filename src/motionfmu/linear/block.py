@@ -10,17 +10,7 @@ Matrix = NDArray[np.float64]
 
 
 def nonzero(matrix: Matrix) -> NDArray[np.bool_]:
-    """Which elements are not zero, whatever the gains.
-
-    Parameters
-    ----------
-    matrix : ndarray
-        Floats, or floats and CasADi expressions.
-
-    Returns
-    -------
-    ndarray of bool
-    """
+    """Which elements, numbers or expressions, are not always zero."""
     if matrix.dtype != object:
         return matrix != 0.0
     flat = [not (e.is_zero() if isinstance(e, ca.SX) else e == 0.0) for e in matrix.ravel()]
@@ -34,36 +24,21 @@ class Sampled:
     The input vector is ``inputs`` and then ``commands``. At an instant, from input u and state x:
     [next x; outputs; early] = law [x; u]. A law may change from instant to instant, and begins
     again after a cycle of them.
-
-    Attributes
-    ----------
-    inputs, commands : tuple of str
-        Ports that move; signals that arise inside and come in from the side.
-    states, outputs, early, direct : tuple of str
-        What is kept; shown one period later; shown at the next communication point; shown at once.
-    grid_ns : int
-        Sampling period T [ns].
-    laws : tuple of ndarray
-        One for each instant of the cycle, shape (n_states + n_outputs + n_early, n_states +
-        n_inputs + n_commands). Objects if some elements are expressions of gains.
-    now : ndarray, shape (n_direct, n_commands)
-        Outputs that follow the commands at once.
-    grain : dict
-        Rounding step of ports, in their units.
-    speed : dict
-        Fastest change that an input can follow, in its unit per second.
     """
 
-    inputs: tuple[str, ...]
-    commands: tuple[str, ...]
-    states: tuple[str, ...]
-    outputs: tuple[str, ...]
-    early: tuple[str, ...]
-    direct: tuple[str, ...]
-    grid_ns: int
+    inputs: tuple[str, ...]  # ports that move
+    commands: tuple[str, ...]  # signals that arise inside and come in from the side
+    states: tuple[str, ...]  # what is kept
+    outputs: tuple[str, ...]  # shown one period later
+    early: tuple[str, ...]  # shown at the next communication point
+    direct: tuple[str, ...]  # shown at once
+    grid_ns: int  # sampling period T [ns]
+    # One for each instant of the cycle, shape (n_states + n_outputs + n_early, n_states + n_inputs
+    # + n_commands). Objects if some elements are expressions of gains.
     laws: tuple[Matrix, ...]
-    now: Matrix
-    grain: dict[str, float] = field(default_factory=dict)
+    now: Matrix  # (n_direct, n_commands): outputs that follow the commands at once
+    grain: dict[str, float] = field(default_factory=dict)  # rounding step of ports, in their units
+    # fastest change that an input can follow [its unit/s]
     speed: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -87,69 +62,24 @@ class Sampled:
         return (*self.outputs, *self.early, *self.direct)
 
     def begin(self, memory: Matrix) -> Matrix:
-        """Working memory at an instant of its grid.
-
-        Parameters
-        ----------
-        memory : ndarray, shape (len(memory), n)
-
-        Returns
-        -------
-        ndarray
-            With a place more for each output: what is shown and what is computed.
-        """
+        """Working memory, of shape (rows, n), at an instant of its grid."""
+        # A place more for each output: what is shown and what is computed.
         n = len(self.states)
         return np.vstack([memory, memory[n : n + len(self.outputs)]])
 
     def end(self, work: Matrix) -> Matrix:
-        """Memory again, at an instant of its grid.
-
-        Parameters
-        ----------
-        work : ndarray
-
-        Returns
-        -------
-        ndarray
-        """
+        """Memory again, at an instant of its grid."""
         return work[: len(self.memory)]
 
     def shown(self, work: Matrix, u: Matrix) -> Matrix:
-        """What its ports show.
-
-        Parameters
-        ----------
-        work : ndarray
-            Working memory.
-        u : ndarray, shape (n_inputs + n_commands, n)
-            Only the commands count.
-
-        Returns
-        -------
-        ndarray, shape (len(ports), n)
-        """
+        """What its ports show, (len(ports), n); of u only commands count."""
         return np.vstack([work[len(self.states) : len(self.memory)], self.now @ self._side(u)])
 
     def _side(self, u: Matrix) -> Matrix:
         return u[len(self.inputs) :]
 
     def run(self, work: Matrix, u: Matrix, span: tuple[int, int]) -> Matrix:
-        """Do what the FMU does in one communication step.
-
-        Parameters
-        ----------
-        work : ndarray
-            Working memory.
-        u : ndarray, shape (n_inputs + n_commands, n)
-            Held over the step.
-        span : tuple of int
-            From and to [ns].
-
-        Returns
-        -------
-        ndarray
-            Working memory.
-        """
+        """Working memory after a communication step [ns], u held over it."""
         start, stop = span
         n, m = len(self.states), len(self.outputs)
         instant = -(-start // self.grid_ns) * self.grid_ns
@@ -169,25 +99,14 @@ class Sampled:
 
 @dataclass(frozen=True)
 class Plant:
-    """A plant on its micro-grid, which holds its inputs.
-
-    Attributes
-    ----------
-    inputs, states, outputs : tuple of str
-    grid_ns : int
-        Micro step [ns].
-    step : tuple of ndarray
-        State and input matrix of one micro step: x' = F x + G u.
-    show : tuple of ndarray
-        Output matrices: y = C x + D u, with the input held last.
-    """
+    """A plant on its micro-grid, which holds its inputs."""
 
     inputs: tuple[str, ...]
     states: tuple[str, ...]
     outputs: tuple[str, ...]
-    grid_ns: int
-    step: tuple[Matrix, Matrix]
-    show: tuple[Matrix, Matrix]
+    grid_ns: int  # micro step [ns]
+    step: tuple[Matrix, Matrix]  # state and input matrix of a micro step: x' = F x + G u
+    show: tuple[Matrix, Matrix]  # output matrices: y = C x + D u, the input held last
     commands: tuple[str, ...] = ()
 
     @property
@@ -206,50 +125,18 @@ class Plant:
         return self.outputs
 
     def begin(self, memory: Matrix) -> Matrix:
-        """Working memory at an instant of its grid: the same.
-
-        Parameters
-        ----------
-        memory : ndarray, shape (len(memory), n)
-
-        Returns
-        -------
-        ndarray
-        """
+        """Working memory at an instant of its grid: the same."""
         return memory
 
     end = begin
 
     def shown(self, work: Matrix, u: Matrix) -> Matrix:
-        """What its ports show; the inputs of the moment do not count.
-
-        Parameters
-        ----------
-        work : ndarray
-        u : ndarray, shape (n_inputs, n)
-
-        Returns
-        -------
-        ndarray, shape (len(ports), n)
-        """
+        """What its ports show; the inputs of the moment do not count."""
         n = len(self.states)
         return self.show[0] @ work[:n] + self.show[1] @ work[n:]
 
     def run(self, work: Matrix, u: Matrix, span: tuple[int, int]) -> Matrix:
-        """Do what the FMU does in one communication step.
-
-        Parameters
-        ----------
-        work : ndarray
-        u : ndarray, shape (n_inputs, n)
-            Held over the step.
-        span : tuple of int
-            From and to [ns].
-
-        Returns
-        -------
-        ndarray
-        """
+        """Working memory after a communication step [ns], u held over it."""
         n, h = len(self.states), self.grid_ns
         x, held = work[:n], work[n:]
         f, g = self.step
@@ -272,16 +159,7 @@ Block = Sampled | Plant
 
 
 def reaches(block: Block) -> NDArray[np.bool_]:
-    """Which ports shown depend on which inputs and commands.
-
-    Parameters
-    ----------
-    block : Sampled or Plant
-
-    Returns
-    -------
-    ndarray of bool, shape (len(ports), n_inputs + n_commands)
-    """
+    """Which ports shown (rows) depend on which inputs and commands."""
     if isinstance(block, Plant):
         a, b = (nonzero(m) for m in block.step)
         c, d = (nonzero(m) for m in block.show)

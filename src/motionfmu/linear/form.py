@@ -21,24 +21,10 @@ class Gain(float):
     """A number that is also a CasADi expression of gains.
 
     Comparisons take the number; sums, products and powers give both.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-    symbol : casadi.SX
-        The expression, scalar.
-    plain : bool, int or float, optional
-        The number as a scenario takes it, if that is not a float.
-
-    Attributes
-    ----------
-    symbol : casadi.SX
-    plain : bool, int or float
     """
 
-    symbol: ca.SX
-    plain: Any
+    symbol: ca.SX  # scalar
+    plain: Any  # the number as a scenario takes it, where that is not a float
 
     def __new__(cls, value: float, symbol: ca.SX, plain: Any = None) -> "Gain":
         """Keep the number in the float itself."""
@@ -68,18 +54,7 @@ Gain.__neg__ = _both("__neg__")  # type: ignore[method-assign]
 
 
 def coefficient(value: Any) -> Any:
-    """What a matrix holds of a number.
-
-    The expression of a `Gain`, else a float.
-
-    Parameters
-    ----------
-    value : float or Gain
-
-    Returns
-    -------
-    float or casadi.SX
-    """
+    """What a matrix holds: the expression of a `Gain`, else a float."""
     return value.symbol if isinstance(value, Gain) else float(value)
 
 
@@ -92,13 +67,9 @@ def _scaled(row: NDArray[Any], factor: Any) -> NDArray[Any]:
 
 
 class Form:
-    """A linear form: one coefficient for each quantity that moves.
+    """A linear form: one coefficient for each quantity that moves."""
 
-    Parameters
-    ----------
-    row : ndarray, shape (n,)
-        Coefficients; objects if some are expressions.
-    """
+    # A row of objects has expressions among its coefficients.
 
     __array_priority__ = 1000
 
@@ -157,24 +128,10 @@ _KNOWN: dict[str, Any] = {"pi": math.pi, "bit": _bit, "round": round, "true": Tr
 
 
 def evaluate(text: str, names: Mapping[str, Any]) -> Quantity:
-    """Value of a formula.
+    """Value of a formula; a ValueError if it is wrong or not linear.
 
-    Parameters
-    ----------
-    text : str
-        Numbers, names, ``+ - * / ** %``, comparisons, ``a if b else c``, ``and or not``, ``pi``,
-        ``round(value)`` and ``bit(value, place)``.
-    names : mapping
-        Number or `Form` by name; asked only for what is used.
-
-    Returns
-    -------
-    Form, Gain or float
-
-    Raises
-    ------
-    ValueError
-        The formula is wrong, or not linear.
+    It has numbers, names, ``+ - * / ** %``, comparisons, ``a if b else c``, ``and or not``, ``pi``,
+    ``round(value)`` and ``bit(value, place)``; `names` is asked only for what is used.
     """
     code = _compiled(text)
     try:

@@ -8,24 +8,9 @@ from motionfmu.scenario.system import System
 
 
 class Values(Mapping[str, Any]):
-    """Values of one axis of one component, asked for one by one.
+    """Values of one axis of one component, asked for one by one."""
 
-    Parameters
-    ----------
-    system : System
-        What the scenario sets.
-    scenario : Scenario
-    component : str
-    axis : int
-        From 1; a scalar is the same for all.
-
-    Attributes
-    ----------
-    given : dict
-        What the scenario says, by name.
-    wired : dict
-        Functions that give the value at the other end of a wire, by name.
-    """
+    # The axis counts from 1; a scalar is the same for all.
 
     def __init__(self, system: System, scenario: Scenario, component: str, axis: int) -> None:
         self._ports = scenario.resolver.ports[component]

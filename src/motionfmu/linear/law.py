@@ -24,26 +24,12 @@ _WHOLE = 1e-9
 
 
 class Law(BaseModel):
-    """The tables of a linear.toml: formulas by name.
-
-    Attributes
-    ----------
-    period : str
-        Sampling period [s].
-    cycle : str
-        Instants after which the law begins again.
-    inputs, commands : list of str
-        Ports that move; signals that come in from the side.
-    let, state, output, early, direct, constant, grain, gain, limit, still, refuse : dict
-        See src/motionfmu/linear/README.md.
-    point, speed, worst : dict
-        The same.
-    """
+    """The tables of a linear.toml: formulas by name, as in the README."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
-    period: str
-    cycle: str = "1"
-    inputs: list[str]
+    period: str  # sampling period [s]
+    cycle: str = "1"  # instants after which the law begins again
+    inputs: list[str]  # ports that move
     commands: list[str] = Field(default_factory=list)
     let: dict[str, str] = Field(default_factory=dict)
     state: dict[str, str] = Field(default_factory=dict)
@@ -66,23 +52,7 @@ class Refused(ValueError):
 
 
 def parse(text: str, file: str = LAW) -> Law:
-    """Read the text of a linear.toml.
-
-    Parameters
-    ----------
-    text : str
-    file : str
-        Name used in messages.
-
-    Returns
-    -------
-    Law
-
-    Raises
-    ------
-    ValueError
-        ``file: what``.
-    """
+    """Read a linear.toml; the ValueError begins with the file's name."""
     try:
         return Law.model_validate(tomllib.loads(text))
     except tomllib.TOMLDecodeError as error:
@@ -95,25 +65,8 @@ def parse(text: str, file: str = LAW) -> Law:
 
 @functools.cache
 def carried(fmu: str) -> Law | Ode | None:
-    """What an FMU says about itself for linear models.
-
-    Parameters
-    ----------
-    fmu : str
-        Folder name under fmus/.
-
-    Returns
-    -------
-    Law, Ode or None
-        A sampled law, a plant's equation, or nothing.
-
-    Raises
-    ------
-    ValueError
-        The law is wrong.
-    InputError
-        There is no such FMU.
-    """
+    """A sampled law, a plant's equation, or nothing, from its archive."""
+    # A wrong law is a ValueError; no such folder under fmus/, an InputError.
     with zipfile.ZipFile(fmus.fmu_path(fmu)) as archive:
         names = archive.namelist()
         if f"{EXTRA}/{LAW}" in names:
@@ -144,26 +97,10 @@ class _Names(Mapping[str, Any]):
 
 
 def block(law: Law, values: Mapping[str, Any], point: Mapping[str, float] | None = None) -> Sampled:
-    """Make the block of one axis.
+    """Make the block of one axis from its values that stay.
 
-    Parameters
-    ----------
-    law : Law
-    values : mapping
-        Parameters and inputs that stay, of this axis, by name.
-    point : mapping, optional
-        Outputs at the operating point; else 0.
-
-    Returns
-    -------
-    Sampled
-
-    Raises
-    ------
-    Refused
-        The law refuses the values.
-    ValueError
-        A formula is wrong, or not linear.
+    `point` has the outputs at the operating point, 0 where nothing is said. A wrong or not linear
+    formula is a ValueError, as is `Refused`.
     """
     at = {name: (point or {}).get(output, 0.0) for name, output in law.point.items()}
     given = ChainMap(dict(at), values)  # type: ignore[arg-type]
@@ -220,21 +157,7 @@ def _row(text: str, names: _Names, count: int) -> np.ndarray[Any, np.dtype[np.fl
 
 
 def constant(law: Law, values: Mapping[str, Any], name: str) -> float | None:
-    """Value of an output that stays.
-
-    Parameters
-    ----------
-    law : Law
-    values : mapping
-        Of this axis, by name.
-    name : str
-        The output.
-
-    Returns
-    -------
-    float, Gain or None
-        None if the law does not give it.
-    """
+    """Value of an output that stays; None if the law does not give it."""
     if name not in law.constant:
         return None
     found = evaluate(law.constant[name], _Names(law, values, {}))
@@ -242,17 +165,5 @@ def constant(law: Law, values: Mapping[str, Any], name: str) -> float | None:
 
 
 def number(law: Law, values: Mapping[str, Any], formula: str) -> float:
-    """Value of a formula in which nothing moves.
-
-    Parameters
-    ----------
-    law : Law
-    values : mapping
-        Of this axis, by name.
-    formula : str
-
-    Returns
-    -------
-    float
-    """
+    """Value of a formula in which nothing moves."""
     return float(evaluate(formula, _Names(law, values, {})))  # type: ignore[arg-type]

@@ -14,63 +14,22 @@ from motionfmu.linear.wiring import PeriodMap, period_of
 def matrices(
     axis: AxisModel, inputs: Iterable[str], outputs: Iterable[str], cut: Iterable[str] = ()
 ) -> PeriodMap:
-    """The matrices of `AxisModel.system`, also with open gains.
-
-    Parameters
-    ----------
-    axis : AxisModel
-        Changed to values that may be `motionfmu.linear.form.Gain`.
-    inputs, outputs, cut : iterable of str
-        As in `AxisModel.system`.
-
-    Returns
-    -------
-    PeriodMap
-        Of objects, floats and CasADi expressions, where a gain is a `Gain`.
-
-    Raises
-    ------
-    InputError
-        As in `AxisModel.system`.
-    """
+    """The matrices of `AxisModel.system`, also with open gains."""
+    # Objects, floats and CasADi expressions, where a value is a `Gain`.
     entries = [axis.port(n, axis.inputs, "input") for n in inputs]
     exits = [axis.port(n, axis.outputs, "output") for n in outputs]
     return period_of(axis.net(cut, {}), entries, exits, axis.scenario.document.file)
 
 
 def linearised(axis: AxisModel, component: str) -> tuple[Linearised, Matrix]:
-    """The functions of a plant, and its parameters in this model.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    component : str
-        A plant.
-
-    Returns
-    -------
-    Linearised
-    ndarray, shape (n_p,)
-    """
+    """The functions of a plant, and its parameters in this model."""
     parts = equation(axis.scenario.document.body.component[component])
     own = axis.values(component)
     return parts, parts.parameters({d.name: own[d.name] for d in parts.ode.parameters})
 
 
 def limit(axis: AxisModel, name: str) -> float:
-    """Largest magnitude of an output, as its law says.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    name : str
-        ``component.variable``.
-
-    Returns
-    -------
-    float
-        Infinite if the law says none.
-    """
+    """Largest magnitude of an output; infinite if its law says none."""
     component, _, variable = name.partition(".")
     said = law.carried(axis.scenario.document.body.component[component])
     if not isinstance(said, law.Law) or variable not in said.limit:
@@ -79,19 +38,8 @@ def limit(axis: AxisModel, name: str) -> float:
 
 
 def listed(axis: AxisModel, kind: str) -> list[str]:
-    """Parameters that a tuning may change, as the laws say.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    kind : str
-        ``position``, ``velocity`` or ``feed_forward``.
-
-    Returns
-    -------
-    list of str
-        ``component.variable``.
-    """
+    """Parameters that the laws let a tuning change, by their kind."""
+    # Kinds: position, velocity, feed_forward.
     found = []
     for component, fmu in axis.scenario.document.body.component.items():
         own = law.carried(fmu)
@@ -101,19 +49,8 @@ def listed(axis: AxisModel, kind: str) -> list[str]:
 
 
 def worst(axis: AxisModel) -> list[str]:
-    """Where the model is a worst case.
-
-    The worst that an FMU can become, not what it does.
-
-    Parameters
-    ----------
-    axis : AxisModel
-
-    Returns
-    -------
-    list of str
-        ``component: what``; empty if the running FMUs do what the model does.
-    """
+    """``component: what`` the model takes as the worst that it can be."""
+    # Empty if the running FMUs do what the model does.
     found = []
     for component in axis.blocks:
         own = law.carried(axis.scenario.document.body.component[component])
@@ -125,16 +62,6 @@ def worst(axis: AxisModel) -> list[str]:
 
 
 def held(axis: AxisModel) -> str:
-    """Inputs beside the operating point that nobody stated.
-
-    Parameters
-    ----------
-    axis : AxisModel
-
-    Returns
-    -------
-    str
-        In words; empty if there are none.
-    """
+    """In words, inputs beside the operating point that nobody stated."""
     kept = [f"{c}.{n} = {v:g}" for c, p in axis.points.items() for n, v in p.held.items()]
     return f"Not stated, kept as the scenario has them: {', '.join(kept)}" if kept else ""

@@ -20,16 +20,7 @@ from motionfmu.scenario.values import settings
 
 @functools.cache
 def equation(fmu: str) -> Linearised:
-    """The functions of a plant's equation, made once.
-
-    Parameters
-    ----------
-    fmu : str
-
-    Returns
-    -------
-    Linearised
-    """
+    """The functions of a plant's equation, made once."""
     found = law.carried(fmu)
     assert isinstance(found, Ode)
     return Linearised(found)

@@ -44,31 +44,16 @@ def _norm(v: Matrix) -> float:
 
 @dataclass(frozen=True)
 class Point:
-    """Where a plant is linearised: a uniform motion.
+    """Where a plant is linearised: a uniform motion."""
 
-    Attributes
-    ----------
-    x, u : ndarray
-        States and inputs.
-    values : dict
-        The same by name, and the outputs, in the units of the class.
-    stated : dict
-        What was asked for.
-    held : dict
-        Inputs that nobody stated and that kept their values, where a motion was asked for.
-    rates : dict
-        Rates of the outputs by name, per second: nonzero where the motion goes on.
-    lasts : float
-        How long the motion goes on so [s]: to an end stop, or where a gap closes. Infinite from a
-        second on.
-    """
-
-    x: Matrix
-    u: Matrix
-    values: dict[str, float]
-    stated: dict[str, float]
-    rates: dict[str, float]
-    held: dict[str, float] = field(default_factory=dict)
+    x: Matrix  # states
+    u: Matrix  # inputs
+    values: dict[str, float]  # both by name, and the outputs, in the units of the class
+    stated: dict[str, float]  # what was asked for
+    rates: dict[str, float]  # of the outputs, per second: nonzero where the motion goes on
+    held: dict[str, float] = field(default_factory=dict)  # kept though not stated
+    # How long the motion goes on so [s]: to an end stop, or where a gap closes. Infinite from a
+    # second on.
     lasts: float = math.inf
 
 
@@ -101,10 +86,7 @@ def _newton(
 
 
 def _beside(x: Matrix, which: NDArray[np.intp]) -> Iterator[Matrix]:
-    """Some states moved, small and larger steps both ways.
-
-    So that a gap is closed on the side on which the force is carried.
-    """
+    """Some states moved a little and more, both ways: a gap closes on the side of the force."""
     for size in (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0):
         for k in which:
             for sign in (1.0, -1.0):
@@ -148,12 +130,7 @@ def _bracketed(
 
 
 class Linearised:
-    """The functions of an equation, made once.
-
-    Parameters
-    ----------
-    ode : Ode
-    """
+    """The functions of an equation, made once."""
 
     def __init__(self, ode: Ode) -> None:
         self.ode = ode
@@ -169,17 +146,7 @@ class Linearised:
         self._start = ca.Function("start", [ode.p], [ode.start])
 
     def parameters(self, values: Mapping[str, float]) -> Matrix:
-        """Parameter vector.
-
-        Parameters
-        ----------
-        values : mapping
-            By name.
-
-        Returns
-        -------
-        ndarray, shape (n_p,)
-        """
+        """Parameter vector of values by name."""
         return np.array([float(values[d.name]) for d in self.ode.parameters])
 
     def matrices(self, x: Matrix, u: Matrix, p: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
@@ -187,14 +154,6 @@ class Linearised:
 
         The mean of both sides of the point, a hair away: where branches meet without a bend (a gap
         of width 0 at force 0) the point itself has no derivative that CasADi could tell.
-
-        Parameters
-        ----------
-        x, u, p : ndarray
-
-        Returns
-        -------
-        tuple of ndarray
         """
         sides = []
         for hair in (_HAIR, -_HAIR):
@@ -205,16 +164,7 @@ class Linearised:
         return a, b, c, d
 
     def start(self, p: Matrix) -> Matrix:
-        """State at the start.
-
-        Parameters
-        ----------
-        p : ndarray
-
-        Returns
-        -------
-        ndarray
-        """
+        """State at the start."""
         return np.array(self._start(p).full()).ravel()
 
     def point(
@@ -224,24 +174,7 @@ class Linearised:
 
         Nothing stated: the state and inputs at the start. Else the balance of forces is kept by
         the first input of the class with which that can be done; all others that are not stated
-        have their start values.
-
-        Parameters
-        ----------
-        p : ndarray
-        stated : mapping
-            Values of outputs and inputs by name, in their units.
-        left : mapping, optional
-            Inputs that keep a value although nothing is stated of them.
-
-        Returns
-        -------
-        Point
-
-        Raises
-        ------
-        ValueError
-            A name is unknown, or there is no such motion.
+        have their start values, or those of `left`. A ValueError if there is no such motion.
         """
         ode = self.ode
         inputs, outputs = [d.name for d in ode.inputs], [d.name for d in ode.outputs]
@@ -392,22 +325,6 @@ class Linearised:
 
         The classic Runge-Kutta step of a linear equation is R(hA) x + h S(hA) B u with
         R = 1 + z + z^2/2 + z^3/6 + z^4/24 and S = (R - 1)/z.
-
-        Parameters
-        ----------
-        p : ndarray
-        at : Point
-        micro_step : float
-            [s].
-
-        Returns
-        -------
-        Plant
-
-        Raises
-        ------
-        ValueError
-            The micro step is no whole number of ns.
         """
         a, b, c, d = self.matrices(at.x, at.u, p)
         first = self.matrices(self.start(p), np.array(self.ode.u0), p)[0]

@@ -13,26 +13,13 @@ from motionfmu.linear.opened import linearised
 
 @dataclass(frozen=True)
 class Residual:
-    """What some states' equations have beyond the linear part.
-
-    w(x) = f(x, u) - A x - B u.
-
-    Attributes
-    ----------
-    component : str
-    inputs : tuple of str
-        Inputs of the model that carry w, ``component.variable``.
-    states : tuple of str
-        Outputs of the model that are the plant's states.
-    function, slopes : casadi.Function
-        x -> w and x -> (w, dw/dx), for one state vector.
-    """
+    """What equations of states have beyond the linear part, w."""
 
     component: str
-    inputs: tuple[str, ...]
-    states: tuple[str, ...]
-    function: ca.Function
-    slopes: ca.Function
+    inputs: tuple[str, ...]  # of the model; they carry w(x) = f(x, u) - A x - B u
+    states: tuple[str, ...]  # outputs of the model that are the plant's states
+    function: ca.Function  # x -> w, for one state vector
+    slopes: ca.Function  # x -> (w, dw/dx)
 
 
 def with_residuals(axis: AxisModel) -> tuple[AxisModel, tuple[Residual, ...]]:
@@ -41,17 +28,6 @@ def with_residuals(axis: AxisModel) -> tuple[AxisModel, tuple[Residual, ...]]:
     Fed with w(x) of its own motion, the linear model moves as the plant. Fed with w of the motion
     that it has without, it is the first step of a successive approximation: at a reversal the
     friction changes its sign when the linear axis turns.
-
-    Parameters
-    ----------
-    axis : AxisModel
-
-    Returns
-    -------
-    AxisModel
-        With further inputs and outputs.
-    tuple of Residual
-        One for each plant that is not linear.
     """
     blocks, found = dict(axis.blocks), []
     for component, block in axis.blocks.items():

@@ -14,26 +14,16 @@ _CANCELLED = 1e-12
 
 
 class System(control.StateSpace):
-    """A discrete state-space system.
+    """A discrete state-space system with a right gain at standstill."""
 
-    Its gain at standstill is right where a position, of which it shows nothing, adds up.
-    """
+    # Right also where a position, of which it shows nothing, adds up.
 
     def dcgain(self, warn_infinite: bool = False) -> Any:
         """Gain for a constant input, in the long run.
 
         A pole at 1 that an output does not see, or that an input does not move, takes no part in
-        it, in spite of rounding.
-
-        Parameters
-        ----------
-        warn_infinite : bool
-            As in python-control; nothing is warned of.
-
-        Returns
-        -------
-        float or ndarray, shape (n_outputs, n_inputs)
-            Infinite with the sign in which it grows where an output adds up an input.
+        it, in spite of rounding. Where an output adds up an input it is infinite, with the sign in
+        which it grows; nothing is warned of.
         """
         found = _static(*(np.asarray(m, dtype=float) for m in (self.A, self.B, self.C, self.D)))
         return float(found[0, 0]) if found.shape == (1, 1) else found
@@ -65,19 +55,7 @@ def _static(a: Matrix, b: Matrix, c: Matrix, d: Matrix) -> Matrix:
 
 
 def backward(system: System, output: str, name: str) -> System:
-    """The same with the other sign; the states keep their names.
-
-    Parameters
-    ----------
-    system : System
-        Of one output.
-    output, name : str
-        Names of the output and of the system.
-
-    Returns
-    -------
-    System
-    """
+    """The same with the other sign; the states keep their names."""
     return System(
         *(system.A, system.B, -system.C, -system.D, system.dt),
         inputs=system.input_labels,

@@ -19,43 +19,18 @@ Port = tuple[str, str]  # component, variable
 
 @dataclass(frozen=True)
 class Net:
-    """Linear blocks and what joins them.
+    """Linear blocks and what joins them."""
 
-    Attributes
-    ----------
-    blocks : dict
-        By component.
-    wires : dict
-        Source port by target port.
-    step_ns : int
-        Communication step [ns].
-    delays : dict
-        Communication steps that a wire takes, by target port; 0 where nothing is said.
-    opened : Port or None
-        A target whose wire ends before it, after its delay: an exit of this name shows what it
-        brings.
-    """
-
-    blocks: Mapping[str, Block]
-    wires: Mapping[Port, Port]
-    step_ns: int
-    delays: Mapping[Port, int]
+    blocks: Mapping[str, Block]  # by component
+    wires: Mapping[Port, Port]  # source by target
+    step_ns: int  # communication step [ns]
+    delays: Mapping[Port, int]  # communication steps that a wire takes, by target; else 0
+    # A target whose wire ends before it, after its delay: an exit of this name shows what it
+    # brings.
     opened: Port | None = None
 
     def used(self, entries: list[Port], exits: list[Port]) -> set[str]:
-        """Components on a path from an entry to an exit.
-
-        Parameters
-        ----------
-        entries : list of tuple
-            Inputs and commands.
-        exits : list of tuple
-            Ports shown, or the opened one.
-
-        Returns
-        -------
-        set of str
-        """
+        """Components on a path from an entry to an exit."""
         forward: dict[Port, set[Port]] = {}
         for component, block in self.blocks.items():
             reach = reaches(block)
@@ -88,47 +63,22 @@ def _closure(arrows: Mapping[Port, set[Port]], start: list[Port]) -> set[Port]:
 
 @dataclass(frozen=True)
 class PeriodMap:
-    """A system over the common period of all grids.
+    """A system over the common period of all grids."""
 
-    x' = A x + B u, y = C x + D u.
-
-    Attributes
-    ----------
-    a, b, c, d : ndarray
-    states : tuple of tuple of str
-        Component and name of each state.
-    period_ns : int
-        [ns]
-    """
-
+    # x' = A x + B u, y = C x + D u.
     a: Matrix
     b: Matrix
     c: Matrix
     d: Matrix
-    states: tuple[Port, ...]
+    states: tuple[Port, ...]  # component and name of each
     period_ns: int
 
 
 def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
     """Step linear blocks through one period as the master does.
 
-    Parameters
-    ----------
-    net : Net
-        Only with what is used.
-    entries : list of tuple
-        What u is added to, held over the period.
-    exits : list of tuple
-        What y shows, at the beginning of the period: outputs, or the opened input.
-
-    Returns
-    -------
-    PeriodMap
-
-    Raises
-    ------
-    ValueError
-        The grids have no common period within reason.
+    Entries are what u is added to, held over the period. Exits are what y shows at its beginning:
+    outputs, or the opened input. A ValueError if the grids have no common period within reason.
     """
     grids = [net.step_ns, *(b.cycle_ns for b in net.blocks.values())]
     period = math.lcm(*grids)
@@ -169,27 +119,8 @@ def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
 
 
 def period_of(net: Net, entries: list[Port], exits: list[Port], file: Path) -> PeriodMap:
-    """The period map of what lies between entries and exits.
-
-    Parameters
-    ----------
-    net : Net
-        The whole axis.
-    entries, exits : list of tuple
-        As in `period_map`.
-    file : Path
-        The scenario, for messages.
-
-    Returns
-    -------
-    PeriodMap
-        Of objects where a law holds expressions of gains.
-
-    Raises
-    ------
-    InputError
-        The grids have no common period.
-    """
+    """The period map of what lies between entries and exits of a net."""
+    # Of objects where a law holds expressions of gains.
     used = net.used(entries, exits) | {c for c, _ in (*entries, *exits)}
     joined = {t: s for t, s in net.wires.items() if t[0] in used and s[0] in used}
     blocks = {c: b for c, b in net.blocks.items() if c in used}
@@ -237,17 +168,7 @@ def _exchange(
 
 
 def pruned(whole: PeriodMap) -> PeriodMap:
-    """Leave out states that no input reaches or no output sees.
-
-    Parameters
-    ----------
-    whole : PeriodMap
-
-    Returns
-    -------
-    PeriodMap
-        The same from input to output.
-    """
+    """Leave out states that no input reaches or no output sees."""
     a = nonzero(whole.a)
     reached, seen = nonzero(whole.b).any(axis=1), nonzero(whole.c).any(axis=0)
     for _ in range(len(a)):

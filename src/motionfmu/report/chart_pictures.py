@@ -30,14 +30,7 @@ MARKS = {"text.parse_math": False}  # a dollar sign is one
 
 
 def write_charts(charts: Sequence[Chart], folder: Path) -> None:
-    """Draw each figure.
-
-    Parameters
-    ----------
-    charts : sequence of Chart
-    folder : Path
-        Gets figure1.png, figure1.svg, figure2.png and so on.
-    """
+    """Draw each figure into figure1.png, figure1.svg and so on."""
     with matplotlib.rc_context(PLAIN | STABLE | MARKS):
         for number, chart in enumerate(charts, 1):
             picture = chart_picture(chart)
@@ -49,17 +42,7 @@ def write_charts(charts: Sequence[Chart], folder: Path) -> None:
 
 
 def chart_picture(chart: Chart) -> Figure:
-    """The picture of a figure.
-
-    Parameters
-    ----------
-    chart : Chart
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        One pair of axes per panel.
-    """
+    """The picture of a figure, a pair of axes per panel."""
     title, note = textwrap.wrap(chart.title, TITLE), textwrap.wrap(chart.note, NOTE)
     head = MARGIN + TITLE_ROW * len(title) + NOTE_ROW * len(note)
     rows = sum(_rows(p) for p in chart.panels if p.legend)

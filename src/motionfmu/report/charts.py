@@ -30,18 +30,8 @@ ROOM = 0.06  # free above and below the curves, of their height
 
 
 def shown(curve: Curve) -> Curve:
-    """A curve with no more points than can be seen.
-
-    Parameters
-    ----------
-    curve : Curve
-        All samples.
-
-    Returns
-    -------
-    Curve
-        Some of them: all changes of a staircase, or all peaks.
-    """
+    """A curve with no more points than can be seen."""
+    # All changes of a staircase, or all peaks.
     if not len(curve.values):
         return curve
     kept = (keep_steps if curve.steps else keep_peaks)(curve.values, BUCKETS)
@@ -49,17 +39,7 @@ def shown(curve: Curve) -> Curve:
 
 
 def extent(panel: Panel) -> tuple[float, float]:
-    """Ends of the vertical axis.
-
-    Parameters
-    ----------
-    panel : Panel
-
-    Returns
-    -------
-    low, high : float
-        With room above and below all curves and levels.
-    """
+    """Ends of the vertical axis, with room about curves and levels."""
     if panel.logic:
         return -0.15, 1.15
     values = [*(c.values for c in panel.curves), np.array(list(panel.levels.values()))]
@@ -71,50 +51,22 @@ def extent(panel: Panel) -> tuple[float, float]:
 
 
 def spacing(panel: Panel) -> float | None:
-    """Distance of the ticks, where it must be 1: few whole numbers.
-
-    Parameters
-    ----------
-    panel : Panel
-
-    Returns
-    -------
-    float or None
-        None leaves the choice to the plot.
-    """
+    """Distance of the ticks where it must be 1: few whole numbers."""
+    # None leaves the choice to the plot.
     low, high = extent(panel)
     whole = all(np.array_equal(c.values, np.round(c.values)) for c in panel.curves)
     return 1.0 if whole and high - low < 10.0 else None
 
 
 def heights(chart: Chart, sizes: Sequence[float]) -> list[float]:
-    """Height of each panel.
-
-    Parameters
-    ----------
-    chart : Chart
-    sizes : sequence of float
-        For one panel, two panels and so on; the last for all larger numbers.
-
-    Returns
-    -------
-    list of float
-        In the unit of `sizes`.
-    """
+    """Height of each panel, in the unit of the sizes."""
+    # Sizes for one panel, two panels and so on; the last for all larger numbers.
     full = sizes[min(len(chart.panels), len(sizes)) - 1]
     return [LOGIC * full if panel.logic else full for panel in chart.panels]
 
 
 def add_charts(page: Sheet, charts: Sequence[Chart], pictures: bool = True) -> None:
-    """Add a section for each figure.
-
-    Parameters
-    ----------
-    page : Sheet
-    charts : sequence of Chart
-    pictures : bool
-        They stand beside the page as files, too.
-    """
+    """A section for each figure; pictures may stand beside the page."""
     names = [name for c in charts for p in c.panels for name in p.levels]
     right = RIGHT + math.ceil(CHARACTER * max((len(n) for n in names), default=0))
     for number, chart in enumerate(charts, 1):
@@ -126,19 +78,8 @@ def add_charts(page: Sheet, charts: Sequence[Chart], pictures: bool = True) -> N
 
 
 def chart_figure(chart: Chart, right: int = RIGHT) -> Figure:
-    """The interactive plot of a figure.
-
-    Parameters
-    ----------
-    chart : Chart
-    right : int
-        Margin on the right, for the names of levels [pixel].
-
-    Returns
-    -------
-    dict
-        Data and layout.
-    """
+    """The interactive plot of a figure."""
+    # The margin on the right [pixel] is for the names of levels.
     heads = [GAP + LEGEND * _rows(p) for p in chart.panels]
     sizes = heights(chart, HEIGHTS)
     inner = sum(heads) + sum(sizes)

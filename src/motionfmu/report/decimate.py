@@ -9,20 +9,8 @@ Index = NDArray[np.int64]
 
 
 def keep_steps(values: Array, buckets: int) -> Index:
-    """Samples at which a staircase changes, or its peaks.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        A signal that holds its value between samples.
-    buckets : int
-        As for `keep_peaks`; with more than twice as many changes, only the peaks are kept.
-
-    Returns
-    -------
-    ndarray of int
-        Sorted indices, the first and the last sample among them.
-    """
+    """Samples at which a staircase changes, or its peaks."""
+    # Peaks where there are more than twice as many changes as buckets; both ends are among them.
     changed = np.flatnonzero(np.diff(values) != 0) + 1
     if len(changed) > 2 * buckets:
         return keep_peaks(values, buckets)
@@ -30,20 +18,8 @@ def keep_steps(values: Array, buckets: int) -> Index:
 
 
 def keep_peaks(values: Array, buckets: int) -> Index:
-    """Samples with the least and the largest value of each bucket.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,) or (n, k)
-        One or several signals with common samples.
-    buckets : int
-        Number of buckets of equal size; each keeps at most two samples per signal.
-
-    Returns
-    -------
-    ndarray of int
-        Sorted indices, the first and the last sample among them.
-    """
+    """Samples with the least and the largest value of each bucket."""
+    # Of (n,) or (n, k): one or several signals with common samples; both ends are among them.
     columns = values.reshape(len(values), -1)
     count = len(columns)
     if count <= 2 * buckets:

@@ -26,67 +26,26 @@ AXES = "XYZ"
 
 @dataclass(frozen=True)
 class Drawing:
-    """A path in the coordinates it is drawn in, and its error.
+    """A path in the coordinates it is drawn in, and its error."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        Names of the axes drawn: two for a path in a plane, else three.
-    path, rapids : ndarray, shapes (m, k) and (r, k)
-        Nominal path and rapids, pieces parted by a row of NaN [mm].
-    foot, gap : ndarray, shape (n, k)
-        Points of the path, and the error there; NaN where the error is not counted [mm].
-    error : ndarray, shape (n,)
-        Magnitude, signed for a path in a plane [mm].
-    time : ndarray, shape (n,)
-        [s].
-    line : ndarray of int, shape (n,)
-        Line of the program.
-    hairs : ndarray of int
-        Which of the points get a hair.
-    magnify : float
-        Magnification that suits.
-    """
-
-    names: tuple[str, ...]
-    path: Array
-    rapids: Array
-    foot: Array
-    gap: Array
-    error: Array
-    time: Array
-    line: NDArray[np.int64]
-    hairs: NDArray[np.int64]
-    magnify: float
+    names: tuple[str, ...]  # of the axes drawn: two for a path in a plane, else three
+    path: Array  # (m, k) nominal, pieces parted by a row of NaN [mm]
+    rapids: Array  # (r, k) likewise [mm]
+    foot: Array  # (n, k) points of the path [mm]
+    gap: Array  # (n, k) the error there; NaN where it is not counted [mm]
+    error: Array  # (n,) its magnitude, signed for a path in a plane [mm]
+    time: Array  # (n,) [s]
+    line: NDArray[np.int64]  # (n,) of the program
+    hairs: NDArray[np.int64]  # which of the points get a hair
+    magnify: float  # magnification that suits
 
     def magnified(self, factor: float) -> Array:
-        """The path with its error drawn so many times as large.
-
-        Parameters
-        ----------
-        factor : float
-            Magnification.
-
-        Returns
-        -------
-        ndarray, shape (n, k)
-            [mm].
-        """
+        """The path (n, k) with its error so many times as large [mm]."""
         return self.foot + factor * self.gap
 
 
 def draw(contour: ContourResult) -> Drawing:
-    """Make the drawing of a run.
-
-    Parameters
-    ----------
-    contour : ContourResult
-        The analysed run.
-
-    Returns
-    -------
-    Drawing
-    """
+    """Make the drawing of a run."""
     path, track = contour.run.path, contour.track
     basis = np.eye(3) if path.normal is None else plane_axes(path.normal)
     error = track.distance if track.signed is None else track.signed

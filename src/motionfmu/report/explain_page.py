@@ -36,19 +36,7 @@ FOOTER = (
 
 
 def write_explanation(found: Explanation, folder: Path) -> Path:
-    """Write the page, the picture and the numbers.
-
-    Parameters
-    ----------
-    found : Explanation
-    folder : Path
-        There already; gets report.html, result.json, causes.png and causes.svg.
-
-    Returns
-    -------
-    Path
-        The page.
-    """
+    """Write report.html, result.json, causes.png and causes.svg."""
     text = json.dumps({"scenario": found.result.name} | found.numbers(), indent=1)
     (folder / NUMBERS).write_text(text + "\n", encoding="utf-8")
     write_picture(found, folder)
@@ -57,16 +45,7 @@ def write_explanation(found: Explanation, folder: Path) -> Path:
 
 
 def page_text(found: Explanation) -> str:
-    """The whole HTML page.
-
-    Parameters
-    ----------
-    found : Explanation
-
-    Returns
-    -------
-    str
-    """
+    """The whole HTML page."""
     page = Sheet()
     page.sections.append(_cards(found))
     note = "Largest change of the contour error by each cause: simulated beside theory."
@@ -112,17 +91,8 @@ def _cards(found: Explanation) -> str:
 
 
 def shown(found: Explanation) -> list[Effect]:
-    """Effects that a chart shows: those that act, or should.
-
-    Parameters
-    ----------
-    found : Explanation
-
-    Returns
-    -------
-    list of Effect
-        The largest first; all of them if none acts.
-    """
+    """Effects that a chart shows: those that act, or should."""
+    # The largest first; all of them if none acts.
     acting = [e for e in found.effects if e.judged and (e.size > 0.0 or e.theory.value)]
     return acting or list(found.effects)
 

@@ -24,14 +24,7 @@ CAUSE, FORMULA = "#0072b2", "#9ec8e3"
 
 
 def write_picture(found: "Explanation", folder: Path) -> None:
-    """Draw the causes, and the first circle run both ways round.
-
-    Parameters
-    ----------
-    found : Explanation
-    folder : Path
-        Gets the files of `PICTURES`.
-    """
+    """Draw the causes, and the first circle run both ways round."""
     polar = bool(found.signatures)
     with matplotlib.rc_context(PLAIN | STABLE):
         drawn = plt.figure(figsize=(11.0, 4.6) if polar else (8.0, 4.0), layout="constrained")

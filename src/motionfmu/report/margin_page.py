@@ -29,17 +29,7 @@ FOOTER = (
 
 
 def page_text(axis: AxisModel, studies: Sequence[LoopStudy]) -> str:
-    """The whole HTML page.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    studies : sequence of LoopStudy
-
-    Returns
-    -------
-    str
-    """
+    """The whole HTML page."""
     page = Sheet()
     if told := worst(axis):
         note = "The model is the worst that the FMUs can become; they are not run."
@@ -54,18 +44,7 @@ def page_text(axis: AxisModel, studies: Sequence[LoopStudy]) -> str:
 
 
 def numbers(axis: AxisModel, studies: Sequence[LoopStudy]) -> dict[str, Any]:
-    """The machine-readable result.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    studies : sequence of LoopStudy
-
-    Returns
-    -------
-    dict
-        Ready for JSON; what is infinite or not a number is null.
-    """
+    """The result for JSON; what is infinite or not a number is null."""
     loops = []
     for s in studies:
         row: dict[str, Any] = {

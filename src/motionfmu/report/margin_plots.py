@@ -34,16 +34,7 @@ def _decibel(values: NDArray[Any]) -> Array:
 
 
 def bode(study: LoopStudy) -> Figure:
-    """Magnitude and phase of the open loop, with what was measured.
-
-    Parameters
-    ----------
-    study : LoopStudy
-
-    Returns
-    -------
-    dict
-    """
+    """Magnitude and phase of the open loop, with what was measured."""
     omega = grid(study.loop, _POINTS)
     values = response(study.loop, omega)
     hertz, size = omega / (2.0 * math.pi), _decibel(values)
@@ -101,16 +92,7 @@ def _circle(x: float, y: float, radius: float, **line: Any) -> Figure:
 
 
 def nyquist(study: LoopStudy) -> Figure:
-    """The open loop about -1, with the disk that it keeps out of.
-
-    Parameters
-    ----------
-    study : LoopStudy
-
-    Returns
-    -------
-    dict
-    """
+    """The open loop about -1, with the disk that it keeps out of."""
     values = response(study.loop, grid(study.loop, 3 * _POINTS))
     half = study.margins.disk / 2.0
     shapes = [_circle(0.0, 0.0, 1.0, color=MUTED, width=1, dash="dot")]
@@ -135,16 +117,7 @@ def nyquist(study: LoopStudy) -> Figure:
 
 
 def locus(study: LoopStudy) -> Figure:
-    """Poles of the closed loop over a factor on the wire.
-
-    Parameters
-    ----------
-    study : LoopStudy
-
-    Returns
-    -------
-    dict
-    """
+    """Poles of the closed loop over a factor on the wire."""
     top = study.margins.gain if math.isfinite(study.margins.gain) else 10.0
     factors = np.concatenate([[0.0], np.geomspace(1e-3, 2.0, _GAINS) * top])
     poles = [closed_poles(study.loop, g) for g in factors]
@@ -184,16 +157,7 @@ def _marks(poles: NDArray[Any], name: str, color: str, symbol: str) -> Figure:
 
 
 def sensitivity(study: LoopStudy) -> Figure:
-    """Magnitude of 1/(1 + L) and L/(1 + L).
-
-    Parameters
-    ----------
-    study : LoopStudy
-
-    Returns
-    -------
-    dict
-    """
+    """Magnitude of 1/(1 + L) and L/(1 + L)."""
     omega = grid(study.loop, _POINTS)
     values = response(study.loop, omega)
     hertz = omega / (2.0 * math.pi)
@@ -213,16 +177,7 @@ def sensitivity(study: LoopStudy) -> Figure:
 
 
 def step(study: LoopStudy) -> Figure:
-    """Response of L/(1 + L) to a step.
-
-    Parameters
-    ----------
-    study : LoopStudy
-
-    Returns
-    -------
-    dict
-    """
+    """Response of L/(1 + L) to a step."""
     loop = study.loop
     k = 1.0 / (1.0 + loop.D[0, 0])
     a = loop.A - loop.B @ loop.C * k

@@ -13,20 +13,7 @@ MILLIMETRES_FROM = 1.0
 
 
 def length(value: float, sign: bool = False) -> str:
-    """A length in um or mm.
-
-    Parameters
-    ----------
-    value : float
-        [mm].
-    sign : bool
-        Write a plus as well.
-
-    Returns
-    -------
-    str
-        Three or four digits that mean something, with a true minus sign.
-    """
+    """A length [mm] in um or mm: three or four digits, a true minus."""
     size = abs(value)
     if size >= MILLIMETRES_FROM:
         return f"{figure(value, sign)} mm"
@@ -34,19 +21,7 @@ def length(value: float, sign: bool = False) -> str:
 
 
 def figure(value: float, sign: bool = False) -> str:
-    """A number with three to four significant digits.
-
-    Parameters
-    ----------
-    value : float
-        Any.
-    sign : bool
-        Write a plus as well.
-
-    Returns
-    -------
-    str
-    """
+    """A number with three to four significant digits."""
     if not math.isfinite(value):
         return str(value)
     size = abs(value)
@@ -58,50 +33,18 @@ def figure(value: float, sign: bool = False) -> str:
 
 
 def unit(largest: float) -> tuple[float, str]:
-    """Unit for an axis of lengths.
-
-    Parameters
-    ----------
-    largest : float
-        Largest magnitude on it [mm].
-
-    Returns
-    -------
-    factor : float
-        Values in this unit per mm.
-    name : str
-    """
+    """Values per mm, and name, of the unit for lengths to this [mm]."""
     return (1.0, "mm") if largest >= MILLIMETRES_FROM else (1e3, "µm")
 
 
 def round_down(value: float) -> float:
-    """Largest of 1, 2, 5, 10, 20, ... that is not above a value.
-
-    Parameters
-    ----------
-    value : float
-        Positive.
-
-    Returns
-    -------
-    float
-    """
+    """Largest of 1, 2, 5, 10, 20, ... that is not above a value > 0."""
     power = 10.0 ** math.floor(math.log10(value))
     return max(m * power for m in (0.5, 1.0, 2.0, 5.0) if m * power <= value * (1.0 + 1e-12))
 
 
 def round_up(value: float) -> float:
-    """A round number that is not far above a value.
-
-    Parameters
-    ----------
-    value : float
-        Positive.
-
-    Returns
-    -------
-    float
-    """
+    """A round number that is not far above a value > 0."""
     power = 10.0 ** math.floor(math.log10(value))
     steps = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
     return min(m * power for m in steps if m * power >= value * (1.0 - 1e-12))
@@ -110,19 +53,8 @@ def round_up(value: float) -> float:
 def magnification(errors: tuple[float, float], size: float, reach: float) -> float:
     """Round magnification that makes an error easy to see.
 
-    Parameters
-    ----------
-    errors : tuple of two float
-        95th percentile and maximum of the error [mm].
-    size : float
-        Size of the path [mm].
-    reach : float
-        Mean way between two corners [mm].
-
-    Returns
-    -------
-    float
-        1, 2, 5, 10, ...; 1 where nothing has to be magnified.
+    From the error's 95th percentile and maximum, the size of the path, and the mean way between two
+    corners [mm]; 1 where nothing has to be magnified.
     """
     usual, largest = errors
     if largest <= 0.0 or size <= 0.0:

@@ -18,19 +18,7 @@ SIGNALS, NUMBERS, TABLE = "signals.npz", "result.json", "signals.csv"
 
 
 def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
-    """The machine-readable result.
-
-    Parameters
-    ----------
-    result : Result
-    options : mapping
-        How it was run; kept as given.
-
-    Returns
-    -------
-    dict
-        Ready for JSON.
-    """
+    """The result, and how it was run, for JSON."""
     found: dict[str, Any] = {
         "scenario": result.name,
         "about": result.about,
@@ -67,23 +55,8 @@ def _write_csv(result: Result, file: Path) -> None:
 
 
 def usable(folder: Path) -> Path:
-    """Check that a result may be written to this folder.
-
-    Parameters
-    ----------
-    folder : Path
-        New, empty, or with an older result.
-
-    Returns
-    -------
-    Path
-        The folder, absolute.
-
-    Raises
-    ------
-    InputError
-        It holds something else than a result, or is a file.
-    """
+    """The absolute path of a folder in which a result may be written."""
+    # New, empty, or with an older result; else an InputError.
     folder = folder.resolve()
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file, not a folder")
@@ -98,28 +71,8 @@ def _number(value: float) -> float | None:
 
 
 def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = False) -> Path:
-    """Write a run's folder, whole or not at all.
-
-    Parameters
-    ----------
-    result : Result
-    folder : Path
-        Replaced if it holds an older result.
-    options : mapping
-        How it was run.
-    csv : bool
-        Also write signals.csv.
-
-    Returns
-    -------
-    Path
-        The report.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written, or holds something else than a result.
-    """
+    """Write a run's folder, whole or not at all; give the report."""
+    # An older result is replaced; anything else in the folder is an InputError.
     with whole(folder) as part:
         arrays: dict[str, Any] = {"time": result.time, **result.signals}
         np.savez_compressed(part / SIGNALS, **arrays)
@@ -137,23 +90,9 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
 
 @contextlib.contextmanager
 def whole(folder: Path) -> Iterator[Path]:
-    """Write a folder of results whole or not at all.
-
-    Parameters
-    ----------
-    folder : Path
-        Replaced if it holds an older result.
-
-    Yields
-    ------
-    Path
-        Where to write; it must get a `NUMBERS`.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written, or holds something else than a result.
-    """
+    """Write a folder of results whole or not at all."""
+    # Yields where to write, which must get a `NUMBERS`.
+    # An older result is replaced; anything else in the folder is an InputError.
     folder = usable(folder)
     part = folder.with_name(f".{folder.name}.part{os.getpid()}")
     old = folder.with_name(f".{folder.name}.old{os.getpid()}")

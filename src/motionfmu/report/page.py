@@ -90,23 +90,7 @@ def write_report(result: Result, contour: ContourResult | None, folder: str | Pa
 def page_text(
     result: Result, contour: ContourResult, drawing: Drawing, charts: Sequence[Chart]
 ) -> str:
-    """The whole HTML page of a run with a contour.
-
-    Parameters
-    ----------
-    result : Result
-        Name, purpose and verdicts of the scenario.
-    contour : ContourResult
-        The analysed run.
-    drawing : Drawing
-        The path as it is drawn.
-    charts : sequence of Chart
-        Figures that the scenario asks for.
-
-    Returns
-    -------
-    str
-    """
+    """The whole HTML page of a run with a contour."""
     page = Sheet()
     page.sections.append(_cards(contour))
     _add_path(page, contour, drawing)

@@ -19,15 +19,6 @@ def path_figure(drawing: Drawing) -> Figure:
 
     Traces 0 to 3 are the rapids, the hairs, the path and the magnified error; the page's script
     redraws the hairs and the error when the magnification is changed.
-
-    Parameters
-    ----------
-    drawing : Drawing
-        What is drawn.
-
-    Returns
-    -------
-    dict
     """
     space = len(drawing.names) == 3
     kind = "scatter3d" if space else "scatter"
@@ -86,20 +77,8 @@ def path_figure(drawing: Drawing) -> Figure:
 
 
 def hairs(drawing: Drawing, factor: float) -> Array:
-    """Hairs from the path to the magnified error.
-
-    Parameters
-    ----------
-    drawing : Drawing
-        What is drawn.
-    factor : float
-        Magnification.
-
-    Returns
-    -------
-    ndarray, shape (3 n, k)
-        Two ends and a row of NaN for each hair [mm].
-    """
+    """Hairs (3 n, k) from the path to the magnified error [mm]."""
+    # Two ends and a row of NaN for each hair.
     ends = drawing.magnified(factor)[drawing.hairs]
     out = np.full((3 * len(ends), ends.shape[1]), np.nan)
     out[::3], out[1::3] = drawing.foot[drawing.hairs], ends

@@ -32,19 +32,7 @@ PLAIN: dict[Any, Any] = {
 
 
 def write_pictures(name: str, contour: ContourResult, drawing: Drawing, folder: Path) -> None:
-    """Draw the path with its magnified error.
-
-    Parameters
-    ----------
-    name : str
-        Title.
-    contour : ContourResult
-        The analysed run.
-    drawing : Drawing
-        The path as it is drawn.
-    folder : Path
-        Gets the files of `PICTURES`.
-    """
+    """Draw the path with its magnified error, as `PICTURES`."""
     with matplotlib.rc_context(PLAIN | STABLE):
         figure = plt.figure(figsize=(10.0, 8.0), layout="constrained")
         try:

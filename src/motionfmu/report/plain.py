@@ -13,21 +13,7 @@ FOOTER = "A point holds the outputs at its communication step, before that step 
 
 
 class Result(Protocol):
-    """What the report needs to know of a run beside its contour.
-
-    Attributes
-    ----------
-    name, about : str
-        Of the scenario: its name, and what it shows.
-    checks : sequence of Check
-        Its verdicts.
-    signals : mapping
-        What was recorded, by name.
-    no_contour : str
-        Why the run has no contour; empty if the scenario asks for none.
-    warnings : sequence of str
-        What FMUs and runner warned of.
-    """
+    """What the report needs to know of a run beside its contour."""
 
     @property
     def name(self) -> str:
@@ -61,19 +47,8 @@ class Result(Protocol):
 
 
 def plain_text(result: Result, charts: Sequence[Chart]) -> str:
-    """The whole HTML page of a run without a contour.
-
-    Parameters
-    ----------
-    result : Result
-        Name, purpose, verdicts and signals.
-    charts : sequence of Chart
-        Its figures; if there are none, the recorded signals are shown.
-
-    Returns
-    -------
-    str
-    """
+    """The whole HTML page of a run without a contour."""
+    # If there are no figures, the recorded signals are shown.
     page = Sheet()
     if result.checks:
         page.section("Verdict", "", check_table(result.checks))

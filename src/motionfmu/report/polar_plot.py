@@ -21,17 +21,7 @@ NAMES = "XYZ"
 
 
 def polar_figure(test: CircularTest) -> Figure:
-    """Radial deviation of a circle, as a ballbar shows it.
-
-    Parameters
-    ----------
-    test : CircularTest
-        The circle.
-
-    Returns
-    -------
-    dict
-    """
+    """Radial deviation of a circle, as a ballbar shows it."""
     traces, top = [], 0.0
     for way, name, color, dash in (
         (test.ccw, "counter-clockwise", CCW, "solid"),
@@ -99,17 +89,7 @@ def polar_figure(test: CircularTest) -> Figure:
 
 
 def polar_names(test: CircularTest) -> list[str]:
-    """Labels at 0, 45, ... degrees: the axes' names at the quarters.
-
-    Parameters
-    ----------
-    test : CircularTest
-        The circle.
-
-    Returns
-    -------
-    list of str
-    """
+    """Labels at 0, 45, ... degrees: the axes' names at the quarters."""
     first, second = (NAMES[int(np.argmax(np.abs(a)))] for a in test.axes)
     return [
         f"+{first}",
@@ -124,22 +104,7 @@ def polar_names(test: CircularTest) -> list[str]:
 
 
 def polar_trace(way: Way, radius: float) -> tuple[Array, Array]:
-    """Angle and radial deviation of one directed path, decimated.
-
-    Parameters
-    ----------
-    way : Way
-        The path.
-    radius : float
-        Nominal radius [mm].
-
-    Returns
-    -------
-    angle : ndarray, shape (n,)
-        [deg].
-    deviation : ndarray, shape (n,)
-        [um].
-    """
+    """Angle [deg] and radial deviation [um] of one way, decimated."""
     deviation = np.hypot(way.points[:, 0], way.points[:, 1]) - radius
     kept = keep_peaks(deviation, BUCKETS)
     angle = np.arctan2(way.points[kept, 1], way.points[kept, 0])

@@ -15,23 +15,13 @@ from motionfmu.report.tables import Check
 
 @dataclass(frozen=True)
 class Frame:
-    """What stands around the sections.
+    """What stands around the sections."""
 
-    Attributes
-    ----------
-    name, about, kind : str
-        Of the scenario: its name, and what it shows; what kind of report this is.
-    checks : sequence of Check
-        For the verdict beside the title.
-    footer : str
-        HTML.
-    """
-
-    name: str
-    about: str
-    kind: str
-    checks: Sequence[Check]
-    footer: str
+    name: str  # of the scenario
+    about: str  # what it shows
+    kind: str  # of report
+    checks: Sequence[Check]  # for the verdict beside the title
+    footer: str  # HTML
 
 
 class Sheet:
@@ -42,52 +32,18 @@ class Sheet:
         self.plots: list[dict[str, Any]] = []
 
     def place(self, name: str, drawn: dict[str, Any], over_time: bool = False) -> str:
-        """Add a plot.
-
-        Parameters
-        ----------
-        name : str
-            Of its element on the page.
-        drawn : dict
-            Data and layout, for plotly.
-        over_time : bool
-            It is zoomed together with all others over time.
-
-        Returns
-        -------
-        str
-            The element, for a section.
-        """
+        """Add a plotly plot; give its HTML element, for a section."""
+        # Those over time are zoomed together.
         self.plots.append({"id": name, "over_time": over_time} | drawn)
         return f'<div id="{name}" style="min-height:{drawn["layout"]["height"]}px"></div>'
 
     def section(self, title: str, note: str, content: str) -> None:
-        """Add a section.
-
-        Parameters
-        ----------
-        title, note, content : str
-            HTML; the note may be empty.
-        """
+        """Add a section of HTML; the note may be empty."""
         note = f'<p class="note">{note}</p>' if note else ""
         self.sections.append(f"<section><h2>{title}</h2>{note}{content}</section>")
 
     def text(self, frame: Frame, scripts: Sequence[str] = (), **data: Any) -> str:
-        """The whole page.
-
-        Parameters
-        ----------
-        frame : Frame
-            Title and footer.
-        scripts : sequence of str
-            Scripts of this folder that follow page.js.
-        **data : dict
-            For the scripts, beside the plots.
-
-        Returns
-        -------
-        str
-        """
+        """The whole page; scripts that follow page.js, data for them."""
         here = files("motionfmu.report")
         everything = {"figures": self.plots} | data
         run = [(here / s).read_text(encoding="utf-8") for s in ("page.js", *scripts)]

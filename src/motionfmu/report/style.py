@@ -16,19 +16,7 @@ FONT = "Inter, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-seri
 
 
 def axis(title: str, **more: Any) -> dict[str, Any]:
-    """An axis of a plotly figure.
-
-    Parameters
-    ----------
-    title : str
-        Quantity and unit.
-    **more : dict
-        Further keys.
-
-    Returns
-    -------
-    dict
-    """
+    """An axis of a plotly figure."""
     plain = {
         "title": {"text": title, "standoff": 8, "font": {"size": 13, "color": INK}},
         "gridcolor": GRID,
@@ -44,19 +32,8 @@ def axis(title: str, **more: Any) -> dict[str, Any]:
 
 
 def layout(height: int, **more: Any) -> dict[str, Any]:
-    """Layout of a plotly figure, its legend above the plot.
-
-    Parameters
-    ----------
-    height : int
-        [pixel].
-    **more : dict
-        Further keys.
-
-    Returns
-    -------
-    dict
-    """
+    """Layout of a plotly figure, its legend above the plot."""
+    # The height is in pixels.
     plain = {
         "height": height,
         "margin": {"l": 64, "r": 20, "t": 34, "b": 48},

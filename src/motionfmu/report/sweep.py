@@ -47,24 +47,7 @@ WORDS = {
 
 
 def write_sweep(outcome: "Outcome", folder: Path) -> Path:
-    """Write the page and the picture of a study.
-
-    Parameters
-    ----------
-    outcome : Outcome
-    folder : Path
-        Gets report.html and, if any run gave a cost, sweep.png and sweep.svg.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written.
-    """
+    """Write report.html and, with a cost, sweep.png and sweep.svg."""
     part = folder / f".{PAGE}.part{os.getpid()}"
     try:
         if np.isfinite(outcome.cost).any():
@@ -81,17 +64,7 @@ def write_sweep(outcome: "Outcome", folder: Path) -> Path:
 
 
 def page(outcome: "Outcome") -> str:
-    """The page of a study.
-
-    Parameters
-    ----------
-    outcome : Outcome
-
-    Returns
-    -------
-    str
-        HTML that needs no network.
-    """
+    """The page of a study: HTML that needs no network."""
     sheet, study = Sheet(), outcome.study
     sheet.sections.append(_cards(outcome))
     if np.isfinite(outcome.cost).any():

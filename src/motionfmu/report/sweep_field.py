@@ -26,23 +26,13 @@ FINE, MIDDLE, COARSE = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0), (1.0, 2.0, 5.0), (1.0,)
 
 @dataclass(frozen=True)
 class Dimension:
-    """A varied variable, ready to be drawn.
-
-    Attributes
-    ----------
-    name, label : str
-        The axis, and the axis with its unit.
-    values : list
-        One per row.
-    numeric, log : bool
-        Whether they are numbers; drawn on a logarithmic scale.
-    """
+    """A varied variable, ready to be drawn."""
 
     name: str
-    label: str
-    values: "list[Value]"
-    numeric: bool
-    log: bool
+    label: str  # the axis with its unit
+    values: "list[Value]"  # one per row
+    numeric: bool  # whether they are numbers
+    log: bool  # drawn on a logarithmic scale
 
     @property
     def numbers(self) -> Array:
@@ -60,47 +50,20 @@ class Dimension:
 
 @dataclass(frozen=True)
 class Field:
-    """Cost on a rectangular grid.
+    """Cost on a rectangular grid."""
 
-    Attributes
-    ----------
-    x, y : ndarray, shapes (n,) and (m,)
-        In the variables' units.
-    z : ndarray, shape (m, n)
-        Cost; NaN where there is none.
-    """
-
-    x: Array
-    y: Array
-    z: Array
+    x: Array  # (n,) in the variable's unit
+    y: Array  # (m,)
+    z: Array  # (m, n) cost; NaN where there is none
 
 
 def label(name: str, unit: str) -> str:
-    """A quantity with its unit.
-
-    Parameters
-    ----------
-    name, unit : str
-        The unit may be empty.
-
-    Returns
-    -------
-    str
-    """
+    """A quantity with its unit, which may be empty."""
     return f"{name} [{unit}]" if unit and unit != "1" else name
 
 
 def dimensions(outcome: "Outcome") -> list[Dimension]:
-    """What was varied.
-
-    Parameters
-    ----------
-    outcome : Outcome
-
-    Returns
-    -------
-    list of Dimension
-    """
+    """What was varied."""
     found = []
     for axis in outcome.study.axes:
         values = outcome.axis(axis.name)
@@ -110,17 +73,8 @@ def dimensions(outcome: "Outcome") -> list[Dimension]:
 
 
 def kind(outcome: "Outcome") -> str:
-    """How the cost is drawn.
-
-    Parameters
-    ----------
-    outcome : Outcome
-
-    Returns
-    -------
-    str
-        CURVE over one axis, FIELD over two axes of numbers, MATRIX of points else.
-    """
+    """How the cost is drawn."""
+    # CURVE over one axis, FIELD over two axes of numbers, MATRIX of points else.
     shown = dimensions(outcome)
     if len(shown) == 2 and all(d.numeric for d in shown) and field(outcome) is not None:
         return FIELD
@@ -128,19 +82,9 @@ def kind(outcome: "Outcome") -> str:
 
 
 def field(outcome: "Outcome") -> Field | None:
-    """The cost over two axes.
-
-    Parameters
-    ----------
-    outcome : Outcome
-        Of a study of two axes of numbers.
-
-    Returns
-    -------
-    Field or None
-        A grid as it is; scattered points interpolated linearly inside their hull. None if the
-        points span no area.
-    """
+    """The cost over two axes of numbers."""
+    # A grid as it is; scattered points interpolated linearly inside their hull. None if the points
+    # span no area.
     first, second = dimensions(outcome)
     u, v, cost = first.numbers, second.numbers, outcome.cost
     x, i = np.unique(u, return_inverse=True)
@@ -164,34 +108,14 @@ def field(outcome: "Outcome") -> Field | None:
 
 
 def logarithmic(cost: Array) -> bool:
-    """Whether a cost spreads so far that its logarithm is drawn.
-
-    Parameters
-    ----------
-    cost : ndarray
-        NaN where there is none.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a cost spreads so far that its logarithm is drawn."""
     known = cost[np.isfinite(cost)]
     return bool(len(known) and known.min() > 0 and known.max() > known.min() * 10**DECADES)
 
 
 def levels(cost: Array) -> Array:
-    """Round values for contour lines.
-
-    Parameters
-    ----------
-    cost : ndarray
-        NaN where there is none; not all of it.
-
-    Returns
-    -------
-    ndarray
-        At least two, increasing; the same of each decade if the cost is drawn in logarithms.
-    """
+    """At least two round values, increasing, for contour lines."""
+    # The same of each decade if the cost is drawn in logarithms; NaN is no cost.
     known = cost[np.isfinite(cost)]
     low, high = float(known.min()), float(known.max())
     if logarithmic(cost):

@@ -47,15 +47,7 @@ TUNED: dict[str, Any] = {
 
 
 def write_picture(outcome: "Outcome", folder: Path) -> None:
-    """Draw the cost over what was varied.
-
-    Parameters
-    ----------
-    outcome : Outcome
-        With at least one cost.
-    folder : Path
-        Gets sweep.png and sweep.svg.
-    """
+    """Draw the costs, one at least, as sweep.png and sweep.svg."""
     way = kind(outcome)
     with matplotlib.rc_context(PLAIN | STABLE):
         if way == FIELD:

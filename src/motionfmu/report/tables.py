@@ -14,20 +14,7 @@ LINES_SHOWN = 10
 
 
 class Check(Protocol):
-    """One verdict of a scenario.
-
-    Attributes
-    ----------
-    name : str
-        What was checked.
-    ok : bool
-    value : object
-        What came out.
-    bounds : str
-        What was asked for.
-    reason : str
-        Why nothing came out; else empty.
-    """
+    """One verdict of a scenario."""
 
     @property
     def name(self) -> str:
@@ -51,21 +38,8 @@ class Check(Protocol):
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: int = 1) -> str:
-    """A table of ready HTML cells.
-
-    Parameters
-    ----------
-    heads : sequence of str
-        Column titles.
-    rows : iterable of sequence of str
-        Cells.
-    numeric : int
-        Columns from this one on are numbers and stand to the right.
-
-    Returns
-    -------
-    str
-    """
+    """A table of ready HTML cells; numbers stand to the right."""
+    # Columns from `numeric` on are numbers.
 
     def cells(tag: str, row: Sequence[str]) -> str:
         kinds = ["key" if i < numeric else "n" for i in range(len(row))]
@@ -79,31 +53,12 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: int = 1)
 
 
 def warning_list(warnings: Sequence[str]) -> str:
-    """What FMUs and runner warned of.
-
-    Parameters
-    ----------
-    warnings : sequence of str
-
-    Returns
-    -------
-    str
-    """
+    """What FMUs and runner warned of."""
     return f"<ul>{''.join(f'<li>{escape(told)}</li>' for told in warnings)}</ul>"
 
 
 def check_table(checks: Sequence[Check]) -> str:
-    """Verdicts of the scenario, failures first.
-
-    Parameters
-    ----------
-    checks : sequence of Check
-        In the order of the scenario.
-
-    Returns
-    -------
-    str
-    """
+    """Verdicts of the scenario, failures first."""
     rows = []
     for check in sorted(checks, key=lambda c: c.ok):
         mark, kind = ("✓ pass", "pass") if check.ok else ("✗ fail", "fail")
@@ -123,17 +78,7 @@ def check_table(checks: Sequence[Check]) -> str:
 
 
 def error_table(contour: ContourResult) -> str:
-    """Maximum, RMS and percentiles of the errors.
-
-    Parameters
-    ----------
-    contour : ContourResult
-        The analysed run.
-
-    Returns
-    -------
-    str
-    """
+    """Maximum, RMS and percentiles of the errors."""
     rows = []
     for name, size in (("Contour error", contour.error), ("Command error", contour.command_error)):
         shown = (size.max, size.rms, size.p50, size.p95)
@@ -146,17 +91,7 @@ def error_table(contour: ContourResult) -> str:
 
 
 def circle_table(test: CircularTest) -> str:
-    """Quantities of a circular test.
-
-    Parameters
-    ----------
-    test : CircularTest
-        The circle.
-
-    Returns
-    -------
-    str
-    """
+    """Quantities of a circular test."""
     ways = [(name, w) for name, w in (("ccw", test.ccw), ("cw", test.cw)) if w is not None]
 
     def row(title: str, what: str, get: Any, both: str = "") -> tuple[str, ...]:
@@ -198,17 +133,7 @@ def _evaluated(way: Way) -> str:
 
 
 def corner_table(contour: ContourResult) -> str:
-    """Corners with the largest errors.
-
-    Parameters
-    ----------
-    contour : ContourResult
-        The analysed run.
-
-    Returns
-    -------
-    str
-    """
+    """Corners with the largest errors."""
     worst = sorted(contour.corners, key=lambda c: -c.error)[:CORNERS_SHOWN]
     rows = [
         (
@@ -225,17 +150,7 @@ def corner_table(contour: ContourResult) -> str:
 
 
 def line_table(contour: ContourResult) -> str:
-    """Program lines with the largest errors.
-
-    Parameters
-    ----------
-    contour : ContourResult
-        The analysed run.
-
-    Returns
-    -------
-    str
-    """
+    """Program lines with the largest errors."""
     worst = sorted(contour.numbers()["commands"], key=lambda row: -row["max"])[:LINES_SHOWN]
     rows = [
         (

@@ -20,17 +20,7 @@ NAMES = "XYZUVW"
 
 
 def error_figure(contour: ContourResult) -> Figure:
-    """Contour error against time.
-
-    Parameters
-    ----------
-    contour : ContourResult
-        The analysed run.
-
-    Returns
-    -------
-    dict
-    """
+    """Contour error against time."""
     track, time = contour.track, contour.run.time
     value = track.distance if track.signed is None else track.signed
     factor, name = unit(contour.error.max)
@@ -69,17 +59,7 @@ def _text_side(at: float, time: Array, value: float) -> str:
 
 
 def following_figure(contour: ContourResult) -> Figure:
-    """Following error of each axis against time.
-
-    Parameters
-    ----------
-    contour : ContourResult
-        The analysed run.
-
-    Returns
-    -------
-    dict
-    """
+    """Following error of each axis against time."""
     time, value = contour.run.time, contour.following
     factor, name = unit(float(np.abs(value).max()))
     traces = []
@@ -91,18 +71,7 @@ def following_figure(contour: ContourResult) -> Figure:
 
 
 def fifo_figure(contour: ContourResult) -> Figure | None:
-    """FIFO stock and interrupts against time.
-
-    Parameters
-    ----------
-    contour : ContourResult
-        The analysed run.
-
-    Returns
-    -------
-    dict or None
-        None if the run recorded neither.
-    """
+    """FIFO stock and interrupts against time; None without either."""
     run = contour.run
     traces: list[Figure] = []
     rows = []
@@ -135,18 +104,7 @@ def fifo_figure(contour: ContourResult) -> Figure | None:
 
 
 def trace_figures(contour: ContourResult) -> list[tuple[str, Figure]]:
-    """The further signals of the run against time.
-
-    Parameters
-    ----------
-    contour : ContourResult
-        The analysed run.
-
-    Returns
-    -------
-    list of (str, dict)
-        Title and figure of each.
-    """
+    """Titles and figures of the further signals against time."""
     out = []
     for trace in contour.run.traces:
         columns = trace.values.reshape(len(contour.run.time), -1)

@@ -32,16 +32,7 @@ FOOTER = (
 
 
 def page_text(tuned: Tuned) -> str:
-    """The whole HTML page.
-
-    Parameters
-    ----------
-    tuned : Tuned
-
-    Returns
-    -------
-    str
-    """
+    """The whole HTML page."""
     page = Sheet()
     page.sections.append(_cards(tuned))
     page.section("Gains", "", _gains(tuned))

@@ -55,21 +55,11 @@ Source = Span | Normal | Listed
 
 @dataclass(frozen=True)
 class Axis:
-    """A variable, or one element of it, and the values it takes.
+    """A variable, or one element of it, and the values it takes."""
 
-    Attributes
-    ----------
-    name : str
-        ``component.variable`` or ``component.variable[i]``.
-    end : End
-        The variable.
-    source : Span, Normal or Listed
-        In the variable's unit.
-    """
-
-    name: str
+    name: str  # component.variable or component.variable[i]
     end: End
-    source: Source
+    source: Source  # in the variable's unit
 
     @property
     def unit(self) -> str:
@@ -82,20 +72,8 @@ class Axis:
         return isinstance(self.source, Span) and self.source.log
 
     def check(self, sampling: str) -> None:
-        """Refuse values that this variable or this sampling cannot take.
-
-        Values outside the range that the variable declares are no mistake of the study.
-
-        Parameters
-        ----------
-        sampling : str
-            One of SAMPLINGS.
-
-        Raises
-        ------
-        ValueError
-            The message names the axis and the value.
-        """
+        """Refuse values that this variable or this sampling cannot take."""
+        # Values outside the range that the variable declares are no mistake of the study.
         source, kind = self.source, self.end.port.type
         if isinstance(source, Listed):
             fits: dict[str, Any] = {"Float64": (int, float), "Int32": int, "Boolean": bool}
@@ -138,31 +116,14 @@ class Axis:
         return [source.low, *inner, source.high]
 
     def grid(self) -> list[Value]:
-        """All values, in order.
-
-        Returns
-        -------
-        list
-            In the variable's unit.
-        """
+        """All values, in order, in the variable's unit."""
         if isinstance(self.source, Listed):
             return [self._typed(x) for x in self.source.values]
         assert isinstance(self.source, Span), "check() has seen it"
         return [self._typed(x) for x in self._even(self.source)]
 
     def drawn(self, shares: NDArray[np.float64]) -> list[Value]:
-        """Values at given shares of the distribution.
-
-        Parameters
-        ----------
-        shares : ndarray, shape (n,)
-            Cumulative probabilities, 0 to 1.
-
-        Returns
-        -------
-        list
-            In the variable's unit.
-        """
+        """Values at given shares, 0 to 1, of the distribution."""
         source, whole = self.source, self.end.port.type == "Int32"
         if isinstance(source, Listed):
             return [self._typed(source.values[int(u * len(source.values))]) for u in shares]
@@ -188,24 +149,9 @@ def _normal(shares: NDArray[np.float64]) -> list[float]:
 
 
 def option(text: str) -> tuple[str, Any]:
-    """Read an axis from the command line.
+    """Name of an axis of the command line, and what a file would say.
 
     ``comp.var=lo:hi:n``, ``lo:hi``, either with ``:log`` after it, or ``a,b,c``.
-
-    Parameters
-    ----------
-    text : str
-        As given on the command line.
-
-    Returns
-    -------
-    str, dict or list
-        Name, and what a study's file would say.
-
-    Raises
-    ------
-    InputError
-        It is none of these.
     """
     name, _, value = text.partition("=")
     parts = value.split(":")
@@ -230,16 +176,7 @@ def _word(text: str) -> Value:
 
 
 def count(axes: Sequence[Axis]) -> int:
-    """Number of points of a grid.
-
-    Parameters
-    ----------
-    axes : sequence of Axis
-
-    Returns
-    -------
-    int
-    """
+    """Number of points of a grid."""
     sizes = (
         len(a.source.values) if isinstance(a.source, Listed) else a.source.n
         for a in axes
@@ -251,22 +188,9 @@ def count(axes: Sequence[Axis]) -> int:
 def points(axes: Sequence[Axis], sampling: str, runs: int, seed: int) -> list[Point]:
     """All points of a study, in the order of its rows.
 
-    Parameters
-    ----------
-    axes : sequence of Axis
-    sampling : str
-        ``grid``: every combination, the last axis fastest; ``random``: independent draws;
-        ``latin``: each axis' distribution cut into `runs` parts of equal probability, each
-        taken once (Latin hypercube).
-    runs : int
-        Number of draws; not used by a grid.
-    seed : int
-        Of the draws; the same seed draws the same points.
-
-    Returns
-    -------
-    list of tuple
-        One value per axis.
+    ``grid``: every combination, the last axis fastest, whatever `runs` is; ``random``: independent
+    draws; ``latin``: each axis' distribution cut into `runs` parts of equal probability, each taken
+    once (Latin hypercube). The same seed draws the same points.
     """
     if sampling == "grid":
         return list(itertools.product(*(a.grid() for a in axes)))

@@ -23,33 +23,16 @@ ABOUT = b"motionfmu"  # key of the table's metadata
 
 
 class Book:
-    """The rows of one study in a folder.
+    """The rows of one study in a folder: use it in `with`, or `close`.
 
-    Use it as a context manager, or call `close`.
-
-    Parameters
-    ----------
-    folder : Path
-        New, empty, or with rows of this study.
-    study : Study
-    fresh : bool
-        Forget what is there, also of another study.
-
-    Attributes
-    ----------
-    done : dict
-        Row by number of the run; what crashed is not done.
-
-    Raises
-    ------
-    InputError
-        The folder holds something else, or a study is being run in it.
+    The folder is new, empty, or has rows of this study, and no other process writes there; else it
+    is an InputError. A fresh one forgets what is there, also of another study.
     """
 
     def __init__(self, folder: Path, study: Study, fresh: bool = False) -> None:
         self.folder, self.study = _usable(folder), study
         self.table, self.journal = self.folder / TABLE, self.folder / JOURNAL
-        self.done: dict[int, Row] = {}
+        self.done: dict[int, Row] = {}  # by number of the run; what crashed is not done
         self._new = [f for f in (self.folder, *self.folder.parents) if not f.exists()]
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -99,23 +82,12 @@ class Book:
             raise InputError(f"cannot write {self.journal}: {error.strerror}") from None
 
     def add(self, row: Row) -> None:
-        """Keep a row.
-
-        Parameters
-        ----------
-        row : Row
-        """
+        """Keep a row."""
         self._line(asdict(row))
         self.done[row.run] = row
 
     def finish(self) -> list[Row]:
-        """Fold everything into the table and remove the journal.
-
-        Returns
-        -------
-        list of Row
-            All, in the order of the runs.
-        """
+        """Fold everything into the table and remove the journal."""
         rows = [self.done[run] for run in sorted(self.done)]
         self._write_table(rows)
         self.journal.unlink()
@@ -228,13 +200,6 @@ def write(table: Path, study: Study, rows: list[Row]) -> None:
 
     Columns: ``run``; one per axis; ``status``, ``message``, ``checks``; one per result. The
     metadata ``motionfmu`` says which study they belong to, that of a column its unit.
-
-    Parameters
-    ----------
-    table : Path
-        Replaced if it exists.
-    study : Study
-    rows : list of Row
     """
     import pyarrow as pa
     import pyarrow.parquet as pq

@@ -24,28 +24,10 @@ def _timed(job: Job, tasks: Sequence[Task]) -> tuple[float, list[Row]]:
 
 
 def rows(job: Job, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]:
-    """Run points on a cluster.
+    """Run points on a cluster ``tcp://host:8786``; rows as they come.
 
     The workers import motionfmu and read the scenario and the FMUs from their own disk, at the
-    same path; a worker whose files differ ends the study.
-
-    Parameters
-    ----------
-    job : Job
-    tasks : sequence of (int, tuple)
-        Number and values of each point.
-    scheduler : str
-        Address, ``tcp://host:8786``.
-
-    Yields
-    ------
-    Row
-        As they come.
-
-    Raises
-    ------
-    InputError
-        dask.distributed is not installed, nobody answers, or a worker could not begin.
+    same path; a worker whose files differ ends the study, as does a missing dask.distributed.
     """
     try:
         import distributed

@@ -36,19 +36,12 @@ STATISTICS: dict[str, Callable[[Array], float]] = {
 
 @dataclass(frozen=True)
 class Column:
-    """A number of a run.
+    """A number of a run."""
 
-    Attributes
-    ----------
-    name : str
-        ``contour.<figure>``, or a signal and a name of STATISTICS:
-        ``card.stock.min``, ``card.err_count[1].final``.
-    end : End or None
-        The signal; None for a figure of the contour.
-    """
-
+    # ``contour.<figure>``, or a signal and a name of STATISTICS: ``card.stock.min``,
+    # ``card.err_count[1].final``.
     name: str
-    end: End | None = None
+    end: End | None = None  # the signal; None for a figure of the contour
 
     @property
     def unit(self) -> str:
@@ -59,22 +52,8 @@ class Column:
         return "mm" if table in LENGTHS and figure not in ("time", "line", "command") else ""
 
     def of(self, result: Result) -> float:
-        """The number.
-
-        Parameters
-        ----------
-        result : Result
-
-        Returns
-        -------
-        float
-            In the signal's unit, or as in ContourResult.numbers.
-
-        Raises
-        ------
-        NoNumber
-            The run has no such number, or it is not finite.
-        """
+        """The number, in the signal's unit or as in ContourResult.numbers."""
+        # `NoNumber` if the run has none, or it is not finite.
         if self.end is None:
             value = result.contour().number(self.name.removeprefix(CONTOUR))
         else:
@@ -86,25 +65,7 @@ class Column:
 
 
 def column(scenario: Scenario, name: str) -> Column:
-    """Check the name of a column.
-
-    Parameters
-    ----------
-    scenario : Scenario
-    name : str
-        See `Column`.
-
-    Returns
-    -------
-    Column
-
-    Raises
-    ------
-    InputError
-        No such signal, or the scenario has no contour.
-    ValueError
-        No such statistic or figure.
-    """
+    """The column of a name; an InputError or ValueError if it is none."""
     if name.startswith(CONTOUR):
         if scenario.document.body.contour is None:
             raise ValueError(f"{name}: the scenario has no [contour] table")
@@ -125,16 +86,7 @@ def column(scenario: Scenario, name: str) -> Column:
 
 
 def usual(scenario: Scenario) -> list[Column]:
-    """The columns of a study that names none: what is checked.
-
-    Parameters
-    ----------
-    scenario : Scenario
-
-    Returns
-    -------
-    list of Column
-    """
+    """The columns of a study that names none: what is checked."""
     found: dict[str, Column] = {}
     for name, checks in scenario.document.body.check.items():
         for check in checks:
@@ -159,18 +111,7 @@ def _checked(scenario: Scenario, name: str, check: Check) -> Iterable[str]:
 
 
 def signals(scenario: Scenario, columns: Iterable[Column]) -> list[End]:
-    """What a run records: for columns, checks and contour.
-
-    Parameters
-    ----------
-    scenario : Scenario
-    columns : iterable of Column
-
-    Returns
-    -------
-    list of End
-        Each once.
-    """
+    """What a run records, once: for columns, checks and contour."""
     checked = [n for n in scenario.document.body.check if not n.startswith(CONTOUR)]
     names = [*of_contour(scenario.resolver), *(split(n)[0] for n in checked)]
     ends = [recording.output(scenario.resolver, n, "check", n) for n in names]

@@ -28,12 +28,7 @@ THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def cores() -> int:
-    """Number of processors this process may use.
-
-    Returns
-    -------
-    int
-    """
+    """Number of processors this process may use."""
     return len(os.sched_getaffinity(0))
 
 
@@ -66,26 +61,9 @@ def _start(job: Job, temporary: str) -> _Process:
 
 
 def rows(job: Job, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
-    """Run points on this machine.
-
-    Parameters
-    ----------
-    job : Job
-    tasks : sequence of (int, tuple)
-        Number and values of each point.
-    workers : int
-        Number of processes.
-
-    Yields
-    ------
-    Row
-        As they come. A run that ends its process gives a row that says so.
-
-    Raises
-    ------
-    InputError
-        A worker could not begin.
-    """
+    """Run points in processes of this machine; rows as they come."""
+    # A run that ends its process gives a row that says so; a worker that cannot begin, an
+    # InputError.
     pending = deque(tasks)
     running: list[_Process] = []
     with tempfile.TemporaryDirectory(prefix="motionfmu-", ignore_cleanup_errors=True) as temporary:

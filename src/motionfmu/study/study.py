@@ -22,32 +22,16 @@ from motionfmu.toml_lines import is_file, shown, tables_of, text_of
 
 @dataclass(frozen=True)
 class Job:
-    """All a worker needs to know, without the points.
+    """All a worker needs to know, without the points."""
 
-    Attributes
-    ----------
-    scenario : str
-        Path of the scenario.toml.
-    digest : str
-        Of the scenario's files and FMUs; a worker with others refuses.
-    named : tuple of str
-        Texts among the study's values, which may name files.
-    axes, columns : tuple of str
-        Names.
-    set : dict
-        Values for all runs, by name.
-    stop, step : float or None
-        Instead of the scenario's [s].
-    """
-
-    scenario: str
-    digest: str
-    named: tuple[str, ...]
+    scenario: str  # path of the scenario.toml
+    digest: str  # of its files and FMUs; a worker with others refuses
+    named: tuple[str, ...]  # texts among the study's values, which may name files
     axes: tuple[str, ...]
     columns: tuple[str, ...]
-    set: dict[str, Any]
-    stop: float | None
-    step: float | None
+    set: dict[str, Any]  # values for all runs
+    stop: float | None  # instead of the scenario's [s]
+    step: float | None  # [s]
 
 
 @dataclass(frozen=True)
@@ -153,18 +137,8 @@ def study(path: str | Path, given: Mapping[str, Any] | None = None) -> Study:
 
 
 def digest(scenario: Scenario, given: Iterable[Any] = ()) -> str:
-    """Fingerprint of a scenario, the files it names and its FMUs.
-
-    Parameters
-    ----------
-    scenario : Scenario
-    given : iterable
-        More values, which may name files beside the scenario.
-
-    Returns
-    -------
-    str
-    """
+    """Fingerprint of a scenario, the files it names and its FMUs."""
+    # Given values may name files beside the scenario, too.
     names = sorted({*scenario.document.body.component.values(), "scope"})
     found = hashlib.sha256(scenario.document.file.read_bytes())
     beside = scenario.document.file.parent

@@ -36,36 +36,14 @@ class Body(BaseModel):
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a study is written, for messages.
+    """Where a study is written, for messages."""
 
-    Attributes
-    ----------
-    file : Path or None
-        The study file; None if it comes from the command line alone.
-    lines : Lines
-        Line numbers of its keys.
-    given : frozenset of str
-        Keys that the command line gave.
-    """
-
-    file: Path | None
-    lines: Lines
-    given: frozenset[str]
+    file: Path | None  # None if it comes from the command line alone
+    lines: Lines  # line numbers of its keys
+    given: frozenset[str]  # keys that the command line gave
 
     def error(self, text: str, table: str = "", key: str = "") -> InputError:
-        """Make the error for a key of the study.
-
-        Parameters
-        ----------
-        text : str
-            What is wrong, with the value.
-        table, key : str
-            Where; see `Lines.of`.
-
-        Returns
-        -------
-        InputError
-        """
+        """The error for a key of the study, placed as in `Lines.of`."""
         if self.file is None or (table or key) in self.given:
             return InputError(f"sweep: {text}")
         return InputError(f"{self.file}:{self.lines.of(table, key)}: {text}")

@@ -24,42 +24,22 @@ OK, ERROR, CRASH = "ok", "error", "crash"
 
 @dataclass(frozen=True)
 class Row:
-    """What a run gave.
+    """What a run gave."""
 
-    Attributes
-    ----------
-    run : int
-        Number of the point, from 0.
-    status : str
-        ``ok``; ``error``: a value was refused; ``crash``: the run ended its process, and is
-        tried again when the study is resumed.
-    message : str
-        What went wrong, or why a number is missing; empty if nothing did and none is.
-    checks : bool or None
-        Whether the scenario's checks hold; None if it has none or the run gave nothing.
-    values : tuple
-        One number per column; None where there is none.
-    """
-
-    run: int
+    run: int  # number of the point, from 0
+    # ``ok``; ``error``: a value was refused; ``crash``: the run ended its process, and is tried
+    # again when the study is resumed.
     status: str
-    message: str
+    message: str  # what went wrong, or why a number is missing; else empty
+    # Whether the scenario's checks hold; None if it has none or the run gave nothing.
     checks: bool | None
-    values: tuple[float | None, ...]
+    values: tuple[float | None, ...]  # one per column; None where there is none
 
 
 class Worker:
-    """A session of a study's scenario.
+    """A session of a study's scenario."""
 
-    Parameters
-    ----------
-    job : Job
-
-    Raises
-    ------
-    InputError
-        The scenario or the FMUs here are not those of the study.
-    """
+    # An InputError if the scenario or the FMUs here are not those of the study.
 
     def __init__(self, job: Job) -> None:
         self.job = job
@@ -72,19 +52,7 @@ class Worker:
         self._session = Session(scenario, job.axes, recorded, **options)
 
     def row(self, run: int, point: Point) -> Row:
-        """Run one point.
-
-        Parameters
-        ----------
-        run : int
-            Its number.
-        point : tuple
-            One value per axis.
-
-        Returns
-        -------
-        Row
-        """
+        """Run one point, which has a value per axis."""
         try:
             result = self._session.run(dict(zip(self.job.axes, point, strict=True)))
         except Exception as error:  # the study goes on
@@ -120,23 +88,7 @@ _kept = threading.local()  # one session per thread: a process of a cluster may 
 
 
 def chunk(job: Job, points: Sequence[tuple[int, Point]]) -> list[Row]:
-    """Run some points; the session stays for the next call.
-
-    Parameters
-    ----------
-    job : Job
-    points : sequence of (int, tuple)
-        Number and values of each.
-
-    Returns
-    -------
-    list of Row
-
-    Raises
-    ------
-    InputError
-        The scenario or the FMUs here are not those of the study.
-    """
+    """Run some points; the session stays for the next call."""
     worker: Worker | None = getattr(_kept, "worker", None)
     if worker is None or worker.job != job:
         if worker is not None:
@@ -149,10 +101,7 @@ def chunk(job: Job, points: Sequence[tuple[int, Point]]) -> list[Row]:
 def main(pipe: int) -> None:
     """Serve the process that started this one until it is gone.
 
-    Parameters
-    ----------
-    pipe : int
-        File descriptor: brings the job, then points; takes "ready" or an error, then rows.
+    The pipe, a file descriptor, brings the job, then points; takes "ready" or an error, then rows.
     """
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # files are removed on the way out
     with Connection(pipe) as connection:

@@ -55,50 +55,25 @@ def _matrix(m: Array) -> ca.SX:
 
 @dataclass(frozen=True)
 class Motion:
-    """What an axis does on the scenario's path.
+    """What an axis does on the scenario's path."""
 
-    Attributes
-    ----------
-    outputs : ndarray, shape (1 + p, count)
-        Position, then what has a peak limit, in the units of the description.
-    slopes : ndarray, shape (g, 1 + p, count), or None
-        Derivatives to the gains.
-    """
-
-    outputs: Array
-    slopes: Array | None
+    outputs: Array  # (1 + p, count): position, then what has a peak limit, in the units declared
+    slopes: Array | None  # (g, 1 + p, count): derivatives to the gains
 
 
 @dataclass(frozen=True)
 class Signals:
-    """Names of what a study looks at.
+    """Names of what a study looks at."""
 
-    Attributes
-    ----------
-    command : str
-        Input of the model that takes the pulses.
-    position : str
-        Output that is judged.
-    peaks : tuple of str
-        Outputs with a limit.
-    """
-
-    command: str
-    position: str
-    peaks: tuple[str, ...]
+    command: str  # input of the model that takes the pulses
+    position: str  # output that is judged
+    peaks: tuple[str, ...]  # outputs with a limit
 
 
 class AxisStudy:
     """One axis with one plant, its gains left open.
 
-    Parameters
-    ----------
-    axis : AxisModel
-    gains : sequence of str
-        Parameters, ``component.variable``.
-    signals : Signals
-    bent : bool
-        The motion along a path has what the plant's equation has beyond its linear part.
+    `bent`: its motion has what the plant's equation has beyond the linear part.
     """
 
     def __init__(
@@ -128,66 +103,26 @@ class AxisStudy:
         return _Matrices(matrices(self.opened, [name], [source], [name, *cut]), self._gains)
 
     def loop(self, name: str, gains: Array) -> Loop:
-        """An open loop.
-
-        Parameters
-        ----------
-        name : str
-            Where it is opened: a key of `loops`.
-        gains : ndarray, shape (g,)
-
-        Returns
-        -------
-        Loop
-        """
+        """The open loop at a key of `loops`."""
         (a, b, c, d), (da, db, dc, dd) = self._loops[name].at(gains)
         return Loop(a, b, -c, -d, da, db, -dc, -dd, self._loops[name].period)
 
     def lag(self, gains: Array) -> float:
-        """Following error over speed in slow motion.
-
-        Parameters
-        ----------
-        gains : ndarray, shape (g,)
-
-        Returns
-        -------
-        float
-            [s]: 1/Kp, the delays, less what is fed forward.
-        """
+        """Following error over speed in slow motion [s]."""
+        # 1/Kp, the delays, less what is fed forward.
         (a, b, c, d), _ = self._motion.at(gains)
         once = np.linalg.solve(np.eye(len(a)) - a, b[:, :1])
         twice = np.linalg.solve(np.eye(len(a)) - a, once)
         return self.period * float(((c[:1] @ twice) / (c[:1] @ once + d[:1, :1]))[0, 0])
 
     def end(self, gains: Array) -> float:
-        """Position for one of the command, at rest.
-
-        Parameters
-        ----------
-        gains : ndarray, shape (g,)
-
-        Returns
-        -------
-        float
-            [unit of the position]
-        """
+        """Position, in its unit, for one of the command, at rest."""
         (a, b, c, d), _ = self._answer.at(gains)
         return float((c @ np.linalg.solve(np.eye(len(a)) - a, b) + d)[0, 0])
 
     def slowest(self, gains: Array) -> tuple[float, Array]:
-        """Slowest time constant of the closed loop, with derivatives.
-
-        Parameters
-        ----------
-        gains : ndarray, shape (g,)
-
-        Returns
-        -------
-        float
-            [s]; infinite or negative for an unstable loop.
-        ndarray, shape (g,)
-        """
+        """Slowest time constant [s] of the closed loop, and its slopes."""
+        # Infinite or negative for an unstable loop.
         (a, *_), (da, *_) = self._motion.at(gains)
         poles, left, right = eig(a, left=True, right=True)
         k = int(np.argmax(np.abs(poles)))
@@ -200,24 +135,10 @@ class AxisStudy:
         return -self.period / rate, self.period / rate**2 * turned.real / size
 
     def step(self, gains: Array, periods: int, count: int, slopes: bool = True) -> Motion:
-        """Answer to a step of one pulse, as share of its end value.
+        """The position after a step of one pulse, as share of its end.
 
-        Without friction, and without feed-forward, which no step can follow.
-
-        Parameters
-        ----------
-        gains : ndarray, shape (g,)
-        periods : int
-            From one sample to the next.
-        count : int
-            Samples.
-        slopes : bool
-            Also the derivatives.
-
-        Returns
-        -------
-        Motion
-            Of the position alone.
+        Without friction, and without feed-forward, which no step can follow. Samples are so many
+        periods apart.
         """
         (a, b, c, d), (da, db, dc, dd) = self._answer.at(gains)
         lift = lifted(a, b, da, db, periods)
@@ -234,22 +155,7 @@ class AxisStudy:
         return Motion(y / end, dy / end - y * dend / end**2)
 
     def motion(self, gains: Array, pulses: Array, periods: int, slopes: bool = True) -> Motion:
-        """Move along commanded pulses.
-
-        Parameters
-        ----------
-        gains : ndarray, shape (g,)
-        pulses : ndarray, shape (count,)
-            Put out so far, at the samples.
-        periods : int
-            From one sample to the next.
-        slopes : bool
-            Also the derivatives.
-
-        Returns
-        -------
-        Motion
-        """
+        """Move along pulses put out so far, every so many periods."""
         (a, b, c, d), (da, db, dc, dd) = self._motion.at(gains)
         lift = lifted(a, b[:, :1], da, db[:, :, :1], periods)
         u = pulses[None, :].astype(float)

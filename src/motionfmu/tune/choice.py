@@ -26,31 +26,15 @@ _LATE_MAX = 8
 
 @dataclass(frozen=True)
 class Variable:
-    """One number that is looked for.
+    """One number that is looked for."""
 
-    Attributes
-    ----------
-    name : str
-        ``component.variable``.
-    axes : tuple of int
-        Axes that have it, from 1.
-    low, high : float
-        Its bounds.
-    start : float
-        Present value.
-    whole : bool
-        A register of whole numbers.
-    own : bool
-        The bounds are the parameter's own range, not the search's.
-    """
-
-    name: str
-    axes: tuple[int, ...]
+    name: str  # component.variable
+    axes: tuple[int, ...]  # that have it, from 1
     low: float
     high: float
-    start: float
-    whole: bool
-    own: tuple[bool, bool] = (False, False)
+    start: float  # present value
+    whole: bool  # a register of whole numbers
+    own: tuple[bool, bool] = (False, False)  # each bound is the parameter's own, not the search's
 
     @property
     def title(self) -> str:
@@ -58,47 +42,19 @@ class Variable:
         return f"{self.name}[{','.join(map(str, self.axes))}]"
 
     def value(self, z: float) -> float:
-        """Value at a share of the range, even in the logarithm above 0.
-
-        Parameters
-        ----------
-        z : float
-            0 at the low bound, 1 at the high one.
-
-        Returns
-        -------
-        float
-        """
+        """Value at a share 0 to 1 of the range: logarithmic if all is > 0."""
         if self.low > 0.0:
             return float(self.low * (self.high / self.low) ** z)
         return self.low + (self.high - self.low) * z
 
     def share(self, value: float) -> float:
-        """Inverse of `value`.
-
-        Parameters
-        ----------
-        value : float
-
-        Returns
-        -------
-        float
-        """
+        """Inverse of `value`."""
         if self.low > 0.0:
             return float(np.log(value / self.low) / np.log(self.high / self.low))
         return (value - self.low) / (self.high - self.low)
 
     def slope(self, value: float) -> float:
-        """Derivative of the value to the share.
-
-        Parameters
-        ----------
-        value : float
-
-        Returns
-        -------
-        float
-        """
+        """Derivative of the value to the share."""
         if self.low > 0.0:
             return float(value * np.log(self.high / self.low))
         return self.high - self.low
@@ -120,23 +76,7 @@ def _moves(axis: AxisModel, name: str) -> bool:
 
 
 def gains(axis: AxisModel, problem: Problem) -> list[str]:
-    """Gains that are looked for.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    problem : Problem
-
-    Returns
-    -------
-    list of str
-        ``component.variable``.
-
-    Raises
-    ------
-    InputError
-        There is none, or one changes nothing.
-    """
+    """Gains that are looked for, each of which must change something."""
     if problem.gains is not None:
         for name in problem.gains:
             if not _moves(axis, name):
@@ -156,24 +96,8 @@ def gains(axis: AxisModel, problem: Problem) -> list[str]:
 
 
 def signals(axis: AxisModel, problem: Problem) -> tuple[Signals, dict[str, float]]:
-    """What is commanded, judged and limited.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    problem : Problem
-
-    Returns
-    -------
-    Signals
-    dict
-        Limits by output; those of the FMUs and, stronger, those of the problem.
-
-    Raises
-    ------
-    InputError
-        There is no [contour] table and no command is named, or a name is wrong.
-    """
+    """What is commanded, judged and limited, with limits by output."""
+    # Limits are those of the FMUs and, stronger, those of the problem.
     document = axis.scenario.document
     if problem.command is not None and problem.position is not None:
         command, position = _followed(axis, problem.command), problem.position
@@ -227,27 +151,7 @@ def _followed(axis: AxisModel, name: str) -> str:
 
 
 def shown(axis: AxisModel, problem: Problem, command: str) -> int:
-    """Periods after which an output shows the command.
-
-    The command that the axis follows.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    problem : Problem
-        With a command.
-    command : str
-        Input of the model.
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    InputError
-        It shows something else than the command.
-    """
+    """Periods after which an output shows the command it must follow."""
     assert problem.command is not None
     system = matrices(axis, [command], [problem.command])
     for periods in range(_LATE_MAX):
@@ -273,18 +177,8 @@ def _acts(axis: AxisModel, component: str, name: str) -> bool:
 
 
 def operating_point(axis: AxisModel, base: Result) -> dict[str, float]:
-    """Mean feed of a run, as a speed output of the plant.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    base : Result
-
-    Returns
-    -------
-    dict
-        Speed by ``component.variable``; empty if the plant shows none, or is linear.
-    """
+    """Mean feed of a run, as a speed output of the plant."""
+    # Empty if the plant shows none, or is linear.
     contour = axis.scenario.document.body.contour
     assert contour is not None
     if not (speed := speed_output(axis, contour.position)):
@@ -299,19 +193,7 @@ def operating_point(axis: AxisModel, base: Result) -> dict[str, float]:
 
 
 def speed_output(axis: AxisModel, position: str) -> str:
-    """The output that is the speed of another.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    position : str
-        ``component.variable``.
-
-    Returns
-    -------
-    str
-        Empty if the plant shows none, or if it belongs to no plant.
-    """
+    """The plant's output that is the speed of another; empty if none."""
     component, _, name = position.partition(".")
     if not isinstance(axis.blocks[component], Plant):
         return ""
@@ -327,25 +209,7 @@ def speed_output(axis: AxisModel, position: str) -> str:
 
 
 def variables(axes: Mapping[int, AxisModel], names: list[str], problem: Problem) -> list[Variable]:
-    """The numbers that are looked for.
-
-    Parameters
-    ----------
-    axes : mapping
-        Model of each axis.
-    names : list of str
-        Gains.
-    problem : Problem
-
-    Returns
-    -------
-    list of Variable
-
-    Raises
-    ------
-    InputError
-        A bound is wrong, or a value of 0 has none.
-    """
+    """The numbers that are looked for, within bounds that are right."""
     scenario = next(iter(axes.values())).scenario
     for name in problem.bounds:
         if name not in names:

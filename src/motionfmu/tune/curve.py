@@ -17,41 +17,22 @@ FREE = np.log(1e3)
 
 @dataclass(frozen=True)
 class Loop:
-    """An open loop in discrete time and its derivatives to the gains.
+    """An open loop in discrete time and its derivatives to the gains."""
 
-    Attributes
-    ----------
-    a, b, c, d : ndarray
-        State space with one input and one output; the feedback is negative.
-    da, db, dc, dd : ndarray
-        Derivatives, the first axis is the gain.
-    period : float
-        [s].
-    """
-
+    # State space with one input and one output; the feedback is negative.
     a: Array
     b: Array
     c: Array
     d: Array
+    # Derivatives, the first axis is the gain.
     da: Array
     db: Array
     dc: Array
     dd: Array
-    period: float
+    period: float  # [s]
 
     def at(self, omega: Array) -> tuple[Complex, Complex, Complex]:
-        """The loop, its slope over frequency and over the gains.
-
-        Parameters
-        ----------
-        omega : ndarray, shape (f,)
-            [rad/s].
-
-        Returns
-        -------
-        value, slope : ndarray of complex, shape (f,)
-        change : ndarray of complex, shape (g, f)
-        """
+        """The loop (f,), its slope over omega [rad/s], over gains (g, f)."""
         z = np.exp(1j * omega * self.period)
         n = len(self.a)
         inverse = np.linalg.inv(z[:, None, None] * np.eye(n) - self.a)
@@ -65,17 +46,7 @@ class Loop:
         return value, slope, change
 
     def value(self, omega: Array) -> Complex:
-        """The loop alone.
-
-        Parameters
-        ----------
-        omega : ndarray, shape (f,)
-            [rad/s].
-
-        Returns
-        -------
-        ndarray of complex, shape (f,)
-        """
+        """The loop alone, over omega [rad/s]."""
         z = np.exp(1j * omega * self.period)
         system = z[:, None, None] * np.eye(len(self.a)) - self.a
         x = np.linalg.solve(system, np.broadcast_to(self.b, (len(z), *self.b.shape)))
@@ -83,13 +54,7 @@ class Loop:
         return found
 
     def grid(self) -> Array:
-        """Frequencies that show the curve, denser where it rings.
-
-        Returns
-        -------
-        ndarray
-            [rad/s], up to half the sampling rate.
-        """
+        """Frequencies [rad/s] up to half the rate, denser where it rings."""
         closed = self.a - self.b @ self.c / (1.0 + self.d[0, 0])
         poles = np.concatenate([np.linalg.eigvals(self.a), np.linalg.eigvals(closed)])
         roots = np.log(poles[np.abs(poles) > 1e-6].astype(complex)) / self.period
@@ -102,19 +67,11 @@ class Loop:
 
 @dataclass(frozen=True)
 class Margin:
-    """Margins of a loop and their derivatives to the gains.
+    """Margins of a loop and their derivatives to the gains."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        ``distance`` of the curve to -1, logarithm of the gain ``up`` and ``down`` to the limit,
-        ``phase`` [rad].
-    values : ndarray, shape (4,)
-    slopes : ndarray, shape (4, g)
-    """
-
-    values: Array
-    slopes: Array
+    values: Array  # (4,)
+    slopes: Array  # (4, g)
+    # Distance of the curve to -1, logarithm of the gain up and down to the limit, phase [rad].
     names: tuple[str, ...] = ("distance", "up", "down", "phase")
 
 
@@ -123,14 +80,6 @@ def margin(loop: Loop) -> Margin:
 
     At the crossing w(g) of a condition h(w, g) = 0 a value v has the slope
     v_g - v_w h_g / h_w.
-
-    Parameters
-    ----------
-    loop : Loop
-
-    Returns
-    -------
-    Margin
     """
     omega = loop.grid()
     values = loop.value(omega)

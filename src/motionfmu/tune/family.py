@@ -25,7 +25,7 @@ class Family:
         on_contour = problem.command is None
         used = [i + 1 for i in base.contour().run.axes if i < 3] if on_contour else [1]
         one = linear.model(scenario, used[0], set=self.set)
-        self.at = dict(problem.at)
+        self.at = dict(problem.at)  # operating point of the plants
         if on_contour:
             self.at = self.at or choice.operating_point(one, base)
         elif (problem.cost in CONTOUR) or problem.position is None:
@@ -59,18 +59,7 @@ class Family:
                 )
 
     def gains(self, z: Array) -> dict[int, Array]:
-        """Gains of each axis at a point.
-
-        Parameters
-        ----------
-        z : ndarray, shape (n,)
-            Share of its range of each variable.
-
-        Returns
-        -------
-        dict
-            Array of shape (g,) by axis.
-        """
+        """Gains (g,) of each axis at shares of the variables' ranges."""
         found = {k: np.empty(len(self.names)) for k in self.axes}
         for variable, share in zip(self.variables, z, strict=True):
             for k in variable.axes:

@@ -17,29 +17,12 @@ SETTLED = 0.1
 class MoveCost:
     """The move of one axis, from a run of its FMUs.
 
-    Parameters
-    ----------
-    base : Result
-        A run of the scenario.
-    names : tuple of str
-        Command and position, ``component.variable``.
-    period : float
-        Of the linear model [s].
-    shown : tuple
-        Position per command [unit of the position], and periods after which the FMU shows the
-        command that it follows.
-
-    Attributes
-    ----------
-    what : str
-    periods : int
-        Periods of the model from one sample to the next.
-    pulses : dict
-        Command at the samples, from 0, by axis.
+    Names are those of command and position; the period [s] is the linear model's; `shown` is the
+    position per command and after how many periods the FMU shows the command that it follows.
     """
 
     what = "position error"
-    periods = 1
+    periods = 1  # of the model, from one sample to the next
 
     def __init__(
         self, base: Result, names: tuple[str, str], period: float, shown: tuple[float, int]
@@ -49,6 +32,7 @@ class MoveCost:
         stride = max(1, round(period / (time[1] - time[0])))
         self.time = time[::stride]
         self._shown = command[::stride]
+        # command at the samples, from 0
         self.pulses = {1: np.append(self._shown[late:], np.full(late, self._shown[-1]))}
         if not np.ptp(command) > 0.0:
             raise InputError(f"{base.scenario.document.file}: {names[0]} does not move")
@@ -66,50 +50,18 @@ class MoveCost:
         return found[:, 0] - found[0, 0]
 
     def error(self, positions: Mapping[int, Array]) -> PathError:
-        """Position error of a motion.
-
-        Parameters
-        ----------
-        positions : mapping
-            By axis, shape (count,), in the unit of the position; from 0.
-
-        Returns
-        -------
-        PathError
-        """
+        """Position error of positions (count,) by axis, which begin at 0."""
         gap = np.zeros((len(self.time), 3))
         gap[:, 0] = (positions[1] - self._scale * self._shown) * self.factor
         return PathError(np.abs(gap[:, 0]), gap)
 
     def chain(self, slope: Array, axis: int, changes: Array) -> Array:
-        """Derivatives of a cost to the gains.
-
-        Parameters
-        ----------
-        slope : ndarray, shape (count, 3)
-            Of the cost to the position.
-        axis : int
-        changes : ndarray, shape (g, samples)
-            Of the position to the gains.
-
-        Returns
-        -------
-        ndarray, shape (g,)
-        """
+        """Derivatives of a cost to the gains, from those of the position."""
         found: Array = changes @ slope[:, axis - 1] * self.factor
         return found
 
     def measured(self, result: Result) -> Measured:
-        """Position error of a run.
-
-        Parameters
-        ----------
-        result : Result
-
-        Returns
-        -------
-        Measured
-        """
+        """Position error of a run."""
         position = np.asarray(result[self._names[1]], dtype=float).reshape(len(result.time), -1)
         command = self._command(result)
         error = (position[:, 0] - position[0, 0] - self._scale * command) * self.factor
@@ -117,40 +69,13 @@ class MoveCost:
         return Measured(rms, float(np.abs(error).max()), result.time, error)
 
     def beyond(self, result: Result) -> float:
-        """Way past the ends of the command.
-
-        Parameters
-        ----------
-        result : Result
-
-        Returns
-        -------
-        float
-            [mm]; 0 if the position stays between them.
-        """
+        """Way past the ends of the command [mm]; 0 between them."""
         way = self._scale * self.factor * self._command(result)
         place = way + self.measured(result).values
         return max(float(place.max() - way.max()), float(way.min() - place.min()), 0.0)
 
     def standing(self, result: Result) -> float:
-        """RMS error while the axis is to stand.
-
-        After its first motion.
-
-        Parameters
-        ----------
-        result : Result
-
-        Returns
-        -------
-        float
-            [mm]
-
-        Raises
-        ------
-        InputError
-            It never is to stand.
-        """
+        """RMS error [mm] while the axis is to stand, after a first motion."""
         command, time = self._command(result), result.time
         moves = np.flatnonzero(np.diff(command))
         latest = moves[np.maximum(np.searchsorted(moves, np.arange(len(time))) - 1, 0)]

@@ -20,18 +20,10 @@ _ORDER = 24
 
 @dataclass(frozen=True)
 class PathError:
-    """Contour error of a motion.
+    """Contour error of a motion, where the tool cuts."""
 
-    Attributes
-    ----------
-    distance : ndarray, shape (count,)
-        From the nearest point of the exact path, where the tool cuts [mm].
-    gap : ndarray, shape (count, 3)
-        From there to the tool [mm].
-    """
-
-    distance: Array
-    gap: Array
+    distance: Array  # (count,) from the nearest point of the exact path [mm]
+    gap: Array  # (count, 3) from there to the tool [mm]
 
     @property
     def rms(self) -> float:
@@ -44,19 +36,8 @@ class PathError:
         return float(self.distance.max())
 
     def cost(self, name: str) -> tuple[float, Array]:
-        """A cost, and its derivative to the positions.
-
-        Parameters
-        ----------
-        name : str
-            ``..._rms``, or ``..._max`` for the norm of order 24.
-
-        Returns
-        -------
-        float
-            [mm]
-        ndarray, shape (count, 3)
-        """
+        """A cost [mm], and its derivative (count, 3) to the positions."""
+        # ``..._rms``, or ``..._max`` for the norm of order 24.
         if name.endswith("rms"):
             value = max(self.rms, 1e-12)
             return value, self.gap / (value * len(self.gap))
@@ -70,20 +51,12 @@ class PathError:
 
 @dataclass(frozen=True)
 class Measured:
-    """What a run of the FMUs shows.
+    """What a run of the FMUs shows."""
 
-    Attributes
-    ----------
-    rms, max : float
-        [mm]
-    time, values : ndarray, shape (n,)
-        [s], [mm]; NaN where it does not count.
-    """
-
-    rms: float
-    max: float
-    time: Array
-    values: Array
+    rms: float  # [mm]
+    max: float  # [mm]
+    time: Array  # [s]
+    values: Array  # [mm]; NaN where it does not count
 
 
 class PathCost:
@@ -92,22 +65,6 @@ class PathCost:
     Nearest points are those of `motionfmu.contour`: on the exact geometry, each sample within the
     part of the path that the pulses passed shortly before. To first order a motion of the nearest
     point along the path does not change the distance: the derivative is the normal.
-
-    Parameters
-    ----------
-    base : Result
-        A run of the scenario.
-    period : float
-        Of the linear model [s].
-
-    Attributes
-    ----------
-    axes : tuple of int
-        Axes of the path in use, from 1.
-    periods : int
-        Periods of the model from one sample to the next.
-    pulses : dict
-        Pulses put out at the samples, by axis.
     """
 
     what = "contour error"
@@ -117,6 +74,7 @@ class PathCost:
         run, document = contour.run, base.scenario.document
         assert document.body.contour is not None
         rows = round(period / (run.time[1] - run.time[0]))
+        # of the model, from one sample to the next
         self.periods = max(1, round(SAMPLE / period))
         stride = slice(None, None, rows * self.periods)
         window = contour.window
@@ -138,17 +96,8 @@ class PathCost:
         self.factor = units.parse(port.unit or "1").factor / units.parse("mm").factor
 
     def error(self, positions: Mapping[int, Array]) -> PathError:
-        """Contour error of a motion.
-
-        Parameters
-        ----------
-        positions : mapping
-            By axis, shape (count,), in the unit of the scenario's position output; from 0.
-
-        Returns
-        -------
-        PathError
-        """
+        """Contour error of positions (count,) by axis, which begin at 0."""
+        # In the unit of the scenario's position output.
         points = self._rest.copy()
         for axis, values in positions.items():
             points[:, axis - 1] = self._start[axis] + values * self.factor
@@ -163,34 +112,12 @@ class PathCost:
         return PathError(distance[cut], (points - foot)[cut])
 
     def chain(self, slope: Array, axis: int, changes: Array) -> Array:
-        """Derivatives of a cost to the gains of an axis.
-
-        Parameters
-        ----------
-        slope : ndarray, shape (count, 3)
-            Of the cost to the positions.
-        axis : int
-        changes : ndarray, shape (g, samples)
-            Of the axis' position to its gains.
-
-        Returns
-        -------
-        ndarray, shape (g,)
-        """
+        """Derivatives of a cost to an axis' gains, from its position's."""
         found: Array = changes[:, self._cutting] @ slope[:, axis - 1] * self.factor
         return found
 
     def measured(self, result: Result) -> Measured:
-        """Contour error of a run.
-
-        Parameters
-        ----------
-        result : Result
-
-        Returns
-        -------
-        Measured
-        """
+        """Contour error of a run."""
         contour = result.contour()
         track = contour.track
         values = track.distance if track.signed is None else track.signed

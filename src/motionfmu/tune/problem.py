@@ -20,50 +20,27 @@ ON_PATH = (*CONTOUR, "error_rms", "error_max")
 
 
 class Margins(BaseModel):
-    """Least margins of a loop; what is not given is not asked for.
-
-    Attributes
-    ----------
-    sensitivity : float
-        Largest |1/(1 + L)|, above 1.
-    gain : float
-        Factor by which the loop may be larger, and smaller, before it rings.
-    phase : float
-        Lag [deg] that it bears.
-    """
+    """Least margins of a loop; what is not given is not asked for."""
 
     model_config = _STRICT
-    sensitivity: float | None = Field(default=None, gt=1.0)
+    sensitivity: float | None = Field(default=None, gt=1.0)  # largest |1/(1 + L)|
+    # Factor by which the loop may be larger, and smaller, before it rings.
     gain: float | None = Field(default=None, gt=1.0)
-    phase: float | None = Field(default=None, gt=0.0, lt=180.0)
+    phase: float | None = Field(default=None, gt=0.0, lt=180.0)  # lag that it bears [deg]
 
 
 class Limits(BaseModel):
-    """What the gains must keep.
-
-    Attributes
-    ----------
-    margins : Margins
-        Of every loop.
-    loop : dict
-        Margins of one loop instead, by the input at which it is opened.
-    overshoot : float or None
-        Largest overshoot of the position after a step, share of the step.
-    recovery : float or None
-        Slowest time constant of the closed loop [s]: with it the effect of a load dies away.
-    beyond : float or None
-        Largest way past the ends of the scenario's own move while a `trial` is made [mm].
-    peak : dict
-        Largest magnitude on the path by output, ``component.variable``, in its unit.
-    """
+    """What the gains must keep."""
 
     model_config = _STRICT
-    margins: Margins = Margins(sensitivity=1.5, gain=3.0, phase=45.0)
-    loop: dict[str, Margins] = Field(default_factory=dict)
-    overshoot: float | None = Field(default=0.05, ge=0.0)
+    margins: Margins = Margins(sensitivity=1.5, gain=3.0, phase=45.0)  # of every loop
+    loop: dict[str, Margins] = Field(default_factory=dict)  # of one loop instead, by its input
+    overshoot: float | None = Field(default=0.05, ge=0.0)  # after a step, share of it
+    # Slowest time constant of the closed loop [s]: with it the effect of a load dies away.
     recovery: float | None = Field(default=0.05, gt=0.0)
+    # Largest way past the ends of the scenario's own move while a `trial` is made [mm].
     beyond: float | None = Field(default=None, gt=0.0)
-    peak: dict[str, float] = Field(default_factory=dict)
+    peak: dict[str, float] = Field(default_factory=dict)  # largest magnitude on the path, by output
 
 
 class Problem(BaseModel):

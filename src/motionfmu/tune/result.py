@@ -17,46 +17,23 @@ from motionfmu.tune.words import assumptions, plant_text
 
 @dataclass(frozen=True)
 class Run:
-    """The FMUs with some gains and a plant.
+    """The FMUs with some gains and a plant."""
 
-    Attributes
-    ----------
-    plant : dict
-        Changed values; empty for the nominal one.
-    result : Result
-    model : PathError
-        What the tuner's model says of the same.
-    fmus : Measured
-        What the run shows.
-    """
-
-    plant: dict[str, float]
+    plant: dict[str, float]  # changed values; empty for the nominal one
     result: Result
-    model: PathError
-    fmus: Measured
+    model: PathError  # what the tuner's model says of the same
+    fmus: Measured  # what the run shows
 
 
 @dataclass(frozen=True)
 class LoopMargins:
-    """Margins of a loop of an axis, the least of a family.
-
-    Attributes
-    ----------
-    axis : int
-    loop : str
-    sensitivity : float
-        Largest |1/(1 + L)|.
-    gain : float
-        Factor up or down, the smaller one; infinite beyond 1000.
-    phase : float
-        [deg]
-    """
+    """Margins of a loop of an axis, the least of a family."""
 
     axis: int
     loop: str
-    sensitivity: float
-    gain: float
-    phase: float
+    sensitivity: float  # largest |1/(1 + L)|
+    gain: float  # factor up or down, the smaller one; infinite beyond 1000
+    phase: float  # [deg]
 
 
 @dataclass
@@ -141,7 +118,7 @@ class Tuned:
         list of LoopMargins
             One for each axis and loop.
         """
-        return margins(self.study, z)
+        return least_margins(self.study, z)
 
     def lags(self, z: Array) -> dict[int, float]:
         """Following error over speed of each axis, nominal plant.
@@ -244,19 +221,8 @@ def _row(m: LoopMargins) -> dict[str, Any]:
     }
 
 
-def margins(study: Study, z: Array) -> list[LoopMargins]:
-    """Least margins of the family with some gains.
-
-    Parameters
-    ----------
-    study : Study
-    z : ndarray
-
-    Returns
-    -------
-    list of LoopMargins
-        One for each axis and loop.
-    """
+def least_margins(study: Study, z: Array) -> list[LoopMargins]:
+    """Least margins of the family for each axis and loop."""
     gains, rows = study.gains(z), []
     for k, nominal in study.parts[0].items():
         for loop in nominal.loops:
@@ -276,19 +242,8 @@ def margins(study: Study, z: Array) -> list[LoopMargins]:
 
 
 def settings(study: Study, z: Array) -> dict[str, Any]:
-    """Gains as a scenario takes them.
-
-    Parameters
-    ----------
-    study : Study
-    z : ndarray
-
-    Returns
-    -------
-    dict
-        One value, or one for each axis, by ``component.variable``; axes that are not tuned keep
-        theirs.
-    """
+    """Gains as a scenario takes them: one value, or one for each axis."""
+    # Axes that are not tuned keep theirs.
     found: dict[str, Any] = {}
     for variable, share in zip(study.variables, z, strict=True):
         value: float | int = variable.value(float(share))

@@ -48,35 +48,17 @@ class RanAway(InputError):
 
 @dataclass(frozen=True)
 class Found:
-    """A solution of the problem.
+    """A solution of the problem."""
 
-    Attributes
-    ----------
-    z : ndarray, shape (n,)
-        Share of its range of each variable.
-    values : Values
-    stopped_by : tuple of Limit
-        Limits that are reached there.
-    ends : tuple of str
-        Variables at an end of their parameter's own range.
-    starts : tuple of float
-        Cost found from each start; NaN where the search failed.
-    check : float
-        Cost of the global search alone; NaN if it found nothing within the limits, or was not made.
-    seconds : tuple of float
-        Of the NLP and of the global search.
-    evaluations : tuple of int
-        Of both.
-    """
-
-    z: Array
+    z: Array  # (n,) share of its range of each variable
     values: Values
-    stopped_by: tuple[Limit, ...]
-    ends: tuple[str, ...]
-    starts: tuple[float, ...]
+    stopped_by: tuple[Limit, ...]  # limits that are reached there
+    ends: tuple[str, ...]  # variables at an end of their parameter's own range
+    starts: tuple[float, ...]  # cost found from each start; NaN where the search failed
+    # Cost of the global search alone; NaN if it found nothing within the limits, or was not made.
     check: float
-    seconds: tuple[float, float]
-    evaluations: tuple[int, int]
+    seconds: tuple[float, float]  # of the NLP and of the global search
+    evaluations: tuple[int, int]  # of both
 
 
 @dataclass
@@ -219,42 +201,15 @@ def _solver(study: Study, spread: Array) -> tuple[_Run, Any]:
 
 
 def merit(values: Values) -> float:
-    """One number for a search that knows no limits.
-
-    Parameters
-    ----------
-    values : Values
-
-    Returns
-    -------
-    float
-        Logarithm of the worst cost plus a penalty for limits that are broken.
-    """
+    """One number for a search that knows no limits."""
+    # Logarithm of the worst cost plus a penalty for limits that are broken.
     if not np.isfinite(values.costs).all():
         return 1e3
     return float(np.log(values.worst)) + _PENALTY * float(-np.minimum(values.slack, 0.0).sum())
 
 
 def solve(study: Study, progress: Callable[[float], None] = lambda share: None) -> Found:
-    """Find the gains.
-
-    Parameters
-    ----------
-    study : Study
-    progress : callable
-        Called with the share done.
-
-    Returns
-    -------
-    Found
-
-    Raises
-    ------
-    RanAway
-        A gain is stopped by its own bound alone.
-    InputError
-        No gains keep the limits.
-    """
+    """Find the gains within the limits; `RanAway` at a bound alone."""
     together = _solver(study, _shared(study))
     begun, first = time.perf_counter(), study.evaluations
     check, points = np.nan, [study.present]

@@ -12,19 +12,10 @@ _ROUNDS_MAX = 40
 
 
 def scan(a: Array, v: Array) -> Array:
-    """States of x[k + 1] = A x[k] + v[k], x[0] = 0.
+    """States (..., n, count) of x[k + 1] = A x[k] + v[k], x[0] = 0.
 
     The sum over past inputs is doubled round by round, A^1, A^2, A^4 ..., until what is older
     is forgotten.
-
-    Parameters
-    ----------
-    a : ndarray, shape (n, n)
-    v : ndarray, shape (..., n, count)
-
-    Returns
-    -------
-    ndarray, shape (..., n, count)
     """
     x = np.zeros_like(v)
     x[..., 1:] = v[..., :-1]
@@ -42,50 +33,21 @@ class Lifted:
     """Several periods at once, and the derivatives to the gains.
 
     The input goes straight from its value at the beginning to that at the end.
-
-    Attributes
-    ----------
-    a, begin, end : ndarray, shape (n, n), (n, m), (n, m)
-        State matrix; input matrices of both values.
-    da, dbegin, dend : ndarray, shape (g, n, n), (g, n, m), (g, n, m)
-        Derivatives to g gains.
     """
 
-    a: Array
-    begin: Array
-    end: Array
-    da: Array
+    a: Array  # (n, n) state matrix
+    begin: Array  # (n, m) input matrix of the value at the beginning
+    end: Array  # (n, m) of that at the end
+    da: Array  # (g, n, n) derivatives to the gains, and so on
     dbegin: Array
     dend: Array
 
     def states(self, u: Array) -> Array:
-        """States driven by an input.
-
-        Parameters
-        ----------
-        u : ndarray, shape (m, count)
-
-        Returns
-        -------
-        ndarray, shape (n, count)
-        """
+        """States (n, count) driven by an input (m, count)."""
         return scan(self.a, self.begin @ u + self.end @ np.roll(u, -1, axis=-1))
 
     def slopes(self, x: Array, u: Array, du: Array | None = None) -> Array:
-        """Derivatives of the states to the gains.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n, count)
-            The states.
-        u : ndarray, shape (m, count)
-        du : ndarray, shape (g, m, count), optional
-            Derivatives of the input.
-
-        Returns
-        -------
-        ndarray, shape (g, n, count)
-        """
+        """Derivatives (g, n, count) of states to gains; du: of the input."""
         later = np.roll(u, -1, axis=-1)
         v = self.da @ x + self.dbegin @ u + self.dend @ later
         if du is not None:
@@ -94,19 +56,7 @@ class Lifted:
 
 
 def lifted(a: Array, b: Array, da: Array, db: Array, count: int) -> Lifted:
-    """Put several periods together.
-
-    Parameters
-    ----------
-    a, b : ndarray, shape (n, n), (n, m)
-    da, db : ndarray, shape (g, n, n), (g, n, m)
-    count : int
-        Periods.
-
-    Returns
-    -------
-    Lifted
-    """
+    """Put several periods together, with derivatives (g, ...)."""
     n = len(a)
     power, dpower = np.eye(n), np.zeros_like(da)
     begin, end = np.zeros_like(b), np.zeros_like(b)

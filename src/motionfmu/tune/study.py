@@ -28,39 +28,21 @@ _LEAST_OVERSHOOT = 1e-3
 
 @dataclass(frozen=True)
 class Limit:
-    """One of the limits.
+    """One of the limits."""
 
-    Attributes
-    ----------
-    what : str
-        In words.
-    plant, axis : int
-        Index of the plant, 0 is the nominal one; axis from 1.
-    """
-
-    what: str
-    plant: int
-    axis: int
+    what: str  # in words
+    plant: int  # index, 0 is the nominal one
+    axis: int  # from 1
 
 
 @dataclass(frozen=True)
 class Values:
-    """Cost and limits at a point.
+    """Cost and limits at a point."""
 
-    Attributes
-    ----------
-    costs : ndarray, shape (plants,)
-        NaN where a loop is unstable.
-    slack : ndarray, shape (limits,)
-        Relative distance to each limit; negative beyond it.
-    dcosts, dslack : ndarray, shape (plants, n), (limits, n)
-        Derivatives to the shares of the variables.
-    """
-
-    costs: Array
-    slack: Array
-    dcosts: Array
-    dslack: Array
+    costs: Array  # (plants,) NaN where a loop is unstable
+    slack: Array  # (limits,) relative distance to each; negative beyond it
+    dcosts: Array  # (plants, n) derivatives to the shares of the variables
+    dslack: Array  # (limits, n)
 
     @property
     def worst(self) -> float:
@@ -68,53 +50,14 @@ class Values:
         return float(self.costs.max())
 
     def feasible(self, tolerance: float = 1e-4) -> bool:
-        """Whether all loops are stable and all limits kept.
-
-        Parameters
-        ----------
-        tolerance : float
-            Relative.
-
-        Returns
-        -------
-        bool
-        """
+        """Whether all loops are stable and all limits kept within a share."""
         return bool(np.isfinite(self.costs).all() and (self.slack > -tolerance).all())
 
 
 class Study(Family):
     """A tuning problem, ready to be evaluated.
 
-    Parameters
-    ----------
-    scenario : Scenario
-    problem : Problem
-    base : Result
-        A run of the scenario with its present gains.
-    set : mapping, optional
-        Values by ``component.variable`` with which that run was made.
-
-    Attributes
-    ----------
-    variables : list of Variable
-    limits : list of Limit
-        In the order of `Values.slack`.
-    plants : list of dict
-    at : dict
-        Operating point of the plants.
-    axes : dict
-        Linear model of each axis, nominal.
-    path : PathCost or MoveCost
-        Judges motions.
-    lag : float
-        Following error over speed with the present gains [s].
-    evaluations : int
-        How often it was evaluated.
-
-    Raises
-    ------
-    InputError
-        A name or value is wrong.
+    `base` is a run of the scenario with its present gains and `set`.
     """
 
     def __init__(
@@ -131,7 +74,7 @@ class Study(Family):
         seconds = _LAGS * max(self.lag, 50.0 * period)
         self._step = max(1, round(seconds / _SAMPLES / period)), _SAMPLES
         self._check_loops()
-        self.limits = self._limits()
+        self.limits = self._limits()  # in the order of `Values.slack`
         self.evaluations = 0
 
     def _path(self, axis: int, part: AxisStudy) -> tuple[PathCost | MoveCost, float]:

@@ -17,40 +17,20 @@ _COARSE, _FINE, _ROUNDS, _SAME = 13, 5, 2, 0.05
 
 @dataclass(frozen=True)
 class Look:
-    """What the FMUs do with a value.
+    """What the FMUs do with a value."""
 
-    Attributes
-    ----------
-    cost : float
-        RMS error while the axis is to stand [mm].
-    beyond : float
-        Way past the ends of the move [mm].
-    """
-
-    cost: float
-    beyond: float
+    cost: float  # RMS error while the axis is to stand [mm]
+    beyond: float  # way past the ends of the move [mm]
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What was tried.
+    """What was tried."""
 
-    Attributes
-    ----------
-    name : str
-        Parameter, ``component.variable``.
-    value : float or int
-        The smallest value with which the cost is as small as with any within the limit.
-    tried : dict
-        `Look` by value, in order.
-    limit : float
-        Largest way beyond that is allowed [mm].
-    """
-
-    name: str
-    value: float
-    tried: Mapping[float, Look]
-    limit: float
+    name: str  # component.variable
+    value: float  # the smallest whose cost is as small as any within the limit
+    tried: Mapping[float, Look]  # in order
+    limit: float  # largest way beyond that is allowed [mm]
 
     @property
     def stopped_by(self) -> str:
@@ -81,28 +61,8 @@ def tried(
 ) -> Trial:
     """Run the FMUs with values of a parameter between two bounds.
 
-    Parameters
-    ----------
-    scenario : Scenario
-    move : MoveCost
-        Judges a run.
-    asked : tuple
-        The parameter, its bounds, and the largest way beyond [mm].
-    set : mapping
-        Values by ``component.variable``, the gains found among them.
-    progress : callable
-        Called with the share done.
-
-    Returns
-    -------
-    Trial
-
-    Raises
-    ------
-    RanAway
-        The best value is a bound of the search.
-    InputError
-        The name or a bound is wrong.
+    Asked are the parameter, its bounds, and the largest way beyond [mm]; the gains found are in
+    `set`. `RanAway` if the best value is a bound.
     """
     name, (low, high), limit = asked
     port = scenario.resolver.end(name, "trial", name).port

@@ -23,19 +23,8 @@ _ONE_BY_ONE = 4
 
 
 def rounded(study: Study, z: Array) -> tuple[Array, Values]:
-    """The best whole-number registers about a solution.
-
-    Parameters
-    ----------
-    study : Study
-    z : ndarray
-
-    Returns
-    -------
-    ndarray
-        With the shares of whole numbers; limits are kept, if they can be, rather than the cost.
-    Values
-    """
+    """The best whole-number registers about a solution."""
+    # Limits are kept, if they can be, rather than the cost.
     options = []
     whole = [k for k, v in enumerate(study.variables) if v.whole]
     for variable, share in zip(study.variables, z, strict=True):

@@ -9,16 +9,7 @@ from motionfmu.tune.study import Study
 
 
 def assumptions(study: Study) -> list[str]:
-    """Feedback side, delays and operating point of the model.
-
-    Parameters
-    ----------
-    study : Study
-
-    Returns
-    -------
-    list of str
-    """
+    """Feedback side, delays and operating point of the model."""
     axis = study.axes[next(iter(study.axes))]
     found = []
     ports = study.scenario.resolver.ports
@@ -53,31 +44,12 @@ def _acts(block: Sampled) -> bool:
 
 
 def plant_text(plant: Mapping[str, float]) -> str:
-    """A plant in words.
-
-    Parameters
-    ----------
-    plant : mapping
-
-    Returns
-    -------
-    str
-    """
+    """A plant in words."""
     return ", ".join(f"{n} = {v:g}" for n, v in plant.items()) or "nominal plant"
 
 
 def units_of(cost: str) -> tuple[float, str]:
-    """Factor and unit in which a cost is shown.
-
-    Parameters
-    ----------
-    cost : str
-
-    Returns
-    -------
-    float
-    str
-    """
+    """Factor and unit in which a cost is shown."""
     if cost in ON_PATH:
         return 1e3, "µm"
     return {"ise": (1e3, "ms"), "iae": (1e3, "ms"), "itae": (1e6, "ms^2")}[cost]
