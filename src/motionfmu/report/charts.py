@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from motionfmu.report.decimate import keep_peaks, keep_steps
-from motionfmu.report.packed import packed
 from motionfmu.report.sheet import Sheet
-from motionfmu.report.style import AXES, INK, MUTED, axis, layout
+from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
+from motionfmu.report.tables import picture_links
 from motionfmu.run.figures import Chart, Curve, Panel
 
 Figure = dict[str, Any]
@@ -72,8 +72,7 @@ def add_charts(page: Sheet, charts: Sequence[Chart], pictures: bool = True) -> N
     for number, chart in enumerate(charts, 1):
         content = page.place(f"figure{number}", chart_figure(chart, right), chart.whole)
         if pictures:
-            links = (f'<a href="figure{number}.{e}">figure{number}.{e}</a>' for e in ("png", "svg"))
-            content += f'<p class="files">{" ".join(links)}</p>'
+            content += picture_links(f"figure{number}")
         page.section(escape(chart.title), escape(chart.note), content)
 
 
@@ -124,21 +123,14 @@ def _vertical(panel: Panel, domain: list[float]) -> Figure:
 
 def _series(curve: Curve, number: int, key: str) -> Figure:
     part = shown(curve)
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": escape(curve.name, quote=False),
-        "x": packed(part.time, exact=True),
-        "y": packed(part.values, exact=True),
-        "yaxis": "y" + key,
-        "legend": "legend" + key,
-        "line": {
-            "color": AXES[number % len(AXES)],
-            "dash": DASHES[number // len(AXES) % len(DASHES)],
-            "width": 1.4,
-            "shape": "hv" if curve.steps else "linear",
-        },
+    line = {
+        "dash": DASHES[number // len(AXES) % len(DASHES)],
+        "width": 1.4,
+        "shape": "hv" if curve.steps else "linear",
     }
+    name, color = escape(curve.name, quote=False), AXES[number % len(AXES)]
+    drawn = plotted(part.time, part.values, name, color, exact=True, **line)
+    return drawn | {"yaxis": "y" + key, "legend": "legend" + key}
 
 
 def _level_line(value: float, key: str) -> Figure:

@@ -15,11 +15,10 @@ from motionfmu.explain.decompose import Effect, Explanation
 from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.explain_picture import CAUSE, FORMULA, write_picture
 from motionfmu.report.numbers import figure, length, unit
-from motionfmu.report.packed import packed
 from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, INK, MUTED, axis, layout
-from motionfmu.report.tables import circle_table, table
+from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
+from motionfmu.report.tables import cards, circle_table, table
 
 PAGE, NUMBERS = "report.html", "result.json"
 # Points of a curve over the path: twice as many as a screen has columns.
@@ -75,19 +74,13 @@ def _cards(found: Explanation) -> str:
     numbers = found.numbers()
     whole, total, rest = (numbers[n] for n in ("contour_error", "sum_of_effects", "residual"))
     theory = "" if first.theory.value is None else f"theory {length(first.theory.value)}"
-    cards = [
+    rows = [
         ("Largest contour error", length(whole["max"]), f"RMS {length(whole['rms'])}"),
         (f"First cause: {first.title}", length(first.size), theory),
         ("Sum of all effects", length(total["max"]), f"RMS {length(total['rms'])}"),
         ("Residual: interaction", length(rest["max"]), f"RMS {length(rest['rms'])}"),
     ]
-    return '<div class="cards">{}</div>'.format(
-        "".join(
-            f'<div class="card"><div class="what">{escape(what)}</div>'
-            f'<div class="value">{value}</div><div class="where">{where}</div></div>'
-            for what, value, where in cards
-        )
-    )
+    return cards(rows)
 
 
 def shown(found: Explanation) -> list[Effect]:
@@ -162,9 +155,7 @@ def _curves(found: Explanation) -> dict[str, Any]:
     )
     for what, values, color, width in curves:
         kept = keep_peaks(values, BUCKETS)
-        line = {"color": color, "width": width}
-        series = {"type": "scatter", "mode": "lines", "name": what, "line": line}
-        data.append(series | {"x": packed(found.along[kept]), "y": packed(values[kept] * factor)})
+        data.append(plotted(found.along[kept], values[kept] * factor, what, color, width=width))
     more = {
         "xaxis": axis("Place on the path [mm]"),
         "yaxis": axis(f"Contour error [{name}]"),

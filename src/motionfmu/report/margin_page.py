@@ -15,7 +15,7 @@ from motionfmu.linear.opened import held, worst
 from motionfmu.report.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.numbers import figure
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.tables import table
+from motionfmu.report.tables import cards, table
 
 FOOTER = (
     "L is the open loop, cut at the input named, once around, with all delays of the FMUs, of their"
@@ -106,7 +106,7 @@ def _unlimited(value: float, text: str) -> str:
 def _add(page: Sheet, study: LoopStudy, name: str) -> None:
     m = study.margins
     decibel = 20.0 * math.log10(m.gain) if 0.0 < m.gain < math.inf else math.inf
-    cards = [
+    rows = [
         ("Gain margin", _unlimited(m.gain, f"{figure(decibel)} dB"), _hertz(m.omega_gain)),
         ("Phase margin", _unlimited(m.phase, f"{figure(m.phase)}°"), _hertz(m.omega_phase)),
         (
@@ -124,8 +124,7 @@ def _add(page: Sheet, study: LoopStudy, name: str) -> None:
         ("Sensitivity peak", figure(m.sensitivity), _hertz(m.omega_sensitivity)),
         ("Bandwidth", f"{figure(m.bandwidth / (2.0 * math.pi))} Hz", "closed loop, &minus;3 dB"),
     ]
-    columns = "grid-template-columns:repeat(auto-fit,minmax(165px,1fr))"
-    boxes = f'<div class="cards" style="{columns}">{"".join(_card(*c) for c in cards)}</div>'
+    boxes = cards(rows, "repeat(auto-fit,minmax(165px,1fr))")
     if not m.stable:
         wrong = '<span class="mark fail">✗ This loop is unstable as it is;</span>'
         boxes = f'<p class="note">{wrong} margins are distances to &minus;1.</p>{boxes}'
@@ -146,13 +145,6 @@ def _add(page: Sheet, study: LoopStudy, name: str) -> None:
     titles = "Step response of the closed loop", "Sensitivity"
     cells = "".join(f"<div><h3>{t}</h3>{p}</div>" for t, p in zip(titles, two, strict=True))
     page.sections.append(f'<section><div class="two">{cells}</div></section>')
-
-
-def _card(what: str, value: str, where: str) -> str:
-    return (
-        f'<div class="card"><div class="what">{what}</div>'
-        f'<div class="value">{value}</div><div class="where">{where}</div></div>'
-    )
 
 
 def _deviation(study: LoopStudy) -> str:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from motionfmu.freq.study import LoopStudy
 from motionfmu.linear.margins import closed_poles, grid, response
 from motionfmu.report.packed import packed
-from motionfmu.report.style import AXES, INK, MUTED, axis, layout
+from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
 
 Figure = dict[str, Any]
 Array = NDArray[np.float64]
@@ -24,8 +24,7 @@ _STEP_POINTS = 1500
 
 
 def _line(x: Array, y: Array, name: str, color: str, **more: Any) -> Figure:
-    plain = {"type": "scatter", "mode": "lines", "x": packed(x), "y": packed(y), "name": name}
-    return plain | {"line": {"color": color, "width": 2}} | more
+    return plotted(x, y, name, color, width=2) | more
 
 
 def _decibel(values: NDArray[Any]) -> Array:

@@ -19,6 +19,7 @@ from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.tables import (
     CORNERS_SHOWN,
+    cards,
     check_table,
     circle_table,
     corner_table,
@@ -118,7 +119,7 @@ def _cards(contour: ContourResult) -> str:
     error, command = contour.error, contour.command_error
     lag = f"{figure(contour.lag * 1e3)} ms"
     gain = f"as a position gain of {figure(1.0 / contour.lag)} 1/s" if contour.lag > 0 else ""
-    cards = [
+    rows = [
         ("Largest contour error", length(error.max), f"line {error.line}, at {error.time:.3f} s"),
         ("RMS contour error", length(error.rms), f"95 % below {length(error.p95)}"),
         ("Largest command error", length(command.max), f"RMS {length(command.rms)}"),
@@ -131,14 +132,8 @@ def _cards(contour: ContourResult) -> str:
         g = test.both.g if test.both else way.reading.g
         change = length(way.reading.radius_change, sign=True)
         name = "Circular deviation G(b)" if test.both else "Circular deviation G"
-        cards.append((name, length(g), f"radius change {change}"))
-    return '<div class="cards">{}</div>'.format(
-        "".join(
-            f'<div class="card"><div class="what">{what}</div>'
-            f'<div class="value">{value}</div><div class="where">{where}</div></div>'
-            for what, value, where in cards
-        )
-    )
+        rows.append((name, length(g), f"radius change {change}"))
+    return cards(rows)
 
 
 def _add_path(page: Sheet, contour: ContourResult, drawing: Drawing) -> None:

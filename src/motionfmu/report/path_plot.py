@@ -7,7 +7,7 @@ import numpy as np
 from motionfmu.contour.geometry import Array
 from motionfmu.report.drawing import Drawing
 from motionfmu.report.packed import packed
-from motionfmu.report.style import HEAT, MUTED, PATH, RAPID, axis, layout
+from motionfmu.report.style import COLORSCALE, HEAT, MUTED, PATH, RAPID, axis, layout
 
 Figure = dict[str, Any]
 
@@ -27,7 +27,7 @@ def path_figure(drawing: Drawing) -> Figure:
     marker = {
         "size": 2.5 if space else 4,
         "color": packed(np.abs(drawing.error) * 1e3),
-        "colorscale": [[i / (len(HEAT) - 1), c] for i, c in enumerate(HEAT)],
+        "colorscale": COLORSCALE,
         "cmin": 0,
         "cmax": top or 1.0,
         "colorbar": {

@@ -2,6 +2,10 @@
 
 from typing import Any
 
+from numpy.typing import NDArray
+
+from motionfmu.report.packed import packed
+
 INK = "#1b2733"
 MUTED = "#5b6b7a"
 GRID = "#e4e9ee"
@@ -12,7 +16,17 @@ AXES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#a07800", "#56b4e9")
 CCW, CW = AXES[0], AXES[1]
 # Size of an error: lightness falls all the way, so it reads in grey as well.
 HEAT = ("#f3c46b", "#ee8f45", "#d9533b", "#a8204a", "#5a0f45")
+COLORSCALE = [[i / (len(HEAT) - 1), color] for i, color in enumerate(HEAT)]
 FONT = "Inter, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif"
+
+
+def plotted(
+    x: NDArray[Any], y: NDArray[Any], name: str, color: str, exact: bool = False, **line: Any
+) -> dict[str, Any]:
+    """A curve as plotly draws it, with `packed` points."""
+    ends = {"x": packed(x, exact), "y": packed(y, exact)}
+    plain = {"type": "scatter", "mode": "lines", "name": name}
+    return plain | ends | {"line": {"color": color} | line}
 
 
 def axis(title: str, **more: Any) -> dict[str, Any]:

@@ -12,12 +12,13 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.report.packed import packed
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, HEAT, INK, MUTED, axis, layout
+from motionfmu.report.style import AXES, COLORSCALE, INK, MUTED, axis, layout
 from motionfmu.report.sweep_field import (
     CURVE,
     FIELD,
     MATRIX,
     Dimension,
+    cost_label,
     dimensions,
     field,
     kind,
@@ -25,7 +26,7 @@ from motionfmu.report.sweep_field import (
     levels,
     logarithmic,
 )
-from motionfmu.report.tables import table
+from motionfmu.report.tables import cards, picture_links, table
 
 if TYPE_CHECKING:
     from motionfmu.study.outcome import Outcome
@@ -34,7 +35,6 @@ Figure = dict[str, Any]
 
 PAGE = "report.html"
 BEST_SHOWN, ERRORS_SHOWN = 10, 20
-SCALE = [[i / (len(HEAT) - 1), color] for i, color in enumerate(HEAT)]
 LINES = 18  # of equal cost, where they are even in the logarithm
 CELL = 210  # [pixel] of a scatter matrix
 BEST = {"symbol": "star", "size": 17, "color": "#ffffff", "line": {"color": INK, "width": 1.6}}
@@ -70,10 +70,8 @@ def page(outcome: "Outcome") -> str:
     if np.isfinite(outcome.cost).any():
         way = kind(outcome)
         draw = {CURVE: _curve, FIELD: _field}.get(way, _matrix)
-        content = sheet.place("cost", draw(outcome))
-        links = (f'<a href="sweep.{e}">sweep.{e}</a>' for e in ("png", "svg"))
-        content += f'<p class="files">{" ".join(links)}</p>'
-        sheet.section(escape(_cost_label(outcome)), WORDS[way], content)
+        content = sheet.place("cost", draw(outcome)) + picture_links("sweep")
+        sheet.section(escape(cost_label(outcome)), WORDS[way], content)
         sheet.section(
             "Best runs", "Smallest cost first; checks: those of the scenario.", _best(outcome)
         )
@@ -89,11 +87,6 @@ def page(outcome: "Outcome") -> str:
     return sheet.text(Frame(study.name, study.about, "sweep", (), footer))
 
 
-def _cost_label(outcome: "Outcome") -> str:
-    study = outcome.study
-    return label(study.cost, next(c.unit for c in study.columns if c.name == study.cost))
-
-
 def _number(value: Any) -> str:
     if value is None:
         return ""
@@ -103,20 +96,15 @@ def _number(value: Any) -> str:
 def _cards(outcome: "Outcome") -> str:
     rows, study, best = outcome.rows, outcome.study, outcome.best
     held = sum(row.checks is True for row in rows)
-    cards = [("Runs", str(len(rows)), f"{outcome.errors} with an error")]
+    shown = [("Runs", str(len(rows)), f"{outcome.errors} with an error")]
     if any(row.checks is not None for row in rows):
-        cards.append(("Checks hold", str(held), f"of {len(rows)} runs"))
+        shown.append(("Checks hold", str(held), f"of {len(rows)} runs"))
     if best is not None:
         where = ", ".join(
             f"{n} = {_number(v)}" for n, v in zip(study.job.axes, study.points[best], strict=True)
         )
-        cards.append((f"Smallest {_cost_label(outcome)}", f"{outcome.cost[best]:.4g}", where))
-    shown = (
-        f'<div class="card"><div class="what">{escape(what)}</div>'
-        f'<div class="value">{value}</div><div class="where">{where}</div></div>'
-        for what, value, where in cards
-    )
-    return '<div class="cards">{}</div>'.format("".join(shown))
+        shown.append((f"Smallest {cost_label(outcome)}", f"{outcome.cost[best]:.4g}", where))
+    return cards(shown)
 
 
 def _best(outcome: "Outcome") -> str:
@@ -205,7 +193,7 @@ def _field(outcome: "Outcome") -> Figure:
         "y": packed(found.y, exact=True),
         "z": [[None if np.isnan(v) else float(v) for v in row] for row in z],
         "customdata": [[None if np.isnan(v) else float(v) for v in row] for row in found.z],
-        "colorscale": SCALE,
+        "colorscale": COLORSCALE,
         "contours": even | {"coloring": "fill", "showlabels": not log},
         "line": {"width": 0.8, "color": "#ffffff"},
         "colorbar": bar,
@@ -234,7 +222,7 @@ def _curve(outcome: "Outcome") -> Figure:
         data.append(_series(f"best: run {best}", [shown.values[best]], [float(cost[best])], BEST))
     kinds = {"type": "log" if logarithmic(cost) else "linear", "exponentformat": "power"}
     more: Figure = {"xaxis": _scale(shown), "showlegend": True}
-    more["yaxis"] = axis(escape(_cost_label(outcome)), **kinds)
+    more["yaxis"] = axis(escape(cost_label(outcome)), **kinds)
     if shown.name in outcome.study.tuned:
         tuned = outcome.study.tuned[shown.name]
         line = {"color": AXES[0], "width": 1.5, "dash": "dash"}
@@ -264,7 +252,7 @@ def _matrix(outcome: "Outcome") -> Figure:
         return {"type": "splom", "name": name, "dimensions": listed, "marker": marker} | half
 
     columns = [[d.values[i] for i in order] for d in shown]
-    many = {"color": packed(color), "colorscale": SCALE, "colorbar": bar, "size": 5}
+    many = {"color": packed(color), "colorscale": COLORSCALE, "colorbar": bar, "size": 5}
     data = [cloud("runs", columns, [float(cost[i]) for i in order], many)]
     if (best := outcome.best) is not None:
         point = [[v] for v in study.points[best]]

@@ -62,6 +62,12 @@ def label(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit and unit != "1" else name
 
 
+def cost_label(outcome: "Outcome") -> str:
+    """The cost with its unit."""
+    study = outcome.study
+    return label(study.cost, next(c.unit for c in study.columns if c.name == study.cost))
+
+
 def dimensions(outcome: "Outcome") -> list[Dimension]:
     """What was varied."""
     found = []

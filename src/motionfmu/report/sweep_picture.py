@@ -15,10 +15,10 @@ from motionfmu.report.sweep_field import (
     CURVE,
     FIELD,
     Dimension,
+    cost_label,
     dimensions,
     field,
     kind,
-    label,
     levels,
     logarithmic,
 )
@@ -90,12 +90,9 @@ def _legend(axes: Any) -> None:
 
 
 def _title(outcome: "Outcome", axes: Any) -> None:
-    what = label(outcome.study.cost, _unit(outcome))
-    axes.set_title(f"{outcome.study.name}: {what}", loc="left", fontweight="bold", pad=10)
-
-
-def _unit(outcome: "Outcome") -> str:
-    return next(c.unit for c in outcome.study.columns if c.name == outcome.study.cost)
+    axes.set_title(
+        f"{outcome.study.name}: {cost_label(outcome)}", loc="left", fontweight="bold", pad=10
+    )
 
 
 def _scales(axes: Any, first: Dimension, second: Dimension) -> None:
@@ -136,7 +133,7 @@ def _field(outcome: "Outcome") -> Any:
     bar = picture.colorbar(filled, ax=axes, ticks=at, aspect=28, pad=0.02)
     bar.set_ticklabels(list(names.values()))
     bar.outline.set_visible(False)
-    bar.set_label(label(outcome.study.cost, _unit(outcome)))
+    bar.set_label(cost_label(outcome))
     if outcome.study.sampling != "grid":
         x, y = (d.numbers for d in shown)
         axes.scatter(x, y, s=5, color=INK, alpha=0.5, linewidths=0, zorder=3)
@@ -168,7 +165,7 @@ def _curve(outcome: "Outcome") -> Any:
     if shown.log:
         _log(axes, "x")
     axes.set_xlabel(shown.label)
-    axes.set_ylabel(label(outcome.study.cost, _unit(outcome)))
+    axes.set_ylabel(cost_label(outcome))
     axes.grid(color=GRID, lw=0.8)
     axes.set_axisbelow(True)
     _dress(axes)
@@ -203,10 +200,11 @@ def _matrix(outcome: "Outcome") -> Any:
     if logarithmic(cost):
         _ticks(bar.ax.yaxis)
     bar.outline.set_visible(False)
-    bar.set_label(label(outcome.study.cost, _unit(outcome)))
+    bar.set_label(cost_label(outcome))
     handles, names = grid[-1, 0].get_legend_handles_labels()
-    what = label(outcome.study.cost, _unit(outcome))
-    picture.suptitle(f"{outcome.study.name}: {what}", x=0.01, ha="left", fontweight="bold")
+    picture.suptitle(
+        f"{outcome.study.name}: {cost_label(outcome)}", x=0.01, ha="left", fontweight="bold"
+    )
     if handles:
         picture.legend(handles, names, loc="upper right", frameon=False, fontsize=9)
     return picture

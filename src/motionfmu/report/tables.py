@@ -1,4 +1,4 @@
-"""The tables of the page."""
+"""The tables, cards and lists of the page."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -11,6 +11,8 @@ from motionfmu.report.numbers import MINUS, figure, length
 
 CORNERS_SHOWN = 10
 LINES_SHOWN = 10
+# Letters from which on the value of a card is written small.
+LONG, SMALL = 16, ' style="font-size:15px"'
 
 
 class Check(Protocol):
@@ -50,6 +52,25 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: int = 1)
         f'<div class="scroll"><table><thead><tr>{cells("th", heads)}</tr></thead>'
         f"<tbody>{body}</tbody></table></div>"
     )
+
+
+def cards(rows: Iterable[tuple[str, str, str]], columns: str = "") -> str:
+    """Large numbers: what each is; in HTML, its value and where."""
+    # Columns are those of the grid in CSS, else the page's own; a long value is written small.
+    shown = (
+        f'<div class="card"><div class="what">{escape(what)}</div>'
+        f'<div class="value"{SMALL if len(value) > LONG else ""}>{value}</div>'
+        f'<div class="where">{where}</div></div>'
+        for what, value, where in rows
+    )
+    style = f' style="grid-template-columns:{columns}"' if columns else ""
+    return f'<div class="cards"{style}>{"".join(shown)}</div>'
+
+
+def picture_links(name: str) -> str:
+    """Links to a picture beside the page, as PNG and SVG."""
+    links = (f'<a href="{name}.{e}">{name}.{e}</a>' for e in ("png", "svg"))
+    return f'<p class="files">{" ".join(links)}</p>'
 
 
 def warning_list(warnings: Sequence[str]) -> str:

@@ -9,7 +9,7 @@ from motionfmu.contour.geometry import Array
 from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import length, unit
 from motionfmu.report.packed import packed
-from motionfmu.report.style import AXES, HEAT, INK, axis, layout
+from motionfmu.report.style import AXES, HEAT, INK, axis, layout, plotted
 
 Figure = dict[str, Any]
 
@@ -121,14 +121,7 @@ def trace_figures(contour: ContourResult) -> list[tuple[str, Figure]]:
 
 
 def _series(time: Array, values: Array, name: str, color: str, shape: str = "linear") -> Figure:
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": name,
-        "x": packed(time),
-        "y": packed(values),
-        "line": {"color": color, "width": 1.4, "shape": shape},
-    }
+    return plotted(time, values, name, color, width=1.4, shape=shape)
 
 
 def _axis(title: str, **more: Any) -> Figure:

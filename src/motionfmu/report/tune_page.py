@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.contour.geometry import Array
 from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import figure, length, unit
-from motionfmu.report.packed import packed
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, RAPID, axis, layout
-from motionfmu.report.tables import table
+from motionfmu.report.style import AXES, RAPID, axis, layout, plotted
+from motionfmu.report.tables import cards, table
 from motionfmu.tune.problem import ON_PATH
 from motionfmu.tune.result import Run, Tuned
 from motionfmu.tune.trial import Trial
@@ -21,6 +19,7 @@ from motionfmu.tune.words import assumptions, plant_text, units_of
 BEFORE, AFTER = RAPID, AXES[0]
 _BUCKETS = 1200
 _STEPS = 600
+_WIDTH = 1.6  # [pixel] of a curve
 FOOTER = (
     "Model: the plant's own equation about the operating point with its friction as a disturbance,"
     " the sampled laws that the FMUs carry, all their delays. FMUs: the scenario run with the gains"
@@ -59,23 +58,13 @@ def _cards(tuned: Tuned) -> str:
     what = tuned.study.path.what
     least = tuned.margins(tuned.z)
     tight = max(least, key=lambda m: m.sensitivity)
-    cards = [
+    rows = [
         (f"RMS {what}", length(after.rms), f"before {length(before.rms)}"),
         (f"Largest {what}", length(after.max), f"before {length(before.max)}"),
         ("Largest |1/(1 + L)|", figure(tight.sensitivity), f"axis {tight.axis}, {tight.loop}"),
         ("Stopped by", _short(tuned), ""),
     ]
-    return '<div class="cards">{}</div>'.format(
-        "".join(
-            f'<div class="card"><div class="what">{what}</div>'
-            f'<div class="value"{_size(value)}>{value}</div><div class="where">{where}</div></div>'
-            for what, value, where in cards
-        )
-    )
-
-
-def _size(value: str) -> str:
-    return ' style="font-size:15px"' if len(value) > 16 else ""
+    return cards(rows)
 
 
 def _short(tuned: Tuned) -> str:
@@ -131,7 +120,9 @@ def _errors(tuned: Tuned) -> dict[str, Any]:
     for title, run, colour in runs:
         values = run.fmus.values
         kept = keep_peaks(np.nan_to_num(values), _BUCKETS)
-        data.append(_line(run.fmus.time[kept], values[kept] * factor, title, colour))
+        data.append(
+            plotted(run.fmus.time[kept], values[kept] * factor, title, colour, width=_WIDTH)
+        )
     what = tuned.study.path.what.capitalize()
     titles = {"xaxis": axis("Time [s]"), "yaxis": axis(f"{what} [{name}]")}
     return {"data": data, "layout": layout(320, **titles)}
@@ -147,22 +138,10 @@ def _step(tuned: Tuned) -> dict[str, Any]:
             periods = max(1, round(8.0 * max(lag, 1e-3) / _STEPS / part.period))
             answer = part.step(gains[k], periods, _STEPS, False).outputs[0]
             time = part.period * periods * 1e3 * np.arange(_STEPS, dtype=np.float64)
-            line = _line(time, answer, f"axis {k} {title}", AXES[(k - 1) % len(AXES)])
-            line["line"]["dash"] = dash
-            data.append(line)
+            color = AXES[(k - 1) % len(AXES)]
+            data.append(plotted(time, answer, f"axis {k} {title}", color, width=_WIDTH, dash=dash))
     titles = {"xaxis": axis("Time [ms]"), "yaxis": axis("Share of the step")}
     return {"data": data, "layout": layout(300, **titles)}
-
-
-def _line(x: Array, y: Array, name: str, colour: str) -> dict[str, Any]:
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": name,
-        "x": packed(x),
-        "y": packed(y),
-        "line": {"color": colour, "width": 1.6},
-    }
 
 
 def _limits_note(tuned: Tuned) -> str:
