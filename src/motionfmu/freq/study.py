@@ -67,22 +67,7 @@ class Asked:
 
 
 def study(axis: AxisModel, asked: Asked) -> list[LoopStudy]:
-    """Study the loops of an axis.
-
-    Parameters
-    ----------
-    axis : AxisModel
-    asked : Asked
-
-    Returns
-    -------
-    list of LoopStudy
-
-    Raises
-    ------
-    InputError
-        A name is wrong, there is no loop, or an FMU refused something.
-    """
+    """Study the loops of an axis."""
     if asked.kick is not None and not 0.0 < asked.kick < math.inf:
         raise InputError(f"kick = {asked.kick!r}: a number above 0 wanted")
     every = feedbacks(axis)

@@ -170,18 +170,7 @@ def _about(table: Path) -> dict[str, Any]:
 
 
 def read(table: Path) -> list[Row]:
-    """Read the rows of a study.
-
-    Parameters
-    ----------
-    table : Path
-        sweep.parquet.
-
-    Returns
-    -------
-    list of Row
-        In the order of the file.
-    """
+    """Read the rows of a sweep.parquet, in its order."""
     import pyarrow.parquet as pq
 
     names = _about(table)["results"]

@@ -50,24 +50,10 @@ class Origin:
 
 
 def read(path: Path, given: Mapping[str, Any]) -> tuple[Origin, Body, str, Path]:
-    """Read the keys of a study.
+    """Read a study file, or a scenario's sweep.toml if there is one.
 
-    Parameters
-    ----------
-    path : Path
-        A study's file; or a scenario, whose sweep.toml is taken if there is one.
-    given : mapping
-        Keys that count instead of what is written there.
-
-    Returns
-    -------
-    Origin, Body, str, Path
-        With what its first line says, and the folder of its file.
-
-    Raises
-    ------
-    InputError
-        Anything wrong with the form; one message with file, line and value.
+    With what its first line says, and its folder; keys given count instead of those written there.
+    A wrong form is an InputError with file, line and value.
     """
     if is_file(path / FILE):
         path = path / FILE

@@ -95,17 +95,7 @@ class Study(Family):
                 raise InputError(f"limits.loop.{name}: no loop there ({', '.join(known)})")
 
     def asked(self, loop: str) -> Margins:
-        """Margins asked of a loop.
-
-        Parameters
-        ----------
-        loop : str
-            Where it is opened.
-
-        Returns
-        -------
-        Margins
-        """
+        """Margins asked of the loop that is opened at an input."""
         return self.problem.limits.loop.get(loop, self.problem.limits.margins)
 
     def _limits(self) -> list[Limit]:
@@ -131,18 +121,7 @@ class Study(Family):
         return found
 
     def values(self, z: Array, slopes: bool = True) -> Values:
-        """Evaluate.
-
-        Parameters
-        ----------
-        z : ndarray, shape (n,)
-        slopes : bool
-            Also the derivatives; else they are zero.
-
-        Returns
-        -------
-        Values
-        """
+        """Cost and limits at shares (n,) of the variables' ranges, with slopes or zeros."""
         self.evaluations += 1
         with _BLAS.limit(limits=1, user_api="blas"):
             return self._values(z, slopes)
@@ -173,18 +152,8 @@ class Study(Family):
         )
 
     def motions(self, z: Array, plant: int = 0) -> dict[int, Array]:
-        """Positions of all axes on the path.
-
-        Parameters
-        ----------
-        z : ndarray, shape (n,)
-        plant : int
-
-        Returns
-        -------
-        dict
-            By axis, shape (count,), in the unit of the scenario's position output; from 0.
-        """
+        """Positions of all axes on the path."""
+        # By axis, shape (count,), in the unit of the scenario's position output; from 0.
         gains = self.gains(z)
         found = {}
         for k, part in self.parts[plant].items():
