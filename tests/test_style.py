@@ -39,6 +39,8 @@ def exported() -> dict[str, set[str]]:
 
 
 EXPORTED = exported()
+# A line under the title of a section: Parameters, Returns, Raises, Attributes, ...
+SECTION = re.compile(r"^-{3,}$", re.MULTILINE)
 
 
 def public_definitions(tree: ast.Module) -> list[ast.FunctionDef | ast.ClassDef]:
@@ -82,6 +84,12 @@ def complaints(text: str, exported: set[str]) -> list[str]:
             missing = [a for a in arguments if not re.search(rf"^[^\n]*\b{a}\b[^\n]*:", doc, re.M)]
             found += [f"{node.name}: parameter {a} not described" for a in missing]
     found += [
+        f"{node.name}: sections, but no user imports it"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and node not in full
+        if SECTION.search(ast.get_docstring(node) or "")
+    ]
+    found += [
         "import *"
         for n in ast.walk(tree)
         if isinstance(n, ast.ImportFrom) and any(a.name == "*" for a in n.names)
@@ -99,6 +107,12 @@ def test_the_description_check_can_fail() -> None:
     bad = '"""M."""\nfrom a import *\ndef f(a, b, c, d, e, g):\n    """Do it"""\n'
     assert len(complaints(bad, {"f"})) == 10
     assert len(complaints(bad, set())) == 3
+    section = '    """Do it.\n\n    Parameters\n    ----------\n    a : int\n    """\n'
+    told = [f"{name}: sections, but no user imports it" for name in ("f", "_g", "C")]
+    listed = "".join(f"{head}:\n{section}" for head in ("def f(a)", "def _g(a)", "class C"))
+    assert complaints(f'"""M."""\n{listed}', set()) == told
+    assert complaints(f'"""M."""\n{listed}', {"f"}) == told[1:]
+    assert complaints(f'"""M."""\n{listed}', {"f", "C"}) == [told[1]]
     wrapped = '"""M."""\ndef f():\n    """A sentence that goes\n    on."""\n'
     assert complaints(wrapped, set()) == []
     assert len(complaints(wrapped, {"f"})) == 1
