@@ -5,11 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A decimal period such as 1e-4 s is not exact in binary: off by far less than this. [clocks] */
-static const double PERIOD_TOLERANCE = 1e-6;
-
-/* Longest time that is sure to be exact: 2^53 clocks are 7 years. [clocks] */
-static const double CLOCKS_MAX = 9007199254740992.0;
+#include "fmu_period.h"
 
 static double clocks(double seconds)
 {
@@ -130,7 +126,7 @@ static int check_parameters(struct fmu *f)
     const struct vars *v = &f->s.v;
     const double bus = clocks(v->bus_period);
 
-    if (!(bus >= 1.0 && bus < CLOCKS_MAX && fabs(bus - round(bus)) < PERIOD_TOLERANCE)) {
+    if (!fmu_is_period(bus)) {
         return fmu_fail(f, "bus_period = %.17g s is not a whole number of %d ns clocks",
                         v->bus_period, CLOCK_NS);
     }
@@ -143,7 +139,7 @@ static int check_parameters(struct fmu *f)
                         "no cycle", PC_PCL + 1, v->module_offset[PC_PCL]);
     }
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
-        if (!(clocks(times[i].value) < CLOCKS_MAX)) {
+        if (!(clocks(times[i].value) < FMU_TICKS_MAX)) {
             return fmu_fail(f, "%s = %g s is too long", times[i].name, times[i].value);
         }
     }
@@ -211,7 +207,7 @@ static struct pc_config config_of(const struct vars *v)
         .bus = (int64_t)round(clocks(v->bus_period)),
         .ipo = (int64_t)round(clocks(v->ipo_period)), .ipo_event = v->ipo_event,
         .interpreter = cycle_of(v->interpreter_period), .process = cycle_of(v->process_period),
-        .start = (int64_t)ceil(clocks(v->start_delay) - PERIOD_TOLERANCE),
+        .start = (int64_t)ceil(clocks(v->start_delay) - FMU_PERIOD_TOLERANCE),
         .latency = clocks(v->irq_latency), .jitter = clocks(v->irq_jitter), .seed = v->seed,
         .min_stock = v->min_stock, .batch = v->batch,
         .block_delete = v->block_delete, .optional_stop = v->optional_stop,

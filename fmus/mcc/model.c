@@ -246,7 +246,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     struct model *m = &f->s.m;
 
     (void)t0;
-    if (!(fabs(f->s.v.card_irq_clock) < CLOCKS_MAX)) {
+    if (!(fabs(f->s.v.card_irq_clock) < FMU_TICKS_MAX)) {
         return fmu_fail(f, "card_irq_clock = %g is not a clock", f->s.v.card_irq_clock);
     }
     for (;;) {

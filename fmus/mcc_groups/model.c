@@ -17,14 +17,9 @@ struct model {
 
 #define MODEL_BLOB
 #include "fmi_model.h"
+#include "fmu_period.h"
 #include "program_fault.h"
 #include "dac_axes.h"
-
-/* A decimal period such as 1e-4 s is not exact in binary: off by far less than this. [clocks] */
-static const double PERIOD_TOLERANCE = 1e-6;
-
-/* Longest time that is sure to be exact: 2^53 clocks are 7 years. [clocks] */
-static const double CLOCKS_MAX = 9007199254740992.0;
 
 static double clocks(double seconds)
 {
@@ -98,7 +93,7 @@ static int check_parameters(struct fmu *f)
     const struct vars *v = &f->s.v;
     const double bus = clocks(v->bus_period);
 
-    if (!(bus >= 1.0 && fabs(bus - round(bus)) < PERIOD_TOLERANCE)) {
+    if (!fmu_is_period(bus)) {
         return fmu_fail(f, "bus_period = %.17g s is not a whole number of %d ns clocks",
                         v->bus_period, CLOCK_NS);
     }
@@ -178,7 +173,7 @@ static int create(struct fmu *f, int n)
         char name[] = "group1_program";
         name[5] = (char)('1' + n);
         group_program(&m->groups, code,
-                      (int64_t)ceil(clocks(v->start_delay[n]) - PERIOD_TOLERANCE));
+                      (int64_t)ceil(clocks(v->start_delay[n]) - FMU_PERIOD_TOLERANCE));
         task_check(mcc, &source, &r);
         if (r.fault != FAULT_NONE) {
             return refuse_program(f, name, w.program, programs->of[n], &r);
@@ -344,7 +339,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     struct model *m = &f->s.m;
 
     (void)t0;
-    if (!(fabs(v->card1_irq_clock) < CLOCKS_MAX && fabs(v->card2_irq_clock) < CLOCKS_MAX)) {
+    if (!(fabs(v->card1_irq_clock) < FMU_TICKS_MAX && fabs(v->card2_irq_clock) < FMU_TICKS_MAX)) {
         return fmu_fail(f, "card1_irq_clock = %g, card2_irq_clock = %g: no clock",
                         v->card1_irq_clock, v->card2_irq_clock);
     }

@@ -14,12 +14,7 @@ struct model {
 };
 
 #include "fmi_model.h"
-
-/* A decimal period such as 1e-4 s is not exact in binary: off by far less than this [ticks]. */
-#define PERIOD_TOLERANCE 1e-6
-
-/* Ticks beyond this are not whole numbers in a double any more (2^53). */
-#define TICKS_MAX 9007199254740992.0
+#include "fmu_period.h"
 
 static struct drive_config config(const struct vars *v, int i)
 {
@@ -60,7 +55,7 @@ static int model_start(struct fmu *f)
     struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
     double ticks = v->period * (1e9 / FMU_TICK_NS);
-    if (!(ticks >= 1.0 && ticks < TICKS_MAX && fabs(ticks - round(ticks)) < PERIOD_TOLERANCE))
+    if (!fmu_is_period(ticks))
         return fmu_fail(f, "period = %.17g s: not a whole number of %d ns", v->period,
                         FMU_TICK_NS);
     *m = (struct model){.period = (int64_t)round(ticks) * FMU_TICK_NS};

@@ -6,9 +6,10 @@
 #include <stdint.h>
 
 #include "card.h"
+#include "link.h"
 
 enum {
-    BUS_FRAMES = 16,    /* frames in one transaction */
+    BUS_FRAMES = LINK_FRAMES,   /* in one transaction */
     BUS_DEPTH = 8,      /* transactions on their way; the host sends one per bus period and at most
                            two periods ahead, so two would do */
 };

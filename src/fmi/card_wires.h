@@ -4,16 +4,9 @@
 #ifndef CARD_WIRES_H
 #define CARD_WIRES_H
 
-#include <math.h>
-
+#include "fmu_period.h"
 #include "mailbox.h"
 #include "status.h"
-
-/* A decimal period such as 1e-4 s is not exact in binary: off by far less than this [clocks]. */
-#define PERIOD_TOLERANCE 1e-6
-
-/* Clocks beyond this are not whole numbers in a double any more (2^53). */
-#define CLOCK_MAX 9007199254740992.0
 
 /* A member of a struct link_host from the input of its name. */
 #define WIRES_READ(type, name, elements) LINK_CARRY(link.name, v->host_##name)
@@ -22,7 +15,7 @@
 static int64_t wires_period(struct fmu *f)
 {
     const double period = f->s.v.loop_period, clocks = period * EPCIO_CLOCK_HZ;
-    if (clocks >= 1.0 && clocks < CLOCK_MAX && fabs(clocks - round(clocks)) < PERIOD_TOLERANCE)
+    if (fmu_is_period(clocks))
         return (int64_t)round(clocks);
     fmu_fail(f, "loop_period = %.17g s: not a whole number of 25 ns clocks", period);
     return 0;
@@ -65,7 +58,7 @@ static int wires_command(struct fmu *f, struct bus_write *w)
     struct link_host link;
     if (v->host_cmd_seq == f->s.m.taken.cmd_seq)
         return 0;
-    if (!(fabs(v->host_cmd_clock) < CLOCK_MAX))
+    if (!(fabs(v->host_cmd_clock) < FMU_TICKS_MAX))
         return fmu_fail(f, "host_cmd_clock = %g: not a clock", v->host_cmd_clock);
     LINK_WRITE(WIRES_READ)
     return mailbox_write(&f->s.m.taken, &link, w);

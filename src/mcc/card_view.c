@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-_Static_assert((int)LINK_AXES == (int)AXES && (int)LINK_PAGES == (int)ISR_PAGES &&
-               (int)LINK_FRAMES == (int)PCL_FRAMES, "the library is that of the link");
+_Static_assert((int)LINK_AXES == (int)AXES && (int)LINK_PAGES == (int)ISR_PAGES,
+               "the library is that of the link");
 
 struct pcl_card card_of(const struct pcl *p, const struct link_card *link)
 {

@@ -70,17 +70,6 @@ int32_t pcl_release(struct mcc *m, const struct pcl_part *part, int32_t taken)
     return part->late ? taken - points : 0;
 }
 
-void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t now,
-              int64_t latency)
-{
-    const int32_t taken = pcl_acknowledged(p, card);
-
-    if (taken >= 0) {
-        p->starved += pcl_release(m, &p->part, taken);
-    }
-    pcl_notice(p, card, now, latency);
-}
-
 void pcl_notice(struct pcl *p, const struct pcl_card *card, int64_t now, int64_t latency)
 {
     if (pcl_interrupt(p, card)) {

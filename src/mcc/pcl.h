@@ -10,10 +10,11 @@
 #define PCL_H
 
 #include "isr.h"
+#include "link.h"
 #include "task.h"
 
 enum {
-    PCL_FRAMES = 16,
+    PCL_FRAMES = LINK_FRAMES,
     PCL_FIFO = 63,
     PCL_REFUSALS = 3    /* wholly refused transactions in a row that no full FIFO explains */
 };
@@ -73,18 +74,14 @@ static inline int32_t pcl_mask(const struct pcl *p, int page)
     return p->isr.config.mask[page] | (page == ISR_FIFO_PAGE ? p->mask : 0);
 }
 
-/* Look at the card at bus instant now [clock]; an interrupt seen now has this latency [clocks]. */
-void pcl_look(struct pcl *p, struct mcc *m, const struct pcl_card *card, int64_t now,
-              int64_t latency);
-
 /* The emergency stop acts, or no longer: while it does nothing is written, a transaction under way
  * is of no account; then the empty FIFO is primed as at the start. */
 void pcl_halt(struct pcl *p, bool halted);
 
-/* True if an interrupt has come that pcl_look has not seen. */
+/* True if an interrupt has come that pcl_notice has not seen. */
 bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card);
 
-/* The same in parts, for a card of several libraries. Frames taken of the transaction that the card
+/* A look at the card, which several libraries may share. Frames taken of the transaction that the card
  * has acknowledged, -1 if it has none; give each library its part back; then look at the rest. */
 int32_t pcl_acknowledged(struct pcl *p, const struct pcl_card *card);
 void pcl_notice(struct pcl *p, const struct pcl_card *card, int64_t now, int64_t latency);

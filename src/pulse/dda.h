@@ -28,7 +28,8 @@ struct dda {
 int64_t dda_time(int32_t ticks, int32_t divider);
 
 /* Divider whose DDA time is nearest to the wanted one [clocks], within 1 .. largest; the longer
- * time if two are as near, which asks less of the host. dda_time() of it is what the hardware can do. */
+ * time if two are as near, which asks less of the host. dda_time() of it is what the hardware can
+ * do. */
 int32_t dda_divider(int32_t ticks, double wanted, int32_t largest);
 
 /* Largest command: a pulse less than there are ticks, forward or backward [pulses]. */

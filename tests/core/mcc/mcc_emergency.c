@@ -358,7 +358,8 @@ static void halted(void)
     CHECK_EQ(p->refusals, 0);
     queue_clear(&pc.mcc.queue);
     seen.cmd_ack = p->seq;
-    pcl_look(p, &pc.mcc, &seen, b.now, 0);
+    p->starved += pcl_release(&pc.mcc, &p->part, pcl_acknowledged(p, &seen));
+    pcl_notice(p, &seen, b.now, 0);
     CHECK_EQ(pc.mcc.queue.count, 0);
     CHECK_EQ(p->starved, 0);
     CHECK(!p->open && p->pending == 0);
