@@ -81,8 +81,9 @@ void pcl_halt(struct pcl *p, bool halted);
 /* True if an interrupt has come that pcl_notice has not seen. */
 bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card);
 
-/* A look at the card, which several libraries may share. Frames taken of the transaction that the card
- * has acknowledged, -1 if it has none; give each library its part back; then look at the rest. */
+/* A look at the card, which several libraries may share. Frames taken of the transaction that the
+ * card has acknowledged, -1 if it has none; give each library its part back; then look at the
+ * rest. */
 int32_t pcl_acknowledged(struct pcl *p, const struct pcl_card *card);
 void pcl_notice(struct pcl *p, const struct pcl_card *card, int64_t now, int64_t latency);
 
