@@ -31,7 +31,7 @@ bench: build                    ## speed, as ratios measured in one run
 SECONDS ?= 120
 fuzz: .venv/installed           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each
 	tests/fuzz/run.sh $(SECONDS)
-	MOTIONFMU_FUZZ=$(SECONDS) $(BIN)/python -m pytest -n 2 tests/test_fuzz_readers.py
+	MOTIONFMU_FUZZ=$(SECONDS) $(BIN)/python -m pytest -n 2 tests/house/test_fuzz_readers.py
 
 clean:
 	rm -rf build results

@@ -1,5 +1,5 @@
 /* S-curve: limits, joints and ends of random plans, symmetries, closed forms, unusable input.
- * That no plan takes longer than it must is tested against ruckig, in tests/test_scurve.py. */
+ * That no plan takes longer than it must is tested against ruckig, in test_scurve.py. */
 #include <stdbool.h>
 #include <string.h>
 

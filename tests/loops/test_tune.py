@@ -9,8 +9,8 @@ import control
 import numpy as np
 import pytest
 from conftest import ROOT
+from console import command
 from linear_rigs import DEMO, THEORY, kp_of
-from test_cli import command
 
 import motionfmu
 from motionfmu import linear

@@ -1,29 +1,16 @@
 """The console command and the library as a user meets them."""
 
 import json
-import subprocess
-import sys
 from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import ROOT
+from console import command
 
 import motionfmu
 from motionfmu.report.outcome import save
-
-
-def command(*arguments: object) -> subprocess.CompletedProcess[str]:
-    line = [sys.executable, "-m", "motionfmu", *map(str, arguments)]
-    env = {"PYTHONPATH": str(ROOT / "src"), "COLUMNS": "160"}
-    return subprocess.run(line, capture_output=True, text=True, cwd=ROOT, env=env | _environment())
-
-
-def _environment() -> dict[str, str]:
-    import os
-
-    return {k: v for k, v in os.environ.items() if k in ("PATH", "HOME", "MOTIONFMU_FMUS")}
 
 
 @pytest.fixture(scope="module")

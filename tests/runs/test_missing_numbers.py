@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
+from console import command
 from contour_runs import Machine, Program, run_along
-from test_cli import command
 
 import motionfmu
 from motionfmu.contour import analyse

@@ -1,4 +1,4 @@
-"""The C cores: who uses whom. `python tests/test_cores.py` draws it."""
+"""The C cores: who uses whom. `python tests/house/test_cores.py` draws it."""
 
 import graphlib
 import re
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "src"))
 
 from motionfmu.fmu import cores  # noqa: E402

@@ -4,6 +4,7 @@ import ast
 import graphlib
 import re
 import subprocess
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from conftest import ROOT
 
 PACKAGE = ROOT / "src/motionfmu"
+FILES_MAX = 40
 Graph = dict[str, set[str]]
 
 
@@ -94,9 +96,18 @@ def test_a_circle_and_an_import_of_what_is_later_are_found(line: str) -> None:
     assert against(found, ["a", "b"]) == ["p.a imports p.b"]
 
 
+def listed() -> list[str]:
+    """Names of all files that belong to the project."""
+    return subprocess.run(
+        ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+
+
+def test_no_folder_is_too_full_to_be_read() -> None:
+    count = Counter(str(Path(name).parent) for name in listed())
+    assert {folder: n for folder, n in count.items() if n > FILES_MAX} == {}
+
+
 def test_the_root_holds_the_folders_it_was_designed_with() -> None:
-    listed = subprocess.run(
-        ["git", "ls-files", "*/*"], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout.split("\n")
-    folders = {n.split("/")[0] for n in listed if n and not n.startswith(".")}
+    folders = {n.split("/")[0] for n in listed() if "/" in n and not n.startswith(".")}
     assert folders == {"fmus", "modelica", "scenarios", "src", "tests"}

@@ -72,7 +72,7 @@ def test_grids_that_do_not_divide_each_other_are_one_warning() -> None:
 
 
 def test_a_step_longer_than_both_ends_of_a_wire() -> None:
-    """tests/test_wire_delay.py has the delays: such a step makes every sample as long as itself."""
+    """test_wire_delay.py has the delays: such a step makes every sample as long as itself."""
     (only,) = told({}, step=2e-4)
     assert only.startswith("the step, 0.0002 s, is longer than card.loop_period = 0.0001 s, ")
     assert "mcc.bus_period = 0.0001 s" in only and only.count("0.0002 s") == 2

@@ -10,7 +10,7 @@ itself holds:
 - frames sent = frames taken + refused + on their way;
 - a source that fired after the look of the host that was acknowledged last has its flag up.
 
-More: CARD_EXAMPLES=5000 CARD_STEPS=200 .venv/bin/python -m pytest tests/test_card_properties.py
+More: CARD_EXAMPLES=5000 CARD_STEPS=200 pytest tests/cards/test_card_properties.py
 """
 
 import ctypes

@@ -201,7 +201,15 @@ def test_every_core_is_checked_for_purity() -> None:
 
 def test_generated_and_private_things_are_not_committed() -> None:
     found = subprocess.run(
-        ["git", "grep", "-nIE", "(/root/|/work/|TODO|FIXME)", "--", ".", ":!tests/test_style.py"],
+        [
+            "git",
+            "grep",
+            "-nIE",
+            "(/root/|/work/|TODO|FIXME)",
+            "--",
+            ".",
+            ":!tests/house/test_style.py",
+        ],
         cwd=ROOT,
         capture_output=True,
         text=True,
