@@ -109,6 +109,9 @@ void manual_use(struct mcc *m, int axis, enum manual_use use)
         memset(&m->manual, 0, sizeof m->manual);
         const struct mechanism machine = machine_mechanism(&m->machine);
         mover_order(&m->mover, &machine);
+        if (m->homing.state == HOMING_RUNS) {
+            m->homing.state = HOMING_NEVER;     /* an abort has dropped that search */
+        }
     }
     m->manual.axis[axis].use = use;
 }

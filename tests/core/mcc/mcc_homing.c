@@ -270,6 +270,17 @@ static void hold_and_abort(void)
     CHECK_EQ(MCC_check_homef(&pc.mcc), MCC_HOME_COMMAND_NOTCALLED);
     CHECK(MCC_check_stop(&pc.mcc) && pc.mcc.error == 0);
     CHECK_NEAR(pc.mcc.end[0] * 1000.0, room.motor[0].now + 20000, 0.5);
+    /* A jog does not go on with the search that was dropped. */
+    const int32_t from = room.motor[0].now;
+    CHECK_EQ(MCC_jog_s(&pc.mcc, 0, -500), MCC_NO_ERR);
+    CHECK_EQ(MCC_jog_s(&pc.mcc, 1, 300), MCC_NO_ERR);
+    CHECK_EQ(MCC_check_homef(&pc.mcc), MCC_HOME_COMMAND_NOTCALLED);
+    for (int k = 0; k < 5000; k++) {
+        period(NULL);
+    }
+    CHECK_EQ(room.motor[0].now, from - 500);
+    CHECK_EQ(room.motor[1].now, -21700 + 300);
+    CHECK(MCC_check_stop(&pc.mcc) && pc.mcc.error == 0);
 }
 
 /* An abort before the search of home_first or within it drops search and program for good: the axes
