@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "epcio_damage.h"
+#include "epcio.h"
 #include "host.h"
 #include "register_map.h"
 #include "registers.h"

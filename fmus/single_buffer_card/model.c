@@ -1,8 +1,8 @@
 /* The single-buffer card on the wires of a co-simulation: bus grid, registers, mailboxes. */
 #include <string.h>
 
-#include "epcio_damage.h"
 #include "mailbox.h"
+#include "single_buffer.h"
 #include "vars.h"
 
 struct model {
@@ -34,7 +34,7 @@ static int model_start(struct fmu *f)
 static const char *model_check(const struct state *s)
 {
     const char *what = wires_check(s);
-    return what ? what : epcio_damage_single_buffer(&s->m.card);
+    return what ? what : single_buffer_damage(&s->m.card);
 }
 
 static int read_host(struct fmu *f)

@@ -1,4 +1,5 @@
-#include "epcio_damage.h"
+/* epcio_damage - whether a state that comes back from outside can be worked with. */
+#include "epcio.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -7,30 +8,6 @@
 static bool within(int64_t x, int64_t low, int64_t high)
 {
     return x >= low && x <= high;
-}
-
-/* A power of two. */
-static bool ticks_good(int32_t ticks)
-{
-    return within(ticks, 1 << EPCIO_LENGTH_MIN, 1 << EPCIO_LENGTH_MAX) && !(ticks & (ticks - 1));
-}
-
-/* `ticks`: it runs, so that its boundary lies ahead. */
-static bool dda_good(const struct dda *d, bool ticks, int64_t clock)
-{
-    bool good = dda_sound(d, EPCIO_AXES) && ticks_good(d->ticks) && ticks_good(d->next_ticks) &&
-                within(d->divider, 1, EPCIO_DIVIDER_MAX) &&
-                within(d->next_divider, 1, EPCIO_DIVIDER_MAX) && within(d->start, 0, clock) &&
-                within(d->stop, 0, clock);
-    return good && (!ticks || dda_boundary(d) > clock);
-}
-
-static bool bus_good(const struct bus *b)
-{
-    bool good = within(b->head, 0, BUS_DEPTH - 1) && within(b->used, 0, BUS_DEPTH);
-    for (int i = 0; i < BUS_DEPTH && good; i++)
-        good = within(b->slot[i].count, 0, BUS_FRAMES);
-    return good;
 }
 
 /* All edges up to the latest sample have been worked off. */
@@ -73,25 +50,17 @@ const char *epcio_damage(const struct epcio *card, int64_t period)
     struct epcio fresh;
     if (epcio_reset(&fresh, &card->config) != EPCIO_OK)
         return "the configuration of the card";
-    if (!clocks_good(card) || !dda_good(&card->dda, card->dda.run, card->clock))
+    if (!clocks_good(card) || !card_dda_sound(&card->dda, card->dda.run, card->clock))
         return "a time of the card or its DDA";
     for (int i = 0; i < EPCIO_AXES; i++)
         if (card->fifo[i].depth != EPCIO_FIFO_DEPTH ||
             !within(card->fifo[i].head, 0, EPCIO_FIFO_DEPTH - 1) ||
             !within(card->fifo[i].stock, 0, EPCIO_FIFO_DEPTH))
             return "a place or the stock of a FIFO";
-    if (!bus_good(&card->bus))
+    if (!bus_sound(&card->bus))
         return "a transaction on its way";
     for (int i = 0; i < EPCIO_ENCODERS; i++)
         if (!encoder_good(&card->encoder[i], card->clock, period))
             return "an encoder";
     return blocks_good(card) ? NULL : "the ADC, local or remote I/O";
-}
-
-const char *epcio_damage_single_buffer(const struct single_buffer *card)
-{
-    const bool ticks = card->config.latched || card->running;
-    if (card->clock < 0 || !dda_good(&card->dda, ticks && card->dda.run, card->clock))
-        return "a time of the card or its DDA";
-    return bus_good(&card->bus) ? NULL : "a transaction on its way";
 }

@@ -92,4 +92,7 @@ enum epcio_module {
 /* Reset a module; what has been counted (frames, pulses, underflows) stays. */
 enum epcio_status epcio_reset_module(struct epcio *card, enum epcio_module module);
 
+/* What any status means, those of blocks too, for messages. */
+const char *epcio_status_text(enum epcio_status status);
+
 #endif

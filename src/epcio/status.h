@@ -49,7 +49,7 @@ struct epcio_refusal {
     int32_t command;                /* [pulses] */
 };
 
-/* What a status means, for messages. */
-const char *epcio_status_text(enum epcio_status status);
+/* What a status of the card itself, of no block, means, for messages. */
+const char *card_status_text(enum epcio_status status);
 
 #endif

@@ -39,13 +39,13 @@ static int wires_dda(struct fmu *f, enum epcio_status s)
     const bool waits = s == EPCIO_STOCK_TOO_LARGE || s == EPCIO_COMMAND_WAITS;
     if (s == EPCIO_BAD_LENGTH)
         return fmu_fail(f, "host_dda_length = %d: %s", (int)v->host_dda_length,
-                        epcio_status_text(s));
+                        card_status_text(s));
     if (s == EPCIO_BAD_DIVIDER)
         return fmu_fail(f, "host_dda_divider = %d: %s", (int)v->host_dda_divider,
-                        epcio_status_text(s));
+                        card_status_text(s));
     if (waits && m->warned_length != v->host_dda_length)
         fmu_warn(f, "host_dda_length = %d waits: %s", (int)v->host_dda_length,
-                 epcio_status_text(s));
+                 card_status_text(s));
     m->warned_length = waits ? v->host_dda_length : 0;
     return 0;
 }
@@ -68,9 +68,9 @@ static int wires_command(struct fmu *f, struct bus_write *w)
 static int wires_sent(struct fmu *f, const struct bus_write *w, enum epcio_status s)
 {
     if (s == EPCIO_BAD_COUNT)
-        return fmu_fail(f, "host_cmd_count = %d: %s", (int)w->count, epcio_status_text(s));
+        return fmu_fail(f, "host_cmd_count = %d: %s", (int)w->count, card_status_text(s));
     if (s != EPCIO_OK)
-        return fmu_fail(f, "host_cmd_seq = %d: %s", (int)w->seq, epcio_status_text(s));
+        return fmu_fail(f, "host_cmd_seq = %d: %s", (int)w->seq, card_status_text(s));
     f->s.m.taken.cmd_seq = w->seq;
     return 0;
 }
@@ -84,7 +84,7 @@ static void wires_refused(struct fmu *f)
         return;
     fmu_warn(f, "%d frames refused up to transaction %d; axis %d, command %d: %s",
              (int)(m->card.frames_refused - m->warned_frames), (int)m->card.cmd_ack,
-             (int)r->axis + 1, (int)r->command, epcio_status_text(r->status));
+             (int)r->axis + 1, (int)r->command, card_status_text(r->status));
     m->warned_frames = m->card.frames_refused;
 }
 

@@ -9,6 +9,7 @@ from xml.etree import ElementTree as ET
 
 import fmpy
 import pytest
+from conftest import ROOT
 from fmi_tools import unpacked
 from fmpy.validation import validate_fmu
 
@@ -104,3 +105,20 @@ def test_documents_and_sources_are_packed(name: str, fmi: int) -> None:
     assert "documentation/README.md" in names
     assert "sources/fmu_main.c" in names
     assert ("sources/buildDescription.xml" in names) == (fmi == 3)
+
+
+def symbols(file: Path) -> set[str]:
+    """What is defined in a library."""
+    listing = subprocess.run(["nm", "--defined-only", file], capture_output=True, text=True)
+    return {line.split()[-1] for line in listing.stdout.splitlines() if len(line.split()) == 3}
+
+
+@every_fmu
+def test_an_archive_carries_little_that_its_library_is_not_linked_from(name: str) -> None:
+    library = symbols(ROOT / f"build/lib/{name}_fmi3.so")
+    with zipfile.ZipFile(fmu_path(name, 3)) as archive:
+        packed = {Path(n).name: archive.read(n) for n in archive.namelist() if n.endswith(".c")}
+    files = [f for f in packed if f not in ("model.c", "fmu_main.c", "vars.c")]
+    begins = re.compile(r"^[a-zA-Z][\w \*]*?\b(\w+)\([^;{]*\)\n\{", re.MULTILINE)
+    spare = [f for f in files if not set(begins.findall(packed[f].decode())) & library]
+    assert len(spare) <= 4, spare

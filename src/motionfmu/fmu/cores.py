@@ -33,6 +33,19 @@ def included(file: Path) -> list[str]:
     return _INCLUDE.findall(file.read_text())
 
 
+def reached(files: Iterable[Path], roots: Iterable[Path]) -> list[Path]:
+    """Those files that C files include, directly or not."""
+    known = {f.name: f for f in files}
+    found: set[Path] = set()
+    waiting = list(roots)
+    while waiting:
+        names = included(waiting.pop())
+        new = {known[name] for name in names if name in known} - found
+        found |= new
+        waiting += new
+    return sorted(found)
+
+
 def needed(source: Path, names: Iterable[str], roots: Iterable[Path]) -> list[Path]:
     """Files of the cores that C files need, headers and sources.
 

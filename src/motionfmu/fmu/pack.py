@@ -86,11 +86,10 @@ def _packed_sources(fmu: Path, out: Path, fmi: int) -> dict[str, bytes]:
     import fmpy
 
     d = fmu_toml.load(fmu / "fmu.toml")
-    folders = [SOURCE / "fmi", fmu]
-    folders += [SOURCE / "plant"] if is_modelica(fmu) else []
+    folders = [fmu, SOURCE / "plant"] if is_modelica(fmu) else [fmu]
     files = [f for folder in folders for f in sorted(folder.glob("*.[ch]"))]
-    files += [*sorted((SOURCE / "fmi").glob("*.inc")), *_core_files(fmu, d)]
     files += [*sorted(out.glob("*.[ch]")), out / f"fmi{fmi}/fmu_main.c"]
+    files += [*cores.reached((SOURCE / "fmi").iterdir(), files), *_core_files(fmu, d)]
     headers = Path(fmpy.__file__).parent / "c-code"
     files += sorted(headers.glob(f"fmi{fmi}*.h"))
     packed = {f.name: f.read_bytes() for f in files}
