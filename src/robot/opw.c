@@ -1,0 +1,196 @@
+#include "opw.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double TURN = 6.283185307179586;
+
+/* A cosine may exceed 1 by rounding at the edge of reach. */
+static const double EDGE = 1e-12;
+
+/* Sine of joint 5 below which axes 4 and 6 are in line: rounding has the rest. */
+static const double IN_LINE = 1e-9;
+
+static void inner(const struct opw *o, const double joint[OPW_JOINTS], double th[OPW_JOINTS])
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        th[i] = o->sign[i] * joint[i] - o->offset[i];
+    }
+}
+
+/* Rz(a) Ry(p): columns are the axes of the forearm's frame. */
+static void forearm(double a, double p, double m[3][3])
+{
+    const double ca = cos(a), sa = sin(a), cp = cos(p), sp = sin(p);
+    const double turn[3][3] = { { ca * cp, -sa, ca * sp }, { sa * cp, ca, sa * sp },
+                                { -sp, 0.0, cp } };
+    memcpy(m, turn, sizeof turn);
+}
+
+static void product(const double a[3][3], const double b[3][3], double c[3][3])
+{
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            c[i][k] = a[i][0] * b[0][k] + a[i][1] * b[1][k] + a[i][2] * b[2][k];
+        }
+    }
+}
+
+/* Rz(th4) Ry(th5) Rz(th6). */
+static void wrist(const double th[OPW_JOINTS], double m[3][3])
+{
+    const double c = cos(th[5]), s = sin(th[5]);
+    const double last[3][3] = { { c, -s, 0.0 }, { s, c, 0.0 }, { 0.0, 0.0, 1.0 } };
+    double first[3][3];
+    forearm(th[3], th[4], first);
+    product((const double (*)[3])first, last, m);
+}
+
+/* Wrist centre in the plane of the arm: from axis 1, from axis 2 up. */
+static void centre(const struct opw *o, const double th[OPW_JOINTS], double *x, double *z)
+{
+    const double k = hypot(o->a2, o->c3), p = th[1] + th[2] + atan2(o->a2, o->c3);
+    *x = o->c2 * sin(th[1]) + k * sin(p) + o->a1;
+    *z = o->c2 * cos(th[1]) + k * cos(p);
+}
+
+void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw_pose *pose)
+{
+    double th[OPW_JOINTS], arm[3][3], hand[3][3], x, z;
+
+    inner(o, joint, th);
+    forearm(th[0], th[1] + th[2], arm);
+    wrist(th, hand);
+    product((const double (*)[3])arm, (const double (*)[3])hand, pose->turn);
+    centre(o, th, &x, &z);
+    const double c = cos(th[0]), s = sin(th[0]);
+    pose->at[0] = x * c - o->b * s + o->c4 * pose->turn[0][2];
+    pose->at[1] = x * s + o->b * c + o->c4 * pose->turn[1][2];
+    pose->at[2] = z + o->c1 + o->c4 * pose->turn[2][2];
+}
+
+/* acos of what may be out by rounding; false beyond that, and for what is no number. */
+static bool angle(double cosine, double *a)
+{
+    *a = acos(fmax(-1.0, fmin(1.0, cosine)));
+    return fabs(cosine) <= 1.0 + EDGE;
+}
+
+/* Joints 4 to 6 of the wrist by its rotation: one way, and flipped. */
+static void solve_wrist(const double w[3][3], double near, double th[2][OPW_JOINTS])
+{
+    const double sine = hypot(w[0][2], w[1][2]);
+    double first = atan2(w[1][2], w[0][2]), last = atan2(w[2][1], -w[2][0]);
+
+    if (sine < IN_LINE) {
+        first = near;
+        last = w[2][2] > 0.0 ? atan2(w[1][0], w[0][0]) - near
+                             : near - atan2(-w[0][1], -w[0][0]);
+    }
+    th[0][3] = first;
+    th[0][4] = atan2(sine, w[2][2]);
+    th[0][5] = last;
+    th[1][3] = sine < IN_LINE ? first : first + 0.5 * TURN;
+    th[1][4] = sine < IN_LINE ? th[0][4] : -th[0][4];
+    th[1][5] = sine < IN_LINE ? last : last - 0.5 * TURN;
+}
+
+/* Joints of the maker, within half a turn of 0. */
+static void outer(const struct opw *o, const double th[OPW_JOINTS], double joint[OPW_JOINTS])
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        const double q = o->sign[i] * (th[i] + o->offset[i]);
+        joint[i] = q - TURN * round(q / TURN);
+    }
+}
+
+uint32_t opw_inverse(const struct opw *o, const struct opw_pose *pose,
+                     const double near[OPW_JOINTS], double joint[OPW_BRANCHES][OPW_JOINTS])
+{
+    const double x = pose->at[0] - o->c4 * pose->turn[0][2];
+    const double y = pose->at[1] - o->c4 * pose->turn[1][2];
+    const double z = pose->at[2] - o->c4 * pose->turn[2][2] - o->c1;
+    const double reach = x * x + y * y - o->b * o->b;
+    const double k2 = o->a2 * o->a2 + o->c3 * o->c3, k = sqrt(k2), psi = atan2(o->a2, o->c3);
+    double known[OPW_JOINTS];
+    uint32_t there = 0;
+
+    if (reach < 0.0) {
+        return 0;       /* within the lateral offset of axis 1 */
+    }
+    inner(o, near, known);
+    const double out = sqrt(reach), aside = atan2(o->b, out), way = atan2(y, x);
+    for (int branch = 0; branch < OPW_BRANCHES; branch += 2) {
+        const bool back = branch & OPW_BACK, elbow = branch & OPW_ELBOW;
+        const double n = (back ? -out : out) - o->a1;   /* wrist centre from axis 2, along x */
+        const double s2 = n * n + z * z, s = sqrt(s2);
+        double th[2][OPW_JOINTS], arm[3][3], w[3][3], at2, at3;
+        if (!angle((s2 + o->c2 * o->c2 - k2) / (2.0 * s * o->c2), &at2) ||
+            !angle((s2 - o->c2 * o->c2 - k2) / (2.0 * o->c2 * k), &at3)) {
+            continue;
+        }
+        const double first = back ? way + aside - 0.5 * TURN : way - aside;
+        th[0][0] = th[1][0] = first;
+        th[0][1] = th[1][1] = atan2(n, z) + (elbow ? at2 : -at2);
+        th[0][2] = th[1][2] = (elbow ? -at3 : at3) - psi;
+        forearm(first, th[0][1] + th[0][2], arm);
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++) {
+                w[i][j] = arm[0][i] * pose->turn[0][j] + arm[1][i] * pose->turn[1][j] +
+                          arm[2][i] * pose->turn[2][j];
+            }
+        }
+        solve_wrist((const double (*)[3])w, known[3], th);
+        outer(o, th[0], joint[branch]);
+        outer(o, th[1], joint[branch + OPW_FLIP]);
+        there |= 3u << branch;
+    }
+    return there;
+}
+
+int opw_nearest(uint32_t branches, const double all[OPW_BRANCHES][OPW_JOINTS],
+                const double near[OPW_JOINTS], const double low[OPW_JOINTS],
+                const double high[OPW_JOINTS], double joint[OPW_JOINTS])
+{
+    double least = INFINITY;
+    int best = -1;
+
+    for (int n = 0; n < OPW_BRANCHES; n++) {
+        double q[OPW_JOINTS], most = 0.0;
+        bool within = branches >> n & 1;
+        for (int i = 0; i < OPW_JOINTS && within; i++) {
+            double turns = round((near[i] - all[n][i]) / TURN);
+            const double up = ceil((low[i] - all[n][i]) / TURN);
+            const double down = floor((high[i] - all[n][i]) / TURN);
+            within = up <= down;
+            turns = fmax(up, fmin(down, turns));
+            q[i] = all[n][i] + TURN * turns;
+            most = fmax(most, fabs(q[i] - near[i]));
+        }
+        if (within && most < least) {
+            least = most;
+            best = n;
+            memcpy(joint, q, sizeof q);
+        }
+    }
+    return best;
+}
+
+void opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double factor[3])
+{
+    double th[OPW_JOINTS], z;
+
+    inner(o, joint, th);
+    centre(o, th, &factor[0], &z);
+    factor[1] = sin(th[2] + atan2(o->a2, o->c3));
+    factor[2] = sin(th[4]);
+}
+
+int opw_branch(const struct opw *o, const double joint[OPW_JOINTS])
+{
+    double factor[3];
+
+    opw_factors(o, joint, factor);
+    return (factor[0] < 0.0 ? OPW_BACK : 0) | (factor[1] < 0.0 ? OPW_ELBOW : 0) |
+           (factor[2] < 0.0 ? OPW_FLIP : 0);
+}
