@@ -23,6 +23,13 @@ bool mechanism_first(const struct mechanism *m, const double place[AXES], double
     return mechanism_joints(m, place, joint);
 }
 
+void mechanism_near(const struct mechanism *m, const int32_t pulses[AXES], double joint[AXES])
+{
+    for (int i = 0; i < AXES && m->kinematics; i++) {
+        joint[i] = m->joint[i].used ? pulses[i] / m->joint[i].scale : 0.0;
+    }
+}
+
 void mechanism_place(const struct mechanism *m, const double joint[AXES], double place[AXES])
 {
     if (m->kinematics) {

@@ -50,6 +50,10 @@ bool mechanism_joints(const struct mechanism *m, const double place[AXES], doubl
 /* The same of a first place, joints near m->near. */
 bool mechanism_first(const struct mechanism *m, const double place[AXES], double joint[AXES]);
 
+/* Joints by the position in pulses, those not used at 0, to begin mechanism_joints with; without
+ * kinematics it needs none and joint[] is left as it is. */
+void mechanism_near(const struct mechanism *m, const int32_t pulses[AXES], double joint[AXES]);
+
 /* Place of joints. */
 void mechanism_place(const struct mechanism *m, const double joint[AXES], double place[AXES]);
 

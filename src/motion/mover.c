@@ -109,9 +109,7 @@ bool mover_order(struct mover *p, const struct mechanism *m)
 
     memcpy(joint, p->rest, sizeof joint);
     if (m->kinematics && !p->joints) {
-        for (int i = 0; i < AXES; i++) {
-            joint[i] = m->joint[i].used ? p->pulses[i] / m->joint[i].scale : 0.0;
-        }
+        mechanism_near(m, p->pulses, joint);
         if (!mechanism_joints(m, p->rest, joint)) {
             return false;
         }
@@ -396,17 +394,12 @@ void mover_accept(struct mover *p, struct ring *r, const struct point *point)
     }
 }
 
-/* Joints of the place reached, those of the latest point nearby; the tool's place too. */
-static bool joints_of(const struct mover *p, const struct mechanism *m, double place[AXES],
-                      double joint[AXES])
+bool mover_joints(const struct mover *p, const struct mechanism *m, const double place[AXES],
+                  double joint[AXES])
 {
     if (mover_in_joints(p)) {
         memcpy(joint, place, AXES * sizeof *joint);
-        mechanism_place(m, joint, place);
         return true;
-    }
-    for (int i = 0; i < AXES && m->kinematics; i++) {
-        joint[i] = m->joint[i].used ? p->pulses[i] / m->joint[i].scale : 0.0;
     }
     return mechanism_joints(m, place, joint);
 }
@@ -429,7 +422,11 @@ bool mover_point(struct mover *p, struct ring *r, const struct mechanism *m, dou
     if (point->feed == 0.0) {
         point->feed = sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
     }
-    const bool reached = joints_of(p, m, point->place, joint);
+    mechanism_near(m, p->pulses, joint);
+    const bool reached = mover_joints(p, m, point->place, joint);
+    if (mover_in_joints(p)) {
+        mechanism_place(m, joint, point->place);
+    }
     memcpy(point->pulses, p->pulses, sizeof point->pulses);
     if (reached) {
         mechanism_pulses(m, joint, point->pulses);

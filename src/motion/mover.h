@@ -78,6 +78,10 @@ void mover_hold(struct mover *p, bool on);
 /* The place is one of joints, else of the tool. */
 bool mover_in_joints(const struct mover *p);
 
+/* Joints of a place of the mover; joint[] holds those nearby. False: out of reach. */
+bool mover_joints(const struct mover *p, const struct mechanism *m, const double place[AXES],
+                  double joint[AXES]);
+
 /* *ramp becomes the ramp of an abort from here, no chain being under way: nothing is dropped, and
  * its clocks can be set to any time until it rests and back. [s] */
 void mover_ramp(const struct mover *p, struct mover *ramp);

@@ -20,6 +20,7 @@ struct ramp_view {
     double dt;                              /* [s] from point to point */
     double acc[AXES];                       /* [mm/s^2] highest of independent axes */
     double from[AXES];                      /* [pulses] */
+    double near[AXES];                      /* [mm] joints there, if there are kinematics */
     const struct ring *ring;
     const struct mechanism *machine;
 };
@@ -28,17 +29,6 @@ static int beyond(const struct ramp_view *v, const double low[AXES], const doubl
 {
     int side;
     return mechanism_beyond(v->machine, v->from, low, high, &side);
-}
-
-/* The place of the mover as one of joints, joint[] nearby before. */
-static bool joints_of(const struct mover *p, const struct mechanism *m, const double place[AXES],
-                      double joint[AXES])
-{
-    if (mover_in_joints(p)) {
-        memcpy(joint, place, AXES * sizeof *joint);
-        return true;
-    }
-    return mechanism_joints(m, place, joint);
 }
 
 static struct instant instant_at(struct ramp_view *v, double t, const double near[AXES])
@@ -50,7 +40,7 @@ static struct instant instant_at(struct ramp_view *v, double t, const double nea
     v->at = t;
     mover_place(&v->ramp, v->ring, place, velocity);
     memcpy(x.joint, near, sizeof x.joint);
-    x.reached = joints_of(&v->ramp, v->machine, place, x.joint);
+    x.reached = mover_joints(&v->ramp, v->machine, place, x.joint);
     for (int i = 0; i < v->ramp.mix.count; i++) {
         x.move[i] = profile_state(&v->ramp.mix.move[i].profile);
     }
@@ -116,13 +106,7 @@ static int beyond_in_time(struct ramp_view *v)
 {
     const double time = mover_left(&v->ramp);
     const int64_t last = (int64_t)fmin(ceil(time / v->dt), 1e15) + 1;
-    double near[AXES];
-
-    for (int i = 0; i < AXES; i++) {
-        const struct joint *j = &v->machine->joint[i];
-        near[i] = j->used ? v->from[i] / j->scale : 0.0;
-    }
-    const struct instant first = instant_at(v, 0.0, near);
+    const struct instant first = instant_at(v, 0.0, v->near);
     const struct instant end = instant_at(v, (double)last * v->dt, first.joint);
 
     return search(v, 0, &first, last, &end);
@@ -246,10 +230,7 @@ static int beyond_on_way(const struct way *w, const struct ramp_view *v)
     for (int32_t i = w->t->out; i < w->t->joined; i++) {
         step = fmin(step, ring_peek(w->ring, i)->command.cap * v->dt);
     }
-    for (int i = 0; i < AXES; i++) {
-        const struct joint *j = &v->machine->joint[i];
-        joint[i] = j->used ? v->from[i] / j->scale : 0.0;
-    }
+    memcpy(joint, v->near, sizeof joint);
     for (double at = w->from; at < w->to; ) {
         at = fmin(at + step, w->to);
         track_go(&tool, w->ring, at);
@@ -295,6 +276,7 @@ int reach_beyond(const struct mover *p, struct ring *r, const struct mechanism *
     for (int i = 0; i < AXES; i++) {
         v.from[i] = p->pulses[i];
     }
+    mechanism_near(m, p->pulses, v.near);
     if (p->motion == MOVER_CHAIN) {
         return beyond_in_chain(p, r, &v);
     }

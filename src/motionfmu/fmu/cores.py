@@ -5,7 +5,7 @@ A folder under src/ with a core.toml is a core: `uses` names the cores whose hea
 
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 _INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
@@ -33,17 +33,18 @@ def included(file: Path) -> list[str]:
     return _INCLUDE.findall(file.read_text())
 
 
-def reached(files: Iterable[Path], roots: Iterable[Path]) -> list[Path]:
-    """Those files that C files include, directly or not."""
-    known = {f.name: f for f in files}
+def reached(
+    files: Iterable[Path], roots: Iterable[Path], owned: Mapping[str, list[Path]] | None = None
+) -> list[Path]:
+    """Those files that C files include, directly or not, with the C files that they own."""
+    known = {f.name: [f, *(owned or {}).get(f.name, [])] for f in files}
     found: set[Path] = set()
     waiting = list(roots)
     while waiting:
-        names = included(waiting.pop())
-        new = {known[name] for name in names if name in known} - found
+        new = {f for name in included(waiting.pop()) for f in known.get(name, [])} - found
         found |= new
         waiting += new
-    return sorted(found)
+    return sorted(found, key=lambda f: (f.parent.name, f.name))
 
 
 def needed(source: Path, names: Iterable[str], roots: Iterable[Path]) -> list[Path]:
@@ -52,16 +53,10 @@ def needed(source: Path, names: Iterable[str], roots: Iterable[Path]) -> list[Pa
     A C file belongs to the header of its own name, or else to the first one it includes.
     """
     folders = [source / name for name in closure(source, names)]
-    headers = {f.name: f for folder in folders for f in folder.glob("*.h")}
+    headers = [f for folder in folders for f in folder.glob("*.h")]
+    names_of = {f.name for f in headers}
     owned: dict[str, list[Path]] = {}
     for file in (f for folder in folders for f in sorted(folder.glob("*.c"))):
         own = f"{file.stem}.h"
-        owned.setdefault(own if own in headers else included(file)[0], []).append(file)
-    found: set[Path] = set()
-    waiting = list(roots)
-    while waiting:
-        for name in included(waiting.pop()):
-            new = {headers[name], *owned.get(name, [])} - found if name in headers else set()
-            found |= new
-            waiting += new
-    return sorted(found, key=lambda f: (f.parent.name, f.name))
+        owned.setdefault(own if own in names_of else included(file)[0], []).append(file)
+    return reached(headers, roots, owned)
