@@ -60,12 +60,14 @@ struct model {
 static const double plant_h_lambda = 2.0;
 
 /* Bound of the largest |eigenvalue| of an n x n matrix, a[i][j] at a[i * n + j], which it destroys:
- * |lambda| <= norm(a^m)^(1/m) for every m; with m = 2^10 at most some per cent too large. */
-static double plant_spectral_radius(double *a)
+ * |lambda| <= norm(a^m)^(1/m) for every m; with m = 2^squarings, of 2^10 at most some per cent too
+ * large. */
+enum { PLANT_ROUGH = 4, PLANT_FINE = 10 };
+static double plant_spectral_radius(double *a, int squarings)
 {
-    enum { n = PLANT_STATES, SQUARINGS = 10 };
+    enum { n = PLANT_STATES };
     double logarithm = 0.0, share = 1.0;
-    for (int k = 0; k <= SQUARINGS; k++, share *= 0.5) {
+    for (int k = 0; k <= squarings; k++, share *= 0.5) {
         double norm = 0.0;
         for (int i = 0; i < n; i++) {
             double sum = 0.0;
@@ -82,13 +84,13 @@ static double plant_spectral_radius(double *a)
         for (int i = 0; i < n * n; i++) {
             b[i] = a[i] / norm;
         }
+        memset(square, 0, sizeof square);
         for (int i = 0; i < n; i++) {
-            for (int j = 0; j < n; j++) {
-                double sum = 0.0;
-                for (int q = 0; q < n; q++) {
-                    sum += b[i * n + q] * b[q * n + j];
+            for (int q = 0; q < n; q++) {
+                const double factor = b[i * n + q];
+                for (int j = 0; j < n && factor != 0.0; j++) {
+                    square[i * n + j] += factor * b[q * n + j];
                 }
-                square[i * n + j] = sum;
             }
         }
         memcpy(a, square, sizeof square);
@@ -96,18 +98,51 @@ static double plant_spectral_radius(double *a)
     return exp(logarithm);
 }
 
-/* [1/s] bound of |lambda| at a point, over all branches. Branches that exclude each other may give
- * 0/0 and are skipped; NaN if nothing is left. */
+/* [1/s] bound of |lambda| at a point with these branches; branches that exclude each other may give
+ * 0/0 and NaN. */
+static double plant_radius(const double *x, const double *u, const double *p, unsigned branches,
+                           int squarings)
+{
+    double a[PLANT_STATES * PLANT_STATES];
+    plant_jacobian(x, u, p, branches, a);
+    return plant_spectral_radius(a, squarings);
+}
+
+/* Whether a value, no NaN, is larger than the largest so far, NaN before the first. */
+static bool plant_larger(double radius, double largest)
+{
+    return !isnan(radius) && !(largest >= radius);
+}
+
+/* [1/s] bound of |lambda| at a point, over all branches; NaN if none has one. Of many branches not
+ * every combination is looked at: from none and from all of them each in turn is changed if that
+ * makes the bound larger. */
 static double plant_stiffness(const double *x, const double *u, const double *p)
 {
+    const int every = 8;
+    unsigned all = 0u;
+    for (int bit = 0; bit < PLANT_BRANCHES; bit++) {
+        all |= 1u << bit;
+    }
     double largest = NAN;
-    for (unsigned branches = 0; branches < 1u << PLANT_BRANCHES; branches++) {
-        double a[PLANT_STATES * PLANT_STATES];
-        plant_jacobian(x, u, p, branches, a);
-        const double radius = plant_spectral_radius(a);
-        if (!isnan(radius) && !(largest >= radius)) {
-            largest = radius;
+    if (PLANT_BRANCHES <= every) {
+        for (unsigned branches = 0; branches <= all; branches++) {
+            const double radius = plant_radius(x, u, p, branches, PLANT_FINE);
+            largest = plant_larger(radius, largest) ? radius : largest;
         }
+        return largest;
+    }
+    for (int begin = 0; begin < 2; begin++) {
+        unsigned branches = begin ? all : 0u;
+        double here = plant_radius(x, u, p, branches, PLANT_ROUGH);
+        for (int bit = 0; bit < PLANT_BRANCHES; bit++) {
+            const double radius = plant_radius(x, u, p, branches ^ 1u << bit, PLANT_ROUGH);
+            const bool better = plant_larger(radius, here);
+            branches ^= better ? 1u << bit : 0u;
+            here = better ? radius : here;
+        }
+        here = plant_radius(x, u, p, branches, PLANT_FINE);
+        largest = plant_larger(here, largest) ? here : largest;
     }
     return largest;
 }

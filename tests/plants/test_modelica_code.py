@@ -58,8 +58,12 @@ def test_c_equals_casadi_in_every_lane(library, axis):
             )
 
 
-def test_jacobian_with_the_true_branches_is_casadis(library, axis):
+@pytest.mark.parametrize("largest", [codegen.WHOLE_JACOBIAN, 0], ids=["whole", "by columns"])
+def test_jacobian_with_the_true_branches_is_casadis(tmp_path, monkeypatch, largest, axis):
     """Among all branches one gives CasADi's Jacobian, in contact and in the gap."""
+    monkeypatch.setattr(codegen, "WHOLE_JACOBIAN", largest)
+    library = Library(BALL_SCREW, tmp_path)
+    assert ("static void along" in (tmp_path / "plant.c").read_text()) == (largest == 0)
     p, u = axis.values(backlash=1e-5), np.array([0.3, 2.0])
     exact = ca.Function("J", [axis.x, axis.u, axis.p], [ca.jacobian(axis.xdot, axis.x)])
     for stretch in (0.0, 2e-5, -2e-5):
@@ -217,11 +221,39 @@ def test_declarations_an_fmu_cannot_carry(small, old, new, message):
         fmu_toml.load(small)
 
 
+def test_the_largest_of_many_branches_is_found(small):
+    """Slopes of 12 bends, stiff ones among those that help: the sum of the stiff ones."""
+    slopes = [3e4 if k % 3 else -2e4 for k in range(12)]
+    bends = " + ".join(f"({slope})*max(x - {k + 1}, 0)" for k, slope in enumerate(slopes))
+    file = small.parents[2] / "modelica/Small/Axis.mo"
+    file.write_text(CLASS.replace("u - x", f"u - x - ({bends})"))
+    run = Run(Library(small, small.parent))
+    assert run.start() == 0
+    found = re.search(r"stiff, (\d+) sub-steps per micro step of (.*) s", run.said)
+    bound = 1 + sum(s for s in slopes if s > 0)
+    assert int(found[1]) == np.ceil(float(found[2]) * bound / 2)
+
+
+def test_arrays_and_elements_of_ports(small):
+    """An array of the class is one port, behind the axes; its elements have the same limits."""
+    file = small.parents[2] / "modelica/Small/Axis.mo"
+    gains = 'parameter Real k[3](each unit = "1", each min = 0) = {1, 2, 3} "Gains";\n  input'
+    text = CLASS.replace("input", gains, 1).replace("u - x", "k[2]*u - k[3]*x")
+    file.write_text(text)
+    k = next(v for v in fmu_toml.load(small).variables if v.name == "k")
+    assert k.dims == (2, 3) and k.start == [1, 2, 3, 1, 2, 3] and k.min == 0
+    codegen.write(small, small.parent)
+    assert "p[2] = v->k[instance][1];" in (small.parent / "plant.c").read_text()
+    file.write_text(text.replace("each min = 0", "min = {0, 0, 1}"))
+    with pytest.raises(ValueError, match=re.escape("k[3] has other limits than k[1]")):
+        fmu_toml.load(small)
+
+
 def test_too_many_branches_are_refused(small):
     bumps = " + ".join(f"abs(x - {k})" for k in range(codegen.MAX_BRANCHES + 1))
     file = small.parents[2] / "modelica/Small/Axis.mo"
     file.write_text(CLASS.replace("u - x", f"u - ({bumps})"))
-    with pytest.raises(ValueError, match=r"Small\.Axis: 9 branches in the Jacobian, at most 8"):
+    with pytest.raises(ValueError, match=r"Small\.Axis: 32 branches in the Jacobian, at most 31"):
         codegen.write(small, small.parent)
     assert not (small.parent / "plant.c").exists()
 

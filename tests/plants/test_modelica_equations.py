@@ -112,8 +112,9 @@ CLASSES = sorted(f.stem for f in PACKAGE.glob("*.mo") if f.stem[0].isupper())
 def test_every_declaration_has_a_unit_and_a_description(name):
     kind, _, text = (PACKAGE / f"{name}.mo").read_text().split("\n")[1].partition(f" {name} ")
     assert text.startswith('"') or '\n  "' in (PACKAGE / f"{name}.mo").read_text()
-    use = f"model T MotionControl.{name} it; equation it.{{}} = 1; end T;"
-    flow = {"RotationalFlange": "phi", "TranslationalFlange": "s", "HydraulicPort": "p"}
+    use = f"model T MotionControl.{name} it; equation it.{{}}; end T;"
+    flow = {"RotationalFlange": "phi = 1", "TranslationalFlange": "s = 1", "HydraulicPort": "p = 1",
+            "Frame": "a = {1, 2, 3}; it.z = it.a"}  # fmt: skip
     session = rumoca.Session(roots=[str(PACKAGE)])
     if kind == "connector":
         found = session.loads(use.format(flow[name]), model="T")
@@ -149,6 +150,10 @@ SMALL = [
     # A comparison decides, and what it compares is itself to be solved first.
     ("input Real u; " + STATE + "Real z; Boolean b; equation der(x) = if b then 1 else 2; "
      "b = z > 5; z = 2*u;", 1),
+    ("input Real u; " + STATE + "parameter Real k[2, 3] = {{1, 2, 3}, {4, 5, 6}}; "
+     "Real y[2]; final parameter Real h[3] = 10*k[2, :] - k[1, :]; equation for i in 1:2 loop "
+     "y[i] = k[2, i] - k[1, 4 - i] + h[i + 1]; end for; der(x) = 100*y[1] + y[2];",
+     100 * (4 - 3 + 48) + (5 - 2 + 57)),
     ("input Real u; " + STATE + "Real y; Real w; equation y = 2*x; w = der(y); der(x) = u; ", 3),
 ]  # fmt: skip
 
@@ -171,14 +176,44 @@ def test_dummy_derivative(tmp_path):
     assert float(ode.function()([0.5], [3.0], [])[1]) == pytest.approx(3 * 0.25 * 3, rel=1e-14)
 
 
+def test_components_in_an_array(tmp_path):
+    """Masses in a row, one behind another: each has its own parameters, a sum goes back."""
+    before = """
+connector C Real v; flow Real f; end C;
+model Mass parameter Real m = 1; parameter Real c[2] = {0, 0}; C a; C b; Real v(start = c[2],
+  fixed = true); equation m*der(v) = a.f + b.f; a.v = v; b.v = v + c[1]; end Mass;
+model Wall C c; equation c.f = 0; end Wall;
+"""
+    ode = model(
+        tmp_path,
+        "parameter Real m[3] = {1, 2, 3}; parameter Real c[3, 2] = {{0, 1}, {0, 1}, {0, 1}}; "
+        "input Real u[2](each start = 4); output Real w[2]; Mass mass[3](m = m, c = c); "
+        "Damper d[2]; Wall wall; equation "
+        "for i in 1:2 loop connect(mass[i].b, d[i].a); connect(d[i].b, mass[i + 1].a); "
+        "w[i] = mass[4 - i].v; d[i].force = u[i]; end for; connect(mass[3].b, wall.c);",
+        before
+        + "model Damper C a; C b; Real force; equation a.f = force; b.f = -force; end Damper;",
+    )
+    assert [d.name for d in ode.parameters][:4] == ["m[1]", "m[2]", "m[3]", "c[1,1]"]
+    assert [d.name for d in ode.inputs] == ["u[1]", "u[2]"] and ode.u0 == (4.0, 4.0)
+    assert {d.port for d in ode.parameters} == {"m", "c"}
+    xdot, y = ode.function()([7.0, 8.0, 9.0], [10.0, 20.0], ode.p0)
+    assert np.array(xdot).ravel() == pytest.approx([-10 / 1, (10 - 20) / 2, 20 / 3], rel=1e-14)
+    assert np.array(y).ravel().tolist() == [9.0, 8.0]
+
+
 REFUSED = {
     "when-equation": "input Real u; " + STATE
     + "equation when u > 1 then reinit(x, 0); end when; der(x) = u;",
     "algorithm section": STATE + "Real y; algorithm y := x; equation der(x) = y;",
     "initial equation": "Real x; initial equation x = 1; equation der(x) = 1;",
-    "for-equation": "Real x[2](each start = 0, each fixed = true); "
-    "equation for i in 1:2 loop der(x[i]) = 1; end for;",
-    "k is an array": "parameter Real k[2] = {1, 2}; " + STATE + "equation der(x) = k[1];",
+    "k is not supported here": "parameter Real k[2] = {1, 2}; " + STATE
+    + "equation der(x) = k*{x, 1};",
+    "for-equation that is not written out": "parameter Real h[4] = {1, 2, 3, 4}; "
+    "Real y[4]; " + STATE
+    + "equation for i in 1:4 loop y[i] = h[i] + h[5 - i]; end for; der(x) = y[1];",
+    "have no pivot that never vanishes": STATE + "Real a; Real b; equation x*a + 2*x*b = 1; "
+    "x*a - x*b = 2; der(x) = a;",
     "built-in function mod": STATE + "equation der(x) = mod(x, 2);",
     "time is not supported": STATE + "equation der(x) = time;",
     "nonlinear equations for y": STATE + "Real y; equation y + y^3 = x; der(x) = y;",

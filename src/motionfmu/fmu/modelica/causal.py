@@ -5,6 +5,7 @@ from pathlib import Path
 
 import casadi as ca
 
+from motionfmu.fmu.modelica import elimination
 from motionfmu.fmu.modelica.expression import Evaluator
 from motionfmu.fmu.modelica.flat import Declaration, Expression, Flat, Unsupported, flatten
 from motionfmu.fmu.modelica.nodes import steps_on
@@ -201,6 +202,14 @@ def _inputs(flat: Flat) -> list[str]:
     return [d.name for d in flat.declarations.values() if d.kind == "input"]
 
 
+def _coupled(names: _Names, a: ca.SX, b: ca.SX, labels: list[str]) -> ca.SX:
+    """Solve A x = b, the parameters near their values."""
+    try:
+        return elimination.solve(a, b, {d.name: names.default(d) for d in names.parameters}, labels)
+    except elimination.NoPivot as error:
+        raise names.refuse(str(error)) from None
+
+
 def _solve(names: _Names, residuals: ca.SX, unknowns: ca.SX) -> ca.SX:
     """Solve residuals = 0 by its block lower triangular form."""
     labels = [str(unknowns[i]) for i in range(unknowns.numel())]
@@ -210,15 +219,22 @@ def _solve(names: _Names, residuals: ca.SX, unknowns: ca.SX) -> ca.SX:
     if ca.sprank(ca.DM(pattern)) < len(labels):
         raise names.refuse("the equations are structurally singular (a constraint on states?)")
     blocks, rows, columns, row_start, column_start, _, _ = pattern.btf()
+    symbols = [unknowns[c] for c in range(len(labels))]
+    equations = [residuals[r] for r in range(len(labels))]
     values: dict[int, ca.SX] = {}
+    place = {label: c for c, label in enumerate(labels)}
     for k in range(blocks):
         mine = columns[column_start[k] : column_start[k + 1]]
-        e = ca.vertcat(*(residuals[r] for r in rows[row_start[k] : row_start[k + 1]]))
-        v = ca.vertcat(*(unknowns[c] for c in mine))
-        if values:
-            known = ca.vertcat(*(unknowns[c] for c in values))
-            e = ca.substitute(e, known, ca.vertcat(*values.values()))
+        e = ca.vertcat(*(equations[r] for r in rows[row_start[k] : row_start[k + 1]]))
+        v = ca.vertcat(*(symbols[c] for c in mine))
+        solved_before = [place[n] for n in map(str, ca.symvar(e)) if place.get(n) in values]
+        if solved_before:
+            known = ca.vertcat(*(symbols[c] for c in solved_before))
+            e = ca.substitute(e, known, ca.vertcat(*(values[c] for c in solved_before)))
         a, b = _linear_parts(names, e, v)
-        solved = -b / a if len(mine) == 1 else ca.solve(a, -b)
+        if len(mine) == 1:
+            solved = -b / a
+        else:
+            solved = _coupled(names, a, -b, [labels[c] for c in mine])
         values.update((c, solved[i]) for i, c in enumerate(mine))
     return ca.vertcat(*(values[c] for c in range(len(labels))))

@@ -23,13 +23,16 @@ from motionfmu.fmu.modelica.ode import Ode
 # Axes that are integrated together, at most. Measured on SSE2 (per axis and step of BallScrewAxis,
 # 2025-11): 1 lane 74 ns, 2 lanes 56 ns, 4 lanes 37 ns, 6 lanes 42 ns; the same bits.
 LANES = 4
-# Every combination of branches is looked at when an FMU with equal steps starts: 2^8 of them take
-# 0.4 ms per axis.
-MAX_BRANCHES = 8
+# Branches are bits of an unsigned int. Up to 8 of them plant_model.c looks at every combination.
+MAX_BRANCHES = 31
+# A Jacobian of more operations is made column by column from the derivative along a direction: that
+# of an arm (900 elements, 29,000 operations) takes a compiler 10 s, its derivative a third of it.
+WHOLE_JACOBIAN = 4000
 
 _NOTE = "/* Generated from {}; do not edit. */\n"
 # Positions of the arguments of every program here, and their names in C.
 _X, _U, _P, _C = range(4)
+_WAY = _C  # of the derivative along a direction
 _ARGUMENTS = "xupc"
 
 
@@ -56,6 +59,10 @@ def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[
         raise ValueError(f"{ode.name}: a plant needs a state and an output")
     equations = split(program([ode.x, ode.u, ode.p], [ode.xdot, ode.y]), {_X, _U}, _C)
     jacobian = program([ode.x, ode.u, ode.p], [ca.jacobian(ode.xdot, ode.x)])
+    if len(jacobian.nodes) > WHOLE_JACOBIAN:
+        way = ca.SX.sym("way", ode.x.numel())
+        slope = ca.jtimes(ode.xdot, ode.x, way)
+        jacobian = program([ode.x, ode.u, ode.p, way], [slope])
     branches = _branches(jacobian)
     bits = len({bit for bit, _ in branches.values()})
     if tolerance is None and bits > MAX_BRANCHES:
@@ -116,6 +123,12 @@ def _function(head: str, lines: list[str]) -> str:
     return f"{head}\n{{\n" + "".join(f"    {line}\n" for line in lines) + "}\n"
 
 
+def _member(d: Declaration, element: str) -> str:
+    """A member of struct vars, or an element of it."""
+    subscripts = d.name.removeprefix(d.base)[1:-1].split(",") if d.base else []
+    return f"v->{d.port}{element}" + "".join(f"[{int(k) - 1}]" for k in subscripts)
+
+
 def _cast(d: Declaration, text: str) -> str:
     """A member of struct vars as a double."""
     if d.type == "Boolean":
@@ -130,15 +143,14 @@ def _ports(ode: Ode, element: str) -> str:
         for kind, group in (("state", ode.states), ("output", ode.outputs))
     }
     shown = [
-        f"v->{d.name}{element} = y[{k} * PLANT_LANES]{' != 0.0' if d.type == 'Boolean' else ''};"
+        f"{_member(d, element)} = y[{k} * PLANT_LANES]{' != 0.0' if d.type == 'Boolean' else ''};"
         for k, d in enumerate(ode.outputs)
     ]
     parameters = [
-        f"p[{k}] = {_cast(d, f'v->{d.name}{element}')};" for k, d in enumerate(ode.parameters)
+        f"p[{k}] = {_cast(d, _member(d, element))};" for k, d in enumerate(ode.parameters)
     ]
     inputs = [
-        f"u[{k} * PLANT_LANES] = {_cast(d, f'v->{d.name}{element}')};"
-        for k, d in enumerate(ode.inputs)
+        f"u[{k} * PLANT_LANES] = {_cast(d, _member(d, element))};" for k, d in enumerate(ode.inputs)
     ]
     return "\n".join(
         [
@@ -218,7 +230,8 @@ def _jacobian(ode: Ode, jacobian: Program, branches: dict[int, tuple[int, bool]]
 
     def leaf(k: int, node: Node) -> str | None:
         if k not in branches:
-            return _single(k, node)
+            along = node.op == ca.OP_INPUT and node.input[0] == _WAY
+            return f"way[{node.input[1]}]" if along else _single(k, node)
         place, inverted = branches[k]
         bit = f"({'~' if inverted else ''}branches >> {place} & 1u)"
         return f"{bit} ? 1.0 : -1.0" if node.op == ca.OP_SIGN else f"(double){bit}"
@@ -226,13 +239,26 @@ def _jacobian(ode: Ode, jacobian: Program, branches: dict[int, tuple[int, bool]]
     (result,) = jacobian.results
     n = len(ode.states)
     lines = statements(jacobian, result, leaf)
-    for k, node in enumerate(result):  # CasADi counts column by column
-        lines.append(f"jacobian[{k % n * n + k // n}] = a{node};")
-    head = (
-        "\nvoid plant_jacobian(const double *x, const double *u, const double *p,\n"
-        "    unsigned branches, double *jacobian)"
-    )
-    return _function(head, lines)
+    arguments = "const double *x, const double *u, const double *p,\n    unsigned branches"
+    head = f"\nvoid plant_jacobian({arguments}, double *jacobian)"
+    if len(result) == n * n:
+        for k, node in enumerate(result):  # CasADi counts column by column
+            lines.append(f"jacobian[{k % n * n + k // n}] = a{node};")
+        return _function(head, lines)
+    lines += [f"slope[{k}] = a{node};" for k, node in enumerate(result)]
+    along = f"\nstatic void along({arguments}, const double *way, double *slope)"
+    return _function(along, lines) + _function(head, _COLUMNS)
+
+
+_COLUMNS = """\
+for (int j = 0; j < PLANT_STATES; j++) {
+    double way[PLANT_STATES] = {0.0}, slope[PLANT_STATES];
+    way[j] = 1.0;
+    along(x, u, p, branches, way, slope);
+    for (int i = 0; i < PLANT_STATES; i++) {
+        jacobian[i * PLANT_STATES + j] = slope[i];
+    }
+}""".splitlines()
 
 
 def _header(sizes: dict[str, int], tolerance: float | None) -> str:

@@ -75,7 +75,7 @@ def from_modelica(toml: Path) -> describe.Description:
     """Make the description of the Modelica FMU of an fmu.toml.
 
     Its parameters ``active`` and ``micro_step``, then all that the class declares, one element per
-    instance (scalars if there is one instance).
+    instance (if there is one instance, as the class has it).
     """
     packing = read(toml)
     ode = causal.load(packing.package, packing.modelica)
@@ -83,10 +83,13 @@ def from_modelica(toml: Path) -> describe.Description:
         ("active", "parameter", _active(packing.instances)),
         ("micro_step", "parameter", _micro_step(packing)),
     ]
-    for group, values in ((ode.parameters, ode.p0), (ode.inputs, ode.u0), (ode.outputs, None)):
-        for k, d in enumerate(group):
-            start = None if values is None else values[k]
-            own.append((d.name, d.kind, _row(ode, d, packing.instances, start)))
+    shown = (None,) * len(ode.outputs)
+    for group, values in ((ode.parameters, ode.p0), (ode.inputs, ode.u0), (ode.outputs, shown)):
+        for name in dict.fromkeys(d.port for d in group):
+            elements = [
+                (d, value) for d, value in zip(group, values, strict=True) if d.port == name
+            ]
+            own.append((name, elements[0][0].kind, _row(ode, elements, packing.instances)))
     names = [name for name, _, _ in own]
     try:
         for name in ("active", "micro_step"):
@@ -125,19 +128,29 @@ def _micro_step(packing: Packing) -> dict[str, Any]:
     }
 
 
-def _row(ode: Ode, d: Declaration, instances: int, start: float | None) -> dict[str, Any]:
-    """One variable as a row of fmu.toml would say it."""
-    row: dict[str, Any] = {"type": _TYPES[d.type], "dims": _dims(instances), "doc": d.description}
+def _row(
+    ode: Ode, elements: list[tuple[Declaration, float | None]], instances: int
+) -> dict[str, Any]:
+    """One variable, of its elements and their start values, as a row of fmu.toml would say it."""
+    d = elements[0][0]
+    dims = [*_dims(instances), *d.dims]
+    row: dict[str, Any] = {"type": _TYPES[d.type], "dims": dims, "doc": d.description}
     kind = {"Real": float, "Integer": int, "Boolean": bool}[d.type]
-    if start is not None:
-        row["start"] = kind(start)
+    starts = [kind(value) for _, value in elements if value is not None]
+    if starts:
+        row["start"] = starts * math.prod(_dims(instances)) if d.dims else starts[0]
     if d.type == "Real":
         if not d.unit:
             raise ValueError(f"{ode.name}: {d.name} has no unit")
         row["unit"] = None if d.unit == "1" else d.unit
         row["continuous"] = d.kind != "parameter"
+    limits = ode.limits[d.name]
+    for other, _ in elements:
+        if ode.limits[other.name] != limits:
+            what = f"{other.name} has other limits than {d.name}: one port has one minimum"
+            raise ValueError(f"{ode.name}: {what}")
     if d.type != "Boolean":
-        for key, value in zip(("min", "max", "nominal"), ode.limits[d.name], strict=True):
+        for key, value in zip(("min", "max", "nominal"), limits, strict=True):
             if value is not None and (key != "nominal" or d.type == "Real"):
                 row[key] = kind(value)
     return row

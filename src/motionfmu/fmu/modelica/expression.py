@@ -7,6 +7,7 @@ from typing import Any
 
 import casadi as ca
 
+from motionfmu.fmu.modelica.arrays import element_name, subscripts
 from motionfmu.fmu.modelica.flat import Expression, Flat, Unsupported
 
 _UNARY: dict[str, Callable[[ca.SX], ca.SX]] = {
@@ -96,8 +97,10 @@ class Evaluator:
 
     def _reference(self, d: dict[str, Any], local: Mapping[str, ca.SX] | None) -> ca.SX:
         name = d["name"]["name"]
-        if d["subscripts"]:
+        index = subscripts(d)
+        if index is None or (index and local is not None):
             raise self._refuse(f"subscript of {name}")
+        name = element_name(name, index)
         if local is not None:
             if name in local:
                 return local[name]
@@ -108,9 +111,10 @@ class Evaluator:
         self, name: str, args: list[Expression], local: Mapping[str, ca.SX] | None
     ) -> ca.SX:
         if name == "Der":
-            if "VarRef" not in args[0] or args[0]["VarRef"]["subscripts"] or local is not None:
+            index = subscripts(args[0]["VarRef"]) if "VarRef" in args[0] else None
+            if index is None or local is not None:
                 raise self._refuse("der() of an expression")
-            return self._derivative(args[0]["VarRef"]["name"]["name"])
+            return self._derivative(element_name(args[0]["VarRef"]["name"]["name"], index))
         if name == "Smooth":
             return self(args[1], local)
         if name in _UNARY and len(args) == 1:

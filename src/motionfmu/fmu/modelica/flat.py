@@ -1,12 +1,13 @@
 """Flatten a Modelica class, or refuse what is not handled."""
 
 import json
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-Expression = dict[str, Any]
+from motionfmu.fmu.modelica.arrays import Elements, Expression, Index, element_name, indices
 
 # Sections of rumoca's flat form that must be empty, and what a Modelica author calls them.
 _REFUSED = {
@@ -16,7 +17,6 @@ _REFUSED = {
     "initial_algorithms": "initial algorithm",
     "initial_structured_equations": "initial equation",
     "initial_assert_equations": "assert in an initial equation",
-    "structured_equations": "for-equation",
     "enumeration_types": "enumeration type",
     "record_instances": "record",
     "definite_roots": "overconstrained connector",
@@ -30,9 +30,9 @@ class Unsupported(ValueError):
 
 @dataclass(frozen=True)
 class Declaration:
-    """One scalar component of the flat class."""
+    """One scalar component of the flat class, maybe an element of an array."""
 
-    name: str  # flat, for example rotor.speed
+    name: str  # flat, for example rotor.speed or mass[2]
     type: str  # Real, Integer or Boolean
     kind: str  # parameter, input, output (both only at the top level) or variable
     unit: str  # empty where nothing is declared
@@ -44,6 +44,13 @@ class Declaration:
     min: Expression | None
     max: Expression | None
     nominal: Expression | None
+    base: str = ""  # name of the array it is an element of, else empty
+    dims: tuple[int, ...] = ()  # of that array
+
+    @property
+    def port(self) -> str:
+        """Name of the whole: of the array it is an element of, or its own."""
+        return self.base or self.name
 
     @property
     def top(self) -> bool:
@@ -101,12 +108,23 @@ def read(doc: dict[str, Any], name: str) -> Flat:
         if doc.get(section):
             where = _component(_first(doc[section]))
             raise Unsupported(f"{name}{where}: {construct} is not supported")
-    declarations = {n: _declaration(doc, name, n, v) for n, v in doc["variables"].items()}
+    if not all(map(_written_out, doc.get("structured_equations") or ())):
+        raise Unsupported(f"{name}: a for-equation that is not written out is not supported")
+    elements = Elements({n: v["dims"] for n, v in doc["variables"].items()})
+    declarations = {
+        element_name(n, k): _declaration(doc, name, n, _element(v, elements, k))
+        for n, v in doc["variables"].items()
+        for k in indices(v["dims"])
+    }
     return Flat(
         name,
         doc["model_description"] or "",
         declarations,
-        tuple(Equation(_component(e), e["residual"]) for e in doc["equations"]),
+        tuple(
+            Equation(_component(e), elements.pick(e["residual"], k))
+            for e in doc["equations"]
+            for k in indices(elements.shape(e["residual"]))
+        ),
         tuple(_assert(name, a) for a in doc["assert_equations"]),
         doc["functions"],
     )
@@ -151,12 +169,23 @@ def _tag(value: Any) -> str:
     return value if isinstance(value, str) else next(iter(value))
 
 
+def _written_out(loop: dict[str, Any]) -> bool:
+    """Whether all equations of a for-equation are there; of some kinds only the first two are."""
+    points = math.prod(b["upper"] - b["lower"] + 1 for b in loop["domain"]["binders"])
+    return loop["interiors_materialized"] or points <= 2
+
+
+def _element(v: dict[str, Any], elements: Elements, index: Index) -> dict[str, Any]:
+    """A variable as one element of it would be declared."""
+    keys = [k for k in ("binding", "start", "min", "max", "nominal") if v[k] is not None]
+    return {**v, **{k: elements.pick(v[k], index) for k in keys}, "index": index}
+
+
 def _declaration(doc: dict[str, Any], model: str, name: str, v: dict[str, Any]) -> Declaration:
     variability, causality = _tag(v["variability"]), _tag(v["causality"])
     kind = doc["variable_type_names"].get(name, "Real")
     refused = {
         f"type {kind}": kind not in ("Real", "Integer", "Boolean"),
-        "an array": bool(v["dims"]),
         "discrete": variability == "Discrete",
         "stream": v["stream"],
         "an expandable connector": v["from_expandable_connector"],
@@ -172,14 +201,20 @@ def _declaration(doc: dict[str, Any], model: str, name: str, v: dict[str, Any]) 
     elif top and causality in ("Input", "Output"):
         role = causality.lower()
     return Declaration(
-        name,
+        element_name(name, v["index"]),
         kind,
         role,
         v["unit"] or "",
         v["description"] or "",
         variability == "Constant" or name in doc["variable_final_flags"] or v["is_protected"],
-        v["fixed"] == [True],
-        *(v[key] for key in ("binding", "start", "min", "max", "nominal")),
+        bool(v["fixed"]) and all(v["fixed"]),
+        binding=v["binding"],
+        start=v["start"],
+        min=v["min"],
+        max=v["max"],
+        nominal=v["nominal"],
+        base=name if v["dims"] else "",
+        dims=tuple(v["dims"]),
     )
 
 

@@ -1,0 +1,156 @@
+"""Solve a coupled block of linear equations symbolically, as sparse as it is."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+_Numbers = NDArray[np.float64]
+
+# Points at random at which pivots are looked at, and how far they reach; the solution at the first.
+_POINTS, _REACH, _SEED, _COMPARED = 64, 3.0, 1, 8
+# Parameters are looked at near their values: this share up and down; one of 0 at times a little
+# above it, because some switch with that.
+_NEAR, _LITTLE = 0.2, 1e-9
+# A pivot smaller than this share of its largest value at a point may vanish near it.
+_SMALL = 1e-6
+# What the elimination may differ from a numeric solution, as a share of the largest unknown.
+_EXACT = 1e-8
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """A coefficient, and its values at the points."""
+
+    e: ca.SX
+    at: _Numbers
+    constant: bool
+
+
+_Row = dict[int, _Entry]
+
+
+class NoPivot(ValueError):
+    """No coefficient is left that may be divided by, or digits would be lost."""
+
+
+def solve(a: ca.SX, b: ca.SX, values: dict[str, float], labels: Sequence[str]) -> ca.SX:
+    """Solve A x = b by constant pivots first, then by those with the least fill (Markowitz 1957).
+
+    `values` has the parameters by name; all other symbols may be anything. A pivot keeps its sign
+    wherever it was looked at; NoPivot names the unknowns for which there is none.
+    """
+    numbers = _points([a, b], values)
+    rows, right = _rows(a, numbers[0]), [b[i] for i in range(b.numel())]
+    order: list[tuple[int, int]] = []
+    left = list(range(len(rows)))
+    while left:
+        i, j = _pivot(rows, left, labels)
+        order.append((i, j))
+        left.remove(i)
+        for k in left:
+            if j in rows[k]:
+                factor = _eliminate(rows[k], rows[i], j)
+                right[k] = right[k] - factor * right[i]
+    x = [ca.SX(0.0)] * len(rows)
+    for i, j in reversed(order):
+        for k, v in rows[i].items():
+            if k != j:
+                right[i] = right[i] - v.e * x[k]
+        x[j] = _over(right[i], rows[i][j])
+    solution = ca.vertcat(*x)
+    _check(solution, numbers, _points([solution], values)[0], labels)
+    return solution
+
+
+def _points(expressions: list[ca.SX], values: dict[str, float]) -> list[_Numbers]:
+    """Values of expressions at points at random, the same for a symbol wherever it is."""
+    symbols = ca.symvar(ca.veccat(*expressions))
+    columns: list[_Numbers] = []
+    for s in symbols:
+        draw = np.random.default_rng([_SEED, *str(s).encode()])
+        value = values.get(str(s))
+        if value is None:
+            columns.append(draw.uniform(-_REACH, _REACH, _POINTS))
+        elif value == 0.0:
+            columns.append(_LITTLE * draw.integers(0, 2, _POINTS).astype(np.float64))
+        else:
+            columns.append(value * draw.uniform(1 - _NEAR, 1 + _NEAR, _POINTS))
+    f = ca.Function("f", [ca.vertcat(ca.SX(0, 1), *symbols)], [ca.densify(e) for e in expressions])
+    at = np.array(columns).reshape(len(symbols), _POINTS)
+    rows = [f.call([ca.DM(at[:, k])]) for k in range(_POINTS)]
+    return [np.array([r[n].full() for r in rows]) for n in range(len(expressions))]
+
+
+def _rows(a: ca.SX, at: _Numbers) -> list[_Row]:
+    rows: list[_Row] = [{} for _ in range(a.size1())]
+    for i, j in zip(*a.sparsity().get_triplet(), strict=True):
+        e = a[i, j]
+        if not e.is_zero():
+            rows[i][j] = _Entry(e, at[:, i, j], e.is_constant())
+    return rows
+
+
+def _pivot(rows: list[_Row], left: list[int], labels: Sequence[str]) -> tuple[int, int]:
+    """Row and column of the next pivot: constant, least fill, largest in its row."""
+    count: dict[int, int] = {}
+    for i in left:
+        for j in rows[i]:
+            count[j] = count.get(j, 0) + 1
+    keys = [
+        (not v.constant, (len(rows[i]) - 1) * (count[j] - 1), i, j)
+        for i in left
+        for j, v in rows[i].items()
+    ]
+    best: tuple[float, int, int] | None = None
+    least = True, 0
+    for variable, fill, i, j in sorted(keys):
+        if best is not None and (variable, fill) != least:
+            break
+        if (size := _size(rows[i], j)) > _SMALL and (best is None or size > best[0]):
+            best, least = (size, i, j), (variable, fill)
+    if best is None:
+        unknown = ", ".join(sorted(labels[j] for j in count)) or "no unknown"
+        raise NoPivot(f"linear equations for {unknown} have no pivot that never vanishes")
+    return best[1:]
+
+
+def _size(row: _Row, j: int) -> float:
+    """Least share of a coefficient in its row at any point; 0 if its sign changes."""
+    at = row[j].at
+    if not ((at > 0.0).all() or (at < 0.0).all()):
+        return 0.0
+    largest = np.max([np.abs(v.at) for v in row.values()], axis=0)
+    return float((np.abs(at) / largest).min())
+
+
+def _over(e: ca.SX, pivot: _Entry) -> ca.SX:
+    """Division; a pivot that is divided by often has its inverse once."""
+    return e / pivot.e if pivot.constant else e * (1.0 / pivot.e)
+
+
+def _eliminate(row: _Row, by: _Row, j: int) -> ca.SX:
+    """Take unknown j out of a row; the factor is what the other side needs."""
+    gone = row.pop(j)
+    factor = _over(gone.e, by[j])
+    at = gone.at / by[j].at
+    for k, v in by.items():
+        if k == j:
+            continue
+        old = row.get(k)
+        e = (old.e if old else ca.SX(0.0)) - factor * v.e
+        if e.is_zero():
+            row.pop(k, None)
+        else:
+            row[k] = _Entry(e, (old.at if old else 0.0) - at * v.at, e.is_constant())
+    return factor
+
+
+def _check(x: ca.SX, numbers: list[_Numbers], found: _Numbers, labels: Sequence[str]) -> None:
+    """The solution at the points is that of the numeric solver."""
+    for a, b, mine in list(zip(*numbers, found, strict=True))[:_COMPARED]:
+        exact = np.linalg.solve(a, b)
+        if not np.abs(mine - exact).max() <= _EXACT * np.abs(exact).max():
+            raise NoPivot(f"linear equations for {', '.join(labels)} lose digits")

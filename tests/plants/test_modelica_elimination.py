@@ -1,0 +1,76 @@
+"""The solution of coupled linear equations against numpy, and pivots that are refused."""
+
+import time
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from motionfmu.fmu.modelica import elimination
+
+
+def solved(a, b, values=None, **at):
+    """Solution of the elimination at a point."""
+    labels = [f"z{k}" for k in range(b.numel())]
+    x = elimination.solve(ca.SX(a), ca.SX(b), values or {}, labels)
+    names = ca.symvar(ca.veccat(x))
+    point = ca.DM([at[str(s)] for s in names]) if names else ca.DM(0, 1)
+    return np.array(ca.Function("x", [ca.vertcat(ca.SX(0, 1), *names)], [x])(point)).ravel()
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_sparse_systems(seed):
+    """Chains of sums with a positive definite rest, rows and columns shuffled."""
+    rng = np.random.default_rng(seed)
+    n, core = 40, 4
+    s = ca.SX.sym("s", 6)
+    spread = rng.uniform(0.5, 1.5, (core, core))
+    moving = ca.SX(spread @ spread.T + core * np.eye(core)) + ca.diag(s[:core] ** 2)
+    a = ca.SX.eye(n)
+    a[:core, :core] = moving
+    for i in range(core, n):
+        for j in rng.choice(i, 2, replace=False):
+            a[i, int(j)] = (
+                ca.sin(s[int(j) % 6]) if rng.random() < 0.5 else float(rng.integers(1, 4))
+            )
+    rows, columns = (rng.permutation(n).tolist() for _ in range(2))
+    a, b = a[rows, columns], ca.SX(rng.normal(size=n)) * s[5]
+    at = {f"s_{k}": v for k, v in enumerate(rng.normal(size=6))}
+    found = solved(a, b, **at)
+    exact = ca.Function("f", [s], [ca.densify(a), b])(list(at.values()))
+    wanted = np.linalg.solve(*(np.array(m) for m in exact)).ravel()
+    assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9 * np.abs(wanted).max())
+
+
+def test_a_pivot_that_changes_its_sign_is_not_taken():
+    """The first coefficient is no pivot, nor the least filling one; with another order it goes."""
+    x = ca.SX.sym("x")
+    a = ca.vertcat(ca.horzcat(x, 1 + x * x), ca.horzcat(2 + x * x, x))
+    assert solved(a, ca.SX([1.0, 2.0]), x=0.0) == pytest.approx([1.0, 1.0])
+    rotated = ca.vertcat(ca.horzcat(ca.cos(x), -ca.sin(x)), ca.horzcat(ca.sin(x), ca.cos(x)))
+    with pytest.raises(elimination.NoPivot, match="for z0, z1 have no pivot that never vanishes"):
+        solved(rotated, ca.SX([1.0, 2.0]), x=0.0)
+
+
+def test_parameters_are_looked_at_near_their_values():
+    """A mass is no pivot that may vanish; what a switch at 0 puts in its place is looked at."""
+    m, gap = ca.SX.sym("m"), ca.SX.sym("gap")
+    a = ca.vertcat(ca.horzcat(m, m), ca.horzcat(-m, m))
+    assert solved(a, ca.SX([2.0, 0.0]), {"m": 3.0}, m=2.0) == pytest.approx([0.5, 0.5])
+    with pytest.raises(elimination.NoPivot, match="no pivot"):
+        solved(a, ca.SX([2.0, 0.0]), m=2.0)
+    a = ca.vertcat(ca.horzcat(ca.if_else(gap > 0, 0, m), m), ca.horzcat(m, 0.5 * m))
+    found = solved(a, ca.SX([2.0, 6.0]), {"m": 1.0, "gap": 0.0}, m=1.0, gap=1.0)
+    assert found == pytest.approx([5.0, 2.0])
+
+
+def test_a_hundred_unknowns_in_a_second():
+    """As many as an arm of six joints has, as a chain."""
+    n, s = 100, ca.SX.sym("s", 100)
+    a = ca.SX.eye(n)
+    for k in range(1, n):
+        a[k, k - 1] = 0.4 * ca.cos(s[k])
+        a[k - 1, k] = 0.4 * ca.sin(s[k])
+    begun = time.perf_counter()
+    elimination.solve(a, s, {}, [f"z{k}" for k in range(n)])
+    assert time.perf_counter() - begun < 5.0
