@@ -1,0 +1,123 @@
+within MotionControl;
+model RevoluteLink "Rigid link that turns on the one before it"
+  parameter Real axis[3](each unit = "1") = {0, 0, 1} "Axis of the joint, alike in both frames";
+  parameter Real origin[3](each unit = "m") = {0, 0, 0} "Joint in the frame before";
+  parameter Real mass(unit = "kg", min = 0) = 1 "Mass";
+  parameter Real center[3](each unit = "m") = {0, 0, 0} "Centre of mass in the own frame";
+  parameter Real inertia[3](each unit = "kg.m2", each min = 0) = {0, 0, 0}
+    "Moments of inertia about the centre: xx, yy, zz";
+  parameter Real product[3](each unit = "kg.m2") = {0, 0, 0}
+    "Elements xy, yz, zx of the tensor of inertia about the centre";
+  parameter Real viscous(unit = "N.m.s/rad", min = 0) = 0 "Friction torque per speed";
+  parameter Real start_angle(unit = "rad") = 0 "Angle at the start";
+  Frame a "Of the link before";
+  Frame b "Own frame: its origin is on the joint";
+  RotationalFlange drive "What turns the joint";
+  input Real rate[3](each unit = "rad/s") "Angular velocity of the link before, in its axes";
+  input Real place[3](each unit = "m") "Origin of the frame before, in base axes";
+  input Real turn[3,3](each unit = "1") "From axes of the frame before to base axes";
+  output Real own_rate[3](each unit = "rad/s") "Own angular velocity, in own axes";
+  output Real own_place[3](each unit = "m") "Own origin, in base axes";
+  output Real own_turn[3,3](each unit = "1") "From own axes to base axes";
+  Real angle(unit = "rad", start = start_angle, fixed = true) "Angle of the joint";
+  Real speed(unit = "rad/s", start = 0, fixed = true) "Speed of the joint";
+protected
+  Real c(unit = "1") "Cosine of the angle";
+  Real s(unit = "1") "Sine of the angle";
+  Real r[3,3](each unit = "1") "From own axes to those before";
+  Real swept[3](each unit = "m/s") "Velocity of the joint by the rate before";
+  Real joint_a[3](each unit = "m/s2") "Acceleration of the joint, in axes before";
+  Real carried[3](each unit = "rad/s") "Rate before, in own axes";
+  Real whirl[3](each unit = "m/s") "Velocity of the centre against the joint";
+  Real force[3](each unit = "N") "What the acceleration of the centre asks for";
+  Real spin[3](each unit = "kg.m2/s") "Angular momentum about the centre";
+  Real moment[3](each unit = "N.m") "What the motion asks for, about the joint";
+  Real push[3](each unit = "N") "Force of the link before, in own axes";
+  Real twist[3](each unit = "N.m") "Torque of the link before, in own axes";
+equation
+  der(angle) = speed;
+  drive.phi = angle;
+  c = cos(angle);
+  s = sin(angle);
+  r[1,1] = axis[1]^2 + (1 - axis[1]^2)*c;
+  r[1,2] = axis[1]*axis[2]*(1 - c) - axis[3]*s;
+  r[1,3] = axis[1]*axis[3]*(1 - c) + axis[2]*s;
+  r[2,1] = axis[1]*axis[2]*(1 - c) + axis[3]*s;
+  r[2,2] = axis[2]^2 + (1 - axis[2]^2)*c;
+  r[2,3] = axis[2]*axis[3]*(1 - c) - axis[1]*s;
+  r[3,1] = axis[1]*axis[3]*(1 - c) - axis[2]*s;
+  r[3,2] = axis[2]*axis[3]*(1 - c) + axis[1]*s;
+  r[3,3] = axis[3]^2 + (1 - axis[3]^2)*c;
+  swept[1] = rate[2]*origin[3] - rate[3]*origin[2];
+  swept[2] = rate[3]*origin[1] - rate[1]*origin[3];
+  swept[3] = rate[1]*origin[2] - rate[2]*origin[1];
+  joint_a[1] = a.a[1] + a.z[2]*origin[3] - a.z[3]*origin[2] + rate[2]*swept[3] - rate[3]*swept[2];
+  joint_a[2] = a.a[2] + a.z[3]*origin[1] - a.z[1]*origin[3] + rate[3]*swept[1] - rate[1]*swept[3];
+  joint_a[3] = a.a[3] + a.z[1]*origin[2] - a.z[2]*origin[1] + rate[1]*swept[2] - rate[2]*swept[1];
+  carried[1] = r[1,1]*rate[1] + r[2,1]*rate[2] + r[3,1]*rate[3];
+  carried[2] = r[1,2]*rate[1] + r[2,2]*rate[2] + r[3,2]*rate[3];
+  carried[3] = r[1,3]*rate[1] + r[2,3]*rate[2] + r[3,3]*rate[3];
+  own_rate[1] = carried[1] + axis[1]*speed;
+  own_rate[2] = carried[2] + axis[2]*speed;
+  own_rate[3] = carried[3] + axis[3]*speed;
+  b.z[1] = r[1,1]*a.z[1] + r[2,1]*a.z[2] + r[3,1]*a.z[3] + axis[1]*der(speed)
+    + (carried[2]*axis[3] - carried[3]*axis[2])*speed;
+  b.z[2] = r[1,2]*a.z[1] + r[2,2]*a.z[2] + r[3,2]*a.z[3] + axis[2]*der(speed)
+    + (carried[3]*axis[1] - carried[1]*axis[3])*speed;
+  b.z[3] = r[1,3]*a.z[1] + r[2,3]*a.z[2] + r[3,3]*a.z[3] + axis[3]*der(speed)
+    + (carried[1]*axis[2] - carried[2]*axis[1])*speed;
+  b.a[1] = r[1,1]*joint_a[1] + r[2,1]*joint_a[2] + r[3,1]*joint_a[3];
+  b.a[2] = r[1,2]*joint_a[1] + r[2,2]*joint_a[2] + r[3,2]*joint_a[3];
+  b.a[3] = r[1,3]*joint_a[1] + r[2,3]*joint_a[2] + r[3,3]*joint_a[3];
+  whirl[1] = own_rate[2]*center[3] - own_rate[3]*center[2];
+  whirl[2] = own_rate[3]*center[1] - own_rate[1]*center[3];
+  whirl[3] = own_rate[1]*center[2] - own_rate[2]*center[1];
+  force[1] = mass*(b.a[1] + b.z[2]*center[3] - b.z[3]*center[2]
+    + own_rate[2]*whirl[3] - own_rate[3]*whirl[2]);
+  force[2] = mass*(b.a[2] + b.z[3]*center[1] - b.z[1]*center[3]
+    + own_rate[3]*whirl[1] - own_rate[1]*whirl[3]);
+  force[3] = mass*(b.a[3] + b.z[1]*center[2] - b.z[2]*center[1]
+    + own_rate[1]*whirl[2] - own_rate[2]*whirl[1]);
+  spin[1] = inertia[1]*own_rate[1] + product[1]*own_rate[2] + product[3]*own_rate[3];
+  spin[2] = inertia[2]*own_rate[2] + product[1]*own_rate[1] + product[2]*own_rate[3];
+  spin[3] = inertia[3]*own_rate[3] + product[3]*own_rate[1] + product[2]*own_rate[2];
+  moment[1] = inertia[1]*b.z[1] + product[1]*b.z[2] + product[3]*b.z[3]
+    + own_rate[2]*spin[3] - own_rate[3]*spin[2] + center[2]*force[3] - center[3]*force[2];
+  moment[2] = inertia[2]*b.z[2] + product[1]*b.z[1] + product[2]*b.z[3]
+    + own_rate[3]*spin[1] - own_rate[1]*spin[3] + center[3]*force[1] - center[1]*force[3];
+  moment[3] = inertia[3]*b.z[3] + product[3]*b.z[1] + product[2]*b.z[2]
+    + own_rate[1]*spin[2] - own_rate[2]*spin[1] + center[1]*force[2] - center[2]*force[1];
+  push[1] + b.f[1] = force[1];
+  push[2] + b.f[2] = force[2];
+  push[3] + b.f[3] = force[3];
+  twist[1] + b.t[1] = moment[1];
+  twist[2] + b.t[2] = moment[2];
+  twist[3] + b.t[3] = moment[3];
+  a.f[1] = r[1,1]*push[1] + r[1,2]*push[2] + r[1,3]*push[3];
+  a.f[2] = r[2,1]*push[1] + r[2,2]*push[2] + r[2,3]*push[3];
+  a.f[3] = r[3,1]*push[1] + r[3,2]*push[2] + r[3,3]*push[3];
+  a.t[1] = r[1,1]*twist[1] + r[1,2]*twist[2] + r[1,3]*twist[3]
+    + origin[2]*a.f[3] - origin[3]*a.f[2];
+  a.t[2] = r[2,1]*twist[1] + r[2,2]*twist[2] + r[2,3]*twist[3]
+    + origin[3]*a.f[1] - origin[1]*a.f[3];
+  a.t[3] = r[3,1]*twist[1] + r[3,2]*twist[2] + r[3,3]*twist[3]
+    + origin[1]*a.f[2] - origin[2]*a.f[1];
+  axis[1]*twist[1] + axis[2]*twist[2] + axis[3]*twist[3] = drive.tau - viscous*speed;
+  own_place[1] = place[1] + turn[1,1]*origin[1] + turn[1,2]*origin[2] + turn[1,3]*origin[3];
+  own_place[2] = place[2] + turn[2,1]*origin[1] + turn[2,2]*origin[2] + turn[2,3]*origin[3];
+  own_place[3] = place[3] + turn[3,1]*origin[1] + turn[3,2]*origin[2] + turn[3,3]*origin[3];
+  own_turn[1,1] = turn[1,1]*r[1,1] + turn[1,2]*r[2,1] + turn[1,3]*r[3,1];
+  own_turn[1,2] = turn[1,1]*r[1,2] + turn[1,2]*r[2,2] + turn[1,3]*r[3,2];
+  own_turn[1,3] = turn[1,1]*r[1,3] + turn[1,2]*r[2,3] + turn[1,3]*r[3,3];
+  own_turn[2,1] = turn[2,1]*r[1,1] + turn[2,2]*r[2,1] + turn[2,3]*r[3,1];
+  own_turn[2,2] = turn[2,1]*r[1,2] + turn[2,2]*r[2,2] + turn[2,3]*r[3,2];
+  own_turn[2,3] = turn[2,1]*r[1,3] + turn[2,2]*r[2,3] + turn[2,3]*r[3,3];
+  own_turn[3,1] = turn[3,1]*r[1,1] + turn[3,2]*r[2,1] + turn[3,3]*r[3,1];
+  own_turn[3,2] = turn[3,1]*r[1,2] + turn[3,2]*r[2,2] + turn[3,3]*r[3,2];
+  own_turn[3,3] = turn[3,1]*r[1,3] + turn[3,2]*r[2,3] + turn[3,3]*r[3,3];
+  annotation(Documentation(info = "<html>
+<p>Newton and Euler, each in the axes of the link: rates and accelerations go out along the arm,
+forces and torques come back. The frames before and after are parallel at angle 0. Rates, place and
+turn are signals and no part of the connector, which has as many flows as accelerations.</p>
+</html>"));
+end RevoluteLink;

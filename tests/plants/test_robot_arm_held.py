@@ -1,0 +1,49 @@
+"""The arm at rest in the hands of six drives: it settles and then stands."""
+
+from pathlib import Path
+
+import numpy as np
+
+import motionfmu
+
+SCENARIO = """# Arm held by six drives in position mode.
+stop = 60.0
+step = 1e-4
+leave = ["drives.enable", "drives.alarm_reset", "drives.dac", "drives.pulse_count", "arm.force"]
+
+[component]
+drives = "servo_drives"
+arm    = "robot_arm"
+
+[connect]
+"drives.phase" = "arm.motor_phase"
+"arm.torque"   = "drives.torque"
+
+[set]
+"arm.start_angle" = [0.0, 0.3, -0.2, 0.0, 0.4, 0.0]
+"drives.mode" = 1
+"drives.pulses_per_turn" = 2500
+"drives.position_gain" = 30
+"drives.velocity_gain" = [0.2, 0.3, 0.15, 0.02, 0.02, 0.01]
+"drives.velocity_time" = 0.03
+
+[record]
+signals = ["arm.motor_angle"]
+
+[check]
+"arm.motor_angle[1]" = { absmax = 0.1 }
+"""
+COUNTS = 2**20 / (2 * np.pi)
+
+
+def test_an_arm_in_the_hands_of_drives_stands(tmp_path: Path) -> None:
+    """Sinks while the integrals come, and from 10 s on no motor moves by a count in 50 s."""
+    (tmp_path / "scenario.toml").write_text(SCENARIO)
+    result = motionfmu.load(tmp_path).run()
+    assert result.ok
+    counts = result["arm.motor_angle"] * COUNTS
+    late = counts[100_000:]
+    sunk = np.abs(counts[:20_000] - counts[-1]).max()
+    print("largest way after 10 s [counts]", np.ptp(late, axis=0).max(), "before", sunk)
+    assert sunk > 1000, "no torque at the start: it sinks"
+    assert np.ptp(late, axis=0).max() < 1.0
