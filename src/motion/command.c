@@ -119,7 +119,7 @@ void command_delay(struct command *c, const double point[AXES], double seconds)
 
 enum command_type command_arc_type(const struct path *p)
 {
-    const bool helix = p->start[p->plane] != p->end[p->plane];
+    const bool helix = p->plane != PATH_TILTED && p->start[p->plane] != p->end[p->plane];
     if (p->sweep > 0.0) {
         return helix ? COMMAND_CCW_HELIX : COMMAND_CCW_ARC;
     }

@@ -33,7 +33,7 @@ static bool track_good(const struct track *t, const struct ring *r, bool active)
 {
     const int32_t last = t->joined > 0 ? t->joined - 1 : 0;
     return within(t->caps, 0, TRACK_CAPS) && within(t->taps, 0, TRACK_MEAN) &&
-           within(t->next, 0, t->taps > 0 ? t->taps - 1 : 0) &&
+           within(t->next, 0, TRACK_MEAN - 1) &&
            (!active || (within(t->joined, 1, r->count) && within(t->planned, 0, t->joined) &&
                         within(t->at, 0, last) && within(t->out, 0, t->at) &&
                         within(t->begun, 0, t->joined)));

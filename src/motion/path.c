@@ -24,9 +24,30 @@ int path_second(enum path_plane p)
     return (path_first(p) + 1) % 3;
 }
 
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 static double norm3(const double a[3])
 {
-    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    return sqrt(dot(a, a));
+}
+
+static void cross(const double a[3], const double b[3], double c[3])
+{
+    for (int i = 0; i < 3; i++) {
+        c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+    }
+}
+
+/* Axes of a tilted arc: from the centre to the start, and a quarter turn on. [mm] */
+static void tilted_axes(const struct path *p, double a[3], double b[3])
+{
+    for (int i = 0; i < 3; i++) {
+        a[i] = p->start[i] - p->middle[i];
+    }
+    cross(p->normal, a, b);
 }
 
 void path_line(struct path *p, const double start[AXES], const double end[AXES])
@@ -84,6 +105,59 @@ enum path_status path_arc(struct path *p, enum path_plane plane, const double st
     return p->length > 0.0 ? PATH_OK : PATH_NO_RADIUS;     /* its square is 0 */
 }
 
+enum path_status path_tilted(struct path *p, const double start[AXES], const double end[AXES],
+                             const double middle[3], const double normal[3], double sweep)
+{
+    double a[3], b[3];
+
+    path_line(p, start, end);
+    p->arc = true;
+    p->plane = PATH_TILTED;
+    memcpy(p->middle, middle, sizeof p->middle);
+    memcpy(p->normal, normal, sizeof p->normal);
+    p->sweep = sweep;
+    tilted_axes(p, a, b);
+    p->radius = norm3(a);
+    p->length = p->radius * fabs(sweep);
+    if (!(p->length > 0.0)) {
+        return PATH_NO_RADIUS;
+    }
+    for (int i = 0; i < 3; i++) {
+        p->end[i] = p->middle[i] + (cos(sweep) * a[i] + sin(sweep) * b[i]);
+    }
+    return PATH_OK;
+}
+
+enum path_status path_tilted_by_point(const double start[3], const double via[3],
+                                      const double end[3], double middle[3], double normal[3],
+                                      double *sweep)
+{
+    double x[3], y[3], n[3], xn[3], ny[3], a[3], b[3];
+
+    for (int i = 0; i < 3; i++) {
+        x[i] = via[i] - start[i];
+        y[i] = end[i] - start[i];
+    }
+    cross(x, y, n);
+    const double xx = dot(x, x), yy = dot(y, y), nn = dot(n, n), twice = sqrt(nn);
+    if (!(twice > 1e-12 * (xx + yy))) {     /* flatter than rounding: radius unknown */
+        return PATH_OPEN;
+    }
+    /* The middle lies at (|x|^2 (y x n) + |y|^2 (n x x)) / (2 |n|^2) from the start. */
+    cross(y, n, ny);
+    cross(n, x, xn);
+    for (int i = 0; i < 3; i++) {
+        middle[i] = start[i] + (xx * ny[i] + yy * xn[i]) / (2.0 * nn);
+        normal[i] = n[i] / twice;
+        a[i] = start[i] - middle[i];
+        x[i] = end[i] - middle[i];
+    }
+    cross(normal, a, b);
+    *sweep = atan2(dot(x, b), dot(x, a));
+    *sweep += *sweep <= 0.0 ? TAU : 0.0;
+    return PATH_OK;
+}
+
 enum path_status path_centre_by_radius(enum path_plane plane, const double start[AXES],
                                        const double end[AXES], double r, bool ccw,
                                        double centre[2], double *half)
@@ -130,6 +204,20 @@ enum path_status path_centre_by_point(enum path_plane plane, const double start[
     return PATH_OK;
 }
 
+static void tilted_at(const struct path *p, double part, double point[AXES], double slope[AXES])
+{
+    const double c = cos(p->sweep * part), d = sin(p->sweep * part), per = p->sweep / p->length;
+    double a[3], b[3];
+
+    tilted_axes(p, a, b);
+    for (int i = 0; i < 3; i++) {
+        if (part < 1.0) {
+            point[i] = p->middle[i] + (c * a[i] + d * b[i]);
+        }
+        slope[i] = (c * b[i] - d * a[i]) * per;
+    }
+}
+
 void path_at(const struct path *p, double s, double point[AXES], double slope[AXES])
 {
     const double part = p->length > 0.0 ? s / p->length : 1.0;
@@ -140,7 +228,9 @@ void path_at(const struct path *p, double s, double point[AXES], double slope[AX
         point[i] = part >= 1.0 ? p->end[i] : p->start[i] + way * part;
         slope[i] = way * per;
     }
-    if (p->arc) {
+    if (p->arc && p->plane == PATH_TILTED) {
+        tilted_at(p, part, point, slope);
+    } else if (p->arc) {
         const int a = path_first(p->plane), b = path_second(p->plane);
         const double angle = p->angle + p->sweep * part;
         const double c = cos(angle), d = sin(angle), r = p->radius + p->growth * part;
@@ -157,6 +247,11 @@ double path_share(const struct path *p, int axis)
 {
     if (p->length == 0.0) {
         return 0.0;
+    }
+    if (p->arc && p->plane == PATH_TILTED && axis < 3) {
+        double a[3], b[3];
+        tilted_axes(p, a, b);
+        return hypot(a[axis], b[axis]) * fabs(p->sweep) / p->length;
     }
     if (p->arc && axis < 3 && axis != (int)p->plane) {
         const double r = p->radius + 0.5 * p->growth;
@@ -204,6 +299,24 @@ static void turnings(const struct path *p, int axis, double t0, double t1, doubl
     }
 }
 
+/* c a + d b is furthest where its angle is that of (a, b), and half a turn on. */
+static void tilted_turnings(const struct path *p, int axis, double t0, double t1, double *low,
+                            double *high)
+{
+    double a[3], b[3];
+
+    tilted_axes(p, a, b);
+    const double top = atan2(b[axis], a[axis]), r = hypot(a[axis], b[axis]);
+    const double from = fmin(p->sweep * t0, p->sweep * t1);
+    const double to = fmax(p->sweep * t0, p->sweep * t1);
+    if (top + TAU * ceil((from - top) / TAU) <= to) {
+        *high = fmax(*high, p->middle[axis] + r);
+    }
+    if (top + TAU * (ceil((from - top) / TAU - 0.5) + 0.5) <= to) {
+        *low = fmin(*low, p->middle[axis] - r);
+    }
+}
+
 void path_extent(const struct path *p, int axis, double from, double to, double *low,
                  double *high)
 {
@@ -213,7 +326,9 @@ void path_extent(const struct path *p, int axis, double from, double to, double 
     path_at(p, to, b, slope);
     *low = fmin(a[axis], b[axis]);
     *high = fmax(a[axis], b[axis]);
-    if (p->arc && axis < 3 && axis != (int)p->plane) {
+    if (p->arc && p->plane == PATH_TILTED && axis < 3) {
+        tilted_turnings(p, axis, from / p->length, to / p->length, low, high);
+    } else if (p->arc && axis < 3 && axis != (int)p->plane) {
         turnings(p, axis, from / p->length, to / p->length, low, high);
     }
 }

@@ -1,8 +1,8 @@
 /* path - exact geometry of one command: point and direction at any arc length.
  *
  * A line runs straight in all six axes. An arc turns about a normal along X, Y or Z, its third
- * axis (helix) and U V W follow linearly. Length is measured in X Y Z; a move of U V W alone is
- * measured in U V W.
+ * axis (helix) and U V W follow linearly; or about any normal, and U V W follow. Length is measured
+ * in X Y Z; a move of U V W alone is measured in U V W.
  */
 #ifndef PATH_H
 #define PATH_H
@@ -11,8 +11,8 @@
 
 #include "axis_count.h"
 
-/* Plane by its normal's index: YZ 0 (normal X), ZX 1 (normal Y), XY 2 (normal Z). */
-enum path_plane { PATH_YZ, PATH_ZX, PATH_XY };
+/* Plane by its normal's index: YZ 0 (normal X), ZX 1 (normal Y), XY 2 (normal Z); any other one. */
+enum path_plane { PATH_YZ, PATH_ZX, PATH_XY, PATH_TILTED };
 
 /* Why there is no arc. */
 enum path_status {
@@ -28,6 +28,7 @@ struct path {
     enum path_plane plane;
     double start[AXES], end[AXES];  /* [mm] */
     double centre[2];               /* [mm] in the plane's first and second axis */
+    double middle[3], normal[3];    /* of a tilted arc: centre [mm], unit vector */
     double radius;                  /* [mm] at the start */
     double growth;                  /* [mm] radius at the end - radius at the start; rounding of
                                      * the program makes it, and keeps start and end exact */
@@ -36,7 +37,7 @@ struct path {
     double length;                  /* [mm] */
 };
 
-/* First and second axis of a plane: XY, YZ, ZX. */
+/* First and second axis of a plane: XY, YZ, ZX, not of a tilted one. */
 int path_first(enum path_plane p);
 int path_second(enum path_plane p);
 
@@ -48,6 +49,16 @@ void path_line(struct path *p, const double start[AXES], const double end[AXES])
 enum path_status path_arc(struct path *p, enum path_plane plane, const double start[AXES],
                           const double end[AXES], const double centre[2], bool ccw, int turns,
                           double *miss);
+
+/* Arc through an angle [rad], counter-clockwise about a normal of length 1, from a start to the end
+ * that follows from it in X Y Z. PATH_NO_RADIUS: the start is on the axis. */
+enum path_status path_tilted(struct path *p, const double start[AXES], const double end[AXES],
+                             const double middle[3], const double normal[3], double sweep);
+
+/* Middle, normal and angle of the arc start - via - end. PATH_OPEN: they are on one line. */
+enum path_status path_tilted_by_point(const double start[3], const double via[3],
+                                      const double end[3], double middle[3], double normal[3],
+                                      double *sweep);
 
 /* Centre of the arc of radius |r|; r < 0 takes the one of more than half a turn.
  * *half is half the distance from start to end [mm]. */

@@ -16,7 +16,7 @@ static void walk(const struct path *p, double tolerance)
         CHECK_NEAR(a[k], p->start[k], 1e-12);
     }
     for (int i = 1; i <= N; i++) {
-        path_at(p, p->length * i / N, b, unused);
+        path_at(p, i == N ? p->length : p->length * i / N, b, unused);
         sum += sqrt(pow(b[0] - a[0], 2) + pow(b[1] - a[1], 2) + pow(b[2] - a[2], 2));
         memcpy(a, b, sizeof a);
     }
@@ -185,9 +185,84 @@ static void tolerance(void)
     CHECK(path_arc(&p, PATH_XY, zero, zero, tiny, true, 1, &miss) == PATH_NO_RADIUS);
 }
 
+/* About any normal: the same as an arc of a plane where it is one, turned where it is not. */
+static void tilted(void)
+{
+    static const double normal[3] = { 2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0 };
+    static const double middle[3] = { 5.0, -3.0, 8.0 };
+    uint64_t seed = 3;
+    struct path p, flat;
+    double miss;
+
+    for (int plane = 0; plane < 3; plane++) {
+        for (int n = 0; n < 50; n++) {
+            const double sweep = check_real(&seed, -12.0, 12.0), r = check_real(&seed, 1.0, 50.0);
+            const int a = path_first((enum path_plane)plane);
+            const int b = path_second((enum path_plane)plane);
+            double start[AXES] = { 1, 2, 3, 4, 5, 6 }, end[AXES] = { 1, 2, 3, 9, 5, 6 };
+            double up[3] = { 0 }, centre[2] = { 7.0, -2.0 }, c[3] = { 1, 2, 3 };
+            up[plane] = 1.0;
+            c[a] = centre[0];
+            c[b] = centre[1];
+            start[a] = centre[0] + r;
+            start[b] = centre[1];
+            end[a] = centre[0] + r * cos(sweep);
+            end[b] = centre[1] + r * sin(sweep);
+            const int turns = 1 + (int)floor(fabs(sweep) / (2.0 * PI));
+            CHECK(path_arc(&flat, (enum path_plane)plane, start, end, centre, sweep > 0.0, turns,
+                           &miss) == PATH_OK);
+            CHECK(path_tilted(&p, start, end, c, up, sweep) == PATH_OK);
+            CHECK_NEAR(p.length, flat.length, 1e-9);
+            CHECK_NEAR(path_bend(&p), path_bend(&flat), 1e-9);
+            for (int i = 0; i < AXES; i++) {
+                double low[2], high[2], at[2][AXES], slope[2][AXES];
+                const double from = check_real(&seed, 0.0, 0.5) * p.length;
+                const double to = from + check_real(&seed, 0.0, 0.5) * p.length;
+                path_extent(&p, i, from, to, &low[0], &high[0]);
+                path_extent(&flat, i, from, to, &low[1], &high[1]);
+                CHECK_NEAR(low[0], low[1], 1e-9);
+                CHECK_NEAR(high[0], high[1], 1e-9);
+                path_at(&p, from, at[0], slope[0]);
+                path_at(&flat, from, at[1], slope[1]);
+                CHECK_NEAR(at[0][i], at[1][i], 1e-9);
+                CHECK_NEAR(slope[0][i], slope[1][i], 1e-9);
+            }
+        }
+    }
+    /* In a plane of its own, with a middle found by a point on the way. */
+    const double out[3] = { 1.0 / 3.0, -2.0 / 3.0, -2.0 / 3.0 };
+    const double on[3] = { 2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0 };  /* normal x out */
+    for (double sweep = 0.5; sweep < 6.2; sweep += 0.7) {
+        double start[AXES] = { 0 }, via[3], end[AXES] = { 0, 0, 0, 2, 1, 0 }, m[3], n[3], found;
+        for (int i = 0; i < 3; i++) {
+            start[i] = middle[i] + 10.0 * out[i];
+            via[i] = middle[i] + 10.0 * (cos(0.3 * sweep) * out[i] + sin(0.3 * sweep) * on[i]);
+            end[i] = middle[i] + 10.0 * (cos(sweep) * out[i] + sin(sweep) * on[i]);
+        }
+        CHECK(path_tilted_by_point(start, via, end, m, n, &found) == PATH_OK);
+        CHECK_NEAR(found, sweep, 1e-12);
+        for (int i = 0; i < 3; i++) {
+            CHECK_NEAR(m[i], middle[i], 1e-12);
+            CHECK_NEAR(n[i], normal[i], 1e-12);
+        }
+        CHECK(path_tilted(&p, start, end, m, n, found) == PATH_OK);
+        CHECK_NEAR(p.length, 10.0 * sweep, 1e-11);
+        for (int i = 0; i < 3; i++) {
+            CHECK_NEAR(p.end[i], end[i], 1e-12);
+        }
+        walk(&p, 1e-6);
+    }
+    const double a[AXES] = { 1, 2, 3 }, b[3] = { 2, 4, 6 }, c[3] = { 3, 6, 9 };
+    double m[3], n[3], sweep;
+    CHECK(path_tilted_by_point(a, b, c, m, n, &sweep) == PATH_OPEN);
+    CHECK(path_tilted_by_point(a, b, a, m, n, &sweep) == PATH_OPEN);
+    CHECK(path_tilted(&p, a, a, a, normal, 1.0) == PATH_NO_RADIUS);
+}
+
 int main(void)
 {
     lines();
+    tilted();
     planes();
     full_circle();
     by_radius();
