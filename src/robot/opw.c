@@ -79,7 +79,7 @@ static bool angle(double cosine, double *a)
 /* Joints 4 to 6 of the wrist by its rotation: one way, and flipped. */
 static void solve_wrist(const double w[3][3], double near, double th[2][OPW_JOINTS])
 {
-    const double sine = hypot(w[0][2], w[1][2]);
+    const double sine = sqrt(w[0][2] * w[0][2] + w[1][2] * w[1][2]);
     double first = atan2(w[1][2], w[0][2]), last = atan2(w[2][1], -w[2][0]);
 
     if (sine < IN_LINE) {
@@ -99,13 +99,17 @@ static void solve_wrist(const double w[3][3], double near, double th[2][OPW_JOIN
 static void outer(const struct opw *o, const double th[OPW_JOINTS], double joint[OPW_JOINTS])
 {
     for (int i = 0; i < OPW_JOINTS; i++) {
-        const double q = o->sign[i] * (th[i] + o->offset[i]);
-        joint[i] = q - TURN * round(q / TURN);
+        double q = o->sign[i] * (th[i] + o->offset[i]);
+        if (fabs(q) > 0.5 * TURN) {
+            q -= TURN * round(q / TURN);
+        }
+        joint[i] = q;
     }
 }
 
-uint32_t opw_inverse(const struct opw *o, const struct opw_pose *pose,
-                     const double near[OPW_JOINTS], double joint[OPW_BRANCHES][OPW_JOINTS])
+uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
+                        const double near[OPW_JOINTS], uint32_t wanted,
+                        double joint[OPW_BRANCHES][OPW_JOINTS])
 {
     const double x = pose->at[0] - o->c4 * pose->turn[0][2];
     const double y = pose->at[1] - o->c4 * pose->turn[1][2];
@@ -120,32 +124,49 @@ uint32_t opw_inverse(const struct opw *o, const struct opw_pose *pose,
     }
     inner(o, near, known);
     const double out = sqrt(reach), aside = atan2(o->b, out), way = atan2(y, x);
-    for (int branch = 0; branch < OPW_BRANCHES; branch += 2) {
-        const bool back = branch & OPW_BACK, elbow = branch & OPW_ELBOW;
-        const double n = (back ? -out : out) - o->a1;   /* wrist centre from axis 2, along x */
+    for (int shoulder = 0; shoulder <= OPW_BACK; shoulder += OPW_BACK) {
+        const double n = (shoulder ? -out : out) - o->a1;   /* wrist centre from axis 2, along x */
         const double s2 = n * n + z * z, s = sqrt(s2);
-        double th[2][OPW_JOINTS], arm[3][3], w[3][3], at2, at3;
+        double th[2][OPW_JOINTS], seen[3][3], at2, at3;
         if (!angle((s2 + o->c2 * o->c2 - k2) / (2.0 * s * o->c2), &at2) ||
             !angle((s2 - o->c2 * o->c2 - k2) / (2.0 * o->c2 * k), &at3)) {
             continue;
         }
-        const double first = back ? way + aside - 0.5 * TURN : way - aside;
-        th[0][0] = th[1][0] = first;
-        th[0][1] = th[1][1] = atan2(n, z) + (elbow ? at2 : -at2);
-        th[0][2] = th[1][2] = (elbow ? -at3 : at3) - psi;
-        forearm(first, th[0][1] + th[0][2], arm);
-        for (int i = 0; i < 3; i++) {
-            for (int j = 0; j < 3; j++) {
-                w[i][j] = arm[0][i] * pose->turn[0][j] + arm[1][i] * pose->turn[1][j] +
-                          arm[2][i] * pose->turn[2][j];
-            }
+        const double first = shoulder ? way + aside - 0.5 * TURN : way - aside;
+        const double c = cos(first), d = sin(first), up = atan2(n, z);
+        for (int i = 0; i < 3; i++) {   /* the attitude seen from the arm's plane */
+            seen[0][i] = c * pose->turn[0][i] + d * pose->turn[1][i];
+            seen[1][i] = c * pose->turn[1][i] - d * pose->turn[0][i];
+            seen[2][i] = pose->turn[2][i];
         }
-        solve_wrist((const double (*)[3])w, known[3], th);
-        outer(o, th[0], joint[branch]);
-        outer(o, th[1], joint[branch + OPW_FLIP]);
-        there |= 3u << branch;
+        for (int elbow = 0; elbow <= OPW_ELBOW; elbow += OPW_ELBOW) {
+            const int branch = shoulder + elbow;
+            double w[3][3];
+            if (!(wanted >> branch & 3)) {
+                continue;
+            }
+            th[0][0] = th[1][0] = first;
+            th[0][1] = th[1][1] = up + (elbow ? at2 : -at2);
+            th[0][2] = th[1][2] = (elbow ? -at3 : at3) - psi;
+            const double p = th[0][1] + th[0][2], cp = cos(p), sp = sin(p);
+            for (int i = 0; i < 3; i++) {
+                w[0][i] = cp * seen[0][i] - sp * seen[2][i];
+                w[1][i] = seen[1][i];
+                w[2][i] = sp * seen[0][i] + cp * seen[2][i];
+            }
+            solve_wrist((const double (*)[3])w, known[3], th);
+            outer(o, th[0], joint[branch]);
+            outer(o, th[1], joint[branch + OPW_FLIP]);
+            there |= 3u << branch;
+        }
     }
-    return there;
+    return there & wanted;
+}
+
+uint32_t opw_inverse(const struct opw *o, const struct opw_pose *pose,
+                     const double near[OPW_JOINTS], double joint[OPW_BRANCHES][OPW_JOINTS])
+{
+    return opw_inverse_of(o, pose, near, 0xff, joint);
 }
 
 int opw_nearest(uint32_t branches, const double all[OPW_BRANCHES][OPW_JOINTS],
@@ -158,7 +179,7 @@ int opw_nearest(uint32_t branches, const double all[OPW_BRANCHES][OPW_JOINTS],
     for (int n = 0; n < OPW_BRANCHES; n++) {
         double q[OPW_JOINTS], most = 0.0;
         bool within = branches >> n & 1;
-        for (int i = 0; i < OPW_JOINTS && within; i++) {
+        for (int i = 0; i < OPW_JOINTS && within && most < least; i++) {
             double turns = round((near[i] - all[n][i]) / TURN);
             const double up = ceil((low[i] - all[n][i]) / TURN);
             const double down = floor((high[i] - all[n][i]) / TURN);
@@ -176,13 +197,18 @@ int opw_nearest(uint32_t branches, const double all[OPW_BRANCHES][OPW_JOINTS],
     return best;
 }
 
+double opw_elbow(const struct opw *o, const double joint[OPW_JOINTS])
+{
+    return sin(o->sign[2] * joint[2] - o->offset[2] + atan2(o->a2, o->c3));
+}
+
 void opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double factor[3])
 {
     double th[OPW_JOINTS], z;
 
     inner(o, joint, th);
     centre(o, th, &factor[0], &z);
-    factor[1] = sin(th[2] + atan2(o->a2, o->c3));
+    factor[1] = opw_elbow(o, joint);
     factor[2] = sin(th[4]);
 }
 

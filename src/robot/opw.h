@@ -47,6 +47,11 @@ void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw
 uint32_t opw_inverse(const struct opw *o, const struct opw_pose *pose,
                      const double near[OPW_JOINTS], double joint[OPW_BRANCHES][OPW_JOINTS]);
 
+/* The same of the branches wanted only, a bit each. */
+uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
+                        const double near[OPW_JOINTS], uint32_t wanted,
+                        double joint[OPW_BRANCHES][OPW_JOINTS]);
+
 /* The branch whose joints, by whole turns and within their limits, are nearest to `near` in the
  * joint that differs most; its joints. -1: none is within the limits. [rad] */
 int opw_nearest(uint32_t branches, const double all[OPW_BRANCHES][OPW_JOINTS],
@@ -60,5 +65,8 @@ int opw_branch(const struct opw *o, const double joint[OPW_JOINTS]);
  * sine of joint 5. The determinant of the flange's velocities by the joints' is, but for its sign,
  * c2 hypot(a2, c3) times their product. [m^3] */
 void opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double factor[3]);
+
+/* The second of them alone. */
+double opw_elbow(const struct opw *o, const double joint[OPW_JOINTS]);
 
 #endif

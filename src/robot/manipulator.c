@@ -1,0 +1,264 @@
+#include "manipulator.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double MM = 1e-3;              /* [m] */
+
+static const double TURN = 6.283185307179586;
+
+/* An elbow whose sine is below this may leave its side: the arm is stretched. */
+static const double STRETCHED = 1e-6;
+
+/* Limits hold but for this. [rad] */
+static const double ROUNDING = 1e-9;
+
+/* Of the largest pivot; a smaller one is singular. */
+static const double PIVOT = 1e-13;
+
+static const double ANY_LOW[OPW_JOINTS] = { -INFINITY, -INFINITY, -INFINITY,
+                                            -INFINITY, -INFINITY, -INFINITY };
+static const double ANY_HIGH[OPW_JOINTS] = { INFINITY, INFINITY, INFINITY,
+                                             INFINITY, INFINITY, INFINITY };
+
+static struct pose flange_pose(const struct manipulator *m, const double joint[OPW_JOINTS])
+{
+    struct opw_pose flange;
+    struct pose p;
+
+    opw_forward(&m->opw, joint, &flange);
+    for (int i = 0; i < 3; i++) {
+        p.at[i] = flange.at[i] / MM;
+    }
+    quaternion_of_matrix((const double (*)[3])flange.turn, p.turn);
+    return p;
+}
+
+struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW_JOINTS])
+{
+    const struct pose flange = flange_pose(m, joint);
+    return pose_product(&flange, &m->tool);
+}
+
+/* Branches on the same side of the elbow as `near`. */
+static uint32_t same_elbow(const struct opw *o, const double near[OPW_JOINTS])
+{
+    const double elbow = opw_elbow(o, near);
+
+    return fabs(elbow) < STRETCHED ? 0xff : elbow < 0.0 ? 0xcc : 0x33;
+}
+
+static uint32_t branches(const struct manipulator *m, const struct pose *pose,
+                         const double near[OPW_JOINTS], uint32_t wanted,
+                         double all[OPW_BRANCHES][OPW_JOINTS])
+{
+    const struct pose off = pose_inverse(&m->tool);
+    const struct pose p = pose_product(pose, &off);
+    struct opw_pose flange;
+
+    for (int i = 0; i < 3; i++) {
+        flange.at[i] = p.at[i] * MM;
+    }
+    quaternion_matrix(p.turn, flange.turn);
+    return opw_inverse_of(&m->opw, &flange, near, wanted, all);
+}
+
+bool manipulator_joints(const struct manipulator *m, const struct pose *pose,
+                        double joint[OPW_JOINTS])
+{
+    double all[OPW_BRANCHES][OPW_JOINTS], found[OPW_JOINTS];
+    const uint32_t there = branches(m, pose, joint, same_elbow(&m->opw, joint), all);
+
+    if (opw_nearest(there, (const double (*)[OPW_JOINTS])all, joint, ANY_LOW, ANY_HIGH,
+                    found) < 0) {
+        return false;
+    }
+    memcpy(joint, found, sizeof found);
+    return true;
+}
+
+enum manipulator_status manipulator_solve(const struct manipulator *m, const struct pose *pose,
+                                          uint32_t wanted, const int *turn,
+                                          double joint[OPW_JOINTS], int *which)
+{
+    double all[OPW_BRANCHES][OPW_JOINTS], low[OPW_JOINTS], high[OPW_JOINTS], found[OPW_JOINTS];
+    double near[OPW_JOINTS];
+    uint32_t there = branches(m, pose, joint, wanted, all);
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        const bool told = turn && turn[i] != MANIPULATOR_ANY_TURN;
+        near[i] = told ? TURN * turn[i] : joint[i];
+        low[i] = fmin(m->joint[i].low, joint[i]);
+        high[i] = fmax(m->joint[i].high, joint[i]);
+        for (int n = 0; n < OPW_BRANCHES && told; n++) {    /* within half a turn of them */
+            all[n][i] += TURN * round((near[i] - all[n][i]) / TURN);
+            there &= all[n][i] > high[i] + ROUNDING || all[n][i] < low[i] - ROUNDING
+                   ? ~(1u << n) : ~0u;
+        }
+        low[i] = told ? ANY_LOW[i] : low[i];
+        high[i] = told ? ANY_HIGH[i] : high[i];
+    }
+    if (opw_nearest(there, (const double (*)[OPW_JOINTS])all, near, low, high, found) >= 0) {
+        memcpy(joint, found, sizeof found);
+        return MANIPULATOR_OK;
+    }
+    there = branches(m, pose, joint, wanted, all);
+    if (opw_nearest(there, (const double (*)[OPW_JOINTS])all, near, ANY_LOW, ANY_HIGH,
+                    found) < 0) {
+        return MANIPULATOR_FAR;
+    }
+    *which = manipulator_outside(m, joint, found);
+    memcpy(joint, found, sizeof found);
+    return MANIPULATOR_OUTSIDE;
+}
+
+/* The tip belongs to the forearm while joints 4 to 6 stand: an arm of three joints with lengths of
+ * its own, whose end is the wrist centre of an opw without a hand. */
+bool manipulator_arm(const struct manipulator *m, const double at[3], double joint[OPW_JOINTS])
+{
+    static const double upright[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+    double all[OPW_BRANCHES][OPW_JOINTS], zero[OPW_JOINTS], found[OPW_JOINTS];
+    struct opw o = m->opw;
+    struct opw_pose tip, wrist;
+
+    /* The tip from the wrist centre in the forearm's frame: forward with joints 1 to 3 of the inner
+     * zero and no lengths. */
+    o.a1 = o.a2 = o.b = o.c1 = o.c2 = o.c3 = 0.0;
+    memcpy(zero, joint, sizeof zero);
+    for (int i = 0; i < 3; i++) {
+        zero[i] = o.sign[i] * o.offset[i];
+    }
+    opw_forward(&o, zero, &wrist);
+    double v[3];
+    for (int i = 0; i < 3; i++) {
+        const double *r = wrist.turn[i], *t = m->tool.at;
+        v[i] = wrist.at[i] + MM * (r[0] * t[0] + r[1] * t[1] + r[2] * t[2]);
+        tip.at[i] = MM * at[i];
+    }
+    o = m->opw;
+    o.a2 += v[0];
+    o.b += v[1];
+    o.c3 += v[2];
+    o.c4 = 0.0;
+    memcpy(tip.turn, upright, sizeof upright);
+    const uint32_t there = opw_inverse(&o, &tip, joint, all) & same_elbow(&o, joint);
+    for (int n = 0; n < OPW_BRANCHES; n++) {
+        memcpy(&all[n][3], &joint[3], 3 * sizeof joint[0]);
+    }
+    if (opw_nearest(there, (const double (*)[OPW_JOINTS])all, joint, ANY_LOW, ANY_HIGH,
+                    found) < 0) {
+        return false;
+    }
+    memcpy(joint, found, 3 * sizeof joint[0]);
+    return true;
+}
+
+void manipulator_jacobian(const struct manipulator *m, const double joint[OPW_JOINTS],
+                          double column[OPW_JOINTS][6])
+{
+    const struct opw *o = &m->opw;
+    double th[OPW_JOINTS], axis[OPW_JOINTS][3], origin[OPW_JOINTS][3];
+    const struct pose tip = manipulator_pose(m, joint), flange = flange_pose(m, joint);
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        th[i] = o->sign[i] * joint[i] - o->offset[i];
+    }
+    const double c = cos(th[0]), s = sin(th[0]), p = th[1] + th[2];
+    const double cp = cos(p), sp = sin(p), c4 = cos(th[3]), s4 = sin(th[3]);
+    const double x2 = o->a1 + o->c2 * sin(th[1]), z2 = o->c1 + o->c2 * cos(th[1]);
+    double hand[3];
+    quaternion_turn(flange.turn, (const double[]){ 0.0, 0.0, 1.0 }, hand);
+    for (int k = 0; k < 3; k++) {
+        const double side[3] = { -s, c, 0.0 }, out[3] = { c, s, 0.0 }, up[3] = { 0.0, 0.0, 1.0 };
+        const double fore_x = cp * out[k] - sp * up[k];
+        axis[0][k] = up[k];
+        axis[1][k] = axis[2][k] = side[k];
+        axis[3][k] = sp * out[k] + cp * up[k];
+        axis[4][k] = -s4 * fore_x + c4 * side[k];
+        axis[5][k] = hand[k];
+        origin[0][k] = 0.0;
+        origin[1][k] = (o->a1 * out[k] + o->c1 * up[k]) / MM;
+        origin[2][k] = (x2 * out[k] + z2 * up[k]) / MM;
+        origin[3][k] = origin[4][k] = origin[5][k] = flange.at[k] - o->c4 / MM * hand[k];
+    }
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        for (int k = 0; k < 3; k++) {
+            const int a = (k + 1) % 3, b = (k + 2) % 3;
+            column[i][k] = o->sign[i] * (axis[i][a] * (tip.at[b] - origin[i][b]) -
+                                         axis[i][b] * (tip.at[a] - origin[i][a]));
+            column[i][k + 3] = o->sign[i] * axis[i][k];
+        }
+    }
+}
+
+bool manipulator_rates(const struct manipulator *m, const double joint[OPW_JOINTS],
+                       const double motion[6], double rate[OPW_JOINTS])
+{
+    double column[OPW_JOINTS][6], a[6][OPW_JOINTS + 1];
+
+    manipulator_jacobian(m, joint, column);
+    for (int i = 0; i < 6; i++) {
+        /* [m] and [rad]: of one size */
+        const double unit = i < 3 ? MM : 1.0;
+        for (int k = 0; k < OPW_JOINTS; k++) {
+            a[i][k] = unit * column[k][i];
+        }
+        a[i][OPW_JOINTS] = unit * motion[i];
+    }
+    for (int n = 0; n < OPW_JOINTS; n++) {
+        int best = n;
+        for (int i = n + 1; i < 6; i++) {
+            best = fabs(a[i][n]) > fabs(a[best][n]) ? i : best;
+        }
+        if (fabs(a[best][n]) < PIVOT) {
+            return false;
+        }
+        for (int k = n; k <= OPW_JOINTS; k++) {
+            const double x = a[n][k];
+            a[n][k] = a[best][k];
+            a[best][k] = x;
+        }
+        for (int i = n + 1; i < 6; i++) {
+            const double f = a[i][n] / a[n][n];
+            for (int k = n; k <= OPW_JOINTS; k++) {
+                a[i][k] -= f * a[n][k];
+            }
+        }
+    }
+    for (int n = OPW_JOINTS - 1; n >= 0; n--) {
+        rate[n] = a[n][OPW_JOINTS];
+        for (int k = n + 1; k < OPW_JOINTS; k++) {
+            rate[n] -= a[n][k] * rate[k];
+        }
+        rate[n] /= a[n][n];
+    }
+    return true;
+}
+
+int manipulator_outside(const struct manipulator *m, const double from[OPW_JOINTS],
+                        const double joint[OPW_JOINTS])
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        const struct manipulator_joint *j = &m->joint[i];
+        if (joint[i] > fmax(j->high, from[i]) + ROUNDING ||
+            joint[i] < fmin(j->low, from[i]) - ROUNDING) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int manipulator_factor(const struct manipulator *m, const double joint[OPW_JOINTS], double *value)
+{
+    double factor[3];
+    int least = 0;
+
+    opw_factors(&m->opw, joint, factor);
+    const double arm = m->opw.c2 + m->opw.c3;
+    for (int i = 1; i < 3; i++) {
+        const double other = least == 0 ? fabs(factor[0]) / arm : fabs(factor[least]);
+        least = fabs(factor[i]) < other ? i : least;
+    }
+    *value = factor[least];
+    return least;
+}

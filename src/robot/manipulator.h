@@ -1,0 +1,70 @@
+/* manipulator - an arm with its tool and the limits of its joints.
+ *
+ *     tool tip in the base frame  <->  flange  <->  joints
+ *     [mm], quaternion                 opw          [rad]
+ */
+#ifndef MANIPULATOR_H
+#define MANIPULATOR_H
+
+#include "opw.h"
+#include "pose.h"
+
+struct manipulator_joint {
+    double low, high;   /* [rad] */
+    double speed;       /* [rad/s] highest */
+    double acc;         /* [rad/s^2] highest */
+};
+
+struct manipulator {
+    struct opw opw;
+    struct manipulator_joint joint[OPW_JOINTS];
+    struct pose tool;   /* its tip in the flange's frame */
+};
+
+/* Tool tip by the joints. */
+struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW_JOINTS]);
+
+/* Joints of a pose on the way from those in joint[]: the nearest of the branches, whole turns
+ * counted, on the same side of the elbow, whatever the limits. So joint 5, or the wrist centre over
+ * axis 1, goes smoothly through a singular place that the way meets exactly. False, and joint[] as
+ * it was: out of reach. */
+bool manipulator_joints(const struct manipulator *m, const struct pose *pose,
+                        double joint[OPW_JOINTS]);
+
+/* The same with joints 4 to 6 given in joint[]: joints 1 to 3 bring the tip to its place [mm]. */
+bool manipulator_arm(const struct manipulator *m, const double at[3], double joint[OPW_JOINTS]);
+
+/* Of a joint's whole turns: the nearest. */
+enum { MANIPULATOR_ANY_TURN = 1000 };
+
+/* Why there are no joints for a pose. */
+enum manipulator_status {
+    MANIPULATOR_OK,
+    MANIPULATOR_FAR,        /* out of reach, or not in that branch */
+    MANIPULATOR_OUTSIDE     /* of the limits of a joint */
+};
+
+/* Joints of a pose within their limits (where those in joint[] are beyond, within these): those of
+ * the nearest branch of a set, a bit each; by the whole turns of turn[], or with NULL the nearest.
+ * OUTSIDE: joint[] becomes what it would be, *which the joint. */
+enum manipulator_status manipulator_solve(const struct manipulator *m, const struct pose *pose,
+                                          uint32_t branches, const int *turn,
+                                          double joint[OPW_JOINTS], int *which);
+
+/* Motion of the tip by each joint's: velocity [mm/rad] and turn [1], base frame. */
+void manipulator_jacobian(const struct manipulator *m, const double joint[OPW_JOINTS],
+                          double column[OPW_JOINTS][6]);
+
+/* Joints' rates for a motion of the tip: velocity, turn. False: singular. */
+bool manipulator_rates(const struct manipulator *m, const double joint[OPW_JOINTS],
+                       const double motion[6], double rate[OPW_JOINTS]);
+
+/* First joint beyond its limits, and further out than `from`, by more than rounding; -1 none. */
+int manipulator_outside(const struct manipulator *m, const double from[OPW_JOINTS],
+                        const double joint[OPW_JOINTS]);
+
+/* Which of the factors (opw.h) is nearest to 0, the shoulder's counted in lengths of the arm. */
+int manipulator_factor(const struct manipulator *m, const double joint[OPW_JOINTS],
+                       double *value);
+
+#endif

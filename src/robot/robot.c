@@ -1,0 +1,237 @@
+#include "robot.h"
+
+#include "robot_plan.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double TURN = 6.283185307179586;
+
+/* The mover gets places and no joints: pulses come from the joints at the end of the cycle. */
+static const struct mechanism PLACES;
+
+struct course_geometry robot_geometry(const struct robot *r, struct manipulator *arm)
+{
+    arm->tool = r->tool;
+    return (struct course_geometry){ arm, &r->course };
+}
+
+static void come_to_rest(struct robot *r, const struct robot_config *c)
+{
+    struct manipulator arm = c->arm;
+
+    arm.tool = r->tool;
+    r->pose = manipulator_pose(&arm, r->joint);
+    course_start(&r->course, r->pose.turn);
+    memset(r->rear, 0, sizeof r->rear);
+    memcpy(r->rear, r->pose.at, sizeof r->pose.at);
+    memcpy(r->rear_joint, r->joint, sizeof r->joint);
+    r->rear_kind = COURSE_POSE;
+    r->rear_zone = 0.0;
+    r->way.count = r->way.next = 0;
+    r->jogging = r->lost = false;
+    mover_stand(&r->mover, &PLACES, r->rear);
+}
+
+void robot_start(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS])
+{
+    memset(r, 0, sizeof *r);
+    mover_start(&r->mover);
+    r->tool = c->arm.tool;
+    memcpy(r->joint, joint, sizeof r->joint);
+    come_to_rest(r, c);
+}
+
+bool robot_idle(const struct robot *r)
+{
+    return !mover_busy(&r->mover) && r->ring.count == 0 && r->way.next >= r->way.count;
+}
+
+bool robot_rests(const struct robot *r)
+{
+    return mover_resting(&r->mover, &r->ring) && (r->way.next >= r->way.count || r->mover.hold);
+}
+
+bool robot_ready(const struct robot *r)
+{
+    return r->way.next >= r->way.count && !r->mover.abort && (!r->jogging || robot_idle(r)) &&
+           r->ring.count < RING_SIZE - ROBOT_ROOM;
+}
+
+uint32_t robot_branches(const struct robot_target *t)
+{
+    uint32_t set = 0;
+
+    for (int n = 0; n < OPW_BRANCHES; n++) {
+        const bool good = t->branch == ROBOT_ANY_BRANCH || ((n ^ t->branch) & ~t->open) == 0;
+        set |= (uint32_t)good << n;
+    }
+    return set;
+}
+
+void robot_settle(struct robot *r, const struct robot_config *c)
+{
+    if (robot_idle(r)) {
+        come_to_rest(r, c);
+    }
+}
+
+void robot_feed(struct robot *r)
+{
+    struct way *w = &r->way;
+
+    while (w->next < w->count && r->ring.count < RING_SIZE - 1) {
+        struct command c = r->command;
+        const struct way_piece *p = &w->piece[w->next];
+        if (r->stop) {
+            command_delay(&c, w->path.start, 0.0);
+            r->stop = false;
+            c.index = ++r->index;
+            ring_push(&r->ring, &c);
+            continue;
+        }
+        way_piece_path(w, &c.path);
+        c.index = ++r->index;
+        c.feed = c.cap = p->cap;
+        if (c.tolerance > 0.0) {
+            c.ramp = (struct ramp_limits){ p->acc, p->acc, 0.0, 0.0 };
+            c.tolerance = w->next + 1 == w->count && r->move.zone > 0.0 ? r->move.zone
+                                                                       : c.tolerance;
+        }
+        ring_push(&r->ring, &c);
+        w->next++;
+    }
+}
+
+static double apart(const double a[3], const double b[3])
+{
+    const double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+/* What is shown after a cycle. */
+static void show(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS],
+                 const struct pose *pose)
+{
+    const double way = apart(pose->at, r->pose.at);
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        r->rate[i] = (joint[i] - r->joint[i]) / c->cycle;
+        r->joint[i] = joint[i];
+    }
+    r->pose = *pose;
+    r->speed = way / c->cycle;
+    r->length += way;
+}
+
+/* Joints near those of a place: they go on evenly with the way, as joint 4 does where it is free */
+static void predict(const struct robot *r, const struct robot_config *c,
+                    const double place[AXES], double joint[OPW_JOINTS])
+{
+    const double before = r->speed * c->cycle, now = apart(place, r->pose.at);
+    const double ratio = before > 0.0 ? fmin(1.0, now / before) : 0.0;
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        joint[i] = r->joint[i] + ratio * r->rate[i] * c->cycle;
+    }
+}
+
+void robot_cycle(struct robot *r, const struct robot_config *c)
+{
+    struct manipulator arm = c->arm;
+    const struct course_geometry g = robot_geometry(r, &arm);
+    const struct kinematics kinematics = course_kinematics();
+    const struct mechanism m = { .kinematics = &kinematics, .geometry = &g };
+    double joint[OPW_JOINTS];
+    struct pose pose = r->pose;
+    struct point point;
+
+    memcpy(joint, r->joint, sizeof joint);
+    if (robot_idle(r)) {
+        show(r, c, joint, &pose);
+        return;
+    }
+    robot_feed(r);
+    for (double left = c->cycle; left > 0.0 && !mover_resting(&r->mover, &r->ring); ) {
+        left = mover_advance(&r->mover, &r->ring, left);
+        robot_feed(r);
+    }
+    mover_point(&r->mover, &r->ring, &PLACES, c->cycle, &r->mean, &point);
+    predict(r, c, point.place, joint);
+    if (!mechanism_joints(&m, point.place, joint) ||
+        manipulator_outside(&arm, r->joint, joint) >= 0) {
+        memcpy(joint, r->joint, sizeof joint);
+        r->lost = true;
+        show(r, c, joint, &pose);
+        robot_stop(r);
+        return;
+    }
+    course_pose(&g, point.place, joint, &pose);
+    show(r, c, joint, &pose);
+    r->line = point.line;
+    mover_accept(&r->mover, &r->ring, &point);
+}
+
+void robot_hold(struct robot *r, bool on)
+{
+    mover_hold(&r->mover, on);
+}
+
+void robot_abort(struct robot *r)
+{
+    r->way.next = r->way.count;
+    mover_abort(&r->mover, &r->ring);
+}
+
+void robot_stop(struct robot *r)
+{
+    r->way.next = r->way.count;
+    mover_stop(&r->mover, &r->ring);
+}
+
+void robot_override(struct robot *r, double share)
+{
+    const double s = fmax(0.0, fmin(1.0, share));
+    mover_override(&r->mover, s, s);
+}
+
+void robot_end(const struct robot *r, double joint[OPW_JOINTS])
+{
+    memcpy(joint, robot_idle(r) ? r->joint : r->rear_joint, sizeof r->joint);
+}
+
+enum robot_status robot_tool(struct robot *r, const struct robot_config *c,
+                             const struct pose *tool)
+{
+    if (!robot_idle(r)) {
+        return ROBOT_BUSY;
+    }
+    r->tool = *tool;
+    come_to_rest(r, c);
+    return ROBOT_OK;
+}
+
+void robot_teach(const struct robot *r, const struct robot_config *c, struct robot_target *t)
+{
+    memset(t, 0, sizeof *t);
+    t->by_joints = true;
+    t->turned = true;
+    t->pose = r->pose;
+    t->branch = opw_branch(&c->arm.opw, r->joint);
+    memcpy(t->joint, r->joint, sizeof t->joint);
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        t->turn[i] = (int)lround(r->joint[i] / TURN);
+    }
+}
+
+void robot_factors(const struct robot *r, const struct robot_config *c, double factor[3])
+{
+    opw_factors(&c->arm.opw, r->joint, factor);
+}
+
+bool robot_damaged(const struct robot *r)
+{
+    const struct way *w = &r->way;
+    return mover_damaged(&r->mover, &r->ring) || r->course.count < 1 || w->count < 0 ||
+           w->count > WAY_PIECES || w->next < 0 || w->next > w->count;
+}

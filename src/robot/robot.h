@@ -1,0 +1,171 @@
+/* robot - a six-axis arm that moves: lines, circles, moves of the joints, jogging.
+ *
+ *     robot_move, robot_jog ──> way: pieces ──> ring ──> mover ──> robot_cycle: joints
+ *     refused before anything moves             look-ahead         each cycle
+ *
+ * Poses are those of the tool's tip in the base frame of the robot; a user's frame is a
+ * pose_product before. A call that is refused changes nothing.
+ */
+#ifndef ROBOT_H
+#define ROBOT_H
+
+#include "mover.h"
+#include "way.h"
+
+/* Beside opw_flag: a target says nothing of its branch; of a joint's whole turns. */
+enum { ROBOT_ANY_BRANCH = -1, ROBOT_ANY_TURN = MANIPULATOR_ANY_TURN };
+
+struct robot_config {
+    struct manipulator arm;     /* with the tool it starts with */
+    double scale[OPW_JOINTS];   /* [pulses/rad] */
+    double feed;                /* [mm/s] highest of the tool's tip */
+    double acc;                 /* [mm/s^2] of it, along and across */
+    double spin;                /* [rad/s] highest of the tool's turning */
+    double smooth;              /* [s] in which an acceleration comes up; 0 at once */
+    double cycle;               /* [s] */
+    double slot;                /* [s] of the pulses */
+    double slot_pulses;         /* highest number of pulses in a slot */
+};
+
+/* Where a move leads. */
+struct robot_target {
+    bool   by_joints;           /* joint[] holds, else pose */
+    double joint[OPW_JOINTS];   /* [rad] */
+    struct pose pose;
+    int    branch;              /* of a pose: sum of opw_flag, or ROBOT_ANY_BRANCH */
+    int    open;                /* flags that branch says nothing of */
+    bool   turned;              /* of a pose: turn[] holds, but for ROBOT_ANY_TURN */
+    int    turn[OPW_JOINTS];    /* whole turns: joint n is within half a turn of so many */
+};
+
+enum robot_kind {
+    ROBOT_JOINTS,       /* all joints start and end together, the slowest decides */
+    ROBOT_LINE,
+    ROBOT_CIRCLE,       /* through via.at to the target */
+    ROBOT_ARC           /* about a centre; target.pose gives the attitude at its end only */
+};
+
+enum robot_singular {
+    ROBOT_SLOW,         /* the tool slows so that the joints keep their limits */
+    ROBOT_REFUSE,       /* the move is refused if it had to */
+    ROBOT_WRIST         /* joints 4 to 6 go straight, the tip keeps its path, not the attitude */
+};
+
+struct robot_move {
+    enum robot_kind kind;
+    struct robot_target target;
+    double via[3];              /* [mm] of a circle */
+    double centre[3], normal[3];    /* [mm], unit vector of an arc */
+    double rise;                /* [mm] of an arc along its normal, then an axis of the base */
+    double sweep;               /* [rad] of an arc, counter-clockwise about the normal */
+    double feed;                /* [mm/s] of the tip; 0 the highest */
+    double spin;                /* [rad/s] of the tool's turning; 0 the highest */
+    double share;               /* > 0..1 of the joints' speeds; of a move of joints */
+    double zone;                /* [mm] tolerance of the corner with the next move; 0 exact stop */
+    enum robot_singular singular;
+    int32_t line;               /* of the program */
+};
+
+enum robot_status {
+    ROBOT_OK,
+    ROBOT_BUSY,         /* not now: the move before is not all in the ring, or the arm moves */
+    ROBOT_PARAMETER,    /* a number is not finite or of the wrong sign */
+    ROBOT_FAR,          /* out of reach, at a part of the path */
+    ROBOT_OUTSIDE,      /* a joint would leave its limits */
+    ROBOT_SINGULAR,     /* a factor is too small */
+    ROBOT_OTHER_BRANCH, /* a path that keeps the branch does not lead to that of the target */
+    ROBOT_OTHER_TURN,   /* nor to its whole turns of a joint */
+    ROBOT_NO_CIRCLE     /* start, via and end are on one line, or the start is on the axis */
+};
+
+/* Why a move is refused. */
+struct robot_refusal {
+    double part;        /* 0..1 of the path */
+    double place[3];    /* [mm] of the tip there */
+    int    which;       /* joint, 0 .. 5; factor 0 shoulder 1 elbow 2 wrist; flag (opw_flag) */
+    double value;       /* joint [rad]; factor: [m], 1, 1 */
+    double limit;       /* [rad]; of OTHER_TURN: what it should be within half a turn of */
+};
+
+enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL };
+
+struct robot {
+    struct mover mover;
+    struct ring ring;
+    struct track_mean mean;
+    struct course course;
+    struct pose tool;           /* in force */
+    struct way way;             /* of the latest move, on its way into the ring */
+    struct robot_move move;     /* that move */
+    struct command command;     /* what its pieces have in common */
+    bool   stop;                /* an exact stop before its first piece */
+    double rear[AXES];          /* place at the end of the latest move */
+    double rear_joint[OPW_JOINTS];  /* [rad] there */
+    enum course_kind rear_kind;
+    double rear_zone;
+    int32_t index;              /* of the latest command */
+    bool   jogging, jog_held;   /* the latest move is a jog; its key is still down */
+    enum robot_frame jog_frame;
+    double jog_way[6];          /* its direction */
+
+    double joint[OPW_JOINTS];   /* [rad] ideal, at the end of the latest cycle */
+    double rate[OPW_JOINTS];    /* [rad/s] mean of that cycle */
+    struct pose pose;           /* of the tip there */
+    double speed;               /* [mm/s] of the tip along its path */
+    double length;              /* [mm] of its path so far */
+    int32_t line;               /* of the program */
+    bool   lost;                /* the path led out of reach: stopped on the spot; until the next */
+};
+
+/* At rest at joints [rad]. Any joints: out of its limits the arm moves back only. */
+void robot_start(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS]);
+
+/* Whether the next move may be given. */
+bool robot_ready(const struct robot *r);
+
+/* Plan a move behind those given before. */
+enum robot_status robot_move(struct robot *r, const struct robot_config *c,
+                             const struct robot_move *move, struct robot_refusal *why);
+
+/* A cycle passes: joint, rate, pose, speed, length, line are those at its end. */
+void robot_cycle(struct robot *r, const struct robot_config *c);
+
+/* Nothing moves and nothing is left to do but what hold or override 0 keeps. */
+bool robot_rests(const struct robot *r);
+
+/* All moves are done. */
+bool robot_idle(const struct robot *r);
+
+/* Pause on the path, go on; ramp to rest and drop all moves; the same without a ramp; speeds by a
+ * share 0 .. */
+void robot_hold(struct robot *r, bool on);
+void robot_abort(struct robot *r);
+void robot_stop(struct robot *r);
+void robot_override(struct robot *r, double share);
+
+/* Joints at the end of the moves given so far, for the target of a next one. [rad] */
+void robot_end(const struct robot *r, double joint[OPW_JOINTS]);
+
+/* Another tool; ROBOT_BUSY while moves are not done. */
+enum robot_status robot_tool(struct robot *r, const struct robot_config *c,
+                             const struct pose *tool);
+
+/* Jog along a direction: of joints; or X Y Z and turns about them, of the base or of the tool's
+ * frame, through the tip. Speed at the share 0..1 of config's (feed, spin, joint speeds).
+ * `way` > 0 [mm] or [rad]: so far only; 0: until robot_release, or as far as the arm goes. A jog
+ * goes on while the same one is asked for; ROBOT_BUSY: another motion has to end. */
+enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum robot_frame frame,
+                            const double direction[6], double share, double way,
+                            struct robot_refusal *why);
+void robot_release(struct robot *r);
+
+/* Where the arm is: pose of the tip, joints, branch, whole turns. */
+void robot_teach(const struct robot *r, const struct robot_config *c, struct robot_target *t);
+
+/* Factors (opw_factors) of the joints now. */
+void robot_factors(const struct robot *r, const struct robot_config *c, double factor[3]);
+
+/* Whether counts of a state, which came from outside, lead out of its arrays. */
+bool robot_damaged(const struct robot *r);
+
+#endif

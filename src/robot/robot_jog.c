@@ -1,0 +1,139 @@
+/* robot_jog - a jog is a move to the last place that it may reach; letting go aborts it. */
+#include "robot.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "robot_plan.h"
+
+/* A jog that turns only goes so far. [rad] */
+static const double TURNS = 12.566370614359172;
+
+/* Before a place that is not reached a jog ends by so much; one shorter than that is none. [mm] */
+static const double SHORT = 1e-6;
+
+/* Times that a way is made shorter. */
+enum { TRIES = 8 };
+
+static double norm3(const double a[3])
+{
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+/* Joints along a direction up to the first limit. */
+static enum robot_status jog_joints(struct robot *r, const struct robot_config *c,
+                                    const double direction[OPW_JOINTS], double way,
+                                    struct robot_move *move, struct robot_refusal *why)
+{
+    double most = 0.0, room = way > 0.0 ? way : INFINITY;
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        most = fmax(most, fabs(direction[i]));
+    }
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        const double d = direction[i] / most;
+        const struct manipulator_joint *j = &c->arm.joint[i];
+        const double limit = d > 0.0 ? j->high : j->low;
+        const double left = d != 0.0 ? fmax(0.0, (limit - r->joint[i]) / d) : INFINITY;
+        if (left < room) {
+            room = left;
+            why->which = i;
+            why->value = r->joint[i];
+            why->limit = limit;
+        }
+    }
+    if (!(room > 0.0)) {
+        return ROBOT_OUTSIDE;
+    }
+    move->kind = ROBOT_JOINTS;
+    move->target.by_joints = true;
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        move->target.joint[i] = r->joint[i] + room * direction[i] / most;
+    }
+    return robot_plan(r, c, move, NULL, NULL, why);
+}
+
+/* The tip along a direction while turning about one, to the first place that it cannot reach. */
+static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
+                                 const double velocity[3], const double turn[3], double way,
+                                 struct robot_move *move, struct robot_refusal *why)
+{
+    const struct opw *o = &c->arm.opw;
+    const double reach = 1e3 * (fabs(o->a1) + fabs(o->a2) + fabs(o->b) + o->c1 + o->c2 + o->c3 +
+                                o->c4) + norm3(r->tool.at);
+    const double v = norm3(velocity), w = norm3(turn);
+    double length = way > 0.0 ? way : v > 0.0 ? 2.0 * reach : TURNS;
+    enum robot_status status = ROBOT_FAR;
+
+    for (int n = 0; n < TRIES && length > SHORT; n++) {
+        struct pose pose = r->pose;
+        double by[3], q[4];
+        for (int i = 0; i < 3; i++) {
+            pose.at[i] += v > 0.0 ? velocity[i] / v * length : 0.0;
+            by[i] = turn[i] * (v > 0.0 ? length / v : w > 0.0 ? length / w : 0.0);
+        }
+        quaternion_by_vector(by, q);
+        quaternion_product(q, pose.turn, pose.turn);
+        status = robot_plan(r, c, move, &pose, by, why);
+        if (status == ROBOT_OK) {
+            break;
+        }
+        length = fmax(0.0, length * why->part - SHORT);
+    }
+    return status;
+}
+
+/* The same jog as that under way goes on. */
+static bool same(const struct robot *r, enum robot_frame frame, const double direction[6])
+{
+    return r->jogging && r->jog_held && r->jog_frame == frame &&
+           memcmp(r->jog_way, direction, sizeof r->jog_way) == 0;
+}
+
+enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum robot_frame frame,
+                            const double direction[6], double share, double way,
+                            struct robot_refusal *why)
+{
+    struct robot_move move = { .kind = ROBOT_LINE, .share = share, .feed = share * c->feed,
+                               .spin = share * c->spin,
+                               .target.branch = ROBOT_ANY_BRANCH };
+    double velocity[3], turn[3], most = 0.0;
+
+    memset(why, 0, sizeof *why);
+    for (int i = 0; i < 6; i++) {
+        most = fmax(most, fabs(direction[i]));
+    }
+    if (!(most > 0.0 && most < INFINITY && share > 0.0 && share <= 1.0 && way >= 0.0 &&
+          way < INFINITY)) {
+        return ROBOT_PARAMETER;
+    }
+    if (same(r, frame, direction)) {
+        return ROBOT_OK;
+    }
+    if (!robot_idle(r) || r->mover.abort || r->mover.hold) {
+        return ROBOT_BUSY;
+    }
+    robot_settle(r, c);
+    r->jogging = true;      /* its end need not be a target's */
+    memcpy(velocity, direction, sizeof velocity);
+    memcpy(turn, direction + 3, sizeof turn);
+    if (frame == ROBOT_IN_TOOL) {
+        quaternion_turn(r->pose.turn, velocity, velocity);
+        quaternion_turn(r->pose.turn, turn, turn);
+    }
+    const enum robot_status status =
+        frame == ROBOT_IN_JOINTS ? jog_joints(r, c, direction, way, &move, why)
+                                 : jog_tip(r, c, velocity, turn, way, &move, why);
+    r->jogging = r->jog_held = status == ROBOT_OK;
+    r->jog_frame = frame;
+    memcpy(r->jog_way, direction, sizeof r->jog_way);
+    return status;
+}
+
+void robot_release(struct robot *r)
+{
+    if (r->jogging && r->jog_held) {
+        r->jog_held = false;
+        robot_abort(r);
+    }
+}

@@ -1,0 +1,497 @@
+/* robot_move - a move becomes a way: where it leads, what it may, why it is refused. */
+#include "robot.h"
+
+#include "robot_plan.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double TURN = 6.283185307179586;
+
+/* Corners between pieces of one path are none, whatever the tolerance. [mm] */
+static const double WIDE = 1e9;
+
+/* Two attitudes that are the same; joints on a branch that is not certain. [rad] */
+static const double SAME = 1e-12, DOUBTFUL = 1e-9;
+
+/* A way of the tip shorter than this share of its turning is none. */
+static const double STILL = 1e-3;
+
+/* A way this short is rounding. [mm] */
+static const double NOWHERE = 1e-9;
+
+/* Sine of joint 5 from which on its direction is certain; how far joint 4 may jump. [rad] */
+static const double BENT = 1e-7, JUMP = 1e-8;
+
+/* Time of a joints' move at full speed is its way. [mm/s] */
+static const double UNIT = 1000.0;
+
+static bool all_finite(const double *x, int n)
+{
+    bool good = true;
+    for (int i = 0; i < n; i++) {
+        good = good && isfinite(x[i]);
+    }
+    return good;
+}
+
+/* The axis of the base that a unit vector is, -1 none. */
+static int axis_of(const double v[3])
+{
+    for (int i = 0; i < 3; i++) {
+        if (fabs(v[i]) == 1.0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static bool sound(const struct robot_move *m)
+{
+    const struct robot_target *t = &m->target;
+    return all_finite(t->joint, OPW_JOINTS) && all_finite(t->pose.at, 3) &&
+           all_finite(t->pose.turn, 4) && all_finite(m->via, 3) && all_finite(m->centre, 3) &&
+           all_finite(m->normal, 3) && isfinite(m->sweep) && isfinite(m->rise) &&
+           (m->rise == 0.0 || axis_of(m->normal) >= 0) && m->feed >= 0.0 && isfinite(m->feed) &&
+           m->spin >= 0.0 && isfinite(m->spin) && m->zone >= 0.0 && isfinite(m->zone) &&
+           (m->kind != ROBOT_JOINTS || (m->share > 0.0 && m->share <= 1.0)) &&
+           t->branch >= ROBOT_ANY_BRANCH && t->branch < OPW_BRANCHES;
+}
+
+static double joint_speed(const struct robot_config *c, int joint)
+{
+    /* Both ends of a slot are rounded. */
+    return fmin(c->arm.joint[joint].speed, (c->slot_pulses - 1.0) / (c->scale[joint] * c->slot));
+}
+
+/* A move of joints is the latest of the course; its command. */
+static void plan_joints(struct robot *r, const struct robot_config *c,
+                        const double target[OPW_JOINTS], double share)
+{
+    struct course_move m = { .kind = COURSE_JOINTS };
+    struct manipulator arm = c->arm;
+    double end[AXES], way = 0.0, acc = INFINITY;
+
+    arm.tool = r->tool;
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        m.joint[i] = r->rear_joint[i];
+        m.step[i] = target[i] - r->rear_joint[i];
+        way = fmax(way, UNIT * fabs(m.step[i]) / joint_speed(c, i));
+    }
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        acc = fmin(acc, c->arm.joint[i].acc * way / fabs(m.step[i]));
+    }
+    const struct pose pose = manipulator_pose(&arm, target);
+    memcpy(m.turn, pose.turn, sizeof m.turn);
+    course_add(&r->course, &m, way);
+    memcpy(end, r->rear, sizeof end);
+    memcpy(end, pose.at, sizeof pose.at);
+    end[course_axis(&r->course)] += way;
+    struct way *w = &r->way;
+    path_line(&w->path, r->rear, end);
+    w->path.length = way;
+    w->piece[0] = (struct way_piece){ 1.0, UNIT * share, acc };
+    w->count = way > 0.0;
+    w->next = 0;
+    const double jerk = c->smooth > 0.0 ? acc / c->smooth : 0.0;
+    memset(&r->command, 0, sizeof r->command);
+    r->command.type = COMMAND_LINE;
+    r->command.ramp = (struct ramp_limits){ acc, acc, jerk, jerk };
+    r->stop = false;
+    memcpy(r->rear, end, sizeof end);
+    memcpy(r->rear_joint, target, sizeof r->rear_joint);
+    r->rear_kind = COURSE_JOINTS;
+    r->rear_zone = 0.0;
+}
+
+static enum robot_status to_joints(struct robot *r, const struct robot_config *c,
+                                  const struct robot_move *move, struct robot_refusal *why)
+{
+    const struct robot_target *t = &move->target;
+    struct manipulator arm = c->arm;
+    double target[OPW_JOINTS];
+    enum manipulator_status status = MANIPULATOR_OK;
+
+    arm.tool = r->tool;
+    memcpy(target, t->by_joints ? t->joint : r->rear_joint, sizeof target);
+    if (t->by_joints) {
+        why->which = manipulator_outside(&arm, r->rear_joint, target);
+        status = why->which < 0 ? MANIPULATOR_OK : MANIPULATOR_OUTSIDE;
+    } else {
+        status = manipulator_solve(&arm, &t->pose, robot_branches(t), t->turned ? t->turn : NULL,
+                                   target, &why->which);
+    }
+    why->part = 1.0;
+    if (status == MANIPULATOR_FAR) {
+        memcpy(why->place, t->pose.at, sizeof why->place);
+        return ROBOT_FAR;
+    }
+    if (status == MANIPULATOR_OUTSIDE) {
+        const struct manipulator_joint *j = &arm.joint[why->which];
+        const struct pose at = manipulator_pose(&arm, target);
+        memcpy(why->place, at.at, sizeof why->place);
+        why->value = target[why->which];
+        why->limit = why->value > j->high ? j->high : j->low;
+        return ROBOT_OUTSIDE;
+    }
+    plan_joints(r, c, target, move->share);
+    return ROBOT_OK;
+}
+
+/* An arc about an axis becomes a helix. */
+static void wind(struct path *p, int axis, double rise)
+{
+    const enum path_plane plane = (enum path_plane)axis;
+    const int a = path_first(plane), b = path_second(plane);
+
+    p->plane = plane;
+    p->centre[0] = p->middle[a];
+    p->centre[1] = p->middle[b];
+    p->angle = atan2(p->start[b] - p->centre[1], p->start[a] - p->centre[0]);
+    p->sweep *= p->normal[axis];
+    p->length = hypot(p->length, rise);
+}
+
+/* Path of the tip; U V W go on to where those of the latest move of the course end. */
+static enum robot_status draw(struct robot *r, const struct robot_move *move,
+                              const double target[3])
+{
+    const int axis = course_axis(&r->course);
+    struct path *p = &r->way.path;
+    double end[AXES], middle[3], normal[3], sweep = move->sweep;
+
+    memcpy(end, r->rear, sizeof end);
+    memcpy(end, target, 3 * sizeof *target);
+    end[axis] = r->course.at[axis - 3];
+    if (move->kind == ROBOT_LINE) {
+        path_line(p, r->rear, end);
+        return ROBOT_OK;
+    }
+    memcpy(middle, move->centre, sizeof middle);
+    memcpy(normal, move->normal, sizeof normal);
+    if (move->kind == ROBOT_CIRCLE &&
+        path_tilted_by_point(r->rear, move->via, end, middle, normal, &sweep) != PATH_OK) {
+        return ROBOT_NO_CIRCLE;
+    }
+    if (path_tilted(p, r->rear, end, middle, normal, sweep) != PATH_OK) {
+        return ROBOT_NO_CIRCLE;
+    }
+    memcpy(p->end, end, sizeof end);
+    if (move->rise != 0.0) {
+        wind(p, axis_of(normal), move->rise);
+    }
+    return ROBOT_OK;
+}
+
+/* Attitude at the rear. */
+static void rear_turn(const struct robot *r, const struct manipulator *arm, double turn[4])
+{
+    const struct course_geometry g = { arm, &r->course };
+    struct pose rear;
+
+    course_pose(&g, r->rear, r->rear_joint, &rear);
+    memcpy(turn, rear.turn, sizeof rear.turn);
+}
+
+/* The move of the course from the rear to a pose, turned by a vector [rad]. */
+static enum robot_status enter(struct robot *r, const struct manipulator *arm,
+                               const struct robot_move *move, const struct pose *pose,
+                               const double by[3])
+{
+    struct course_move m = { .kind = COURSE_POSE };
+    double way = COURSE_LEVER * sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+
+    rear_turn(r, arm, m.turn);
+    if (move->singular == ROBOT_WRIST) {
+        double end[OPW_JOINTS];
+        memcpy(end, r->rear_joint, sizeof end);
+        if (!manipulator_joints(arm, pose, end)) {
+            return ROBOT_FAR;
+        }
+        m.kind = COURSE_WRIST;
+        memcpy(m.turn, pose->turn, sizeof m.turn);
+        way = 1.0;      /* its coordinate moves in any case */
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            m.joint[i] = r->rear_joint[i];
+            m.step[i] = end[i] - r->rear_joint[i];
+            way = i > 2 ? fmax(way, COURSE_LEVER * fabs(m.step[i])) : way;
+        }
+    } else if (way > COURSE_LEVER * SAME) {
+        memcpy(m.by, by, sizeof m.by);
+    } else {
+        way = 0.0;
+    }
+    course_add(&r->course, &m, way);
+    const enum robot_status status = draw(r, move, pose->at);
+    r->way.path.length = r->way.path.length < STILL * way ? way : r->way.path.length;
+    return status;
+}
+
+/* At the rear axes 4 and 6 are in line, so joint 4 is free; the path needs it elsewhere: joints
+ * with which it begins. */
+static bool turns_first(const struct robot *r, const struct manipulator *arm,
+                        const struct pose *rear, double joint[OPW_JOINTS])
+{
+    const struct course_geometry g = { arm, &r->course };
+    double place[AXES], slope[AXES], q[OPW_JOINTS], factor[3];
+
+    opw_factors(&arm->opw, r->rear_joint, factor);
+    if (fabs(factor[2]) > DOUBTFUL) {
+        return false;
+    }
+    for (double part = 0x1p-44; part <= 1.0; part *= 2.0) {
+        path_at(&r->way.path, part * r->way.path.length, place, slope);
+        memcpy(q, r->rear_joint, sizeof q);
+        if (!course_kinematics().joints(&g, place, q)) {
+            return false;
+        }
+        opw_factors(&arm->opw, q, factor);
+        if (fabs(factor[2]) > BENT) {
+            memcpy(joint, r->rear_joint, sizeof q);
+            joint[3] = q[3];
+            return fabs(q[3] - r->rear_joint[3]) > JUMP && manipulator_joints(arm, rear, joint);
+        }
+    }
+    return false;
+}
+
+/* Whether joints at the end of a path are those that its target asks for. */
+static enum robot_status check_end(const struct manipulator *arm, const struct robot_target *t,
+                                   const double end[OPW_JOINTS], struct robot_refusal *why)
+{
+    const int branch = t->by_joints ? opw_branch(&arm->opw, t->joint) : t->branch;
+    double factor[3];
+
+    opw_factors(&arm->opw, end, factor);
+    for (int i = 0; i < 3 && branch != ROBOT_ANY_BRANCH; i++) {
+        const int flag = (i == 0 ? OPW_BACK : i == 1 ? OPW_ELBOW : OPW_FLIP) & ~t->open;
+        if (fabs(factor[i]) > DOUBTFUL && ((branch ^ opw_branch(&arm->opw, end)) & flag)) {
+            why->which = flag;
+            why->value = factor[i];
+            return ROBOT_OTHER_BRANCH;
+        }
+    }
+    for (int i = 0; i < OPW_JOINTS && (t->by_joints || t->turned); i++) {
+        if (!t->by_joints && t->turn[i] == ROBOT_ANY_TURN) {
+            continue;
+        }
+        const double off = t->by_joints ? end[i] - t->joint[i] : end[i] - TURN * t->turn[i];
+        if (fabs(off) > 0.5 * TURN + DOUBTFUL) {
+            why->which = i;
+            why->value = end[i];
+            why->limit = t->by_joints ? t->joint[i] : TURN * t->turn[i];
+            return ROBOT_OTHER_TURN;
+        }
+    }
+    return ROBOT_OK;
+}
+
+static enum robot_status told(const struct manipulator *arm, enum way_status status,
+                              const struct way_fault *fault, struct robot_refusal *why)
+{
+    const struct manipulator_joint *j = &arm->joint[fault->which];
+
+    why->part = fault->part;
+    why->which = fault->which;
+    switch (status) {
+    case WAY_OK:
+        return ROBOT_OK;
+    case WAY_OUTSIDE:
+        why->value = fault->joint[fault->which];
+        why->limit = why->value > j->high ? j->high : j->low;
+        return ROBOT_OUTSIDE;
+    default:
+        why->which = manipulator_factor(arm, fault->joint, &why->value);
+        return status == WAY_FAR ? ROBOT_FAR : ROBOT_SINGULAR;
+    }
+}
+
+/* Speed along the path that feed and turning allow. */
+static double feed_of(const struct robot *r, const struct robot_config *c,
+                      const struct robot_move *move, const double by[3])
+{
+    const double angle = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+    const double feed = move->feed > 0.0 ? fmin(move->feed, c->feed) : c->feed;
+    const double spin = move->spin > 0.0 ? fmin(move->spin, c->spin) : c->spin;
+    const double length = r->way.path.length;
+
+    if (!(angle > SAME) || move->singular == ROBOT_WRIST) {
+        return feed;
+    }
+    const double turning = spin * length / angle;
+    return length == COURSE_LEVER * angle ? turning : fmin(feed, turning);  /* it turns only */
+}
+
+static enum robot_status along(struct robot *r, const struct robot_config *c,
+                              const struct robot_move *move, const struct pose *pose,
+                              const double by[3], struct robot_refusal *why)
+{
+    struct manipulator arm = c->arm;
+    const struct course_geometry g = robot_geometry(r, &arm);
+    struct way_limits l = { .acc = c->acc, .smooth = c->smooth,
+                            .refuse = move->singular == ROBOT_REFUSE };
+    struct command first = { .index = 0 };
+    double joint[OPW_JOINTS];
+    struct way_fault fault = { 0 };
+    struct pose rear;
+
+    memcpy(rear.at, r->rear, sizeof rear.at);
+    rear_turn(r, &arm, rear.turn);
+    bool chained = r->rear_kind == COURSE_POSE && r->rear_zone > 0.0 &&
+                   move->singular != ROBOT_WRIST;
+    enum robot_status status = enter(r, &arm, move, pose, by);
+    if (status == ROBOT_OK && r->way.path.length >= NOWHERE && move->singular != ROBOT_WRIST &&
+        turns_first(r, &arm, &rear, joint)) {
+        course_drop(&r->course);
+        plan_joints(r, c, joint, 1.0);
+        first = r->command;
+        way_piece_path(&r->way, &first.path);
+        first.feed = first.cap = r->way.piece[0].cap;
+        first.index = r->index + 1;
+        first.line = move->line;
+        chained = false;
+        status = enter(r, &arm, move, pose, by);
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    r->way.count = r->way.next = 0;
+    if (r->way.path.length < NOWHERE) {
+        course_drop(&r->course);
+        return check_end(&arm, &move->target, r->rear_joint, why);
+    }
+    l.feed = feed_of(r, c, move, by);
+    l.corner[0] = chained;
+    l.corner[1] = move->zone > 0.0;
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        l.speed[i] = joint_speed(c, i);
+        l.turn[i] = c->arm.joint[i].acc;
+    }
+    memcpy(joint, r->rear_joint, sizeof joint);
+    status = told(&arm, way_plan(&r->way, &g, &l, joint, &fault), &fault, why);
+    if (status == ROBOT_OK && !r->jogging) {
+        why->part = 1.0;
+        status = check_end(&arm, &move->target, joint, why);
+    }
+    if (status != ROBOT_OK) {
+        double slope[AXES], place[AXES];
+        path_at(&r->way.path, why->part * r->way.path.length, place, slope);
+        memcpy(why->place, place, sizeof why->place);
+        return status;
+    }
+    if (first.index > 0) {
+        ring_push(&r->ring, &first);
+        r->index++;
+    }
+    memset(&r->command, 0, sizeof r->command);
+    r->command.type = r->way.path.arc ? COMMAND_CCW_ARC : COMMAND_LINE;
+    r->command.blend = true;
+    r->command.tolerance = WIDE;
+    r->command.smooth = r->way.smooth;
+    r->stop = !chained;
+    memcpy(r->rear, r->way.path.end, sizeof r->rear);
+    memcpy(r->rear_joint, joint, sizeof joint);
+    r->rear_kind = move->singular == ROBOT_WRIST ? COURSE_WRIST : COURSE_POSE;
+    r->rear_zone = move->zone;
+    return ROBOT_OK;
+}
+
+/* Pose at the end of a path. */
+static enum robot_status aim(const struct robot *r, const struct manipulator *arm,
+                             const struct robot_move *move, struct pose *pose)
+{
+    struct path p;
+
+    *pose = move->target.by_joints ? manipulator_pose(arm, move->target.joint)
+                                   : move->target.pose;
+    quaternion_normalise(pose->turn);
+    if (move->kind == ROBOT_ARC) {
+        if (path_tilted(&p, r->rear, r->rear, move->centre, move->normal, move->sweep) !=
+            PATH_OK) {
+            return ROBOT_NO_CIRCLE;
+        }
+        for (int i = 0; i < 3; i++) {
+            pose->at[i] = p.end[i] + move->rise * move->normal[i];
+        }
+    }
+    return ROBOT_OK;
+}
+
+static enum robot_status along_path(struct robot *r, const struct robot_config *c,
+                                    const struct robot_move *move, struct robot_refusal *why)
+{
+    struct manipulator arm = c->arm;
+    struct pose pose;
+    double turn[4], by[3];
+
+    arm.tool = r->tool;
+    const enum robot_status status = aim(r, &arm, move, &pose);
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    rear_turn(r, &arm, turn);
+    quaternion_inverse(turn, turn);
+    quaternion_product(pose.turn, turn, turn);
+    quaternion_vector(turn, by);
+    return along(r, c, move, &pose, by, why);
+}
+
+struct rear {
+    double place[AXES], joint[OPW_JOINTS], at[3];
+    enum course_kind kind;
+    double zone;
+    int32_t count;
+};
+
+static struct rear keep(const struct robot *r)
+{
+    struct rear k = { .kind = r->rear_kind, .zone = r->rear_zone, .count = r->course.count };
+    memcpy(k.place, r->rear, sizeof k.place);
+    memcpy(k.joint, r->rear_joint, sizeof k.joint);
+    memcpy(k.at, r->course.at, sizeof k.at);
+    return k;
+}
+
+static void put_back(struct robot *r, const struct rear *k)
+{
+    r->rear_kind = k->kind;
+    r->rear_zone = k->zone;
+    r->course.count = k->count;
+    r->way.count = r->way.next = 0;
+    memcpy(r->rear, k->place, sizeof k->place);
+    memcpy(r->rear_joint, k->joint, sizeof k->joint);
+    memcpy(r->course.at, k->at, sizeof k->at);
+}
+
+enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
+                             const struct robot_move *move, const struct pose *pose,
+                             const double by[3], struct robot_refusal *why)
+{
+    const struct rear before = keep(r);
+    const enum robot_status status = move->kind == ROBOT_JOINTS ? to_joints(r, c, move, why)
+                                   : pose ? along(r, c, move, pose, by, why)
+                                   : along_path(r, c, move, why);
+
+    if (status != ROBOT_OK) {
+        put_back(r, &before);
+        return status;
+    }
+    r->move = *move;
+    r->command.line = move->line;
+    robot_feed(r);
+    return ROBOT_OK;
+}
+
+enum robot_status robot_move(struct robot *r, const struct robot_config *c,
+                             const struct robot_move *move, struct robot_refusal *why)
+{
+    memset(why, 0, sizeof *why);
+    if (!robot_ready(r)) {
+        return ROBOT_BUSY;
+    }
+    if (!sound(move)) {
+        return ROBOT_PARAMETER;
+    }
+    robot_settle(r, c);
+    return robot_plan(r, c, move, NULL, NULL, why);
+}

@@ -1,0 +1,27 @@
+/* robot_plan - how moves and jogs are planned; of robot only. */
+#ifndef ROBOT_PLAN_H
+#define ROBOT_PLAN_H
+
+#include "robot.h"
+
+/* Commands that a move needs beside its pieces: an exact stop, a turn of joint 4 before it. */
+enum { ROBOT_ROOM = 4 };
+
+/* Geometry of the moves; *arm becomes the config's with the tool in force. */
+struct course_geometry robot_geometry(const struct robot *r, struct manipulator *arm);
+
+/* Nothing being under way, moves begin where the arm is. */
+void robot_settle(struct robot *r, const struct robot_config *c);
+
+/* Plan a move; along a path to a pose, turned by a vector [rad], if there is a pose. */
+enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
+                             const struct robot_move *move, const struct pose *pose,
+                             const double by[3], struct robot_refusal *why);
+
+/* Branches that a target allows, a bit each. */
+uint32_t robot_branches(const struct robot_target *t);
+
+/* Commands into the ring. */
+void robot_feed(struct robot *r);
+
+#endif
