@@ -64,7 +64,7 @@ static enum fault end_point(const struct interpreter *in, const struct program *
         if (!p->machine.axis[i]) {
             return tokens_at_word(r, FAULT_AXIS, w);
         }
-        const double value = w->value * b->scale;
+        const double value = gcode_value(b, i, w);
         end[i] = machine ? value : in->incremental ? end[i] + value
                                                    : value + offsets_zero(in, i);
     }

@@ -51,26 +51,30 @@ static enum fault sort_code(struct gcode *g, const struct token *w, const struct
     return tokens_at_word(r, FAULT_WORD, w);
 }
 
-static enum fault sort_letter(struct gcode *g, const struct token *w, struct fault_report *r)
+static enum fault sort_letter(struct gcode *g, const struct token *w, bool angles,
+                              struct fault_report *r)
 {
-    bool known = false;
-    for (const char *l = "NFSXYZUVWIJKRPL"; *l; l++) {
-        known = known || *l == w->letter;
+    const char *letters = angles ? "NFSXYZABCIJKRPL" : "NFSXYZUVWIJKRPL";
+    const int turns = w->letter - 'A';    /* 0..2 for A B C, which stand where U V W would */
+    const struct token **place = &g->word[angles && turns < 3 ? turns + ('U' - 'A') : turns];
+
+    while (*letters && *letters != w->letter) {
+        letters++;
     }
-    if (!known) {
+    if (!*letters) {
         return tokens_at_word(r, FAULT_WORD, w);
     }
-    if (g->word[w->letter - 'A']) {
+    if (*place) {
         return tokens_at_word(r, FAULT_TWICE, w);
     }
     if (w->letter == 'N' && (w->value < 0.0 || w->value != round(w->value))) {
         return tokens_at_word(r, FAULT_VALUE, w);
     }
-    g->word[w->letter - 'A'] = w;
+    *place = w;
     return FAULT_NONE;
 }
 
-static enum fault sort(struct gcode *g, const struct token *w, int *m_words,
+static enum fault sort(struct gcode *g, const struct token *w, bool angles, int *m_words,
                        struct fault_report *r)
 {
     if (w->letter == 'G') {
@@ -82,10 +86,11 @@ static enum fault sort(struct gcode *g, const struct token *w, int *m_words,
     if (w->letter == 'M') {
         return sort_code(g, w, m_codes, sizeof m_codes / sizeof *m_codes, r);
     }
-    return sort_letter(g, w, r);
+    return sort_letter(g, w, angles, r);
 }
 
-enum fault gcode_sort(struct gcode *g, const struct tokens *t, struct fault_report *r)
+enum fault gcode_sort(struct gcode *g, const struct tokens *t, bool angles,
+                      struct fault_report *r)
 {
     enum fault f = FAULT_NONE;
     int m_words = 0;
@@ -96,7 +101,7 @@ enum fault gcode_sort(struct gcode *g, const struct tokens *t, struct fault_repo
         g->code[i] = GCODE_ABSENT;
     }
     for (int i = 0; i < t->count && f == FAULT_NONE; i++) {
-        f = sort(g, &t->word[i], &m_words, r);
+        f = sort(g, &t->word[i], angles, &m_words, r);
     }
     return f;
 }
@@ -104,6 +109,11 @@ enum fault gcode_sort(struct gcode *g, const struct tokens *t, struct fault_repo
 const struct token *gcode_word(const struct gcode *g, char letter)
 {
     return g->word[letter - 'A'];
+}
+
+double gcode_value(const struct block *b, int axis, const struct token *w)
+{
+    return w->value * (b->angles && axis >= 3 ? 1.0 : b->scale);
 }
 
 const struct token *gcode_first(const struct gcode *g, const char *letters)

@@ -44,13 +44,19 @@ struct block {
     struct tokens tokens;
     struct gcode g;
     double scale;       /* [mm] per unit of the program */
+    bool angles;        /* U V W are A B C, which have no such unit */
 };
 
-/* Sort the words of a line; *r gets the place of a fault. */
-enum fault gcode_sort(struct gcode *g, const struct tokens *t, struct fault_report *r);
+/* Sort the words of a line; *r gets the place of a fault. With angles, A B C take the places of
+ * U V W. */
+enum fault gcode_sort(struct gcode *g, const struct tokens *t, bool angles,
+                      struct fault_report *r);
 
 /* The word of a letter, or NULL. */
 const struct token *gcode_word(const struct gcode *g, char letter);
+
+/* What an axis word says. [mm], [deg] */
+double gcode_value(const struct block *b, int axis, const struct token *w);
 
 /* The first of the letters that the block has, or NULL. */
 const struct token *gcode_first(const struct gcode *g, const char *letters);

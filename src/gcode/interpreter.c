@@ -172,7 +172,9 @@ static void stop(struct interpreter *in, const struct program *p, const struct b
 static enum fault execute(struct interpreter *in, const struct program *p, struct block *b,
                           struct fault_report *r)
 {
-    enum fault f = gcode_sort(&b->g, &b->tokens, r);
+    enum fault f = gcode_sort(&b->g, &b->tokens, p->angles, r);
+
+    b->angles = p->angles;
 
     if (f == FAULT_NONE) {
         set_modes(in, b);

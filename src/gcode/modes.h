@@ -17,6 +17,7 @@ struct program {
     struct motion_limits limits;
     bool block_delete;      /* lines that begin with / are passed over */
     bool optional_stop;     /* M1 stops */
+    bool angles;            /* the last three coordinates are the tool's angles A B C [deg] */
 };
 
 /* What S, M3 to M9 have set so far; it outlives the program. */

@@ -58,7 +58,7 @@ static enum fault set_axes(struct interpreter *in, const struct program *p, cons
         if (!p->machine.axis[i]) {
             return tokens_at_word(r, FAULT_AXIS, w);
         }
-        const double value = w->value * b->scale;
+        const double value = gcode_value(b, i, w);
         if (code == 100) {
             in->origin[system][i] = value;
         } else if (code == 520) {

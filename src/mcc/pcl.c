@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "latency.h"
+
 void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch,
                const struct isr_config *isr)
 {
@@ -25,18 +27,9 @@ bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card)
     return card->irq_seq > p->irq_seq;
 }
 
-/* Uniform in [0, 1): SplitMix64, the 53 upper bits. */
-static double uniform(uint64_t *state)
-{
-    uint64_t x = *state += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return ldexp((double)((x ^ (x >> 31)) >> 11), -53);
-}
-
 int64_t pcl_latency(uint64_t *random, double least, double width)
 {
-    return (int64_t)llround(least + width * uniform(random));
+    return (int64_t)llround(least + width * latency_uniform(random));
 }
 
 int32_t pcl_acknowledged(struct pcl *p, const struct pcl_card *card)

@@ -8,7 +8,7 @@
 struct program task_program(const struct mcc *m, const struct source *s)
 {
     return (struct program){ s, machine_mechanism(&m->machine), machine_limits(&m->machine),
-                             m->block_delete, m->optional_stop };
+                             m->block_delete, m->optional_stop, false };
 }
 
 /* A program begins; what the one before has switched on stays on. */
