@@ -1,0 +1,182 @@
+#include "inform.h"
+
+#include <float.h>
+#include <string.h>
+
+#include "inform_reading.h"
+
+/* The job that is being read has ended. */
+static int end_job(struct inform_reading *in)
+{
+    if (in->p->jobs == 0) {
+        return 0;
+    }
+    in->s.line = in->last;
+    if (inform_move_arc_over(in) || inform_block_all_closed(in)) {
+        return -1;
+    }
+    return in->end_line > 0 || inform_reading_add(in, INFORM_OP_RET) ? 0 : -1;
+}
+
+static int begin_job(struct inform_reading *in, const char *name, int32_t length)
+{
+    struct inform_program *p = in->p;
+    if (p->jobs == INFORM_JOBS) {
+        in->s.r->high = INFORM_JOBS;
+        return inform_scan_fault_line(&in->s, INFORM_BAD_TOO_MANY);
+    }
+    struct inform_job *job = &p->job[p->jobs++];
+    memset(job, 0, sizeof *job);
+    memcpy(job->name, name, (size_t)length);
+    job->start = p->count;
+    job->line = in->last = in->s.line;
+    in->end_line = 0;
+    return 0;
+}
+
+static int32_t job_of(const struct inform_program *p, const char *name, int32_t length)
+{
+    for (int32_t i = 0; i < p->jobs; i++) {
+        int32_t n = 0;
+        while (n < length && p->job[i].name[n] == name[n]) {
+            n++;
+        }
+        if (n == length && p->job[i].name[n] == '\0') {
+            return i;
+        }
+    }
+    return -1;
+}
+
+/* JOB NAME, or //NAME NAME: 1, 0 something else, -1. */
+static int header(struct inform_reading *in)
+{
+    struct inform_scan *s = &in->s;
+    struct inform_piece name;
+    if (!s->name && !inform_scan_is(s, inform_scan_word(s), "JOB")) {
+        s->at = s->begin;
+        return 0;
+    }
+    const int32_t line = s->line, at = s->at;
+    if (end_job(in)) {
+        return -1;
+    }
+    s->line = line;
+    s->at = at;
+    if (inform_scan_name(s, INFORM_NAME_MAX, &name)) {
+        return -1;
+    }
+    if (!inform_scan_over(s)) {
+        return inform_scan_unexpected(s);
+    }
+    const int32_t other = job_of(in->p, s->text + name.at, name.length);
+    if (other >= 0) {
+        s->r->other = in->p->job[other].line;
+        return inform_scan_fault(s, INFORM_BAD_JOB_TWICE, name);
+    }
+    return begin_job(in, s->text + name.at, name.length) ? -1 : 1;
+}
+
+double inform_low(enum inform_operand_kind kind)
+{
+    return kind == INFORM_B ? 0.0 : kind == INFORM_I ? INT16_MIN
+         : kind == INFORM_D ? INT32_MIN : -DBL_MAX;
+}
+
+double inform_high(enum inform_operand_kind kind)
+{
+    return kind == INFORM_B ? UINT8_MAX : kind == INFORM_I ? INT16_MAX
+         : kind == INFORM_D ? INT32_MAX : DBL_MAX;
+}
+
+int32_t inform_job(const struct inform_program *p, const char *name)
+{
+    int32_t length = 0;
+    while (length <= INFORM_NAME_MAX && name[length] != '\0') {
+        length++;
+    }
+    return length <= INFORM_NAME_MAX ? job_of(p, name, length) : -1;
+}
+
+/* The label of a jump in one of its own or outer loops. */
+static int find_label(struct inform_reading *in, struct inform_code *c, int32_t job)
+{
+    struct inform_program *p = in->p;
+    const struct inform_piece name = { c->to, c->via };
+    for (int32_t i = 0; i < p->labels; i++) {
+        const struct inform_label *l = &p->label[i];
+        const struct inform_piece other = { l->offset, l->length };
+        if (l->job != job || !inform_scan_same(in->s.text, other, name)) {
+            continue;
+        }
+        for (int32_t loop = c->inside; loop != l->inside; loop = p->code[loop].inside) {
+            if (loop < 0) {
+                in->s.r->other = p->code[l->inside].line;
+                return inform_scan_fault(&in->s, INFORM_BAD_INTO_LOOP, name);
+            }
+        }
+        c->to = l->to;
+        return 0;
+    }
+    return inform_scan_fault(&in->s, INFORM_BAD_LABEL, name);
+}
+
+/* Names of labels and jobs become instructions. */
+static int find_names(struct inform_reading *in)
+{
+    struct inform_program *p = in->p;
+    int32_t job = -1;
+    for (int32_t i = 0; i < p->count; i++) {
+        struct inform_code *c = &p->code[i];
+        while (job + 1 < p->jobs && p->job[job + 1].start <= i) {
+            job++;
+        }
+        if (c->level == INFORM_ANY || (c->op != INFORM_OP_JUMP && c->op != INFORM_OP_CALL)) {
+            continue;
+        }
+        in->s.line = c->line;
+        if (c->level == 0) {
+            if (find_label(in, c, job)) {
+                return -1;
+            }
+        } else {
+            const int32_t there = job_of(p, in->s.text + c->to, c->via);
+            if (there < 0) {
+                return inform_scan_fault(&in->s, INFORM_BAD_JOB,
+                                         (struct inform_piece){ c->to, c->via });
+            }
+            c->to = p->job[there].start;
+        }
+        c->via = 0;
+    }
+    return 0;
+}
+
+int inform_read(struct inform_program *p, const struct inform_points *points, const char *text,
+                int64_t length, struct inform_report *r)
+{
+    struct inform_reading in = { .p = p, .points = points };
+    int status;
+
+    p->count = p->jobs = p->labels = 0;
+    if (inform_scan_begin(&in.s, text, length, r)) {
+        return -1;
+    }
+    while ((status = inform_scan_line(&in.s)) > 0) {
+        status = header(&in);
+        if (status == 0 && p->jobs == 0) {
+            status = begin_job(&in, "MAIN", 4);
+        }
+        if (status < 0 || (status == 0 && inform_words(&in))) {
+            return -1;
+        }
+        in.last = in.s.line;
+    }
+    if (status < 0 || end_job(&in)) {
+        return -1;
+    }
+    if (p->jobs == 0) {
+        return inform_scan_fault(&in.s, INFORM_BAD_EMPTY, (struct inform_piece){ 0, 0 });
+    }
+    return find_names(&in);
+}

@@ -1,0 +1,49 @@
+/* A program with the points that its tests use. */
+#ifndef INFORM_GIVEN_H
+#define INFORM_GIVEN_H
+
+#include <string.h>
+
+#include "check.h"
+#include "inform_run.h"
+
+static const char POINTS[] =
+    "TOOL 1 X=0 Y=0 Z=150 A=0 B=0 C=0\n"
+    "USER 2 X=900 Y=-300 Z=200 A=0 B=0 C=90\n"
+    "P000 J1=0 J2=-20 J3=10 J4=0 J5=90 J6=0\n"
+    "P001 X=900 Y=0 Z=350 A=180 B=0 C=0 FRONT UP NOFLIP TOOL=1\n"
+    "P002 X=1000 Y=100 Z=350 A=180 B=0 C=0\n"
+    "P003 X=1100 Y=0 Z=350 A=180 B=0 C=0\n"
+    "P004 X=0 Y=0 Z=0 A=180 B=0 C=0 USER=2\n";
+
+static struct inform_points points;
+static struct inform_program program;
+static struct inform_report report;
+static char message[INFORM_MESSAGE_MAX];
+
+/* Read a program; what is said about it stands in `message`, empty if it is good. */
+static inline int read_program(const char *text)
+{
+    message[0] = '\0';
+    CHECK_EQ(inform_points_read(&points, POINTS, (int64_t)strlen(POINTS), &report), 0);
+    const int status = inform_read(&program, &points, text, (int64_t)strlen(text), &report);
+    CHECK_EQ(status, report.fault == INFORM_OK ? 0 : -1);
+    if (status) {
+        inform_message(&report, text, message);
+    }
+    return status;
+}
+
+static const struct inform_start START = {
+    .vj = 10.0, .v = 100.0, .vr = 20.0, .level = 0, .tool = 0, .user = 0
+};
+
+#define CHECK_TEXT(got, want) \
+    do { \
+        if (strcmp(got, want)) { \
+            check_failures++; \
+            printf("%s:%d: \"%s\", want \"%s\"\n", __FILE__, __LINE__, got, want); \
+        } \
+    } while (0)
+
+#endif
