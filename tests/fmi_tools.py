@@ -250,7 +250,7 @@ def start_values(name: str, folder: Path) -> dict[str, Any]:
     values: dict[str, Any] = {}
     if "program" in variables:
         program = folder / "program.nc"
-        program.write_text("G90 G0 X0 Y0\nG1 X5 Y3 F3000\nG2 X5 Y3 I2 J0\nM2\n")
+        program.write_text("G91 G0 X0 Y0\nG1 X5 Y3 F3000\nG2 I2 J0\nM2\n")
         values["program"] = str(program)
     if "file" in variables:
         values["file"] = str(folder / "trace")

@@ -1,0 +1,272 @@
+/* The software of the controller on the wires of a co-simulation: bus grid, mailboxes, files. */
+#include <string.h>
+
+#include "soft_calls.h"
+#include "soft_settings.h"
+#include "soft_words.h"
+#include "vars.h"
+
+struct model {
+    struct soft soft;
+    int64_t instant;        /* [ns] next instant of the bus grid that reads */
+    bool    unpublished;    /* what was read last shows at that instant */
+    int32_t told;           /* error that was reported */
+};
+
+#define MODEL_BLOB
+#include "fmi_model.h"
+#include "fmu_period.h"
+#include "soft_parameters.h"
+#include "soft_text.h"
+
+static int cannot_write(struct fmu *f, const char *why)
+{
+    return fmu_fail(f, "teach_file: cannot write %s: %s", f->s.v.teach_file, why);
+}
+
+static int model_open(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    const struct soft_inputs in = inputs_of(v);
+    const char *why = v->teach_file[0] ? output_try(v->teach_file, in.of, SOFT_INPUTS) : NULL;
+
+    if (why) {
+        return cannot_write(f, why);
+    }
+    struct soft_blob *b = calloc(1, sizeof *b);
+    if (!b) {
+        return fmu_fail(f, "out of memory");
+    }
+    f->blob = b;
+    return config_of(f, &b->config) ? -1 : read_files(f, b);
+}
+
+static void model_close(struct fmu *f)
+{
+    struct soft_blob *b = f->blob;
+
+    if (b) {
+        program_close(b->gcode);
+        free(b);
+    }
+}
+
+static void publish_times(struct vars *v, const struct soft *s)
+{
+    const struct soft_report *r = &s->report;
+
+    v->runs = r->runs;
+    v->deadline_misses = r->late;
+    v->lines_done = r->lines;
+    v->points_computed = r->points;
+    v->starved = r->starved;
+    v->irq_wait = (double)r->wait / FPGA_CLOCK_HZ;
+    v->irq_wait_most = (double)r->wait_most / FPGA_CLOCK_HZ;
+    v->cycle_time = (double)r->run / FPGA_CLOCK_HZ;
+    v->cycle_time_most = (double)r->run_most / FPGA_CLOCK_HZ;
+    v->spare_time = (double)r->spare / FPGA_CLOCK_HZ;
+    v->load = s->free > 0 ? (double)r->busy / (double)s->free : 0.0;
+    v->line_latency = (double)r->line / FPGA_CLOCK_HZ;
+    v->line_latency_most = (double)r->line_most / FPGA_CLOCK_HZ;
+    v->line_known_most = (double)r->told_most / FPGA_CLOCK_HZ;
+}
+
+static void publish_arm(struct vars *v, const struct soft *s, const struct soft_config *c)
+{
+    const struct robot *r = &s->robot;
+
+    for (int i = 0; i < 3; i++) {
+        v->tool_position[i] = r->pose.at[i] * 1e-3;
+    }
+    memcpy(v->tool_quaternion, r->pose.turn, sizeof v->tool_quaternion);
+    memcpy(v->joint_command, r->joint, sizeof v->joint_command);
+    memcpy(v->joint_rate, r->rate, sizeof v->joint_rate);
+    v->configuration = opw_branch(&c->robot.arm.opw, r->joint);
+    robot_factors(r, &c->robot, v->factors);
+    v->path_feed = r->speed;
+    v->path_length = r->length;
+}
+
+static void publish_card(struct vars *v, struct soft *s, const struct soft_config *c)
+{
+    struct fpga_host host;
+    const bool write = s->posts;
+
+#define TAKE(type, name, elements) LINK_CARRY(host.name, v->card_##name)
+#define SHOW(type, name, elements) LINK_CARRY(v->card_##name, host.name)
+    FPGA_OUT(TAKE)
+    FPGA_AO(TAKE)
+    FPGA_LEVELS(TAKE)
+    soft_post(s, c, &host);
+    FPGA_OUT(SHOW)
+    FPGA_AO(SHOW)
+    FPGA_LEVELS(SHOW)
+    if (write) {
+        FPGA_WRITE(SHOW)
+    }
+}
+
+static struct soft_panel panel_of(const struct vars *v)
+{
+    struct soft_panel p = {
+        .hold = v->hold, .abort = v->abort, .start = v->start, .single = v->single,
+        .reset = v->reset, .teach = v->teach, .replay = v->replay, .override = v->override,
+        .frame = (enum robot_frame)v->jog_frame, .jog_speed = v->jog_speed,
+        .jog_way = v->jog_way
+    };
+    memcpy(p.jog, v->jog, sizeof p.jog);
+    return p;
+}
+
+static void publish(struct fmu *f)
+{
+    struct vars *v = &f->s.v;
+    struct soft *s = &f->s.m.soft;
+    const struct soft_blob *b = f->blob;
+    const struct soft_panel panel = panel_of(v);
+    const bool cycle = s->posts || f->s.m.instant == 0;
+
+    v->status = soft_status(s, &panel);
+    v->done = soft_done(s);
+    v->error = s->trouble.error;
+    v->error_line = s->trouble.line;
+    v->line = s->robot.line > 0 ? s->move_line[s->robot.line % SOFT_MOVES] : 0;
+    v->move = (int32_t)s->given;
+    v->reached = (int32_t)s->reached;
+    v->taught = s->taught_count;
+    v->queue = s->count;
+    if (cycle) {        /* nothing of this changes between */
+        publish_times(v, s);
+        publish_arm(v, s, &b->config);
+    }
+    publish_card(v, s, &b->config);
+    v->polls = s->report.polls;
+    if (v->error != f->s.m.told) {
+        char words[SOFT_WORDS];
+        soft_words(&s->trouble, words);
+        f->s.m.told = v->error;
+        if (v->error) {
+            fmu_warn(f, "%s: line %d: %s", v->program, (int)v->error_line, words);
+        }
+    }
+}
+
+/* Every move of a part program is planned before the first one starts. */
+static int rehearse(struct fmu *f, const struct orders_text *t)
+{
+    const struct soft_blob *b = f->blob;
+    struct soft *s = &f->s.m.soft;
+    struct fault_report r;
+
+    orders_check(&b->config.orders, t, &s->robot.pose, &r);
+    if (r.fault != FAULT_NONE) {
+        return refuse_program(f, "program", f->s.v.program, b->gcode, &r);
+    }
+    soft_rehearse(s, &b->config, t);
+    if (s->trouble.error != SOFT_OK) {
+        char words[SOFT_WORDS];
+        soft_words(&s->trouble, words);
+        return fmu_fail(f, "%s: line %d: %s", f->s.v.program, (int)s->trouble.line, words);
+    }
+    return 0;
+}
+
+static int model_start(struct fmu *f)
+{
+    const struct soft_blob *b = f->blob;
+    const struct orders_text t = text_of(b);
+    struct soft *s = &f->s.m.soft;
+
+    soft_start(s, &b->config);
+    if (t.gcode) {
+        if (rehearse(f, &t)) {
+            return -1;
+        }
+        soft_start(s, &b->config);
+    }
+    publish(f);
+    return 0;
+}
+
+static const char *model_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+    const int64_t bus = llround(s->v.bus_period * FPGA_CLOCK_HZ) * FPGA_CLOCK_NS;
+
+    if (bus < FPGA_CLOCK_NS || m->instant < s->now || m->instant - s->now >= bus) {
+        return "its next instant is another one";
+    }
+    return soft_damage(&m->soft, m->instant / FPGA_CLOCK_NS);
+}
+
+/* Read the wires at an instant of the bus grid and let the PC work. */
+static void read_bus(struct fmu *f, int64_t at)
+{
+    const struct vars *v = &f->s.v;
+    const struct soft_blob *b = f->blob;
+    const struct soft_panel panel = panel_of(v);
+    const struct orders_text t = text_of(b);
+    struct fpga_shown card = { 0 };
+
+#define READ(type, name, elements) LINK_CARRY(card.name, v->card_##name)
+    FPGA_INTERRUPTS(READ)
+    READ(int32_t, inputs, )
+    READ(int32_t, memory, )
+    READ(bool, stopped, )
+    READ(int32_t, pulse_count, )
+    soft_instant(&f->s.m.soft, &b->config, &t, &card, &panel, at / FPGA_CLOCK_NS);
+}
+
+/* Whether a state came from outside with a program's place that this program does not have. The
+ * bytes it was left with need no second look. */
+static bool foreign(const struct soft_blob *b, const struct orders *o, const struct orders_text *t)
+{
+    const bool known = memcmp(&b->known, &o->inform, sizeof b->known) == 0;
+
+    return known ? o->moves < 0 || interpreter_damaged(&o->gcode) : orders_damaged(o, t);
+}
+
+static void keep_known(struct soft_blob *b, const struct orders *o)
+{
+    memcpy(&b->known, &o->inform, sizeof b->known);
+}
+
+static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    struct model *m = &f->s.m;
+    const struct soft_blob *b = f->blob;
+    const struct vars *v = &f->s.v;
+    const struct orders_text t = text_of(b);
+
+    (void)t0;
+    if (!(fabs(v->card_irq_clock) < FMU_TICKS_MAX &&
+          fabs(v->card_input_irq_clock) < FMU_TICKS_MAX)) {
+        return fmu_fail(f, "card_irq_clock = %g, card_input_irq_clock = %g: not clocks",
+                        v->card_irq_clock, v->card_input_irq_clock);
+    }
+    if (foreign(f->blob, &m->soft.orders, &t)) {
+        return fmu_fail(f, "program: the state is one of another program");
+    }
+    for (;;) {
+        if (m->unpublished && m->instant <= t1) {
+            publish(f);
+            m->unpublished = false;
+        }
+        if (m->instant >= t1) {
+            keep_known(f->blob, &m->soft.orders);
+            return 0;
+        }
+        read_bus(f, m->instant);
+        m->instant += b->config.bus * FPGA_CLOCK_NS;
+        m->unpublished = true;
+    }
+}
+
+/* The points that were taught. */
+static int model_end(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    const char *why = v->teach_file[0] ? write_points(v, &f->s.m.soft) : NULL;
+
+    return why ? cannot_write(f, why) : 0;
+}

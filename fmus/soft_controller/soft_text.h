@@ -1,0 +1,174 @@
+/* The files of the soft_controller FMU: program, points, and what was taught. Included behind
+ * fmi_model.h. */
+#ifndef SOFT_TEXT_H
+#define SOFT_TEXT_H
+
+#include "fmu_input.h"
+#include "fmu_output.h"
+#include "program_fault.h"
+
+/* All that is constant in a run. */
+struct soft_blob {
+    struct soft_config config;
+    struct program_file *gcode;
+    struct source source;
+    bool   has_inform;
+    struct inform_program inform;
+    struct inform_points points;
+    struct inform_run known;    /* place in the program that was looked at */
+};
+
+static struct orders_text text_of(const struct soft_blob *b)
+{
+    return (struct orders_text){ b->gcode ? &b->source : NULL,
+                                 b->has_inform ? &b->inform : NULL, &b->points };
+}
+
+/* The whole of a text file, to be freed. NULL after fmu_fail(). */
+static char *read_text(struct fmu *f, const char *parameter, const char *name, int64_t *length)
+{
+    FILE *file;
+    const char *why = file_open(name, &file);
+
+    if (why) {
+        fmu_fail(f, "%s: cannot read %s: %s", parameter, name, why);
+        return NULL;
+    }
+    char *text = malloc(INFORM_TEXT_MAX + 1);
+    *length = text ? (int64_t)fread(text, 1, INFORM_TEXT_MAX + 1, file) : 0;
+    const bool bad = !text || ferror(file);
+    fclose(file);
+    if (bad) {
+        free(text);
+        fmu_fail(f, "%s: cannot read %s", parameter, name);
+        return NULL;
+    }
+    return text;
+}
+
+/* A reader's report, told with the file's name. */
+static int refuse_text(struct fmu *f, const char *name, const char *text,
+                       const struct inform_report *r)
+{
+    char message[INFORM_MESSAGE_MAX];
+
+    inform_message(r, text, message);
+    return fmu_fail(f, "%s: %s", name, message);
+}
+
+static int read_points(struct fmu *f, struct soft_blob *b)
+{
+    const char *name = f->s.v.points;
+    struct inform_report r;
+    int64_t length;
+
+    inform_points_clear(&b->points);
+    if (!name[0]) {
+        return 0;
+    }
+    char *text = read_text(f, "points", name, &length);
+    if (!text) {
+        return -1;
+    }
+    int code = inform_points_read(&b->points, text, length, &r);
+    code = code ? refuse_text(f, name, text, &r) : 0;
+    free(text);
+    return code;
+}
+
+static int read_jobs(struct fmu *f, struct soft_blob *b)
+{
+    const char *name = f->s.v.program, *job = f->s.v.job;
+    struct inform_report r;
+    int64_t length;
+    char *text = read_text(f, "program", name, &length);
+
+    if (!text) {
+        return -1;
+    }
+    int code = inform_read(&b->inform, &b->points, text, length, &r);
+    code = code ? refuse_text(f, name, text, &r) : 0;
+    free(text);
+    if (code == 0 && job[0]) {
+        b->config.orders.start.job = inform_job(&b->inform, job);
+        code = b->config.orders.start.job < 0
+             ? fmu_fail(f, "job = \"%s\": no such job in %s", job, name) : 0;
+    }
+    b->has_inform = code == 0;
+    return code;
+}
+
+/* By its parameter, or by the end of the program's name. */
+static int language_of(struct fmu *f, bool *gcode)
+{
+    const struct vars *v = &f->s.v;
+    const char *dot = strrchr(v->program, '.');
+
+    if (strcmp(v->language, "auto") == 0) {
+        *gcode = !dot || (strcmp(dot, ".job") != 0 && strcmp(dot, ".jbi") != 0);
+        return 0;
+    }
+    *gcode = strcmp(v->language, "gcode") == 0;
+    return *gcode || strcmp(v->language, "inform") == 0
+         ? 0 : fmu_fail(f, "language = \"%s\": auto, inform or gcode is wanted", v->language);
+}
+
+static int read_files(struct fmu *f, struct soft_blob *b)
+{
+    const struct vars *v = &f->s.v;
+    bool gcode = false;
+
+    if (language_of(f, &gcode) || read_points(f, b)) {
+        return -1;
+    }
+    if (!gcode) {
+        return v->program[0] ? read_jobs(f, b) : 0;
+    }
+    const int code = open_program(f, "program", v->program, &b->gcode);
+    b->source = (struct source){ program_look, b->gcode };
+    return code;
+}
+
+enum { SOFT_INPUTS = 2 };
+struct soft_inputs { struct output_input of[SOFT_INPUTS]; };
+
+/* What teach_file must not replace. */
+static struct soft_inputs inputs_of(const struct vars *v)
+{
+    return (struct soft_inputs){ { { v->program, "it is program" },
+                                   { v->points, "it is points" } } };
+}
+
+/* As joints: they say the same whatever the tool, and where axes 4 and 6 are in line, too. */
+static void put_points(FILE *file, const struct soft *s)
+{
+    for (int n = 0; n < s->taught_count; n++) {
+        char line[INFORM_POINT_TEXT];
+        if (soft_taught(s, n, line) == 0) {
+            fprintf(file, "%s\n", line);
+        }
+    }
+}
+
+/* NULL, or why it cannot be written. */
+static const char *write_points(const struct vars *v, const struct soft *s)
+{
+    const struct soft_inputs in = inputs_of(v);
+    struct output o;
+    int bad;
+
+    const char *why = output_check(v->teach_file, in.of, SOFT_INPUTS);
+    why = why ? why : output_begin(&o, v->teach_file);
+    if (why) {
+        return why;
+    }
+    put_points(o.file, s);
+    why = output_end(&o, true);
+    why = why ? why : output_show(&o, 1, &bad);
+    if (why) {
+        output_drop(&o, 1);
+    }
+    return why;
+}
+
+#endif

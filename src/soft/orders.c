@@ -1,0 +1,253 @@
+#include "orders.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double DEGREE = 0.017453292519943295;
+/* Flags of a configuration: BACK, DOWN, FLIP. */
+static const int FLAG[3] = { OPW_BACK, OPW_ELBOW, OPW_FLIP };
+static const double FREE_SPEED = 1e9;       /* [mm/s] the arm decides how fast, not the reader */
+
+/* What a part program is read against: six coordinates without joints. */
+static struct program program_of(const struct orders_config *c, const struct orders_text *t)
+{
+    struct program p = {
+        .source = t->gcode, .angles = true, .block_delete = c->block_delete,
+        .optional_stop = c->optional_stop,
+        .limits = { .feed = c->feed_most, .rapid = 1.0, .up = { .acc = 1.0 },
+                    .down = { .acc = 1.0 } }
+    };
+    for (int i = 0; i < AXES; i++) {
+        p.machine.axis[i] = true;
+        p.machine.joint[i] = (struct joint){ .used = true, .scale = 1.0, .speed = FREE_SPEED };
+    }
+    return p;
+}
+
+static void gcode_start(struct interpreter *in, const struct orders_config *c,
+                        const struct pose *at)
+{
+    double point[AXES], angle[3];
+
+    quaternion_angles(at->turn, angle);
+    for (int i = 0; i < 3; i++) {
+        point[i] = at->at[i];
+        point[3 + i] = angle[i];
+    }
+    interpreter_start(in, point, c->feed, c->origin);
+}
+
+void orders_start(struct orders *o, const struct orders_config *c, const struct orders_text *t,
+                  const struct pose *at)
+{
+    memset(o, 0, sizeof *o);
+    o->on = t->gcode || t->inform;
+    if (t->gcode) {
+        gcode_start(&o->gcode, c, at);
+    } else if (t->inform) {
+        inform_begin(&o->inform, t->inform, &c->start);
+    }
+}
+
+void orders_check(const struct orders_config *c, const struct orders_text *t,
+                  const struct pose *at, struct fault_report *r)
+{
+    const struct program p = program_of(c, t);
+    struct interpreter in;
+
+    gcode_start(&in, c, at);
+    interpreter_check(&in, &p, r);
+}
+
+/* Motion of a part program as one of the arm: G0 by its joints, the others on their path. F counts
+ * degrees where the tool only turns, so its scale [mm] is taken back. */
+static void arm_move(struct robot_move *m, const struct orders_config *c, const struct command *k,
+                     double scale)
+{
+    const struct path *p = &k->path;
+
+    *m = (struct robot_move){ .line = k->line, .share = c->rapid, .singular = c->singular,
+                              .target = { .branch = ROBOT_ANY_BRANCH } };
+    m->target.pose = pose_of(p->end, p->end + 3);
+    m->kind = k->type == COMMAND_PTP ? ROBOT_JOINTS : p->arc ? ROBOT_ARC : ROBOT_LINE;
+    if (p->arc) {
+        const int a = path_first(p->plane), b = path_second(p->plane);
+        m->centre[a] = p->centre[0];
+        m->centre[b] = p->centre[1];
+        m->centre[p->plane] = p->start[p->plane];
+        m->normal[p->plane] = 1.0;
+        m->rise = p->end[p->plane] - p->start[p->plane];
+        m->sweep = p->sweep;
+    }
+    const bool turns = p->start[0] == p->end[0] && p->start[1] == p->end[1] &&
+                       p->start[2] == p->end[2] && !p->arc;
+    m->feed = turns ? 0.0 : k->feed;
+    m->spin = turns ? k->feed / scale * DEGREE : 0.0;
+    m->zone = !k->blend ? 0.0 : k->tolerance > 0.0 ? k->tolerance : c->zone[INFORM_LEVELS];
+}
+
+static bool command_switches(const struct command *k)
+{
+    return k->set || k->clear;
+}
+
+static void switch_outputs(struct orders *o, struct order *order, const struct command *k)
+{
+    order->kind = ORDER_OUT;
+    order->after = o->moves;
+    order->mask = k->set | k->clear;
+    order->value = k->set;
+}
+
+static void gcode_order(struct orders *o, const struct orders_config *c,
+                        const struct orders_text *t, struct order *order)
+{
+    const struct program p = program_of(c, t);
+    struct fault_report fault;
+    struct command k = o->kept;
+
+    if (!o->keeps) {
+        const enum interpreter_result r = interpreter_next(&o->gcode, &p, &k, &fault);
+        if (r != INTERPRETER_COMMAND) {
+            order->kind = r == INTERPRETER_END ? ORDER_END : ORDER_FAULT;
+            return;
+        }
+        if (k.type != COMMAND_OUTPUTS && command_switches(&k)) {   /* M62: before its motion */
+            order->line = k.line;
+            switch_outputs(o, order, &k);
+            o->kept = k;
+            o->keeps = true;
+            return;
+        }
+    }
+    o->keeps = false;
+    order->line = k.line;
+    switch (k.type) {
+    case COMMAND_DELAY:
+        order->kind = ORDER_DELAY;
+        order->amount = k.dwell;
+        break;
+    case COMMAND_OUTPUTS:
+        switch_outputs(o, order, &k);
+        break;
+    case COMMAND_STOP:
+        order->kind = ORDER_PAUSE;
+        break;
+    default:
+        order->kind = ORDER_MOVE;
+        order->plain = true;
+        arm_move(&order->move, c, &k, o->gcode.inch ? 25.4 : 1.0);
+        order->after = ++o->moves;
+    }
+}
+
+static struct pose frame_pose(const struct inform_frame *f)
+{
+    return pose_of(f->value, f->value + 3);
+}
+
+/* A point as a target. What it leaves open is nearest, or on a path what that leads to. */
+static void target_of(struct robot_target *t, const struct inform_point *p,
+                      const struct inform_frame *user)
+{
+    static const int TURNED[3] = { 0, 3, 5 };
+    const int32_t said[3] = { p->shoulder, p->elbow, p->wrist };
+
+    t->by_joints = p->kind == INFORM_JOINTS;
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        t->joint[i] = p->value[i] * DEGREE;
+        t->turn[i] = ROBOT_ANY_TURN;
+    }
+    const struct pose frame = frame_pose(user), there = pose_of(p->value, p->value + 3);
+    t->pose = pose_product(&frame, &there);
+    for (int i = 0; i < 3; i++) {
+        t->open |= said[i] == INFORM_ANY ? FLAG[i] : 0;
+        t->branch |= said[i] == 1 ? FLAG[i] : 0;
+        if (p->turn[i] != INFORM_ANY_TURN) {
+            t->turned = true;
+            t->turn[TURNED[i]] = p->turn[i];
+        }
+    }
+}
+
+static void inform_move(struct order *order, const struct orders_config *c,
+                        const struct orders_text *t, const struct inform_request *r)
+{
+    struct robot_move *m = &order->move;
+
+    *m = (struct robot_move){ .line = r->line, .singular = c->singular, .share = 1.0 };
+    m->kind = r->path == INFORM_JOINT ? ROBOT_JOINTS
+            : r->path == INFORM_LINE ? ROBOT_LINE : ROBOT_CIRCLE;
+    m->share = r->tag == INFORM_VJ ? r->speed / 100.0 : 1.0;
+    m->feed = r->tag == INFORM_V ? r->speed : 0.0;
+    m->spin = r->tag == INFORM_VR ? r->speed * DEGREE : 0.0;
+    m->zone = r->corner > 0.0 ? r->corner : c->zone[r->level];
+    target_of(&m->target, &t->points->point[r->point], &t->points->user[r->user]);
+    order->plain = r->tool == 0;
+    order->tool = frame_pose(&t->points->tool[r->tool]);
+    if (m->kind == ROBOT_CIRCLE) {
+        target_of(&order->via, &t->points->point[r->via], &t->points->user[r->user]);
+    }
+}
+
+static void inform_order(struct orders *o, const struct orders_config *c,
+                         const struct orders_text *t, const struct inform_inputs *in,
+                         struct order *order)
+{
+    struct inform_request r;
+
+    inform_next(&o->inform, t->inform, t->points, in, c->lines, &r);
+    order->line = r.line;
+    order->after = o->moves = o->inform.moves;
+    o->waits = r.answer == INFORM_WAIT;
+    switch (r.answer) {
+    case INFORM_MOVE:
+        order->kind = ORDER_MOVE;
+        inform_move(order, c, t, &r);
+        break;
+    case INFORM_DOUT:
+        order->kind = ORDER_OUT;
+        order->mask = 1u << r.index;
+        order->value = r.on ? order->mask : 0;
+        order->after = r.after;
+        break;
+    case INFORM_AOUT:
+        order->kind = ORDER_ANALOG;
+        order->index = r.index;
+        order->amount = r.volt;
+        order->after = r.after;
+        break;
+    case INFORM_PAUSE:
+        order->kind = ORDER_PAUSE;
+        break;
+    case INFORM_END:
+        order->kind = ORDER_END;
+        break;
+    case INFORM_FAULT:
+        order->kind = ORDER_FAULT;
+        break;
+    default:
+        order->kind = ORDER_NONE;
+    }
+}
+
+void orders_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
+                 const struct inform_inputs *in, struct order *order)
+{
+    memset(order, 0, sizeof *order);
+    if (!o->on) {
+        return;
+    }
+    if (t->gcode) {
+        gcode_order(o, c, t, order);
+    } else {
+        inform_order(o, c, t, in, order);
+    }
+    o->on = order->kind != ORDER_END && order->kind != ORDER_FAULT;
+}
+
+bool orders_damaged(const struct orders *o, const struct orders_text *t)
+{
+    return o->moves < 0 || interpreter_damaged(&o->gcode) ||
+           (t->inform && o->on && inform_damaged(&o->inform, t->inform));
+}

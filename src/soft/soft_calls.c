@@ -1,0 +1,57 @@
+#include "soft_calls.h"
+
+#include "soft_parts.h"
+
+static const double DEGREE = 0.017453292519943295;
+
+static bool taken(const struct soft *s)
+{
+    return s->running || s->stopped || s->replaying >= 0;
+}
+
+/* What a call starts leaves nothing of an earlier program's end. */
+static enum robot_status begin(struct soft *s, enum robot_status status)
+{
+    if (status == ROBOT_OK) {
+        s->trouble = (struct soft_trouble){ 0 };
+    }
+    return status;
+}
+
+enum robot_status soft_move(struct soft *s, const struct soft_config *c,
+                            const struct robot_move *move, const struct pose *tool,
+                            struct robot_refusal *why)
+{
+    struct robot_move m = *move;
+
+    if (taken(s) || s->jogs || !soft_program_ready(s, c, tool)) {
+        return ROBOT_BUSY;
+    }
+    return begin(s, soft_program_give(s, c, &m, 0, why));
+}
+
+enum robot_status soft_jog(struct soft *s, const struct soft_config *c, struct soft_panel *panel,
+                           struct robot_refusal *why)
+{
+    return taken(s) ? ROBOT_BUSY : begin(s, soft_panel_jog(s, c, panel, why));
+}
+
+enum robot_status soft_output(struct soft *s, struct order *order)
+{
+    order->after = s->given - s->first;
+    return !taken(s) && soft_program_put(s, order) ? ROBOT_OK : ROBOT_BUSY;
+}
+
+int soft_taught(const struct soft *s, int32_t n, char line[INFORM_POINT_TEXT])
+{
+    struct inform_point p = {
+        .kind = INFORM_JOINTS, .shoulder = INFORM_ANY, .elbow = INFORM_ANY, .wrist = INFORM_ANY,
+        .turn = { INFORM_ANY_TURN, INFORM_ANY_TURN, INFORM_ANY_TURN }, .tool = INFORM_ANY,
+        .user = INFORM_ANY
+    };
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        p.value[i] = s->taught[n].joint[i] / DEGREE;
+    }
+    return inform_point_write(n, &p, line);
+}

@@ -1,0 +1,103 @@
+#include "soft_parts.h"
+
+static const double DEGREE = 0.017453292519943295;
+
+static bool jog_wanted(const struct soft_panel *panel)
+{
+    bool any = false;
+
+    for (int i = 0; i < 6; i++) {
+        any = any || panel->jog[i] != 0.0;
+    }
+    return any;
+}
+
+enum robot_status soft_panel_jog(struct soft *s, const struct soft_config *c,
+                                 const struct soft_panel *panel, struct robot_refusal *why)
+{
+    const double *d = panel->jog;
+    const bool turns = panel->frame == ROBOT_IN_JOINTS ||
+                       (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0);
+    const double way = panel->jog_way * (turns ? DEGREE : 1.0);
+    const enum robot_status status = robot_jog(&s->robot, &c->robot, panel->frame, d,
+                                               panel->jog_speed, way, why);
+
+    if (status == ROBOT_BUSY && s->jogs) {      /* another direction: the one before ends first */
+        robot_release(&s->robot);
+    }
+    s->jogs = s->jogs || status == ROBOT_OK;
+    return status;
+}
+
+static void jog(struct soft *s, const struct soft_config *c, const struct soft_panel *panel)
+{
+    struct robot_refusal why;
+
+    if (!jog_wanted(panel) || s->running || s->replaying >= 0 || s->stopped) {
+        if (s->jogs) {
+            robot_release(&s->robot);
+        }
+        s->jogs = false;
+        return;
+    }
+    soft_panel_jog(s, c, panel, &why);
+}
+
+static void teach(struct soft *s, const struct soft_config *c)
+{
+    if (s->taught_count < SOFT_TAUGHT) {
+        robot_teach(&s->robot, &c->robot, &s->taught[s->taught_count++]);
+    }
+}
+
+/* The taught points one after another, by the joints. */
+static void replay(struct soft *s, const struct soft_config *c, const struct soft_panel *panel)
+{
+    if (s->replaying < 0 || s->stopped) {
+        return;
+    }
+    if (s->replaying == s->taught_count) {
+        s->replaying = robot_idle(&s->robot) ? -1 : s->replaying;
+        return;
+    }
+    struct order order = { .kind = ORDER_MOVE, .tool = s->robot.tool };
+    order.move.kind = ROBOT_JOINTS;
+    order.move.target = s->taught[s->replaying];
+    order.move.target.by_joints = true;
+    order.move.share = panel->jog_speed;
+    if (soft_program_move(s, c, &order)) {
+        s->replaying = s->trouble.error == SOFT_OK ? s->replaying + 1 : -1;
+    }
+}
+
+void soft_panel_run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
+                    const struct soft_panel *panel, int64_t clock)
+{
+    const bool program = t->gcode || t->inform;
+
+    robot_hold(&s->robot, panel->hold);
+    robot_override(&s->robot, panel->override);
+    if (soft_key_take(&s->abort)) {
+        soft_program_drop(s);
+        s->replaying = -1;
+        robot_abort(&s->robot);
+    }
+    if (soft_key_take(&s->teach)) {
+        teach(s, c);
+    }
+    if (soft_key_take(&s->replay) && !s->running && !s->stopped && s->replaying < 0) {
+        s->trouble = (struct soft_trouble){ 0 };
+        s->replaying = 0;
+    }
+    const bool due = !s->begun && clock >= c->start;
+    if (program && !s->running && !s->stopped && s->replaying < 0 && robot_idle(&s->robot) &&
+        (soft_key_take(&s->start) || due)) {
+        soft_program_start(s, c, t);
+        s->leave = true;
+    }
+    if (s->running && panel->single && !s->paused && soft_key_take(&s->start)) {
+        s->leave = true;
+    }
+    jog(s, c, panel);
+    replay(s, c, panel);
+}

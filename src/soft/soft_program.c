@@ -1,0 +1,213 @@
+#include "soft_parts.h"
+
+#include <math.h>
+
+void soft_program_start(struct soft *s, const struct soft_config *c, const struct orders_text *t)
+{
+    soft_program_drop(s);
+    s->trouble = (struct soft_trouble){ 0 };
+    s->begun = true;
+    s->ended = false;
+    s->first = s->given;
+    struct orders_config now = c->orders;
+    now.start.out = s->out;
+    orders_start(&s->orders, &now, t, &s->robot.pose);
+    s->running = s->orders.on;
+}
+
+void soft_program_drop(struct soft *s)
+{
+    s->orders.on = s->running = s->paused = s->waits = false;
+    s->heads = s->count = s->output_count = 0;
+    s->next.kind = ORDER_NONE;
+    s->delay = 0;
+}
+
+/* End with what has gone wrong; moves that were given before run to their end. */
+static bool fail(struct soft *s, enum soft_error error, const struct order *order)
+{
+    s->trouble.error = error;
+    s->trouble.line = order->line;
+    s->trouble.fault = s->orders.inform.fault;
+    soft_program_drop(s);
+    return true;
+}
+
+static bool other_tool(const struct pose *a, const struct pose *b)
+{
+    return memcmp(a, b, sizeof *a) != 0;
+}
+
+bool soft_program_ready(struct soft *s, const struct soft_config *c, const struct pose *tool)
+{
+    return robot_ready(&s->robot) && (!other_tool(tool, &s->robot.tool) ||
+                                      robot_tool(&s->robot, &c->robot, tool) == ROBOT_OK);
+}
+
+enum robot_status soft_program_give(struct soft *s, const struct soft_config *c,
+                                    struct robot_move *move, int32_t line,
+                                    struct robot_refusal *why)
+{
+    move->line = (int32_t)(s->given + 1);
+    const enum robot_status status = robot_move(&s->robot, &c->robot, move, why);
+    if (status == ROBOT_OK) {
+        s->given++;
+        s->move_line[s->given % SOFT_MOVES] = line;
+    }
+    return status;
+}
+
+bool soft_program_move(struct soft *s, const struct soft_config *c, struct order *order)
+{
+    const struct pose *tool = order->plain ? &c->robot.arm.tool : &order->tool;
+    struct robot_move *m = &order->move;
+
+    if (!soft_program_ready(s, c, tool)) {
+        return false;
+    }
+    if (m->kind == ROBOT_CIRCLE) {
+        struct manipulator arm = c->robot.arm;
+        arm.tool = *tool;
+        const struct pose via = order->via.by_joints ? manipulator_pose(&arm, order->via.joint)
+                                                     : order->via.pose;
+        memcpy(m->via, via.at, sizeof m->via);
+    }
+    const enum robot_status status = soft_program_give(s, c, m, order->line, &s->trouble.refusal);
+    if (status != ROBOT_OK && status != ROBOT_BUSY) {
+        s->trouble.status = status;
+        return fail(s, SOFT_MOVE, order);
+    }
+    return status == ROBOT_OK;
+}
+
+bool soft_program_put(struct soft *s, const struct order *o)
+{
+    if (s->output_count == SOFT_OUTPUTS) {
+        return false;
+    }
+    s->output[s->output_count++] = (struct soft_output){
+        .after = s->first + o->after, .analog = o->kind == ORDER_ANALOG, .mask = o->mask,
+        .value = o->value, .index = o->index, .volt = o->amount
+    };
+    return true;
+}
+
+/* False: not now. */
+static bool carry_out(struct soft *s, const struct soft_config *c, const struct soft_panel *panel,
+                      struct order *o)
+{
+    const bool idle = robot_idle(&s->robot);
+
+    switch (o->kind) {
+    case ORDER_MOVE:
+        if (panel->single && !(idle && s->leave)) {
+            return false;
+        }
+        if (!soft_program_move(s, c, o)) {
+            return false;
+        }
+        s->leave = false;
+        return true;
+    case ORDER_OUT:
+    case ORDER_ANALOG:
+        return soft_program_put(s, o);
+    case ORDER_DELAY:
+        s->delay = idle ? llround(o->amount * FPGA_CLOCK_HZ) : 0;
+        return idle;
+    case ORDER_PAUSE:
+        s->paused = idle && !soft_key_take(&s->start);
+        return idle && !s->paused;
+    case ORDER_END:
+        if (!idle || s->output_count) {
+            return false;
+        }
+        soft_program_drop(s);
+        s->ended = true;
+        return true;
+    default:
+        return fail(s, SOFT_PROGRAM, o);
+    }
+}
+
+/* What stands behind a pause may look at inputs. */
+static bool pause_ahead(const struct soft *s)
+{
+    const int32_t last = (s->heads + s->count + SOFT_QUEUE - 1) % SOFT_QUEUE;
+    return (s->count > 0 ? &s->queue[last] : &s->next)->kind == ORDER_PAUSE;
+}
+
+void soft_program_poll(struct soft *s, const struct soft_config *c, const struct orders_text *t,
+                       const struct inform_inputs *in, int64_t clock)
+{
+    while (s->orders.on && s->count < c->depth) {
+        struct order *o = &s->queue[(s->heads + s->count) % SOFT_QUEUE];
+        if (pause_ahead(s)) {
+            return;
+        }
+        orders_next(&s->orders, &c->orders, t, in, o);
+        if (o->kind == ORDER_NONE) {
+            return;
+        }
+        o->known = clock;
+        s->count++;
+    }
+}
+
+static bool fetch(struct soft *s, const struct soft_config *c, const struct orders_text *t,
+                  const struct inform_inputs *in)
+{
+    if (c->user) {
+        if (s->count == 0) {
+            s->report.starved += s->orders.on && robot_idle(&s->robot);
+            return false;
+        }
+        s->next = s->queue[s->heads];
+        s->heads = (s->heads + 1) % SOFT_QUEUE;
+        s->count--;
+        return true;
+    }
+    orders_next(&s->orders, &c->orders, t, in, &s->next);
+    s->next.known = in->now / FPGA_CLOCK_NS;
+    return s->next.kind != ORDER_NONE;
+}
+
+int32_t soft_program_run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
+                         const struct soft_panel *panel, const struct inform_inputs *in)
+{
+    int32_t done = 0;
+
+    s->delay -= s->delay > 0 ? c->slots * c->slot : 0;
+    while (s->running && done < c->lines && s->delay <= 0) {
+        if (s->next.kind == ORDER_NONE && !fetch(s, c, t, in)) {
+            break;
+        }
+        const struct order order = { .kind = s->next.kind, .known = s->next.known };
+        if (!carry_out(s, c, panel, &s->next)) {
+            break;
+        }
+        done++;
+        if (order.kind == ORDER_MOVE && s->known < 0) {
+            s->known = order.known;
+        }
+        s->next.kind = ORDER_NONE;
+    }
+    s->waits = s->orders.on && s->orders.waits;
+    return done;
+}
+
+void soft_program_outputs(struct soft *s, int64_t done)
+{
+    int32_t n = 0;
+
+    for (; n < s->output_count && s->output[n].after <= s->reached; n++) {
+        const struct soft_output *o = &s->output[n];
+        outbox_put(&s->outbox, done, o->mask, o->value);
+        s->out = (s->out & ~o->mask) | o->value;
+        if (o->analog) {
+            s->volt[o->index] = o->volt;
+            s->posts_ao = true;
+        }
+    }
+    s->output_count -= n;
+    memmove(s->output, s->output + n, (size_t)s->output_count * sizeof s->output[0]);
+}

@@ -1,0 +1,91 @@
+#include "soft_words.h"
+
+#include <math.h>
+
+#include "inform_decimal.h"
+
+static const double DEGREE = 0.017453292519943295;
+
+static const char *name_of(enum robot_status status)
+{
+    switch (status) {
+    case ROBOT_OK:           return "done";
+    case ROBOT_BUSY:         return "not now";
+    case ROBOT_PARAMETER:    return "a number is out of range";
+    case ROBOT_FAR:          return "out of reach";
+    case ROBOT_OUTSIDE:      return "a joint leaves its limits";
+    case ROBOT_SINGULAR:     return "too near a singular place";
+    case ROBOT_OTHER_BRANCH: return "the path does not lead to the configuration of the target";
+    case ROBOT_OTHER_TURN:   return "the path does not lead to the turn of the target";
+    case ROBOT_NO_CIRCLE:    return "three points on one line";
+    }
+    return "";
+}
+
+/* Words, and a number with six digits. */
+static void add(struct inform_text *t, const char *words, double value)
+{
+    const double scale = value != 0.0 ? pow(10.0, 5.0 - floor(log(fabs(value)) / log(10.0))) : 1.0;
+
+    inform_text_add(t, words);
+    inform_text_number(t, round(value * scale) / scale);
+}
+
+static void add_place(struct inform_text *t, const struct robot_refusal *r)
+{
+    add(t, " at ", 100.0 * r->part);
+    add(t, " % of its path, X ", r->place[0]);
+    add(t, " Y ", r->place[1]);
+    add(t, " Z ", r->place[2]);
+    inform_text_add(t, " mm");
+}
+
+void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
+                        char text[SOFT_WORDS])
+{
+    struct inform_text t = { text, SOFT_WORDS, 0 };
+    const int flag = r->which;
+
+    inform_text_add(&t, name_of(status));
+    switch (status) {
+    case ROBOT_FAR:
+        add_place(&t, r);
+        break;
+    case ROBOT_OUTSIDE:
+        add(&t, ": joint ", r->which + 1);
+        add(&t, " to ", r->value / DEGREE);
+        add(&t, " deg, limit ", r->limit / DEGREE);
+        add(&t, " deg, at ", 100.0 * r->part);
+        inform_text_add(&t, " % of its path");
+        break;
+    case ROBOT_SINGULAR:
+        inform_text_add(&t, r->which == 0 ? ": shoulder" : r->which == 1 ? ": elbow" : ": wrist");
+        add(&t, " factor ", r->value);
+        add_place(&t, r);
+        break;
+    case ROBOT_OTHER_BRANCH:
+        inform_text_add(&t, flag == OPW_FLIP ? ": wrist" : flag == OPW_ELBOW ? ": elbow"
+                                                                             : ": shoulder");
+        break;
+    case ROBOT_OTHER_TURN:
+        add(&t, ": joint ", r->which + 1);
+        add(&t, " ends at ", r->value / DEGREE);
+        add(&t, " deg, not within 180 deg of ", r->limit / DEGREE);
+        inform_text_add(&t, " deg");
+        break;
+    default:
+        break;
+    }
+}
+
+void soft_words(const struct soft_trouble *t, char text[SOFT_WORDS])
+{
+    struct inform_text words = { text, SOFT_WORDS, 0 };
+
+    if (t->error == SOFT_MOVE) {
+        soft_refusal_words(t->status, &t->refusal, text);
+    } else {
+        inform_text_add(&words, t->error == SOFT_PROGRAM ? inform_fault_text(t->fault)
+                                : t->error == SOFT_LOST ? "out of reach on the path" : "");
+    }
+}
