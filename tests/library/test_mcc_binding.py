@@ -13,9 +13,9 @@ from conftest import ROOT
 from test_mcc import Machine
 
 import motionfmu.mcc as mcc
+from motionfmu.binding import Struct
 from motionfmu.errors import InputError
 from motionfmu.mcc import Mcc, MccError, VirtualCard
-from motionfmu.mcc.library import Struct
 
 HEADER = (ROOT / "src/mcc/mcc.h").read_text()
 

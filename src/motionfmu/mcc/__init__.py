@@ -3,8 +3,9 @@
 The same C code as in the FMUs; see src/mcc/README.md and src/station/station.h.
 """
 
+from motionfmu.binding import CLOCK_HZ, Station
 from motionfmu.mcc.card import LOOP, PULSES, SOFTWARE, CardError, Reading, VirtualCard
-from motionfmu.mcc.library import CLOCK_HZ, CODES, MccError
+from motionfmu.mcc.library import CODES, MccError
 from motionfmu.mcc.moves import CCW, CW
 from motionfmu.mcc.state import BLOCK, DELAY, HOLD, RUNNING, STOPPED, WHEEL, Mcc, defaults
 
@@ -26,6 +27,7 @@ __all__ = [
     "Mcc",
     "MccError",
     "Reading",
+    "Station",
     "VirtualCard",
     "defaults",
 ]

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from motionfmu.mcc.calls import Calls, whole
-from motionfmu.mcc.library import Struct
+from motionfmu.binding import Struct, whole
+from motionfmu.mcc.calls import Calls
 
 
 class Axes(Calls):

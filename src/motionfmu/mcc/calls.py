@@ -4,10 +4,9 @@ import ctypes
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
+from motionfmu.binding import library, whole
 from motionfmu.errors import InputError
-from motionfmu.mcc.library import AXES, MccError, library
+from motionfmu.mcc.library import AXES, MccError
 
 Numbers = Sequence[float]
 
@@ -15,14 +14,6 @@ Numbers = Sequence[float]
 def doubles(values: Numbers, count: int = AXES) -> Any:
     """Make a C array of doubles, of just so many."""
     return _array(ctypes.c_double, [float(v) for v in values], count)
-
-
-def whole(value: float) -> int:
-    """Take a whole number of 32 bits; InputError if it is none."""
-    if isinstance(value, int | float | np.number) and -(2**31) <= value < 2**31:
-        if value == int(value):
-            return int(value)
-    raise InputError(f"{value!r}: a whole number of 32 bits wanted")
 
 
 def integers(values: Sequence[int], count: int = AXES) -> Any:

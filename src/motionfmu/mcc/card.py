@@ -3,16 +3,12 @@
 import ctypes
 from typing import Any
 
-import numpy as np
-
+from motionfmu.binding import Station, Struct, Values, library
 from motionfmu.errors import InputError
-from motionfmu.mcc.library import CLOCK_HZ, Struct, library
 from motionfmu.mcc.state import Mcc, configuration
 
 # What the motor of an axis follows: setting output_mode.
 PULSES, LOOP, SOFTWARE = 0, 1, 2
-_SECOND_MAX = 2**62 // CLOCK_HZ
-_MILLISECOND = CLOCK_HZ // 1000
 # Of enum station_status.
 _MOTOR_LOST = 6
 
@@ -21,7 +17,7 @@ class CardError(RuntimeError):
     """The run cannot go on; the message says why."""
 
 
-class Reading:
+class Reading(Values):
     """What there is to see at one clock.
 
     Attributes
@@ -44,17 +40,8 @@ class Reading:
         All names: ``dir(reading)``; meanings in src/station/station.h.
     """
 
-    def __init__(self, values: dict[str, Any]) -> None:
-        self.__dict__.update(values, time=values["clock"] / CLOCK_HZ)
 
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(f"no reading {name!r} (there are: {', '.join(self.__dict__)})")
-
-    def __repr__(self) -> str:
-        return f"Reading({', '.join(f'{k}={v}' for k, v in self.__dict__.items())})"
-
-
-class VirtualCard:
+class VirtualCard(Station[Reading]):
     """PC, library, card and ideal motors in one loop.
 
     Parameters
@@ -80,6 +67,8 @@ class VirtualCard:
     [10000, 5000]
     """
 
+    _at_rest = "stopped"
+
     def __init__(self, **settings: Any) -> None:
         self._library, self._state = library(), Struct("station")
         config = configuration(settings)
@@ -89,32 +78,8 @@ class VirtualCard:
         inner = ctypes.c_void_p(self._library.binding_mcc(self._state.pointer))
         self.mcc = Mcc._of_card(inner, self._state)
 
-    @property
-    def clock(self) -> int:
-        """Everything up to here has happened [25 ns]."""
-        return self.read().clock
-
-    def read(self) -> Reading:
-        """What there is to see now."""
-        reading = Struct("reading")
-        self._library.station_read(self._state.pointer, reading.pointer)
-        return Reading({name: reading[name] for name in reading})
-
-    def run_to(self, clock: int) -> Reading:
-        """Run up to and including a clock.
-
-        Parameters
-        ----------
-        clock : int
-            [25 ns]; nothing happens if it has passed.
-
-        Raises
-        ------
-        CardError
-            The card takes no frame any more, or a motor is beyond what an encoder can follow.
-        """
+    def _advance(self, until: ctypes.c_int64) -> None:
         text, length = self.mcc._program()
-        until = ctypes.c_int64(clock)
         status = self._library.binding_run(self._state.pointer, until, text, length)
         if status:
             raise CardError(
@@ -122,86 +87,17 @@ class VirtualCard:
                 if status == _MOTOR_LOST
                 else "the card takes no frame any more"
             )
-        return self.read()
 
-    def run(self, seconds: float) -> Reading:
-        """Run on.
-
-        Parameters
-        ----------
-        seconds : float
-            [s], rounded to 25 ns.
-
-        Raises
-        ------
-        InputError
-            It is no length of time.
-        CardError
-            See `run_to`.
-        """
-        if not 0 <= seconds <= _SECOND_MAX:
-            raise InputError(f"{seconds} s cannot be run")
-        return self.run_to(self.clock + round(seconds * CLOCK_HZ))
-
-    def run_until_stop(self, limit: float = 60.0) -> Reading:
-        """Run until all commands are done and every pulse is out.
-
-        Parameters
-        ----------
-        limit : float
-            [s] at most.
+    def read(self) -> Reading:
+        """What there is to see now.
 
         Returns
         -------
         Reading
-            At the first millisecond at which it has stopped, or at the limit.
-
-        Raises
-        ------
-        CardError
-            See `run_to`.
         """
-        last = self.clock + round(limit * CLOCK_HZ)
-        reading = self.run_to(min(last, self.clock + _MILLISECOND))
-        while not reading.stopped and reading.clock < last:
-            reading = self.run_to(min(last, reading.clock + _MILLISECOND))
-        return reading
-
-    def record(self, seconds: float, step: float, *names: str) -> dict[str, np.ndarray]:
-        """Run on and keep readings.
-
-        Parameters
-        ----------
-        seconds : float
-            [s]
-        step : float
-            [s] between two readings, rounded to 25 ns.
-        *names : str
-            Attributes of Reading.
-
-        Returns
-        -------
-        dict
-            ``time`` (n,) [s] and an array for each name, a row a reading, the first before
-            anything runs.
-
-        Raises
-        ------
-        InputError
-            There is no such reading, or no such time.
-        CardError
-            See `run_to`.
-        """
-        clocks = round(step * CLOCK_HZ)
-        if clocks < 1 or not 0 <= seconds <= _SECOND_MAX:
-            raise InputError(f"step {step} s, {seconds} s: cannot be run")
-        first = self.read()
-        if unknown := [n for n in names if n not in first.__dict__]:
-            raise InputError(f"no reading {unknown[0]!r} (there are: {', '.join(first.__dict__)})")
-        rows = [first]
-        for k in range(1, round(seconds * CLOCK_HZ) // clocks + 1):
-            rows.append(self.run_to(first.clock + k * clocks))
-        return {n: np.array([getattr(r, n) for r in rows]) for n in ("time", *names)}
+        reading = Struct("reading")
+        self._library.station_read(self._state.pointer, reading.pointer)
+        return Reading({name: reading[name] for name in reading})
 
     def set_switches(self, name: str, *axes: int) -> None:
         """Switches of the axes at the card's terminals.

@@ -3,7 +3,8 @@
 import ctypes
 from collections.abc import Sequence
 
-from motionfmu.mcc.calls import Calls, Numbers, doubles, integers, whole
+from motionfmu.binding import whole
+from motionfmu.mcc.calls import Calls, Numbers, doubles, integers
 
 
 class Settings(Calls):

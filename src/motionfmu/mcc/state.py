@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from motionfmu.binding import Struct
 from motionfmu.errors import InputError
 from motionfmu.mcc.axes import Axes
 from motionfmu.mcc.calls import Calls
-from motionfmu.mcc.library import AXES, Struct
+from motionfmu.mcc.library import AXES
 from motionfmu.mcc.manual import Manual
 from motionfmu.mcc.moves import Moves
 from motionfmu.mcc.protection import Protection

@@ -1,0 +1,287 @@
+"""What the C stations have in common for Python: their library, structs, a run on the clock."""
+
+import ctypes
+import difflib
+import functools
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from motionfmu.errors import InputError
+
+PACKAGE = Path(__file__).resolve().parent
+# Clocks of the cards in a second.
+CLOCK_HZ = 40_000_000
+_SECOND_MAX = 2**62 // CLOCK_HZ
+_MILLISECOND = CLOCK_HZ // 1000
+
+
+class _Field(ctypes.Structure):
+    """One row of a table in src/python."""
+
+    _fields_ = (
+        ("name", ctypes.c_char * 24),
+        ("unit", ctypes.c_char * 16),
+        ("kind", ctypes.c_int32),
+        ("offset", ctypes.c_int32),
+        ("count", ctypes.c_int32),
+        ("stride", ctypes.c_int32),
+    )
+
+
+def library_path() -> Path:
+    """Where the shared library is: in the installed package, or the source tree's ``build/lib``."""
+    name = Path("lib") / "motionfmu_stations.so"
+    for folder in (PACKAGE, PACKAGE.parent.parent / "build"):
+        if (folder / name).is_file():
+            return folder / name
+    raise InputError(f"{name.name} is not built; run make build")
+
+
+@functools.cache
+def library() -> ctypes.CDLL:
+    """Load the shared library once."""
+    c = ctypes.CDLL(str(library_path()))
+    c.binding_fields.restype = ctypes.POINTER(_Field)
+    c.binding_mcc.restype = c.binding_machine.restype = ctypes.c_void_p
+    c.fault_text.restype = ctypes.c_char_p
+    for name in ("acc_step", "dec_step", "dda", "over_spd", "ptp_ospd"):
+        getattr(c, f"MCC_get_{name}").restype = ctypes.c_double
+    for name in ("acc_type", "dec_type"):
+        getattr(c, f"MCC_get_{name}").restype = ctypes.c_char
+    return c
+
+
+@functools.cache
+def _table(of: str) -> tuple[int, dict[str, _Field]]:
+    """Size of a struct [byte] and its members."""
+    count, size = ctypes.c_int32(), ctypes.c_int64()
+    rows = library().binding_fields(of.encode(), ctypes.byref(count), ctypes.byref(size))
+    return size.value, {rows[i].name.decode(): rows[i] for i in range(count.value)}
+
+
+_TYPES: dict[str, Any] = {
+    "i": np.int32,
+    "l": np.int64,
+    "u": np.uint32,
+    "d": np.float64,
+    "?": np.bool_,
+    "c": "S1",
+}
+
+
+class Struct:
+    """A struct of the C library; ``s["name"]`` reads and writes.
+
+    Its name is one of a table in src/python; without `at` it has memory of its own.
+    """
+
+    def __init__(self, of: str, at: ctypes.c_void_p | None = None) -> None:
+        size, self._fields = _table(of)
+        kind = ctypes.c_char * size
+        self._memory = kind() if at is None else kind.from_address(at.value or 0)
+
+    @property
+    def pointer(self) -> ctypes.c_void_p:
+        """Its address, to hand to the library."""
+        return ctypes.c_void_p(ctypes.addressof(self._memory))
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each member, empty if it has none."""
+        return {name: f.unit.decode() for name, f in self._fields.items()}
+
+    def _view(self, name: str) -> np.ndarray:
+        if name not in self._fields:
+            near = difflib.get_close_matches(name, self._fields, 1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise InputError(f"no {name!r} here{hint} (there are: {', '.join(self._fields)})")
+        f = self._fields[name]
+        kind: np.dtype = np.dtype(_TYPES[chr(f.kind)])
+        memory: Any = self._memory
+        return np.ndarray((f.count,), kind, memory, f.offset, (f.stride,))
+
+    def __getitem__(self, name: str) -> Any:
+        view = self._view(name)
+        if len(view) > 1:
+            return view.copy()
+        value = view[0].item()
+        return value.decode() if isinstance(value, bytes) else value
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        view = self._view(name)
+        kind = view.dtype.kind
+        try:
+            given = np.asarray(value.encode() if kind == "S" else value)
+            accepted = "iu" if kind in "iu" else kind if kind in "bS" else "iuf"
+            fits = given.dtype.kind in accepted
+            if not (fits and given.ndim <= 1 and given.size in (1, len(view))):
+                raise ValueError
+            if kind in "iu" and not np.array_equal(given.astype(view.dtype), given):
+                raise ValueError
+            if kind == "S" and len(value) != 1:
+                raise ValueError
+        except (ValueError, TypeError, AttributeError):
+            wanted = {"i": "whole number", "u": "whole number", "f": "number", "b": "truth value"}
+            shape = f" or {len(view)} of them" if len(view) > 1 else ""
+            kind_name = wanted.get(kind, "letter")
+            raise InputError(f"{name} = {value!r}: one {kind_name}{shape} wanted") from None
+        view[:] = given
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._fields
+
+    def __iter__(self) -> Any:
+        return iter(self._fields)
+
+
+def whole(value: float) -> int:
+    """Take a whole number of 32 bits; InputError if it is none."""
+    if isinstance(value, int | float | np.number) and -(2**31) <= value < 2**31:
+        if value == int(value):
+            return int(value)
+    raise InputError(f"{value!r}: a whole number of 32 bits wanted")
+
+
+class Values:
+    """What there is to see at one clock, by attributes; `time` is the clock in seconds."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        self.__dict__.update(values, time=values["clock"] / CLOCK_HZ)
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"no reading {name!r} (there are: {', '.join(self.__dict__)})")
+
+    def __repr__(self) -> str:
+        return f"Reading({', '.join(f'{k}={v}' for k, v in self.__dict__.items())})"
+
+
+R = TypeVar("R", bound=Values)
+
+
+class Station(Generic[R]):
+    """A control with its card and machine on one clock.
+
+    What `motionfmu.mcc.VirtualCard` and `motionfmu.robot.VirtualRobot` share.
+    """
+
+    # Reading that says that nothing is left to do.
+    _at_rest: str
+
+    def _advance(self, until: ctypes.c_int64) -> None:
+        raise NotImplementedError
+
+    def read(self) -> R:
+        """What there is to see now.
+
+        Returns
+        -------
+        Reading
+        """
+        raise NotImplementedError
+
+    @property
+    def clock(self) -> int:
+        """Everything up to here has happened [25 ns]."""
+        return int(self.read().clock)
+
+    def run_to(self, clock: int) -> R:
+        """Run up to and including a clock.
+
+        Parameters
+        ----------
+        clock : int
+            [25 ns]; nothing happens if it has passed.
+
+        Returns
+        -------
+        Reading
+            What there is to see then.
+
+        Raises
+        ------
+        CardError
+            A virtual card takes no frame any more, or a motor is beyond what an encoder can follow.
+        """
+        self._advance(ctypes.c_int64(clock))
+        return self.read()
+
+    def run(self, seconds: float) -> R:
+        """Run on.
+
+        Parameters
+        ----------
+        seconds : float
+            [s], rounded to 25 ns.
+
+        Raises
+        ------
+        InputError
+            It is no length of time.
+        CardError
+            See `run_to`.
+        """
+        if not 0 <= seconds <= _SECOND_MAX:
+            raise InputError(f"{seconds} s cannot be run")
+        return self.run_to(self.clock + round(seconds * CLOCK_HZ))
+
+    def run_until_stop(self, limit: float = 60.0) -> R:
+        """Run until nothing is left to do and every pulse is out.
+
+        Parameters
+        ----------
+        limit : float
+            [s] at most.
+
+        Returns
+        -------
+        Reading
+            At the first millisecond at which it has stopped, or at the limit.
+
+        Raises
+        ------
+        CardError
+            See `run_to`.
+        """
+        last = self.clock + round(limit * CLOCK_HZ)
+        reading = self.run_to(min(last, self.clock + _MILLISECOND))
+        while not getattr(reading, self._at_rest) and reading.clock < last:
+            reading = self.run_to(min(last, reading.clock + _MILLISECOND))
+        return reading
+
+    def record(self, seconds: float, step: float, *names: str) -> dict[str, np.ndarray]:
+        """Run on and keep readings.
+
+        Parameters
+        ----------
+        seconds : float
+            [s]
+        step : float
+            [s] between two readings, rounded to 25 ns.
+        *names : str
+            Attributes of Reading.
+
+        Returns
+        -------
+        dict
+            ``time`` (n,) [s] and an array for each name, a row a reading, the first before
+            anything runs.
+
+        Raises
+        ------
+        InputError
+            There is no such reading, or no such time.
+        CardError
+            See `run_to`.
+        """
+        clocks = round(step * CLOCK_HZ)
+        if clocks < 1 or not 0 <= seconds <= _SECOND_MAX:
+            raise InputError(f"step {step} s, {seconds} s: cannot be run")
+        first = self.read()
+        if unknown := [n for n in names if n not in first.__dict__]:
+            raise InputError(f"no reading {unknown[0]!r} (there are: {', '.join(first.__dict__)})")
+        rows = [first]
+        for k in range(1, round(seconds * CLOCK_HZ) // clocks + 1):
+            rows.append(self.run_to(first.clock + k * clocks))
+        return {n: np.array([getattr(r, n) for r in rows]) for n in ("time", *names)}

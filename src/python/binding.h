@@ -1,0 +1,42 @@
+/* binding - where the members of the structs lie that Python fills and reads.
+ *
+ * The shared library of the Python bindings is the cores' own functions and these tables, so Python
+ * repeats no layout: a member is found under the name, type and unit given here.
+ */
+#ifndef BINDING_H
+#define BINDING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct field {
+    char    name[24];
+    char    unit[16];       /* empty: none */
+    int32_t kind;           /* i int32, l int64, u uint32, d double, ? bool, c char */
+    int32_t offset, count, stride;  /* [byte], elements, [byte] from one to the next */
+};
+
+/* A struct; without fields Python only keeps its bytes. */
+struct table {
+    const char *name;
+    const struct field *field;
+    size_t bytes, size;     /* of the fields, of the struct */
+};
+extern const struct table MCC_TABLES[], ROBOT_TABLES[];     /* up to a name NULL */
+
+/* Of a member or of an array's elements. */
+#define KIND(x) \
+    _Generic((x), int32_t: 'i', int64_t: 'l', uint32_t: 'u', double: 'd', bool: '?', char: 'c', \
+             int32_t *: 'i', int64_t *: 'l', uint32_t *: 'u', double *: 'd', bool *: '?')
+#define OFFSET(type, m) (int32_t)offsetof(struct type, m)
+#define SIZE(type, m) (int32_t)sizeof(((struct type *)0)->m)
+
+/* A member; an array. */
+#define ONE(type, m, name, unit) \
+    { name, unit, KIND(((struct type *)0)->m), OFFSET(type, m), 1, SIZE(type, m) }
+#define ROW(type, m, name, unit) \
+    { name, unit, KIND(((struct type *)0)->m[0]), OFFSET(type, m), \
+      SIZE(type, m) / SIZE(type, m[0]), SIZE(type, m[0]) }
+
+#endif

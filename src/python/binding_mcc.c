@@ -1,0 +1,160 @@
+/* binding_mcc - the library, its card and station from Python. */
+#include <string.h>
+
+#include "binding.h"
+#include "station.h"
+
+/* A member of each axis of a machine. */
+#define AXIS(m, name, unit) \
+    { name, unit, KIND(((struct station_config *)0)->machine.axis[0].m), \
+      OFFSET(station_config, machine.axis[0].m), AXES, sizeof(struct machine_axis) }
+
+#define HOME(m, unit) \
+    { "home_" #m, unit, KIND(((struct station_config *)0)->pc.home[0].m), \
+      OFFSET(station_config, pc.home[0].m), AXES, sizeof(struct home_config) }
+#define ASYN(m, unit) ROW(station_config, machine.asyn.m, "asyn_" #m, unit)
+#define MACHINE(m, unit) ONE(station_config, machine.m, #m, unit)
+#define MODULE(m, unit) ROW(station_config, pc.m, "module_" #m, unit)
+#define PC(m, unit) ONE(station_config, pc.m, #m, unit)
+static const struct field config_fields[] = {
+    AXIS(used, "used", ""), AXIS(pitch, "pitch", "mm"), AXIS(gear_ratio, "gear_ratio", ""),
+    AXIS(ppr, "ppr", ""), AXIS(rpm, "rpm", "rpm"), AXIS(p_gain, "p_gain", ""),
+    AXIS(max_dda, "max_dda", "pulses"), AXIS(inverted, "inverted", ""),
+    AXIS(index_low, "index_low", ""), AXIS(max_dda_acc, "max_dda_acc", "pulses"),
+    AXIS(check_ot, "check_ot", ""),
+    AXIS(high_limit, "high_limit", "mm"), AXIS(low_limit, "low_limit", "mm"),
+    AXIS(hot_offset, "hot_offset", "mm"), AXIS(lot_offset, "lot_offset", "mm"),
+    AXIS(track_limit, "track_limit", "counts"), AXIS(in_pos, "in_pos", ""),
+    AXIS(inpos_tol, "inpos_tol", "mm"),
+    MACHINE(limit_check, ""), MACHINE(limit_mode, ""), MACHINE(inpos_mode, ""),
+    MACHINE(inpos_settle, "s"), MACHINE(inpos_timeout, "s"),
+    MACHINE(dda_time, "s"), MACHINE(dda_length, "bit"), MACHINE(queue_depth, ""),
+    MACHINE(feed, "mm/s"), MACHINE(max_feed, "mm/s"), MACHINE(acc_time, "s"),
+    MACHINE(dec_time, "s"), MACHINE(acc_type, ""), MACHINE(dec_type, ""),
+    MACHINE(jerk_share, ""), MACHINE(ptp_ratio, ""),
+    PC(bus, "clocks"), PC(ipo, "clocks"), PC(ipo_event, ""),
+    PC(latency, "clocks"), PC(jitter, "clocks"),
+    PC(seed, ""), PC(min_stock, ""), PC(batch, ""), PC(block_delete, ""), PC(optional_stop, ""),
+    PC(dry_run, ""),
+    ROW(station_config, pc.output_mode, "output_mode", ""),
+    ROW(station_config, pc.isr.mask, "irq_sources", ""),
+    ROW(station_config, pc.isr.priority, "irq_priority", ""),
+    ONE(station_config, pc.isr.service, "service_time", "clocks"),
+    PC(interpreter, "clocks"), PC(process, "clocks"),
+    MODULE(priority, ""), MODULE(offset, "clocks"), MODULE(time, "clocks"),
+    MODULE(unit, "clocks"), MODULE(most, ""),
+    ROW(station_config, software_gain, "software_gain", "V"),
+    ASYN(acc_type, ""), ASYN(dec_type, ""), ASYN(acc_time, "s"), ASYN(dec_time, "s"),
+    ROW(station_config, pc.home_order, "home_order", ""), PC(home_first, ""),
+    PC(home_settle, "s"),
+    ROW(station_config, pc.encoder_backward, "encoder_backward", ""),
+    { "home_mode", "", 'i', OFFSET(station_config, pc.home[0].mode), AXES,
+      sizeof(struct home_config) },
+    HOME(direction, "bits"), HOME(sensor_on, ""), HOME(high_speed, "mm/s"),
+    HOME(low_speed, "mm/s"), HOME(offset, "mm"), HOME(search, "mm"), HOME(index_way, "mm"),
+};
+
+#define READ(m, unit) ONE(station_reading, m, #m, unit)
+#define READ_ROW(m, unit) ROW(station_reading, m, #m, unit)
+static const struct field reading_fields[] = {
+    READ(clock, "clocks"), READ_ROW(pulses, "pulses"), READ_ROW(counts, "counts"),
+    READ_ROW(errors, "counts"), READ_ROW(volts, "V"), READ_ROW(motor, "counts"),
+    READ_ROW(table, "mm"), READ_ROW(position, "mm"), READ(path_feed, "mm/s"),
+    READ_ROW(stock, "commands"), READ_ROW(underflows, ""), READ(frames_taken, ""),
+    READ(frames_refused, ""), READ(interrupts, ""), READ(irq_clock, "clocks"),
+    READ(services, ""), READ(latency, "clocks"), READ(missed, ""), READ(ipo_cycle, ""),
+    READ(queue, "points"), READ(starved, ""),
+    READ(status, ""), READ(error, ""), READ(line, ""), READ(command, ""), READ(digital, "bits"),
+    READ(coolant, "bits"), READ(spindle, "rpm"), READ(stopped, ""),
+};
+
+#define PIN(m) ONE(station, lines.local.m, #m, "")
+static const struct field pin_fields[] = {
+    ROW(station, lines.phase, "phase", "periods"),
+    PIN(home), PIN(up), PIN(down), PIN(stop), PIN(ldi), PIN(dfi), PIN(power),
+};
+
+/* The document's parameters, where they are in struct mcc. */
+#define PARAM(m, unit) \
+    { #m, unit, KIND(((struct mcc *)0)->epcio_axis_param[0].m), \
+      OFFSET(mcc, epcio_axis_param[0].m), AXES, sizeof(MCC_MACH_PARAM) }
+static const struct field param_fields[] = {
+    PARAM(type, ""), PARAM(pos2encoder_dir, ""), PARAM(PPR, ""), PARAM(RPM, "rpm"),
+    PARAM(pitch, "mm"), PARAM(gear_ratio, ""), PARAM(high_limit, "mm"), PARAM(low_limit, "mm"),
+    PARAM(HOT_offset, "mm"), PARAM(LOT_offset, "mm"), PARAM(sensor_on, ""), PARAM(index_on, ""),
+    PARAM(home_dir, "bits"), ONE(mcc, cart_max_speed, "cart_max_speed", "mm/s"),
+};
+
+static const struct field comp_fields[] = {
+    ONE(comp_table, interval, "interval", "pulses"), ONE(comp_table, home, "home", ""),
+    ROW(comp_table, forward, "forward", "pulses"), ROW(comp_table, backward, "backward", "pulses"),
+};
+
+#define REPORT(m) ONE(fault_report, m, #m, "")
+static const struct field report_fields[] = {
+    { "fault", "", 'i', OFFSET(fault_report, fault), 1, sizeof(enum fault) },
+    REPORT(line), REPORT(offset), REPORT(at), REPORT(length), REPORT(other_at),
+    REPORT(other_length), REPORT(value), REPORT(limit),
+};
+_Static_assert(sizeof(enum fault) == sizeof(int32_t) &&
+               sizeof(enum home_mode) == sizeof(int32_t), "an enum is read as an int32");
+
+const struct table MCC_TABLES[] = {
+    { "config", config_fields, sizeof config_fields, sizeof(struct station_config) },
+    { "reading", reading_fields, sizeof reading_fields, sizeof(struct station_reading) },
+    { "station", pin_fields, sizeof pin_fields, sizeof(struct station) },
+    { "report", report_fields, sizeof report_fields, sizeof(struct fault_report) },
+    { "mcc", NULL, 0, sizeof(struct mcc) },
+    { "param", param_fields, sizeof param_fields, sizeof(struct mcc) },
+    { "comp", comp_fields, sizeof comp_fields, sizeof(struct comp_table) },
+    { NULL, NULL, 0, 0 },
+};
+
+void binding_defaults(struct station_config *config)
+{
+    *config = station_defaults();
+}
+
+/* The library of a station, and the machine of a configuration. */
+struct mcc *binding_mcc(struct station *s)
+{
+    return &s->pc.mcc;
+}
+
+const struct machine *binding_machine(const struct station_config *config)
+{
+    return &config->machine;
+}
+
+/* With the text of a part program in memory, NULL for none: run a station, check the program, plan
+ * as the task does and take points as a card would: their frames, at most `room`. [pulses] */
+int binding_run(struct station *s, int64_t until, const char *text, int64_t length)
+{
+    struct source_text t = { text, length };
+    const struct source source = source_of(&t);
+    return station_run(s, until, text ? &source : NULL);
+}
+
+void binding_check(const struct mcc *m, const char *text, int64_t length, struct fault_report *r)
+{
+    struct source_text t = { text, length };
+    const struct source source = source_of(&t);
+    task_check(m, &source, r);
+}
+
+int32_t binding_take(struct mcc *m, const char *text, int64_t length, int32_t (*frame)[AXES],
+                 int32_t room)
+{
+    struct source_text t = { text, length };
+    const struct source source = source_of(&t);
+    for (int32_t n = 0; n < room; n++) {
+        task_run(m, text ? &source : NULL);
+        if (m->queue.count == 0) {
+            return n;
+        }
+        m->written = *queue_peek(&m->queue, 0);
+        memcpy(frame[n], m->written.frame, sizeof *frame);
+        queue_drop(&m->queue, 1);
+    }
+    return room;
+}

@@ -1,0 +1,412 @@
+/* binding_robot - the robot's control and its kinematics from Python. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "binding.h"
+#include "robot_station.h"
+#include "soft_words.h"
+
+static const double DEGREE = 0.017453292519943295, MM = 1e-3;
+
+enum { MESSAGE = INFORM_MESSAGE_MAX };
+
+/* A program in either language with its points; it stays where it is while it runs. */
+struct robot_program {
+    struct source_text text;
+    struct source source;
+    struct inform_program inform;
+    struct inform_points points;
+    struct orders_text orders;
+};
+
+#define SETTING(type, m, elements, unit, start, low, high) \
+    { #m, unit, KIND(((struct soft_settings *)0)->m), OFFSET(robot_station_config, soft.m), \
+      SIZE(robot_station_config, soft.m) / (int32_t)sizeof(type), sizeof(type) },
+#define CARD(m, unit) ONE(robot_station_config, card.m, #m, unit)
+static const struct field config_fields[] = {
+    SOFT_SETTINGS(SETTING)
+    CARD(irq_every, "clocks"), CARD(input_irq_mask, "bits"), CARD(follow_mask, "bits"),
+    CARD(stop_mask, "bits"), CARD(stop_low, "bits"), CARD(alarm_stops, ""),
+    CARD(stop_servo_off, ""),
+};
+
+#define READ(m, unit) ONE(robot_station_reading, m, #m, unit)
+#define READ_ROW(m, unit) ROW(robot_station_reading, m, #m, unit)
+static const struct field reading_fields[] = {
+    READ_ROW(pulses, "pulses"), READ_ROW(joint, "deg"), READ_ROW(pose, "mm, deg"),
+    READ_ROW(joint_command, "deg"), READ_ROW(pose_command, "mm, deg"), READ(configuration, ""),
+    READ_ROW(factors, "mm, 1, 1"), READ(status, ""), READ(line, ""), READ(done, ""),
+    READ(rests, ""),
+};
+
+#define SEEN(m, name, unit) ONE(robot_station, m, name, unit)
+#define REPORT(m, unit) ONE(robot_station, soft.report.m, #m, unit)
+static const struct field seen_fields[] = {
+    SEEN(clock, "clock", "clocks"), SEEN(soft.robot.speed, "path_feed", "mm/s"),
+    SEEN(soft.robot.length, "path_length", "mm"), SEEN(soft.given, "move", ""),
+    SEEN(soft.reached, "reached", ""), SEEN(soft.taught_count, "taught", ""),
+    SEEN(soft.trouble.error, "error", ""), SEEN(soft.trouble.line, "error_line", ""),
+    SEEN(soft.count, "queue", ""), SEEN(card.inputs.image, "inputs", "bits"),
+    SEEN(card.outputs, "outputs", "bits"), ROW(robot_station, card.output_clock, "output_clock",
+                                               "clocks"),
+    ROW(robot_station, card.ai, "ai", "V"), ROW(robot_station, card.ao, "ao", "V"),
+    SEEN(card.servo, "servo", "bits"), SEEN(card.stopped, "stopped", ""),
+    SEEN(card.stopped_clock, "stopped_clock", "clocks"), SEEN(card.playing, "memory", ""),
+    SEEN(card.irq.seq, "interrupts", ""), SEEN(card.irq.clock, "irq_clock", "clocks"),
+    SEEN(card.underruns, "underruns", ""), SEEN(card.late, "late", ""),
+    SEEN(card.refused, "refused", ""), ROW(robot_station, card.dropped, "dropped", "pulses"),
+    REPORT(runs, ""), SEEN(soft.report.late, "deadline_misses", ""), REPORT(wait, "clocks"),
+    REPORT(wait_most, "clocks"), REPORT(run, "clocks"), REPORT(run_most, "clocks"),
+    REPORT(spare, "clocks"), REPORT(busy, "clocks"), REPORT(polls, ""), REPORT(lines, ""),
+    REPORT(points, ""), REPORT(starved, ""), SEEN(soft.report.line, "line_latency", "clocks"),
+    REPORT(line_most, "clocks"), REPORT(told_most, "clocks"),
+};
+
+#define KEY(m) ONE(robot_station, soft.m.pressed, "press_" #m, "")
+#define PANEL(m, unit) ONE(robot_station, panel.m, #m, unit)
+static const struct field panel_fields[] = {
+    PANEL(hold, ""), PANEL(single, ""), PANEL(override, ""), PANEL(frame, ""),
+    ROW(robot_station, panel.jog, "jog", ""), PANEL(jog_speed, ""), PANEL(jog_way, "mm or deg"),
+    KEY(start), KEY(abort), KEY(reset), KEY(teach), KEY(replay),
+    ONE(robot_station, inputs, "inputs", "bits"), ONE(robot_station, alarm, "alarm", "bits"),
+    ONE(robot_station, emergency, "emergency", ""), ROW(robot_station, ai, "ai", "V"),
+    ONE(robot_station, soft.running, "running", ""),
+    ONE(robot_station, card.stopped, "stopped", ""),
+};
+
+#define MOVE(m, unit) ONE(robot_move, m, #m, unit)
+static const struct field move_fields[] = {
+    MOVE(kind, ""), MOVE(target.by_joints, ""), MOVE(target.branch, ""),
+    ROW(robot_move, via, "via", "mm"), MOVE(feed, "mm/s"), MOVE(spin, "deg/s"), MOVE(share, ""),
+    MOVE(zone, "mm"), MOVE(singular, ""),
+};
+
+static const struct field refusal_fields[] = {
+    ONE(robot_refusal, part, "part", ""), ROW(robot_refusal, place, "place", "mm"),
+    ONE(robot_refusal, which, "which", ""), ONE(robot_refusal, value, "value", ""),
+    ONE(robot_refusal, limit, "limit", ""),
+};
+
+const struct table ROBOT_TABLES[] = {
+    { "robot_config", config_fields, sizeof config_fields, sizeof(struct robot_station_config) },
+    { "robot_reading", reading_fields, sizeof reading_fields,
+      sizeof(struct robot_station_reading) },
+    { "robot_seen", seen_fields, sizeof seen_fields, sizeof(struct robot_station) },
+    { "robot_panel", panel_fields, sizeof panel_fields, sizeof(struct robot_station) },
+    { "robot_move", move_fields, sizeof move_fields, sizeof(struct robot_move) },
+    { "robot_refusal", refusal_fields, sizeof refusal_fields, sizeof(struct robot_refusal) },
+    { "robot_program", NULL, 0, sizeof(struct robot_program) },
+    { "robot_soft", NULL, 0, sizeof(struct soft) },
+    { "robot_arm", NULL, 0, sizeof(struct manipulator) },
+    { NULL, NULL, 0, 0 },
+};
+
+void binding_robot_defaults(struct robot_station_config *c)
+{
+    *c = robot_station_defaults();
+}
+
+/* Each function with a message returns 0, or 1 and the message; numbers: value, limit. */
+int binding_robot_on(struct robot_station *s, const struct robot_station_config *c,
+                     double number[2], char message[MESSAGE])
+{
+    struct soft_wrong w;
+
+    if (robot_station_start(s, c, &w)) {
+        return 0;
+    }
+    number[0] = w.value;
+    number[1] = w.value < w.low ? w.low : w.high;
+    if (w.why) {
+        snprintf(message, MESSAGE, "%s = %.10g (element %d): %s", w.name, w.value, (int)w.index,
+                 w.why);
+    } else {
+        snprintf(message, MESSAGE, "%s = %.10g (element %d): %.10g to %.10g is wanted", w.name,
+                 w.value, (int)w.index, w.low, w.high);
+    }
+    return 1;
+}
+
+void binding_robot_arm(const struct robot_station *s, struct manipulator *arm)
+{
+    *arm = s->config.robot.arm;
+    arm->tool = s->tool;
+}
+
+/* Read a program in one of the languages, none with an empty text, and its points. */
+int binding_robot_read(struct robot_program *p, const char *const text[2],
+                       const int64_t length[2], bool gcode, char message[MESSAGE])
+{
+    struct inform_report r;
+
+    memset(p, 0, sizeof *p);
+    inform_points_clear(&p->points);
+    p->orders.points = &p->points;
+    if (inform_points_read(&p->points, text[1], length[1], &r) < 0) {
+        char found[INFORM_MESSAGE_MAX];
+        inform_message(&r, text[1], found);
+        snprintf(message, MESSAGE, "points: %.400s", found);
+        return 1;
+    }
+    p->text = (struct source_text){ text[0], length[0] };
+    if (gcode) {
+        p->source = source_of(&p->text);
+        p->orders.gcode = &p->source;
+    } else if (inform_read(&p->inform, &p->points, text[0], length[0], &r) < 0) {
+        inform_message(&r, text[0], message);
+        return 1;
+    } else {
+        p->orders.inform = &p->inform;
+    }
+    return 0;
+}
+
+static int check_gcode(struct robot_station *s, const struct robot_program *p, struct soft *trial,
+                       char message[MESSAGE])
+{
+    struct fault_report r;
+    char words[SOFT_WORDS];
+
+    orders_check(&s->config.orders, &p->orders, &s->soft.robot.pose, &r);
+    if (r.fault != FAULT_NONE) {
+        snprintf(message, MESSAGE, "line %d: %s \"%.*s\"", (int)r.line, fault_text(r.fault),
+                 (int)r.length, p->text.text + r.offset + r.at);
+        return 1;
+    }
+    robot_station_rehearse(s, &p->orders, trial);
+    if (trial->trouble.error != SOFT_OK) {
+        soft_words(&trial->trouble, words);
+        snprintf(message, MESSAGE, "line %d: %s", (int)trial->trouble.line, words);
+        return 1;
+    }
+    return 0;
+}
+
+/* Start a program that was read, all rests; a part program is planned beforehand. */
+int binding_robot_start(struct robot_station *s, const struct robot_program *p, const char *job,
+                        struct soft *trial, char message[MESSAGE])
+{
+    struct inform_start *start = &s->config.orders.start;
+
+    if (p->orders.gcode && check_gcode(s, p, trial, message)) {
+        return 1;
+    }
+    start->job = 0;
+    start->out = s->card.host_outputs;
+    if (p->orders.inform && job[0]) {
+        start->job = inform_job(&p->inform, job);
+        if (start->job < 0) {
+            start->job = 0;
+            snprintf(message, MESSAGE, "no job \"%.40s\" in the program", job);
+            return 1;
+        }
+    }
+    s->soft.start.pressed = true;
+    return 0;
+}
+
+void binding_robot_run(struct robot_station *s, int64_t until, const struct robot_program *p)
+{
+    robot_station_run(s, until, p ? &p->orders : NULL);
+}
+
+/* A move to joints [deg] or a pose X Y Z A B C [mm], [deg]. */
+int binding_robot_move(struct robot_station *s, struct robot_move *m, const double target[6],
+                       struct robot_refusal *why, char message[MESSAGE])
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        m->target.joint[i] = target[i] * DEGREE;
+    }
+    m->target.pose = m->target.by_joints ? pose_none() : pose_of(target, target + 3);
+    m->spin *= DEGREE;
+    const enum robot_status status = soft_move(&s->soft, &s->config, m, &s->tool, why);
+    soft_refusal_words(status, why, message);
+    return (int)status;
+}
+
+int binding_robot_jog(struct robot_station *s, struct robot_refusal *why, char message[MESSAGE])
+{
+    const enum robot_status status = soft_jog(&s->soft, &s->config, &s->panel, why);
+    soft_refusal_words(status, why, message);
+    return (int)status;
+}
+
+/* Digital outputs of a mask, or an analog output from 0 on if that is 0. */
+int binding_robot_output(struct robot_station *s, uint32_t mask, uint32_t value, int32_t index,
+                         double volt)
+{
+    struct order o = { .kind = mask ? ORDER_OUT : ORDER_ANALOG, .mask = mask, .value = value,
+                       .index = index, .amount = volt };
+    return (int)soft_output(&s->soft, &o);
+}
+
+int binding_robot_tool(struct robot_station *s, const double tool[6])
+{
+    if (!robot_idle(&s->soft.robot)) {
+        return 1;
+    }
+    s->tool = pose_of(tool, tool + 3);
+    return (int)robot_tool(&s->soft.robot, &s->config.robot, &s->tool);
+}
+
+void binding_robot_words(const struct robot_station *s, char message[MESSAGE])
+{
+    soft_words(&s->soft.trouble, message);
+}
+
+int binding_robot_taught(const struct robot_station *s, int32_t n, char line[INFORM_POINT_TEXT])
+{
+    return soft_taught(&s->soft, n, line);
+}
+
+/* A tool as a matrix, the other way round if asked for. */
+static void tool_matrix(const struct manipulator *m, bool back, double at[3], double turn[3][3])
+{
+    const struct pose tool = back ? pose_inverse(&m->tool) : m->tool;
+
+    for (int i = 0; i < 3; i++) {
+        at[i] = tool.at[i] * MM;
+    }
+    quaternion_matrix(tool.turn, turn);
+}
+
+/* A frame [m] in a pose. */
+static void behind(const struct opw_pose *p, const double at[3], const double turn[3][3],
+                   struct opw_pose *out)
+{
+    for (int i = 0; i < 3; i++) {
+        const double *t = p->turn[i];
+        out->at[i] = p->at[i] + t[0] * at[0] + t[1] * at[1] + t[2] * at[2];
+        for (int j = 0; j < 3; j++) {
+            out->turn[i][j] = t[0] * turn[0][j] + t[1] * turn[1][j] + t[2] * turn[2][j];
+        }
+    }
+}
+
+static void radians(const double degrees[OPW_JOINTS], double joint[OPW_JOINTS])
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        joint[i] = degrees[i] * DEGREE;
+    }
+}
+
+/* Of n joints [deg] the matrices of the tip [mm]. */
+void binding_robot_forward(const struct manipulator *m, int64_t n, const double (*joint)[6],
+                           double (*matrix)[4][4])
+{
+    double at[3], turn[3][3], q[OPW_JOINTS];
+    struct opw_pose flange, tip;
+
+    tool_matrix(m, false, at, turn);
+    for (int64_t k = 0; k < n; k++) {
+        radians(joint[k], q);
+        opw_forward(&m->opw, q, &flange);
+        behind(&flange, at, (const double (*)[3])turn, &tip);
+        memset(matrix[k], 0, sizeof matrix[k]);
+        matrix[k][3][3] = 1.0;
+        for (int i = 0; i < 3; i++) {
+            memcpy(matrix[k][i], tip.turn[i], sizeof tip.turn[i]);
+            matrix[k][i][3] = tip.at[i] / MM;
+        }
+    }
+}
+
+/* Branches of a tip's matrix. */
+static uint32_t solve(const struct manipulator *m, const double at[3], const double turn[3][3],
+                      const double matrix[4][4], const double near[6],
+                      double all[OPW_BRANCHES][OPW_JOINTS])
+{
+    struct opw_pose tip, flange;
+
+    for (int i = 0; i < 3; i++) {
+        memcpy(tip.turn[i], matrix[i], sizeof tip.turn[i]);
+        tip.at[i] = matrix[i][3] * MM;
+    }
+    behind(&tip, at, turn, &flange);
+    return opw_inverse(&m->opw, &flange, near, all);
+}
+
+/* All branches of n matrices, NaN where there is none. */
+void binding_robot_inverse(const struct manipulator *m, int64_t n, const double (*matrix)[4][4],
+                           const double (*near)[6], double (*joint)[OPW_BRANCHES][OPW_JOINTS])
+{
+    double at[3], turn[3][3], q[OPW_JOINTS];
+
+    tool_matrix(m, true, at, turn);
+    for (int64_t k = 0; k < n; k++) {
+        radians(near[k], q);
+        const uint32_t there = solve(m, at, (const double (*)[3])turn, matrix[k], q, joint[k]);
+        for (int b = 0; b < OPW_BRANCHES; b++) {
+            for (int i = 0; i < OPW_JOINTS; i++) {
+                joint[k][b][i] = there >> b & 1 ? joint[k][b][i] / DEGREE : (double)NAN;
+            }
+        }
+    }
+}
+
+/* The branch within the limits that is nearest to near, with its joints [deg]; -1 and NaN: none. */
+void binding_robot_nearest(const struct manipulator *m, int64_t n, const double (*matrix)[4][4],
+                           const double (*near)[6], double (*joint)[OPW_JOINTS], int32_t *branch)
+{
+    double at[3], turn[3][3], q[OPW_JOINTS], all[OPW_BRANCHES][OPW_JOINTS], low[6], high[6];
+
+    tool_matrix(m, true, at, turn);
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        low[i] = m->joint[i].low;
+        high[i] = m->joint[i].high;
+    }
+    for (int64_t k = 0; k < n; k++) {
+        double found[OPW_JOINTS];
+        radians(near[k], q);
+        const uint32_t there = solve(m, at, (const double (*)[3])turn, matrix[k], q, all);
+        branch[k] = opw_nearest(there, (const double (*)[6])all, q, low, high, found);
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            joint[k][i] = branch[k] >= 0 ? found[i] / DEGREE : (double)NAN;
+        }
+    }
+}
+
+/* Distances from singular [mm], 1, 1 and branches of n joints. */
+void binding_robot_factors(const struct manipulator *m, int64_t n, const double (*joint)[6],
+                           double (*factor)[3], int32_t *branch)
+{
+    double q[OPW_JOINTS];
+
+    for (int64_t k = 0; k < n; k++) {
+        radians(joint[k], q);
+        opw_factors(&m->opw, q, factor[k]);
+        factor[k][0] /= MM;
+        branch[k] = opw_branch(&m->opw, q);
+    }
+}
+
+/* Poses X Y Z A B C of n matrices and back [mm], [deg]. */
+void binding_robot_pose(int64_t n, const double (*matrix)[4][4], double (*pose)[6])
+{
+    for (int64_t k = 0; k < n; k++) {
+        double turn[3][3];
+        struct pose p;
+        for (int i = 0; i < 3; i++) {
+            memcpy(turn[i], matrix[k][i], sizeof turn[i]);
+            p.at[i] = matrix[k][i][3];
+        }
+        quaternion_of_matrix((const double (*)[3])turn, p.turn);
+        robot_station_pose(&p, pose[k]);
+    }
+}
+
+void binding_robot_matrix(int64_t n, const double (*pose)[6], double (*matrix)[4][4])
+{
+    for (int64_t k = 0; k < n; k++) {
+        const struct pose p = pose_of(pose[k], pose[k] + 3);
+        double turn[3][3];
+        quaternion_matrix(p.turn, turn);
+        memset(matrix[k], 0, sizeof matrix[k]);
+        matrix[k][3][3] = 1.0;
+        for (int i = 0; i < 3; i++) {
+            memcpy(matrix[k][i], turn[i], sizeof turn[i]);
+            matrix[k][i][3] = p.at[i];
+        }
+    }
+}

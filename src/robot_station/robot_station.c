@@ -1,0 +1,144 @@
+#include "robot_station.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double DEGREE = 0.017453292519943295;
+
+struct robot_station_config robot_station_defaults(void)
+{
+    return (struct robot_station_config){
+        .soft = soft_defaults(),
+        .card = { .irq_every = 4000, .alarm_stops = true, .stop_servo_off = true }
+    };
+}
+
+bool robot_station_start(struct robot_station *s, const struct robot_station_config *config,
+                         struct soft_wrong *wrong)
+{
+    struct fpga_config card = config->card;
+
+    if (!soft_settings_good(&config->soft, wrong)) {
+        return false;
+    }
+    card.slot_clocks = config->soft.slot_clocks;
+    card.format = (enum fpga_format)config->soft.pulse_format;
+    if (card.irq_every < 1 || card.irq_every > INT32_MAX || card.irq_every % card.slot_clocks) {
+        *wrong = (struct soft_wrong){ .name = "irq_every", .why = "not a whole number of slots",
+                                      .value = (double)card.irq_every,
+                                      .low = card.slot_clocks, .high = card.slot_clocks };
+        return false;
+    }
+    memset(s, 0, sizeof *s);
+    soft_configure(&config->soft, &s->config);
+    s->config.start = INT64_MAX;    /* by its key only */
+    s->panel = (struct soft_panel){ .override = 1.0, .jog_speed = 0.1 };
+    s->tool = s->config.robot.arm.tool;
+    soft_start(&s->soft, &s->config);
+    fpga_reset(&s->card, &card);
+    return true;
+}
+
+static void pins(struct robot_station *s)
+{
+    const uint32_t ready = (1u << FPGA_AXES) - 1;
+    const uint32_t drives = ready | s->alarm << 8;
+    uint32_t changed = fpga_inputs_changed(&s->card, s->inputs);
+
+    for (int i = 0; changed; i++, changed >>= 1) {
+        if (changed & 1) {
+            fpga_change_input(&s->card, i, 0);
+        }
+    }
+    if (s->card.drive_pins != drives || s->card.emergency != s->emergency) {
+        fpga_set_drives(&s->card, drives, s->emergency);
+    }
+    if (memcmp(s->ai_seen, s->ai, sizeof s->ai) != 0) {
+        memcpy(s->ai_seen, s->ai, sizeof s->ai);
+        fpga_set_ai(&s->card, s->ai);
+    }
+}
+
+/* A jog by an increment has come to its end. */
+static void end_jog(struct robot_station *s)
+{
+    if (s->panel.jog_way > 0.0 && robot_idle(&s->soft.robot)) {
+        memset(s->panel.jog, 0, sizeof s->panel.jog);
+    }
+}
+
+/* One instant of the bus grid: the PC sees the card as it is, the card gets what the PC has worked
+ * out from what it saw one instant before. */
+static void instant(struct robot_station *s, const struct orders_text *program)
+{
+    static const struct orders_text NONE;
+    struct fpga_shown shown;
+
+    fpga_show(&s->card, &shown);
+    soft_post(&s->soft, &s->config, &s->host);
+    fpga_take(&s->taken, &s->card, &s->host);
+    pins(s);
+    soft_instant(&s->soft, &s->config, program ? program : &NONE, &shown, &s->panel, s->instant);
+    end_jog(s);
+    s->instant += s->config.bus;
+}
+
+void robot_station_run(struct robot_station *s, int64_t until, const struct orders_text *program)
+{
+    while (s->instant < until) {
+        fpga_advance(&s->card, s->instant);
+        s->clock = s->instant;
+        instant(s, program);
+    }
+    if (until > s->clock) {
+        fpga_advance(&s->card, until);
+        s->clock = until;
+    }
+}
+
+void robot_station_pose(const struct pose *pose, double value[6])
+{
+    memcpy(value, pose->at, sizeof pose->at);
+    quaternion_angles(pose->turn, value + 3);
+}
+
+void robot_station_read(const struct robot_station *s, struct robot_station_reading *r)
+{
+    const struct soft *soft = &s->soft;
+    struct manipulator arm = s->config.robot.arm;
+    double joint[OPW_JOINTS];
+    int32_t due = 0;
+
+    memset(r, 0, sizeof *r);
+    fpga_pulses(&s->card, r->pulses);
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        const double scale = s->config.robot.scale[i], at = soft->origin[i];
+        joint[i] = (at + (double)r->pulses[i]) / scale;
+        r->joint[i] = joint[i] / DEGREE;
+        r->joint_command[i] = soft->joint[i] / DEGREE;
+        due += (double)llround(soft->joint[i] * scale) != at + (double)r->pulses[i];
+    }
+    arm.tool = soft->robot.tool;
+    const struct pose pose = manipulator_pose(&arm, joint);
+    robot_station_pose(&pose, r->pose);
+    robot_station_pose(&soft->robot.pose, r->pose_command);
+    opw_factors(&arm.opw, joint, r->factors);
+    r->factors[0] *= 1e3;
+    r->configuration = opw_branch(&arm.opw, joint);
+    r->status = soft_status(soft, &s->panel);
+    r->line = soft->robot.line > 0 ? soft->move_line[soft->robot.line % SOFT_MOVES] : 0;
+    r->done = soft_done(soft);
+    r->rests = soft->stopped || (!soft->running && soft->replaying < 0 && !soft->jogs &&
+                                 !soft->output_count && !soft->start.pressed &&
+                                 robot_idle(&soft->robot) && due == 0);
+}
+
+void robot_station_rehearse(const struct robot_station *s, const struct orders_text *program,
+                            struct soft *trial)
+{
+    struct soft_config c = s->config;
+
+    memcpy(c.zero, s->soft.robot.joint, sizeof c.zero);
+    soft_start(trial, &c);
+    soft_rehearse(trial, &c, program);
+}
