@@ -30,6 +30,7 @@ static struct drive_config config(const struct vars *v, int i)
         .velocity_time = v->velocity_time[i],
         .position_gain = v->position_gain[i],
         .feed_forward = v->feed_forward[i],
+        .feed_forward_time = v->feed_forward_time[i],
         .torque_limit = v->torque_limit[i],
         .speed_limit = v->speed_limit[i],
         .error_limit = v->error_limit[i],

@@ -34,7 +34,7 @@ static void velocity_loop(const struct drive_config *c, struct drive_state *s, d
 }
 
 /* Speed command of the mode [rpm]; sets the following error. `pulses` came since last sample. */
-static double speed_command(const struct drive_config *c, const struct drive_state *s,
+static double speed_command(const struct drive_config *c, struct drive_state *s,
                             const struct drive_input *in, int32_t pulses, struct drive_output *out)
 {
     if (c->mode == DRIVE_VELOCITY)
@@ -42,8 +42,12 @@ static double speed_command(const struct drive_config *c, const struct drive_sta
     double ppt = c->pulses_per_turn;
     out->following_error =
         (double)s->command / ppt - (double)(s->counts - s->zero) / c->enc_counts;
-    double turns_per_s = c->position_gain * out->following_error +
-                         c->feed_forward * pulses / (ppt * c->period);
+    if (c->feed_forward_time > 0.0)
+        s->forward += (pulses / (ppt * c->period) - s->forward) *
+                      (c->period / (c->feed_forward_time + c->period));
+    double forward = c->feed_forward_time > 0.0 ? c->feed_forward * s->forward
+                                                : c->feed_forward * pulses / (ppt * c->period);
+    double turns_per_s = c->position_gain * out->following_error + forward;
     return clamp(turns_per_s * RPM_PER_TURN_PER_S, c->speed_limit);
 }
 
@@ -69,6 +73,7 @@ enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s
     if (first) {
         s->zero = s->counts;
         s->command = 0;
+        s->forward = 0.0;
         pulses = 0;
     }
     if (run) {

@@ -29,6 +29,7 @@ struct drive_config {
     double  velocity_time;      /* [s] integral time; 0: no integral */
     double  position_gain;      /* [1/s] */
     double  feed_forward;       /* share of the command speed, 0 .. 1 */
+    double  feed_forward_time;  /* [s] its filter; 0: none */
     double  torque_limit;       /* [N.m] */
     double  speed_limit;        /* [rpm] */
     double  error_limit;        /* [turns] following error that raises the alarm */
@@ -52,6 +53,7 @@ struct drive_state {
     int32_t pulses;             /* [pulses] input at the latest sample */
     int64_t command;            /* [pulses] received since the loops were switched on */
     double  integral;           /* [N.m] of the velocity loop */
+    double  forward;            /* [turns/s] command speed behind its filter */
 };
 
 struct drive_output {
