@@ -15,6 +15,8 @@ struct model {
 
 enum {
     GROUP     = 6,   /* channels of an axes_ input */
+    TRIPLE    = 3,   /* channels of a triple_ input */
+    QUAD      = 4,   /* channels of a quad_ input */
     REAL_AXES = 60,  /* channels before real_1 */
     INT_AXES  = 54,  /* channels before int_1 */
     FIRST     = 1024 /* rows of the first buffer; it doubles when full */
@@ -44,12 +46,15 @@ static const struct {
 #define AT(name) offsetof(struct vars, name)
 _Static_assert(AT(real_1) == AT(axes_real_1) + REAL_AXES * sizeof(double), "real channels");
 _Static_assert(AT(real_4) == AT(real_1) + 3 * sizeof(double), "real channels");
+_Static_assert(AT(triple_real_6) == AT(triple_real_1) + 5 * TRIPLE * sizeof(double), "triples");
+_Static_assert(AT(quad_real_3) == AT(quad_real_1) + 2 * QUAD * sizeof(double), "quads");
 _Static_assert(AT(int_1) == AT(axes_int_1) + INT_AXES * sizeof(int32_t), "integer channels");
 _Static_assert(AT(int_10) == AT(int_1) + 9 * sizeof(int32_t), "integer channels");
 
 static size_t real_columns(const struct vars *v)
 {
-    return (size_t)(GROUP * v->axes_real_used + v->real_used);
+    return (size_t)(GROUP * v->axes_real_used + v->real_used + TRIPLE * v->triple_real_used
+                    + QUAD * v->quad_real_used);
 }
 
 static size_t int_columns(const struct vars *v)
@@ -163,6 +168,13 @@ static void fill_gap(const struct vars *v, struct rows *r, int64_t end)
     }
 }
 
+/* Copy so many channels; returns where the next ones go. */
+static double *put(double *to, const char *from, int32_t count)
+{
+    memcpy(to, from, (size_t)count * sizeof *to);
+    return to + count;
+}
+
 static int record(struct fmu *f, struct rows *r)
 {
     const struct vars *v = &f->s.v;
@@ -175,13 +187,14 @@ static int record(struct fmu *f, struct rows *r)
     }
     fill_gap(v, r, k);
     size_t nr = real_columns(v), ni = int_columns(v);
-    size_t nr_axes = (size_t)(GROUP * v->axes_real_used);
     size_t ni_axes = (size_t)(GROUP * v->axes_int_used);
     double *real = r->real + (size_t)k * nr;
     int32_t *ints = r->ints + (size_t)k * ni;
     const char *in = (const char *)v;
-    memcpy(real, in + AT(axes_real_1), nr_axes * sizeof *real);
-    memcpy(real + nr_axes, in + AT(real_1), (nr - nr_axes) * sizeof *real);
+    real = put(real, in + AT(axes_real_1), GROUP * v->axes_real_used);
+    real = put(real, in + AT(real_1), v->real_used);
+    real = put(real, in + AT(triple_real_1), TRIPLE * v->triple_real_used);
+    put(real, in + AT(quad_real_1), QUAD * v->quad_real_used);
     memcpy(ints, in + AT(axes_int_1), ni_axes * sizeof *ints);
     memcpy(ints + ni_axes, in + AT(int_1), (ni - ni_axes) * sizeof *ints);
     r->held = k + 1;

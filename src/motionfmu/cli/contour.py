@@ -23,26 +23,74 @@ def contour(
     set_: Set = [],  # noqa: B006  (typer makes a new list)
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
     figures: Annotated[
-        bool, typer.Option("--figures", help="Only print the contour figures of one run.")
+        bool, typer.Option("--figures", help="Only print the figures of one run.")
+    ] = False,
+    path_: Annotated[
+        bool, typer.Option("--iso9283", help="The deviation of the tool path, not the contour.")
     ] = False,
 ) -> None:
-    """Explain the contour error of a scenario: which cause makes how much of it."""
+    """Explain the contour error of a scenario: which cause makes how much of it.
+
+    A scenario without a contour, or with --iso9283, has the deviation of its tool path explained.
+    """
     from motionfmu.run import load
 
     given = settings(set_)
+    scenario = load(path)
+    body = scenario.document.body
+    of_path = path_ or (body.contour is None and body.iso9283 is not None)
     if figures:
-        found = run_shown(load(path), {"set": given}).contour().numbers()
+        result = run_shown(scenario, {"set": given})
+        found = result.iso9283().numbers() if of_path else result.contour().numbers()
         table = bare_table("figure", "value")
         for name, value in _flat({k: v for k, v in found.items() if k != "commands"}):
             table.add_row(name, value)
         out.print(table)
         return
-    _explain(path, given, folder)
+    (_explain_path if of_path else _explain)(path, given, folder)
+
+
+def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
+    from motionfmu.explain import explain_path
+    from motionfmu.report import outcome
+    from motionfmu.report.numbers import length
+    from motionfmu.report.path_causes_page import HEADS, write_path_explanation
+    from motionfmu.scenario.document import scenario_file
+
+    name = scenario_file(path).parent.name
+    target = outcome.usable(folder or Path("results") / f"{name}_path")
+    with progress_bar(*bar_columns()) as bar:
+        task = bar.add_task(name, total=1.0)
+        found = explain_path(
+            path,
+            set=settings,
+            progress=lambda what, share: bar.update(task, completed=share, description=what),
+        )
+    kinds = [n for n in HEADS if n in found.figures]
+    table = bare_table("cause")
+    for heading in (*(HEADS[n] for n in kinds), "AT_P without"):
+        table.add_column(heading, justify="right")
+    for e in found.effects:
+        sizes = [length(e.figures[n]) if e.judged else "" for n in kinds]
+        table.add_row(e.title, *sizes, length(e.without["accuracy"]) if e.without else "")
+    table.add_row("[bold]Whole run[/]", *(length(found.figures[n]) for n in kinds), "")
+    out.print(table)
+    for e in found.effects:
+        if not e.judged:
+            out.print(f"[bold]{e.title}[/] not judged: {e.how.replace('[', chr(92) + '[')}")
+    with outcome.whole(target) as part:
+        shown = write_path_explanation(found, part).name
+    out.print(f"report: {target / shown}", soft_wrap=True)
+
+
+def bar_columns() -> tuple[Any, ...]:
+    """What the bar of a long work shows."""
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn
+
+    return BarColumn(), TaskProgressColumn(), TextColumn("{task.description}")
 
 
 def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
-    from rich.progress import BarColumn, TaskProgressColumn, TextColumn
-
     from motionfmu.explain import explain
     from motionfmu.report import outcome
     from motionfmu.report.explain_page import write_explanation
@@ -51,8 +99,7 @@ def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
 
     name = scenario_file(path).parent.name
     target = outcome.usable(folder or Path("results") / f"{name}_contour")
-    columns = (BarColumn(), TaskProgressColumn(), TextColumn("{task.description}"))
-    with progress_bar(*columns) as bar:
+    with progress_bar(*bar_columns()) as bar:
         task = bar.add_task(name, total=1.0)
         found = explain(
             path,

@@ -1,6 +1,14 @@
-"""Contour error explained: its causes by simulation and by theory, a ballbar's words."""
+"""Contour error and tool path explained: causes by simulation and theory, a ballbar in words."""
 
 from motionfmu.explain.ballbar import Signature, signature
 from motionfmu.explain.decompose import Explanation, explain
+from motionfmu.explain.path_causes import PathExplanation, explain_path
 
-__all__ = ["Explanation", "Signature", "explain", "signature"]
+__all__ = [
+    "Explanation",
+    "PathExplanation",
+    "Signature",
+    "explain",
+    "explain_path",
+    "signature",
+]

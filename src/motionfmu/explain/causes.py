@@ -158,11 +158,13 @@ def off(cause: Cause, result: "Result", base: Mapping[str, Any]) -> Off:
 
 
 def used(result: "Result") -> list[int]:
-    """Axes in use, from 0."""
-    from motionfmu.scenario.contour_signals import library_of
-
-    active = result.parameter(f"{library_of(result.resolver)}.active")
-    return [i for i, on in enumerate(active) if on]
+    """Axes in use, from 0: of the library that plans the path, else of the first that tells."""
+    ports = result.resolver.ports
+    told = [n for n, own in ports.items() if "active" in own and own["active"].shape == (AXES,)]
+    planning = [n for n in told if "path_file" in ports[n]]
+    for name in (*planning, *told):
+        return [i for i, on in enumerate(result.parameter(f"{name}.active")) if on]
+    return list(range(AXES))
 
 
 def _equal(values: np.ndarray, others: list[np.ndarray], axes: list[int]) -> np.ndarray:

@@ -165,7 +165,7 @@ def explain(
         raise InputError(f"{scenario.document.file}: the scenario has no [contour] table")
     given = dict(set or {})
     known = causes.causes(scenario)
-    _watch(scenario, [f"{library_of(scenario.resolver)}.error", *causes.watched(known)])
+    watch(scenario, [f"{library_of(scenario.resolver)}.error", *causes.watched(known)])
     progress(scenario.name, 0.0)
     result = scenario.run(set=given, stop=stop)
     result.contour()
@@ -192,7 +192,7 @@ def explain(
     return _put_together(result, (known, states), (runs, ideal))
 
 
-def _watch(scenario: "Scenario", names: list[str]) -> None:
+def watch(scenario: "Scenario", names: list[str]) -> None:
     """Record these too, for no chart."""
     have = {e.name for e in scenario.ends}
     if new := [n for n in names if n not in have]:
@@ -238,7 +238,7 @@ def _put_together(
         if run is not None:
             other = runs[0].get(cause.after)
             change = (whole if other is None else _tool(other, along)) - _tool(run, along)
-        how = ", ".join(f"{k} = {_short(v)}" for k, v in state.set.items()) or state.why_not
+        how = ", ".join(f"{k} = {short(v)}" for k, v in state.set.items()) or state.why_not
         said = theory.NONE if state.absent else book.of(cause.name)
         without = None if run is None else run.error.max
         judged = run is not None or state.absent
@@ -315,7 +315,8 @@ def _rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def _short(value: Any) -> str:
+def short(value: Any) -> str:
+    """A setting in few letters."""
     if not isinstance(value, list):
         return f"{value:g}"
     return (

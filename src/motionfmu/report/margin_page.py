@@ -180,6 +180,14 @@ def _limit(limit: Limit) -> tuple[str, str]:
 
 def _point_note(axis: AxisModel) -> str:
     told = [f"{escape(n)} = {v:g}" for n, v in axis.at.items()]
+    if axis.others:
+        joints = ", ".join(map(str, axis.others))
+        stated = f"Stated: {', '.join(told)}. " if told else ""
+        return (
+            f"{stated}At rest where it starts, held by the"
+            f" drives' integrals. Axes {joints} are coupled with it, and held by their own loops."
+            " Friction is the steep slope of a part that sticks; a gap is as the load has it."
+        )
     if told:
         stated = f"Stated: {', '.join(told)}."
         kept = f" {escape(text)}." if (text := held(axis)) else ""

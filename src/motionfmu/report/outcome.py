@@ -40,6 +40,9 @@ def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
     if result.scenario.document.body.contour is not None:
         found["contour"] = None if result.no_contour else result.contour().numbers()
         found["no_contour"] = result.no_contour
+    if result.scenario.document.body.iso9283 is not None:
+        found["iso9283"] = None if result.no_iso9283 else result.iso9283().numbers()
+        found["no_iso9283"] = result.no_iso9283
     return found
 
 

@@ -10,11 +10,12 @@ from motionfmu.contour.circles import CircularTest
 from motionfmu.report.chart_pictures import write_charts
 from motionfmu.report.charts import add_charts
 from motionfmu.report.drawing import Drawing, draw
+from motionfmu.report.iso9283_picture import write_picture as write_lines
 from motionfmu.report.numbers import figure, length
 from motionfmu.report.packed import packed
 from motionfmu.report.path_plot import path_figure
 from motionfmu.report.pictures import write_pictures
-from motionfmu.report.plain import Result, plain_text
+from motionfmu.report.plain import Result, add_performance, deviations, plain_text
 from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.tables import (
@@ -33,7 +34,11 @@ from motionfmu.report.time_plots import (
     following_figure,
     trace_figures,
 )
+from motionfmu.report.view_section import SCRIPTS as VIEW
+from motionfmu.report.view_section import add_view
 from motionfmu.run.figures import Chart
+from motionfmu.view.deviations import from_contour
+from motionfmu.view.scene import scene_of
 
 PAGE = "report.html"
 NUMBERS = "contour.json"
@@ -59,7 +64,8 @@ def write_report(result: Result, contour: ContourResult | None, folder: str | Pa
         The analysed run; None without a contour.
     folder : str or Path
         Made if it is not there; gets report.html, figure1.png, figure1.svg and so on, and with a
-        contour path.svg, path.png and contour.json.
+        contour path.svg, path.png and contour.json; with figures after ISO 9283 iso9283.svg and
+        iso9283.png.
 
     Returns
     -------
@@ -84,6 +90,8 @@ def write_report(result: Result, contour: ContourResult | None, folder: str | Pa
         write_pictures(result.name, contour, drawing, folder)
         (folder / NUMBERS).write_text(numbers + "\n", encoding="utf-8")
     write_charts(charts, folder)
+    if result.resolver.document.body.iso9283 is not None and not result.no_iso9283:
+        write_lines(result.name, result.iso9283(), folder)
     (folder / PAGE).write_text(page, encoding="utf-8")
     return folder / PAGE
 
@@ -99,6 +107,8 @@ def page_text(
         page.section("Verdict", "", check_table(result.checks))
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))
+    views = add_view(page, scene_of(result, deviations(result) or [from_contour(contour)]))
+    add_performance(page, result)
     for i, test in enumerate(contour.circles[:CIRCLES_SHOWN]):
         _add_circle(page, f"circle{i}", test)
     _add_time(page, contour)
@@ -112,7 +122,7 @@ def page_text(
     sign = "Positive is to the left of the direction of travel, negative to the right. "
     footer = FOOTER.format(sign="" if contour.track.signed is None else sign)
     frame = Frame(result.name, result.about, "contour report", result.checks, footer)
-    return page.text(frame, ["path.js"], path=path)
+    return page.text(frame, ["path.js", *(VIEW if views else ())], path=path, **views)
 
 
 def _cards(contour: ContourResult) -> str:

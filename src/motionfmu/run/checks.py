@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from motionfmu.scenario import rates
 from motionfmu.scenario.document import Body, Check, Pair
 
-CONTOUR = "contour."
+TABLES = ("contour", "iso9283")  # analyses whose figures can be checked, by table
 BOUNDS = ("min", "max", "absmax", "peak", "rms", "final", "changes", "order")
 
 
@@ -30,19 +30,31 @@ def misplaced(name: str, body: Body, recorded: Mapping[str, tuple[int, ...]]) ->
     checks = body.check[name]
     if any(all(getattr(c, bound) is None for bound in BOUNDS) for c in checks):
         return f"{name}: no bound ({', '.join(BOUNDS)})"
-    if name.startswith(CONTOUR):
-        if body.contour is None:
-            return f"{name}: there is no [contour] table"
+    if is_figure(name):
         if any((c.windows, c.at, c.rate) != (None, None, None) for c in checks):
             return f"{name}: a figure has no time, no windows and no rate"
-        from motionfmu.contour.names import wrong  # which takes scipy with it
-
-        return wrong(name.removeprefix(CONTOUR))
+        return wrong_figure(name, body)
     whole, bracket, rest = name.partition("[")
     if whole not in recorded or (bracket and not _is_axis(rest, recorded[whole])):
         return f"{name} is not recorded"
     told = next((text for c in checks if (text := _no_time(c, body.stop))), "")
     return f"{name}: {told}" if told else ""
+
+
+def is_figure(name: str) -> bool:
+    """Whether a name is that of an analysis's figure, not of a signal."""
+    return name.partition(".")[0] in TABLES
+
+
+def wrong_figure(name: str, body: Body) -> str:
+    """Why no run of a scenario can have this figure; empty if one can."""
+    from motionfmu.contour.names import wrong as of_contour  # which takes scipy with it
+    from motionfmu.iso9283.evaluation import wrong as of_iso9283
+
+    table, _, figure = name.partition(".")
+    if getattr(body, table) is None:
+        return f"{name}: there is no [{table}] table"
+    return (of_contour if table == "contour" else of_iso9283)(figure)
 
 
 def _is_axis(rest: str, shape: tuple[int, ...]) -> bool:

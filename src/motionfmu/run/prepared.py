@@ -7,9 +7,18 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import InputError
-from motionfmu.run import contrary, figures
+from motionfmu.run import contrary, figures, waveforms
 from motionfmu.run.checks import misplaced
-from motionfmu.scenario import contour_signals, rates, recording, system, values
+from motionfmu.run.iso9283_of import written_path
+from motionfmu.scenario import (
+    contour_signals,
+    iso9283_signals,
+    rates,
+    recording,
+    system,
+    values,
+    view_signals,
+)
 from motionfmu.scenario import document as files
 
 
@@ -49,7 +58,7 @@ class Prepared:
         self.document = files.read(path)
         self.resolver = system.Resolver(self.document)
         listed = recording.chosen(self.resolver, self._recorded())
-        drawn = figures.wanted(self.resolver)
+        drawn = [*figures.wanted(self.resolver), *waveforms.wanted(self.resolver)]
         self.ends = list({e.name: e for e in (*listed, *drawn)}.values())
         self.only_drawn = {e.name for e in drawn} - {e.name for e in listed}
         wired, _ = recording.plan(self.resolved(Options()), self.ends, Path())
@@ -63,7 +72,10 @@ class Prepared:
         return self.document.file.parent.name
 
     def _recorded(self) -> list[str]:
-        return [*self.document.body.record.signals, *contour_signals.wanted(self.resolver)]
+        asked = [*contour_signals.wanted(self.resolver), *iso9283_signals.wanted(self.resolver)]
+        written_path(self.document)
+        shown = view_signals.wanted(self.resolver)
+        return [*self.document.body.record.signals, *asked, *shown]
 
     def _check_checks(self) -> None:
         recorded = {e.name: e.port.shape for e in self.ends}
@@ -97,12 +109,13 @@ class Prepared:
             ),
             step_ns=step_ns,
             steps=stop_ns // step_ns,
+            every=body.record.every,
         )
         system.check_inputs(self.resolver, resolved)
-        figures.check(document, step_ns)
+        figures.check(document, resolved.sample_ns)
         for name, checks in body.check.items():
             for rate in (c.rate for c in checks if c.rate is not None):
-                if text := rates.wrong(rate, step_ns, body.stop):
+                if text := rates.wrong(rate, resolved.sample_ns, body.stop):
                     raise document.error(f"{name}: {text}", "check", name)
         return resolved
 

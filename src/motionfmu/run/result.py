@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.errors import NoNumber
-from motionfmu.run import figures
-from motionfmu.run.checks import CONTOUR, Verdict, judge
+from motionfmu.run import figures, waveforms
+from motionfmu.run.checks import Verdict, is_figure, judge
 from motionfmu.run.figures import Chart
 from motionfmu.run.prepared import Prepared
 from motionfmu.scenario import values
@@ -17,6 +17,7 @@ from motionfmu.scenario.system import Resolver
 
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult
+    from motionfmu.iso9283 import Evaluation
 
 
 @dataclass
@@ -45,6 +46,7 @@ class Result:
     geometry: str | None = None
     warnings: tuple[str, ...] = ()
     _contour: "ContourResult | NoNumber | None" = None
+    _iso9283: "Evaluation | NoNumber | None" = None
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """A signal, or with ``name[i]`` one axis of it, i from 1."""
@@ -106,15 +108,63 @@ class Result:
             return str(reason)
         return ""
 
+    def iso9283(self) -> "Evaluation":
+        """The figures of this run after ISO 9283.
+
+        Raises
+        ------
+        InputError
+            The scenario has no [iso9283] table.
+        NoNumber
+            This run has no such figures; the reason.
+        """
+        if self._iso9283 is None:
+            from motionfmu.run.iso9283_of import evaluation_of
+
+            try:
+                self._iso9283 = evaluation_of(self)
+            except NoNumber as reason:
+                self._iso9283 = reason
+        if isinstance(self._iso9283, NoNumber):
+            raise self._iso9283
+        return self._iso9283
+
+    @property
+    def no_iso9283(self) -> str:
+        """Why this run has no figures after ISO 9283; else empty."""
+        try:
+            if self.scenario.document.body.iso9283 is not None:
+                self.iso9283()
+        except NoNumber as reason:
+            return str(reason)
+        return ""
+
+    def figure(self, name: str) -> float:
+        """A figure of an analysis.
+
+        Parameters
+        ----------
+        name : str
+            The table that asks for the analysis and the figure's own name: ``contour.error.max``,
+            ``iso9283.AT_P``.
+
+        Raises
+        ------
+        NoNumber
+            This run does not have it; the reason.
+        """
+        table, _, own = name.partition(".")
+        return self.contour().number(own) if table == "contour" else self.iso9283().number(own)
+
     def figures(self) -> list[Chart]:
         """The figures the scenario asks for, with their curves.
 
         Returns
         -------
         list of Chart
-            Empty if the scenario has no [[figure]].
+            Empty if the scenario has no [[figure]] and no [[waveform]].
         """
-        return figures.charts(self)
+        return [*figures.charts(self), *waveforms.charts(self)]
 
     def overview(self) -> list[Chart]:
         """One figure for each recorded signal.
@@ -150,12 +200,12 @@ class Result:
         found = []
         listed = self.scenario.document.body.check.items()
         for name, check in ((n, c) for n, checks in listed for c in checks):
-            if not name.startswith(CONTOUR):
+            if not is_figure(name):
                 found += judge(name, check, self.time, self[name])
                 continue
             value, reason = math.nan, ""
             try:
-                value = self.contour().number(name.removeprefix(CONTOUR))
+                value = self.figure(name)
             except NoNumber as told:
                 reason = str(told)
             verdicts = judge(name, check, np.zeros(1), np.array([value]))

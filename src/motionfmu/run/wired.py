@@ -49,7 +49,7 @@ class Wired:
             raise self.scenario.located(error, self.plain, given) from None
         return Result(
             self.scenario,
-            np.arange(self.system.steps, dtype=np.float64) * (self.system.step_ns * 1e-9),
+            np.arange(self.system.samples, dtype=np.float64) * (self.system.sample_ns * 1e-9),
             self.traces.load(),
             {s.end.name: s.values for s in self.plain.settings},
             planned.read_text(encoding="utf-8") if planned.is_file() else None,

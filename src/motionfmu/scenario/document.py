@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from motionfmu.errors import InputError
+from motionfmu.scenario.analyses import Iso9283, View, Waveform
 from motionfmu.toml_lines import KEY_MAX, Lines, is_file, shown, tables_of, text_of
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
@@ -67,9 +68,10 @@ class Contour(BaseModel):
 
 
 class Record(BaseModel):
-    """What is recorded at every step: names or patterns of outputs."""
+    """What is recorded: names or patterns of outputs, at every step or every so many."""
 
     model_config = _STRICT
+    every: int = Field(default=1, ge=1, le=1_000_000)  # [steps]
     signals: Names = Field(min_length=1)
 
 
@@ -119,7 +121,10 @@ class Body(BaseModel):
     leave: Names = Field(default_factory=list)
     record: Record
     contour: Contour | None = None
+    iso9283: Iso9283 | None = None
+    view: View = View()
     figure: list[Figure] = Field(default_factory=list, max_length=FIGURES_MAX)
+    waveform: list[Waveform] = Field(default_factory=list, max_length=FIGURES_MAX)
     check: dict[str, Checks] = Field(default_factory=dict, max_length=LISTED_MAX)
     contrary: list[Contrary] = Field(default_factory=list, max_length=LISTED_MAX)
 
@@ -213,6 +218,6 @@ def _place(place: list[str]) -> tuple[str, str]:
     if len(place) == 1:
         return "", place[0]
     depth = 1
-    if place[0] in ("drive", "figure", "contrary"):
+    if place[0] in ("drive", "figure", "waveform", "contrary"):
         depth = 4 if place[2:3] == ["plot"] and len(place) > 3 else 2
     return ".".join(place[:depth]), place[depth] if len(place) > depth else ""

@@ -21,7 +21,16 @@ SIZES = {"Float64": 8, "Int32": 4}  # [bytes]
 # A recording is held in memory, by the scope and then here.
 ROWS_MAX = STEPS_MAX
 BYTES_MAX = 2_000_000_000
-GROUPS = {"Float64": ("axes_real_", 10, "real_", 4), "Int32": ("axes_int_", 9, "int_", 10)}
+# Inputs of a scope by type: name and how many there are, by width, in the order of the files.
+GROUPS = {
+    "Float64": {
+        6: ("axes_real_", 10),
+        1: ("real_", 4),
+        3: ("triple_real_", 6),
+        4: ("quad_real_", 3),
+    },
+    "Int32": {6: ("axes_int_", 9), 1: ("int_", 10)},
+}
 
 
 @dataclass(frozen=True)
@@ -33,6 +42,11 @@ class Column:
     kind: str  # Float64 or Int32; a Boolean is recorded as Int32
     group: int  # counts from 0 within its width
 
+    @property
+    def width(self) -> int:
+        """Channels it takes."""
+        return self.end.port.count
+
 
 @dataclass(frozen=True)
 class Recording:
@@ -43,7 +57,7 @@ class Recording:
     scopes: int
 
     def load(self) -> dict[str, NDArray[Any]]:
-        """Read the files of an ended run, by signal: rows x 6 for an array, rows for a scalar."""
+        """Read the files of an ended run, by signal: a row per sample, all elements of an array."""
         files = {
             (scope, kind): np.load(self.folder / f"scope{scope + 1}.{kind_name}.npy")
             for scope in range(self.scopes)
@@ -52,20 +66,24 @@ class Recording:
         found = {}
         for c in self.columns:
             data = files[c.scope, c.kind]
-            groups = sum(
-                1
-                for o in self.columns
-                if (o.scope, o.kind) == (c.scope, c.kind) and o.end.port.shape
-            )
-            first = AXES * c.group if c.end.port.shape else AXES * groups + c.group
-            part = data[:, first : first + AXES] if c.end.port.shape else data[:, first]
+            mine = [o for o in self.columns if (o.scope, o.kind) == (c.scope, c.kind)]
+            widths = list(GROUPS[c.kind])
+            before = widths[: widths.index(c.width)]
+            first = sum(o.width for o in mine if o.width in before) + c.width * c.group
+            part = data[:, first : first + c.width] if c.end.port.shape else data[:, first]
             found[c.end.name] = part.astype(bool) if c.end.port.type == "Boolean" else part
         return found
 
 
+def _kind(end: End) -> str:
+    """Type of the channels of an output; a Boolean is recorded as Int32."""
+    return "Int32" if end.port.type == "Boolean" else end.port.type
+
+
 def recordable(end: End) -> bool:
     """Whether the scope has a channel of this type and width."""
-    return end.port.shape in ((), (AXES,)) and end.port.type in ("Float64", "Int32", "Boolean")
+    shape = end.port.shape
+    return len(shape) < 2 and shape != (1,) and end.port.count in GROUPS.get(_kind(end), {})
 
 
 def output(resolver: Resolver, name: str, table: str, key: str) -> End:
@@ -75,7 +93,8 @@ def output(resolver: Resolver, name: str, table: str, key: str) -> End:
         text = f"{name} is no output ({end.port.causality})"
         raise resolver.document.error(text, table, key)
     if not recordable(end):
-        text = f"{name}: only numbers, single or in groups of six, can be recorded"
+        text = f"{name}: only numbers, single or in groups of six"
+        text += " (real ones also of three and four), can be recorded"
         raise resolver.document.error(text, table, key)
     return end
 
@@ -96,16 +115,15 @@ def chosen(resolver: Resolver, patterns: Iterable[str]) -> list[End]:
 
 def _allocate(ends: Iterable[End]) -> list[Column]:
     columns: list[Column] = []
-    used: dict[tuple[int, str, bool], int] = {}
+    used: dict[tuple[int, str, int], int] = {}
     for end in ends:
-        kind = "Float64" if end.port.type == "Float64" else "Int32"
-        wide = bool(end.port.shape)
-        room = GROUPS[kind][1 if wide else 3]
+        kind, width = _kind(end), end.port.count
+        room = GROUPS[kind][width][1]
         scope = 0
-        while used.get((scope, kind, wide), 0) == room:
+        while used.get((scope, kind, width), 0) == room:
             scope += 1
-        columns.append(Column(end, scope, kind, used.get((scope, kind, wide), 0)))
-        used[scope, kind, wide] = used.get((scope, kind, wide), 0) + 1
+        columns.append(Column(end, scope, kind, used.get((scope, kind, width), 0)))
+        used[scope, kind, width] = used.get((scope, kind, width), 0) + 1
     return columns
 
 
@@ -131,8 +149,9 @@ def refused(system: System) -> tuple[str, str]:
             text = f"{name} would record {rows} rows; {ROWS_MAX} are the most"
             return f"{name}.period", text
         total += rows * sum(
-            SIZES[kind] * (AXES * value(f"{axes}used") + value(f"{single}used"))
-            for kind, (axes, _, single, _) in GROUPS.items()
+            SIZES[kind] * width * value(f"{inputs}used")
+            for kind, groups in GROUPS.items()
+            for width, (inputs, _) in groups.items()
         )
         if total > BYTES_MAX:
             size, most = total * 1e-9, BYTES_MAX * 1e-9
@@ -142,7 +161,7 @@ def refused(system: System) -> tuple[str, str]:
 
 
 def plan(system: System, ends: Iterable[End], folder: Path) -> tuple[System, Recording]:
-    """Add as many scopes as record these outputs at every step, and say where they will be."""
+    """Add as many scopes as record these outputs, and say where they will be."""
     columns = _allocate(ends)
     scopes = 1 + max((c.scope for c in columns), default=-1)
     ports = fmus.ports("scope") if scopes else {}
@@ -152,14 +171,14 @@ def plan(system: System, ends: Iterable[End], folder: Path) -> tuple[System, Rec
         components[name] = "scope"
         given: dict[str, Any] = {
             "file": str(folder / f"scope{scope + 1}"),
-            "period": system.step_ns * 1e-9,
+            "period": system.sample_ns * 1e-9,
         }
-        for kind, (axes, _, single, _) in GROUPS.items():
+        for kind, groups in GROUPS.items():
             mine = [c for c in columns if (c.scope, c.kind) == (scope, kind)]
-            given[f"{axes}used"] = sum(1 for c in mine if c.end.port.shape)
-            given[f"{single}used"] = sum(1 for c in mine if not c.end.port.shape)
+            for width, (channel, _) in groups.items():
+                given[f"{channel}used"] = sum(1 for c in mine if c.width == width)
             for c in mine:
-                channel = f"{axes if c.end.port.shape else single}{c.group + 1}"
+                channel = f"{groups[c.width][0]}{c.group + 1}"
                 wires.append(Wire(c.end, End(name, ports[channel])))
         for key, value in given.items():
             end = End(name, ports[key])

@@ -70,6 +70,17 @@ class System:
     stimuli: tuple[Stimulus, ...]  # ordered by step
     step_ns: int  # communication step [ns]
     steps: int  # how many
+    every: int = 1  # of them is recorded
+
+    @property
+    def sample_ns(self) -> int:
+        """Between two rows of the recording."""
+        return self.step_ns * self.every
+
+    @property
+    def samples(self) -> int:
+        """Rows of the recording."""
+        return -(-self.steps // self.every)
 
     def due(self) -> dict[int, list[Stimulus]]:
         """Stimuli by the step before which they act."""

@@ -1,4 +1,4 @@
-"""What of a run becomes a column: contour figures and statistics of signals."""
+"""What of a run becomes a column: figures of analyses and statistics of signals."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.contour.names import wrong
 from motionfmu.errors import NoNumber
+from motionfmu.iso9283.evaluation import unit as units_of
 from motionfmu.run import Scenario
-from motionfmu.run.checks import CONTOUR
+from motionfmu.run.checks import is_figure, wrong_figure
 from motionfmu.run.result import Result
 from motionfmu.run.session import split
 from motionfmu.scenario import recording
 from motionfmu.scenario.contour_signals import wanted as of_contour
 from motionfmu.scenario.document import Check
+from motionfmu.scenario.iso9283_signals import wanted as of_iso9283
 from motionfmu.scenario.system import End
 
 Array = NDArray[Any]
@@ -38,24 +39,27 @@ STATISTICS: dict[str, Callable[[Array], float]] = {
 class Column:
     """A number of a run."""
 
-    # ``contour.<figure>``, or a signal and a name of STATISTICS: ``card.stock.min``,
-    # ``card.err_count[1].final``.
+    # ``contour.<figure>``, ``iso9283.<figure>``, or a signal and a name of STATISTICS:
+    # ``card.stock.min``, ``card.err_count[1].final``.
     name: str
-    end: End | None = None  # the signal; None for a figure of the contour
+    end: End | None = None  # the signal; None for a figure of an analysis
 
     @property
     def unit(self) -> str:
-        """Unit of the signal, or mm of a contour error; else empty."""
+        """Unit of the signal or the figure; else empty."""
         if self.end:
             return self.end.port.unit or ""
-        _, table, *_, figure = self.name.split(".")
+        kind, table, *_ = self.name.split(".")
+        figure = self.name.rpartition(".")[2]
+        if kind == "iso9283":
+            return units_of(figure)
         return "mm" if table in LENGTHS and figure not in ("time", "line", "command") else ""
 
     def of(self, result: Result) -> float:
-        """The number, in the signal's unit or as in ContourResult.numbers."""
+        """The number, in the signal's unit or as the analysis has it."""
         # `NoNumber` if the run has none, or it is not finite.
         if self.end is None:
-            value = result.contour().number(self.name.removeprefix(CONTOUR))
+            value = result.figure(self.name)
         else:
             signal, _, statistic = self.name.rpartition(".")
             value = STATISTICS[statistic](np.asarray(result[signal], dtype=float))
@@ -66,16 +70,16 @@ class Column:
 
 def column(scenario: Scenario, name: str) -> Column:
     """The column of a name; an InputError or ValueError if it is none."""
-    if name.startswith(CONTOUR):
-        if scenario.document.body.contour is None:
-            raise ValueError(f"{name}: the scenario has no [contour] table")
-        if told := wrong(name.removeprefix(CONTOUR)):
+    if is_figure(name):
+        if told := wrong_figure(name, scenario.document.body):
             raise ValueError(told)
         return Column(name)
     signal, _, statistic = name.rpartition(".")
     if statistic not in STATISTICS or "." not in signal:
         known = ", ".join(STATISTICS)
-        raise ValueError(f"{name}: SIGNAL.STATISTIC (one of {known}) or contour.FIGURE wanted")
+        raise ValueError(
+            f"{name}: SIGNAL.STATISTIC (one of {known}), contour.FIGURE or iso9283.FIGURE wanted"
+        )
     whole, element = split(signal)
     end = recording.output(scenario.resolver, whole, "", "")
     if element is not None and not 0 <= element < end.port.count * bool(end.port.shape):
@@ -90,7 +94,7 @@ def usual(scenario: Scenario) -> list[Column]:
     found: dict[str, Column] = {}
     for name, checks in scenario.document.body.check.items():
         for check in checks:
-            for wanted in [name] if name.startswith(CONTOUR) else _checked(scenario, name, check):
+            for wanted in [name] if is_figure(name) else _checked(scenario, name, check):
                 found[wanted] = column(scenario, wanted)
     return list(found.values())
 
@@ -112,8 +116,9 @@ def _checked(scenario: Scenario, name: str, check: Check) -> Iterable[str]:
 
 def signals(scenario: Scenario, columns: Iterable[Column]) -> list[End]:
     """What a run records, once: for columns, checks and contour."""
-    checked = [n for n in scenario.document.body.check if not n.startswith(CONTOUR)]
-    names = [*of_contour(scenario.resolver), *(split(n)[0] for n in checked)]
+    checked = [n for n in scenario.document.body.check if not is_figure(n)]
+    analysed = [*of_contour(scenario.resolver), *of_iso9283(scenario.resolver)]
+    names = [*analysed, *(split(n)[0] for n in checked)]
     ends = [recording.output(scenario.resolver, n, "check", n) for n in names]
     ends += [c.end for c in columns if c.end]
     return list({e.name: e for e in ends}.values())

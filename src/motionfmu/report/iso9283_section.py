@@ -1,0 +1,154 @@
+"""The figures after ISO 9283 as a section of the page."""
+
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from motionfmu.iso9283 import Evaluation, Performance
+from motionfmu.iso9283.evaluation import ANGLES
+from motionfmu.report.numbers import figure, length, unit
+from motionfmu.report.sheet import Sheet
+from motionfmu.report.style import AXES, INK, axis, layout, plotted
+from motionfmu.report.tables import picture_links, table
+
+PICTURE = "iso9283"
+BAND = "rgba(11, 92, 173, 0.13)"
+MEANS = {
+    "AT_P": ("Path accuracy AT_P", "largest distance of the mean line from the command"),
+    "RT_P": ("Path repeatability RT_P", "mean distance from the mean line and 3 S, largest"),
+    "straightness": ("Straightness", "largest distance of a line from its best line"),
+    "straightness_in_plane": ("Straightness on the surface", "the same, seen along the normal"),
+    "in_plane": ("In-plane deviation", "range across the path, on the surface"),
+    "height": ("Height deviation", "range along the normal of the surface"),
+}
+
+
+def add_iso9283(page: Sheet, found: Evaluation) -> None:
+    """Add tables and pictures of an evaluation."""
+    path = found.path
+    start, end = path.excluded
+    count = len(path.given.cycles)
+    note = (
+        f"ISO 9283: {count} cycle{'s' if count != 1 else ''}, {len(path.along)} planes"
+        f" perpendicular to the command path of {figure(path.given.path.length)} mm. Left out:"
+        f" {_left_out(path, start, end)}."
+    )
+    content = f'<div class="two"><div>{_figures(found)}</div><div>{_cycles(found)}</div></div>'
+    content += page.place("iso9283", deviation_figure(path)) + picture_links(PICTURE)
+    if found.poses:
+        content += f"<h3>Poses</h3>{_poses(found)}"
+    page.section("Path performance", note, content)
+
+
+def _left_out(path: Performance, start: float, end: float) -> str:
+    ramp, corner = path.given.ramp, path.given.corner
+    why = f" (below {ramp:.0%} of the speed, or not reached)" if ramp else " (not reached)"
+    told = f"{length(start)} at the start and {length(end)} at the end{why}"
+    bent = corner > 0.0 and not path.given.path.straight
+    return told + (f", {figure(corner)} mm to either side of corners" if bent else "")
+
+
+def _figures(found: Evaluation) -> str:
+    numbers = found.numbers()
+    rows = []
+    for name, (title, what) in MEANS.items():
+        if numbers[name] is not None:
+            rows.append((_named(title, what), length(numbers[name])))
+    for a in ANGLES:
+        for kind, what in (("AT", "largest mean deviation"), ("RT", "3 S, largest")):
+            if numbers[f"{kind}_{a}"] is not None:
+                rows.append((_named(f"{kind}_{a}", what), f"{figure(numbers[f'{kind}_{a}'])}°"))
+    for name, what in (
+        ("AV", "mean speed against its command, on the middle half"),
+        ("RV", "3 S of the mean speeds"),
+    ):
+        if numbers[name] is not None:
+            rows.append((_named(name, what), f"{figure(numbers[name])} %"))
+    rows.append((_named("FV", "largest range of the speed in a cycle"), _speed(numbers["FV"])))
+    strokes, width = numbers["coincidence"], found.path.given.pen_width
+    if len(found.path.given.cycles) > 1 and strokes["lines"] is not None:
+        what = "largest distance between two lines"
+        rows.append((_named("Coincidence of the lines", what), length(strokes["lines"])))
+        if width > 0.0:
+            name = f"Coincidence of strokes {figure(width)} mm wide"
+            gap = "" if strokes["gap"] == 0.0 else f", white between them {length(strokes['gap'])}"
+            told = f"all paint {strokes['common']:.0%} of the width{gap}"
+            rows.append((_named(name, f"painted band; {told}"), length(strokes["band"])))
+    return table(("Figure", "Value"), rows)
+
+
+def _named(title: str, what: str) -> str:
+    return f'{escape(title)}<br><span class="sub">{escape(what)}</span>'
+
+
+def _speed(value: float) -> str:
+    return f"{figure(value)} mm/s"
+
+
+def _cycles(found: Evaluation) -> str:
+    heads = ("Cycle", "Time", "Largest", "Straightness", "In plane", "Height", "Speed")
+    rows = []
+    for k, c in enumerate(found.path.cycle_numbers(), 1):
+        shapes = [length(c[n]) if n in c else "" for n in ("straightness", "in_plane", "height")]
+        span = f"{figure(c['start'])} to {figure(c['end'])} s"
+        rows.append((str(k), span, length(c["largest"]), *shapes, _speed(c["speed"])))
+    return table(heads, rows)
+
+
+def _poses(found: Evaluation) -> str:
+    rows = [
+        (
+            str(k),
+            length(p.AP_P),
+            *(length(v, sign=True) for v in p.AP),
+            "" if p.RP_l is None else length(p.RP_l),
+        )
+        for k, p in enumerate(found.poses, 1)
+    ]
+    return table(("Pose", "AP_P", "AP_x", "AP_y", "AP_z", "RP_l"), rows)
+
+
+def parts(path: Performance) -> list[tuple[str, Any, Any]]:
+    """What is drawn over the path: title, values by cycle (n, m), their mean line (m,) [mm]."""
+    if path.normal is None:
+        size = np.linalg.norm(path.point - path.command, axis=2)
+        return [("Distance", size, path.accuracy)]
+    return [
+        ("Across, on the surface", path.across, path.across.mean(axis=0)),
+        ("Height", path.height, path.height.mean(axis=0)),
+    ]
+
+
+def deviation_figure(path: Performance) -> dict[str, Any]:
+    """Deviation of every cycle along the path, and the band of the repeatability."""
+    drawn = parts(path)
+    factor, name = unit(max(float(np.abs(v).max()) for _, v, _ in drawn))
+    data: list[dict[str, Any]] = []
+    more: dict[str, Any] = {"xaxis": axis("Place on the path [mm]", anchor="y" + _key(drawn))}
+    room = 1.0 / len(drawn)
+    for i, (title, values, mean) in enumerate(drawn):
+        key = str(i + 1) if i else ""
+        top = 1.0 - i * room
+        more[f"yaxis{key}"] = axis(f"{title} [{name}]", domain=[top - room + 0.05, top])
+        curves = []
+        if path.repeatability is not None:
+            for sign in (-1.0, 1.0):
+                edge = plotted(path.along, factor * (mean + sign * path.repeatability), "", BAND)
+                edge |= {"showlegend": False, "hoverinfo": "skip", "line": {"width": 0}}
+                curves.append(edge | ({"fill": "tonexty", "fillcolor": BAND} if sign > 0 else {}))
+            curves[-1] |= {"name": "mean ± repeatability", "showlegend": i == 0}
+        for j, own in enumerate(values):
+            color = AXES[j % len(AXES)]
+            curve = plotted(path.along, factor * own, f"cycle {j + 1}", color, width=1.1)
+            curves.append(curve | {"showlegend": i == 0})
+        if len(values) > 1:
+            curve = plotted(path.along, factor * mean, "mean", INK, width=2.2)
+            curves.append(curve | {"showlegend": i == 0})
+        data += [c | {"yaxis": f"y{key}"} for c in curves]
+    more |= {"hovermode": "x", "legend": layout(0)["legend"] | {"traceorder": "normal"}}
+    return {"data": data, "layout": layout(140 + 210 * len(drawn), **more)}
+
+
+def _key(drawn: list[Any]) -> str:
+    return str(len(drawn)) if len(drawn) > 1 else ""

@@ -1,0 +1,1 @@
+"""What the moving picture of a run shows: frames of the machine, its path, its deviations."""

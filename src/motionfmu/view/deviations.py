@@ -1,0 +1,19 @@
+"""Lines that were followed, from the analyses of a run."""
+
+import numpy as np
+
+from motionfmu.contour import ContourResult
+from motionfmu.iso9283 import Performance
+from motionfmu.view.scene import Line
+
+
+def from_contour(contour: ContourResult) -> Line:
+    """The tool beside the exact path, where it cuts."""
+    cut = np.flatnonzero(contour.cutting)
+    foot = contour.track.foot[cut]
+    return Line(foot, contour.run.actual[cut, :3] - foot)
+
+
+def from_cycles(path: Performance) -> list[Line]:
+    """A line for each cycle, in the planes across the command path."""
+    return [Line(path.command, point - path.command) for point in path.point]

@@ -1,0 +1,234 @@
+"""The moving picture: its data against the run, its geometry against other people's code."""
+
+import json
+import math
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import py_opw_kinematics as opw
+import pytest
+from conftest import ROOT
+from hypothesis import given
+from hypothesis import strategies as st
+from py_mini_racer import MiniRacer
+
+import motionfmu
+from motionfmu.report import write_report
+from motionfmu.report.view_section import SCRIPTS, add_view, quantised, view_data
+from motionfmu.view.arm import Arm, chain
+from motionfmu.view.deviations import from_contour
+from motionfmu.view.scene import scene_of
+
+REPORT = ROOT / "src/motionfmu/report"
+BYTES_MAX = 60_000  # of the scripts, without data
+ARMS = {
+    "IRB 2600": Arm(
+        (150, -115, 0, 445, 700, 795, 85), (0, 0, -math.pi / 2, 0, 0, 0), (1,) * 6, 150
+    ),
+    "KR 6": Arm(
+        (25, -35, 0, 400, 315, 365, 80), (0, -math.pi / 2, 0, 0, 0, 0), (-1, 1, 1, -1, 1, -1)
+    ),
+    "lateral": Arm((100, -50, 35, 400, 500, 600, 90), (0,) * 6, (1,) * 6, 20),
+}
+ATOB = """
+function atob(text) {
+  const letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  let out = "", bits = 0, held = 0;
+  for (const c of text.replace(/=+$/, "")) {
+    held = (held << 6) | letters.indexOf(c);
+    bits += 6;
+    if (bits >= 8) { bits -= 8; out += String.fromCharCode((held >> bits) & 255); }
+  }
+  return out;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def script() -> MiniRacer:
+    engine = MiniRacer()
+    engine.eval(ATOB + (REPORT / "view_math.js").read_text())
+    return engine
+
+
+def of(script: MiniRacer, expression: str):
+    return json.loads(script.eval(f"JSON.stringify({expression})"))
+
+
+def js(arm: Arm) -> str:
+    return json.dumps(vars(arm))
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_the_arm_stands_where_opw_kinematics_says(name: str) -> None:
+    arm = ARMS[name]
+    names = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+    lengths = {k: 1e-3 * v for k, v in zip(names, arm.lengths, strict=True)}
+    flips = tuple(s < 0 for s in arm.signs)
+    model = opw.KinematicModel(**lengths, offsets=tuple(arm.offsets), flip_axes=flips)
+    robot = opw.Robot(model, degrees=False)
+    joints = np.random.default_rng(5).uniform(-3.0, 3.0, (300, 6))
+    points = chain(arm, joints)
+    for k, q in enumerate(joints):
+        pose = robot.forward(q).as_matrix()
+        assert np.allclose(1e-3 * points["flange"][k], pose[:3, 3], atol=1e-12)
+        tip = pose[:3, 3] + 1e-3 * arm.pen * pose[:3, 2]
+        assert np.allclose(1e-3 * points["tip"][k], tip, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_the_script_draws_the_same_arm(script: MiniRacer, name: str) -> None:
+    arm = ARMS[name]
+    joints = np.random.default_rng(6).uniform(-3.0, 3.0, (40, 6))
+    points = chain(arm, joints)
+    for k, q in enumerate(joints):
+        drawn = of(script, f"armPose({js(arm)}, {json.dumps(q.tolist())})")
+        for part, place in points.items():
+            assert np.allclose(drawn[part], place[k], atol=1e-9), part
+
+
+@given(st.lists(st.floats(-1e5, 1e5), max_size=60))
+def test_packed_numbers_are_off_by_half_a_step_at_most(values: list[float]) -> None:
+    packed = quantised(np.array(values))
+    engine = _engine()
+    got = of(engine, f"Array.from(numbers({json.dumps(packed)}))")
+    span = max(values, default=0.0) - min(values, default=0.0)
+    assert np.allclose(got, values, rtol=0.0, atol=0.5001 * span / 65535 + 1e-9)
+
+
+def _engine(kept: list[MiniRacer] = []) -> MiniRacer:  # noqa: B006  (made once)
+    if not kept:
+        kept.append(MiniRacer())
+        kept[0].eval(ATOB + (REPORT / "view_math.js").read_text())
+    return kept[0]
+
+
+def test_the_camera_is_a_pinhole(script: MiniRacer) -> None:
+    view = "{azimuth: 0.7, elevation: 0.3, target: [10, 20, 30], distance: 500}"
+    look = f"camera({view}, 800, 600)"
+    assert of(script, f"{look}([10, 20, 30])") == [400, 300, 500, True]
+    eye = np.array([math.cos(0.3) * math.cos(0.7), math.cos(0.3) * math.sin(0.7), math.sin(0.3)])
+    right, target = np.array([-math.sin(0.7), math.cos(0.7), 0.0]), np.array([10.0, 20.0, 30.0])
+    up = np.cross(eye, right)
+    for point in np.random.default_rng(2).uniform(-150, 150, (20, 3)):
+        x, y, depth, _ = of(script, f"{look}({point.tolist()})")
+        ray = point - (target + 500 * eye)
+        assert depth == pytest.approx(-ray @ eye)
+        assert x == pytest.approx(400 + 1140 * (ray @ right) / depth)
+        assert y == pytest.approx(300 - 1140 * (ray @ up) / depth)
+    assert of(script, f"{look}({(target + 499 * eye).tolist()})")[3] is False  # behind the lens
+
+
+def test_faces_look_outwards(script: MiniRacer) -> None:
+    for made, middle in (
+        ("tube([0,0,0],[30,40,0],5,2)", [15, 20, 0]),
+        ("box([0,0,0],[2,4,6])", [1, 2, 3]),
+    ):
+        faces = of(script, made)
+        assert len(faces) >= 6
+        for face in faces:
+            corners = np.array(face["corners"])
+            assert np.linalg.norm(face["normal"]) == pytest.approx(1.0)
+            assert (corners.mean(axis=0) - middle) @ face["normal"] > 0.0
+
+
+def test_samples_between_frames_and_round_numbers(script: MiniRacer) -> None:
+    time = np.sort(np.random.default_rng(1).uniform(0, 9, 40))
+    values = np.sin(time)
+    for now in np.linspace(-1, 10, 60):
+        got = of(script, f"sampled({time.tolist()}, [{values.tolist()}], {now})")[0]
+        assert got == pytest.approx(np.interp(now, time, values), abs=1e-12)
+    for value, wanted in ((1, 1), (9.99, 5), (0.031, 0.02), (250, 200)):
+        assert of(script, f"round125({value})") == pytest.approx(wanted)
+    assert of(script, 'colour(["#000000", "#ff8040"], 0.5)') == "rgb(128,64,32)"
+
+
+def test_the_scripts_are_small_and_whole(script: MiniRacer) -> None:
+    texts = [(REPORT / s).read_text() for s in SCRIPTS]
+    assert sum(len(t.encode()) for t in texts) < BYTES_MAX
+    script.eval(f"new Function({json.dumps(texts[1])})")  # a wrong word would not compile
+    for word in ("http:", "https:", "import(", "fetch("):
+        assert not any(word in t for t in texts), "the page needs no network"
+
+
+@pytest.fixture(scope="module")
+def circle():
+    return motionfmu.load(ROOT / "scenarios/circle").run()
+
+
+def test_a_scene_is_the_run(circle, tmp_path: Path) -> None:
+    scene = scene_of(circle, [from_contour(circle.contour())])
+    assert scene is not None and scene.arm is None and 500 < len(scene.time) <= 2000
+    table = 1e3 * circle["machine.table_position"][:, :3]
+    for time, tool in ((scene.time, scene.tool), (scene.path_time, scene.path)):
+        assert (time[0], time[-1]) == (circle.time[0], circle.time[-1])
+        assert np.array_equal(tool, table[np.searchsorted(circle.time, time)])
+    drawn = np.stack([np.interp(circle.time, scene.path_time, c) for c in scene.path.T], axis=1)
+    assert np.linalg.norm(drawn - table, axis=1).max() < 0.005 * np.ptp(table)
+    gap = np.linalg.norm(scene.lines[0].gap, axis=1)
+    assert gap.max() == pytest.approx(circle.contour().error.max, rel=1e-9)
+    page = write_report(circle, circle.contour(), tmp_path).read_text()
+    found = re.search(r'id="data">(.*?)</script>', page, re.DOTALL)
+    assert found and page.count("<h2>The machine in motion</h2>") == 1
+    data = json.loads(found[1])["views"][0]
+    assert len(json.dumps(data)) < 200_000
+    values = of(_engine(), f"Array.from(numbers({json.dumps(data['tool'][0])}))")
+    assert np.allclose(values, scene.tool[:, 0], atol=np.ptp(scene.tool[:, 0]) / 65535)
+
+
+def recorded(view: dict, **signals):
+    """A run of an arm that no FMU here has made."""
+    from motionfmu.scenario.analyses import View
+
+    def port(shape, causality="output", unit="m"):
+        return SimpleNamespace(shape=shape, causality=causality, unit=unit, count=math.prod(shape))
+
+    ports = {n.partition(".")[2]: port(v.shape[1:]) for n, v in signals.items()}
+    given = {"a1": (0.15,), "a2": (-0.115,), "b": (0.0,), "c1": (0.445,), "c2": (0.7,)}
+    given |= {"c3": (0.795,), "c4": (0.085,), "joint_offset": (0, 0, -math.pi / 2, 0, 0, 0)}
+    given |= {"joint_sign": (1,) * 6, "tool_length": (0.15,)}
+    ports |= {n: port((len(v),) if len(v) > 1 else (), "parameter") for n, v in given.items()}
+    body = SimpleNamespace(view=View(**view), iso9283=None, contour=None)
+    resolver = SimpleNamespace(ports={"arm": ports}, document=SimpleNamespace(body=body))
+
+    class Run(dict):
+        pass
+
+    run = Run(signals)
+    run.time, run.signals, run.resolver = np.linspace(0, 1, 400), signals, resolver
+    run.parameter = lambda name: given[name.partition(".")[2]]
+    return run
+
+
+def test_no_corner_of_the_path_is_lost() -> None:
+    """A zigzag of 201 strokes in 60000 samples, which no even sampling to 1500 meets."""
+    place = np.linspace(0.0, 1.0, 60_000)
+    y = np.interp(place, np.linspace(0, 1, 202), np.arange(202) % 2)
+    tip = np.stack([place, y, 0 * y], axis=1)
+    run = recorded({}, **{"arm.tool_position": tip})
+    run.time = place
+    scene = scene_of(run)
+    assert scene is not None and len(scene.path) < 3100
+    drawn = np.interp(place, scene.path_time, scene.path[:, 1])
+    assert np.abs(drawn - 1e3 * y).max() < 4.0  # a sample's way is 3.4 mm
+
+
+def test_an_arm_appears_by_itself_with_the_lengths_of_its_fmu() -> None:
+    joints = np.outer(np.linspace(0, 1, 400), [0.4, 0.3, -0.2, 0.5, 0.6, -1.0])
+    tip = 1e-3 * chain(ARMS["IRB 2600"], joints)["tip"]
+    both = {"arm.tool_position": tip, "arm.link_angle": joints}
+    scene = scene_of(recorded({}, **both))
+    assert scene is not None and scene.arm == ARMS["IRB 2600"] and scene.joints is not None
+    assert np.allclose(chain(scene.arm, scene.joints)["tip"], scene.tool, atol=1e-9)
+    json.dumps(view_data(scene, 1.0))
+    axes = scene_of(recorded({}, **{"arm.tool_position": tip}))
+    assert axes is not None and axes.arm is None
+    assert scene_of(recorded({"show": False}, **both)) is None
+    still = {"arm.tool_position": 0 * tip, "arm.link_angle": 0 * joints}
+    assert scene_of(recorded({}, **still)) is None
+    from motionfmu.report.sheet import Sheet
+
+    page = Sheet()
+    assert add_view(page, None) == {} and page.sections == []
