@@ -1,5 +1,6 @@
 """The FMUs of one loop on a test bench: anything can be added to what a wire brings."""
 
+import math
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -13,7 +14,9 @@ from numpy.typing import NDArray
 
 from motionfmu.errors import InputError
 from motionfmu.linear import AxisModel
+from motionfmu.linear.given import element
 from motionfmu.linear.law import Law, carried
+from motionfmu.linear.margins import moving
 from motionfmu.linear.wiring import Port
 from motionfmu.run import Options
 from motionfmu.run.engines.slave import Slave
@@ -22,6 +25,8 @@ from motionfmu.scenario.system import System, Wire
 from motionfmu.scenario.values import values_of
 
 Array = NDArray[np.float64]
+# Logarithm of how far a start must have died away, and how long that may take [s].
+_DIED, _LEAD_MAX = 7.0, 3.0
 
 
 @dataclass(frozen=True)
@@ -73,6 +78,10 @@ class Bench:
         self.setup, self.axis = setup, axis
         entries = [axis.port(n, axis.inputs, "input") for n in setup.inputs]
         exits = [axis.port(n, axis.outputs, "output") for n in setup.outputs]
+        if axis.others and setup.cut:
+            raise InputError(
+                f"{', '.join(setup.cut)}: no wire of axes that are coupled is cut here"
+            )
         for component, name in entries:
             if name in axis.blocks[component].commands:
                 raise InputError(f"{component}.{name} arises inside: nothing can be added to it")
@@ -82,6 +91,24 @@ class Bench:
         system = axis.scenario.resolved(Options(set=axis.set))
         self.step_ns = system.step_ns
         self.system = self._alone(system)
+        self.lead = self._lead() if axis.others else 0
+
+    def _lead(self) -> int:
+        """Steps until axes that are coupled stand: drives begin without the torque that holds."""
+        closed = self.axis.system(self.setup.inputs, self.setup.outputs)
+        slow = np.abs(moving(closed.poles())).max(initial=0.0)
+        seconds = _DIED / max(-math.log(max(float(slow), 1e-9)) / closed.dt, _DIED / _LEAD_MAX)
+        # whole periods of all grids, so that a signal begins where one does
+        return math.ceil(seconds / closed.dt) * round(closed.dt * 1e9 / self.step_ns)
+
+    def _offset(self, wire: Wire) -> list[float]:
+        """The torque that holds a coupled plant, on top of what is wired there; else nothing."""
+        component, port = wire.target.component, wire.target.port
+        if not self.axis.others or component not in self.axis.points:
+            return []
+        values, own = self.axis.points[component].values, self.axis.axis
+        names = [port.name if k == own else f"{port.name}[{k}]" for k in range(1, port.count + 1)]
+        return [values[n] for n in names]
 
     def _alone(self, system: System) -> System:
         """Only what is used, with every other axis switched off."""
@@ -108,10 +135,10 @@ class Bench:
                 self._from_law(w, given)
         for name, value in self.axis.at.items():
             if name in self.axis.inputs and name not in feeds:
-                component, _, variable = name.partition(".")
-                given[name] = self.own(component, variable, value)
+                whole, component, variable = name.partition("[")[0], *name.split(".", 1)
+                given[whole] = self.own(component, variable, value, given=given.get(whole))
         resolver = self.axis.scenario.resolver
-        for c in components:
+        for c in components if not self.axis.others else ():
             if "active" in resolver.ports[c]:
                 given[f"{c}.active"] = self.own(c, "active", True, False)
         found = [resolver.end(name, "set", name) for name in given]
@@ -131,29 +158,33 @@ class Bench:
         end = self.axis.scenario.resolver.end(f"{component}.{name}", "set", name)
         return values_of(end, value)
 
-    def own(self, component: str, name: str, value: Any, others: Any = None) -> Any:
+    def own(
+        self, component: str, name: str, value: Any, others: Any = None, given: Any = None
+    ) -> Any:
         """Values of all elements: one for this axis, and the rest.
 
         Parameters
         ----------
         component, name : str
-            The variable.
+            The variable, or one element of it.
         value : float, int or bool
-            Of this axis.
+            Of this axis, or of the element.
         others : float, int or bool, optional
-            Of the other axes; else their start values.
+            Of the other elements; else those given, or their start values.
+        given : tuple, optional
 
         Returns
         -------
         tuple
         """
-        port = self.axis.scenario.resolver.ports[component][name]
+        ports = self.axis.scenario.resolver.ports[component]
+        port, place = element(ports, name, self.axis.axis)
         kind: Any = {"Float64": float, "Int32": round, "Boolean": bool}[port.type]
         read: Any = {"Float64": float, "Int32": int, "Boolean": "true".__eq__}[port.type]
-        listed = [read(x) for x in (port.start or "").split()]
+        listed = list(given) if given else [read(x) for x in (port.start or "").split()]
         if others is not None:
             listed = [others] * port.count
-        listed[self.axis.axis - 1 if port.shape else 0] = kind(value)
+        listed[place] = kind(value)
         return tuple(listed)
 
     @contextmanager
@@ -197,24 +228,33 @@ class Bench:
         with self._slaves() as slaves:
             taps = [_Tap(slaves, self, k) for k in range(len(self.entries))]
             tapped = {t.port for t in taps}
-            wires = [_Wire(slaves, w) for w in self.system.wires if _target(w) not in tapped]
+            wires = [
+                _Wire(slaves, w, self._offset(w))
+                for w in self.system.wires
+                if _target(w) not in tapped
+            ]
             exits = [_Reader(slaves, self, p) for p in self.exits]
             shown = np.zeros((len(added), len(exits)))
             used = np.zeros_like(added)
             step = self.step_ns * 1e-9
-            for k, row in enumerate(added):
-                shown[k] = [r.read() for r in exits]
-                if stop is not None and stop(shown[k]):
-                    return shown[: k + 1], used[: k + 1]
+            for k in range(-self.lead, len(added)):
+                # to where the signal begins without a jump, which would raise an alarm
+                begun = 0.5 - 0.5 * math.cos(math.pi * (k + self.lead) / max(self.lead, 1))
+                row = added[k] if k >= 0 else begun * added[0]
+                if k >= 0:
+                    shown[k] = [r.read() for r in exits]
+                    if stop is not None and stop(shown[k]):
+                        return shown[: k + 1], used[: k + 1]
                 for w in wires:
                     w.get()
                 for t in taps:
                     t.get()
                 for w in wires:
                     w.put()
-                used[k] = [t.put(x) for t, x in zip(taps, row, strict=True)]
+                told = [t.put(x) for t, x in zip(taps, row, strict=True)]
+                used[max(k, 0)] = told
                 for slave in slaves.values():
-                    slave.step(k * self.step_ns * 1e-9, step)
+                    slave.step((k + self.lead) * self.step_ns * 1e-9, step)
             return shown, used
 
 
@@ -235,14 +275,20 @@ def _unpacked(fmu: str) -> Path:
 
 
 class _Wire:
-    """A wire as it is."""
+    """A wire as it is, or with something constant added."""
 
-    def __init__(self, slaves: dict[str, Slave], wire: Wire) -> None:
+    def __init__(self, slaves: dict[str, Slave], wire: Wire, offset: list[float]) -> None:
         source, target = slaves[wire.source.component], slaves[wire.target.component]
         a, b = wire.source.port, wire.target.port
         buffer = source.buffer(a.type, a.count)
         self.get = source.access("Get", a.type, a.reference, buffer)
-        self.put = target.access("Set", b.type, b.reference, buffer)
+        put = target.access("Set", b.type, b.reference, buffer)
+
+        def shifted() -> None:
+            buffer[:] = [v + x for v, x in zip(buffer, offset, strict=True)]
+            put()
+
+        self.put = shifted if offset else put
 
 
 class _Reader:
@@ -250,10 +296,10 @@ class _Reader:
 
     def __init__(self, slaves: dict[str, Slave], bench: Bench, port: Port) -> None:
         component, name = port
-        declared = bench.axis.scenario.resolver.ports[component][name]
+        ports = bench.axis.scenario.resolver.ports[component]
+        declared, self.place = element(ports, name, bench.axis.axis)
         self.buffer = slaves[component].buffer(declared.type, declared.count)
         self.get = slaves[component].access("Get", declared.type, declared.reference, self.buffer)
-        self.place = bench.axis.axis - 1 if declared.shape else 0
 
     def read(self) -> float:
         """Its value now."""
@@ -267,13 +313,13 @@ class _Tap:
     def __init__(self, slaves: dict[str, Slave], bench: Bench, number: int) -> None:
         self.port = bench.entries[number]
         name = ".".join(self.port)
-        declared = bench.axis.scenario.resolver.ports[self.port[0]][self.port[1]]
+        ports = bench.axis.scenario.resolver.ports[self.port[0]]
+        declared, self.place = element(ports, self.port[1], bench.axis.axis)
         slave = slaves[self.port[0]]
         self.buffer = slave.buffer(declared.type, declared.count)
         given = {end.name: values for end, values in bench.given}
-        start = given.get(name) or bench.own(*self.port, _start(declared, bench.axis.axis))
+        start = given.get(name) or bench.own(*self.port, _start(declared, self.place))
         self.buffer[:] = list(start)
-        self.place = bench.axis.axis - 1 if declared.shape else 0
         self.base = float(self.buffer[self.place])
         self.whole = declared.type == "Int32"
         self._put = slave.access("Set", declared.type, declared.reference, self.buffer)
@@ -290,6 +336,7 @@ class _Tap:
         """Read the source."""
         if self.source is not None:
             self.late.append(self.gain * self.source.read())
+            self.buffer[:] = self.source.buffer[:]  # other axes as their wire brings them
 
     def put(self, added: float) -> float:
         """Write the sum; what was added, after rounding."""
@@ -302,9 +349,9 @@ class _Tap:
         return float(value - brought)
 
 
-def _start(port: fmus.Port, axis: int) -> float:
+def _start(port: fmus.Port, place: int) -> float:
     listed = (port.start or "0").split()
-    return float(listed[axis - 1] if port.shape else listed[0])
+    return float(listed[min(place, len(listed) - 1)])
 
 
 def setup(

@@ -88,12 +88,15 @@ def ringing(setup: Setup, trial: Trial, omega: float) -> tuple[float, float]:
     count = iter(range(len(added)))
     far = _RUNAWAY * abs(trial.kick) + abs(way[-1] - way[-2]) / step
 
+    begun: list[float] = []
+
     def away(shown: Array) -> bool:
-        return abs(float(shown[0]) + way[next(count)]) > far
+        begun.append(float(shown[0]))
+        return abs(begun[-1] - begun[0] + way[next(count)]) > far
 
     shown, _ = bench.run(added, away)
     factor = setup.gains.get(name, 1.0)
-    deviation = factor * (shown[:, 0] + way[: len(shown)])
+    deviation = factor * (shown[:, 0] - shown[0, 0] + way[: len(shown)])
     grain = getattr(setup.axis.blocks[component], "grain", {}).get(variable, 0.0)
     part = deviation[lead + cycle :]
     if len(part) < 2 * _CYCLES_PER_WINDOW * cycle:  # it ran away before it was looked at

@@ -205,6 +205,14 @@ def settling(system: control.StateSpace) -> float:
     return 7.0 / -math.log(min(float(slow), 1.0 - 1e-4))
 
 
+def slowest(system: control.StateSpace) -> float:
+    """Frequency of the slowest ringing [rad/s]; infinite if nothing rings."""
+    poles = system.poles()
+    roots = np.log(poles[np.abs(poles) > 1e-9]) / system.dt
+    ringing = np.abs(roots[roots.imag > np.abs(roots.real)])
+    return float(ringing.min(initial=math.inf))
+
+
 def sweep(
     setup: Setup,
     omegas: Iterable[float],

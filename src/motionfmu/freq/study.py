@@ -10,7 +10,7 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.freq.bench import Setup
 from motionfmu.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
-from motionfmu.freq.response import Response, measured_loop, room, settling
+from motionfmu.freq.response import Response, measured_loop, room, settling, slowest
 from motionfmu.freq.shape import WORTH, Loop, limits, small
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit, feedbacks, largest_gain
@@ -27,6 +27,8 @@ _SPREAD = 0.05
 _APART = 5.0, 5.0
 # Peak of the multisine, in kicks: it is spread over all lines.
 _PEAK = 4.0
+# A joint of an arm that is held harder than this moves too little to be measured.
+_HELD = 20.0
 # A ringing of so many grains must be followed, or edges are lost and not rounded.
 _GRAINS = 20.0
 
@@ -144,9 +146,11 @@ def _measured(
     at, cut = which
     loop = axis.loop(at, cut)
     low = found.omega_phase if math.isfinite(found.omega_phase) else math.pi / (50.0 * loop.dt)
+    closed = axis.system(at, ".".join(axis.wires[_port(at)]), cut)
+    if axis.others:  # modes of what they move together lie far below a joint's own loop
+        low = min(low, slowest(closed))
     n = min(_SAMPLES_MAX, max(200, 2 * round(10.0 * math.pi / (low * loop.dt))))
     lines = np.unique(np.round(np.geomspace(1, n // 2 - 1, _LINES)).astype(np.int64))
-    closed = axis.system(at, ".".join(axis.wires[_port(at)]), cut)
     settle = min(_SETTLE_MAX, max(1, math.ceil(settling(closed) / n)))
     limited = limits(axis, which)
     peak = None if kick is None else _PEAK * kick
@@ -158,7 +162,10 @@ def _measured(
             return None, (f"{at}: not measured, {told}",)
     clear = response.spread[:, 0] < _SPREAD
     notes = []
-    if not clear.all():
+    if axis.others and (held := np.abs(response.values[:, 0]) > _HELD).any():
+        clear &= ~held
+        notes.append(f"{at}: not looked at where |L| is above {_HELD:g}: nothing moves there")
+    elif not clear.all():
         kept = f"{np.count_nonzero(~clear)} of {len(clear)} frequencies left out"
         why = "they stand too little above the rounding, or the start has not died away"
         notes.append(f"{at}: {kept}: {why}")

@@ -64,6 +64,11 @@ class AxisModel:
         """Names of all outputs."""
         return [f"{c}.{n}" for c, b in self.blocks.items() for n in b.ports]
 
+    @property
+    def others(self) -> tuple[int, ...]:
+        """Axes that a plant couples with this one; mostly none."""
+        return self._parts.others
+
     def changed(self, set: Mapping[str, Any]) -> "AxisModel":
         """The same model with other values.
 

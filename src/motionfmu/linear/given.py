@@ -4,7 +4,23 @@ from collections.abc import Mapping
 from typing import Any
 
 from motionfmu.run import Scenario
+from motionfmu.scenario.fmus import Port
 from motionfmu.scenario.system import System
+
+
+def element(ports: Mapping[str, Port], name: str, axis: int) -> tuple[Port, int]:
+    """The port of a name, and which element of it is meant, from 0; a KeyError if unknown.
+
+    ``torque`` is the element of the axis, which counts from 1, ``torque[3]`` and ``center[3,1]``
+    are their own; a scalar has one element.
+    """
+    whole, bracket, inside = name.partition("[")
+    port = ports[whole]
+    if not bracket:
+        return port, axis - 1 if port.shape else 0
+    places = [int(k) for k in inside.rstrip("]").split(",")]
+    inner = port.shape[-1] if len(places) > 1 else 1
+    return port, (places[0] - 1) * inner + (places[1] - 1 if len(places) > 1 else 0)
 
 
 class Values(Mapping[str, Any]):
@@ -23,11 +39,11 @@ class Values(Mapping[str, Any]):
         return bool(end.component == self._component)
 
     def __getitem__(self, name: str) -> Any:
-        port = self._ports[name]
-        if name in self.wired:
-            return self.wired[name]()
-        if name in self.given:
-            found = self.given[name]
+        port, place = element(self._ports, name, self._axis)
+        if port.name in self.wired:
+            return self.wired[port.name]()
+        if port.name in self.given:
+            found = self.given[port.name]
         elif port.type == "String":
             found = (port.start or "",)
         else:
@@ -35,7 +51,7 @@ class Values(Mapping[str, Any]):
             found = tuple(kind(x) for x in (port.start or "").split())
         if not found:
             raise KeyError(name)
-        return found[0] if not port.shape else found[self._axis - 1]
+        return found[place]
 
     def __iter__(self) -> Any:
         return iter(self._ports)

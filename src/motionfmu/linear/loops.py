@@ -56,7 +56,9 @@ def feedbacks(axis: AxisModel) -> dict[str, tuple[str, ...]]:
     sensors = [
         t
         for t, s in axis.wires.items()
-        if isinstance(axis.blocks[s[0]], Plant) and not isinstance(axis.blocks[t[0]], Plant)
+        if isinstance(axis.blocks[s[0]], Plant)
+        and not isinstance(axis.blocks[t[0]], Plant)
+        and "[" not in t[1]  # loops of axes that are coupled stay closed
     ]
     found = {}
     for target in sensors:

@@ -1,19 +1,21 @@
 """What the linear model of an axis is made of: values, blocks and wires of its components."""
 
 import functools
+import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from motionfmu.errors import InputError
 from motionfmu.fmu.modelica.ode import Ode
-from motionfmu.linear import law
-from motionfmu.linear.block import Block
+from motionfmu.linear import coupled, law
+from motionfmu.linear.block import Block, Plant, Sampled
 from motionfmu.linear.form import Gain
 from motionfmu.linear.given import Values
 from motionfmu.linear.plant import Linearised, Point
 from motionfmu.linear.wiring import Port
 from motionfmu.run import Options, Scenario
+from motionfmu.scenario.fmus import Port as Declared
 from motionfmu.scenario.system import System, Wire
 from motionfmu.scenario.values import settings
 
@@ -34,6 +36,7 @@ class Parts:
     values: Mapping[str, Values]
     blocks: Mapping[str, Block]
     points: Mapping[str, Point]
+    others: tuple[int, ...]  # axes that a plant couples with this one
     keys: Mapping[str, Any]  # what the block of a plant was made of
 
     @property
@@ -44,13 +47,18 @@ class Parts:
     def wires(self) -> dict[Port, Port]:
         """Source by target of the wires between the blocks."""
         found = {}
-        for w in self.system.wires:
-            target = w.target.component, w.target.port.name
-            from_ = w.source.component, w.source.port.name
+        for w, of in itertools.product(self.system.wires, elements(self.others)):
+            target = w.target.component, f"{w.target.port.name}{of}"
+            from_ = w.source.component, f"{w.source.port.name}{of}"
             b, a = self.blocks.get(target[0]), self.blocks.get(from_[0])
             if b is not None and a is not None and target[1] in b.inputs and from_[1] in a.ports:
                 found[target] = from_
         return found
+
+
+def elements(others: Iterable[int]) -> list[str]:
+    """Ends of the names of elements: none for the axis itself, else ``[3]``."""
+    return ["", *(f"[{k}]" for k in others)]
 
 
 def parts(
@@ -67,11 +75,16 @@ def parts(
     else:
         given = tuple(settings(scenario.resolver, numbers))
         system = replace(before.system, settings=given)
-    every = {c: Values(system, scenario, c, axis) for c in system.components}
-    _check(scenario, axis, at, every)
+    said = {c: law.carried(fmu) for c, fmu in system.components.items()}
+    others = coupled.others(system.wires, said, axis)
+    wide = {
+        k: {c: Values(system, scenario, c, k) for c in system.components} for k in (axis, *others)
+    }
     gains = {n: (v,) * axis for n, v in set_.items() if isinstance(v, Gain)}
-    _complete(system, every, gains)
-    return _blocks(scenario, system, at, every, before)
+    for k, every in wide.items():
+        _complete(system, every, gains if k == axis else {})
+    _check(scenario, axis, at, wide[axis])
+    return _blocks(scenario, system, at, wide, before)
 
 
 def _complete(
@@ -93,10 +106,12 @@ def _blocks(
     scenario: Scenario,
     system: System,
     at: Mapping[str, float],
-    every: Mapping[str, Values],
+    wide: Mapping[int, Mapping[str, Values]],
     before: Parts | None,
 ) -> Parts:
     components = system.components
+    axis, *others = wide
+    every = wide[axis]
     said = {c: law.carried(f) for c, f in components.items()}
     blocks: dict[str, Block] = {}
     points: dict[str, Point] = {}
@@ -105,21 +120,49 @@ def _blocks(
         own = said[c]
         try:
             if isinstance(own, law.Law):
-                blocks[c] = law.block(own, every[c], _fed(system.wires, c, points))
+                made = law.block(own, every[c], _fed(system.wires, c, points))
+                rest = _beside(own, c, (wide, scenario.resolver.ports[c]), (system.wires, points))
+                blocks[c] = coupled.beside(made, rest) if rest else made
             elif own is not None:
-                blocks[c], points[c] = _plant(c, components[c], (at, every[c]), before)
+                found = _plant(c, components[c], (at, every[c]), (system.wires, before))
+                if coupled.couples(own) and (before is None or found[0] is not before.blocks[c]):
+                    name = coupled.named(axis, tuple(others), scenario.resolver.ports[c])
+                    found = coupled.renamed(*found, name)
+                blocks[c], points[c] = found
         except ValueError as error:
             raise InputError(f"{scenario.document.file}: {c}: {error}") from None
     blocks = {c: blocks[c] for c in components if c in blocks}
-    return Parts(system, every, blocks, points, _keys(blocks, components, at, every))
+    keys = _keys(blocks, components, at, every)
+    return Parts(system, every, blocks, points, tuple(others), keys)
 
 
-def _fed(wires: Iterable[Wire], component: str, points: Mapping[str, Point]) -> dict[str, float]:
+def _beside(
+    said: law.Law,
+    component: str,
+    given: tuple[Mapping[int, Mapping[str, Values]], Mapping[str, Declared]],
+    fed: tuple[Iterable[Wire], Mapping[str, Point]],
+) -> dict[int, Sampled]:
+    """Laws of the other axes of a component, where a plant couples them and they are active."""
+    (_, *others), (wide, ports) = given[0], given
+    if not all(ports[name].shape for name in said.inputs):
+        return {}
+    found = {}
+    for k in others:
+        own = wide[k][component]
+        if "active" not in ports or own["active"]:
+            found[k] = law.block(said, own, _fed(fed[0], component, fed[1], f"[{k}]"))
+    return found
+
+
+def _fed(
+    wires: Iterable[Wire], component: str, points: Mapping[str, Point], of: str = ""
+) -> dict[str, float]:
     """Outputs of a component as the operating points of the plants have them."""
     found = {}
     for w in wires:
         if w.source.component == component and w.target.component in points:
-            found[w.source.port.name] = points[w.target.component].values[w.target.port.name]
+            values = points[w.target.component].values
+            found[w.source.port.name] = values[f"{w.target.port.name}{of}"]
     return found
 
 
@@ -146,21 +189,37 @@ def _plant(
     component: str,
     fmu: str,
     given: tuple[Mapping[str, float], Values],
-    before: "Parts | None",
-) -> tuple[Block, Point]:
+    found: tuple[Iterable[Wire], "Parts | None"],
+) -> tuple[Plant, Point]:
     """A plant about its point; the one of an earlier model if nothing of it has changed."""
-    at, own = given
+    (at, own), (wires, before) = given, found
     if before is not None and before.keys.get(component) == _key(component, fmu, at, own):
-        return before.blocks[component], before.points[component]
+        block = before.blocks[component]
+        assert isinstance(block, Plant)
+        return block, before.points[component]
     parts = equation(fmu)
     p = parts.parameters({d.name: own[d.name] for d in parts.ode.parameters})
     inputs = {}
     for d in parts.ode.inputs:
-        if d.name not in own.wired:
+        if d.name.partition("[")[0] not in own.wired:
             inputs[d.name] = float(own[d.name])
     mine = {n.partition(".")[2]: v for n, v in at.items() if n.startswith(f"{component}.")}
-    point = parts.point(p, mine, inputs)
+    if coupled.couples(parts.ode):
+        ends = _ends(wires, component, parts.ode)
+        left = {n: v for n, v in inputs.items() if n not in mine}
+        point = parts.rest(p, ends, mine, left)
+    else:
+        point = parts.point(p, mine, inputs)
     return parts.block(p, point, float(own["micro_step"])), point
+
+
+def _ends(wires: Iterable[Wire], component: str, ode: Ode) -> tuple[list[str], list[str]]:
+    """Outputs of a plant that are fed back, and inputs that are wired, by element."""
+    shown = {w.source.port.name for w in wires if w.source.component == component}
+    fed = {w.target.port.name for w in wires if w.target.component == component}
+    ends = (ode.outputs, shown), (ode.inputs, fed)
+    held, free = ([d.name for d in of if d.name.partition("[")[0] in names] for of, names in ends)
+    return held, free
 
 
 def _constant(said: Any, own: Values, name: str) -> Any:
@@ -178,7 +237,10 @@ def _check(
         if switch is None:
             continue
         count = switch.count
-        if not 1 <= axis <= count:
+        of_axis = switch.shape or not coupled.couples(
+            law.carried(scenario.document.body.component[c])
+        )
+        if of_axis and not 1 <= axis <= count:
             raise InputError(f"axis = {axis}: {c} has axes 1 to {count}")
         if not own["active"]:
             raise InputError(f"axis = {axis}: it is not active in {c} ({c}.active)")
@@ -192,3 +254,11 @@ def _check(
             raise InputError(f"at {name} = {value!r}: {fmu} has no such input or output")
         if not isinstance(value, int | float):
             raise InputError(f"at {name} = {value!r}: a number wanted")
+        fixed = variable not in [d.name for d in known.inputs]
+        if coupled.couples(known) and (
+            fixed or variable.partition("[")[0] in every[component].wired
+        ):
+            raise InputError(
+                f"at {name} = {value!r}: the loops of {fmu} hold it where it starts; set where"
+                " that is, or state an input that has no wire"
+            )

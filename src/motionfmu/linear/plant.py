@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import casadi as ca
@@ -319,6 +319,51 @@ class Linearised:
                 return good
             good = seconds
         return math.inf
+
+    def rest(
+        self,
+        p: Matrix,
+        ends: tuple[Collection[str], Collection[str]],
+        stated: Mapping[str, float],
+        left: Mapping[str, float],
+    ) -> Point:
+        """The state in which nothing moves, held where it starts.
+
+        The ends are outputs that keep their values of the start, and the inputs with which this is
+        done: what measures and what acts in loops with integrals. Other inputs have the values
+        stated or left. A ValueError if nothing holds it.
+        """
+        ode = self.ode
+        inputs, outputs = [d.name for d in ode.inputs], [d.name for d in ode.outputs]
+        held, free = ([k for k, n in enumerate(names) if n in end]
+                      for names, end in zip((outputs, inputs), ends, strict=True))  # fmt: skip
+        x0, u0, n = self.start(p), np.array(ode.u0), len(ode.states)
+        for name, value in {**left, **stated}.items():
+            u0[inputs.index(name)] = value
+        targets = np.array(self._values(x0, u0, p)[1].full()).ravel()[held]
+        weights = np.append(
+            1.0 + np.abs(self.matrices(x0, u0, p)[0]).sum(axis=1), [1.0] * len(held)
+        )
+
+        def balance(z: Matrix) -> Matrix:
+            rates, y, _ = (np.array(v.full()).ravel() for v in self._values(z[:n], z[n:], p))
+            return np.append(rates, y[held] - targets) / weights
+
+        def slope(z: Matrix) -> Matrix:
+            a, b, c, d = self.matrices(z[:n], z[n:], p)
+            found: Matrix = np.block([[a, b], [c[held], d[held]]]) / weights[:, None]
+            return found
+
+        sizes = np.concatenate([np.ones(n), np.zeros(len(u0))])
+        sizes[[n + k for k in free]] = 1.0
+        z = _newton(balance, slope, np.concatenate([x0, u0]), sizes)
+        if not _norm(balance(z)) < _UNIFORM:
+            raise ValueError(f"{ode.name} does not come to rest where it starts")
+        values = dict(zip((d.name for d in ode.states), z[:n].tolist(), strict=True))
+        values |= dict(zip(inputs, z[n:].tolist(), strict=True))
+        y = np.array(self._values(z[:n], z[n:], p)[1].full()).ravel()
+        values |= dict(zip(outputs, y.tolist(), strict=True))
+        return Point(z[:n], z[n:], values, dict(stated), dict.fromkeys(outputs, 0.0), dict(left))
 
     def block(self, p: Matrix, at: Point, micro_step: float) -> Plant:
         """The plant between two instants, as the FMU integrates it.
