@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import kinematics
 import numpy as np
 import plans
 import scurve_moves
@@ -27,6 +28,7 @@ import motionfmu
 ROOT = Path(__file__).resolve().parents[2]
 DEMO = ROOT / "scenarios/circle"
 SIX_AXES = Path(__file__).parent / "six_axes"
+ROBOT = ROOT / "scenarios/robot_line"
 PULSE_AXES = Path(__file__).parent / "pulse_axes"
 FUSED = ROOT / "build/tests/bench/fused"
 CARD_COST = ROOT / "build/tests/bench/card_cost"
@@ -187,7 +189,22 @@ def main() -> None:
         plans.Plans("rest to rest", scurve_moves.rest_to_rest),
         plans.Plans("in motion to rest", scurve_moves.to_rest),
     ]
-    rounds([fused, *engines.values(), six, pulses, *cards, interpreter, *curves, *segments.ALL])
+    arm = kinematics.Kinematics()
+    robot = Timed(ROBOT, stop=20.0)
+    rounds(
+        [
+            fused,
+            *engines.values(),
+            six,
+            pulses,
+            *cards,
+            interpreter,
+            arm,
+            robot,
+            *curves,
+            *segments.ALL,
+        ]
+    )
     fused.check(native.result)
 
     base = fused.loop / fused.steps
@@ -201,6 +218,7 @@ def main() -> None:
         ("demo", native),
         ("six ball-screw axes", six),
         ("six pulse axes at 500 kHz", pulses),
+        ("robot draws a line", robot),
     ):
         print(f"{name:28}{run.simulated / run.loop:10.1f}{run.simulated / run.whole:10.1f}")
     card_table(cards)
@@ -209,12 +227,14 @@ def main() -> None:
     print(f"{'read, checked, planned':28}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
     plans.table(curves)
     segments.table(curves[0].ruckig)
+    arm.table()
     study = studies.Study()
     study()
     study.table()
     print()
     verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
     verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
+    verdict("robot draws a line, times real time", robot.simulated / robot.loop, least=8.0)
     fastest = 1.0 / next(c.cost for c in cards if c.axes == 6 and c.hertz > 1e5 and not c.edges)
     edges = 1.0 / next(c.cost for c in cards if c.axes == 6 and c.hertz > 1e5 and c.edges)
     verdict("card with six axes at 500 kHz, times real time", fastest, least=20.0)
@@ -228,6 +248,8 @@ def main() -> None:
     for s in segments.ALL:
         verdict(f"{s.name}, million segments/s", 1e-6 / max(s.cost.values()), least=0.2)
         verdict(f"{s.name}, 256 over 16 commands", s.growth, most=1.5)
+    verdict("arm, all eight branches, us", 1e6 * arm.inverse, most=1.0)
+    verdict("py-opw-kinematics / ours", arm.other / arm.inverse, least=1.0)
     verdict("sweep, efficiency of all cores", study.efficiency, least=0.9)
 
 
