@@ -13,10 +13,10 @@ build: .venv/installed
 	@cmake --build build
 
 test: build check               ## everything: style, C tests (also sanitized), Python tests
-	@ctest --test-dir build --output-on-failure
+	@ctest --test-dir build -j 2 --output-on-failure
 	@test -f build/asan/build.ninja || cmake --preset asan -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
 	@cmake --build build/asan
-	@ctest --test-dir build/asan --output-on-failure
+	@ctest --test-dir build/asan -j 2 --output-on-failure
 	$(BIN)/python -m pytest -n 2
 
 check: .venv/installed          ## formatting, lint, types
@@ -25,7 +25,7 @@ check: .venv/installed          ## formatting, lint, types
 	$(BIN)/mypy
 
 bench: build                    ## speed, as ratios measured in one run
-	@cmake --build build --target fused card_cost interpreter_cost lookahead_cost scurve_batch
+	@cmake --build build --target fused card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch
 	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py
 
 SECONDS ?= 120

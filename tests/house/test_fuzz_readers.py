@@ -122,8 +122,9 @@ def test_a_plants_description_is_read_or_refused(tmp_path: Path) -> None:
 
 
 def test_a_scenario_is_loaded_or_refused(tmp_path: Path) -> None:
-    for file in ROOT.glob("scenarios/*/*.ngc"):
-        shutil.copy(file, tmp_path)
+    for file in ROOT.glob("scenarios/*/*.*"):
+        if file.suffix in (".ngc", ".job", ".jbi", ".points", ".txt"):
+            shutil.copy(file, tmp_path)
 
     def body(text: str) -> Any:
         (tmp_path / "scenario.toml").write_bytes(text.encode(errors="surrogatepass"))

@@ -153,7 +153,12 @@ def test_an_emergency_stop_ends_the_program_and_the_arm_is_where_the_card_counte
         ("a.job", "MOVJ P000 V=9\n", "", ["a.job", "1", "V"]),
         ("a.job", "MOVJ P000\n", '"soft.job" = "NONE"\n', ["a.job", "NONE"]),
         ("a.job", "MOVJ P000\n", '"soft.language" = "basic"\n', ["basic", "inform or gcode"]),
-        ("a.job", "MOVJ P000\n", '"soft.joint_sign" = [1, 0, 1, 1, 1, 1]\n', ["joint_sign[2] = 0"]),
+        (
+            "a.job",
+            "MOVJ P000\n",
+            '"soft.joint_sign" = [1, 0, 1, 1, 1, 1]\n',
+            ["joint_sign = 0 (element 2)"],
+        ),
         ("a.job", "MOVJ P000\n", '"soft.bus_period" = 5.001e-5\n', ["bus_period", "25 ns"]),
     ],
 )
