@@ -1,7 +1,8 @@
 """The command that explains a contour error."""
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import typer
 
@@ -15,6 +16,8 @@ from motionfmu.cli.common import (
     run_shown,
     settings,
 )
+
+T = TypeVar("T")
 
 
 @app.command()
@@ -50,6 +53,17 @@ def contour(
     (_explain_path if of_path else _explain)(path, given, folder)
 
 
+def _with_bar(work: Callable[..., T], name: str, path: Path, settings: dict[str, Any]) -> T:
+    """What an explanation of a scenario finds; a bar shows how far it is."""
+    with progress_bar(*bar_columns()) as bar:
+        task = bar.add_task(name, total=1.0)
+        return work(
+            path,
+            set=settings,
+            progress=lambda what, share: bar.update(task, completed=share, description=what),
+        )
+
+
 def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
     from motionfmu.explain import explain_path
     from motionfmu.report import outcome
@@ -59,13 +73,7 @@ def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> 
 
     name = scenario_file(path).parent.name
     target = outcome.usable(folder or Path("results") / f"{name}_path")
-    with progress_bar(*bar_columns()) as bar:
-        task = bar.add_task(name, total=1.0)
-        found = explain_path(
-            path,
-            set=settings,
-            progress=lambda what, share: bar.update(task, completed=share, description=what),
-        )
+    found = _with_bar(explain_path, name, path, settings)
     kinds = [n for n in HEADS if n in found.figures]
     table = bare_table("cause")
     for heading in (*(HEADS[n] for n in kinds), "AT_P without"):
@@ -99,13 +107,7 @@ def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
 
     name = scenario_file(path).parent.name
     target = outcome.usable(folder or Path("results") / f"{name}_contour")
-    with progress_bar(*bar_columns()) as bar:
-        task = bar.add_task(name, total=1.0)
-        found = explain(
-            path,
-            set=settings,
-            progress=lambda what, share: bar.update(task, completed=share, description=what),
-        )
+    found = _with_bar(explain, name, path, settings)
     table = bare_table("cause")
     for heading in ("largest", "99 %", "theory", "error without"):
         table.add_column(heading, justify="right")
