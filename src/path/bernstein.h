@@ -1,0 +1,11 @@
+/* bernstein - polynomials of a degree up to 5 by their control values over 0 .. 1. */
+#ifndef BERNSTEIN_H
+#define BERNSTEIN_H
+
+/* Control values of the part t0 .. t1 instead of 0 .. 1, in place; 0 <= t0 < t1 <= 1. */
+void bernstein_part(double control[], int n, double t0, double t1);
+
+/* Those of the part 0 .. t in `before`; in place those of t .. 1. */
+void bernstein_cut(double control[], int n, double t, double before[]);
+
+#endif

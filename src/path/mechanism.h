@@ -1,0 +1,87 @@
+/* mechanism - what moves the tool: joints with their bounds, and how they follow its place.
+ *
+ *     tool place --kinematics--> joints --scale--> pulses
+ *     [mm]                       [mm], [deg]
+ *
+ * Without kinematics a joint is a coordinate of the place: a Cartesian machine. A mechanism is an
+ * argument of the calls that need it and part of no state. Coordinates and joints have the units of
+ * their own axis; "mm" in the other headers stands for them.
+ */
+#ifndef MECHANISM_H
+#define MECHANISM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "path.h"
+
+struct joint {
+    bool   used;            /* else it gets no pulses */
+    bool   bounded;         /* low and high hold */
+    double scale;           /* [pulses/mm] */
+    double speed;           /* [mm/s] highest */
+    double low, high;       /* [mm] */
+};
+
+/* Functions of a mechanism whose joints are not the coordinates of the tool. */
+struct kinematics {
+    /* Joints of a place. joint[] holds those of a place nearby, of which the branch is kept. False,
+     * and joint[] as it was: the place is out of reach. */
+    bool (*joints)(const void *geometry, const double place[AXES], double joint[AXES]);
+    /* d(joint)/ds of a tool that moves from a place, whose joints are given, by slope[] ds. False
+     * where they have none: at a singular place. */
+    bool (*rates)(const void *geometry, const double joint[AXES], const double slope[AXES],
+                  double rate[AXES]);
+    /* Place of the tool by the joints. */
+    void (*place)(const void *geometry, const double joint[AXES], double place[AXES]);
+};
+
+struct mechanism {
+    bool axis[AXES];        /* the coordinate of the tool may be commanded */
+    struct joint joint[AXES];
+    const struct kinematics *kinematics;    /* NULL: joints are coordinates */
+    const void *geometry;                   /* what its functions know of the mechanism */
+    const double *near;     /* [mm] joints, from which the branch of a path is looked for */
+};
+
+/* Joints of a place, joint[] nearby before. False: out of reach. */
+bool mechanism_joints(const struct mechanism *m, const double place[AXES], double joint[AXES]);
+
+/* The same of a first place, joints near m->near. */
+bool mechanism_first(const struct mechanism *m, const double place[AXES], double joint[AXES]);
+
+/* Joints by the position in pulses, those not used at 0, to begin mechanism_joints with; without
+ * kinematics it needs none and joint[] is left as it is. */
+void mechanism_near(const struct mechanism *m, const int32_t pulses[AXES], double joint[AXES]);
+
+/* Place of joints. */
+void mechanism_place(const struct mechanism *m, const double joint[AXES], double place[AXES]);
+
+/* The position in whole pulses, joint by joint; of a joint not used as it was. */
+void mechanism_pulses(const struct mechanism *m, const double joint[AXES], int32_t pulses[AXES]);
+
+/* What a path asks of the joints. */
+struct mechanism_way {
+    bool   reached;             /* every place of it is, and none is singular */
+    double share[AXES];         /* highest |d(joint)/ds| */
+    double low[AXES], high[AXES];   /* extent of the joints [mm] */
+};
+
+/* Without kinematics exact. With them found at places no further apart than 1/MECHANISM_PLACES of
+ * the path, of an arc of so much of a radian, and at the tops of the parabolas through them. */
+enum { MECHANISM_PLACES = 64 };
+void mechanism_way(const struct mechanism *m, const struct path *p, struct mechanism_way *w);
+
+/* First joint whose motion from a position [pulses] to these extremes [mm] leads beyond its bounds,
+ * and further out than it is; -1 none. *side: 1 above, -1 below. Compared in whole
+ * pulses, so that a target on a bound is within it. */
+int mechanism_beyond(const struct mechanism *m, const double from[AXES], const double low[AXES],
+                     const double high[AXES], int *side);
+
+/* The same of a position. [pulses] */
+int mechanism_outside(const struct mechanism *m, const int32_t from[AXES], const int32_t to[AXES]);
+
+/* Any joint has bounds. */
+bool mechanism_bounded(const struct mechanism *m);
+
+#endif
