@@ -1,0 +1,392 @@
+#include "pace_smooth.h"
+
+#include <math.h>
+
+/* New cells are planned once they are so many of the planned ones (a fourth), so that a plan costs
+ * each cell the same whatever their number. */
+enum { PLAN_SHARE = 4 };
+
+/* Values of x that differ by such a share are the same. */
+static const double SAME = 1e-12;
+
+/* A bend that takes less of the limits is as good as none. */
+static const double SLIGHT = 0.05;
+
+static struct pace_cell *cell_at(struct pace *p, int32_t i)
+{
+    return &p->cell[(uint32_t)(p->head + i) % PACE_CELLS];
+}
+
+static const struct pace_cell *cell_peek(const struct pace *p, int32_t i)
+{
+    return &p->cell[(uint32_t)(p->head + i) % PACE_CELLS];
+}
+
+void pace_start(struct pace *p, const struct pace_limits *l)
+{
+    p->limits = *l;
+    p->head = p->count = p->planned = 0;
+    p->closed = false;
+    p->override = -1.0;
+    p->smooth = p->ramping = p->grown = false;
+    for (int k = 0; k < AXES; k++) {
+        p->smooth = p->smooth || l->jerk[k] > 0.0;
+    }
+    p->ramp = (struct pace_ramp){ 0.0, 0.0, 0.0, 0.0 };
+    p->twitch = p->spent = p->before = p->asked = 0.0;
+    p->end = p->base = p->left = p->way = p->rate = p->gain = 0.0;
+}
+
+bool pace_join(struct pace *p, const struct piece *piece)
+{
+    struct pace_cell cell[PACE_SPLIT];
+
+    if (p->end <= 0.0 && !pace_by_axes(&p->limits)) {
+        p->smooth = piece->ramp.acc_jerk > 0.0 || piece->ramp.dec_jerk > 0.0;
+    }
+    if (p->smooth) {
+        return pace_smooth_join(p, piece);
+    }
+    if (p->closed || p->count + PACE_SPLIT + PACE_KEPT > PACE_CELLS) {
+        return false;
+    }
+    const int32_t n = pace_cut(piece, &p->limits, cell);
+    for (int32_t i = 0; i < n; i++) {
+        if (p->count == 0) {
+            p->left = cell[i].length;
+        }
+        *cell_at(p, p->count++) = cell[i];
+    }
+    p->end += piece->length;
+    return true;
+}
+
+/* x of a cell at the feed under an override. */
+static double feed_limit(const struct pace_cell *c, double override)
+{
+    const double v = fmin(c->feed * override, c->cap);
+    return v * v;
+}
+
+/* Most x at the end of cell i of so many that are known. */
+static double end_limit(const struct pace *p, int32_t i, int32_t known, double override)
+{
+    return i + 1 < known
+        ? fmin(feed_limit(cell_peek(p, i), override), cell_peek(p, i + 1)->most) : 0.0;
+}
+
+/* From the end backwards; what is not new and comes out the same needs no further look. */
+static void plan(struct pace *p, double override)
+{
+    const bool all = override != p->override;
+
+    for (int32_t i = p->count - 1; i >= 0; i--) {
+        struct pace_cell *c = cell_at(p, i);
+        const double x1 = end_limit(p, i, p->count, override), feed = feed_limit(c, override);
+        double top, most;
+        if (feed <= c->flat) {
+            top = pace_top(c, x1, feed);
+            most = fmin(top, feed);
+        } else {
+            most = pace_back(c, x1, feed, &top);
+        }
+        if (!all && i < p->planned && top == c->top && most == c->most) {
+            break;
+        }
+        c->top = top;
+        c->most = most;
+    }
+    p->planned = p->count;
+    p->override = override;
+}
+
+/* A stretch of constant acceleration. */
+struct stretch {
+    double acc;     /* [mm/s^2] */
+    double way;     /* [mm] */
+    double x;       /* [mm^2/s^2] at its end */
+};
+
+/* To x1 at the end of the cell. */
+static struct stretch across(double acc, double left, double x, double x1)
+{
+    return (struct stretch){ acc, left, fmin(x1, fmax(0.0, x + 2.0 * acc * left)) };
+}
+
+/* As slow as the limits allow: to rest, or to the end of the cell, or until they allow more. */
+static struct stretch halt(const struct pace_cell *c, double left, double x)
+{
+    const struct pace_span span = pace_span(c, left, x);
+    const double fall = pace_fall(c, x);
+    const double acc = fall > 0.0 ? fmin(span.low, -fall) : span.low;
+
+    const double to = c->bend * x > SLIGHT ? 0.5 * x : 0.0;
+
+    return acc < 0.0 && x - to < -2.0 * acc * left
+        ? (struct stretch){ acc, (x - to) / (-2.0 * acc), to } : across(acc, left, x, INFINITY);
+}
+
+/* A line that x keeps below: its value now, and how much it falls each mm. */
+struct line {
+    double x, fall;
+};
+
+/* As fast as they allow: with `want` at most, up to `until`, or x1 at the end of the cell; or with
+ * what is within the limits anywhere in the cell, below a line from which the rest can be driven.
+ */
+static struct stretch hurry(const struct pace_cell *c, double left, double x, double want,
+                            double until, struct line safe, double x1)
+{
+    const struct pace_span span = pace_span(c, left, x);
+    double acc = fmin(span.high, want);
+
+    if (x < safe.x * (1.0 - SAME)) {
+        double stop = fmax(safe.x, safe.x - safe.fall * left);
+        const double rise = pace_rise(c, x, &stop);
+        if (rise > acc) {
+            acc = rise;
+            until = stop;
+            if (2.0 * acc + safe.fall > 0.0) {
+                until = fmin(stop, x + 2.0 * acc * (safe.x - x) / (2.0 * acc + safe.fall));
+            }
+        }
+    }
+    return acc > 0.0 && x + 2.0 * acc * left > until
+        ? (struct stretch){ acc, (until - x) / (2.0 * acc), until }
+        : across(acc, left, x, x1);
+}
+
+/* What comes next where the limits allow more than the feed: up or down to it, along it, and down
+ * the line of steepest braking to x1. */
+static struct stretch next_feed(const struct pace_cell *c, double left, double x, double most,
+                                double x1)
+{
+    const double slope = (c->top - x1) / c->length, line = x1 + slope * left;
+    const double goal = fmin(most, line);
+
+    if (x > goal * (1.0 + SAME)) {
+        const struct stretch s = halt(c, left, x);
+        const double steeper = -2.0 * s.acc - slope;
+        double way = x > most && s.acc < 0.0 ? (most - x) / (2.0 * s.acc) : 0.0;
+        if (x > line) {
+            way = steeper > 0.0 ? fmax(way, (x - line) / steeper) : left;
+        }
+        return way < s.way
+            ? (struct stretch){ s.acc, way, fmin(most, x1 + slope * (left - way)) } : s;
+    }
+    if (x >= goal * (1.0 - SAME)) {
+        if (line <= most * (1.0 + SAME)) {
+            return (struct stretch){ -0.5 * slope, left, x1 };
+        }
+        return (struct stretch){ 0.0, slope > 0.0 ? fmin(left, (line - most) / slope) : left, x };
+    }
+    const struct stretch s = hurry(c, left, x, INFINITY, most, (struct line){ most, 0.0 }, x1);
+    const double way = (line - x) / (2.0 * s.acc + slope);
+    return way < s.way ? (struct stretch){ s.acc, way, x1 + slope * (left - way) } : s;
+}
+
+/* The same where the limits are less: to x1 at the end of the cell, or as near as they allow. */
+static struct stretch next_bend(const struct pace_cell *c, double left, double x, double most,
+                                double x1)
+{
+    const double acc = 0.5 * (x1 - x) / left, fall = (c->most - c->top) / c->length;
+    const struct line safe = { c->top + fall * left, fall };
+    const struct stretch s = halt(c, left, x);
+
+    if (x > most * (1.0 + SAME)) {
+        const double way = s.acc < 0.0 ? (most - x) / (2.0 * s.acc) : INFINITY;
+        return way < s.way ? (struct stretch){ s.acc, way, most } : s;
+    }
+    return acc <= s.acc ? s : hurry(c, left, x, acc, INFINITY, safe, x1);
+}
+
+/* What comes next under an override. */
+static struct stretch next(const struct pace *p, double x, double override)
+{
+    const struct pace_cell *c = cell_peek(p, 0);
+    const double most = feed_limit(c, override), x1 = end_limit(p, 0, p->planned, override);
+
+    return most <= c->flat ? next_feed(c, p->left, x, most, x1)
+                           : next_bend(c, p->left, x, most, x1);
+}
+
+bool pace_at_end(const struct pace *p)
+{
+    return p->count == 0 || (p->count == 1 && p->left <= 0.0 && !(p->smooth && p->ramping));
+}
+
+/* Drive a stretch for up to dt; returns the time used. */
+static double drive(struct pace *p, const struct stretch *s, double dt)
+{
+    const double v = p->rate, to = sqrt(s->x);
+    const double time = v + to > 0.0 ? 2.0 * s->way / (v + to) : s->way > 0.0 ? INFINITY : 0.0;
+
+    p->gain = s->acc;
+    if (time <= dt) {
+        p->left = s->way < p->left ? p->left - s->way : 0.0;
+        p->rate = to;
+        return time;
+    }
+    p->rate = fmax(0.0, v + s->acc * dt);
+    p->left = fmax(0.0, p->left - 0.5 * dt * (v + p->rate));
+    return dt;
+}
+
+/* Into the next cell, if there is one. */
+static void cross(struct pace *p)
+{
+    while (p->left <= 0.0 && p->count > 1) {
+        p->base += cell_peek(p, 0)->length;
+        p->head = (p->head + 1) % PACE_CELLS;
+        p->count--;
+        p->planned -= p->planned > 0;
+        p->left = cell_peek(p, 0)->length;
+    }
+}
+
+static double length_at(const struct pace *p, int32_t i)
+{
+    const uint32_t at = (uint32_t)(p->head + i) % PACE_CELLS;
+    return p->smooth ? p->leg[at].length : p->cell[at].length;
+}
+
+/* Without a limit of jerk. */
+static double advance(struct pace *p, double override, double dt)
+{
+    cross(p);
+    if (override > 0.0 && (override != p->override ||
+                           PLAN_SHARE * (p->count - p->planned) > p->planned)) {
+        plan(p, override);
+    }
+    while (dt > 0.0 && !pace_at_end(p)) {
+        const double x = p->rate * p->rate;
+        if (override <= 0.0 && x <= 0.0) {
+            p->gain = 0.0;
+            return 0.0;
+        }
+        const struct stretch s = override > 0.0 ? next(p, x, override)
+                                                : halt(cell_peek(p, 0), p->left, x);
+        dt -= drive(p, &s, dt);
+        cross(p);
+    }
+    return dt;
+}
+
+double pace_advance(struct pace *p, double override, double dt)
+{
+    const double left = p->smooth ? pace_smooth_advance(p, override, dt)
+                                  : advance(p, override, dt);
+
+    if (p->count > 0) {
+        const double way = p->base + (length_at(p, 0) - p->left);
+        p->way = fmin(p->end, fmax(p->way, way));
+    }
+    if (pace_at_end(p)) {
+        p->way = p->end;
+        p->rate = p->gain = p->twitch = 0.0;
+    }
+    return left;
+}
+
+double pace_stop_way(const struct pace *p)
+{
+    double x = p->rate * p->rate, base = p->base;
+
+    if (p->smooth) {
+        return pace_smooth_stop_way(p);
+    }
+    for (int32_t i = 0; i < p->count; i++) {
+        const struct pace_cell *c = cell_peek(p, i);
+        double left = i == 0 ? p->left : c->length;
+        while (left > 0.0 && x > 0.0) {
+            const struct stretch s = halt(c, left, x);
+            left = s.way < left ? left - s.way : 0.0;
+            x = s.x;
+        }
+        if (x <= 0.0) {
+            return base + (c->length - left);
+        }
+        base += c->length;
+    }
+    return p->end;
+}
+
+/* Whether the motion can come to rest at the end of cell i. */
+static bool can_rest(const struct pace *p, int32_t i)
+{
+    const double x = p->rate * p->rate;
+    double x1 = 0.0, end;
+
+    if (p->smooth) {
+        return pace_smooth_can_rest(p, i);
+    }
+    for (; i > 0; i--) {
+        const struct pace_cell *c = cell_peek(p, i);
+        const double most = feed_limit(c, INFINITY);
+        x1 = most <= c->flat ? pace_top(c, x1, most) : pace_back(c, x1, most, &end);
+        x1 = fmin(fmin(x1, most), feed_limit(cell_peek(p, i - 1), INFINITY));
+    }
+    const double acc = pace_span(cell_peek(p, 0), p->left, x).low;
+    return x + 2.0 * acc * p->left <= x1 + SAME * x;
+}
+
+double pace_close(struct pace *p, double way)
+{
+    double end = p->base;
+
+    p->closed = true;
+    for (int32_t i = 0; i < p->count; i++) {
+        const bool last = p->smooth ? p->leg[(uint32_t)(p->head + i) % PACE_CELLS].last
+                                    : cell_peek(p, i)->last;
+        end += length_at(p, i);
+        if (last && i + 1 < p->count && end >= way && can_rest(p, i)) {
+            p->count = i + 1;
+            p->end = end;
+            p->override = p->asked = -1.0;      /* plan anew */
+            break;
+        }
+    }
+    p->planned = p->planned < p->count ? p->planned : p->count;
+    return p->end;
+}
+
+struct pace_place pace_place(const struct pace *p)
+{
+    return (struct pace_place){
+        .head = p->head, .planned = p->planned, .base = p->base, .left = p->left, .way = p->way,
+        .rate = p->rate, .gain = p->gain, .twitch = p->twitch, .ramping = p->ramping,
+        .ramp = p->ramp, .spent = p->spent, .before = p->before, .asked = p->asked
+    };
+}
+
+void pace_put(struct pace *p, const struct pace_place *place)
+{
+    const int32_t crossed = (p->head - place->head + PACE_CELLS) % PACE_CELLS;
+
+    p->head = place->head;
+    p->count += crossed;
+    p->planned = p->planned > 0 ? p->planned + crossed : place->planned;
+    p->base = place->base;
+    p->left = place->left;
+    p->way = place->way;
+    p->rate = place->rate;
+    p->gain = place->gain;
+    p->twitch = place->twitch;
+    p->ramping = place->ramping;
+    p->ramp = place->ramp;
+    p->spent = place->spent;
+    p->before = place->before;
+    p->asked = place->asked;
+}
+
+bool pace_damaged(const struct pace *p)
+{
+    bool good = p->head >= 0 && p->head < PACE_CELLS && p->count >= 0 && p->count <= PACE_CELLS &&
+                p->planned >= 0 && p->planned <= p->count;
+
+    for (int32_t i = 0; good && !p->smooth && i < p->count; i++) {
+        const struct pace_cell *c = cell_peek(p, i);
+        good = c->planes >= 0 && c->planes <= PACE_PLANES;
+    }
+    return !good;
+}

@@ -1,0 +1,83 @@
+/* pace - the way u(t) along a chain of pieces, as quick as the limits allow.
+ *
+ *   x ^     ____          ___         x = (du/dt)^2. From the end of the known cells backwards, the
+ *     |    /    \   __   /   \        most x from which the rest can be driven; forwards, the most
+ *     |   /      \_/  \_/     \       acceleration that stays below it. The most braking from any
+ *     +--+-----+--+----+---+---> u    such x stays below it, too: a lower override, or none, brakes
+ *                                     as much as the limits allow, wherever the motion is.
+ *
+ * For these bounds the motion is the quickest one: the states from which the rest can be driven are
+ * all those below that curve. The acceleration is constant in a cell, or changes once or twice. At
+ * the end of what is known the motion can always come to rest.
+ */
+#ifndef PACE_H
+#define PACE_H
+
+#include "pace_leg.h"
+
+enum { PACE_CELLS = 2048, PACE_KEPT = 512 };
+
+struct pace {
+    struct pace_limits limits;
+    bool    smooth;         /* jerk is limited: legs, else cells */
+    union {
+        struct pace_cell cell[PACE_CELLS];
+        struct pace_leg leg[PACE_CELLS];
+    };
+    int32_t head, count;    /* cell of the motion, and how many from there on */
+    int32_t planned;        /* of these, known to the latest plan */
+    bool    closed;         /* no further piece joins */
+    double  override;       /* of that plan */
+    double  end;            /* [mm] end of the pieces, from the start of the chain */
+    double  base;           /* [mm] start of the motion's cell, from there */
+    double  left;           /* [mm] to the end of that cell */
+    double  way;            /* [mm] since the start of the chain */
+    double  rate, gain, twitch;     /* [mm/s], [mm/s^2], [mm/s^3] of the way */
+
+    bool    ramping;        /* smooth: a change of speed is under way */
+    struct pace_ramp ramp;
+    double  spent;          /* [s] since its start */
+    double  before;         /* [mm] `left` at its start */
+    double  asked;          /* override that it was chosen for */
+    bool    grown;          /* the last leg has, since the latest plan */
+};
+
+/* Where the motion is; its cell is still there if fewer than PACE_KEPT have been crossed since. */
+struct pace_place {
+    int32_t head, planned;
+    double  base, left, way, rate, gain, twitch;
+    bool    ramping;
+    struct pace_ramp ramp;
+    double  spent, before, asked;
+};
+
+struct pace_place pace_place(const struct pace *p);
+
+/* Back to an earlier place. */
+void pace_put(struct pace *p, const struct pace_place *place);
+
+/* Whether counts of a state, which came from outside, lead out of its arrays. */
+bool pace_damaged(const struct pace *p);
+
+/* A chain begins at rest, without pieces. Its jerk is limited if one of an axis is given, or,
+ * without limits of the axes, by the ramp of its first piece. */
+void pace_start(struct pace *p, const struct pace_limits *l);
+
+/* Append a piece; false: no room until the motion has passed others, or it is closed. */
+bool pace_join(struct pace *p, const struct piece *piece);
+
+/* End the chain with the first piece, at or behind a way, in which the motion can come to rest.
+ * Returns where that is. [mm] */
+double pace_close(struct pace *p, double way);
+
+/* Let up to dt seconds pass under an override (>= 0; 0: to rest, as quickly as the limits allow).
+ * Returns the time left: above 0 only at rest at the end of the chain. */
+double pace_advance(struct pace *p, double override, double dt);
+
+/* Where an override of 0 brings it to rest, or a little before. [mm] */
+double pace_stop_way(const struct pace *p);
+
+/* It rests at the end of the pieces that are known. */
+bool pace_at_end(const struct pace *p);
+
+#endif

@@ -1,0 +1,70 @@
+/* pace_cell - a short part of a piece, and what the speed along it may be.
+ *
+ * With x = (du/dt)^2 and a = d2u/dt2 axis k has the acceleration r''_k x + r'_k a. While a is
+ * constant x runs straight over the cell, from x0 at its start to x1 at its end, so r''_k x is at
+ * most a product of two straight lines and what r'' and r' bend away from theirs: a limit of an
+ * axis becomes three planes g0 x0 + g1 x1 <= 1 (the coefficients in Bernstein's form). They hold at
+ * every instant of the cell, and an error of the bounds falls with the square of its length.
+ */
+#ifndef PACE_CELL_H
+#define PACE_CELL_H
+
+#include <stdint.h>
+
+#include "piece.h"
+
+struct pace_limits {
+    double speed[AXES];     /* [mm/s] of each axis; 0 none */
+    double acc[AXES];       /* [mm/s^2] of each axis, > 0; or all 0: r'' x and r' a are within the
+                             * ramp of the piece, each by itself */
+    double jerk[AXES];      /* [mm/s^3] of each axis; 0 none */
+};
+
+enum {
+    PACE_PLANES = 18,       /* of three axes; more are joined to fewer, a little inside */
+    PACE_SPLIT = 32         /* cells of a piece, at most */
+};
+
+struct pace_cell {
+    double length;          /* [mm] */
+    double feed, cap;       /* [mm/s] du/dt: programmed, and most with any override */
+    double flat;            /* [mm^2/s^2] up to this x the limits allow a = 0 */
+    double bend;            /* [s^2/mm^2] bend x + up a <= 1 and bend x + down |a| <= 1 are */
+    double up, down;        /* [s^2/mm]   within the limits, too, anywhere in the cell */
+    double plane[PACE_PLANES][2];   /* [s^2/mm^2] g0, g1; for x0, x1 >= 0 */
+    int32_t planes;
+    bool last;              /* of its piece */
+    double most;            /* [mm^2/s^2] x at its start from which the rest can be driven */
+    double top;             /* a feed <= flat: the same on the line of steepest braking, however
+                             * fast; else x at the end, if it is `most` at the start */
+};
+
+/* Into how many cells, 1 .. PACE_SPLIT: of an equal share of the turn and of the change of r''. */
+int32_t pace_parts(const struct piece *p, const struct piece_bounds *b);
+
+/* Cut a piece into cells; returns their number, 1 .. PACE_SPLIT. */
+int32_t pace_cut(const struct piece *p, const struct pace_limits *l,
+                 struct pace_cell cell[PACE_SPLIT]);
+
+/* Most x at the start, up to `most`, from which x1 or less is reached: that is *end. */
+double pace_back(const struct pace_cell *c, double x1, double most, double *end);
+
+/* The same for x1 <= most <= flat, on the line of steepest braking to x1, however fast. */
+double pace_top(const struct pace_cell *c, double x1, double most);
+
+/* Accelerations with which x may go on from where it is, `left` before the end, for the rest of the
+ * cell. None (low > high) above all the lines that keep the limits. [mm/s^2] */
+struct pace_span {
+    double low, high;
+};
+
+struct pace_span pace_span(const struct pace_cell *c, double left, double x);
+
+/* Most acceleration that keeps the limits up to x = *until >= x, anywhere in the cell; *until may
+ * be lowered. -INFINITY: none. */
+double pace_rise(const struct pace_cell *c, double x, double *until);
+
+/* Most deceleration from x on, anywhere in the cell. [mm/s^2] */
+double pace_fall(const struct pace_cell *c, double x);
+
+#endif

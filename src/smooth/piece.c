@@ -1,0 +1,249 @@
+#include "piece_arc.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "bernstein.h"
+
+enum { DEGREE = PIECE_POINTS - 1 };
+
+/* U V W follow evenly. */
+static void cubic_at(const struct piece *p, double u, struct piece_state *s)
+{
+    const struct path *c = &p->path;
+    const double way = p->from + u;
+
+    memset(s->bend, 0, sizeof s->bend);
+    for (int i = 3; i < AXES; i++) {
+        s->slope[i] = (c->end[i] - c->start[i]) / c->length;
+        s->point[i] = way < c->length ? c->start[i] + way * s->slope[i] : c->end[i];
+    }
+    bezier_frame(&c->bezier, c->start, c->end, c->length, way, s->point, s->slope, s->bend);
+}
+
+/* De Casteljau, from the first control point: the last three, two and one give r'', r' and r. */
+static void curve_at(const struct piece *p, double u, struct piece_state *s)
+{
+    const double t = u / p->length, per = DEGREE / p->length, both = per * (DEGREE - 1) / p->length;
+
+    for (int i = 0; i < AXES; i++) {
+        const double first = p->control[0][i];
+        double c[PIECE_POINTS] = { 0.0 };
+        bool moves = false;
+        for (int k = 1; k <= DEGREE; k++) {
+            c[k] = p->control[k][i] - first;
+            moves = moves || c[k] != 0.0;
+        }
+        for (int n = DEGREE; n > 2 && moves; n--) {
+            for (int k = 0; k < n; k++) {
+                c[k] += t * (c[k + 1] - c[k]);
+            }
+        }
+        const double a = c[1] - c[0], b = c[2] - c[1], slope = a + t * (b - a);
+        s->bend[i] = both * (b - a);
+        s->slope[i] = per * slope;
+        s->point[i] = t < 1.0 ? first + (c[0] + t * a + t * slope) : p->control[DEGREE][i];
+    }
+}
+
+void piece_at(const struct piece *p, double u, struct piece_state *s)
+{
+    if (p->kind == PIECE_ARC) {
+        piece_arc_at(p, u, s);
+    } else if (p->kind == PIECE_CURVE) {
+        curve_at(p, u, s);
+    } else if (p->kind == PIECE_CUBIC) {
+        cubic_at(p, u, s);
+    } else {
+        for (int i = 0; i < AXES; i++) {
+            s->point[i] = p->start[i] + p->slope[i] * u;
+            s->slope[i] = p->slope[i];
+            s->bend[i] = 0.0;
+        }
+    }
+}
+
+/* From the middle r' and r'' change by no more than half the way allows. */
+static void cubic_bounds(const struct piece *p, double from, double to, struct piece_bounds *b)
+{
+    const struct path *c = &p->path;
+    const double half = 0.5 * (to - from);
+    struct piece_state s[2], middle;
+
+    b->most[0] = 1.0;
+    bezier_most(&c->bezier, c->start, c->end, c->length, p->from + from, p->from + to, &b->most[1],
+                &b->most[2]);
+    cubic_at(p, from, &s[0]);
+    cubic_at(p, from + half, &middle);
+    cubic_at(p, to, &s[1]);
+    for (int i = 0; i < AXES; i++) {
+        const double turn = i < 3 ? half * b->most[1] : 0.0, bend = i < 3 ? b->most[1] : 0.0;
+        const double twist = i < 3 ? b->most[2] : 0.0;
+        b->low[0][i] = middle.slope[i] - turn;
+        b->high[0][i] = middle.slope[i] + turn;
+        b->low[1][i] = fmax(-bend, middle.bend[i] - half * twist);
+        b->high[1][i] = fmin(bend, middle.bend[i] + half * twist);
+        b->low[2][i] = -twist;
+        b->high[2][i] = twist;
+        for (int k = 0; k < 2; k++) {
+            b->slope[k][i] = s[k].slope[i];
+            b->bend[k][i] = s[k].bend[i];
+        }
+        b->axis[b->axes] = i;
+        b->axes += i < 3 || middle.slope[i] != 0.0;
+    }
+}
+
+static void line_bounds(const struct piece *p, struct piece_bounds *b)
+{
+    double square[2] = { 0.0, 0.0 };    /* of X Y Z, of U V W */
+
+    for (int i = 0; i < AXES; i++) {
+        b->low[0][i] = b->high[0][i] = b->slope[0][i] = b->slope[1][i] = p->slope[i];
+        b->axis[b->axes] = i;
+        b->axes += p->slope[i] != 0.0;
+        square[i >= 3] += p->slope[i] * p->slope[i];
+    }
+    b->most[0] = sqrt(square[square[0] <= 0.0]);
+}
+
+/* Of the n-th derivative. */
+static void hull_bounds(const struct piece_hull *h, int n, struct piece_bounds *b)
+{
+    const int last = DEGREE - n, first = h->axis[0] < 3 ? 0 : 3;
+    double square[PIECE_POINTS] = { 0.0 }, most = 0.0;
+
+    for (int i = 0; i < h->axes; i++) {
+        const double *c = h->control[i][n - 1];
+        const int axis = h->axis[i];
+        double low = c[0], high = c[0];
+        for (int k = 1; k <= last; k++) {
+            low = c[k] < low ? c[k] : low;
+            high = c[k] > high ? c[k] : high;
+        }
+        b->low[n - 1][axis] = low;
+        b->high[n - 1][axis] = high;
+        for (int k = 0; k <= last && axis < first + 3; k++) {
+            square[k] += c[k] * c[k];
+        }
+    }
+    for (int k = 0; k <= last; k++) {
+        most = square[k] > most ? square[k] : most;
+    }
+    b->most[n - 1] = sqrt(most);
+}
+
+static void curve_bounds(const struct piece_hull *h, struct piece_bounds *b)
+{
+    b->axes = h->axes;
+    for (int n = 1; n <= PIECE_DERIVATIVES; n++) {
+        hull_bounds(h, n, b);
+    }
+    for (int i = 0; i < h->axes; i++) {
+        const int axis = b->axis[i] = h->axis[i];
+        b->slope[0][axis] = h->control[i][0][0];
+        b->slope[1][axis] = h->control[i][0][DEGREE - 1];
+        b->bend[0][axis] = h->control[i][1][0];
+        b->bend[1][axis] = h->control[i][1][DEGREE - 2];
+    }
+}
+
+/* Differences of the control points of one axis; false: all are 0. */
+static bool differences(const struct piece *p, int axis, double d[DEGREE])
+{
+    double sum = 0.0;
+
+    for (int k = 0; k < DEGREE; k++) {
+        d[k] = p->control[k + 1][axis] - p->control[k][axis];
+        sum += fabs(d[k]);
+    }
+    return sum > 0.0;
+}
+
+void piece_rest_start(struct piece_rest *r, const struct piece *p)
+{
+    struct piece_hull *h = &r->hull;
+
+    r->piece = p;
+    r->from = 0.0;
+    h->axes = h->axis[0] = 0;
+    for (int i = 0; p->kind == PIECE_CURVE && i < AXES; i++) {
+        double d[DEGREE], scale = 1.0;
+        if (!differences(p, i, d)) {
+            continue;
+        }
+        for (int n = 0; n < PIECE_DERIVATIVES; n++) {
+            scale *= (DEGREE - n) / p->length;
+            for (int k = 0; k < DEGREE - n; k++) {
+                h->control[h->axes][n][k] = scale * d[k];
+            }
+            for (int k = 0; k < DEGREE - 1 - n; k++) {
+                d[k] = d[k + 1] - d[k];
+            }
+        }
+        h->axis[h->axes++] = i;
+    }
+}
+
+/* The hull before `to`; the rest keeps the one behind it. */
+static void cut(struct piece_rest *r, double to, struct piece_hull *before)
+{
+    const double t = (to - r->from) / (r->piece->length - r->from);
+    struct piece_hull *h = &r->hull;
+
+    before->axes = h->axes;
+    for (int i = 0; i < h->axes; i++) {
+        before->axis[i] = h->axis[i];
+        for (int n = 0; n < PIECE_DERIVATIVES; n++) {
+            bernstein_cut(h->control[i][n], DEGREE - 1 - n, t, before->control[i][n]);
+        }
+    }
+    r->from = to;
+}
+
+static void bounds(const struct piece *p, double from, double to, const struct piece_hull *h,
+                   struct piece_bounds *b)
+{
+    memset(b, 0, sizeof *b);
+    if (p->kind == PIECE_CURVE) {
+        curve_bounds(h, b);
+    } else if (p->kind == PIECE_ARC) {
+        piece_arc_bounds(p, from, to, b);
+    } else if (p->kind == PIECE_CUBIC) {
+        cubic_bounds(p, from, to, b);
+    } else {
+        line_bounds(p, b);
+    }
+}
+
+void piece_rest_bounds(const struct piece_rest *r, struct piece_bounds *b)
+{
+    bounds(r->piece, r->from, r->piece->length, &r->hull, b);
+}
+
+void piece_rest_cut(struct piece_rest *r, double to, struct piece_bounds *b)
+{
+    const double from = r->from;
+    struct piece_hull before;
+
+    if (r->piece->kind == PIECE_CURVE && to < r->piece->length) {
+        cut(r, to, &before);
+        bounds(r->piece, from, to, &before, b);
+    } else {
+        bounds(r->piece, from, to, &r->hull, b);
+        r->from = to;
+    }
+}
+
+void piece_bounds(const struct piece *p, double from, double to, struct piece_bounds *b)
+{
+    struct piece_hull before;
+    struct piece_rest r;
+
+    piece_rest_start(&r, p);
+    if (p->kind == PIECE_CURVE && from > 0.0) {
+        cut(&r, from, &before);
+    }
+    r.from = from;
+    piece_rest_cut(&r, to, b);
+}

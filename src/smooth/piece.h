@@ -1,0 +1,75 @@
+/* piece - one stretch of a smooth path: r(u), 0 <= u <= length, u nearly the length of the way.
+ *
+ * Lines, arcs and cubics keep their exact geometry and u is their length. A curve is a polynomial
+ * of degree 5 in Bernstein's form, so that hulls of its control points and of those of its
+ * derivatives bound it exactly. Pieces that follow each other have the same r, r' and r'' where
+ * they meet, or the motion rests there.
+ */
+#ifndef PIECE_H
+#define PIECE_H
+
+#include "command.h"
+
+enum piece_kind { PIECE_LINE, PIECE_ARC, PIECE_CURVE, PIECE_CUBIC };
+
+enum { PIECE_POINTS = 6 };      /* control points of a curve */
+
+struct piece {
+    enum piece_kind kind;
+    double length;      /* [mm] of the parameter u */
+    double feed;        /* [mm/s] programmed, of the commands in it the least */
+    double cap;         /* [mm/s] highest speed any override may bring */
+    struct ramp_limits ramp;    /* of the commands in it the least */
+    bool rest;          /* the motion comes to rest at its end: the next one goes on elsewhere */
+    union {
+        struct { double start[AXES], slope[AXES]; };    /* line: |slope| is 1 */
+        double control[PIECE_POINTS][AXES];             /* curve [mm] */
+        struct { struct path path; double from; };      /* arc, cubic: of this one, from there
+                                                         * on [mm] */
+    };
+};
+
+/* Place [mm], r' and r'' [1/mm] at u. */
+struct piece_state {
+    double point[AXES], slope[AXES], bend[AXES];
+};
+
+void piece_at(const struct piece *p, double u, struct piece_state *s);
+
+/* Derivatives over a part of a piece: bounds, axis by axis and of their length, and at its ends. */
+struct piece_bounds {
+    int32_t axes, axis[AXES];               /* so many move, these; of the others all is 0 */
+    double low[3][AXES], high[3][AXES];     /* of r', r'' [1/mm], r''' [1/mm^2] */
+    double most[3];                         /* of |r'|, |r''|, |r'''| (path.h: in X Y Z; without
+                                             * these in U V W) */
+    double slope[2][AXES], bend[2][AXES];   /* r' and r'' at both ends */
+};
+
+/* Exact bounds or a little outside, between from and to, 0 <= from < to <= length. */
+void piece_bounds(const struct piece *p, double from, double to, struct piece_bounds *b);
+
+enum { PIECE_DERIVATIVES = 3 };
+
+/* Control values of the derivatives over a part of a curve. */
+struct piece_hull {
+    int32_t axes, axis[AXES];   /* so many move, these */
+    double control[AXES][PIECE_DERIVATIVES][PIECE_POINTS - 1];
+};
+
+/* What is left of a piece of which parts are cut off, one after another: the same bounds for less
+ * work. */
+struct piece_rest {
+    const struct piece *piece;
+    double from;                /* [mm] */
+    struct piece_hull hull;     /* of a curve */
+};
+
+void piece_rest_start(struct piece_rest *r, const struct piece *p);
+
+/* Bounds of all that is left. */
+void piece_rest_bounds(const struct piece_rest *r, struct piece_bounds *b);
+
+/* Cut at `to`: bounds of what is before. */
+void piece_rest_cut(struct piece_rest *r, double to, struct piece_bounds *b);
+
+#endif

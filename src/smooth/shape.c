@@ -1,0 +1,499 @@
+#include "shape.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "shape_corner.h"
+#include "shape_turn.h"
+#include "shape_whole.h"
+
+/* Longer commands, in tolerances, keep their geometry: 3 mm at 0.02 mm. */
+static const double LONG = 150.0;
+
+/* A corner is seen once so much of the way behind it is known, in tolerances. */
+static const double AHEAD = 30.0;
+
+/* Shorter ways are none: rounding. [mm] */
+static const double NONE = 1e-9;
+
+/* Closest spacings of knots, or vertices, from which on a window is fitted. */
+static const double WINDOW = 96.0;
+enum { WINDOW_VERTICES = 600, ROOM = 2 * SHAPE_SPANS + 8 };
+
+static double distance(const double a[AXES], const double b[AXES])
+{
+    double sum = 0.0;
+    for (int i = 0; i < AXES; i++) {
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    }
+    return sqrt(sum);
+}
+
+void shape_start(struct shape *s, double merge)
+{
+    memset(s, 0, offsetof(struct shape, run));
+    s->merge = merge;
+}
+
+/* The n oldest commands without a place have it now. */
+static void settle(struct shape *s, int32_t n, double u)
+{
+    for (; n > 0; n--) {
+        s->mark[s->marks_set++ % SHAPE_MARKS].at = u;
+    }
+}
+
+static void settle_loose(struct shape *s)
+{
+    settle(s, s->marks_loose, s->u);
+    s->marks_loose = 0;
+}
+
+/* The long command before is a piece, up to there, and what waited for it is done. */
+static void push_whole(struct shape *s, double to)
+{
+    if (to < s->whole.length) {
+        shape_cut(&s->whole, 0.0, to);
+    }
+    shape_push(s, &s->whole);
+    s->exact = false;
+    if (s->corner) {
+        shape_corner_round(s, s->whole_tolerance);
+    }
+}
+
+static struct shape_vertex *push_vertex(struct shape *s, const double point[AXES], double length,
+                                        double tolerance)
+{
+    struct shape_run *r = &s->run;
+    struct shape_vertex *v = &r->vertex[r->vertices];
+
+    memset(v, 0, sizeof *v);
+    memcpy(v->point, point, sizeof v->point);
+    v->s = r->vertices > 0 ? v[-1].s + length : 0.0;
+    v->tolerance = tolerance;
+    v->law = s->law;
+    r->vertices++;
+    return v;
+}
+
+static void push_chords(struct shape *s, const struct path *p, double from, double to,
+                        double tolerance)
+{
+    const int32_t n = shape_chords(p, to - from, tolerance);
+    const double step = (to - from) / n;
+    const double left = p->arc || p->cubic ? (1.0 - SHAPE_SAGITTA) * tolerance : tolerance;
+    double at[AXES], slope[AXES];
+
+    for (int32_t k = 1; k <= n; k++) {
+        path_at(p, k == n ? to : from + k * step, at, slope);
+        push_vertex(s, at, step, left);
+    }
+    s->run.vertex[s->run.vertices - 1].joint = true;
+}
+
+/* A run begins at the end of the pieces, or on the long command before it. */
+static void open_run(struct shape *s, const double start[AXES], double tolerance)
+{
+    struct shape_run *r = &s->run;
+
+    s->running = true;
+    s->looked = 0;
+    s->grabbed = 0;
+    s->closing = SHAPE_OPEN;
+    r->vertices = r->spans = 0;
+    r->placed = 1;
+    r->begun = false;
+    r->bound = s->exact;
+    if (!s->exact) {
+        settle_loose(s);
+        push_vertex(s, start, 0.0, tolerance)->u = s->u;
+        return;
+    }
+    const double at = s->whole.length - shape_grab(&s->whole, s->whole_tolerance);
+    const struct path path = shape_whole_path(&s->whole);
+    const double offset = s->whole.kind == PIECE_LINE ? 0.0 : s->whole.from;
+    const struct shape_law newest = s->law;
+    s->law = (struct shape_law){ s->whole.feed, s->whole.cap, s->whole.ramp };
+    piece_at(&s->whole, at, &r->begin);
+    push_vertex(s, r->begin.point, 0.0, tolerance)->u = s->u + at;
+    push_chords(s, &path, offset + at, offset + s->whole.length, s->whole_tolerance);
+    s->law = newest;
+    s->grabbed = r->vertices - 1;
+    r->vertex[s->grabbed].marks = s->marks_loose;
+    s->marks_loose = 0;
+}
+
+/* No room for the chords of a command. */
+static bool full(const struct shape_run *r)
+{
+    return r->vertices + 3 * SHAPE_CHORDS > SHAPE_VERTICES;
+}
+
+/* The next vertex that is a corner, as far as what is known of the run tells; 0: none. */
+static int32_t next_corner(struct shape *s)
+{
+    struct shape_run *r = &s->run;
+    const int32_t last = r->vertices - 1;
+
+    for (int32_t v = s->looked + 1; v < last; v++) {
+        if (r->vertex[v].corner) {
+            return v;
+        }
+        const double reach = 0.5 * AHEAD * r->vertex[v].tolerance;
+        const double ahead = r->vertex[last].s - r->vertex[v].s;
+        if (s->closing == SHAPE_OPEN && !full(r) && ahead < 2.0 * reach) {
+            return 0;
+        }
+        double most = shape_turn(r, v);
+        if (most > 0.0) {
+            int32_t best = v;
+            for (int32_t k = v + 1; k < last && r->vertex[k].s < r->vertex[v].s + reach; k++) {
+                if (r->vertex[k].corner) {
+                    break;
+                }
+                const double turn = shape_turn(r, k);
+                best = turn > most ? k : best;
+                most = turn > most ? turn : most;
+            }
+            r->vertex[best].corner = true;
+            return best;
+        }
+        s->looked = v;
+    }
+    if (s->closing != SHAPE_OPEN) {
+        s->looked = last;
+    }
+    return 0;
+}
+
+/* The first n spans of the fit are pieces. */
+static void commit(struct shape *s, int32_t n)
+{
+    struct shape_run *r = &s->run;
+    int32_t vertex = 0;
+    struct piece p;
+
+    if (s->grabbed > 0) {
+        push_whole(s, r->vertex[0].u - s->u);
+        s->stretch = s->made;
+        s->grabbed = 0;
+    }
+    for (int32_t k = 0; k < n; k++) {
+        shape_run_piece(r, k, &vertex, &p);
+        shape_push(s, &p);
+    }
+    if (s->corner) {
+        shape_corner_round(s, 0.0);
+    }
+    s->u = r->knot[n + 3];
+}
+
+/* Vertices before one are gone. */
+static void forget(struct shape *s, int32_t n)
+{
+    s->looked = s->looked > n ? s->looked - n : 0;
+    s->next_vertex -= n;
+}
+
+/* The run goes on behind a vertex, which is a corner or the end of what it was. */
+static void restart(struct shape *s, int32_t v)
+{
+    struct shape_run *r = &s->run;
+
+    for (int32_t k = 1; k <= v; k++) {
+        settle(s, r->vertex[k].marks, r->vertex[k].u);
+    }
+    r->vertices -= v;
+    memmove(r->vertex, r->vertex + v, (size_t)r->vertices * sizeof r->vertex[0]);
+    for (int32_t k = 0; k < r->vertices; k++) {
+        r->vertex[k].weight = 0.0;
+    }
+    r->vertex[0].u = s->u;
+    r->vertex[0].marks = 0;
+    r->placed = 1;
+    r->begun = r->bound = false;
+    forget(s, v);
+    s->looked = 0;
+    if (s->closing == SHAPE_BY_LONG && s->next_vertex == 0) {
+        s->exact = true;
+        s->whole = s->next;
+        s->whole_tolerance = s->next_tolerance;
+        s->running = false;
+    } else if (r->vertices == 1 && s->closing != SHAPE_OPEN) {
+        s->running = false;
+        if (s->closing == SHAPE_BY_LONG) {
+            s->exact = true;
+            s->whole = s->next;
+            s->whole_tolerance = s->next_tolerance;
+            shape_cut(&s->whole, s->next_from, s->whole.length);
+        }
+    }
+}
+
+/* One chord for itself, as a line. */
+static void push_chord(struct shape *s)
+{
+    const struct shape_vertex *v = s->run.vertex;
+    struct piece p = shape_blank(&v[1].law);
+    struct path path;
+    double at[AXES];
+
+    path_line(&path, v[0].point, v[1].point);
+    if (path.length > 0.0) {
+        p.kind = PIECE_LINE;
+        p.length = path.length;
+        path_at(&path, 0.0, at, p.slope);
+        memcpy(p.start, path.start, sizeof p.start);
+        shape_push(s, &p);
+        if (s->corner) {
+            shape_corner_round(s, v[1].tolerance);
+        }
+        s->run.vertex[1].u = s->u;
+        shape_corner_begin(s, 1, v[1].tolerance);
+    }
+    restart(s, 1);
+}
+
+/* No spline from where the run begins: it begins with a corner instead. */
+static void begin_again(struct shape *s)
+{
+    struct shape_run *r = &s->run;
+
+    if (s->grabbed > 0) {
+        const int32_t v = s->grabbed;
+        s->grabbed = 0;
+        push_whole(s, s->whole.length);
+        shape_corner_begin(s, -1, s->whole_tolerance);
+        r->vertex[v].u = s->u;
+        restart(s, v);
+        return;
+    }
+    /* from where the pieces end, near a chord */
+    double way = 0.0, along = 0.0, off = 0.0;
+    struct piece_state at;
+    struct shape_vertex *v = r->vertex;
+    const struct piece *p = shape_made(s, s->made - 1);
+    piece_at(p, p->length, &at);
+    for (int i = 0; i < AXES; i++) {
+        way += (v[1].point[i] - v[0].point[i]) * (v[1].point[i] - v[0].point[i]);
+        along += (v[1].point[i] - v[0].point[i]) * (at.point[i] - v[0].point[i]);
+    }
+    const double t = way > 0.0 ? fmin(1.0, fmax(0.0, along / way)) : 0.0;
+    for (int i = 0; i < AXES; i++) {
+        const double d = at.point[i] - v[0].point[i] - t * (v[1].point[i] - v[0].point[i]);
+        off += d * d;
+    }
+    v[0].u = s->u;
+    shape_corner_begin(s, 0, v[0].tolerance);
+    s->tail_points = 0;
+    memcpy(v[0].point, at.point, sizeof v[0].point);
+    v[0].s = v[1].s - distance(v[0].point, v[1].point);
+    v[1].tolerance -= sqrt(off);
+    restart(s, 0);
+}
+
+/* The fit of 0 .. end fails: where its distances are largest, there are corners. */
+static void break_up(struct shape *s, int32_t end, int32_t worst)
+{
+    struct shape_vertex *v = s->run.vertex;
+    bool any = false;
+
+    if (end == 1) {
+        if (s->run.begun || s->run.bound) {
+            begin_again(s);
+        } else {
+            push_chord(s);
+        }
+        return;
+    }
+    for (int32_t k = 1; k < end && s->run.spans > 0; k++) {
+        if (v[k].off > 1.0 && v[k].off >= v[k - 1].off && v[k].off >= v[k + 1].off) {
+            v[k].corner = any = true;
+        }
+    }
+    if (!any) {
+        v[worst < end ? worst : end - 1].corner = true;
+    }
+    s->looked = 0;
+}
+
+/* A window of the run, of which the first two thirds are made. */
+static void pass_window(struct shape *s, int32_t end)
+{
+    struct shape_run *r = &s->run;
+    const int32_t bad = shape_run_fit(r, end, false, NULL);
+
+    if (bad >= 0) {
+        break_up(s, end, bad);
+        return;
+    }
+    const int32_t n = r->spans - r->spans / 3;
+    commit(s, n);
+    for (int32_t k = 1; k < r->vertices && r->vertex[k].u <= r->knot[n + 3]; k++) {
+        settle(s, r->vertex[k].marks, r->vertex[k].u);
+        r->vertex[k].marks = 0;
+    }
+    forget(s, shape_run_drop(r, n));
+}
+
+/* The run, or the part of it before a corner, ends at a vertex. */
+static void finish(struct shape *s, int32_t end, bool stop)
+{
+    struct shape_run *r = &s->run;
+    struct piece_state at;
+
+    if (end == 1 && !r->begun && !r->bound && !stop) {
+        push_chord(s);
+        return;
+    }
+    if (stop) {
+        piece_at(&s->next, s->next_from, &at);
+    }
+    const int32_t bad = shape_run_fit(r, end, true, stop ? &at : NULL);
+    if (bad == -2) {
+        pass_window(s, end);
+        return;
+    }
+    if (bad >= 0) {
+        break_up(s, end, bad);
+        return;
+    }
+    commit(s, r->spans);
+    if (stop) {
+        s->stretch = s->made;
+    } else {
+        shape_corner_begin(s, end, 0.0);
+    }
+    restart(s, end);
+}
+
+/* All that can be made now. */
+static void pump(struct shape *s)
+{
+    struct shape_run *r = &s->run;
+
+    while (s->running && s->made - s->gone + ROOM <= SHAPE_PIECES) {
+        const int32_t corner = next_corner(s);
+        const double reach = r->vertex[s->looked].s - r->vertex[0].s;
+        if (corner > 0) {
+            finish(s, corner, false);
+        } else if (s->closing != SHAPE_OPEN) {
+            finish(s, r->vertices - 1, s->closing == SHAPE_BY_LONG);
+        } else if (reach > WINDOW * shape_spacing(r->vertex[s->looked].tolerance)
+                   || s->looked > WINDOW_VERTICES) {
+            pass_window(s, s->looked);
+        } else {
+            return;
+        }
+    }
+    if (s->ended && !s->running && s->made - s->gone + 2 <= SHAPE_PIECES) {
+        if (s->exact) {
+            push_whole(s, s->whole.length);
+        }
+        settle_loose(s);
+        s->corner = false;
+        s->stretch = s->made + SHAPE_HELD;      /* all are finished */
+        if (s->made > s->gone) {
+            shape_made(s, s->made - 1)->rest = true;
+        }
+    }
+}
+
+static bool room(const struct shape *s)
+{
+    return s->made - s->gone + ROOM <= SHAPE_PIECES && s->marks - s->marks_gone < SHAPE_MARKS
+        && (!s->running || (s->closing == SHAPE_OPEN && !full(&s->run)));
+}
+
+static void push_mark(struct shape *s, const struct command *c)
+{
+    s->mark[s->marks++ % SHAPE_MARKS] = (struct shape_mark){ 0.0, c->index, c->line, c->set,
+                                                             c->clear, c->analog };
+    s->marks_loose++;
+}
+
+static void take_long(struct shape *s, const struct path *path, double tolerance)
+{
+    const struct piece p = shape_whole(path, &s->law);
+
+    if (s->running) {
+        struct shape_run *r = &s->run;
+        s->next = p;
+        s->next_tolerance = tolerance;
+        s->next_from = shape_grab(&p, tolerance);
+        s->next_vertex = r->vertices - 1;
+        s->closing = SHAPE_BY_LONG;
+        r->vertex[s->next_vertex].marks += s->marks_loose;
+        s->marks_loose = 0;
+        push_chords(s, path, 0.0, s->next_from, tolerance);
+        r->vertex[r->vertices - 1].joint = false;
+        pump(s);
+        return;
+    }
+    if (s->exact) {
+        push_whole(s, s->whole.length);
+        shape_corner_begin(s, -1, s->whole_tolerance);
+    }
+    settle_loose(s);
+    s->exact = true;
+    s->whole = p;
+    s->whole_tolerance = tolerance;
+}
+
+enum shape_status shape_take(struct shape *s, const struct command *c)
+{
+    struct path path = c->path;
+    const double merge = fmin(s->merge, c->tolerance);
+
+    if (s->ended || !command_blends(c) || !(c->tolerance > 0.0)
+        || (s->started && distance(s->end, path.start) > 1e-6)) {
+        return SHAPE_OTHER;
+    }
+    pump(s);
+    if (!room(s)) {
+        return SHAPE_FULL;
+    }
+    if (!s->started) {
+        memcpy(s->end, path.start, sizeof s->end);
+        s->started = true;
+    }
+    push_mark(s, c);
+    if (!path.arc && !path.cubic) {
+        path_line(&path, s->end, c->path.end);
+    }
+    if (path.length <= NONE) {
+        return SHAPE_TAKEN;
+    }
+    s->law = (struct shape_law){ c->feed, c->cap, c->ramp };
+    if (!(path.length < LONG * merge && shape_chords(&path, path.length, merge) > 0)) {
+        take_long(s, &path, c->tolerance);
+    } else {
+        if (!s->running) {
+            open_run(s, s->end, merge);
+        } else {
+            s->run.vertex[s->run.vertices - 1].marks += s->marks_loose;
+            s->marks_loose = 0;
+        }
+        push_chords(s, &path, 0.0, path.length, merge);
+    }
+    memcpy(s->end, path.end, sizeof s->end);
+    pump(s);
+    return SHAPE_TAKEN;
+}
+
+void shape_end(struct shape *s)
+{
+    s->ended = true;
+    if (s->running && s->closing == SHAPE_OPEN) {
+        s->closing = SHAPE_BY_END;
+    }
+    pump(s);
+}
+
+void shape_drop(struct shape *s, int32_t n)
+{
+    s->gone += n;
+    pump(s);
+}

@@ -1,0 +1,99 @@
+/* shape - commands in a row become pieces of one smooth path within their tolerance.
+ *
+ *   commands ──> long lines, arcs, cubics ────────> pieces as they are ─┐
+ *           └──> short ones: chords ──> shape_run ──> spline ───────────┴─> shape_join ──> pieces
+ *
+ * - Long lines, arcs and cubics keep their geometry. Runs of short ones, with a part of the long
+ *   ones they touch without a corner, become a spline (shape_run.h).
+ * - At a corner, where the direction turns by more than 25 degrees within 15 tolerances, and
+ *   wherever a spline cannot stay within the tolerance, the path goes through the vertex with
+ *   r'' = 0; there, and between long ones, a quintic joins both sides (shape_join.h). Where there
+ *   is no room for one the last piece before says `rest`.
+ * - r, r' and r'' are continuous but where the motion rests. The distance from the path to the
+ *   commands and back, in six coordinates, is proved to be at most the tolerance.
+ * - The window is bounded: the cost of a command does not depend on how many there are.
+ */
+#ifndef SHAPE_H
+#define SHAPE_H
+
+#include "shape_join.h"
+#include "shape_run.h"
+
+enum {
+    SHAPE_PIECES = 1280, SHAPE_MARKS = 2048,
+    SHAPE_HELD = 8,             /* newest pieces, which a corner may cut: not finished */
+    SHAPE_TAIL = 24             /* vertices of a run that are kept for the corner at its end */
+};
+
+enum shape_closing { SHAPE_OPEN, SHAPE_BY_LONG, SHAPE_BY_END };
+
+/* Where a command begins. */
+struct shape_mark {
+    double at;                  /* [mm] of the parameter, since the chain's start */
+    int32_t index, line;        /* of the command */
+    uint32_t set, clear;        /* digital outputs */
+    struct outputs_analog analog;
+};
+
+enum shape_status {
+    SHAPE_TAKEN,
+    SHAPE_FULL,                 /* no room now: drop pieces and marks */
+    SHAPE_OTHER                 /* not of this chain: no path, no tolerance, or it begins elsewhere;
+                                 * or the chain has ended */
+};
+
+struct shape {
+    double merge;               /* [mm] highest tolerance of a run; 0 none */
+    bool started, ended;
+    double end[AXES];           /* [mm] of the commands so far */
+    double u;                   /* [mm] of the pieces so far */
+    struct shape_law law;       /* of the newest command */
+    bool exact;                 /* a long command waits for what follows it */
+    struct piece whole;         /* that one */
+    double whole_tolerance;     /* [mm] */
+    bool running;
+    enum shape_closing closing; /* what ends the run */
+    struct piece next;          /* the long command that does */
+    double next_tolerance;      /* [mm] */
+    double next_from;           /* [mm] its part up to there is in the run */
+    int32_t next_vertex;        /* of the run, where it begins */
+    int32_t grabbed;            /* vertex of the run where the long command ends; 0 none */
+    int32_t looked;             /* vertices up to it are no corners */
+    int64_t made, gone;         /* pieces, since the chain's start */
+    int64_t stretch;            /* first piece that a corner at the end may cut */
+    bool corner;                /* one waits for the pieces behind it */
+    int64_t corner_made;        /* pieces before it */
+    int64_t corner_stretch;     /* first of these that it may cut */
+    double corner_tolerance;    /* [mm] of a long one before it */
+    int32_t tail_points;        /* vertices of a run before it, the last is the corner; 0: long */
+    double tail[SHAPE_TAIL][AXES], tail_u[SHAPE_TAIL], tail_tolerance[SHAPE_TAIL];
+    int64_t marks, marks_set, marks_gone;
+    int32_t marks_loose;        /* newest ones, which begin where the next command begins */
+    struct shape_run run;
+    struct piece piece[SHAPE_PIECES];
+    struct shape_mark mark[SHAPE_MARKS];
+};
+
+/* A chain begins, at rest. merge: highest tolerance for runs [mm]; 0: each command for itself. */
+void shape_start(struct shape *s, double merge);
+
+/* Takes a line, an arc or a cubic with a tolerance > 0 that begins where the one before ended. */
+enum shape_status shape_take(struct shape *s, const struct command *c);
+
+/* Nothing more comes: the chain ends at rest at the end of the last command. */
+void shape_end(struct shape *s);
+
+/* Finished pieces, the oldest first. */
+int32_t shape_count(const struct shape *s);
+const struct piece *shape_piece(const struct shape *s, int32_t i);
+void shape_drop(struct shape *s, int32_t n);
+
+/* Commands whose place is known, the oldest first. */
+int32_t shape_marks(const struct shape *s);
+const struct shape_mark *shape_mark(const struct shape *s, int32_t i);
+void shape_drop_marks(struct shape *s, int32_t n);
+
+/* Whether one that may have been written to from outside leaves its arrays, or never ends. */
+bool shape_damaged(const struct shape *s);
+
+#endif

@@ -1,0 +1,139 @@
+#include "shape_join.h"
+
+#include <string.h>
+
+#include "bernstein.h"
+
+/* Part of the tolerance that is used: rounding may take the rest. */
+static const double USED = 0.995;
+
+/* Steps to the foot of a vertex on the curve; halvings of a part whose hull is too wide. */
+enum { STEPS = 4, HALVINGS = 4 };
+
+static double off_chord(const double x[AXES], const double a[AXES], const double b[AXES])
+{
+    double ww = 0.0, wf = 0.0, sum = 0.0;
+
+    for (int i = 0; i < AXES; i++) {
+        ww += (b[i] - a[i]) * (b[i] - a[i]);
+        wf += (b[i] - a[i]) * (x[i] - a[i]);
+    }
+    const double t = wf <= 0.0 ? 0.0 : wf >= ww ? 1.0 : wf / ww;
+    for (int i = 0; i < AXES; i++) {
+        const double d = x[i] - a[i] - t * (b[i] - a[i]);
+        sum += d * d;
+    }
+    return sum;
+}
+
+/* True if the part t0 .. t1 of the curve is within a distance of a chord. */
+static bool within(const struct piece *p, double t0, double t1, const double a[AXES],
+                   const double b[AXES], double square, int halvings)
+{
+    double c[AXES][PIECE_POINTS];
+    bool inside = true;
+
+    for (int i = 0; i < AXES; i++) {
+        for (int k = 0; k < PIECE_POINTS; k++) {
+            c[i][k] = p->control[k][i];
+        }
+        bernstein_part(c[i], PIECE_POINTS - 1, t0, t1);
+    }
+    for (int k = 0; k < PIECE_POINTS; k++) {
+        const double x[AXES] = { c[0][k], c[1][k], c[2][k], c[3][k], c[4][k], c[5][k] };
+        const bool in = off_chord(x, a, b) <= square;
+        if (!in && (k == 0 || k == PIECE_POINTS - 1)) {
+            return false;
+        }
+        inside = inside && in;
+    }
+    if (inside || halvings == 0) {
+        return inside;
+    }
+    const double middle = 0.5 * (t0 + t1);
+    return within(p, t0, middle, a, b, square, halvings - 1)
+        && within(p, middle, t1, a, b, square, halvings - 1);
+}
+
+/* Part of the curve nearest to a point, not before `least`; the square of its distance. */
+static double foot(const struct piece *p, const double x[AXES], double least, double *t)
+{
+    struct piece_state s;
+    double square = 0.0;
+
+    for (int step = 0; step <= STEPS; step++) {
+        double along = 0.0, ss = 0.0;
+        *t = *t < least ? least : *t > 1.0 ? 1.0 : *t;
+        piece_at(p, *t * p->length, &s);
+        square = 0.0;
+        for (int i = 0; i < AXES; i++) {
+            const double d = x[i] - s.point[i];
+            square += d * d;
+            along += d * s.slope[i];
+            ss += s.slope[i] * s.slope[i];
+        }
+        if (step < STEPS && ss > 0.0) {
+            *t += along / (ss * p->length);
+        }
+    }
+    return square;
+}
+
+bool shape_join(struct piece *p, const struct piece_state *a, const struct piece_state *b,
+                double length, const struct shape_way *way)
+{
+    const double fifth = length / 5.0, second = length * length / 20.0;
+    double before = 0.0;
+
+    p->kind = PIECE_CURVE;
+    p->length = length;
+    for (int i = 0; i < AXES; i++) {
+        p->control[0][i] = a->point[i];
+        p->control[1][i] = a->point[i] + fifth * a->slope[i];
+        p->control[2][i] = a->point[i] + 2.0 * fifth * a->slope[i] + second * a->bend[i];
+        p->control[3][i] = b->point[i] - 2.0 * fifth * b->slope[i] + second * b->bend[i];
+        p->control[4][i] = b->point[i] - fifth * b->slope[i];
+        p->control[5][i] = b->point[i];
+    }
+    for (int32_t k = 1; k < way->points; k++) {
+        const double most = USED * way->tolerance[k], square = most * most;
+        double t = 1.0;
+        if (k < way->points - 1) {
+            const double next = USED * way->tolerance[k + 1];
+            t = way->u[k] / length;
+            const double off = foot(p, way->point[k], before, &t);
+            if (!(off <= square && off <= next * next)) {
+                return false;
+            }
+        }
+        if (t > before
+            && !within(p, before, t, way->point[k - 1], way->point[k], square, HALVINGS)) {
+            return false;
+        }
+        before = t;
+    }
+    return true;
+}
+
+void shape_cut(struct piece *p, double from, double to)
+{
+    if (p->kind == PIECE_LINE) {
+        for (int i = 0; i < AXES; i++) {
+            p->start[i] += p->slope[i] * from;
+        }
+    } else if (p->kind != PIECE_CURVE) {
+        p->from += from;
+    } else {
+        for (int i = 0; i < AXES; i++) {
+            double c[PIECE_POINTS];
+            for (int k = 0; k < PIECE_POINTS; k++) {
+                c[k] = p->control[k][i];
+            }
+            bernstein_part(c, PIECE_POINTS - 1, from / p->length, to / p->length);
+            for (int k = 0; k < PIECE_POINTS; k++) {
+                p->control[k][i] = c[k];
+            }
+        }
+    }
+    p->length = to - from;
+}

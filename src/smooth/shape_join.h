@@ -1,0 +1,31 @@
+/* shape_join - two stretches of a path joined by a quintic that stays within a tolerance.
+ *
+ * It has the place, r' and r'' of both where it leaves them. Between two lines it is the curve with
+ * r'' ~ x (1 - x), 0.1875 of its half length times the change of direction off the corner.
+ * The bound is proved as in shape_run.h, for the polyline it replaces.
+ */
+#ifndef SHAPE_JOIN_H
+#define SHAPE_JOIN_H
+
+#include <stdint.h>
+
+#include "piece.h"
+
+enum { SHAPE_WAY = 48 };
+
+/* The polyline: from a point at or before the join's start to one at or behind its end. */
+struct shape_way {
+    int32_t points;
+    double point[SHAPE_WAY][AXES];      /* [mm] */
+    double u[SHAPE_WAY];                /* [mm] about where, from the join's start */
+    double tolerance[SHAPE_WAY];        /* [mm] of the chord that ends here */
+};
+
+/* False: it is not within the tolerance, or cannot be seen to be. Sets kind, length, control. */
+bool shape_join(struct piece *p, const struct piece_state *a, const struct piece_state *b,
+                double length, const struct shape_way *way);
+
+/* Leaves the part from .. to of a piece. */
+void shape_cut(struct piece *p, double from, double to);
+
+#endif

@@ -1,0 +1,81 @@
+/* shape_run - a run of short chords becomes a cubic spline with continuous r'', within a tolerance.
+ *
+ * Control points are those of least  integral |r'''|^2 + sum of weight |r(u_i) - vertex_i|^2  over
+ * a window; weights grow and knots come closer where the curve leaves the tolerance. Two thirds of
+ * the window are then made into pieces, what they share with the rest holds in the next one.
+ *
+ * What holds of each piece that is made: a place u_i of the curve belongs to each vertex, in order;
+ * (1) r(u_i) is within the tolerance of its vertex, and (2) the control points of the curve's parts
+ * between u_i and u_i+1 are within the tolerance of the chord between the vertices. Then
+ * - the curve is within the tolerance of the path: what lies around a chord is convex, so it holds
+ *   the hull of the control points;
+ * - the path is within the tolerance of the curve: a point of the chord has the foot of some point
+ *   of its part of the curve, by continuity, and (2) bounds their distance; or it lies before the
+ *   foot of r(u_i) [behind that of r(u_i+1)], and its distance from r(u_i), convex along the chord,
+ *   is bounded at that foot by (2) and at the vertex by (1).
+ * All distances are those of six coordinates.
+ */
+#ifndef SHAPE_RUN_H
+#define SHAPE_RUN_H
+
+#include <stdint.h>
+
+#include "piece.h"
+
+enum {
+    SHAPE_SPANS = 48,           /* of a window, at most */
+    SHAPE_CROWD = 16,           /* vertices of a span, at most about */
+    SHAPE_VERTICES = 900        /* of a window, and what waits behind it */
+};
+
+/* What a chord's command asks of the motion along it. */
+struct shape_law {
+    double feed, cap;           /* [mm/s] */
+    struct ramp_limits ramp;
+};
+
+struct shape_vertex {
+    double point[AXES];         /* [mm] */
+    double s;                   /* [mm] along the polyline */
+    double u;                   /* [mm] of the curve's parameter */
+    double tolerance;           /* [mm] of the chord that ends here */
+    double weight;              /* 0: none yet */
+    double shift;               /* [mm] of u to the foot on the curve */
+    double off;                 /* of the tolerance, as last seen */
+    struct shape_law law;       /* of the chord that ends here */
+    int32_t marks;              /* commands that begin here */
+    bool joint;                 /* a command ends here: it may be a corner */
+    bool corner;
+};
+
+struct shape_run {
+    int32_t vertices, placed;   /* of these, with a u */
+    bool begun;                 /* pieces of it exist: knots and control points hold at the left */
+    bool bound;                 /* it begins with the state `begin`, else with r'' = 0 */
+    struct piece_state begin;
+    int32_t spans, fitted;      /* of the last fit; its last vertex */
+    double knot[SHAPE_SPANS + 7];       /* [mm]; span k lies between knots k + 3 and k + 4 */
+    double control[SHAPE_SPANS + 3][AXES];
+    struct shape_vertex vertex[SHAPE_VERTICES];
+};
+
+/* A piece obeys a law, too. */
+void shape_obey(struct piece *p, double feed, double cap, const struct ramp_limits *r);
+
+/* Closest spacing of knots for a tolerance. [mm] */
+double shape_spacing(double tolerance);
+
+/* Fits vertices 0 .. end. `last`: the run ends there, with a state or, NULL, with r'' = 0, else it
+ * goes on behind, and less than all of it may be fitted. Returns -1 if every chord is within its
+ * tolerance, -2 if the run is too long for one window, else the vertex that is farthest out. */
+int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct piece_state *stop);
+
+/* The span k of the fit as a piece, with the least of its chords' laws. *vertex: one before it or
+ * the first in it; goes on to the latter. */
+void shape_run_piece(const struct shape_run *r, int32_t k, int32_t *vertex, struct piece *p);
+
+/* The first n spans have been made into pieces. Returns how many vertices went with them: one that
+ * lies before the first span left stays. */
+int32_t shape_run_drop(struct shape_run *r, int32_t n);
+
+#endif

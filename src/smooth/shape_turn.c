@@ -1,0 +1,49 @@
+#include "shape_turn.h"
+
+#include <math.h>
+
+/* Way over which the direction before and behind a corner is taken, in tolerances; where it really
+ * turns, it does so over a third of it, too. */
+static const double AROUND = 15.0, CLOSE = 1.0 / 3.0;
+
+/* sin^2 of half of 25 degrees; of an angle that is 0.6 of another, about. */
+static const double TURN = 0.0468, SAME_TURN = 0.36;
+
+/* sin^2 of half the angle at a vertex between its chords to the points so far away. */
+static double turn_at(const struct shape_run *r, int32_t v, double reach)
+{
+    double in[AXES], out[AXES], dot = 0.0, aa = 0.0, bb = 0.0;
+    int32_t a = v - 1, b = v + 1;
+
+    while (a > 0 && r->vertex[v].s - r->vertex[a].s < reach) {
+        a--;
+    }
+    while (b < r->vertices - 1 && r->vertex[b].s - r->vertex[v].s < reach) {
+        b++;
+    }
+    /* on the chords a, a + 1 and b - 1, b */
+    const struct shape_vertex *x = &r->vertex[a], *y = &r->vertex[b];
+    double p = (r->vertex[v].s - reach - x->s) / (x[1].s - x->s);
+    double q = (r->vertex[v].s + reach - y[-1].s) / (y->s - y[-1].s);
+    p = p > 0.0 ? p : 0.0;
+    q = q < 1.0 ? q : 1.0;
+    for (int i = 0; i < AXES; i++) {
+        in[i] = r->vertex[v].point[i] - (x->point[i] + p * (x[1].point[i] - x->point[i]));
+        out[i] = y[-1].point[i] + q * (y->point[i] - y[-1].point[i]) - r->vertex[v].point[i];
+        dot += in[i] * out[i];
+        aa += in[i] * in[i];
+        bb += out[i] * out[i];
+    }
+    return aa > 0.0 && bb > 0.0 ? 0.5 - 0.5 * dot / sqrt(aa * bb) : 0.0;
+}
+
+double shape_turn(const struct shape_run *r, int32_t v)
+{
+    const double reach = AROUND * r->vertex[v].tolerance;
+
+    if (!r->vertex[v].joint) {
+        return 0.0;
+    }
+    const double turn = turn_at(r, v, reach);
+    return turn > TURN && turn_at(r, v, CLOSE * reach) > SAME_TURN * turn ? turn : 0.0;
+}

@@ -1,0 +1,74 @@
+#include "shape_whole.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Part of a long command that a run may take: of its length, and in tolerances. */
+static const double SHARE = 1.0 / 3.0, GRAB = 60.0;
+
+enum { HALVINGS = 60 };
+
+struct piece shape_blank(const struct shape_law *l)
+{
+    return (struct piece){ .feed = l->feed, .cap = l->cap, .ramp = l->ramp };
+}
+
+struct piece shape_whole(const struct path *path, const struct shape_law *law)
+{
+    struct piece p = shape_blank(law);
+    double at[AXES];
+
+    p.length = path->length;
+    if (path->arc || path->cubic) {
+        p.kind = path->arc ? PIECE_ARC : PIECE_CUBIC;
+        p.path = *path;
+        return p;
+    }
+    p.kind = PIECE_LINE;
+    path_at(path, 0.0, at, p.slope);
+    memcpy(p.start, path->start, sizeof p.start);
+    return p;
+}
+
+struct path shape_whole_path(const struct piece *p)
+{
+    struct path path;
+    double end[AXES];
+
+    if (p->kind != PIECE_LINE) {
+        return p->path;
+    }
+    for (int i = 0; i < AXES; i++) {
+        end[i] = p->start[i] + p->slope[i] * p->length;
+    }
+    path_line(&path, p->start, end);
+    return path;
+}
+
+static double arc_bend(const struct path *p)
+{
+    const double per = p->sweep / p->length, r = fabs(p->radius) + fabs(p->growth);
+    return fabs(per) * hypot(per * r, 2.0 * p->growth / p->length);
+}
+
+int32_t shape_chords(const struct path *p, double length, double tolerance)
+{
+    double n = ceil(length / shape_spacing(tolerance));
+
+    if (p->arc || p->cubic) {
+        const double bend = p->arc ? arc_bend(p) : p->bezier.bend;
+        n = fmax(n, ceil(length / sqrt(8.0 * SHAPE_SAGITTA * tolerance / bend)));
+    }
+    return n <= SHAPE_CHORDS ? (int32_t)fmax(1.0, n) : 0;
+}
+
+double shape_grab(const struct piece *p, double tolerance)
+{
+    const struct path path = shape_whole_path(p);
+    double way = fmin(SHARE * p->length, GRAB * tolerance);
+
+    for (int k = 0; k < HALVINGS && shape_chords(&path, way, tolerance) == 0; k++) {
+        way *= 0.5;
+    }
+    return way;
+}

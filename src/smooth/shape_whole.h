@@ -1,0 +1,24 @@
+/* shape_whole - a command as one piece, or as chords. */
+#ifndef SHAPE_WHOLE_H
+#define SHAPE_WHOLE_H
+
+#include "shape_run.h"
+
+enum { SHAPE_CHORDS = 64 };     /* of one command in a run, at most */
+
+/* A piece under a law, without its geometry; a whole path as a piece. */
+struct piece shape_blank(const struct shape_law *law);
+struct piece shape_whole(const struct path *path, const struct shape_law *law);
+
+/* The path of such a piece; of a cut line what is left. */
+struct path shape_whole_path(const struct piece *p);
+
+/* How many chords a part of a path becomes that stay near it; 0: too many. Of what bends they are
+ * off by at most SHAPE_SAGITTA of the tolerance. */
+#define SHAPE_SAGITTA 0.05
+int32_t shape_chords(const struct path *p, double length, double tolerance);
+
+/* Way on a long command that a run takes. [mm] */
+double shape_grab(const struct piece *p, double tolerance);
+
+#endif

@@ -1,0 +1,139 @@
+/* Rides along chains of pieces in one call, for tests/pace_rides.py. */
+#include <math.h>
+#include <string.h>
+
+#include "pace.h"
+
+struct told {
+    double kind;                    /* enum piece_kind */
+    double feed, cap, acc, dec, jerk;       /* [mm/s], [mm/s^2], [mm/s^3] */
+    double length;                  /* [mm] of a curve */
+    double control[PIECE_POINTS][AXES];     /* line, arc: start, end, then centre X Y, ccw */
+};
+
+/* What the motion is at one moment, and axis by axis. */
+struct sample {
+    double way, rate, gain, twitch;
+    double point[AXES], velocity[AXES], acc[AXES], jerk[AXES];
+};
+
+static struct pace pace;
+static struct piece pieces[100000];
+static double starts[100001];
+
+/* Make the pieces; returns the length of the chain. [mm] */
+double pace_batch_pieces(int64_t n, const struct told *told)
+{
+    for (int64_t i = 0; i < n; i++) {
+        const struct told *t = &told[i];
+        struct piece *p = &pieces[i];
+        struct path path;
+        memset(p, 0, sizeof *p);
+        p->kind = (enum piece_kind)(int)t->kind;
+        p->feed = t->feed;
+        p->cap = t->cap;
+        p->ramp = (struct ramp_limits){ t->acc, t->dec, t->jerk, t->jerk };
+        p->length = t->length;
+        if (p->kind == PIECE_CURVE) {
+            memcpy(p->control, t->control, sizeof p->control);
+        } else if (p->kind == PIECE_ARC) {
+            double miss;
+            path_arc(&p->path, PATH_XY, t->control[0], t->control[1], t->control[2],
+                     t->control[2][2] > 0.0, 1, &miss);
+            p->length = p->path.length;
+        } else {
+            path_line(&path, t->control[0], t->control[1]);
+            p->length = path.length;
+            path_at(&path, 0.0, p->start, p->slope);
+        }
+        starts[i + 1] = starts[i] + p->length;
+    }
+    return starts[n];
+}
+
+static void look(int64_t *piece, int64_t n, struct sample *s)
+{
+    struct piece_state state;
+    struct piece_bounds b;
+
+    while (*piece + 1 < n && pace.way >= starts[*piece + 1]) {
+        ++*piece;
+    }
+    double u = pace.way - starts[*piece];
+    u = u < 0.0 ? 0.0 : u > pieces[*piece].length ? pieces[*piece].length : u;
+    piece_at(&pieces[*piece], u, &state);
+    s->way = pace.way;
+    s->rate = pace.rate;
+    s->gain = pace.gain;
+    s->twitch = pace.twitch;
+    const double from = fmin(u, (1.0 - 1e-9) * pieces[*piece].length);
+    piece_bounds(&pieces[*piece], from, from + 1e-9 * pieces[*piece].length, &b);
+    for (int k = 0; k < AXES; k++) {
+        s->point[k] = state.point[k];
+        s->velocity[k] = state.slope[k] * pace.rate;
+        s->jerk[k] = b.low[2][k] * pace.rate * pace.rate * pace.rate
+                     + 3.0 * state.bend[k] * pace.rate * pace.gain + state.slope[k] * pace.twitch;
+        s->acc[k] = state.bend[k] * pace.rate * pace.rate + state.slope[k] * pace.gain;
+    }
+}
+
+/* Ride along the n pieces that were made, of which `ahead` are known at a time (besides the one of
+ * the motion), with an override for each of `count` steps of dt; the last one goes on. Returns the
+ * time to the end [s], or -1; samples (or NULL) are taken after each step. */
+double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, double dt,
+                       int64_t count, const double *override, int64_t most, struct sample *s)
+{
+    int64_t joined = 0, at = 0;
+
+    pace_start(&pace, l);
+    for (int64_t i = 0; i < most; i++) {
+        while (at + 1 < n && pace.way >= starts[at + 1]) {
+            at++;
+        }
+        while (joined < n && joined <= at + ahead && pace_join(&pace, &pieces[joined])) {
+            joined++;
+        }
+        const double left = pace_advance(&pace, override[i < count ? i : count - 1], dt);
+        if (s) {
+            look(&at, n, &s[i]);
+        }
+        if (joined == n && pace_at_end(&pace)) {
+            return dt * (double)(i + 1) - left;
+        }
+    }
+    return -1.0;
+}
+
+/* Where the ride would come to rest now. [mm] */
+double pace_batch_stop_way(void)
+{
+    return pace_stop_way(&pace);
+}
+
+double pace_batch_close(double way)
+{
+    return pace_close(&pace, way);
+}
+
+/* Go on with the ride as it is; returns the time left at its end, and the sample. [s] */
+double pace_batch_go(int64_t n, double override, double dt, struct sample *s)
+{
+    int64_t at = 0;
+    const double left = pace_advance(&pace, override, dt);
+
+    look(&at, n, s);
+    return left;
+}
+
+/* The path at n ways. */
+void pace_batch_path(int64_t pieces_made, int64_t n, const double *way, struct piece_state *s)
+{
+    int64_t at = 0;
+
+    for (int64_t i = 0; i < n; i++) {
+        while (at + 1 < pieces_made && way[i] >= starts[at + 1]) {
+            at++;
+        }
+        piece_at(&pieces[at], way[i] - starts[at], &s[i]);
+    }
+}

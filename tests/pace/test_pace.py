@@ -1,0 +1,218 @@
+"""Speed along smooth pieces: each axis within its limits, as quick as toppra's bound."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from pace_rides import (
+    LIBRARY,
+    SAMPLE,
+    Chain,
+    Orders,
+    hermite,
+    limits,
+    place,
+    random_chain,
+    ride,
+)
+from toppra_bound import bound
+
+SEEDS = st.integers(0, 2**32 - 1)
+ROUNDING = 1e-9
+
+
+def within(steps: np.ndarray, bounds: np.ndarray, dt: float) -> None:
+    """Each axis keeps its limits at every sample, and between samples in the mean."""
+    for name, quantity, before in (
+        ("speed", "velocity", "point"),
+        ("acc", "acc", "velocity"),
+        ("jerk", "jerk", "acc"),
+    ):
+        most = bounds[name][0]
+        if most.any():
+            assert (np.abs(steps[quantity]) <= most * (1 + ROUNDING)).all(), name
+            change = np.abs(np.diff(steps[before], axis=0))
+            assert (change <= most * dt * (1 + 1e-6)).all(), f"change of {before}"
+
+
+def corners(size: float, length: float, count: int) -> np.ndarray:
+    """A staircase of lines with a quintic of so many mm at each corner."""
+    chain, here, along, across = Chain(), place(), place(1), place(0, 1)
+    for i in range(count):
+        corner = here + length * along
+        chain.line(here, corner)
+        here = corner + size * (along + across)
+        start, end = np.array([corner, along, place()]), np.array([here, across, place()])
+        chain.curve(hermite(start, end, 1.8 * size), 1.8 * size)
+        along, across = across, along if i % 2 else -along
+    chain.line(here, here + length * along)
+    return chain.told()
+
+
+def circle() -> np.ndarray:
+    """Once round, of 10 mm."""
+    chain = Chain(feed=400.0)
+    chain.arc(place(10), place(10), np.zeros(2), True)
+    return chain.told()
+
+
+def waves(bend: float, length: float) -> np.ndarray:
+    """100 mm whose curvature is bend sin(s / length), in curves of 0.5 mm."""
+    s = np.linspace(0, 100, 20_001)
+    angle = bend * length * (1 - np.cos(s / length))
+    middle = 0.5 * (angle[1:] + angle[:-1])
+    x = np.append(0, np.cumsum(np.cos(middle))) * s[1]
+    y = np.append(0, np.cumsum(np.sin(middle))) * s[1]
+    chain, ends = Chain(), []
+    for i in range(0, len(s), 100):
+        along, across = (
+            place(np.cos(angle[i]), np.sin(angle[i])),
+            place(-np.sin(angle[i]), np.cos(angle[i])),
+        )
+        ends.append(np.array([place(x[i], y[i]), along, bend * np.sin(s[i] / length) * across]))
+    for start, end in itertools.pairwise(ends):
+        chain.curve(hermite(start, end, 0.5), 0.5)
+    return chain.told()
+
+
+def test_line() -> None:
+    """A line takes its trapezium or triangle."""
+    chain = Chain()
+    chain.line(place(), place(10))
+    assert ride(chain.told(), limits(1000.0)).time == pytest.approx(0.2, rel=1e-8)
+    chain.line(place(10), place(30))
+    assert ride(chain.told(), limits(1000.0)).time == pytest.approx(0.4, rel=1e-8)
+    assert ride(chain.told(), limits(1000.0, speed=50)).time == pytest.approx(0.65, rel=1e-8)
+    asymmetric = Chain(acc=500.0, dec=2000.0)
+    asymmetric.line(place(), place(30))
+    assert ride(asymmetric.told(), limits()).time == pytest.approx(0.425, rel=1e-8)
+
+
+def test_circle() -> None:
+    """Round a circle: v^2 / r by the path's rule; by each axis' limit between that and its root."""
+    by_path = ride(circle(), limits(), Orders(1e-4))
+    by_axes = ride(circle(), limits(1000.0), Orders(1e-4))
+    assert by_path.steps["rate"].max() == pytest.approx(100.0, rel=1e-8)
+    assert 100.0 < by_axes.steps["rate"].max() < 100.0 * 2**0.25
+    assert 0.995 < np.abs(by_axes.steps["acc"]).max() / 1000.0 <= 1 + ROUNDING
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_bound(seed: int) -> None:
+    """At most 2.5 % above the bound of toppra, never below it."""
+    dice = np.random.default_rng(seed)
+    told = random_chain(dice, 8, 5.0).told()
+    least = bound(told, 1000.0, 100.0)
+    ratio = ride(told, limits(1000.0), Orders(1e-2)).time / least
+    print(f"{len(told)} pieces: {least:.4f} s, {ratio:.4f}")
+    assert 0.9995 < ratio < 1.025
+
+
+@settings(max_examples=150, deadline=None)
+@given(SEEDS, st.booleans())
+@example(10, False)
+@example(223, False)
+@example(3, True)
+@example(35, True)
+def test_orders(seed: int, smooth: bool) -> None:
+    """Random overrides, holds and look-ahead: within the limits, at rest at the end."""
+    dice = np.random.default_rng(seed)
+    count, size = int(dice.integers(1, 14)), float(10 ** dice.uniform(-1, 1.5))
+    told = random_chain(dice, count, size, float(10 ** dice.uniform(1, 2.8))).told()
+    acc = 10 ** dice.uniform(2, 4) * np.array([1, dice.uniform(0.3, 3), 1, 1, 1, 1])
+    bounds = limits(acc, dice.choice([0, 30.0, 100.0]), acc * 10 ** dice.uniform(0.5, 3) * smooth)
+    choices = dice.choice([0, 0.05, 0.3, 0.7, 1, 1.5, 2], dice.integers(1, 60))
+    overrides = np.append(np.repeat(choices, dice.integers(1, 200)), 1.0)
+    ahead, dt = int(dice.choice([0, 1, 3, 1000])), 10 ** dice.uniform(-3.5, -2.3)
+    done = ride(told, bounds, Orders(dt, overrides, ahead, 1_000_000))
+    steps = done.steps
+    within(steps, bounds, dt)
+    assert done.time > 0
+    assert steps["way"][-1] == pytest.approx(done.length, abs=1e-9)
+    assert steps["rate"][-1] == 0
+    assert (np.diff(steps["way"]) >= 0).all()
+    assert steps["way"].max() <= done.length + 1e-9
+
+
+@settings(max_examples=60, deadline=None)
+@given(SEEDS, st.booleans())
+def test_stop(seed: int, smooth: bool) -> None:
+    """A hold comes to rest where it was told, a closed chain at the end of a piece."""
+    dice = np.random.default_rng(seed)
+    told = random_chain(dice, 10, 5.0).told()
+    bounds, dt = limits(1000.0, jerk=50_000.0 * smooth), 1e-3
+    ends = np.append(0, np.cumsum(lengths(told)))
+    full = ride(told, bounds, Orders(dt))
+    for close in (False, True):
+        orders = Orders(dt, most=int(dice.integers(1, len(full.steps))))
+        way = ride(told, bounds, orders).steps["way"][-1]
+        goal = LIBRARY.pace_batch_stop_way()
+        if close:
+            goal = LIBRARY.pace_batch_close(goal)
+            assert np.abs(ends - goal).min() < 1e-9
+        steps = []
+        for _ in range(10_000):
+            steps.append(np.zeros(1, SAMPLE))
+            left = LIBRARY.pace_batch_go(len(told), float(close), dt, steps[-1])
+            if left > 0 or steps[-1]["rate"][0] == 0:
+                break
+        within(np.concatenate(steps), bounds, dt)
+        least = goal - (1e-9 if close else 0.2 * (goal - way))
+        assert least <= steps[-1]["way"][0] <= goal + 1e-6
+
+
+def test_smooth_line() -> None:
+    """A line with limited jerk: four parts of constant jerk, or to the feed."""
+    bounds = limits(1000.0, jerk=50_000.0)
+    for way, time in ((0.1, (32 * 0.1 / 50_000) ** (1 / 3)), (30.0, 0.3 + 0.1 + 0.02)):
+        chain = Chain()
+        chain.line(place(), place(way))
+        assert ride(chain.told(), bounds).time == pytest.approx(time, rel=1e-4)
+        by_path = Chain(jerk=50_000.0)
+        by_path.line(place(), place(way))
+        assert ride(by_path.told(), limits()).time == pytest.approx(time, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("name", "told", "most"),
+    [
+        ("circle", circle(), 1.2),
+        ("corners", corners(0.1, 10.0, 10), 1.3),
+        ("waves 2", waves(0.2, 2.0), 1.25),
+        ("waves 10", waves(0.1, 10.0), 1.25),
+        ("waves 5", waves(0.5, 5.0), 1.25),
+    ],
+)
+def test_smooth_is_quick(name: str, told: np.ndarray, most: float) -> None:
+    """With a jerk that takes 20 ms to the acceleration, little slower than without."""
+    quick = ride(told, limits(1000.0)).time
+    smooth = ride(told, limits(1000.0, jerk=50_000.0))
+    within(smooth.steps, limits(1000.0, jerk=50_000.0), 1e-3)
+    print(f"{name}: {quick:.3f} s, with limited jerk {smooth.time / quick:.3f}")
+    assert 1.0 < smooth.time / quick < most
+
+
+def lengths(told: np.ndarray) -> list[float]:
+    """Length of each piece."""
+    return [LIBRARY.pace_batch_pieces(1, told[i : i + 1]) for i in range(len(told))]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_streaming(seed: int) -> None:
+    """Known in time, pieces that come one by one take as long as all at once."""
+    told = random_chain(np.random.default_rng(seed), 30, 2.0).told()
+    whole = ride(told, limits(1000.0)).time
+    assert ride(told, limits(1000.0), Orders(ahead=20)).time == pytest.approx(whole, rel=1e-12)
+    assert ride(told, limits(1000.0), Orders(ahead=1)).time > whole
+
+
+def test_override_of_a_corner() -> None:
+    """Twice the feed is as quick as a feed of twice as much."""
+    told = corners(0.1, 10.0, 1)
+    fast = told.copy()
+    fast["feed"] *= 2
+    twice = ride(told, limits(1000.0), Orders(overrides=[2.0])).time
+    assert twice == pytest.approx(ride(fast, limits(1000.0)).time, rel=1e-12)
+    assert twice < ride(told, limits(1000.0)).time
