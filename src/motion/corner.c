@@ -57,7 +57,8 @@ bool corner_make(struct corner *k, const struct path *a, const struct path *b, d
     }
     k->half = half;
     k->bend = 0.75 * d / half + BEND_CURVED * fmax(ka, kb);
-    k->twist = 1.5 * d / (half * half) + 4.0 * fmax(ka, kb) / half + fmax(ka * ka, kb * kb);
+    k->twist = 1.5 * d / (half * half) + 4.0 * fmax(ka, kb) / half +
+               fmax(path_twist(a), path_twist(b));
     return true;
 }
 

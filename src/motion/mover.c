@@ -1,4 +1,4 @@
-#include "mover.h"
+#include "mover_inside.h"
 
 #include <math.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 void mover_start(struct mover *p)
 {
     memset(p, 0, sizeof *p);
-    p->override[0] = p->override[1] = 1.0;
+    p->override[0] = p->override[1] = p->adaptive = 1.0;
 }
 
 bool mover_stand(struct mover *p, const struct mechanism *m, const double place[AXES])
@@ -22,15 +22,24 @@ bool mover_stand(struct mover *p, const struct mechanism *m, const double place[
     return true;
 }
 
-/* Override in force for a kind of command, and for the motion under way. */
-static double override_of(const struct mover *p, bool ptp)
+bool mover_held(const struct mover *p)
 {
-    return p->hold || p->abort ? 0.0 : p->override[ptp];
+    return p->hold && !(p->overrides & OUTPUTS_HOLD_OFF);
 }
 
-static bool is_ptp(const struct command *c)
+/* On a ramp to rest, or there by one. */
+bool mover_brakes(const struct mover *p)
 {
-    return c->type == COMMAND_PTP || c->type == COMMAND_PTP_ASYN;
+    return mover_held(p) || p->abort || p->leave;
+}
+
+/* Override in force for a kind of command, and for the motion under way. */
+double mover_share(const struct mover *p, bool ptp)
+{
+    const double panel = p->overrides & OUTPUTS_FEED_FIXED ? 1.0 : p->override[ptp];
+
+    return mover_brakes(p) ? 0.0
+         : p->overrides & OUTPUTS_ADAPTIVE ? panel * p->adaptive : panel;
 }
 
 bool mover_ordered(const struct mover *p)
@@ -50,7 +59,7 @@ bool mover_busy(const struct mover *p)
 
 /* Single block: the next command is the first of a block that may not begin yet. A block is a line
  * of the program, or one call. */
-static bool blocked(const struct mover *p, const struct ring *r)
+bool mover_blocked(const struct mover *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
     return p->single && !p->allowed && next && (next->line == 0 || next->line != p->block);
@@ -58,48 +67,56 @@ static bool blocked(const struct mover *p, const struct ring *r)
 
 bool mover_waits(const struct mover *p, const struct ring *r)
 {
-    return !mover_busy(p) && (p->stopped || blocked(p, r));
+    if (p->motion == MOVER_CURVE) {
+        return curve_waits(&p->curve) && (p->stopped || (p->single && !p->allowed));
+    }
+    return !mover_busy(p) && (p->stopped || mover_blocked(p, r));
 }
 
 bool mover_resting(const struct mover *p, const struct ring *r)
 {
     if (p->motion == MOVER_CHAIN) {
-        return override_of(p, false) <= 0.0 && track_rests(&p->track);
+        return mover_share(p, false) <= 0.0 && track_rests(&p->track);
+    }
+    if (p->motion == MOVER_CURVE) {
+        return curve_rests(&p->curve) &&
+               (mover_share(p, false) <= 0.0 || p->confirming || mover_waits(p, r));
     }
     if (mover_ordered(p)) {
         return axes_resting(&p->axes);
     }
-    return mix_rests(&p->mix, p->hold || p->abort) &&
-           (p->mix.count > 0 || p->hold || p->abort || p->confirming || mover_waits(p, r) ||
+    return mix_rests(&p->mix, mover_brakes(p)) &&
+           (p->mix.count > 0 || mover_brakes(p) || p->confirming || mover_waits(p, r) ||
             r->count == 0);
 }
 
 bool mover_moving(const struct mover *p)
 {
     return p->motion == MOVER_CHAIN ? !track_rests(&p->track)
+         : p->motion == MOVER_CURVE ? !curve_rests(&p->curve)
          : mover_ordered(p) ? !axes_resting(&p->axes) : mix_moves(&p->mix);
 }
 
 /* A command of axes lasts as long as the last of them. */
-static void wait_for_axes(struct mover *p)
+void mover_wait_for_axes(struct mover *p)
 {
     struct profile *wait = &p->mix.move[0].profile;
     profile_wait(wait, axes_left(&p->axes));
     wait->ends = p->axes.ratio > 0.0;
 }
 
-/* Plan what is under way afresh from where it is; a chain does it by itself. */
-static void replan(struct mover *p)
+/* Plan what is under way afresh from where it is; chain and curve do it by themselves. */
+void mover_replan(struct mover *p)
 {
     const struct mix *x = &p->mix;
 
     if (p->motion == MOVER_AXES) {
-        axes_set_ratio(&p->axes, override_of(p, true));
+        axes_set_ratio(&p->axes, mover_share(p, true));
         if (x->count > 0) {
-            wait_for_axes(p);
+            mover_wait_for_axes(p);
         }
     } else if (x->count > 0) {
-        mix_replan(&p->mix, override_of(p, is_ptp(&x->move[x->count - 1].command)));
+        mix_replan(&p->mix, mover_share(p, is_ptp(&x->move[x->count - 1].command)));
     }
 }
 
@@ -114,7 +131,7 @@ bool mover_order(struct mover *p, const struct mechanism *m)
             return false;
         }
     }
-    axes_start(&p->axes, joint, override_of(p, true));
+    axes_start(&p->axes, joint, mover_share(p, true));
     p->motion = MOVER_AXES;
     return true;
 }
@@ -127,7 +144,7 @@ static void place_of_axes(const struct axes *a, double point[AXES], double veloc
 }
 
 /* Nothing is under way any more. */
-static void rest_at(struct mover *p, const double place[AXES], bool joints)
+void mover_rest_at(struct mover *p, const double place[AXES], bool joints)
 {
     memcpy(p->rest, place, sizeof p->rest);
     p->joints = joints;
@@ -139,23 +156,25 @@ void mover_bind(struct mover *p)
 {
     double place[AXES], velocity[AXES];
     place_of_axes(&p->axes, place, velocity);
-    rest_at(p, place, true);
+    mover_rest_at(p, place, true);
 }
 
 void mover_hold(struct mover *p, bool on)
 {
     if (p->hold != on) {
         p->hold = on;
-        replan(p);
+        mover_replan(p);
     }
 }
 
-void mover_single(struct mover *p, const struct ring *r, bool on)
+void mover_single(struct mover *p, const struct mover_beside *b, bool on)
 {
     if (on && !p->single && p->motion == MOVER_CHAIN) {
-        track_close(&p->track, r);
+        track_close(&p->track, b->ring);
+    } else if (on != p->single && p->motion == MOVER_CURVE) {
+        curve_single(&p->curve, b->curve, on);
     }
-    p->stopped = p->stopped || (p->single && !on && mover_waits(p, r));
+    p->stopped = p->stopped || (p->single && !on && mover_waits(p, b->ring));
     p->allowed = p->allowed && on;
     p->single = on;
 }
@@ -169,7 +188,7 @@ void mover_ramp(const struct mover *p, struct mover *ramp)
 {
     *ramp = *p;
     ramp->abort = true;
-    replan(ramp);
+    mover_replan(ramp);
 }
 
 void mover_shift(struct mover *ramp, double dt)
@@ -186,6 +205,11 @@ double mover_left(const struct mover *ramp)
 void mover_continue(struct mover *p)
 {
     p->stopped = false;
+    if (p->outputs.asks) {
+        p->outputs.asks = false;
+        p->outputs.tool = p->outputs.asked;
+        p->untold = true;
+    }
     mover_allow(p);
 }
 
@@ -194,7 +218,7 @@ void mover_override(struct mover *p, double feed, double ptp)
     if (p->override[0] != feed || p->override[1] != ptp) {
         p->override[0] = feed;
         p->override[1] = ptp;
-        replan(p);
+        mover_replan(p);
     }
 }
 
@@ -204,6 +228,10 @@ void mover_place(const struct mover *p, const struct ring *r, double point[AXES]
     switch (p->motion) {
     case MOVER_CHAIN:
         track_place(&p->track, r, point, velocity);
+        break;
+    case MOVER_CURVE:
+        memcpy(point, p->curve.point, sizeof p->curve.point);
+        memcpy(velocity, p->curve.velocity, sizeof p->curve.velocity);
         break;
     case MOVER_AXES:
         place_of_axes(&p->axes, point, velocity);
@@ -218,224 +246,30 @@ void mover_stop(struct mover *p, struct ring *r)
     double velocity[AXES], at[AXES];
 
     mover_place(p, r, at, velocity);
-    rest_at(p, at, mover_in_joints(p));
-    p->hold = p->abort = p->stopped = p->allowed = p->confirming = false;
-    p->untold = p->untold || p->outputs.spindle != 0.0 || p->outputs.coolant != 0;
+    mover_rest_at(p, at, mover_in_joints(p));
+    p->hold = p->abort = p->leave = p->stopped = p->allowed = p->confirming = false;
+    p->untold = p->untold || p->outputs.spindle != 0.0 || p->outputs.coolant != 0 ||
+                p->outputs.asks;
+    p->outputs.asks = false;
+    p->overrides = 0;
     p->outputs.spindle = 0.0;
     p->outputs.coolant = 0;
     ring_clear(r);
 }
 
+void mover_adapt(struct mover *p, double share)
+{
+    if (p->adaptive != share) {
+        p->adaptive = share;
+        mover_replan(p);
+    }
+}
+
 void mover_abort(struct mover *p, struct ring *r)
 {
     p->abort = true;
-    replan(p);
+    mover_replan(p);
     if (mover_resting(p, r)) {
         mover_stop(p, r);
     }
-}
-
-/* The older command has ended. */
-static void retire(struct mover *p)
-{
-    const struct command ended = p->mix.move[0].command;
-
-    mix_retire(&p->mix);
-    if (p->mix.count == 0) {
-        rest_at(p, ended.path.end, p->motion == MOVER_AXES);
-        p->confirming = p->confirm && ended.type != COMMAND_DELAY;
-    }
-}
-
-/* Whether the next command may begin, now or in the deceleration of the one under way. */
-static bool may_start(const struct mover *p, const struct ring *r)
-{
-    const struct command *next = ring_head(r);
-    if (!next || p->motion != MOVER_MIX || p->hold || p->abort || p->stopped || p->confirming ||
-        blocked(p, r)) {
-        return false;
-    }
-    return p->mix.count == 0 || (mix_open(&p->mix) && command_blends(next));
-}
-
-/* A command begins. */
-static void begin(struct mover *p, const struct command *c)
-{
-    p->outputs.digital = (p->outputs.digital | c->set) & ~c->clear;
-    p->line = p->block = c->line;
-    p->allowed = false;
-    p->started = command_lasts(c) ? c->index : p->started;
-}
-
-static void begin_axes(struct mover *p, const struct command *c,
-                       const struct axes_limits l[AXES])
-{
-    axes_start(&p->axes, c->path.start, override_of(p, true));
-    for (int i = 0; i < AXES; i++) {
-        if (c->path.end[i] != c->path.start[i]) {
-            axes_go(&p->axes, i, c->path.end[i], &l[i]);
-        }
-    }
-    p->mix.move[p->mix.count++].command = *c;
-    p->motion = MOVER_AXES;
-    wait_for_axes(p);
-}
-
-static void begin_next(struct mover *p, struct ring *r)
-{
-    const struct command *c = ring_head(r);
-
-    if (p->mix.count == 0 && !p->single && track_begins(r)) {
-        track_start(&p->track, r);
-        p->motion = MOVER_CHAIN;
-        return;
-    }
-    begin(p, c);
-    if (c->type == COMMAND_PTP_ASYN) {
-        begin_axes(p, c, ring_peek(r, 0)->axis);
-    } else if (command_lasts(c)) {
-        mix_begin(&p->mix, c, override_of(p, is_ptp(c)));
-    } else if (c->type == COMMAND_OUTPUTS) {
-        p->outputs.spindle = c->spindle;
-        p->outputs.coolant = c->coolant;
-        p->untold = true;
-    } else {
-        p->stopped = p->untold = true;
-    }
-    ring_pop(r);
-}
-
-static void begin_chained(struct mover *p, const struct ring *r)
-{
-    const struct command *c;
-    while ((c = track_begun(&p->track, r)) != NULL) {
-        begin(p, c);
-    }
-}
-
-static double advance_chain(struct mover *p, struct ring *r, double dt)
-{
-    struct track *t = &p->track;
-    const double left = track_advance(t, r, override_of(p, false), dt);
-    if (left <= 0.0 || (t->smooth > 0.0 && !track_done(t))) {
-        return 0.0;         /* the tool has to come after */
-    }
-    begin_chained(p, r);
-    const int32_t last = t->joined - 1;
-    rest_at(p, ring_peek(r, last)->command.path.end, false);
-    for (int32_t i = 0; i <= last; i++) {
-        ring_pop(r);
-    }
-    p->confirming = p->confirm;
-    if (p->abort) {
-        mover_stop(p, r);       /* the ramp of the abort was that to the chain's end */
-    }
-    return left;
-}
-
-/* Up to the next end or beginning of a command; returns the time left. */
-static double advance_commands(struct mover *p, bool startable, double dt)
-{
-    struct profile *old = &p->mix.move[0].profile;
-    const double event = startable ? old->tail : old->total;
-    const double step = fmin(dt, event - old->t);
-
-    mix_shift(&p->mix, step);
-    if (step < dt) {
-        old->t = event;     /* met exactly, whatever the sum rounds to */
-    }
-    if (p->motion == MOVER_AXES) {
-        axes_advance(&p->axes, step);
-    }
-    return dt - step;
-}
-
-double mover_advance(struct mover *p, struct ring *r, double dt)
-{
-    if (p->motion == MOVER_CHAIN) {
-        return advance_chain(p, r, dt);
-    }
-    for (;;) {
-        const bool startable = may_start(p, r);
-        const struct profile *old = &p->mix.move[0].profile;
-
-        if (startable && (p->mix.count == 0 || old->t >= old->tail)) {
-            begin_next(p, r);
-            return dt;
-        }
-        if (p->mix.count && old->ends && old->t >= old->total) {
-            retire(p);
-            continue;
-        }
-        if (mover_resting(p, r)) {
-            if (p->abort) {
-                mover_stop(p, r);
-            }
-            return dt;
-        }
-        if (dt <= 0.0) {
-            return 0.0;
-        }
-        if (mover_ordered(p)) {
-            axes_advance(&p->axes, dt);
-            dt = 0.0;
-        } else {
-            dt = advance_commands(p, startable, dt);
-        }
-    }
-}
-
-void mover_accept(struct mover *p, struct ring *r, const struct point *point)
-{
-    memcpy(p->pulses, point->pulses, sizeof p->pulses);
-    p->untold = false;
-    if (p->motion == MOVER_CHAIN) {
-        track_drop(&p->track, r);
-    }
-}
-
-bool mover_joints(const struct mover *p, const struct mechanism *m, const double place[AXES],
-                  double joint[AXES])
-{
-    if (mover_in_joints(p)) {
-        memcpy(joint, place, AXES * sizeof *joint);
-        return true;
-    }
-    return mechanism_joints(m, place, joint);
-}
-
-bool mover_point(struct mover *p, struct ring *r, const struct mechanism *m, double dt,
-                 struct track_mean *mean, struct point *point)
-{
-    double velocity[AXES], joint[AXES];
-
-    if (p->motion == MOVER_CHAIN) {
-        track_sample(&p->track, mean, r, dt);
-        begin_chained(p, r);
-        if (p->abort && track_rests(&p->track)) {
-            mover_stop(p, r);
-        }
-    }
-    mover_place(p, r, point->place, velocity);
-    const double *v = velocity;
-    point->feed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (point->feed == 0.0) {
-        point->feed = sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
-    }
-    mechanism_near(m, p->pulses, joint);
-    const bool reached = mover_joints(p, m, point->place, joint);
-    if (mover_in_joints(p)) {
-        mechanism_place(m, joint, point->place);
-    }
-    memcpy(point->pulses, p->pulses, sizeof point->pulses);
-    if (reached) {
-        mechanism_pulses(m, joint, point->pulses);
-    }
-    const struct command *c = p->mix.count ? &p->mix.move[0].command : NULL;
-    point->line = c ? c->line : p->line;
-    point->command = c ? c->index : p->started;
-    point->newest = c ? p->mix.move[p->mix.count - 1].command.index : p->started;
-    point->waits = c && c->type == COMMAND_DELAY;
-    point->outputs = p->outputs;
-    return reached;
 }

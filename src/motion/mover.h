@@ -1,10 +1,11 @@
 /* mover - trajectory planning: commands become points at equal times, the frames of the pulses.
  *
  * Motion runs in continuous time. A command that ends inside a frame hands the rest of it to the
- * next one, so no time is lost between them. Three motions take turns:
+ * next one, so no time is lost between them. Four motions take turns:
  *
  *     mix      commands one by one, or two at a time by path mixing      mix.h
  *     chain    commands with a corner tolerance as one by look-ahead     track.h
+ *     curve    the same as one smooth curve                              curve.h
  *     axes     each joint for itself: by a command, or by orders         axes.h
  *
  * Unless commands are mixed or chained each ends at rest (exact stop). Commands that switch outputs
@@ -12,28 +13,40 @@
  * rounded ideal position, so every joint is within half a pulse of it at every point and nothing
  * drifts.
  *
- * Mix and chain move the tool, axes the joints. The mechanism turns one into the other where a
- * point becomes pulses; elsewhere they do not matter.
+ * Mix, chain and curve move the tool, axes the joints. The mechanism turns one into the other where
+ * a point becomes pulses; elsewhere they do not matter.
  */
 #ifndef MOVER_H
 #define MOVER_H
 
+#include "curve.h"
 #include "mix.h"
 #include "queue.h"
 #include "track.h"
 
-enum mover_motion { MOVER_MIX, MOVER_CHAIN, MOVER_AXES };
+enum mover_motion { MOVER_MIX, MOVER_CHAIN, MOVER_AXES, MOVER_CURVE };
+
+/* What a mover uses that is too large to be put back with it. */
+struct mover_beside {
+    struct ring *ring;
+    struct track_mean *mean;
+    struct curve_plan *curve;   /* NULL: what asks for a curve becomes a chain */
+};
 
 struct mover {
     enum mover_motion motion;   /* under way, or the latest */
     struct mix mix;             /* of MOVER_AXES: the command, or none: the axes follow orders */
     struct track track;         /* of MOVER_CHAIN */
+    struct curve curve;         /* of MOVER_CURVE */
     struct axes axes;           /* of MOVER_AXES */
     double  rest[AXES];         /* [mm] where nothing is under way */
     bool    joints;             /* rest is one of joints */
     int32_t pulses[AXES];       /* [pulses] of the latest point */
     double  override[2];        /* of lines and arcs, of point-to-point; 1 is 100 % */
-    bool    hold;
+    double  adaptive;           /* share of the feed while OUTPUTS_ADAPTIVE; 1 at the start */
+    uint32_t overrides;         /* enum outputs_overrides */
+    bool    hold;               /* acts unless OUTPUTS_HOLD_OFF */
+    bool    leave;              /* ramp to rest, then drop the command under way */
     bool    abort;              /* ramp to rest, then drop everything */
     bool    stopped;            /* M0, M1: at rest until mover_continue */
     bool    single;             /* each block waits for mover_continue, */
@@ -94,7 +107,7 @@ void mover_place(const struct mover *p, const struct ring *r, double point[AXES]
 
 /* Rest before each block (a line of the program, a call), or no longer: what rests then still
  * waits for mover_continue. */
-void mover_single(struct mover *p, const struct ring *r, bool on);
+void mover_single(struct mover *p, const struct mover_beside *b, bool on);
 
 /* True if the axes rest at a stop of the program or before a block. */
 bool mover_waits(const struct mover *p, const struct ring *r);
@@ -105,8 +118,17 @@ void mover_allow(struct mover *p);
 /* Go on behind a stop of the program, or with one block. */
 void mover_continue(struct mover *p);
 
+/* It acts. */
+bool mover_held(const struct mover *p);
+
+/* Share of the feed that counts while a program lets it. */
+void mover_adapt(struct mover *p, double share);
+
 /* New overrides, from now on. A move that hands over to the next one keeps its deceleration. */
 void mover_override(struct mover *p, double feed, double ptp);
+
+/* Ramp to rest and drop what is left of the command under way, which is alone; the ring stays. */
+void mover_leave(struct mover *p, const struct ring *r);
 
 /* Ramp to rest; when there, moves and ring are dropped, spindle and coolant go off. */
 void mover_abort(struct mover *p, struct ring *r);
@@ -116,16 +138,17 @@ void mover_stop(struct mover *p, struct ring *r);
 
 /* Let up to dt seconds pass. Stops early after it took a command from the ring, so that the caller
  * can refill it, and when the axes rest (mover_resting); returns the time that is left. */
-double mover_advance(struct mover *p, struct ring *r, double dt);
+double mover_advance(struct mover *p, const struct mover_beside *b, double dt);
 
 /* The end of a frame of dt seconds: the point reached, with the outputs at that time; *point gets
- * everything but its frame, which is the way from p->pulses. `mean` is what a chain with S-shaped
- * ramps remembers. False, and no pulses in *point: the mechanism cannot reach it. */
-bool mover_point(struct mover *p, struct ring *r, const struct mechanism *m, double dt,
-                 struct track_mean *mean, struct point *point);
+ * everything but its frame, which is the way from p->pulses. False, and no pulses in *point: the
+ * mechanism cannot reach it. */
+bool mover_point(struct mover *p, const struct mover_beside *b, const struct mechanism *m,
+                 double dt, struct point *point);
 
-/* The point is taken. Until then an earlier *p can be put back: the chain keeps its commands. */
-void mover_accept(struct mover *p, struct ring *r, const struct point *point);
+/* The point is taken. Until then an earlier *p can be put back: chain and curve keep what they
+ * need. */
+void mover_accept(struct mover *p, const struct mover_beside *b, const struct point *point);
 
 /* Whether counts and places of a state, which came from outside, lead out of its arrays. */
 bool mover_damaged(const struct mover *p, const struct ring *r);

@@ -153,8 +153,9 @@ static void box_of_chain(const struct way *w, double low[AXES], double high[AXES
     for (int32_t i = first; i < w->t->joined && begins(w, i, base); i++) {
         const struct path *p = path_of(w, i);
         const double half = track_half(w->t, w->ring, i), next = track_half(w->t, w->ring, i + 1);
-        const bool bent = p->arc || (half > 0.0 && path_of(w, i - 1)->arc) ||
-                          (next > 0.0 && path_of(w, i + 1)->arc);
+        const bool bent = path_bend(p) > 0.0 ||
+                          (half > 0.0 && path_bend(path_of(w, i - 1)) > 0.0) ||
+                          (next > 0.0 && path_bend(path_of(w, i + 1)) > 0.0);
         widen(p, fmax(0.0, w->from - base - next), fmin(p->length, w->to - base + half),
               bent ? ring_peek(w->ring, i)->command.tolerance : 0.0, low, high);
         base += p->length;
@@ -268,8 +269,10 @@ static int beyond_in_chain(const struct mover *p, struct ring *r, const struct r
     return beyond(v, low, high);
 }
 
-int reach_beyond(const struct mover *p, struct ring *r, const struct mechanism *m, double dt)
+int reach_beyond(const struct mover *p, const struct mover_beside *b, const struct mechanism *m,
+                 double dt)
 {
+    struct ring *r = b->ring;
     struct ramp_view v = { .dt = dt, .ring = r, .machine = m };
     double low[AXES], high[AXES];
 
@@ -279,6 +282,10 @@ int reach_beyond(const struct mover *p, struct ring *r, const struct mechanism *
     mechanism_near(m, p->pulses, v.near);
     if (p->motion == MOVER_CHAIN) {
         return beyond_in_chain(p, r, &v);
+    }
+    if (p->motion == MOVER_CURVE) {
+        curve_stop_extent(&p->curve, b->curve, low, high);
+        return beyond(&v, low, high);
     }
     mover_ramp(p, &v.ramp);
     const bool paths = p->motion == MOVER_MIX;

@@ -40,7 +40,7 @@ static void add(struct track *t, struct ring *r, const struct corner *k)
     struct ring_entry *n = ring_at(r, t->joined);
     const double bend = path_bend(&n->command.path);
 
-    n->body = bend_speed(&n->command, bend, bend * bend);
+    n->body = bend_speed(&n->command, bend, path_twist(&n->command.path));
     n->corner = *k;
     n->turn = n->command.cap;
     if (t->joined > 0) {
@@ -67,7 +67,8 @@ static bool in_time(const struct track *t, const struct ring *r, const struct co
     const struct command *last = &ring_peek(r, t->joined - 1)->command;
     const struct command *next = &ring_peek(r, t->joined)->command;
     const double way = t->end - (t->base + t->s), bend = path_bend(&next->path);
-    const double body = fmin(bend_speed(next, bend, bend * bend), command_speed(next, override));
+    const double body = fmin(bend_speed(next, bend, path_twist(&next->path)),
+                             command_speed(next, override));
     double turn = fmin(bend_speed(next, k->bend, k->twist), bend_speed(last, k->bend, k->twist));
 
     turn = fmin(turn, fmin(command_speed(next, override), command_speed(last, override)));

@@ -19,16 +19,17 @@ bool arm_start(struct arm *a, const struct mechanism *m, const double place[AXES
 
 static void make_frame(struct arm *a, const struct mechanism *m)
 {
+    const struct mover_beside beside = arm_beside(a);
     struct point p;
     double left = FRAME;
     do {
-        left = mover_advance(&a->mover, &a->ring, left);
+        left = mover_advance(&a->mover, &beside, left);
     } while (left > 0.0 && !mover_resting(&a->mover, &a->ring));
-    mover_point(&a->mover, &a->ring, m, FRAME, &a->mean, &p);
+    mover_point(&a->mover, &beside, m, FRAME, &p);
     for (int i = 0; i < ARM_JOINTS; i++) {
         fifo_push(&a->fifo[i], a->entry[i], p.pulses[i] - a->mover.pulses[i]);
     }
-    mover_accept(&a->mover, &a->ring, &p);
+    mover_accept(&a->mover, &beside, &p);
 }
 
 static void task(struct arm *a, const struct mechanism *m)

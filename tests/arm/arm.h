@@ -6,6 +6,8 @@
 #ifndef ARM_H
 #define ARM_H
 
+#include <stddef.h>
+
 #include "dda.h"
 #include "fifo.h"
 #include "kernel.h"
@@ -23,6 +25,11 @@ struct arm {
     int32_t entry[ARM_JOINTS][ARM_DEPTH];
     bool planned, told;     /* of the task: the time of a point is over; of the interrupt */
 };
+
+static inline struct mover_beside arm_beside(struct arm *a)
+{
+    return (struct mover_beside){ &a->ring, &a->mean, NULL };
+}
 
 /* At rest with the tool at a place; false if it is out of reach. */
 bool arm_start(struct arm *a, const struct mechanism *m, const double place[AXES]);

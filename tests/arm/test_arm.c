@@ -162,14 +162,15 @@ static void drive_ramp(const struct arm *now, const struct mechanism *m, int32_t
     static struct arm a;
     struct point p;
 
+    const struct mover_beside beside = arm_beside(&a);
     a = *now;
     memcpy(high, a.mover.pulses, AXES * sizeof *high);
     mover_abort(&a.mover, &a.ring);
     for (bool rests = false; !rests; ) {
         rests = mover_resting(&a.mover, &a.ring);
-        mover_advance(&a.mover, &a.ring, FRAME);
-        CHECK(mover_point(&a.mover, &a.ring, m, FRAME, &a.mean, &p));
-        mover_accept(&a.mover, &a.ring, &p);
+        mover_advance(&a.mover, &beside, FRAME);
+        CHECK(mover_point(&a.mover, &beside, m, FRAME, &p));
+        mover_accept(&a.mover, &beside, &p);
         for (int i = 0; i < ARM_JOINTS; i++) {
             high[i] = p.pulses[i] > high[i] ? p.pulses[i] : high[i];
         }
@@ -181,6 +182,8 @@ static void drive_ramp(const struct arm *now, const struct mechanism *m, int32_t
 static void ramps(double tolerance)
 {
     const struct mechanism m = machine();
+    static struct arm copy;
+    const struct mover_beside beside = arm_beside(&arm), aside = arm_beside(&copy);
     double at[3][AXES];
     int32_t high[AXES];
 
@@ -194,12 +197,11 @@ static void ramps(double tolerance)
     }
     for (int n = 0; !mover_resting(&arm.mover, &arm.ring) && n < 5000; n++) {
         struct point p;
-        static struct arm copy;
         for (double left = FRAME; left > 0.0 && !mover_resting(&arm.mover, &arm.ring); ) {
-            left = mover_advance(&arm.mover, &arm.ring, left);
+            left = mover_advance(&arm.mover, &beside, left);
         }
-        CHECK(mover_point(&arm.mover, &arm.ring, &m, FRAME, &arm.mean, &p));
-        mover_accept(&arm.mover, &arm.ring, &p);
+        CHECK(mover_point(&arm.mover, &beside, &m, FRAME, &p));
+        mover_accept(&arm.mover, &beside, &p);
         if (n % 16) {
             continue;
         }
@@ -210,11 +212,11 @@ static void ramps(double tolerance)
             bounded.joint[i].low = -1e4;
             bounded.joint[i].high = (high[i] + 60) / SCALE;     /* within a frame near rest */
             copy = arm;
-            CHECK_EQ(reach_beyond(&copy.mover, &copy.ring, &bounded, FRAME), -1);
+            CHECK_EQ(reach_beyond(&copy.mover, &aside, &bounded, FRAME), -1);
             bounded.joint[i].high = (high[i] - 60) / SCALE;
             if (high[i] - 60 > arm.mover.pulses[i]) {
                 copy = arm;
-                CHECK_EQ(reach_beyond(&copy.mover, &copy.ring, &bounded, FRAME), i);
+                CHECK_EQ(reach_beyond(&copy.mover, &aside, &bounded, FRAME), i);
             }
         }
     }
@@ -226,6 +228,7 @@ static void orders(void)
     const struct mechanism m = machine();
     const double start[AXES] = { 3.0, 2.5 };
     const struct axes_limits l = { 50.0, 90.0, 500.0, 500.0, 5000.0 };
+    const struct mover_beside beside = arm_beside(&arm);
     struct point p;
 
     CHECK(arm_start(&arm, &m, start) && mover_order(&arm.mover, &m));
@@ -234,11 +237,11 @@ static void orders(void)
     CHECK(mechanism_first(&m, start, joint));
     axes_go(&arm.mover.axes, 0, joint[0] + 10.0, &l);
     while (!mover_resting(&arm.mover, &arm.ring)) {
-        mover_advance(&arm.mover, &arm.ring, FRAME);
-        CHECK(mover_point(&arm.mover, &arm.ring, &m, FRAME, &arm.mean, &p));
+        mover_advance(&arm.mover, &beside, FRAME);
+        CHECK(mover_point(&arm.mover, &beside, &m, FRAME, &p));
         const double r = hypot(p.place[0], p.place[1]);
         CHECK(fabs(r - hypot(3.0, 2.5)) < 1e-9 && p.pulses[1] == other);
-        mover_accept(&arm.mover, &arm.ring, &p);
+        mover_accept(&arm.mover, &beside, &p);
     }
     CHECK(abs(arm.mover.pulses[0] - from - (int32_t)(10.0 * SCALE)) <= 1);
     mover_bind(&arm.mover);

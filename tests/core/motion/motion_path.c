@@ -119,8 +119,8 @@ static void by_radius(void)
         const double r = chord / 2.0 * check_real(&seed, 1.001, 5.0);
         const bool ccw = check_real(&seed, 0, 1) < 0.5, large = check_real(&seed, 0, 1) < 0.5;
         struct path p;
-        CHECK(path_centre_by_radius(PATH_XY, start, end, large ? -r : r, ccw, centre, &half) ==
-              PATH_OK);
+        CHECK_EQ(path_centre_by_radius(PATH_XY, start, end, large ? -r : r, ccw, 0.005, centre,
+                                       &half), PATH_OK);
         CHECK_NEAR(hypot(start[0] - centre[0], start[1] - centre[1]), r, 1e-10 * r);
         CHECK(path_arc(&p, PATH_XY, start, end, centre, ccw, 1, &miss) == PATH_OK);
         const double small = 2.0 * asin(chord / 2.0 / r);

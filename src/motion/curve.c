@@ -1,0 +1,377 @@
+#include "curve.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A motion that will not get this much further [s] before it has to brake waits no longer for
+ * commands to come. */
+static const double WAIT = 0.05;
+
+bool curve_begins(const struct ring *r)
+{
+    const struct command *c = ring_head(r);
+    return c && c->curve && c->tolerance > 0.0 && command_blends(c);
+}
+
+void curve_start(struct curve *c, struct curve_plan *m, const struct ring *r)
+{
+    const struct command *first = ring_head(r);
+
+    memset(c, 0, sizeof *c);
+    memcpy(c->point, first->path.start, sizeof c->point);
+    shape_start(&m->shape, first->merge);
+    pace_start(&m->pace, &m->limits);
+    m->joined = 0;
+    m->joined_way = m->part = m->start = 0.0;
+    c->goal = INFINITY;
+    c->place = pace_place(&m->pace);
+}
+
+/* The next finished piece, or what is left of it, or what lies before the goal, to the pace. */
+static bool join_one(const struct curve *c, struct curve_plan *m)
+{
+    const struct piece *whole = shape_piece(&m->shape, m->joined);
+    const double to = fmin(c->goal - m->joined_way, whole->length);
+    struct piece part;
+
+    if (m->part <= 0.0 && to >= whole->length) {
+        if (!pace_join(&m->pace, whole)) {
+            return false;
+        }
+    } else if (to > m->part) {
+        part = *whole;
+        shape_cut(&part, m->part, to);
+        if (!pace_join(&m->pace, &part)) {
+            return false;
+        }
+    }
+    m->part = to;
+    m->pace.closed = to < whole->length || whole->rest;
+    if (to >= whole->length) {
+        m->joined_way += whole->length;
+        m->part = 0.0;
+        m->joined++;
+    }
+    return true;
+}
+
+/* Finished pieces to the pace, up to the goal, one with a rest at its end, or the last of all. */
+static void join(struct curve *c, struct curve_plan *m)
+{
+    while (!m->pace.closed && m->joined < shape_count(&m->shape) && join_one(c, m)) {
+    }
+    m->pace.closed = m->pace.closed || (c->closed && m->joined == shape_count(&m->shape));
+    c->place = pace_place(&m->pace);
+}
+
+/* Nothing more joins: the chain ends at rest at the end of what has been taken. */
+static void end(struct curve *c, struct curve_plan *m)
+{
+    shape_end(&m->shape);
+    c->closed = true;
+}
+
+/* Take commands while they fit; whether one has been taken. */
+static bool take(struct curve *c, struct curve_plan *m, struct ring *r)
+{
+    bool any = false;
+
+    while (!c->closed && r->count > 0) {
+        const struct command *next = ring_head(r);
+        const bool joins = curve_begins(r) && next->merge == m->shape.merge;
+        const enum shape_status status = joins ? shape_take(&m->shape, next) : SHAPE_OTHER;
+        if (status == SHAPE_OTHER) {
+            end(c, m);
+            break;
+        }
+        if (status == SHAPE_FULL) {
+            break;
+        }
+        memcpy(m->end, next->path.end, sizeof m->end);
+        ring_pop(r);
+        c->idle = 0;
+        any = true;
+    }
+    return any;
+}
+
+/* Whether the motion is about to brake for want of commands. */
+static bool starves(const struct curve *c, const struct curve_plan *m)
+{
+    return c->idle > 0 && pace_stop_way(&m->pace) + WAIT * c->place.rate >= m->pace.end;
+}
+
+/* The motion has come to a rest behind which pieces go on, but not to its goal. */
+static bool rests_between(const struct curve *c, const struct curve_plan *m)
+{
+    return m->pace.closed && pace_at_end(&m->pace) && m->joined < shape_count(&m->shape) &&
+           !curve_waits(c);
+}
+
+/* The pace to where the motion is; if its latest rest has been taken back, that is there. */
+static void resume(struct curve *c, struct curve_plan *m)
+{
+    if (c->start == m->start) {
+        pace_put(&m->pace, &c->place);
+    } else {
+        c->start = m->start;
+        c->place = pace_place(&m->pace);
+    }
+}
+
+/* Of the motion, from the start of the chain. [mm] */
+static double way_of(const struct curve *c)
+{
+    return c->start + c->place.way;
+}
+
+/* Pieces that the pace has, the last one perhaps in part. */
+static int32_t pieces_known(const struct curve_plan *m)
+{
+    return m->joined + (m->part > 0.0);
+}
+
+/* Over the ends of pieces to the one at a way. */
+static const struct piece *find(struct curve *c, const struct curve_plan *m, double way)
+{
+    const struct piece *p = shape_piece(&m->shape, c->at);
+
+    while (way >= c->base + p->length && c->at + 1 < pieces_known(m)) {
+        c->base += p->length;
+        p = shape_piece(&m->shape, ++c->at);
+    }
+    return p;
+}
+
+/* From rest, or at the speed that the pace then gets, from a way of the chain on. */
+static void set_out(struct curve *c, struct curve_plan *m, double way)
+{
+    m->start = c->start = way;
+    pace_start(&m->pace, &m->limits);
+    join(c, m);
+}
+
+/* A block begins with this mark: another line of the program, or call, than the one before. */
+static bool begins_block(const struct curve *c, const struct curve_plan *m, int32_t i)
+{
+    const struct shape_mark *k = shape_mark(&m->shape, i);
+    const int32_t before = i > 0 ? shape_mark(&m->shape, i - 1)->line : c->line;
+    return k->line == 0 || k->line != before;
+}
+
+/* Where the first block begins at or behind a way, and behind the tool; INFINITY: not known. */
+static double next_block(const struct curve *c, const struct curve_plan *m, double way)
+{
+    for (int32_t i = 0; i < shape_marks(&m->shape); i++) {
+        const double at = shape_mark(&m->shape, i)->at;
+        if (at > way_of(c) && at >= way && begins_block(c, m, i)) {
+            return at;
+        }
+    }
+    return INFINITY;
+}
+
+/* Ways that differ by such a share of the way to rest may not be told apart. */
+static const double MARGIN = 0.02;
+
+/* The chain anew from where the motion is, at its speed, to the first block before which it can
+ * come to rest. A change of speed that is smooth ends first. */
+static void halt(struct curve *c, struct curve_plan *m)
+{
+    const double way = way_of(c), rate = c->place.rate;
+    double stop = pace_stop_way(&m->pace) - c->place.way;
+
+    if (!c->halts || c->place.ramping) {
+        return;
+    }
+    find(c, m, way);
+    for (double goal = 0.0; goal < INFINITY; ) {
+        goal = next_block(c, m, way + stop * (1.0 + MARGIN));
+        c->goal = goal;
+        m->joined = c->at;
+        m->joined_way = c->base;
+        m->part = way - c->base;
+        set_out(c, m, way);
+        m->pace.rate = rate;
+        c->place = pace_place(&m->pace);
+        stop = pace_stop_way(&m->pace);
+        if (way + stop <= goal) {
+            break;
+        }
+        stop = fmax(stop, goal - way) * (1.0 + MARGIN);
+    }
+    c->halts = false;
+}
+
+double curve_advance(struct curve *c, struct curve_plan *m, struct ring *r, double override,
+                     double dt)
+{
+    resume(c, m);
+    if (override > 0.0 && take(c, m, r) && r->count == 0 && !m->last) {
+        join(c, m);
+        return dt;
+    }
+    if (!c->closed && r->count == 0 && (m->last || starves(c, m))) {
+        end(c, m);
+    }
+    halt(c, m);
+    join(c, m);
+    dt = pace_advance(&m->pace, override, dt);
+    c->place = pace_place(&m->pace);
+    while (rests_between(c, m) && dt > 0.0 && override > 0.0) {
+        set_out(c, m, m->start + m->pace.end);
+        dt = pace_advance(&m->pace, override, dt);
+        c->place = pace_place(&m->pace);
+    }
+    return curve_done(c, m) ? dt : 0.0;
+}
+
+void curve_single(struct curve *c, struct curve_plan *m, bool on)
+{
+    if (on && !c->closed) {
+        end(c, m);
+    }
+    c->halts = on && !curve_waits(c);
+    if (!on && !curve_waits(c)) {
+        c->goal = INFINITY;
+        m->pace.closed = m->pace.closed && m->part <= 0.0;
+    }
+}
+
+void curve_go(struct curve *c, struct curve_plan *m, bool single)
+{
+    const double way = c->goal;
+
+    c->goal = INFINITY;
+    c->goal = single ? next_block(c, m, way) : INFINITY;
+    set_out(c, m, way);
+}
+
+bool curve_waits(const struct curve *c)
+{
+    return c->place.rate == 0.0 && way_of(c) >= c->goal;
+}
+
+void curve_sample(struct curve *c, struct curve_plan *m)
+{
+    struct piece_state s;
+
+    c->idle++;
+    if (pieces_known(m) == 0) {
+        return;
+    }
+    const double way = way_of(c);
+    const struct piece *p = find(c, m, way);
+    piece_at(p, fmin(fmax(way - c->base, 0.0), p->length), &s);
+    for (int i = 0; i < AXES; i++) {
+        c->point[i] = s.point[i];
+        c->velocity[i] = c->place.rate * s.slope[i];
+    }
+}
+
+const struct shape_mark *curve_begun(struct curve *c, const struct curve_plan *m)
+{
+    const bool known = c->begun < shape_marks(&m->shape);
+    const struct shape_mark *k = known ? shape_mark(&m->shape, c->begun) : NULL;
+    if (!k || (k->at > way_of(c) && !curve_done(c, m)) || (k->at >= c->goal && curve_waits(c))) {
+        return NULL;
+    }
+    c->begun++;
+    c->line = k->line;
+    return k;
+}
+
+void curve_drop(struct curve *c, struct curve_plan *m)
+{
+    shape_drop(&m->shape, c->at);
+    shape_drop_marks(&m->shape, c->begun);
+    m->joined -= c->at;
+    c->at = c->begun = 0;
+}
+
+bool curve_rests(const struct curve *c)
+{
+    return c->place.rate == 0.0;
+}
+
+bool curve_done(const struct curve *c, const struct curve_plan *m)
+{
+    return c->closed && m->pace.closed && pace_at_end(&m->pace) &&
+           m->joined == shape_count(&m->shape);
+}
+
+/* An extent may be told by so much too wide. [mm] */
+static const double NEAR = 1e-6;
+
+struct extent {
+    const struct piece *piece;
+    double bend;            /* [1/mm] most r'' of an axis in the part */
+    double *low, *high;
+};
+
+/* Part of a piece: in halves until nothing in it leaves the places known by more than NEAR. */
+static void widen(const struct extent *e, double u0, const double p0[AXES], double u1,
+                  const double p1[AXES])
+{
+    const double strays = 0.125 * e->bend * (u1 - u0) * (u1 - u0);
+    bool inside = true;
+
+    for (int k = 0; k < AXES; k++) {
+        e->low[k] = fmin(e->low[k], fmin(p0[k], p1[k]));
+        e->high[k] = fmax(e->high[k], fmax(p0[k], p1[k]));
+        inside = inside && fmin(p0[k], p1[k]) - strays >= e->low[k] - NEAR &&
+                 fmax(p0[k], p1[k]) + strays <= e->high[k] + NEAR;
+    }
+    if (!inside && u1 - u0 > NEAR) {
+        struct piece_state s;
+        const double u = 0.5 * (u0 + u1);
+        piece_at(e->piece, u, &s);
+        widen(e, u0, p0, u, s.point);
+        widen(e, u, s.point, u1, p1);
+    }
+}
+
+void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[AXES],
+                       double high[AXES])
+{
+    struct curve at = *c;
+
+    memcpy(low, c->point, sizeof c->point);
+    memcpy(high, c->point, sizeof c->point);
+    resume(&at, m);
+    const double stop = at.start + pace_stop_way(&m->pace);
+    for (double from = way_of(&at); pieces_known(m) > 0 && from < stop; ) {
+        const struct piece *p = find(&at, m, from);
+        const double end = fmin(stop, at.base + p->length);
+        struct piece_bounds b;
+        struct piece_state s[2];
+        if (!(end > from)) {
+            break;
+        }
+        piece_bounds(p, from - at.base, end - at.base, &b);
+        struct extent e = { p, 0.0, low, high };
+        for (int k = 0; k < AXES; k++) {
+            e.bend = fmax(e.bend, fmax(-b.low[1][k], b.high[1][k]));
+        }
+        piece_at(p, from - at.base, &s[0]);
+        piece_at(p, end - at.base, &s[1]);
+        widen(&e, from - at.base, s[0].point, end - at.base, s[1].point);
+        from = end;
+    }
+    for (int k = 0; k < AXES; k++) {
+        low[k] -= NEAR;
+        high[k] += NEAR;
+    }
+}
+
+bool curve_damaged(const struct curve *c, const struct curve_plan *m)
+{
+    const int32_t count = shape_damaged(&m->shape) ? -1 : shape_count(&m->shape);
+    const int32_t marks = count < 0 ? -1 : shape_marks(&m->shape);
+
+    return count < 0 || pace_damaged(&m->pace) || m->joined < 0 || m->joined > count ||
+           (m->part > 0.0 && m->joined == count) || c->begun < 0 || c->begun > marks ||
+           c->at < 0 || (c->at > 0 && c->at >= m->joined + (m->part > 0.0)) ||
+           c->place.head < 0 || c->place.head >= PACE_CELLS || c->place.planned < 0 ||
+           (m->pace.head - c->place.head + PACE_CELLS) % PACE_CELLS + m->pace.count > PACE_CELLS;
+}
