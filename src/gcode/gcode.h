@@ -10,31 +10,60 @@
 
 /* Modal groups of RS-274 that have members here. */
 enum gcode_group {
-    GCODE_NONMODAL,     /* G4 G10 G28 G52 G53 G92 G92.1 G92.2 G92.3 */
-    GCODE_MOTION,       /* G0 G1 G2 G3 G80 */
+    GCODE_NONMODAL,     /* G4 G10 G28 G28.1 G30 G30.1 G52 G53 G92 to G92.3 */
+    GCODE_MOTION,       /* G0 to G3 G5 G5.1 G73 G74 G80 to G89 */
     GCODE_PLANE,        /* G17 G18 G19 */
     GCODE_DISTANCE,     /* G90 G91 */
     GCODE_CENTRE,       /* G90.1 G91.1 */
-    GCODE_FEED_MODE,    /* G94 */
+    GCODE_FEED_MODE,    /* G93 G94 G95 */
     GCODE_UNITS,        /* G20 G21 */
-    GCODE_CUTTER,       /* G40 */
-    GCODE_TOOL,         /* G49 */
-    GCODE_SYSTEM,       /* G54 .. G59 */
+    GCODE_CUTTER,       /* G40 G41 G42 G41.1 G42.1 */
+    GCODE_TOOL,         /* G43 G43.1 G43.2 G49 */
+    GCODE_SYSTEM,       /* G54 .. G59.3 */
     GCODE_PATH,         /* G61 G64 */
-    GCODE_STOP,         /* M0 M1 M2 M30 */
-    GCODE_IO,           /* M62 M63 M64 M65 */
-    GCODE_SPINDLE,      /* M3 M4 M5 */
+    GCODE_SCALING,      /* G50 G51 */
+    GCODE_ROTATION,     /* G68 G69 */
+    GCODE_POLAR,        /* G15 G16 */
+    GCODE_RETRACT,      /* G98 G99 */
+    GCODE_STOP,         /* M0 M1 M2 M30 M60 */
+    GCODE_IO,           /* M62 .. M68 */
+    GCODE_CHANGE,       /* M6 M61 */
+    GCODE_SPINDLE,      /* M3 M4 M5 M19 */
+    GCODE_SURFACE,      /* G96 G97 */
+    GCODE_OVERRIDE,     /* M48 .. M53 */
     GCODE_COOLANT,      /* M7 M8 M9 */
     GCODE_GROUPS
 };
 
-enum { GCODE_ABSENT = -1, GCODE_M_MAX = 4 };    /* M words in a line */
+enum {
+    GCODE_ABSENT = -1,
+    GCODE_NO_MOTION = 800,      /* G80 */
+    GCODE_M_MAX = 4,            /* M words in a line */
+    GCODE_LETTERS = '^' - '@' + 1
+};
 
 struct gcode {
-    const struct token *word[26];           /* by letter, except G, M; NULL if absent */
+    const struct token *word[GCODE_LETTERS];    /* from @ to ^ by letter, except G, M; or NULL */
     const struct token *by[GCODE_GROUPS];   /* the word that gave the code */
     int code[GCODE_GROUPS];                 /* ten times the number of G or M, or GCODE_ABSENT */
+    uint32_t letters;                       /* that have a word, bits from @ on */
+    uint32_t groups;                        /* that have a code, bits */
 };
+
+/* The bit of a letter. */
+#define GCODE_BIT(letter) ((uint32_t)1 << ((letter) - '@'))
+
+/* G2 or G3. */
+static inline bool gcode_arc(int code)
+{
+    return code == 20 || code == 30;
+}
+
+/* G5 or G5.1. */
+static inline bool gcode_spline(int code)
+{
+    return code == 50 || code == 51;
+}
 
 /* The axis words in the order of the axes. */
 #define BLOCK_AXES "XYZUVW"
@@ -53,7 +82,10 @@ enum fault gcode_sort(struct gcode *g, const struct tokens *t, bool angles,
                       struct fault_report *r);
 
 /* The word of a letter, or NULL. */
-const struct token *gcode_word(const struct gcode *g, char letter);
+static inline const struct token *gcode_word(const struct gcode *g, char letter)
+{
+    return g->word[letter - '@'];
+}
 
 /* What an axis word says. [mm], [deg] */
 double gcode_value(const struct block *b, int axis, const struct token *w);

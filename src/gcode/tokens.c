@@ -1,117 +1,176 @@
 #include "tokens.h"
 
-static bool blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\r';
-}
+#include <string.h>
 
-static bool digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
+#include "expression.h"
+#include "modes.h"
 
-/* Letter in upper case, or 0. */
-static char letter(char c)
+/* #1 = value. */
+static enum fault setting(struct tokens *t, struct reading *s)
 {
-    return c >= 'A' && c <= 'Z' ? c : c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : 0;
-}
+    const int32_t from = s->at++;
+    struct setting *to = &t->setting[t->settings];
+    bool whole;
 
-/* First c in text[at, end), or end. */
-static int32_t find(const char *text, int32_t at, int32_t end, char c)
-{
-    while (at < end && text[at] != c) {
-        at++;
+    if (t->settings == TOKENS_WORDS_MAX) {
+        return fault_at(s->r, FAULT_WORD_COUNT, t->at, t->length);
     }
-    return at;
+    enum fault f = expression_parameter(s, &to->which);
+    if (f != FAULT_NONE) {
+        return f;
+    }
+    if (!reading_take(s, '=')) {
+        return reading_fault(s, FAULT_ASSIGNMENT, from);
+    }
+    f = expression_value(s, from, &to->value, &whole);
+    if (f == FAULT_NONE) {
+        to->at = from;
+        to->length = s->at - from;
+        t->settings++;
+    }
+    return f;
 }
 
-/* A number from text[*i] on, blanks between its characters allowed. Digits make an integer below
- * 2^53, and powers of ten to 10^22 are exact, so the one division gives the nearest double. */
-static enum fault number(const char *text, int32_t end, int32_t *i, struct token *w,
-                         struct fault_report *r)
+static enum fault word(struct tokens *t, struct reading *s, char letter)
 {
-    int64_t mantissa = 0;
-    double scale = 1.0;
-    int32_t last = w->at, digits = 0;
-    bool point = false, negative = false, sign = false;
+    if (t->count == TOKENS_WORDS_MAX) {
+        return fault_at(s->r, FAULT_WORD_COUNT, t->at, t->length);
+    }
+    struct token *w = &t->word[t->count];
+    w->letter = letter;
+    w->at = s->at++;
+    const enum fault f = expression_value(s, w->at, &w->value, &w->whole);
+    w->length = s->at - w->at;
+    if (f == FAULT_NONE && w->whole && s->program && s->program->least_increment > 0.0 &&
+        strchr("XYZUVWABCIJKRQ", letter)) {
+        w->value *= s->program->least_increment;
+    }
+    t->count += f == FAULT_NONE;
+    return f;
+}
 
-    for (; *i < end; ++*i) {
-        const char c = text[*i];
-        if (blank(c)) {
-            continue;
+/* The comment is one that other controls act on. */
+static bool acts(struct reading s)
+{
+    static const char words[][12] = {
+        "PRINT,", "DEBUG,", "LOG,", "LOGOPEN,", "LOGAPPEND,", "LOGCLOSE", "PROBEOPEN", "PROBECLOSE"
+    };
+    size_t i = 0;
+
+    while (i < sizeof words / sizeof *words && !reading_word(&s, words[i])) {
+        i++;
+    }
+    return i < sizeof words / sizeof *words;
+}
+
+static enum fault comment(struct reading *s)
+{
+    const int32_t from = s->at++;
+    const bool active = acts(*s);
+
+    while (s->at < s->end && s->text[s->at] != ')') {
+        s->at++;
+    }
+    if (s->at == s->end) {
+        return reading_fault(s, FAULT_COMMENT, from);
+    }
+    s->at++;
+    if (active) {
+        s->r->note = FAULT_NOTE_COMMENT;
+        s->r->note_line = s->r->line;
+        s->r->note_offset = s->r->offset;
+        s->r->note_at = from;
+        s->r->note_length = s->at - from;
+    }
+    return FAULT_NONE;
+}
+
+/* Only line numbers stand in front. */
+static bool first(const struct tokens *t)
+{
+    for (int i = 0; i < t->count; i++) {
+        if (t->word[i].letter != 'N') {
+            return false;
         }
-        if ((c == '+' || c == '-') && !sign && !digits && !point) {
-            sign = true;
-            negative = c == '-';
-        } else if (c == '.' && !point) {
-            point = true;
-        } else if (digit(c)) {
-            digits++;
-            if (mantissa > (((int64_t)1 << 53) - 9) / 10 || scale > 1e21) {
-                return fault_at(r, FAULT_DIGITS, w->at, *i + 1 - w->at);
-            }
-            mantissa = mantissa * 10 + (c - '0');
-            scale *= point ? 10.0 : 1.0;
-        } else {
+    }
+    return t->settings == 0;
+}
+
+/* Take a / and its number in front of a line. */
+static void block_delete(struct tokens *t, struct reading *s)
+{
+    t->slash = reading_take(s, '/');
+    if (t->slash && reading_peek(s) >= '1' && reading_peek(s) <= '9') {
+        s->at++;
+    }
+}
+
+/* The next word, setting or comment that begins with c. */
+static enum fault item(struct tokens *t, struct reading *s, char c)
+{
+    if ((c >= '@' && c <= 'Z') || c == '^') {
+        return word(t, s, c);
+    }
+    if (c == '(') {
+        return comment(s);
+    }
+    if (c == '#') {
+        return setting(t, s);
+    }
+    return fault_at(s->r, FAULT_CHARACTER, s->at++, 1);
+}
+
+/* Behind a fault: to the next letter outside brackets. */
+static void skip(struct reading *s, int32_t from)
+{
+    int depth = 0;
+
+    for (int32_t i = from; i < s->end; i++) {
+        const char c = s->text[i];
+        depth += c == '[' ? 1 : c == ']' ? -1 : 0;
+        if (i >= s->at && i > from && depth <= 0 && (reading_letter(c) || c == '(' || c == ';')) {
+            s->at = i;
+            return;
+        }
+    }
+    s->at = s->end;
+}
+
+enum fault tokens_read(struct tokens *t, struct reading *s)
+{
+    struct fault_report ignored, *const r = s->r;
+    enum fault f = FAULT_NONE;
+    int32_t end = s->end;
+
+    reading_peek(s);
+    while (end > s->at && reading_blank(s->text[end - 1])) {
+        end--;
+    }
+    s->end = end;
+    t->count = t->settings = 0;
+    t->slash = t->flow = false;
+    t->at = s->at;
+    t->length = end - s->at;
+    t->percent = t->length == 1 && s->text[s->at] == '%';
+    if (t->percent) {
+        return FAULT_NONE;
+    }
+    block_delete(t, s);
+    for (char c = reading_peek(s); c != '\0' && c != ';'; c = reading_peek(s)) {
+        const int32_t from = s->at;
+        if (c == 'O' && first(t)) {
+            t->flow = true;
             break;
         }
-        last = *i;
-    }
-    w->length = last + 1 - w->at;
-    if (!digits) {
-        return fault_at(r, FAULT_NUMBER, w->at, w->length);
-    }
-    w->value = (double)mantissa / scale;
-    if (negative) {
-        w->value = -w->value;
-    }
-    return FAULT_NONE;
-}
-
-static enum fault words(struct tokens *t, const char *text, int32_t i, int32_t end,
-                        struct fault_report *r)
-{
-    bool first = true;      /* a / is allowed before anything else */
-
-    while (i < end) {
-        const char c = text[i];
-        if (blank(c)) {
-            i++;
-            continue;
-        }
-        if (c == ';') {
-            return FAULT_NONE;
-        }
-        if (c == '(') {
-            const int32_t close = find(text, i, end, ')');
-            if (close == end) {
-                return fault_at(r, FAULT_COMMENT, i, end - i);
-            }
-            i = close + 1;
-            continue;
-        }
-        if (c == '/' && first) {
-            first = false;
-            t->slash = true;
-            i++;
-            continue;
-        }
-        first = false;
-        if (!letter(c)) {
-            return fault_at(r, FAULT_CHARACTER, i, 1);
-        }
-        if (t->count == TOKENS_WORDS_MAX) {
-            return fault_at(r, FAULT_WORD_COUNT, t->at, t->length);
-        }
-        struct token *w = &t->word[t->count++];
-        w->letter = letter(c);
-        w->at = i++;
-        const enum fault f = number(text, end, &i, w, r);
-        if (f != FAULT_NONE) {
-            return f;
+        const enum fault one = item(t, s, c);
+        if (one != FAULT_NONE) {
+            f = f == FAULT_NONE ? one : f;
+            s->r = &ignored;        /* what follows the first fault is told no more */
+            skip(s, from);
         }
     }
-    return FAULT_NONE;
+    s->r = r;
+    return f;
 }
 
 enum fault tokens_at_word(struct fault_report *r, enum fault f, const struct token *w)
@@ -131,23 +190,4 @@ enum fault tokens_at_words(struct fault_report *r, enum fault f, const struct to
 enum fault tokens_at_line(struct fault_report *r, enum fault f, const struct tokens *t)
 {
     return fault_at(r, f, t->at, t->length);
-}
-
-enum fault tokens_read(struct tokens *t, const char *line, int32_t length,
-                       struct fault_report *r)
-{
-    int32_t at = 0, end = length;
-
-    while (at < end && blank(line[at])) {
-        at++;
-    }
-    while (end > at && blank(line[end - 1])) {
-        end--;
-    }
-    t->count = 0;
-    t->slash = false;
-    t->at = at;
-    t->length = end - at;
-    t->percent = end - at == 1 && line[at] == '%';
-    return t->percent ? FAULT_NONE : words(t, line, at, end, r);
 }

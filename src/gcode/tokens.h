@@ -1,35 +1,42 @@
-/* tokens - cuts one line of a part program into words.
+/* tokens - cuts one line of a part program into words and settings of parameters.
  *
  * Comments in ( ) and behind ; are dropped, case and blanks do not count (also inside numbers),
- * a leading / (block delete) is noted.
+ * a leading / or /1 to /9 (block delete) is noted.
  */
 #ifndef TOKENS_H
 #define TOKENS_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
-#include "fault.h"
+#include "reading.h"
 
 enum { TOKENS_WORDS_MAX = 40 };
 
 struct token {
-    char    letter;         /* 'A'..'Z' */
-    double  value;
+    char    letter;         /* 'A'..'Z', '@', '^' */
+    bool    whole;          /* a number without a decimal point */
     int32_t at, length;     /* where it stands in the line */
+    double  value;
+};
+
+/* #1 = 5: takes effect when the whole line has been read. */
+struct setting {
+    struct parameter which;
+    double  value;
+    int32_t at, length;
 };
 
 struct tokens {
     struct token word[TOKENS_WORDS_MAX];
-    int     count;
+    struct setting setting[TOKENS_WORDS_MAX];
+    int     count, settings;
     bool    percent;        /* the line is a % */
     bool    slash;          /* it begins with a /; noted before any fault behind it */
+    bool    flow;           /* it goes on with an O word, where the reading stopped */
     int32_t at, length;     /* the line without blanks at its ends */
 };
 
-/* Cut a line. *r gets the place of a fault. */
-enum fault tokens_read(struct tokens *t, const char *line, int32_t length,
-                       struct fault_report *r);
+/* Cut what is left of a line. s->r gets the place of the first fault; the words around it are there
+ * as far as they can be read. */
+enum fault tokens_read(struct tokens *t, struct reading *s);
 
 /* Note a word, a word and the one it does not agree with, or the whole line as the offending text;
  * returns f. */

@@ -1,0 +1,295 @@
+#include "expression.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double EQUAL = 1e-6;       /* closer values are equal, as LinuxCNC documents it */
+static const double DEGREE = 0.017453292519943295;
+enum { DEEPEST = 30 };                  /* brackets and signs within one another */
+
+enum operation {
+    POWER, TIMES, DIVIDED, MODULO, PLUS, MINUS, EQUALS, DIFFERS, GREATER, AT_LEAST, LESS, AT_MOST,
+    AND, OR, XOR, NO_OPERATION
+};
+
+/* How firmly an operation binds. */
+static int rank(enum operation o)
+{
+    return o == POWER ? 5 : o <= MODULO ? 4 : o <= MINUS ? 3 : o <= AT_MOST ? 2 : 1;
+}
+
+/* The next operation; it is taken. */
+static enum operation operation(struct reading *s)
+{
+    static const struct { char word[4]; enum operation is; } words[] = {
+        { "**", POWER }, { "*", TIMES }, { "/", DIVIDED }, { "+", PLUS }, { "-", MINUS },
+        { "MOD", MODULO }, { "EQ", EQUALS }, { "NE", DIFFERS }, { "GT", GREATER },
+        { "GE", AT_LEAST }, { "LT", LESS }, { "LE", AT_MOST }, { "AND", AND }, { "OR", OR },
+        { "XOR", XOR },
+    };
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        if (reading_word(s, words[i].word)) {
+            return words[i].is;
+        }
+    }
+    return NO_OPERATION;
+}
+
+/* Remainder of the sign of none: from 0 to below |b|. */
+static double modulo(double a, double b)
+{
+    const double rest = fmod(a, b);
+    return rest < 0.0 ? rest + fabs(b) : rest;
+}
+
+static double apply(enum operation o, double a, double b)
+{
+    switch (o) {
+    case POWER:     return pow(a, b);
+    case TIMES:     return a * b;
+    case DIVIDED:   return a / b;
+    case MODULO:    return modulo(a, b);
+    case PLUS:      return a + b;
+    case MINUS:     return a - b;
+    case EQUALS:    return fabs(a - b) < EQUAL;
+    case DIFFERS:   return fabs(a - b) >= EQUAL;
+    case GREATER:   return a > b;
+    case AT_LEAST:  return a >= b;
+    case LESS:      return a < b;
+    case AT_MOST:   return a <= b;
+    case AND:       return a != 0.0 && b != 0.0;
+    case OR:        return a != 0.0 || b != 0.0;
+    case XOR:       return (a != 0.0) != (b != 0.0);
+    case NO_OPERATION: break;
+    }
+    return 0.0;
+}
+
+/* Value, operation, value, ... as far as the operations bind at least as firmly as `least`. */
+static enum fault chain(struct reading *s, int least, double *value)
+{
+    const int32_t from = s->at;
+    bool whole;
+    enum fault f = expression_value(s, from - 1, value, &whole);    /* behind [ or an operation */
+
+    while (f == FAULT_NONE && reading_peek(s) != ']' && s->at < s->end) {
+        const int32_t at = s->at;
+        const enum operation o = operation(s);
+        double right;
+        if (o == NO_OPERATION) {
+            s->at += s->at < s->end;
+            return reading_fault(s, FAULT_OPERATOR, at);
+        }
+        if (rank(o) < least) {
+            s->at = at;
+            return FAULT_NONE;
+        }
+        f = chain(s, rank(o) + 1, &right);
+        if (f != FAULT_NONE) {
+            return f;
+        }
+        if ((o == DIVIDED || o == MODULO) && right == 0.0) {
+            return reading_fault(s, FAULT_DIVISION, from);
+        }
+        if (o == POWER && *value < 0.0 && right != floor(right)) {
+            return reading_fault(s, FAULT_ARGUMENT, from);
+        }
+        *value = apply(o, *value, right);
+        f = isfinite(*value) ? FAULT_NONE : reading_fault(s, FAULT_LARGE, from);
+    }
+    return f;
+}
+
+enum fault expression_brackets(struct reading *s, double *value)
+{
+    const int32_t from = s->at;
+
+    if (!reading_take(s, '[')) {
+        s->at += s->at < s->end;
+        return reading_fault(s, FAULT_BRACKET, from);
+    }
+    if (s->depth == DEEPEST) {
+        return reading_fault(s, FAULT_DEEP, from);
+    }
+    s->depth++;
+    enum fault f = chain(s, 1, value);
+    if (f == FAULT_NONE && !reading_take(s, ']')) {
+        f = reading_fault(s, FAULT_BRACKET, from);
+    }
+    s->depth--;
+    return f;
+}
+
+enum function {
+    ABS, ACOS, ASIN, ATAN, COS, EXISTS, EXP, FIX, FUP, LN, ROUND, SIN, SQRT, TAN, NO_FUNCTION
+};
+
+static enum function function(struct reading *s)
+{
+    static const char words[NO_FUNCTION][8] = {
+        "ABS", "ACOS", "ASIN", "ATAN", "COS", "EXISTS", "EXP", "FIX", "FUP", "LN", "ROUND", "SIN",
+        "SQRT", "TAN"
+    };
+    int i = 0;
+    while (i < NO_FUNCTION && !reading_word(s, words[i])) {
+        i++;
+    }
+    return (enum function)i;
+}
+
+static double of(enum function f, double x)
+{
+    switch (f) {
+    case ABS:   return fabs(x);
+    case ACOS:  return acos(x) / DEGREE;
+    case ASIN:  return asin(x) / DEGREE;
+    case COS:   return cos(x * DEGREE);
+    case EXP:   return exp(x);
+    case FIX:   return floor(x);
+    case FUP:   return ceil(x);
+    case LN:    return log(x);
+    case ROUND: return round(x);
+    case SIN:   return sin(x * DEGREE);
+    case SQRT:  return sqrt(x);
+    case TAN:   return tan(x * DEGREE);
+    case ATAN:
+    case EXISTS:
+    case NO_FUNCTION: break;
+    }
+    return 0.0;
+}
+
+/* [#<name>]: 1 if it has been set. */
+static enum fault exists(struct reading *s, int32_t from, double *value)
+{
+    struct parameter which;
+
+    if (!reading_take(s, '[') || !reading_take(s, '#')) {
+        return reading_fault(s, FAULT_EXISTS, from);
+    }
+    const enum fault f = expression_parameter(s, &which);
+    if (f != FAULT_NONE) {
+        return f;
+    }
+    if (which.number || !reading_take(s, ']')) {
+        return reading_fault(s, FAULT_EXISTS, from);
+    }
+    *value = parameters_get(s->in, s->program, &which, value) == FAULT_NONE;
+    return FAULT_NONE;
+}
+
+static enum fault call(struct reading *s, int32_t from, double *value)
+{
+    const int32_t at = s->at;
+    const enum function g = function(s);
+    double x, y = 0.0;
+
+    if (g == NO_FUNCTION) {
+        return reading_fault(s, FAULT_NUMBER, from);
+    }
+    if (g == EXISTS) {
+        return exists(s, at, value);
+    }
+    enum fault f = expression_brackets(s, &x);
+    if (f == FAULT_NONE && g == ATAN) {
+        if (!reading_take(s, '/')) {
+            return reading_fault(s, FAULT_ATAN, at);
+        }
+        f = expression_brackets(s, &y);
+    }
+    if (f != FAULT_NONE) {
+        return f;
+    }
+    if (((g == ACOS || g == ASIN) && fabs(x) > 1.0) || (g == SQRT && x < 0.0) ||
+        (g == LN && x <= 0.0)) {
+        return reading_fault(s, FAULT_ARGUMENT, at);
+    }
+    *value = g == ATAN ? atan2(x, y) / DEGREE : of(g, x);
+    return isfinite(*value) ? FAULT_NONE : reading_fault(s, FAULT_LARGE, at);
+}
+
+enum fault expression_parameter(struct reading *s, struct parameter *which)
+{
+    const int32_t from = s->at - 1;
+    double number;
+    bool whole;
+
+    which->number = 0;
+    if (!s->in) {
+        return reading_fault(s, FAULT_PARAMETER, from);
+    }
+    if (reading_take(s, '<')) {
+        return reading_name(s, from, which->name);
+    }
+    const enum fault f = expression_value(s, from, &number, &whole);
+    if (f != FAULT_NONE) {
+        return f;
+    }
+    return reading_integer(number, &which->number) && which->number > 0
+               ? FAULT_NONE : reading_fault(s, FAULT_PARAMETER, from);
+}
+
+/* A sign in front of anything but a number. */
+static enum fault signed_value(struct reading *s, int32_t from, double *value, bool *whole)
+{
+    const bool minus = reading_peek(s) == '-';
+
+    if (s->depth == DEEPEST) {
+        return reading_fault(s, FAULT_DEEP, from);
+    }
+    s->at++;
+    s->depth++;
+    const enum fault f = expression_value(s, from, value, whole);
+    s->depth--;
+    *value = f == FAULT_NONE && minus ? -*value : *value;
+    return f;
+}
+
+/* What stands behind a sign is no number: the sign is one of a value. */
+static bool sign_of_value(const struct reading *s)
+{
+    int32_t i = s->at + 1;
+
+    while (i < s->end && reading_blank(s->text[i])) {
+        i++;
+    }
+    return i < s->end && (s->text[i] == '#' || s->text[i] == '[' || s->text[i] == '-' ||
+                          s->text[i] == '+' || reading_letter(s->text[i]));
+}
+
+enum fault expression_value(struct reading *s, int32_t from, double *value, bool *whole)
+{
+    const char c = reading_peek(s);
+    const int32_t at = s->at;
+
+    if (reading_digit(c) || c == '.') {
+        return reading_number(s, from, value, whole);
+    }
+    *whole = false;
+    *value = 0.0;
+    if ((c == '+' || c == '-') && !sign_of_value(s)) {
+        return reading_number(s, from, value, whole);
+    }
+    if (c == '+' || c == '-') {
+        return signed_value(s, from, value, whole);
+    }
+    if (c == '[') {
+        return expression_brackets(s, value);
+    }
+    if (c == '#') {
+        struct parameter which;
+        if (s->depth == DEEPEST) {
+            return reading_fault(s, FAULT_DEEP, from);
+        }
+        s->at++;
+        s->depth++;
+        enum fault f = expression_parameter(s, &which);
+        s->depth--;
+        if (f == FAULT_NONE) {
+            f = parameters_get(s->in, s->program, &which, value);
+            f = f != FAULT_NONE ? reading_fault(s, f, at) : f;
+        }
+        return f;
+    }
+    return reading_letter(c) ? call(s, from, value) : reading_number(s, from, value, whole);
+}

@@ -1,0 +1,32 @@
+/* flow_step - a line with an O word on its way, between the files of flow. */
+#ifndef FLOW_STEP_H
+#define FLOW_STEP_H
+
+#include "flow.h"
+
+struct flow_step {
+    struct interpreter *in;
+    struct reading *s;
+    struct oword o;
+    struct oword_place here;
+    int32_t at;             /* the O */
+};
+
+/* Note the line as far as it has been read as the offending text; returns f. */
+enum fault flow_refuse(const struct flow_step *l, enum fault f);
+
+/* Go on elsewhere; or back, where what is read again counts. */
+void flow_go(struct interpreter *in, struct oword_place to);
+enum fault flow_again(struct interpreter *in, struct oword_place to, struct fault_report *r);
+
+/* The place behind the line that has been read. */
+struct oword_place flow_behind(const struct interpreter *in);
+
+/* Read [ ] and the end of the line. */
+enum fault flow_condition(const struct flow_step *l, double *value);
+
+/* call; return and endsub. */
+enum fault flow_call_line(const struct flow_step *l);
+enum fault flow_return_line(const struct flow_step *l);
+
+#endif

@@ -1,0 +1,369 @@
+#include "frame.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "offsets.h"
+
+static const double DEGREE = 0.017453292519943295;
+
+/* Factors of G51, as Fanuc has them, either sign. */
+static const double FACTOR_MIN = 0.001, FACTOR_MAX = 999.999;
+
+/* Turn two coordinates; quarter turns are exact. */
+static void turn(double degrees, double *x, double *y)
+{
+    static const double COSINE[4] = { 1.0, 0.0, -1.0, 0.0 };
+    const double rest = fmod(degrees, 360.0), quarter = rest / 90.0;
+    const bool whole = quarter == round(quarter);
+    const int k = whole ? ((int)quarter + 4) % 4 : 0;
+    const double c = whole ? COSINE[k] : cos(rest * DEGREE);
+    const double s = whole ? COSINE[(k + 3) % 4] : sin(rest * DEGREE);
+    const double turned = c * *x - s * *y;
+
+    *y = s * *x + c * *y;
+    *x = turned;
+}
+
+static double system_turn(const struct interpreter *in)
+{
+    return in->words.turn[in->system];
+}
+
+static double scaled(const struct words *w, int axis, double x)
+{
+    return w->centre[axis] + w->factor[axis] * (x - w->centre[axis]);
+}
+
+/* Centre of the rotation behind the scaling. */
+static void rotation_centre(const struct words *w, double about[2])
+{
+    const int axis[2] = { path_first((enum path_plane)w->plane),
+                          path_second((enum path_plane)w->plane) };
+
+    for (int i = 0; i < 2; i++) {
+        about[i] = w->scaled ? scaled(w, axis[i], w->about[i]) : w->about[i];
+    }
+}
+
+/* Rotate about the centre of G68 by its angle, or back. */
+static void rotate(const struct words *w, double sign, double point[AXES])
+{
+    double *x = &point[path_first((enum path_plane)w->plane)];
+    double *y = &point[path_second((enum path_plane)w->plane)];
+    double about[2];
+
+    rotation_centre(w, about);
+    *x -= about[0];
+    *y -= about[1];
+    turn(sign * w->angle, x, y);
+    *x += about[0];
+    *y += about[1];
+}
+
+void frame_machine(const struct interpreter *in, const double program[AXES], double machine[AXES])
+{
+    const struct words *w = &in->words;
+    const bool turned = system_turn(in) != 0.0;
+
+    memcpy(machine, program, AXES * sizeof *machine);
+    for (int i = 0; i < 3 && w->scaled; i++) {
+        machine[i] = scaled(w, i, machine[i]);
+    }
+    if (w->rotated) {
+        rotate(w, 1.0, machine);
+    }
+    for (int i = 0; i < 2 && turned; i++) {
+        machine[i] += offsets_shift(in, i);
+    }
+    if (turned) {
+        turn(system_turn(in), &machine[0], &machine[1]);
+    }
+    for (int i = 0; i < AXES; i++) {
+        machine[i] += turned && i < 2 ? offsets_origin(in, i) : offsets_zero(in, i);
+    }
+}
+
+void frame_program(const struct interpreter *in, const double machine[AXES], double program[AXES])
+{
+    const struct words *w = &in->words;
+    const bool turned = system_turn(in) != 0.0;
+
+    for (int i = 0; i < AXES; i++) {
+        program[i] = machine[i] - (turned && i < 2 ? offsets_origin(in, i) : offsets_zero(in, i));
+    }
+    if (turned) {
+        turn(-system_turn(in), &program[0], &program[1]);
+    }
+    for (int i = 0; i < 2 && turned; i++) {
+        program[i] -= offsets_shift(in, i);
+    }
+    if (w->rotated) {
+        rotate(w, -1.0, program);
+    }
+    for (int i = 0; i < 3 && w->scaled; i++) {
+        program[i] = w->centre[i] + (program[i] - w->centre[i]) / w->factor[i];
+    }
+}
+
+void frame_way(const struct interpreter *in, double way[3])
+{
+    const struct words *w = &in->words;
+
+    for (int i = 0; i < 3 && w->scaled; i++) {
+        way[i] *= w->factor[i];
+    }
+    if (w->rotated) {
+        turn(w->angle, &way[path_first((enum path_plane)w->plane)],
+             &way[path_second((enum path_plane)w->plane)]);
+    }
+    if (system_turn(in) != 0.0) {
+        turn(system_turn(in), &way[0], &way[1]);
+    }
+}
+
+bool frame_circles(const struct interpreter *in, enum path_plane plane, double *ratio,
+                   bool *mirrored)
+{
+    const struct words *w = &in->words;
+    const double a = w->scaled ? w->factor[path_first(plane)] : 1.0;
+    const double b = w->scaled ? w->factor[path_second(plane)] : 1.0;
+
+    *ratio = fabs(a);
+    *mirrored = a * b < 0.0;
+    return fabs(a) == fabs(b) && (!w->rotated || w->plane == (int32_t)plane) &&
+           (system_turn(in) == 0.0 || plane == PATH_XY);
+}
+
+/* Axes that a word of one of them moves together: bits. */
+static int coupled(const struct interpreter *in)
+{
+    const enum path_plane plane = (enum path_plane)in->words.plane;
+    int mask = system_turn(in) != 0.0 ? 3 : 0;
+
+    if (in->words.rotated) {
+        mask |= 1 << path_first(plane) | 1 << path_second(plane);
+    }
+    return mask;
+}
+
+/* @ and ^: radius and angle about the zero of X and Y; what is not named stays, G91 adds. */
+static enum fault polar_words(const struct interpreter *in, const struct block *b,
+                              double program[AXES], struct fault_report *r)
+{
+    const struct token *radius = gcode_word(&b->g, '@'), *angle = gcode_word(&b->g, '^');
+    const struct token *xy = gcode_first(&b->g, "XY"), *first = radius ? radius : angle;
+
+    if (xy) {
+        return tokens_at_words(r, FAULT_SHARED, first, xy);
+    }
+    double length = hypot(program[0], program[1]);
+    double azimuth = atan2(program[1], program[0]) / DEGREE;
+    if (length == 0.0 && (in->incremental || !angle)) {
+        return tokens_at_word(r, FAULT_POLE, first);
+    }
+    length = radius ? radius->value * b->scale + (in->incremental ? length : 0.0) : length;
+    azimuth = angle ? angle->value + (in->incremental ? azimuth : 0.0) : azimuth;
+    program[0] = length;
+    program[1] = 0.0;
+    turn(azimuth, &program[0], &program[1]);
+    return FAULT_NONE;
+}
+
+/* G16: the plane's first word is a radius, its second an angle. With G91 a radius counts from where
+ * the tool is, and an angle from the one before. */
+static bool polar_mode(struct interpreter *in, const struct block *b, double program[AXES])
+{
+    struct words *w = &in->words;
+    const int axis[2] = { path_first(in->plane), path_second(in->plane) };
+    const struct token *radius = gcode_word(&b->g, BLOCK_AXES[axis[0]]);
+    const struct token *angle = gcode_word(&b->g, BLOCK_AXES[axis[1]]);
+
+    if (!radius && !angle) {
+        return false;
+    }
+    for (int i = 0; i < 2; i++) {
+        w->pole[i] = !in->incremental ? 0.0 : radius ? program[axis[i]] : w->pole[i];
+    }
+    w->radius = radius ? radius->value * b->scale : w->radius;
+    w->azimuth = angle ? angle->value + (in->incremental ? w->azimuth : 0.0) : w->azimuth;
+    program[axis[0]] = w->radius;
+    program[axis[1]] = 0.0;
+    turn(w->azimuth, &program[axis[0]], &program[axis[1]]);
+    for (int i = 0; i < 2; i++) {
+        program[axis[i]] += w->pole[i];
+    }
+    return true;
+}
+
+enum fault frame_end(struct interpreter *in, const struct program *p, const struct block *b,
+                     double end[AXES], struct fault_report *r)
+{
+    const struct words *w = &in->words;
+    const bool machine = b->g.code[GCODE_NONMODAL] == 530;
+    const int axis[2] = { path_first(in->plane), path_second(in->plane) };
+    const int together = coupled(in);
+    const bool at_pole = b->g.letters & (GCODE_BIT('@') | GCODE_BIT('^'));
+    const bool framed = w->scaled || together || w->polar || at_pole;
+    double program[AXES], place[AXES];
+    int moved = 0, polar = 0;
+
+    memcpy(end, in->point, AXES * sizeof *end);
+    if (framed) {
+        frame_program(in, in->point, program);
+    }
+    if (at_pole && !machine) {
+        const enum fault f = polar_words(in, b, program, r);
+        if (f != FAULT_NONE) {
+            return f;
+        }
+        polar = 3;
+    } else if (w->polar && !machine && b->g.code[GCODE_NONMODAL] == GCODE_ABSENT &&
+               polar_mode(in, b, program)) {
+        polar = 1 << axis[0] | 1 << axis[1];
+    }
+    for (int i = 0; i < AXES; i++) {
+        const struct token *word = gcode_word(&b->g, BLOCK_AXES[i]);
+        if ((word || (polar & 1 << i)) && !p->machine.axis[i]) {
+            return word ? tokens_at_word(r, FAULT_AXIS, word)
+                        : tokens_at_line(r, FAULT_AXIS, &b->tokens);
+        }
+        if (!word || (polar & 1 << i)) {
+            continue;
+        }
+        const double value = gcode_value(b, i, word);
+        const double way = w->scaled && i < 3 ? w->factor[i] * value : value;
+        if (machine) {
+            end[i] = value;
+        } else if (in->incremental && !(together & 1 << i)) {
+            end[i] += way;
+        } else if (!framed) {
+            end[i] = value + offsets_zero(in, i);
+        } else {
+            moved |= 1 << i;
+        }
+        if (framed) {
+            program[i] = in->incremental ? program[i] + value : value;
+        }
+    }
+    if (!framed) {
+        return FAULT_NONE;
+    }
+    moved |= polar;
+    moved |= moved & together ? together : 0;
+    frame_machine(in, program, place);
+    for (int i = 0; i < AXES; i++) {
+        end[i] = moved & 1 << i ? place[i] : end[i];
+    }
+    return FAULT_NONE;
+}
+
+/* Centre of G51 or G68: the words, where the tool is for an axis without one. */
+static double centre_of(const struct block *b, int axis, const double here[AXES])
+{
+    const struct token *word = gcode_word(&b->g, BLOCK_AXES[axis]);
+
+    return word ? gcode_value(b, axis, word) : here[axis];
+}
+
+static enum fault scale(struct interpreter *in, const struct block *b, struct fault_report *r)
+{
+    static const char LETTERS[] = "IJK";
+    const struct token *all = gcode_word(&b->g, 'P'), *any = gcode_first(&b->g, LETTERS);
+    double here[AXES];
+
+    if (all && any) {
+        return tokens_at_words(r, FAULT_SHARED, all, any);
+    }
+    if (!all && !any) {
+        return tokens_at_line(r, FAULT_NO_FACTOR, &b->tokens);
+    }
+    frame_program(in, in->point, here);
+    struct words w = in->words;
+    w.scaled = true;
+    for (int i = 0; i < 3; i++) {
+        const struct token *word = all ? all : gcode_word(&b->g, LETTERS[i]);
+        w.factor[i] = word ? word->value : 1.0;
+        if (!(fabs(w.factor[i]) >= FACTOR_MIN && fabs(w.factor[i]) <= FACTOR_MAX)) {
+            return tokens_at_word(r, FAULT_VALUE, word);
+        }
+        w.centre[i] = centre_of(b, i, here);
+    }
+    in->words = w;
+    return FAULT_NONE;
+}
+
+static enum fault rotation(struct interpreter *in, const struct block *b, struct fault_report *r)
+{
+    const struct token *angle = gcode_word(&b->g, 'R');
+    const struct token *normal = gcode_word(&b->g, BLOCK_AXES[in->plane]);
+    struct words *w = &in->words;
+    double here[AXES];
+
+    if (!angle) {
+        return tokens_at_line(r, FAULT_NO_ANGLE, &b->tokens);
+    }
+    if (normal) {
+        return tokens_at_word(r, FAULT_UNUSED, normal);
+    }
+    frame_program(in, in->point, here);
+    w->rotated = true;
+    w->plane = (int32_t)in->plane;
+    w->angle = angle->value;
+    w->about[0] = centre_of(b, path_first(in->plane), here);
+    w->about[1] = centre_of(b, path_second(in->plane), here);
+    return FAULT_NONE;
+}
+
+static void begin_polar(struct interpreter *in)
+{
+    struct words *w = &in->words;
+    double here[AXES];
+
+    frame_program(in, in->point, here);
+    const double x = here[path_first(in->plane)], y = here[path_second(in->plane)];
+    w->polar = true;
+    w->pole[0] = w->pole[1] = 0.0;
+    w->radius = hypot(x, y);
+    w->azimuth = atan2(y, x) / DEGREE;
+}
+
+bool frame_takes_axes(const struct block *b)
+{
+    return b->g.code[GCODE_SCALING] == 510 || b->g.code[GCODE_ROTATION] == 680;
+}
+
+enum fault frame_change(struct interpreter *in, const struct program *p, const struct block *b,
+                        struct fault_report *r)
+{
+    const int scaling = b->g.code[GCODE_SCALING], turning = b->g.code[GCODE_ROTATION];
+    enum fault f = FAULT_NONE;
+
+    for (int i = 0; i < AXES && frame_takes_axes(b); i++) {
+        const struct token *word = gcode_word(&b->g, BLOCK_AXES[i]);
+        if (word && (i >= 3 || !p->machine.axis[i])) {
+            return tokens_at_word(r, i >= 3 ? FAULT_UNUSED : FAULT_AXIS, word);
+        }
+    }
+    if (turning == 690) {
+        in->words.rotated = false;
+    }
+    if (scaling != GCODE_ABSENT && in->words.rotated) {     /* the order in which they apply */
+        return tokens_at_word(r, FAULT_FRAME, b->g.by[GCODE_SCALING]);
+    }
+    if (scaling == 500) {
+        in->words.scaled = false;
+    } else if (scaling == 510) {
+        f = scale(in, b, r);
+    }
+    if (turning == 680 && f == FAULT_NONE) {
+        f = rotation(in, b, r);
+    }
+    if (f == FAULT_NONE && b->g.code[GCODE_POLAR] == 160) {
+        begin_polar(in);
+    } else if (b->g.code[GCODE_POLAR] == 150) {
+        in->words.polar = false;
+    }
+    return f;
+}

@@ -1,0 +1,102 @@
+#include "reading.h"
+
+#include <math.h>
+#include <string.h>
+
+bool reading_word(struct reading *s, const char *letters)
+{
+    const int32_t from = s->at;
+
+    for (; *letters; letters++) {
+        if (!reading_take(s, *letters)) {
+            s->at = from;
+            return false;
+        }
+    }
+    return true;
+}
+
+enum fault reading_fault(struct reading *s, enum fault f, int32_t from)
+{
+    int32_t end = s->at;
+
+    while (from < end && reading_blank(s->text[from])) {
+        from++;
+    }
+    while (end > from && reading_blank(s->text[end - 1])) {
+        end--;
+    }
+    return fault_at(s->r, f, from, end - from);
+}
+
+/* Digits make an integer below 2^53, and powers of ten to 10^22 are exact, so the one division
+ * gives the nearest double. */
+enum fault reading_number(struct reading *s, int32_t from, double *value, bool *whole)
+{
+    const char *const text = s->text;
+    const int32_t end = s->end;
+    int64_t mantissa = 0;
+    double scale = 1.0;
+    int32_t i = s->at, last = from, digits = 0;
+    bool point = false, negative = false, sign = false;
+
+    for (; i < end; ++i) {
+        const char c = text[i];
+        if (reading_blank(c)) {
+            continue;
+        }
+        if ((c == '+' || c == '-') && !sign && !digits && !point) {
+            sign = true;
+            negative = c == '-';
+        } else if (c == '.' && !point) {
+            point = true;
+        } else if (reading_digit(c)) {
+            digits++;
+            if (mantissa > (((int64_t)1 << 53) - 9) / 10 || scale > 1e21) {
+                return fault_at(s->r, FAULT_DIGITS, from, i + 1 - from);
+            }
+            mantissa = mantissa * 10 + (c - '0');
+            scale *= point ? 10.0 : 1.0;
+        } else {
+            break;
+        }
+        last = i;
+    }
+    s->at = last + 1;
+    if (!digits) {
+        return reading_fault(s, FAULT_NUMBER, from);
+    }
+    *value = (double)mantissa / scale;
+    if (negative) {
+        *value = -*value;
+    }
+    *whole = !point;
+    return FAULT_NONE;
+}
+
+enum fault reading_name(struct reading *s, int32_t from, char name[PARAMETERS_NAME])
+{
+    int length = 0;
+
+    memset(name, 0, PARAMETERS_NAME);
+    for (char c = reading_peek(s); c != '>'; c = reading_peek(s)) {
+        if (c == '\0' || length == PARAMETERS_NAME - 1) {
+            return reading_fault(s, FAULT_NAME, from);
+        }
+        name[length++] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+        s->at++;
+    }
+    s->at++;
+    return length > 0 ? FAULT_NONE : reading_fault(s, FAULT_NAME, from);
+}
+
+bool reading_integer(double value, int32_t *whole)
+{
+    const double nearest = round(value);
+
+    if (!(fabs(value) < 1e9) || fabs(value - nearest) > 1e-4) {
+        return false;
+    }
+    *whole = (int32_t)nearest;
+    return true;
+}
