@@ -73,8 +73,8 @@ int main(void)
     refused(false, "G1 C5 F600\n", 1, "C5", FAULT_WORD);
     refused(true, "G1 A1 B2 A3 F600\n", 1, "A3", FAULT_TWICE);
     refused(true, "G1 C1 C1 F600\n", 1, "C1", FAULT_TWICE);
-    refused(true, "G1 D1 F600\n", 1, "D1", FAULT_WORD);
+    refused(true, "G1 D1 F600\n", 1, "D1", FAULT_UNUSED);
     refused(true, "A5\n", 1, "A5", FAULT_NO_MOTION);
-    refused(true, "G28.1 A5\n", 1, "G28.1", FAULT_WORD);
+    refused(true, "G28.1 A5\n", 1, "A5", FAULT_NO_MOTION);
     return check_result();
 }

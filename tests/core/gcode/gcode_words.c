@@ -75,10 +75,15 @@ static void shifts(void)
     begin(&x, "G1 X10\nG92 X0 Y1\nG92.2\nG92 X4\nX4 Y0\n");
     CHECK_EQ(next(&x), COMMAND_LINE);
     CHECK_EQ(next(&x), -1);     /* G92 begins afresh after G92.2: X4 is 10, Y0 is 0 */
-    begin(&x, "G52 X3 Y-2\nG1 X10\nG92 X1 Y5\nX2 Y5\nG52 X0 Y0\nX2 Y5\n");
+    begin(&x, "G52 X3 Y-2\nG1 X10\nG92 X1 Y5\nX2 Y5\nG52 X0\nX2 Y5\nG92.2 X2 Y5\nG92.3 Y6\n"
+              "G92.1\nG52 X1\nG92.2\nX7 Y0\nG92.3 X7\n");
     expect_move(&x, COMMAND_LINE, 13.0, 0.0, 0.0);
     expect_move(&x, COMMAND_LINE, 14.0, 0.0, 0.0);      /* 13 is X1, whatever G52 moved; 0 is Y5 */
-    expect_move(&x, COMMAND_LINE, 11.0, 2.0, 0.0);      /* less what G52 had moved */
+    expect_move(&x, COMMAND_LINE, 2.0, 0.0, 0.0);       /* they share what they set */
+    expect_move(&x, COMMAND_LINE, 2.0, 5.0, 0.0);
+    expect_move(&x, COMMAND_LINE, 2.0, 1.0, 0.0);
+    expect_move(&x, COMMAND_LINE, 7.0, 0.0, 0.0);       /* G92.2 takes G52 out of force, too */
+    expect_move(&x, COMMAND_LINE, 8.0, 0.0, 0.0);
     CHECK_EQ(next(&x), -1);
 }
 
@@ -212,6 +217,17 @@ static void digital(void)
     CHECK_EQ(x.r.fault, FAULT_SHARED);
 }
 
+/* G80 beside a motion word gives way to it, on either side. */
+static void safety_line(void)
+{
+    struct reader x;
+    begin(&x, "G17 G21 G40 G49 G80 G90 G1 X5\nG0 G80 X6\nX7\nG80\n");
+    expect_move(&x, COMMAND_LINE, 5.0, 0.0, 0.0);
+    expect_move(&x, COMMAND_PTP, 6.0, 0.0, 0.0);
+    expect_move(&x, COMMAND_PTP, 7.0, 0.0, 0.0);
+    CHECK_EQ(next(&x), -1);
+}
+
 /* A block may do it all; the order is that of RS-274, not that of the words. */
 static void order(void)
 {
@@ -241,6 +257,7 @@ int main(void)
     stops();
     spindle_and_coolant();
     digital();
+    safety_line();
     order();
     return check_result();
 }

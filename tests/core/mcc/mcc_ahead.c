@@ -8,8 +8,19 @@ static void random_path(uint64_t *seed, const double start[AXES], struct path *p
     for (int i = 0; i < 3; i++) {
         end[i] = start[i] + check_real(seed, -10.0, 10.0);
     }
-    if (check_real(seed, 0.0, 1.0) < 0.5) {
+    const double kind = check_real(seed, 0.0, 1.0);
+    if (kind < 0.4) {
         path_line(p, start, end);
+        return;
+    }
+    if (kind < 0.7) {
+        double inner[2][3];
+        do {
+            for (int i = 0; i < 6; i++) {
+                inner[i / 3][i % 3] = start[i % 3] + check_real(seed, -10.0, 10.0);
+            }
+        } while (path_cubic(p, start, end, (const double (*)[3])inner) != PATH_OK ||
+                 path_bend(p) > 2.0);
         return;
     }
     const double r = check_real(seed, 1.0, 20.0), a = check_real(seed, 0.0, 6.28);
@@ -18,6 +29,21 @@ static void random_path(uint64_t *seed, const double start[AXES], struct path *p
     end[0] = centre[0] - r * cos(b);
     end[1] = centre[1] - r * sin(b);
     CHECK_EQ(path_arc(p, PATH_XY, start, end, centre, true, 1, &miss), FAULT_NONE);
+}
+
+/* A curve that goes on smoothly, so that only bends make the corner. */
+static void onward(uint64_t *seed, const struct path *a, struct path *b)
+{
+    double at[AXES], slope[AXES], end[AXES] = { 0 }, inner[2][3];
+    path_at(a, a->length, at, slope);
+    do {
+        const double size = check_real(seed, 0.5, 10.0) / norm3(slope);
+        for (int i = 0; i < 3; i++) {
+            inner[0][i] = at[i] + size * slope[i];
+            inner[1][i] = at[i] + check_real(seed, -10.0, 10.0);
+            end[i] = at[i] + check_real(seed, -10.0, 10.0);
+        }
+    } while (path_cubic(b, at, end, (const double (*)[3])inner) != PATH_OK || path_bend(b) > 5.0);
 }
 
 /* Every random corner: ends on its paths, near enough to them, as smooth as it says. */
@@ -31,7 +57,11 @@ static void corners(void)
         struct corner k;
         double x[4][AXES], slope[AXES], end[AXES], way[AXES];
         random_path(&seed, start, &a);
-        random_path(&seed, a.end, &b);
+        if (i % 3) {
+            random_path(&seed, a.end, &b);
+        } else {
+            onward(&seed, &a, &b);
+        }
         CHECK(corner_make(&k, &a, &b, tolerance, 0.5 * fmin(a.length, b.length), true));
         corner_at(&k, &a, &b, -k.half, x[0], slope);
         path_at(&a, a.length - k.half, end, way);

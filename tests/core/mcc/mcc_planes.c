@@ -80,12 +80,12 @@ static void turned(const double centre[2], double angle, double place[2])
 }
 
 /* Where the summed pulses of all axes have been. [mm] */
-struct tool {
+struct carried {
     int n;
     double place[LONGEST][AXES], way[LONGEST];
 };
 
-static struct tool tool;    /* not on the stack */
+static struct carried tool;    /* not on the stack */
 
 static void watch_tool(struct record *r)
 {

@@ -10,6 +10,7 @@ static void drive_ramp(int32_t low[AXES], int32_t high[AXES])
 {
     const struct mechanism machine = machine_mechanism(&m.machine);
     const double dda = machine_dda_time(&m.machine);
+    const struct mover_beside beside = mcc_beside(&before);
     struct point p;
 
     before = m;
@@ -17,8 +18,8 @@ static void drive_ramp(int32_t low[AXES], int32_t high[AXES])
     memcpy(high, before.mover.pulses, sizeof before.mover.pulses);
     mover_abort(&before.mover, &before.ring);
     while (!mover_resting(&before.mover, &before.ring)) {
-        mover_advance(&before.mover, &before.ring, dda);
-        mover_point(&before.mover, &before.ring, &machine, dda, &before.mean, &p);
+        mover_advance(&before.mover, &beside, dda);
+        mover_point(&before.mover, &beside, &machine, dda, &p);
         for (int k = 0; k < AXES; k++) {
             low[k] = p.pulses[k] < low[k] ? p.pulses[k] : low[k];
             high[k] = p.pulses[k] > high[k] ? p.pulses[k] : high[k];
@@ -40,7 +41,8 @@ static int judged(int axis, bool upper, int32_t limit)
     }
     before = m;
     const struct mechanism mechanism = machine_mechanism(&machine);
-    return reach_beyond(&before.mover, &before.ring, &mechanism, machine_dda_time(&machine));
+    const struct mover_beside beside = mcc_beside(&before);
+    return reach_beyond(&before.mover, &beside, &mechanism, machine_dda_time(&machine));
 }
 
 /* A limit on the farthest point holds, one a pulse nearer does not. Points may miss the top of an

@@ -182,6 +182,58 @@ static void refused(void)
     }
 }
 
+/* Inputs are waited for when motion has ended, analog outputs change there; M6 stops. */
+static void asked(void)
+{
+    static const struct { const char *words; double result, least; } w[] = {
+        { "M64 P5\nM66 P5 L3 Q1", 1.0, 0.0 }, { "M66 P5 L3 Q0.2", -1.0, 0.2 },
+        { "M66 P5 L4 Q1", 0.0, 0.0 }, { "M66 P5", 0.0, 0.0 }, { "M66 E3", 2.5, 0.0 },
+    };
+    for (size_t n = 0; n < sizeof w / sizeof *w; n++) {
+        char program[160];
+        snprintf(program, sizeof program, "G0 X900 Y0 Z500 A180 C180\nG1 X910 F6000 M67 E1 Q1.5\n"
+                 "M68 E3 Q-2\n%s\nX920\n", w[n].words);
+        begin(program);
+        double stood = 0.0;
+        while (!soft_done(&soft) && now < LONG) {
+            pc_cycle();
+            card.irq_ai[3] = 2.5;
+            card.irq_inputs = card.inputs;
+            const double x = soft.robot.pose.at[0];
+            CHECK(x > 909.999 || fabs(soft.volt[3]) == 0.0);
+            stood += fabs(x - 910.0) < 1e-6 ? CYCLE : 0.0;
+        }
+        CHECK_EQ(soft.trouble.error, SOFT_OK);
+        CHECK_NEAR(soft.orders.gcode.input, w[n].result, 0.0);
+        CHECK(stood >= w[n].least && stood < w[n].least + 0.05);
+        CHECK(soft.volt[1] == 1.5 && soft.volt[3] == -2.0);
+        pc_at(920.0, 0.0, 500.0, 1e-6);
+    }
+    begin("G0 X900 Y0 Z500 A180 C180\nT3 M6\nG43.1 Z10\nG1 X910 F6000 Z500\n");
+    for (int stops = 0; stops < 2; stops++) {
+        config.orders.tool_stop = stops;
+        pc_start(NULL, given.text);
+        soft_rehearse(&soft, &config, &text);
+        soft_start(&soft, &config);
+        for (int n = 0; n < 60000 && !soft_done(&soft); n++) {
+            pc_cycle();
+        }
+        CHECK_EQ(soft_done(&soft), !stops);
+        CHECK_EQ(soft_status(&soft, &panel) == SOFT_PAUSED, stops);
+    }
+    pc_press(&panel.start);
+    while (!soft_done(&soft) && now < LONG) {
+        pc_cycle();
+    }
+    pc_at(910.0, 0.0, 510.0, 1e-6);
+
+    struct fault_list all;
+    begin("G0 X900 Y0 Z500 A180 C180\nG38.2 X910 F100\nX1 Q2\nM19\n");
+    orders_check(&config.orders, &text, &soft.robot.pose, &all);
+    CHECK(all.count == 2 && all.of[0].fault == FAULT_NO_PROBE && all.of[0].line == 2);
+    CHECK(all.of[1].fault == FAULT_UNUSED && all.of[1].line == 3 && all.notes == 1);
+}
+
 int main(void)
 {
     lines();
@@ -190,5 +242,6 @@ int main(void)
     corners();
     switches();
     refused();
+    asked();
     return check_result();
 }

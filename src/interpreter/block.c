@@ -1,0 +1,258 @@
+#include "block.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cutter.h"
+#include "feed.h"
+#include "frame.h"
+#include "spline.h"
+
+static const char CENTRE_LETTERS[] = "IJK";
+static const int TURNS_MAX = 10000;         /* P of an arc */
+
+/* Start, end and centre rounded to 0.01 mm, or in inch to 0.001, as LinuxCNC allows for both. */
+static const struct path_tolerance POSTED = { 0.0283, 1e-3 };
+static const double COARSER = 2.54;         /* the last decimal in inch against that in mm */
+
+struct command *block_command(struct interpreter *in)
+{
+    struct command *c = &in->made[in->count];
+    memset(c, 0, sizeof *c);
+    c->line = in->line;
+    return c;
+}
+
+/* The command is a motion of the program: digital outputs that wait for one go with it. */
+static void accept(struct interpreter *in, struct command *c)
+{
+    c->set = in->set;
+    c->clear = in->clear;
+    in->set = in->clear = 0;
+    c->analog = in->analog;
+    in->analog.set = 0;
+    memcpy(in->point, c->path.end, sizeof in->point);
+    in->count++;
+}
+
+/* The fault of an arc or of a command, and what is known of it. */
+static enum fault of_path(enum path_status s)
+{
+    return s == PATH_NO_RADIUS ? FAULT_ARC_RADIUS
+         : s == PATH_MISSES_END ? FAULT_ARC_END
+         : s == PATH_SHORT_RADIUS ? FAULT_ARC_CHORD
+         : s == PATH_OPEN ? FAULT_ARC_CLOSED : FAULT_NONE;
+}
+
+enum fault block_refusal(enum command_status s, const struct command_refusal *why,
+                         struct fault_report *r)
+{
+    if (s == COMMAND_FAST || s == COMMAND_OUTSIDE) {
+        r->axis = why->joint;
+        r->value = why->value;
+        r->limit = why->limit;
+    }
+    return s == COMMAND_FAST ? FAULT_SPEED
+         : s == COMMAND_FAR ? FAULT_RANGE
+         : s == COMMAND_OUTSIDE ? FAULT_TRAVEL : FAULT_NONE;
+}
+
+/* How an arc of the program is one of the machine. */
+struct shape {
+    double ratio;       /* of the radius */
+    bool ccw;
+    struct path_tolerance tolerance;
+};
+
+static enum fault arc_centre(const struct interpreter *in, const struct block *b,
+                             const struct shape *shape, const double end[AXES], double centre[2],
+                             struct fault_report *r)
+{
+    const int axis[2] = { path_first(in->plane), path_second(in->plane) };
+    const struct token *radius = gcode_word(&b->g, 'R');
+    const struct token *any = gcode_first(&b->g, CENTRE_LETTERS);
+    const struct token *normal = gcode_word(&b->g, CENTRE_LETTERS[in->plane]);
+
+    if (normal) {
+        return tokens_at_word(r, FAULT_UNUSED, normal);
+    }
+    if (radius && any) {
+        return tokens_at_line(r, FAULT_CENTRE_AND_R, &b->tokens);
+    }
+    if (radius) {
+        const double size = radius->value * b->scale * shape->ratio;
+        r->value = fabs(size);
+        const enum path_status s =
+            path_centre_by_radius(in->plane, in->point, end, size, shape->ccw,
+                                  shape->tolerance.least, centre, &r->limit);
+        return tokens_at_line(r, of_path(s), &b->tokens);
+    }
+    double place[AXES], way[3] = { 0.0, 0.0, 0.0 };
+    frame_program(in, in->point, place);
+    for (int i = 0; i < 2; i++) {
+        const struct token *w = gcode_word(&b->g, CENTRE_LETTERS[axis[i]]);
+        if (!any || (in->absolute_centre && !w)) {
+            return tokens_at_line(r, FAULT_NO_CENTRE, &b->tokens);
+        }
+        place[axis[i]] = way[axis[i]] = w ? w->value * b->scale : 0.0;
+    }
+    frame_machine(in, place, place);
+    frame_way(in, way);
+    for (int i = 0; i < 2; i++) {
+        centre[i] = in->absolute_centre ? place[axis[i]] : in->point[axis[i]] + way[axis[i]];
+    }
+    return FAULT_NONE;
+}
+
+static enum fault arc(const struct interpreter *in, const struct program *p, const struct block *b,
+                      const double end[AXES], struct path *path, struct fault_report *r)
+{
+    const struct token *turns = gcode_word(&b->g, 'P');
+    struct shape shape = { .tolerance = p->arc.least > 0.0 ? p->arc : POSTED };
+    double centre[2];
+    bool mirrored;
+
+    if (!p->machine.axis[path_first(in->plane)] ||
+        !p->machine.axis[path_second(in->plane)]) {
+        return tokens_at_line(r, FAULT_AXIS, &b->tokens);
+    }
+    if (turns && (turns->value < 1.0 || turns->value > TURNS_MAX ||
+                  turns->value != round(turns->value))) {
+        return tokens_at_word(r, FAULT_VALUE, turns);
+    }
+    if (!frame_circles(in, in->plane, &shape.ratio, &mirrored)) {
+        return tokens_at_line(r, FAULT_OVAL, &b->tokens);
+    }
+    shape.ccw = (in->motion == 30) != mirrored;
+    shape.tolerance.least *= (in->inch ? COARSER : 1.0) * shape.ratio;
+    enum fault f = arc_centre(in, b, &shape, end, centre, r);
+    if (f == FAULT_NONE) {
+        f = of_path(path_arc_within(path, in->plane, in->point, end, centre, shape.ccw,
+                                    turns ? (int)turns->value : 1, &shape.tolerance, &r->value));
+        tokens_at_line(r, f, &b->tokens);
+    }
+    return f;
+}
+
+enum fault block_motion(struct interpreter *in, const struct program *p, const struct block *b,
+                        struct fault_report *r)
+{
+    struct command *c = block_command(in);
+    double end[AXES];
+    enum fault f = frame_end(in, p, b, end, r);
+
+    if (f == FAULT_NONE && gcode_arc(in->motion)) {
+        f = arc(in, p, b, end, &c->path, r);
+    } else if (f == FAULT_NONE && gcode_spline(in->motion)) {
+        f = spline_path(in, p, b, end, &c->path, r);
+    } else if (f == FAULT_NONE) {
+        path_line(&c->path, in->point, end);
+    }
+    in->words.spline = in->words.spline && in->motion == 50;
+    if (f != FAULT_NONE || c->path.length == 0.0) {
+        return f;
+    }
+    double feed = 0.0;
+    if (in->motion != 0) {
+        f = feed_of(in, p, b, c->path.length, &feed, r);
+    }
+    if (f != FAULT_NONE) {
+        return f;
+    }
+    c->blend = in->blend;
+    c->tolerance = in->tolerance;
+    c->merge = in->merge;
+    c->curve = in->tolerance > 0.0;
+    if (cutter_on(in)) {        /* a motion of the contour, not of the tool's centre */
+        c->type = in->motion == 0 ? COMMAND_PTP : COMMAND_LINE;
+        c->feed = feed;
+        accept(in, c);
+        return FAULT_NONE;
+    }
+    struct command_refusal why;
+    enum command_status s;
+    if (in->motion == 0) {
+        s = command_ptp(c, &p->machine, &p->limits, &why);
+    } else {
+        const enum command_type type = c->path.arc ? command_arc_type(&c->path)
+                                     : c->path.cubic ? COMMAND_CUBIC : COMMAND_LINE;
+        s = command_move(c, &p->machine, &p->limits, type, feed, &why);
+    }
+    accept(in, c);
+    return tokens_at_line(r, block_refusal(s, &why, r), &b->tokens);
+}
+
+enum fault block_straight(struct interpreter *in, const struct program *p, const double end[AXES],
+                          double feed, struct fault_report *r)
+{
+    struct command *c = block_command(in);
+
+    path_line(&c->path, in->point, end);
+    in->words.spline = false;
+    if (c->path.length == 0.0) {
+        return FAULT_NONE;
+    }
+    struct command_refusal why;
+    const enum command_status s =
+        feed > 0.0 ? command_move(c, &p->machine, &p->limits, COMMAND_LINE, feed, &why)
+                   : command_ptp(c, &p->machine, &p->limits, &why);
+    accept(in, c);
+    return block_refusal(s, &why, r);
+}
+
+static enum fault rapid(struct interpreter *in, const struct program *p, const struct block *b,
+                        const double end[AXES], struct fault_report *r)
+{
+    return tokens_at_line(r, block_straight(in, p, end, 0.0, r), &b->tokens);
+}
+
+enum fault block_home(struct interpreter *in, const struct program *p, const struct block *b,
+                      struct fault_report *r)
+{
+    const bool all = !gcode_first(&b->g, BLOCK_AXES);
+    double via[AXES], home[AXES];
+    const double *park = in->words.park[b->g.code[GCODE_NONMODAL] == 300];
+    enum fault f = frame_end(in, p, b, via, r);
+
+    for (int i = 0; i < AXES; i++) {
+        const bool goes = all ? p->machine.axis[i]
+                              : gcode_word(&b->g, BLOCK_AXES[i]) != NULL;
+        home[i] = goes ? park[i] : via[i];
+    }
+    if (f == FAULT_NONE) {
+        f = rapid(in, p, b, via, r);
+    }
+    return f != FAULT_NONE ? f : rapid(in, p, b, home, r);
+}
+
+/* [s] of a word of G4; Fanuc's controls count ms without a point. */
+static double dwell_of(const struct program *p, const struct token *w)
+{
+    const bool scaled = p->least_increment > 0.0 && w->letter != 'P';
+    return !p->fanuc || !w->whole ? w->value
+         : w->value / (scaled ? p->least_increment : 1.0) / 1000.0;
+}
+
+enum fault block_dwell(struct interpreter *in, const struct program *p, const struct block *b,
+                       struct fault_report *r)
+{
+    const struct token *wait = gcode_word(&b->g, 'P'), *extra = gcode_first(&b->g, "IJKR");
+
+    wait = !wait && p->fanuc ? gcode_first(&b->g, "XU") : wait;
+    for (const char *c = BLOCK_AXES; *c && !extra; c++) {
+        extra = gcode_word(&b->g, *c) != wait ? gcode_word(&b->g, *c) : NULL;
+    }
+    if (extra) {
+        return tokens_at_word(r, FAULT_UNUSED, extra);
+    }
+    if (!wait) {
+        return tokens_at_line(r, FAULT_NO_DWELL, &b->tokens);
+    }
+    const double seconds = dwell_of(p, wait);
+    if (seconds < 0.0 || seconds > BLOCK_DWELL_MAX) {
+        return tokens_at_word(r, FAULT_VALUE, wait);
+    }
+    command_delay(block_command(in), in->point, seconds);
+    in->count++;
+    return FAULT_NONE;
+}

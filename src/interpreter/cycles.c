@@ -1,0 +1,341 @@
+#include "cycles.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "block.h"
+#include "feed.h"
+#include "frame.h"
+#include "switching.h"
+
+static const double RELIEF = 0.254;         /* [mm] back for a peck: 0.01 inch, as LinuxCNC */
+static const double REPEATS_MAX = 9999.0;   /* L */
+static const double PECKS_MAX = 10000.0;    /* of one hole */
+static const double SAME = 1e-9;            /* [mm] nearer places are one: rounding of offsets */
+
+/* The steps of each cycle above its hole, and the words it needs beside R and the depth:
+ *
+ *     d feed to the bottom      g feed one peck deeper; from the bottom on behind the <
+ *     u feed to R               c rapid back to what is drilled, less the relief
+ *     U feed to the clear way   < go on at the first step
+ *     R rapid to R              p dwell             x overrides off
+ *     ^ rapid to the clear way  s spindle off       r spindle the other way round
+ *     ! stop as M0              t spindle and overrides as before
+ */
+static const struct { int code; char steps[8], words[3]; } rows[] = {
+    { 730, "gc<^", "Q" },   { 740, "xdrpUt", "" },  { 810, "d^", "" },      { 820, "dp^", "P" },
+    { 830, "gRc<^", "Q" },  { 840, "xdrpUt", "" },  { 850, "du^", "" },     { 860, "dps^t", "P" },
+    { 880, "dps!^t", "P" }, { 890, "dpU", "P" },
+};
+
+/* In front of those: rapid over the hole, rapid to R. */
+enum { STEP_HOLE, STEP_TOP, STEP_FIRST };
+
+static int row_of(int code)
+{
+    for (int i = 0; i < (int)(sizeof rows / sizeof *rows); i++) {
+        if (rows[i].code == code) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+bool cycles_code(int code)
+{
+    return code >= 730 && row_of(code) >= 0;
+}
+
+static bool taps(int code)
+{
+    return code == 740 || code == 840;
+}
+
+/* Whether it takes P or Q. */
+static bool takes(int code, char letter)
+{
+    return strchr(rows[row_of(code)].words, letter) || (letter == 'P' && taps(code));
+}
+
+void cycles_modes(struct interpreter *in, const struct block *b)
+{
+    const int retract = b->g.code[GCODE_RETRACT];
+
+    if (retract != GCODE_ABSENT) {
+        in->cycle.to_r = retract == 990;
+    }
+    if (!cycles_code(in->motion)) {
+        in->cycle.code = 0;
+    }
+}
+
+/* Machine coordinates of a place at a height above the hole. */
+static void place_at(const struct interpreter *in, const double program[AXES], double height,
+                     double end[AXES])
+{
+    double place[AXES];
+    memcpy(place, program, sizeof place);
+    place[in->plane] = height;
+    frame_machine(in, place, end);
+    for (int i = 0; i < AXES; i++) {
+        end[i] = fabs(end[i] - in->point[i]) < SAME ? in->point[i] : end[i];
+    }
+}
+
+static enum fault go(struct interpreter *in, const struct program *p, const double program[AXES],
+                     double height, bool rapid, struct fault_report *r)
+{
+    double end[AXES];
+    place_at(in, program, height, end);
+    return block_straight(in, p, end, rapid ? 0.0 : in->cycle.feed, r);
+}
+
+/* A word that the cycle keeps: from the block, else *value stays as it was in the series. */
+static enum fault keep(const struct block *b, bool kept, char letter, double scale, double *value,
+                       enum fault missing, struct fault_report *r)
+{
+    const struct token *w = gcode_word(&b->g, letter);
+    if (!w && !kept) {
+        const struct token *by = b->g.by[GCODE_MOTION];
+        return by ? tokens_at_word(r, missing, by) : tokens_at_line(r, missing, &b->tokens);
+    }
+    *value = w ? w->value * scale : *value;
+    return FAULT_NONE;
+}
+
+static enum fault keep_words(struct interpreter *in, const struct block *b, bool kept,
+                             struct fault_report *r)
+{
+    struct cycle *k = &in->cycle;
+    const struct token *q = gcode_word(&b->g, 'Q'), *wait = gcode_word(&b->g, 'P');
+    const struct token *l = gcode_word(&b->g, 'L');
+    enum fault f = keep(b, kept, 'R', b->scale, &k->r, FAULT_CYCLE_R, r);
+
+    if (f == FAULT_NONE) {
+        f = keep(b, kept, BLOCK_AXES[in->plane], b->scale, &k->depth, FAULT_CYCLE_DEPTH, r);
+    }
+    if (f == FAULT_NONE && takes(in->motion, 'Q')) {
+        f = keep(b, kept, 'Q', b->scale, &k->peck, FAULT_CYCLE_Q, r);
+    }
+    if (f == FAULT_NONE && takes(in->motion, 'P')) {
+        k->dwell = kept ? k->dwell : 0.0;
+        f = keep(b, kept || taps(in->motion), 'P', 1.0, &k->dwell, FAULT_CYCLE_P, r);
+    }
+    if (f != FAULT_NONE) {
+        return f;
+    }
+    if (takes(in->motion, 'Q') && q && !(q->value > 0.0)) {
+        return tokens_at_word(r, FAULT_VALUE, q);
+    }
+    if (takes(in->motion, 'P') && !(k->dwell >= 0.0 && k->dwell <= BLOCK_DWELL_MAX)) {
+        return wait ? tokens_at_word(r, FAULT_VALUE, wait)
+                    : tokens_at_line(r, FAULT_VALUE, &b->tokens);
+    }
+    if (l && !(l->value >= 1.0 && l->value <= REPEATS_MAX && l->value == round(l->value))) {
+        return tokens_at_word(r, FAULT_VALUE, l);
+    }
+    if (l && l->value > 1.0 && in->incremental && (in->words.polar || gcode_first(&b->g, "@^"))) {
+        return tokens_at_word(r, FAULT_VALUE, l);   /* the way between the holes would turn */
+    }
+    k->repeats = l ? (int32_t)l->value - 1 : 0;
+    return FAULT_NONE;
+}
+
+/* The first hole and the heights. */
+static enum fault set_places(struct interpreter *in, const struct program *p,
+                             const struct block *b, bool series, struct fault_report *r)
+{
+    struct cycle *k = &in->cycle;
+    const int n = (int)in->plane;
+    const int plane[2] = { path_first(in->plane), path_second(in->plane) };
+    double here[AXES], end[AXES];
+    const enum fault f = frame_end(in, p, b, end, r);
+
+    if (f != FAULT_NONE) {
+        return f;
+    }
+    if (!p->machine.axis[n]) {
+        return tokens_at_line(r, FAULT_AXIS, &b->tokens);
+    }
+    frame_program(in, in->point, here);
+    frame_program(in, end, k->hole);
+    for (int i = 0; i < 2; i++) {
+        k->way[i] = in->incremental ? k->hole[plane[i]] - here[plane[i]] : 0.0;
+    }
+    const double now = here[n];
+    k->initial = series ? k->initial : now;
+    k->top = in->incremental ? now + k->r : k->r;
+    k->bottom = in->incremental ? k->top + k->depth : k->depth;
+    k->clear = k->to_r ? k->top : fmax(k->top, k->initial);
+    if (k->top < k->bottom) {
+        r->value = k->top;
+        r->limit = k->bottom;
+        return tokens_at_line(r, FAULT_CYCLE_LOW, &b->tokens);
+    }
+    if (takes(in->motion, 'Q') && k->top - k->bottom > PECKS_MAX * k->peck) {
+        return tokens_at_line(r, FAULT_CYCLE_PECKS, &b->tokens);
+    }
+    return now < k->top ? tokens_at_line(r, go(in, p, here, k->top, true, r), &b->tokens)
+                        : FAULT_NONE;
+}
+
+enum fault cycles_block(struct interpreter *in, const struct program *p, const struct block *b,
+                        struct fault_report *r)
+{
+    struct cycle *k = &in->cycle;
+    const int code = in->motion, turning = in->switches.speed > 0.0 ? in->switches.turning : 0;
+    const bool kept = k->code == code, series = k->code != 0;
+    const bool named = b->g.code[GCODE_MOTION] == code;
+    const struct token *extra = gcode_first(&b->g, "UVW");
+
+    if (extra) {
+        return tokens_at_word(r, FAULT_UNUSED, extra);
+    }
+    if (!gcode_first(&b->g, "XYZ@^")) {
+        extra = gcode_first(&b->g, "RLQ");
+        return named ? tokens_at_word(r, FAULT_NO_AXES, b->g.by[GCODE_MOTION])
+             : extra ? tokens_at_word(r, FAULT_UNUSED, extra) : FAULT_NONE;
+    }
+    if (takes(code, 'P') && code != 820 && code != 890 &&
+        (taps(code) ? turning != (code == 840 ? 1 : -1) : turning == 0)) {
+        return tokens_at_line(r, FAULT_CYCLE_SPINDLE, &b->tokens);
+    }
+    if (in->words.feed_mode == 930) {
+        return tokens_at_line(r, FAULT_CYCLE_FEED, &b->tokens);
+    }
+    enum fault f = feed_of(in, p, b, 0.0, &k->feed, r);
+    if (f == FAULT_NONE) {
+        f = keep_words(in, b, kept, r);
+    }
+    if (f == FAULT_NONE) {
+        f = set_places(in, p, b, series, r);
+        k->code = code;
+    }
+    k->running = f == FAULT_NONE;
+    k->step = STEP_HOLE;
+    k->pecked = k->top;
+    k->turning = in->switches.turning;
+    k->overrides = in->switches.overrides;
+    k->stop = b->g.code[GCODE_STOP];
+    k->offset = r->offset;
+    k->at = b->tokens.at;
+    k->length = b->tokens.length;
+    return f;
+}
+
+static void turn(struct interpreter *in, int32_t turning, uint32_t overrides)
+{
+    in->switches.turning = turning;
+    in->switches.overrides = overrides;
+    switching_make(in, 0, 0);
+}
+
+/* One step of the list. */
+static enum fault step(struct interpreter *in, const struct program *p, const char *steps,
+                       struct fault_report *r)
+{
+    struct cycle *k = &in->cycle;
+    const uint32_t fixed = OUTPUTS_FEED_FIXED | OUTPUTS_SPEED_FIXED;
+
+    switch (steps[k->step++ - STEP_FIRST]) {
+    case 'd':
+        return go(in, p, k->hole, k->bottom, false, r);
+    case 'u':
+        return go(in, p, k->hole, k->top, false, r);
+    case 'U':
+        return go(in, p, k->hole, k->clear, false, r);
+    case 'R':
+        return go(in, p, k->hole, k->top, true, r);
+    case '^':
+        return go(in, p, k->hole, k->clear, true, r);
+    case 'g':
+        k->pecked = fmax(k->pecked - k->peck, k->bottom);
+        if (k->pecked - k->bottom < SAME) {     /* the rest of the rounding is no peck */
+            k->pecked = k->bottom;
+            k->step = STEP_FIRST + (int32_t)(strchr(steps, '<') - steps) + 1;
+        }
+        return go(in, p, k->hole, k->pecked, false, r);
+    case 'c':
+        return go(in, p, k->hole, fmin(k->pecked + RELIEF, k->top), true, r);
+    case '<':
+        k->step = STEP_FIRST;
+        return FAULT_NONE;
+    case 'p':
+        if (k->dwell > 0.0) {
+            command_delay(block_command(in), in->point, k->dwell);
+            in->count++;
+        }
+        return FAULT_NONE;
+    case 's':
+        turn(in, 0, k->overrides);
+        return FAULT_NONE;
+    case 'r':
+        turn(in, -k->turning, k->overrides | fixed);
+        return FAULT_NONE;
+    case 't':
+        turn(in, k->turning, k->overrides);
+        return FAULT_NONE;
+    case 'x':
+        if ((k->overrides & fixed) != fixed) {
+            turn(in, k->turning, k->overrides | fixed);
+        }
+        return FAULT_NONE;
+    default:        /* '!' */
+        block_command(in)->type = COMMAND_STOP;
+        in->count++;
+        return FAULT_NONE;
+    }
+}
+
+/* The hole is made: on to the next one, or the block is done. */
+static void next_hole(struct interpreter *in)
+{
+    struct cycle *k = &in->cycle;
+
+    k->running = k->repeats > 0;
+    k->repeats -= k->running;
+    k->step = STEP_HOLE;
+    k->pecked = k->top;
+    k->hole[path_first(in->plane)] += k->way[0];
+    k->hole[path_second(in->plane)] += k->way[1];
+}
+
+enum fault cycles_next(struct interpreter *in, const struct program *p, struct fault_report *r)
+{
+    struct cycle *k = &in->cycle;
+    const char *steps = rows[row_of(k->code)].steps;
+    double here[AXES];
+    enum fault f = FAULT_NONE;
+
+    r->line = in->line;
+    r->offset = k->offset;
+    while (k->running && in->count == 0 && f == FAULT_NONE) {
+        if (k->step == STEP_HOLE) {
+            k->step++;
+            frame_program(in, in->point, here);
+            f = go(in, p, k->hole, here[in->plane], true, r);
+        } else if (k->step == STEP_TOP) {
+            k->step++;
+            f = go(in, p, k->hole, k->top, true, r);
+        } else if (steps[k->step - STEP_FIRST] != '\0') {
+            f = step(in, p, steps, r);
+        } else {
+            next_hole(in);
+        }
+    }
+    if (f != FAULT_NONE) {
+        k->running = false;
+        return fault_at(r, f, k->at, k->length);
+    }
+    return f;
+}
+
+bool cycles_damaged(const struct cycle *k)
+{
+    const int row = row_of(k->code), before = k->step - STEP_FIRST - 1;
+    return (k->code != 0 && row < 0) || (k->running && row < 0) || k->step < 0 ||
+           (row >= 0 && before >= 0 &&
+            (before >= (int)sizeof rows[row].steps || !rows[row].steps[before])) ||
+           k->repeats < 0;
+}

@@ -1,0 +1,304 @@
+#include "interpreter.h"
+
+#include <string.h>
+
+#include "block.h"
+#include "cutter.h"
+#include "cycles.h"
+#include "feed.h"
+#include "frame.h"
+#include "offsets.h"
+#include "probing.h"
+#include "switching.h"
+#include "text_lines.h"
+#include "tool_change.h"
+#include "tools.h"
+#include "uses.h"
+#include "waiting.h"
+
+void interpreter_start(struct interpreter *in, const double point[AXES], double feed,
+                       const double origin[INTERPRETER_SYSTEMS][AXES])
+{
+    memset(in, 0, sizeof *in);
+    in->motion = GCODE_NO_MOTION;
+    in->plane = PATH_XY;
+    in->feed = feed;
+    in->words.feed_mode = 940;
+    memcpy(in->point, point, sizeof in->point);
+    memcpy(in->origin, origin, sizeof in->origin);
+}
+
+static enum fault set_modes(struct interpreter *in, struct block *b, struct fault_report *r)
+{
+    const int *code = b->g.code;
+    const bool framed = in->words.scaled || in->words.rotated;
+    const enum path_plane plane = in->plane;
+    const int32_t system = in->system;
+
+    if (code[GCODE_UNITS] != GCODE_ABSENT) {
+        in->inch = code[GCODE_UNITS] == 200;
+    }
+    b->scale = in->inch ? 25.4 : 1.0;
+    if (code[GCODE_PLANE] != GCODE_ABSENT) {
+        in->plane = code[GCODE_PLANE] == 170 ? PATH_XY
+                  : code[GCODE_PLANE] == 180 ? PATH_ZX : PATH_YZ;
+    }
+    if (code[GCODE_SYSTEM] != GCODE_ABSENT) {
+        in->system = offsets_system(code[GCODE_SYSTEM]);
+    }
+    if (code[GCODE_PATH] != GCODE_ABSENT) {
+        const struct token *p = gcode_word(&b->g, 'P'), *q = gcode_word(&b->g, 'Q');
+        in->blend = code[GCODE_PATH] == 640;
+        if (in->blend && ((p && p->value < 0.0) || (q && q->value < 0.0))) {
+            return tokens_at_word(r, FAULT_VALUE, p && p->value < 0.0 ? p : q);
+        }
+        if (q && !p) {
+            return tokens_at_word(r, FAULT_UNUSED, q);
+        }
+        in->tolerance = in->blend && p ? p->value * b->scale : 0.0;
+        in->merge = in->blend && q ? q->value * b->scale : in->tolerance;
+    }
+    if (code[GCODE_DISTANCE] != GCODE_ABSENT) {
+        in->incremental = code[GCODE_DISTANCE] == 910;
+    }
+    if (code[GCODE_CENTRE] != GCODE_ABSENT) {
+        in->absolute_centre = code[GCODE_CENTRE] == 901;
+    }
+    if (code[GCODE_MOTION] != GCODE_ABSENT) {
+        in->motion = code[GCODE_MOTION];
+    }
+    if (framed && in->system != system) {
+        return tokens_at_word(r, FAULT_FRAME, b->g.by[GCODE_SYSTEM]);
+    }
+    if (in->words.rotated && in->plane != plane) {
+        return tokens_at_word(r, FAULT_FRAME, b->g.by[GCODE_PLANE]);
+    }
+    return FAULT_NONE;
+}
+
+/* Motion of the block, if it has any. */
+static enum fault move(struct interpreter *in, const struct program *p, const struct block *b,
+                       struct fault_report *r)
+{
+    const struct token *axis = gcode_first(&b->g, BLOCK_AXES "@^");
+    const struct token *shape = gcode_first(&b->g, "IJK");
+    const int code = b->g.code[GCODE_MOTION];
+    const bool machine = b->g.code[GCODE_NONMODAL] == 530;
+
+    for (const char *c = "RP"; *c && !shape; c++) {     /* unless another code has them */
+        shape = uses_of(&b->g, *c) ? NULL : gcode_word(&b->g, *c);
+    }
+    if (machine && !axis) {
+        return tokens_at_line(r, FAULT_NO_AXES, &b->tokens);
+    }
+    if (machine && in->motion != 0 && in->motion != 10) {
+        return tokens_at_line(r, FAULT_G53, &b->tokens);
+    }
+    if (cycles_code(in->motion)) {
+        return cycles_block(in, p, b, r);
+    }
+    if (in->motion == GCODE_NO_MOTION && axis) {
+        return tokens_at_word(r, FAULT_NO_MOTION, axis);
+    }
+    if (probing_asked(b)) {
+        return probing_block(in, p, b, r);
+    }
+    const bool alone = gcode_arc(code) || gcode_spline(code);
+    return axis || shape || alone ? block_motion(in, p, b, r) : FAULT_NONE;
+}
+
+/* Dwell, offsets, home or motion, whichever the block asks for. */
+static enum fault act(struct interpreter *in, const struct program *p, const struct block *b,
+                      struct fault_report *r)
+{
+    const int nonmodal = b->g.code[GCODE_NONMODAL];
+    enum fault f = FAULT_NONE;
+
+    if (nonmodal == 40) {
+        return block_dwell(in, p, b, r);
+    }
+    if (nonmodal == 280 || nonmodal == 300) {
+        return block_home(in, p, b, r);
+    }
+    if (b->g.code[GCODE_TOOL] == 431 || b->g.code[GCODE_TOOL] == 432) {
+        return FAULT_NONE;      /* these have taken the axis words */
+    }
+    if (tools_measured(b)) {
+        return tools_measure(in, p, b, r);
+    }
+    f = frame_change(in, p, b, r);
+    if (f != FAULT_NONE || frame_takes_axes(b)) {
+        return f;
+    }
+    if (offsets_changed(b)) {
+        f = offsets_change(in, p, b, r);
+        if (f != FAULT_NONE || offsets_take_axes(b)) {
+            return f;
+        }
+    }
+    return move(in, p, b, r);
+}
+
+/* M98, M99 */
+static enum fault subprogram(struct interpreter *in, const struct program *p,
+                             const struct block *b, struct fault_report *r)
+{
+    const struct token *number = gcode_word(&b->g, 'P'), *runs = gcode_word(&b->g, 'L');
+    const int code = b->g.code[GCODE_STOP];
+
+    if (code != 980 && code != 990) {
+        return FAULT_NONE;
+    }
+    if (in->cycle.running) {
+        return tokens_at_word(r, FAULT_UNUSED, b->g.by[GCODE_STOP]);
+    }
+    tokens_at_word(r, FAULT_NO_SUB, number ? number : b->g.by[GCODE_STOP]);
+    return code == 990 ? flow_return(in, r)
+         : !number ? FAULT_NO_SUB
+         : flow_subprogram(in, p, number->value, runs ? &runs->value : NULL, NULL, r);
+}
+
+/* Stop or end of a block, ten times its code. */
+static void stop(struct interpreter *in, const struct program *p, int code)
+{
+    if (code == 0 || code == 600 || (code == 10 && p->optional_stop)) {
+        block_command(in)->type = COMMAND_STOP;
+        in->count++;
+    }
+    if (code == 20 || code == 300) {
+        in->ended = true;
+        switching_end(in);
+    }
+}
+
+/* The first of two faults. */
+static enum fault also(enum fault f, enum fault g)
+{
+    return f != FAULT_NONE ? f : g;
+}
+
+/* Behind a fault: the axes are where the words of the block lead, and axis words move. */
+static void go_on(struct interpreter *in, const struct program *p, const struct block *b,
+                  enum fault f, const double before[AXES])
+{
+    const int nonmodal = b->g.code[GCODE_NONMODAL];
+    struct fault_report ignored;
+    double end[AXES];
+
+    in->motion = f == FAULT_NO_MOTION ? 10 : in->motion;
+    if (memcmp(before, in->point, sizeof end) == 0 && !frame_takes_axes(b) &&
+        (nonmodal == GCODE_ABSENT || nonmodal == 530) &&
+        frame_end(in, p, b, end, &ignored) == FAULT_NONE) {
+        memcpy(in->point, end, sizeof end);
+    }
+}
+
+/* Execute one block, in the order of RS-274: feed, outputs, spindle, coolant, dwell, modes,
+ * offsets, motion, stop. f is a fault of its text; behind a fault it goes on with what is left, so
+ * that modes and place are those in which the next lines are read. */
+static enum fault execute(struct interpreter *in, const struct program *p, struct block *b,
+                          enum fault f, struct fault_report *r)
+{
+    struct fault_report ignored;
+    double before[AXES];
+
+    ignored.line = r->line;     /* where calls say they stand */
+    ignored.offset = r->offset;
+    memcpy(before, in->point, sizeof before);
+    b->angles = p->angles;
+    f = also(f, gcode_sort(&b->g, &b->tokens, p->angles, f ? &ignored : r));
+    f = also(f, set_modes(in, b, f ? &ignored : r));
+    f = also(f, uses_check(in, b, f ? &ignored : r));
+    f = also(f, feed_set(in, p, b, f ? &ignored : r));
+    f = also(f, waiting_input(in, p, b, f ? &ignored : r));
+    f = also(f, tool_change(in, p, b, f ? &ignored : r));
+    f = also(f, switching_block(in, b, f ? &ignored : r));
+    f = also(f, tools_lengths(in, p, b, f ? &ignored : r));
+    cycles_modes(in, b);
+    f = also(f, cutter_block(in, p, b, f ? &ignored : r));
+    f = also(f, act(in, p, b, f ? &ignored : r));
+    if (f != FAULT_NONE) {
+        go_on(in, p, b, f, before);
+    }
+    if (!in->cycle.running) {
+        stop(in, p, b->g.code[GCODE_STOP]);
+    }
+    return also(f, subprogram(in, p, b, f ? &ignored : r));
+}
+
+/* Go on with a cycle, or read and execute one line. */
+static enum fault next_line(struct interpreter *in, const struct program *p,
+                            struct fault_report *r)
+{
+    struct block b;
+
+    if (in->cycle.running) {
+        const enum fault f = cycles_next(in, p, r);
+        if (f == FAULT_NONE && !in->cycle.running) {
+            stop(in, p, in->cycle.stop);
+        }
+        return f;
+    }
+    const enum fault f = lines_next(in, p, &b.tokens, r);
+
+    return b.tokens.count > 0 ? execute(in, p, &b, f, r) : f;
+}
+
+enum interpreter_result interpreter_read(struct interpreter *in, const struct program *p,
+                                         struct command *c, struct fault_report *r)
+{
+    while (!cutter_take(in, c)) {
+        const bool made = in->taken < in->count && !waiting_now(in);
+        if (made && !cutter_on(in)) {
+            in->flow.idle = in->flow.again;
+            *c = in->made[in->taken++];
+            return INTERPRETER_COMMAND;
+        }
+        if (!made && in->waits) {
+            in->flow.idle = in->flow.again;
+            return INTERPRETER_WAIT;
+        }
+        if (!made && in->ended && !cutter_on(in)) {
+            return INTERPRETER_END;
+        }
+        if (made) {
+            r->fault = cutter_follow(in, p, &in->made[in->taken++], r);
+        } else if (in->ended) {
+            r->fault = cutter_end(in, p, r);
+        } else {
+            in->taken = in->count = 0;
+            r->fault = next_line(in, p, r);
+        }
+        if (r->fault != FAULT_NONE) {
+            in->taken = in->count = 0;
+            in->waits = in->cycle.running = false;
+            cutter_drop(in);
+            return INTERPRETER_FAULT;
+        }
+    }
+    in->flow.idle = in->flow.again;
+    return INTERPRETER_COMMAND;
+}
+
+enum interpreter_result interpreter_next(struct interpreter *in, const struct program *p,
+                                         struct command *c, struct fault_report *r)
+{
+    const enum interpreter_result got = interpreter_read(in, p, c, r);
+
+    in->ended = in->ended || got == INTERPRETER_FAULT;
+    return got;
+}
+
+bool interpreter_damaged(const struct interpreter *in)
+{
+    return flow_damaged(&in->flow) || parameters_damaged(&in->parameters) || in->line < 0 ||
+           in->offset < 0 || in->plane > PATH_XY || in->system < 0 ||
+           in->system >= INTERPRETER_SYSTEMS || in->count < 0 || in->count > INTERPRETER_MADE ||
+           in->taken < 0 || in->taken > in->count ||
+           in->tools.table.count < 0 || in->tools.table.count > TOOL_TABLE_MAX ||
+           in->wait.until < 0 || in->wait.until > in->count ||
+           in->wait.behind < 0 || in->wait.behind > in->count ||
+           in->wait.index < 0 || in->wait.index >= INPUTS_DIGITAL ||
+           (in->wait.kind == WAIT_ANALOG && in->wait.index >= INPUTS_ANALOG) ||
+           cycles_damaged(&in->cycle) || cutter_damaged(&in->cutter);
+}

@@ -1,0 +1,127 @@
+#include "interpreter.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "waiting.h"
+
+/* A check on its way. */
+struct check {
+    enum fault latest;      /* of an axis, since the last motion without a fault */
+    int32_t axis;
+    bool flow;              /* an O word was wrong: the ends of blocks do not count any more */
+};
+
+static bool of_axis(enum fault f)
+{
+    return f == FAULT_SPEED || f == FAULT_RANGE || f == FAULT_TRAVEL || f == FAULT_AXIS;
+}
+
+/* Whether a fault only follows from one that has been told. */
+static bool follows(struct check *k, const struct fault_list *all, const struct fault_report *r)
+{
+    const bool word = r->fault >= FAULT_O_WORD && r->fault <= FAULT_CALLS;
+    const bool same = of_axis(r->fault) && r->fault == k->latest && r->axis == k->axis;
+    const bool end = (r->fault == FAULT_O_PLACE || r->fault == FAULT_O_END) && k->flow;
+    bool again = false;
+
+    for (int i = 0; i < all->count; i++) {
+        again = again || all->of[i].offset == r->offset;
+    }
+    k->latest = of_axis(r->fault) ? r->fault : k->latest;
+    k->axis = r->axis;
+    k->flow = k->flow || word;
+    return same || end || again;
+}
+
+/* Nothing can be read behind it. */
+static bool last(enum fault f)
+{
+    return f == FAULT_READ || f == FAULT_ZERO || f == FAULT_ENDLESS;
+}
+
+static void note(struct fault_list *all, const struct fault_report *r, enum fault what)
+{
+    for (int i = 0; i < all->notes; i++) {
+        if (all->note[i].fault == what) {
+            return;
+        }
+    }
+    struct fault_report *n = &all->note[all->notes++];
+    *n = *r;
+    n->fault = what;
+    n->line = r->note_line;
+    n->offset = r->note_offset;
+    n->at = r->note_at;
+    n->length = r->note_length;
+    n->other_length = 0;
+}
+
+/* Take a fault; false if that was the last. */
+static bool take(struct check *k, struct fault_list *all, const struct fault_report *r, int room)
+{
+    if (!follows(k, all, r)) {
+        all->more = all->count == room;
+        if (all->more) {
+            return false;
+        }
+        all->of[all->count++] = *r;
+    }
+    return !last(r->fault);
+}
+
+/* Read on until `room` faults are known. */
+static void check(struct interpreter *in, const struct program *p, int room,
+                  struct fault_list *all)
+{
+    const int64_t most = p->check_again > 0 ? p->check_again : CHECK_AGAIN;
+    struct check k = { FAULT_NONE, 0, false };
+    struct fault_report r;
+    struct command c;
+
+    memset(&r, 0, sizeof r);
+    while (all->count < room || room > 1) {
+        const enum interpreter_result got = interpreter_read(in, p, &c, &r);
+        if (r.note != FAULT_NONE) {
+            note(all, &r, r.note);
+            r.note = FAULT_NONE;
+        }
+        if (got == INTERPRETER_END || (got == INTERPRETER_FAULT && !take(&k, all, &r, room))) {
+            return;
+        }
+        if (got == INTERPRETER_WAIT) {
+            waiting_pass(in);
+        }
+        if (got == INTERPRETER_COMMAND) {
+            k.latest = FAULT_NONE;
+        }
+        if (in->flow.again > most) {
+            r.note_line = r.line;
+            r.note_offset = r.offset;
+            r.note_at = r.note_length = 0;
+            note(all, &r, FAULT_NOTE_CHECKED);
+            return;
+        }
+        memset(&r.other_at, 0, sizeof r - offsetof(struct fault_report, other_at));
+    }
+}
+
+void interpreter_check_all(const struct interpreter *from, const struct program *p,
+                           struct fault_list *all)
+{
+    struct interpreter in = *from;
+
+    memset(all, 0, sizeof *all);
+    check(&in, p, FAULT_LIST, all);
+}
+
+void interpreter_check(const struct interpreter *from, const struct program *p,
+                       struct fault_report *r)
+{
+    struct interpreter in = *from;
+    struct fault_list all;
+
+    memset(&all, 0, sizeof all);
+    check(&in, p, 1, &all);
+    *r = all.of[0];
+}
