@@ -17,6 +17,7 @@ static struct machine machine_of(const struct vars *v)
     struct machine m = {
         .dda_time = v->dda_time, .dda_length = v->dda_length, .queue_depth = v->queue_depth,
         .feed = v->feed / 60.0, .max_feed = v->max_feed / 60.0,
+        .arc_tolerance = v->arc_tolerance,
         .acc_time = v->acc_time, .dec_time = v->dec_time,
         .acc_type = v->acc_type[0], .dec_type = v->dec_type[0], .jerk_share = v->jerk_share,
         .limit_check = v->limit_mode >= 0, .limit_mode = v->limit_mode < 0 ? 0 : v->limit_mode,
@@ -32,7 +33,7 @@ static struct machine machine_of(const struct vars *v)
             .high_limit = v->high_limit[i], .low_limit = v->low_limit[i],
             .hot_offset = v->hot_offset[i], .lot_offset = v->lot_offset[i],
             .track_limit = v->track_error_limit[i], .in_pos = v->in_pos[i],
-            .inpos_tol = v->inpos_tol[i]
+            .inpos_tol = v->inpos_tol[i], .acc = v->axis_acc[i], .jerk = v->axis_jerk[i]
         };
     }
     return m;

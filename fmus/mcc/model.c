@@ -10,6 +10,7 @@ struct model {
     int64_t instant;        /* [ns] next instant of the bus grid that reads */
     bool    unpublished;    /* what was read last shows at that instant */
     int32_t told_error;     /* run-time error that was reported */
+    bool    told_change;    /* the tool change that is waited for was reported */
 };
 
 #define MODEL_BLOB
@@ -18,15 +19,17 @@ struct model {
 #include "mcc_parameters.h"
 #include "path_file.h"
 #include "program_fault.h"
+#include "tool_file.h"
 
 /* What path_file must not replace. */
-enum { INPUTS = 2 };
+enum { INPUTS = 3 };
 struct inputs { struct output_input of[INPUTS]; };
 
 static struct inputs inputs_of(const struct vars *v)
 {
     return (struct inputs){ { { v->program, "it is program" },
-                              { v->comp_file, "it is comp_file" } } };
+                              { v->comp_file, "it is comp_file" },
+                              { v->tool_table, "it is tool_table" } } };
 }
 
 static int cannot_write(struct fmu *f, const char *why)
@@ -113,12 +116,22 @@ static void publish(struct fmu *f)
     v->spindle_speed = mcc->written.outputs.spindle;
     v->coolant = mcc->written.outputs.coolant;
     v->digital_out = (int32_t)mcc->written.outputs.digital;
+    v->tool = mcc->written.outputs.tool;
+    v->tool_asked = mcc->written.outputs.asks ? mcc->written.outputs.asked : -1;
+    memcpy(v->analog, mcc->written.outputs.analog, sizeof v->analog);
     v->queue = mcc->queue.count;
     v->starved = m->pc.pcl.starved;
     v->services = m->pc.pcl.services;
     v->latency = (double)m->pc.pcl.latency / CLOCK_HZ;
     publish_schedule(v, &m->pc);
     publish_card(v, &m->pc);
+    if ((v->tool_asked >= 0) != m->told_change) {
+        m->told_change = v->tool_asked >= 0;
+        if (m->told_change) {
+            fmu_event(f, "line %d waits for tool %d: cycle_start goes on", (int)v->line,
+                      (int)v->tool_asked);
+        }
+    }
     if (v->error != m->told_error) {
         m->told_error = v->error;
         (v->error != 0 ? fmu_warn : fmu_event)(f, "run-time error 0x%04X after line %d",
@@ -140,6 +153,27 @@ static int set_compensation(struct fmu *f)
             return fmu_fail(f, "comp_file: %s: axis %d is not active", name, i + 1);
         }
     }
+    return 0;
+}
+
+/* Tools, probe, and how the program is meant. */
+static int set_tools(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    const bool stops = strcmp(v->tool_change, "stop") == 0;
+    struct mcc *mcc = &f->s.m.pc.mcc;
+    const struct mcc_dialect dialect = { v->rotary_names, v->fanuc, v->least_increment };
+    struct tool_file file = { .line = 0 };
+
+    if (!stops && strcmp(v->tool_change, "immediate")) {
+        return fmu_fail(f, "tool_change = \"%s\" is neither stop nor immediate", v->tool_change);
+    }
+    if (v->tool_table[0] && tool_read(&file, v->tool_table, v->rotary_names)) {
+        return fmu_fail(f, "tool_table: %s: %s", v->tool_table, file.said);
+    }
+    task_set_tools(mcc, &file.table, stops);
+    task_set_dialect(mcc, &dialect);
+    inquiry_set_place(mcc, (enum inquiry_place)v->probe_place);
     return 0;
 }
 
@@ -174,15 +208,15 @@ static int model_start(struct fmu *f)
     if (pc_start(&m->pc, &machine, &c, f->blob != NULL) != MCC_NO_ERR) {
         return fmu_fail(f, "the library refuses the machine parameters");
     }
-    if (v->comp_file[0] && set_compensation(f)) {
+    if ((v->comp_file[0] && set_compensation(f)) || set_tools(f)) {
         return -1;
     }
     if (f->blob) {
         const struct source source = source_of_program(f);
-        struct fault_report r;
-        task_check(&m->pc.mcc, &source, &r);
-        if (r.fault != FAULT_NONE) {
-            return refuse_program(f, "program", v->program, f->blob, &r);
+        struct fault_list all;
+        task_check_all(&m->pc.mcc, &source, &all);
+        if (judge_program(f, "program", v->program, f->blob, &all)) {
+            return -1;
         }
     }
     m->bus = c.bus * CLOCK_NS;
@@ -214,7 +248,8 @@ static void read_bus(struct fmu *f, int64_t at)
     struct pc_panel panel = {
         .hold = v->hold, .abort = v->abort, .cycle_start = v->cycle_start,
         .single_block = v->single_block,
-        .override = v->override, .go_home = v->go_home, .jog_percent = 100.0 * v->jog_speed,
+        .override = v->override, .adaptive = v->adaptive_feed, .go_home = v->go_home,
+        .jog_percent = 100.0 * v->jog_speed,
         .wheel_axis = v->mpg_axis, .wheel_encoder = v->mpg_encoder, .wheel_ratio = v->mpg_ratio,
         .clear_error = v->clear_error
     };
@@ -226,6 +261,9 @@ static void read_bus(struct fmu *f, int64_t at)
     LINK_SHOWN(READ)
     LINK_SHOWN_MACHINE(READ)
     panel.signals = card_signals(&link);
+    panel.signals.probe = v->probe;
+    panel.signals.digital = (uint32_t)v->digital_in;
+    memcpy(panel.signals.analog, v->analog_in, sizeof panel.signals.analog);
     const struct pcl_card card = card_of(&pc->pcl, &link);
     pc_instant(pc, at / CLOCK_NS, &card, &panel, &source);
 }
@@ -280,6 +318,7 @@ static int model_end(struct fmu *f)
     struct interpreter in;
     const double zero[AXES] = { 0.0 };
     interpreter_start(&in, zero, mcc->machine.feed, mcc->offset);
+    in.tools.table = mcc->tools;
     const struct inputs inputs = inputs_of(v);
     const char *why = path_write(v->path_file, inputs.of, INPUTS, &in, &program,
                                  mcc->mover.started);

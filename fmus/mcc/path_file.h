@@ -4,6 +4,7 @@
 
 #include "fmu_output.h"
 #include "interpreter.h"
+#include "waiting.h"
 
 /* A number with all its digits, whatever decimal sign the host's locale has. */
 static void put(FILE *file, double x)
@@ -39,10 +40,13 @@ static void put_command(FILE *file, const struct command *c)
     for (int i = 0; i < 3; i++) {
         put(file, p->arc && i == (int)p->plane ? 1.0 : 0.0);
     }
-    put(file, p->radius);
-    put(file, p->sweep);
+    put(file, p->arc ? p->radius : 0.0);
+    put(file, p->arc ? p->sweep : 0.0);
     put(file, p->length);
     put(file, c->feed);
+    for (int i = 0; i < 6; i++) {
+        put(file, p->cubic ? p->bezier.inner[i / 3][i % 3] : 0.0);
+    }
     fputc('\n', file);
 }
 
@@ -54,12 +58,15 @@ static void put_path(FILE *file, struct interpreter in, const struct program *pr
 
     fputs("command,line,type,start_x,start_y,start_z,start_u,start_v,start_w,"
           "end_x,end_y,end_z,end_u,end_v,end_w,centre_x,centre_y,centre_z,"
-          "normal_x,normal_y,normal_z,radius,sweep,length,feed\n", file);
+          "normal_x,normal_y,normal_z,radius,sweep,length,feed,"
+          "inner_0_x,inner_0_y,inner_0_z,inner_1_x,inner_1_y,inner_1_z\n", file);
     for (int32_t i = 1; i <= last;) {
-        if (interpreter_next(&in, program, &c, &r) != INTERPRETER_COMMAND) {
+        const enum interpreter_result got = interpreter_next(&in, program, &c, &r);
+        if (got == INTERPRETER_WAIT) {
+            waiting_pass(&in);
+        } else if (got != INTERPRETER_COMMAND) {
             return;
-        }
-        if (command_lasts(&c)) {
+        } else if (command_lasts(&c)) {
             c.index = i++;
             put_command(file, &c);
         }

@@ -169,15 +169,13 @@ static int create(struct fmu *f, int n)
     task_set_switches(mcc, v->block_delete, v->optional_stop);
     if (programs->of[n]) {
         const struct source source = source_of_group(f, n);
-        struct fault_report r;
+        struct fault_list all;
         char name[] = "group1_program";
         name[5] = (char)('1' + n);
         group_program(&m->groups, code,
                       (int64_t)ceil(clocks(v->start_delay[n]) - FMU_PERIOD_TOLERANCE));
-        task_check(mcc, &source, &r);
-        if (r.fault != FAULT_NONE) {
-            return refuse_program(f, name, w.program, programs->of[n], &r);
-        }
+        task_check_all(mcc, &source, &all);
+        return judge_program(f, name, w.program, programs->of[n], &all);
     }
     return 0;
 }

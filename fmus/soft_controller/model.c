@@ -156,11 +156,11 @@ static int rehearse(struct fmu *f, const struct orders_text *t)
 {
     const struct soft_blob *b = f->blob;
     struct soft *s = &f->s.m.soft;
-    struct fault_report r;
+    struct fault_list all;
 
-    orders_check(&b->config.orders, t, &s->robot.pose, &r);
-    if (r.fault != FAULT_NONE) {
-        return refuse_program(f, "program", f->s.v.program, b->gcode, &r);
+    orders_check(&b->config.orders, t, &s->robot.pose, &all);
+    if (judge_program(f, "program", f->s.v.program, b->gcode, &all)) {
+        return -1;
     }
     soft_rehearse(s, &b->config, t);
     if (s->trouble.error != SOFT_OK) {

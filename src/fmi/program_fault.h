@@ -18,15 +18,12 @@ static struct quote quote(struct program_file *program, const struct fault_repor
     return q;
 }
 
-/* Refuse the program that a parameter names. */
-static int refuse_program(struct fmu *f, const char *parameter, const char *name,
-                          struct program_file *program, const struct fault_report *r)
+/* What is wrong with a line of a program of that name. */
+static int tell_fault(struct fmu *f, const char *name, struct program_file *program,
+                      const struct fault_report *r)
 {
     char detail[SOURCE_LINE_MAX + 96] = "";
 
-    if (r->fault == FAULT_READ) {
-        return fmu_fail(f, "%s: cannot read %s: %s", parameter, name, strerror(program->error));
-    }
     if (r->other_length) {
         snprintf(detail, sizeof detail, " beside \"%s\"",
                  quote(program, r, r->other_at, r->other_length).text);
@@ -41,8 +38,27 @@ static int refuse_program(struct fmu *f, const char *parameter, const char *name
         snprintf(detail, sizeof detail, " (%.6g mm, half the distance is %.6g mm)", r->value,
                  r->limit);
     }
-    return fmu_fail(f, "%s: line %d: %s \"%s\"%s", name, (int)r->line, fault_text(r->fault),
-                    quote(program, r, r->at, r->length).text, detail);
+    return fmu_fail(f, "%s: line %d: %s \"%s\"%s, column %d", name, (int)r->line,
+                    fault_text(r->fault), quote(program, r, r->at, r->length).text, detail,
+                    (int)r->at + 1);
+}
+
+/* Tell the notes on the program that a parameter names, and refuse it if it has a fault. */
+static int judge_program(struct fmu *f, const char *parameter, const char *name,
+                         struct program_file *program, const struct fault_list *all)
+{
+    int status = 0;
+
+    for (int i = 0; i < all->notes; i++) {
+        const struct fault_report *r = &all->note[i];
+        fmu_warn(f, "%s: line %d: note: %s \"%s\", column %d", name, (int)r->line,
+                  fault_text(r->fault), quote(program, r, r->at, r->length).text, (int)r->at + 1);
+    }
+    for (int i = 0; i < all->count; i++) {
+        status = all->of[i].fault != FAULT_READ ? tell_fault(f, name, program, &all->of[i])
+               : fmu_fail(f, "%s: cannot read %s: %s", parameter, name, strerror(program->error));
+    }
+    return all->more ? fmu_fail(f, "%s: ... and more", name) : status;
 }
 
 /* Open the program that a parameter names; NULL without a name. */

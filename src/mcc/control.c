@@ -21,6 +21,8 @@ void control_settle(struct mcc *m)
         m->program.switches.turning = 0;            /* and switched these off */
     }
     m->program.switches.coolant = m->mover.outputs.coolant;
+    m->program.switches.overrides = m->mover.overrides;
+    m->program.tools.loaded = m->mover.outputs.tool;
 }
 
 int MCC_motion_hold(struct mcc *m)

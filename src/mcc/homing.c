@@ -44,7 +44,7 @@ int homing_set_settle(struct mcc *m, double seconds)
 }
 
 /* Place of the machine at an encoder count. [mm] */
-static double place_at(const struct mcc *m, int i, int32_t count)
+double homing_place(const struct mcc *m, int i, int32_t count)
 {
     const struct homing_axis *x = &m->homing.axis[i];
     const int32_t from_zero = (int32_t)((uint32_t)count - (uint32_t)x->zero);
@@ -81,9 +81,9 @@ static struct home_inputs inputs(const struct mcc *m, int i)
         .sensor = (m->signals.home >> i & 1) != 0,
         .upper = (m->signals.upper >> i & 1) != 0, .lower = (m->signals.lower >> i & 1) != 0,
         .rest = rests(m, i),
-        .position = x->home.phase == HOME_GO ? place : place_at(m, i, m->signals.enc[i]),
+        .position = x->home.phase == HOME_GO ? place : homing_place(m, i, m->signals.enc[i]),
         .latched = m->signals.latched[i] != x->latched,
-        .latch = place_at(m, i, m->signals.latch[i])
+        .latch = homing_place(m, i, m->signals.latch[i])
     };
 }
 

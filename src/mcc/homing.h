@@ -42,6 +42,9 @@ int homing_set(struct mcc *m, int axis, const struct home_config *config, bool i
  * FIFO lasts and the drive needs. [s] */
 int homing_set_settle(struct mcc *m, double seconds);
 
+/* Place of the machine at an encoder count of an axis. [mm] */
+double homing_place(const struct mcc *m, int axis, int32_t count);
+
 /* The card has reported its signals, `clocks` after the report before: the search takes its next
  * step. */
 void homing_look(struct mcc *m, int64_t clocks);

@@ -29,7 +29,9 @@ static bool guard_valid(const struct machine *m, const struct machine_axis *a)
     return isfinite(a->high_limit) && isfinite(a->low_limit) && isfinite(a->hot_offset) &&
            isfinite(a->lot_offset) && (!a->check_ot || machine_low(a) <= machine_high(a)) &&
            a->max_dda_acc >= 0 && a->max_dda_acc <= 2 * machine_dda_limit(m) &&
-           a->track_limit >= 0 && number(a->inpos_tol);
+           a->track_limit >= 0 && number(a->inpos_tol) &&
+           (a->acc == 0.0 || machine_positive(a->acc)) &&
+           (a->jerk == 0.0 || (a->acc > 0.0 && machine_positive(a->jerk)));
 }
 
 static bool axis_valid(const struct machine *m, const struct machine_axis *a)
@@ -78,7 +80,9 @@ bool machine_valid(const struct machine *m)
         return false;
     }
     return machine_positive(m->dda_time) && machine_positive(m->feed) &&
-           machine_positive(m->max_feed) && type_valid(m->acc_type) && type_valid(m->dec_type) &&
+           machine_positive(m->max_feed) &&
+           (m->arc_tolerance == 0.0 || machine_positive(m->arc_tolerance)) &&
+           type_valid(m->acc_type) && type_valid(m->dec_type) &&
            share_valid(m->jerk_share) && share_valid(m->ptp_ratio) && asyn_valid(&m->asyn) &&
            m->feed <= m->max_feed && machine_positive(m->acc_time) && machine_positive(m->dec_time);
 }
@@ -146,6 +150,19 @@ struct motion_limits machine_limits(const struct machine *m)
         .feed = m->max_feed, .rapid = rapid(m), .smooth = smooth(m),
         .up = rule(m, m->acc_type, m->acc_time), .down = rule(m, m->dec_type, m->dec_time)
     };
+}
+
+struct pace_limits machine_pace(const struct machine *m)
+{
+    struct pace_limits l = { .acc = { 0.0 } };
+
+    for (int i = 0; i < AXES; i++) {
+        const struct machine_axis *a = &m->axis[i];
+        l.speed[i] = a->used ? machine_axis_speed(a) : 0.0;
+        l.acc[i] = a->acc;
+        l.jerk[i] = a->jerk;
+    }
+    return l;
 }
 
 struct mechanism machine_mechanism(const struct machine *m)

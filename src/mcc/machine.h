@@ -4,6 +4,7 @@
 
 #include "axes.h"
 #include "command.h"
+#include "pace.h"
 
 enum { CLOCK_HZ = 40000000, CLOCK_NS = 1000000000 / CLOCK_HZ };  /* clock of the card */
 
@@ -25,6 +26,8 @@ struct machine_axis {
     int32_t track_limit;    /* [counts] largest following error; 0: it is not watched */
     bool    in_pos;         /* commands wait until the axis is in position: */
     double  inpos_tol;      /* [mm] following error that counts as in position */
+    double  acc;            /* [mm/s^2] highest on curves; 0 of all axes: as the ramps */
+    double  jerk;           /* [mm/s^3] highest jerk there; 0 no limit */
 };
 
 /* What a limit switch does; the library's numbers. */
@@ -53,6 +56,7 @@ struct machine {
     int32_t queue_depth;    /* interpolation points kept ahead */
     double  feed;           /* [mm/s] until one is set */
     double  max_feed;       /* [mm/s] cart_max_speed of the source document */
+    double  arc_tolerance;  /* [mm] that the end of a program's arc may miss; 0: 0.0283 */
     double  acc_time;       /* [s] from rest to the commanded feed */
     double  dec_time;       /* [s] from the commanded feed to rest */
     char    acc_type;       /* 'T' or 0: at constant acceleration; 'S': S-shaped */
@@ -100,6 +104,9 @@ struct mechanism machine_mechanism(const struct machine *m);
 
 /* What motion along paths keeps to. */
 struct motion_limits machine_limits(const struct machine *m);
+
+/* What each axis keeps to on a curve. */
+struct pace_limits machine_pace(const struct machine *m);
 
 /* Limits of an axis that moves for itself at a speed [mm/s]. */
 struct axes_limits machine_axis_limits(const struct machine *m, int axis, double speed);

@@ -10,6 +10,7 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
     }
     memset(m, 0, sizeof *m);
     m->machine = *machine;
+    m->curve_plan.limits = machine_pace(machine);
     for (int i = 0; i < AXES; i++) {
         if (m->machine.axis[i].max_dda == 0) {
             m->machine.axis[i].max_dda = machine_dda_limit(machine);
@@ -85,6 +86,7 @@ static int accept(struct mcc *m, struct command *c, enum command_status s)
     } else if (c->path.length > 0.0 || c->type == COMMAND_DELAY) {
         ring_push(&m->ring, c);
     }
+    m->curve_plan.last = false;
     return c->index;
 }
 
@@ -100,9 +102,16 @@ static int plan(struct mcc *m, struct command *c, enum command_type type)
                       : command_move(c, &machine, &l, type, m->feed, &r));
 }
 
+/* A command with what is set for its ends. */
+static struct command smoothed(const struct mcc *m)
+{
+    return (struct command){ .blend = m->blend, .tolerance = m->tolerance, .curve = m->curve,
+                             .merge = m->merge };
+}
+
 static int straight(struct mcc *m, const double target[AXES], enum command_type type)
 {
-    struct command c = { .blend = m->blend, .tolerance = m->tolerance };
+    struct command c = smoothed(m);
     double end[AXES];
     const int code = acceptable(m);
 
@@ -217,7 +226,7 @@ static bool turn_end(const struct mcc *m, const struct turn *t, double end[AXES]
 
 static int turn(struct mcc *m, struct turn *t)
 {
-    struct command c = { .blend = m->blend, .tolerance = m->tolerance };
+    struct command c = smoothed(m);
     double end[AXES], miss;
     const int code = acceptable(m);
 

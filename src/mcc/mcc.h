@@ -9,6 +9,7 @@
 
 #include "guard.h"
 #include "homing.h"
+#include "inquiry.h"
 #include "comp.h"
 #include "interpreter.h"
 #include "manual.h"
@@ -45,6 +46,8 @@ enum mcc_error {
     MCC_ERROR_TRAVEL = 0xF301,      /* axis 1 at a software limit or limit switch; .. 0xF306 */
     MCC_ERROR_IN_POS = 0xF501,      /* not in position within inpos_timeout */
     MCC_ERROR_HOME   = 0xF700,
+    MCC_ERROR_PROBE_FREE = 0xF781,  /* ours: the probe touches (G38.2, .3), or does not, already */
+    MCC_ERROR_PROBE_END  = 0xF782,  /* ours: it came to its end without contact (G38.2, .4) */
     MCC_ERROR_TRACK  = 0xF801       /* following error of axis 1 too large; .. 0xF806 */
 };
 
@@ -74,6 +77,12 @@ typedef struct {
                                  * 1 negative */
 } MCC_MACH_PARAM;
 
+/* How the text of programs is meant: members of struct program. */
+struct mcc_dialect {
+    bool   angles, fanuc;
+    double least_increment;
+};
+
 /* State of the reactions: see reaction.h. */
 struct protection {
     int32_t base[AXES];         /* [pulses] position where the card's pulse count is 0 */
@@ -88,10 +97,16 @@ struct mcc {
     struct machine machine;
     double  offset[INTERPRETER_SYSTEMS][AXES];  /* [mm] origins a program begins with */
     bool    block_delete, optional_stop;        /* of task_set_switches */
+    struct inquiry inquiry;     /* what the program asks of the machine */
+    bool    change_stops;       /* of task_set_tools */
+    struct tool_table tools;
+    struct mcc_dialect dialect; /* of task_set_dialect */
     double  feed;               /* [mm/s] of MCC_line, arcs and circles */
     bool    incremental;
     bool    blend;
     double  tolerance;          /* [mm] */
+    bool    curve;              /* of mcc_set_curve */
+    double  merge;              /* [mm] */
     int32_t error;              /* enum mcc_error, 0 none */
     int32_t commands;           /* commands accepted; the index of the latest */
     double  end[AXES];          /* [mm] end of the latest */
@@ -100,6 +115,7 @@ struct mcc {
     struct ring  ring;
     struct mover mover;
     struct track_mean mean;
+    struct curve_plan curve_plan;
     struct queue queue;
     struct point written;       /* the latest point the card took */
     struct signals signals;     /* as the card reported them last */
@@ -115,6 +131,12 @@ struct mcc {
     MCC_MACH_PARAM epcio_axis_param[AXES];  /* for the user to fill, see MCC_update_param */
     double  cart_max_speed;     /* [mm/s] likewise */
 };
+
+/* What the mover of a library uses. */
+static inline struct mover_beside mcc_beside(struct mcc *m)
+{
+    return (struct mover_beside){ &m->ring, &m->mean, &m->curve_plan };
+}
 
 /* System. MCC_init_motion: at rest at the origin, settings from the machine. */
 int MCC_init_motion(struct mcc *m, const struct machine *machine);
@@ -187,6 +209,9 @@ int MCC_check_quit(const struct mcc *m);                /* 0 enabled, 1 disabled
 /* Ours: look-ahead over lines, arcs and circles from here on, whose corners are rounded by no more
  * than this [mm]; 0 switches it off. */
 int mcc_set_tolerance(struct mcc *m, double tolerance);
+/* Ours: how that look-ahead works. As a curve each axis keeps its own acc and jerk, and runs of
+ * short commands become one curve within `merge` of them [mm]; 0 merges none. */
+int mcc_set_curve(struct mcc *m, bool on, double merge);
 int MCC_set_acc_type(struct mcc *m, char type);         /* 'T' trapezoidal, 'S' S-shaped */
 char MCC_get_acc_type(const struct mcc *m);
 int MCC_set_dec_type(struct mcc *m, char type);

@@ -24,7 +24,9 @@ const char *mcc_damage(const struct mcc *m)
     if (interpreter_damaged(&m->program)) {
         return "the place in the part program";
     }
-    if (mover_damaged(&m->mover, &m->ring)) {
+    const bool curve = m->mover.motion == MOVER_CURVE;
+    if (mover_damaged(&m->mover, &m->ring) ||
+        (curve && curve_damaged(&m->mover.curve, &m->curve_plan))) {
         return "a count or a place of the commands";
     }
     if (queue_damaged(&m->queue)) {

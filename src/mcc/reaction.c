@@ -53,7 +53,8 @@ static bool within(struct mcc *m, const struct mechanism *machine, bool ramping,
 
     if (mechanism_bounded(machine)) {
         axis = mechanism_outside(machine, m->mover.pulses, p->pulses);
-        axis = axis >= 0 ? axis : reach_beyond(&m->mover, &m->ring, machine,
+        const struct mover_beside beside = mcc_beside(m);
+        axis = axis >= 0 ? axis : reach_beyond(&m->mover, &beside, machine,
                                                machine_dda_time(&m->machine));
     }
     *error = MCC_ERROR_TRAVEL + axis;
@@ -118,8 +119,7 @@ static void stop_at_once(struct mcc *m, int32_t error, int32_t stay)
     control_settle(m);
 }
 
-/* Position by the pulses that the card has put out, of which the compensation is no part. */
-static int32_t put_out(const struct mcc *m, int axis)
+int32_t reaction_put_out(const struct mcc *m, int axis)
 {
     return m->protection.base[axis] + m->signals.pulses[axis] - m->written.added[axis];
 }
@@ -132,7 +132,7 @@ static void follow(struct mcc *m)
 
     for (int i = 0; i < AXES; i++) {
         if (m->machine.axis[i].used) {
-            w->pulses[i] = m->mover.pulses[i] = put_out(m, i);
+            w->pulses[i] = m->mover.pulses[i] = reaction_put_out(m, i);
             w->place[i] = w->pulses[i] / machine_pulses_per_mm(&m->machine.axis[i]);
         }
         w->frame[i] = 0;
@@ -169,7 +169,7 @@ bool reaction_arrived(const struct mcc *m)
 {
     bool all = m->queue.count == 0 && !mover_busy(&m->mover);
     for (int i = 0; i < AXES && !m->dry_run; i++) {
-        all = all && (!m->machine.axis[i].used || m->written.pulses[i] == put_out(m, i));
+        all = all && (!m->machine.axis[i].used || m->written.pulses[i] == reaction_put_out(m, i));
     }
     return all;
 }
@@ -234,6 +234,7 @@ void reaction_look(struct mcc *m, const struct reaction_look *l)
     if (m->mover.confirming) {
         confirm(m, l->clocks);
     }
+    inquiry_look(m, l->clocks);
 }
 
 int reaction_clear(struct mcc *m)

@@ -44,6 +44,9 @@ void reaction_look(struct mcc *m, const struct reaction_look *l);
 /* Motion has ended and the card has put out every pulse. */
 bool reaction_arrived(const struct mcc *m);
 
+/* Position by the pulses that the card has put out, of which the compensation is no part. */
+int32_t reaction_put_out(const struct mcc *m, int axis);
+
 /* MCC_clear_error of an open library. */
 int reaction_clear(struct mcc *m);
 

@@ -85,6 +85,19 @@ int mcc_set_tolerance(struct mcc *m, double tolerance)
     return MCC_NO_ERR;
 }
 
+int mcc_set_curve(struct mcc *m, bool on, double merge)
+{
+    if (!m->open) {
+        return MCC_INITIAL_MOTION;
+    }
+    if (!(isfinite(merge) && merge >= 0.0)) {
+        return MCC_PARAMETER;
+    }
+    m->curve = on;
+    m->merge = merge;
+    return MCC_NO_ERR;
+}
+
 static int set_time(const struct mcc *m, double *time, double ms)
 {
     if (!m->open) {

@@ -7,6 +7,8 @@
 
 #include "machine.h"
 
+enum { SIGNALS_ANALOG = 4 };
+
 struct signals {
     bool     stop;          /* the emergency stop acts */
     uint32_t home;          /* logic level of the home switches, a bit an axis */
@@ -17,6 +19,9 @@ struct signals {
     int32_t  err[AXES];     /* [counts] error counters */
     int32_t  latch[AXES];   /* [counts] encoder counter at the index latched last */
     int32_t  latched[AXES]; /* how often it has latched */
+    bool     probe;         /* the probe touches */
+    uint32_t digital;       /* inputs of M66, a bit each */
+    double   analog[SIGNALS_ANALOG];    /* the same */
 };
 
 /* The counters wrap, so the lowest value has itself as its opposite. */

@@ -4,19 +4,39 @@
 #include <string.h>
 
 #include "reaction.h"
+#include "waiting.h"
 
 struct program task_program(const struct mcc *m, const struct source *s)
 {
-    return (struct program){ s, machine_mechanism(&m->machine), machine_limits(&m->machine),
-                             m->block_delete, m->optional_stop, false };
+    return (struct program){ .source = s, .machine = machine_mechanism(&m->machine),
+                             .limits = machine_limits(&m->machine),
+                             .arc = { m->machine.arc_tolerance, 1e-3 },
+                             .block_delete = m->block_delete, .optional_stop = m->optional_stop,
+                             .change_stops = m->change_stops, .has_inputs = true,
+                             .has_probe = true, .angles = m->dialect.angles,
+                             .fanuc = m->dialect.fanuc,
+                             .least_increment = m->dialect.least_increment };
 }
 
 /* A program begins; what the one before has switched on stays on. */
 static void begin(const struct mcc *m, struct interpreter *in)
 {
     const struct switches switches = m->program.switches;
+    const int32_t loaded = m->program.tools.loaded;
     interpreter_start(in, m->end, m->feed, m->offset);
     in->switches = switches;
+    in->tools.table = m->tools;
+    in->tools.loaded = loaded;
+}
+
+/* The speed of a motor in its own unit. */
+static void in_rpm(const struct mcc *m, struct fault_report *r)
+{
+    if (r->fault == FAULT_SPEED) {
+        r->value *= m->machine.axis[r->axis].rpm;
+        r->limit *= m->machine.axis[r->axis].rpm;
+        r->axis = 0;
+    }
 }
 
 void task_check(const struct mcc *m, const struct source *s, struct fault_report *r)
@@ -25,10 +45,17 @@ void task_check(const struct mcc *m, const struct source *s, struct fault_report
     struct interpreter in;
     begin(m, &in);
     interpreter_check(&in, &p, r);
-    if (r->fault == FAULT_SPEED) {
-        r->value *= m->machine.axis[r->axis].rpm;
-        r->limit *= m->machine.axis[r->axis].rpm;
-        r->axis = 0;
+    in_rpm(m, r);
+}
+
+void task_check_all(const struct mcc *m, const struct source *s, struct fault_list *all)
+{
+    const struct program p = task_program(m, s);
+    struct interpreter in;
+    begin(m, &in);
+    interpreter_check_all(&in, &p, all);
+    for (int i = 0; i < all->count; i++) {
+        in_rpm(m, &all->of[i]);
     }
 }
 
@@ -75,12 +102,24 @@ void task_set_switches(struct mcc *m, bool block_delete, bool optional_stop)
     m->optional_stop = optional_stop;
 }
 
+void task_set_tools(struct mcc *m, const struct tool_table *tools, bool change_stops)
+{
+    m->tools = *tools;
+    m->change_stops = change_stops;
+}
+
+void task_set_dialect(struct mcc *m, const struct mcc_dialect *d)
+{
+    m->dialect = *d;
+}
+
 int task_set_single_block(struct mcc *m, bool on)
 {
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    mover_single(&m->mover, &m->ring, on);
+    const struct mover_beside beside = mcc_beside(m);
+    mover_single(&m->mover, &beside, on);
     return MCC_NO_ERR;
 }
 
@@ -116,7 +155,7 @@ static bool works(const struct mcc *m)
 /* Room for a command, if what has left the ring since its head was there is kept. */
 static bool has_room(const struct mcc *m, int32_t head)
 {
-    return works(m) && m->running &&
+    return works(m) && m->running && !waiting_now(&m->program) &&
            m->ring.count + (m->ring.head - head + RING_SIZE) % RING_SIZE < RING_SIZE;
 }
 
@@ -134,11 +173,15 @@ void task_read(struct mcc *m, const struct source *s)
     switch (interpreter_next(&m->program, &p, &c, &r)) {
     case INTERPRETER_COMMAND:
         c.index = command_lasts(&c) ? ++m->commands : 0;
+        m->curve_plan.last = false;
         memcpy(m->end, m->program.point, sizeof m->end);
         ring_push(&m->ring, &c);
         break;
+    case INTERPRETER_WAIT:
+        break;
     case INTERPRETER_END:
         m->running = false;
+        m->curve_plan.last = true;
         break;
     case INTERPRETER_FAULT:
         reaction_stop(m, reaction_error_of(&r));
@@ -177,14 +220,15 @@ int task_point(struct mcc *m, const struct source *s)
     const int32_t head = m->ring.head, count = m->ring.count;
     struct point point;
     int32_t error;
+    const struct mover_beside beside = mcc_beside(m);
     double left = frame;
     int made = 0;
 
     do {
-        left = mover_advance(&m->mover, &m->ring, left);
+        left = mover_advance(&m->mover, &beside, left);
         made += s ? refill(m, s, head) : 0;
     } while (left > 0.0 && !mover_resting(&m->mover, &m->ring));
-    mover_point(&m->mover, &m->ring, &machine, frame, &m->mean, &point);
+    mover_point(&m->mover, &beside, &machine, frame, &point);
     if (!reaction_point(m, &machine, before.abort, &point, &error)) {
         m->mover = before;
         m->ring.head = head;
@@ -192,7 +236,7 @@ int task_point(struct mcc *m, const struct source *s)
         reaction_stop(m, error);
         return made;
     }
-    mover_accept(&m->mover, &m->ring, &point);
+    mover_accept(&m->mover, &beside, &point);
     queue_push(&m->queue, &point);
     return made;
 }
@@ -228,12 +272,13 @@ enum task_status task_status(const struct mcc *m)
     if (MCC_check_stop(m)) {
         return TASK_STOPPED;
     }
-    if ((m->mover.hold || m->mover.stopped) && m->queue.count == 0 && !m->mover.untold &&
+    if ((mover_held(&m->mover) || m->mover.stopped) && m->queue.count == 0 && !m->mover.untold &&
         mover_resting(&m->mover, &m->ring)) {
         return TASK_HOLD;
     }
     if (mover_waits(&m->mover, &m->ring) && m->queue.count == 0 && !m->mover.untold) {
         return TASK_BLOCK_HOLD;
     }
-    return manual_wheel(m) ? TASK_WHEEL : m->written.waits ? TASK_DELAY : TASK_RUNNING;
+    return manual_wheel(m) ? TASK_WHEEL
+         : m->written.waits || m->inquiry.waits ? TASK_DELAY : TASK_RUNNING;
 }

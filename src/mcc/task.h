@@ -15,6 +15,9 @@ struct program task_program(const struct mcc *m, const struct source *s);
 /* Read the whole program as it would run from the last command's end; nothing moves. */
 void task_check(const struct mcc *m, const struct source *s, struct fault_report *r);
 
+/* The same for all faults and notes. */
+void task_check_all(const struct mcc *m, const struct source *s, struct fault_list *all);
+
 /* Start a program that task_check found good. Refused like a motion call. */
 int task_start(struct mcc *m);
 
@@ -24,6 +27,12 @@ int task_set_origin(struct mcc *m, int system, const double origin[AXES]);
 /* Switches of the panel, from the next line on that is read: pass over lines that begin with /,
  * stop at M1. Both are off at first. */
 void task_set_switches(struct mcc *m, bool block_delete, bool optional_stop);
+
+/* Tools that a program begins with; M6 waits for task_continue, or is immediate (at first). */
+void task_set_tools(struct mcc *m, const struct tool_table *tools, bool change_stops);
+
+/* How programs are meant that are checked or started from now on. */
+void task_set_dialect(struct mcc *m, const struct mcc_dialect *d);
 
 /* Rest before each block: a line of the program, or a call of the API. The one with which a program
  * starts has leave. Switched off, a block that waits still needs task_continue. */

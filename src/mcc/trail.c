@@ -81,7 +81,7 @@ static void bend(const struct trail *t, int64_t middle, double out[3])
 }
 
 /* A piece of the path and what of it is nearest. */
-struct piece {
+struct trail_piece {
     double from[3], chord[3], along[3];     /* [mm], [mm], unit */
     double size;            /* [mm] of the chord */
     double foot[3];         /* [mm] */
@@ -90,9 +90,9 @@ struct piece {
 };
 
 /* Nearest point on the chord from a point to the next. */
-static struct piece chord_of(const struct trail *t, int64_t i, const double place[3])
+static struct trail_piece chord_of(const struct trail *t, int64_t i, const double place[3])
 {
-    struct piece p = { 0 };
+    struct trail_piece p = { 0 };
     double gap[3];
 
     memcpy(p.from, place_at(t, i), sizeof p.from);
@@ -135,7 +135,7 @@ static bool arc_of(const struct trail *t, int64_t i, double size, double axis[3]
 }
 
 /* The foot at an end of a piece: the path is not the chord, which lies on the tool's side. */
-static void at_end(struct piece *p, bool far, const double place[3])
+static void at_end(struct trail_piece *p, bool far, const double place[3])
 {
     p->square = 0.0;
     for (int k = 0; k < 3; k++) {
@@ -145,9 +145,9 @@ static void at_end(struct piece *p, bool far, const double place[3])
 }
 
 /* Nearest point on the piece, on its circle if it has one. */
-static struct piece refined(const struct trail *t, int64_t i, const double place[3])
+static struct trail_piece refined(const struct trail *t, int64_t i, const double place[3])
 {
-    struct piece p = chord_of(t, i, place);
+    struct trail_piece p = chord_of(t, i, place);
     double axis[3], inward[3], centre[3], spoke[3], radius;
 
     if (p.size == 0.0 || !arc_of(t, i, p.size, axis, &radius)) {
@@ -214,9 +214,9 @@ struct trail_foot trail_nearest(struct trail *t, const double place[3], int64_t 
     if (least == INFINITY) {
         return out;
     }
-    struct piece p = refined(t, best, place);
+    struct trail_piece p = refined(t, best, place);
     for (int64_t i = best - 1; i <= best + 1; i += 2) {
-        const struct piece other = refined(t, i, place);
+        const struct trail_piece other = refined(t, i, place);
         if (i >= t->foot && i < last && other.square < p.square) {
             p = other;
         }

@@ -64,6 +64,7 @@ struct pc_panel {
     int32_t wheel_encoder;      /* from 1 */
     double wheel_ratio;         /* [pulses/count] */
     double override;            /* 0..2 */
+    double adaptive;            /* 0..1 share of the feed while a program lets it (M52) */
     double software_gain[AXES]; /* [V/count] of output mode 2 */
     int32_t p_gain[AXES];
     struct signals signals;

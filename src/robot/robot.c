@@ -144,6 +144,7 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     const struct mechanism m = { .kinematics = &kinematics, .geometry = &g };
     double joint[OPW_JOINTS];
     struct pose pose = r->pose;
+    const struct mover_beside beside = { &r->ring, &r->mean, NULL };
     struct point point;
 
     memcpy(joint, r->joint, sizeof joint);
@@ -153,10 +154,10 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     }
     robot_feed(r);
     for (double left = c->cycle; left > 0.0 && !mover_resting(&r->mover, &r->ring); ) {
-        left = mover_advance(&r->mover, &r->ring, left);
+        left = mover_advance(&r->mover, &beside, left);
         robot_feed(r);
     }
-    mover_point(&r->mover, &r->ring, &PLACES, c->cycle, &r->mean, &point);
+    mover_point(&r->mover, &beside, &PLACES, c->cycle, &point);
     predict(r, c, point.place, joint);
     if (!mechanism_joints(&m, point.place, joint) ||
         manipulator_outside(&arm, r->joint, joint) >= 0) {
@@ -169,7 +170,7 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     course_pose(&g, point.place, joint, &pose);
     show(r, c, joint, &pose);
     r->line = point.line;
-    mover_accept(&r->mover, &r->ring, &point);
+    mover_accept(&r->mover, &beside, &point);
 }
 
 void robot_hold(struct robot *r, bool on)

@@ -3,17 +3,19 @@
 #include <math.h>
 #include <string.h>
 
+#include "waiting.h"
+
 static const double DEGREE = 0.017453292519943295;
 /* Flags of a configuration: BACK, DOWN, FLIP. */
 static const int FLAG[3] = { OPW_BACK, OPW_ELBOW, OPW_FLIP };
 static const double FREE_SPEED = 1e9;       /* [mm/s] the arm decides how fast, not the reader */
 
-/* What a part program is read against: six coordinates without joints. */
+/* What a part program is read against: six coordinates without joints, inputs, no probe. */
 static struct program program_of(const struct orders_config *c, const struct orders_text *t)
 {
     struct program p = {
-        .source = t->gcode, .angles = true, .block_delete = c->block_delete,
-        .optional_stop = c->optional_stop,
+        .source = t->gcode, .angles = true, .plain = true, .block_delete = c->block_delete,
+        .optional_stop = c->optional_stop, .change_stops = c->tool_stop, .has_inputs = true,
         .limits = { .feed = c->feed_most, .rapid = 1.0, .up = { .acc = 1.0 },
                     .down = { .acc = 1.0 } }
     };
@@ -50,13 +52,13 @@ void orders_start(struct orders *o, const struct orders_config *c, const struct 
 }
 
 void orders_check(const struct orders_config *c, const struct orders_text *t,
-                  const struct pose *at, struct fault_report *r)
+                  const struct pose *at, struct fault_list *all)
 {
     const struct program p = program_of(c, t);
     struct interpreter in;
 
     gcode_start(&in, c, at);
-    interpreter_check(&in, &p, r);
+    interpreter_check_all(&in, &p, all);
 }
 
 /* Motion of a part program as one of the arm: G0 by its joints, the others on their path. F counts
@@ -99,29 +101,95 @@ static void switch_outputs(struct orders *o, struct order *order, const struct c
     order->value = k->set;
 }
 
-static void gcode_order(struct orders *o, const struct orders_config *c,
-                        const struct orders_text *t, struct order *order)
+/* M66: motion ends first. False: not answered yet. */
+static bool answered(struct orders *o, const struct inform_inputs *in)
 {
-    const struct program p = program_of(c, t);
-    struct fault_report fault;
-    struct command k = o->kept;
+    const struct wait *w = &o->gcode.wait;
 
-    if (!o->keeps) {
-        const enum interpreter_result r = interpreter_next(&o->gcode, &p, &k, &fault);
-        if (r != INTERPRETER_COMMAND) {
-            order->kind = r == INTERPRETER_END ? ORDER_END : ORDER_FAULT;
-            return;
-        }
-        if (k.type != COMMAND_OUTPUTS && command_switches(&k)) {   /* M62: before its motion */
-            order->line = k.line;
-            switch_outputs(o, order, &k);
-            o->kept = k;
-            o->keeps = true;
-            return;
+    if (o->passes) {
+        waiting_pass(&o->gcode);
+        return true;
+    }
+    if (in->reached < o->moves) {
+        return false;
+    }
+    const double is = w->kind == WAIT_ANALOG ? in->ai[w->index] : in->di >> w->index & 1;
+    const double was = o->waits ? o->was : is;
+    o->since = o->waits ? o->since : in->now;
+    o->was = is;
+    o->waits = !waiting_done(w, is, was);
+    if (o->waits && (double)(in->now - o->since) >= w->limit * 1e9) {
+        o->waits = false;
+        waiting_answer(&o->gcode, -1.0);
+    } else if (!o->waits) {
+        waiting_answer(&o->gcode, is);
+    }
+    return !o->waits;
+}
+
+/* The next command, into o->kept. False: there is none, *order says why. */
+static bool next_command(struct orders *o, const struct program *p, const struct inform_inputs *in,
+                         struct order *order)
+{
+    struct fault_report fault;
+
+    for (;;) {
+        switch (interpreter_next(&o->gcode, p, &o->kept, &fault)) {
+        case INTERPRETER_COMMAND:
+            return true;
+        case INTERPRETER_END:
+            order->kind = ORDER_END;
+            return false;
+        case INTERPRETER_FAULT:
+            order->kind = ORDER_FAULT;
+            return false;
+        default:
+            if (!answered(o, in)) {
+                return false;
+            }
         }
     }
+}
+
+/* What a command switches before it begins, an output at a time. False: nothing any more. */
+static bool switch_before(struct orders *o, struct order *order)
+{
+    struct command *k = &o->kept;
+
+    if (k->type != COMMAND_OUTPUTS && command_switches(k)) {    /* M62 */
+        switch_outputs(o, order, k);
+        k->set = k->clear = 0;
+        return true;
+    }
+    for (int i = 0; i < OUTPUTS_ANALOG; i++) {
+        if (k->analog.set >> i & 1) {
+            k->analog.set &= ~((uint32_t)1 << i);
+            order->kind = ORDER_ANALOG;
+            order->index = i;
+            order->amount = k->analog.value[i];
+            order->after = o->moves;
+            return true;
+        }
+    }
+    return false;
+}
+
+static void gcode_order(struct orders *o, const struct orders_config *c,
+                        const struct orders_text *t, const struct inform_inputs *in,
+                        struct order *order)
+{
+    const struct program p = program_of(c, t);
+
+    o->keeps = o->keeps || next_command(o, &p, in, order);
+    if (!o->keeps) {
+        return;
+    }
+    order->line = o->kept.line;
+    if (switch_before(o, order)) {
+        return;
+    }
+    const struct command k = o->kept;
     o->keeps = false;
-    order->line = k.line;
     switch (k.type) {
     case COMMAND_DELAY:
         order->kind = ORDER_DELAY;
@@ -239,7 +307,7 @@ void orders_next(struct orders *o, const struct orders_config *c, const struct o
         return;
     }
     if (t->gcode) {
-        gcode_order(o, c, t, order);
+        gcode_order(o, c, t, in, order);
     } else {
         inform_order(o, c, t, in, order);
     }

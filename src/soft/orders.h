@@ -26,8 +26,8 @@ struct orders_config {
     double zone[INFORM_LEVELS + 1]; /* [mm] of PL=0 .. 8; the last one of G64, too */
     double rapid;                   /* share of the joints' speeds of G0 */
     double feed, feed_most;         /* [mm/s] of a part program until F; highest */
-    double origin[6][6];            /* [mm], [deg] of G54 .. G59 */
-    bool   block_delete, optional_stop;
+    double origin[INTERPRETER_SYSTEMS][AXES];   /* [mm], [deg] of G54 .. G59.3 */
+    bool   block_delete, optional_stop, tool_stop;
     enum robot_singular singular;
     int32_t lines;                  /* instructions of a call */
 };
@@ -56,8 +56,11 @@ struct orders {
     bool    waits;              /* for an input or a time */
     int64_t moves;              /* ordered so far */
     struct interpreter gcode;
-    struct command kept;        /* motion of a part program behind outputs of its line */
+    struct command kept;        /* of a part program, behind outputs of its line */
     bool    keeps;
+    bool    passes;             /* waits of a part program are answered as in a check */
+    int64_t since;              /* [ns] that one waits */
+    double  was;                /* its input at the look before */
     struct inform_run inform;
 };
 
@@ -69,9 +72,9 @@ void orders_start(struct orders *o, const struct orders_config *c, const struct 
 void orders_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
                  const struct inform_inputs *in, struct order *order);
 
-/* A part program from its start to its end, nothing moves; FAULT_NONE in *r if it is good. */
+/* A part program from its start to its end, nothing moves: all its faults and notes. */
 void orders_check(const struct orders_config *c, const struct orders_text *t,
-                  const struct pose *at, struct fault_report *r);
+                  const struct pose *at, struct fault_list *all);
 
 bool orders_damaged(const struct orders *o, const struct orders_text *t);
 

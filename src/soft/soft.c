@@ -237,6 +237,7 @@ void soft_rehearse(struct soft *s, const struct soft_config *c, const struct ord
     struct order order;
 
     soft_program_start(s, c, t);
+    s->orders.passes = true;
     while (s->orders.on && s->trouble.error == SOFT_OK) {
         orders_next(&s->orders, &c->orders, t, &in, &order);
         if (order.kind != ORDER_MOVE || !soft_program_move(s, c, &order)) {

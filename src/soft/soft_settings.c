@@ -107,6 +107,7 @@ static void set_orders(const struct soft_settings *s, struct orders_config *o)
         .start = { .vj = 100.0 * s->rapid, .v = s->feed / 60.0, .vr = s->max_spin },
         .rapid = s->rapid, .feed = s->feed / 60.0, .feed_most = s->max_feed / 60.0,
         .block_delete = s->block_delete, .optional_stop = s->optional_stop,
+        .tool_stop = s->tool_stop,
         .singular = (enum robot_singular)s->singular, .lines = 1000
     };
     memcpy(o->zone, s->zone, sizeof o->zone);

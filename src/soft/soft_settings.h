@@ -73,7 +73,8 @@
     X(double,  zone, [9], "mm", 0.0, 0.0, 1e4) \
     X(int32_t, singular, , "", 0, 0, 2)                 /* enum robot_singular */ \
     X(bool,    block_delete, , "", true, false, true) \
-    X(bool,    optional_stop, , "", false, false, true)
+    X(bool,    optional_stop, , "", false, false, true) \
+    X(bool,    tool_stop, , "", true, false, true)
 
 #define SOFT_SETTINGS(X) SOFT_TIMES(X) SOFT_LAYERS(X) SOFT_ARM(X) SOFT_PATH(X)
 
