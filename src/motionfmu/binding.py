@@ -71,6 +71,20 @@ _TYPES: dict[str, Any] = {
 }
 
 
+def dtype(of: str) -> np.dtype:
+    """Type of numpy arrays whose rows are structs of C."""
+    size, fields = _table(of)
+    rows = {name: (_TYPES[chr(f.kind)], f.count, f.offset, f.stride) for name, f in fields.items()}
+    return np.dtype(
+        {
+            "names": list(rows),
+            "formats": [(t, n) if n > 1 else t for t, n, _, _ in rows.values()],
+            "offsets": [at for _, _, at, _ in rows.values()],
+            "itemsize": size,
+        }
+    )
+
+
 class Struct:
     """A struct of the C library; ``s["name"]`` reads and writes.
 

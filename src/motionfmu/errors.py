@@ -4,17 +4,21 @@
 class InputError(ValueError):
     """Wrong input; the text is the message a user reads.
 
-    The message says file, line and value where they exist, on one line. The console command
-    prints it and ends with status 2.
+    The message says file, line and value where they exist, on one line for each thing that is
+    wrong. The console command prints it and ends with status 2.
 
     Parameters
     ----------
-    text : str
+    *lines : str
         What cannot be printed, such as an end of line in a name, is shown by its escape.
     """
 
-    def __init__(self, text: str) -> None:
-        super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in text))
+    def __init__(self, *lines: str) -> None:
+        shown = ("".join(c if c.isprintable() else repr(c)[1:-1] for c in t) for t in lines)
+        super().__init__(*shown)
+
+    def __str__(self) -> str:
+        return "\n".join(self.args)
 
 
 class NoNumber(InputError):

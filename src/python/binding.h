@@ -23,7 +23,15 @@ struct table {
     const struct field *field;
     size_t bytes, size;     /* of the fields, of the struct */
 };
-extern const struct table MCC_TABLES[], ROBOT_TABLES[];     /* up to a name NULL */
+extern const struct table MCC_TABLES[], ROBOT_TABLES[], GCODE_TABLES[];     /* up to a name NULL */
+
+enum { BINDING_REPORTS = 64 };      /* room for all faults and notes of a part program */
+struct fault_list;
+struct fault_report;
+
+/* All faults, then all notes, up to BINDING_REPORTS; how many of each, and whether there are
+ * more faults. */
+void binding_reports(const struct fault_list *all, struct fault_report *r, int32_t count[3]);
 
 /* Of a member or of an array's elements. */
 #define KIND(x) \

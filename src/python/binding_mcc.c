@@ -25,11 +25,12 @@ static const struct field config_fields[] = {
     AXIS(high_limit, "high_limit", "mm"), AXIS(low_limit, "low_limit", "mm"),
     AXIS(hot_offset, "hot_offset", "mm"), AXIS(lot_offset, "lot_offset", "mm"),
     AXIS(track_limit, "track_limit", "counts"), AXIS(in_pos, "in_pos", ""),
-    AXIS(inpos_tol, "inpos_tol", "mm"),
+    AXIS(inpos_tol, "inpos_tol", "mm"), AXIS(acc, "acc", "mm/s2"), AXIS(jerk, "jerk", "mm/s3"),
     MACHINE(limit_check, ""), MACHINE(limit_mode, ""), MACHINE(inpos_mode, ""),
     MACHINE(inpos_settle, "s"), MACHINE(inpos_timeout, "s"),
     MACHINE(dda_time, "s"), MACHINE(dda_length, "bit"), MACHINE(queue_depth, ""),
-    MACHINE(feed, "mm/s"), MACHINE(max_feed, "mm/s"), MACHINE(acc_time, "s"),
+    MACHINE(feed, "mm/s"), MACHINE(max_feed, "mm/s"), MACHINE(arc_tolerance, "mm"),
+    MACHINE(acc_time, "s"),
     MACHINE(dec_time, "s"), MACHINE(acc_type, ""), MACHINE(dec_type, ""),
     MACHINE(jerk_share, ""), MACHINE(ptp_ratio, ""),
     PC(bus, "clocks"), PC(ipo, "clocks"), PC(ipo_event, ""),
@@ -135,11 +136,14 @@ int binding_run(struct station *s, int64_t until, const char *text, int64_t leng
     return station_run(s, until, text ? &source : NULL);
 }
 
-void binding_check(const struct mcc *m, const char *text, int64_t length, struct fault_report *r)
+void binding_check(const struct mcc *m, const char *text, int64_t length,
+                   struct fault_report *r, int32_t count[3])
 {
     struct source_text t = { text, length };
     const struct source source = source_of(&t);
-    task_check(m, &source, r);
+    struct fault_list all;
+    task_check_all(m, &source, &all);
+    binding_reports(&all, r, count);
 }
 
 int32_t binding_take(struct mcc *m, const char *text, int64_t length, int32_t (*frame)[AXES],

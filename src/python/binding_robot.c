@@ -165,13 +165,19 @@ int binding_robot_read(struct robot_program *p, const char *const text[2],
 static int check_gcode(struct robot_station *s, const struct robot_program *p, struct soft *trial,
                        char message[MESSAGE])
 {
-    struct fault_report r;
     char words[SOFT_WORDS];
+    struct fault_list all;
+    int count = 0;
 
-    orders_check(&s->config.orders, &p->orders, &s->soft.robot.pose, &r);
-    if (r.fault != FAULT_NONE) {
-        snprintf(message, MESSAGE, "line %d: %s \"%.*s\"", (int)r.line, fault_text(r.fault),
-                 (int)r.length, p->text.text + r.offset + r.at);
+    orders_check(&s->config.orders, &p->orders, &s->soft.robot.pose, &all);
+    for (int i = 0; i < all.count && count < MESSAGE; i++) {
+        const struct fault_report *r = &all.of[i];
+        count += snprintf(message + count, (size_t)(MESSAGE - count),
+                          "%sline %d: %s \"%.*s\", column %d", i ? "\n" : "", (int)r->line,
+                          fault_text(r->fault), (int)r->length,
+                          p->text.text + r->offset + r->at, (int)r->at + 1);
+    }
+    if (all.count > 0) {
         return 1;
     }
     robot_station_rehearse(s, &p->orders, trial);

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fmi_tools import ERROR, OK, Instance
+from fmi_tools import ERROR, OK, WARNING, Instance
 
 HOST = """dda_length dda_divider dda_run min_stock irq_mask ack_seq ack_flags p_gain loop_on
 dac_source dac_volts cmd_seq cmd_clock cmd_count cmd_frames index_low latch_seq clear_seq""".split()
@@ -18,6 +18,7 @@ CARD = """irq_seq irq_clock irq_flags cmd_ack frames_refused stock pulse_count e
 err_count latch_value latch_seen home over_travel stopped enc_count_7 enc_count_8
 enc_count_9""".split()
 QUARTER = "G21 G17 G90 G61\nG1 X5 F3000\nG3 X0 Y5 I-5\nG4 P0.02\nG2 X5 Y0 R5 Z1\nM2\n"
+OFF_CIRCLE = "arc end does not lie on the circle through its start"
 FAST = {"acc_time": 0.01, "dec_time": 0.01}
 
 
@@ -26,6 +27,7 @@ def start(fmi: int, text: str | bytes, folder: Path, **values: Any) -> tuple[int
     program = folder / "part.ngc"
     program.write_bytes(text if isinstance(text, bytes) else text.encode())
     instance = Instance("mcc", fmi)
+    instance.call("SetDebugLogging", True, 0, None)
     for name, value in {"program": str(program), **values}.items():
         assert instance.set(name, value) == OK, instance.said
     return instance.enter() or instance.call("ExitInitializationMode"), instance
@@ -34,7 +36,7 @@ def start(fmi: int, text: str | bytes, folder: Path, **values: Any) -> tuple[int
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("G1 X1\n\nY2 Q3\n", 'line 3: unknown word "Q3"'),
+        ("G1 X1\n\nY2 Q3\n", 'line 3: word has no use in this line "Q3", column 4'),
         ("G1 X1 A1", 'line 1: unknown word "A1"'),
         ("G2 X10 R4 (tight)", 'half the distance to the end "G2 X10 R4 (tight)" (4 mm, half'),
         ("G2 X10 I6", '"G2 X10 I6" (by 2 mm)'),
@@ -48,14 +50,14 @@ def start(fmi: int, text: str | bytes, folder: Path, **values: Any) -> tuple[int
         ("\nG92 X1 G0", 'line 2: two codes take the same words "G0" beside "G92"'),
         ("M64 P1 G4", 'line 1: two codes take the same words "M64" beside "G4"'),
         ("M0 M3 M8 M64 P1 M30", 'line 1: more than four M words in the line "M30"'),
-        ("G1 X1\nG10 L2 X1", 'line 2: G10 needs L2 and P0 to P6 "G10 L2 X1"'),
-        ("G10 L2 P9 X1", 'line 1: value out of range "P9"'),
+        ("G1 X1\nG10 L2 X1", 'line 2: G10 needs L2 or L20 and P0 to P9 "G10 L2 X1"'),
+        ("G10 L2 P10 X1", 'line 1: value out of range "P10"'),
         ("G1 X1 M62", 'line 1: output without P0 to P31 "M62"'),
         ("M65 P32", 'line 1: value out of range "P32"'),
         ("S-5", 'line 1: value out of range "S-5"'),
         ("\nG52", 'line 2: no axis word "G52"'),
         ("G1 X1 L2", 'line 1: word has no use in this line "L2"'),
-        ("M6", 'line 1: unknown word "M6"'),
+        ("M6", 'line 1: no T since the tool change before "M6"'),
         ("G1 X1\n" + 257 * "(", 'line 2: line longer than 256 characters "((((' + 252 * "(" + '"'),
         ("", "part.ngc is empty"),
     ],
@@ -70,6 +72,32 @@ def test_bad_program_is_refused_before_anything_moves(
     assert said in instance.said and str(tmp_path / "part.ngc") in instance.said
     instance.free()
     assert [f.name for f in tmp_path.iterdir()] == ["part.ngc"]
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_all_faults_of_a_program_are_told(fmi: int, tmp_path: Path) -> None:
+    text = "G1 X5 Q3 F600\n(PRINT, x)\nG91 Y1 $\nM19\nG2 X9 I6\nM19\nX1 Y1 X1\n"
+    status, instance = start(fmi, text, tmp_path)
+    part = tmp_path / "part.ngc"
+    told = [(s, words) for s, _, words in instance.messages if "part.ngc" in words]
+    assert status == ERROR
+    assert [(s, words[words.index(f"{part}: ") :]) for s, words in told] == [
+        (WARNING, f'{part}: line 2: note: a comment that does nothing here "(PRINT, x)", column 1'),
+        (WARNING, f'{part}: line 4: note: the spindle stops, it has no angle "M19", column 1'),
+        (ERROR, f'{part}: line 1: word has no use in this line "Q3", column 7'),
+        (ERROR, f'{part}: line 3: unexpected character "$", column 8'),
+        (ERROR, f'{part}: line 5: {OFF_CIRCLE} "G2 X9 I6" (by 3 mm), column 1'),
+        (ERROR, f'{part}: line 7: word given twice "X1", column 7'),
+    ]
+    instance.free()
+    status, instance = start(fmi, "G1 X1 Q1\n" * 30, tmp_path)
+    told = [(s, words) for s, _, words in instance.messages if s == ERROR]
+    assert status == ERROR and len(told) == 21 and told[-1][1].endswith("part.ngc: ... and more")
+    instance.free()
+    status, instance = start(fmi, "M19\nG1 X1 F60\nM19\n", tmp_path)
+    told = [(s, words) for s, _, words in instance.messages if "part.ngc" in words]
+    assert status == OK and len(told) == 1 and "line 1: note: the spindle stops" in told[0][1]
+    instance.free()
 
 
 @pytest.mark.parametrize(
@@ -329,7 +357,7 @@ def test_a_million_lines_need_no_memory(fmi: int, tmp_path: Path) -> None:
         instance = Instance("mcc", fmi)
         assert instance.set("program", str(long)) == OK
         assert ERROR in (instance.enter(), instance.call("ExitInitializationMode"))
-    assert 'line 1000001: unknown word "Q3"' in instance.said
+    assert 'line 1000001: word has no use in this line "Q3"' in instance.said
     assert grown[0] < 5.0
     instance.free()
 

@@ -1,6 +1,7 @@
 """motionfmu.mcc: the C library from Python, alone, on the virtual card, and beside the FMUs."""
 
 import math
+import pickle
 import re
 import subprocess
 import sys
@@ -167,7 +168,7 @@ REFUSED = [
     ("motion_hold", (), -11, "nothing moves"),
     ("motion_conti", (), -12, "nothing is held"),
     ("motion_abort", (), -13, "nothing moves"),
-    ("task_set_origin", (7, [0] * 6), -5, "PARAMETER"),
+    ("task_set_origin", (10, [0] * 6), -5, "PARAMETER"),
     ("task_continue", (), -12, "CONTI_ILLEGAL"),
 ]
 
@@ -295,8 +296,14 @@ PART = "G21 G17 G90 G64\nG1 X5 F3000\nG3 X0 Y5 I-5\nG61\nM64 P3\nG4 P0.02\nG2 X5
 
 def test_part_program_and_its_faults() -> None:
     card = VirtualCard()
-    with pytest.raises(InputError, match='line 2: unknown word "M66"'):
-        card.mcc.task_start("G1 X1\nM66\n")
+    with pytest.raises(InputError) as told:
+        card.mcc.task_start("G1 X1\nM666\nG4 P\u00e4\n")
+    assert str(told.value) == (
+        'line 2: unknown word "M666", column 1\nline 3: number expected after "P", column 4'
+    )
+    assert str(pickle.loads(pickle.dumps(told.value))) == str(told.value)
+    with pytest.raises(InputError, match=r"^(line .*\n){20}\.\.\. and more$"):
+        card.mcc.task_check("G1 X1 Q1\n" * 21)
     assert card.mcc.task_status() == mcc.STOPPED
     card.mcc.task_set_origin(1, [1, 0, 0, 0, 0, 0])
     card.mcc.task_start(PART)

@@ -238,6 +238,7 @@ def test_teach_replay_and_tool() -> None:
 UP = [1000.0, 0.0, 1000.0, 180.0, 0.0, 180.0]
 START = [1000.0, 0.0, 900.0, 180.0, 0.0, 180.0]
 BRANCH = "the path does not lead to the configuration of the target: shoulder"
+FAULTS = 'line 1: unknown word "M666", column 1\nline 2: unexpected character "$", column 4'
 Call = Callable[[VirtualRobot], Any]
 REFUSED: list[tuple[Call, str, str, float, float]] = [
     (lambda r: r.move_joints([0, 96, 0, 0, 0, 0]), "joint 2 to 96 deg", "OUTSIDE", 96, 95),
@@ -261,7 +262,7 @@ REFUSED: list[tuple[Call, str, str, float, float]] = [
     (lambda r: r.start("NOP\n", "P001 X=1\n"), "points: line 1: needs X Y", "PROGRAM", 0, 0),
     (lambda r: r.start("NOP\n", job="X"), 'no job "X"', "PROGRAM", 0, 0),
     (lambda r: r.start("G1 X9000 F1\n", language="gcode"), "1: out of reach", "PROGRAM", 0, 0),
-    (lambda r: r.start("M66\n", language="gcode"), 'line 1: unknown word "M66"', "PROGRAM", 0, 0),
+    (lambda r: r.start("M666\nX1 $", language="gcode"), FAULTS, "PROGRAM", 0, 0),
     (lambda r: r.start("NOP\n", language="x"), "inform or gcode", "VALUE", 0, 0),
     (lambda r: r.kinematics.forward([1, 2]), "shape (6,)", "VALUE", 0, 0),
     (lambda r: r.kinematics.inverse(np.eye(4), np.zeros((2, 6))), "near: shape", "VALUE", 0, 0),

@@ -159,12 +159,15 @@ def test_a_wrong_option(tmp_path: Path, option: tuple[str, ...], what: str) -> N
 
 @pytest.mark.parametrize("engine", ["native", "python", "fmpy"])
 def test_every_engine_tells_the_fmus_own_message(tmp_path: Path, engine: str) -> None:
-    folder = scenario(tmp_path, program="G21\nG1 X5 Q3 F100\n")
+    folder = scenario(tmp_path, program="G21\nG1 X5 Q3 F100\nX6 $\n")
     with pytest.raises(motionfmu.InputError) as caught:
         motionfmu.load(folder).run(engine=engine, fmi=2)
     name = "" if engine == "fmpy" else "mcc: "  # FMPy's container drops the component's name
-    expected = f'{name}{folder}/circle.ngc: line 2: unknown word "Q3"'
-    assert str(caught.value) == f"{folder}/scenario.toml: {expected}"
+    place = f"{folder}/scenario.toml: {name}{folder}/circle.ngc: line"
+    assert str(caught.value).splitlines() == [
+        f'{place} 2: word has no use in this line "Q3", column 7',
+        f'{place} 3: unexpected character "$", column 4',
+    ]
 
 
 def test_files_that_are_no_scenario(tmp_path: Path) -> None:

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from motionfmu.contour.geometry import Arc, Label, Line, kepler_root
+from motionfmu.contour.geometry import Arc, Cubic, Label, Line, kepler_root
 from motionfmu.contour.path import make_arc
 
 LABEL = Label(1, 10, "line", 0.0)
@@ -169,6 +170,33 @@ def test_sweep_turns_about_the_normal(sweep: float) -> None:
     middle = arc.at(np.array([0.5 * arc.length]))[0]
     assert middle == pytest.approx([2 * math.cos(sweep / 2), 2 * math.sin(sweep / 2), 2.5])
     assert arc.tangent(np.zeros(1))[0, 1] * sweep > 0.0
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_cubic_has_its_length_and_nothing_is_nearer_than_its_foot(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    control = rng.uniform(-50.0, 50.0, (4, 3))
+    cubic = Cubic(LABEL, control)
+    first = 3.0 * np.diff(control, axis=0)
+
+    def speed(t: float) -> float:
+        weights = [(1 - t) ** 2, 2 * t * (1 - t), t * t]
+        return float(np.linalg.norm(weights @ first))
+
+    assert cubic.length == pytest.approx(quad(speed, 0, 1, epsabs=1e-11, limit=200)[0], abs=1e-9)
+    points = rng.uniform(-60.0, 60.0, (40, 3))
+    foot = cubic.foot(points)
+    dense = cubic.at(np.linspace(0.0, cubic.length, 4000))
+    gaps = np.linalg.norm(points[:, None, :] - dense, axis=2).min(axis=1)
+    assert (foot.distance <= gaps + 1e-9).all()
+    assert (foot.distance >= gaps - 1e-3).all()
+    assert cubic.at(foot.along) == pytest.approx(foot.point, abs=1e-9)
+    step = np.linalg.norm(np.diff(dense, axis=0), axis=1)
+    assert step.sum() == pytest.approx(cubic.length, rel=1e-5)
+    assert (step <= cubic.length / 3999 * (1 + 1e-9)).all()
+    middle = np.array([0.3, 0.7]) * cubic.length
+    chord = (cubic.at(middle + 1e-4) - cubic.at(middle - 1e-4)) / 2e-4
+    assert cubic.tangent(middle) == pytest.approx(chord, abs=1e-6)
 
 
 def test_line_without_length_is_a_point() -> None:

@@ -53,6 +53,17 @@ def test_the_library_s_file_is_read_by_column_name(tmp_path) -> None:
     assert list(path.segment_of(np.array([0, 1, 2, 3, 4, 5, 6, 7]))) == [0, 0, 1, 1, 2, 2, 3, 3]
 
 
+def test_a_curve_has_its_inner_control_points(tmp_path) -> None:
+    inner = [f"inner_{k}_{axis}" for k in (0, 1) for axis in "xyz"]
+    text = row(1, 14, (0.0, 0.0, 0.0), (6.0, 0.0, 0.0)) + ",0.0,2.0,0.0,6.0,2.0,0.0"
+    path = read_path(write(tmp_path, [text], HEAD + inner))
+    curve = path.segments[0]
+    assert curve.label.kind == "curve"
+    assert curve.at(np.array([0.5 * curve.length])) == pytest.approx(np.array([[3.0, 1.5, 0.0]]))
+    assert path.normal == pytest.approx([0.0, 0.0, 1.0])
+    assert outline(path.segments).shape == (91, 3)
+
+
 def test_an_end_off_the_circle_is_kept_as_growth(tmp_path) -> None:
     text = row(1, 3, (50.0, 0.0, 0.0), (0.0, 50.0004, 0.0), sweep=math.pi / 2)
     arc = read_path(write(tmp_path, [text])).segments[0]
@@ -71,7 +82,8 @@ def test_an_end_off_the_circle_is_kept_as_growth(tmp_path) -> None:
         (ROWS, [c for c in HEAD if c != "sweep"], "path.csv:1: column 'sweep' is missing"),
         ([ROWS[0], ROWS[1].replace("100.0", "fast")], HEAD, "path.csv:3: feed 'fast' is not a num"),
         ([ROWS[0].replace("50.0", "nan", 1)], HEAD, "path.csv:2: end_x 'nan' is not finite"),
-        ([row(1, 9, (0.0,) * 3, (1.0, 0.0, 0.0))], HEAD, "path.csv:2: type '9' is none of 0 to 6"),
+        ([row(1, 9, (0.0,) * 3, (1.0, 0.0, 0.0))], HEAD, "path.csv:2: type '9' is none of 0 to"),
+        ([row(1, 14, (0.0,) * 3, (1.0, 0, 0))], HEAD, "path.csv:2: inner_0_x None is not a number"),
         ([row(1, 3, (1.0, 0, 0), (0.0, 1, 0))], HEAD, "path.csv:2: the normal of an arc is zero"),
         (
             [row(1, 3, (1.0, 0, 0), (0.0, 1, 0), sweep=3.0)],

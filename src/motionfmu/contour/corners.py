@@ -89,5 +89,6 @@ def _joined(path: Path, before: int, after: int) -> bool:
 
 
 def _turn(before: Array, after: Array) -> float:
-    cross = float(np.linalg.norm(np.cross(before[0], after[0])))
+    (a, b, c), (x, y, z) = before[0].tolist(), after[0].tolist()  # np.cross takes 20 us
+    cross = math.hypot(b * z - c * y, c * x - a * z, a * y - b * x)
     return math.atan2(cross, float(before[0] @ after[0]))

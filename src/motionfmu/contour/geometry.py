@@ -16,6 +16,10 @@ ROUNDS_MAX = 80
 # A root is found when the step is within a few roundings of the angle itself.
 EPS = float(np.finfo(float).eps)
 STEP_DONE = 4.0 * EPS
+# Parts of a cubic: between two of their ends the distance to a point has one minimum at most where
+# it matters, and Gauss and Legendre's rule of 16 points gives their lengths to rounding.
+PARTS = 64
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,7 @@ class Label:
 
     command: int  # index of the library's command
     line: int  # of the part program
-    kind: str  # ptp, line, arc or helix
+    kind: str  # ptp, line, arc, helix or curve
     feed: float  # as programmed [mm/s]
 
 
@@ -202,7 +206,102 @@ class Arc:
         return angle
 
 
-Segment = Line | Arc
+@dataclass(frozen=True, eq=False)
+class Cubic:
+    """A curve of Bezier with four control points, as G5 makes it."""
+
+    label: Label
+    control: Array  # (4, 3) [mm]
+
+    @property
+    def start(self) -> Array:
+        """First point [mm]."""
+        return self.control[0]
+
+    @property
+    def end(self) -> Array:
+        """Last point [mm]."""
+        return self.control[3]
+
+    @cached_property
+    def length(self) -> float:
+        """Length [mm]."""
+        return float(self._upto[-1])
+
+    @cached_property
+    def _upto(self) -> Array:
+        edges = np.linspace(0.0, 1.0, PARTS + 1)
+        return np.concatenate([[0.0], np.cumsum(self._between(edges[:-1], edges[1:]))])
+
+    def _points(self, t: Array) -> Array:
+        u = 1.0 - t
+        weights = np.stack([u**3, 3.0 * u * u * t, 3.0 * u * t * t, t**3], axis=-1)
+        return weights @ self.control
+
+    def _slopes(self, t: Array) -> tuple[Array, Array]:
+        """First and second derivative of the point by t [mm]."""
+        first = 3.0 * np.diff(self.control, axis=0)
+        second = 2.0 * np.diff(first, axis=0)
+        u = 1.0 - t
+        weights = np.stack([u * u, 2.0 * u * t, t * t], axis=-1)
+        return weights @ first, np.stack([u, t], axis=-1) @ second
+
+    def _between(self, low: Array, high: Array) -> Array:
+        """Lengths (n,) between values (n,) of t [mm]."""
+        half = 0.5 * (high - low)
+        t = 0.5 * (low + high)[:, None] + half[:, None] * NODES
+        return half * (np.linalg.norm(self._slopes(t)[0], axis=-1) @ WEIGHTS)
+
+    def _along(self, t: Array) -> Array:
+        part = np.clip((t * PARTS).astype(int), 0, PARTS - 1)
+        return self._upto[part] + self._between(part / PARTS, t)
+
+    def _parameter(self, along: Array) -> Array:
+        along = np.clip(np.asarray(along, dtype=float), 0.0, self.length)
+        t = np.interp(along, self._upto, np.linspace(0.0, 1.0, PARTS + 1))
+        for _ in range(ROUNDS_MAX):
+            step = (along - self._along(t)) / np.linalg.norm(self._slopes(t)[0], axis=-1)
+            t = np.clip(t + step, 0.0, 1.0)
+            if np.abs(step).max(initial=0.0) <= STEP_DONE * PARTS:
+                break
+        return t
+
+    def at(self, along: Array) -> Array:
+        """Points (n, 3) of the segment at distances (n,) from the start [mm]."""
+        return self._points(self._parameter(along))
+
+    def tangent(self, along: Array) -> Array:
+        """Unit tangents (n, 3) at distances (n,) from the start [mm]."""
+        slope = self._slopes(self._parameter(along))[0]
+        return slope / np.linalg.norm(slope, axis=-1)[:, None]
+
+    def foot(self, points: Array) -> Foot:
+        """Nearest points of the segment to points (n, 3) [mm]."""
+        edges = np.linspace(0.0, 1.0, PARTS + 1)
+        known = self._points(edges)
+        gaps = np.linalg.norm(points[:, None, :] - known, axis=-1)
+        nearest = np.argmin(gaps, axis=1)
+        t = edges[nearest]
+        low, high = edges[np.maximum(nearest - 1, 0)], edges[np.minimum(nearest + 1, PARTS)]
+        for _ in range(ROUNDS_MAX):
+            gap = points - self._points(t)
+            slope, bend = self._slopes(t)
+            value = np.sum(gap * slope, axis=1)  # above 0: the foot lies further on
+            low, high = np.where(value > 0.0, t, low), np.where(value < 0.0, t, high)
+            change = np.sum(slope * slope, axis=1) - np.sum(gap * bend, axis=1)
+            step = np.divide(value, change, out=np.full_like(t, np.inf), where=change > 0.0)
+            moved = t + step
+            inside = (moved >= low) & (moved <= high)
+            moved = np.where(inside, moved, np.where(value == 0.0, t, 0.5 * (low + high)))
+            done = np.abs(moved - t) <= STEP_DONE
+            t = moved
+            if done.all():
+                break
+        point = self._points(t)
+        return Foot(point, self._along(t), _norm(points - point))
+
+
+Segment = Line | Arc | Cubic
 
 
 def kepler_root(pull: Array, stiff: float, way: Array, reach: Array) -> Array:

@@ -11,9 +11,9 @@ from pathlib import Path as File
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.contour.geometry import TURN, Arc, Array, Label, Line, Segment
+from motionfmu.contour.geometry import TURN, Arc, Array, Cubic, Label, Line, Segment
 
-KINDS = {0: "ptp", 1: "line", 2: "arc", 3: "arc", 4: "helix", 5: "helix"}
+KINDS = {0: "ptp", 1: "line", 2: "arc", 3: "arc", 4: "helix", 5: "helix", 14: "curve"}
 DELAY = 6
 AXES = "xyz"
 COLUMNS = (
@@ -21,6 +21,8 @@ COLUMNS = (
     + [f"{what}_{axis}" for what in ("start", "end", "centre", "normal") for axis in AXES]
     + ["sweep", "feed"]
 )
+# Columns that a curve needs beside them: its inner control points.
+INNER = ("inner_0", "inner_1")
 # End points as the library rounds them in the file must meet the arc it describes [mm]:
 # far above the rounding of 9 digits, far below any error that matters.
 MEETS = 1e-4
@@ -98,12 +100,14 @@ class Path:
 
 
 def outline(segments: Sequence[Segment], steps: int = 90) -> Array:
-    """Points (n, 3) [mm] to draw a path: `steps` per full turn of an arc, a line's two ends."""
+    """Points (n, 3) [mm] to draw a path: `steps` per turn or curve."""
     parts = []
     for segment in segments:
         count = 2
         if isinstance(segment, Arc):
             count = max(2, math.ceil(segment.angle / TURN * steps) + 1)
+        if isinstance(segment, Cubic):
+            count = steps + 1
         parts.append(segment.at(np.linspace(0.0, segment.length, count)))
     return np.concatenate(parts)
 
@@ -112,6 +116,8 @@ def _ways(segment: Segment) -> Array:
     """Vectors that span what the segment covers [mm]."""
     if isinstance(segment, Line):
         return np.array([segment.end - segment.start])
+    if isinstance(segment, Cubic):
+        return np.diff(segment.control, axis=0)
     spoke = segment.start - segment.centre
     return np.array([spoke, np.cross(segment.axis, spoke), segment.rise * segment.axis])
 
@@ -153,7 +159,7 @@ def _segment(row: dict[str, str]) -> Segment | None:
     if kind == DELAY:
         return None
     if kind not in KINDS:
-        raise ValueError(f"type {row['type']!r} is none of 0 to {DELAY}")
+        raise ValueError(f"type {row['type']!r} is none of 0 to {DELAY} and 14")
     label = Label(int(value["command"]), int(value["line"]), KINDS[kind], value["feed"])
     start, end, centre, normal = (
         np.array([value[f"{what}_{axis}"] for axis in AXES])
@@ -161,6 +167,9 @@ def _segment(row: dict[str, str]) -> Segment | None:
     )
     if KINDS[kind] in ("ptp", "line"):
         return Line(label, start, end)
+    if KINDS[kind] == "curve":
+        inner = [[_number(row, f"{which}_{axis}") for axis in AXES] for which in INNER]
+        return Cubic(label, np.array([start, *inner, end]))
     return make_arc(label, (start, end), (centre, normal), value["sweep"])
 
 
@@ -200,8 +209,8 @@ def make_arc(
 def _number(row: dict[str, str], name: str) -> float:
     try:
         value = float(row[name])
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} {row[name]!r} is not a number") from None
+    except (KeyError, TypeError, ValueError):
+        raise ValueError(f"{name} {row.get(name)!r} is not a number") from None
     if not math.isfinite(value):
         raise ValueError(f"{name} {row[name]!r} is not finite")
     return value

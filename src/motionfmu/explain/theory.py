@@ -200,12 +200,14 @@ class Book:
         for segment, speed in self.moves:
             if isinstance(segment, Line):
                 found.append(self._line_mismatch(segment, speed))
-            elif (pair := self._plane(segment)) and speed > 0.0:
+            elif isinstance(segment, Arc) and speed > 0.0 and (pair := self._plane(segment)):
                 own = (self.axes[i].response(speed / segment.radius) for i in pair)
                 large, small = servo.ellipse(segment.radius, tuple(own))  # type: ignore[arg-type]
                 mean = self._mean_axis(pair).response(speed / segment.radius)
                 middle = segment.radius * abs(mean)
                 found.append(max(large - middle, middle - small))
+        if not found:
+            return NONE
         text = "line V sin a cos a (1/Kx - 1/Ky); circle: ellipse of both responses at V/R"
         return Theory(max(found), text)
 

@@ -121,6 +121,10 @@ class Settings(Calls):
         """Look-ahead from here on: corners are rounded by at most this [mm]; 0 switches it off."""
         self._do("mcc_set_tolerance", float(mm))
 
+    def set_curve(self, on: bool, merge: float = 0.0) -> None:
+        """Look-ahead as a curve; runs of short commands merge within so much [mm]."""
+        self._do("mcc_set_curve", ctypes.c_bool(on), float(merge))
+
     def task_set_origin(self, system: int, origin: Numbers) -> None:
         """Origin [mm] a part program begins with; the system is 1 for G54 .. 6 for G59."""
         self._do("task_set_origin", whole(system), doubles(origin))

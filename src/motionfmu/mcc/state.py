@@ -7,6 +7,7 @@ import numpy as np
 
 from motionfmu.binding import Struct
 from motionfmu.errors import InputError
+from motionfmu.gcode.program import judged
 from motionfmu.mcc.axes import Axes
 from motionfmu.mcc.calls import Calls
 from motionfmu.mcc.library import AXES
@@ -171,16 +172,13 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         Raises
         ------
         InputError
-            The first fault, with line and text.
+            All faults, a line each, with their line, text and column.
         """
-        text, report = program.encode(), Struct("report")
+        text, check = program.encode(), self._library.binding_check
         size = ctypes.c_int64(len(text))
-        self._library.binding_check(self._pointer, text, size, report.pointer)
-        if report["fault"]:
-            at = report["offset"] + report["at"]
-            words = text[at : at + report["length"]].decode(errors="replace")
-            what = self._library.fault_text(report["fault"]).decode()
-            raise InputError(f'line {report["line"]}: {what} "{words}"')
+        faults, _, more = judged(text, lambda *rows: check(self._pointer, text, size, *rows))
+        if faults:
+            raise InputError(*map(str, faults), *(["... and more"] if more else []))
 
     def task_start(self, program: str) -> None:
         """Check a part program, then start it.

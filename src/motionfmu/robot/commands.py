@@ -151,7 +151,8 @@ class Commands:
         trial = Struct("robot_soft")
         name = job.encode()
         if c.binding_robot_start(self._state.pointer, read.pointer, name, trial.pointer, words):
-            raise RobotError(words.value.decode(), "PROGRAM")
+            first, *more = words.value.decode(errors="replace").split("\n")
+            raise RobotError(first, "PROGRAM", more=more)
         self._program, self._texts = read, texts
 
     def _rests(self) -> bool:

@@ -2,6 +2,7 @@
 
 import ctypes
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -42,9 +43,15 @@ class RobotError(InputError):
     """
 
     def __init__(
-        self, text: str, status: str = "VALUE", value: float = math.nan, limit: float = math.nan
+        self,
+        text: str,
+        status: str = "VALUE",
+        value: float = math.nan,
+        limit: float = math.nan,
+        *,
+        more: Iterable[str] = (),
     ) -> None:
-        super().__init__(text)
+        super().__init__(text, *more)
         self.status, self.value, self.limit = status, value, limit
         self.which, self.part = -1, math.nan
 

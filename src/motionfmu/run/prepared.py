@@ -163,4 +163,4 @@ class Prepared:
                 return InputError(f"set {end.name} = {value!r}: {text}")
             if end.name in self.document.body.set:
                 return self.document.error(f"{end.name} = {value!r}: {text}", "set", end.name)
-        return InputError(f"{self.document.file}: {text}")
+        return InputError(*(f"{self.document.file}: {line}" for line in error.args))

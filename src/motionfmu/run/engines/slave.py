@@ -112,11 +112,13 @@ class Slave:
             raise self.failure(call) from error
 
     def failure(self, call: str) -> InputError:
-        """The error for a call that failed: the first that names a component, as the cause."""
+        """The error for a call that failed: what the first component to tell one says."""
         own = f"{self.name}: "
         inner = [m for m in self.messages if not m.startswith(own)]
         told = [*inner, *self.messages, f"{own}{call} failed without a message"]
-        return InputError(sorted(told[: len(inner)] or told[:1], key=_unnamed)[0])
+        first = sorted(told[: len(inner)] or told[:1], key=_unnamed)[0]
+        place = first.partition(": line ")[0] + ": "
+        return InputError(first, *(m for m in self.messages if m.startswith(place) and m != first))
 
     def buffer(self, kind: str, count: int) -> Any:
         """Memory for values of Float64, Int32 or Boolean, as the FMU has them."""

@@ -1,0 +1,136 @@
+"""The command that checks part programs."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from motionfmu.cli.common import FAILED, app, bare_table, out
+from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.gcode import Program
+
+AXES = "XYZUVW"
+
+
+@app.command()
+def gcode(  # noqa: PLR0913  (each is an option of the command)
+    files: Annotated[list[Path], typer.Argument(help="Part programs.")],
+    tools: Annotated[Path | None, typer.Option(help="Tool table: lines T1 P1 Z10 D6.")] = None,
+    max_feed: Annotated[float, typer.Option(help="Highest feed [mm/min].")] = 30000.0,
+    rapid: Annotated[float, typer.Option(help="Highest speed of an axis [mm/min].")] = 30000.0,
+    acceleration: Annotated[float, typer.Option(help="Along the path [mm/s^2].")] = 1000.0,
+    jerk: Annotated[float, typer.Option(help="Of it [mm/s^3]; 0 none.")] = 0.0,
+    limit: Annotated[
+        list[str], typer.Option(metavar="AXIS=LO:HI", help="Travel of an axis [mm].")
+    ] = [],  # noqa: B006
+    fanuc: Annotated[bool, typer.Option("--fanuc", help="G4 X, G4 P in ms, G65.")] = False,
+    angles: Annotated[bool, typer.Option("--angles", help="A B C in place of U V W.")] = False,
+    delete: Annotated[bool, typer.Option("--block-delete", help="Pass over lines with /.")] = False,
+    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
+) -> None:
+    """Check part programs: faults, cycle time, extents, tools; draw their paths."""
+    settings: dict[str, Any] = {
+        "max_feed": max_feed / 60.0,
+        "speed": rapid / 60.0,
+        "acceleration": acceleration,
+        "deceleration": acceleration,
+        "jerk": jerk,
+        "jerk_down": jerk,
+        "fanuc": fanuc,
+        "angles": angles,
+        "block_delete": delete,
+    }
+    settings |= _limits(limit, angles)
+    table = _text(tools) if tools else ""
+    told, good = {}, True
+    for file in files:
+        from motionfmu.gcode import read
+
+        program = read(_text(file), table, **settings)
+        good = good and not program.faults
+        found = _numbers(program)
+        told[str(file)] = found
+        if not as_json:
+            target = (folder or Path("results")) / f"{file.stem}-gcode"
+            _show(file, program, target)
+    if as_json:
+        print(json.dumps(told, indent=1, allow_nan=False))
+    if not good:
+        raise typer.Exit(FAILED)
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_bytes().decode(errors="replace")
+    except OSError as error:
+        raise InputError(f"cannot read {file}: {error.strerror}") from None
+
+
+def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
+    """Settings of travel by ``X=0:300``."""
+    if not texts:
+        return {}
+    names = "XYZABC" if angles else AXES
+    bounded, low, high = [False] * 6, [0.0] * 6, [0.0] * 6
+    for text in texts:
+        name, _, span = text.partition("=")
+        try:
+            i = names.index(name.strip().upper() or "?")
+            low[i], high[i] = map(float, span.split(":"))
+        except ValueError:
+            raise InputError(f"--limit {text}: AXIS=LO:HI wanted, axes {names}") from None
+        if not low[i] < high[i]:
+            raise InputError(f"--limit {text}: LO is not below HI")
+        bounded[i] = True
+    return {"bounded": bounded, "low": low, "high": high}
+
+
+def _numbers(program: "Program") -> dict[str, Any]:
+    from dataclasses import asdict
+
+    from motionfmu.gcode import summarise
+
+    faults = [asdict(f) for f in program.faults]
+    notes = [asdict(n) for n in program.notes]
+    return {"faults": faults, "notes": notes} | summarise(program).numbers()
+
+
+def _show(file: Path, program: "Program", target: Path) -> None:
+    """Print what was found and write the report."""
+    from motionfmu.gcode import strokes, summarise
+    from motionfmu.report import outcome
+    from motionfmu.report.gcode_page import clock, fault_lines, metres, page_text, write_picture
+
+    for text in fault_lines(str(file), program):
+        out.print(text, markup=False, soft_wrap=True)
+    for note in program.notes:
+        place = f"{file}:{note.line}:{note.column}"
+        out.print(f"{place}: note: {note.why} {note.text}", markup=False, soft_wrap=True)
+    if program.faults:
+        return
+    s = summarise(program)
+    out.print(f"[bold]{file}[/]  {clock(s.time)}, {s.commands} commands, {s.stops} stops")
+    low, high = s.feeds
+    out.print(f"feed {metres(s.feed_way)} at {low:.4g} to {high:.4g} mm/min", end=", ")
+    out.print(f"rapid {metres(s.rapid_way)}")
+    for name, a, b in zip(AXES, s.low, s.high, strict=True):
+        if a != b:
+            out.print(f"  {name} {a:.4f} .. {b:.4f} mm")
+    table = bare_table("tool", "time", "way with feed", "deepest Z")
+    for u in s.tools:
+        name = f"T{u.tool}" if u.tool else "none"
+        table.add_row(name, clock(u.time), metres(u.feed_way), f"{u.low[2]:.4g} mm")
+    out.print(table)
+    drawn = list(strokes(program))
+    outcome.usable(target)
+    with outcome.whole(target) as part:
+        write_picture(file.stem, drawn, part)
+        page = page_text(file.stem, program, s, drawn)
+        (part / "report.html").write_text(page, encoding="utf-8")
+        numbers = json.dumps(_numbers(program), indent=1, allow_nan=False)
+        (part / outcome.NUMBERS).write_text(numbers + "\n", encoding="utf-8")
+    out.print(f"report: {target / 'report.html'}", soft_wrap=True)

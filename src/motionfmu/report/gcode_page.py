@@ -1,0 +1,252 @@
+"""The page and the picture of a part program: what it does, its path, its tools."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")  # no window, no display
+
+import numpy as np
+from matplotlib import pyplot as plt
+from matplotlib.colors import LinearSegmentedColormap, to_hex
+
+from motionfmu.gcode import Program, Stroke, Summary
+from motionfmu.report.packed import packed
+from motionfmu.report.path_plot import CAMERA
+from motionfmu.report.pictures import PLAIN, STABLE
+from motionfmu.report.sheet import Frame, Sheet
+from motionfmu.report.style import AXES, GRID, HEAT, MUTED, RAPID, axis, layout
+from motionfmu.report.tables import cards, table
+
+PICTURES = ("path.png", "path.svg")
+NAMES = "XYZUVW"
+# So far away that the path fits into a telephone's width, too.
+FAR = CAMERA | {"eye": {"x": 1.9, "y": 1.9, "z": 1.3}}
+# Colours of the feed, and how many spans of it are told apart.
+HEATS, LEVELS = LinearSegmentedColormap.from_list("feed", HEAT), 8
+FOOTER = (
+    "Times are those of the trajectory planner with the limits given; stops, tool changes and waits"
+    " for inputs take none. Coordinates are the machine's. Every number is in"
+    ' <a href="result.json">result.json</a>.'
+)
+
+
+def clock(seconds: float) -> str:
+    """A time as h:mm:ss, or with tenths below a minute."""
+    if seconds < 60.0:
+        return f"{seconds:.1f} s"
+    hours, rest = divmod(round(seconds), 3600)
+    text = f"{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"
+    return f"{hours}:{text} h" if hours else f"{text} min"
+
+
+def metres(way: float) -> str:
+    """A way [mm] in mm or m."""
+    return f"{way / 1e3:.3g} m" if way >= 1e4 else f"{way:.4g} mm"
+
+
+def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Stroke]) -> str:
+    """The whole HTML page."""
+    page = Sheet()
+    low, high = summary.feeds
+    feeds = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
+    size = " x ".join(
+        f"{b - a:.4g}" for a, b in zip(summary.low[:3], summary.high[:3], strict=True)
+    )
+    total = summary.feed_way + summary.rapid_way
+    rapid = 100.0 * summary.rapid_way / total if total else 0.0
+    rows = [
+        ("Cycle time", clock(summary.time), f"{summary.stops} stops not counted"),
+        ("Way with feed", metres(summary.feed_way), "measured in X Y Z"),
+        ("Way in rapid", metres(summary.rapid_way), f"{rapid:.0f} % of the whole"),
+        ("Feeds", feeds, "mm/min"),
+        ("Size of the path", size, "mm in X, Y, Z, rapids too"),
+        ("Commands", f"{summary.commands}", f"of {program.text.count(chr(10)) + 1} lines"),
+    ]
+    page.sections.append(cards(rows))
+    if drawn:
+        note = "Rapids are dotted." if any(s.rapid for s in drawn) else ""
+        note += "" if len(summary.tools) < 2 else " A colour each tool."
+        page.section("Path", note, page.place("path", figure(drawn, by_feed=False)))
+        if low < high:
+            place = page.place("feeds", figure(drawn, by_feed=True))
+            page.section("Feed along the path", "As programmed.", place)
+    page.section("Extents", "", _extents(summary))
+    page.section("Tools", "", _tools(summary))
+    return page.text(Frame(name, "A part program", "program", [], FOOTER))
+
+
+def _extents(summary: Summary) -> str:
+    rows = [
+        (n, f"{a:.4f}", f"{b:.4f}", f"{b - a:.4f}")
+        for n, a, b in zip(NAMES, summary.low, summary.high, strict=True)
+        if a != b or a != 0.0
+    ]
+    return table(("axis", "from [mm]", "to [mm]", "over [mm]"), rows)
+
+
+def _tools(summary: Summary) -> str:
+    rows = [
+        (f"T{u.tool}" if u.tool else "none", clock(u.time), metres(u.feed_way), f"{u.low[2]:.4g}")
+        for u in summary.tools
+    ]
+    return table(("tool", "time", "way with feed", "deepest Z [mm]"), rows)
+
+
+def _space(drawn: Sequence[Stroke]) -> bool:
+    """Whether the path leaves a plane along X and Y."""
+    feeds = [s.points[:, 2] for s in drawn if not s.rapid] or [s.points[:, 2] for s in drawn]
+    every = np.concatenate(feeds)
+    return bool(np.ptp(every) > 1e-9)
+
+
+def colors(drawn: Sequence[Stroke]) -> dict[int, str]:
+    """A colour for each tool."""
+    used = dict.fromkeys(s.tool for s in drawn)
+    return {tool: AXES[i % len(AXES)] for i, tool in enumerate(used)}
+
+
+def _joined(parts: Sequence[Stroke]) -> tuple[Any, Any, Any]:
+    """Points of several strokes with a gap between, feeds and lines."""
+    gap = np.full((1, 3), np.nan)
+    points = np.concatenate([np.concatenate([s.points, gap]) for s in parts])
+    feed = np.concatenate([np.append(s.feed, s.feed[-1]) for s in parts])
+    line = np.concatenate([np.append(s.line, s.line[-1]) for s in parts])
+    return points, feed, line
+
+
+Group = tuple[str, list[Stroke], str]
+
+
+def _by_tool(feeds: Sequence[Stroke]) -> list[Group]:
+    shades = colors(feeds)
+    return [
+        (f"T{t}" if t else "feed", [s for s in feeds if s.tool == t], shade)
+        for t, shade in shades.items()
+    ]
+
+
+def _by_feed(feeds: Sequence[Stroke]) -> list[Group]:
+    """Moves of the same feed, or of one of `LEVELS` spans of feeds, from light to dark."""
+    pieces = []
+    for s in feeds:
+        cuts = np.flatnonzero(np.diff(s.feed)) + 1
+        for a, b in zip([0, *cuts], [*cuts, len(s.feed)], strict=True):
+            pieces.append(Stroke(False, s.tool, s.points[a:b], s.feed[a:b], s.line[a:b]))
+    values = np.array([p.feed[0] for p in pieces])
+    single = np.unique(values)
+    edges = np.linspace(values.min(), values.max(), LEVELS + 1)
+    names = [f"F{a:.4g} .. {b:.4g}" for a, b in pairwise(edges)]
+    level = np.clip(np.searchsorted(edges, values, "right") - 1, 0, LEVELS - 1)
+    if len(single) <= LEVELS:
+        names, level = [f"F{v:.4g}" for v in single], np.searchsorted(single, values)
+    shades = [to_hex(HEATS(k / max(1, len(names) - 1))) for k in range(len(names))]
+    return [
+        (name, [p for p, at in zip(pieces, level, strict=True) if at == k], shades[k])
+        for k, name in enumerate(names)
+        if (level == k).any()
+    ]
+
+
+def figure(drawn: Sequence[Stroke], by_feed: bool) -> dict[str, Any]:
+    """The path for plotly, by tool or by feed."""
+    space = _space(drawn)
+    kind = "scatter3d" if space else "scatter"
+    plain = {"type": kind, "mode": "lines"}
+    traces: list[dict[str, Any]] = []
+    rapids = [s for s in drawn if s.rapid]
+    feeds = [s for s in drawn if not s.rapid]
+    if rapids:
+        points, _, _ = _joined(rapids)
+        line = {"color": RAPID, "width": 2 if space else 1.2, "dash": "dot"}
+        traces.append(
+            plain | {"name": "rapid", "hoverinfo": "skip", "line": line} | _ends(points, space)
+        )
+    groups = _by_feed(feeds) if by_feed else _by_tool(feeds)
+    for name, parts, color in groups:
+        points, feed, number = _joined(parts)
+        trace = plain | {"name": name, "line": {"color": color, "width": 3 if space else 1.8}}
+        trace |= _ends(points, space)
+        trace["customdata"] = np.stack([number, np.round(feed, 3)], axis=1).tolist()
+        trace["hovertemplate"] = "line %{customdata[0]}, F%{customdata[1]:.4g}<extra></extra>"
+        traces.append(trace)
+    titles = [f"{n} [mm]" for n in NAMES[:3]]
+    if space:
+        scene = {f"{a}axis": axis(t) for a, t in zip("xyz", titles, strict=True)}
+        for one in scene.values():
+            for key in ("automargin", "ticks", "tickcolor"):
+                one.pop(key)
+            one["title"].pop("standoff")
+        more: dict[str, Any] = {"scene": scene | {"aspectmode": "data", "camera": FAR}}
+    else:
+        every = np.concatenate([s.points for s in drawn])
+        low, high = every.min(axis=0), every.max(axis=0)
+        edge = 0.03 * float((high - low)[:2].max()) or 1.0
+        (x, y) = ([a - edge, b + edge] for a, b in zip(low[:2], high[:2], strict=True))
+        more = {
+            "xaxis": axis(titles[0], range=x, constrain="domain"),
+            "yaxis": axis(titles[1], range=y, scaleanchor="x", scaleratio=1, constrain="domain"),
+        }
+    if space:
+        more["margin"] = {"l": 0, "r": 0, "t": 34, "b": 0}
+    return {"data": traces, "layout": layout(560, **more)}
+
+
+def _ends(points: Any, space: bool) -> dict[str, Any]:
+    return {a: packed(points[:, i]) for i, a in enumerate("xyz"[: 3 if space else 2])}
+
+
+def write_picture(name: str, drawn: Sequence[Stroke], folder: Path) -> None:
+    """Draw the path by tool, as `PICTURES`."""
+    space = bool(drawn) and _space(drawn)
+    with matplotlib.rc_context(PLAIN | STABLE):
+        shown = plt.figure(figsize=(9.0, 7.5), layout="constrained")
+        try:
+            axes: Any = shown.add_subplot(projection="3d" if space else None)
+            width = 3 if space else 2
+            told: set[str] = set()
+            shades = colors(drawn)
+            for s in drawn:
+                label = "rapid" if s.rapid else f"T{s.tool}" if s.tool else "feed"
+                look: dict[str, Any] = (
+                    {"color": RAPID, "lw": 0.9, "ls": (0, (3, 3)), "zorder": 1}
+                    if s.rapid
+                    else {"color": shades[s.tool], "lw": 1.4, "zorder": 3}
+                )
+                axes.plot(*s.points.T[:width], label="" if label in told else label, **look)
+                told.add(label)
+            for letter, title in zip("xyz", NAMES[:width], strict=False):
+                getattr(axes, f"set_{letter}label")(f"{title} [mm]")
+            if space:
+                axes.computed_zorder = False
+                axes.set_aspect("equal")
+            else:
+                axes.set_aspect("equal", adjustable="datalim")
+                axes.grid(color=GRID, lw=0.8)
+                axes.set_axisbelow(True)
+                for side in axes.spines.values():
+                    side.set_visible(False)
+                axes.tick_params(length=0)
+            axes.set_title(name, loc="left", fontsize=14, fontweight="bold")
+            if told:
+                axes.legend(loc="upper right", frameon=False, fontsize=10, labelcolor=MUTED)
+            for file in PICTURES:
+                plain = {"Date": None} if file.endswith("svg") else None
+                shown.savefig(folder / file, dpi=160, metadata=plain)
+        finally:
+            plt.close(shown)
+
+
+def fault_lines(name: str, program: Program) -> list[str]:
+    """Each fault with its place, its line and a mark below the text."""
+    lines = program.text.split("\n")
+    told = []
+    for f in program.faults:
+        told.append(f"{name}:{f.line}:{f.column}: {f.why}")
+        if 0 < f.line <= len(lines):
+            text = lines[f.line - 1].rstrip("\r").replace("\t", " ")
+            told += [f"    {text}", " " * (f.column + 3) + "^" + "~" * max(0, f.length - 1)]
+    return told

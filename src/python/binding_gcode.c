@@ -1,0 +1,236 @@
+/* binding_gcode - a part program from Python: its commands, its faults, the time it takes. */
+#include <string.h>
+
+#include "binding.h"
+#include "interpreter.h"
+#include "mover.h"
+#include "waiting.h"
+
+/* A program as it is read, and a machine to time it on. */
+struct gcode_reader {
+    struct source_text text;
+    struct source source;
+    struct program program;
+    struct interpreter in;
+    double point[AXES], feed;                       /* [mm], [mm/s] at the start */
+    double origin[INTERPRETER_SYSTEMS][AXES];       /* [mm] */
+    struct tool_table tools;
+    double period;                                  /* [s] from point to point */
+    struct mover mover;
+    struct ring ring;
+    struct track_mean mean;
+    struct curve_plan curve;
+};
+
+#define OPTION(m, name, unit) ONE(gcode_reader, m, name, unit)
+#define JOINTS(m, name, unit) \
+    { name, unit, KIND(((struct gcode_reader *)0)->program.machine.joint[0].m), \
+      OFFSET(gcode_reader, program.machine.joint[0].m), AXES, sizeof(struct joint) }
+#define FLAT(type, m, name, unit) \
+    { name, unit, 'd', OFFSET(type, m), SIZE(type, m) / (int32_t)sizeof(double), sizeof(double) }
+static const struct field reader_fields[] = {
+    OPTION(program.block_delete, "block_delete", ""),
+    OPTION(program.optional_stop, "optional_stop", ""), OPTION(program.angles, "angles", ""),
+    OPTION(program.change_stops, "change_stops", ""), OPTION(program.fanuc, "fanuc", ""),
+    OPTION(program.least_increment, "least_increment", ""),
+    OPTION(program.check_again, "check_again", "lines"),
+    OPTION(program.arc.least, "arc_tolerance", "mm"),
+    ROW(gcode_reader, program.machine.axis, "axes", ""), JOINTS(used, "used", ""),
+    JOINTS(scale, "scale", "pulses/mm"), JOINTS(speed, "speed", "mm/s"),
+    JOINTS(bounded, "bounded", ""), JOINTS(low, "low", "mm"),
+    JOINTS(high, "high", "mm"), OPTION(program.limits.feed, "max_feed", "mm/s"),
+    OPTION(program.limits.rapid, "rapid", ""),
+    OPTION(program.limits.up.acc, "acceleration", "mm/s^2"),
+    OPTION(program.limits.down.acc, "deceleration", "mm/s^2"),
+    OPTION(program.limits.up.jerk, "jerk", "mm/s^3"),
+    OPTION(program.limits.down.jerk, "jerk_down", "mm/s^3"),
+    ROW(gcode_reader, curve.limits.speed, "axis_speed", "mm/s"),
+    ROW(gcode_reader, curve.limits.acc, "axis_acc", "mm/s^2"),
+    ROW(gcode_reader, curve.limits.jerk, "axis_jerk", "mm/s^3"),
+    OPTION(feed, "feed", "mm/s"), FLAT(gcode_reader, point, "point", "mm"),
+    FLAT(gcode_reader, origin, "origin", "mm"),
+    OPTION(period, "period", "s"), OPTION(in.line, "line", ""), OPTION(in.ended, "ended", ""),
+};
+
+#define SEEN(m, name, unit) ONE(command, m, name, unit)
+static const struct field command_fields[] = {
+    { "type", "", 'i', OFFSET(command, type), 1, sizeof(enum command_type) },
+    SEEN(line, "line", ""), SEEN(blend, "blend", ""), SEEN(tolerance, "tolerance", "mm"),
+    SEEN(feed, "feed", "mm/s"), SEEN(dwell, "dwell", "s"), SEEN(set, "set", "bits"),
+    SEEN(clear, "clear", "bits"), SEEN(spindle, "spindle", "rpm"), SEEN(coolant, "coolant", "bits"),
+    SEEN(overrides, "overrides", "bits"), SEEN(tool, "tool", ""), SEEN(changes, "changes", ""),
+    SEEN(path.arc, "arc", ""),
+    SEEN(path.cubic, "cubic", ""), FLAT(command, path.bezier.inner, "inner", "mm"),
+    { "plane", "", 'i', OFFSET(command, path.plane), 1, sizeof(enum path_plane) },
+    ROW(command, path.start, "start", "mm"), ROW(command, path.end, "end", "mm"),
+    ROW(command, path.centre, "centre", "mm"), SEEN(path.radius, "radius", "mm"),
+    SEEN(path.growth, "growth", "mm"), SEEN(path.angle, "angle", "rad"),
+    SEEN(path.sweep, "sweep", "rad"), SEEN(path.length, "length", "mm"),
+};
+_Static_assert(sizeof(enum command_type) == sizeof(int32_t) &&
+               sizeof(enum path_plane) == sizeof(int32_t), "an enum is read as an int32");
+
+const struct table GCODE_TABLES[] = {
+    { "gcode_reader", reader_fields, sizeof reader_fields, sizeof(struct gcode_reader) },
+    { "gcode_command", command_fields, sizeof command_fields, sizeof(struct command) },
+    { NULL, NULL, 0, 0 },
+};
+
+static const double PULSES_PER_MM = 1000.0;     /* for the range of positions only */
+
+/* Six axes without bounds, fast enough for any program. */
+void binding_gcode_defaults(struct gcode_reader *g)
+{
+    memset(g, 0, sizeof *g);
+    for (int i = 0; i < AXES; i++) {
+        g->program.machine.axis[i] = true;
+        g->program.machine.joint[i] =
+            (struct joint){ .used = true, .scale = PULSES_PER_MM, .speed = 500.0 };
+    }
+    g->program.limits = (struct motion_limits){
+        .feed = 500.0, .rapid = 1.0, .up = { .acc = 1000.0 }, .down = { .acc = 1000.0 }
+    };
+    g->program.optional_stop = g->program.change_stops = true;
+    g->program.has_inputs = g->program.has_probe = true;
+    g->program.check_again = CHECK_AGAIN;
+    g->feed = 10.0;
+    g->period = 1e-3;
+}
+
+/* A line of a tool table; NULL, or what is wrong with the text at *at. */
+const char *binding_gcode_tool(struct gcode_reader *g, const char *text, int32_t length,
+                               struct tool_text *at)
+{
+    return tool_table_line(&g->tools, text, length, g->program.angles, at);
+}
+
+/* Begin a text that stays where it is while it is read. */
+void binding_gcode_begin(struct gcode_reader *g, const char *text, int64_t length)
+{
+    g->text = (struct source_text){ text, length };
+    g->source = source_of(&g->text);
+    g->program.source = &g->source;
+    interpreter_start(&g->in, g->point, g->feed, (const double (*)[AXES])g->origin);
+    g->in.tools.table = g->tools;
+}
+
+/* The next commands, at most so many; *result is an enum interpreter_result, of the last one. What
+ * only the machine can tell is passed over; a program that runs for ever ends where a check
+ * does. */
+int64_t binding_gcode_read(struct gcode_reader *g, struct command *c, int64_t room,
+                           int32_t *result, struct fault_report *r)
+{
+    int64_t count = 0;
+
+    *result = INTERPRETER_COMMAND;
+    while (count < room) {
+        if (g->in.flow.again > g->program.check_again) {
+            *result = INTERPRETER_END;
+            break;
+        }
+        *result = (int32_t)interpreter_next(&g->in, &g->program, &c[count], r);
+        if (*result == INTERPRETER_WAIT) {
+            waiting_pass(&g->in);
+        } else if (*result == INTERPRETER_COMMAND) {
+            count++;
+        } else {
+            break;
+        }
+    }
+    return count;
+}
+
+_Static_assert(FAULT_LIST + FAULT_NOTES <= BINDING_REPORTS, "they fit");
+
+void binding_reports(const struct fault_list *all, struct fault_report *r, int32_t count[3])
+{
+    memcpy(r, all->of, (size_t)all->count * sizeof *r);
+    memcpy(r + all->count, all->note, (size_t)all->notes * sizeof *r);
+    count[0] = all->count;
+    count[1] = all->notes;
+    count[2] = all->more;
+}
+
+/* Faults and notes of the program, which has begun and nothing of it is read. */
+void binding_gcode_check(struct gcode_reader *g, struct fault_report *r,
+                         int32_t count[3])
+{
+    struct fault_list all;
+
+    interpreter_check_all(&g->in, &g->program, &all);
+    binding_reports(&all, r, count);
+}
+
+/* Fill the ring from the commands, which get their index; how many are taken. */
+static int64_t fill(struct gcode_reader *g, struct command *c, int64_t taken, int64_t count)
+{
+    for (; taken < count && !ring_full(&g->ring); taken++) {
+        c[taken].index = command_lasts(&c[taken]) ? (int32_t)(taken + 1) : 0;
+        ring_push(&g->ring, &c[taken]);
+    }
+    return taken;
+}
+
+/* Drive the commands as the machine would, stops and waits passed at once: the time that each one
+ * was the latest to have begun [s]; the places at the ends of all periods, or NULL [mm]. Returns
+ * how many periods there are. */
+int64_t binding_gcode_time(struct gcode_reader *g, struct command *c, int64_t count,
+                           double *seconds, double (*places)[AXES])
+{
+    int64_t taken = 0, periods = 0;
+
+    memset(seconds, 0, (size_t)count * sizeof *seconds);
+    ring_clear(&g->ring);
+    memset(&g->mean, 0, sizeof g->mean);
+    mover_start(&g->mover);
+    mover_stand(&g->mover, &g->program.machine, g->point);
+    g->mover.override[0] = g->mover.override[1] = 1.0;
+    const struct mover_beside beside = { &g->ring, &g->mean, &g->curve };
+    for (;;) {
+        struct point point;
+        double left = g->period;
+        do {
+            taken = fill(g, c, taken, count);
+            g->curve.last = taken == count;
+            left = mover_advance(&g->mover, &beside, left);
+            taken = fill(g, c, taken, count);
+        } while (left > 0.0 && !mover_resting(&g->mover, &g->ring));
+        mover_point(&g->mover, &beside, &g->program.machine, g->period, &point);
+        mover_accept(&g->mover, &beside, &point);
+        if (places) {
+            memcpy(places[periods], point.place, sizeof point.place);
+        }
+        periods++;
+        if (g->mover.started > 0) {
+            seconds[g->mover.started - 1] += g->period - left;
+        }
+        if (mover_waits(&g->mover, &g->ring)) {
+            mover_continue(&g->mover);
+        } else if (taken == count && mover_resting(&g->mover, &g->ring)) {
+            return periods;
+        }
+    }
+}
+
+/* Points of the paths of commands: of command i from[i + 1] - from[i] of them, which begin at
+ * from[i], evenly from its start to its end. [mm] */
+void binding_gcode_points(const struct command *c, int64_t count, const int64_t *from,
+                          double (*points)[AXES])
+{
+    for (int64_t i = 0; i < count; i++) {
+        const int64_t n = from[i + 1] - from[i];
+        for (int64_t k = 0; k < n; k++) {
+            double slope[AXES];
+            const double share = n > 1 ? (double)k / (double)(n - 1) : 1.0;
+            path_at(&c[i].path, share * c[i].path.length, points[from[i] + k], slope);
+        }
+    }
+}
+
+/* Smallest and largest coordinates of a path, exact. [mm] */
+void binding_gcode_extent(const struct command *c, double low[AXES], double high[AXES])
+{
+    for (int i = 0; i < AXES; i++) {
+        path_extent(&c->path, i, 0.0, c->path.length, &low[i], &high[i]);
+    }
+}

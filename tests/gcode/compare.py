@@ -1,0 +1,148 @@
+"""What both interpreters make of a program, in one form, and how they differ."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from second import Options, Refused, Step, run
+
+from motionfmu.gcode import Program, read
+
+ROUNDING = 1e-9  # [mm] a move that is shorter is none
+PLACE, ANGLE, RATIO = 1e-7, 1e-9, 1e-9  # [mm], [rad], of a feed
+TYPES = ("rapid", "line", "arc", "arc", "arc", "arc", "dwell")
+OUTPUTS, STOP, CUBIC = 11, 12, 14
+# Settings of the C interpreter that hide no fault the other one does not know.
+MACHINE: dict[str, Any] = {"max_feed": 1e9, "speed": 1e9, "scale": 1.0}
+
+Event = dict[str, Any]
+
+
+def settings_of(options: Options) -> dict[str, Any]:
+    """The same options for the C interpreter."""
+    found = {n: getattr(options, n) for n in ("block_delete", "optional_stop", "angles", "feed")}
+    return MACHINE | found | {"point": list(options.point)}
+
+
+def first(text: str, options: Options | None = None) -> Program:
+    """The program by the C interpreter."""
+    options = options or Options()
+    lines = (f"T{n} P{n} Z{z} D{d}\n" for n, (z, d) in options.tools.items())
+    return read(text, "".join(lines), **settings_of(options))
+
+
+def of_c(program: Program) -> list[Event]:
+    """Its commands as events; switches stand in the events behind them."""
+    events: list[Event] = []
+    state: Event = {"spindle": 0.0, "coolant": 0, "on": 0}
+    for c in program.commands:
+        kind = int(c["type"])
+        if kind == OUTPUTS:
+            on = (state["on"] | int(c["set"])) & ~int(c["clear"])
+            state = state | {"spindle": float(c["spindle"]), "coolant": int(c["coolant"])}
+            state["on"] = on
+            continue
+        name = "spline" if kind == CUBIC else "stop" if kind == STOP else TYPES[kind]
+        name = "tool" if name == "stop" and c["changes"] else name
+        event: Event = {"kind": name, "line": int(c["line"])} | state
+        if name == "tool":
+            event["tool"] = int(c["tool"])
+        elif name == "dwell":
+            event["dwell"] = float(c["dwell"])
+        elif name != "stop":
+            if c["length"] < ROUNDING:
+                continue
+            state = state | {"on": (state["on"] | int(c["set"])) & ~int(c["clear"])}
+            event |= {"on": state["on"], "start": c["start"], "end": c["end"]}
+            if name != "rapid":
+                event["feed"] = float(c["feed"])
+            if name == "arc":
+                event |= {"plane": int(c["plane"]), "centre": c["centre"]}
+                event["sweep"] = float(c["sweep"])
+            if name == "spline":
+                event["inner"] = [*c["inner"][0:2], *c["inner"][3:5]]
+        events.append(event)
+    return [*events, {"kind": "end"} | state]
+
+
+def of_python(steps: list[Step]) -> list[Event]:
+    """Steps of the second interpreter in the same form."""
+    events: list[Event] = []
+    state: Event = {"spindle": 0.0, "coolant": 0, "on": 0}
+    for s in steps:
+        if s.kind == "outputs":
+            state = state | {"spindle": s.spindle, "coolant": s.coolant}
+            state["on"] = (state["on"] | s.set) & ~s.clear
+            continue
+        event: Event = {"kind": s.kind, "line": s.line} | state
+        if s.kind == "tool":
+            event["tool"] = s.tool
+        elif s.kind == "dwell":
+            event["dwell"] = s.dwell
+        elif s.kind != "stop":
+            state = state | {"on": (state["on"] | s.set) & ~s.clear}
+            event |= {"on": state["on"], "start": s.start, "end": s.end}
+            if s.kind != "rapid":
+                event["feed"] = s.feed
+            if s.kind == "arc":
+                event |= {"plane": s.plane, "centre": s.centre, "sweep": s.sweep}
+            if s.kind == "spline":
+                event["inner"] = inner(s.control)
+        events.append(event)
+    return [*events, {"kind": "end"} | state]
+
+
+def inner(control: tuple[tuple[float, float], ...]) -> list[float]:
+    """Inner control points of a curve of the third degree, raised to it if it is of the second."""
+    start, *middle, end = control
+    if len(middle) == 1:
+        q = middle[0]
+        middle = [tuple(a[i] + 2.0 / 3.0 * (q[i] - a[i]) for i in range(2)) for a in (start, end)]
+    return [x for point in middle for x in point]
+
+
+def _same(name: str, a: Any, b: Any) -> bool:
+    if name in ("start", "end", "centre", "inner"):
+        return bool(np.allclose(a, b, rtol=1e-12, atol=PLACE))
+    if name == "sweep":
+        return abs(a - b) < ANGLE * max(1.0, abs(a)) + 1e-7
+    if isinstance(a, float):
+        return math.isclose(a, b, rel_tol=RATIO, abs_tol=1e-12)
+    return bool(a == b)
+
+
+def difference(text: str, options: Options | None = None) -> str:
+    """How the two differ in a program, empty if they do not."""
+    options = options or Options()
+    one = first(text, options)
+    steps, refused = run(text, replace(options, tools=dict(options.tools)))
+    found = _faults(one, refused)
+    a, b = of_c(one), of_python(steps)
+    if refused:  # what is held back at a fault is nobody's business
+        shorter = min(len(a), len(b)) - 1
+        a, b = a[:shorter], b[:shorter]
+    return found or _events(a, b)
+
+
+def _faults(one: Program, refused: Refused | None) -> str:
+    theirs = one.faults[0] if one.faults else None
+    if (theirs is None) == (refused is None) and (
+        theirs is None or refused is None or theirs.line == refused.line
+    ):
+        return ""
+    return f"C: {theirs}; Python: {refused}"
+
+
+def _events(a: list[Event], b: list[Event]) -> str:
+    for i, (x, y) in enumerate(zip(a, b, strict=False)):
+        for name in x.keys() | y.keys():
+            if name not in x or name not in y or not _same(name, x[name], y[name]):
+                return f"event {i}, {name}:\n  C      {x}\n  Python {y}"
+    return "" if len(a) == len(b) else f"C has {len(a)} events, Python {len(b)}"
+
+
+def programs() -> list[Path]:
+    """The corpus."""
+    return sorted((Path(__file__).parent / "programs").glob("*.ngc"))

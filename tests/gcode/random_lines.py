@@ -1,0 +1,248 @@
+"""Random lines of part programs: motions, modes, switches, cycles."""
+
+import math
+
+from random_values import Values
+
+TOOLS = {1: (10.5, 6.0), 2: (21.25, 8.0), 3: (0.0, 10.0), 17: (33.125, 3.0)}
+WRONG = (
+    *(
+        "G1 X",
+        "G1 X1 X2",
+        "G0 G1 X1",
+        "Q5",
+        "G4",
+        "G2 X1 Y1",
+        "G999",
+        "M99999",
+        "G1 X1 R2",
+        "X1..2",
+    ),
+    *("G1 (open", "G1 Y#", "#1=", "G1 X[1+]", "G1 X[1/0]", "#0=1", "G1 X#<unknown>", "o1 nothing"),
+)
+
+
+class Lines(Values):
+    """Writes lines; each method one thing that a program may do."""
+
+    def __init__(self, seed: int, expressions: bool) -> None:
+        super().__init__(seed, expressions)
+        self.lines: list[str] = []
+        self.straight = False  # G0 or G1 is in force, as far as is known
+
+    def one(self, parts: tuple[str, ...]) -> None:
+        """Any of these."""
+        getattr(self, self.r.choice(parts))()
+
+    def write(self, text: str) -> None:
+        """One line, with blanks, small letters, a number or a comment in places."""
+        r = self.r
+        if text[:1] in "GoOM":
+            self.straight = text.startswith(("G0 ", "G1 "))
+        if r.random() < 0.1 and text[:1] not in "oO%#":
+            text = f"N{r.randint(1, 9999)} {text}"
+        if r.random() < 0.05:
+            text = text.lower()
+        if r.random() < 0.05 and text[:1] not in "oO":
+            text += r.choice((" (a comment)", " ; a comment", " (one) (two)"))
+        if r.random() < 0.02 and text[:1] not in "oO":
+            text = text.replace(" ", "")
+        self.lines.append(text if len(text) < 240 else "G4 P0")  # a line has its limit
+
+    def axes(self, letters: str = "XYZ", share: float = 0.6) -> str:
+        chosen = [c for c in letters if self.r.random() < share] or [letters[0]]
+        return " ".join(c + self.value() for c in chosen)
+
+    def line(self) -> None:
+        self.write(
+            self.r.choice(("G0 ", "G1 ", "G1 ", "" if self.straight else "G1 ")) + self.axes()
+        )
+
+    def far(self) -> None:
+        self.write(f"G1 {self.axes('XYZUVW', 0.3)}")
+
+    def feed(self) -> None:
+        self.write(f"F{self.value(10.0, 3000.0)}")
+
+    def arc(self) -> None:
+        """Centre form: in increments, whose end is the start turned about the centre."""
+        r = self.r
+        plane = r.choice((0, 1, 2))
+        first, second = ("XY", "ZX", "YZ")[plane]
+        radius, begin = r.uniform(0.5, 30.0), r.uniform(0.0, math.tau)
+        turn = r.uniform(0.1, 6.1)
+        ccw = r.random() < 0.5
+        end = begin + (turn if ccw else -turn)
+        a, b = -radius * math.cos(begin), -radius * math.sin(begin)
+        da, db = a + radius * math.cos(end), b + radius * math.sin(end)
+        offsets = {"X": "I", "Y": "J", "Z": "K"}
+        words = f"{first}{da:.4f} {second}{db:.4f} {offsets[first]}{a:.4f} {offsets[second]}{b:.4f}"
+        if r.random() < 0.3:
+            words += f" {'ZYX'[plane]}{self.number(-5.0, 5.0)}"
+        if r.random() < 0.15:
+            words += f" P{r.randint(1, 4)}"
+        self.write(f"G{17 + plane} G91 G{3 if ccw else 2} {words}")
+        self.write("G17 G90")
+
+    def radius(self) -> None:
+        """Radius form, long enough for any end within an increment."""
+        r = self.r
+        x, y = r.uniform(-8.0, 8.0), r.uniform(1.0, 8.0)
+        radius = r.uniform(1.01, 3.0) * math.hypot(x, y) / 2.0 * r.choice((1.0, 1.0, -1.0))
+        self.write(f"G91 G{r.choice((2, 3))} X{x:.3f} Y{y:.3f} R{radius:.3f}")
+        self.write("G90")
+
+    def circle(self) -> None:
+        self.write(f"G{self.r.choice((2, 3))} I{self.number(1.0, 5.0)} J{self.number(1.0, 5.0)}")
+
+    def modes(self) -> None:
+        self.write(self.r.choice(("G90", "G91", "G90", "G20", "G21", "G61", "G64", "G80 G0")))
+
+    def dwell(self) -> None:
+        self.write(f"G4 P{self.value(0.0, 3.0)}")
+
+    def switch(self) -> None:
+        r = self.r
+        words = (f"S{self.value(0.0, 9000.0)}", "M3", "M4", "M5", "M7", "M8", "M9")
+        words = (*words, f"S{r.randint(0, 9000)} M3", "M3 M8", "M5 M9")
+        self.write(r.choice(words))
+
+    def digital(self) -> None:
+        self.write(f"M{self.r.randint(62, 65)} P{self.r.randint(0, 31)}")
+
+    def stop(self) -> None:
+        self.write(self.r.choice(("M0", "M1", "M1")))
+
+    def offsets(self) -> None:
+        r = self.r
+        self.write(
+            r.choice(
+                (
+                    f"G5{r.randint(4, 9)}",
+                    f"G10 L2 P{r.randint(0, 6)} {self.axes('XYZUVW', 0.4)}",
+                    f"G92 {self.axes()}",
+                    f"G92.{r.randint(1, 3)}",
+                    f"G52 {self.axes()}",
+                    f"G53 G{r.randint(0, 1)} {self.axes()}",
+                )
+            )
+        )
+
+    def home(self) -> None:
+        self.write(self.r.choice(("G28", "G28 " + self.axes())))
+
+    def wrong(self) -> None:
+        """Now and then a line that is none."""
+        if self.r.random() < 0.05:
+            self.write(self.r.choice(WRONG))
+
+    def more_offsets(self) -> None:
+        r = self.r
+        self.write(
+            r.choice(
+                (
+                    f"G59.{r.randint(1, 3)}",
+                    f"G10 L20 P{r.randint(0, 9)} {self.axes('XYZ', 0.5)}",
+                    f"G10 L2 P{r.randint(7, 9)} {self.axes('XYZ', 0.5)}",
+                    "G28.1",
+                    "G30.1",
+                    "G30",
+                    f"G30 {self.axes()}",
+                )
+            )
+        )
+
+    def tool(self) -> None:
+        r = self.r
+        number = r.choice(list(TOOLS))
+        self.write(
+            r.choice((f"T{number} M6", f"T{number}", f"T{number} M6 G43", f"G43 H{number}"))
+            if r.random() < 0.7
+            else r.choice((f"G43.1 Z{self.number()}", "G49", f"G10 L1 P{number} Z{self.number()}"))
+        )
+
+    def inverse(self) -> None:
+        self.write(f"G93 G1 {self.axes()} F{self.number(0.5, 20.0)}")
+        self.write(f"G94 F{self.number(100.0, 900.0)}")
+
+    def turned(self) -> None:
+        r = self.r
+        self.write(f"S{r.randint(100, 3000)} M3")
+        self.write(f"G95 F{self.number(0.02, 0.5)} G1 {self.axes()}")
+        self.write(f"G94 F{self.number(100.0, 900.0)}")
+
+    def spline(self) -> None:
+        """Curves that turn nowhere on the spot: control points within a third of the chord."""
+        n = self.number
+        far, near = f"X{n(9.0, 30.0)} Y{n(-9.0, -1.0)}", (0.5, 3.0)
+        if self.r.random() < 0.5:
+            self.write(f"G17 G91 G5.1 {far} I{n(3.0, 6.0)} J{n(1.0, 3.0)}")
+        else:
+            ways = f"I{n(*near)} J{n(*near)} P-{n(*near)} Q{n(*near)}"
+            self.write(f"G17 G91 G5 {far} {ways}")
+            if self.r.random() < 0.5:
+                self.write(f"G5 X{n(9.0, 30.0)} Y{n()} P-{n(*near)} Q{n(*near)}")
+        self.write("G90")
+
+    def rotation(self) -> None:
+        r = self.r
+        self.write(f"G17 G68 X{self.number()} Y{self.number()} R{self.value(-180.0, 180.0)}")
+        for _ in range(r.randint(1, 4)):
+            self.one(("line", "circle", "radius"))
+        self.write("G69")
+
+    def scaling(self) -> None:
+        self.write(f"G51 X{self.number()} Y{self.number()} Z0 P{self.number(0.5, 2.5)}")
+        for _ in range(self.r.randint(1, 4)):
+            self.one(("line", "circle", "radius"))
+        self.write("G50")
+
+    def cycle(self) -> None:
+        r = self.r
+        code = r.choice((73, 74, 81, 82, 83, 84, 85, 86, 88, 89))
+        self.write(f"G90 G94 G0 Z{self.number(5.0, 20.0)}")
+        if code in (74, 84, 86, 88):
+            self.write(f"S{r.randint(100, 2000)} M{4 if code == 74 else 3}")
+        words = f"X{self.number()} Y{self.number()} Z{self.number(-20.0, -1.0)}"
+        words += f" R{self.number(0.5, 4.0)}"
+        words += f" Q{self.number(1.0, 6.0)}" if code in (73, 83) else ""
+        words += f" P{self.number(0.0, 1.0)}" if code in (74, 82, 84, 86, 88, 89) else ""
+        incremental = r.random() < 0.3
+        self.write(f"G{r.choice((98, 99))} {'G91 ' if incremental else ''}G{code} {words}")
+        for _ in range(r.randint(0, 3)):
+            repeat = f" L{r.randint(1, 3)}" if r.random() < 0.3 else ""
+            self.write(f"X{self.number()} Y{self.number()}{repeat}")
+        self.write("G80 G90")
+
+    def contour(self) -> None:
+        """A polygon about a centre with some arcs, cut outside or inside with compensation."""
+        r = self.r
+        sides, size = r.randint(3, 9), r.uniform(20.0, 60.0)
+        ccw = r.random() < 0.5
+        angles = [math.tau * (i + r.uniform(-0.2, 0.2)) / sides for i in range(sides)]
+        if not ccw:
+            angles.reverse()
+        radii = [size * r.uniform(0.8, 1.2) for _ in angles]
+        points = [(a * math.cos(t), a * math.sin(t)) for a, t in zip(radii, angles, strict=True)]
+        side = r.choice((41, 42))
+        out = (side == 42) == ccw
+        x, y = points[0]
+        scale = 1.8 if out else 0.3
+        how = r.choice((f"G{side} D{r.choice((1, 2, 3))}", f"G{side}.1 D{self.number(1.0, 5.0)}"))
+        self.write("G17 G21 G90 G94 G80")
+        self.write(f"G0 X{x * scale:.3f} Y{y * scale:.3f}")
+        self.write(how)
+        self.write(f"G1 X{x:.4f} Y{y:.4f} F{r.randint(100, 900)}")
+        for px, py in [*points[1:], points[0]]:
+            kind = r.random()
+            if kind < 0.1:
+                self.write(f"G4 P{self.number(0.0, 1.0)}")
+            elif kind < 0.2:
+                self.write(f"G1 Z{self.number(-3.0, 3.0)}")
+            if r.random() < 0.3:
+                bulge = r.uniform(1.5, 4.0) * size
+                self.write(f"G{3 if ccw else 2} X{px:.4f} Y{py:.4f} R{bulge:.4f}")
+            else:
+                self.write(f"G1 X{px:.4f} Y{py:.4f}")
+        self.write("G40")
+        self.write(f"G1 X{x * scale:.3f} Y{y * scale:.3f}")

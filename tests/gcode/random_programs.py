@@ -1,0 +1,225 @@
+"""Random part programs, the same for the same seed, and their comparison by both interpreters.
+
+python tests/gcode/random_programs.py --count 20000
+"""
+
+import argparse
+import random
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from compare import difference
+from random_lines import TOOLS, Lines
+from second import Options
+
+FLAT = (
+    *("line", "line", "line", "feed", "arc", "radius", "circle", "modes", "dwell", "switch"),
+    *("digital", "stop", "offsets", "home", "far", "wrong"),
+)
+MORE = (
+    "more_offsets",
+    "tool",
+    "inverse",
+    "turned",
+    "spline",
+    "rotation",
+    "scaling",
+    "cycle",
+    "contour",
+)
+FLOW = ("setting", "indirect", "read_back", "condition", "repeat", "loop", "sub", "call", "macro")
+PARTS: tuple[str, ...] = (*FLAT, *MORE, *FLOW)
+
+
+class Writer(Lines):
+    """Writes one program; `parts` are the names of the methods it may use."""
+
+    def __init__(self, seed: int, parts: tuple[str, ...] = ()) -> None:
+        self.parts = parts or PARTS
+        super().__init__(seed, "setting" in self.parts)
+        self.label = 100
+        self.depth = 0
+        self.subs: list[str] = []
+        self.macros: list[str] = []
+
+    def setting(self) -> None:
+        r = self.r
+        kind = r.random()
+        if kind < 0.6:
+            self.write(f"#{r.randint(1, 40)} = [{self.tree(r.randint(0, 3))}]")
+        elif kind < 0.8:
+            self.write(f"#{r.randint(1, 40)}={self.number()} #{r.randint(1, 40)}={self.number()}")
+        else:
+            name = r.choice(("_global", "_other"))
+            self.write(f"#<{name}> = [{self.tree(1)}]")
+            if name not in self.names and self.depth == 0:
+                self.names.append(name)
+
+    def indirect(self) -> None:
+        self.write(f"#5={self.r.randint(1, 30)}")
+        self.write(f"#[#5 + 1] = {self.number()}")
+        self.write("G1 X[##5 mod 10]")
+
+    def read_back(self) -> None:
+        name = self.r.choice(("#5420", "#5421", "#5422", "#<_x>", "#<_y>", "#<_z>", "#5220"))
+        self.write(f"G1 X[[{name} + 0.37] mod 30] Y[{name} + 1]")  # 0 stands on no border
+
+    def new_label(self) -> str:
+        self.label += 1
+        return str(self.label)
+
+    def body(self) -> None:
+        self.depth += 1
+        for _ in range(self.r.randint(1, 4)):
+            self.one(self.parts if self.depth < 3 else FLAT)
+        self.depth -= 1
+
+    def condition(self) -> None:
+        label = self.new_label()
+        self.write(f"o{label} if [{self.tree(1)}]")
+        self.body()
+        for _ in range(self.r.choice((0, 0, 1, 2))):
+            self.write(f"o{label} elseif [{self.tree(1)}]")
+            self.body()
+        if self.r.random() < 0.5:
+            self.write(f"o{label} else")
+            self.body()
+        self.write(f"o{label} endif")
+
+    def repeat(self) -> None:
+        label = self.new_label()
+        self.write(f"o{label} repeat [{self.r.randint(0, 4)}]")
+        self.body()
+        self.leave(label)
+        self.write(f"o{label} endrepeat")
+
+    def leave(self, label: str) -> None:
+        """Break or continue, on a condition."""
+        if self.r.random() < 0.3:
+            inner = self.new_label()
+            self.write(f"o{inner} if [{self.tree(1)}]")
+            self.write(f"o{label} {self.r.choice(('break', 'continue'))}")
+            self.write(f"o{inner} endif")
+            self.line()
+
+    def loop(self) -> None:
+        """While and do, counted by a name of their own."""
+        label = self.new_label()
+        counter = f"#<_n{label}>"
+        self.write(f"{counter} = 0")
+        top, bottom = f"while [{counter} lt {self.r.randint(0, 4)}]", "endwhile"
+        if self.r.random() < 0.5:
+            top, bottom = "do", top
+        self.write(f"o{label} {top}")
+        self.write(f"{counter} = [{counter} + 1]")
+        self.body()
+        self.leave(label)
+        self.write(f"o{label} {bottom}")
+
+    def sub(self) -> None:
+        """A sub, defined where only the main program stands, and its calls."""
+        if self.depth or len(self.subs) > 3:
+            return self.call()
+        label = self.r.choice((self.new_label(), f"<part{self.new_label()}>"))
+        self.write(f"o{label} sub")
+        self.write(f"#<inner> = #{self.r.randint(1, 4)}")
+        self.depth = 1
+        self.names.append("inner")
+        self.body()
+        self.write("G1 X[#<inner> mod 10]")
+        self.names.remove("inner")
+        self.depth = 0
+        if self.r.random() < 0.3:
+            self.write(f"o{label} return [{self.tree(0)}]")
+        self.write(f"o{label} endsub" + self.r.choice(("", f" [{self.tree(0)}]")))
+        self.subs.append(label)
+        self.call()
+
+    def call(self) -> None:
+        if not self.subs or self.depth > 1:
+            return
+        arguments = " ".join(f"[{self.tree(0)}]" for _ in range(self.r.randint(0, 5)))
+        # Not the sub itself: what is called was written before, so calls end.
+        label = self.r.choice(self.subs)
+        self.write(f"o{label} call {arguments}".rstrip())
+        if self.r.random() < 0.3:
+            self.write("#9 = #<_value>")
+
+    def macro(self) -> None:
+        """M98 of a program that stands behind the end."""
+        number = 5000 + len(self.macros)
+        self.macros.append(f"O{number}")
+        times = f" L{self.r.randint(0, 3)}" if self.r.random() < 0.5 else ""
+        self.write(f"M98 P{number}{times}")
+
+    def program(self) -> str:
+        """The whole text."""
+        self.write("G21 G17 G90 F600")
+        if self.expressions:
+            self.write("#<_global> = 3")
+        for _ in range(self.r.randint(3, 25)):
+            self.one(self.parts)
+        self.write(self.r.choice(("M2", "M30", "M30")))
+        for name in self.macros:
+            self.depth = 2
+            self.write(name)
+            self.one(FLAT)
+            self.write("G91 G1 X1")
+            self.write("G90")
+            self.write("M99")
+        return "\n".join(self.lines) + "\n"
+
+
+def options(seed: int) -> Options:
+    """Switches of the language, as random as the program."""
+    r = random.Random(seed)
+    return Options(
+        optional_stop=r.random() < 0.5,
+        point=tuple(r.choice((0.0, 0.0, r.uniform(-9.0, 9.0))) for _ in range(6)),
+        tools=dict(TOOLS),
+        closed=True,
+    )
+
+
+def each(count: int, start: int = 0, parts: tuple[str, ...] = ()) -> Iterator[tuple[int, str]]:
+    """Seeds and their programs."""
+    for seed in range(start, start + count):
+        yield seed, Writer(seed, parts).program()
+
+
+def differing(
+    count: int, start: int = 0, parts: tuple[str, ...] = (), show: Callable[[str], None] = print
+) -> Counter[str]:
+    """How many programs agree and how many do not, which are shown."""
+    found: Counter[str] = Counter()
+    for seed, text in each(count, start, parts):
+        how = difference(text, options(seed))
+        found["differ" if how else "same"] += 1
+        if how:
+            show(f"seed {seed}: {how}")
+    return found
+
+
+def main() -> None:
+    """Compare as many programs as asked."""
+    p = argparse.ArgumentParser(description=__doc__)
+    p.add_argument("--count", type=int, default=1000)
+    p.add_argument("--start", type=int, default=0)
+    p.add_argument("--parts", default="", help="only these, with commas between")
+    p.add_argument("--show", type=int, help="print the program of a seed")
+    a = p.parse_args()
+    parts = tuple(a.parts.split(",")) if a.parts else ()
+    if a.show is not None:
+        print(Writer(a.show, parts).program())
+        return
+    found = differing(a.count, a.start, parts)
+    print(dict(found))
+    sys.exit(bool(found["differ"]))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+"""Canned cycles: one block of G73 or G81 .. G89 as rapids, feeds, dwells and switches."""
+
+from collections.abc import Callable
+
+from second.frames import machine, plane_axes, program
+from second.moves import straight
+from second.parameters import Wrong
+from second.state import State, Step
+
+STEP_BACK_MM, STEP_BACK_INCH = 0.254, 0.010 * 25.4  # [mm] of G73 and G83
+PECKED, DWELLING = (730, 830), (820, 840, 740, 860, 880, 890)
+
+
+class Cycle:
+    """One block of a cycle, in the coordinates of the program."""
+
+    def __init__(self, s: State, words: dict[str, float], outputs: Callable[[State], None]) -> None:
+        self.s, self.words, self.outputs = s, words, outputs
+        self.at = program(s, s.point)
+        self.deep = s.plane
+        self.r = self.bottom = self.clear = 0.0
+
+    def go(self, rapid: bool, level: float | None = None) -> None:
+        """Move to `at`, or along the tool to a level."""
+        if level is not None:
+            self.at[self.deep] = level
+        straight(self.s, machine(self.s, self.at), rapid)
+
+    def dwell(self) -> None:
+        """P seconds at rest."""
+        if seconds := self.s.sticky.get("p", 0.0):
+            step = Step("dwell", self.s.line, tuple(self.s.point), tuple(self.s.point))
+            step.dwell = seconds
+            self.s.steps.append(step)
+
+    def spindle(self, turning: int) -> None:
+        self.s.turning = turning
+        self.outputs(self.s)
+
+    def levels(self) -> None:
+        """R, bottom and clear level of this block."""
+        s, old = self.s, self.at[self.deep]
+        unit = s.unit
+        names = "xyz"[self.deep]
+        for letter in (names, "r", "q", "p"):
+            if letter in self.words:
+                s.sticky[letter] = self.words[letter] * (1.0 if letter == "p" else unit)
+        if "r" not in s.sticky or names not in s.sticky:
+            raise Wrong("cycle without R or depth")
+        if s.motion in PECKED and s.sticky.get("q", 0.0) <= 0.0:
+            raise Wrong("cycle without Q")
+        self.r = s.sticky["r"] + (old if s.incremental else 0.0)
+        self.bottom = s.sticky[names] + (self.r if s.incremental else 0.0)
+        if self.bottom > self.r:
+            raise Wrong("R below the bottom")
+        if s.old_level is None:
+            s.old_level = old
+        self.clear = max(self.r, s.old_level) if s.old_plane else self.r
+
+    def run(self) -> None:
+        """All repeats."""
+        s = self.s
+        times = self.words.get("l", 1.0)
+        if abs(times - round(times)) > 1e-4 or times < 0.9:
+            raise Wrong("L")
+        self.levels()
+        if self.at[self.deep] < self.r:
+            self.go(True, self.r)
+        axes = plane_axes(self.deep)
+        for _ in range(round(times)):
+            for i in axes:
+                if (letter := "xyz"[i]) in self.words:
+                    value = self.words[letter] * s.unit
+                    self.at[i] = self.at[i] + value if s.incremental else value
+            self.go(True)
+            self.go(True, self.r)
+            self.hole()
+            self.go(True, self.clear)
+
+    def hole(self) -> None:
+        """From R to the bottom and back, as the cycle says."""
+        s, code = self.s, self.s.motion
+        turning = s.turning
+        if code in PECKED:
+            self.pecks(code == 830)
+            return
+        if code in (860, 880) and turning == 0:
+            raise Wrong("cycle with a spindle at rest")
+        if code in (840, 740) and turning != (1 if code == 840 else -1):
+            raise Wrong("spindle the other way round")
+        self.go(False, self.bottom)
+        if code in (840, 740):
+            self.spindle(-1 if code == 840 else 1)
+        if code in DWELLING:
+            self.dwell()
+        if code == 850:
+            self.go(False, self.r)
+        if code in (890, 840, 740):
+            self.go(False, self.clear)
+        if code in (840, 740):
+            self.spindle(turning)
+        if code in (860, 880):
+            self.spindle(0)
+            if code == 880:
+                place = tuple(s.point)
+                s.steps.append(Step("stop", s.line, place, place))
+            self.go(True, self.clear)
+            self.spindle(turning)
+
+    def pecks(self, out: bool) -> None:
+        """Down in steps of Q, out of the hole or a little back after each."""
+        q, depth = self.s.sticky["q"], self.r
+        back = STEP_BACK_INCH if self.s.inch else STEP_BACK_MM
+        while depth - q > self.bottom + 1e-9:  # an even depth has no empty last step
+            depth -= q
+            self.go(False, depth)
+            if out:
+                self.go(True, self.r)
+                self.go(True, depth + back)
+            else:
+                self.go(True, depth + back)
+        self.go(False, self.bottom)

@@ -1,0 +1,77 @@
+"""Parameters that the machine keeps: positions, offsets, modes."""
+
+from second.frames import program
+from second.state import State
+
+ORIGINS, PER_SYSTEM = 5221, 20
+PLACES = {5161: 0, 5181: 1}
+NAMES = "xyzabcuvw"
+
+
+def _axis(s: State, place: int) -> int | None:
+    """Axis of the n-th of the nine coordinates, if the machine has it."""
+    letter = NAMES[place]
+    axes = "xyzabc" if s.options.angles else "xyzuvw"
+    return axes.index(letter) if letter in axes else None
+
+
+def _length(s: State, i: int, value: float) -> float:
+    """A coordinate in the program's unit."""
+    return value if s.options.angles and i >= 3 else value / s.unit
+
+
+def numbered(s: State, number: int) -> float | None:
+    """Value of a parameter that is kept by the machine."""
+    tables: list[tuple[int, list[float]]] = [
+        *((base, s.home[which]) for base, which in PLACES.items()),
+        *((ORIGINS + PER_SYSTEM * n, s.origin[n]) for n in range(9)),
+    ]
+    for base, values in tables:
+        if base <= number < base + 9:
+            i = _axis(s, number - base)
+            return 0.0 if i is None else values[i]
+    if number == 5220:
+        return s.system + 1.0
+    if 5420 <= number <= 5428:
+        i = _axis(s, number - 5420)
+        return 0.0 if i is None else _length(s, i, program(s, s.point)[i])
+    if number == 5400:
+        return float(s.tool)
+    return None
+
+
+def named(s: State, name: str) -> float | None:
+    """Value of a name that the machine gives."""
+    if name[1:] in tuple(NAMES) and name[0] == "_":
+        return numbered(s, 5420 + NAMES.index(name[1:]))
+    if name.startswith("_abs_") and name[5:] in tuple(NAMES):
+        i = _axis(s, NAMES.index(name[5:]))
+        return 0.0 if i is None else _length(s, i, s.point[i])
+    simple = {
+        "_line": float(s.line),
+        "_plane": {2: 170.0, 1: 180.0, 0: 190.0}[s.plane],
+        "_metric": float(not s.inch),
+        "_imperial": float(s.inch),
+        "_absolute": float(not s.incremental),
+        "_incremental": float(s.incremental),
+        "_feed": s.feed * 60.0 / s.unit,
+        "_rpm": s.speed,
+        "_motion_mode": 800.0 if s.motion < 0 else float(s.motion),
+        "_spindle_on": float(s.turning != 0),
+        "_spindle_cw": float(s.turning > 0),
+        "_mist": float(s.coolant & 1 != 0),
+        "_flood": float(s.coolant & 2 != 0),
+        "_current_tool": float(s.tool),
+        "_selected_tool": float(s.selected),
+        "_coord_system": 540.0 + 10.0 * s.system if s.system < 6 else 585.0 + s.system,
+        "_retract_old_z": float(s.old_plane),
+        "_retract_r_plane": float(not s.old_plane),
+    }
+    return simple.get(name)
+
+
+def connect(s: State) -> None:
+    """Give a state's parameters what the machine keeps."""
+    p = s.parameters
+    p.globals |= {"_value": 0.0, "_value_returned": 0.0}
+    p.system = lambda name: named(s, name) if isinstance(name, str) else numbered(s, name)

@@ -1,0 +1,211 @@
+"""Commands in a row as one smooth path: its distance both ways, C2, speed, hard cases."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from shape_paths import Array, both_ways, jumps, least_time, lines, shaped
+
+TURN = 2.0 * math.pi
+
+
+def raster(points: Array, per_mm: float = 40.0) -> Array:
+    """On a raster, without points twice in a row."""
+    p = np.round(points * per_mm) / per_mm
+    return p[np.r_[True, np.any(np.diff(p, axis=0) != 0.0, axis=1)]]
+
+
+def polar(r: Array, t: Array) -> Array:
+    return np.c_[r * np.cos(t), r * np.sin(t)]
+
+
+def outline() -> Array:
+    t = np.linspace(0.0, TURN, 6001)
+    r = np.exp(np.cos(t)) - 2.0 * np.cos(4.0 * t) + np.sin(t / 12.0) ** 5
+    return raster(polar(8.0 * r, t))
+
+
+def contour() -> Array:
+    t = np.linspace(0.0, TURN, 251)
+    return np.round(polar(91.0 * (1.0 + 0.1 * np.cos(3.0 * t) + 0.02 * np.sin(7.0 * t)), t), 4)
+
+
+def star() -> Array:
+    t = np.pi / 2.0 + np.arange(6) * 2.0 * TURN / 5.0
+    ends = polar(np.full(6, 20.0), t)
+    parts = [a + np.linspace(0.0, 1.0, 700)[:, None] * (b - a) for a, b in itertools.pairwise(ends)]
+    return raster(np.vstack(parts))
+
+
+def chip() -> Array:
+    x = np.arange(31.0)
+    rows = []
+    for k in range(12):
+        y = x if k % 2 == 0 else x[::-1]
+        z = 2.0 * np.exp(-((y - 15.0) ** 2 + (k - 6.0) ** 2) / 40.0) + 0.2 * np.sin(1.3 * y + k)
+        rows.append(np.c_[y, k + 0.2 * np.sin(2.0 * y), np.round(z, 3)])
+    return np.vstack(rows)
+
+
+def circle() -> Array:
+    return raster(polar(np.full(1500, 10.0), np.linspace(0.0, TURN, 1500)))
+
+
+def spiral() -> Array:
+    t = np.linspace(0.0, 4.0 * TURN, 6000)
+    return raster(polar(1.0 + 0.5 * t, t))
+
+
+# shape, tolerance [mm], time [s] at 1000 mm/s^2 and 100 mm/s: least and most
+SHAPES = [
+    (outline, 0.02, 3.2, 4.0),
+    (circle, 0.02, 0.70, 0.76),
+    (spiral, 0.02, 2.10, 2.30),
+    (star, 0.02, 2.20, 2.45),
+    (contour, 0.02, 5.8, 6.6),
+    (chip, 0.02, 8.0, 16.0),
+    (circle, 0.1, 0.68, 0.76),
+    (outline, 0.01, 5.0, 60.0),
+]
+
+
+@pytest.mark.parametrize(("shape", "tolerance", "least", "most"), SHAPES)
+def test_a_curve_within_the_tolerance(shape, tolerance, least, most) -> None:  # type: ignore[no-untyped-def]
+    points = shape()
+    pieces, marks = shaped(lines(points, tolerance))
+    there, back = both_ways(pieces, points, tolerance)
+    place, slope, bend = jumps(pieces)
+    time = least_time(pieces, 1000.0, 100.0)
+    speeds = np.concatenate(
+        [np.linalg.norm(p.at(np.linspace(0.0, p.length, 9))[1][:, :3], axis=1) for p in pieces]
+    )
+    print(
+        f"{shape.__name__} {len(points) - 1} lines, {len(pieces)} pieces, off {there:.5f} "
+        f"{back:.5f} of {tolerance}, jumps {place:.0e} {slope:.0e} {bend:.0e}, "
+        f"|r'| {speeds.min():.3f}..{speeds.max():.3f}, {time:.3f} s"
+    )
+    assert there <= tolerance and back <= tolerance
+    assert place < 1e-9 and slope < 1e-9 and bend < 1e-8
+    assert len(marks) == len(points) - 1 and np.all(np.diff(marks) >= 0.0)
+    assert least < time < most
+    assert np.allclose(pieces[-1].at(np.array([pieces[-1].length]))[0][0, :2], points[-1, :2])
+
+
+def wander(seed: int, scale: float, tolerance: float) -> tuple[list[str], Array]:
+    """Lines and arcs at random, mostly nearly tangential, in all six axes."""
+    dice = np.random.default_rng(seed)
+    at, heading = np.zeros(6), 0.0
+    rows, path = ["merge 1e9", "start 0 0 0 0 0 0"], [at]
+    for _ in range(60):
+        length = scale * 10 ** dice.uniform(-1.0, 0.6)
+        heading += 0.2 * dice.normal() if dice.random() < 0.8 else dice.uniform(-3.0, 3.0)
+        end = at.copy()
+        end[2:] += 0.1 * length * dice.normal(size=4) * (seed % 2)
+        words = f"line {tolerance} 100"
+        if dice.random() < 0.6:
+            end[:2] += length * np.array([math.cos(heading), math.sin(heading)])
+            path.append(end)
+        else:
+            r, side = scale * 10 ** dice.uniform(-0.5, 0.7), dice.choice([-1.0, 1.0])
+            centre = at[:2] + side * r * np.array([-math.sin(heading), math.cos(heading)])
+            angle = heading - side * TURN / 4.0
+            sweep = side * min(6.0, length / r)
+            x = np.linspace(0.0, 1.0, math.ceil(abs(sweep) * math.sqrt(r / (4e-3 * tolerance))) + 4)
+            arc = at + x[1:, None] * (end - at)
+            arc[:, 0] = centre[0] + r * np.cos(angle + sweep * x[1:])
+            arc[:, 1] = centre[1] + r * np.sin(angle + sweep * x[1:])
+            path.extend(arc)
+            end, heading = arc[-1], heading + sweep
+            words = f"arc {tolerance} 100 2 {int(side > 0)} 1 " + " ".join(
+                repr(float(c)) for c in centre
+            )
+        rows.append(words + " " + " ".join(repr(float(e)) for e in end))
+        at = end
+    return rows, np.array(path)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(("scale", "tolerance"), [(1.0, 0.02), (10.0, 0.02), (1.0, 0.2)])
+def test_lines_and_arcs_at_random(seed: int, scale: float, tolerance: float) -> None:
+    rows, path = wander(seed, scale, tolerance)
+    pieces, marks = shaped(rows)
+    there, back = both_ways(pieces, path, tolerance)
+    place, slope, bend = jumps(pieces)
+    rests = sum(p.rest for p in pieces)
+    print(f"off {there:.5f} {back:.5f} of {tolerance}, {len(pieces)} pieces, {rests} rests")
+    assert there <= 1.001 * tolerance and back <= 1.001 * tolerance  # chords of the arcs here
+    assert place < 1e-9 and slope < 1e-9 and bend < 1e-8
+    assert len(marks) == 60
+
+
+def splines(seed: int, tolerance: float) -> tuple[list[str], Array]:
+    """Cubics, every third with a corner before it, and between some of them short lines."""
+    dice = np.random.default_rng(seed)
+    rows, path, heading = ["merge 1e9", "start 0 0 0 0 0 0"], [np.zeros(6)], 0.0
+    for k in range(30):
+        at, length = path[-1], 10.0 ** dice.uniform(-0.7, 1.5)
+        heading += 1.0 * (k % 3 == 0)
+        turn = dice.uniform(-1.0, 1.0)
+        way = [np.array([math.cos(heading + a), math.sin(heading + a)]) for a in (0.0, turn)]
+        end = at.copy()
+        end[:2] += 0.5 * length * (way[0] + way[1])
+        end[3] += 0.1 * length * (seed % 2)
+        inner = np.zeros((2, 3))
+        inner[:, :2] = at[:2] + length / 3.0 * way[0], end[:2] - length / 3.0 * way[1]
+        words = [*inner.ravel(), *end]
+        rows.append(f"cubic {tolerance} 100 " + " ".join(repr(float(w)) for w in words))
+        x = np.linspace(0.0, 1.0, 20 + math.ceil(40.0 * length))[1:, None]
+        row = at + x * (end - at)
+        corners = [at[:2], *inner[:, :2], end[:2]]
+        row[:, :2] = sum(
+            math.comb(3, j) * x**j * (1.0 - x) ** (3 - j) * c for j, c in enumerate(corners)
+        )
+        path.extend(row)
+        heading += turn
+        for _ in range(4 * (k % 2)):
+            end = path[-1].copy()
+            end[:2] += 0.3 * np.array([math.cos(heading), math.sin(heading)])
+            rows.append(f"line {tolerance} 100 " + " ".join(repr(float(e)) for e in end))
+            path.append(end)
+    return rows, np.array(path)
+
+
+@pytest.mark.parametrize(("seed", "tolerance"), [(0, 0.02), (1, 0.02), (2, 0.005)])
+def test_cubics_keep_their_geometry(seed: int, tolerance: float) -> None:
+    rows, path = splines(seed, tolerance)
+    pieces, marks = shaped(rows)
+    there, back = both_ways(pieces, path, tolerance)
+    place, slope, bend = jumps(pieces)
+    kept = sum(p.kind == "cubic" for p in pieces)
+    print(f"off {there:.5f} {back:.5f} of {tolerance}, {len(pieces)} pieces, {kept} cubics")
+    assert there <= 1.001 * tolerance and back <= 1.001 * tolerance  # chords here
+    assert place < 1e-9 and slope < 1e-8 and bend < 1e-6  # lengths by splines here
+    assert kept > 5 and not any(p.rest for p in pieces[:-1])
+    assert len(marks) == len(rows) - 2
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_steps_of_every_size_and_reversals(seed: int) -> None:
+    dice = np.random.default_rng(seed)
+    steps = dice.normal(size=(200, 3)) * 10.0 ** dice.uniform(-8.0, 0.7, (200, 1))
+    steps[::17] = 0.0
+    steps[5::19] = -steps[4::19][: len(steps[5::19])]
+    points = np.cumsum(steps, axis=0) + [0.0, 1e3, 1e5][seed % 3]
+    pieces, marks = shaped(lines(points, 0.05))
+    there, back = both_ways(pieces, points, 0.05)
+    print(f"off {there:.5f} {back:.5f}, {len(pieces)} pieces, {sum(p.rest for p in pieces)} rests")
+    assert there <= 0.05 and back <= 0.05
+    assert jumps(pieces)[0] < 1e-9
+    assert len(marks) == 199
+
+
+def test_without_merging_only_corners_are_rounded() -> None:
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]])
+    pieces, _ = shaped(lines(points, 0.02, 0.0))
+    assert [p.kind for p in pieces] == ["line", "curve", "line", "curve", "line"]
+    # two lines: the curve's middle is 0.1875 of its half length times the turn off the corner
+    half = 0.5 * pieces[1].length
+    middle = pieces[1].at(np.array([half]))[0][0, :2]
+    assert math.dist(middle, (1.0, 0.0)) == pytest.approx(0.1875 * half * math.sqrt(2.0))
+    assert 0.95 * 0.02 < math.dist(middle, (1.0, 0.0)) <= 0.02
