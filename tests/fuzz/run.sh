@@ -9,7 +9,7 @@ cd "$(dirname "$0")/../.."
 seconds=${1:-120}
 [ $# -gt 0 ] && shift
 clang=${CLANG:-clang}
-sanitize="-g -O1 -fno-sanitize-recover=all -fno-omit-frame-pointer -ffp-contract=off -fno-math-errno"
+sanitize="-DFLOW_AGAIN=2000 -g -O1 -fno-sanitize-recover=all -fno-omit-frame-pointer -ffp-contract=off -fno-math-errno"
 # The cores are the folders of src with C files but for the FMI layer, the plants' template and the binding.
 cores=$(ls -d "$PWD"/src/*/*.c | sed 's|/[^/]*$||' | sort -u | grep -v -E '/(fmi|plant|python)$')
 include=$(for core in $cores; do printf ' -I%s' "$core"; done)
