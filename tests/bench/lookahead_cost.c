@@ -1,9 +1,10 @@
 /* What one short segment costs by look-ahead: planned as a command, waited in the ring, joined,
  * planned in its chain, made into points.
  *
- *     lookahead_cost <filling> <DDA time [ms]> <T or S>
+ *     lookahead_cost <filling> <DDA time [ms]> <T or S> [<jerk [mm/s^3]>]
  *
- * A random walk in steps of 0.1 mm, with a constant number of commands in the ring. Prints the
+ * A random walk in steps of 0.1 mm, with a constant number of commands in the ring. With a jerk the
+ * walk is a curve with that of each axis, 0 no limit, and an acceleration of 2 m/s^2. Prints the
  * seconds of processor time per segment and the points made per segment.
  */
 #define _POSIX_C_SOURCE 199309L /* clock_gettime */
@@ -66,13 +67,18 @@ int main(int argc, char **argv)
     static struct mcc m;
     const int filling = argc > 1 ? atoi(argv[1]) : RING_SIZE;
     const double dda_time = argc > 2 ? 1e-3 * atof(argv[2]) : 1e-3;
-    const struct machine machine = machine_at(dda_time, argc > 3 ? argv[3][0] : 'T');
+    struct machine machine = machine_at(dda_time, argc > 3 ? argv[3][0] : 'T');
     double at[AXES] = { 0.0 }, angle = 0.0;
     uint64_t seed = 1;
     int sent = 0;
     long points = 0;
 
-    if (MCC_init_motion(&m, &machine) || mcc_set_tolerance(&m, 0.01)) {
+    for (int i = 0; i < AXES && argc > 4; i++) {
+        machine.axis[i].acc = 2000.0;
+        machine.axis[i].jerk = atof(argv[4]);
+    }
+    if (MCC_init_motion(&m, &machine) || mcc_set_tolerance(&m, 0.01) ||
+        mcc_set_curve(&m, argc > 4, 0.01)) {
         return 1;
     }
     const double begin = now();

@@ -19,7 +19,7 @@ LINES_MAX = 500
 ALLOWED = set(
     "acos asin atan atan2 ceil copysign cos exp fabs floor fmax fmin fmod hypot ldexp llround log"
     " lround modf pow rint round sin sqrt tan tanh trunc sincos cbrt"
-    " memcpy memset memcmp memmove _GLOBAL_OFFSET_TABLE_".split()
+    " memcpy memset memcmp memmove strchr _GLOBAL_OFFSET_TABLE_".split()
 )
 
 
