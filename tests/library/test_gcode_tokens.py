@@ -19,7 +19,7 @@ from gcodeparser import parse_gcode_lines
 LIBRARY = ctypes.CDLL(os.environ.get("GCODE_WORDS", str(ROOT / "build/lib/gcode_words.so")))
 LINES = int(os.environ.get("GCODE_LINES", "10000"))
 WORDS_MAX = 40
-LETTERS = "ABCDEFHIJKLNOPQRSTUVWXYZ"  # once in a line; G and M more often
+LETTERS = "ABCDEFHIJKLNPQRSTUVWXYZ"  # once in a line; G and M more often; O is no word
 BLANKS = ["", "", " ", " ", "  ", "\t"]
 
 Word = tuple[str, float]

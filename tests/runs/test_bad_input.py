@@ -40,7 +40,7 @@ def message(folder: Path, *arguments: str) -> str:
 @pytest.mark.parametrize(
     ("line", "program", "what"),
     [
-        (2, "G21\nG1 X5 Q3 F100\nM30\n", 'unknown word "Q3"'),
+        (2, "G21\nG1 X5 Q3 F100\nM30\n", 'word has no use in this line "Q3"'),
         (3, "G21\nG1 X5 F100\nG3 X9 Y9 R1\n", "arc radius is smaller than half the distance"),
         (2, "G21\nG3 X10 Y0 I4 J0 F100\n", "does not lie on the circle"),
         (2, "G21\nG1 G2 X5 F100\n", "second word of one modal group"),
