@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "bow.h"
+
 /* A motion that will not get this much further [s] before it has to brake waits no longer for
  * commands to come. */
 static const double WAIT = 0.05;
@@ -24,7 +26,7 @@ void curve_start(struct curve *c, struct curve_plan *m, const struct ring *r)
     m->joined = 0;
     m->joined_way = m->part = m->start = 0.0;
     c->goal = INFINITY;
-    c->place = pace_place(&m->pace);
+    c->place = m->pace.at;
 }
 
 /* The next finished piece, or what is left of it, or what lies before the goal, to the pace. */
@@ -61,7 +63,7 @@ static void join(struct curve *c, struct curve_plan *m)
     while (!m->pace.closed && m->joined < shape_count(&m->shape) && join_one(c, m)) {
     }
     m->pace.closed = m->pace.closed || (c->closed && m->joined == shape_count(&m->shape));
-    c->place = pace_place(&m->pace);
+    c->place = m->pace.at;
 }
 
 /* Nothing more joins: the chain ends at rest at the end of what has been taken. */
@@ -115,7 +117,7 @@ static void resume(struct curve *c, struct curve_plan *m)
         pace_put(&m->pace, &c->place);
     } else {
         c->start = m->start;
-        c->place = pace_place(&m->pace);
+        c->place = m->pace.at;
     }
 }
 
@@ -192,8 +194,8 @@ static void halt(struct curve *c, struct curve_plan *m)
         m->joined_way = c->base;
         m->part = way - c->base;
         set_out(c, m, way);
-        m->pace.rate = rate;
-        c->place = pace_place(&m->pace);
+        m->pace.at.rate = rate;
+        c->place = m->pace.at;
         stop = pace_stop_way(&m->pace);
         if (way + stop <= goal) {
             break;
@@ -217,11 +219,11 @@ double curve_advance(struct curve *c, struct curve_plan *m, struct ring *r, doub
     halt(c, m);
     join(c, m);
     dt = pace_advance(&m->pace, override, dt);
-    c->place = pace_place(&m->pace);
+    c->place = m->pace.at;
     while (rests_between(c, m) && dt > 0.0 && override > 0.0) {
         set_out(c, m, m->start + m->pace.end);
         dt = pace_advance(&m->pace, override, dt);
-        c->place = pace_place(&m->pace);
+        c->place = m->pace.at;
     }
     return curve_done(c, m) ? dt : 0.0;
 }
@@ -300,35 +302,12 @@ bool curve_done(const struct curve *c, const struct curve_plan *m)
            m->joined == shape_count(&m->shape);
 }
 
-/* An extent may be told by so much too wide. [mm] */
-static const double NEAR = 1e-6;
-
-struct extent {
-    const struct piece *piece;
-    double bend;            /* [1/mm] most r'' of an axis in the part */
-    double *low, *high;
-};
-
-/* Part of a piece: in halves until nothing in it leaves the places known by more than NEAR. */
-static void widen(const struct extent *e, double u0, const double p0[AXES], double u1,
-                  const double p1[AXES])
+static void place_on_piece(const void *piece, double u, double place[AXES])
 {
-    const double strays = 0.125 * e->bend * (u1 - u0) * (u1 - u0);
-    bool inside = true;
+    struct piece_state s;
 
-    for (int k = 0; k < AXES; k++) {
-        e->low[k] = fmin(e->low[k], fmin(p0[k], p1[k]));
-        e->high[k] = fmax(e->high[k], fmax(p0[k], p1[k]));
-        inside = inside && fmin(p0[k], p1[k]) - strays >= e->low[k] - NEAR &&
-                 fmax(p0[k], p1[k]) + strays <= e->high[k] + NEAR;
-    }
-    if (!inside && u1 - u0 > NEAR) {
-        struct piece_state s;
-        const double u = 0.5 * (u0 + u1);
-        piece_at(e->piece, u, &s);
-        widen(e, u0, p0, u, s.point);
-        widen(e, u, s.point, u1, p1);
-    }
+    piece_at(piece, u, &s);
+    memcpy(place, s.point, sizeof s.point);
 }
 
 void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[AXES],
@@ -344,23 +323,20 @@ void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[A
         const struct piece *p = find(&at, m, from);
         const double end = fmin(stop, at.base + p->length);
         struct piece_bounds b;
-        struct piece_state s[2];
         if (!(end > from)) {
             break;
         }
         piece_bounds(p, from - at.base, end - at.base, &b);
-        struct extent e = { p, 0.0, low, high };
+        struct bow bow = { place_on_piece, p, 0.0 };
         for (int k = 0; k < AXES; k++) {
-            e.bend = fmax(e.bend, fmax(-b.low[1][k], b.high[1][k]));
+            bow.bend = fmax(bow.bend, fmax(-b.low[1][k], b.high[1][k]));
         }
-        piece_at(p, from - at.base, &s[0]);
-        piece_at(p, end - at.base, &s[1]);
-        widen(&e, from - at.base, s[0].point, end - at.base, s[1].point);
+        bow_widen(&bow, from - at.base, end - at.base, low, high);
         from = end;
     }
     for (int k = 0; k < AXES; k++) {
-        low[k] -= NEAR;
-        high[k] += NEAR;
+        low[k] -= BOW_NEAR;
+        high[k] += BOW_NEAR;
     }
 }
 
@@ -373,5 +349,5 @@ bool curve_damaged(const struct curve *c, const struct curve_plan *m)
            (m->part > 0.0 && m->joined == count) || c->begun < 0 || c->begun > marks ||
            c->at < 0 || (c->at > 0 && c->at >= m->joined + (m->part > 0.0)) ||
            c->place.head < 0 || c->place.head >= PACE_CELLS || c->place.planned < 0 ||
-           (m->pace.head - c->place.head + PACE_CELLS) % PACE_CELLS + m->pace.count > PACE_CELLS;
+           (m->pace.at.head - c->place.head + PACE_CELLS) % PACE_CELLS + m->pace.count > PACE_CELLS;
 }

@@ -3,8 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* An extent of a corner may be told by so much too wide: far below a pulse. [mm] */
-static const double NEAR = 1e-6;
+#include "bow.h"
 
 /* The ramp at a time after now. */
 struct instant {
@@ -162,44 +161,27 @@ static void box_of_chain(const struct way *w, double low[AXES], double high[AXES
     }
 }
 
-struct bow {
+/* A corner and both of its paths. */
+struct turn {
     const struct corner *corner;
     const struct path *a, *b;
-    double *low, *high;         /* of places on it */
 };
 
-/* Part of a corner: in halves until nothing in it leaves the places known by more than NEAR. */
-static void widen_by_bow(const struct bow *w, double s0, const double p0[AXES], double s1,
-                         const double p1[AXES])
+static void place_in_turn(const void *turn, double s, double place[AXES])
 {
-    const double strays = 0.125 * w->corner->bend * (s1 - s0) * (s1 - s0);
-    bool inside = true;
+    const struct turn *t = turn;
+    double slope[AXES];
 
-    for (int k = 0; k < AXES; k++) {
-        w->low[k] = fmin(w->low[k], fmin(p0[k], p1[k]));
-        w->high[k] = fmax(w->high[k], fmax(p0[k], p1[k]));
-        inside = inside && fmin(p0[k], p1[k]) - strays >= w->low[k] - NEAR &&
-                 fmax(p0[k], p1[k]) + strays <= w->high[k] + NEAR;
-    }
-    if (!inside && s1 - s0 > NEAR) {
-        const double s = 0.5 * (s0 + s1);
-        double p[AXES], slope[AXES];
-        corner_at(w->corner, w->a, w->b, s, p, slope);
-        widen_by_bow(w, s0, p0, s, p);
-        widen_by_bow(w, s, p, s1, p1);
-    }
+    corner_at(t->corner, t->a, t->b, s, place, slope);
 }
 
 static void widen_by_corner(const struct way *w, int32_t i, double from, double to,
                             double low[AXES], double high[AXES])
 {
-    const struct bow bow = { &ring_peek(w->ring, i)->corner, path_of(w, i - 1), path_of(w, i),
-                             low, high };
-    double first[AXES], last[AXES], slope[AXES];
+    const struct turn turn = { &ring_peek(w->ring, i)->corner, path_of(w, i - 1), path_of(w, i) };
+    const struct bow bow = { place_in_turn, &turn, turn.corner->bend };
 
-    corner_at(bow.corner, bow.a, bow.b, from, first, slope);
-    corner_at(bow.corner, bow.a, bow.b, to, last, slope);
-    widen_by_bow(&bow, from, first, to, last);
+    bow_widen(&bow, from, to, low, high);
 }
 
 static void extent_of_chain(const struct way *w, double low[AXES], double high[AXES])
@@ -217,8 +199,8 @@ static void extent_of_chain(const struct way *w, double low[AXES], double high[A
         base += p->length;
     }
     for (int k = 0; k < AXES; k++) {
-        low[k] -= NEAR;
-        high[k] += NEAR;
+        low[k] -= BOW_NEAR;
+        high[k] += BOW_NEAR;
     }
 }
 

@@ -14,27 +14,27 @@ static const double SLIGHT = 0.05;
 
 static struct pace_cell *cell_at(struct pace *p, int32_t i)
 {
-    return &p->cell[(uint32_t)(p->head + i) % PACE_CELLS];
+    return &p->cell[(uint32_t)(p->at.head + i) % PACE_CELLS];
 }
 
 static const struct pace_cell *cell_peek(const struct pace *p, int32_t i)
 {
-    return &p->cell[(uint32_t)(p->head + i) % PACE_CELLS];
+    return &p->cell[(uint32_t)(p->at.head + i) % PACE_CELLS];
 }
 
 void pace_start(struct pace *p, const struct pace_limits *l)
 {
     p->limits = *l;
-    p->head = p->count = p->planned = 0;
+    p->at.head = p->count = p->at.planned = 0;
     p->closed = false;
     p->override = -1.0;
-    p->smooth = p->ramping = p->grown = false;
+    p->smooth = p->at.ramping = p->grown = false;
     for (int k = 0; k < AXES; k++) {
         p->smooth = p->smooth || l->jerk[k] > 0.0;
     }
-    p->ramp = (struct pace_ramp){ 0.0, 0.0, 0.0, 0.0 };
-    p->twitch = p->spent = p->before = p->asked = 0.0;
-    p->end = p->base = p->left = p->way = p->rate = p->gain = 0.0;
+    p->at.ramp = (struct pace_ramp){ 0.0, 0.0, 0.0, 0.0 };
+    p->at.twitch = p->at.spent = p->at.before = p->at.asked = 0.0;
+    p->end = p->at.base = p->at.left = p->at.way = p->at.rate = p->at.gain = 0.0;
 }
 
 bool pace_join(struct pace *p, const struct piece *piece)
@@ -53,7 +53,7 @@ bool pace_join(struct pace *p, const struct piece *piece)
     const int32_t n = pace_cut(piece, &p->limits, cell);
     for (int32_t i = 0; i < n; i++) {
         if (p->count == 0) {
-            p->left = cell[i].length;
+            p->at.left = cell[i].length;
         }
         *cell_at(p, p->count++) = cell[i];
     }
@@ -90,13 +90,13 @@ static void plan(struct pace *p, double override)
         } else {
             most = pace_back(c, x1, feed, &top);
         }
-        if (!all && i < p->planned && top == c->top && most == c->most) {
+        if (!all && i < p->at.planned && top == c->top && most == c->most) {
             break;
         }
         c->top = top;
         c->most = most;
     }
-    p->planned = p->count;
+    p->at.planned = p->count;
     p->override = override;
 }
 
@@ -204,49 +204,49 @@ static struct stretch next_bend(const struct pace_cell *c, double left, double x
 static struct stretch next(const struct pace *p, double x, double override)
 {
     const struct pace_cell *c = cell_peek(p, 0);
-    const double most = feed_limit(c, override), x1 = end_limit(p, 0, p->planned, override);
+    const double most = feed_limit(c, override), x1 = end_limit(p, 0, p->at.planned, override);
 
-    return most <= c->flat ? next_feed(c, p->left, x, most, x1)
-                           : next_bend(c, p->left, x, most, x1);
+    return most <= c->flat ? next_feed(c, p->at.left, x, most, x1)
+                           : next_bend(c, p->at.left, x, most, x1);
 }
 
 bool pace_at_end(const struct pace *p)
 {
-    return p->count == 0 || (p->count == 1 && p->left <= 0.0 && !(p->smooth && p->ramping));
+    return p->count == 0 || (p->count == 1 && p->at.left <= 0.0 && !(p->smooth && p->at.ramping));
 }
 
 /* Drive a stretch for up to dt; returns the time used. */
 static double drive(struct pace *p, const struct stretch *s, double dt)
 {
-    const double v = p->rate, to = sqrt(s->x);
+    const double v = p->at.rate, to = sqrt(s->x);
     const double time = v + to > 0.0 ? 2.0 * s->way / (v + to) : s->way > 0.0 ? INFINITY : 0.0;
 
-    p->gain = s->acc;
+    p->at.gain = s->acc;
     if (time <= dt) {
-        p->left = s->way < p->left ? p->left - s->way : 0.0;
-        p->rate = to;
+        p->at.left = s->way < p->at.left ? p->at.left - s->way : 0.0;
+        p->at.rate = to;
         return time;
     }
-    p->rate = fmax(0.0, v + s->acc * dt);
-    p->left = fmax(0.0, p->left - 0.5 * dt * (v + p->rate));
+    p->at.rate = fmax(0.0, v + s->acc * dt);
+    p->at.left = fmax(0.0, p->at.left - 0.5 * dt * (v + p->at.rate));
     return dt;
 }
 
 /* Into the next cell, if there is one. */
 static void cross(struct pace *p)
 {
-    while (p->left <= 0.0 && p->count > 1) {
-        p->base += cell_peek(p, 0)->length;
-        p->head = (p->head + 1) % PACE_CELLS;
+    while (p->at.left <= 0.0 && p->count > 1) {
+        p->at.base += cell_peek(p, 0)->length;
+        p->at.head = (p->at.head + 1) % PACE_CELLS;
         p->count--;
-        p->planned -= p->planned > 0;
-        p->left = cell_peek(p, 0)->length;
+        p->at.planned -= p->at.planned > 0;
+        p->at.left = cell_peek(p, 0)->length;
     }
 }
 
 static double length_at(const struct pace *p, int32_t i)
 {
-    const uint32_t at = (uint32_t)(p->head + i) % PACE_CELLS;
+    const uint32_t at = (uint32_t)(p->at.head + i) % PACE_CELLS;
     return p->smooth ? p->leg[at].length : p->cell[at].length;
 }
 
@@ -255,17 +255,17 @@ static double advance(struct pace *p, double override, double dt)
 {
     cross(p);
     if (override > 0.0 && (override != p->override ||
-                           PLAN_SHARE * (p->count - p->planned) > p->planned)) {
+                           PLAN_SHARE * (p->count - p->at.planned) > p->at.planned)) {
         plan(p, override);
     }
     while (dt > 0.0 && !pace_at_end(p)) {
-        const double x = p->rate * p->rate;
+        const double x = p->at.rate * p->at.rate;
         if (override <= 0.0 && x <= 0.0) {
-            p->gain = 0.0;
+            p->at.gain = 0.0;
             return 0.0;
         }
         const struct stretch s = override > 0.0 ? next(p, x, override)
-                                                : halt(cell_peek(p, 0), p->left, x);
+                                                : halt(cell_peek(p, 0), p->at.left, x);
         dt -= drive(p, &s, dt);
         cross(p);
     }
@@ -278,26 +278,26 @@ double pace_advance(struct pace *p, double override, double dt)
                                   : advance(p, override, dt);
 
     if (p->count > 0) {
-        const double way = p->base + (length_at(p, 0) - p->left);
-        p->way = fmin(p->end, fmax(p->way, way));
+        const double way = p->at.base + (length_at(p, 0) - p->at.left);
+        p->at.way = fmin(p->end, fmax(p->at.way, way));
     }
     if (pace_at_end(p)) {
-        p->way = p->end;
-        p->rate = p->gain = p->twitch = 0.0;
+        p->at.way = p->end;
+        p->at.rate = p->at.gain = p->at.twitch = 0.0;
     }
     return left;
 }
 
 double pace_stop_way(const struct pace *p)
 {
-    double x = p->rate * p->rate, base = p->base;
+    double x = p->at.rate * p->at.rate, base = p->at.base;
 
     if (p->smooth) {
         return pace_smooth_stop_way(p);
     }
     for (int32_t i = 0; i < p->count; i++) {
         const struct pace_cell *c = cell_peek(p, i);
-        double left = i == 0 ? p->left : c->length;
+        double left = i == 0 ? p->at.left : c->length;
         while (left > 0.0 && x > 0.0) {
             const struct stretch s = halt(c, left, x);
             left = s.way < left ? left - s.way : 0.0;
@@ -314,7 +314,7 @@ double pace_stop_way(const struct pace *p)
 /* Whether the motion can come to rest at the end of cell i. */
 static bool can_rest(const struct pace *p, int32_t i)
 {
-    const double x = p->rate * p->rate;
+    const double x = p->at.rate * p->at.rate;
     double x1 = 0.0, end;
 
     if (p->smooth) {
@@ -326,63 +326,45 @@ static bool can_rest(const struct pace *p, int32_t i)
         x1 = most <= c->flat ? pace_top(c, x1, most) : pace_back(c, x1, most, &end);
         x1 = fmin(fmin(x1, most), feed_limit(cell_peek(p, i - 1), INFINITY));
     }
-    const double acc = pace_span(cell_peek(p, 0), p->left, x).low;
-    return x + 2.0 * acc * p->left <= x1 + SAME * x;
+    const double acc = pace_span(cell_peek(p, 0), p->at.left, x).low;
+    return x + 2.0 * acc * p->at.left <= x1 + SAME * x;
 }
 
 double pace_close(struct pace *p, double way)
 {
-    double end = p->base;
+    double end = p->at.base;
 
     p->closed = true;
     for (int32_t i = 0; i < p->count; i++) {
-        const bool last = p->smooth ? p->leg[(uint32_t)(p->head + i) % PACE_CELLS].last
+        const bool last = p->smooth ? p->leg[(uint32_t)(p->at.head + i) % PACE_CELLS].last
                                     : cell_peek(p, i)->last;
         end += length_at(p, i);
         if (last && i + 1 < p->count && end >= way && can_rest(p, i)) {
             p->count = i + 1;
             p->end = end;
-            p->override = p->asked = -1.0;      /* plan anew */
+            p->override = p->at.asked = -1.0;      /* plan anew */
             break;
         }
     }
-    p->planned = p->planned < p->count ? p->planned : p->count;
+    p->at.planned = p->at.planned < p->count ? p->at.planned : p->count;
     return p->end;
-}
-
-struct pace_place pace_place(const struct pace *p)
-{
-    return (struct pace_place){
-        .head = p->head, .planned = p->planned, .base = p->base, .left = p->left, .way = p->way,
-        .rate = p->rate, .gain = p->gain, .twitch = p->twitch, .ramping = p->ramping,
-        .ramp = p->ramp, .spent = p->spent, .before = p->before, .asked = p->asked
-    };
 }
 
 void pace_put(struct pace *p, const struct pace_place *place)
 {
-    const int32_t crossed = (p->head - place->head + PACE_CELLS) % PACE_CELLS;
+    const int32_t crossed = (p->at.head - place->head + PACE_CELLS) % PACE_CELLS;
+    const int32_t planned = p->at.planned > 0 ? p->at.planned + crossed : place->planned;
 
-    p->head = place->head;
+    p->at = *place;
+    p->at.planned = planned;
     p->count += crossed;
-    p->planned = p->planned > 0 ? p->planned + crossed : place->planned;
-    p->base = place->base;
-    p->left = place->left;
-    p->way = place->way;
-    p->rate = place->rate;
-    p->gain = place->gain;
-    p->twitch = place->twitch;
-    p->ramping = place->ramping;
-    p->ramp = place->ramp;
-    p->spent = place->spent;
-    p->before = place->before;
-    p->asked = place->asked;
 }
 
 bool pace_damaged(const struct pace *p)
 {
-    bool good = p->head >= 0 && p->head < PACE_CELLS && p->count >= 0 && p->count <= PACE_CELLS &&
-                p->planned >= 0 && p->planned <= p->count;
+    const struct pace_place *at = &p->at;
+    bool good = at->head >= 0 && at->head < PACE_CELLS && p->count >= 0 &&
+                p->count <= PACE_CELLS && at->planned >= 0 && at->planned <= p->count;
 
     for (int32_t i = 0; good && !p->smooth && i < p->count; i++) {
         const struct pace_cell *c = cell_peek(p, i);

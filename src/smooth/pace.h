@@ -17,19 +17,11 @@
 
 enum { PACE_CELLS = 2048, PACE_KEPT = 512 };
 
-struct pace {
-    struct pace_limits limits;
-    bool    smooth;         /* jerk is limited: legs, else cells */
-    union {
-        struct pace_cell cell[PACE_CELLS];
-        struct pace_leg leg[PACE_CELLS];
-    };
-    int32_t head, count;    /* cell of the motion, and how many from there on */
-    int32_t planned;        /* of these, known to the latest plan */
-    bool    closed;         /* no further piece joins */
-    double  override;       /* of that plan */
-    double  end;            /* [mm] end of the pieces, from the start of the chain */
-    double  base;           /* [mm] start of the motion's cell, from there */
+/* Where the motion is. */
+struct pace_place {
+    int32_t head;           /* its cell, */
+    int32_t planned;        /* how many from there on are known to the latest plan */
+    double  base;           /* [mm] start of that cell, from the start of the chain */
     double  left;           /* [mm] to the end of that cell */
     double  way;            /* [mm] since the start of the chain */
     double  rate, gain, twitch;     /* [mm/s], [mm/s^2], [mm/s^3] of the way */
@@ -39,21 +31,24 @@ struct pace {
     double  spent;          /* [s] since its start */
     double  before;         /* [mm] `left` at its start */
     double  asked;          /* override that it was chosen for */
+};
+
+struct pace {
+    struct pace_limits limits;
+    bool    smooth;         /* jerk is limited: legs, else cells */
+    union {
+        struct pace_cell cell[PACE_CELLS];
+        struct pace_leg leg[PACE_CELLS];
+    };
+    struct pace_place at;
+    int32_t count;          /* cells from that of the motion on */
+    bool    closed;         /* no further piece joins */
+    double  override;       /* of the latest plan */
+    double  end;            /* [mm] end of the pieces, from the start of the chain */
     bool    grown;          /* the last leg has, since the latest plan */
 };
 
-/* Where the motion is; its cell is still there if fewer than PACE_KEPT have been crossed since. */
-struct pace_place {
-    int32_t head, planned;
-    double  base, left, way, rate, gain, twitch;
-    bool    ramping;
-    struct pace_ramp ramp;
-    double  spent, before, asked;
-};
-
-struct pace_place pace_place(const struct pace *p);
-
-/* Back to an earlier place. */
+/* Back to an earlier place, from which fewer than PACE_KEPT cells have been crossed. */
 void pace_put(struct pace *p, const struct pace_place *place);
 
 /* Whether counts of a state, which came from outside, lead out of its arrays. */

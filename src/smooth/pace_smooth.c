@@ -13,12 +13,12 @@ static const double SMALL = 1e-12;
 
 static struct pace_leg *leg_at(struct pace *p, int32_t i)
 {
-    return &p->leg[(uint32_t)(p->head + i) % PACE_CELLS];
+    return &p->leg[(uint32_t)(p->at.head + i) % PACE_CELLS];
 }
 
 static const struct pace_leg *leg_peek(const struct pace *p, int32_t i)
 {
-    return &p->leg[(uint32_t)(p->head + i) % PACE_CELLS];
+    return &p->leg[(uint32_t)(p->at.head + i) % PACE_CELLS];
 }
 
 /* Whether a leg may grow to another one: it is not under way, and the motion that has been planned
@@ -26,9 +26,9 @@ static const struct pace_leg *leg_peek(const struct pace *p, int32_t i)
 static bool may_grow(const struct pace *p, const struct pace_leg *g, const struct pace_leg *grown)
 {
     if (p->count == 1) {
-        return p->rate <= 0.0 && p->left >= g->length;
+        return p->at.rate <= 0.0 && p->at.left >= g->length;
     }
-    return p->planned < p->count ||
+    return p->at.planned < p->count ||
            pace_leg_enter(grown, &p->limits, 0.0, grown->cap, grown->length) >=
            pace_leg_enter(g, &p->limits, 0.0, g->cap, g->length);
 }
@@ -39,13 +39,13 @@ static void append(struct pace *p, const struct pace_leg *g)
         struct pace_leg *last = leg_at(p, p->count - 1), both = *last;
         if (pace_leg_join(&both, g, &p->limits) && may_grow(p, last, &both)) {
             *last = both;
-            p->left = p->count == 1 ? both.length : p->left;
+            p->at.left = p->count == 1 ? both.length : p->at.left;
             p->grown = true;
             return;
         }
     }
     if (p->count == 0) {
-        p->left = g->length;
+        p->at.left = g->length;
     }
     *leg_at(p, p->count++) = *g;
 }
@@ -85,16 +85,16 @@ static double feed_limit(const struct pace_leg *g, double override)
 /* Most speed at the end of leg i. */
 static double end_limit(const struct pace *p, int32_t i)
 {
-    return i + 1 < p->planned ? leg_peek(p, i + 1)->enter : 0.0;
+    return i + 1 < p->at.planned ? leg_peek(p, i + 1)->enter : 0.0;
 }
 
 /* From the end backwards. */
 static void plan(struct pace *p, double override)
 {
     const bool all = override != p->override;
-    const int32_t known = p->planned;
+    const int32_t known = p->at.planned;
 
-    p->planned = p->count;
+    p->at.planned = p->count;
     p->grown = false;
     for (int32_t i = p->count - 1; i >= 0; i--) {
         struct pace_leg *g = leg_at(p, i);
@@ -113,99 +113,100 @@ static double begin(struct pace *p, double to, double override)
 {
     const struct pace_leg *g = leg_peek(p, 0);
 
-    to = pace_leg_stage(g, &p->limits, p->rate, to);
-    p->ramp = pace_ramp_make(g, &p->limits, p->rate, to);
-    p->ramping = to != p->rate;
-    p->spent = 0.0;
-    p->before = p->left;
-    p->asked = override;
-    return p->ramping ? 0.0 : p->left;
+    to = pace_leg_stage(g, &p->limits, p->at.rate, to);
+    p->at.ramp = pace_ramp_make(g, &p->limits, p->at.rate, to);
+    p->at.ramping = to != p->at.rate;
+    p->at.spent = 0.0;
+    p->at.before = p->at.left;
+    p->at.asked = override;
+    return p->at.ramping ? 0.0 : p->at.left;
 }
 
 /* A ramp under way to another override: upwards it ends early if it would go too far, downwards it
  * goes on to less if there is room; both only while its acceleration has not begun to fall. */
 static struct pace_ramp change(const struct pace *p, double override)
 {
-    const struct pace_ramp *r = &p->ramp;
+    const struct pace_ramp *r = &p->at.ramp;
     const double most = feed_limit(leg_peek(p, 0), override);
     struct pace_ramp new = *r;
 
-    if (r->to <= most || !pace_ramp_open(r, p->spent)) {
+    if (r->to <= most || !pace_ramp_open(r, p->at.spent)) {
         return *r;
     }
     if (r->to > r->from) {
-        return pace_ramp_cut(r, p->spent);
+        return pace_ramp_cut(r, p->at.spent);
     }
     new.to = most;
     const struct pace_leg *g = leg_peek(p, 0);
     const double on = pace_leg_way(g, &p->limits, most, fmin(most, end_limit(p, 0)));
-    return pace_ramp_way(&new) + on <= p->before ? new : *r;
+    return pace_ramp_way(&new) + on <= p->at.before ? new : *r;
 }
 
 /* A ramp under way to where the chain has been closed: it goes up no further. */
 static struct pace_ramp no_further(const struct pace *p)
 {
-    const struct pace_ramp *r = &p->ramp;
-    return r->to > r->from && pace_ramp_open(r, p->spent) ? pace_ramp_cut(r, p->spent) : *r;
+    const struct pace_ramp *r = &p->at.ramp;
+    return r->to > r->from && pace_ramp_open(r, p->at.spent) ? pace_ramp_cut(r, p->at.spent) : *r;
 }
 
 /* Choose what comes next from a = 0: a ramp, or a way to go on as it is, which is returned. [mm] */
 static double choose(struct pace *p, double override)
 {
     const struct pace_leg *g = leg_peek(p, 0);
-    const double v = p->rate, most = feed_limit(g, override);
+    const double v = p->at.rate, most = feed_limit(g, override);
     const double leave = override > 0.0 ? fmin(end_limit(p, 0), g->cap) : 0.0;
 
     if (v > most * (1.0 + SAME)) {
         const double on = pace_leg_way(g, &p->limits, most, fmin(most, leave));
-        return begin(p, pace_leg_way(g, &p->limits, v, most) + on <= p->left * (1.0 + SAME) ? most
-                 : pace_leg_low(g, &p->limits, v, fmin(most, leave), p->left), override);
+        const double way = pace_leg_way(g, &p->limits, v, most) + on;
+        return begin(p, way <= p->at.left * (1.0 + SAME) ? most
+                 : pace_leg_low(g, &p->limits, v, fmin(most, leave), p->at.left), override);
     }
     const double peak = v < most * (1.0 - SAME)
-        ? pace_leg_peak(g, &p->limits, v, leave, most, p->left) : v;
+        ? pace_leg_peak(g, &p->limits, v, leave, most, p->at.left) : v;
     if (peak > v * (1.0 + SAME)) {
         return begin(p, peak, override);
     }
     if (leave >= v * (1.0 - SAME)) {
-        return p->left;
+        return p->at.left;
     }
-    const double slack = p->left - pace_leg_way(g, &p->limits, v, leave);
-    if (slack > SAME * p->left) {
+    const double slack = p->at.left - pace_leg_way(g, &p->limits, v, leave);
+    if (slack > SAME * p->at.left) {
         return slack;
     }
-    return begin(p, pace_leg_low(g, &p->limits, v, leave, p->left), override);
+    return begin(p, pace_leg_low(g, &p->limits, v, leave, p->at.left), override);
 }
 
 /* Go on with a ramp for up to dt; returns the time used. */
 static double drive(struct pace *p, double dt)
 {
-    const double rest = pace_ramp_time(&p->ramp) - p->spent;
+    const double rest = pace_ramp_time(&p->at.ramp) - p->at.spent;
 
     if (rest <= dt) {
-        p->left = fmax(0.0, p->before - pace_ramp_way(&p->ramp));
-        p->left = p->left > SMALL * (1.0 + p->before) ? p->left : 0.0;
-        p->rate = p->ramp.to;
-        p->gain = p->twitch = 0.0;
-        p->ramping = false;
+        p->at.left = fmax(0.0, p->at.before - pace_ramp_way(&p->at.ramp));
+        p->at.left = p->at.left > SMALL * (1.0 + p->at.before) ? p->at.left : 0.0;
+        p->at.rate = p->at.ramp.to;
+        p->at.gain = p->at.twitch = 0.0;
+        p->at.ramping = false;
         return fmax(0.0, rest);
     }
-    p->spent += dt;
-    const struct pace_motion m = pace_ramp_at(&p->ramp, p->spent);
-    p->left = fmax(0.0, p->before - m.way);
-    p->rate = m.rate;
-    p->gain = m.gain;
-    p->twitch = m.jerk;
+    p->at.spent += dt;
+    const struct pace_motion m = pace_ramp_at(&p->at.ramp, p->at.spent);
+    p->at.left = fmax(0.0, p->at.before - m.way);
+    p->at.rate = m.rate;
+    p->at.gain = m.gain;
+    p->at.twitch = m.jerk;
     return dt;
 }
 
 static void cross(struct pace *p)
 {
-    while (p->left <= 0.0 && p->count > 1 && !p->ramping) {
-        p->base += leg_peek(p, 0)->length;
-        p->head = (p->head + 1) % PACE_CELLS;
+    while (p->at.left <= 0.0 && p->count > 1 && !p->at.ramping) {
+        p->at.base += leg_peek(p, 0)->length;
+        p->at.head = (p->at.head + 1) % PACE_CELLS;
         p->count--;
-        p->planned -= p->planned > 0;
-        p->left = leg_peek(p, 0)->length;
+        p->at.planned -= p->at.planned > 0;
+        p->at.left = leg_peek(p, 0)->length;
     }
 }
 
@@ -213,27 +214,27 @@ double pace_smooth_advance(struct pace *p, double override, double dt)
 {
     cross(p);
     if (override > 0.0 && (override != p->override ||
-                           p->grown || PLAN_SHARE * (p->count - p->planned) > p->planned)) {
+                           p->grown || PLAN_SHARE * (p->count - p->at.planned) > p->at.planned)) {
         plan(p, override);
     }
-    if (p->ramping && override != p->asked) {
-        p->ramp = p->asked < 0.0 ? no_further(p) : change(p, override);
-        p->asked = override;
+    if (p->at.ramping && override != p->at.asked) {
+        p->at.ramp = p->at.asked < 0.0 ? no_further(p) : change(p, override);
+        p->at.asked = override;
     }
     while (dt > 0.0 && !pace_at_end(p)) {
-        if (p->ramping) {
+        if (p->at.ramping) {
             dt -= drive(p, dt);
-        } else if (p->rate <= 0.0 && override <= 0.0) {
+        } else if (p->at.rate <= 0.0 && override <= 0.0) {
             return 0.0;
         } else {
             const double way = choose(p, override);
-            if (!p->ramping && p->rate <= 0.0) {    /* no way but rounding, or no feed */
-                p->left = p->left > SMALL * (1.0 + p->before) ? p->left : 0.0;
-                dt = p->left > 0.0 ? 0.0 : dt;
-            } else if (!p->ramping) {
-                const bool all = way >= dt * p->rate;
-                p->left = all ? p->left - dt * p->rate : p->left - way;
-                dt = all ? 0.0 : dt - way / p->rate;
+            if (!p->at.ramping && p->at.rate <= 0.0) {    /* no way but rounding, or no feed */
+                p->at.left = p->at.left > SMALL * (1.0 + p->at.before) ? p->at.left : 0.0;
+                dt = p->at.left > 0.0 ? 0.0 : dt;
+            } else if (!p->at.ramping) {
+                const bool all = way >= dt * p->at.rate;
+                p->at.left = all ? p->at.left - dt * p->at.rate : p->at.left - way;
+                dt = all ? 0.0 : dt - way / p->at.rate;
             }
         }
         cross(p);
@@ -244,14 +245,14 @@ double pace_smooth_advance(struct pace *p, double override, double dt)
 /* Speed and way left in its leg at the end of a ramp, if one is under way. */
 static void settle(const struct pace *p, const struct pace_ramp *r, double *rate, double *left)
 {
-    *rate = p->ramping ? r->to : p->rate;
-    *left = p->ramping ? fmax(0.0, p->before - pace_ramp_way(r)) : p->left;
+    *rate = p->at.ramping ? r->to : p->at.rate;
+    *left = p->at.ramping ? fmax(0.0, p->at.before - pace_ramp_way(r)) : p->at.left;
 }
 
 double pace_smooth_stop_way(const struct pace *p)
 {
     const struct pace_ramp r = change(p, 0.0);
-    double v, left, base = p->base;
+    double v, left, base = p->at.base;
 
     settle(p, &r, &v, &left);
     for (int32_t i = 0; i < p->count; i++) {

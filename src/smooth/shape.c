@@ -21,15 +21,6 @@ static const double NONE = 1e-9;
 static const double WINDOW = 96.0;
 enum { WINDOW_VERTICES = 600, ROOM = 2 * SHAPE_SPANS + 8 };
 
-static double distance(const double a[AXES], const double b[AXES])
-{
-    double sum = 0.0;
-    for (int i = 0; i < AXES; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sqrt(sum);
-}
-
 void shape_start(struct shape *s, double merge)
 {
     memset(s, 0, offsetof(struct shape, run));
@@ -289,7 +280,7 @@ static void begin_again(struct shape *s)
     shape_corner_begin(s, 0, v[0].tolerance);
     s->tail_points = 0;
     memcpy(v[0].point, at.point, sizeof v[0].point);
-    v[0].s = v[1].s - distance(v[0].point, v[1].point);
+    v[0].s = v[1].s - shape_distance(v[0].point, v[1].point);
     v[1].tolerance -= sqrt(off);
     restart(s, 0);
 }
@@ -448,7 +439,7 @@ enum shape_status shape_take(struct shape *s, const struct command *c)
     const double merge = fmin(s->merge, c->tolerance);
 
     if (s->ended || !command_blends(c) || !(c->tolerance > 0.0)
-        || (s->started && distance(s->end, path.start) > 1e-6)) {
+        || (s->started && shape_distance(s->end, path.start) > 1e-6)) {
         return SHAPE_OTHER;
     }
     pump(s);

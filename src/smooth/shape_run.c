@@ -27,7 +27,7 @@ double shape_spacing(double tolerance)
     return SPACING * tolerance;
 }
 
-static double distance(const double a[AXES], const double b[AXES])
+double shape_distance(const double a[AXES], const double b[AXES])
 {
     double sum = 0.0;
     for (int i = 0; i < AXES; i++) {
@@ -51,7 +51,7 @@ static void place(struct shape_run *r, int32_t end)
         while (b < end && v[b].s < middle + reach) {
             b++;
         }
-        const double way = v[b].s - v[a].s, chord = distance(v[a].point, v[b].point);
+        const double way = v[b].s - v[a].s, chord = shape_distance(v[a].point, v[b].point);
         const double ratio = way > 0.0 ? fmax(0.5, chord / way) : 1.0;
         v[i].u = v[i - 1].u + (v[i].s - v[i - 1].s) * ratio;
     }

@@ -62,6 +62,9 @@ struct shape_run {
 /* A piece obeys a law, too. */
 void shape_obey(struct piece *p, double feed, double cap, const struct ramp_limits *r);
 
+/* In six coordinates. [mm] */
+double shape_distance(const double a[AXES], const double b[AXES]);
+
 /* Closest spacing of knots for a tolerance. [mm] */
 double shape_spacing(double tolerance);
 

@@ -56,24 +56,25 @@ static void look(int64_t *piece, int64_t n, struct sample *s)
     struct piece_state state;
     struct piece_bounds b;
 
-    while (*piece + 1 < n && pace.way >= starts[*piece + 1]) {
+    while (*piece + 1 < n && pace.at.way >= starts[*piece + 1]) {
         ++*piece;
     }
-    double u = pace.way - starts[*piece];
+    double u = pace.at.way - starts[*piece];
     u = u < 0.0 ? 0.0 : u > pieces[*piece].length ? pieces[*piece].length : u;
     piece_at(&pieces[*piece], u, &state);
-    s->way = pace.way;
-    s->rate = pace.rate;
-    s->gain = pace.gain;
-    s->twitch = pace.twitch;
+    s->way = pace.at.way;
+    s->rate = pace.at.rate;
+    s->gain = pace.at.gain;
+    s->twitch = pace.at.twitch;
     const double from = fmin(u, (1.0 - 1e-9) * pieces[*piece].length);
     piece_bounds(&pieces[*piece], from, from + 1e-9 * pieces[*piece].length, &b);
     for (int k = 0; k < AXES; k++) {
         s->point[k] = state.point[k];
-        s->velocity[k] = state.slope[k] * pace.rate;
-        s->jerk[k] = b.low[2][k] * pace.rate * pace.rate * pace.rate
-                     + 3.0 * state.bend[k] * pace.rate * pace.gain + state.slope[k] * pace.twitch;
-        s->acc[k] = state.bend[k] * pace.rate * pace.rate + state.slope[k] * pace.gain;
+        s->velocity[k] = state.slope[k] * pace.at.rate;
+        s->jerk[k] = b.low[2][k] * pace.at.rate * pace.at.rate * pace.at.rate
+                     + 3.0 * state.bend[k] * pace.at.rate * pace.at.gain
+                     + state.slope[k] * pace.at.twitch;
+        s->acc[k] = state.bend[k] * pace.at.rate * pace.at.rate + state.slope[k] * pace.at.gain;
     }
 }
 
@@ -87,7 +88,7 @@ double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, do
 
     pace_start(&pace, l);
     for (int64_t i = 0; i < most; i++) {
-        while (at + 1 < n && pace.way >= starts[at + 1]) {
+        while (at + 1 < n && pace.at.way >= starts[at + 1]) {
             at++;
         }
         while (joined < n && joined <= at + ahead && pace_join(&pace, &pieces[joined])) {
