@@ -113,14 +113,10 @@ enum fault oword_read(struct reading *s, struct oword *o)
 enum fault oword_alone(struct reading *s)
 {
     while (reading_peek(s) == '(') {
-        const int32_t from = s->at;
-        while (s->at < s->end && s->text[s->at] != ')') {
-            s->at++;
+        const enum fault f = reading_comment(s);
+        if (f != FAULT_NONE) {
+            return f;
         }
-        if (s->at == s->end) {
-            return reading_fault(s, FAULT_COMMENT, from);
-        }
-        s->at++;
     }
     if (reading_peek(s) == '\0' || reading_peek(s) == ';') {
         return FAULT_NONE;

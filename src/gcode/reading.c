@@ -29,6 +29,20 @@ enum fault reading_fault(struct reading *s, enum fault f, int32_t from)
     return fault_at(s->r, f, from, end - from);
 }
 
+enum fault reading_comment(struct reading *s)
+{
+    const int32_t from = s->at++;
+
+    while (s->at < s->end && s->text[s->at] != ')') {
+        s->at++;
+    }
+    if (s->at == s->end) {
+        return reading_fault(s, FAULT_COMMENT, from);
+    }
+    s->at++;
+    return FAULT_NONE;
+}
+
 /* Digits make an integer below 2^53, and powers of ten to 10^22 are exact, so the one division
  * gives the nearest double. */
 enum fault reading_number(struct reading *s, int32_t from, double *value, bool *whole)

@@ -60,6 +60,9 @@ bool reading_word(struct reading *s, const char *letters);
 /* The offending text: from a place of the line to where it is read; returns f. */
 enum fault reading_fault(struct reading *s, enum fault f, int32_t from);
 
+/* Past ( and what it closes with. */
+enum fault reading_comment(struct reading *s);
+
 /* A number in decimal; *whole: without a point. `from` is where its text begins, with the letter in
  * front of it. */
 enum fault reading_number(struct reading *s, int32_t from, double *value, bool *whole);

@@ -65,24 +65,19 @@ static bool acts(struct reading s)
 
 static enum fault comment(struct reading *s)
 {
-    const int32_t from = s->at++;
-    const bool active = acts(*s);
+    const int32_t from = s->at;
+    const enum fault f = reading_comment(s);
+    struct reading inside = *s;
 
-    while (s->at < s->end && s->text[s->at] != ')') {
-        s->at++;
-    }
-    if (s->at == s->end) {
-        return reading_fault(s, FAULT_COMMENT, from);
-    }
-    s->at++;
-    if (active) {
+    inside.at = from + 1;
+    if (f == FAULT_NONE && acts(inside)) {
         s->r->note = FAULT_NOTE_COMMENT;
         s->r->note_line = s->r->line;
         s->r->note_offset = s->r->offset;
         s->r->note_at = from;
         s->r->note_length = s->at - from;
     }
-    return FAULT_NONE;
+    return f;
 }
 
 /* Only line numbers stand in front. */
