@@ -15,7 +15,7 @@ from matplotlib.colors import LinearSegmentedColormap, to_hex
 
 from motionfmu.gcode import Program, Stroke, Summary
 from motionfmu.report.packed import packed
-from motionfmu.report.path_plot import CAMERA
+from motionfmu.report.path_plot import CAMERA, scene
 from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, GRID, HEAT, MUTED, RAPID, axis, layout
@@ -175,12 +175,7 @@ def figure(drawn: Sequence[Stroke], by_feed: bool) -> dict[str, Any]:
         traces.append(trace)
     titles = [f"{n} [mm]" for n in NAMES[:3]]
     if space:
-        scene = {f"{a}axis": axis(t) for a, t in zip("xyz", titles, strict=True)}
-        for one in scene.values():
-            for key in ("automargin", "ticks", "tickcolor"):
-                one.pop(key)
-            one["title"].pop("standoff")
-        more: dict[str, Any] = {"scene": scene | {"aspectmode": "data", "camera": FAR}}
+        more: dict[str, Any] = scene(titles, FAR)
     else:
         every = np.concatenate([s.points for s in drawn])
         low, high = every.min(axis=0), every.max(axis=0)

@@ -61,12 +61,7 @@ def path_figure(drawing: Drawing) -> Figure:
         traces[0]["showlegend"] = False
     titles = [f"{name} [mm]" for name in drawing.names]
     if space:
-        scene = {f"{a}axis": axis(t) for a, t in zip("xyz", titles, strict=True)}
-        for one in scene.values():
-            for key in ("automargin", "ticks", "tickcolor"):
-                one.pop(key)
-            one["title"].pop("standoff")
-        more: Figure = {"scene": scene | {"aspectmode": "data", "camera": CAMERA}}
+        more: Figure = scene(titles, CAMERA)
     else:
         more = {
             "xaxis": axis(titles[0], constrain="domain"),
@@ -74,6 +69,16 @@ def path_figure(drawing: Drawing) -> Figure:
         }
     more |= {"hovermode": "closest"}
     return {"data": traces, "layout": layout(640, **more)}
+
+
+def scene(titles: list[str], camera: Figure) -> Figure:
+    """Layout of a path in space, with the axes alike."""
+    axes = {f"{a}axis": axis(t) for a, t in zip("xyz", titles, strict=True)}
+    for one in axes.values():
+        for key in ("automargin", "ticks", "tickcolor"):
+            one.pop(key)
+        one["title"].pop("standoff")
+    return {"scene": axes | {"aspectmode": "data", "camera": camera}}
 
 
 def hairs(drawing: Drawing, factor: float) -> Array:
