@@ -139,19 +139,7 @@ static void pieces(bool smooth)
     smooth_ramps(smooth);
     MCC_set_fspd(&m, 50.0);
     CHECK_EQ(mcc_set_tolerance(&m, 0.01), 0);
-    int sent = 0;
-    double slowest = INFINITY;
-    for (;;) {
-        while (sent < 1000 && !ring_full(&m.ring)) {
-            sent++;
-            CHECK(MCC_line(&m, (double[AXES]){ 0.06 * sent, 0.08 * sent }) > 0);
-        }
-        if (!point(&r)) {
-            break;
-        }
-        const double t = r.n * DT;
-        slowest = t > 0.2 && t < 1.9 ? fmin(slowest, r.last.feed) : slowest;
-    }
+    const double slowest = drive_pieces(&r, 0.2, 1.9);
     CHECK_NEAR(slowest, 50.0, 1e-6);
     CHECK_NEAR(r.speed_max, 50.0, 1e-6);
     /* T: 2 s + one ramp. S: ramps of 0.1 (1 - share/2) s, share 0.5, and the mean's 0.05 s. */
@@ -235,25 +223,14 @@ static void anything(bool smooth)
 static void tolerance(void)
 {
     struct record r = { 0 };
-    struct path side[20];
-    double at[AXES] = { 0 }, slowest = INFINITY;
+    struct path side[SIDES];
+    double slowest = INFINITY;
     begin(mcc_machine());
     MCC_set_fspd(&m, 50.0);
     CHECK_EQ(mcc_set_tolerance(&m, 0.1), 0);
-    for (int i = 0; i < 20; i++) {
-        double end[AXES];
-        memcpy(end, at, sizeof end);
-        end[i % 2] += 5.0;
-        path_line(&side[i], at, end);
-        memcpy(at, end, sizeof at);
-        CHECK(MCC_line(&m, at) > 0);
-    }
+    send_zigzag(side);
     while (point(&r)) {
-        double d = INFINITY;
-        for (int i = 0; i < 20; i++) {
-            d = fmin(d, distance(&side[i], r.last.place));
-        }
-        CHECK(d <= 0.1 * (1.0 + 1e-9));
+        CHECK(off_zigzag(side, &r) <= 0.1 * (1.0 + 1e-9));
         slowest = r.n > 100 && r.n < 2000 ? fmin(slowest, m.mover.track.v) : slowest;
     }
     const double half = 0.1 / (0.1875 * sqrt(2.0));

@@ -30,6 +30,52 @@ static inline double distance(const struct path *p, const double at[AXES])
     return best;
 }
 
+enum { SIDES = 20 };
+
+/* Twenty lines of 5 mm, X and Y in turn. */
+static inline void send_zigzag(struct path side[SIDES])
+{
+    double at[AXES] = { 0 };
+
+    for (int i = 0; i < SIDES; i++) {
+        double end[AXES];
+        memcpy(end, at, sizeof end);
+        end[i % 2] += 5.0;
+        path_line(&side[i], at, end);
+        memcpy(at, end, sizeof at);
+        CHECK(MCC_line(&m, at) > 0);
+    }
+}
+
+/* Distance of the latest point from them. */
+static inline double off_zigzag(const struct path side[SIDES], const struct record *r)
+{
+    double d = INFINITY;
+
+    for (int i = 0; i < SIDES; i++) {
+        d = fmin(d, distance(&side[i], r->last.place));
+    }
+    return d;
+}
+
+/* A line of 100 mm in a thousand commands; the slowest feed between two times. [mm/s] */
+static inline double drive_pieces(struct record *r, double from, double to)
+{
+    double slowest = INFINITY;
+
+    for (int sent = 0;;) {
+        while (sent < 1000 && !ring_full(&m.ring)) {
+            sent++;
+            CHECK(MCC_line(&m, (double[AXES]){ 0.06 * sent, 0.08 * sent }) > 0);
+        }
+        if (!point(r)) {
+            return slowest;
+        }
+        const double t = r->n * DT;
+        slowest = t > from && t < to ? fmin(slowest, r->last.feed) : slowest;
+    }
+}
+
 static inline void smooth_ramps(bool on)
 {
     MCC_set_acc_type(&m, on ? 'S' : 'T');

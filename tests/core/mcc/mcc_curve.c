@@ -145,21 +145,9 @@ static void pieces(void)
 {
     const struct axis_limits l = { { 200.0, 200.0, 200.0 }, { 600.0, 800.0, 800.0 }, { 0.0 } };
     struct record r = { 0 };
-    int sent = 0;
-    double slowest = INFINITY;
 
     begin_curve(&l, 50.0, 0.01, 0.01);
-    for (;;) {
-        while (sent < 1000 && !ring_full(&m.ring)) {
-            sent++;
-            CHECK(MCC_line(&m, (double[AXES]){ 0.06 * sent, 0.08 * sent }) > 0);
-        }
-        if (!point(&r)) {
-            break;
-        }
-        const double t = r.n * DT;
-        slowest = t > 0.06 && t < 1.99 ? fmin(slowest, r.last.feed) : slowest;
-    }
+    const double slowest = drive_pieces(&r, 0.06, 1.99);
     CHECK_NEAR(slowest, 50.0, 1e-4);     /* u is not quite the length */
     CHECK_NEAR(r.speed_max, 50.0, 1e-4);
     CHECK_NEAR(r.n * DT, 2.0 + 0.05, 3.0 * DT);     /* 1000 mm/s^2 along the line */
@@ -173,24 +161,13 @@ static void zigzag(void)
 {
     const struct axis_limits l = { { 200.0, 200.0, 200.0 }, { 500.0, 500.0, 500.0 }, { 0.0 } };
     struct record r = { 0 };
-    struct path side[20];
-    double at[AXES] = { 0 }, slowest = INFINITY;
+    struct path side[SIDES];
+    double slowest = INFINITY;
 
     begin_curve(&l, 50.0, 0.1, 0.1);
-    for (int i = 0; i < 20; i++) {
-        double end[AXES];
-        memcpy(end, at, sizeof end);
-        end[i % 2] += 5.0;
-        path_line(&side[i], at, end);
-        memcpy(at, end, sizeof at);
-        CHECK(MCC_line(&m, at) > 0);
-    }
+    send_zigzag(side);
     while (point(&r)) {
-        double d = INFINITY;
-        for (int i = 0; i < 20; i++) {
-            d = fmin(d, distance(&side[i], r.last.place));
-        }
-        CHECK(d <= 0.1 * (1.0 + 1e-9));
+        CHECK(off_zigzag(side, &r) <= 0.1 * (1.0 + 1e-9));
         slowest = r.n > 100 && r.n < 1800 ? fmin(slowest, m.mover.curve.place.rate) : slowest;
     }
     const double half = 0.1 / (0.1875 * sqrt(2.0)), turn = sqrt(500.0 * half / 0.75);
