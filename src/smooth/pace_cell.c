@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "pace_leg.h"
+#include "pace_pull.h"
 
 /* A cell turns by so much at most [rad], and the bend of r' over it is at most that. Found by
  * measuring: half as much gains less than 1 % of time. */
@@ -63,63 +64,53 @@ static void add_plane(struct pace_cell *c, double g0, double g1)
     c->planes += from + 1 - to;
 }
 
-/* The limit of axis k: r''_k x + r'_k a, where r'' counts or not. */
-static void add_axis(struct pace_cell *c, int k, double acc, bool bends,
-                     const struct piece_bounds *b)
-{
-    const double h = c->length, share = larger(b->low[0][k], b->high[0][k]) / acc;
+/* A limit: at least -acc[0], at most acc[1]. */
+struct row {
+    struct pace_pull pull;
+    double acc[2];      /* [mm/s^2] */
+    double rest;        /* share of acc that is left where q x is left out, */
+    bool   bends;       /* or it counts */
+};
 
-    if (!bends) {
-        const double g = share / (1.0 - SLIGHT) / (2.0 * h);
-        add_plane(c, -g, g);
-        add_plane(c, g, -g);
-        return;
-    }
-    /* r' leaves its chord by h^2 / 8 of r''' at most, |a| <= (x0 + x1) / (2 h); r'' by h / 4 of
-     * the spread of r'''. */
-    const double sag = h / 16.0 * larger(b->low[2][k], b->high[2][k]) / acc;
-    const double stray = h / 4.0 * (b->high[2][k] - b->low[2][k]) / acc;
-    const double p[2] = { b->slope[0][k] / (2.0 * h * acc), b->slope[1][k] / (2.0 * h * acc) };
-    const double q[2] = { b->bend[0][k] / acc, b->bend[1][k] / acc };
-    for (double sign = -1.0; sign <= 1.0; sign += 2.0) {
-        const double p0 = sign * p[0], q0 = sign * q[0] + stray;
-        const double p1 = sign * p[1], q1 = sign * q[1] + stray;
+/* The planes of a row; |a| <= (x0 + x1) / (2 h). */
+static void add_row(struct pace_cell *c, const struct row *r)
+{
+    const double per = 0.5 / c->length;
+
+    for (int side = 0; side < 2; side++) {
+        const double k = (side == 0 ? -1.0 : 1.0) / r->acc[side];
+        if (!r->bends) {
+            const double g = k * per * r->pull.most[0] / r->rest;
+            add_plane(c, -g, g);
+            continue;
+        }
+        const double sag = per * r->pull.sag / r->acc[side], stray = r->pull.stray / r->acc[side];
+        const double p0 = k * per * r->pull.p[0], q0 = k * r->pull.q[0] + stray;
+        const double p1 = k * per * r->pull.p[1], q1 = k * r->pull.q[1] + stray;
         add_plane(c, q0 - p0 + sag, p0 + sag);
         add_plane(c, 0.5 * (q1 - p0 - p1) + sag, 0.5 * (q0 + p0 + p1) + sag);
         add_plane(c, sag - p1, q1 + p1 + sag);
     }
 }
 
-/* Limits of each axis. */
-static void limit_axes(struct pace_cell *c, const struct pace_limits *l,
-                       const struct piece_bounds *b)
+static void limit_rows(struct pace_cell *c, struct row row[AXES], int count)
 {
-    bool bends[AXES], any = false;
     double sum = 0.0;
+    bool any = false;
 
-    for (int32_t i = 0; i < b->axes; i++) {
-        const int k = b->axis[i];
-        if (l->speed[k] > 0.0) {
-            c->cap = fmin(c->cap, l->speed[k] / larger(b->low[0][k], b->high[0][k]));
-        }
+    for (int i = 0; i < count; i++) {
+        struct row *r = &row[i];
+        const double bend = r->pull.most[1] / fmin(r->acc[0], r->acc[1]);
+        const double takes = bend > 0.0 ? bend * c->cap * c->cap : 0.0;
+        r->bends = takes > SLIGHT;
+        r->rest = r->bends ? 1.0 : 1.0 - takes;
+        any = any || r->bends;
+        c->bend = r->bends ? most(c->bend, bend) : c->bend;
+        c->down = most(c->down, r->pull.most[0] / (r->rest * r->acc[0]));
+        c->up = most(c->up, r->pull.most[0] / (r->rest * r->acc[1]));
     }
-    for (int32_t i = 0; i < b->axes; i++) {
-        const int k = b->axis[i];
-        if (l->acc[k] > 0.0) {
-            const double bend = larger(b->low[1][k], b->high[1][k]) / l->acc[k];
-            const double share = larger(b->low[0][k], b->high[0][k]) / l->acc[k];
-            bends[i] = bend * c->cap * c->cap > SLIGHT;
-            any = any || bends[i];
-            c->bend = bends[i] ? most(c->bend, bend) : c->bend;
-            c->up = most(c->up, bends[i] || bend <= 0.0 ? share : share / (1.0 - SLIGHT));
-        }
-    }
-    c->down = c->up;
-    for (int32_t i = 0; any && i < b->axes; i++) {
-        const int k = b->axis[i];
-        if (l->acc[k] > 0.0) {
-            add_axis(c, k, l->acc[k], bends[i], b);
-        }
+    for (int i = 0; any && i < count; i++) {
+        add_row(c, &row[i]);
     }
     for (int32_t i = 0; i < c->planes; i++) {
         sum = most(sum, c->plane[i][0] + c->plane[i][1]);
@@ -131,16 +122,31 @@ static void limit_axes(struct pace_cell *c, const struct pace_limits *l,
 static void limit(struct pace_cell *c, const struct piece *p, const struct pace_limits *l,
                   const struct piece_bounds *b)
 {
+    struct row row[AXES];
+    int count = 0;
+
     c->planes = 0;
     c->bend = c->up = c->down = c->most = c->top = 0.0;
     c->feed = p->feed / b->most[0];
     c->cap = p->cap / b->most[0];
-    limit_axes(c, l, b);
-    if (!pace_by_axes(l)) {
-        c->up = b->most[0] / p->ramp.acc;
-        c->down = b->most[0] / p->ramp.dec;
-        c->cap = fmin(c->cap, sqrt(fmin(p->ramp.acc, p->ramp.dec) / b->most[1]));
+    for (int32_t i = 0; i < b->axes; i++) {
+        const int k = b->axis[i];
+        if (l->speed[k] > 0.0) {
+            c->cap = fmin(c->cap, l->speed[k] / larger(b->low[0][k], b->high[0][k]));
+        }
+        if (l->acc[k] > 0.0) {
+            row[count].acc[0] = row[count].acc[1] = l->acc[k];
+            pace_pull_axis(&row[count++].pull, k, c->length, b);
+        }
     }
+    if (!pace_by_axes(l)) {
+        const double across = pace_pull_path(&row[0].pull, p, c->length, b);
+        c->cap = fmin(c->cap, sqrt(fmin(p->ramp.acc, p->ramp.dec) / across));
+        row[0].acc[0] = p->ramp.dec;
+        row[0].acc[1] = p->ramp.acc;
+        count = 1;
+    }
+    limit_rows(c, row, count);
 }
 
 int32_t pace_parts(const struct piece *p, const struct piece_bounds *b)

@@ -15,8 +15,8 @@
 
 struct pace_limits {
     double speed[AXES];     /* [mm/s] of each axis; 0 none */
-    double acc[AXES];       /* [mm/s^2] of each axis, > 0; or all 0: r'' x and r' a are within the
-                             * ramp of the piece, each by itself */
+    double acc[AXES];       /* [mm/s^2] of each axis, > 0; or all 0: along the path and across it
+                             * within the ramp of the piece, each by itself */
     double jerk[AXES];      /* [mm/s^3] of each axis; 0 none */
 };
 

@@ -63,8 +63,8 @@ def test_limits_hold_at_every_point(count: int, ramps: str, tmp_path: Path) -> N
     way = np.hypot(*np.diff(p.place, axis=0).T[:2])
     assert way.max() <= FEED * DDA * (1.0 + 1e-9)
     change = np.hypot(*np.diff(p.place, 2, axis=0).T[:2]) / DDA**2
-    # What the bend takes and what the change of speed takes, each within the limit.
-    assert 0.9 * ACC[ramps] < change.max() <= 2.0 * ACC[ramps] * (1.0 + 1e-6)
+    # Across the path and along it, each within the limit.
+    assert 0.9 * ACC[ramps] < change.max() <= 2.0**0.5 * ACC[ramps] * (1.0 + 1e-6)
     last = np.array([float(word[1:]) for word in MOVES[count - 1].split() if word[0] in "XY"])
     assert p.place[-1][1] == last[-1]  # every move that ends here names Y
     assert p.speed[-1] <= ACC[ramps] * DDA

@@ -99,6 +99,26 @@ def test_circle() -> None:
     assert 0.995 < np.abs(by_axes.steps["acc"]).max() / 1000.0 <= 1 + ROUNDING
 
 
+@settings(max_examples=60, deadline=None)
+@given(SEEDS)
+def test_path_rule(seed: int) -> None:
+    """Without limits of axes: along the path and across it, each within the ramp."""
+    dice = np.random.default_rng(seed)
+    chain = random_chain(dice, 10, float(10 ** dice.uniform(-1, 1.5)), 10 ** dice.uniform(1, 2.8))
+    told = chain.told()
+    told["acc"], told["dec"] = 10 ** dice.uniform(2, 4, (2, 1))
+    overrides = np.append(np.repeat(dice.choice([0, 0.3, 1, 2], 20), 40), 1.0)
+    steps = ride(told, limits(), Orders(1e-3, overrides, int(dice.choice([1, 1000])))).steps
+    steps = steps[steps["rate"] > 1e-3]
+    way = steps["velocity"] / np.linalg.norm(steps["velocity"], axis=1)[:, None]
+    along = (steps["acc"] * way).sum(axis=1)
+    across = np.linalg.norm(steps["acc"] - along[:, None] * way, axis=1)
+    acc, dec = told["acc"][0], told["dec"][0]
+    for most, peak in ((acc, along.max()), (dec, -along.min()), (min(acc, dec), across.max())):
+        assert peak <= most * (1 + ROUNDING)
+    assert max(along.max() / acc, -along.min() / dec) > 0.98
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_bound(seed: int) -> None:
     """At most 2.5 % above the bound of toppra, never below it."""

@@ -1,0 +1,134 @@
+#include "pace_pull.h"
+
+#include <math.h>
+
+/* Of the most |r'| at least such a share is taken as the least: less is where a path turns back. */
+static const double LEAST = 1e-9;
+
+struct range {
+    double low, high;
+};
+
+static struct range of(const struct piece_bounds *b, int n, int axis)
+{
+    return (struct range){ b->low[n - 1][axis], b->high[n - 1][axis] };
+}
+
+static struct range times(struct range a, struct range b)
+{
+    const double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
+    return (struct range){ fmin(fmin(p, q), fmin(r, s)), fmax(fmax(p, q), fmax(r, s)) };
+}
+
+static struct range square(struct range a)
+{
+    const double p = a.low * a.low, q = a.high * a.high;
+    return (struct range){ a.low <= 0.0 && a.high >= 0.0 ? 0.0 : fmin(p, q), fmax(p, q) };
+}
+
+static void add(struct range *sum, struct range a)
+{
+    sum->low += a.low;
+    sum->high += a.high;
+}
+
+static double spread(struct range a)
+{
+    return a.high - a.low;
+}
+
+static double size(struct range a)
+{
+    return fmax(fabs(a.low), fabs(a.high));
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+void pace_pull_axis(struct pace_pull *l, int axis, double length, const struct piece_bounds *b)
+{
+    for (int e = 0; e < 2; e++) {
+        l->p[e] = b->slope[e][axis];
+        l->q[e] = b->bend[e][axis];
+    }
+    for (int n = 1; n <= 3; n++) {
+        l->most[n - 1] = size(of(b, n, axis));
+    }
+    l->sag = 0.125 * length * length * l->most[2];
+    l->stray = 0.25 * length * spread(of(b, 3, axis));
+}
+
+/* s = (r'' r'' + r' r''' - q^2) / p along a curve, from the axes `first` and two more. */
+static struct range twist(const struct piece_bounds *b, int first)
+{
+    struct range slope = { 0.0, 0.0 }, both = slope, turn = slope;
+
+    for (int i = first; i < first + 3; i++) {
+        add(&slope, square(of(b, 1, i)));
+        add(&both, times(of(b, 1, i), of(b, 2, i)));
+        add(&turn, square(of(b, 2, i)));
+        add(&turn, times(of(b, 1, i), of(b, 3, i)));
+    }
+    const struct range per = { 1.0 / b->most[0],
+                               1.0 / fmax(sqrt(slope.low), LEAST * b->most[0]) };
+    const struct range along = square(times(both, per));
+    add(&turn, (struct range){ -fmin(along.high, b->most[1] * b->most[1]), -along.low });
+    return times(turn, per);
+}
+
+/* Along the path; first: of its axes. */
+static void look_along(struct pace_pull *l, const struct piece *p, double length,
+                       const struct piece_bounds *b, int first)
+{
+    struct range s = { 0.0, 0.0 };
+
+    for (int e = 0; e < 2; e++) {
+        const double *r1 = b->slope[e] + first;
+        l->p[e] = fmax(sqrt(dot(r1, r1)), LEAST * b->most[0]);
+        l->q[e] = dot(r1, b->bend[e] + first) / l->p[e];
+    }
+    if (p->kind == PIECE_CURVE) {
+        s = twist(b, first);
+    } else if (p->kind == PIECE_ARC && p->path.plane != PATH_TILTED) {     /* of a spiral */
+        const double turns = p->path.growth * p->path.sweep / (p->path.length * p->path.length);
+        s.high = turns * turns / fmin(l->p[0], l->p[1]);
+        s.low = -s.high;
+    }
+    l->sag = fmin(0.125 * length * length * size(s), b->most[0]);
+    l->stray = fmin(0.25 * length * spread(s), 2.0 * b->most[1]);
+    l->most[0] = b->most[0];
+    l->most[1] = fmin(b->most[1], fmax(fabs(l->q[0]), fabs(l->q[1])) + l->stray);
+    l->most[2] = size(s);
+}
+
+/* Most across it: at most |r'' - k r'| with any k. With one that is right at both ends and straight
+ * in between, that vector leaves its chord as the spread of its derivative allows. */
+static double most_across(const struct pace_pull *along, double length,
+                          const struct piece_bounds *b, int first)
+{
+    const double k[2] = { along->q[0] / along->p[0], along->q[1] / along->p[1] };
+    const double grows = fabs(k[1] - k[0]), most = fmax(fabs(k[0]), fabs(k[1]));
+    double end[2][3], strays[3];
+
+    for (int i = 0; i < 3; i++) {
+        const struct range r2 = of(b, 2, first + i);
+        for (int e = 0; e < 2; e++) {
+            end[e][i] = b->bend[e][first + i] - k[e] * b->slope[e][first + i];
+        }
+        strays[i] = 0.25 * (length * (spread(of(b, 3, first + i)) + most * spread(r2)) +
+                            grows * (length * size(r2) + spread(of(b, 1, first + i))));
+    }
+    return fmin(b->most[1], sqrt(fmax(dot(end[0], end[0]), dot(end[1], end[1]))) +
+                            sqrt(dot(strays, strays)));
+}
+
+double pace_pull_path(struct pace_pull *along, const struct piece *p, double length,
+                      const struct piece_bounds *b)
+{
+    const int first = b->axes > 0 && b->axis[0] >= 3 ? 3 : 0;
+
+    look_along(along, p, length, b, first);
+    return most_across(along, length, b, first);
+}

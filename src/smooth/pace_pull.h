@@ -1,0 +1,30 @@
+/* pace_pull - what a limit of acceleration is for: an axis, or the way along the path.
+ *
+ * With v = du/dt, x = v^2 and a = d2u/dt2 its acceleration is q x + p a, its jerk
+ * s v^3 + 3 q v a + p d3u/dt3; across the path the acceleration is n x:
+ *
+ *               p       q               s
+ *     axis k    r'_k    r''_k           r'''_k                        n = |r' x r''| / |r'|
+ *     way       |r'|    r' r'' / |r'|   derivative of that one
+ *
+ * Along and across the path: of X Y Z; without these of U V W.
+ */
+#ifndef PACE_PULL_H
+#define PACE_PULL_H
+
+#include "piece.h"
+
+struct pace_pull {
+    double p[2], q[2];      /* at both ends; q [1/mm] */
+    double sag, stray;      /* p and q leave their chords by at most that */
+    double most[3];         /* of |p|, |q| [1/mm], |s| [1/mm^2] */
+};
+
+/* An axis that moves, over a part of a piece that is so long [mm] and has these bounds. */
+void pace_pull_axis(struct pace_pull *l, int axis, double length, const struct piece_bounds *b);
+
+/* The way. Returns the most n. [1/mm] */
+double pace_pull_path(struct pace_pull *along, const struct piece *p, double length,
+                      const struct piece_bounds *b);
+
+#endif
