@@ -14,12 +14,19 @@ static const double LONG = 150.0;
 /* A corner is seen once so much of the way behind it is known, in tolerances. */
 static const double AHEAD = 30.0;
 
+/* sin^2 of half the angle of a turn that is a corner before any spline has been tried: 53 degrees.
+ * Measured: with 25 degrees an outline with radii of 0.4 mm takes 9 % longer. */
+static const double SHARP = 0.2;
+
 /* Shorter ways are none: rounding. [mm] */
 static const double NONE = 1e-9;
 
 /* Closest spacings of knots, or vertices, from which on a window is fitted. */
 static const double WINDOW = 96.0;
 enum { WINDOW_VERTICES = 600, ROOM = 2 * SHAPE_SPANS + 8 };
+
+/* A window with so many spans has no room for more, and one of so few vertices gains none. */
+enum { FULL = SHAPE_SPANS - 2, FEWEST = 60 };
 
 void shape_start(struct shape *s, double merge)
 {
@@ -138,7 +145,7 @@ static int32_t next_corner(struct shape *s)
             return 0;
         }
         double most = shape_turn(r, v);
-        if (most > 0.0) {
+        if (most > SHARP) {
             int32_t best = v;
             for (int32_t k = v + 1; k < last && r->vertex[k].s < r->vertex[v].s + reach; k++) {
                 if (r->vertex[k].corner) {
@@ -285,11 +292,14 @@ static void begin_again(struct shape *s)
     restart(s, 0);
 }
 
-/* The fit of 0 .. end fails: where its distances are largest, there are corners. */
+/* The fit of 0 .. end fails: near where it is farthest out there is a corner, where the run turns
+ * most. */
 static void break_up(struct shape *s, int32_t end, int32_t worst)
 {
     struct shape_vertex *v = s->run.vertex;
-    bool any = false;
+    int32_t corner = worst < end ? worst : end - 1;
+    const double reach = 0.5 * AHEAD * v[corner].tolerance, here = v[corner].s;
+    double most = 0.0;
 
     if (end == 1) {
         if (s->run.begun || s->run.bound) {
@@ -299,14 +309,13 @@ static void break_up(struct shape *s, int32_t end, int32_t worst)
         }
         return;
     }
-    for (int32_t k = 1; k < end && s->run.spans > 0; k++) {
-        if (v[k].off > 1.0 && v[k].off >= v[k - 1].off && v[k].off >= v[k + 1].off) {
-            v[k].corner = any = true;
-        }
+    for (int32_t k = 1; k < end; k++) {
+        const double turn = fabs(v[k].s - here) < reach ? shape_turn(&s->run, k) : 0.0;
+        corner = turn > most ? k : corner;
+        most = fmax(most, turn);
     }
-    if (!any) {
-        v[worst < end ? worst : end - 1].corner = true;
-    }
+    v[corner].corner = true;
+    shape_run_afresh(&s->run);
     s->looked = 0;
 }
 
@@ -314,8 +323,13 @@ static void break_up(struct shape *s, int32_t end, int32_t worst)
 static void pass_window(struct shape *s, int32_t end)
 {
     struct shape_run *r = &s->run;
-    const int32_t bad = shape_run_fit(r, end, false, NULL);
+    int32_t bad = shape_run_fit(r, end, false, NULL);
 
+    while (bad >= 0 && r->spans >= FULL && end > FEWEST) {      /* a shorter one has room */
+        shape_run_afresh(r);
+        end /= 2;
+        bad = shape_run_fit(r, end, false, NULL);
+    }
     if (bad >= 0) {
         break_up(s, end, bad);
         return;

@@ -19,7 +19,7 @@ static const double LEAST = 1e-3;
 
 /* Weights grow where a distance is above this part of the tolerance, so often; each SPLIT rounds
  * spans of more than so many spacings are halved there. */
-static const double GROWS = 0.9, LONGER = 1.5;
+static const double GROWS = 0.9, LONGER = 0.75;
 enum { ROUNDS = 24, SPLIT = 2 };
 
 double shape_spacing(double tolerance)
@@ -190,6 +190,20 @@ static bool split(struct shape_fit *f)
         r->knot[n + 3 + k] = to;
     }
     return more > 0;
+}
+
+void shape_run_afresh(struct shape_run *r)
+{
+    const double held = r->begun ? r->knot[5] : r->vertex[0].u;
+    int32_t kept = 1;
+
+    while (kept < r->placed && r->vertex[kept].u <= held) {
+        kept++;
+    }
+    r->placed = kept < r->placed ? kept : r->placed;
+    for (int32_t k = 1; k < r->vertices; k++) {
+        r->vertex[k].weight = 0.0;
+    }
 }
 
 int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct piece_state *stop)

@@ -73,6 +73,9 @@ double shape_spacing(double tolerance);
  * tolerance, -2 if the run is too long for one window, else the vertex that is farthest out. */
 int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct piece_state *stop);
 
+/* After a fit that failed: places and weights as before it, but where knots hold. */
+void shape_run_afresh(struct shape_run *r);
+
 /* The span k of the fit as a piece, with the least of its chords' laws. *vertex: one before it or
  * the first in it; goes on to the latter. */
 void shape_run_piece(const struct shape_run *r, int32_t k, int32_t *vertex, struct piece *p);
