@@ -45,9 +45,8 @@ LIBRARY.pace_batch_path.argtypes = [
     np.ctypeslib.ndpointer(STATE, flags="C_CONTIGUOUS"),
 ]
 LIBRARY.pace_batch_path.restype = None
-LIBRARY.pace_batch_close.argtypes = [ctypes.c_double]
 LIBRARY.pace_batch_go.argtypes = [ctypes.c_int64, ctypes.c_double, ctypes.c_double, _SAMPLE]
-for each in ("pieces", "ride", "stop_way", "close", "go"):
+for each in ("pieces", "ride", "stop_way", "go"):
     getattr(LIBRARY, f"pace_batch_{each}").restype = ctypes.c_double
 
 

@@ -177,18 +177,23 @@ static double next_block(const struct curve *c, const struct curve_plan *m, doub
 static const double MARGIN = 0.02;
 
 /* The chain anew from where the motion is, at its speed, to the first block before which it can
- * come to rest. A change of speed that is smooth ends first. */
+ * come to rest; if that is not known yet, as the shape has no room for what is to come, later. A
+ * change of speed that is smooth ends first. */
 static void halt(struct curve *c, struct curve_plan *m)
 {
     const double way = way_of(c), rate = c->place.rate;
-    double stop = pace_stop_way(&m->pace) - c->place.way;
+    double stop, goal = 0.0;
 
     if (!c->halts || c->place.ramping) {
         return;
     }
     find(c, m, way);
-    for (double goal = 0.0; goal < INFINITY; ) {
+    stop = pace_stop_way(&m->pace) - c->place.way;
+    while (goal < INFINITY) {
         goal = next_block(c, m, way + stop * (1.0 + MARGIN));
+        if (goal == c->goal && m->shape.marks_set < m->shape.marks) {
+            return;
+        }
         c->goal = goal;
         m->joined = c->at;
         m->joined_way = c->base;
@@ -202,7 +207,7 @@ static void halt(struct curve *c, struct curve_plan *m)
         }
         stop = fmax(stop, goal - way) * (1.0 + MARGIN);
     }
-    c->halts = false;
+    c->halts = goal == INFINITY && m->shape.marks_set < m->shape.marks;
 }
 
 double curve_advance(struct curve *c, struct curve_plan *m, struct ring *r, double override,

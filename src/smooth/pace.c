@@ -311,45 +311,6 @@ double pace_stop_way(const struct pace *p)
     return p->end;
 }
 
-/* Whether the motion can come to rest at the end of cell i. */
-static bool can_rest(const struct pace *p, int32_t i)
-{
-    const double x = p->at.rate * p->at.rate;
-    double x1 = 0.0, end;
-
-    if (p->smooth) {
-        return pace_smooth_can_rest(p, i);
-    }
-    for (; i > 0; i--) {
-        const struct pace_cell *c = cell_peek(p, i);
-        const double most = feed_limit(c, INFINITY);
-        x1 = most <= c->flat ? pace_top(c, x1, most) : pace_back(c, x1, most, &end);
-        x1 = fmin(fmin(x1, most), feed_limit(cell_peek(p, i - 1), INFINITY));
-    }
-    const double acc = pace_span(cell_peek(p, 0), p->at.left, x).low;
-    return x + 2.0 * acc * p->at.left <= x1 + SAME * x;
-}
-
-double pace_close(struct pace *p, double way)
-{
-    double end = p->at.base;
-
-    p->closed = true;
-    for (int32_t i = 0; i < p->count; i++) {
-        const bool last = p->smooth ? p->leg[(uint32_t)(p->at.head + i) % PACE_CELLS].last
-                                    : cell_peek(p, i)->last;
-        end += length_at(p, i);
-        if (last && i + 1 < p->count && end >= way && can_rest(p, i)) {
-            p->count = i + 1;
-            p->end = end;
-            p->override = p->at.asked = -1.0;      /* plan anew */
-            break;
-        }
-    }
-    p->at.planned = p->at.planned < p->count ? p->at.planned : p->count;
-    return p->end;
-}
-
 void pace_put(struct pace *p, const struct pace_place *place)
 {
     const int32_t crossed = (p->at.head - place->head + PACE_CELLS) % PACE_CELLS;

@@ -61,10 +61,6 @@ void pace_start(struct pace *p, const struct pace_limits *l);
 /* Append a piece; false: no room until the motion has passed others, or it is closed. */
 bool pace_join(struct pace *p, const struct piece *piece);
 
-/* End the chain with the first piece, at or behind a way, in which the motion can come to rest.
- * Returns where that is. [mm] */
-double pace_close(struct pace *p, double way);
-
 /* Let up to dt seconds pass under an override (>= 0; 0: to rest, as quickly as the limits allow).
  * Returns the time left: above 0 only at rest at the end of the chain. */
 double pace_advance(struct pace *p, double override, double dt);

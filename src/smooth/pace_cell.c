@@ -175,7 +175,6 @@ int32_t pace_cut(const struct piece *p, const struct pace_limits *l,
         }
         cell[i].length = to - from;
         limit(&cell[i], p, l, &b);
-        cell[i].last = i + 1 == n;
         from = to;
     }
     return n;

@@ -33,7 +33,6 @@ struct pace_cell {
     double up, down;        /* [s^2/mm]   within the limits, too, anywhere in the cell */
     double plane[PACE_PLANES][2];   /* [s^2/mm^2] g0, g1; for x0, x1 >= 0 */
     int32_t planes;
-    bool last;              /* of its piece */
     double most;            /* [mm^2/s^2] x at its start from which the rest can be driven */
     double top;             /* a feed <= flat: the same on the line of steepest braking, however
                              * fast; else x at the end, if it is `most` at the start */

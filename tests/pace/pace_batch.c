@@ -111,11 +111,6 @@ double pace_batch_stop_way(void)
     return pace_stop_way(&pace);
 }
 
-double pace_batch_close(double way)
-{
-    return pace_close(&pace, way);
-}
-
 /* Go on with the ride as it is; returns the time left at its end, and the sample. [s] */
 double pace_batch_go(int64_t n, double override, double dt, struct sample *s)
 {
