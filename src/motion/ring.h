@@ -23,8 +23,8 @@ struct ring_entry {
 };
 
 struct ring {
-    struct ring_entry entry[RING_SIZE];
     int32_t head, count;
+    struct ring_entry entry[RING_SIZE];
 };
 
 void ring_clear(struct ring *r);

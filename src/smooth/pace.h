@@ -15,7 +15,7 @@
 
 #include "pace_leg.h"
 
-enum { PACE_CELLS = 2048, PACE_KEPT = 512 };
+enum { PACE_CELLS = 1024, PACE_KEPT = 256 };
 
 /* Where the motion is. */
 struct pace_place {
@@ -36,16 +36,16 @@ struct pace_place {
 struct pace {
     struct pace_limits limits;
     bool    smooth;         /* jerk is limited: legs, else cells */
-    union {
-        struct pace_cell cell[PACE_CELLS];
-        struct pace_leg leg[PACE_CELLS];
-    };
     struct pace_place at;
     int32_t count;          /* cells from that of the motion on */
     bool    closed;         /* no further piece joins */
     double  override;       /* of the latest plan */
     double  end;            /* [mm] end of the pieces, from the start of the chain */
     bool    grown;          /* the last leg has, since the latest plan */
+    union {
+        struct pace_cell cell[PACE_CELLS];
+        struct pace_leg leg[PACE_CELLS];
+    };
 };
 
 /* Back to an earlier place, from which fewer than PACE_KEPT cells have been crossed. */

@@ -21,7 +21,7 @@ struct pace_limits {
 };
 
 enum {
-    PACE_PLANES = 18,       /* of three axes; more are joined to fewer, a little inside */
+    PACE_PLANES = 11,       /* more are joined to fewer, a little inside */
     PACE_SPLIT = 32         /* cells of a piece, at most */
 };
 

@@ -21,7 +21,8 @@
 #include "shape_run.h"
 
 enum {
-    SHAPE_PIECES = 1280, SHAPE_MARKS = 2048,
+    SHAPE_PIECES = 640,
+    SHAPE_MARKS = 1536,         /* those of a window of SHAPE_VERTICES and of what lies ahead */
     SHAPE_HELD = 8,             /* newest pieces, which a corner may cut: not finished */
     SHAPE_TAIL = 24             /* vertices of a run that are kept for the corner at its end */
 };

@@ -140,7 +140,7 @@ static void off(void)
  * room for what is before. Single block waits for that. */
 static void unknown_block(void)
 {
-    static const int first = 640;
+    static const int first = SHAPE_PIECES / 2;
     int told = 0;
 
     begin();
