@@ -32,14 +32,14 @@ class Piece:
         if self.kind == "line":
             return d[:6] + u[:, None] * d[6:], np.tile(d[6:], (n, 1)), np.zeros((n, 6))
         if self.kind == "curve":
-            control, found = d.reshape(6, 6), []
+            control, found = d[6:].reshape(6, 6), []
             for k in range(3):
                 degree = 5 - k
                 t = (u / self.length)[:, None]
                 ways = [math.comb(degree, j) * t**j * (1 - t) ** (degree - j) for j in range(6 - k)]
                 found.append(np.hstack(ways) @ control)
                 control = degree * np.diff(control, axis=0) / self.length
-            return found[0], found[1], found[2]
+            return d[:6] + found[0], found[1], found[2]
         if self.kind == "cubic":
             return self._cubic(d[0] + u)
         start, end, (radius, growth, angle, sweep, length, plane) = d[1:7], d[7:13], d[15:21]

@@ -21,28 +21,29 @@ static void cubic_at(const struct piece *p, double u, struct piece_state *s)
     bezier_frame(&c->bezier, c->start, c->end, c->length, way, s->point, s->slope, s->bend);
 }
 
-/* De Casteljau, from the first control point: the last three, two and one give r'', r' and r. */
+/* De Casteljau, from 0: the last three, two and one give r'', r' and r. */
 static void curve_at(const struct piece *p, double u, struct piece_state *s)
 {
     const double t = u / p->length, per = DEGREE / p->length, both = per * (DEGREE - 1) / p->length;
+    const bool end = !(t < 1.0);
 
     for (int i = 0; i < AXES; i++) {
-        const double first = p->control[0][i];
-        double c[PIECE_POINTS] = { 0.0 };
-        bool moves = false;
-        for (int k = 1; k <= DEGREE; k++) {
-            c[k] = p->control[k][i] - first;
-            moves = moves || c[k] != 0.0;
+        const double c1 = p->control[1][i], c2 = p->control[2][i], c3 = p->control[3][i];
+        const double c4 = p->control[4][i], c5 = p->control[5][i];
+        if (c1 == 0.0 && c2 == 0.0 && c3 == 0.0 && c4 == 0.0 && c5 == 0.0) {
+            s->point[i] = p->origin[i];
+            s->slope[i] = s->bend[i] = 0.0;
+            continue;
         }
-        for (int n = DEGREE; n > 2 && moves; n--) {
-            for (int k = 0; k < n; k++) {
-                c[k] += t * (c[k + 1] - c[k]);
-            }
-        }
-        const double a = c[1] - c[0], b = c[2] - c[1], slope = a + t * (b - a);
+        const double d0 = t * c1, d1 = c1 + t * (c2 - c1), d2 = c2 + t * (c3 - c2);
+        const double d3 = c3 + t * (c4 - c3), d4 = c4 + t * (c5 - c4);
+        const double e0 = d0 + t * (d1 - d0), e1 = d1 + t * (d2 - d1);
+        const double e2 = d2 + t * (d3 - d2), e3 = d3 + t * (d4 - d3);
+        const double f0 = e0 + t * (e1 - e0), f1 = e1 + t * (e2 - e1), f2 = e2 + t * (e3 - e2);
+        const double a = f1 - f0, b = f2 - f1, slope = a + t * (b - a);
         s->bend[i] = both * (b - a);
         s->slope[i] = per * slope;
-        s->point[i] = t < 1.0 ? first + (c[0] + t * a + t * slope) : p->control[DEGREE][i];
+        s->point[i] = p->origin[i] + (end ? c5 : f0 + t * a + t * slope);
     }
 }
 
@@ -108,7 +109,7 @@ static void line_bounds(const struct piece *p, struct piece_bounds *b)
 }
 
 /* Of the n-th derivative. */
-static void hull_bounds(const struct piece_hull *h, int n, struct piece_bounds *b)
+static inline void hull_bounds(const struct piece_hull *h, int n, struct piece_bounds *b)
 {
     const int last = DEGREE - n, first = h->axis[0] < 3 ? 0 : 3;
     double square[PIECE_POINTS] = { 0.0 }, most = 0.0;
@@ -123,8 +124,10 @@ static void hull_bounds(const struct piece_hull *h, int n, struct piece_bounds *
         }
         b->low[n - 1][axis] = low;
         b->high[n - 1][axis] = high;
-        for (int k = 0; k <= last && axis < first + 3; k++) {
-            square[k] += c[k] * c[k];
+        if (axis < first + 3) {
+            for (int k = 0; k <= last; k++) {
+                square[k] += c[k] * c[k];
+            }
         }
     }
     for (int k = 0; k <= last; k++) {
@@ -136,9 +139,9 @@ static void hull_bounds(const struct piece_hull *h, int n, struct piece_bounds *
 static void curve_bounds(const struct piece_hull *h, struct piece_bounds *b)
 {
     b->axes = h->axes;
-    for (int n = 1; n <= PIECE_DERIVATIVES; n++) {
-        hull_bounds(h, n, b);
-    }
+    hull_bounds(h, 1, b);
+    hull_bounds(h, 2, b);
+    hull_bounds(h, 3, b);
     for (int i = 0; i < h->axes; i++) {
         const int axis = b->axis[i] = h->axis[i];
         b->slope[0][axis] = h->control[i][0][0];
@@ -148,39 +151,36 @@ static void curve_bounds(const struct piece_hull *h, struct piece_bounds *b)
     }
 }
 
-/* Differences of the control points of one axis; false: all are 0. */
-static bool differences(const struct piece *p, int axis, double d[DEGREE])
-{
-    double sum = 0.0;
-
-    for (int k = 0; k < DEGREE; k++) {
-        d[k] = p->control[k + 1][axis] - p->control[k][axis];
-        sum += fabs(d[k]);
-    }
-    return sum > 0.0;
-}
-
 void piece_rest_start(struct piece_rest *r, const struct piece *p)
 {
+    const double one = DEGREE / p->length, two = one * (DEGREE - 1) / p->length;
+    const double three = two * (DEGREE - 2) / p->length;
     struct piece_hull *h = &r->hull;
 
     r->piece = p;
     r->from = 0.0;
     h->axes = h->axis[0] = 0;
     for (int i = 0; p->kind == PIECE_CURVE && i < AXES; i++) {
-        double d[DEGREE], scale = 1.0;
-        if (!differences(p, i, d)) {
+        const double c1 = p->control[1][i], c2 = p->control[2][i], c3 = p->control[3][i];
+        const double c4 = p->control[4][i], c5 = p->control[5][i];
+        if (c1 == 0.0 && c2 == 0.0 && c3 == 0.0 && c4 == 0.0 && c5 == 0.0) {
             continue;
         }
-        for (int n = 0; n < PIECE_DERIVATIVES; n++) {
-            scale *= (DEGREE - n) / p->length;
-            for (int k = 0; k < DEGREE - n; k++) {
-                h->control[h->axes][n][k] = scale * d[k];
-            }
-            for (int k = 0; k < DEGREE - 1 - n; k++) {
-                d[k] = d[k + 1] - d[k];
-            }
-        }
+        double (*d)[PIECE_POINTS - 1] = h->control[h->axes];
+        const double d1 = c2 - c1, d2 = c3 - c2, d3 = c4 - c3, d4 = c5 - c4;
+        const double e0 = d1 - c1, e1 = d2 - d1, e2 = d3 - d2, e3 = d4 - d3;
+        d[0][0] = one * c1;
+        d[0][1] = one * d1;
+        d[0][2] = one * d2;
+        d[0][3] = one * d3;
+        d[0][4] = one * d4;
+        d[1][0] = two * e0;
+        d[1][1] = two * e1;
+        d[1][2] = two * e2;
+        d[1][3] = two * e3;
+        d[2][0] = three * (e1 - e0);
+        d[2][1] = three * (e2 - e1);
+        d[2][2] = three * (e3 - e2);
         h->axis[h->axes++] = i;
     }
 }

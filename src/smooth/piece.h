@@ -2,8 +2,9 @@
  *
  * Lines, arcs and cubics keep their exact geometry and u is their length. A curve is a polynomial
  * of degree 5 in Bernstein's form, so that hulls of its control points and of those of its
- * derivatives bound it exactly. Pieces that follow each other have the same r, r' and r'' where
- * they meet, or the motion rests there.
+ * derivatives bound it exactly. They count from its start: r' and r'' of a curve of micrometres are
+ * differences of small numbers, also far from the origin of the coordinates. Pieces that follow each
+ * other have the same r, r' and r'' where they meet, or the motion rests there.
  */
 #ifndef PIECE_H
 #define PIECE_H
@@ -23,7 +24,10 @@ struct piece {
     bool rest;          /* the motion comes to rest at its end: the next one goes on elsewhere */
     union {
         struct { double start[AXES], slope[AXES]; };    /* line: |slope| is 1 */
-        double control[PIECE_POINTS][AXES];             /* curve [mm] */
+        struct {                                        /* curve: */
+            double origin[AXES];                        /* [mm] its start, */
+            double control[PIECE_POINTS][AXES];         /* [mm] from there; the first is 0 */
+        };
         struct { struct path path; double from; };      /* arc, cubic: of this one, from there
                                                          * on [mm] */
     };

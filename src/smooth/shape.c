@@ -22,7 +22,7 @@ static const double SHARP = 0.2;
 static const double NONE = 1e-9;
 
 /* Closest spacings of knots, or vertices, from which on a window is fitted. */
-static const double WINDOW = 96.0;
+static const double WINDOW = 128.0;
 enum { WINDOW_VERTICES = 600, ROOM = 2 * SHAPE_SPANS + 8 };
 
 /* A window with so many spans has no room for more, and one of so few vertices gains none. */
@@ -319,7 +319,7 @@ static void break_up(struct shape *s, int32_t end, int32_t worst)
     s->looked = 0;
 }
 
-/* A window of the run, of which the first two thirds are made. */
+/* A window of the run, of which the first part is made. */
 static void pass_window(struct shape *s, int32_t end)
 {
     struct shape_run *r = &s->run;
@@ -334,7 +334,7 @@ static void pass_window(struct shape *s, int32_t end)
         break_up(s, end, bad);
         return;
     }
-    const int32_t n = r->spans - r->spans / 3;
+    const int32_t n = r->proved;
     commit(s, n);
     for (int32_t k = 1; k < r->vertices && r->vertex[k].u <= r->knot[n + 3]; k++) {
         settle(s, r->vertex[k].marks, r->vertex[k].u);

@@ -23,7 +23,8 @@ static bool run_good(const struct shape *s)
     int64_t waiting = s->marks_loose;
 
     if (!within(r->vertices, 1, SHAPE_VERTICES) || !within(r->placed, 1, r->vertices)
-        || !within(r->spans, 0, SHAPE_SPANS) || !within(s->looked, 0, r->vertices - 1)
+        || !within(r->spans, 0, SHAPE_SPANS) || !within(r->kept, 0, SHAPE_SPANS + 3)
+        || !within(s->looked, 0, r->vertices - 1)
         || !within(s->grabbed, 0, s->exact ? r->vertices - 1 : 0)
         || !within(s->closing, SHAPE_OPEN, SHAPE_BY_END)) {
         return false;

@@ -1,11 +1,19 @@
-/* shape_fit - the equations of a run's spline, and how far it is from its chords. */
+/* shape_fit - the equations of a run's spline, and how far it is from its chords.
+ *
+ * A round: control points for the weights and places of the vertices (solve), how far each vertex
+ * is from its place on the curve (look), more weight where that is too much (push). Only once all
+ * are near is it proved that the chords are (shape_run.h).
+ */
 #ifndef SHAPE_FIT_H
 #define SHAPE_FIT_H
 
 #include "shape_run.h"
 
 /* Equations couple a control point with the three behind it; fewest spans. */
-enum { SHAPE_BAND = 4, SHAPE_SPANS_LEAST = 3 };
+enum { SHAPE_BAND = 4, SHAPE_SPANS_LEAST = 3, SHAPE_CONTROLS = SHAPE_SPANS + 3 };
+
+/* Part of the tolerance that is used: rounding may take the rest. */
+#define SHAPE_USED 0.995
 
 /* One fit under way: control points of a span's Bernstein values, and the equations. */
 struct shape_fit {
@@ -14,24 +22,56 @@ struct shape_fit {
     bool last;
     int32_t left, known_right;                  /* control points that hold at either end */
     const struct piece_state *stop;
-    int axis[AXES], axes;                       /* those that move */
+    int axis[AXES], axes;                       /* those that move, an even number */
     double extract[SHAPE_SPANS][4][4];          /* [Bernstein value][control point] */
-    double bend[SHAPE_SPANS + 3][SHAPE_BAND];         /* equations of integral |r'''|^2 */
-    double band[SHAPE_SPANS + 3][SHAPE_BAND], right[SHAPE_SPANS + 3][AXES];
-    double worst;                               /* largest distance, of the tolerance */
+    int32_t first[SHAPE_SPANS + 1];             /* vertices first[k] .. first[k + 1] - 1 are in
+                                                 * span k */
+    double row[SHAPE_VERTICES][4];              /* place of a vertex by its span's control points */
+    double per[SHAPE_VERTICES];                 /* [1/mm^2] 1 / square of what it may be off */
+    double bend[SHAPE_CONTROLS][SHAPE_BAND];    /* equations of integral |r'''|^2 */
+    double band[SHAPE_CONTROLS][SHAPE_BAND], right[SHAPE_CONTROLS][AXES];
+    double worst;                               /* largest distance, of the tolerance: square */
     int32_t worst_vertex;
 };
 
 /* Bernstein values of a span, between knots t[3] and t[4], from its control points. */
 void shape_extract(const double t[7], double m[4][4]);
 
+/* Knots, from those that hold or are kept on, at most so many vertices between two. False: no room for them. */
+bool shape_knots_put(struct shape_fit *f);
+
+/* Halves the spans, longer than so many closest spacings, of chords that are too far out, as far as
+ * there is room; whether there was one. */
+bool shape_knots_halve(struct shape_fit *f, double longer);
+
 /* Once knots are placed: extractions, equations of the bend, known control points, axes. */
 void shape_fit_prepare(struct shape_fit *f);
 
-/* Control points for the present weights and places of the vertices. */
-void shape_fit_solve(struct shape_fit *f);
+/* Knots have come between: so many spans now, and all their knots. */
+void shape_fit_split(struct shape_fit *f, int32_t spans, const double knot[]);
 
-/* Distances of all vertices and chords, and how far each vertex is from its foot. */
+/* Adds weight * row row^T to the equations of control points k .. k + 3. */
+void shape_solve_add(double band[][SHAPE_BAND], int32_t k, const double row[4], double weight);
+
+/* Equations for the present weights and places of the vertices. */
+void shape_solve_assemble(struct shape_fit *f);
+
+/* A vertex has another weight and place, within its span. */
+void shape_solve_change(struct shape_fit *f, int32_t vertex, int32_t span, double weight, double u);
+
+/* Control points by the equations. */
+void shape_solve(struct shape_fit *f);
+
+/* Values over a span: of r, axis by axis of those that move, from the run's origin. [mm] */
+void shape_fit_values(const struct shape_fit *f, int32_t span, double b[AXES][4]);
+
+/* How far vertices are from their places on the curve. */
 void shape_fit_look(struct shape_fit *f);
+
+/* More weight for vertices that are too far out, and all, or only these, to their feet. */
+void shape_fit_push(struct shape_fit *f, bool all);
+
+/* Distances of vertices and chords in the first spans; in squares of the tolerance. */
+void shape_fit_prove(struct shape_fit *f, int32_t spans);
 
 #endif

@@ -35,7 +35,7 @@ static bool within(const struct piece *p, double t0, double t1, const double a[A
 
     for (int i = 0; i < AXES; i++) {
         for (int k = 0; k < PIECE_POINTS; k++) {
-            c[i][k] = p->control[k][i];
+            c[i][k] = p->origin[i] + p->control[k][i];
         }
         bernstein_part(c[i], PIECE_POINTS - 1, t0, t1);
     }
@@ -88,12 +88,14 @@ bool shape_join(struct piece *p, const struct piece_state *a, const struct piece
     p->kind = PIECE_CURVE;
     p->length = length;
     for (int i = 0; i < AXES; i++) {
-        p->control[0][i] = a->point[i];
-        p->control[1][i] = a->point[i] + fifth * a->slope[i];
-        p->control[2][i] = a->point[i] + 2.0 * fifth * a->slope[i] + second * a->bend[i];
-        p->control[3][i] = b->point[i] - 2.0 * fifth * b->slope[i] + second * b->bend[i];
-        p->control[4][i] = b->point[i] - fifth * b->slope[i];
-        p->control[5][i] = b->point[i];
+        const double chord = b->point[i] - a->point[i];
+        p->origin[i] = a->point[i];
+        p->control[0][i] = 0.0;
+        p->control[1][i] = fifth * a->slope[i];
+        p->control[2][i] = 2.0 * fifth * a->slope[i] + second * a->bend[i];
+        p->control[3][i] = chord - 2.0 * fifth * b->slope[i] + second * b->bend[i];
+        p->control[4][i] = chord - fifth * b->slope[i];
+        p->control[5][i] = chord;
     }
     for (int32_t k = 1; k < way->points; k++) {
         const double most = USED * way->tolerance[k], square = most * most;
@@ -130,8 +132,9 @@ void shape_cut(struct piece *p, double from, double to)
                 c[k] = p->control[k][i];
             }
             bernstein_part(c, PIECE_POINTS - 1, from / p->length, to / p->length);
+            p->origin[i] += c[0];
             for (int k = 0; k < PIECE_POINTS; k++) {
-                p->control[k][i] = c[k];
+                p->control[k][i] = c[k] - c[0];
             }
         }
     }

@@ -2,21 +2,22 @@
 
 #include <math.h>
 
-/* Part of the tolerance that is used: rounding may take the rest. */
-static const double USED = 0.995;
+/* Weights grow where a distance is above this part of the tolerance. */
+static const double GROWS = 0.9;
 
 /* Slowest and fastest r' of a curve, and what a distance counts as where it is not between. */
-static const double SLOW = 0.5, FAST = 1.6, ASTRAY = 2.0;
+static const double SLOW = 0.5, FAST = 1.6, ASTRAY = 4.0;
 
 /* Place and slope of the curve, one event on the way. */
 struct place {
     double u, point[AXES], slope[AXES];
 };
 
-static void note(struct shape_fit *f, int32_t vertex, double square)
+/* A distance by its square, of the tolerance. */
+static inline void note(struct shape_fit *f, int32_t vertex, double off)
 {
     struct shape_vertex *v = &f->run->vertex[vertex];
-    const double off = sqrt(square) / (USED * v->tolerance);
+
     v->off = !(off <= v->off) ? off : v->off;
     if (!(off <= f->worst)) {     /* what is no number, too */
         f->worst = off;
@@ -24,16 +25,119 @@ static void note(struct shape_fit *f, int32_t vertex, double square)
     }
 }
 
+void shape_fit_values(const struct shape_fit *f, int32_t span, double b[AXES][4])
+{
+    const double (*m)[4] = (const double (*)[4])f->extract[span];
+
+    for (int x = 0; x < f->axes; x++) {
+        const double (*c)[AXES] = (const double (*)[AXES])&f->run->control[span][f->axis[x]];
+        const double c0 = c[0][0], c1 = c[1][0], c2 = c[2][0], c3 = c[3][0];
+        b[x][0] = m[0][0] * c0 + m[0][1] * c1 + m[0][2] * c2;
+        b[x][1] = m[1][1] * c1 + m[1][2] * c2;
+        b[x][2] = m[2][1] * c1 + m[2][2] * c2;
+        b[x][3] = m[3][1] * c1 + m[3][2] * c2 + m[3][3] * c3;
+    }
+}
+
+void shape_fit_look(struct shape_fit *f)
+{
+    struct shape_run *r = f->run;
+
+    f->worst = 0.0;
+    f->worst_vertex = f->end;
+    for (int32_t k = 0; k < f->spans; k++) {
+        const double (*c)[AXES] = (const double (*)[AXES])r->control + k;
+        for (int x = 0; x < f->axes; x += 2) {
+            const int a = f->axis[x], b = f->axis[x + 1];
+            const double a0 = c[0][a], a1 = c[1][a], a2 = c[2][a], a3 = c[3][a];
+            const double b0 = c[0][b], b1 = c[1][b], b2 = c[2][b], b3 = c[3][b];
+            for (int32_t i = f->first[k]; i < f->first[k + 1]; i++) {
+                struct shape_vertex *v = &r->vertex[i];
+                const double *w = f->row[i], w0 = w[0], w1 = w[1], w2 = w[2], w3 = w[3];
+                const double p = v->point[a] - r->origin[a]
+                    - (w0 * a0 + w1 * a1 + w2 * a2 + w3 * a3);
+                const double q = v->point[b] - r->origin[b]
+                    - (w0 * b0 + w1 * b1 + w2 * b2 + w3 * b3);
+                v->off = p * p + q * q + (x == 0 ? 0.0 : v->off);
+            }
+        }
+        for (int32_t i = f->first[k]; i < f->first[k + 1]; i++) {
+            const double off = r->vertex[i].off * f->per[i];
+            r->vertex[i].off = off;
+            if (!(off <= f->worst)) {       /* what is no number, too */
+                f->worst = off;
+                f->worst_vertex = i;
+            }
+        }
+    }
+}
+
+/* From its place on the curve to its foot. [mm] */
+static double to_foot(const struct shape_fit *f, int32_t vertex, int32_t span,
+                      const double b[AXES][4])
+{
+    const struct shape_vertex *v = &f->run->vertex[vertex];
+    const double *t = f->run->knot + span, h = t[4] - t[3], z = (v->u - t[3]) / h, s = 1.0 - z;
+    double along = 0.0, square = 0.0;
+
+    for (int x = 0; x < f->axes; x++) {
+        const int a = f->axis[x];
+        const double p = s * b[x][0] + z * b[x][1], q = s * b[x][1] + z * b[x][2];
+        const double w = s * b[x][2] + z * b[x][3], pq = s * p + z * q, qw = s * q + z * w;
+        const double slope = qw - pq, d = v->point[a] - f->run->origin[a] - (s * pq + z * qw);
+        along += d * slope;
+        square += slope * slope;
+    }
+    return square > 0.0 ? along / square * h / 3.0 : 0.0;
+}
+
+void shape_fit_push(struct shape_fit *f, bool all)
+{
+    struct shape_run *r = f->run;
+    double least = r->knot[3], b[AXES][4];
+
+    for (int32_t k = 0; k < f->spans; k++) {
+        bool known = false;
+        for (int32_t i = f->first[k]; i < f->first[k + 1]; i++) {
+            struct shape_vertex *v = &r->vertex[i];
+            const bool grows = v->off > GROWS * GROWS, stays = i == f->end && f->last;
+            const double y = v->off / (GROWS * GROWS), z = y > 10.0 ? 10.0 : y * y;
+            const double weight = grows ? v->weight * (z > 10.0 ? 10.0 : z) : v->weight;
+            if (!all && !grows) {
+                continue;
+            }
+            if (!known) {
+                shape_fit_values(f, k, b);
+                known = true;
+            }
+            const double u = stays ? v->u : v->u + to_foot(f, i, k, (const double (*)[4])b);
+            if (all) {
+                const double most = r->knot[f->spans + 3];
+                v->weight = weight;
+                v->u = u < least ? least : u > most ? most : u;
+                least = v->u;
+            } else {
+                const double low = fmax(v[-1].u, r->knot[k + 3]);
+                const double high = i < f->end ? fmin(v[1].u, r->knot[k + 4]) : r->knot[k + 4];
+                shape_solve_change(f, i, k, weight, fmin(fmax(u, low), high));
+            }
+        }
+    }
+}
+
 /* The part of the curve between two events belongs to the chord that ends at a vertex: how far its
  * control points but the first are from there. */
-static void prove(struct shape_fit *f, int32_t vertex, const struct place *a, const struct place *b)
+static void prove_chord(struct shape_fit *f, int32_t vertex, const struct place *a,
+                        const struct place *b)
 {
     const struct shape_vertex *v = &f->run->vertex[vertex];
     const double third = (b->u - a->u) / 3.0;
     double ww = 0.0, wf[3] = { 0.0 }, ff[3] = { 0.0 }, most = 0.0;
 
     for (int k = 0; k < f->axes; k++) {
-        const double start = v[-1].point[f->axis[k]], way = v->point[f->axis[k]] - start;
+        const int x = f->axis[k];
+        const double way = v->point[x] - v[-1].point[x];
+        const double start = v[-1].point[x] - f->run->origin[x];
         const double from[3] = { a->point[k] + third * a->slope[k] - start,
                                  b->point[k] - third * b->slope[k] - start, b->point[k] - start };
         ww += way * way;
@@ -48,77 +152,67 @@ static void prove(struct shape_fit *f, int32_t vertex, const struct place *a, co
                             : ff[i] - 2.0 * wf[i] + ww;
         most = square <= most ? most : square;
     }
-    note(f, vertex, most);
+    note(f, vertex, most / (SHAPE_USED * SHAPE_USED * v->tolerance * v->tolerance));
 }
 
-void shape_fit_look(struct shape_fit *f)
+static void place_at(const struct shape_fit *f, int32_t span, const double b[AXES][4], double u,
+                     struct place *p)
 {
-    struct shape_run *r = f->run;
-    const double *t = r->knot;
-    struct place now = { .u = t[3] }, next;
-    int32_t i = 1;
+    const double *t = f->run->knot + span, h = t[4] - t[3], per = 3.0 / h;
+    const double z = (u - t[3]) / h, s = 1.0 - z;
+
+    p->u = u;
+    for (int x = 0; x < f->axes; x++) {
+        const double i = s * b[x][0] + z * b[x][1], j = s * b[x][1] + z * b[x][2];
+        const double k = s * b[x][2] + z * b[x][3], ij = s * i + z * j, jk = s * j + z * k;
+        p->point[x] = s * ij + z * jk;
+        p->slope[x] = per * (jk - ij);
+    }
+}
+
+/* At a vertex: its distance, and whether |r'| (of path.h's length) is near 1. */
+static void prove_vertex(struct shape_fit *f, int32_t vertex, const struct place *p)
+{
+    const struct shape_vertex *v = &f->run->vertex[vertex];
+    double sum = 0.0, speed = 0.0;
+
+    for (int x = 0; x < f->axes; x++) {
+        const int a = f->axis[x];
+        const double d = v->point[a] - f->run->origin[a] - p->point[x];
+        sum += d * d;
+        speed += a < 3 || f->axis[0] >= 3 ? p->slope[x] * p->slope[x] : 0.0;
+    }
+    note(f, vertex, sum * f->per[vertex]);
+    if (!(speed > SLOW * SLOW && speed < FAST * FAST)) {
+        f->worst = ASTRAY;
+        f->worst_vertex = vertex;
+    }
+}
+
+void shape_fit_prove(struct shape_fit *f, int32_t spans)
+{
+    const double *t = f->run->knot;
+    struct place now, next;
+    double b[AXES][4];
 
     f->worst = 0.0;
     f->worst_vertex = f->end;
-    for (int32_t k = 0; k <= f->end; k++) {
-        r->vertex[k].off = 0.0;
-    }
-    for (int32_t k = 0; k < f->spans; k++) {
-        const double (*m)[4] = (const double (*)[4])f->extract[k];
-        const double h = t[k + 4] - t[k + 3], per = 3.0 / h;
-        double b[4][AXES];
-        for (int x = 0; x < f->axes; x++) {
-            const int a = f->axis[x];
-            const double c[4] = { r->control[k][a], r->control[k + 1][a], r->control[k + 2][a],
-                                  r->control[k + 3][a] };
-            b[0][x] = m[0][0] * c[0] + m[0][1] * c[1] + m[0][2] * c[2];
-            b[1][x] = m[1][1] * c[1] + m[1][2] * c[2];
-            b[2][x] = m[2][1] * c[1] + m[2][2] * c[2];
-            b[3][x] = m[3][1] * c[1] + m[3][2] * c[2] + m[3][3] * c[3];
-            if (k == 0) {
-                now.point[x] = b[0][x];
-                now.slope[x] = per * (b[1][x] - b[0][x]);
-            }
+    shape_fit_values(f, 0, b);
+    place_at(f, 0, (const double (*)[4])b, t[3], &now);
+    for (int32_t k = 0; k < spans; k++) {
+        int32_t i = f->first[k];
+        if (k > 0) {
+            shape_fit_values(f, k, b);
         }
-        bool more = true;
-        while (more) {
-            struct shape_vertex *v = &r->vertex[i];
-            const bool at_vertex = i <= f->end && (v->u <= t[k + 4] || k == f->spans - 1);
-            next.u = at_vertex ? v->u : t[k + 4];
-            const double z = (next.u - t[k + 3]) / h, s = 1.0 - z;
-            for (int x = 0; x < f->axes; x++) {
-                const double p = s * b[0][x] + z * b[1][x], q = s * b[1][x] + z * b[2][x];
-                const double w = s * b[2][x] + z * b[3][x];
-                const double pq = s * p + z * q, qw = s * q + z * w;
-                next.point[x] = s * pq + z * qw;
-                next.slope[x] = per * (qw - pq);
-            }
-            if (i <= f->end) {
-                prove(f, i, &now, &next);
-            }
-            if (at_vertex) {
-                double sum = 0.0, along = 0.0, ss = 0.0, speed = 0.0;
-                for (int x = 0; x < f->axes; x++) {
-                    const double d = v->point[f->axis[x]] - next.point[x];
-                    sum += d * d;
-                    along += d * next.slope[x];
-                    ss += next.slope[x] * next.slope[x];
-                    const bool counts = f->axis[x] < 3 || f->axis[0] >= 3;     /* path.h's length */
-                    speed += counts ? next.slope[x] * next.slope[x] : 0.0;
-                }
-                if (!(speed > SLOW * SLOW && speed < FAST * FAST)) {
-                    f->worst = ASTRAY;
-                    f->worst_vertex = i;
-                }
-                const bool tighter = i < f->end && v[1].tolerance < v->tolerance;
-                const double ratio = tighter ? v->tolerance / v[1].tolerance : 1.0;
-                note(f, i, sum * ratio * ratio);
-                v->shift = ss > 0.0 ? along / ss : 0.0;
-                i++;
-                more = i <= f->end;
-            } else {
-                more = false;
-            }
+        for (; i < f->first[k + 1]; i++) {
+            place_at(f, k, (const double (*)[4])b, f->run->vertex[i].u, &next);
+            prove_chord(f, i, &now, &next);
+            prove_vertex(f, i, &next);
+            now = next;
+        }
+        if (i <= f->end) {
+            place_at(f, k, (const double (*)[4])b, t[k + 4], &next);
+            prove_chord(f, i, &now, &next);
             now = next;
         }
     }

@@ -8,19 +8,21 @@
 /* Of the tolerance: closest spacing of knots; way over which the direction of a raster is taken. */
 static const double SPACING = 12.0, SMOOTHED = 12.0;
 
-/* Closest spacings of a span at first. */
-enum { COARSE = 4 };
-
 /* Wave length of the first weights' smoothing, in spacings of knots. */
 static const double WAVE = 18.0;
 
-/* Spans are at least this part of the spacing. */
-static const double LEAST = 1e-3;
+/* The last spans of a window, which the next one places anew. */
+enum { UNSETTLED = 2 };
 
-/* Weights grow where a distance is above this part of the tolerance, so often; each SPLIT rounds
- * spans of more than so many spacings are halved there. */
-static const double GROWS = 0.9, LONGER = 0.75;
-enum { ROUNDS = 24, SPLIT = 2 };
+/* Weights grow so often; vertices go to their feet FOLLOWS times, then only those whose weight
+ * grows. Every SPLIT rounds spans of more than so many closest spacings are halved where a distance
+ * is too large, after LATE rounds shorter ones, too. */
+enum { ROUNDS = 24, FOLLOWS = 2, SPLIT = 2, LATE = 10 };
+static const double LONGER = 1.5, LONGER_LATE = 0.7;
+
+/* What a distance may be in what is not made yet, the next half of it and the rest: its square, of
+ * the tolerance. */
+static const double NEARLY = 1.2, FAR = 4.0;
 
 double shape_spacing(double tolerance)
 {
@@ -58,91 +60,6 @@ static void place(struct shape_run *r, int32_t end)
     r->placed = end + 1 > r->placed ? end + 1 : r->placed;
 }
 
-/* Knots from those that hold on, at most so many vertices between two. False: no room for them. */
-static bool put_knots(struct shape_fit *f)
-{
-    struct shape_run *r = f->run;
-    const struct shape_vertex *v = r->vertex;
-    const double to = v[f->end].u;
-    int32_t k = r->begun ? 5 : 3, i = 1, crowd = 0;
-
-    if (!r->begun) {
-        for (int j = 0; j <= 3; j++) {
-            r->knot[j] = v[0].u;
-        }
-    }
-    const double from = r->knot[k];
-    const int32_t held = k;
-    if (!(to > from)) {
-        return false;
-    }
-    while (k < SHAPE_SPANS + 3) {
-        double h = COARSE * shape_spacing(v[i].tolerance);
-        while (i < f->end && (v[i].u <= r->knot[k]
-                              || (v[i].u < r->knot[k] + h && crowd < COARSE * SHAPE_CROWD))) {
-            crowd += v[i].u > r->knot[k];
-            i++;
-        }
-        h = crowd >= COARSE * SHAPE_CROWD ? fmax(LEAST * h, fmin(h, v[i].u - r->knot[k])) : h;
-        crowd = 0;
-        r->knot[k + 1] = r->knot[k] + h;
-        k++;
-        if (r->knot[k] >= to) {
-            break;
-        }
-    }
-    if (r->knot[k] < to && f->last) {
-        return false;
-    }
-    while (f->end > 1 && v[f->end].u > r->knot[k]) {
-        f->end--;
-    }
-    const double at_end = v[f->end].u;
-    /* the last one at the end: drop it if it is nearer to the one before */
-    if (k > held + 1 && k > SHAPE_SPANS_LEAST + 3
-        && r->knot[k] - at_end > at_end - r->knot[k - 1]) {
-        k--;
-    }
-    int32_t n = k - held;
-    const double stretch = (at_end - from) / (r->knot[k] - from);
-    for (int32_t j = held + 1; j <= k; j++) {
-        r->knot[j] = from + (r->knot[j] - from) * stretch;
-    }
-    if (k < SHAPE_SPANS_LEAST + 3) {      /* short: evenly */
-        n = SHAPE_SPANS_LEAST + 3 - held;
-        k = SHAPE_SPANS_LEAST + 3;
-        for (int32_t j = 1; j <= n; j++) {
-            r->knot[held + j] = from + (at_end - from) * j / n;
-        }
-    }
-    r->knot[k] = at_end;
-    for (int j = 1; j <= 3; j++) {
-        r->knot[k + j] = at_end;
-    }
-    f->spans = k - 3;
-    return true;
-}
-
-/* Vertices go to their feet, in order; weights grow where the distance is too large. */
-static void follow(struct shape_fit *f)
-{
-    struct shape_run *r = f->run;
-    double least = r->knot[3];
-
-    for (int32_t i = 1; i <= f->end; i++) {
-        struct shape_vertex *v = &r->vertex[i];
-        if (i < f->end || !f->last) {
-            const double to = v->u + v->shift;
-            v->u = to < least ? least : to > r->knot[f->spans + 3] ? r->knot[f->spans + 3] : to;
-            least = v->u;
-        }
-        if (v->off > GROWS) {
-            const double x = v->off / GROWS, y = x * x;
-            v->weight *= y > 10.0 ? 10.0 : y * y > 10.0 ? 10.0 : y * y;
-        }
-    }
-}
-
 static void put_weights(struct shape_fit *f)
 {
     struct shape_run *r = f->run;
@@ -157,39 +74,25 @@ static void put_weights(struct shape_fit *f)
     }
 }
 
-/* Halves the spans of chords that are too far out, as far as there is room. */
-static bool split(struct shape_fit *f)
+/* How many of its spans are made once it fits: what the rest is depends on what comes. */
+static int32_t sure(const struct shape_fit *f)
 {
-    struct shape_run *r = f->run;
-    const int32_t first = r->begun ? 2 : 0;     /* before it knots hold */
-    bool wide[SHAPE_SPANS] = { false };
-    double knot[SHAPE_SPANS + 7];
-    int32_t k = 0, n = 0, more = 0;
+    const int32_t rest = f->spans / 4 > 2 ? f->spans / 4 : 2;
+    return f->last ? f->spans : f->spans - rest;
+}
+
+/* Whether the vertices of these spans, and the next one, are near the curve, and others nearly. */
+static bool near(const struct shape_fit *f)
+{
+    const int32_t first = f->first[sure(f)], middle = (first + f->end) / 2;
 
     for (int32_t i = 1; i <= f->end; i++) {
-        const struct shape_vertex *v = &r->vertex[i];
-        while (k < f->spans - 1 && v[-1].u >= r->knot[k + 4]) {
-            k++;
-        }
-        for (int32_t j = k; j < f->spans && r->knot[j + 3] <= v->u && v->off > 1.0; j++) {
-            wide[j] = wide[j] || (j >= first && r->knot[j + 4] - r->knot[j + 3]
-                                > LONGER * shape_spacing(v->tolerance));
+        const double most = i <= first ? 1.0 : i < middle ? NEARLY : FAR;
+        if (!(f->run->vertex[i].off <= most)) {
+            return false;
         }
     }
-    for (k = 0; k < f->spans; k++) {
-        knot[n++] = r->knot[k + 3];
-        if (wide[k] && f->spans + more < SHAPE_SPANS) {
-            knot[n++] = 0.5 * (r->knot[k + 3] + r->knot[k + 4]);
-            more++;
-        }
-    }
-    const double to = r->knot[f->spans + 3];
-    memcpy(r->knot + 3, knot, (size_t)n * sizeof knot[0]);
-    f->spans = r->spans = n;
-    for (k = 0; k < 4; k++) {
-        r->knot[n + 3 + k] = to;
-    }
-    return more > 0;
+    return true;
 }
 
 void shape_run_afresh(struct shape_run *r)
@@ -208,46 +111,63 @@ void shape_run_afresh(struct shape_run *r)
 
 int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct piece_state *stop)
 {
-    struct shape_fit f = { .run = r, .end = end, .last = last, .stop = stop };
+    struct shape_fit f;     /* large: each part is set where it is made */
 
+    f.run = r;
+    f.end = end;
+    f.last = last;
+    f.stop = stop;
     r->spans = 0;
     place(r, end);
-    if (!put_knots(&f)) {
+    if (!shape_knots_put(&f)) {
         return r->vertex[end].u > r->knot[r->begun ? 5 : 3] ? -2 : end;
     }
     r->spans = f.spans;
     r->fitted = f.end;
     shape_fit_prepare(&f);
     put_weights(&f);
+    shape_solve_assemble(&f);
     for (int round = 1; round <= ROUNDS; round++) {
-        shape_fit_solve(&f);
+        shape_solve(&f);
         shape_fit_look(&f);
-        if (f.worst <= 1.0) {
-            return -1;
+        if (near(&f)) {
+            r->proved = sure(&f);
+            shape_fit_prove(&f, r->proved);
+            if (f.worst <= 1.0) {
+                return -1;
+            }
         }
         if (!(f.worst < 1e100)) {
             return end;
         }
-        if (round % SPLIT == 0 && split(&f)) {
-            shape_fit_prepare(&f);
+        const bool all = round <= FOLLOWS;
+        shape_fit_push(&f, all);
+        const bool finer = round % SPLIT == 0
+            && shape_knots_halve(&f, round < LATE ? LONGER : LONGER_LATE);
+        if (finer || all) {
+            shape_solve_assemble(&f);
         }
-        follow(&f);
     }
     return f.worst_vertex;
+}
+
+static double least(double a, double b)
+{
+    return a < b ? a : b;
 }
 
 /* Of two jerks the smaller; 0 is one without limit. */
 static double least_jerk(double a, double b)
 {
-    return a > 0.0 && b > 0.0 ? fmin(a, b) : fmax(a, b);
+    return a > 0.0 && b > 0.0 ? least(a, b) : a + b;
 }
 
 void shape_obey(struct piece *p, double feed, double cap, const struct ramp_limits *r)
 {
-    p->feed = fmin(p->feed, feed);
-    p->cap = fmin(p->cap, cap);
-    p->ramp.acc = fmin(p->ramp.acc, r->acc);
-    p->ramp.dec = fmin(p->ramp.dec, r->dec);
+    p->feed = least(p->feed, feed);
+    p->cap = least(p->cap, cap);
+    p->ramp.acc = least(p->ramp.acc, r->acc);
+    p->ramp.dec = least(p->ramp.dec, r->dec);
     p->ramp.acc_jerk = least_jerk(p->ramp.acc_jerk, r->acc_jerk);
     p->ramp.dec_jerk = least_jerk(p->ramp.dec_jerk, r->dec_jerk);
 }
@@ -261,20 +181,19 @@ void shape_run_piece(const struct shape_run *r, int32_t k, int32_t *vertex, stru
     p->kind = PIECE_CURVE;
     p->length = t[4] - t[3];
     shape_extract(t, m);
-    for (int i = 0; i < AXES; i++) {
-        double b[4];
-        for (int j = 0; j < 4; j++) {
-            b[j] = 0.0;
-            for (int c = 0; c < 4; c++) {
-                b[j] += m[j][c] * r->control[k + c][i];
-            }
-        }
-        const double raised[PIECE_POINTS] = {
-            b[0], (2.0 * b[0] + 3.0 * b[1]) / 5.0, (b[0] + 6.0 * b[1] + 3.0 * b[2]) / 10.0,
-            (3.0 * b[1] + 6.0 * b[2] + b[3]) / 10.0, (3.0 * b[2] + 2.0 * b[3]) / 5.0, b[3] };
-        for (int j = 0; j < PIECE_POINTS; j++) {
-            p->control[j][i] = raised[j];
-        }
+    for (int i = 0; i < AXES; i++) {    /* from the first control point: small differences */
+        const double at = r->control[k][i], c1 = r->control[k + 1][i] - at;
+        const double c2 = r->control[k + 2][i] - at, c3 = r->control[k + 3][i] - at;
+        const double start = m[0][1] * c1 + m[0][2] * c2;
+        const double b1 = m[1][1] * c1 + m[1][2] * c2 - start;
+        const double b2 = m[2][1] * c1 + m[2][2] * c2 - start;
+        const double b3 = m[3][1] * c1 + m[3][2] * c2 + m[3][3] * c3 - start;
+        p->origin[i] = r->origin[i] + (at + start);
+        p->control[1][i] = 0.6 * b1;    /* raised to degree 5 */
+        p->control[2][i] = 0.6 * b1 + 0.3 * b2;
+        p->control[3][i] = 0.3 * b1 + 0.6 * b2 + 0.1 * b3;
+        p->control[4][i] = 0.6 * b2 + 0.4 * b3;
+        p->control[5][i] = b3;
     }
     /* chords with a part in it */
     while (*vertex < r->vertices - 1 && r->vertex[*vertex].u <= t[3]) {
@@ -296,8 +215,15 @@ int32_t shape_run_drop(struct shape_run *r, int32_t n)
     int32_t gone = 0;
 
     memmove(r->knot, r->knot + n, (size_t)(knots - n) * sizeof r->knot[0]);
-    memmove(r->control, r->control + n, (size_t)(controls - n) * sizeof r->control[0]);
+    for (int i = 0; i < AXES; i++) {
+        const double origin = r->origin[i];
+        r->origin[i] += r->control[n][i];
+        for (int32_t k = n; k < controls; k++) {
+            r->control[k - n][i] = r->control[k][i] - (r->origin[i] - origin);
+        }
+    }
     r->spans = spans;
+    r->kept = spans + 3 - UNSETTLED;
     r->begun = true;
     while (gone + 1 < r->vertices && r->vertex[gone + 1].u <= r->knot[3]) {
         gone++;

@@ -1,8 +1,8 @@
 /* shape_run - a run of short chords becomes a cubic spline with continuous r'', within a tolerance.
  *
  * Control points are those of least  integral |r'''|^2 + sum of weight |r(u_i) - vertex_i|^2  over
- * a window; weights grow and knots come closer where the curve leaves the tolerance. Two thirds of
- * the window are then made into pieces, what they share with the rest holds in the next one.
+ * a window; weights grow and knots come closer where the curve leaves the tolerance. Three quarters
+ * of the window are then made into pieces, what they share with the rest holds in the next one.
  *
  * What holds of each piece that is made: a place u_i of the curve belongs to each vertex, in order;
  * (1) r(u_i) is within the tolerance of its vertex, and (2) the control points of the curve's parts
@@ -23,7 +23,7 @@
 #include "piece.h"
 
 enum {
-    SHAPE_SPANS = 48,           /* of a window, at most */
+    SHAPE_SPANS = 64,           /* of a window, at most */
     SHAPE_CROWD = 16,           /* vertices of a span, at most about */
     SHAPE_VERTICES = 900        /* of a window, and what waits behind it */
 };
@@ -40,8 +40,7 @@ struct shape_vertex {
     double u;                   /* [mm] of the curve's parameter */
     double tolerance;           /* [mm] of the chord that ends here */
     double weight;              /* 0: none yet */
-    double shift;               /* [mm] of u to the foot on the curve */
-    double off;                 /* of the tolerance, as last seen */
+    double off;                 /* of the tolerance, as last seen: its square */
     struct shape_law law;       /* of the chord that ends here */
     int32_t marks;              /* commands that begin here */
     bool joint;                 /* a command ends here: it may be a corner */
@@ -54,8 +53,11 @@ struct shape_run {
     bool bound;                 /* it begins with the state `begin`, else with r'' = 0 */
     struct piece_state begin;
     int32_t spans, fitted;      /* of the last fit; its last vertex */
+    int32_t proved;             /* its first spans, which keep the tolerance */
+    int32_t kept;               /* knots up to this one are good for the next window, too */
     double knot[SHAPE_SPANS + 7];       /* [mm]; span k lies between knots k + 3 and k + 4 */
-    double control[SHAPE_SPANS + 3][AXES];
+    double origin[AXES];                /* [mm] near the run, */
+    double control[SHAPE_SPANS + 3][AXES];      /* [mm] from there */
     struct shape_vertex vertex[SHAPE_VERTICES];
 };
 
@@ -69,8 +71,9 @@ double shape_distance(const double a[AXES], const double b[AXES]);
 double shape_spacing(double tolerance);
 
 /* Fits vertices 0 .. end. `last`: the run ends there, with a state or, NULL, with r'' = 0, else it
- * goes on behind, and less than all of it may be fitted. Returns -1 if every chord is within its
- * tolerance, -2 if the run is too long for one window, else the vertex that is farthest out. */
+ * goes on behind, and less than all of it may be fitted. Returns -1 if
+ * every chord of the spans that are proved is within its tolerance, -2 if the run is too long for
+ * one window, else the vertex that is farthest out. */
 int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct piece_state *stop);
 
 /* After a fit that failed: places and weights as before it, but where knots hold. */

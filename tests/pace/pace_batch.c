@@ -35,7 +35,11 @@ double pace_batch_pieces(int64_t n, const struct told *told)
         p->ramp = (struct ramp_limits){ t->acc, t->dec, t->jerk, t->jerk };
         p->length = t->length;
         if (p->kind == PIECE_CURVE) {
-            memcpy(p->control, t->control, sizeof p->control);
+            memcpy(p->origin, t->control[0], sizeof p->origin);
+            for (int k = 0; k < PIECE_POINTS * AXES; k++) {
+                p->control[k / AXES][k % AXES] = t->control[k / AXES][k % AXES]
+                    - p->origin[k % AXES];
+            }
         } else if (p->kind == PIECE_ARC) {
             double miss;
             path_arc(&p->path, PATH_XY, t->control[0], t->control[1], t->control[2],

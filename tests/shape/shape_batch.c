@@ -4,7 +4,7 @@
  *   arc TOLERANCE FEED PLANE CCW TURNS CENTRE_A CENTRE_B X Y Z U V W |
  *   cubic TOLERANCE FEED six coordinates of the inner points, X Y Z U V W
  *
- * prints `curve LENGTH FEED REST` and its 36 coordinates, `line` with start and slope, `cubic`
+ * prints `curve LENGTH FEED REST` and its origin and 36 coordinates from there, `line` with start and slope, `cubic`
  * with from, start, end, inner points and length, `arc` with
  * from and the path's start, end, centre, radius, growth, angle, sweep, length and plane, `mark`,
  * and at the end `cost` with clock ticks per command. */
@@ -34,6 +34,7 @@ static void drain(void)
                : p->kind == PIECE_LINE ? "line" : p->kind == PIECE_ARC ? "arc" : "cubic",
                p->length, p->feed, p->rest);
         if (p->kind == PIECE_CURVE) {
+            print_row(p->origin, AXES);
             print_row(p->control[0], PIECE_POINTS * AXES);
         } else if (p->kind == PIECE_LINE) {
             print_row(p->start, AXES);

@@ -229,15 +229,16 @@ static void curves(uint64_t *random)
     for (int k = 0; k < 100; k++) {
         struct piece p = { .kind = PIECE_CURVE, .length = check_real(random, 0.01, 10.0) };
         const bool tool = k % 5 != 0;
-        for (int c = 0; c < PIECE_POINTS; c++) {
-            for (int i = tool ? 0 : 3; i < (k % 2 || !tool ? AXES : 2); i++) {
-                p.control[c][i] = 100.0 + p.length * (0.2 * c + check_real(random, -0.2, 0.2));
+        for (int i = tool ? 0 : 3; i < (k % 2 || !tool ? AXES : 2); i++) {
+            p.origin[i] = 100.0;
+            for (int c = 1; c < PIECE_POINTS; c++) {
+                p.control[c][i] = p.length * (0.2 * c + check_real(random, -0.3, 0.3));
             }
         }
         struct piece_state s;
         piece_at(&p, p.length, &s);
         for (int i = 0; i < AXES; i++) {
-            CHECK_NEAR(s.point[i], p.control[PIECE_POINTS - 1][i], 0.0);
+            CHECK_NEAR(s.point[i], p.origin[i] + p.control[PIECE_POINTS - 1][i], 0.0);
         }
         if (tool) {
             smooth(&p);
