@@ -80,6 +80,10 @@ static void push_chords(struct shape *s, const struct path *p, double from, doub
                         double tolerance)
 {
     const int32_t n = shape_chords(p, to - from, tolerance);
+    if (n == 1 && to >= p->length && !p->arc && !p->cubic) {    /* a short line */
+        push_vertex(s, p->end, to - from, tolerance)->joint = true;
+        return;
+    }
     const double step = (to - from) / n;
     const double left = p->arc || p->cubic ? (1.0 - SHAPE_SAGITTA) * tolerance : tolerance;
     double at[AXES], slope[AXES];
@@ -449,11 +453,11 @@ static void take_long(struct shape *s, const struct path *path, double tolerance
 
 enum shape_status shape_take(struct shape *s, const struct command *c)
 {
-    struct path path = c->path;
-    const double merge = fmin(s->merge, c->tolerance);
+    const double merge = s->merge < c->tolerance ? s->merge : c->tolerance;
+    struct path path;
 
     if (s->ended || !command_blends(c) || !(c->tolerance > 0.0)
-        || (s->started && shape_distance(s->end, path.start) > 1e-6)) {
+        || (s->started && shape_distance(s->end, c->path.start) > 1e-6)) {
         return SHAPE_OTHER;
     }
     pump(s);
@@ -461,11 +465,12 @@ enum shape_status shape_take(struct shape *s, const struct command *c)
         return SHAPE_FULL;
     }
     if (!s->started) {
-        memcpy(s->end, path.start, sizeof s->end);
+        memcpy(s->end, c->path.start, sizeof s->end);
         s->started = true;
     }
     push_mark(s, c);
-    if (!path.arc && !path.cubic) {
+    path = c->path;
+    if (!path.arc && !path.cubic && memcmp(path.start, s->end, sizeof path.start) != 0) {
         path_line(&path, s->end, c->path.end);
     }
     if (path.length <= NONE) {

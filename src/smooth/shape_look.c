@@ -117,18 +117,19 @@ void shape_fit_push(struct shape_fit *f, bool all)
                 v->u = u < least ? least : u > most ? most : u;
                 least = v->u;
             } else {
-                const double low = fmax(v[-1].u, r->knot[k + 3]);
-                const double high = i < f->end ? fmin(v[1].u, r->knot[k + 4]) : r->knot[k + 4];
-                shape_solve_change(f, i, k, weight, fmin(fmax(u, low), high));
+                const double from = r->knot[k + 3], to = r->knot[k + 4];
+                const double low = v[-1].u > from ? v[-1].u : from;
+                const double high = i < f->end && v[1].u < to ? v[1].u : to;
+                shape_solve_change(f, i, k, weight, u < low ? low : u > high ? high : u);
             }
         }
     }
 }
 
 /* The part of the curve between two events belongs to the chord that ends at a vertex: how far its
- * control points but the first are from there. */
+ * control points but the first are from there, the inner two or all three. */
 static void prove_chord(struct shape_fit *f, int32_t vertex, const struct place *a,
-                        const struct place *b)
+                        const struct place *b, int points)
 {
     const struct shape_vertex *v = &f->run->vertex[vertex];
     const double third = (b->u - a->u) / 3.0;
@@ -141,13 +142,13 @@ static void prove_chord(struct shape_fit *f, int32_t vertex, const struct place 
         const double from[3] = { a->point[k] + third * a->slope[k] - start,
                                  b->point[k] - third * b->slope[k] - start, b->point[k] - start };
         ww += way * way;
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < points; i++) {
             wf[i] += way * from[i];
             ff[i] += from[i] * from[i];
         }
     }
     const double per = ww > 0.0 ? 1.0 / ww : 0.0;
-    for (int i = 0; i < 3; i++) {       /* from the foot, the start or the end of the chord */
+    for (int i = 0; i < points; i++) {  /* from the foot, the start or the end of the chord */
         const double square = wf[i] <= 0.0 ? ff[i] : wf[i] < ww ? ff[i] - wf[i] * wf[i] * per
                             : ff[i] - 2.0 * wf[i] + ww;
         most = square <= most ? most : square;
@@ -206,13 +207,13 @@ void shape_fit_prove(struct shape_fit *f, int32_t spans)
         }
         for (; i < f->first[k + 1]; i++) {
             place_at(f, k, (const double (*)[4])b, f->run->vertex[i].u, &next);
-            prove_chord(f, i, &now, &next);
+            prove_chord(f, i, &now, &next, 2);      /* the third is near the vertex itself */
             prove_vertex(f, i, &next);
             now = next;
         }
         if (i <= f->end) {
             place_at(f, k, (const double (*)[4])b, t[k + 4], &next);
-            prove_chord(f, i, &now, &next);
+            prove_chord(f, i, &now, &next, 3);
             now = next;
         }
     }

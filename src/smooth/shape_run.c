@@ -77,7 +77,7 @@ static void put_weights(struct shape_fit *f)
 /* How many of its spans are made once it fits: what the rest is depends on what comes. */
 static int32_t sure(const struct shape_fit *f)
 {
-    const int32_t rest = f->spans / 4 > 2 ? f->spans / 4 : 2;
+    const int32_t rest = f->spans / 8 > 2 ? f->spans / 8 : 2;
     return f->last ? f->spans : f->spans - rest;
 }
 

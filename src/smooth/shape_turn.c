@@ -9,8 +9,9 @@ static const double AROUND = 15.0, CLOSE = 1.0 / 3.0;
 /* sin^2 of half of 25 degrees; of an angle that is 0.6 of another, about. */
 static const double TURN = 0.0468, SAME_TURN = 0.36;
 
-/* sin^2 of half the angle at a vertex between its chords to the points so far away. */
-static double turn_at(const struct shape_run *r, int32_t v, double reach)
+/* sin^2 of half the angle at a vertex between its chords to the points so far away; 0 if it is not
+ * above `least`. */
+static double turn_at(const struct shape_run *r, int32_t v, double reach, double least)
 {
     double in[AXES], out[AXES], dot = 0.0, aa = 0.0, bb = 0.0;
     int32_t a = v - 1, b = v + 1;
@@ -34,7 +35,11 @@ static double turn_at(const struct shape_run *r, int32_t v, double reach)
         aa += in[i] * in[i];
         bb += out[i] * out[i];
     }
-    return aa > 0.0 && bb > 0.0 ? 0.5 - 0.5 * dot / sqrt(aa * bb) : 0.0;
+    const double cosine = 1.0 - 2.0 * least;
+    if (!(aa > 0.0 && bb > 0.0) || (dot > 0.0 && dot * dot >= cosine * cosine * (aa * bb))) {
+        return 0.0;
+    }
+    return 0.5 - 0.5 * dot / sqrt(aa * bb);
 }
 
 double shape_turn(const struct shape_run *r, int32_t v)
@@ -44,6 +49,7 @@ double shape_turn(const struct shape_run *r, int32_t v)
     if (!r->vertex[v].joint) {
         return 0.0;
     }
-    const double turn = turn_at(r, v, reach);
-    return turn > TURN && turn_at(r, v, CLOSE * reach) > SAME_TURN * turn ? turn : 0.0;
+    const double turn = turn_at(r, v, reach, TURN);
+    return turn > TURN && turn_at(r, v, CLOSE * reach, SAME_TURN * turn) > SAME_TURN * turn ? turn
+                                                                                            : 0.0;
 }

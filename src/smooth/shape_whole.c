@@ -53,6 +53,9 @@ static double arc_bend(const struct path *p)
 
 int32_t shape_chords(const struct path *p, double length, double tolerance)
 {
+    if (!p->arc && !p->cubic && length <= shape_spacing(tolerance)) {
+        return 1;
+    }
     double n = ceil(length / shape_spacing(tolerance));
 
     if (p->arc || p->cubic) {
