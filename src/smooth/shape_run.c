@@ -17,7 +17,7 @@ enum { UNSETTLED = 2 };
 /* Weights grow so often; vertices go to their feet FOLLOWS times, then only those whose weight
  * grows. Every SPLIT rounds spans of more than so many closest spacings are halved where a distance
  * is too large, after LATE rounds shorter ones, too. */
-enum { ROUNDS = 24, FOLLOWS = 2, SPLIT = 2, LATE = 10 };
+enum { ROUNDS = 24, FOLLOWS = 2, SPLIT = 2, LATE = 5 };
 static const double LONGER = 1.5, LONGER_LATE = 0.7;
 
 /* What a distance may be in what is not made yet, the next half of it and the rest: its square, of
@@ -77,7 +77,7 @@ static void put_weights(struct shape_fit *f)
 /* How many of its spans are made once it fits: what the rest is depends on what comes. */
 static int32_t sure(const struct shape_fit *f)
 {
-    const int32_t rest = f->spans / 8 > 2 ? f->spans / 8 : 2;
+    const int32_t rest = f->spans / 6 > 2 ? f->spans / 6 : 2;
     return f->last ? f->spans : f->spans - rest;
 }
 

@@ -1,7 +1,7 @@
 /* shape_run - a run of short chords becomes a cubic spline with continuous r'', within a tolerance.
  *
  * Control points are those of least  integral |r'''|^2 + sum of weight |r(u_i) - vertex_i|^2  over
- * a window; weights grow and knots come closer where the curve leaves the tolerance. Seven eighths
+ * a window; weights grow and knots come closer where the curve leaves the tolerance. Five sixths
  * of the window are then made into pieces, what they share with the rest holds in the next one.
  *
  * What holds of each piece that is made: a place u_i of the curve belongs to each vertex, in order;
