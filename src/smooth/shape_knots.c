@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* Closest spacings of a span at first; vertices of one, for each of them. */
-enum { COARSE = 4 };
+enum { COARSE = 5 };
 
 /* Spans are at least this part of the spacing. */
 static const double LEAST = 1e-3;
