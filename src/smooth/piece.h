@@ -3,8 +3,8 @@
  * Lines, arcs and cubics keep their exact geometry and u is their length. A curve is a polynomial
  * of degree 5 in Bernstein's form, so that hulls of its control points and of those of its
  * derivatives bound it exactly. They count from its start: r' and r'' of a curve of micrometres are
- * differences of small numbers, also far from the origin of the coordinates. Pieces that follow each
- * other have the same r, r' and r'' where they meet, or the motion rests there.
+ * differences of small numbers, also far from the origin of the coordinates. Pieces that follow
+ * each other have the same r, r' and r'' where they meet, or the motion rests there.
  */
 #ifndef PIECE_H
 #define PIECE_H

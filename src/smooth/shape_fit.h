@@ -37,7 +37,8 @@ struct shape_fit {
 /* Bernstein values of a span, between knots t[3] and t[4], from its control points. */
 void shape_extract(const double t[7], double m[4][4]);
 
-/* Knots, from those that hold or are kept on, at most so many vertices between two. False: no room for them. */
+/* Knots, from those that hold or are kept on, at most so many vertices between two. False: no room
+ * for them. */
 bool shape_knots_put(struct shape_fit *f);
 
 /* Halves the spans, longer than so many closest spacings, of chords that are too far out, as far as

@@ -6,6 +6,14 @@
  * turns, it does so over a third of it, too. */
 static const double AROUND = 15.0, CLOSE = 1.0 / 3.0;
 
+/* A corner is seen once so much of the way behind it is known, in tolerances; of corners within
+ * half of that there is one. */
+static const double AHEAD = 30.0;
+
+/* sin^2 of half the angle of a turn that is a corner before any spline has been tried: 53 degrees.
+ * Measured: with 25 degrees an outline with radii of 0.4 mm takes 9 % longer. */
+static const double SHARP = 0.2;
+
 /* sin^2 of half of 25 degrees; of an angle that is 0.6 of another, about. */
 static const double TURN = 0.0468, SAME_TURN = 0.36;
 
@@ -52,4 +60,51 @@ double shape_turn(const struct shape_run *r, int32_t v)
     const double turn = turn_at(r, v, reach, TURN);
     return turn > TURN && turn_at(r, v, CLOSE * reach, SAME_TURN * turn) > SAME_TURN * turn ? turn
                                                                                             : 0.0;
+}
+
+int32_t shape_turn_most(const struct shape_run *r, int32_t vertex, int32_t end)
+{
+    const struct shape_vertex *v = r->vertex;
+    const double reach = 0.5 * AHEAD * v[vertex].tolerance;
+    int32_t best = vertex;
+    double most = 0.0;
+
+    for (int32_t k = 1; k < end; k++) {
+        const double turn = fabs(v[k].s - v[vertex].s) < reach ? shape_turn(r, k) : 0.0;
+        best = turn > most ? k : best;
+        most = turn > most ? turn : most;
+    }
+    return best;
+}
+
+int32_t shape_turn_next(struct shape_run *r, int32_t *looked, bool waits, bool goes_on)
+{
+    const int32_t last = r->vertices - 1;
+
+    for (int32_t v = *looked + 1; v < last; v++) {
+        if (r->vertex[v].corner) {
+            return v;
+        }
+        const double reach = 0.5 * AHEAD * r->vertex[v].tolerance;
+        if (waits && r->vertex[last].s - r->vertex[v].s < 2.0 * reach) {
+            return 0;
+        }
+        double most = shape_turn(r, v);
+        if (most > SHARP) {
+            int32_t best = v;
+            for (int32_t k = v + 1; k < last && r->vertex[k].s < r->vertex[v].s + reach; k++) {
+                if (r->vertex[k].corner) {
+                    break;
+                }
+                const double turn = shape_turn(r, k);
+                best = turn > most ? k : best;
+                most = turn > most ? turn : most;
+            }
+            r->vertex[best].corner = true;
+            return best;
+        }
+        *looked = v;
+    }
+    *looked = goes_on ? *looked : last;
+    return 0;
 }

@@ -8,4 +8,11 @@
  * within 15 tolerances. The steps of a raster are no corners. */
 double shape_turn(const struct shape_run *r, int32_t vertex);
 
+/* The one before `end` that turns most near a vertex, or that one itself. */
+int32_t shape_turn_most(const struct shape_run *r, int32_t vertex, int32_t end);
+
+/* The next vertex behind *looked that is a corner, marked as one; 0: none. `waits`: only as far as
+ * the way behind is known; `goes_on`: the last vertex is not its end. *looked: none up to there. */
+int32_t shape_turn_next(struct shape_run *r, int32_t *looked, bool waits, bool goes_on);
+
 #endif

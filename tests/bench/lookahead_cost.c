@@ -1,11 +1,11 @@
 /* What one short segment costs by look-ahead: planned as a command, waited in the ring, joined,
  * planned in its chain, made into points.
  *
- *     lookahead_cost <filling> <DDA time [ms]> <T or S> [<jerk [mm/s^3]>]
+ *     lookahead_cost <filling> <DDA time [ms]> <T or S> [<jerk [mm/s^3]> [<segments>]]
  *
- * A random walk in steps of 0.1 mm, with a constant number of commands in the ring. With a jerk the
- * walk is a curve with that of each axis, 0 no limit, and an acceleration of 2 m/s^2. Prints the
- * seconds of processor time per segment and the points made per segment.
+ * A random walk of 100,000 steps of 0.1 mm, or so many, with a constant number of commands in the
+ * ring. With a jerk the walk is a curve with that of each axis, 0 no limit, and an acceleration of
+ * 2 m/s^2. Prints the seconds of processor time per segment and the points made per segment.
  */
 #define _POSIX_C_SOURCE 199309L /* clock_gettime */
 #include <math.h>
@@ -16,7 +16,7 @@
 
 #include "task.h"
 
-enum { SEGMENTS = 100000 };
+enum { MOST = 100000 };     /* segments */
 
 static const double STEP = 0.1;     /* [mm] */
 static const double FEED = 100.0;   /* [mm/s] */
@@ -53,23 +53,27 @@ static double uniform(uint64_t *state)
     return (double)(*state >> 11) * 0x1p-52 - 1.0;
 }
 
-/* Next segment of the walk: turns by up to 0.1 rad, and round in the long run, so not far off. */
-static int send(struct mcc *m, uint64_t *seed, double *angle, double at[AXES])
+/* The walk: each step turns by up to 0.1 rad, and round in the long run, so not far off. */
+static void make(double walk[][AXES], int segments)
 {
-    *angle += 0.1 * uniform(seed) + 1e-3;
-    at[0] += STEP * cos(*angle);
-    at[1] += STEP * sin(*angle);
-    return MCC_line(m, at);
+    double angle = 0.0, x = 0.0, y = 0.0;
+    uint64_t seed = 1;
+
+    for (int i = 0; i < segments; i++) {
+        angle += 0.1 * uniform(&seed) + 1e-3;
+        walk[i][0] = x += STEP * cos(angle);
+        walk[i][1] = y += STEP * sin(angle);
+    }
 }
 
 int main(int argc, char **argv)
 {
     static struct mcc m;
+    static double walk[MOST][AXES];
+    const int segments = argc > 5 && atoi(argv[5]) < MOST ? atoi(argv[5]) : MOST;
     const int filling = argc > 1 ? atoi(argv[1]) : RING_SIZE;
     const double dda_time = argc > 2 ? 1e-3 * atof(argv[2]) : 1e-3;
     struct machine machine = machine_at(dda_time, argc > 3 ? argv[3][0] : 'T');
-    double at[AXES] = { 0.0 }, angle = 0.0;
-    uint64_t seed = 1;
     int sent = 0;
     long points = 0;
 
@@ -81,22 +85,23 @@ int main(int argc, char **argv)
         mcc_set_curve(&m, argc > 4, 0.01)) {
         return 1;
     }
+    make(walk, segments);
     const double begin = now();
     do {
-        for (; sent < SEGMENTS && m.ring.count < filling; sent++) {
-            if (send(&m, &seed, &angle, at) < 0) {
+        for (; sent < segments && m.ring.count < filling; sent++) {
+            if (MCC_line(&m, walk[sent]) < 0) {
                 return 1;
             }
         }
         task_run(&m, NULL);
         points += m.queue.count;
         queue_drop(&m.queue, m.queue.count);
-    } while (sent < SEGMENTS || !MCC_check_stop(&m));
+    } while (sent < segments || !MCC_check_stop(&m));
     const double used = now() - begin;
-    if (m.error || sent != SEGMENTS) {
+    if (m.error || sent != segments) {
         fprintf(stderr, "error 0x%X after %d segments\n", (unsigned)m.error, sent);
         return 1;
     }
-    printf("%.9g %.9g\n", used / SEGMENTS, (double)points / SEGMENTS);
+    printf("%.9g %.9g\n", used / segments, (double)points / segments);
     return 0;
 }

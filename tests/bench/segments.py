@@ -8,6 +8,7 @@ import numpy as np
 
 PROGRAM = Path(__file__).resolve().parents[2] / "build/tests/bench/lookahead_cost"
 FILLINGS = (16, 64, 256)  # commands
+LENGTHS = (1_000, 10_000, 100_000)  # segments of a walk
 
 
 @dataclass
@@ -23,15 +24,37 @@ class Segments:
 
     def __call__(self) -> None:
         for filling in FILLINGS:
-            line = [PROGRAM, str(filling), str(self.dda_time), self.ramps]
-            line += [] if self.jerk is None else [str(self.jerk)]
-            cost, points = map(float, subprocess.check_output(line, text=True).split())
-            self.cost[filling], self.points = min(self.cost[filling], cost), points
+            cost, self.points = self.run(filling)
+            self.cost[filling] = min(self.cost[filling], cost)
+
+    def run(self, filling: int, *more: int) -> tuple[float, float]:
+        """Time per segment [s], points per segment; `more`: how many segments."""
+        line = [str(PROGRAM), str(filling), str(self.dda_time), self.ramps]
+        line += [] if self.jerk is None else [str(self.jerk)]
+        words = subprocess.check_output([*line, *map(str, more)], text=True).split()
+        return float(words[0]), float(words[1])
 
     @property
     def growth(self) -> float:
         """Cost with the fullest ring over that with the emptiest."""
         return self.cost[FILLINGS[-1]] / self.cost[FILLINGS[0]]
+
+
+@dataclass
+class Lengths:
+    """Processor time per segment [s] of walks of a curve, best of all rounds."""
+
+    walk: Segments
+    cost: dict[int, float] = field(default_factory=lambda: dict.fromkeys(LENGTHS, np.inf))
+
+    def __call__(self) -> None:
+        for length in LENGTHS:
+            self.cost[length] = min(self.cost[length], self.walk.run(FILLINGS[-1], length)[0])
+
+    @property
+    def growth(self) -> float:
+        """Cost of a segment of the longest walk over that of the shortest."""
+        return self.cost[LENGTHS[-1]] / self.cost[LENGTHS[0]]
 
 
 # One point a segment, and a tenth to a fifth of that.
@@ -45,6 +68,7 @@ ALL = (
     Segments("curve, S", "T", 1.5, 50000.0),
     Segments("curve, S, planning alone", "T", 15.0, 50000.0),
 )
+LONG = Lengths(ALL[5])
 
 
 def table(ruckig: float) -> None:
@@ -58,3 +82,6 @@ def table(ruckig: float) -> None:
             f"  {s.name:32}{figures}{s.points:9.2f}{ruckig / s.cost[FILLINGS[-1]]:11.2f}"
             f"{1e-6 / s.cost[FILLINGS[-1]]:11.2f}"
         )
+    heads = "".join(f"{n:>10}" for n in LENGTHS)
+    print(f"\n{'one segment, ns; segments in all':34}{heads}")
+    print(f"  {LONG.walk.name:32}{''.join(f'{c * 1e9:10.0f}' for c in LONG.cost.values())}")

@@ -4,10 +4,9 @@
  *   arc TOLERANCE FEED PLANE CCW TURNS CENTRE_A CENTRE_B X Y Z U V W |
  *   cubic TOLERANCE FEED six coordinates of the inner points, X Y Z U V W
  *
- * prints `curve LENGTH FEED REST` and its origin and 36 coordinates from
- * there, `line` with start and slope, `cubic`
- * with from, start, end, inner points and length, `arc` with
- * from and the path's start, end, centre, radius, growth, angle, sweep, length and plane, `mark`,
+ * prints `curve LENGTH FEED REST`, its origin and 36 coordinates from there, `line` with start and
+ * slope, `cubic` with from, start, end, inner points and length, `arc` with from and the path's
+ * start, end, centre, radius, growth, angle, sweep, length and plane, `mark`,
  * and at the end `cost` with clock ticks per command. */
 #include <stdio.h>
 #include <string.h>
