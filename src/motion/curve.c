@@ -280,7 +280,7 @@ const struct shape_mark *curve_begun(struct curve *c, const struct curve_plan *m
 {
     const bool known = c->begun < shape_marks(&m->shape);
     const struct shape_mark *k = known ? shape_mark(&m->shape, c->begun) : NULL;
-    if (!k || (k->at > way_of(c) && !curve_done(c, m)) || (k->at >= c->goal && curve_waits(c))) {
+    if (!k || (k->at > way_of(c) && !curve_done(c, m)) || k->at >= c->goal) {
         return NULL;
     }
     c->begun++;

@@ -12,6 +12,8 @@ static struct curve_plan plan;
 static struct curve curve;
 static double at[AXES];
 static int32_t sent, seen;
+static double steepest;         /* acceleration, of that of the ramp */
+static double last[2][AXES];    /* [mm] the two points before */
 
 /* A line of a program. */
 static void send(int32_t line, double x, double y)
@@ -39,7 +41,9 @@ static void begin(void)
     ring_clear(&ring);
     memset(&plan, 0, sizeof plan);
     memset(at, 0, sizeof at);
+    memset(last, 0, sizeof last);
     sent = seen = 0;
+    steepest = sqrt(2.0);
 }
 
 /* Staircase of so many steps of one length, each a line of the program. */
@@ -50,18 +54,27 @@ static void stairs(int count, double size)
     }
 }
 
-/* One point; commands that begin are counted, in their order. Returns the time left. */
+/* One point; commands that begin are counted, in their order, and the acceleration is that of the
+ * ramp along and across the path. Returns the time left. */
 static double tick(double override)
 {
     const struct shape_mark *k;
-    const double left = curve_advance(&curve, &plan, &ring, override, DT);
+    double left = curve_advance(&curve, &plan, &ring, override, DT);
 
+    if (left > 0.0 && !curve_done(&curve, &plan)) {     /* the ring is empty, and stays so */
+        left = curve_advance(&curve, &plan, &ring, override, left);
+    }
     curve_sample(&curve, &plan);
     while ((k = curve_begun(&curve, &plan)) != NULL) {
         CHECK_EQ(k->index, ++seen);
         CHECK(k->at <= curve.start + curve.place.way + 1e-9 || curve_done(&curve, &plan));
     }
     curve_drop(&curve, &plan);
+    const double a[2] = { curve.point[0] - 2.0 * last[0][0] + last[1][0],
+                          curve.point[1] - 2.0 * last[0][1] + last[1][1] };
+    CHECK(hypot(a[0], a[1]) <= steepest * ACC * DT * DT * (1.0 + 1e-6) + 1e-12);
+    memcpy(last[1], last[0], sizeof last[1]);
+    memcpy(last[0], curve.point, sizeof last[0]);
     return left;
 }
 
@@ -161,8 +174,230 @@ static void unknown_block(void)
     CHECK_EQ(seen, first);
 }
 
+/* Lines in a row as one: a block that begins where a piece does is stopped at to the bit. Calls,
+ * without a line of a program, are blocks of their own. */
+static void in_a_row(int32_t line)
+{
+    begin();
+    for (int i = 0; i < 5; i++) {
+        send(line * (i + 1), at[0] + 3.0, 0.0);
+    }
+    plan.last = true;
+    curve_start(&curve, &plan, &ring);
+    tick(1.0);
+    curve_single(&curve, &plan, true);
+    for (int i = 1; i < 5; i++) {
+        go_on();
+        CHECK(curve_waits(&curve));
+        CHECK_EQ(seen, i);
+        CHECK_NEAR(curve.point[0], 3.0 * i, 1e-12);
+        curve_go(&curve, &plan, true);
+    }
+    go_on();
+    CHECK(curve_done(&curve, &plan));
+    CHECK_NEAR(curve.point[0], 15.0, 0.0);
+}
+
+/* A block of two lines is one; what has been switched off while it waits goes on to the end. */
+static void two_lines(void)
+{
+    begin();
+    for (int i = 0; i < 6; i++) {
+        send(1 + i / 2, at[0] + 3.0, 0.0);
+    }
+    plan.last = true;
+    curve_start(&curve, &plan, &ring);
+    tick(1.0);
+    curve_single(&curve, &plan, true);
+    go_on();
+    CHECK_EQ(seen, 2);
+    curve_single(&curve, &plan, false);
+    CHECK(curve_waits(&curve));
+    curve_go(&curve, &plan, false);
+    go_on();
+    CHECK(curve_done(&curve, &plan) && seen == 6);
+}
+
+/* Where the motion was is put back: what has been planned ahead, over ends of pieces and cells, is
+ * driven to the bit as without. */
+static void put_back(void)
+{
+    static struct curve direct[2000];
+    int count = 0;
+
+    for (int ahead = 0; ahead < 2; ahead++) {
+        begin();
+        stairs(12, 3.0);
+        plan.last = true;
+        curve_start(&curve, &plan, &ring);
+        for (int i = 0; i < 2000 && !curve_done(&curve, &plan); i++) {
+            const struct curve before = curve;
+            for (int k = 0; ahead && k < i % 60; k++) {
+                curve_advance(&curve, &plan, &ring, 1.0, DT);
+            }
+            curve = ahead ? before : curve;
+            tick(1.0);
+            if (ahead) {
+                CHECK(memcmp(curve.point, direct[i].point, sizeof curve.point) == 0);
+            } else {
+                direct[i] = curve;
+            }
+            count += ahead;
+        }
+    }
+    CHECK(count > 900);
+    printf("%d points put back\n", count);
+}
+
+/* Commands that come late: the chain takes them while it has time, and ends when it would have to
+ * brake within 0.05 s for want of them. An override of 0 takes none. */
+static void late(void)
+{
+    double room = 0.0;
+    int n = 0;
+
+    begin();
+    stairs(20, 3.0);
+    curve_start(&curve, &plan, &ring);
+    CHECK_NEAR(curve_advance(&curve, &plan, &ring, 0.0, DT), 0.0, 0.0);
+    CHECK_EQ(ring.count, 20);
+    CHECK_NEAR(curve_advance(&curve, &plan, &ring, 1.0, DT), DT, 0.0);
+    CHECK_EQ(ring.count, 0);
+    for (; n < 300; n++) {
+        tick(1.0);
+    }
+    CHECK(!curve.closed);
+    stairs(20, 3.0);
+    for (; !curve.closed && n < 20000; n++) {
+        room = plan.pace.end - pace_stop_way(&plan.pace);
+        CHECK(ring.count > 0 || room > 0.05 * curve.place.rate - 0.1 || n == 300);
+        tick(1.0);
+    }
+    CHECK(n > 1000 && room < 0.05 * FEED + 0.1);
+    go_on();
+    CHECK_EQ(seen, 40);
+    CHECK_NEAR(curve.point[0], at[0], 0.0);
+}
+
+/* Commands that come one by one, at each point one: the chain does not end before they do. */
+static void in_time(void)
+{
+    begin();
+    send(1, 3.0, 0.0);
+    curve_start(&curve, &plan, &ring);
+    while (sent < 30) {
+        tick(1.0);
+        CHECK(!curve.closed);
+        send(sent + 1, at[0] + (sent % 2 == 0 ? 3.0 : 0.0), at[1] + (sent % 2 == 1 ? 3.0 : 0.0));
+    }
+    plan.last = true;
+    go_on();
+    CHECK_EQ(seen, 30);
+    CHECK_NEAR(curve.point[0], at[0], 0.0);
+    CHECK_NEAR(curve.point[1], at[1], 0.0);
+}
+
+/* What begins a curve. */
+static void begins(void)
+{
+    begin();
+    CHECK(!curve_begins(&ring));
+    send(1, 1.0, 0.0);
+    CHECK(curve_begins(&ring));
+    ring_at(&ring, 0)->command.tolerance = 0.0;
+    CHECK(!curve_begins(&ring));
+    ring_at(&ring, 0)->command.tolerance = 0.02;
+    ring_at(&ring, 0)->command.curve = false;
+    CHECK(!curve_begins(&ring));
+    ring_at(&ring, 0)->command.curve = true;
+    ring_at(&ring, 0)->command.type = COMMAND_PTP;
+    CHECK(!curve_begins(&ring));
+}
+
+/* Another tolerance of runs is another chain. */
+static void other_merge(void)
+{
+    begin();
+    send(1, 3.0, 0.0);
+    send(2, 6.0, 0.0);
+    ring_at(&ring, 1)->command.merge = 0.01;
+    curve_start(&curve, &plan, &ring);
+    go_on();
+    CHECK_EQ(ring.count, 1);
+    CHECK_NEAR(curve.point[0], 3.0, 0.0);
+}
+
+/* The extent of the way to rest, held against that way. */
+static void extent(void)
+{
+    for (int n = 10; n < 600; n += 29) {
+        begin();
+        stairs(12, 3.0);
+        plan.last = true;
+        curve_start(&curve, &plan, &ring);
+        for (int i = 0; i < n; i++) {
+            tick(1.0);
+        }
+        double low[AXES], high[AXES], min[2], max[2];
+        curve_stop_extent(&curve, &plan, low, high);
+        memcpy(min, curve.point, sizeof min);
+        memcpy(max, curve.point, sizeof max);
+        while (!curve_rests(&curve)) {
+            tick(0.0);
+            for (int k = 0; k < 2; k++) {
+                min[k] = fmin(min[k], curve.point[k]);
+                max[k] = fmax(max[k], curve.point[k]);
+            }
+        }
+        for (int k = 0; k < 2; k++) {
+            CHECK(low[k] <= min[k] && low[k] > min[k] - 2e-3);
+            CHECK(high[k] >= max[k] && high[k] < max[k] + 2e-3);
+        }
+    }
+}
+
+/* Where the path turns back it rests and goes on by itself; a hold there stays. A point that is put
+ * back over that rest begins there, the first one where it began. */
+static void turn_back(void)
+{
+    struct curve before;
+    int held = 0;
+
+    begin();
+    steepest = 2.0;     /* one point is driven twice */
+    send(1, 3.0, 0.0);
+    send(2, 6.0, 0.0);
+    send(3, 3.0, 0.0);
+    send(4, -3.0, 0.0);
+    plan.last = true;
+    curve_start(&curve, &plan, &ring);
+    while (!curve_done(&curve, &plan)) {
+        before = curve;
+        curve_advance(&curve, &plan, &ring, 1.0, DT);
+        curve = before;
+        if (curve.point[0] == 6.0 && held < 5) {
+            tick(0.0);
+            CHECK(++held == 1 || curve.point[0] == 6.0);
+        }
+        tick(1.0);
+        CHECK(curve.point[0] <= 6.0);
+    }
+    CHECK_EQ(seen, 4);
+    CHECK_NEAR(curve.point[0], -3.0, 0.0);
+}
+
 int main(void)
 {
+    turn_back();
+    begins();
+    other_merge();
+    late();
+    in_time();
+    in_a_row(1);
+    in_a_row(0);
+    two_lines();
+    put_back();
+    extent();
     blocks();
     off();
     unknown_block();
