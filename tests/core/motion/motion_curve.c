@@ -369,6 +369,7 @@ static void turn_back(void)
     send(2, 6.0, 0.0);
     send(3, 3.0, 0.0);
     send(4, -3.0, 0.0);
+    send(5, 1.0, 0.0);
     plan.last = true;
     curve_start(&curve, &plan, &ring);
     while (!curve_done(&curve, &plan)) {
@@ -382,8 +383,8 @@ static void turn_back(void)
         tick(1.0);
         CHECK(curve.point[0] <= 6.0);
     }
-    CHECK_EQ(seen, 4);
-    CHECK_NEAR(curve.point[0], -3.0, 0.0);
+    CHECK_EQ(seen, 5);
+    CHECK_NEAR(curve.point[0], 1.0, 0.0);
 }
 
 int main(void)
