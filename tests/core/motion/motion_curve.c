@@ -93,7 +93,7 @@ static int go_on(void)
  * to corner; the tool rests on the middle of each. */
 static void blocks(void)
 {
-    for (int n = 5; n < 400; n += 37) {
+    for (int n = 5; n < 400; n += 7) {
         begin();
         stairs(12, 3.0);
         plan.last = true;
@@ -327,14 +327,29 @@ static void other_merge(void)
     CHECK_NEAR(curve.point[0], 3.0, 0.0);
 }
 
-/* The extent of the way to rest, held against that way. */
+/* To and fro in X over corners that reach out on either side. */
+static void zigzag(int count)
+{
+    for (int i = 0; i < count; i++) {
+        send(i + 1, i % 2 == 0 ? 2.0 : 0.0, at[1] + 1.0);
+    }
+}
+
+/* The extent of the way to rest, held against that way in small steps; also of a chain that began
+ * anew before a block. */
 static void extent(void)
 {
-    for (int n = 10; n < 600; n += 29) {
+    for (int n = 10; n < 700; n += 3) {
         begin();
-        stairs(12, 3.0);
+        zigzag(12);
         plan.last = true;
         curve_start(&curve, &plan, &ring);
+        if (n % 2 == 1) {
+            tick(1.0);
+            curve_single(&curve, &plan, true);
+            go_on();
+            curve_go(&curve, &plan, false);
+        }
         for (int i = 0; i < n; i++) {
             tick(1.0);
         }
@@ -343,7 +358,8 @@ static void extent(void)
         memcpy(min, curve.point, sizeof min);
         memcpy(max, curve.point, sizeof max);
         while (!curve_rests(&curve)) {
-            tick(0.0);
+            curve_advance(&curve, &plan, &ring, 0.0, 0.02 * DT);
+            curve_sample(&curve, &plan);
             for (int k = 0; k < 2; k++) {
                 min[k] = fmin(min[k], curve.point[k]);
                 max[k] = fmax(max[k], curve.point[k]);
