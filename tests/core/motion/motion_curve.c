@@ -107,7 +107,8 @@ static void blocks(void)
         curve_single(&curve, &plan, true);
         go_on();
         const double need = 0.5 * v * v / ACC;
-        CHECK(seen == before + (room < need) || (seen == before + 1 && room < 1.03 * need + 0.01));
+        CHECK(seen == before + (room < need) ||
+              (seen == before + 1 && room < 1.03 * need + 0.01));
         for (; !curve_done(&curve, &plan); curve_go(&curve, &plan, true), go_on()) {
             CHECK(curve_waits(&curve) && curve_rests(&curve));
             const double x = 3.0 * ((seen + 1) / 2), y = 3.0 * (seen / 2);
