@@ -6,7 +6,11 @@ Checked by `host_link` at every communication point:
 - the FIFO stock is the frames taken less those begun, within 0 .. 63;
 - the pulses put out lie on the sum of the frames begun, never beyond the one in the DDA;
 - at the end every frame taken has been put out, and that is where the library says it is.
+
+More: LINK_EXAMPLES=500 pytest tests/cards/test_conservation.py
 """
+
+import os
 
 import pytest
 from host_link import AXES, CLOCK, PULSES_PER_MM, Case, Run, execute
@@ -16,7 +20,7 @@ from hypothesis import strategies as st
 from motionfmu.errors import InputError
 
 RUNS = settings(
-    max_examples=30,
+    max_examples=int(os.environ.get("LINK_EXAMPLES", "12")),
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],

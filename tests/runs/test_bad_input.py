@@ -1,11 +1,10 @@
 """Wrong input gets one message with file, line and value, status 2, and leaves nothing behind."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from conftest import ROOT
+from console import within
 
 import motionfmu
 
@@ -27,8 +26,7 @@ def scenario(folder: Path, old: str = "", new: str = "", program: str = PROGRAM)
 def message(folder: Path, *arguments: str) -> str:
     """The one message of the command, which must end with status 2 and write nothing."""
     out = folder.parent / "out" / "result"
-    command = [sys.executable, "-m", "motionfmu", "run", str(folder), "--out", str(out), *arguments]
-    run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "src")
+    run = within("run", folder, "--out", out, *arguments)
     assert run.returncode == 2, run.stdout + run.stderr
     assert run.stdout == ""
     assert "Traceback" not in run.stderr
@@ -189,8 +187,7 @@ def test_a_foreign_folder_is_never_replaced(tmp_path: Path) -> None:
     folder = scenario(tmp_path)
     (tmp_path / "precious").mkdir()
     (tmp_path / "precious/thesis.txt").write_text("years of work")
-    command = [sys.executable, "-m", "motionfmu", "run", folder, "--out", tmp_path / "precious"]
-    run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "src")
+    run = within("run", folder, "--out", tmp_path / "precious")
     assert run.returncode == 2
     assert "holds no earlier result" in run.stderr
     assert (tmp_path / "precious/thesis.txt").read_text() == "years of work"

@@ -13,7 +13,7 @@ import zipfile
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from motionfmu.fmu import cores, cstructs, ctables, describe, fmu_toml
+from motionfmu.fmu import cores, cstructs, ctables, fmu_toml
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.toml_lines import text_of
 
@@ -45,15 +45,16 @@ def generate(fmu: Path, out: Path) -> None:
     `out` receives vars.h, vars.c, fmi2/ and fmi3/ with fmu_main.c and modelDescription.xml, and
     plant.c, plant.h, ode.json for a Modelica class.
     """
-    d = fmu_toml.load(fmu / "fmu.toml")
-    _write(out / "vars.h", ctables.header(d))
-    _write(out / "vars.c", ctables.table(d))
-    _write(out / GRID, json.dumps({"grid": d.grid}) + "\n")
     if is_modelica(fmu):
         from motionfmu.fmu.modelica import codegen
 
-        codegen.write(fmu / "fmu.toml", out)
-    compiled = [f.name for f in compiled_sources(fmu, d, out)]
+        d = codegen.write(fmu / "fmu.toml", out)
+    else:
+        d = fmu_toml.load(fmu / "fmu.toml")
+    _write(out / "vars.h", ctables.header(d))
+    _write(out / "vars.c", ctables.table(d))
+    _write(out / GRID, json.dumps({"grid": d.grid}) + "\n")
+    compiled = [f.name for f in compiled_sources(fmu, out)]
     for fmi in (2, 3):
         model = "plant_model.c" if is_modelica(fmu) else "model.c"
         _write(out / f"fmi{fmi}/fmu_main.c", ctables.main_unit(model, fmi))
@@ -63,8 +64,7 @@ def generate(fmu: Path, out: Path) -> None:
 
 def flags(fmu: Path, out: Path) -> None:
     """Write state_flags.h of one FMU from its C text; `out` has what `generate` wrote."""
-    d = fmu_toml.load(fmu / "fmu.toml")
-    files = [f for f in _core_files(fmu, d) if f.suffix == ".h"]
+    files = [f for f in _core_files(fmu) if f.suffix == ".h"]
     if is_modelica(fmu):
         files += [out / "plant.h", SOURCE / "plant" / "plant_model.c"]
     else:
@@ -72,30 +72,31 @@ def flags(fmu: Path, out: Path) -> None:
     (out / "state_flags.h").write_text(cstructs.flags(f.read_text() for f in files))
 
 
-def _core_files(fmu: Path, d: describe.Description) -> list[Path]:
-    return cores.needed(SOURCE, d.cores, fmu.glob("*.[ch]"))
+def _core_files(fmu: Path) -> list[Path]:
+    # A Modelica class uses no cores; to translate it only to learn that would take seconds.
+    used = () if is_modelica(fmu) else fmu_toml.load(fmu / "fmu.toml").cores
+    return cores.needed(SOURCE, used, fmu.glob("*.[ch]"))
 
 
-def compiled_sources(fmu: Path, d: describe.Description, out: Path) -> list[Path]:
+def compiled_sources(fmu: Path, out: Path) -> list[Path]:
     """C files that are compiled beside fmu_main.c; `out` is the folder of the generated text."""
-    files = [f for f in _core_files(fmu, d) if f.suffix == ".c"]
+    files = [f for f in _core_files(fmu) if f.suffix == ".c"]
     return files + ([out / "plant.c"] if is_modelica(fmu) else [])
 
 
-def _packed_sources(fmu: Path, out: Path, fmi: int) -> dict[str, bytes]:
+def _packed_sources(fmu: Path, out: Path, fmi: int, identifier: str) -> dict[str, bytes]:
     import fmpy
 
-    d = fmu_toml.load(fmu / "fmu.toml")
     folders = [fmu, SOURCE / "plant"] if is_modelica(fmu) else [fmu]
     files = [f for folder in folders for f in sorted(folder.glob("*.[ch]"))]
     files += [*sorted(out.glob("*.[ch]")), out / f"fmi{fmi}/fmu_main.c"]
-    files += [*cores.reached((SOURCE / "fmi").iterdir(), files), *_core_files(fmu, d)]
+    files += [*cores.reached((SOURCE / "fmi").iterdir(), files), *_core_files(fmu)]
     headers = Path(fmpy.__file__).parent / "c-code"
     files += sorted(headers.glob(f"fmi{fmi}*.h"))
     packed = {f.name: f.read_bytes() for f in files}
     if fmi == 3:
-        names = ["fmu_main.c", *[f.name for f in compiled_sources(fmu, d, out)]]
-        packed["buildDescription.xml"] = _build_description(d.name, names)
+        names = ["fmu_main.c", *[f.name for f in compiled_sources(fmu, out)]]
+        packed["buildDescription.xml"] = _build_description(identifier, names)
     return packed
 
 
@@ -125,10 +126,10 @@ def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> N
     xml = (out / f"fmi{fmi}/modelDescription.xml").read_bytes()
     match = re.search(rb'modelIdentifier="(\w+)"', xml)
     assert match, "the generated description has a model identifier"
-    name = match[1].decode() + library.suffix
+    identifier = match[1].decode()
     files = {
         "modelDescription.xml": xml,
-        f"binaries/{platform_folder(fmi)}/{name}": library.read_bytes(),
+        f"binaries/{platform_folder(fmi)}/{identifier}{library.suffix}": library.read_bytes(),
         "documentation/LICENSE": (SOURCE.parent / "LICENSE").read_bytes(),
     }
     for readme in folder.glob("README.md"):
@@ -140,7 +141,7 @@ def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> N
             *out.glob("*.json"),
         ):
             files[f"{EXTRA}/{extra.name}"] = extra.read_bytes()
-    for source, data in _packed_sources(folder, out, fmi).items():
+    for source, data in _packed_sources(folder, out, fmi, identifier).items():
         files[f"sources/{source}"] = data
     target.parent.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(target, "w") as archive_file:

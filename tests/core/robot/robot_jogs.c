@@ -35,7 +35,7 @@ static void run(const struct robot_config *c, enum robot_frame frame, const doub
 static void there_and_back(const struct robot_config *c, const double from[OPW_JOINTS],
                            double noise)
 {
-    for (int n = 0; n < 36; n++) {
+    for (int n = 0; n < 36; n += CHECK_EACH) {
         const enum robot_frame frame = (enum robot_frame)(n / 12);
         struct rig_watch w = { .noise = noise };
         struct robot_refusal why;

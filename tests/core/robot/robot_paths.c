@@ -78,7 +78,7 @@ static void polyline(const struct robot_config *c, int k)
 /* A circle in any plane: at its radius, through its point, at the feed. */
 static void circles(const struct robot_config *c)
 {
-    for (int k = 0; k < 30; k++) {
+    for (int k = 0; k < 30; k += CHECK_EACH) {
         struct robot_refusal why;
         struct rig_watch w = { 0 };
         struct robot_move m = { .kind = k % 2 ? ROBOT_ARC : ROBOT_CIRCLE, .feed = 150.0 };
@@ -210,7 +210,7 @@ int main(void)
         weak.arm.joint[i].acc *= 0.2;
     }
     weak.smooth = 0.0;
-    for (int k = 0; k < 16; k++) {
+    for (int k = 0; k < 16; k += CHECK_EACH) {
         polyline(&c, k);
         polyline(&weak, k);
     }

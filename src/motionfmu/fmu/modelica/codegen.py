@@ -13,6 +13,7 @@ from pathlib import Path
 
 import casadi as ca
 
+from motionfmu.fmu.describe import Description
 from motionfmu.fmu.modelica import causal, description, stored
 from motionfmu.fmu.modelica.cprint import statements
 from motionfmu.fmu.modelica.flat import Declaration
@@ -36,10 +37,11 @@ _WAY = _C  # of the derivative along a direction
 _ARGUMENTS = "xupc"
 
 
-def write(toml: Path, out: Path) -> None:
+def write(toml: Path, out: Path) -> Description:
     """Write plant.c, plant.h, ode.json of an fmu.toml with the key ``modelica``, where changed."""
     packing = description.read(toml)
     ode = causal.load(packing.package, packing.modelica)
+    described = description.describe_class(toml, packing, ode)
     out.mkdir(parents=True, exist_ok=True)
     code, header = generate(ode, packing.instances, packing.tolerance)
     texts = {"plant.c": code, "plant.h": header, stored.FILE: stored.to_json(ode)}
@@ -47,6 +49,7 @@ def write(toml: Path, out: Path) -> None:
         file = out / name
         if not file.exists() or file.read_text() != text:
             file.write_text(text)
+    return described
 
 
 def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[str, str]:

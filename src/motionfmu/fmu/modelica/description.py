@@ -72,13 +72,17 @@ def read(toml: Path) -> Packing:
 
 
 def from_modelica(toml: Path) -> describe.Description:
-    """Make the description of the Modelica FMU of an fmu.toml.
+    """Make the description of the Modelica FMU of an fmu.toml; see `describe_class`."""
+    packing = read(toml)
+    return describe_class(toml, packing, causal.load(packing.package, packing.modelica))
+
+
+def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Description:
+    """Describe a Modelica FMU; its fmu.toml is named in messages.
 
     Its parameters ``active`` and ``micro_step``, then all that the class declares, one element per
     instance (if there is one instance, as the class has it).
     """
-    packing = read(toml)
-    ode = causal.load(packing.package, packing.modelica)
     own: list[tuple[str, str, dict[str, Any]]] = [
         ("active", "parameter", _active(packing.instances)),
         ("micro_step", "parameter", _micro_step(packing)),
