@@ -17,7 +17,7 @@ test: build check               ## everything: style, C tests (also sanitized), 
 	@test -f build/asan/build.ninja || cmake --preset asan -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
 	@cmake --build build/asan
 	@ctest --test-dir build/asan -j 2 --output-on-failure
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
 check: .venv/installed          ## formatting, lint, types
 	$(BIN)/ruff format --check src tests scenarios
@@ -41,7 +41,7 @@ clean:
 	@echo "Installing the Python packages into .venv (once, about a minute) ..."
 	@$(BIN)/python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; \
 	  print(*p['dependencies'], *p['optional-dependencies']['dev'], sep='\n')" > .venv/requirements.txt
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -r .venv/requirements.txt
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation \
+	@$(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check -r .venv/requirements.txt
+	@$(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check --no-deps --no-build-isolation \
 	  -C wheel.cmake=false -C editable.mode=inplace -e .
 	@touch $@

@@ -17,6 +17,7 @@ import numpy as np
 from rich.progress import track
 
 import motionfmu
+from motionfmu.report.study_picture import save
 
 HERE = Path(__file__).parent
 BASE = 2**12 * 10 * 25e-9  # [s] DDA time of the first two settings
@@ -97,12 +98,7 @@ def main(picture: Path) -> None:
     below.set_xlabel("interrupt latency of the PC [ms]")
     below.set_ylim(-5, 110)
     above.legend(frameon=False)
-    for axes in (above, below):
-        axes.grid(alpha=0.25)
-        axes.spines[["top", "right"]].set_visible(False)
-    figure.tight_layout()
-    figure.savefig(picture, dpi=130)
-    print(f"picture: {picture}")
+    save(figure, picture)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import motionfmu
+from motionfmu.report.study_picture import save
 
 HERE = Path(__file__).parent
 CLOCK = 25e-9  # [s]
@@ -125,11 +126,7 @@ def main(picture: Path) -> None:
     axes.set_ylabel("edges [%]")
     axes.set_title("Reactions of the layers, 10,000 edges or more each", loc="left")
     axes.legend(frameon=False)
-    axes.grid(alpha=0.25)
-    axes.spines[["top", "right"]].set_visible(False)
-    figure.tight_layout()
-    figure.savefig(picture, dpi=130)
-    print(f"picture: {picture}")
+    save(figure, picture)
 
 
 if __name__ == "__main__":

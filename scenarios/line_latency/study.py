@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import motionfmu
+from motionfmu.report.study_picture import save
 
 HERE = Path(__file__).parent
 CLOCK = 25e-9  # [s]
@@ -127,11 +128,7 @@ def main(picture: Path) -> None:
     below.set_ylim(0, None)
     for axes in (above, below):
         axes.legend(frameon=False)
-        axes.grid(alpha=0.25)
-        axes.spines[["top", "right"]].set_visible(False)
-    figure.tight_layout()
-    figure.savefig(picture, dpi=130)
-    print(f"picture: {picture}")
+    save(figure, picture)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import motionfmu
+from motionfmu.report.study_picture import save
 
 HERE = Path(__file__).parent
 HERTZ = 40e6
@@ -129,11 +130,7 @@ def main(picture: Path) -> None:
     below.set_xlabel("slots of a pulse memory, 5 us each; dotted: 4 KB have no more")
     for axes in (above, below):
         axes.legend(frameon=False)
-        axes.grid(alpha=0.25)
-        axes.spines[["top", "right"]].set_visible(False)
-    figure.tight_layout()
-    figure.savefig(picture, dpi=130)
-    print(f"picture: {picture}")
+    save(figure, picture)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ import numpy as np
 from rich.progress import track
 
 import motionfmu
+from motionfmu.report.study_picture import save
 
 HERE = Path(__file__).parent
 # Times of a point [ns]: a grid, and the last that holds and one clock more for both modules.
@@ -96,11 +97,7 @@ def main(picture: Path) -> None:
     below.set_xlabel("processor time of a point [ms]")
     for axes in (above, below):
         axes.legend(frameon=False)
-        axes.grid(alpha=0.25)
-        axes.spines[["top", "right"]].set_visible(False)
-    figure.tight_layout()
-    figure.savefig(picture, dpi=130)
-    print(f"picture: {picture}")
+    save(figure, picture)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from motionfmu.errors import InputError
 from motionfmu.explain import causes, theory
 from motionfmu.explain.ballbar import Signature, signature
 from motionfmu.explain.causes import Cause, Off
+from motionfmu.explain.effects import Effects
 from motionfmu.explain.servo import Array
 from motionfmu.run import load
 from motionfmu.scenario import recording
@@ -61,7 +62,7 @@ class Effect:
 
 
 @dataclass(frozen=True)
-class Explanation:
+class Explanation(Effects[Effect]):
     """The contour error of a run, explained.
 
     Attributes
@@ -92,28 +93,6 @@ class Explanation:
     counts: NDArray[np.bool_]
     corners: "tuple[theory.CornerRow, ...]"
     signatures: tuple[Signature, ...]
-
-    @property
-    def residual(self) -> Array:
-        """Contour error minus the sum of the effects, shape (n,) [mm]."""
-        return self.whole - self.together
-
-    def effect(self, name: str) -> Effect:
-        """One effect by its name.
-
-        Parameters
-        ----------
-        name : str
-
-        Raises
-        ------
-        KeyError
-            There is no such effect.
-        """
-        found = {e.name: e for e in self.effects}
-        if name not in found:
-            raise KeyError(f"no effect {name!r}, there is {', '.join(found)}")
-        return found[name]
 
     def numbers(self) -> dict[str, Any]:
         """Every number, ready for JSON; mm, rad."""

@@ -11,6 +11,7 @@ from motionfmu.errors import InputError
 from motionfmu.explain import causes
 from motionfmu.explain.causes import Cause, Off
 from motionfmu.explain.decompose import NOTHING, SAME, short, watch
+from motionfmu.explain.effects import Effects
 from motionfmu.explain.servo import Array
 from motionfmu.iso9283 import Performance
 from motionfmu.run import load
@@ -44,7 +45,7 @@ class PathEffect:
 
 
 @dataclass(frozen=True)
-class PathExplanation:
+class PathExplanation(Effects[PathEffect]):
     """The deviation of a tool path, explained.
 
     Attributes
@@ -67,28 +68,6 @@ class PathExplanation:
     whole: Array
     together: Array
     figures: Mapping[str, float]
-
-    @property
-    def residual(self) -> Array:
-        """Deviation minus the sum of the effects, shape (m, 3) [mm]."""
-        return self.whole - self.together
-
-    def effect(self, name: str) -> PathEffect:
-        """One effect by its name.
-
-        Parameters
-        ----------
-        name : str
-
-        Raises
-        ------
-        KeyError
-            There is no such effect.
-        """
-        found = {e.name: e for e in self.effects}
-        if name not in found:
-            raise KeyError(f"no effect {name!r}, there is {', '.join(found)}")
-        return found[name]
 
     def numbers(self) -> dict[str, Any]:
         """Every number, ready for JSON; mm."""
