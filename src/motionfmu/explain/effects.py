@@ -29,17 +29,7 @@ class Effects(Generic[E]):
         return self.whole - self.together
 
     def effect(self, name: str) -> E:
-        """One effect by its name.
-
-        Parameters
-        ----------
-        name : str
-
-        Raises
-        ------
-        KeyError
-            There is no such effect.
-        """
+        """One effect by its name; a KeyError tells which there are."""
         found = {e.name: e for e in self.effects}
         if name not in found:
             raise KeyError(f"no effect {name!r}, there is {', '.join(found)}")

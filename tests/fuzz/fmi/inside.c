@@ -4,8 +4,8 @@
 #include "holds.h"
 #include "inside.h"
 
-/* An input takes as long as its states are large; a plant with more branches than are tried in every
- * combination takes long at each start. */
+/* An input takes as long as its states are large; a plant with more branches than are tried in
+ * every combination takes long at each start. */
 #ifdef PLANT_H
 enum { SLOW = PLANT_BRANCHES > 8 };
 #else
