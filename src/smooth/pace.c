@@ -319,7 +319,7 @@ void pace_put(struct pace *p, const struct pace_place *place)
     p->at = *place;
     p->at.planned = planned;
     p->count += crossed;
-    if (p->at.way <= 0.0 && p->count > 0) {     /* where no cell was known, or the first has grown */
+    if (p->at.way <= 0.0 && p->count > 0) {     /* no cell was known, or the first has grown */
         p->at.left = length_at(p, 0);
     }
 }
