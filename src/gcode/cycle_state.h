@@ -14,12 +14,15 @@ struct cycle {
     double  r, depth;           /* [mm] as programmed: coordinates, or with G91 ways */
     double  peck;               /* [mm] Q */
     double  dwell;              /* [s] P */
+    double  aside[2];       /* [mm] of G87: I J K of the plane, ways from the hole, */
+    double  bore;           /* [mm] and that of the normal, as programmed */
     double  initial;            /* [mm] height before the first of the series */
     bool    running;            /* commands of the latest block are still to be made: */
     int32_t step;               /* the next one in the list of the cycle */
     int32_t repeats;            /* holes after this one */
     double  hole[AXES], way[2]; /* [mm] program coordinates, way in the plane to the next one */
     double  top, bottom, clear; /* [mm] heights of R, the hole's end, the way to the next hole */
+    double  bored;          /* [mm] height to which G87 bores back */
     double  pecked;             /* [mm] height drilled to */
     double  feed;               /* [mm/s] */
     int32_t turning;            /* of the spindle before the cycle */

@@ -145,10 +145,10 @@ static double of(enum function f, double x)
     case ASIN:  return asin(x) / DEGREE;
     case COS:   return cos(x * DEGREE);
     case EXP:   return exp(x);
-    case FIX:   return floor(x);
-    case FUP:   return ceil(x);
+    case FIX:   return floor(x) + 0.0;      /* a zero without a sign, that ATAN would see */
+    case FUP:   return ceil(x) + 0.0;
     case LN:    return log(x);
-    case ROUND: return round(x);
+    case ROUND: return round(x) + 0.0;
     case SIN:   return sin(x * DEGREE);
     case SQRT:  return sqrt(x);
     case TAN:   return tan(x * DEGREE);

@@ -32,6 +32,7 @@ const char *fault_text(enum fault f)
     case FAULT_LARGE:        return "value too large";
     case FAULT_PARAMETER:    return "no such parameter";
     case FAULT_UNSET:        return "parameter has not been set";
+    case FAULT_FOREIGN:      return "this machine has no value for";
     case FAULT_FIXED:        return "parameter cannot be set";
     case FAULT_NAMES:        return "more than 100 named parameters";
     case FAULT_O_WORD:       return "unknown O word";
@@ -79,6 +80,7 @@ const char *fault_text(enum fault f)
     case FAULT_POLE:         return "polar word without an angle: the tool is at the pole";
     case FAULT_NO_FEED:      return "no F since G93, G94 or G95; with G93 each line needs one";
     case FAULT_REST:         return "G95 with the spindle at rest";
+    case FAULT_SURFACE:      return "G95 needs G97: the spindle's speed would change on the way";
     case FAULT_FEED:         return "feed above max_feed [mm/min]";
     case FAULT_SPEED:        return "feed drives an axis above max_rpm [rpm]";
     case FAULT_RANGE:        return "position does not fit the 32-bit pulse counter";
@@ -89,12 +91,12 @@ const char *fault_text(enum fault f)
     case FAULT_NO_PROBE:     return "this machine has no probe for";
     case FAULT_PROBE_POINT:  return "probing leads nowhere";
     case FAULT_NO_TOOL:      return "no T since the tool change before";
-    case FAULT_BACK_BORING:  return "G87 needs a spindle that stops at an angle";
     case FAULT_PLANE:        return "plane of U V W, in which this machine has no arcs or cycles";
     case FAULT_CYCLE_R:      return "canned cycle without R";
     case FAULT_CYCLE_DEPTH:  return "canned cycle without its depth";
     case FAULT_CYCLE_Q:      return "canned cycle without Q";
     case FAULT_CYCLE_P:      return "canned cycle without P";
+    case FAULT_CYCLE_ASIDE:  return "G87 without I, J and K";
     case FAULT_CYCLE_LOW:    return "R is below the bottom of the hole";
     case FAULT_CYCLE_PECKS:  return "more than 10,000 pecks in one hole";
     case FAULT_CYCLE_FEED:   return "canned cycle with G93, in which a feed is that of one motion";

@@ -27,6 +27,7 @@ enum fault {
     FAULT_LARGE,            /* a value beyond all numbers */
     FAULT_PARAMETER,        /* a number that no parameter has */
     FAULT_UNSET,            /* a name read before it was set */
+    FAULT_FOREIGN,          /* a name that other controllers give a value */
     FAULT_FIXED,            /* a parameter that a program cannot set */
     FAULT_NAMES,            /* too many names */
     FAULT_O_WORD,           /* no O word of the language, or in the middle of a line */
@@ -74,6 +75,7 @@ enum fault {
     FAULT_POLE,             /* polar words where the tool is at the pole */
     FAULT_NO_FEED,          /* no F in the line with G93, or since G94 or G95 */
     FAULT_REST,             /* G95 with the spindle at rest */
+    FAULT_SURFACE,          /* G95 with G96 */
     FAULT_FEED,             /* above max_feed */
     FAULT_SPEED,            /* drives an axis above its safe motor speed */
     FAULT_RANGE,            /* a position that does not fit the pulse counter */
@@ -84,12 +86,12 @@ enum fault {
     FAULT_NO_PROBE,         /* G38 without a probe */
     FAULT_PROBE_POINT,      /* G38 to where the tool stands */
     FAULT_NO_TOOL,          /* M6 with no T since the one before */
-    FAULT_BACK_BORING,      /* G87 */
     FAULT_PLANE,            /* G17.1, G18.1, G19.1 */
     FAULT_CYCLE_R,          /* a cycle without R */
     FAULT_CYCLE_DEPTH,      /* a cycle without the word along the normal of the plane */
     FAULT_CYCLE_Q,          /* G73 or G83 without Q */
     FAULT_CYCLE_P,          /* G82, G86, G88 or G89 without P */
+    FAULT_CYCLE_ASIDE,      /* G87 without the letters of I J K that it needs */
     FAULT_CYCLE_LOW,        /* R below the bottom of the hole */
     FAULT_CYCLE_PECKS,      /* more than 10,000 pecks */
     FAULT_CYCLE_FEED,       /* a cycle with G93 */

@@ -267,7 +267,9 @@ static double centre_of(const struct block *b, int axis, const double here[AXES]
     return word ? gcode_value(b, axis, word) : here[axis];
 }
 
-static enum fault scale(struct interpreter *in, const struct block *b, struct fault_report *r)
+/* G51; Fanuc's controls count its factors in thousandths without a point. */
+static enum fault scale(struct interpreter *in, const struct program *p, const struct block *b,
+                        struct fault_report *r)
 {
     static const char LETTERS[] = "IJK";
     const struct token *all = gcode_word(&b->g, 'P'), *any = gcode_first(&b->g, LETTERS);
@@ -284,7 +286,8 @@ static enum fault scale(struct interpreter *in, const struct block *b, struct fa
     w.scaled = true;
     for (int i = 0; i < 3; i++) {
         const struct token *word = all ? all : gcode_word(&b->g, LETTERS[i]);
-        w.factor[i] = word ? word->value : 1.0;
+        const bool thousandths = p->fanuc && word && word->whole;
+        w.factor[i] = !word ? 1.0 : thousandths ? word->value / 1000.0 : word->value;
         if (!(fabs(w.factor[i]) >= FACTOR_MIN && fabs(w.factor[i]) <= FACTOR_MAX)) {
             return tokens_at_word(r, FAULT_VALUE, word);
         }
@@ -355,7 +358,7 @@ enum fault frame_change(struct interpreter *in, const struct program *p, const s
     if (scaling == 500) {
         in->words.scaled = false;
     } else if (scaling == 510) {
-        f = scale(in, b, r);
+        f = scale(in, p, b, r);
     }
     if (turning == 680 && f == FAULT_NONE) {
         f = rotation(in, b, r);

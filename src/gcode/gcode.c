@@ -12,6 +12,7 @@ static const struct code g_codes[] = {
     { 382, GCODE_MOTION },  { 383, GCODE_MOTION },  { 384, GCODE_MOTION },  { 385, GCODE_MOTION },
     { 730, GCODE_MOTION },  { 740, GCODE_MOTION },  { 810, GCODE_MOTION },  { 820, GCODE_MOTION },
     { 830, GCODE_MOTION },  { 840, GCODE_MOTION },  { 850, GCODE_MOTION },  { 860, GCODE_MOTION },
+    { 870, GCODE_MOTION },
     { 880, GCODE_MOTION },  { 890, GCODE_MOTION },  { 980, GCODE_RETRACT }, { 990, GCODE_RETRACT },
     { 410, GCODE_CUTTER },  { 420, GCODE_CUTTER },  { 411, GCODE_CUTTER },  { 421, GCODE_CUTTER },
     { 40, GCODE_NONMODAL }, { 100, GCODE_NONMODAL },
@@ -21,7 +22,7 @@ static const struct code g_codes[] = {
     { 923, GCODE_NONMODAL }, { 170, GCODE_PLANE },  { 180, GCODE_PLANE },   { 190, GCODE_PLANE },
     { 200, GCODE_UNITS },   { 210, GCODE_UNITS },   { 400, GCODE_CUTTER },  { 490, GCODE_TOOL },
     { 430, GCODE_TOOL },    { 431, GCODE_TOOL },    { 432, GCODE_TOOL },
-    { 970, GCODE_SURFACE },
+    { 960, GCODE_SURFACE }, { 970, GCODE_SURFACE },
     { 540, GCODE_SYSTEM },  { 550, GCODE_SYSTEM },  { 560, GCODE_SYSTEM },  { 570, GCODE_SYSTEM },
     { 580, GCODE_SYSTEM },  { 590, GCODE_SYSTEM },  { 591, GCODE_SYSTEM },  { 592, GCODE_SYSTEM },
     { 593, GCODE_SYSTEM },  { 610, GCODE_PATH },    { 640, GCODE_PATH },
@@ -45,9 +46,8 @@ static const struct code m_codes[] = {
 
 /* Codes that this machine has no use for, and why. */
 static const struct refusal { int code; enum fault why; } g_refused[] = {
-    { 870, FAULT_BACK_BORING },
     { 171, FAULT_PLANE },   { 181, FAULT_PLANE },   { 191, FAULT_PLANE },
-    { 52, FAULT_NURBS },    { 53, FAULT_NURBS },   { 960, FAULT_TURNING },
+    { 52, FAULT_NURBS },    { 53, FAULT_NURBS },
     { 70, FAULT_TURNING },  { 80, FAULT_TURNING },  { 330, FAULT_TURNING }, { 331, FAULT_TURNING },
     { 700, FAULT_TURNING }, { 710, FAULT_TURNING }, { 711, FAULT_TURNING }, { 712, FAULT_TURNING },
     { 720, FAULT_TURNING }, { 721, FAULT_TURNING }, { 722, FAULT_TURNING }, { 760, FAULT_TURNING },

@@ -35,11 +35,21 @@ struct program {
 
 /* What S, M3 to M9 have set so far; it outlives the program. */
 struct switches {
-    double  speed;          /* [rpm] S */
+    double  speed;          /* [rpm] S of G97 */
+    bool    by_radius;      /* G96: */
+    double  pass, most;     /* [mm/s] S, [rpm] D */
+    struct outputs_surface told;    /* to the machine */
     int32_t turning;        /* 1 M3, -1 M4, 0 M5 */
     int32_t coolant;        /* enum outputs_coolant */
     uint32_t overrides;     /* enum outputs_overrides; ends with the program */
 };
+
+/* Speed of the spindle, in G96 the most it may have; counter-clockwise below 0. [rpm] */
+static inline double switches_spindle(const struct switches *s)
+{
+    const double most = s->pass > 0.0 ? s->most : 0.0;
+    return s->turning * (s->by_radius ? most : s->speed);
+}
 
 enum { INPUTS_DIGITAL = 32, INPUTS_ANALOG = 4 };    /* P0 .. P31, E0 .. E3 of M66 */
 

@@ -36,31 +36,95 @@ static bool machine_value(const struct interpreter *in, const struct program *p,
     return true;
 }
 
-/* What only a name says, a row each. */
-static bool named_value(const struct interpreter *in, const char *name, double *value)
-{
-    const struct { char name[PARAMETERS_NAME]; double value; } rows[] = {
-        { "_value", in->flow.value },           { "_value_returned", in->flow.returned },
-        { "_call_level", in->flow.level },      { "_line", in->line },
-        { "_metric", !in->inch },               { "_imperial", in->inch },
-        { "_absolute", !in->incremental },      { "_incremental", in->incremental },
-    };
-
-    for (int i = 0; i < (int)(sizeof rows / sizeof *rows); i++) {
-        if (memcmp(rows[i].name, name, PARAMETERS_NAME) == 0) {
-            *value = rows[i].value;
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Names of one letter for the coordinates: _x is #5420. */
+/* Coordinates by a name of one letter behind _ or _abs_, as numbers. */
 static int32_t number_of(const char *name)
 {
-    static const char letters[] = "xyzabcuvw";
-    const char *const at = name[0] == '_' && name[1] && !name[2] ? strchr(letters, name[1]) : NULL;
-    return at ? 5420 + (int32_t)(at - letters) : 0;
+    static const char LETTERS[] = "xyzabcuvw";
+    const bool machine = memcmp(name, "_abs_", 5) == 0;
+    const char *letter = name + (machine ? 5 : 1);
+    const char *at = name[0] == '_' && *letter && !letter[1] ? strchr(LETTERS, *letter) : NULL;
+    return at ? (machine ? 5021 : 5420) + (int32_t)(at - LETTERS) : 0;
+}
+
+/* The pocket of a tool, 0 if it has none. */
+static int32_t pocket_of(const struct interpreter *in, int32_t number)
+{
+    struct tool tool;
+    return number > 0 && tool_table_find(&in->tools.table, number, &tool) ? tool.pocket : 0;
+}
+
+/* F in its units; of G93 it is that of a line alone. */
+static double feed_of_program(const struct interpreter *in)
+{
+    const double unit = in->inch ? 25.4 : 1.0;
+    const int mode = in->words.feed_mode;
+    return mode == 950 ? in->words.per_turn / unit : mode == 940 ? in->feed * 60.0 / unit : 0.0;
+}
+
+/* What only a name says: names as LinuxCNC has them, in the order of modal groups there. */
+#define NAMES(X)                                                                                 \
+    X(_line, in->line)                      X(_task, 1)                                          \
+    X(_value, in->flow.value)               X(_value_returned, in->flow.returned)                \
+    X(_call_level, in->flow.level)          X(_motion_mode, in->motion)                          \
+    X(_plane, in->plane == PATH_XY ? 170 : in->plane == PATH_ZX ? 180 : 190)                     \
+    X(_ccomp, in->cutter.side == 0 ? 400 : in->cutter.side > 0 ? 410 : 420)                      \
+    X(_metric, !in->inch)                   X(_imperial, in->inch)                               \
+    X(_absolute, !in->incremental)          X(_incremental, in->incremental)                     \
+    X(_inverse_time, in->words.feed_mode == 930)                                                 \
+    X(_units_per_minute, in->words.feed_mode == 940)                                             \
+    X(_units_per_rev, in->words.feed_mode == 950)                                                \
+    X(_coord_system, in->system < 6 ? 540 + 10 * in->system : 585 + in->system)                  \
+    X(_tool_offset, tools_any_length(in))                                                        \
+    X(_retract_r_plane, in->cycle.to_r)     X(_retract_old_z, !in->cycle.to_r)                   \
+    X(_spindle_rpm_mode, !in->switches.by_radius)                                                \
+    X(_spindle_css_mode, in->switches.by_radius)                                                 \
+    X(_ijk_absolute_mode, in->absolute_centre)                                                   \
+    X(_spindle_on, in->switches.turning != 0)                                                    \
+    X(_spindle_cw, in->switches.turning > 0)                                                     \
+    X(_mist, (in->switches.coolant & OUTPUTS_MIST) != 0)                                         \
+    X(_flood, (in->switches.coolant & OUTPUTS_FLOOD) != 0)                                       \
+    X(_speed_override, !(in->switches.overrides & OUTPUTS_SPEED_FIXED))                          \
+    X(_feed_override, !(in->switches.overrides & OUTPUTS_FEED_FIXED))                            \
+    X(_adaptive_feed, (in->switches.overrides & OUTPUTS_ADAPTIVE) != 0)                          \
+    X(_feed_hold, !(in->switches.overrides & OUTPUTS_HOLD_OFF))                                  \
+    X(_feed, feed_of_program(in))           X(_rpm, in->switches.speed)                          \
+    X(_current_tool, in->tools.loaded)                                                           \
+    X(_current_pocket, pocket_of(in, in->tools.loaded))                                          \
+    X(_selected_tool, in->tools.chosen ? in->tools.next : -1)                                    \
+    X(_selected_pocket, in->tools.chosen ? pocket_of(in, in->tools.next) : -1)
+
+/* Those of other controllers: of a version, of a lathe, of what is built in there. */
+static bool foreign(const char *name)
+{
+    static const char ALL[][PARAMETERS_NAME] = {
+        "_vmajor", "_vminor", "_lathe_diameter_mode", "_lathe_radius_mode", "_remap_level",
+    };
+    bool found = memcmp(name, "_hal[", 5) == 0 || memcmp(name, "_ini[", 5) == 0;
+
+    for (int i = 0; i < (int)(sizeof ALL / sizeof *ALL); i++) {
+        found = found || memcmp(ALL[i], name, PARAMETERS_NAME) == 0;
+    }
+    return found;
+}
+
+static bool named_value(const struct interpreter *in, const char *name, double *value)
+{
+#define NAME(word, is) #word,
+#define VALUE(word, is) case VALUE_##word: *value = is; break;
+#define NUMBER(word, is) VALUE_##word,
+    static const char ALL[][PARAMETERS_NAME] = { NAMES(NAME) };
+    enum { NAMES(NUMBER) COUNT };
+    int i = 0;
+
+    while (i < COUNT && memcmp(ALL[i], name, PARAMETERS_NAME) != 0) {
+        i++;
+    }
+    switch (i) {
+    NAMES(VALUE)
+    default:
+        return false;
+    }
+    return true;
 }
 
 /* Its place among the names in force, or their count. */
@@ -95,7 +159,8 @@ enum fault parameters_get(const struct interpreter *in, const struct program *p,
         return FAULT_NONE;
     }
     return named_value(in, which->name, value) ||
-                   machine_value(in, p, number_of(which->name), value) ? FAULT_NONE : FAULT_UNSET;
+                   machine_value(in, p, number_of(which->name), value) ? FAULT_NONE
+         : foreign(which->name) ? FAULT_FOREIGN : FAULT_UNSET;
 }
 
 enum fault parameters_set(struct interpreter *in, const struct program *p,
@@ -114,6 +179,9 @@ enum fault parameters_set(struct interpreter *in, const struct program *p,
     if (named_value(in, which->name, &now) ||
         machine_value(in, p, number_of(which->name), &now)) {
         return FAULT_FIXED;
+    }
+    if (foreign(which->name)) {
+        return FAULT_FOREIGN;
     }
     const int32_t i = find(in, which->name);
     if (i == PARAMETERS_NAMED) {

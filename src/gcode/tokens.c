@@ -186,3 +186,12 @@ enum fault tokens_at_line(struct fault_report *r, enum fault f, const struct tok
 {
     return fault_at(r, f, t->at, t->length);
 }
+
+void tokens_note(struct fault_report *r, enum fault note, const struct token *w)
+{
+    r->note = note;
+    r->note_line = r->line;
+    r->note_offset = r->offset;
+    r->note_at = w->at;
+    r->note_length = w->length;
+}

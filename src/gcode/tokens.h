@@ -45,4 +45,7 @@ enum fault tokens_at_words(struct fault_report *r, enum fault f, const struct to
                            const struct token *other);
 enum fault tokens_at_line(struct fault_report *r, enum fault f, const struct tokens *t);
 
+/* What a word has to say that is no fault. */
+void tokens_note(struct fault_report *r, enum fault note, const struct token *w);
+
 #endif

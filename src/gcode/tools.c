@@ -98,6 +98,16 @@ double tools_length(const struct interpreter *in, int axis)
     return in->tools.length[axis];
 }
 
+bool tools_any_length(const struct interpreter *in)
+{
+    bool any = false;
+
+    for (int i = 0; i < AXES; i++) {
+        any = any || in->tools.length[i] != 0.0;
+    }
+    return any;
+}
+
 bool tools_diameter(const struct interpreter *in, int32_t number, double *diameter)
 {
     struct tool tool;

@@ -20,6 +20,9 @@ enum fault tools_measure(struct interpreter *in, const struct program *p, const 
 /* The offset that every coordinate of the program gets last. [mm], [deg] */
 double tools_length(const struct interpreter *in, int axis);
 
+/* Whether any axis has one. */
+bool tools_any_length(const struct interpreter *in);
+
 /* Numbered parameters of tools in mm and degrees: 5081 .. 5089 the length in force, 5400 number,
  * 5401 .. 5409 offset, 5410 diameter of the tool in the spindle; 5411 .. 5413, of turning, are 0.
  * False: no such parameter here. */

@@ -22,11 +22,14 @@ static const double SAME = 1e-9;            /* [mm] nearer places are one: round
  *     R rapid to R              p dwell             x overrides off
  *     ^ rapid to the clear way  s spindle off       r spindle the other way round
  *     ! stop as M0              t spindle and overrides as before
+ *     i rapid aside             h rapid back over the hole
+ *     D rapid to the bottom     o rapid to the clear way, both where the tool is
+ *     k feed to K
  */
-static const struct { int code; char steps[8], words[3]; } rows[] = {
+static const struct { int code; char steps[14], words[3]; } rows[] = {
     { 730, "gc<^", "Q" },   { 740, "xdrpUt", "" },  { 810, "d^", "" },      { 820, "dp^", "P" },
     { 830, "gRc<^", "Q" },  { 840, "xdrpUt", "" },  { 850, "du^", "" },     { 860, "dps^t", "P" },
-    { 880, "dps!^t", "P" }, { 890, "dpU", "P" },
+    { 870, "isDhtkdsioht", "I" },           { 880, "dps!^t", "P" }, { 890, "dpU", "P" },
 };
 
 /* In front of those: rapid over the hole, rapid to R. */
@@ -52,7 +55,7 @@ static bool taps(int code)
     return code == 740 || code == 840;
 }
 
-/* Whether it takes P or Q. */
+/* Whether it takes P, Q, or I J K. */
 static bool takes(int code, char letter)
 {
     return strchr(rows[row_of(code)].words, letter) || (letter == 'P' && taps(code));
@@ -104,6 +107,23 @@ static enum fault keep(const struct block *b, bool kept, char letter, double sca
     return FAULT_NONE;
 }
 
+/* I J K of G87: from the hole to where the tool fits through, and the height it bores up to. */
+static enum fault keep_aside(struct interpreter *in, const struct block *b, bool kept,
+                             struct fault_report *r)
+{
+    struct cycle *k = &in->cycle;
+    const int plane[2] = { path_first(in->plane), path_second(in->plane) };
+    enum fault f = keep(b, kept, "IJK"[in->plane], b->scale, &k->bore, FAULT_CYCLE_ASIDE, r);
+
+    for (int i = 0; i < 2 && f == FAULT_NONE; i++) {
+        f = keep(b, kept, "IJK"[plane[i]], b->scale, &k->aside[i], FAULT_CYCLE_ASIDE, r);
+    }
+    if (b->g.by[GCODE_MOTION]) {
+        tokens_note(r, FAULT_NOTE_ORIENT, b->g.by[GCODE_MOTION]);
+    }
+    return f;
+}
+
 static enum fault keep_words(struct interpreter *in, const struct block *b, bool kept,
                              struct fault_report *r)
 {
@@ -121,6 +141,9 @@ static enum fault keep_words(struct interpreter *in, const struct block *b, bool
     if (f == FAULT_NONE && takes(in->motion, 'P')) {
         k->dwell = kept ? k->dwell : 0.0;
         f = keep(b, kept || taps(in->motion), 'P', 1.0, &k->dwell, FAULT_CYCLE_P, r);
+    }
+    if (f == FAULT_NONE && takes(in->motion, 'I')) {
+        f = keep_aside(in, b, kept, r);
     }
     if (f != FAULT_NONE) {
         return f;
@@ -173,6 +196,12 @@ static enum fault set_places(struct interpreter *in, const struct program *p,
         r->limit = k->bottom;
         return tokens_at_line(r, FAULT_CYCLE_LOW, &b->tokens);
     }
+    k->bored = in->incremental ? k->bottom + k->bore : k->bore;
+    if (takes(in->motion, 'I') && k->bored < k->bottom) {
+        r->value = k->bored;
+        r->limit = k->bottom;
+        return tokens_at_line(r, FAULT_CYCLE_LOW, &b->tokens);
+    }
     if (takes(in->motion, 'Q') && k->top - k->bottom > PECKS_MAX * k->peck) {
         return tokens_at_line(r, FAULT_CYCLE_PECKS, &b->tokens);
     }
@@ -184,7 +213,8 @@ enum fault cycles_block(struct interpreter *in, const struct program *p, const s
                         struct fault_report *r)
 {
     struct cycle *k = &in->cycle;
-    const int code = in->motion, turning = in->switches.speed > 0.0 ? in->switches.turning : 0;
+    const int code = in->motion;
+    const int turning = switches_spindle(&in->switches) != 0.0 ? in->switches.turning : 0;
     const bool kept = k->code == code, series = k->code != 0;
     const bool named = b->g.code[GCODE_MOTION] == code;
     const struct token *extra = gcode_first(&b->g, "UVW");
@@ -197,7 +227,7 @@ enum fault cycles_block(struct interpreter *in, const struct program *p, const s
         return named ? tokens_at_word(r, FAULT_NO_AXES, b->g.by[GCODE_MOTION])
              : extra ? tokens_at_word(r, FAULT_UNUSED, extra) : FAULT_NONE;
     }
-    if (takes(code, 'P') && code != 820 && code != 890 &&
+    if ((takes(code, 'I') || (takes(code, 'P') && code != 820 && code != 890)) &&
         (taps(code) ? turning != (code == 840 ? 1 : -1) : turning == 0)) {
         return tokens_at_line(r, FAULT_CYCLE_SPINDLE, &b->tokens);
     }
@@ -231,6 +261,22 @@ static void turn(struct interpreter *in, int32_t turning, uint32_t overrides)
     switching_make(in, 0, 0);
 }
 
+/* Rapid where the tool is, as high as over the hole or aside of it, or along the normal. */
+static enum fault shift(struct interpreter *in, const struct program *p, char step,
+                        struct fault_report *r)
+{
+    const struct cycle *k = &in->cycle;
+    const int plane[2] = { path_first(in->plane), path_second(in->plane) };
+    double place[AXES];
+
+    frame_program(in, in->point, place);
+    for (int i = 0; i < 2 && (step == 'i' || step == 'h'); i++) {
+        place[plane[i]] = k->hole[plane[i]] + (step == 'i' ? k->aside[i] : 0.0);
+    }
+    return go(in, p, place, step == 'D' ? k->bottom : step == 'o' ? k->clear
+                                                                  : place[in->plane], true, r);
+}
+
 /* One step of the list. */
 static enum fault step(struct interpreter *in, const struct program *p, const char *steps,
                        struct fault_report *r)
@@ -249,6 +295,13 @@ static enum fault step(struct interpreter *in, const struct program *p, const ch
         return go(in, p, k->hole, k->top, true, r);
     case '^':
         return go(in, p, k->hole, k->clear, true, r);
+    case 'i':
+    case 'h':
+    case 'D':
+    case 'o':
+        return shift(in, p, steps[k->step - 1 - STEP_FIRST], r);
+    case 'k':
+        return go(in, p, k->hole, k->bored, false, r);
     case 'g':
         k->pecked = fmax(k->pecked - k->peck, k->bottom);
         if (k->pecked - k->bottom < SAME) {     /* the rest of the rounding is no peck */

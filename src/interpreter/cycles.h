@@ -1,4 +1,4 @@
-/* cycles - canned cycles: G73, G74, G81 to G86, G88, G89, with G98, G99 and L, in every plane.
+/* cycles - canned cycles: G73, G74, G81 to G89, with G98, G99 and L, in every plane.
  *
  * A block becomes commands one by one: the state keeps how far it is, so that there may be any
  * number of holes and pecks.

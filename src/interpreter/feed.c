@@ -62,7 +62,10 @@ enum fault feed_of(const struct interpreter *in, const struct program *p, const 
     if (w->feed_mode == INVERSE_TIME ? !f : w->per_turn == 0.0) {
         return tokens_at_line(r, FAULT_NO_FEED, &b->tokens);
     }
-    const double rpm = in->switches.turning * in->switches.speed;
+    const double rpm = switches_spindle(&in->switches);
+    if (w->feed_mode == PER_TURN && in->switches.by_radius) {
+        return tokens_at_line(r, FAULT_SURFACE, &b->tokens);
+    }
     if (w->feed_mode == PER_TURN && rpm == 0.0) {
         return tokens_at_line(r, FAULT_REST, &b->tokens);
     }

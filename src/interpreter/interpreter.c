@@ -212,8 +212,8 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     f = also(f, feed_set(in, p, b, f ? &ignored : r));
     f = also(f, waiting_input(in, p, b, f ? &ignored : r));
     f = also(f, tool_change(in, p, b, f ? &ignored : r));
-    f = also(f, switching_block(in, b, f ? &ignored : r));
     f = also(f, tools_lengths(in, p, b, f ? &ignored : r));
+    f = also(f, switching_block(in, b, f ? &ignored : r));
     cycles_modes(in, b);
     f = also(f, cutter_block(in, p, b, f ? &ignored : r));
     f = also(f, act(in, p, b, f ? &ignored : r));

@@ -4,13 +4,31 @@
 #include <stddef.h>
 
 #include "block.h"
+#include "frame.h"
 #include "queue.h"
+
+static const double METRE = 1000.0, FOOT = 304.8;       /* [mm] of S with G96 */
+
+/* What G96 asks for now: about the program's zero, along X of the machine. */
+static struct outputs_surface surface_of(const struct interpreter *in)
+{
+    static const double ZERO[AXES];
+    const struct switches *s = &in->switches;
+    double centre[AXES];
+
+    if (!s->by_radius || switches_spindle(s) == 0.0) {
+        return (struct outputs_surface){ 0.0, 0.0 };
+    }
+    frame_machine(in, ZERO, centre);
+    return (struct outputs_surface){ s->pass, centre[0] };
+}
 
 void switching_make(struct interpreter *in, uint32_t set, uint32_t clear)
 {
     struct command *c = block_command(in);
     c->type = COMMAND_OUTPUTS;
-    c->spindle = in->switches.turning * in->switches.speed;
+    c->spindle = switches_spindle(&in->switches);
+    c->surface = in->switches.told = surface_of(in);
     c->coolant = in->switches.coolant;
     c->overrides = in->switches.overrides;
     c->tool = in->tools.loaded;
@@ -85,15 +103,6 @@ static enum fault outputs(struct interpreter *in, const struct block *b, struct 
          : code >= 670 ? analog(in, b, now, r) : digital(in, b, now, r);
 }
 
-static void note(struct fault_report *r, enum fault what, const struct token *w)
-{
-    r->note = what;
-    r->note_line = r->line;
-    r->note_offset = r->offset;
-    r->note_at = w->at;
-    r->note_length = w->length;
-}
-
 /* M48 .. M53; P0 undoes what the code alone does. */
 static enum fault overrides(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
@@ -115,7 +124,7 @@ static enum fault overrides(struct interpreter *in, const struct block *b, struc
             return tokens_at_word(r, FAULT_VALUE, p);
         }
         if (rows[i].code == 510) {
-            note(r, FAULT_NOTE_SPEED, b->g.by[GCODE_OVERRIDE]);
+            tokens_note(r, FAULT_NOTE_SPEED, b->g.by[GCODE_OVERRIDE]);
         }
         const bool undo = takes && p && p->value == 0.0;
         const uint32_t on = undo ? rows[i].off : rows[i].on;
@@ -141,10 +150,38 @@ static enum fault spindle(struct interpreter *in, const struct block *b, struct 
         }
     }
     if (code == 190) {
-        note(r, FAULT_NOTE_ORIENT, b->g.by[GCODE_SPINDLE]);
+        tokens_note(r, FAULT_NOTE_ORIENT, b->g.by[GCODE_SPINDLE]);
     }
     if (code != GCODE_ABSENT) {
         in->switches.turning = code == 30 ? 1 : code == 40 ? -1 : 0;
+    }
+    return FAULT_NONE;
+}
+
+/* S, G96 with its D, G97. */
+static enum fault speed(struct interpreter *in, const struct block *b, struct fault_report *r)
+{
+    const struct token *s = gcode_word(&b->g, 'S'), *d = gcode_word(&b->g, 'D');
+    const int code = b->g.code[GCODE_SURFACE];
+    struct switches *now = &in->switches;
+
+    if (code == 960 && (!s || !d)) {
+        return tokens_at_word(r, FAULT_MISSING, b->g.by[GCODE_SURFACE]);
+    }
+    if (s && s->value < 0.0) {
+        return tokens_at_word(r, FAULT_VALUE, s);
+    }
+    if (code == 960 && !(d->value > 0.0)) {
+        return tokens_at_word(r, FAULT_VALUE, d);
+    }
+    if (code != GCODE_ABSENT) {
+        now->by_radius = code == 960;
+        now->most = code == 960 ? d->value : now->most;
+    }
+    if (s && now->by_radius) {
+        now->pass = s->value * (in->inch ? FOOT : METRE) / 60.0;
+    } else if (s) {
+        now->speed = s->value;
     }
     return FAULT_NONE;
 }
@@ -153,34 +190,30 @@ static enum fault spindle(struct interpreter *in, const struct block *b, struct 
 static bool differ(const struct switches *a, const struct switches *b)
 {
     return a->coolant != b->coolant || a->overrides != b->overrides ||
-           a->turning * a->speed != b->turning * b->speed;
+           switches_spindle(a) != switches_spindle(b);
 }
 
 enum fault switching_block(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const struct switches before = in->switches;
-    const struct token *speed = gcode_word(&b->g, 'S');
     const int coolant = b->g.code[GCODE_COOLANT];
     struct switches *s = &in->switches;
     struct at_once now = { 0 };
 
-    if (speed && speed->value < 0.0) {
-        return tokens_at_word(r, FAULT_VALUE, speed);
-    }
-    enum fault f = outputs(in, b, &now, r);
+    enum fault f = speed(in, b, r);
+    f = f == FAULT_NONE ? outputs(in, b, &now, r) : f;
     f = f == FAULT_NONE ? spindle(in, b, r) : f;
     f = f == FAULT_NONE ? overrides(in, b, r) : f;
     if (f != FAULT_NONE) {
         return f;
     }
-    if (speed) {
-        s->speed = speed->value;
-    }
     if (coolant != GCODE_ABSENT) {
         s->coolant = coolant == 90 ? 0
                    : s->coolant | (coolant == 70 ? OUTPUTS_MIST : OUTPUTS_FLOOD);
     }
-    if (now.set || now.clear || now.analog.set || differ(s, &before)) {
+    const struct outputs_surface pass = surface_of(in);
+    if (now.set || now.clear || now.analog.set || differ(s, &before) ||
+        pass.speed != s->told.speed || pass.centre != s->told.centre) {
         switching_make(in, now.set, now.clear);
         in->made[in->count - 1].analog = now.analog;
     }
@@ -194,6 +227,7 @@ void switching_end(struct interpreter *in)
 
     s->turning = s->coolant = 0;
     s->overrides = 0;
+    s->by_radius = false;
     if (differ(s, &before)) {
         switching_make(in, 0, 0);
     }

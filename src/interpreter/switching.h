@@ -1,4 +1,4 @@
-/* switching - S, M3 to M5, M19, M7 to M9, M48 to M53, M62 to M65, M67, M68 of one block. */
+/* switching - S, G96, G97, M3 to M5, M19, M7 to M9, M48 to M53, M62 to M65, M67, M68 of a block. */
 #ifndef SWITCHING_H
 #define SWITCHING_H
 

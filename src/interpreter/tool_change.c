@@ -23,7 +23,7 @@ static enum fault choose(struct interpreter *in, const struct token *t, struct f
 
 static void load(struct interpreter *in, const struct program *p)
 {
-    const bool turns = in->switches.turning != 0 && in->switches.speed != 0.0;
+    const bool turns = switches_spindle(&in->switches) != 0.0;
 
     in->tools.chosen = false;
     in->switches.turning = 0;

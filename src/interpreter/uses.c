@@ -3,62 +3,73 @@
 #include <stddef.h>
 #include <string.h>
 
-/* A row for each code beside those of motion that takes words: '+' are the axis words. */
-static const struct { enum gcode_group group; int code; char takes[8]; } rows[] = {
-    { GCODE_NONMODAL, 40, "P" },   { GCODE_NONMODAL, 100, "PLR+" }, { GCODE_NONMODAL, 280, "+" },
-    { GCODE_NONMODAL, 300, "+" },  { GCODE_NONMODAL, 520, "+" },    { GCODE_NONMODAL, 920, "+" },
-    { GCODE_SCALING, 510, "PIJK+" }, { GCODE_ROTATION, 680, "R+" }, { GCODE_STOP, 980, "PL" },
-    { GCODE_IO, 620, "P" },        { GCODE_IO, 630, "P" },          { GCODE_IO, 640, "P" },
-    { GCODE_IO, 650, "P" },        { GCODE_IO, 660, "PLEQ" },       { GCODE_IO, 670, "EQ" },
-    { GCODE_IO, 680, "EQ" },
-    { GCODE_TOOL, 430, "H" },      { GCODE_TOOL, 431, "+" },        { GCODE_TOOL, 432, "H+" },
-    { GCODE_CHANGE, 610, "Q" },    { GCODE_SPINDLE, 190, "RPQ" },
-    { GCODE_OVERRIDE, 500, "P" },  { GCODE_OVERRIDE, 510, "P" },    { GCODE_OVERRIDE, 520, "P" },
-    { GCODE_OVERRIDE, 530, "P" },  { GCODE_PATH, 640, "PQ" },
-    { GCODE_CUTTER, 410, "D" },    { GCODE_CUTTER, 420, "D" },      { GCODE_CUTTER, 411, "D" },
-    { GCODE_CUTTER, 421, "D" },
-};
+#define P GCODE_BIT('P')
+#define L GCODE_BIT('L')
+#define R GCODE_BIT('R')
+#define Q GCODE_BIT('Q')
+#define H GCODE_BIT('H')
+#define D GCODE_BIT('D')
+#define E GCODE_BIT('E')
+#define I GCODE_BIT('I')
+#define J GCODE_BIT('J')
+#define K GCODE_BIT('K')
+#define POLAR (GCODE_BIT('@') | GCODE_BIT('^'))
+#define AXIS_WORDS ((uint32_t)1 << GCODE_LETTERS)
 
-/* What the codes of motion take, while no other code takes the axis words. */
-static const struct { int code; char takes[12]; } moves[] = {
-    { 0, "+@^" }, { 10, "+@^" }, { 20, "+@^IJKRP" }, { 30, "+@^IJKRP" }, { 50, "+IJPQ" },
-    { 51, "+IJ" },
-    { 730, "+@^RLQ" }, { 740, "+@^RLP" }, { 810, "+@^RL" }, { 820, "+@^RLP" }, { 830, "+@^RLQ" },
-    { 840, "+@^RLP" }, { 850, "+@^RL" }, { 860, "+@^RLP" }, { 880, "+@^RLP" }, { 890, "+@^RLP" },
-};
+/* The codes beside those of motion that take words: group, code, letters. */
+#define CODES(X)                                                                                 \
+    X(NONMODAL, 40, P)      X(NONMODAL, 100, P | L | R | AXIS_WORDS)                             \
+    X(NONMODAL, 280, AXIS_WORDS)        X(NONMODAL, 300, AXIS_WORDS)                             \
+    X(NONMODAL, 520, AXIS_WORDS)        X(NONMODAL, 920, AXIS_WORDS)                             \
+    X(SCALING, 510, P | I | J | K | AXIS_WORDS)     X(ROTATION, 680, R | AXIS_WORDS)             \
+    X(STOP, 980, P | L)                                                                          \
+    X(IO, 620, P)           X(IO, 630, P)           X(IO, 640, P)           X(IO, 650, P)        \
+    X(IO, 660, P | L | E | Q)           X(IO, 670, E | Q)       X(IO, 680, E | Q)                \
+    X(TOOL, 430, H)         X(TOOL, 431, AXIS_WORDS)            X(TOOL, 432, H | AXIS_WORDS)     \
+    X(CHANGE, 610, Q)       X(SPINDLE, 190, R | P | Q)          X(SURFACE, 960, D)               \
+    X(OVERRIDE, 500, P)     X(OVERRIDE, 510, P)     X(OVERRIDE, 520, P)     X(OVERRIDE, 530, P)  \
+    X(PATH, 640, P | Q)                                                                          \
+    X(CUTTER, 410, D)       X(CUTTER, 420, D)       X(CUTTER, 411, D)       X(CUTTER, 421, D)
 
-/* Which word a code gave that takes each letter, '+' at the end. */
+/* What the codes of motion take beside axis words, while no other code takes those. */
+#define MOVES(X)                                                                                 \
+    X(MOTION, 0, POLAR)     X(MOTION, 10, POLAR)                                                 \
+    X(MOTION, 20, POLAR | I | J | K | R | P)        X(MOTION, 30, POLAR | I | J | K | R | P)     \
+    X(MOTION, 50, I | J | P | Q)        X(MOTION, 51, I | J)                                     \
+    X(MOTION, 730, POLAR | R | L | Q)   X(MOTION, 740, POLAR | R | L | P)                        \
+    X(MOTION, 810, POLAR | R | L)       X(MOTION, 820, POLAR | R | L | P)                        \
+    X(MOTION, 830, POLAR | R | L | Q)   X(MOTION, 840, POLAR | R | L | P)                        \
+    X(MOTION, 850, POLAR | R | L)       X(MOTION, 860, POLAR | R | L | P)                        \
+    X(MOTION, 870, POLAR | R | L | I | J | K)                                                    \
+    X(MOTION, 880, POLAR | R | L | P)   X(MOTION, 890, POLAR | R | L | P)
+
+#define ROW(group, code, takes) { GCODE_##group, code, takes },
+#define GROUP(group, code, takes) | (uint32_t)1 << GCODE_##group
+#define LETTERS(group, code, takes) | (takes)
+static const struct row { enum gcode_group group; int code; uint32_t takes; }
+    rows[] = { CODES(ROW) }, moves[] = { MOVES(ROW) };
+static const uint32_t OWNERS = 0 CODES(GROUP);      /* groups that have rows */
+static const uint32_t OWNED = (0 CODES(LETTERS) MOVES(LETTERS)) & ~AXIS_WORDS;
+
+/* Which word a code gave that takes each letter, the axis words at the end. */
 struct owners {
     const struct token *of[GCODE_LETTERS + 1];
 };
-
-static int place(char letter)
-{
-    return letter == '+' ? GCODE_LETTERS : letter - '@';
-}
 
 static bool takes(const struct gcode *g, size_t row)
 {
     return g->code[rows[row].group] == rows[row].code;
 }
 
-/* Groups that have rows, and the letters that rows and moves take beside those of axes. */
-#define OWNERS                                                                                   \
-    (1u << GCODE_NONMODAL | 1u << GCODE_SCALING | 1u << GCODE_ROTATION | 1u << GCODE_STOP |      \
-     1u << GCODE_IO | 1u << GCODE_TOOL | 1u << GCODE_CHANGE | 1u << GCODE_SPINDLE |              \
-     1u << GCODE_OVERRIDE | 1u << GCODE_PATH | 1u << GCODE_CUTTER)
-#define OWNED                                                                                    \
-    (GCODE_BIT('P') | GCODE_BIT('L') | GCODE_BIT('R') | GCODE_BIT('Q') | GCODE_BIT('H') |        \
-     GCODE_BIT('D') | GCODE_BIT('E') | GCODE_BIT('I') | GCODE_BIT('J') | GCODE_BIT('K') |        \
-     GCODE_BIT('@') | GCODE_BIT('^'))
-
 const struct token *uses_of(const struct gcode *g, char letter)
 {
+    const uint32_t bit = letter == '+' ? AXIS_WORDS : GCODE_BIT(letter);
+
     if (!(g->groups & OWNERS)) {
         return NULL;
     }
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        if (takes(g, i) && strchr(rows[i].takes, letter)) {
+        if (takes(g, i) && rows[i].takes & bit) {
             return g->by[rows[i].group];
         }
     }
@@ -70,26 +81,39 @@ static enum fault share(const struct gcode *g, struct owners *o, struct fault_re
 {
     memset(o, 0, sizeof *o);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        for (const char *c = rows[i].takes; takes(g, i) && *c; c++) {
-            const struct token **owner = &o->of[place(*c)];
-            if (*owner && (*c == '+' || gcode_word(g, *c))) {
+        uint32_t left = takes(g, i) ? rows[i].takes : 0;
+        for (int k = 0; left; k++, left >>= 1) {
+            const struct token **owner = &o->of[k];
+            if (left & 1 && *owner && (k == GCODE_LETTERS || g->word[k])) {
                 return tokens_at_words(r, FAULT_SHARED, g->by[rows[i].group], *owner);
             }
-            *owner = *owner ? *owner : g->by[rows[i].group];
+            *owner = left & 1 && !*owner ? g->by[rows[i].group] : *owner;
         }
     }
     return FAULT_NONE;
 }
 
-/* The code of motion in force takes it. */
-static bool moves_with(const struct interpreter *in, char letter)
+/* Letters that the code of motion in force takes. */
+static uint32_t moves_with(const struct interpreter *in)
 {
-    for (size_t i = 0; i < sizeof moves / sizeof *moves; i++) {
-        if (moves[i].code == in->motion) {
-            return strchr(moves[i].takes, letter) != NULL;
-        }
+    size_t i = 0;
+
+    while (i < sizeof moves / sizeof *moves && moves[i].code != in->motion) {
+        i++;
     }
-    return false;
+    return i < sizeof moves / sizeof *moves ? moves[i].takes : 0;
+}
+
+/* The block moves: by its code of motion, its axis words, or what else only a motion has. */
+static bool moves_by(const struct gcode *g, const struct owners *o)
+{
+    const int code = g->code[GCODE_MOTION];
+    bool any = gcode_first(g, BLOCK_AXES "@^") || (code != GCODE_ABSENT && code != GCODE_NO_MOTION);
+
+    for (const char *c = "IJKR"; *c; c++) {
+        any = any || (gcode_word(g, *c) && !o->of[*c - '@']);
+    }
+    return any;
 }
 
 enum fault uses_check(const struct interpreter *in, const struct block *b, struct fault_report *r)
@@ -102,8 +126,8 @@ enum fault uses_check(const struct interpreter *in, const struct block *b, struc
         return FAULT_NONE;      /* as most lines are */
     }
     const enum fault f = share(g, &o, r);
-    const struct token *axes = o.of[place('+')];
-    const bool moves = !axes && gcode_first(g, BLOCK_AXES "@^IJKR");
+    const struct token *axes = o.of[GCODE_LETTERS];
+    const uint32_t moved = !axes && moves_by(g, &o) ? moves_with(in) : 0;
 
     if (f != FAULT_NONE) {
         return f;
@@ -111,12 +135,13 @@ enum fault uses_check(const struct interpreter *in, const struct block *b, struc
     if (axes && motion && g->code[GCODE_MOTION] != GCODE_NO_MOTION) {
         return tokens_at_words(r, FAULT_SHARED, motion, axes);
     }
-    for (const char *c = "PLRQHDEIJK@^"; *c; c++) {
-        const struct token *word = gcode_word(g, *c), *owner = o.of[place(*c)];
-        if (word && owner && moves && moves_with(in, *c)) {
+    uint32_t left = g->letters & OWNED;
+    for (int k = 0; left >> k; k++) {
+        const struct token *word = left >> k & 1 ? g->word[k] : NULL, *owner = o.of[k];
+        if (word && owner && moved >> k & 1) {
             return tokens_at_words(r, FAULT_SHARED, word, owner);
         }
-        if (word && !owner && !(moves && moves_with(in, *c))) {
+        if (word && !owner && !(moved >> k & 1)) {
             return tokens_at_word(r, FAULT_UNUSED, word);
         }
     }

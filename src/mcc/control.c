@@ -20,6 +20,7 @@ void control_settle(struct mcc *m)
     if (m->mover.outputs.spindle == 0.0) {
         m->program.switches.turning = 0;            /* and switched these off */
     }
+    m->program.switches.told = m->mover.surface;
     m->program.switches.coolant = m->mover.outputs.coolant;
     m->program.switches.overrides = m->mover.overrides;
     m->program.tools.loaded = m->mover.outputs.tool;

@@ -56,6 +56,7 @@ struct mover {
     bool    confirming;         /* as one does now: in-position check */
     bool    untold;             /* outputs or line have changed since the latest point */
     struct outputs outputs;
+    struct outputs_surface surface;     /* outputs.spindle is the most, then */
     int32_t started, line;      /* index and source line of the latest command begun */
 };
 

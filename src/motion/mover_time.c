@@ -98,6 +98,7 @@ static void begin_next(struct mover *p, const struct mover_beside *b)
         mix_begin(&p->mix, c, mover_share(p, is_ptp(c)));
     } else if (c->type == COMMAND_OUTPUTS) {
         p->outputs.spindle = c->spindle;
+        p->surface = c->surface;
         p->outputs.coolant = c->coolant;
         p->outputs.tool = c->tool;
         p->overrides = c->overrides;
@@ -295,5 +296,6 @@ bool mover_point(struct mover *p, const struct mover_beside *b, const struct mec
     point->newest = c ? p->mix.move[p->mix.count - 1].command.index : p->started;
     point->waits = c && c->type == COMMAND_DELAY;
     point->outputs = p->outputs;
+    point->outputs.spindle = outputs_spindle(&p->surface, p->outputs.spindle, point->place[0]);
     return reached;
 }

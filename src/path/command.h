@@ -43,7 +43,8 @@ struct command {
     struct ramp_limits ramp;    /* for its feed */
     double  dwell;      /* [s] of a delay */
     uint32_t set, clear;    /* digital outputs that its start switches on, off */
-    double  spindle;    /* [rpm] of COMMAND_OUTPUTS */
+    double  spindle;    /* [rpm] of COMMAND_OUTPUTS, */
+    struct outputs_surface surface;     /* and at most, if this has a speed */
     int32_t coolant;    /* of COMMAND_OUTPUTS */
     uint32_t overrides; /* of COMMAND_OUTPUTS: enum outputs_overrides */
     int32_t tool;       /* of COMMAND_OUTPUTS: in the spindle; of a stop that changes: asked for */

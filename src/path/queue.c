@@ -1,5 +1,18 @@
 #include "queue.h"
 
+#include <math.h>
+
+static const double TURN = 6.283185307179586;
+
+double outputs_spindle(const struct outputs_surface *s, double most, double x)
+{
+    if (s->speed == 0.0) {
+        return most;
+    }
+    const double speed = s->speed / (TURN * fabs(x - s->centre)) * 60.0;    /* at X0 no bound */
+    return copysign(fmin(speed, fabs(most)), most);
+}
+
 void queue_clear(struct queue *q)
 {
     q->head = q->count = 0;

@@ -37,6 +37,16 @@ struct outputs_analog {
     double   value[OUTPUTS_ANALOG];
 };
 
+/* G96: the spindle turns so fast that the tool passes the work at a speed, but at most at the
+ * speed it has without. */
+struct outputs_surface {
+    double speed;           /* [mm/s] 0: it does not */
+    double centre;          /* [mm] X of the axis that the work turns about */
+};
+
+/* Speed of the spindle, of the sign of the one it has at most, with the tool at X. [rpm], [mm] */
+double outputs_spindle(const struct outputs_surface *s, double most, double x);
+
 enum { QUEUE_SIZE = 1024 };
 
 /* What happens in one DDA time. */

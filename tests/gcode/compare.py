@@ -10,6 +10,7 @@ from second import Options, Refused, Step, run
 
 from motionfmu.gcode import Program, read
 
+OPTIONS = ("block_delete", "optional_stop", "angles", "feed", "fanuc")
 ROUNDING = 1e-9  # [mm] a move that is shorter is none
 PLACE, ANGLE, RATIO = 1e-7, 1e-9, 1e-9  # [mm], [rad], of a feed
 TYPES = ("rapid", "line", "arc", "arc", "arc", "arc", "dwell")
@@ -20,9 +21,13 @@ MACHINE: dict[str, Any] = {"max_feed": 1e9, "speed": 1e9, "scale": 1.0}
 Event = dict[str, Any]
 
 
+AT_FIRST: Event = {"spindle": 0.0, "coolant": 0, "on": 0, "overrides": 0}
+AT_FIRST |= {"surface": (0.0, 0.0), "analog": {}}
+
+
 def settings_of(options: Options) -> dict[str, Any]:
     """The same options for the C interpreter."""
-    found = {n: getattr(options, n) for n in ("block_delete", "optional_stop", "angles", "feed")}
+    found = {n: getattr(options, n) for n in OPTIONS}
     return MACHINE | found | {"point": list(options.point)}
 
 
@@ -36,13 +41,13 @@ def first(text: str, options: Options | None = None) -> Program:
 def of_c(program: Program) -> list[Event]:
     """Its commands as events; switches stand in the events behind them."""
     events: list[Event] = []
-    state: Event = {"spindle": 0.0, "coolant": 0, "on": 0}
+    state = dict(AT_FIRST)
     for c in program.commands:
         kind = int(c["type"])
         if kind == OUTPUTS:
-            on = (state["on"] | int(c["set"])) & ~int(c["clear"])
-            state = state | {"spindle": float(c["spindle"]), "coolant": int(c["coolant"])}
-            state["on"] = on
+            state = state | {n: c[n].item() for n in ("spindle", "coolant", "overrides")}
+            state["surface"] = (float(c["surface"]), float(c["surface_centre"]))
+            state |= _put(state, int(c["set"]), int(c["clear"]), _analog(c))
             continue
         name = "spline" if kind == CUBIC else "stop" if kind == STOP else TYPES[kind]
         name = "tool" if name == "stop" and c["changes"] else name
@@ -54,8 +59,8 @@ def of_c(program: Program) -> list[Event]:
         elif name != "stop":
             if c["length"] < ROUNDING:
                 continue
-            state = state | {"on": (state["on"] | int(c["set"])) & ~int(c["clear"])}
-            event |= {"on": state["on"], "start": c["start"], "end": c["end"]}
+            state = state | _put(state, int(c["set"]), int(c["clear"]), _analog(c))
+            event |= state | {"start": c["start"], "end": c["end"], "probes": bool(c["probes"])}
             if name != "rapid":
                 event["feed"] = float(c["feed"])
             if name == "arc":
@@ -70,11 +75,11 @@ def of_c(program: Program) -> list[Event]:
 def of_python(steps: list[Step]) -> list[Event]:
     """Steps of the second interpreter in the same form."""
     events: list[Event] = []
-    state: Event = {"spindle": 0.0, "coolant": 0, "on": 0}
+    state = dict(AT_FIRST)
     for s in steps:
         if s.kind == "outputs":
-            state = state | {"spindle": s.spindle, "coolant": s.coolant}
-            state["on"] = (state["on"] | s.set) & ~s.clear
+            state = state | {n: getattr(s, n) for n in ("spindle", "coolant", "overrides")}
+            state |= _put(state, s.set, s.clear, s.analog) | {"surface": s.surface}
             continue
         event: Event = {"kind": s.kind, "line": s.line} | state
         if s.kind == "tool":
@@ -82,8 +87,8 @@ def of_python(steps: list[Step]) -> list[Event]:
         elif s.kind == "dwell":
             event["dwell"] = s.dwell
         elif s.kind != "stop":
-            state = state | {"on": (state["on"] | s.set) & ~s.clear}
-            event |= {"on": state["on"], "start": s.start, "end": s.end}
+            state = state | _put(state, s.set, s.clear, s.analog)
+            event |= state | {"start": s.start, "end": s.end, "probes": s.probes}
             if s.kind != "rapid":
                 event["feed"] = s.feed
             if s.kind == "arc":
@@ -92,6 +97,15 @@ def of_python(steps: list[Step]) -> list[Event]:
                 event["inner"] = inner(s.control)
         events.append(event)
     return [*events, {"kind": "end"} | state]
+
+
+def _put(state: Event, on: int, off: int, analog: dict[int, float]) -> Event:
+    """Outputs behind a change of some."""
+    return {"on": (state["on"] | on) & ~off, "analog": state["analog"] | analog}
+
+
+def _analog(c: Any) -> dict[int, float]:
+    return {i: float(c["analog"][i]) for i in range(4) if int(c["analog_set"]) >> i & 1}
 
 
 def inner(control: tuple[tuple[float, float], ...]) -> list[float]:
@@ -104,8 +118,10 @@ def inner(control: tuple[tuple[float, float], ...]) -> list[float]:
 
 
 def _same(name: str, a: Any, b: Any) -> bool:
-    if name in ("start", "end", "centre", "inner"):
+    if name in ("start", "end", "centre", "inner", "surface"):
         return bool(np.allclose(a, b, rtol=1e-12, atol=PLACE))
+    if name == "analog":
+        return a.keys() == b.keys() and np.allclose([a[k] for k in a], [b[k] for k in a])
     if name == "sweep":
         return abs(a - b) < ANGLE * max(1.0, abs(a)) + 1e-7
     if isinstance(a, float):

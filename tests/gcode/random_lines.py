@@ -104,7 +104,7 @@ class Lines(Values):
     def switch(self) -> None:
         r = self.r
         words = (f"S{self.value(0.0, 9000.0)}", "M3", "M4", "M5", "M7", "M8", "M9")
-        words = (*words, f"S{r.randint(0, 9000)} M3", "M3 M8", "M5 M9")
+        words = (*words, f"S{r.randint(0, 9000)} M3", "M3 M8", "M5 M9", "M19", "M19 R90 P1")
         self.write(r.choice(words))
 
     def digital(self) -> None:
@@ -112,6 +112,39 @@ class Lines(Values):
 
     def stop(self) -> None:
         self.write(self.r.choice(("M0", "M1", "M1")))
+
+    def analog(self) -> None:
+        self.write(f"M{self.r.choice((67, 68))} E{self.r.randint(0, 3)} Q{self.value(-10.0, 10.0)}")
+
+    def overrides(self) -> None:
+        r = self.r
+        code = r.randint(48, 53)
+        self.write(f"M{code}" + (r.choice(("", " P0", " P1")) if code >= 50 else ""))
+
+    def wait(self) -> None:
+        """M66, which reads 0 here, before the motion of its line."""
+        r = self.r
+        way = f"M66 P{r.randint(0, 31)}"
+        if r.random() < 0.3:
+            way = f"M66 E{r.randint(0, 3)}" + r.choice(("", " L0"))
+        elif r.random() < 0.7:
+            way += f" L{r.randint(1, 4)} Q{self.number(0.1, 5.0)}"
+        self.write(way + r.choice(("", "", f" G1 {self.axes()}")))
+
+    def probe(self) -> None:
+        r = self.r
+        self.write(f"G91 G38.{r.randint(2, 5)} {self.axes()} F{self.number(50.0, 300.0)}")
+        self.write(r.choice(("G90", "G90 G0", "G90 G1 X1")))
+        if self.expressions and r.random() < 0.7:
+            self.write(f"G0 X[#{r.randint(5061, 5063)} + #5070 + 0.37]")
+
+    def surface(self) -> None:
+        r = self.r
+        self.write(f"G96 S{r.randint(0, 200)} D{r.randint(100, 4000)} M{r.randint(3, 5)}")
+        for _ in range(r.randint(0, 4)):
+            self.one(("line", "circle", "feed", "switch", "offsets", "modes"))
+        if r.random() < 0.8:
+            self.write(r.choice(("G97", f"G97 S{r.randint(0, 3000)}")))
 
     def offsets(self) -> None:
         r = self.r
@@ -167,7 +200,7 @@ class Lines(Values):
 
     def turned(self) -> None:
         r = self.r
-        self.write(f"S{r.randint(100, 3000)} M3")
+        self.write(f"G97 S{r.randint(100, 3000)} M3")
         self.write(f"G95 F{self.number(0.02, 0.5)} G1 {self.axes()}")
         self.write(f"G94 F{self.number(100.0, 900.0)}")
 
@@ -199,14 +232,16 @@ class Lines(Values):
 
     def cycle(self) -> None:
         r = self.r
-        code = r.choice((73, 74, 81, 82, 83, 84, 85, 86, 88, 89))
+        code = r.choice((73, 74, 81, 82, 83, 84, 85, 86, 87, 88, 89))
         self.write(f"G90 G94 G0 Z{self.number(5.0, 20.0)}")
-        if code in (74, 84, 86, 88):
-            self.write(f"S{r.randint(100, 2000)} M{4 if code == 74 else 3}")
+        if code in (74, 84, 86, 87, 88):
+            self.write(f"G97 S{r.randint(100, 2000)} M{4 if code == 74 else 3}")
         words = f"X{self.number()} Y{self.number()} Z{self.number(-20.0, -1.0)}"
         words += f" R{self.number(0.5, 4.0)}"
         words += f" Q{self.number(1.0, 6.0)}" if code in (73, 83) else ""
         words += f" P{self.number(0.0, 1.0)}" if code in (74, 82, 84, 86, 88, 89) else ""
+        if code == 87:
+            words += f" I{self.number()} J{self.number()} K{self.number(0.0, 5.0)}"
         incremental = r.random() < 0.3
         self.write(f"G{r.choice((98, 99))} {'G91 ' if incremental else ''}G{code} {words}")
         for _ in range(r.randint(0, 3)):

@@ -30,6 +30,16 @@ MORE = (
     "scaling",
     "cycle",
     "contour",
+    *("analog", "overrides", "wait", "probe", "surface"),
+)
+# What the machine knows by name.
+NAMES = (
+    *("abs_x", "abs_y", "absolute", "adaptive_feed", "call_level", "ccomp", "coord_system"),
+    *("current_tool", "feed", "feed_hold", "feed_override", "flood", "ijk_absolute_mode"),
+    *("imperial", "incremental", "inverse_time", "line", "metric", "mist", "motion_mode", "plane"),
+    *("retract_old_z", "retract_r_plane", "rpm", "selected_tool", "speed_override", "spindle_cw"),
+    *("spindle_css_mode", "spindle_on", "spindle_rpm_mode", "task", "tool_offset"),
+    *("units_per_minute", "units_per_rev", "value", "value_returned"),
 )
 FLOW = ("setting", "indirect", "read_back", "condition", "repeat", "loop", "sub", "call", "macro")
 PARTS: tuple[str, ...] = (*FLAT, *MORE, *FLOW)
@@ -42,6 +52,7 @@ class Writer(Lines):
         self.parts = parts or PARTS
         super().__init__(seed, "setting" in self.parts)
         self.label = 100
+        self.fanuc = options(seed).fanuc
         self.depth = 0
         self.subs: list[str] = []
         self.macros: list[str] = []
@@ -66,6 +77,8 @@ class Writer(Lines):
 
     def read_back(self) -> None:
         name = self.r.choice(("#5420", "#5421", "#5422", "#<_x>", "#<_y>", "#<_z>", "#5220"))
+        if self.r.random() < 0.5:
+            name = f"#<_{self.r.choice(NAMES)}>"
         self.write(f"G1 X[[{name} + 0.37] mod 30] Y[{name} + 1]")  # 0 stands on no border
 
     def new_label(self) -> str:
@@ -150,11 +163,20 @@ class Writer(Lines):
             self.write("#9 = #<_value>")
 
     def macro(self) -> None:
-        """M98 of a program that stands behind the end."""
+        """M98 or, with Fanuc's forms, G65 of a program that stands behind the end."""
+        r = self.r
         number = 5000 + len(self.macros)
         self.macros.append(f"O{number}")
-        times = f" L{self.r.randint(0, 3)}" if self.r.random() < 0.5 else ""
-        self.write(f"M98 P{number}{times}")
+        runs = r.randint(0, 3)
+        times = f" P{number}" + (f" L{runs}" if r.random() < 0.5 else "")
+        if self.fanuc and r.random() < 0.3:
+            times = f" P{runs}{number}"
+        if self.fanuc and r.random() < 0.6:
+            letters = r.sample("ABCIJKDEFHMQRSTUVWXYZ", r.randint(0, 6))
+            times += "".join(f" {c}{self.value()}" for c in letters)
+            self.write(f"G65{times}")
+        else:
+            self.write(f"M98{times}")
 
     def program(self) -> str:
         """The whole text."""
@@ -168,7 +190,7 @@ class Writer(Lines):
             self.depth = 2
             self.write(name)
             self.one(FLAT)
-            self.write("G91 G1 X1")
+            self.write(f"G91 G1 X1 Y[#{self.r.randint(1, 26)} mod 10 + 0.37]")
             self.write("G90")
             self.write("M99")
         return "\n".join(self.lines) + "\n"
@@ -182,6 +204,7 @@ def options(seed: int) -> Options:
         point=tuple(r.choice((0.0, 0.0, r.uniform(-9.0, 9.0))) for _ in range(6)),
         tools=dict(TOOLS),
         closed=True,
+        fanuc=r.random() < 0.4,
     )
 
 

@@ -145,6 +145,46 @@ static void all(void)
     }
 }
 
+/* G87: aside by 3 and 4 with the spindle off, down, over the hole, bore from -10 up to -6. */
+static void back_boring(int plane, bool incremental, bool to_r)
+{
+    static const struct { char kind; double a, b, height; } steps[] = {
+        { 'r', 8.0, 11.0, 2.0 }, { 's', 0, 0, 0 },      { 'r', 8.0, 11.0, -10.0 },
+        { 'r', 5.0, 7.0, -10.0 }, { '+', 0, 0, 0 },     { 'f', 5.0, 7.0, -6.0 },
+        { 'f', 5.0, 7.0, -10.0 }, { 's', 0, 0, 0 },     { 'r', 8.0, 11.0, -10.0 },
+        { 'r', 8.0, 11.0, NAN },  { 'r', 5.0, 7.0, NAN }, { '+', 0, 0, 0 },
+    };
+    const char *l = planes[plane].letter;
+    const double clear = to_r ? 2.0 : 10.0;
+    char text[256];
+    struct reader x;
+
+    snprintf(text, sizeof text, "%s S100 M3 G0 %c1 %c2 %c10\n%s %s F60\n"
+             "G87 %c%g %c%g R%g %c%g %c3 %c4 %c%g M0\n",
+             planes[plane].word, l[0], l[1], l[2], incremental ? "G91" : "G90",
+             to_r ? "G99" : "G98", l[0], incremental ? 4.0 : 5.0, l[1], incremental ? 5.0 : 7.0,
+             incremental ? -8.0 : 2.0, l[2], incremental ? -12.0 : -10.0, l[0] - 'X' + 'I',
+             l[1] - 'X' + 'I', l[2] - 'X' + 'I', incremental ? 4.0 : -6.0);
+    begin(&x, text);
+    CHECK_EQ(next(&x), COMMAND_OUTPUTS);
+    CHECK_EQ(next(&x), COMMAND_PTP);
+    expect_approach(&x, plane, 5.0, 7.0, 10.0);
+    for (int i = 0; i < (int)(sizeof steps / sizeof *steps); i++) {
+        const char kind = steps[i].kind;
+        next(&x);
+        if (kind == 's' || kind == '+') {
+            expect_spindle(&x, kind, false);
+            continue;
+        }
+        CHECK_EQ(x.c.type, kind == 'f' ? COMMAND_LINE : COMMAND_PTP);
+        expect_place(&x, plane, steps[i].a, steps[i].b,
+                     isnan(steps[i].height) ? clear : steps[i].height);
+    }
+    CHECK_EQ(next(&x), COMMAND_STOP);
+    CHECK_EQ(x.r.note, FAULT_NOTE_ORIENT);
+    CHECK_EQ(next(&x), -1);
+}
+
 /* Every repeat goes on by the way of the line; without G91 it is made in the same place. */
 static void repeats(void)
 {
@@ -245,7 +285,11 @@ static void refused(void)
     fault_is("G84 X1 Z-1 R0\n", 1, "G84 X1 Z-1 R0", FAULT_CYCLE_SPINDLE);
     fault_is("S9 M4\nG84 X1 Z-1 R0\n", 2, "G84 X1 Z-1 R0", FAULT_CYCLE_SPINDLE);
     fault_is("M3\nG86 X1 Z-1 R0 P0\n", 2, "G86 X1 Z-1 R0 P0", FAULT_CYCLE_SPINDLE);
-    fault_is("G87 X1 Z-1 R0\n", 1, "G87", FAULT_BACK_BORING);
+    fault_is("S9 M3\nG87 X1 Z-1 R0 I1 J1\n", 2, "G87", FAULT_CYCLE_ASIDE);
+    fault_is("S9 M3\nG87 X1 Z-1 R0 J1 K1\n", 2, "G87", FAULT_CYCLE_ASIDE);
+    fault_is("S9 M3\nG87 X1 Z-1 R0 I1 J1 K-2\n", 2, "G87 X1 Z-1 R0 I1 J1 K-2", FAULT_CYCLE_LOW);
+    fault_is("S9 M3\nG87 X1 Z-1 R0 I1 J1 K0 Q1\n", 2, "Q1", FAULT_UNUSED);
+    fault_is("S9\nG87 X1 Z-1 R0 I1 J1 K0\n", 2, "G87 X1 Z-1 R0 I1 J1 K0", FAULT_CYCLE_SPINDLE);
     fault_is("G17.1\n", 1, "G17.1", FAULT_PLANE);
     fault_is("G53 G81 X1 Z-1 R0\n", 1, "G53 G81 X1 Z-1 R0", FAULT_G53);
     fault_is("G81 X1 Z-1 R0\nG80\nX2\n", 3, "X2", FAULT_NO_MOTION);
@@ -258,6 +302,11 @@ static void refused(void)
 int main(void)
 {
     all();
+    for (int plane = 0; plane < 3; plane++) {
+        for (int modes = 0; modes < 4; modes++) {
+            back_boring(plane, modes & 1, modes & 2);
+        }
+    }
     repeats();
     heights();
     rests();

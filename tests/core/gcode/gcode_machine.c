@@ -200,6 +200,84 @@ static void others(void)
     CHECK_EQ(next(&x), -1);
 }
 
+/* G96: S is a speed along the work, D the most, and the radius counts from the program's X0. */
+static void surface(void)
+{
+    static const struct { double speed, centre, x, most, is; } at[] = {
+        { 0.0, 0.0, 1.0, 500.0, 500.0 },            /* not in force */
+        { 1000.0, 0.0, 10.0, 5000.0, 954.929658551 },   /* 60 m/min at 20 mm of diameter */
+        { 1000.0, 4.0, -6.0, 5000.0, 954.929658551 },
+        { 1000.0, 0.0, 10.0, -5000.0, -954.929658551 },
+        { 1000.0, 3.0, 3.0, 5000.0, 5000.0 },       /* at the axis */
+        { 1000.0, 0.0, 10.0, 900.0, 900.0 },
+        { 1000.0, 0.0, 10.0, 0.0, 0.0 },            /* it stands */
+    };
+    struct reader x;
+
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        const struct outputs_surface s = { at[i].speed, at[i].centre };
+        CHECK_NEAR(outputs_spindle(&s, at[i].most, at[i].x), at[i].is, 1e-8);
+    }
+    begin(&x, "S300 M4\nG96 S60 D4000\nG55\nG20 S10\nG97\nM2\n");
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == -300.0 && x.c.surface.speed == 0.0);
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == -4000.0 && x.c.surface.speed == 1000.0 &&
+          x.c.surface.centre == 0.0);
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.surface.centre == 100.0);      /* X0 of G55 */
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.surface.speed == 10.0 * 304.8 / 60.0);
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == -300.0 && x.c.surface.speed == 0.0);
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == 0.0);
+    CHECK_EQ(next(&x), -1);
+    begin(&x, "M3 G96 S60 D4000\nM5\nG92 X7\nM3\nG96 S0 D9\n");
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == 4000.0);
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == 0.0 && x.c.surface.speed == 0.0);
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.surface.centre == -7.0);
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == 0.0);
+    CHECK_EQ(next(&x), -1);
+}
+
+/* What a name says behind a program; those of other controllers are refused, and never exist. */
+static void names(void)
+{
+    static const struct { const char *before, *name; double value; } rows[] = {
+        { "", "_task", 1 }, { "G1", "_motion_mode", 10 }, { "", "_motion_mode", 800 },
+        { "G18", "_plane", 180 }, { "G19", "_plane", 190 }, { "G41.1 D2", "_ccomp", 410 },
+        { "G42.1 D2", "_ccomp", 420 }, { "G41 D0\nG40", "_ccomp", 400 }, { "G20", "_metric", 0 },
+        { "G20", "_imperial", 1 }, { "G91", "_absolute", 0 }, { "G91", "_incremental", 1 },
+        { "G93", "_inverse_time", 1 }, { "G93", "_units_per_minute", 0 },
+        { "G95", "_units_per_rev", 1 }, { "G59", "_coord_system", 590 },
+        { "G59.3", "_coord_system", 593 }, { "G54", "_coord_system", 540 },
+        { "G43 H1", "_tool_offset", 1 }, { "G43 H1\nG49", "_tool_offset", 0 },
+        { "G99", "_retract_r_plane", 1 }, { "G99", "_retract_old_z", 0 },
+        { "", "_spindle_rpm_mode", 1 }, { "G96 S1 D2", "_spindle_css_mode", 1 },
+        { "G96 S1 D2\nG97", "_spindle_css_mode", 0 }, { "G90.1", "_ijk_absolute_mode", 1 },
+        { "M4", "_spindle_on", 1 }, { "M4", "_spindle_cw", 0 }, { "M3", "_spindle_cw", 1 },
+        { "M7\nM8", "_mist", 1 }, { "M7", "_flood", 0 }, { "M49", "_speed_override", 0 },
+        { "M50 P0", "_feed_override", 0 }, { "M50 P0", "_speed_override", 1 },
+        { "M52", "_adaptive_feed", 1 }, { "M53 P0", "_feed_hold", 0 }, { "", "_feed_hold", 1 },
+        { "F90", "_feed", 90 }, { "F254 G20", "_feed", 254 }, { "G95 F.5", "_feed", 0.5 },
+        { "F254\nG20", "_feed", 10 }, { "G93 F9", "_feed", 0 }, { "S77", "_rpm", 77 },
+        { "T10 M6", "_current_tool", 10 }, { "T10 M6", "_current_pocket", 7 },
+        { "T10", "_selected_tool", 10 }, { "T10", "_selected_pocket", 7 },
+        { "T10 M6", "_selected_tool", -1 }, { "", "_current_pocket", 0 },
+        { "G0 X5\nG92 X1", "_x", 1 }, { "G0 X5\nG92 X1", "_abs_x", 5 }, { "G20", "_abs_a", 0 },
+        { "G20 G0 X1", "_abs_x", 1 }, { "", "_line", 2 }, { "", "_call_level", 0 },
+    };
+    struct reader x;
+
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[120];
+        snprintf(text, sizeof text, "%s\n#1=#<%s>\n", rows[i].before, rows[i].name);
+        begin_with_tools(&x, text);
+        while (next(&x) >= 0) {
+        }
+        CHECK_EQ(x.r.fault, FAULT_NONE);
+        CHECK_NEAR(x.in.parameters.value[0], rows[i].value, 1e-12);
+    }
+    begin(&x, "#1=[EXISTS[#<_vminor>] + 2 * EXISTS[#<_task>] + 4 * EXISTS[#<_hal[a]>]]\n");
+    CHECK_EQ(next(&x), -1);
+    CHECK_NEAR(x.in.parameters.value[0], 2.0, 0.0);
+}
+
 /* Reading stops behind what is before the wait in the order of the words, until it is answered. */
 static void waits(void)
 {
@@ -302,6 +380,8 @@ int main(void)
     lengths();
     overrides();
     others();
+    surface();
+    names();
     waits();
     probing();
     return check_result();

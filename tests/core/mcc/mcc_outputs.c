@@ -96,6 +96,27 @@ static void behind_the_motion(void)
     }
 }
 
+/* G96: at every point the tool passes the work at S, unless D is reached. */
+static void by_radius(void)
+{
+    struct record r = { 0 };
+    int limited = 0, free = 0;
+
+    start_program("F6000 G0 X50\nG96 S60 D1000 M4\nG1 X-5\nG97\nM5\n");
+    while (point(&r)) {
+        const double x = fabs(r.last.place[0]), speed = -r.last.outputs.spindle;
+        if (r.last.command < 2 || r.last.place[0] == -5.0 || r.last.place[0] == 50.0) {
+            continue;
+        }
+        const bool bound = x < 60e3 / (6.283185307179586 * 1000.0);
+        CHECK_NEAR(speed, bound ? 1000.0 : 60e3 / (6.283185307179586 * x), 1e-9 * 1000.0);
+        limited += bound;
+        free += !bound;
+    }
+    CHECK(limited > 50 && free > 200);
+    CHECK(r.last.outputs.spindle == 0.0);
+}
+
 /* What takes no time takes no point but the one that tells. */
 static void without_motion(void)
 {
@@ -194,6 +215,7 @@ int main(void)
 {
     with_the_motion();
     behind_the_motion();
+    by_radius();
     without_motion();
     held();
     aborted();

@@ -6,23 +6,17 @@ from second.arcs import arc_of, splines
 from second.cutter import begin, finish
 from second.cycles import Cycle
 from second.frames import end_point, machine, plane_axes, program
+from second.machine import outputs, probe, switches, wait
 from second.moves import straight
 from second.offsets import change, predefined
 from second.parameters import Wrong
 from second.state import AXES, State, Step
 from second.words import Words
 
+PROBES = (382, 383, 384, 385)
 CYCLES = (730, 740, 810, 820, 830, 840, 850, 860, 870, 880, 890)
 TAKES_AXES = (100, 280, 300, 520, 920)
 DAY = 86400.0
-BITS = 32
-
-
-def outputs(s: State, on: int = 0, off: int = 0) -> None:
-    """Spindle, coolant and digital outputs as they are to be from here on."""
-    step = Step("outputs", s.line, tuple(s.point), tuple(s.point), set=on, clear=off)
-    step.spindle, step.coolant = s.turning * s.speed, s.coolant
-    s.steps.append(step)
 
 
 def _feed(s: State, w: Words) -> None:
@@ -37,31 +31,6 @@ def _feed(s: State, w: Words) -> None:
         raise Wrong("feed")
     s.feed = f if s.feed_mode == 930 else f * s.unit
     s.feed /= 60.0 if s.feed_mode != 950 else 1.0
-
-
-def _switches(s: State, w: Words) -> None:
-    before = s.turning * s.speed, s.coolant
-    on = off = 0
-    speed = w.one("s")
-    if speed is not None:
-        if speed < 0.0:
-            raise Wrong("speed")
-        s.speed = speed
-    io = w.code.get("io")
-    if io in (62, 63, 64, 65):
-        bit = 1 << w.whole("p", 0, BITS - 1)
-        high = io in (62, 64)
-        if io >= 64:
-            on, off = (bit, 0) if high else (0, bit)
-        else:
-            s.set = s.set | bit if high else s.set & ~bit
-            s.clear = s.clear & ~bit if high else s.clear | bit
-    if "turning" in w.code:
-        s.turning = {3: 1, 4: -1, 5: 0}[w.code["turning"]]
-    if "coolant" in w.code:
-        s.coolant = {7: s.coolant | 1, 8: s.coolant | 2, 9: 0}[w.code["coolant"]]
-    if on or off or before != (s.turning * s.speed, s.coolant):
-        outputs(s, on, off)
 
 
 def _tool(s: State, w: Words) -> None:
@@ -90,10 +59,6 @@ def _modes(s: State, w: Words) -> None:
         s.plane = {170: 2, 180: 1, 190: 0}[c["plane"]]
     if "cutter" in c:
         _cutter(s, w)
-    if "length" in c:
-        _length(s, w)
-    if "system" in c:
-        s.system = GSYSTEMS.index(c["system"])
     if c.get("path") == 640:
         w.use("pq")
     if "distance" in c:
@@ -152,11 +117,14 @@ def _polar(s: State, on: bool) -> None:
 
 
 def _dwell(s: State, w: Words) -> None:
-    p = w.one("p")
-    if p is None or not 0.0 <= p <= DAY:
+    letter = "p" if w.has("p") or not s.options.fanuc else "x" if w.has("x") else "u"
+    seconds = w.one(letter)
+    if seconds is not None and s.options.fanuc and letter in w.whole_numbers:
+        seconds /= 1000.0
+    if seconds is None or not 0.0 <= seconds <= DAY:
         raise Wrong("dwell")
     step = Step("dwell", s.line, tuple(s.point), tuple(s.point))
-    step.dwell = p
+    step.dwell = seconds
     s.steps.append(step)
 
 
@@ -183,13 +151,15 @@ def _move(s: State, w: Words) -> None:
         return
     if s.motion != 50:
         s.spline = None
-    if s.motion in CYCLES:
+    if s.motion in PROBES:
+        probe(s, w)
+    elif s.motion in CYCLES:
         if axes or now:
             if not axes:
                 raise Wrong("cycle without axes")
             Cycle(s, w.use("xyzrqplijk"), outputs).run()
     elif s.motion in (20, 30):
-        if now or axes or w.has("ijkr"):
+        if now or axes or any(c in w.rest() for c in "ijkr"):
             arc_of(s, w)
     elif s.motion in (50, 51):
         if now or axes:
@@ -209,8 +179,9 @@ def _stop(s: State, w: Words) -> None:
         s.steps.append(Step("stop", s.line, tuple(s.point), tuple(s.point)))
     if stop in (2, 30):
         finish(s)
-        on = s.turning * s.speed != 0.0 or s.coolant
-        s.turning = s.coolant = 0
+        on = s.rpm != 0.0 or s.coolant or s.overrides
+        s.turning = s.coolant = s.overrides = 0
+        s.by_radius = False
         if on:
             outputs(s)
         s.ended = True
@@ -224,8 +195,14 @@ def execute(s: State, w: Words) -> None:
     if other in TAKES_AXES and w.code.get("motion", 800) != 800 and w.has(w.axes):
         raise Wrong("two codes that take axis words")
     _feed(s, w)
+    if w.code.get("io") == 66:
+        wait(s, w)
     _tool(s, w)
-    _switches(s, w)
+    if "system" in w.code:
+        s.system = GSYSTEMS.index(w.code["system"])
+    if "length" in w.code:
+        _length(s, w)
+    switches(s, w)
     if other == 40:
         _dwell(s, w)
     _modes(s, w)

@@ -9,6 +9,7 @@ from second.state import State, Step
 
 STEP_BACK_MM, STEP_BACK_INCH = 0.254, 0.010 * 25.4  # [mm] of G73 and G83
 PECKED, DWELLING = (730, 830), (820, 840, 740, 860, 880, 890)
+FIXED = 3  # overrides of feed and spindle
 
 
 class Cycle:
@@ -33,8 +34,8 @@ class Cycle:
             step.dwell = seconds
             self.s.steps.append(step)
 
-    def spindle(self, turning: int) -> None:
-        self.s.turning = turning
+    def spindle(self, turning: int, overrides: int) -> None:
+        self.s.turning, self.s.overrides = turning, overrides
         self.outputs(self.s)
 
     def levels(self) -> None:
@@ -42,7 +43,7 @@ class Cycle:
         s, old = self.s, self.at[self.deep]
         unit = s.unit
         names = "xyz"[self.deep]
-        for letter in (names, "r", "q", "p"):
+        for letter in (names, "r", "q", "p", "i", "j", "k"):
             if letter in self.words:
                 s.sticky[letter] = self.words[letter] * (1.0 if letter == "p" else unit)
         if "r" not in s.sticky or names not in s.sticky:
@@ -55,6 +56,8 @@ class Cycle:
             raise Wrong("R below the bottom")
         if s.old_level is None:
             s.old_level = old
+        if s.motion == 870 and not {"i", "j", "k"} <= s.sticky.keys():
+            raise Wrong("G87 without I, J, K")
         self.clear = max(self.r, s.old_level) if s.old_plane else self.r
 
     def run(self) -> None:
@@ -80,17 +83,22 @@ class Cycle:
     def hole(self) -> None:
         """From R to the bottom and back, as the cycle says."""
         s, code = self.s, self.s.motion
-        turning = s.turning
+        turning, overrides = s.turning, s.overrides
+        if code == 870:
+            self.back()
+            return
         if code in PECKED:
             self.pecks(code == 830)
             return
-        if code in (860, 880) and turning == 0:
+        if code in (860, 880) and s.rpm == 0.0:
             raise Wrong("cycle with a spindle at rest")
-        if code in (840, 740) and turning != (1 if code == 840 else -1):
+        if code in (840, 740) and s.rpm * (1 if code == 840 else -1) <= 0.0:
             raise Wrong("spindle the other way round")
+        if code in (840, 740) and overrides & FIXED != FIXED:
+            self.spindle(turning, overrides | FIXED)
         self.go(False, self.bottom)
         if code in (840, 740):
-            self.spindle(-1 if code == 840 else 1)
+            self.spindle(-turning, overrides | FIXED)
         if code in DWELLING:
             self.dwell()
         if code == 850:
@@ -98,14 +106,40 @@ class Cycle:
         if code in (890, 840, 740):
             self.go(False, self.clear)
         if code in (840, 740):
-            self.spindle(turning)
+            self.spindle(turning, overrides)
         if code in (860, 880):
-            self.spindle(0)
+            self.spindle(0, overrides)
             if code == 880:
                 place = tuple(s.point)
                 s.steps.append(Step("stop", s.line, place, place))
             self.go(True, self.clear)
-            self.spindle(turning)
+            self.spindle(turning, overrides)
+
+    def back(self) -> None:
+        """G87: through the hole with a spindle at rest, aside of its middle, and up from below."""
+        s, (a, b) = self.s, plane_axes(self.deep)
+        turning = s.turning
+        if s.rpm == 0.0:
+            raise Wrong("cycle with a spindle at rest")
+        ways = [s.sticky["ijk"[i]] for i in range(3)]
+        top = ways[self.deep] + (self.bottom if s.incremental else 0.0)
+        if top < self.bottom:
+            raise Wrong("K below the bottom")
+        middle = self.at[a], self.at[b]
+        aside = middle[0] + ways[a], middle[1] + ways[b]
+        for into in (True, False):
+            self.at[a], self.at[b] = aside
+            self.go(True)
+            if into:
+                self.spindle(0, s.overrides)
+            self.go(True, self.bottom if into else self.clear)
+            self.at[a], self.at[b] = middle
+            self.go(True)
+            self.spindle(turning, s.overrides)
+            if into:
+                self.go(False, top)
+                self.go(False, self.bottom)
+                self.spindle(0, s.overrides)
 
     def pecks(self, out: bool) -> None:
         """Down in steps of Q, out of the hole or a little back after each."""

@@ -23,6 +23,7 @@ class Line:
     slash: bool = False
     percent: bool = False
     words: list[tuple[str, Value]] = field(default_factory=list)
+    whole: str = ""  # letters whose value is a number without a point
     settings: list[tuple[Value | str, Value]] = field(default_factory=list)
     label: Value | str | None = None
     order: str = ""
@@ -89,7 +90,7 @@ UNARY: dict[str, Callable[[float], float]] = {
     "fix": lambda x: float(math.floor(x)),
     "fup": lambda x: float(math.ceil(x)),
     "ln": _checked(math.log),
-    "round": lambda x: math.copysign(math.floor(abs(x) + 0.5), x),
+    "round": lambda x: math.copysign(math.floor(abs(x) + 0.5), x) + 0.0,
     "sin": lambda x: math.sin(math.radians(x)),
     "sqrt": _checked(math.sqrt),
     "tan": lambda x: math.tan(math.radians(x)),
@@ -243,7 +244,10 @@ class Reader:
                 if self.number() is None:
                     raise Wrong("line number")
             else:
+                begin = self.at
                 found.words.append((letter, self.value()))
+                if self.text[begin : self.at].lstrip("+-").isdigit():
+                    found.whole += letter
         return found
 
     def flow(self, found: Line) -> Line:

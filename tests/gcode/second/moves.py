@@ -25,8 +25,8 @@ def speed(s: State, length: float) -> float:
     if s.feed_mode == 930:
         return s.feed * length
     if s.feed_mode == 950:
-        if s.turning == 0 or s.speed == 0.0:
-            raise Wrong("G95 with a spindle at rest")
+        if s.by_radius or s.rpm == 0.0:
+            raise Wrong("G95 with a spindle at rest, or with G96")
         return s.feed * s.speed / 60.0
     return s.feed
 
@@ -34,6 +34,7 @@ def speed(s: State, length: float) -> float:
 def _made(s: State, step: Step) -> None:
     step.set, step.clear = s.set, s.clear
     s.set = s.clear = 0
+    step.analog, s.analog = s.analog, {}
     s.steps.append(step)
     s.point = list(step.end)
 

@@ -98,7 +98,10 @@ def _scale(s: State, w: Words) -> None:
     ijk = w.use("ijk")
     if (p is None) == (not ijk) or p == 0.0 or 0.0 in ijk.values():
         raise Wrong("G51 without factor")
-    s.scale = [p if p is not None else ijk.get(c, 1.0) for c in "ijk"]
+    least = {c: 1e-3 if s.options.fanuc and c in w.whole_numbers else 1.0 for c in "pijk"}
+    s.scale = [ijk.get(c, 1.0 / least[c]) * least[c] for c in "ijk"]
+    if p is not None:
+        s.scale = [p * least["p"]] * 3
 
 
 def _turn(s: State, w: Words) -> None:

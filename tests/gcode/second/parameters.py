@@ -68,12 +68,17 @@ class Parameters:
                 raise Wrong("read only")
             self.numbered[number] = value
 
-    def enter(self, arguments: list[float]) -> dict[int, float]:
-        """Begin a call: its arguments are #1 and so on; what they were is given back."""
-        before = {i: self.numbered.get(i, 0.0) for i in range(1, LOCAL + 1)}
-        given = arguments + [0.0] * (LOCAL - len(arguments))
-        self.numbered.update(enumerate(given, start=1))
+    def give(self, values: list[float] | None) -> None:
+        """The parameters of a call, if it has any of its own."""
+        self.numbered.update(enumerate(values or [], start=1))
+
+    def enter(self, given: list[float] | None) -> dict[int, float]:
+        """Begin a call; what its own parameters were is given back."""
+        own = range(1, LOCAL + 1) if given is not None else ()
+        before = {i: self.numbered.get(i, 0.0) for i in own}
+        self.give(given)
         self.locals.append({})
+        self.globals["_value"] = self.globals["_value_returned"] = 0.0
         return before
 
     def leave(self, before: dict[int, float]) -> None:

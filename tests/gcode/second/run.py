@@ -4,13 +4,14 @@ from dataclasses import dataclass, field
 
 from second.block import execute
 from second.lines import Line, read
-from second.parameters import Parameters, Wrong
+from second.parameters import LOCAL, Parameters, Wrong
 from second.state import Options, Refused, State, Step
 from second.system import connect
 from second.words import NEAR, Words
 
 STEPS_MAX = 1_000_000  # lines executed
 DEPTH_MAX = 10
+MACRO = dict(zip("abcijkdefhmqrstuvwxyz", (*range(1, 10), 11, 13, *range(17, 27)), strict=True))
 ENDS = {"while": "endwhile", "repeat": "endrepeat", "sub": "endsub"}
 
 
@@ -20,9 +21,10 @@ class Frame:
 
     back: int
     label: object
-    style: str  # sub, m98 or main
+    style: str  # sub, program or main
     before: dict[int, float] = field(default_factory=dict)
-    left: int = 0  # repeats of M98 still to do
+    left: int = 0  # repeats of M98 or G65 still to do
+    given: list[float] | None = None  # to each of them
     loops: dict[object, list[float]] = field(default_factory=dict)  # repeats left, doing
     chosen: set[object] = field(default_factory=set)  # if with a branch done
 
@@ -95,8 +97,7 @@ class Program:
         if len(self.frames) > DEPTH_MAX:
             raise Wrong("calls too deep")
         begin = self.find(label, ("sub",), 0)
-        before = self.p.enter(arguments)
-        self.p.globals["_value"] = self.p.globals["_value_returned"] = 0.0
+        before = self.p.enter(arguments + [0.0] * (LOCAL - len(arguments)))
         self.frames.append(Frame(at + 1, label, "sub", before))
         self.next = begin + 1
 
@@ -196,16 +197,34 @@ class Program:
 
     # ---- numbered programs ----
 
-    def call(self, at: int, w: Words) -> None:
-        """M98 P L: a program further down."""
-        number = w.whole("p", 0, 99999999)
-        times = w.whole("l", 0, 99999) if w.has("l") else 1
+    def call(self, at: int, w: Words, given: list[float] | None = None) -> None:
+        """P L of M98 or G65: a program further down, with #1 to #30 of its own if they are given.
+
+        Fanuc's controls may write how often in front of the four digits of its number.
+        """
+        number, times = w.whole("p", 0, 99999999), 1
+        if w.has("l"):
+            times = w.whole("l", 0, 99999)
+        elif self.s.options.fanuc and number >= 10000:
+            times, number = divmod(number, 10000)
         if len(self.frames) > DEPTH_MAX:
             raise Wrong("calls too deep")
         begin = self.find(number, ("",), 0)
         if times:
-            self.frames.append(Frame(at + 1, number, "m98", left=times - 1))
+            frame = Frame(at + 1, number, "program", self.p.enter(given), times - 1, given)
+            self.frames.append(frame)
             self.next = begin + 1
+
+    def macro(self, at: int, pairs: list[tuple[str, float]]) -> None:
+        """G65: letters are the parameters of the program that it calls."""
+        given = [0.0] * LOCAL
+        for letter, value in pairs[1:]:
+            if letter in MACRO:
+                given[MACRO[letter] - 1] = value
+        w = Words([(c, v) for c, v in pairs[1:] if c not in MACRO], False)
+        self.call(at, w, given)
+        if w.rest() or w.code:
+            raise Wrong("no argument of G65")
 
     def come_back(self) -> None:
         """M99."""
@@ -216,9 +235,11 @@ class Program:
             raise Wrong("M99 in a sub")
         elif frame.left:
             frame.left -= 1
+            self.p.give(frame.given)
             self.next = self.find(frame.label, ("",), 0) + 1
         else:
             self.frames.pop()
+            self.p.leave(frame.before)
             self.next = frame.back
 
     def step(self) -> None:
@@ -237,14 +258,17 @@ class Program:
         if line.label is not None:
             self.flow(at, line)
             return
-        words = Words([(c, v(self.p)) for c, v in line.words], self.s.options.angles)
+        pairs = [(c, v(self.p)) for c, v in line.words]
         new = [(t if isinstance(t, str) else t(self.p), v(self.p)) for t, v in line.settings]
-        called = words.code.get("call")
-        if called:
-            self.call(at, words)
-        execute(self.s, words)
         for target, value in new:
             self.p.set(target, value)
+        if self.s.options.fanuc and pairs[:1] == [("g", 65.0)]:
+            self.macro(at, pairs)
+            return
+        words = Words(pairs, self.s.options.angles, line.whole)
+        if words.code.get("call"):
+            self.call(at, words)
+        execute(self.s, words)
         if words.code.get("stop") == 99:
             self.come_back()
 

@@ -23,7 +23,7 @@ class Options:
     block_delete: bool = False
     optional_stop: bool = True
     angles: bool = False  # A B C instead of U V W
-    milliseconds: bool = False  # P of a dwell without a point
+    fanuc: bool = False  # G4, M98, G51, G65 as Fanuc's controls read them
     feed: float = 10.0  # [mm/s] until the first F
     point: Point = (0.0,) * AXES  # [mm] at the start
     origin: list[list[float]] = field(default_factory=lambda: [[0.0] * AXES for _ in range(9)])
@@ -36,7 +36,7 @@ class Options:
 class Step:
     """One thing the machine does; only the members of its kind mean something."""
 
-    kind: str  # rapid line arc spline dwell outputs stop tool probe
+    kind: str  # rapid line arc spline dwell outputs stop tool
     line: int
     end: Point  # [mm] machine coordinates
     start: Point = ()
@@ -50,6 +50,10 @@ class Step:
     clear: int = 0
     spindle: float = 0.0  # [rpm], counter-clockwise below 0
     coolant: int = 0  # 1 mist, 2 flood
+    overrides: int = 0  # bits of `machine.FEED` .. `machine.HOLD`
+    surface: tuple[float, float] = (0.0, 0.0)  # [mm/s] of G96, and X of its axis [mm]
+    analog: dict[int, float] = field(default_factory=dict)  # outputs that change
+    probes: bool = False
     tool: int = 0
 
 
@@ -87,11 +91,19 @@ class State:
     polar_angle: float = 0.0  # [deg]
     home: list[list[float]] = field(default_factory=lambda: [[0.0] * AXES, [0.0] * AXES])
     point: list[float] = field(default_factory=list)  # [mm] machine coordinates
-    speed: float = 0.0
+    speed: float = 0.0  # [rpm] S of G97
+    by_radius: bool = False  # G96
+    passing: float = 0.0  # [mm/s] its S
+    most: float = 0.0  # [rpm] its D
     turning: int = 0  # 1 M3, -1 M4
     coolant: int = 0
     set: int = 0  # outputs that wait for the next motion
     clear: int = 0
+    overrides: int = 0  # as in `Step`
+    analog: dict[int, float] = field(default_factory=dict)  # M67, for the next motion
+    told: tuple[float, float] = (0.0, 0.0)  # of G96, to the machine
+    answer: float = 0.0  # to M66
+    contact: list[float] = field(default_factory=lambda: [0.0] * AXES)  # of the probe, program
     selected: int = 0  # T
     chosen: bool = False  # since the latest M6
     tool: int = 0  # in the spindle
@@ -103,6 +115,12 @@ class State:
     edge: float = 0.0  # [mm] of the centre to the left of the contour
     contour_from: int = 0  # first step of the contour
     ended: bool = False
+
+    @property
+    def rpm(self) -> float:
+        """Speed of the spindle, in G96 the most it may have."""
+        most = self.most if self.passing > 0.0 else 0.0
+        return self.turning * (most if self.by_radius else self.speed)
 
     @property
     def unit(self) -> float:

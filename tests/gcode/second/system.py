@@ -1,6 +1,7 @@
 """Parameters that the machine keeps: positions, offsets, modes."""
 
 from second.frames import program
+from second.machine import ADAPTIVE, FEED, HOLD, SPEED
 from second.state import State
 
 ORIGINS, PER_SYSTEM = 5221, 20
@@ -35,6 +36,13 @@ def numbered(s: State, number: int) -> float | None:
     if 5420 <= number <= 5428:
         i = _axis(s, number - 5420)
         return 0.0 if i is None else _length(s, i, program(s, s.point)[i])
+    if 5061 <= number <= 5069:
+        i = _axis(s, number - 5061)
+        return 0.0 if i is None else s.contact[i]
+    if number == 5070:
+        return 0.0
+    if number == 5399:
+        return s.answer
     if number == 5400:
         return float(s.tool)
     return None
@@ -54,7 +62,21 @@ def named(s: State, name: str) -> float | None:
         "_imperial": float(s.inch),
         "_absolute": float(not s.incremental),
         "_incremental": float(s.incremental),
-        "_feed": s.feed * 60.0 / s.unit,
+        "_feed": s.feed / s.unit * {940: 60.0, 950: 1.0, 930: 0.0}[s.feed_mode],
+        "_ccomp": {0: 400.0, 1: 410.0, -1: 420.0}[s.side],
+        "_inverse_time": float(s.feed_mode == 930),
+        "_units_per_minute": float(s.feed_mode == 940),
+        "_units_per_rev": float(s.feed_mode == 950),
+        "_tool_offset": float(any(s.length)),
+        "_spindle_rpm_mode": float(not s.by_radius),
+        "_spindle_css_mode": float(s.by_radius),
+        "_ijk_absolute_mode": float(s.absolute_centre),
+        "_feed_override": float(not s.overrides & FEED),
+        "_speed_override": float(not s.overrides & SPEED),
+        "_adaptive_feed": float(s.overrides & ADAPTIVE != 0),
+        "_feed_hold": float(not s.overrides & HOLD),
+        "_task": 1.0,
+        "_call_level": len(s.parameters.locals) - 1.0,
         "_rpm": s.speed,
         "_motion_mode": 800.0 if s.motion < 0 else float(s.motion),
         "_spindle_on": float(s.turning != 0),
@@ -62,7 +84,7 @@ def named(s: State, name: str) -> float | None:
         "_mist": float(s.coolant & 1 != 0),
         "_flood": float(s.coolant & 2 != 0),
         "_current_tool": float(s.tool),
-        "_selected_tool": float(s.selected),
+        "_selected_tool": float(s.selected if s.chosen else -1),
         "_coord_system": 540.0 + 10.0 * s.system if s.system < 6 else 585.0 + s.system,
         "_retract_old_z": float(s.old_plane),
         "_retract_r_plane": float(not s.old_plane),

@@ -40,10 +40,11 @@ NEAR = 1e-4  # of a code
 class Words:
     """What a line says; `use` takes letters as spoken for, `rest` says which are left."""
 
-    def __init__(self, pairs: list[tuple[str, float]], angles: bool) -> None:
+    def __init__(self, pairs: list[tuple[str, float]], angles: bool, whole: str = "") -> None:
         self.value: dict[str, float] = {}
         self.code: dict[str, int] = {}  # ten times the number of G; M as it is
         self.used: set[str] = set()
+        self.whole_numbers = whole  # letters whose value is written without a point
         self.axes = "xyzabc" if angles else "xyzuvw"
         self.m_count = 0
         for letter, value in pairs:
