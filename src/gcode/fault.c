@@ -8,6 +8,18 @@ enum fault fault_at(struct fault_report *r, enum fault f, int32_t at, int32_t le
     return f;
 }
 
+void fault_note(struct fault_report *r, enum fault what, int32_t at, int32_t length)
+{
+    int i = 0;
+
+    while (i < r->notes && r->note[i].what != what) {
+        i++;
+    }
+    if (i == r->notes) {
+        r->note[r->notes++] = (struct fault_note){ what, r->line, at, length, r->offset };
+    }
+}
+
 const char *fault_text(enum fault f)
 {
     switch (f) {    /* no table: one of pointers would not be constant in a shared library */
@@ -46,7 +58,7 @@ const char *fault_text(enum fault f)
     case FAULT_NO_SUB:       return "no such subprogram";
     case FAULT_CALLS:        return "more than 10 calls within one another";
     case FAULT_M99:          return "M99 in a subprogram that ends with endsub";
-    case FAULT_ENDLESS:      return "1,000,000 lines read again without a command";
+    case FAULT_ENDLESS:      return "1,000,000 lines read again without anything that takes time";
     case FAULT_WORD:         return "unknown word";
     case FAULT_TWICE:        return "word given twice";
     case FAULT_GROUP:        return "second word of one modal group";
@@ -115,6 +127,10 @@ const char *fault_text(enum fault f)
     case FAULT_NOTE_COMMENT: return "a comment that does nothing here";
     case FAULT_NOTE_ORIENT:  return "the spindle stops, it has no angle";
     case FAULT_NOTE_SPEED:   return "the spindle has no override";
+    case FAULT_NOTE_SPINDLE: return "this machine has no spindle for";
+    case FAULT_NOTE_COOLANT: return "this machine has no coolant for";
+    case FAULT_NOTE_OVERRIDE:return "overrides act here whatever a program says";
+    case FAULT_NOTE_MERGE:   return "runs of short lines stay lines here";
     case FAULT_NOTE_CHECKED: return "lines that repeat are checked up to here";
     case FAULT_COUNT:        break;
     }

@@ -41,7 +41,7 @@ enum fault {
     FAULT_NO_SUB,           /* the text does not have what is called */
     FAULT_CALLS,            /* too many calls within calls */
     FAULT_M99,              /* M99 in an o sub */
-    FAULT_ENDLESS,          /* too many lines read again without a command */
+    FAULT_ENDLESS,          /* too many lines read again without a command that takes time */
     FAULT_WORD,             /* letter or G, M number not in the language */
     FAULT_TWICE,            /* a letter other than G and M twice */
     FAULT_GROUP,            /* two codes of one modal group */
@@ -109,16 +109,28 @@ enum fault {
     FAULT_NOTE_COMMENT,     /* no fault but a note: (PRINT, ...) and the like do nothing here */
     FAULT_NOTE_ORIENT,      /* a note: M19 only stops the spindle */
     FAULT_NOTE_SPEED,       /* a note: M51, there is no override of the spindle */
+    FAULT_NOTE_SPINDLE,     /* a note: there is none */
+    FAULT_NOTE_COOLANT,     /* a note: there is none */
+    FAULT_NOTE_OVERRIDE,    /* a note: M48 to M53 change nothing */
+    FAULT_NOTE_MERGE,       /* a note: Q of G64, runs of lines stay lines */
     FAULT_NOTE_CHECKED,     /* a note: what comes behind has not been checked */
     FAULT_COUNT
+};
+
+enum { FAULT_LIST = 20, FAULT_NOTES = FAULT_COUNT - FAULT_NOTE_COMMENT };
+
+/* A note and where it stands, as below. */
+struct fault_note {
+    enum fault what;
+    int32_t    line, at, length;
+    int64_t    offset;
 };
 
 /* Something wrong with a part program, or a note. */
 struct fault_report {
     enum fault fault;
-    enum fault note;        /* the latest one, and where it stands: */
-    int32_t    note_line, note_at, note_length;
-    int64_t    note_offset;
+    int32_t    notes;       /* of what has been read, each kind once */
+    struct fault_note note[FAULT_NOTES];
     int32_t    line;        /* source line, from 1 */
     int64_t    offset;      /* [byte] where that line begins in the program */
     int32_t    at, length;  /* offending text in the line */
@@ -127,8 +139,6 @@ struct fault_report {
     double     value, limit;    /* ARC_END, ARC_CHORD, TRAVEL [mm], FEED [mm/min];
                                  * SPEED: of the joint's highest, and 1 */
 };
-
-enum { FAULT_LIST = 20, FAULT_NOTES = FAULT_COUNT - FAULT_NOTE_COMMENT };
 
 /* All that is wrong with a part program, a line each, and the notes, once each. */
 struct fault_list {
@@ -140,6 +150,9 @@ struct fault_list {
 
 /* Note where the offending text stands in its line; returns f. */
 enum fault fault_at(struct fault_report *r, enum fault f, int32_t at, int32_t length);
+
+/* Note something that is no fault, in the line of *r. */
+void fault_note(struct fault_report *r, enum fault what, int32_t at, int32_t length);
 
 /* What a fault means, in words; fits behind "line 12: ". */
 const char *fault_text(enum fault f);

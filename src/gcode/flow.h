@@ -9,7 +9,8 @@
 
 #include "oword.h"
 
-/* Lines that may be read again without a command; a fuzzer that runs slowly takes fewer. */
+/* Lines that may be read again without a command that takes time; a fuzzer that runs slowly takes
+ * fewer. */
 #ifndef FLOW_AGAIN
 #define FLOW_AGAIN 1000000
 #endif
@@ -65,7 +66,7 @@ struct flow {
     bool    returned;       /* #<_value_returned> */
     bool    begun;          /* words have been read: an O number no longer names the program */
     int64_t again;          /* lines read again: in loops, in calls, behind M99 */
-    int64_t idle;           /* the same when the last command was made */
+    int64_t idle;           /* the same when the last command that takes time was made */
 };
 
 /* Execute a line that begins with an O word, s at its label. `here` is its place. */

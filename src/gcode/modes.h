@@ -22,6 +22,7 @@ struct program {
     struct motion_limits limits;
     struct path_tolerance arc;  /* of the ends of arcs in mm; 0: rounded at 2 decimals */
     bool plain;             /* what moves the tool knows no splines */
+    bool bare;              /* no spindle, no coolant, no M48 to M53: these are notes */
     bool block_delete;      /* lines that begin with / are passed over */
     bool optional_stop;     /* M1 stops */
     bool change_stops;      /* M6 waits for the operator */

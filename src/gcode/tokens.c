@@ -71,11 +71,7 @@ static enum fault comment(struct reading *s)
 
     inside.at = from + 1;
     if (f == FAULT_NONE && acts(inside)) {
-        s->r->note = FAULT_NOTE_COMMENT;
-        s->r->note_line = s->r->line;
-        s->r->note_offset = s->r->offset;
-        s->r->note_at = from;
-        s->r->note_length = s->at - from;
+        fault_note(s->r, FAULT_NOTE_COMMENT, from, s->at - from);
     }
     return f;
 }
@@ -142,6 +138,7 @@ enum fault tokens_read(struct tokens *t, struct reading *s)
         end--;
     }
     s->end = end;
+    ignored.notes = 0;
     t->count = t->settings = 0;
     t->slash = t->flow = false;
     t->at = s->at;
@@ -189,9 +186,5 @@ enum fault tokens_at_line(struct fault_report *r, enum fault f, const struct tok
 
 void tokens_note(struct fault_report *r, enum fault note, const struct token *w)
 {
-    r->note = note;
-    r->note_line = r->line;
-    r->note_offset = r->offset;
-    r->note_at = w->at;
-    r->note_length = w->length;
+    fault_note(r, note, w->at, w->length);
 }

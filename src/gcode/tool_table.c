@@ -97,7 +97,7 @@ const char *tool_table_line(struct tool_table *t, const char *text, int32_t leng
 {
     struct tool tool = { .pocket = 0 };
     struct tokens words;
-    struct fault_report r;
+    struct fault_report r = { .notes = 0 };
     struct reading line = { .text = text, .end = length, .r = &r };
 
     if (tokens_read(&words, &line) != FAULT_NONE || words.flow) {

@@ -364,6 +364,7 @@ enum fault cycles_next(struct interpreter *in, const struct program *p, struct f
     r->line = in->line;
     r->offset = k->offset;
     while (k->running && in->count == 0 && f == FAULT_NONE) {
+        in->flow.again += k->repeats > 0;       /* as a line that is read again */
         if (k->step == STEP_HOLE) {
             k->step++;
             frame_program(in, in->point, here);

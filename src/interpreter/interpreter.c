@@ -16,6 +16,8 @@
 #include "uses.h"
 #include "waiting.h"
 
+static const double DWELL_LEAST = 1e-6, WAY_LEAST = 1e-9;   /* [s], [mm] */
+
 void interpreter_start(struct interpreter *in, const double point[AXES], double feed,
                        const double origin[INTERPRETER_SYSTEMS][AXES])
 {
@@ -202,6 +204,7 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     struct fault_report ignored;
     double before[AXES];
 
+    ignored.notes = 0;
     ignored.line = r->line;     /* where calls say they stand */
     ignored.offset = r->offset;
     memcpy(before, in->point, sizeof before);
@@ -213,7 +216,7 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     f = also(f, waiting_input(in, p, b, f ? &ignored : r));
     f = also(f, tool_change(in, p, b, f ? &ignored : r));
     f = also(f, tools_lengths(in, p, b, f ? &ignored : r));
-    f = also(f, switching_block(in, b, f ? &ignored : r));
+    f = also(f, switching_block(in, p, b, f ? &ignored : r));
     cycles_modes(in, b);
     f = also(f, cutter_block(in, p, b, f ? &ignored : r));
     f = also(f, act(in, p, b, f ? &ignored : r));
@@ -244,15 +247,26 @@ static enum fault next_line(struct interpreter *in, const struct program *p,
     return b.tokens.count > 0 ? execute(in, p, &b, f, r) : f;
 }
 
+/* A command is handed out. One that takes no time does not end what goes round without any: a
+ * machine would never come to its next point. */
+static enum interpreter_result hand_out(struct interpreter *in, const struct command *c)
+{
+    const bool brief = c->type == COMMAND_DELAY ? c->dwell < DWELL_LEAST
+                     : c->type != COMMAND_STOP && c->path.length < WAY_LEAST;
+
+    in->flow.idle = brief ? in->flow.idle : in->flow.again;
+    return INTERPRETER_COMMAND;
+}
+
 enum interpreter_result interpreter_read(struct interpreter *in, const struct program *p,
                                          struct command *c, struct fault_report *r)
 {
+    r->notes = 0;
     while (!cutter_take(in, c)) {
         const bool made = in->taken < in->count && !waiting_now(in);
         if (made && !cutter_on(in)) {
-            in->flow.idle = in->flow.again;
             *c = in->made[in->taken++];
-            return INTERPRETER_COMMAND;
+            return hand_out(in, c);
         }
         if (!made && in->waits) {
             in->flow.idle = in->flow.again;
@@ -276,8 +290,7 @@ enum interpreter_result interpreter_read(struct interpreter *in, const struct pr
             return INTERPRETER_FAULT;
         }
     }
-    in->flow.idle = in->flow.again;
-    return INTERPRETER_COMMAND;
+    return hand_out(in, c);
 }
 
 enum interpreter_result interpreter_next(struct interpreter *in, const struct program *p,

@@ -40,21 +40,20 @@ static bool last(enum fault f)
     return f == FAULT_READ || f == FAULT_ZERO || f == FAULT_ENDLESS;
 }
 
-static void note(struct fault_list *all, const struct fault_report *r, enum fault what)
+static void note(struct fault_list *all, const struct fault_note *told)
 {
     for (int i = 0; i < all->notes; i++) {
-        if (all->note[i].fault == what) {
+        if (all->note[i].fault == told->what) {
             return;
         }
     }
     struct fault_report *n = &all->note[all->notes++];
-    *n = *r;
-    n->fault = what;
-    n->line = r->note_line;
-    n->offset = r->note_offset;
-    n->at = r->note_at;
-    n->length = r->note_length;
-    n->other_length = 0;
+    memset(n, 0, sizeof *n);
+    n->fault = told->what;
+    n->line = told->line;
+    n->offset = told->offset;
+    n->at = told->at;
+    n->length = told->length;
 }
 
 /* Take a fault; false if that was the last. */
@@ -82,9 +81,8 @@ static void check(struct interpreter *in, const struct program *p, int room,
     memset(&r, 0, sizeof r);
     while (all->count < room || room > 1) {
         const enum interpreter_result got = interpreter_read(in, p, &c, &r);
-        if (r.note != FAULT_NONE) {
-            note(all, &r, r.note);
-            r.note = FAULT_NONE;
+        for (int i = 0; i < r.notes; i++) {
+            note(all, &r.note[i]);
         }
         if (got == INTERPRETER_END || (got == INTERPRETER_FAULT && !take(&k, all, &r, room))) {
             return;
@@ -96,10 +94,7 @@ static void check(struct interpreter *in, const struct program *p, int room,
             k.latest = FAULT_NONE;
         }
         if (in->flow.again > most) {
-            r.note_line = r.line;
-            r.note_offset = r.offset;
-            r.note_at = r.note_length = 0;
-            note(all, &r, FAULT_NOTE_CHECKED);
+            note(all, &(struct fault_note){ FAULT_NOTE_CHECKED, r.line, 0, 0, r.offset });
             return;
         }
         memset(&r.other_at, 0, sizeof r - offsetof(struct fault_report, other_at));

@@ -136,7 +136,8 @@ static enum fault overrides(struct interpreter *in, const struct block *b, struc
 
 /* M3 .. M5; M19 turns the spindle to R degrees, P 0 on the shorter way, 1 clockwise, 2
  * counter-clockwise, within Q seconds: it stops, turning to a place is beyond the outputs. */
-static enum fault spindle(struct interpreter *in, const struct block *b, struct fault_report *r)
+static enum fault spindle(struct interpreter *in, const struct program *p, const struct block *b,
+                          struct fault_report *r)
 {
     static const struct { char letter; double most; } rows[] = {
         { 'R', 360.0 }, { 'P', 2.0 }, { 'Q', 86400.0 }
@@ -149,7 +150,7 @@ static enum fault spindle(struct interpreter *in, const struct block *b, struct 
             return tokens_at_word(r, FAULT_VALUE, w);
         }
     }
-    if (code == 190) {
+    if (code == 190 && !p->bare) {
         tokens_note(r, FAULT_NOTE_ORIENT, b->g.by[GCODE_SPINDLE]);
     }
     if (code != GCODE_ABSENT) {
@@ -193,16 +194,39 @@ static bool differ(const struct switches *a, const struct switches *b)
            switches_spindle(a) != switches_spindle(b);
 }
 
-enum fault switching_block(struct interpreter *in, const struct block *b, struct fault_report *r)
+/* Words that do nothing where only the tool moves and outputs switch. */
+static void tell(const struct block *b, struct fault_report *r)
+{
+    const struct gcode *g = &b->g;
+    const struct token *speed = g->by[GCODE_SPINDLE] ? g->by[GCODE_SPINDLE]
+                              : g->by[GCODE_SURFACE] ? g->by[GCODE_SURFACE] : gcode_word(g, 'S');
+    const struct { enum fault what; const struct token *word; } rows[] = {
+        { FAULT_NOTE_SPINDLE, speed }, { FAULT_NOTE_COOLANT, g->by[GCODE_COOLANT] },
+        { FAULT_NOTE_OVERRIDE, g->by[GCODE_OVERRIDE] },
+        { FAULT_NOTE_MERGE, g->code[GCODE_PATH] == 640 ? gcode_word(g, 'Q') : NULL },
+    };
+
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (rows[i].word) {
+            tokens_note(r, rows[i].what, rows[i].word);
+        }
+    }
+}
+
+enum fault switching_block(struct interpreter *in, const struct program *p, const struct block *b,
+                           struct fault_report *r)
 {
     const struct switches before = in->switches;
     const int coolant = b->g.code[GCODE_COOLANT];
     struct switches *s = &in->switches;
     struct at_once now = { 0 };
 
+    if (p->bare) {
+        tell(b, r);
+    }
     enum fault f = speed(in, b, r);
     f = f == FAULT_NONE ? outputs(in, b, &now, r) : f;
-    f = f == FAULT_NONE ? spindle(in, b, r) : f;
+    f = f == FAULT_NONE ? spindle(in, p, b, r) : f;
     f = f == FAULT_NONE ? overrides(in, b, r) : f;
     if (f != FAULT_NONE) {
         return f;

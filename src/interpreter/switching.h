@@ -6,7 +6,8 @@
 #include "modes.h"
 
 /* Execute them. Makes a command if something is to be switched when the motion so far has ended. */
-enum fault switching_block(struct interpreter *in, const struct block *b, struct fault_report *r);
+enum fault switching_block(struct interpreter *in, const struct program *p, const struct block *b,
+                           struct fault_report *r);
 
 /* Make a command that brings everything in force and switches digital outputs. */
 void switching_make(struct interpreter *in, uint32_t set, uint32_t clear);

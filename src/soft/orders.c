@@ -14,7 +14,8 @@ static const double FREE_SPEED = 1e9;       /* [mm/s] the arm decides how fast, 
 static struct program program_of(const struct orders_config *c, const struct orders_text *t)
 {
     struct program p = {
-        .source = t->gcode, .angles = true, .plain = true, .block_delete = c->block_delete,
+        .source = t->gcode, .angles = true, .plain = true, .bare = true,
+        .block_delete = c->block_delete,
         .optional_stop = c->optional_stop, .change_stops = c->tool_stop, .has_inputs = true,
         .limits = { .feed = c->feed_most, .rapid = 1.0, .up = { .acc = 1.0 },
                     .down = { .acc = 1.0 } }

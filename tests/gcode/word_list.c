@@ -9,7 +9,7 @@ int32_t word_list(const char *line, int32_t length, char letter[TOKENS_WORDS_MAX
     static const struct interpreter in;
     static const struct program program;
     struct tokens t;
-    struct fault_report r;
+    struct fault_report r = { .notes = 0 };
     struct reading s = { .text = line, .end = length, .in = &in, .program = &program, .r = &r };
     const enum fault f = tokens_read(&t, &s);
 

@@ -85,6 +85,30 @@ static void notes(void)
     CHECK(list.note[0].fault == FAULT_NOTE_COMMENT && list.note[0].line >= 2);
 }
 
+/* Where there are but axes and outputs: what a program asks for in vain, each once. */
+static void bare(void)
+{
+    static const struct { enum fault what; int line, at; } rows[] = {
+        { FAULT_NOTE_MERGE, 1, 9 },    { FAULT_NOTE_SPINDLE, 3, 0 },
+        { FAULT_NOTE_COOLANT, 3, 7 },   { FAULT_NOTE_COMMENT, 4, 0 },
+        { FAULT_NOTE_OVERRIDE, 5, 0 },
+    };
+    struct reader x;
+
+    begin(&x, "G64 P0.1 Q0.2\nG1 X1\nM3 S10 M8\n(PRINT, a)\nM50 P0 M9\nS3 G97\nM64 P1\nX2\n");
+    x.program.bare = true;
+    interpreter_check_all(&x.in, &x.program, &list);
+    CHECK_EQ(list.count, 0);
+    CHECK_EQ(list.notes, sizeof rows / sizeof *rows);
+    for (int i = 0; i < list.notes; i++) {
+        CHECK(list.note[i].fault == rows[i].what && list.note[i].line == rows[i].line);
+        CHECK_EQ(list.note[i].at, rows[i].at);
+    }
+    x.program.bare = false;
+    interpreter_check_all(&x.in, &x.program, &list);
+    CHECK_EQ(list.notes, 1);
+}
+
 /* A program that runs for ever is checked so far and no further. */
 static void endless(void)
 {
@@ -145,6 +169,7 @@ int main(void)
     places();
     many();
     notes();
+    bare();
     endless();
     bounds();
     return check_result();

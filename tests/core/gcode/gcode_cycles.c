@@ -157,6 +157,7 @@ static void back_boring(int plane, bool incremental, bool to_r)
     const char *l = planes[plane].letter;
     const double clear = to_r ? 2.0 : 10.0;
     char text[256];
+    struct fault_list all;
     struct reader x;
 
     snprintf(text, sizeof text, "%s S100 M3 G0 %c1 %c2 %c10\n%s %s F60\n"
@@ -166,6 +167,8 @@ static void back_boring(int plane, bool incremental, bool to_r)
              incremental ? -8.0 : 2.0, l[2], incremental ? -12.0 : -10.0, l[0] - 'X' + 'I',
              l[1] - 'X' + 'I', l[2] - 'X' + 'I', incremental ? 4.0 : -6.0);
     begin(&x, text);
+    interpreter_check_all(&x.in, &x.program, &all);
+    CHECK(all.count == 0 && all.notes == 1 && all.note[0].fault == FAULT_NOTE_ORIENT);
     CHECK_EQ(next(&x), COMMAND_OUTPUTS);
     CHECK_EQ(next(&x), COMMAND_PTP);
     expect_approach(&x, plane, 5.0, 7.0, 10.0);
@@ -181,7 +184,6 @@ static void back_boring(int plane, bool incremental, bool to_r)
                      isnan(steps[i].height) ? clear : steps[i].height);
     }
     CHECK_EQ(next(&x), COMMAND_STOP);
-    CHECK_EQ(x.r.note, FAULT_NOTE_ORIENT);
     CHECK_EQ(next(&x), -1);
 }
 
@@ -261,6 +263,17 @@ static void streams(void)
     CHECK_NEAR(x.in.point[2], 1.0, 1e-12);
 }
 
+/* A check ends in what a line repeats, too: these are 200 million commands. */
+static void checked(void)
+{
+    struct fault_list all;
+    struct reader x;
+    begin(&x, "G0 Z1\nG91 G73 X.0001 R0 Z-100 Q.01 L9999\nG90 G99\nG81 X1 Q5\n");
+    interpreter_check_all(&x.in, &x.program, &all);
+    CHECK_EQ(all.count, 0);
+    CHECK(all.notes == 1 && all.note[0].fault == FAULT_NOTE_CHECKED);
+}
+
 static void refused(void)
 {
     fault_is("G81 X1 Z-1\n", 1, "G81", FAULT_CYCLE_R);
@@ -311,6 +324,7 @@ int main(void)
     heights();
     rests();
     streams();
+    checked();
     refused();
     return check_result();
 }

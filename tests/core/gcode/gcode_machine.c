@@ -196,7 +196,7 @@ static void others(void)
     CHECK(!x.c.changes);
     CHECK_EQ(next(&x), COMMAND_OUTPUTS);
     CHECK_EQ(next(&x), COMMAND_OUTPUTS);
-    CHECK(x.c.spindle == 0.0 && x.r.note == FAULT_NOTE_ORIENT && x.r.note_line == 8);
+    CHECK(x.c.spindle == 0.0 && x.r.note[0].what == FAULT_NOTE_ORIENT && x.r.note[0].line == 8);
     CHECK_EQ(next(&x), -1);
 }
 
