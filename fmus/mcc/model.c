@@ -261,7 +261,7 @@ static void read_bus(struct fmu *f, int64_t at)
     LINK_SHOWN(READ)
     LINK_SHOWN_MACHINE(READ)
     panel.signals = card_signals(&link);
-    panel.signals.probe = v->probe;
+    panel.signals.probe = v->probe_in;
     panel.signals.digital = (uint32_t)v->digital_in;
     memcpy(panel.signals.analog, v->analog_in, sizeof panel.signals.analog);
     const struct pcl_card card = card_of(&pc->pcl, &link);

@@ -297,6 +297,7 @@ static void publish(struct fmu *f)
 #define READ_CARD(K) do { \
     struct link_card link; \
     LINK_SHOWN(READ_##K) \
+    LINK_CARRY(link.pulse_count, v->card##K##_pulse_count) \
     card[K - 1] = card_of(&m->groups.card[K - 1].pcl, &link); \
     groups_counters(&m->groups, K - 1, &link); \
 } while (0)
@@ -318,8 +319,10 @@ static void read_bus(struct fmu *f, int64_t at)
             source[m->index[n]] = source_of_group(f, n);
             panel[m->index[n]] = (struct group_panel){
                 .hold = v->hold[n], .abort = v->abort[n], .cycle_start = v->cycle_start[n],
-                .override = v->override[n]
+                .override = v->override[n], .probe = v->probe_in[n],
+                .digital = (uint32_t)v->digital_in[n]
             };
+            memcpy(panel[m->index[n]].analog, v->analog_in[n], sizeof v->analog_in[n]);
         }
     }
     groups_instant(&m->groups, at / CLOCK_NS, card, panel, source);

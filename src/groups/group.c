@@ -95,6 +95,7 @@ static int create(struct groups *s, int card, const int32_t channel[AXES], bool 
     if (code != MCC_NO_ERR) {
         return code;
     }
+    inquiry_set_place(&g->mcc, voltage ? INQUIRY_ENCODERS : INQUIRY_PULSES);
     g->used = true;
     g->voltage = voltage;
     g->card = card;
@@ -208,6 +209,26 @@ static void cycle(struct group *g, int64_t clock, const struct group_panel *pane
     task_run(&g->mcc, g->program ? program : NULL);
 }
 
+/* What its program asks of the machine: inputs, a probe, and of pulse channels where they are. */
+static void show(const struct groups *s, struct group *g, const struct group_panel *panel)
+{
+    const struct group_card *c = &s->card[g->card];
+    struct signals *signals = &g->mcc.signals;
+
+    signals->probe = panel->probe;
+    signals->digital = panel->digital;
+    memcpy(signals->analog, panel->analog, sizeof signals->analog);
+    for (int i = 0; i < AXES && !g->voltage; i++) {
+        if (g->channel[i] >= 0) {
+            signals->pulses[i] = c->pulses[g->channel[i]];
+            signals->enc[i] = c->counts[g->channel[i]];
+        }
+    }
+    if (!g->voltage) {
+        inquiry_look(&g->mcc, s->config.bus);   /* a voltage group's servo looks by itself */
+    }
+}
+
 /* --- What each card is given. ---------------------------------------------------------------- */
 
 /* A group whose frames go to the FIFO of a card. */
@@ -274,6 +295,9 @@ void groups_instant(struct groups *s, int64_t now, const struct pcl_card card[GR
     for (int n = 0; n < GROUP_MAX; n++) {
         key_look(&s->group[n].abort, panel[n].abort);
         key_look(&s->group[n].cycle_start, panel[n].cycle_start);
+        if (s->group[n].used) {
+            show(s, &s->group[n], &panel[n]);
+        }
         if (s->group[n].used && s->group[n].voltage) {
             group_dac_instant(s, &s->group[n], now);
         }

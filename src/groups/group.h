@@ -34,6 +34,9 @@ struct group_config {
 struct group_panel {
     bool   hold, abort, cycle_start;
     double override;        /* 0..2 */
+    bool   probe;           /* it touches */
+    uint32_t digital;       /* inputs of M66, a bit each */
+    double analog[SIGNALS_ANALOG];      /* the same */
 };
 
 /* Command mode of a pulse channel, MCCL's wCommandMode. */
@@ -74,6 +77,7 @@ struct group_card {
     int32_t command_mode[AXES];     /* enum group_command_mode of the pulse channels */
     struct group_dac dac[GROUP_DACS];   /* used: by a voltage group */
     int32_t counts[GROUP_COUNTERS]; /* the card's counters at this instant */
+    int32_t pulses[AXES];   /* [pulses] its channels have put out by then */
     double  volts[GROUP_DACS];      /* [V] of the DAC, shown at the next one */
     int32_t command[GROUP_DACS];    /* [pulses] of the axes at them then, */
     int32_t error[GROUP_DACS];      /* [counts] and the errors the voltages are of */
@@ -123,7 +127,7 @@ int group_program(struct groups *s, int group, int64_t start);
 /* Everything at rest at clock 0. -6 there is no group, -3 it runs already. */
 int groups_start(struct groups *s);
 
-/* What the encoder counters of a card show at the next groups_instant. */
+/* What the counters of encoders and pulses of a card show at the next groups_instant. */
 void groups_counters(struct groups *s, int card, const struct link_card *link);
 
 /* One bus instant, at clock now = k T_b, as of pc_instant; a panel and a program for each group. */

@@ -7,6 +7,7 @@ void groups_counters(struct groups *s, int card, const struct link_card *link)
     int32_t *counts = s->card[card].counts;
 
     memcpy(counts, link->enc_count, sizeof link->enc_count);
+    memcpy(s->card[card].pulses, link->pulse_count, sizeof link->pulse_count);
     counts[6] = link->enc_count_7;
     counts[7] = link->enc_count_8;
     counts[8] = link->enc_count_9;

@@ -26,8 +26,9 @@ const char *servo_damage(const struct servo *s)
 /* What the library sees of the machine: its own pulses in the place of the card's. */
 static void look(struct servo *s, struct mcc *m, const int32_t counts[AXES])
 {
-    struct signals raw = { 0 };
+    struct signals raw = { .probe = m->signals.probe, .digital = m->signals.digital };
 
+    memcpy(raw.analog, m->signals.analog, sizeof raw.analog);
     memcpy(raw.enc, counts, sizeof raw.enc);
     memcpy(s->before, s->now, sizeof s->before);
     memcpy(s->now, s->next, sizeof s->now);

@@ -13,7 +13,7 @@ CHANNELS = {1: ("card1", [0, 1]), 2: ("card1", [3, 4, 5]), 3: ("card2", [2, 1, 0
 SINGLE = """# One of the programs in the mcc FMU.
 stop = 2.0
 step = 1e-4
-leave = ["mcc.hold", "mcc.abort", "mcc.override", "card.*_aux", "card.io_*",
+leave = ["mcc.hold", "mcc.abort", "mcc.override", "mcc.*_in", "card.*_aux", "card.io_*",
          "card.reg_*", "card.enc_phase"]
 
 [component]
@@ -101,6 +101,57 @@ def test_a_held_group_disturbs_no_other(together: motionfmu.Result, tmp_path: An
     # The hold acts behind 64 queued points, the release at once.
     assert ends[1] - ends[0] == pytest.approx(0.3 - 64 * 1.024e-3, abs=0.02)
     assert (held["groups.status"][:, 1] == 2).any()
+
+
+ASKS = "M66 P2 L3 Q1.5\nM66 E3\nG1 Y#5399\nG38.2 X20 F600\nG0 X[#5061 + 2] Y[#5070 * 3]\nM2\n"
+
+
+def asking(text: str, name: str, ones: tuple[str, ...], folder: Any) -> motionfmu.Result:
+    """A run in which an input rises 0.3 s from the start and a probe touches at 1 s."""
+    drives = "".join(
+        f'[[drive]]\ninput = "{name}.{n}"\nat = [{at}]\nvalue = [{one}]\n\n'
+        for (n, at), one in zip((("digital_in", 0.3), ("probe_in", 1.0)), ones, strict=True)
+    )
+    part = folder / "asks.ngc"
+    part.write_text(ASKS)
+    (folder / "scenario.toml").write_text(text.replace("[record]", drives + "[record]"))
+    return motionfmu.load(folder).run(stop=2.0)
+
+
+def found(result: motionfmu.Result, pulses: Any) -> None:
+    """Nothing moves before the input; the program ends 2 mm behind the contact."""
+    moved = result.time[np.flatnonzero(np.diff(pulses[:, :2], axis=0).any(axis=1))[0]]
+    assert 0.3 < moved < 0.32
+    contact = pulses[np.searchsorted(result.time, 1.0), 0] / 1000.0
+    assert 3.0 < contact < 8.0
+    # A bus period at 10 mm/s is one pulse, the ramp's place is where the contact was seen.
+    assert pulses[-1, 0] / 1000.0 == pytest.approx(contact + 2.0, abs=2.5e-3)
+    assert pulses[-1, 1] == 3000
+
+
+def test_a_group_asks_for_inputs_and_a_probe(tmp_path: Any) -> None:
+    text = (ROOT / "scenarios/two_cards/scenario.toml").read_text()
+    for name in ("square", "helix"):
+        text = text.replace(f'"{name}.ngc"', '""')
+    text = text.replace('"circle.ngc"', '"asks.ngc"')
+    text = text.replace(
+        "[record]", '"groups.analog_in" = [' + "0, 0, 0, 0.5, " * 6 + "]\n\n[record]", 1
+    )
+    text = text[: text.index("[[figure]]")]
+    ones = ("[4, 0, 0, 0, 0, 0]", "[true, false, false, false, false, false]")
+    result = asking(text, "groups", ones, tmp_path)
+    assert result["groups.done"][-1, 0] and not result["groups.error"].any()
+    found(result, result["card1.pulse_count"])
+
+
+def test_a_program_asks_for_inputs_and_a_probe(tmp_path: Any) -> None:
+    text = SINGLE.replace(
+        "[record]",
+        '"mcc.program" = "asks.ngc"\n"mcc.probe_place" = 2\n"mcc.analog_in" = 0.5\n\n[record]',
+    )
+    result = asking(text, "mcc", ("4", "true"), tmp_path)
+    assert result.ok
+    found(result, result["card.pulse_count"])
 
 
 @pytest.mark.parametrize(
