@@ -96,7 +96,7 @@ def _numbers(program: "Program") -> dict[str, Any]:
 
     faults = [asdict(f) for f in program.faults]
     notes = [asdict(n) for n in program.notes]
-    return {"faults": faults, "notes": notes} | summarise(program).numbers()
+    return {"faults": faults, "more": program.more, "notes": notes} | summarise(program).numbers()
 
 
 def _show(file: Path, program: "Program", target: Path) -> None:

@@ -56,10 +56,11 @@ def judged(
 
 
 def _fault(text: bytes, r: Any) -> Fault:
-    begin, length = int(r["offset"] + r["at"]), int(r["length"])
-    words = text[begin : begin + length].decode(errors="replace")
+    line, begin = int(r["offset"]), int(r["offset"] + r["at"])
+    words = text[begin : begin + int(r["length"])].decode(errors="replace")
+    column = len(text[line:begin].decode(errors="replace").removeprefix("\ufeff")) + 1
     why = library().fault_text(ctypes.c_int32(int(r["fault"]))).decode()
-    return Fault(int(r["line"]), int(r["at"]) + 1, length, words, why)
+    return Fault(int(r["line"]), column, len(words), words, why)
 
 
 class Program:

@@ -1,6 +1,7 @@
 """The page and the picture of a part program: what it does, its path, its tools."""
 
 from collections.abc import Sequence
+from html import escape
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -23,8 +24,7 @@ from motionfmu.report.tables import cards, table
 
 PICTURES = ("path.png", "path.svg")
 NAMES = "XYZUVW"
-# So far away that the path fits into a telephone's width, too.
-FAR = CAMERA | {"eye": {"x": 1.9, "y": 1.9, "z": 1.3}}
+SHORT = 24  # [characters] a text that is told again behind what is wrong with it
 # Colours of the feed, and how many spans of it are told apart.
 HEATS, LEVELS = LinearSegmentedColormap.from_list("feed", HEAT), 8
 FOOTER = (
@@ -76,6 +76,10 @@ def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Str
             page.section("Feed along the path", "As programmed.", place)
     page.section("Extents", "", _extents(summary))
     page.section("Tools", "", _tools(summary))
+    if program.notes:
+        rows = [(f"{n.line}", escape(n.text), n.why) for n in program.notes]
+        told = table(("line", "text", "note"), rows, numeric=3)
+        page.section("Notes", "Accepted, and without effect here; each once.", told)
     return page.text(Frame(name, "A part program", "program", [], FOOTER))
 
 
@@ -175,7 +179,7 @@ def figure(drawn: Sequence[Stroke], by_feed: bool) -> dict[str, Any]:
         traces.append(trace)
     titles = [f"{n} [mm]" for n in NAMES[:3]]
     if space:
-        more: dict[str, Any] = scene(titles, FAR)
+        more: dict[str, Any] = scene(titles, CAMERA)
     else:
         every = np.concatenate([s.points for s in drawn])
         low, high = every.min(axis=0), every.max(axis=0)
@@ -240,8 +244,11 @@ def fault_lines(name: str, program: Program) -> list[str]:
     lines = program.text.split("\n")
     told = []
     for f in program.faults:
-        told.append(f"{name}:{f.line}:{f.column}: {f.why}")
+        about = f' "{f.text}"' if 0 < len(f.text) <= SHORT else ""
+        told.append(f"{name}:{f.line}:{f.column}: {f.why}{about}")
         if 0 < f.line <= len(lines):
-            text = lines[f.line - 1].rstrip("\r").replace("\t", " ")
+            text = lines[f.line - 1].removeprefix("\ufeff").rstrip("\r").replace("\t", " ")
             told += [f"    {text}", " " * (f.column + 3) + "^" + "~" * max(0, f.length - 1)]
+    if program.more:
+        told.append(f"{name}: {len(program.faults)} faults are told, there are more")
     return told

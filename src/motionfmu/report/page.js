@@ -5,8 +5,14 @@ const options = {
   modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
 };
 
+// On a telephone the tools of a plot would cover its legend, and a scene is seen from further away.
+const narrow = document.documentElement.clientWidth < 500;
+if (narrow) options.displayModeBar = false;
+
 const plots = page.figures.map((figure) => {
   const place = document.getElementById(figure.id);
+  const eye = narrow && figure.layout.scene?.camera?.eye;
+  for (const axis in eye) eye[axis] *= 2;
   Plotly.newPlot(place, figure.data, figure.layout, options);
   return { place, overTime: figure.over_time };
 });
