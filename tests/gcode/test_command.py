@@ -46,6 +46,26 @@ def test_faults_are_told_all_with_a_mark_below(tmp_path: Path) -> None:
     assert [f["line"] for f in json.loads(text)[str(file)]["faults"]] == [1, 2, 4]
 
 
+def test_columns_are_characters_and_more_faults_are_told(tmp_path: Path) -> None:
+    file = tmp_path / "grosse.ngc"
+    file.write_text("\ufeff(Größe) G1 X5 Q7\n" + "G999\n" * 25, encoding="utf-8")
+    code, text = command(file)
+    lines = text.splitlines()
+    assert code == 1 and lines[0] == f'{file}:1:15: word has no use in this line "Q7"'
+    assert lines[1] == "    (Größe) G1 X5 Q7" and lines[2] == " " * 18 + "^~"
+    assert lines[-1] == f"{file}: 20 faults are told, there are more"
+    assert json.loads(command(file, "--json")[1])[str(file)]["more"]
+
+
+def test_notes_are_told_and_on_the_page(tmp_path: Path) -> None:
+    file = tmp_path / "part.ngc"
+    file.write_text("G1 X5 F60 (PRINT, <b>)\nM19\nM2\n")
+    code, text = command(file, "--out", tmp_path)
+    assert code == 0 and f"{file}:2:1: note: the spindle stops, it has no angle M19" in text
+    page = (tmp_path / "part-gcode" / "report.html").read_text()
+    assert "(PRINT, &lt;b&gt;)" in page and "Accepted, and without effect" in page
+
+
 def test_limits_and_feeds_are_those_given(tmp_path: Path) -> None:
     file = tmp_path / "part.ngc"
     file.write_text("G1 X50 F3000\nM2\n")

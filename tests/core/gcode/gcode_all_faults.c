@@ -107,6 +107,10 @@ static void bare(void)
     x.program.bare = false;
     interpreter_check_all(&x.in, &x.program, &list);
     CHECK_EQ(list.notes, 1);
+    begin(&x, "(PRINT, 1)\n(PRINT, 2)\n(PRINT, 3)\n(PRINT, 4)\n(PRINT, 5)\n(PRINT, 6)\n"
+              "(PRINT, 7)\n(PRINT, 8)\n(PRINT, 9)\n(PRINT, 10)\n");     /* read at once */
+    interpreter_check_all(&x.in, &x.program, &list);
+    CHECK(list.notes == 1 && list.note[0].line == 1);
 }
 
 /* A program that runs for ever is checked so far and no further. */
