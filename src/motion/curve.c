@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bow.h"
+#include "pace_smooth.h"
 
 /* A motion that will not get this much further [s] before it has to brake waits no longer for
  * commands to come. */
@@ -100,7 +101,7 @@ static bool take(struct curve *c, struct curve_plan *m, struct ring *r)
 /* Whether the motion is about to brake for want of commands. */
 static bool starves(const struct curve *c, const struct curve_plan *m)
 {
-    return c->idle > 0 && pace_stop_way(&m->pace) + WAIT * c->place.rate >= m->pace.end;
+    return c->idle > 0 && pace_nears_end(&m->pace, WAIT * c->place.rate);
 }
 
 /* The motion has come to a rest behind which pieces go on, but not to its goal. */
@@ -176,23 +177,39 @@ static double next_block(const struct curve *c, const struct curve_plan *m, doub
 /* Ways that differ by such a share of the way to rest may not be told apart. */
 static const double MARGIN = 0.02;
 
+/* With limited jerk: the chain ends before the first block before which it can come to rest. */
+static double halt_smooth(struct curve *c, struct curve_plan *m)
+{
+    double goal = next_block(c, m, way_of(c));
+    bool ends = false;
+
+    while (!ends && goal < m->start + m->pace.end) {
+        ends = pace_smooth_end(&m->pace, goal - m->start);
+        goal = ends ? goal : next_block(c, m, nextafter(goal, INFINITY));
+    }
+    if (ends) {
+        m->joined = c->at;
+        m->joined_way = c->base;
+        while (m->joined_way + shape_piece(&m->shape, m->joined)->length <= goal) {
+            m->joined_way += shape_piece(&m->shape, m->joined++)->length;
+        }
+        m->part = goal - m->joined_way;
+        c->place = m->pace.at;
+    }
+    return goal;
+}
+
 /* The chain anew from where the motion is, at its speed, to the first block before which it can
- * come to rest; if that is not known yet, as the shape has no room for what is to come, later. A
- * change of speed that is smooth ends first. */
-static void halt(struct curve *c, struct curve_plan *m)
+ * come to rest. */
+static double halt_quick(struct curve *c, struct curve_plan *m)
 {
     const double way = way_of(c), rate = c->place.rate;
-    double stop, goal = 0.0;
+    double stop = pace_stop_way(&m->pace) - c->place.way, goal = 0.0;
 
-    if (!c->halts || c->place.ramping) {
-        return;
-    }
-    find(c, m, way);
-    stop = pace_stop_way(&m->pace) - c->place.way;
     while (goal < INFINITY) {
         goal = next_block(c, m, way + stop * (1.0 + MARGIN));
         if (goal == c->goal && m->shape.marks_set < m->shape.marks) {
-            return;
+            return goal;
         }
         c->goal = goal;
         m->joined = c->at;
@@ -207,7 +224,18 @@ static void halt(struct curve *c, struct curve_plan *m)
         }
         stop = fmax(stop, goal - way) * (1.0 + MARGIN);
     }
-    c->halts = goal == INFINITY && m->shape.marks_set < m->shape.marks;
+    return goal;
+}
+
+/* Single block: choose where it rests; if that is not known yet, as the shape has no room for what
+ * is to come, later. */
+static void halt(struct curve *c, struct curve_plan *m)
+{
+    if (c->halts) {
+        find(c, m, way_of(c));
+        c->goal = m->pace.smooth ? halt_smooth(c, m) : halt_quick(c, m);
+        c->halts = c->goal == INFINITY && m->shape.marks_set < m->shape.marks;
+    }
 }
 
 double curve_advance(struct curve *c, struct curve_plan *m, struct ring *r, double override,

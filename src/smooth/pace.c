@@ -28,12 +28,16 @@ void pace_start(struct pace *p, const struct pace_limits *l)
     p->at.head = p->count = p->at.planned = 0;
     p->closed = false;
     p->override = -1.0;
-    p->smooth = p->at.ramping = p->grown = false;
+    p->smooth = p->pending = false;
     for (int k = 0; k < AXES; k++) {
         p->smooth = p->smooth || l->jerk[k] > 0.0;
     }
-    p->at.ramp = (struct pace_ramp){ 0.0, 0.0, 0.0, 0.0 };
-    p->at.twitch = p->at.spent = p->at.before = p->at.asked = 0.0;
+    p->held = p->reach = 0;
+    p->plan[0].first = p->plan[1].first = PACE_NODES;
+    p->plan[0].end = p->plan[1].end = 0.0;
+    p->at.state = (struct pace_state){ 0.0, 0.0 };
+    p->at.step = (struct pace_step){ .kind = PACE_NO_STEP };
+    p->at.twitch = p->at.spent = p->at.origin = p->at.goal = p->at.here = p->at.asked = 0.0;
     p->end = p->at.base = p->at.left = p->at.way = p->at.rate = p->at.gain = 0.0;
 }
 
@@ -212,7 +216,7 @@ static struct stretch next(const struct pace *p, double x, double override)
 
 bool pace_at_end(const struct pace *p)
 {
-    return p->count == 0 || (p->count == 1 && p->at.left <= 0.0 && !(p->smooth && p->at.ramping));
+    return p->count == 0 || (p->count == 1 && p->at.left <= 0.0 && !(p->smooth && p->at.step.kind != PACE_NO_STEP));
 }
 
 /* Drive a stretch for up to dt; returns the time used. */
@@ -247,7 +251,7 @@ static void cross(struct pace *p)
 static double length_at(const struct pace *p, int32_t i)
 {
     const uint32_t at = (uint32_t)(p->at.head + i) % PACE_CELLS;
-    return p->smooth ? p->leg[at].length : p->cell[at].length;
+    return p->smooth ? p->box[at].length : p->cell[at].length;
 }
 
 /* Without a limit of jerk. */
@@ -311,6 +315,11 @@ double pace_stop_way(const struct pace *p)
     return p->end;
 }
 
+bool pace_nears_end(const struct pace *p, double further)
+{
+    return p->smooth ? pace_smooth_nears_end(p, further) : pace_stop_way(p) + further >= p->end;
+}
+
 void pace_put(struct pace *p, const struct pace_place *place)
 {
     const int32_t crossed = (p->at.head - place->head + PACE_CELLS) % PACE_CELLS;
@@ -334,5 +343,5 @@ bool pace_damaged(const struct pace *p)
         const struct pace_cell *c = cell_peek(p, i);
         good = c->planes >= 0 && c->planes <= PACE_PLANES;
     }
-    return !good;
+    return !good || (p->smooth && pace_smooth_damaged(p));
 }

@@ -13,7 +13,7 @@
 #ifndef PACE_H
 #define PACE_H
 
-#include "pace_leg.h"
+#include "pace_plan.h"
 
 enum { PACE_CELLS = 1024, PACE_KEPT = 256 };
 
@@ -26,25 +26,31 @@ struct pace_place {
     double  way;            /* [mm] since the start of the chain */
     double  rate, gain, twitch;     /* [mm/s], [mm/s^2], [mm/s^3] of the way */
 
-    bool    ramping;        /* smooth: a change of speed is under way */
-    struct pace_ramp ramp;
-    double  spent;          /* [s] since its start */
-    double  before;         /* [mm] `left` at its start */
-    double  asked;          /* override that it was chosen for */
+    /* with limited jerk */
+    double  here;           /* [mm] from the start of the chain */
+    struct pace_state state;        /* between steps, */
+    struct pace_step step;  /* or the step under way, */
+    double  spent, origin, goal;    /* [s] since its start, [mm] from where to where */
+    double  asked;          /* the latest override */
 };
 
 struct pace {
     struct pace_limits limits;
-    bool    smooth;         /* jerk is limited: legs, else cells */
+    bool    smooth;         /* jerk is limited: boxes and plans, else cells */
+    int32_t reach;          /* boxes of the latest plan, if there was no room for all; else 0 */
+    int32_t held;           /* that plan holds, */
+    bool    pending;        /* the other one will, as soon as the motion can turn into it */
     struct pace_place at;
     int32_t count;          /* cells from that of the motion on */
     bool    closed;         /* no further piece joins */
     double  override;       /* of the latest plan */
     double  end;            /* [mm] end of the pieces, from the start of the chain */
-    bool    grown;          /* the last leg has, since the latest plan */
     union {
         struct pace_cell cell[PACE_CELLS];
-        struct pace_leg leg[PACE_CELLS];
+        struct {
+            struct pace_box box[PACE_CELLS];
+            struct pace_plan plan[2];
+        };
     };
 };
 
@@ -67,6 +73,9 @@ double pace_advance(struct pace *p, double override, double dt);
 
 /* Where an override of 0 brings it to rest, or a little before. [mm] */
 double pace_stop_way(const struct pace *p);
+
+/* Whether, that much further [mm], it brakes for the end of the pieces that are known. */
+bool pace_nears_end(const struct pace *p, double further);
 
 /* It rests at the end of the pieces that are known. */
 bool pace_at_end(const struct pace *p);

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "pace_leg.h"
+#include "pace_box.h"
 #include "pace_pull.h"
 
 /* A cell turns by so much at most [rad], and the bend of r' over it is at most that. Found by

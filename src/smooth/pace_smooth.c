@@ -1,58 +1,54 @@
 #include "pace_smooth.h"
 
 #include <math.h>
+#include <stddef.h>
 
-/* A plan goes through all legs once so many of the planned ones (a fourth) are new. */
+/* A plan is made once so many of the boxes it would know (a fourth) are new. */
 enum { PLAN_SHARE = 4 };
 
-/* Speeds that differ by such a share are the same. */
+/* Bisections of a step, and steps in one call, at most. */
+enum { HALVES = 5, STEPS = 4096 };
+
+/* A way that one jerk drives at so much of what the place allows needs no plan. */
+static const double HOPS = 0.9;
+
+/* Ways and states that differ by such a share are the same. */
 static const double SAME = 1e-9;
 
-/* A way that rounding leaves, of that to go. [mm] */
-static const double SMALL = 1e-12;
+/* The motion, of a pace that stays as it is. */
+struct ride {
+    const struct pace *p;
+    struct pace_place at;
+    int32_t count;
+};
 
-static struct pace_leg *leg_at(struct pace *p, int32_t i)
+static struct pace_box *box_at(struct pace *p, int32_t i)
 {
-    return &p->leg[(uint32_t)(p->at.head + i) % PACE_CELLS];
+    return &p->box[(uint32_t)(p->at.head + i) % PACE_CELLS];
 }
 
-static const struct pace_leg *leg_peek(const struct pace *p, int32_t i)
+static struct pace_road road(const struct ride *r, double override)
 {
-    return &p->leg[(uint32_t)(p->at.head + i) % PACE_CELLS];
+    return (struct pace_road){ r->p->box, PACE_CELLS, r->at.head, r->count, override };
 }
 
-/* Whether a leg may grow to another one: it is not under way, and the motion that has been planned
- * into it finds as much room. */
-static bool may_grow(const struct pace *p, const struct pace_leg *g, const struct pace_leg *grown)
+static const struct pace_plan *held(const struct ride *r)
 {
-    if (p->count == 1) {
-        return p->at.rate <= 0.0 && p->at.left >= g->length;
-    }
-    return p->at.planned < p->count ||
-           pace_leg_enter(grown, &p->limits, 0.0, grown->cap, grown->length) >=
-           pace_leg_enter(g, &p->limits, 0.0, g->cap, g->length);
+    return &r->p->plan[r->p->held];
 }
 
-static void append(struct pace *p, const struct pace_leg *g)
+static void append(struct pace *p, const struct pace_box *g)
 {
-    if (p->count > 0) {
-        struct pace_leg *last = leg_at(p, p->count - 1), both = *last;
-        if (pace_leg_join(&both, g, &p->limits) && may_grow(p, last, &both)) {
-            *last = both;
-            p->at.left = p->count == 1 ? both.length : p->at.left;
-            p->grown = true;
-            return;
-        }
+    if (p->count > 0 && p->at.planned < p->count &&
+        pace_box_join(box_at(p, p->count - 1), g)) {
+        return;
     }
-    if (p->count == 0) {
-        p->at.left = g->length;
-    }
-    *leg_at(p, p->count++) = *g;
+    *box_at(p, p->count++) = *g;
 }
 
 bool pace_smooth_join(struct pace *p, const struct piece *piece)
 {
-    struct pace_leg g;
+    struct pace_box g;
     struct piece_bounds b;
     struct piece_rest rest;
     double from = 0.0;
@@ -68,215 +64,393 @@ bool pace_smooth_join(struct pace *p, const struct piece *piece)
         if (n > 1) {
             piece_rest_cut(&rest, to, &b);
         }
-        pace_leg_make(&g, piece, &p->limits, to - from, &b);
+        pace_box_make(&g, piece, &p->limits, p->end + from, to - from, &b);
         g.last = i + 1 == n;
         append(p, &g);
         from = to;
     }
     p->end += piece->length;
+    p->at.left = box_at(p, 0)->from + box_at(p, 0)->length - p->at.here;
     return true;
 }
 
-static double feed_limit(const struct pace_leg *g, double override)
+/* Take a step from here, to a place. */
+static void set_out(struct ride *r, struct pace_step step, double goal)
 {
-    return fmin(g->feed * override, g->cap);
+    r->at.step = step;
+    r->at.spent = 0.0;
+    r->at.origin = r->at.here;
+    r->at.goal = goal;
 }
 
-/* Most speed at the end of leg i. */
-static double end_limit(const struct pace *p, int32_t i)
+/* From rest into the way of a plan, or, where that is short, to its end. */
+static void start(struct ride *r, double override)
 {
-    return i + 1 < p->at.planned ? leg_peek(p, i + 1)->enter : 0.0;
+    const struct pace_plan *plan = held(r);
+    const struct pace_road soft = road(r, override);
+    const double way = plan->end - r->at.here;
+    const struct pace_step hop = pace_road_hop(&soft, r->at.here, 0, way);
+    struct pace_step step;
+
+    if (hop.c >= HOPS * pace_box_jerk(pace_road_box(&soft, 0), 0.0, 0.0)) {
+        set_out(r, hop, plan->end);
+        return;
+    }
+    for (int n = 0; pace_road_start(&soft, r->at.here, 0, 1.0, way, n, &step); n++) {
+        const double to = r->at.here + step.way;
+        if (pace_plan_safe(plan, &soft, pace_plan_spot(plan, &soft, to, step.to))) {
+            set_out(r, step, to);
+            return;
+        }
+    }
+    set_out(r, hop, plan->end);
 }
 
-/* From the end backwards. */
+/* Whether the motion can go on from the end of a step. */
+static bool good(const struct ride *r, const struct pace_road *to, struct pace_spot spot, double c,
+                 double s, bool may_land)
+{
+    const struct pace_state end = pace_step_to(spot.state, c, s);
+
+    if (pace_step_top(spot.state, c, s) >
+        pace_road_top(to, pace_road_box(to, spot.box)) * (1.0 + SAME) ||
+        !pace_box_keeps(pace_road_box(to, spot.box), spot.state, c, s)) {
+        return false;
+    }
+    pace_plan_pass(held(r), to, &spot, s, end);
+    return (may_land && pace_road_lands(to, spot.at, spot.box, end)) ||
+           pace_plan_safe(held(r), to, spot);
+}
+
+static void go(struct ride *r, const struct pace_road *to, struct pace_spot spot, double c,
+               double s)
+{
+    const struct pace_step step = pace_step_bent(spot.state, c, s);
+
+    pace_plan_pass(held(r), to, &spot, s, step.to);
+    set_out(r, step, spot.at);
+}
+
+static void land(struct ride *r)
+{
+    const struct pace_step step = pace_step_land(r->at.state);
+    const double goal = r->at.here + step.way, end = held(r)->end;
+
+    set_out(r, step, goal > end - SAME * step.way ? end : goal);
+}
+
+/* Between a c that is good and one that is not: nearly the last good one. */
+static double halve(const struct ride *r, const struct pace_road *to, const struct pace_spot *spot,
+                    double kept, double fails, double s, bool may_land)
+{
+    for (int i = 0; i < HALVES; i++) {
+        const double middle = 0.5 * (kept + fails);
+        *(good(r, to, *spot, middle, s, may_land) ? &kept : &fails) = middle;
+    }
+    return kept;
+}
+
+/* As slow as the limits allow, as long as the motion can go on by the plan or come to rest. */
+static void brake(struct ride *r)
+{
+    const struct pace_road hard = road(r, -1.0);
+    const struct pace_spot spot = pace_plan_spot(held(r), &hard, r->at.here, r->at.state);
+    const struct pace_box *g = pace_road_box(&hard, spot.box);
+    const double stride = pace_box_stride(g, spot.state, pace_plan_rest(held(r), &hard, &spot));
+    const bool lands = pace_road_lands(&hard, spot.at, spot.box, spot.state);
+    double s, steer, c;
+
+    const bool turns = pace_box_turn(g, spot.state, stride, -1.0, &c);
+    if (turns && good(r, &hard, spot, c, stride, true)) {
+        const struct pace_state to = pace_step_to(spot.state, c, stride);
+        if (to.b >= 0.0 || !lands || pace_road_lands(&hard, spot.at + stride, spot.box, to)) {
+            go(r, &hard, spot, c, stride);
+            return;
+        }
+    }
+    if (lands) {
+        land(r);
+        return;
+    }
+    if (!pace_plan_steer(held(r), &hard, &spot, &s, &steer)) {
+        go(r, &hard, spot, 0.0, stride);
+        return;
+    }
+    s = fmin(s, stride);
+    go(r, &hard, spot, turns ? halve(r, &hard, &spot, steer, c, s, true) : steer, s);
+}
+
+/* As quick as the motion can still turn into the way of the plan. */
+static void hurry(struct ride *r, double override)
+{
+    const struct pace_plan *plan = held(r);
+    const struct pace_road soft = road(r, override);
+    const struct pace_spot spot = pace_plan_spot(plan, &soft, r->at.here, r->at.state);
+    const struct pace_box *g = pace_road_box(&soft, spot.box);
+    double s, steer, c;
+
+    if (spot.node >= PACE_NODES && r->at.state.b < 0.0) {
+        land(r);
+        return;
+    }
+    const double stride = pace_box_stride(g, spot.state, pace_plan_rest(plan, &soft, &spot));
+    const bool turns = pace_box_turn(g, spot.state, stride, 1.0, &c);
+    const bool steers = pace_plan_steer(plan, &soft, &spot, &s, &steer);
+    if (turns && (!steers || c > steer) && good(r, &soft, spot, c, stride, false)) {
+        go(r, &soft, spot, c, stride);
+        return;
+    }
+    if (!steers) {
+        brake(r);
+        return;
+    }
+    const struct pace_node *node = spot.node < PACE_NODES ? &plan->node[spot.node] : NULL;
+    const struct pace_state to = pace_step_to(spot.state, steer, s);
+    if (node && (s <= stride || spot.state.b == 0.0) && spot.at + s >= node->at - SAME * s &&
+        to.x >= node->state.x * (1.0 - SAME)) {
+        go(r, &soft, spot, steer, s);
+        return;
+    }
+    s = fmin(s, stride);
+    if (!good(r, &soft, spot, steer, s, false)) {
+        brake(r);
+        return;
+    }
+    go(r, &soft, spot,
+       turns && c > steer ? halve(r, &soft, &spot, steer, c, s, false) : steer, s);
+}
+
+static void choose(struct ride *r, double override)
+{
+    if (r->at.state.x <= 0.0) {
+        start(r, override);
+    } else if (override > 0.0 && !r->p->pending) {
+        hurry(r, override);
+    } else {
+        brake(r);
+    }
+}
+
+/* Where the motion is in its step. */
+static void place(struct pace_place *at)
+{
+    const struct pace_motion m = pace_step_at(&at->step, at->spent);
+
+    at->here = fmin(at->goal, at->origin + m.way);
+    at->rate = m.rate;
+    at->gain = m.gain;
+    at->twitch = m.jerk;
+}
+
+/* The step is done. */
+static void arrive(struct pace_place *at)
+{
+    at->here = at->goal;
+    at->state = at->step.to;
+    at->rate = sqrt(at->state.x);
+    at->gain = 0.5 * at->state.b;
+    at->twitch = 0.0;
+    at->step.kind = PACE_NO_STEP;
+}
+
+static double end_of(const struct ride *r, int32_t i)
+{
+    const struct pace_box *g = &r->p->box[(uint32_t)(r->at.head + i) % PACE_CELLS];
+    return i + 1 < r->count ? r->p->box[(uint32_t)(r->at.head + i + 1) % PACE_CELLS].from
+                            : g->from + g->length;
+}
+
+static void cross(struct ride *r)
+{
+    while (r->count > 1 && r->at.here >= end_of(r, 0)) {
+        r->at.base = end_of(r, 0);
+        r->at.head = (r->at.head + 1) % PACE_CELLS;
+        r->count--;
+        r->at.planned -= r->at.planned > 0;
+    }
+    r->at.left = r->count > 0 ? end_of(r, 0) - r->at.here : 0.0;
+}
+
+/* Go on from where the motion is in its step, if that is safe under what holds now. */
+static bool cut(struct ride *r, const struct pace_plan *plan, double override)
+{
+    const struct pace_road to = road(r, override);
+    const struct pace_state now = { r->at.rate * r->at.rate, 2.0 * r->at.gain };
+    const struct pace_spot spot = pace_plan_spot(plan, &to, r->at.here, now);
+
+    if (r->at.step.kind != PACE_NO_STEP) {
+        if (now.x <= 0.0 || !pace_plan_safe(plan, &to, spot)) {
+            return false;
+        }
+        r->at.state = now;
+        r->at.step.kind = PACE_NO_STEP;
+        return true;
+    }
+    return now.x <= 0.0 || pace_plan_safe(plan, &to, spot);
+}
+
+static struct ride ride_of(const struct pace *p)
+{
+    return (struct ride){ p, p->at, p->count };
+}
+
+/* Plan anew, beside the plan that holds. */
 static void plan(struct pace *p, double override)
 {
-    const bool all = override != p->override;
-    const int32_t known = p->at.planned;
+    const struct ride r = ride_of(p);
+    struct pace_road to = road(&r, override);
 
-    p->at.planned = p->count;
-    p->grown = false;
-    for (int32_t i = p->count - 1; i >= 0; i--) {
-        struct pace_leg *g = leg_at(p, i);
-        const double v = pace_leg_enter(g, &p->limits, end_limit(p, i), feed_limit(g, override),
-                                        g->length);
-        if (!all && i < known - 1 && v == g->enter) {
-            break;
-        }
-        g->enter = v;
+    while (!pace_plan_make(&p->plan[1 - p->held], &to, p->at.here) && to.count > 1) {
+        to.count = (to.count + 1) / 2;      /* so far ahead is enough */
     }
+    p->at.planned = to.count;
+    p->reach = to.count < p->count ? to.count : 0;
     p->override = override;
+    p->pending = true;
 }
 
-/* Begin a ramp; returns the way to go on without one: none, or what is left if there is none. */
-static double begin(struct pace *p, double to, double override)
+/* The new plan holds once the motion can turn into it. */
+static void adopt(struct pace *p, struct ride *r)
 {
-    const struct pace_leg *g = leg_peek(p, 0);
-
-    to = pace_leg_stage(g, &p->limits, p->at.rate, to);
-    p->at.ramp = pace_ramp_make(g, &p->limits, p->at.rate, to);
-    p->at.ramping = to != p->at.rate;
-    p->at.spent = 0.0;
-    p->at.before = p->at.left;
-    p->at.asked = override;
-    return p->at.ramping ? 0.0 : p->at.left;
+    if (p->pending && cut(r, &p->plan[1 - p->held], p->override)) {
+        p->held = 1 - p->held;
+        p->pending = false;
+    }
 }
 
-/* A ramp under way to another override: upwards it ends early if it would go too far, downwards it
- * goes on to less if there is room; both only while its acceleration has not begun to fall. */
-static struct pace_ramp change(const struct pace *p, double override)
+static bool wants_plan(const struct pace *p, double override)
 {
-    const struct pace_ramp *r = &p->at.ramp;
-    const double most = feed_limit(leg_peek(p, 0), override);
-    struct pace_ramp new = *r;
+    const int32_t new = p->count - p->at.planned;
+    const bool rests = p->at.step.kind == PACE_NO_STEP && p->at.state.x <= 0.0;
 
-    if (r->to <= most || !pace_ramp_open(r, p->at.spent)) {
-        return *r;
-    }
-    if (r->to > r->from) {
-        return pace_ramp_cut(r, p->at.spent);
-    }
-    new.to = most;
-    const struct pace_leg *g = leg_peek(p, 0);
-    const double on = pace_leg_way(g, &p->limits, most, fmin(most, end_limit(p, 0)));
-    return pace_ramp_way(&new) + on <= p->at.before ? new : *r;
-}
-
-/* A ramp under way to where the chain has been closed: it goes up no further. */
-static struct pace_ramp no_further(const struct pace *p)
-{
-    const struct pace_ramp *r = &p->at.ramp;
-    return r->to > r->from && pace_ramp_open(r, p->at.spent) ? pace_ramp_cut(r, p->at.spent) : *r;
-}
-
-/* Choose what comes next from a = 0: a ramp, or a way to go on as it is, which is returned. [mm] */
-static double choose(struct pace *p, double override)
-{
-    const struct pace_leg *g = leg_peek(p, 0);
-    const double v = p->at.rate, most = feed_limit(g, override);
-    const double leave = override > 0.0 ? fmin(end_limit(p, 0), g->cap) : 0.0;
-
-    if (v > most * (1.0 + SAME)) {
-        const double on = pace_leg_way(g, &p->limits, most, fmin(most, leave));
-        const double way = pace_leg_way(g, &p->limits, v, most) + on;
-        return begin(p, way <= p->at.left * (1.0 + SAME) ? most
-                 : pace_leg_low(g, &p->limits, v, fmin(most, leave), p->at.left), override);
-    }
-    const double peak = v < most * (1.0 - SAME)
-        ? pace_leg_peak(g, &p->limits, v, leave, most, p->at.left) : v;
-    if (peak > v * (1.0 + SAME)) {
-        return begin(p, peak, override);
-    }
-    if (leave >= v * (1.0 - SAME)) {
-        return p->at.left;
-    }
-    const double slack = p->at.left - pace_leg_way(g, &p->limits, v, leave);
-    if (slack > SAME * p->at.left) {
-        return slack;
-    }
-    return begin(p, pace_leg_low(g, &p->limits, v, leave, p->at.left), override);
-}
-
-/* Go on with a ramp for up to dt; returns the time used. */
-static double drive(struct pace *p, double dt)
-{
-    const double rest = pace_ramp_time(&p->at.ramp) - p->at.spent;
-
-    if (rest <= dt) {
-        p->at.left = fmax(0.0, p->at.before - pace_ramp_way(&p->at.ramp));
-        p->at.left = p->at.left > SMALL * (1.0 + p->at.before) ? p->at.left : 0.0;
-        p->at.rate = p->at.ramp.to;
-        p->at.gain = p->at.twitch = 0.0;
-        p->at.ramping = false;
-        return fmax(0.0, rest);
-    }
-    p->at.spent += dt;
-    const struct pace_motion m = pace_ramp_at(&p->at.ramp, p->at.spent);
-    p->at.left = fmax(0.0, p->at.before - m.way);
-    p->at.rate = m.rate;
-    p->at.gain = m.gain;
-    p->at.twitch = m.jerk;
-    return dt;
-}
-
-static void cross(struct pace *p)
-{
-    while (p->at.left <= 0.0 && p->count > 1 && !p->at.ramping) {
-        p->at.base += leg_peek(p, 0)->length;
-        p->at.head = (p->at.head + 1) % PACE_CELLS;
-        p->count--;
-        p->at.planned -= p->at.planned > 0;
-        p->at.left = leg_peek(p, 0)->length;
-    }
+    return override > 0.0 && p->count > 0 &&
+           (override != p->override || (rests && new > 0) ||
+            (PLAN_SHARE * new > p->at.planned &&
+             (p->reach == 0 || PLAN_SHARE * p->at.planned < (PLAN_SHARE - 1) * p->reach)));
 }
 
 double pace_smooth_advance(struct pace *p, double override, double dt)
 {
-    cross(p);
-    if (override > 0.0 && (override != p->override ||
-                           p->grown || PLAN_SHARE * (p->count - p->at.planned) > p->at.planned)) {
+    struct ride r = ride_of(p);
+
+    cross(&r);
+    p->at = r.at;
+    p->count = r.count;
+    if (wants_plan(p, override)) {
         plan(p, override);
+        r = ride_of(p);
     }
-    if (p->at.ramping && override != p->at.asked) {
-        p->at.ramp = p->at.asked < 0.0 ? no_further(p) : change(p, override);
-        p->at.asked = override;
+    if (override > 0.0) {
+        adopt(p, &r);
+    } else if (p->at.asked > 0.0 && r.at.step.kind != PACE_NO_STEP) {
+        cut(&r, &p->plan[p->held], -1.0);
     }
-    while (dt > 0.0 && !pace_at_end(p)) {
-        if (p->at.ramping) {
-            dt -= drive(p, dt);
-        } else if (p->at.rate <= 0.0 && override <= 0.0) {
-            return 0.0;
+    r.at.asked = override;
+    for (int n = 0; n < STEPS && dt > 0.0; n++) {
+        if (r.at.step.kind == PACE_NO_STEP) {
+            if (r.count == 1 && r.at.left <= 0.0) {
+                break;
+            }
+            if (r.at.state.x <= 0.0 && (override <= 0.0 || r.at.here >= p->plan[p->held].end)) {
+                dt = 0.0;
+                break;
+            }
+            choose(&r, override);
+        }
+        const double rest = r.at.step.time - r.at.spent;
+        if (rest > dt) {
+            r.at.spent += dt;
+            dt = 0.0;
+            place(&r.at);
         } else {
-            const double way = choose(p, override);
-            if (!p->at.ramping && p->at.rate <= 0.0) {    /* no way but rounding, or no feed */
-                p->at.left = p->at.left > SMALL * (1.0 + p->at.before) ? p->at.left : 0.0;
-                dt = p->at.left > 0.0 ? 0.0 : dt;
-            } else if (!p->at.ramping) {
-                const bool all = way >= dt * p->at.rate;
-                p->at.left = all ? p->at.left - dt * p->at.rate : p->at.left - way;
-                dt = all ? 0.0 : dt - way / p->at.rate;
+            dt -= fmax(0.0, rest);
+            arrive(&r.at);
+            if (override > 0.0) {
+                adopt(p, &r);
             }
         }
-        cross(p);
+        cross(&r);
     }
+    cross(&r);
+    p->at = r.at;
+    p->count = r.count;
     return dt;
-}
-
-/* Speed and way left in its leg at the end of a ramp, if one is under way. */
-static void settle(const struct pace *p, const struct pace_ramp *r, double *rate, double *left)
-{
-    *rate = p->at.ramping ? r->to : p->at.rate;
-    *left = p->at.ramping ? fmax(0.0, p->at.before - pace_ramp_way(r)) : p->at.left;
 }
 
 double pace_smooth_stop_way(const struct pace *p)
 {
-    const struct pace_ramp r = change(p, 0.0);
-    double v, left, base = p->at.base;
+    struct ride r = ride_of(p);
 
-    settle(p, &r, &v, &left);
-    for (int32_t i = 0; i < p->count; i++) {
-        const struct pace_leg *g = leg_peek(p, i);
-        left = i == 0 ? left : g->length;
-        const double low = left > 0.0 ? pace_leg_low(g, &p->limits, v, 0.0, left) : v;
-        if (low <= 0.0) {
-            return base + (g->length - left) + pace_leg_way(g, &p->limits, v, 0.0);
-        }
-        v = low;
-        base += g->length;
+    if (r.at.step.kind != PACE_NO_STEP && !cut(&r, held(&r), -1.0)) {
+        arrive(&r.at);
     }
-    return p->end;
+    for (int n = 0; n < STEPS && r.at.state.x > 0.0; n++) {
+        cross(&r);
+        brake(&r);
+        arrive(&r.at);
+    }
+    return r.at.here;
 }
 
-bool pace_smooth_can_rest(const struct pace *p, int32_t i)
+bool pace_smooth_nears_end(const struct pace *p, double further)
 {
-    double v, left, enter = 0.0;
+    const struct pace_plan *plan = &p->plan[p->held];
+    int32_t i = PACE_NODES - 1;
 
-    for (; i > 0; i--) {
-        const struct pace_leg *g = leg_peek(p, i);
-        enter = pace_leg_enter(g, &p->limits, enter, g->cap, g->length);
+    while (i > plan->first && plan->node[i].state.b < 0.0) {
+        i--;
     }
-    const struct pace_ramp r = no_further(p);
-    settle(p, &r, &v, &left);
-    return pace_leg_low(leg_peek(p, 0), &p->limits, v, fmin(v, enter), left) <= enter;
+    return p->at.here + further >= (plan->first < PACE_NODES ? plan->node[i].at : p->end);
+}
+
+bool pace_smooth_damaged(const struct pace *p)
+{
+    const struct ride r = ride_of(p);
+    bool good = p->held >= 0 && p->held <= 1 && p->at.step.kind >= PACE_NO_STEP &&
+                p->at.step.kind <= PACE_HOP;
+
+    for (int32_t i = 0; good && i < p->count; i++) {
+        const struct pace_road to = road(&r, 1.0);
+        good = pace_road_box(&to, i)->rows >= 0 && pace_road_box(&to, i)->rows <= AXES;
+    }
+    for (int i = 0; good && i < 2; i++) {
+        good = p->plan[i].first >= 0 && p->plan[i].first <= PACE_NODES;
+    }
+    return !good;
+}
+
+bool pace_smooth_end(struct pace *p, double way)
+{
+    const double end = p->end;
+    const int32_t count = p->count;
+    struct ride r = ride_of(p);
+    int32_t i = 0;
+
+    if (count == 0) {
+        return false;
+    }
+    while (i + 1 < count && end_of(&r, i) < way) {
+        i++;
+    }
+    struct pace_box *g = box_at(p, i);
+    const double length = g->length;
+    g->length = way - g->from;
+    p->count = i + 1;
+    p->end = way;
+    plan(p, p->override > 0.0 ? p->override : 1.0);
+    r = ride_of(p);
+    adopt(p, &r);
+    const bool ends = !p->pending && p->reach == 0;
+    if (ends) {
+        p->at = r.at;
+        p->closed = true;
+    } else {
+        g->length = length;
+        p->count = count;
+        p->end = end;
+        p->override = -1.0;     /* plan anew */
+        p->pending = false;
+    }
+    p->at.planned = p->at.planned < p->count ? p->at.planned : p->count;
+    return ends;
 }

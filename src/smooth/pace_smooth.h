@@ -7,8 +7,11 @@
 bool pace_smooth_join(struct pace *p, const struct piece *piece);
 double pace_smooth_advance(struct pace *p, double override, double dt);
 double pace_smooth_stop_way(const struct pace *p);
+bool pace_smooth_nears_end(const struct pace *p, double further);
 
-/* Whether it can come to rest at the end of leg i. */
-bool pace_smooth_can_rest(const struct pace *p, int32_t i);
+bool pace_smooth_damaged(const struct pace *p);
+
+/* The chain ends at a way within it; false: the motion can't come to rest there, nothing changes. */
+bool pace_smooth_end(struct pace *p, double way);
 
 #endif

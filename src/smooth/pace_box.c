@@ -1,0 +1,355 @@
+#include "pace_box.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "pace_pull.h"
+
+/* Shares of an axis' acceleration and jerk that turning may take; the rest is to change speed. */
+static const double TURN_ACC = 0.97, TURN_JERK = 0.99;
+
+/* Boxes become one while that costs less than so much of the time in which the acceleration rises,
+ * and always if one is shorter than SPECK. [mm] */
+static const double JOIN = 0.01, SPECK = 1e-6;
+
+/* Of a step: share of the steepest b that may come, of x, and the least part of a way to rest. */
+static const double STEEPER = 0.25, FASTER = 0.12, FINEST = 1.0 / 16.0;
+
+/* Most that a step may be above a limit by rounding. */
+static const double ROUNDING = 1e-10;
+
+/* [s] */
+static const double SOON = 1e-4;
+
+/* A turn is looked for at so many places if c = 0 does not keep the limits, and then by halves. */
+enum { SCAN = 16, HALVES = 6 };
+
+bool pace_by_axes(const struct pace_limits *l)
+{
+    double sum = 0.0;
+
+    for (int k = 0; k < AXES; k++) {
+        sum += l->acc[k];
+    }
+    return sum > 0.0;
+}
+
+/* 1 / jerk; without a limit the acceleration is there in SOON. */
+static double inverse(double jerk, double acc)
+{
+    return jerk > 0.0 ? 1.0 / jerk : acc > 0.0 ? SOON / acc : 0.0;
+}
+
+static double size(struct pace_range r)
+{
+    return fmax(-r.low, r.high);
+}
+
+static struct pace_range times(struct pace_range r, double x)
+{
+    return x < 0.0 ? (struct pace_range){ r.high * x, r.low * x }
+                   : (struct pace_range){ r.low * x, r.high * x };
+}
+
+static struct pace_range plus(struct pace_range a, struct pace_range b)
+{
+    return (struct pace_range){ a.low + b.low, a.high + b.high };
+}
+
+static struct pace_range both(struct pace_range a, struct pace_range b)
+{
+    return (struct pace_range){ fmin(a.low, b.low), fmax(a.high, b.high) };
+}
+
+/* Speed at which turning takes shares of the limits. */
+static double turn_speed(const struct pace_box *g, double acc, double jerk)
+{
+    double v = g->cap;
+
+    for (int32_t i = 0; i < g->rows; i++) {
+        const double a = size(g->row[i].acc[1]), j = size(g->row[i].jerk[2]);
+        v = a > 0.0 ? fmin(v, sqrt(acc / a)) : v;
+        v = j > 0.0 ? fmin(v, cbrt(jerk / j)) : v;
+    }
+    return v;
+}
+
+static void finish(struct pace_box *g)
+{
+    g->cap = turn_speed(g, 1.0, 1.0);
+    g->brisk = turn_speed(g, TURN_ACC, TURN_JERK);
+}
+
+/* Along the path and across it; the jerk of all of r'' and r''' counts as one across. */
+static void path_rule(struct pace_box *g, const struct piece *p, const struct piece_bounds *b)
+{
+    const double acc = 1.0 / fmin(p->ramp.acc, p->ramp.dec);
+    const double jerk = fmax(inverse(p->ramp.acc_jerk, p->ramp.acc),
+                             inverse(p->ramp.dec_jerk, p->ramp.dec));
+    const struct pace_range none = { 0.0, 0.0 };
+    struct pace_pull way;
+    const double across = pace_pull_path(&way, p, g->length, b);
+    struct pace_range along[3], all[3];
+
+    for (int n = 0; n < 3; n++) {
+        along[n] = (struct pace_range){ -way.most[n], way.most[n] };
+        all[n] = (struct pace_range){ -b->most[n], b->most[n] };
+    }
+    const struct pace_range bend = { -across, across };
+    g->rows = 2;
+    g->row[0] = (struct pace_row){ { times(along[0], acc), times(along[1], acc) },
+        { times(along[0], jerk), times(along[1], jerk), times(along[2], jerk) } };
+    g->row[1] = (struct pace_row){ { none, times(bend, acc) },
+                                   { none, times(all[1], jerk), times(all[2], jerk) } };
+}
+
+void pace_box_make(struct pace_box *g, const struct piece *p, const struct pace_limits *l,
+                   double from, double length, const struct piece_bounds *b)
+{
+    memset(g, 0, sizeof *g);
+    g->from = from;
+    g->length = length;
+    g->feed = p->feed / b->most[0];
+    g->cap = p->cap / b->most[0];
+    for (int32_t i = 0; i < b->axes; i++) {
+        const int k = b->axis[i];
+        const struct pace_range first = { b->low[0][k], b->high[0][k] };
+        const struct pace_range second = { b->low[1][k], b->high[1][k] };
+        const struct pace_range third = { b->low[2][k], b->high[2][k] };
+        g->cap = l->speed[k] > 0.0 ? fmin(g->cap, l->speed[k] / size(first)) : g->cap;
+        if (l->acc[k] > 0.0 || l->jerk[k] > 0.0) {
+            const double acc = l->acc[k] > 0.0 ? 1.0 / l->acc[k] : 0.0;
+            const double jerk = inverse(l->jerk[k], l->acc[k]);
+            g->row[g->rows++] = (struct pace_row){ { times(first, acc), times(second, acc) },
+                { times(first, jerk), times(second, jerk), times(third, jerk) } };
+        }
+    }
+    if (!pace_by_axes(l)) {
+        path_rule(g, p, b);
+    }
+    finish(g);
+    g->ideal = g->length / fmin(g->brisk, g->feed);
+}
+
+double pace_box_rise(const struct pace_box *g)
+{
+    double time = INFINITY;
+
+    for (int32_t i = 0; i < g->rows; i++) {
+        const struct pace_row *r = &g->row[i];
+        time = size(r->acc[0]) > 0.0 ? fmin(time, size(r->jerk[0]) / size(r->acc[0])) : time;
+    }
+    return time < INFINITY ? time : 0.0;
+}
+
+bool pace_box_join(struct pace_box *g, const struct pace_box *next)
+{
+    struct pace_box one = *g;
+
+    if (g->rows != next->rows) {
+        return false;
+    }
+    for (int32_t i = 0; i < g->rows; i++) {
+        const struct pace_row *r = &next->row[i];
+        for (int n = 0; n < 2; n++) {
+            one.row[i].acc[n] = both(one.row[i].acc[n], r->acc[n]);
+        }
+        for (int n = 0; n < 3; n++) {
+            one.row[i].jerk[n] = both(one.row[i].jerk[n], r->jerk[n]);
+        }
+    }
+    one.length += next->length;
+    one.feed = fmin(one.feed, next->feed);
+    one.cap = fmin(one.cap, next->cap);
+    one.ideal += next->ideal;
+    one.last = next->last;
+    finish(&one);
+    const double slower = one.length / fmin(one.brisk, one.feed) - one.ideal;
+    if (slower > JOIN * pace_box_rise(&one) && fmin(g->length, next->length) > SPECK) {
+        return false;
+    }
+    *g = one;
+    return true;
+}
+
+double pace_box_steepest(const struct pace_box *g, double x, double sign)
+{
+    double b = INFINITY;
+
+    for (int32_t i = 0; i < g->rows; i++) {
+        const struct pace_range p = times(g->row[i].acc[0], sign), q = times(g->row[i].acc[1], x);
+        b = p.high > 0.0 ? fmin(b, 2.0 * (1.0 - q.high) / p.high) : b;
+        b = p.low < 0.0 ? fmin(b, 2.0 * (1.0 + q.low) / -p.low) : b;
+    }
+    return fmax(0.0, b);
+}
+
+static struct pace_range acc_of(const struct pace_row *r, struct pace_state s)
+{
+    return plus(times(r->acc[0], 0.5 * s.b), times(r->acc[1], s.x));
+}
+
+static struct pace_range twist_of(const struct pace_row *r, struct pace_state s)
+{
+    return plus(times(r->jerk[1], 1.5 * s.b), times(r->jerk[2], s.x));
+}
+
+/* Most c of a state, or the least, by its sign; it may be on the other side of 0. */
+static double bend(const struct pace_box *g, struct pace_state s, double sign)
+{
+    const double all = 1.0 / sqrt(s.x);
+    double c = INFINITY;
+
+    for (int32_t i = 0; i < g->rows; i++) {
+        const struct pace_range p = times(g->row[i].jerk[0], sign), q = twist_of(&g->row[i], s);
+        c = p.high > 0.0 ? fmin(c, 2.0 * (all - q.high) / p.high) : c;
+        c = p.low < 0.0 ? fmin(c, 2.0 * (all + q.low) / -p.low) : c;
+    }
+    return sign * c;
+}
+
+double pace_box_acc(const struct pace_box *g, struct pace_state s)
+{
+    double most = 0.0;
+
+    for (int32_t i = 0; i < g->rows; i++) {
+        most = fmax(most, size(acc_of(&g->row[i], s)));
+    }
+    return most;
+}
+
+double pace_box_twist(const struct pace_box *g, struct pace_state s)
+{
+    double most = 0.0;
+
+    for (int32_t i = 0; i < g->rows; i++) {
+        most = fmax(most, size(twist_of(&g->row[i], s)));
+    }
+    return most * sqrt(s.x);
+}
+
+double pace_step_top(struct pace_state from, double c, double s)
+{
+    const struct pace_state to = pace_step_to(from, c, s);
+
+    return from.b > 0.0 && to.b < 0.0 ? from.x - from.b * from.b / (2.0 * c)
+                                      : fmax(from.x, to.x);
+}
+
+/* Most of f + slope u + curve u^2 / 2 over a step. */
+static double peak(double f, double slope, double curve, double s)
+{
+    const double end = f + s * (slope + 0.5 * curve * s);
+
+    return slope > 0.0 && slope + curve * s < 0.0 ? f - 0.5 * slope * slope / curve
+                                                  : fmax(f, end);
+}
+
+/* Most of p b + q x + r over a step with bounds of p and q, where x > 0, and of its negative. */
+static double most_of(struct pace_range p, struct pace_range q, struct pace_range r,
+                      struct pace_state from, double c, double s)
+{
+    const double part[2] = { p.low, p.high };
+    double most = -INFINITY;
+
+    for (int i = 0; i < 2; i++) {
+        const double up = part[i] * from.b + q.high * from.x + r.high;
+        const double down = -part[i] * from.b - q.low * from.x - r.low;
+        most = fmax(most, peak(up, part[i] * c + q.high * from.b, q.high * c, s));
+        most = fmax(most, peak(down, -part[i] * c - q.low * from.b, -q.low * c, s));
+    }
+    return most;
+}
+
+bool pace_box_keeps(const struct pace_box *g, struct pace_state from, double c, double s)
+{
+    const struct pace_state to = pace_step_to(from, c, s);
+    const struct pace_range none = { 0.0, 0.0 };
+
+    if (!(to.x > 0.0) || !(from.x > 0.0)) {
+        return false;
+    }
+    const double v = sqrt(pace_step_top(from, c, s));
+    for (int32_t i = 0; i < g->rows; i++) {
+        const struct pace_row *r = &g->row[i];
+        const struct pace_range of_c = times(r->jerk[0], 0.5 * c), of_b = times(r->jerk[1], 1.5);
+        if (most_of(times(r->acc[0], 0.5), r->acc[1], none, from, c, s) > 1.0 + ROUNDING ||
+            v * most_of(of_b, r->jerk[2], of_c, from, c, s) > 1.0 + ROUNDING) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool fits(const struct pace_box *g, struct pace_state known, double c, double s, bool back)
+{
+    return pace_box_keeps(g, back ? pace_step_from(known, c, s) : known, c, s);
+}
+
+static bool turn(const struct pace_box *g, struct pace_state known, double s, double sign,
+                 bool back, double *c)
+{
+    const double most = bend(g, known, sign), least = bend(g, known, -sign);
+    double fails = most, kept = 0.0;
+
+    if (fits(g, known, most, s, back)) {
+        *c = most;
+        return true;
+    }
+    if (!fits(g, known, kept, s, back)) {
+        int i = 1;
+        do {
+            fails = kept;
+            kept = most + (least - most) * i / SCAN;
+        } while (!fits(g, known, kept, s, back) && ++i <= SCAN);
+        if (i > SCAN) {
+            return false;
+        }
+        fails = i == 1 ? most : fails;
+    }
+    for (int i = 0; i < HALVES; i++) {
+        const double middle = 0.5 * (kept + fails);
+        *(fits(g, known, middle, s, back) ? &kept : &fails) = middle;
+    }
+    *c = kept;
+    return true;
+}
+
+bool pace_box_turn(const struct pace_box *g, struct pace_state from, double s, double sign,
+                   double *c)
+{
+    return turn(g, from, s, sign, false, c);
+}
+
+bool pace_box_turn_to(const struct pace_box *g, struct pace_state to, double s, double sign,
+                      double *c)
+{
+    return turn(g, to, s, sign, true, c);
+}
+
+double pace_box_stride(const struct pace_box *g, struct pace_state from, double rest)
+{
+    const double steep = fmax(fmax(pace_box_steepest(g, from.x, 1.0), pace_box_steepest(g, from.x, -1.0)), 1e-9);
+    const double c = fmax(1e-9, fmax(bend(g, from, 1.0), -bend(g, from, -1.0)));
+    double s = fmax(STEEPER * steep / c, FINEST * from.x / steep);
+
+    s = fmin(s, FASTER * from.x / fmax(fabs(from.b), 1e-300));
+    return rest <= s ? rest : rest / ceil(rest / s);
+}
+
+double pace_box_jerk(const struct pace_box *g, double v, double a)
+{
+    double j = INFINITY;
+
+    for (int32_t i = 0; i < g->rows; i++) {
+        const struct pace_row *r = &g->row[i];
+        const double p = size(r->jerk[0]);
+        if (size(r->acc[0]) * a + size(r->acc[1]) * v * v > 1.0) {
+            return 0.0;
+        }
+        if (p > 0.0) {
+            j = fmin(j, (1.0 - 3.0 * size(r->jerk[1]) * v * a - size(r->jerk[2]) * v * v * v) / p);
+        }
+    }
+    return fmax(0.0, j);
+}

@@ -1,0 +1,355 @@
+#include "pace_plan.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/* Most steps of a look ahead, tries at a ramp of constant jerk and their times' shares of the time
+ * in which the jerk reaches the acceleration, and bisections of b. */
+enum { STEPS = 200, RAMPS = 12, HALVES = 5 };
+
+/* Turns of a plan, at most, and what is left of a state that a box does not take. */
+enum { ROUNDS = 4 * PACE_NODES };
+static const double SHARE = 0.97;
+
+static const double LONGEST = 0.7, SHORTER = 0.7;
+
+/* A ramp to the end takes at most such a part of the way. */
+static const double END_PART = 0.3;
+
+/* A node is far if it is so many strides away. */
+static const double FAR = 2.5;
+
+/* x is met again to such a share. */
+static const double SAME = 1e-12;
+
+/* Share of the jerk that a state may take that is made to fit a box. */
+static const double ROOM = 0.8;
+
+const struct pace_box *pace_road_box(const struct pace_road *r, int32_t i)
+{
+    return &r->ring[(uint32_t)(r->head + i) % (uint32_t)r->size];
+}
+
+static double end_of(const struct pace_road *r, int32_t i)
+{
+    const struct pace_box *g = pace_road_box(r, i);
+    return i + 1 < r->count ? pace_road_box(r, i + 1)->from : g->from + g->length;
+}
+
+double pace_road_top(const struct pace_road *r, const struct pace_box *g)
+{
+    const double v = r->override < 0.0 ? g->cap : fmin(g->feed * r->override, g->brisk);
+    return v * v;
+}
+
+struct pace_spot pace_plan_spot(const struct pace_plan *p, const struct pace_road *r, double at,
+                                struct pace_state state)
+{
+    int32_t box = 0, low = p->first, high = PACE_NODES;
+
+    while (box + 1 < r->count && at >= end_of(r, box)) {
+        box++;
+    }
+    while (low < high) {
+        const int32_t middle = (low + high) / 2;
+        if (p->node[middle].at > at) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    return (struct pace_spot){ at, box, low, state };
+}
+
+/* c that leads over a way into the way of the plan behind a node. */
+static double into(const struct pace_node *node, struct pace_state from, double way)
+{
+    const double share = node->state.b / node->state.x;
+    return (share * (from.x + from.b * way) - from.b) / (way - 0.5 * share * way * way);
+}
+
+double pace_plan_rest(const struct pace_plan *p, const struct pace_road *r,
+                      const struct pace_spot *spot)
+{
+    const double end = end_of(r, spot->box);
+    return (spot->node < PACE_NODES ? fmin(end, p->node[spot->node].at) : end) - spot->at;
+}
+
+bool pace_plan_steer(const struct pace_plan *p, const struct pace_road *r,
+                     const struct pace_spot *spot, double *s, double *c)
+{
+    const struct pace_box *g = pace_road_box(r, spot->box);
+    const struct pace_state from = spot->state;
+    const struct pace_node *node = spot->node < PACE_NODES ? &p->node[spot->node] : NULL;
+    const double rest = pace_plan_rest(p, r, spot);
+    double to = 0.0;
+
+    *s = pace_box_stride(g, from, rest);
+    if (node && node->at <= end_of(r, spot->box)) {
+        to = into(node, from, rest);
+        if (pace_step_to(from, to, rest).x <= node->state.x * (1.0 + SAME) &&
+            pace_box_keeps(g, from, to, rest)) {
+            *s = rest;
+            *c = to;
+            return true;
+        }
+    }
+    if (!node || rest > FAR * *s) {
+        if (from.b == 0.0) {
+            *s = rest <= FAR * *s ? rest : rest - *s;
+        }
+        to = -from.b / *s;
+    }
+    if (pace_box_keeps(g, from, to, *s)) {
+        *c = to;
+        return true;
+    }
+    if (!pace_box_turn(g, from, *s, to < 0.0 ? -1.0 : 1.0, c)) {
+        return false;
+    }
+    *c = to < 0.0 ? fmax(*c, to) : fmin(*c, to);
+    return pace_box_keeps(g, from, *c, *s);
+}
+
+void pace_plan_pass(const struct pace_plan *p, const struct pace_road *r, struct pace_spot *spot,
+                    double s, struct pace_state to)
+{
+    const double end = end_of(r, spot->box);
+    const double node = spot->node < PACE_NODES ? p->node[spot->node].at : INFINITY;
+    const double next = fmin(end, node);
+
+    spot->at = spot->at + s < next - SAME * s ? spot->at + s : next;
+    spot->state = to;
+    spot->box += spot->at >= end && spot->box + 1 < r->count;
+    spot->node += spot->at >= node;
+}
+
+bool pace_plan_safe(const struct pace_plan *p, const struct pace_road *r, struct pace_spot spot)
+{
+    for (int n = 0; n < STEPS && spot.node < PACE_NODES; n++) {
+        const struct pace_node *node = &p->node[spot.node];
+        const struct pace_box *g = pace_road_box(r, spot.box);
+        double s, c;
+        if (!pace_plan_steer(p, r, &spot, &s, &c)) {
+            return false;
+        }
+        const struct pace_state to = pace_step_to(spot.state, c, s);
+        if (pace_step_top(spot.state, c, s) > pace_road_top(r, g) * (1.0 + SAME)) {
+            return false;
+        }
+        const int32_t before = spot.node;
+        pace_plan_pass(p, r, &spot, s, to);
+        if (spot.node > before) {
+            const double share = to.x / node->state.x;
+            if (share > 1.0 + SAME) {
+                return false;
+            }
+            if (fabs(to.b - share * node->state.b) <= 1e-9 * fabs(node->state.b) + 1e-9) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+bool pace_road_start(const struct pace_road *r, double at, int32_t box, double sign, double within,
+                     int n, struct pace_step *step)
+{
+    double time = LONGEST * pace_box_rise(pace_road_box(r, box));
+
+    for (int i = 0; i < RAMPS; i++, time *= SHORTER) {
+        double jerk = INFINITY, v = 0.0, a = 0.0, way = 0.0;
+        for (int k = 0; k < 4; k++) {
+            int32_t at_box = box;
+            do {
+                const struct pace_box *g = pace_road_box(r, at_box);
+                jerk = fmin(jerk, pace_box_jerk(g, v, a));
+                if (v * v > pace_road_top(r, g)) {
+                    jerk = 0.0;
+                }
+                at_box += sign > 0.0 ? 1 : -1;
+            } while (at_box >= 0 && at_box < r->count &&
+                     (sign > 0.0 ? pace_road_box(r, at_box)->from < at + way
+                                 : end_of(r, at_box) > at - way));
+            v = 0.5 * jerk * time * time;
+            a = jerk * time;
+            way = v * time / 3.0;
+        }
+        if (jerk > 0.0 && way <= within && n-- == 0) {
+            *step = pace_step_start(jerk, time);
+            return true;
+        }
+    }
+    return false;
+}
+
+bool pace_road_lands(const struct pace_road *r, double at, int32_t box, struct pace_state state)
+{
+    if (!(state.b < 0.0)) {
+        return false;
+    }
+    const struct pace_step s = pace_step_land(state);
+    const double end = at + s.way;
+    int32_t i = box;
+
+    do {
+        if (s.c > pace_box_jerk(pace_road_box(r, i), s.speed, -s.acc)) {
+            return false;
+        }
+    } while (end_of(r, i) < end && ++i < r->count);
+    return i < r->count;
+}
+
+struct pace_step pace_road_hop(const struct pace_road *r, double at, int32_t box, double way)
+{
+    double jerk = INFINITY, v = 0.0, a = 0.0;
+
+    for (int k = 0; k < 100; k++) {
+        double most = INFINITY;
+        for (int32_t i = box; i < r->count && pace_road_box(r, i)->from < at + way; i++) {
+            const struct pace_box *g = pace_road_box(r, i);
+            const double here = pace_box_jerk(g, v, a);
+            most = fmin(most, v * v > pace_road_top(r, g) ? 0.0 : here);
+        }
+        if (k > 0 && most >= jerk) {
+            break;
+        }
+        jerk = k == 0 ? most : fmax(most, 0.5 * jerk);
+        const double part = cbrt(0.5 * way / jerk);
+        v = jerk * part * part;
+        a = jerk * part;
+    }
+    return pace_step_hop(jerk, way);
+}
+
+/* Whether a box takes a state. */
+static bool takes(const struct pace_road *r, const struct pace_box *g, struct pace_state s)
+{
+    return s.x <= pace_road_top(r, g) * (1.0 + 1e-9) && pace_box_acc(g, s) <= 1.0 + 1e-9 &&
+           pace_box_twist(g, s) <= 1.0 + 1e-9;
+}
+
+/* A share of a state that a box takes. */
+static struct pace_state fit(const struct pace_road *r, const struct pace_box *g,
+                             struct pace_state s)
+{
+    const double acc = pace_box_acc(g, s), jerk = pace_box_twist(g, s) / ROOM;
+    double share = fmin(1.0, pace_road_top(r, g) / s.x);
+
+    share = acc > 1.0 ? fmin(share, 1.0 / acc) : share;
+    share = jerk > 1.0 ? fmin(share, cbrt(1.0 / (jerk * jerk))) : share;
+    return (struct pace_state){ share * (1.0 - SAME) * s.x, share * (1.0 - SAME) * s.b };
+}
+
+/* Of states that a box takes and from which the plan can be driven, nearly the fastest. */
+static struct pace_state lower(const struct pace_plan *p, const struct pace_road *r, double at,
+                               int32_t box, const struct pace_box *g, struct pace_state s)
+{
+    struct pace_state kept = fit(r, g, s);
+    double fails = fmin(s.x, pace_road_top(r, g));
+
+    for (int i = 0; i < HALVES; i++) {
+        const double x = i == 0 ? fails : 0.5 * (kept.x + fails);
+        const double steep = (1.0 - SAME) * pace_box_steepest(g, x, -1.0);
+        const struct pace_spot spot = { at, box, p->first, { x, fmax(s.b, -steep) } };
+        if (takes(r, g, spot.state) && pace_plan_safe(p, r, spot)) {
+            kept = spot.state;
+        } else {
+            fails = x;
+        }
+    }
+    return kept;
+}
+
+/* A state from which the plan can be driven, made less steep if it can be then, too. */
+static struct pace_state ease(const struct pace_plan *p, const struct pace_road *r, double at,
+                              int32_t box, struct pace_state s)
+{
+    struct pace_spot spot = { at, box, p->first, { s.x, 0.0 } };
+    double steep = s.b, flat = 0.0;
+
+    if (s.b >= 0.0 || pace_plan_safe(p, r, spot)) {
+        return (struct pace_state){ s.x, fmax(s.b, 0.0) };
+    }
+    for (int i = 0; i < HALVES; i++) {
+        spot.state.b = 0.5 * (steep + flat);
+        if (pace_plan_safe(p, r, spot)) {
+            steep = spot.state.b;
+        } else {
+            flat = spot.state.b;
+        }
+    }
+    return (struct pace_state){ s.x, steep };
+}
+
+static void put(struct pace_plan *p, double at, struct pace_state state)
+{
+    p->node[--p->first] = (struct pace_node){ at, state };
+}
+
+/* One step back from the first node, through a box, to at most its start; false: none. */
+static bool step_back(struct pace_plan *p, const struct pace_road *r, int32_t box, double to)
+{
+    const struct pace_box *g = pace_road_box(r, box);
+    const struct pace_node *node = &p->node[p->first];
+    const double end = node->at, top = pace_road_top(r, g);
+    const struct pace_state last = node->state;
+    double s = pace_box_stride(g, last, end - to), c;
+
+    if (last.b == 0.0 && last.x >= top * (1.0 - SAME)) {
+        put(p, to, last);
+        return true;
+    }
+    const double at = s < end - to ? end - s : to;
+    s = end - at;
+    if (!pace_box_turn_to(g, last, s, 1.0, &c)) {
+        return false;
+    }
+    struct pace_state found = pace_step_from(last, c, s);
+    const bool less = found.x > top;
+    if (less) {
+        const double level = 2.0 * ((top - last.x) / s + last.b) / s;
+        const struct pace_state flat = { top, last.b - level * s };
+        if (flat.b <= 0.0 && pace_box_keeps(g, flat, level, s)) {
+            found = flat;
+        } else {
+            found = (struct pace_state){ top, found.b * top / found.x };
+        }
+    }
+    found.b = fmin(found.b, 0.0);
+    put(p, at, less ? ease(p, r, at, box, found) : found);
+    return true;
+}
+
+bool pace_plan_make(struct pace_plan *p, const struct pace_road *r, double back_to)
+{
+    struct pace_step land;
+    int32_t box = r->count - 1;
+
+    p->override = r->override;
+    p->end = end_of(r, box);
+    p->first = PACE_NODES;
+    if (!pace_road_start(r, p->end, box, -1.0, END_PART * (p->end - back_to), 0, &land)) {
+        return true;
+    }
+    put(p, p->end - land.way, (struct pace_state){ land.to.x, -land.to.b });
+    for (int n = 0; n < ROUNDS && p->first > 0 && p->node[p->first].at > back_to; n++) {
+        const struct pace_node node = p->node[p->first];
+        while (box > 0 && pace_road_box(r, box)->from >= node.at) {
+            box--;
+        }
+        const struct pace_box *g = pace_road_box(r, box);
+        if (!takes(r, g, node.state)) {
+            const int32_t behind = box + (end_of(r, box) <= node.at);
+            p->first++;
+            const struct pace_state less = p->first < PACE_NODES
+                ? lower(p, r, node.at, behind, g, node.state) : fit(r, g, node.state);
+            put(p, node.at, p->first < PACE_NODES ? ease(p, r, node.at, behind, less) : less);
+        }
+        if (!step_back(p, r, box, fmax(back_to, g->from))) {
+            p->node[p->first].state.x *= SHARE;     /* a share can be driven, too */
+            p->node[p->first].state.b *= SHARE;
+        }
+    }
+    return p->node[p->first].at <= back_to;
+}

@@ -1,0 +1,80 @@
+/* pace_plan - from which speeds along a chain of boxes the rest can be driven with limited jerk.
+ *
+ *   x ^  o--o--o         o--o-.          o  nodes: from each (x, b) a way is known that keeps all
+ *     |         \       /      \            limits and comes to rest at the end
+ *     |   __/    o--o--o        o        /  a motion below them goes on as long as it can still
+ *     | _/                       \.         turn into a share of such a way: what is possible
+ *     +/--------------------------+-> u     with x(u) is possible with any share of it
+ */
+#ifndef PACE_PLAN_H
+#define PACE_PLAN_H
+
+#include "pace_step.h"
+
+enum { PACE_NODES = 4096 };
+
+struct pace_node {
+    double at;              /* [mm] of the chain */
+    struct pace_state state;
+};
+
+struct pace_plan {
+    double override, end;   /* [mm] where it comes to rest */
+    int32_t first;          /* node; the others follow */
+    struct pace_node node[PACE_NODES];
+};
+
+/* Boxes in a ring, from that of the motion on. */
+struct pace_road {
+    const struct pace_box *ring;
+    int32_t size, head, count;
+    double override;        /* of feeds that are kept; < 0: only the limits are */
+};
+
+/* A place on the way of a plan. */
+struct pace_spot {
+    double at;              /* [mm] of the chain */
+    int32_t box;            /* from the head */
+    int32_t node;           /* the first one behind it; PACE_NODES none */
+    struct pace_state state;
+};
+
+const struct pace_box *pace_road_box(const struct pace_road *r, int32_t i);
+
+/* Plan from the end of the boxes back to a place in the first one; false: that has no room. */
+bool pace_plan_make(struct pace_plan *p, const struct pace_road *r, double back_to);
+
+struct pace_spot pace_plan_spot(const struct pace_plan *p, const struct pace_road *r, double at,
+                                struct pace_state state);
+
+/* Way to the next node or the end of the box. [mm] */
+double pace_plan_rest(const struct pace_plan *p, const struct pace_road *r,
+                      const struct pace_spot *spot);
+
+/* The step that turns soonest into the way of the plan: its length and c; false: none keeps the
+ * limits. */
+bool pace_plan_steer(const struct pace_plan *p, const struct pace_road *r,
+                     const struct pace_spot *spot, double *s, double *c);
+
+/* On by a step. */
+void pace_plan_pass(const struct pace_plan *p, const struct pace_road *r, struct pace_spot *spot,
+                    double s, struct pace_state to);
+
+/* Whether such steps lead into the way of the plan. */
+bool pace_plan_safe(const struct pace_plan *p, const struct pace_road *r, struct pace_spot spot);
+
+/* From rest at a place, within a way forwards or (sign -1) backwards: the longest ramp of constant
+ * jerk among some, the n-th of those that keep the limits; false: none. */
+bool pace_road_start(const struct pace_road *r, double at, int32_t box, double sign, double within,
+                     int n, struct pace_step *step);
+
+/* Whether a state may come to rest by constant jerk. */
+bool pace_road_lands(const struct pace_road *r, double at, int32_t box, struct pace_state state);
+
+/* From rest to rest over a way. */
+struct pace_step pace_road_hop(const struct pace_road *r, double at, int32_t box, double way);
+
+/* Most x in a box under the override. */
+double pace_road_top(const struct pace_road *r, const struct pace_box *g);
+
+#endif

@@ -1,0 +1,108 @@
+#include "pace_step.h"
+
+#include <math.h>
+
+/* Time of a step that turns by less than this [rad] is that of a constant acceleration. */
+static const double STRAIGHT = 1e-5;
+
+/* Time of a step with the acceleration a + c u / 2, w^2 = |c| / 2: for c > 0 a + w v grows, a - w v
+ * falls as e^(w t), for c < 0 (w v, a) turns by w t. */
+static double time_of(double v0, double a0, double v1, double a1, double c, double way)
+{
+    const double w = sqrt(0.5 * fabs(c)), straight = 2.0 * way / (v0 + v1);
+
+    if (w * straight < STRAIGHT) {
+        return straight;
+    }
+    if (c < 0.0) {
+        return atan2(w * (a0 * v1 - a1 * v0), a0 * a1 + w * w * v0 * v1) / w;
+    }
+    const double dv = w * way * (a0 + a1) / (v0 + v1), da = 0.5 * c * way;
+    return a0 + a1 >= 0.0 ? log1p((da + dv) / (a0 + w * v0)) / w
+                          : log1p((dv - da) / (a1 - w * v1)) / w;
+}
+
+struct pace_step pace_step_bent(struct pace_state from, double c, double s)
+{
+    const struct pace_state to = pace_step_to(from, c, s);
+    struct pace_step step = { .kind = PACE_BENT, .way = s, .speed = sqrt(from.x),
+                              .acc = 0.5 * from.b, .c = c, .to = to };
+
+    step.time = time_of(step.speed, step.acc, sqrt(fmax(0.0, to.x)), 0.5 * to.b, c, s);
+    return step;
+}
+
+struct pace_step pace_step_start(double jerk, double time)
+{
+    const double v = 0.5 * jerk * time * time;
+
+    return (struct pace_step){ .kind = PACE_JERK, .way = v * time / 3.0, .time = time, .c = jerk,
+                               .to = { v * v, 2.0 * jerk * time } };
+}
+
+struct pace_step pace_step_land(struct pace_state from)
+{
+    const double v = sqrt(from.x), a = 0.5 * from.b, time = -2.0 * v / a;
+
+    return (struct pace_step){ .kind = PACE_JERK, .way = v * time / 3.0, .time = time, .speed = v,
+                               .acc = a, .c = -a / time };
+}
+
+struct pace_step pace_step_hop(double jerk, double way)
+{
+    return (struct pace_step){ .kind = PACE_HOP, .way = way, .time = 4.0 * cbrt(0.5 * way / jerk),
+                               .c = jerk };
+}
+
+static struct pace_motion steady(double v, double a, double j, double t)
+{
+    return (struct pace_motion){ t * (v + t * (0.5 * a + t * j / 6.0)),
+                                 fmax(0.0, v + t * (a + 0.5 * t * j)), a + t * j, j };
+}
+
+/* A fourth of the time up to half of the most speed, and on to it; the rest is that backwards. */
+static struct pace_motion hop_at(const struct pace_step *s, double t)
+{
+    const double part = 0.25 * s->time, v = 0.5 * s->c * part * part;
+
+    if (t > 2.0 * part) {
+        struct pace_motion m = hop_at(s, s->time - t);
+        m.way = s->way - m.way;
+        m.gain = -m.gain;
+        return m;
+    }
+    if (t <= part) {
+        return steady(0.0, 0.0, s->c, t);
+    }
+    struct pace_motion m = steady(v, s->c * part, -s->c, t - part);
+    m.way += v * part / 3.0;
+    return m;
+}
+
+struct pace_motion pace_step_at(const struct pace_step *s, double t)
+{
+    const double w = sqrt(0.5 * fabs(s->c));
+    double sine, turn, cosine;
+
+    if (s->kind == PACE_HOP) {
+        return hop_at(s, t);
+    }
+    if (s->kind != PACE_BENT || w * t < STRAIGHT) {
+        return steady(s->speed, s->acc, s->kind == PACE_BENT ? 0.5 * s->c * s->speed : s->c, t);
+    }
+    if (s->c < 0.0) {
+        const double half = sin(0.5 * w * t);
+        sine = sin(w * t) / w;
+        turn = 2.0 * half * half / (w * w);
+        cosine = cos(w * t);
+    } else {
+        const double half = sinh(0.5 * w * t);
+        sine = sinh(w * t) / w;
+        turn = 2.0 * half * half / (w * w);
+        cosine = cosh(w * t);
+    }
+    const double v = fmax(0.0, s->speed * cosine + s->acc * sine);
+    return (struct pace_motion){ s->speed * sine + s->acc * turn, v,
+                                 s->acc + 0.5 * s->c * (s->speed * sine + s->acc * turn),
+                                 0.5 * s->c * v };
+}
