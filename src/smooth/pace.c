@@ -216,7 +216,8 @@ static struct stretch next(const struct pace *p, double x, double override)
 
 bool pace_at_end(const struct pace *p)
 {
-    return p->count == 0 || (p->count == 1 && p->at.left <= 0.0 && !(p->smooth && p->at.step.kind != PACE_NO_STEP));
+    const bool steps = p->smooth && p->at.step.kind != PACE_NO_STEP;
+    return p->count == 0 || (p->count == 1 && p->at.left <= 0.0 && !steps);
 }
 
 /* Drive a stretch for up to dt; returns the time used. */

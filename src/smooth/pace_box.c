@@ -162,7 +162,6 @@ bool pace_box_join(struct pace_box *g, const struct pace_box *next)
     one.feed = fmin(one.feed, next->feed);
     one.cap = fmin(one.cap, next->cap);
     one.ideal += next->ideal;
-    one.last = next->last;
     finish(&one);
     const double slower = one.length / fmin(one.brisk, one.feed) - one.ideal;
     if (slower > JOIN * pace_box_rise(&one) && fmin(g->length, next->length) > SPECK) {
@@ -329,7 +328,8 @@ bool pace_box_turn_to(const struct pace_box *g, struct pace_state to, double s, 
 
 double pace_box_stride(const struct pace_box *g, struct pace_state from, double rest)
 {
-    const double steep = fmax(fmax(pace_box_steepest(g, from.x, 1.0), pace_box_steepest(g, from.x, -1.0)), 1e-9);
+    const double up = pace_box_steepest(g, from.x, 1.0), down = pace_box_steepest(g, from.x, -1.0);
+    const double steep = fmax(fmax(up, down), 1e-9);
     const double c = fmax(1e-9, fmax(bend(g, from, 1.0), -bend(g, from, -1.0)));
     double s = fmax(STEEPER * steep / c, FINEST * from.x / steep);
 

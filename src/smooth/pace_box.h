@@ -27,7 +27,6 @@ struct pace_box {
     double brisk;           /* [mm/s] up to which enough is left to change it */
     double ideal;           /* [s] its parts would take at their own speeds */
     int32_t rows;
-    bool last;              /* ends with a piece */
     struct pace_row row[AXES];
 };
 

@@ -65,7 +65,6 @@ bool pace_smooth_join(struct pace *p, const struct piece *piece)
             piece_rest_cut(&rest, to, &b);
         }
         pace_box_make(&g, piece, &p->limits, p->end + from, to - from, &b);
-        g.last = i + 1 == n;
         append(p, &g);
         from = to;
     }

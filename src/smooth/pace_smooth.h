@@ -11,7 +11,7 @@ bool pace_smooth_nears_end(const struct pace *p, double further);
 
 bool pace_smooth_damaged(const struct pace *p);
 
-/* The chain ends at a way within it; false: the motion can't come to rest there, nothing changes. */
+/* The chain ends at a way within it; false: it can't come to rest there, nothing changes. */
 bool pace_smooth_end(struct pace *p, double way);
 
 #endif
