@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+import smooth_bound
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from pace_rides import (
@@ -204,6 +205,23 @@ def test_smooth_is_quick(name: str, told: np.ndarray, most: float) -> None:
     within(smooth.steps, limits(1000.0, jerk=50_000.0), 1e-3)
     print(f"{name}: {quick:.3f} s, with limited jerk {smooth.time / quick:.3f}")
     assert 1.0 < smooth.time / quick < most
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("waves 2", waves(0.2, 2.0)),
+        ("waves 5", waves(0.5, 5.0)),
+        ("waves 1", waves(0.5, 1.0)),
+        ("curves", random_chain(np.random.default_rng(3), 12, 4.0).told()),
+    ],
+)
+def test_smooth_bound(name: str, told: np.ndarray) -> None:
+    """At most 8 % above the bound of linear programs with the same limits."""
+    least = smooth_bound.bound(told, 1000.0, 50_000.0, told["feed"].min())
+    ratio = ride(told, limits(1000.0, jerk=50_000.0), Orders(1e-3)).time / least
+    print(f"{name}: {least:.4f} s, {ratio:.4f}")
+    assert 0.99 < ratio < 1.08
 
 
 def lengths(told: np.ndarray) -> list[float]:
