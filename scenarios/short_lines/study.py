@@ -34,6 +34,7 @@ from shape_paths import Chords, Piece, shaped  # noqa: E402
 toppra.setup_logging("ERROR")
 TOLERANCE, ACC, JERK, PERIOD = 0.02, 1000.0, 50000.0, 1e-3  # [mm], [mm/s^2], [mm/s^3], [s]
 CHORD = 5e-4  # [mm] of arcs as chords
+SLIVER = 1e-6  # [mm] of pieces that toppra cannot resolve
 RUNS = [(name, 100.0) for name in shapes.SHAPES]
 RUNS[6:8] = [("plate", 50.0), ("plate", 100.0), ("gear", 50.0), ("gear", 100.0)]
 WORDS = {
@@ -125,6 +126,7 @@ class Grid(interpolator.AbstractGeometricPath):
 
     def __init__(self, pieces: list[Piece]) -> None:
         ways, states, at = [], [], 0.0
+        pieces = [p for p in pieces if p.length > SLIVER]
         for n, p in enumerate(pieces):
             count = max(12, int(np.ceil(p.length / 0.05)))
             u = np.linspace(0.0, p.length, count + 1)[: count + (n == len(pieces) - 1)]
