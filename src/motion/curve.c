@@ -177,6 +177,9 @@ static double next_block(const struct curve *c, const struct curve_plan *m, doub
 /* Ways that differ by such a share of the way to rest may not be told apart. */
 static const double MARGIN = 0.02;
 
+/* Blocks begin further apart than that. [mm] */
+static const double NEXT = 1e-9;
+
 /* With limited jerk: the chain ends before the first block before which it can come to rest. */
 static double halt_smooth(struct curve *c, struct curve_plan *m)
 {
@@ -185,7 +188,7 @@ static double halt_smooth(struct curve *c, struct curve_plan *m)
 
     while (!ends && goal < m->start + m->pace.end) {
         ends = pace_smooth_end(&m->pace, goal - m->start);
-        goal = ends ? goal : next_block(c, m, nextafter(goal, INFINITY));
+        goal = ends ? goal : next_block(c, m, goal + NEXT);
     }
     if (ends) {
         m->joined = c->at;

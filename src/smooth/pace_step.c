@@ -18,8 +18,8 @@ static double time_of(double v0, double a0, double v1, double a1, double c, doub
         return atan2(w * (a0 * v1 - a1 * v0), a0 * a1 + w * w * v0 * v1) / w;
     }
     const double dv = w * way * (a0 + a1) / (v0 + v1), da = 0.5 * c * way;
-    return a0 + a1 >= 0.0 ? log1p((da + dv) / (a0 + w * v0)) / w
-                          : log1p((dv - da) / (a1 - w * v1)) / w;
+    return a0 + a1 >= 0.0 ? log(1.0 + (da + dv) / (a0 + w * v0)) / w
+                          : log(1.0 + (dv - da) / (a1 - w * v1)) / w;
 }
 
 struct pace_step pace_step_bent(struct pace_state from, double c, double s)
@@ -81,8 +81,7 @@ static struct pace_motion hop_at(const struct pace_step *s, double t)
 
 struct pace_motion pace_step_at(const struct pace_step *s, double t)
 {
-    const double w = sqrt(0.5 * fabs(s->c));
-    double sine, turn, cosine;
+    const double w = sqrt(0.5 * fabs(s->c)), sign = s->c < 0.0 ? -1.0 : 1.0;
 
     if (s->kind == PACE_HOP) {
         return hop_at(s, t);
@@ -90,17 +89,9 @@ struct pace_motion pace_step_at(const struct pace_step *s, double t)
     if (s->kind != PACE_BENT || w * t < STRAIGHT) {
         return steady(s->speed, s->acc, s->kind == PACE_BENT ? 0.5 * s->c * s->speed : s->c, t);
     }
-    if (s->c < 0.0) {
-        const double half = sin(0.5 * w * t);
-        sine = sin(w * t) / w;
-        turn = 2.0 * half * half / (w * w);
-        cosine = cos(w * t);
-    } else {
-        const double half = sinh(0.5 * w * t);
-        sine = sinh(w * t) / w;
-        turn = 2.0 * half * half / (w * w);
-        cosine = cosh(w * t);
-    }
+    const double x = 0.5 * w * t, half = s->c < 0.0 ? sin(x) : 0.5 * (exp(x) - exp(-x));
+    const double cosine = 1.0 + sign * 2.0 * half * half, turn = 2.0 * half * half / (w * w);
+    const double sine = (s->c < 0.0 ? sin(w * t) : 2.0 * half * sqrt(1.0 + half * half)) / w;
     const double v = fmax(0.0, s->speed * cosine + s->acc * sine);
     return (struct pace_motion){ s->speed * sine + s->acc * turn, v,
                                  s->acc + 0.5 * s->c * (s->speed * sine + s->acc * turn),
