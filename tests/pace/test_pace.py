@@ -185,7 +185,10 @@ def test_smooth_line() -> None:
         chain, by_path = Chain(), Chain(jerk=50_000.0)
         for made, limit in ((chain, bounds), (by_path, limits())):
             made.line(place(), place(way))
-            assert -1e-6 < ride(made.told(), limit).time / time - 1 < more
+            done = ride(made.told(), limit)
+            assert -1e-6 < done.time / time - 1 < more
+            gain, rate = done.steps["gain"][:-1], np.diff(done.steps["rate"][:-1])
+            assert np.abs(rate - 0.5e-3 * (gain[1:] + gain[:-1])).max() < 0.5 * 50_000.0 * 1e-6
 
 
 @pytest.mark.parametrize(
