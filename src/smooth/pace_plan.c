@@ -306,8 +306,7 @@ static bool step_back(struct pace_plan *p, const struct pace_road *r, int32_t bo
         return false;
     }
     struct pace_state found = pace_step_from(last, c, s);
-    const bool less = found.x > top;
-    if (less) {
+    if (found.x > top) {
         const double level = 2.0 * ((top - last.x) / s + last.b) / s;
         const struct pace_state flat = { top, last.b - level * s };
         if (flat.b <= 0.0 && pace_box_keeps(g, flat, level, s)) {
@@ -317,7 +316,7 @@ static bool step_back(struct pace_plan *p, const struct pace_road *r, int32_t bo
         }
     }
     found.b = fmin(found.b, 0.0);
-    put(p, at, less ? ease(p, r, at, box, found) : found);
+    put(p, at, found);
     return true;
 }
 
