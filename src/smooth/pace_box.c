@@ -18,6 +18,9 @@ static const double STEEPER = 0.25, FASTER = 0.12, FINEST = 1.0 / 16.0;
 /* Most that a step may be above a limit by rounding. */
 static const double ROUNDING = 1e-10;
 
+/* Of the larger bound, more than a float's rounding. */
+static const double OUTWARDS = 1e-7;
+
 /* [s] */
 static const double SOON = 1e-4;
 
@@ -40,25 +43,45 @@ static double inverse(double jerk, double acc)
     return jerk > 0.0 ? 1.0 / jerk : acc > 0.0 ? SOON / acc : 0.0;
 }
 
-static double size(struct pace_range r)
+struct range {
+    double low, high;
+};
+
+static struct range wide(struct pace_bound b)
+{
+    return (struct range){ b.low, b.high };
+}
+
+static struct pace_bound narrow(struct range r)
+{
+    const double stray = OUTWARDS * fmax(fabs(r.low), fabs(r.high));
+    return (struct pace_bound){ (float)(r.low - stray), (float)(r.high + stray) };
+}
+
+static struct pace_bound cover(struct pace_bound a, struct pace_bound b)
+{
+    return (struct pace_bound){ a.low < b.low ? a.low : b.low, a.high > b.high ? a.high : b.high };
+}
+
+static double size(struct range r)
 {
     return fmax(-r.low, r.high);
 }
 
-static struct pace_range times(struct pace_range r, double x)
+static struct range times(struct range r, double x)
 {
-    return x < 0.0 ? (struct pace_range){ r.high * x, r.low * x }
-                   : (struct pace_range){ r.low * x, r.high * x };
+    return x < 0.0 ? (struct range){ r.high * x, r.low * x }
+                   : (struct range){ r.low * x, r.high * x };
 }
 
-static struct pace_range plus(struct pace_range a, struct pace_range b)
+static struct range plus(struct range a, struct range b)
 {
-    return (struct pace_range){ a.low + b.low, a.high + b.high };
+    return (struct range){ a.low + b.low, a.high + b.high };
 }
 
-static struct pace_range both(struct pace_range a, struct pace_range b)
+static struct range both(struct range a, struct range b)
 {
-    return (struct pace_range){ fmin(a.low, b.low), fmax(a.high, b.high) };
+    return (struct range){ fmin(a.low, b.low), fmax(a.high, b.high) };
 }
 
 /* Speed at which turning takes shares of the limits. */
@@ -67,7 +90,7 @@ static double turn_speed(const struct pace_box *g, double acc, double jerk)
     double v = g->cap;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        const double a = size(g->row[i].acc[1]), j = size(g->row[i].jerk[2]);
+        const double a = size(wide(g->row[i].acc[1])), j = size(wide(g->row[i].jerk[2]));
         v = a > 0.0 ? fmin(v, sqrt(acc / a)) : v;
         v = j > 0.0 ? fmin(v, cbrt(jerk / j)) : v;
     }
@@ -80,27 +103,36 @@ static void finish(struct pace_box *g)
     g->brisk = turn_speed(g, TURN_ACC, TURN_JERK);
 }
 
+/* Bounds of r', r'' and r''', over the limits: these as factors. */
+static void add_row(struct pace_box *g, const struct range r[3], double acc, double jerk)
+{
+    struct pace_row *row = &g->row[g->rows++];
+
+    for (int n = 0; n < 3; n++) {
+        row->jerk[n] = narrow(times(r[n], jerk));
+    }
+    row->acc[0] = narrow(times(r[0], acc));
+    row->acc[1] = narrow(times(r[1], acc));
+}
+
 /* Along the path and across it; the jerk of all of r'' and r''' counts as one across. */
 static void path_rule(struct pace_box *g, const struct piece *p, const struct piece_bounds *b)
 {
     const double acc = 1.0 / fmin(p->ramp.acc, p->ramp.dec);
     const double jerk = fmax(inverse(p->ramp.acc_jerk, p->ramp.acc),
                              inverse(p->ramp.dec_jerk, p->ramp.dec));
-    const struct pace_range none = { 0.0, 0.0 };
     struct pace_pull way;
     const double across = pace_pull_path(&way, p, g->length, b);
-    struct pace_range along[3], all[3];
+    struct range along[3], all[3] = { { 0.0, 0.0 } };
 
     for (int n = 0; n < 3; n++) {
-        along[n] = (struct pace_range){ -way.most[n], way.most[n] };
-        all[n] = (struct pace_range){ -b->most[n], b->most[n] };
+        along[n] = (struct range){ -way.most[n], way.most[n] };
+        all[n] = (struct range){ n > 0 ? -b->most[n] : 0.0, n > 0 ? b->most[n] : 0.0 };
     }
-    const struct pace_range bend = { -across, across };
-    g->rows = 2;
-    g->row[0] = (struct pace_row){ { times(along[0], acc), times(along[1], acc) },
-        { times(along[0], jerk), times(along[1], jerk), times(along[2], jerk) } };
-    g->row[1] = (struct pace_row){ { none, times(bend, acc) },
-                                   { none, times(all[1], jerk), times(all[2], jerk) } };
+    g->rows = 0;
+    add_row(g, along, acc, jerk);
+    add_row(g, all, acc, jerk);
+    g->row[1].acc[1] = narrow((struct range){ -across * acc, across * acc });
 }
 
 void pace_box_make(struct pace_box *g, const struct piece *p, const struct pace_limits *l,
@@ -113,15 +145,13 @@ void pace_box_make(struct pace_box *g, const struct piece *p, const struct pace_
     g->cap = p->cap / b->most[0];
     for (int32_t i = 0; i < b->axes; i++) {
         const int k = b->axis[i];
-        const struct pace_range first = { b->low[0][k], b->high[0][k] };
-        const struct pace_range second = { b->low[1][k], b->high[1][k] };
-        const struct pace_range third = { b->low[2][k], b->high[2][k] };
-        g->cap = l->speed[k] > 0.0 ? fmin(g->cap, l->speed[k] / size(first)) : g->cap;
+        struct range r[3];
+        for (int n = 0; n < 3; n++) {
+            r[n] = (struct range){ b->low[n][k], b->high[n][k] };
+        }
+        g->cap = l->speed[k] > 0.0 ? fmin(g->cap, l->speed[k] / size(r[0])) : g->cap;
         if (l->acc[k] > 0.0 || l->jerk[k] > 0.0) {
-            const double acc = l->acc[k] > 0.0 ? 1.0 / l->acc[k] : 0.0;
-            const double jerk = inverse(l->jerk[k], l->acc[k]);
-            g->row[g->rows++] = (struct pace_row){ { times(first, acc), times(second, acc) },
-                { times(first, jerk), times(second, jerk), times(third, jerk) } };
+            add_row(g, r, l->acc[k] > 0.0 ? 1.0 / l->acc[k] : 0.0, inverse(l->jerk[k], l->acc[k]));
         }
     }
     if (!pace_by_axes(l)) {
@@ -137,7 +167,7 @@ double pace_box_rise(const struct pace_box *g)
 
     for (int32_t i = 0; i < g->rows; i++) {
         const struct pace_row *r = &g->row[i];
-        time = size(r->acc[0]) > 0.0 ? fmin(time, size(r->jerk[0]) / size(r->acc[0])) : time;
+        time = size(wide(r->acc[0])) > 0.0 ? fmin(time, size(wide(r->jerk[0])) / size(wide(r->acc[0]))) : time;
     }
     return time < INFINITY ? time : 0.0;
 }
@@ -152,10 +182,10 @@ bool pace_box_join(struct pace_box *g, const struct pace_box *next)
     for (int32_t i = 0; i < g->rows; i++) {
         const struct pace_row *r = &next->row[i];
         for (int n = 0; n < 2; n++) {
-            one.row[i].acc[n] = both(one.row[i].acc[n], r->acc[n]);
+            one.row[i].acc[n] = cover(one.row[i].acc[n], r->acc[n]);
         }
         for (int n = 0; n < 3; n++) {
-            one.row[i].jerk[n] = both(one.row[i].jerk[n], r->jerk[n]);
+            one.row[i].jerk[n] = cover(one.row[i].jerk[n], r->jerk[n]);
         }
     }
     one.length += next->length;
@@ -176,21 +206,21 @@ double pace_box_steepest(const struct pace_box *g, double x, double sign)
     double b = INFINITY;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        const struct pace_range p = times(g->row[i].acc[0], sign), q = times(g->row[i].acc[1], x);
+        const struct range p = times(wide(g->row[i].acc[0]), sign), q = times(wide(g->row[i].acc[1]), x);
         b = p.high > 0.0 ? fmin(b, 2.0 * (1.0 - q.high) / p.high) : b;
         b = p.low < 0.0 ? fmin(b, 2.0 * (1.0 + q.low) / -p.low) : b;
     }
     return fmax(0.0, b);
 }
 
-static struct pace_range acc_of(const struct pace_row *r, struct pace_state s)
+static struct range acc_of(const struct pace_row *r, struct pace_state s)
 {
-    return plus(times(r->acc[0], 0.5 * s.b), times(r->acc[1], s.x));
+    return plus(times(wide(r->acc[0]), 0.5 * s.b), times(wide(r->acc[1]), s.x));
 }
 
-static struct pace_range twist_of(const struct pace_row *r, struct pace_state s)
+static struct range twist_of(const struct pace_row *r, struct pace_state s)
 {
-    return plus(times(r->jerk[1], 1.5 * s.b), times(r->jerk[2], s.x));
+    return plus(times(wide(r->jerk[1]), 1.5 * s.b), times(wide(r->jerk[2]), s.x));
 }
 
 /* Most c of a state, or the least, by its sign; it may be on the other side of 0. */
@@ -200,7 +230,7 @@ static double bend(const struct pace_box *g, struct pace_state s, double sign)
     double c = INFINITY;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        const struct pace_range p = times(g->row[i].jerk[0], sign), q = twist_of(&g->row[i], s);
+        const struct range p = times(wide(g->row[i].jerk[0]), sign), q = twist_of(&g->row[i], s);
         c = p.high > 0.0 ? fmin(c, 2.0 * (all - q.high) / p.high) : c;
         c = p.low < 0.0 ? fmin(c, 2.0 * (all + q.low) / -p.low) : c;
     }
@@ -245,7 +275,7 @@ static double peak(double f, double slope, double curve, double s)
 }
 
 /* Most of p b + q x + r over a step with bounds of p and q, where x > 0, and of its negative. */
-static double most_of(struct pace_range p, struct pace_range q, struct pace_range r,
+static double most_of(struct range p, struct range q, struct range r,
                       struct pace_state from, double c, double s)
 {
     const double part[2] = { p.low, p.high };
@@ -263,7 +293,7 @@ static double most_of(struct pace_range p, struct pace_range q, struct pace_rang
 bool pace_box_keeps(const struct pace_box *g, struct pace_state from, double c, double s)
 {
     const struct pace_state to = pace_step_to(from, c, s);
-    const struct pace_range none = { 0.0, 0.0 };
+    const struct range none = { 0.0, 0.0 };
 
     if (!(to.x > 0.0) || !(from.x > 0.0)) {
         return false;
@@ -271,9 +301,9 @@ bool pace_box_keeps(const struct pace_box *g, struct pace_state from, double c, 
     const double v = sqrt(pace_step_top(from, c, s));
     for (int32_t i = 0; i < g->rows; i++) {
         const struct pace_row *r = &g->row[i];
-        const struct pace_range of_c = times(r->jerk[0], 0.5 * c), of_b = times(r->jerk[1], 1.5);
-        if (most_of(times(r->acc[0], 0.5), r->acc[1], none, from, c, s) > 1.0 + ROUNDING ||
-            v * most_of(of_b, r->jerk[2], of_c, from, c, s) > 1.0 + ROUNDING) {
+        const struct range of_c = times(wide(r->jerk[0]), 0.5 * c), of_b = times(wide(r->jerk[1]), 1.5);
+        if (most_of(times(wide(r->acc[0]), 0.5), wide(r->acc[1]), none, from, c, s) > 1.0 + ROUNDING ||
+            v * most_of(of_b, wide(r->jerk[2]), of_c, from, c, s) > 1.0 + ROUNDING) {
             return false;
         }
     }
@@ -343,12 +373,12 @@ double pace_box_jerk(const struct pace_box *g, double v, double a)
 
     for (int32_t i = 0; i < g->rows; i++) {
         const struct pace_row *r = &g->row[i];
-        const double p = size(r->jerk[0]);
-        if (size(r->acc[0]) * a + size(r->acc[1]) * v * v > 1.0) {
+        const double p = size(wide(r->jerk[0]));
+        if (size(wide(r->acc[0])) * a + size(wide(r->acc[1])) * v * v > 1.0) {
             return 0.0;
         }
         if (p > 0.0) {
-            j = fmin(j, (1.0 - 3.0 * size(r->jerk[1]) * v * a - size(r->jerk[2]) * v * v * v) / p);
+            j = fmin(j, (1.0 - 3.0 * size(wide(r->jerk[1])) * v * a - size(wide(r->jerk[2])) * v * v * v) / p);
         }
     }
     return fmax(0.0, j);

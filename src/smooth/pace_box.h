@@ -9,15 +9,15 @@
 
 #include "pace_cell.h"
 
-/* Low and high bound. */
-struct pace_range {
-    double low, high;
+/* Low and high bound, rounded outwards. */
+struct pace_bound {
+    float low, high;
 };
 
 /* A limit of an axis, or of the path: bounds over what is allowed. */
 struct pace_row {
-    struct pace_range acc[2];   /* of r' [s^2/mm], r'' [s^2/mm^2] */
-    struct pace_range jerk[3];  /* of r' [s^3/mm], r'' [s^3/mm^2], r''' [s^3/mm^3] */
+    struct pace_bound acc[2];   /* of r' [s^2/mm], r'' [s^2/mm^2] */
+    struct pace_bound jerk[3];  /* of r' [s^3/mm], r'' [s^3/mm^2], r''' [s^3/mm^3] */
 };
 
 struct pace_box {

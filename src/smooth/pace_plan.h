@@ -11,7 +11,7 @@
 
 #include "pace_step.h"
 
-enum { PACE_NODES = 4096 };
+enum { PACE_NODES = 2048 };
 
 struct pace_node {
     double at;              /* [mm] of the chain */
