@@ -79,9 +79,14 @@ static struct range plus(struct range a, struct range b)
     return (struct range){ a.low + b.low, a.high + b.high };
 }
 
-static struct range both(struct range a, struct range b)
+static double extent(struct pace_bound b)
 {
-    return (struct range){ fmin(a.low, b.low), fmax(a.high, b.high) };
+    return size(wide(b));
+}
+
+static struct range scaled(struct pace_bound b, double x)
+{
+    return times(wide(b), x);
 }
 
 /* Speed at which turning takes shares of the limits. */
@@ -90,7 +95,7 @@ static double turn_speed(const struct pace_box *g, double acc, double jerk)
     double v = g->cap;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        const double a = size(wide(g->row[i].acc[1])), j = size(wide(g->row[i].jerk[2]));
+        const double a = extent(g->row[i].acc[1]), j = extent(g->row[i].jerk[2]);
         v = a > 0.0 ? fmin(v, sqrt(acc / a)) : v;
         v = j > 0.0 ? fmin(v, cbrt(jerk / j)) : v;
     }
@@ -167,7 +172,7 @@ double pace_box_rise(const struct pace_box *g)
 
     for (int32_t i = 0; i < g->rows; i++) {
         const struct pace_row *r = &g->row[i];
-        time = size(wide(r->acc[0])) > 0.0 ? fmin(time, size(wide(r->jerk[0])) / size(wide(r->acc[0]))) : time;
+        time = extent(r->acc[0]) > 0.0 ? fmin(time, extent(r->jerk[0]) / extent(r->acc[0])) : time;
     }
     return time < INFINITY ? time : 0.0;
 }
@@ -206,7 +211,7 @@ double pace_box_steepest(const struct pace_box *g, double x, double sign)
     double b = INFINITY;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        const struct range p = times(wide(g->row[i].acc[0]), sign), q = times(wide(g->row[i].acc[1]), x);
+        const struct range p = scaled(g->row[i].acc[0], sign), q = scaled(g->row[i].acc[1], x);
         b = p.high > 0.0 ? fmin(b, 2.0 * (1.0 - q.high) / p.high) : b;
         b = p.low < 0.0 ? fmin(b, 2.0 * (1.0 + q.low) / -p.low) : b;
     }
@@ -215,12 +220,12 @@ double pace_box_steepest(const struct pace_box *g, double x, double sign)
 
 static struct range acc_of(const struct pace_row *r, struct pace_state s)
 {
-    return plus(times(wide(r->acc[0]), 0.5 * s.b), times(wide(r->acc[1]), s.x));
+    return plus(scaled(r->acc[0], 0.5 * s.b), scaled(r->acc[1], s.x));
 }
 
 static struct range twist_of(const struct pace_row *r, struct pace_state s)
 {
-    return plus(times(wide(r->jerk[1]), 1.5 * s.b), times(wide(r->jerk[2]), s.x));
+    return plus(scaled(r->jerk[1], 1.5 * s.b), scaled(r->jerk[2], s.x));
 }
 
 /* Most c of a state, or the least, by its sign; it may be on the other side of 0. */
@@ -230,7 +235,7 @@ static double bend(const struct pace_box *g, struct pace_state s, double sign)
     double c = INFINITY;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        const struct range p = times(wide(g->row[i].jerk[0]), sign), q = twist_of(&g->row[i], s);
+        const struct range p = scaled(g->row[i].jerk[0], sign), q = twist_of(&g->row[i], s);
         c = p.high > 0.0 ? fmin(c, 2.0 * (all - q.high) / p.high) : c;
         c = p.low < 0.0 ? fmin(c, 2.0 * (all + q.low) / -p.low) : c;
     }
@@ -301,8 +306,8 @@ bool pace_box_keeps(const struct pace_box *g, struct pace_state from, double c, 
     const double v = sqrt(pace_step_top(from, c, s));
     for (int32_t i = 0; i < g->rows; i++) {
         const struct pace_row *r = &g->row[i];
-        const struct range of_c = times(wide(r->jerk[0]), 0.5 * c), of_b = times(wide(r->jerk[1]), 1.5);
-        if (most_of(times(wide(r->acc[0]), 0.5), wide(r->acc[1]), none, from, c, s) > 1.0 + ROUNDING ||
+        const struct range of_c = scaled(r->jerk[0], 0.5 * c), of_b = scaled(r->jerk[1], 1.5);
+        if (most_of(scaled(r->acc[0], 0.5), wide(r->acc[1]), none, from, c, s) > 1.0 + ROUNDING ||
             v * most_of(of_b, wide(r->jerk[2]), of_c, from, c, s) > 1.0 + ROUNDING) {
             return false;
         }
@@ -373,12 +378,12 @@ double pace_box_jerk(const struct pace_box *g, double v, double a)
 
     for (int32_t i = 0; i < g->rows; i++) {
         const struct pace_row *r = &g->row[i];
-        const double p = size(wide(r->jerk[0]));
-        if (size(wide(r->acc[0])) * a + size(wide(r->acc[1])) * v * v > 1.0) {
+        const double p = extent(r->jerk[0]);
+        if (extent(r->acc[0]) * a + extent(r->acc[1]) * v * v > 1.0) {
             return 0.0;
         }
         if (p > 0.0) {
-            j = fmin(j, (1.0 - 3.0 * size(wide(r->jerk[1])) * v * a - size(wide(r->jerk[2])) * v * v * v) / p);
+            j = fmin(j, (1.0 - 3.0 * extent(r->jerk[1]) * v * a - extent(r->jerk[2]) * v * v * v) / p);
         }
     }
     return fmax(0.0, j);
