@@ -383,7 +383,8 @@ double pace_box_jerk(const struct pace_box *g, double v, double a)
             return 0.0;
         }
         if (p > 0.0) {
-            j = fmin(j, (1.0 - 3.0 * extent(r->jerk[1]) * v * a - extent(r->jerk[2]) * v * v * v) / p);
+            const double turns = 3.0 * extent(r->jerk[1]) * a + extent(r->jerk[2]) * v * v;
+            j = fmin(j, (1.0 - turns * v) / p);
         }
     }
     return fmax(0.0, j);
