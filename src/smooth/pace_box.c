@@ -25,7 +25,7 @@ static const double OUTWARDS = 1e-7;
 static const double SOON = 1e-4;
 
 /* A turn is looked for at so many places if c = 0 does not keep the limits, and then by halves. */
-enum { SCAN = 16, HALVES = 6 };
+enum { SCAN = 16, HALVES = 5 };
 
 bool pace_by_axes(const struct pace_limits *l)
 {
@@ -65,7 +65,7 @@ static struct pace_bound cover(struct pace_bound a, struct pace_bound b)
 
 static double size(struct range r)
 {
-    return fmax(-r.low, r.high);
+    return -r.low > r.high ? -r.low : r.high;
 }
 
 static struct range times(struct range r, double x)
@@ -262,12 +262,17 @@ double pace_box_twist(const struct pace_box *g, struct pace_state s)
     return most * sqrt(s.x);
 }
 
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 double pace_step_top(struct pace_state from, double c, double s)
 {
     const struct pace_state to = pace_step_to(from, c, s);
 
     return from.b > 0.0 && to.b < 0.0 ? from.x - from.b * from.b / (2.0 * c)
-                                      : fmax(from.x, to.x);
+                                      : larger(from.x, to.x);
 }
 
 /* Most of f + slope u + curve u^2 / 2 over a step. */
@@ -276,12 +281,12 @@ static double peak(double f, double slope, double curve, double s)
     const double end = f + s * (slope + 0.5 * curve * s);
 
     return slope > 0.0 && slope + curve * s < 0.0 ? f - 0.5 * slope * slope / curve
-                                                  : fmax(f, end);
+                                                  : larger(f, end);
 }
 
 /* Most of p b + q x + r over a step with bounds of p and q, where x > 0, and of its negative. */
-static double most_of(struct range p, struct range q, struct range r,
-                      struct pace_state from, double c, double s)
+static double most_of(struct range p, struct range q, struct range r, struct pace_state from,
+                      double c, double s)
 {
     const double part[2] = { p.low, p.high };
     double most = -INFINITY;
@@ -289,8 +294,8 @@ static double most_of(struct range p, struct range q, struct range r,
     for (int i = 0; i < 2; i++) {
         const double up = part[i] * from.b + q.high * from.x + r.high;
         const double down = -part[i] * from.b - q.low * from.x - r.low;
-        most = fmax(most, peak(up, part[i] * c + q.high * from.b, q.high * c, s));
-        most = fmax(most, peak(down, -part[i] * c - q.low * from.b, -q.low * c, s));
+        most = larger(most, peak(up, part[i] * c + q.high * from.b, q.high * c, s));
+        most = larger(most, peak(down, -part[i] * c - q.low * from.b, -q.low * c, s));
     }
     return most;
 }
@@ -303,12 +308,19 @@ bool pace_box_keeps(const struct pace_box *g, struct pace_state from, double c, 
     if (!(to.x > 0.0) || !(from.x > 0.0)) {
         return false;
     }
-    const double v = sqrt(pace_step_top(from, c, s));
+    const double x = pace_step_top(from, c, s), v = sqrt(x);
+    const double b = larger(fabs(from.b), fabs(to.b));
     for (int32_t i = 0; i < g->rows; i++) {
         const struct pace_row *r = &g->row[i];
         const struct range of_c = scaled(r->jerk[0], 0.5 * c), of_b = scaled(r->jerk[1], 1.5);
-        if (most_of(scaled(r->acc[0], 0.5), wide(r->acc[1]), none, from, c, s) > 1.0 + ROUNDING ||
-            v * most_of(of_b, wide(r->jerk[2]), of_c, from, c, s) > 1.0 + ROUNDING) {
+        const double acc = 0.5 * extent(r->acc[0]) * b + extent(r->acc[1]) * x;
+        const double jerk = size(of_c) + size(of_b) * b + extent(r->jerk[2]) * x;
+        if (acc > 1.0 && most_of(scaled(r->acc[0], 0.5), wide(r->acc[1]), none, from, c, s)
+                         > 1.0 + ROUNDING) {
+            return false;
+        }
+        if (v * jerk > 1.0 && v * most_of(of_b, wide(r->jerk[2]), of_c, from, c, s)
+                              > 1.0 + ROUNDING) {
             return false;
         }
     }

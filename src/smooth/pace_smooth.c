@@ -7,7 +7,7 @@
 enum { PLAN_SHARE = 4 };
 
 /* Bisections of a step, and steps in one call, at most. */
-enum { HALVES = 5, STEPS = 4096 };
+enum { HALVES = 4, STEPS = 4096 };
 
 /* A way that one jerk drives at so much of what the place allows needs no plan. */
 static const double HOPS = 0.9;

@@ -247,7 +247,7 @@ def main() -> None:
     for curve in curves:
         verdict(f"ruckig / scurve, {curve.name}", curve.ruckig / curve.scurve, least=1.0)
     for s in segments.ALL:
-        least = 1.0 if s is segments.LONG.walk else 0.2
+        least = 1.0 if s is segments.LONG.walk else 0.1 if s.jerk else 0.2
         verdict(f"{s.name}, million segments/s", 1e-6 / max(s.cost.values()), least=least)
         verdict(f"{s.name}, 256 over 16 commands", s.growth, most=1.5)
     verdict("the same, 100,000 over 1,000 segments", segments.LONG.growth, most=1.2)
