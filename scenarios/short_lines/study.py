@@ -34,7 +34,7 @@ from shape_paths import Chords, Piece, shaped  # noqa: E402
 toppra.setup_logging("ERROR")
 TOLERANCE, ACC, JERK, PERIOD = 0.02, 1000.0, 50000.0, 1e-3  # [mm], [mm/s^2], [mm/s^3], [s]
 CHORD = 5e-4  # [mm] of arcs as chords
-SLIVER = 1e-6  # [mm] of pieces that toppra cannot resolve
+SLIVER, STRAIGHT = 1e-6, 1e-6  # [mm], [1/mm] less than toppra can resolve
 RUNS = [(name, 100.0) for name in shapes.SHAPES]
 RUNS[6:8] = [("plate", 50.0), ("plate", 100.0), ("gear", 50.0), ("gear", 100.0)]
 WORDS = {
@@ -134,6 +134,7 @@ class Grid(interpolator.AbstractGeometricPath):
             ways.append(at + u)
             at += p.length
         self.ways, self.states = np.concatenate(ways), np.concatenate(states)
+        self.states[np.abs(self.states) < STRAIGHT] = 0.0
 
     @property
     def path_interval(self) -> np.ndarray:
