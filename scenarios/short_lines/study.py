@@ -4,8 +4,7 @@
 
 The points of the library at every period, without a card; the contour error of the machine comes
 from runs of the scenario. Junction deviation is computed here, as is the bound: the least time
-along our own curve, by toppra, which finds none for the chip. tests/shape_paths.py asks the
-library for the curve.
+along our own curve, by toppra. tests/shape_paths.py asks the library for the curve.
 """
 
 import re
