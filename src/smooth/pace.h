@@ -8,7 +8,7 @@
  *
  * For these bounds the motion is the quickest one: the states from which the rest can be driven are
  * all those below that curve. The acceleration is constant in a cell, or changes once or twice. At
- * the end of what is known the motion can always come to rest.
+ * the end of what is known the motion can always come to rest. With limited jerk: pace_plan.h.
  */
 #ifndef PACE_H
 #define PACE_H

@@ -40,7 +40,7 @@ bool pace_by_axes(const struct pace_limits *l)
 /* 1 / jerk; without a limit the acceleration is there in SOON. */
 static double inverse(double jerk, double acc)
 {
-    return jerk > 0.0 ? 1.0 / jerk : acc > 0.0 ? SOON / acc : 0.0;
+    return jerk > 0.0 ? 1.0 / jerk : SOON / acc;
 }
 
 struct range {
@@ -134,7 +134,6 @@ static void path_rule(struct pace_box *g, const struct piece *p, const struct pi
         along[n] = (struct range){ -way.most[n], way.most[n] };
         all[n] = (struct range){ n > 0 ? -b->most[n] : 0.0, n > 0 ? b->most[n] : 0.0 };
     }
-    g->rows = 0;
     add_row(g, along, acc, jerk);
     add_row(g, all, acc, jerk);
     g->row[1].acc[1] = narrow((struct range){ -across * acc, across * acc });
@@ -155,8 +154,8 @@ void pace_box_make(struct pace_box *g, const struct piece *p, const struct pace_
             r[n] = (struct range){ b->low[n][k], b->high[n][k] };
         }
         g->cap = l->speed[k] > 0.0 ? fmin(g->cap, l->speed[k] / size(r[0])) : g->cap;
-        if (l->acc[k] > 0.0 || l->jerk[k] > 0.0) {
-            add_row(g, r, l->acc[k] > 0.0 ? 1.0 / l->acc[k] : 0.0, inverse(l->jerk[k], l->acc[k]));
+        if (l->acc[k] > 0.0) {
+            add_row(g, r, 1.0 / l->acc[k], inverse(l->jerk[k], l->acc[k]));
         }
     }
     if (!pace_by_axes(l)) {

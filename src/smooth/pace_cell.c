@@ -149,33 +149,46 @@ static void limit(struct pace_cell *c, const struct piece *p, const struct pace_
     limit_rows(c, row, count);
 }
 
-int32_t pace_parts(const struct piece *p, const struct piece_bounds *b)
+void pace_part_first(struct pace_part *part, const struct piece *p)
 {
+    const struct piece_bounds *b = &part->bounds;
+
+    part->piece = p;
+    part->next = 0;
+    part->to = 0.0;
+    piece_rest_start(&part->rest, p);
+    piece_rest_bounds(&part->rest, &part->bounds);
     const double turn = b->most[1] * p->length / TURN;
     const double sag = p->length * sqrt(b->most[2] / 8.0 / SAG);
     const double n = ceil(most(turn, sag));
+    part->count = p->kind == PIECE_LINE || n < 1.0 ? 1 : n < PACE_SPLIT ? (int32_t)n : PACE_SPLIT;
+}
 
-    return p->kind == PIECE_LINE || n < 1.0 ? 1 : n < PACE_SPLIT ? (int32_t)n : PACE_SPLIT;
+bool pace_part_next(struct pace_part *part)
+{
+    const double length = part->piece->length;
+
+    if (part->next == part->count) {
+        return false;
+    }
+    part->from = part->to;
+    part->next++;
+    part->to = part->next < part->count ? length * part->next / part->count : length;
+    if (part->count > 1) {
+        piece_rest_cut(&part->rest, part->to, &part->bounds);
+    }
+    return true;
 }
 
 int32_t pace_cut(const struct piece *p, const struct pace_limits *l,
                  struct pace_cell cell[PACE_SPLIT])
 {
-    struct piece_bounds b;
-    struct piece_rest rest;
-    double from = 0.0;
+    struct pace_part part;
+    int32_t n = 0;
 
-    piece_rest_start(&rest, p);
-    piece_rest_bounds(&rest, &b);
-    const int32_t n = pace_parts(p, &b);
-    for (int32_t i = 0; i < n; i++) {
-        const double to = i + 1 < n ? p->length * (i + 1) / n : p->length;
-        if (n > 1) {
-            piece_rest_cut(&rest, to, &b);
-        }
-        cell[i].length = to - from;
-        limit(&cell[i], p, l, &b);
-        from = to;
+    for (pace_part_first(&part, p); pace_part_next(&part); n++) {
+        cell[n].length = part.to - part.from;
+        limit(&cell[n], p, l, &part.bounds);
     }
     return n;
 }

@@ -17,7 +17,7 @@ struct pace_limits {
     double speed[AXES];     /* [mm/s] of each axis; 0 none */
     double acc[AXES];       /* [mm/s^2] of each axis, > 0; or all 0: along the path and across it
                              * within the ramp of the piece, each by itself */
-    double jerk[AXES];      /* [mm/s^3] of each axis; 0 none */
+    double jerk[AXES];      /* [mm/s^3] of each axis, with acc; 0 none */
 };
 
 enum {
@@ -38,8 +38,18 @@ struct pace_cell {
                              * fast; else x at the end, if it is `most` at the start */
 };
 
-/* Into how many cells, 1 .. PACE_SPLIT: of an equal share of the turn and of the change of r''. */
-int32_t pace_parts(const struct piece *p, const struct piece_bounds *b);
+/* A piece in up to PACE_SPLIT parts, one after another: of an equal share of the turn and of the
+ * change of r''. */
+struct pace_part {
+    const struct piece *piece;
+    int32_t count, next;
+    double from, to;        /* [mm] of the piece: the latest part, */
+    struct piece_bounds bounds;     /* and its bounds */
+    struct piece_rest rest;
+};
+
+void pace_part_first(struct pace_part *part, const struct piece *p);
+bool pace_part_next(struct pace_part *part);
 
 /* Cut a piece into cells; returns their number, 1 .. PACE_SPLIT. */
 int32_t pace_cut(const struct piece *p, const struct pace_limits *l,

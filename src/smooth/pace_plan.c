@@ -6,12 +6,11 @@
 /* Most steps of a look ahead, tries at a ramp of constant jerk and their times' shares of the time
  * in which the jerk reaches the acceleration, and bisections of b. */
 enum { STEPS = 200, RAMPS = 12, HALVES = 5 };
+static const double LONGEST = 0.7, SHORTER = 0.7;
 
 /* Turns of a plan, at most, and what is left of a state that a box does not take. */
 enum { ROUNDS = 4 * PACE_NODES };
 static const double SHARE = 0.97;
-
-static const double LONGEST = 0.7, SHORTER = 0.7;
 
 /* A ramp to the end takes at most such a part of the way. */
 static const double END_PART = 0.3;
@@ -22,6 +21,9 @@ static const double FAR = 2.5;
 /* x is met again to such a share. */
 static const double SAME = 1e-12;
 
+/* Limits are met, and a state is met again, to such a share. */
+static const double NEARLY = 1e-9;
+
 /* Share of the jerk that a state may take that is made to fit a box. */
 static const double ROOM = 0.8;
 
@@ -30,7 +32,7 @@ const struct pace_box *pace_road_box(const struct pace_road *r, int32_t i)
     return &r->ring[(uint32_t)(r->head + i) % (uint32_t)r->size];
 }
 
-static double end_of(const struct pace_road *r, int32_t i)
+double pace_road_end(const struct pace_road *r, int32_t i)
 {
     const struct pace_box *g = pace_road_box(r, i);
     return i + 1 < r->count ? pace_road_box(r, i + 1)->from : g->from + g->length;
@@ -47,7 +49,7 @@ struct pace_spot pace_plan_spot(const struct pace_plan *p, const struct pace_roa
 {
     int32_t box = 0, low = p->first, high = PACE_NODES;
 
-    while (box + 1 < r->count && at >= end_of(r, box)) {
+    while (box + 1 < r->count && at >= pace_road_end(r, box)) {
         box++;
     }
     while (low < high) {
@@ -71,7 +73,7 @@ static double into(const struct pace_node *node, struct pace_state from, double 
 double pace_plan_rest(const struct pace_plan *p, const struct pace_road *r,
                       const struct pace_spot *spot)
 {
-    const double end = end_of(r, spot->box);
+    const double end = pace_road_end(r, spot->box);
     return (spot->node < PACE_NODES ? fmin(end, p->node[spot->node].at) : end) - spot->at;
 }
 
@@ -85,7 +87,7 @@ bool pace_plan_steer(const struct pace_plan *p, const struct pace_road *r,
     double to = 0.0;
 
     *s = pace_box_stride(g, from, rest);
-    if (node && node->at <= end_of(r, spot->box)) {
+    if (node && node->at <= pace_road_end(r, spot->box)) {
         to = into(node, from, rest);
         if (pace_step_to(from, to, rest).x <= node->state.x * (1.0 + SAME) &&
             pace_box_keeps(g, from, to, rest)) {
@@ -114,7 +116,7 @@ bool pace_plan_steer(const struct pace_plan *p, const struct pace_road *r,
 void pace_plan_pass(const struct pace_plan *p, const struct pace_road *r, struct pace_spot *spot,
                     double s, struct pace_state to)
 {
-    const double end = end_of(r, spot->box);
+    const double end = pace_road_end(r, spot->box);
     const double node = spot->node < PACE_NODES ? p->node[spot->node].at : INFINITY;
     const double next = fmin(end, node);
 
@@ -144,7 +146,7 @@ bool pace_plan_safe(const struct pace_plan *p, const struct pace_road *r, struct
             if (share > 1.0 + SAME) {
                 return false;
             }
-            if (fabs(to.b - share * node->state.b) <= 1e-9 * fabs(node->state.b) + 1e-9) {
+            if (fabs(to.b - share * node->state.b) <= NEARLY * (1.0 + fabs(node->state.b))) {
                 return true;
             }
         }
@@ -170,7 +172,7 @@ bool pace_road_start(const struct pace_road *r, double at, int32_t box, double s
                 at_box += sign > 0.0 ? 1 : -1;
             } while (at_box >= 0 && at_box < r->count &&
                      (sign > 0.0 ? pace_road_box(r, at_box)->from < at + way
-                                 : end_of(r, at_box) > at - way));
+                                 : pace_road_end(r, at_box) > at - way));
             v = 0.5 * jerk * time * time;
             a = jerk * time;
             way = v * time / 3.0;
@@ -196,7 +198,7 @@ bool pace_road_lands(const struct pace_road *r, double at, int32_t box, struct p
         if (s.c > pace_box_jerk(pace_road_box(r, i), s.speed, -s.acc)) {
             return false;
         }
-    } while (end_of(r, i) < end && ++i < r->count);
+    } while (pace_road_end(r, i) < end && ++i < r->count);
     return i < r->count;
 }
 
@@ -225,8 +227,8 @@ struct pace_step pace_road_hop(const struct pace_road *r, double at, int32_t box
 /* Whether a box takes a state. */
 static bool takes(const struct pace_road *r, const struct pace_box *g, struct pace_state s)
 {
-    return s.x <= pace_road_top(r, g) * (1.0 + 1e-9) && pace_box_acc(g, s) <= 1.0 + 1e-9 &&
-           pace_box_twist(g, s) <= 1.0 + 1e-9;
+    return s.x <= pace_road_top(r, g) * (1.0 + NEARLY) &&
+           pace_box_acc(g, s) <= 1.0 + NEARLY && pace_box_twist(g, s) <= 1.0 + NEARLY;
 }
 
 /* A share of a state that a box takes. */
@@ -325,8 +327,7 @@ bool pace_plan_make(struct pace_plan *p, const struct pace_road *r, double back_
     struct pace_step land;
     int32_t box = r->count - 1;
 
-    p->override = r->override;
-    p->end = end_of(r, box);
+    p->end = pace_road_end(r, box);
     p->first = PACE_NODES;
     if (!pace_road_start(r, p->end, box, -1.0, END_PART * (p->end - back_to), 0, &land)) {
         return true;
@@ -339,7 +340,7 @@ bool pace_plan_make(struct pace_plan *p, const struct pace_road *r, double back_
         }
         const struct pace_box *g = pace_road_box(r, box);
         if (!takes(r, g, node.state)) {
-            const int32_t behind = box + (end_of(r, box) <= node.at);
+            const int32_t behind = box + (pace_road_end(r, box) <= node.at);
             p->first++;
             const struct pace_state less = p->first < PACE_NODES
                 ? lower(p, r, node.at, behind, g, node.state) : fit(r, g, node.state);

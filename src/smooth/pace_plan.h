@@ -19,7 +19,7 @@ struct pace_node {
 };
 
 struct pace_plan {
-    double override, end;   /* [mm] where it comes to rest */
+    double end;             /* [mm] where it comes to rest */
     int32_t first;          /* node; the others follow */
     struct pace_node node[PACE_NODES];
 };
@@ -40,6 +40,9 @@ struct pace_spot {
 };
 
 const struct pace_box *pace_road_box(const struct pace_road *r, int32_t i);
+
+/* [mm] of the chain */
+double pace_road_end(const struct pace_road *r, int32_t box);
 
 /* Plan from the end of the boxes back to a place in the first one; false: that has no room. */
 bool pace_plan_make(struct pace_plan *p, const struct pace_road *r, double back_to);

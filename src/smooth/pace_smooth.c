@@ -48,25 +48,15 @@ static void append(struct pace *p, const struct pace_box *g)
 
 bool pace_smooth_join(struct pace *p, const struct piece *piece)
 {
+    struct pace_part part;
     struct pace_box g;
-    struct piece_bounds b;
-    struct piece_rest rest;
-    double from = 0.0;
 
     if (p->closed || p->count + PACE_SPLIT + PACE_KEPT > PACE_CELLS) {
         return false;
     }
-    piece_rest_start(&rest, piece);
-    piece_rest_bounds(&rest, &b);
-    const int32_t n = pace_parts(piece, &b);
-    for (int32_t i = 0; i < n; i++) {
-        const double to = i + 1 < n ? piece->length * (i + 1) / n : piece->length;
-        if (n > 1) {
-            piece_rest_cut(&rest, to, &b);
-        }
-        pace_box_make(&g, piece, &p->limits, p->end + from, to - from, &b);
+    for (pace_part_first(&part, piece); pace_part_next(&part); ) {
+        pace_box_make(&g, piece, &p->limits, p->end + part.from, part.to - part.from, &part.bounds);
         append(p, &g);
-        from = to;
     }
     p->end += piece->length;
     p->at.left = box_at(p, 0)->from + box_at(p, 0)->length - p->at.here;
@@ -252,11 +242,10 @@ static void arrive(struct pace_place *at)
     at->step.kind = PACE_NO_STEP;
 }
 
-static double end_of(const struct ride *r, int32_t i)
+static double end_of(const struct ride *r, int32_t box)
 {
-    const struct pace_box *g = &r->p->box[(uint32_t)(r->at.head + i) % PACE_CELLS];
-    return i + 1 < r->count ? r->p->box[(uint32_t)(r->at.head + i + 1) % PACE_CELLS].from
-                            : g->from + g->length;
+    const struct pace_road any = road(r, 1.0);
+    return pace_road_end(&any, box);
 }
 
 static void cross(struct ride *r)
@@ -405,12 +394,12 @@ bool pace_smooth_nears_end(const struct pace *p, double further)
 bool pace_smooth_damaged(const struct pace *p)
 {
     const struct ride r = ride_of(p);
+    const struct pace_road any = road(&r, 1.0);
     bool good = p->held >= 0 && p->held <= 1 && p->at.step.kind >= PACE_NO_STEP &&
                 p->at.step.kind <= PACE_HOP;
 
     for (int32_t i = 0; good && i < p->count; i++) {
-        const struct pace_road to = road(&r, 1.0);
-        good = pace_road_box(&to, i)->rows >= 0 && pace_road_box(&to, i)->rows <= AXES;
+        good = pace_road_box(&any, i)->rows >= 0 && pace_road_box(&any, i)->rows <= AXES;
     }
     for (int i = 0; good && i < 2; i++) {
         good = p->plan[i].first >= 0 && p->plan[i].first <= PACE_NODES;

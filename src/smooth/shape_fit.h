@@ -63,9 +63,6 @@ void shape_solve_change(struct shape_fit *f, int32_t vertex, int32_t span, doubl
 /* Control points by the equations. */
 void shape_solve(struct shape_fit *f);
 
-/* Values over a span: of r, axis by axis of those that move, from the run's origin. [mm] */
-void shape_fit_values(const struct shape_fit *f, int32_t span, double b[AXES][4]);
-
 /* How far vertices are from their places on the curve. */
 void shape_fit_look(struct shape_fit *f);
 

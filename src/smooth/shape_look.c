@@ -25,7 +25,8 @@ static inline void note(struct shape_fit *f, int32_t vertex, double off)
     }
 }
 
-void shape_fit_values(const struct shape_fit *f, int32_t span, double b[AXES][4])
+/* Values over a span: of r, axis by axis of those that move, from the run's origin. [mm] */
+static void values(const struct shape_fit *f, int32_t span, double b[AXES][4])
 {
     const double (*m)[4] = (const double (*)[4])f->extract[span];
 
@@ -107,7 +108,7 @@ void shape_fit_push(struct shape_fit *f, bool all)
                 continue;
             }
             if (!known) {
-                shape_fit_values(f, k, b);
+                values(f, k, b);
                 known = true;
             }
             const double u = stays ? v->u : v->u + to_foot(f, i, k, (const double (*)[4])b);
@@ -198,12 +199,12 @@ void shape_fit_prove(struct shape_fit *f, int32_t spans)
 
     f->worst = 0.0;
     f->worst_vertex = f->end;
-    shape_fit_values(f, 0, b);
+    values(f, 0, b);
     place_at(f, 0, (const double (*)[4])b, t[3], &now);
     for (int32_t k = 0; k < spans; k++) {
         int32_t i = f->first[k];
         if (k > 0) {
-            shape_fit_values(f, k, b);
+            values(f, k, b);
         }
         for (; i < f->first[k + 1]; i++) {
             place_at(f, k, (const double (*)[4])b, f->run->vertex[i].u, &next);
