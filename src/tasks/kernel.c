@@ -52,6 +52,11 @@ void kernel_note(struct kernel *k, enum kernel_what what, int32_t number, int32_
                                                               value };
 }
 
+void kernel_mark(struct kernel *k, int32_t number, int32_t value)
+{
+    kernel_note(k, KERNEL_MARK, number, value);
+}
+
 enum kernel_status kernel_pend(struct kernel *k, int interrupt, int64_t clock)
 {
     if (interrupt < 0 || interrupt >= KERNEL_INTERRUPTS) {

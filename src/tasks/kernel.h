@@ -27,7 +27,7 @@
 #include "processor.h"
 
 enum {
-    KERNEL_TASKS = 15, KERNEL_INTERRUPTS = 8, KERNEL_SEMAPHORES = 16,
+    KERNEL_TASKS = 15, KERNEL_INTERRUPTS = 12, KERNEL_SEMAPHORES = 16,
     KERNEL_LOG = 256
 };
 _Static_assert(KERNEL_TASKS + KERNEL_INTERRUPTS + 1 == PROCESSOR_TASKS, "and the kernel itself");
@@ -61,7 +61,8 @@ enum kernel_what {
     KERNEL_GIVEN,           /* this semaphore; by what: value */
     KERNEL_FULL,            /* a give of this semaphore failed; by what: value */
     KERNEL_TAKEN,           /* this semaphore; by which task: value */
-    KERNEL_PRIORITY         /* of this task: value */
+    KERNEL_PRIORITY,        /* of this task: value */
+    KERNEL_MARK             /* the caller's own: kernel_mark */
 };
 
 struct kernel_event {
@@ -113,6 +114,9 @@ enum kernel_status kernel_take(struct kernel *k, int semaphore);    /* not of an
 enum kernel_status kernel_delay(struct kernel *k, int64_t ticks);   /* these: 0 yields */
 enum kernel_status kernel_set_priority(struct kernel *k, int task, int32_t priority);
 enum kernel_status kernel_end_interrupt(struct kernel *k, bool yield);  /* of an interrupt */
+
+/* A line of the caller's own in the log: no answer, it may stand anywhere. */
+void kernel_mark(struct kernel *k, int32_t number, int32_t value);
 
 /* Time that a task, or KERNEL_TASKS + an interrupt, has had the processor; that nobody had it, and
  * that the kernel itself needed. Together they are the clock. */

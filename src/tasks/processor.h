@@ -16,7 +16,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { PROCESSOR_TASKS = 24 };
+enum { PROCESSOR_TASKS = 28 };
 
 struct processor_task {
     bool    ready;
