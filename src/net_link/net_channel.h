@@ -1,0 +1,81 @@
+/* net_channel - frames of one end of a connection, both directions.
+ *
+ *     0 magic  2 version  3 type  4 flags  6 sequence  10 length  12 payload ... check
+ *
+ * The check is the CRC-32 of all before it or, if the channel is keyed, the first 8 bytes of
+ * HMAC-SHA256(session key, direction + header + payload); bit 0 of the flags says which. Sequences
+ * count 1, 2, 3 .. in each direction. What does not hold closes the channel: a byte stream that
+ * went wrong once is never searched for a next frame.
+ *
+ * A frame that came whole stays until net_channel_drop(), and no byte behind it is taken: the one
+ * who reads sets the pace of the one who sends.
+ */
+#ifndef NET_CHANNEL_H
+#define NET_CHANNEL_H
+
+#include "net_message.h"
+
+enum {
+    NET_MAGIC = 0x434D,
+    NET_VERSION = 1,
+    NET_HEADER = 12,
+    NET_CRC = 4,
+    NET_MAC = 8,
+    NET_FRAME = NET_HEADER + NET_PAYLOAD + NET_MAC,     /* longest */
+    NET_OUT = 4096,         /* bytes that wait to be sent */
+};
+
+enum net_fault {
+    NET_FINE,
+    NET_BAD_MAGIC, NET_BAD_VERSION, NET_BAD_FLAGS, NET_BAD_SEQUENCE, NET_BAD_LENGTH,
+    NET_BAD_CHECK,          /* CRC or MAC */
+    NET_BAD_PAYLOAD,        /* not the length of its type */
+    NET_FAULTS
+};
+
+struct net_channel {
+    bool     card;          /* this end is the card's */
+    bool     keyed;
+    bool     whole;         /* the frame below is */
+    uint8_t  fault;         /* enum net_fault; once set, nothing is taken or written */
+    uint8_t  key[NET_SHA_BYTES];
+    uint32_t sent, taken;   /* sequences of the latest frames */
+    int32_t  held;          /* bytes of the frame below */
+    int32_t  out_first, out_count;      /* of the ring out */
+    uint8_t  frame[NET_FRAME];
+    uint8_t  out[NET_OUT];
+};
+
+/* A new connection. */
+void net_channel_start(struct net_channel *c, bool card);
+
+/* From now on frames of both directions have a MAC. */
+void net_channel_key(struct net_channel *c, const uint8_t key[NET_SHA_BYTES]);
+
+/* Take bytes up to the end of a frame; returns how many. */
+size_t net_channel_take(struct net_channel *c, const uint8_t *bytes, size_t n);
+
+/* The frame that is whole: type, sequence, payload and its length. */
+uint8_t net_channel_type(const struct net_channel *c);
+uint32_t net_channel_sequence(const struct net_channel *c);
+const uint8_t *net_channel_payload(const struct net_channel *c);
+size_t net_channel_length(const struct net_channel *c);
+void net_channel_drop(struct net_channel *c);
+
+/* Would a frame of so many bytes of payload find room among those to be sent, and so many bytes of
+ * room be left behind it? */
+bool net_channel_room(const struct net_channel *c, size_t payload, size_t left);
+
+/* Queue a frame; false if there is no room or the channel is closed. */
+bool net_channel_put(struct net_channel *c, uint8_t type, const uint8_t *payload, size_t n);
+
+/* Move queued bytes out; returns how many. */
+size_t net_channel_out(struct net_channel *c, uint8_t *bytes, size_t most);
+
+/* Words for a fault. */
+const char *net_fault_text(enum net_fault fault);
+
+/* Is every index within its array? */
+bool net_channel_sound(const struct net_channel *c);
+
+#endif
