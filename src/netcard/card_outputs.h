@@ -1,0 +1,57 @@
+/* card_outputs - sixteen programmable outputs, switched by a software interrupt.
+ *
+ * Whoever wants outputs switched writes the variable of each pin, raises its flag and asks for the
+ * software interrupt. The routine goes through the flags from pin 0 up, writes all levels in one
+ * store, so that they change at the same instant, starts the timers of pulses and takes the flags
+ * down. What is written for one pin again before that takes the place of what was there.
+ *
+ * A pulse is at its active level for its width, then at the other one. A new pulse begins the
+ * width anew, a level ends the pulse. */
+#ifndef CARD_OUTPUTS_H
+#define CARD_OUTPUTS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "card_settings.h"
+
+enum mc_po_mode { MC_PO_LEVEL, MC_PO_PULSE };
+
+enum { MC_PO_WIDTH_LONGEST = 1000000 };     /* [us] */
+
+/* What an output shall do. */
+struct mc_po {
+    uint8_t  pin;           /* 0 .. 15 */
+    uint8_t  mode;          /* enum mc_po_mode */
+    uint8_t  active;        /* level: what it becomes; pulse: its level: 1 high, 0 low */
+    uint32_t width_us;      /* of a pulse, 1 .. MC_PO_WIDTH_LONGEST */
+};
+
+struct card_outputs {
+    struct mc_po po[CARD_OUTPUTS];
+    bool     flag[CARD_OUTPUTS];        /* MC_PO_Pins */
+    uint32_t levels;
+    int64_t  pulse_end[CARD_OUTPUTS];   /* [ns]; INT64_MAX: no pulse */
+    int64_t  stores;                    /* how often levels were written by the routine */
+    int64_t  merged;                    /* variables written again before they were served */
+};
+
+void card_outputs_start(struct card_outputs *c);
+
+/* Write the variable of a pin and raise its flag. False, and nothing changed: out of range. */
+bool card_outputs_flag(struct card_outputs *c, const struct mc_po *po);
+
+/* The same for all pins of a mask. */
+bool card_outputs_flag_pins(struct card_outputs *c, uint32_t pins, const struct mc_po *po);
+
+/* The software interrupt's routine. Returns the pins that it served, a bit each. */
+uint32_t card_outputs_serve(struct card_outputs *c, int64_t now);
+
+/* End of the next pulse [ns]; INT64_MAX none. Then call card_outputs_advance. */
+int64_t card_outputs_next(const struct card_outputs *c);
+void card_outputs_advance(struct card_outputs *c, int64_t now);
+
+/* Whether a state from outside can be worked with. */
+bool card_outputs_sound(const struct card_outputs *c);
+
+#endif
