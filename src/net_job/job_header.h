@@ -1,0 +1,91 @@
+/* job_header - first page of a job file: what the job is, with its table of output events.
+ *
+ *     0 "MCJ1"   4 u16 version   6 u16 page bytes   8 u32 id   12 u32 period_ns   16 u8 axes
+ *     20 u32 pages   24 u32 frames   28 u32 events   32 u32[4] pulses_per_m   48 u32[4] speed_max
+ *     64 u32[4] acc_max   80 u64[4] jerk_max   112 i32[4] end   128 u8[32] origin
+ *     160 11 x {u16 pins, u8 mode, u8 level, u32 width_us}   252 u32 CRC-32 of the 252 before
+ *
+ * Numbers are little-endian, what is not named is 0.
+ */
+#ifndef JOB_HEADER_H
+#define JOB_HEADER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum {
+    JOB_AXES = 4,
+    JOB_PAGE_BYTES = 256,
+    JOB_CRC_AT = 252,           /* of each page, the CRC of the bytes before */
+    JOB_EVENTS = 11,
+    JOB_ORIGIN_BYTES = 32,
+    JOB_VERSION = 1,
+    JOB_CLOCK_NS = 20,          /* a period is a whole number of these */
+    JOB_PERIOD_MIN_NS = 250000,
+    JOB_PERIOD_MAX_NS = 10000000,
+    JOB_WIDTH_MAX_US = 1000000, /* of the pulse of an event */
+    JOB_COMMAND_MAX = 32767,    /* a frame holds 16 bits an axis */
+};
+
+/* What is wrong with a job. */
+enum job_fault {
+    JOB_GOOD = 0,
+    JOB_SIZE,       /* no whole number of pages, or not as many as the header says */
+    JOB_CRC,        /* a page does not have its CRC */
+    JOB_MAGIC,      /* header: no MCJ1 */
+    JOB_FORMAT,     /* header: another version or page size */
+    JOB_ID,         /* header: id is not the first four bytes of origin */
+    JOB_PERIOD,     /* header: outside its range or no whole number of clocks */
+    JOB_MASK,       /* header: no axis, or more than four */
+    JOB_COUNT,      /* header: no page or frame, more frames than the pages hold, too many events */
+    JOB_EVENT,      /* an event with a bad member, or a frame's event that is not in the table */
+    JOB_FILL,       /* a byte without meaning is not 0 (header) or FF (behind a payload) */
+    JOB_FRAMES,     /* a page does not begin with the frame it should, or has none */
+    JOB_VARINT,     /* a number that does not end, is not the shortest, or does not fill the page */
+    JOB_COMMAND,    /* a command above half the clocks of a period or above 32767 */
+    JOB_POSITION,   /* a page does not begin where the one before ended, or outside 32 bits */
+    JOB_REST,       /* the first or the last command is above the start speed */
+    JOB_END,        /* the last frame is not the header's, or does not end where it says */
+    JOB_FAULTS
+};
+
+struct job_event {
+    uint16_t pins;      /* a bit each */
+    uint8_t  mode;      /* 0 level, 1 pulse */
+    uint8_t  level;     /* 1: active high */
+    uint32_t width_us;  /* [us] of a pulse, 1 .. JOB_WIDTH_MAX_US; 0 for a level */
+};
+
+struct job_header {
+    uint32_t id;                            /* first four bytes of origin */
+    uint32_t period_ns;                     /* [ns] of a frame */
+    uint32_t axes;                          /* bit mask of those the frames hold */
+    uint32_t pages;                         /* data pages */
+    uint32_t frames;
+    uint32_t events;                        /* in use, numbers 1 .. events */
+    uint32_t pulses_per_m[JOB_AXES];        /* [pulses/m] */
+    uint32_t speed_max[JOB_AXES];           /* [pulses/s] planned */
+    uint32_t acc_max[JOB_AXES];             /* [pulses/s^2] for the card's own ramps */
+    uint64_t jerk_max[JOB_AXES];            /* [pulses/s^3] */
+    int32_t  end[JOB_AXES];                 /* [pulses] behind the last frame; the begin is 0 */
+    uint8_t  origin[JOB_ORIGIN_BYTES];      /* SHA-256 of the drawing and the settings */
+    struct job_event event[JOB_EVENTS];
+};
+
+/* Read a page. Not good: *h is all 0. */
+enum job_fault job_header_read(struct job_header *h, const uint8_t page[JOB_PAGE_BYTES]);
+
+/* Write the page, with its id; the other members as they are. */
+void job_header_write(const struct job_header *h, uint8_t page[JOB_PAGE_BYTES]);
+
+/* Largest command of an axis [pulses a frame]: half the clocks of a period, 32767 at most. */
+int32_t job_command_max(uint32_t period_ns);
+
+/* Has a page, of any kind, its CRC? Write it. */
+bool job_page_whole(const uint8_t page[JOB_PAGE_BYTES]);
+void job_page_seal(uint8_t page[JOB_PAGE_BYTES]);
+
+/* In a few words. */
+const char *job_fault_text(enum job_fault fault);
+
+#endif
