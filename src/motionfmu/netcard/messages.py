@@ -40,7 +40,9 @@ class Message:
         parts = []
         for form in self.LAYOUT.split():
             value: Any = () if form.endswith("x") else getattr(self, next(given).name)
-            parts.append(struct.pack(f"<{form}", *(value if isinstance(value, tuple) else (value,))))
+            parts.append(
+                struct.pack(f"<{form}", *(value if isinstance(value, tuple) else (value,)))
+            )
         return b"".join(parts)
 
     @classmethod
