@@ -55,6 +55,7 @@ struct session {
     struct net_alive   alive;
     uint8_t  phase;                 /* enum session_phase */
     bool     lost;                  /* was up, until session_lost() asks */
+    bool     offered;               /* the channel's frame is a message for the card */
     int64_t  due;                   /* [ns] end of the phase, but for UP */
     int32_t  attempts;              /* since it was up */
     uint16_t life;                  /* drawn at power-up */
@@ -66,7 +67,8 @@ struct session {
     uint32_t done;                  /* sequence of the latest message dealt with */
     bool     ack;                   /* one waits for room */
     uint16_t credit, missing;       /* its content */
-    int32_t  connections, losses, repeats, dropped;     /* dropped: STATUS without room */
+    uint32_t acked;
+    uint32_t connections, losses, repeats, dropped;     /* dropped: STATUS without room */
     uint8_t  fault;                 /* enum net_fault of the latest connection that had one */
 };
 
@@ -107,7 +109,8 @@ int64_t session_next_time(const struct session *s);     /* [ns] INT64_MAX: never
 void session_tick(struct session *s, int64_t now);
 
 /* Answers. While the link is down they go nowhere, but results are kept. A JOB_BEGIN or JOB_END is
- * answered once, by session_job(), at any time: until then no ACK goes up to its sequence. */
+ * answered once, by session_job(), at any time: until then no ACK goes up to its sequence. An ACK
+ * tells of the messages dropped so far: session_ack() comes behind session_drop(). */
 void session_result(struct session *s, uint32_t number, enum net_code code, uint8_t state);
 void session_ack(struct session *s, uint16_t credit, uint16_t missing);
 void session_job(struct session *s, enum net_code code, uint16_t detail, uint16_t credit,
