@@ -318,8 +318,4 @@ class Pong(Message):
     token: int
 
 
-def _kinds(of: type[Message]) -> dict[int, type[Message]]:
-    return {kind.TYPE: kind for kind in of.__subclasses__()}
-
-
-KINDS = _kinds(Message)
+KINDS = {kind.TYPE: kind for kind in Message.__subclasses__()}

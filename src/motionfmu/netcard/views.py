@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from motionfmu.netcard import messages
 
 EVENTS_KEPT = 100
+# Kinds of events that come so often that nobody keeps them.
+FLEETING = ("status", "progress")
 
 
 class Code(enum.IntEnum):
@@ -74,7 +76,7 @@ class Result:
 class Event:
     """Something that happened; `kind` is one of the words below."""
 
-    # connected, closed, status, command, result, upload, log
+    # connected, closed, status, command, result, upload, progress
     kind: str
     card: int
     text: str

@@ -1,0 +1,253 @@
+"""A card as the server has it: its line, its commands, the job on its way to it."""
+
+import asyncio
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from motionfmu.netcard import messages as m
+from motionfmu.netcard.line import Limits, Line
+from motionfmu.netcard.outbox import Outbox
+from motionfmu.netcard.transfer import JobFile, Transfer
+from motionfmu.netcard.views import (
+    EVENTS_KEPT,
+    FLEETING,
+    TEXTS,
+    CardView,
+    Code,
+    Event,
+    Result,
+    Upload,
+)
+
+BURST = 4  # frames of a job before other cards have their turn
+RETRY = 2.0  # [s] until a busy card is asked again
+PROGRESS = 0.1  # [s] between two events of an upload
+
+
+@dataclass
+class _Order:
+    """A command that waits for its result."""
+
+    message: m.Message
+    result: "asyncio.Future[Result]"
+    frame: int = 0  # in which it was sent last
+
+
+@dataclass
+class _Job:
+    """The job that a card shall get."""
+
+    file: JobFile
+    waits: "asyncio.Future[Result] | None" = None
+    upload: Upload = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.upload = Upload(self.file.digest.hex(), self.file.pages)
+
+
+class RemoteCard:
+    """One card, with or without a connection."""
+
+    def __init__(
+        self, card: int, outbox: Outbox, limits: Limits, tell: Callable[[Event], None]
+    ) -> None:
+        self.id = card
+        self.line: Line | None = None
+        self._outbox, self._limits, self._tell = outbox, limits, tell
+        self._events: deque[Event] = deque(maxlen=EVENTS_KEPT)
+        self._hello: m.Hello | None = None
+        self._status: m.Status | None = None
+        self._state, self._in_flash, self._done = "", "", 0
+        self._orders: dict[int, _Order] = {}
+        self._transfer: Transfer | None = None
+        self._shown = self._progress = self._retry = 0.0
+        self._pumping = False
+        self._loop = asyncio.get_running_loop()
+        job = outbox.load()
+        self._job = _Job(JobFile(job)) if job else None
+        self._keeping = asyncio.Lock()
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing would be lost by forgetting it."""
+        return not (self.line or self._job or self._orders)
+
+    def view(self) -> CardView:
+        """What there is to see of it."""
+        return CardView(
+            self.id,
+            self.line is not None,
+            f"{self.line.address}:{self.line.port}" if self.line else "",
+            self._state,
+            self._status,
+            self._hello,
+            self._in_flash,
+            replace(self._job.upload) if self._job else None,
+            self._events.copy(),
+        )
+
+    def tell(self, kind: str, text: str) -> None:
+        """Hand on what happened."""
+        event = Event(kind, self.id, text, time.time())
+        if kind not in FLEETING:
+            self._events.append(event)
+        self._tell(event)
+
+    # The connection.
+
+    def join(self, line: Line, hello: m.Hello) -> None:
+        """Take a line whose handshake is over; the older one is closed."""
+        old, self.line, self._transfer = self.line, line, None
+        if old:
+            old.drop(f"the card came again from {line.address}:{line.port}")
+        self._hello, self._done = hello, hello.done
+        self._see(hello.state)
+        self._in_flash = hello.job.hex() if any(hello.job) else ""
+        self.tell("connected", f"from {line.address}:{line.port}")
+        for number in sorted(self._orders):
+            order = self._orders[number]
+            order.frame = line.send(order.message)
+        self._offer()
+
+    def left(self, line: Line, why: str) -> None:
+        """A line is over."""
+        self.tell("closed", why)
+        if line is self.line:
+            self.line = self._transfer = None
+
+    def heard(self, line: Line, sequence: int, message: m.Message) -> None:
+        """Take a message."""
+        if line is not self.line:
+            return
+        if isinstance(message, m.Status):
+            self._status = message
+            self._see(message.state)
+            self.tell("status", self._state)
+            self._offer()
+        elif isinstance(message, m.Result):
+            self._answer(message.number, message.code, message.state)
+        elif isinstance(message, m.Ack) and self._transfer:
+            self._transfer.ack(message)
+            self._moved()
+        elif isinstance(message, m.Nak):
+            for number, order in list(self._orders.items()):
+                if order.frame == message.sequence:
+                    self._answer(number, message.code, None)
+            if self._transfer:
+                self._transfer.nak(message)
+                self._moved()
+
+    def watch(self) -> None:
+        """Ask again if an upload does not go on."""
+        now = self._loop.time()
+        if self._transfer and now - self._progress > self._limits.stall:
+            self._progress = now
+            self._transfer.begin()
+
+    def _see(self, state: int) -> None:
+        self._state = m.State(state).name if state in m.State.__members__.values() else str(state)
+
+    # Commands.
+
+    async def command(self, make: Callable[[int], m.Message], name: str) -> Result:
+        """Send a command and wait for its result, over a new connection too if need be."""
+        number = self._outbox.number(self._done)
+        if self.line is None or not number:
+            return self._ended(name, Result.of(Code.RANGE if self.line else Code.OFFLINE))
+        order = _Order(make(number), self._loop.create_future())
+        self._orders[number] = order
+        self.tell("command", f"{name} {number}")
+        order.frame = self.line.send(order.message)
+        try:
+            result = await asyncio.wait_for(order.result, self._limits.answer)
+        except TimeoutError:
+            result = Result.of(Code.NO_ANSWER, self._state)
+        finally:
+            del self._orders[number]
+        return self._ended(f"{name} {number}", result)
+
+    def _ended(self, what: str, result: Result) -> Result:
+        self.tell("result", f"{what}: {result.text}")
+        return result
+
+    def _answer(self, number: int, code: int, state: int | None) -> None:
+        self._done = max(self._done, number)
+        if state is not None:
+            self._see(state)
+        if (order := self._orders.get(number)) and not order.result.done():
+            order.result.set_result(Result.of(code, self._state))
+
+    # The job.
+
+    async def upload(self, file: bytes) -> Result:
+        """Bring a job; what waits in the folder is on disk before anything is sent."""
+        async with self._keeping:
+            await asyncio.to_thread(self._outbox.keep, file)
+            if self._job:
+                self._finish(Code.REPLACED)
+            self._job = _Job(await asyncio.to_thread(JobFile, file), self._loop.create_future())
+        waits, self._retry = self._job.waits, 0.0
+        assert waits
+        self._offer()
+        return await waits
+
+    def _offer(self) -> None:
+        """Begin to send the job if there is one, and a card that could take it."""
+        now = self._loop.time()
+        if not self._job or not self.line or self._transfer or now < self._retry:
+            return
+        if self._job.upload.job == self._in_flash:
+            self._job.upload.taken = self._job.upload.pages
+            self._finish(Code.DONE)
+            return
+        self._job.upload.waits = ""
+        self._progress = now
+        self._transfer = Transfer(self._job.file, self.line.send)
+
+    def room(self) -> None:
+        """The line can take more."""
+        self._pump()
+
+    def _pump(self) -> None:
+        self._pumping = False
+        if self._transfer and self.line and self.line.room and self._transfer.pump(BURST):
+            self._pumping = True
+            self._loop.call_soon(self._pump)
+
+    def _moved(self) -> None:
+        """Something came for the transfer."""
+        if not self._transfer or not self._job:
+            return
+        now, upload = self._loop.time(), self._job.upload
+        upload.sent = self._transfer.sent
+        if self._transfer.taken != upload.taken:
+            upload.taken, self._progress = self._transfer.taken, now
+            if now - self._shown >= PROGRESS:
+                self._shown = now
+                self.tell("progress", f"{upload.taken} of {upload.pages} pages")
+        code = self._transfer.code
+        if code is None:
+            if not self._pumping:
+                self._pump()
+            return
+        self._transfer = None
+        if code == Code.BUSY and (self._job.waits is None or self._job.waits.done()):
+            upload.waits, self._retry = TEXTS[Code.BUSY], now + RETRY
+            return
+        if code == Code.DONE:
+            self._in_flash = upload.job
+        self._finish(code)
+
+    def _finish(self, code: int) -> None:
+        """The job is in the card, refused, or replaced."""
+        job, self._job, self._transfer = self._job, None, None
+        if job is None:
+            return
+        if not self._keeping.locked():  # else the file is already the next one
+            self._outbox.drop()
+        result = Result.of(code, self._state)
+        self.tell("upload", f"{job.upload.pages} pages: {result.text}")
+        if job.waits and not job.waits.done():
+            job.waits.set_result(result)
