@@ -28,6 +28,7 @@ class SoftCard:
         self.pages: dict[int, bytes] = {}  # of the transfer under way
         self.begun: m.JobBegin | None = None
         self.done = 0
+        self.life = random.getrandbits(16)
         self.orders: list[m.Message] = []  # every command that was carried out
         self.written = 0  # pages that were taken, those taken again too
         self._results: deque[m.Result] = deque(maxlen=KEPT)
@@ -47,6 +48,7 @@ class SoftCard:
             self.done,
             job,
             self.state,
+            self.life,
         )
 
     def status(self) -> m.Status:

@@ -68,7 +68,7 @@ class Hello(Message):
     """The card's first message."""
 
     TYPE = 1
-    LAYOUT = "I H H 16s I B B H I 32s B 3x"
+    LAYOUT = "I H H 16s I B B H I 32s B x H"
     card: int
     oldest: int  # protocol
     newest: int
@@ -80,6 +80,7 @@ class Hello(Message):
     done: int  # last command number
     job: bytes  # SHA-256 of the job in flash; zeros: none
     state: int
+    life: int  # drawn at power-up: another one, results of commands are lost
 
 
 @dataclass(frozen=True)

@@ -102,13 +102,16 @@ class RemoteCard:
         old, self.line, self._transfer = self.line, line, None
         if old:
             old.drop(f"the card came again from {line.address}:{line.port}")
-        self._hello, self._done = hello, hello.done
+        before, self._hello, self._done = self._hello, hello, hello.done
         self._see(hello.state)
         self._in_flash = hello.job.hex() if any(hello.job) else ""
         self.tell("connected", f"from {line.address}:{line.port}")
         for number in sorted(self._orders):
             order = self._orders[number]
-            order.frame = line.send(order.message)
+            if before and before.life == hello.life:
+                order.frame = line.send(order.message)
+            elif not order.result.done():  # its power failed: nobody knows what it has done
+                order.result.set_result(Result.of(Code.NO_ANSWER, self._state))
         self._offer()
 
     def left(self, line: Line, why: str) -> None:
@@ -144,7 +147,7 @@ class RemoteCard:
         now = self._loop.time()
         if self._transfer and now - self._progress > self._limits.stall:
             self._progress = now
-            self._transfer.begin()
+            self._transfer.again()
 
     def _see(self, state: int) -> None:
         self._state = m.State(state).name if state in m.State.__members__.values() else str(state)

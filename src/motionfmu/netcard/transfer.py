@@ -54,6 +54,11 @@ class Transfer:
         self._flight.clear()
         self._credit, self._waits = 0, True
 
+    def again(self) -> None:
+        """Nothing came for long: ask once more, unless the card still owes an answer."""
+        if not self._waits and not self._end:
+            self.begin()
+
     def ack(self, ack: Ack) -> None:
         """Take an acknowledgement."""
         if self.code is not None or ack.sequence < self._begin:
