@@ -13,7 +13,7 @@ from motionfmu.netcard.keys import CARD_MAX, Keys
 from motionfmu.netcard.line import READ_MAX, Limits, Line
 from motionfmu.netcard.outbox import Outbox
 from motionfmu.netcard.remote import RemoteCard
-from motionfmu.netcard.views import FLEETING, CardView, Event, Result
+from motionfmu.netcard.views import FLEETING, CardView, Code, Event, Result
 from motionfmu.toml_lines import shown
 
 LOG = logging.getLogger("motionfmu.netcard")
@@ -40,6 +40,12 @@ def is_local(host: str) -> bool:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return host == "localhost"
+
+
+def check_card(card: int) -> None:
+    """InputError if this is no id of a card."""
+    if type(card) is not int or not 0 <= card <= CARD_MAX:
+        raise InputError(f"{shown(card)} is no id of a card, 0 to {CARD_MAX}")
 
 
 def check_job(job: bytes) -> None:
@@ -119,7 +125,10 @@ class Cards:
                 raise InputError(f"{name}: {field} = {shown(value)}: 0 to {most[field]} wanted")
         if missing := most.keys() - values.keys():
             raise InputError(f"{name}: {', '.join(sorted(missing))} wanted")
-        return await self._known(card).command(lambda n: kind(n, *(values[f] for f in most)), name)
+        check_card(card)
+        if card not in self._cards:
+            return Result.of(Code.OFFLINE)
+        return await self._cards[card].command(lambda n: kind(n, *(values[f] for f in most)), name)
 
     async def upload(self, card: int, job: bytes) -> Result:
         """Bring a job file into a card's flash; returns when it is there, or refused.
@@ -128,7 +137,8 @@ class Cards:
         card comes. A newer job for the card takes its place. InputError if it is no job file.
         """
         check_job(job)
-        return await self._known(card).upload(job)
+        check_card(card)
+        return await self._card(card).upload(job)
 
     def subscribe(self) -> "asyncio.Queue[Event]":
         """Events from now on; the oldest are dropped if nobody takes them."""
@@ -167,11 +177,6 @@ class Cards:
             line.card.left(line, why)
         else:
             self._log(f"{line.address}:{line.port} closed: {why}")
-
-    def _known(self, card: int) -> RemoteCard:
-        if type(card) is not int or not 0 <= card <= CARD_MAX:
-            raise InputError(f"{shown(card)} is no id of a card, 0 to {CARD_MAX}")
-        return self._card(card)
 
     def _card(self, card: int) -> RemoteCard:
         if card not in self._cards:

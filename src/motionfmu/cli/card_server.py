@@ -1,0 +1,182 @@
+"""The commands of the server of cards, and of those who talk to it."""
+
+import asyncio
+import json
+import logging
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from motionfmu.cli.card import card
+from motionfmu.cli.common import FAILED, bare_table, out
+from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.netcard.server import Cards
+
+AXES = "XYZU"
+Folder = Annotated[Path, typer.Option("--folder", help="The server's folder.")]
+Id = Annotated[int, typer.Argument(metavar="ID", help="The card's id.")]
+HERE = Path("cards")
+
+key = typer.Typer(help="Keys of cards.", no_args_is_help=True)
+card.add_typer(key, name="key")
+
+
+@card.command()
+def serve(  # noqa: PLR0913  (each is an option of the command)
+    bind: Annotated[str, typer.Option(help="Address for cards; from outside: keys.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port for cards.")] = 8765,
+    page: Annotated[int, typer.Option(help="Port of the page on 127.0.0.1; 0 none.")] = 8766,
+    folder: Folder = HERE,
+    keys: Annotated[Path | None, typer.Option(help="Keys; else keys.toml in the folder.")] = None,
+    config: Annotated[Path | None, typer.Option("-c", help="card.toml of the page's form.")] = None,
+) -> None:
+    """Serve cards: jobs, commands, their states on a page; until Ctrl-C."""
+    from motionfmu.netcard.server import Cards
+
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
+    asyncio.run(_serve(Cards(folder, keys=keys), folder, (bind, port, page), config))
+
+
+async def _serve(
+    cards: "Cards", folder: Path, places: tuple[str, int, int], config: Path | None
+) -> None:
+    import secrets
+    import signal
+
+    from motionfmu.netcard.control import Control
+
+    bind, port, page = places
+    control = Control(cards, folder)
+    await control.listen()
+    try:
+        port = await cards.listen(bind, port)
+        out.print(f"cards: {bind}:{port}, folder {folder}", soft_wrap=True)
+        if page:
+            import uvicorn
+
+            from motionfmu.netcard.page import application
+
+            token = secrets.token_urlsafe(16)
+            out.print(f"page: http://127.0.0.1:{page}/?token={token}", soft_wrap=True)
+            served = uvicorn.Config(
+                application(cards, token, config), "127.0.0.1", page, log_level="warning"
+            )
+            await uvicorn.Server(served).serve()
+        else:
+            ended = asyncio.Event()
+            for number in (signal.SIGINT, signal.SIGTERM):
+                asyncio.get_running_loop().add_signal_handler(number, ended.set)
+            await ended.wait()
+    finally:
+        await cards.close()
+        await control.close()
+
+
+def _ask(folder: Path, request: dict[str, Any], file: bytes = b"") -> None:
+    """Ask the server, print how it ended; status 1 if it was refused or failed."""
+    from motionfmu.netcard.control import ask
+
+    answer = ask(folder, request, file)
+    state = f" ({answer['state']})" if answer["state"] else ""
+    out.print(f"card {request['card']}: {answer['text']}{state}", soft_wrap=True)
+    if answer["code"]:
+        raise typer.Exit(FAILED)
+
+
+def _order(folder: Path, card: int, name: str, **values: int) -> None:
+    _ask(folder, {"do": "command", "card": card, "name": name, "values": values})
+
+
+@card.command()
+def send(
+    id: Id, file: Annotated[Path, typer.Argument(help="job.mcj")], folder: Folder = HERE
+) -> None:
+    """Bring a job file into a card; ends when it is there, or refused."""
+    try:
+        job = file.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot read {file}: {error.strerror}") from None
+    _ask(folder, {"do": "upload", "card": id, "bytes": len(job)}, job)
+
+
+@card.command()
+def start(id: Id, folder: Folder = HERE) -> None:
+    """Start the job of a card, or go on behind a pause."""
+    _order(folder, id, "start")
+
+
+@card.command()
+def pause(id: Id, folder: Folder = HERE) -> None:
+    """Bring a card to rest on its path."""
+    _order(folder, id, "pause")
+
+
+@card.command()
+def stop(id: Id, folder: Folder = HERE) -> None:
+    """Bring a card to rest and end its run."""
+    _order(folder, id, "stop")
+
+
+@card.command()
+def reset(id: Id, folder: Folder = HERE) -> None:
+    """Take a card out of the state FAULT."""
+    _order(folder, id, "reset")
+
+
+@card.command()
+def home(
+    id: Id,
+    axes: Annotated[str, typer.Option(help="Those to be homed.")] = AXES,
+    folder: Folder = HERE,
+) -> None:
+    """Home axes of a card."""
+    if not axes or set(axes.upper()) - set(AXES):
+        raise InputError(f"--axes {axes}: letters of {AXES} wanted")
+    _order(folder, id, "home", axes=sum(1 << AXES.index(a) for a in set(axes.upper())))
+
+
+@card.command()
+def status(
+    id: Annotated[int | None, typer.Argument(metavar="[ID]", help="One card only.")] = None,
+    folder: Folder = HERE,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Show the cards of a server; status 1 if the card asked for is not connected."""
+    from motionfmu.netcard.control import ask
+
+    cards = [c for c in ask(folder, {"do": "list"})["cards"] if id in (None, c["id"])]
+    if as_json:
+        print(json.dumps(cards, indent=1))
+    else:
+        table = bare_table("card", "address", "state", "job", "frame", "position", "upload")
+        for c in cards:
+            sent = c["upload"]
+            table.add_row(
+                str(c["id"]),
+                c["address"] or "not connected",
+                c["state"],
+                c["job"][:8],
+                str(c["frame"]),
+                " ".join(map(str, c["position"])),
+                f"{sent['taken']} of {sent['pages']} pages {sent['waits']}" if sent else "",
+            )
+        out.print(table)
+    if id is not None and not any(c["connected"] for c in cards):
+        raise typer.Exit(FAILED)
+
+
+@key.command("new")
+def key_new(
+    id: Id,
+    folder: Folder = HERE,
+    keys: Annotated[Path | None, typer.Option(help="Keys; else keys.toml in the folder.")] = None,
+) -> None:
+    """Make a key for a card, in a file that only you read."""
+    from motionfmu.netcard.keys import new_key
+
+    file = keys or folder / "keys.toml"
+    new_key(file, id)
+    out.print(f"card {id}: new key in {file}", soft_wrap=True)

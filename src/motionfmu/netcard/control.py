@@ -1,0 +1,121 @@
+"""How a command on this machine reaches a running server: a socket in the server's folder.
+
+A request is a line of JSON, for an upload with the file's bytes behind it; so is the answer. Who
+may open the folder may command the cards.
+"""
+
+import asyncio
+import contextlib
+import fcntl
+import json
+import os
+import socket
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from motionfmu.errors import InputError
+from motionfmu.netcard import messages as m
+from motionfmu.netcard.server import JOB_MAX, Cards
+from motionfmu.netcard.views import CardView
+
+SOCKET, LOCK = "control", "lock"
+LINE_MAX = 65536  # [byte] of a request
+
+
+class Control:
+    """The server's end; one server for each folder."""
+
+    def __init__(self, cards: Cards, folder: Path) -> None:
+        self._cards, self._folder = cards, folder
+        self._server: asyncio.Server | None = None
+        self._lock = -1
+
+    async def listen(self) -> None:
+        """Take requests; InputError if another server uses the folder."""
+        self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        self._lock = os.open(self._folder / LOCK, os.O_RDWR | os.O_CREAT, 0o600)
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(self._lock)
+            raise InputError(f"{self._folder}: another server uses this folder") from None
+        place = self._folder / SOCKET
+        place.unlink(missing_ok=True)
+        before = os.umask(0o077)
+        try:
+            self._server = await asyncio.start_unix_server(self._serve, str(place), limit=LINE_MAX)
+        except OSError as error:
+            os.close(self._lock)
+            raise InputError(f"{place}: {error}") from None
+        finally:
+            os.umask(before)
+
+    async def close(self) -> None:
+        """Take no more."""
+        if self._server:
+            self._server.close()
+            (self._folder / SOCKET).unlink(missing_ok=True)
+            os.close(self._lock)
+
+    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        try:
+            try:
+                answer = await self._answer(json.loads(await reader.readline()), reader)
+            except (InputError, ValueError, KeyError, TypeError) as error:
+                answer = {"wrong": str(error)}
+            writer.write(json.dumps(answer).encode() + b"\n")
+            await writer.drain()
+        except (OSError, asyncio.IncompleteReadError):
+            pass  # who asked has gone
+        finally:
+            writer.close()
+
+    async def _answer(self, asked: dict[str, Any], reader: asyncio.StreamReader) -> dict[str, Any]:
+        if asked["do"] == "list":
+            return {"cards": [shown(view) for view in self._cards.list()]}
+        if asked["do"] == "command":
+            values = asked.get("values", {})
+            result = await self._cards.command(asked["card"], asked["name"], **values)
+        else:
+            if not 0 <= asked["bytes"] <= JOB_MAX * m.PAGE:
+                raise InputError(f"a file of {asked['bytes']} bytes is too long")
+            file = await reader.readexactly(asked["bytes"])
+            result = await self._cards.upload(asked["card"], file)
+        return asdict(result)
+
+
+def shown(view: CardView) -> dict[str, Any]:
+    """A card as JSON has it."""
+    status = view.status
+    return {
+        "id": view.id,
+        "connected": view.connected,
+        "address": view.address,
+        "state": view.state,
+        "job": view.job,
+        "upload": asdict(view.upload) if view.upload else None,
+        "frame": status.frame if status else 0,
+        "position": list(status.position) if status else [],
+        "stock": status.stock if status else 0,
+        "underflows": status.underflows if status else 0,
+    }
+
+
+def ask(folder: Path, request: dict[str, Any], file: bytes = b"") -> dict[str, Any]:
+    """The answer of the server that runs in a folder; InputError if none does."""
+    with contextlib.closing(socket.socket(socket.AF_UNIX)) as link:
+        try:
+            link.connect(str(folder / SOCKET))
+            link.sendall(json.dumps(request).encode() + b"\n" + file)
+            with link.makefile("rb") as stream:
+                line = stream.readline()
+        except OSError as error:
+            told = error.strerror or str(error)
+            raise InputError(f"{folder}: no server runs here ({told})") from None
+    if not line:
+        raise InputError(f"{folder}: the server ended without an answer")
+    answer: dict[str, Any] = json.loads(line)
+    if "wrong" in answer:
+        raise InputError(answer["wrong"])
+    return answer
