@@ -1,0 +1,123 @@
+#include "plan_chain.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Ramps by which pieces would be driven if axes had no limits; they have. [mm/s^2] */
+static const double ANY = 1.0;
+
+void plan_chain_start(struct plan_chain *c, const double place[AXES], double tolerance,
+                      const struct pace_limits *l)
+{
+    c->open = true;
+    c->full = c->begun = false;
+    c->tolerance = tolerance;
+    c->joined = 0;
+    c->base = 0.0;
+    c->limits = *l;
+    memcpy(c->end, place, sizeof c->end);
+    memcpy(c->place, place, sizeof c->place);
+    shape_start(&c->shape, tolerance);
+    pace_start(&c->pace, l);
+}
+
+bool plan_chain_line(struct plan_chain *c, const double place[AXES], double feed)
+{
+    struct command line;
+
+    memset(&line, 0, sizeof line);
+    line.type = COMMAND_LINE;
+    line.tolerance = c->tolerance;
+    line.feed = line.cap = feed;
+    line.ramp = (struct ramp_limits){ ANY, ANY, 0.0, 0.0 };
+    path_line(&line.path, c->end, place);
+    c->full = shape_take(&c->shape, &line) != SHAPE_TAKEN;
+    shape_drop_marks(&c->shape, shape_marks(&c->shape));
+    if (!c->full) {
+        memcpy(c->end, place, sizeof c->end);
+    }
+    return !c->full;
+}
+
+void plan_chain_end(struct plan_chain *c)
+{
+    if (c->open) {
+        shape_end(&c->shape);
+        c->open = false;
+    }
+}
+
+bool plan_chain_ready(const struct plan_chain *c)
+{
+    return c->full || !c->open;
+}
+
+/* Finished pieces to the pace, up to one with a rest at its end. */
+static void join(struct plan_chain *c)
+{
+    while (!c->pace.closed && c->joined < shape_count(&c->shape)) {
+        const struct piece *p = shape_piece(&c->shape, c->joined);
+        if (!pace_join(&c->pace, p)) {
+            return;
+        }
+        c->pace.closed = p->rest;
+        c->joined++;
+    }
+}
+
+/* The place of the motion; what it has passed is forgotten. */
+static void look(struct plan_chain *c)
+{
+    const double way = c->pace.at.way;
+    struct piece_state s;
+    int32_t passed = 0;
+
+    if (c->joined == 0) {
+        return;
+    }
+    while (passed + 1 < c->joined && way >= c->base + shape_piece(&c->shape, passed)->length) {
+        c->base += shape_piece(&c->shape, passed)->length;
+        passed++;
+    }
+    const struct piece *p = shape_piece(&c->shape, passed);
+    piece_at(p, fmin(fmax(way - c->base, 0.0), p->length), &s);
+    memcpy(c->place, s.point, sizeof s.point);
+    c->joined -= passed;
+    shape_drop(&c->shape, passed);
+    shape_drop_marks(&c->shape, shape_marks(&c->shape));
+}
+
+/* It rests where a piece says so, or at the end. */
+static bool rests(const struct plan_chain *c)
+{
+    return c->pace.closed && pace_at_end(&c->pace);
+}
+
+double plan_chain_advance(struct plan_chain *c, double dt)
+{
+    c->begun = true;
+    join(c);
+    dt = pace_advance(&c->pace, 1.0, dt);
+    look(c);
+    while (rests(c)) {      /* the next stretch begins at rest */
+        shape_drop(&c->shape, c->joined);
+        c->joined = 0;
+        c->base = 0.0;
+        if (plan_chain_done(c)) {
+            return dt;
+        }
+        pace_start(&c->pace, &c->limits);
+        join(c);
+        if (dt > 0.0) {
+            dt = pace_advance(&c->pace, 1.0, dt);
+            look(c);
+        }
+    }
+    return 0.0;
+}
+
+bool plan_chain_done(const struct plan_chain *c)
+{
+    return !c->open && c->joined == shape_count(&c->shape)
+        && (shape_count(&c->shape) == 0 || rests(c));
+}
