@@ -15,7 +15,6 @@ struct job_check {
     int32_t  position[JOB_AXES];    /* [pulses] there */
     int32_t  low[JOB_AXES], high[JOB_AXES]; /* [pulses] of all positions so far */
     struct job_frame last;
-    struct job_page now;
 };
 
 /* Begin with the header. start_speed: an axis at rest may begin and end a job with it; a command

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "job_bytes.h"
+#include "job_page.h"
 #include "net_crc.h"
 
 enum { ID_AT = 8, RATES_AT = 32, JERK_AT = 80, END_AT = 112, ORIGIN_AT = 128, EVENTS_AT = 160,
@@ -54,7 +55,7 @@ static enum job_fault judge(const struct job_header *h)
     if (h->axes == 0 || h->axes >> JOB_AXES)
         return JOB_MASK;
     if (h->pages == 0 || h->frames < h->pages || h->events > JOB_EVENTS
-        || (h->frames - 1) / (JOB_CRC_AT - 24) >= h->pages)
+        || (h->frames - 1) / JOB_PAGE_FRAMES >= h->pages)
         return JOB_COUNT;
     return JOB_GOOD;
 }

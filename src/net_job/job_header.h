@@ -43,7 +43,7 @@ enum job_fault {
     JOB_FRAMES,     /* a page does not begin with the frame it should, or has none */
     JOB_VARINT,     /* a number that does not end, is not the shortest, or does not fill the page */
     JOB_COMMAND,    /* a command above half the clocks of a period or above 32767 */
-    JOB_POSITION,   /* a page does not begin where the one before ended, or outside 32 bits */
+    JOB_POSITION,   /* a page does not begin where the one before ended, or 2^31 or more */
     JOB_REST,       /* the first or the last command is above the start speed */
     JOB_END,        /* the last frame is not the header's, or does not end where it says */
     JOB_FAULTS

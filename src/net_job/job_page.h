@@ -33,7 +33,7 @@ struct job_page {
 };
 
 /* Read a page of the job of this header. Not good: p->frames is 0. Positions at the begins and ends
- * of its frames are within 32 bits. */
+ * of its frames are below 2^31. */
 enum job_fault job_page_read(struct job_page *p, const struct job_header *h,
                              const uint8_t bytes[JOB_PAGE_BYTES]);
 
@@ -42,7 +42,7 @@ enum job_fault job_page_read(struct job_page *p, const struct job_header *h,
 int32_t job_frame_pack(uint8_t bytes[JOB_FRAME_BYTES], const struct job_frame *frame,
                        const struct job_frame *before, uint32_t axes);
 
-/* Add a frame's command to a position. False: outside 32 bits, nothing is added. */
+/* Add a frame's command to a position. False: 2^31 or more, nothing is added. */
 bool job_frame_move(int32_t position[JOB_AXES], const struct job_frame *frame);
 
 #endif
