@@ -49,7 +49,7 @@ struct card_input_served {
 void card_inputs_start(struct card_inputs *c, const struct card_inputs_config *config,
                        uint32_t levels);
 
-/* The levels at the pins from `now` on. Returns the vectors that have become pending, a bit each. */
+/* The levels at the pins from `now` on. Returns the vectors that are pending, a bit each. */
 uint32_t card_inputs_set(struct card_inputs *c, uint32_t levels, int64_t now);
 
 /* End of the next deaf time [ns]; INT64_MAX none. Then call card_inputs_advance, which returns

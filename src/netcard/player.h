@@ -53,8 +53,8 @@ struct player_job {
     int32_t period;         /* [clocks] M, 2 .. PLAYER_PERIOD_LONGEST */
     double  reserve;        /* share of acc and jerk that its plan leaves free */
     double  speed[FRAME_AXES];      /* [pulses/s] largest planned; 0 not known */
-    double  acc[FRAME_AXES];        /* [pulses/s^2]; 0 in any: the rate jumps */
-    double  jerk[FRAME_AXES];       /* [pulses/s^3]; 0 no limit */
+    double  acc[FRAME_AXES];        /* [pulses/s^2]; 0: this axis does not limit the rate's change */
+    double  jerk[FRAME_AXES];       /* [pulses/s^3]; 0: only its acceleration does */
 };
 
 enum player_status {
@@ -87,6 +87,7 @@ struct player {
     struct player_job job;
     struct frame_fifo fifo;
     struct frame frame;         /* in progress; zeros if there is none */
+    bool    fresh;              /* a job has begun, its first period not */
     bool    begun;              /* a period is in progress */
     bool    playing;            /* and it has a frame */
     bool    whole;              /* no more frames come */
