@@ -8,7 +8,7 @@ from typing import Annotated, Any, Self
 from pydantic import BaseModel, BeforeValidator, Field, ValidationError, model_validator
 
 from motionfmu.errors import InputError
-from motionfmu.netcard.fields import STRICT, Wrong, choices, described, numbers
+from motionfmu.netcard.fields import STRICT, Table, Wrong, choices, described, numbers
 from motionfmu.netcard.tables import (
     AXES,
     PINS,
@@ -102,21 +102,17 @@ class CardConfig(BaseModel):
         axes = self.axes + [spare] * (len(AXES) - len(self.axes))
         for table in (self.network, self.motion, self.pulse, self.fifo, self.tasks):
             found |= _parameters(table)
-        for group in (
-            [_parameters(a, a.pulses_per_mm) for a in axes],
-            map(_parameters, self.inputs),
-        ):
-            for row in group:
-                for name, value in row.items():
-                    found.setdefault(name, []).append(value)
+        for row in map(_parameters, [*axes, *self.inputs]):
+            for name, value in row.items():
+                found.setdefault(name, []).append(value)
         return found
 
 
-def _parameters(table: BaseModel, pulses_per_mm: float = 1.0) -> dict[str, Any]:
+def _parameters(table: Table) -> dict[str, Any]:
     """Parameters of a table; one of two words, or of yes and no, is a Boolean."""
     found: dict[str, Any] = {}
     fields = described(table)
-    for name, number in numbers(table, pulses_per_mm).items():
+    for name, number in numbers(table).items():
         if number.what.parameter:
             two = isinstance(number.source, bool) or len(choices(fields[name][0])) == 2
             found[number.what.parameter] = bool(number.value) if two else number.value

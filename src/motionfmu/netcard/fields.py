@@ -1,9 +1,9 @@
 """What a field of the configuration is: words, unit, and the whole number that the card has."""
 
-from dataclasses import dataclass
-from typing import Any, Literal, get_args, get_origin
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Literal, Self, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_validator
 from pydantic.fields import FieldInfo
 
 STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
@@ -61,9 +61,28 @@ class Wrong(ValueError):
         self.found = found
 
 
-def described(model: type[BaseModel] | BaseModel) -> dict[str, tuple[FieldInfo, Is]]:
+class Table(BaseModel):
+    """A table of the file; an axis has pulses/mm."""
+
+    model_config = STRICT
+    RULES: ClassVar[tuple[Rule, ...]] = ()
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        known = numbers(self).items()
+        found: list[tuple[tuple[str, ...], str]] = [((k,), w) for k, n in known if (w := n.wrong())]
+        for left, sign, right in self.RULES:
+            a, b = getattr(self, left), getattr(self, right)
+            if not (a < b or (sign == "<=" and a == b)):
+                found.append(((left, right), f"{a} is not {sign} {right} = {b}"))
+        if found:
+            raise Wrong(*found)
+        return self
+
+
+def described(table: type[Table] | Table) -> dict[str, tuple[FieldInfo, Is]]:
     """Fields of a table that are values, by their names."""
-    kind = model if isinstance(model, type) else type(model)
+    kind = table if isinstance(table, type) else type(table)
     return {
         name: (field, what)
         for name, field in kind.model_fields.items()
@@ -78,27 +97,17 @@ def choices(field: FieldInfo) -> tuple[str, ...]:
     return get_args(kind) if get_origin(kind) is Literal else ()
 
 
-def numbers(table: BaseModel, pulses_per_mm: float = 1.0) -> dict[str, Number]:
+def numbers(table: Table) -> dict[str, Number]:
     """Whole numbers of a table's fields, by their names; texts have none."""
     found = {}
+    pulses_per_mm = getattr(table, "pulses_per_mm", 1.0)
     for name, (field, what) in described(table).items():
         value = getattr(table, name)
         words = choices(field)
         if words:
-            found[name] = Number(what, words.index(value), value)
+            of_words = replace(what, low=0, high=len(words) - 1, suffix="U")
+            found[name] = Number(of_words, words.index(value), value)
         elif not isinstance(value, str):
             scale = what.factor * (pulses_per_mm if what.pulses else 1.0)
             found[name] = Number(what, round(value * scale), value)
     return found
-
-
-def check(table: BaseModel, rules: tuple[Rule, ...] = (), pulses_per_mm: float = 1.0) -> None:
-    """Refuse a table whose whole numbers the card cannot have, or that breaks a rule."""
-    known = numbers(table, pulses_per_mm).items()
-    found: list[tuple[tuple[str, ...], str]] = [((k,), w) for k, n in known if (w := n.wrong())]
-    for left, sign, right in rules:
-        a, b = getattr(table, left), getattr(table, right)
-        if not (a < b or (sign == "<=" and a == b)):
-            found.append(((left, right), f"{a} is not {sign} {right} = {b}"))
-    if found:
-        raise Wrong(*found)

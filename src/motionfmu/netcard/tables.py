@@ -5,9 +5,9 @@ import re
 from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from motionfmu.netcard.fields import STRICT, Is, Rule, Wrong, check
+from motionfmu.netcard.fields import Is, Table, Wrong
 
 AXES = "XYZU"
 PINS = 16  # programmable inputs, and outputs
@@ -19,21 +19,6 @@ HOME_MAX = 100_000_000  # [pulses] of an offset or a way back
 Trigger = Literal["rising", "falling", "high", "low"]
 Level = Literal["low", "high"]
 Action = Literal["none", "start", "pause", "stop", "home", "event"]
-AXIS_RULES: tuple[Rule, ...] = (
-    ("minimum", "<", "maximum"),
-    ("speed_min", "<=", "speed_max"),
-    ("home_speed", "<=", "speed_max"),
-    ("home_slow", "<=", "home_speed"),
-)
-# Pause stops a run, stop ends a pause, both end a homing, which takes the place of a run.
-TASK_RULES: tuple[Rule, ...] = (
-    ("run", "<", "home_active"),
-    ("home_active", "<", "pause"),
-    ("pause", "<", "stop"),
-    ("stop", "<", "home"),
-    ("home", "<", "storage"),
-    ("storage", "<", "parser"),
-)
 
 
 def _four_bytes(text: Any) -> Any:
@@ -87,10 +72,9 @@ def _task(words: str, name: str) -> Is:
     return Is(words, "", f"PRIORITY_{name}", "", 1, 7, "U", parameter=f"priority_{name.lower()}")
 
 
-class Network(BaseModel):
+class Network(Table):
     """Where the card is, and where its server is."""
 
-    model_config = STRICT
     ip: Annotated[Address, Is("Address of the card", macro="IP")] = "192.168.1.50"
     netmask: Annotated[Address, Is("Network mask", macro="NETMASK")] = "255.255.255.0"
     gateway: Annotated[Address, Is("Gateway; 0.0.0.0 none", macro="GATEWAY")] = "192.168.1.1"
@@ -105,7 +89,6 @@ class Network(BaseModel):
 
     @model_validator(mode="after")
     def _one_network(self) -> Self:
-        check(self)
         try:
             net = ipaddress.IPv4Network(f"{self.ip}/{self.netmask}", strict=False)
         except ValueError:
@@ -120,10 +103,15 @@ class Network(BaseModel):
         return self
 
 
-class Axis(BaseModel):
+class Axis(Table):
     """An axis: its scale, its limits and how it goes home."""
 
-    model_config = STRICT
+    RULES = (
+        ("minimum", "<", "maximum"),
+        ("speed_min", "<=", "speed_max"),
+        ("home_speed", "<=", "speed_max"),
+        ("home_slow", "<=", "home_speed"),
+    )
     name: Literal["X", "Y", "Z", "U"]
     pulses_per_mm: Annotated[
         float,
@@ -178,17 +166,11 @@ class Axis(BaseModel):
              (-HOME_MAX, HOME_MAX), "L"),
     ] = 0.0  # fmt: skip
 
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        check(self, AXIS_RULES, self.pulses_per_mm)
-        return self
 
-
-class Pen(BaseModel):
+class Pen(Table):
     """What raises and lowers the tool: an output, or the way of an axis."""
 
-    model_config = STRICT
-    kind: Annotated[Literal["output", "axis"], Is("Moved by", macro="PEN_KIND")] = "output"
+    kind: Annotated[Literal["output", "axis"], Is("Moved by", macro="PEN_MOVER")] = "output"
     output: Annotated[int, Is("Its output", macro="PEN_OUTPUT", high=PINS - 1, suffix="U")] = 0
     up_level: Annotated[Level, Is("Level of the output, up", macro="PEN_UP_LEVEL")] = "low"
     dwell: Annotated[float, _time("Rest when it moves", "PEN_DWELL_US", "us", (0, 10**7), "")] = (
@@ -198,16 +180,10 @@ class Pen(BaseModel):
     up: Annotated[float, Is("Position of the axis, up", "mm")] = 2.0
     down: Annotated[float, Is("Position of the axis, down", "mm")] = 0.0
 
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        check(self)
-        return self
 
-
-class Motion(BaseModel):
+class Motion(Table):
     """How paths are planned and run."""
 
-    model_config = STRICT
     period: Annotated[
         float, _time("DDA period", "DDA_PERIOD_NS", "ns", (250_000, 10**7), "period_ns")
     ] = 0.001
@@ -230,16 +206,10 @@ class Motion(BaseModel):
         Is("Start only when homed", macro="MUST_HOME", high=1, suffix="U", parameter="must_home"),
     ] = False
 
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        check(self)
-        return self
 
-
-class Pulse(BaseModel):
+class Pulse(Table):
     """Shape of the pulses at the drives."""
 
-    model_config = STRICT
     width: Annotated[
         float, _time("Time a pulse is high", "PULSE_WIDTH_NS", "ns", (20, 10**6), "pulse_width_ns")
     ] = 1e-6
@@ -251,32 +221,29 @@ class Pulse(BaseModel):
         float, _time("From a pulse to a direction", "DIR_HOLD_NS", "ns", (0, 10**6), "dir_hold_ns")
     ] = 5e-6
 
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        check(self)
-        return self
 
-
-class Fifo(BaseModel):
+class Fifo(Table):
     """The FPGA's buffer."""
 
-    model_config = STRICT
     depth: Annotated[
         int,
         Is("Frames of the FIFO", "", "FIFO_DEPTH", "frames", 16, 2304, "U",
            parameter="fifo_depth"),
     ] = 512  # fmt: skip
 
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        check(self)
-        return self
 
-
-class Tasks(BaseModel):
+class Tasks(Table):
     """Priorities, 7 the most urgent; home has a second one while it works."""
 
-    model_config = STRICT
+    # Pause stops a run, stop ends a pause, both end a homing, which takes the place of a run.
+    RULES = (
+        ("run", "<", "home_active"),
+        ("home_active", "<", "pause"),
+        ("pause", "<", "stop"),
+        ("stop", "<", "home"),
+        ("home", "<", "storage"),
+        ("storage", "<", "parser"),
+    )
     parser: Annotated[int, _task("Packet parsing", "PARSER")] = 7
     storage: Annotated[int, _task("Storage management", "STORAGE")] = 6
     home: Annotated[int, _task("Home, waiting", "HOME")] = 5
@@ -285,16 +252,10 @@ class Tasks(BaseModel):
     pause: Annotated[int, _task("Pause", "PAUSE")] = 3
     run: Annotated[int, _task("Run", "RUN")] = 1
 
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        check(self, TASK_RULES)
-        return self
 
-
-class Input(BaseModel):
+class Input(Table):
     """A programmable input."""
 
-    model_config = STRICT
     action: Annotated[Action, Is("Does", macro="ACTION", parameter="in_action")] = "none"
     edge: Annotated[
         Literal["rise", "fall", "both"], Is("At the edge", macro="EDGE", parameter="in_edge")
@@ -303,11 +264,6 @@ class Input(BaseModel):
         float,
         _time("Deaf behind an edge", "DEBOUNCE_US", "us", (0, 10**6), "in_debounce_us"),
     ] = 0.01
-
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        check(self)
-        return self
 
 
 Output = Annotated[str, Field(pattern=r"^([a-z][a-z0-9_]{0,30})?$"), Is("Name of the output")]
