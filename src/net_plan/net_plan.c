@@ -170,6 +170,7 @@ static void advance(struct net_plan *p)
         if (plan_chain_done(&p->chain)) {
             p->step = NET_PLAN_NOTHING;
             p->drawing = false;
+            p->stops += p->chain.stops;
         }
     }
 }

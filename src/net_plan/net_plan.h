@@ -77,6 +77,7 @@ struct net_plan {
     double goal[2], target[2];  /* [mm] the end of all that has come; of the move */
     enum net_plan_step step;
     int32_t rest;               /* frames left */
+    int32_t stops;              /* rests within lines so far, where there is no room for a curve */
     struct scurve slide;        /* along a straight line, */
     double from[JOB_AXES], slope[JOB_AXES];     /* [mm], [1] from there */
     double time;                /* [s] since it began */

@@ -10,7 +10,8 @@ void plan_chain_start(struct plan_chain *c, const double place[AXES], double tol
                       const struct pace_limits *l)
 {
     c->open = true;
-    c->full = c->begun = false;
+    c->full = false;
+    c->stops = 0;
     c->tolerance = tolerance;
     c->joined = 0;
     c->base = 0.0;
@@ -95,7 +96,6 @@ static bool rests(const struct plan_chain *c)
 
 double plan_chain_advance(struct plan_chain *c, double dt)
 {
-    c->begun = true;
     join(c);
     dt = pace_advance(&c->pace, 1.0, dt);
     look(c);
@@ -106,6 +106,7 @@ double plan_chain_advance(struct plan_chain *c, double dt)
         if (plan_chain_done(c)) {
             return dt;
         }
+        c->stops++;
         pace_start(&c->pace, &c->limits);
         join(c);
         if (dt > 0.0) {

@@ -14,7 +14,7 @@
 struct plan_chain {
     bool   open;            /* vertices may come */
     bool   full;            /* none has room before the motion goes on */
-    bool   begun;           /* it has been driven */
+    int32_t stops;          /* rests before its end so far */
     double tolerance;       /* [mm] */
     double end[AXES];       /* [mm] the latest vertex */
     int32_t joined;         /* pieces that the pace has, from the first that the shape keeps */

@@ -23,7 +23,8 @@ struct table {
     const struct field *field;
     size_t bytes, size;     /* of the fields, of the struct */
 };
-extern const struct table MCC_TABLES[], ROBOT_TABLES[], GCODE_TABLES[];     /* up to a name NULL */
+/* Each up to a name NULL. */
+extern const struct table MCC_TABLES[], ROBOT_TABLES[], GCODE_TABLES[], PLAN_TABLES[];
 
 enum { BINDING_REPORTS = 64 };      /* room for all faults and notes of a part program */
 struct fault_list;

@@ -51,9 +51,13 @@ class Scanner:
     def refuse(self, why: str, byte: int | None = None) -> NoReturn:
         """Raise the error of this instruction."""
         at = self.first if byte is None else byte
-        line, column = self.place(at)
         pair = f"{self.pair}: " if self.pair else ""
-        raise InputError(f"{self.name}: line {line}, column {column}, byte {at}: {pair}{why}")
+        raise InputError(f"{self.where(at)}: {pair}{why}")
+
+    def where(self, byte: int) -> str:
+        """File, line, column and byte in words."""
+        line, column = self.place(byte)
+        return f"{self.name}: line {line}, column {column}, byte {byte}"
 
     def wants(self, numbers: list[float], least: int, most: int) -> None:
         """Refuse another count of numbers."""
@@ -166,7 +170,8 @@ class Scanner:
     def encoded(self) -> Iterator[tuple[str, list[float]]]:
         """Flags and numbers of PE: (":", [pen]), or (flags among "<=", [x, y])."""
         text, at, base, fraction = self.text, self.next, 64, 0
-        flags, pair, self.next = "", [], len(text)
+        pair: list[float] = []
+        flags, self.next = "", len(text)
         while at < len(text):
             c = text[at]
             if c == 0x3B:  # ;
