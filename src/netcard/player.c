@@ -36,7 +36,8 @@ int64_t player_pulse_clock(const struct player *p, int axis, int64_t j)
 int64_t player_latest(const struct player *p, int axis, int64_t clock)
 {
     const int64_t n = player_pulses(p, axis, player_phase(p, clock));
-    return n != player_pulses(p, axis, p->phase) ? player_pulse_clock(p, axis, llabs(n)) : p->last[axis];
+    const bool here = n != player_pulses(p, axis, p->phase);
+    return here ? player_pulse_clock(p, axis, llabs(n)) : p->last[axis];
 }
 
 void player_rebase(struct player *p, int64_t clock)
@@ -254,7 +255,7 @@ void player_advance(struct player *p, int64_t clock)
             player_step_rate(p);
         }
     }
-    p->clock = clock;
+    p->clock = clock > p->clock ? clock : p->clock;
 }
 
 struct player_told player_take(struct player *p)

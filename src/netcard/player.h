@@ -53,7 +53,7 @@ struct player_job {
     int32_t period;         /* [clocks] M, 2 .. PLAYER_PERIOD_LONGEST */
     double  reserve;        /* share of acc and jerk that its plan leaves free */
     double  speed[FRAME_AXES];      /* [pulses/s] largest planned; 0 not known */
-    double  acc[FRAME_AXES];        /* [pulses/s^2]; 0: this axis does not limit the rate's change */
+    double  acc[FRAME_AXES];        /* [pulses/s^2]; 0: this axis has no say in the rate */
     double  jerk[FRAME_AXES];       /* [pulses/s^3]; 0: only its acceleration does */
 };
 

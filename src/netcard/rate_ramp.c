@@ -69,7 +69,8 @@ void rate_ramp_make(struct rate_ramp *r, const struct rate_bounds *b, double fro
     }
     r->pieces = N;
     for (int k = 0; k <= N; k++) {
-        r->rate[k] = k < N ? from + (to - from) * k / N : to;
+        const double x = (double)k / N;     /* short pieces at both ends, where most changes */
+        r->rate[k] = k < N ? from + (to - from) * x * x * (3.0 - 2.0 * x) : to;
     }
     square[0] = 0.0;
     for (int k = 0; k < N; k++) {

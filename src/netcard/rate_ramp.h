@@ -22,7 +22,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { RATE_RAMP_PIECES = 32, RATE_RAMP_AXES = 4 };
+enum { RATE_RAMP_PIECES = 64, RATE_RAMP_AXES = 4 };
 
 /* Smallest share of the limits that a plan must leave free, else the rate could not leave 1. */
 #define RATE_RAMP_LEAST 0.02

@@ -28,7 +28,7 @@ static void watch(const struct player_config *c, const struct player *p, int axi
         s->fall = clock;
     }
     if (l.b != s->l.b) {
-        CHECK(!l.a && (s->fall < 0 || clock - s->fall >= c->hold));
+        CHECK((!l.a || clock == s->rise) && (s->fall < 0 || clock - s->fall >= c->hold));
         s->turn = clock;
         turns++;
     }

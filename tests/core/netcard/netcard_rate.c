@@ -1,0 +1,248 @@
+/* A pause on the path: acceleration and jerk of the ramped motion, its distance, its time. */
+#include "check.h"
+
+#include <string.h>
+
+#include "player.h"
+
+static const double PI = 3.14159265358979323846, TICK = 20e-9;
+static struct player p;
+
+/* A planned motion of two axes over `length` seconds: sums of cosines, at rest at both ends.
+ *     axis 0: X (u - sin(2 pi u) / 2 pi)                   there
+ *     axis 1: Y sin^2(pi k u) sin^2(pi u)                  and back, k times
+ * Derivative d (0 .. 3) by planned time. */
+struct plan { double length, x, y; int k, frames; };
+
+static double planned(const struct plan *m, int axis, int d, double time)
+{
+    const double u = time / m->length, scale = pow(1.0 / m->length, d);
+    if (axis == 0) {
+        const double w = 2.0 * PI, phase = w * u + d * PI / 2.0;
+        return scale * m->x * ((d == 0 ? u : d == 1 ? 1.0 : 0.0) - pow(w, d - 1) * sin(phase));
+    }
+    double sum = d == 0 ? 1.0 : 0.0;
+    const int factor[] = { m->k, 1, m->k - 1, m->k + 1 };
+    const double size[] = { -1.0, -1.0, 0.5, 0.5 };
+    for (int i = 0; i < 4; i++) {
+        const double w = 2.0 * PI * factor[i];
+        sum += size[i] * (w == 0.0 && d > 0 ? 0.0 : pow(w, d) * cos(w * u + d * PI / 2.0));
+    }
+    return scale * m->y * sum / 4.0;
+}
+
+static double largest(const struct plan *m, int axis, int d)
+{
+    double most = 0.0;
+    for (int i = 0; i <= 20000; i++) {
+        most = fmax(most, fabs(planned(m, axis, d, m->length * i / 20000)));
+    }
+    return most;
+}
+
+static struct frame frame_of(const struct plan *m, int n)
+{
+    struct frame f = { { 0 }, 0 };
+    for (int i = 0; i < 2; i++) {
+        f.command[i] = (int16_t)(lround(planned(m, i, 0, 1e-3 * (n + 1))) -
+                                 lround(planned(m, i, 0, 1e-3 * n)));
+    }
+    return f;
+}
+
+static double worst_acc, worst_jerk, widest;
+static long long samples, ramps, turned;
+
+/* Planned time that has been played. */
+static double played(const struct player *q)
+{
+    return 1e-3 * (double)(q->frames - 1) +
+           TICK * ((double)q->phase / PLAYER_FULL_RATE +
+                   (double)q->rate / PLAYER_FULL_RATE * (double)(q->clock - q->base));
+}
+
+/* Limits at a sample of the ramp; the bend of its piece by the slopes around it. */
+static void within(const struct plan *m, const struct player_job *job)
+{
+    const double t = TICK * (double)(p.clock - p.ramp_begin), end = rate_ramp_length(&p.ramp),
+                 dt = 1e-7;
+    double slope, s0, s1;
+    if (t >= end) {
+        return;
+    }
+    const double r = rate_ramp_at(&p.ramp, t, &slope);
+    rate_ramp_at(&p.ramp, fmax(t - dt, 0.0), &s0);
+    rate_ramp_at(&p.ramp, fmin(t + dt, end - 1e-12), &s1);
+    const double bend = (s1 - s0) / (fmin(t + dt, end - 1e-12) - fmax(t - dt, 0.0));
+    const double at = played(&p);
+    for (int i = 0; i < 2; i++) {
+        const double v = planned(m, i, 1, at), a = planned(m, i, 2, at), j = planned(m, i, 3, at);
+        const double acc = fabs(r * r * a + slope * v) / job->acc[i],
+                     jerk = fabs(r * r * r * j + 3.0 * r * slope * a + bend * v) / job->jerk[i];
+        CHECK(acc <= 1.0 + 1e-9);
+        CHECK(jerk <= 1.0 + 1e-6);
+        worst_acc = fmax(worst_acc, acc);
+        worst_jerk = fmax(worst_jerk, jerk);
+    }
+    samples++;
+}
+
+/* Random pauses of a random plan, one that uses all that the reserve leaves it. */
+static void limits_kept(void)
+{
+    uint64_t seed = 3;
+    for (int run = 0; run < 60 && !check_failures; run += CHECK_EACH) {
+        const struct player_config c = { 512, 50, 250, 250 };
+        struct plan m = { .frames = (int)check_random(&seed, 300, 2500),
+                          .k = (int)check_random(&seed, 1, 4) };
+        m.length = 1e-3 * m.frames;
+        m.x = check_real(&seed, 1e3, 2e5) * m.length;
+        m.y = check_real(&seed, 1e3, 8e4) * m.length / m.k;
+        const int known = (int)check_random(&seed, 0, 1);
+        struct player_job job = { .period = 50000, .reserve = check_real(&seed, 0.02, 0.5) };
+        for (int i = 0; i < 2; i++) {
+            job.speed[i] = largest(&m, i, 1) * (1.0 + 1e-9);
+            job.acc[i] = largest(&m, i, 2) / (1.0 - job.reserve);
+            job.jerk[i] = largest(&m, i, 3) / (1.0 - job.reserve);
+        }
+        if (known) {            /* looks ahead in the FIFO alone */
+            job.speed[0] *= 100.0, job.speed[1] *= 100.0;
+        }
+        player_start(&p, &c);
+        player_begin(&p, &job, 0);
+        int pushed = 0, target = 1;
+        player_set_target(&p, 0);
+        for (; pushed < 512 && pushed < m.frames; pushed++) {
+            const struct frame f = frame_of(&m, pushed);
+            player_push(&p, &f);
+        }
+        player_set_target(&p, 1);
+        int64_t change = check_random(&seed, 0, m.frames * 50000LL), last = 0;
+        double before = 1.0;
+        while (p.begun) {
+            const int64_t next = player_next(&p);
+            player_advance(&p, next < change ? next : change);
+            if (p.clock == change) {
+                target = !target;
+                turned += p.ramping;
+                player_set_target(&p, target);
+                player_advance(&p, p.clock);
+                ramps++;
+                change += check_random(&seed, 0, 2) ? check_random(&seed, 1, 15000000)
+                                                    : check_random(&seed, 1, 1000000);
+            }
+            if (p.ramping) {
+                within(&m, &job);
+                widest = fmax(widest, fabs(player_rate(&p) - before) -
+                                      TICK * 2.0 * PLAYER_GRID *
+                                      rate_ramp_slope_most(&p.bounds, 0.0));
+            }
+            before = player_rate(&p);
+            if (p.fifo.stock <= 256 && pushed < m.frames) {
+                for (; pushed < m.frames && p.fifo.stock < 512; pushed++) {
+                    const struct frame f = frame_of(&m, pushed);
+                    CHECK_EQ(player_push(&p, &f), PLAYER_OK);
+                }
+            }
+            if (pushed == m.frames) {
+                player_whole(&p);
+            }
+            last = p.clock;
+        }
+        int64_t n[FRAME_AXES];
+        player_counts(&p, p.clock, n);
+        CHECK_EQ(n[0], lround(planned(&m, 0, 0, m.length)));
+        CHECK_EQ(n[1], lround(planned(&m, 1, 0, m.length)));
+        CHECK(last > m.frames * 50000LL && p.dry == 0);
+    }
+    printf("rate: %lld samples in %lld ramps, %lld of them turned within one; largest "
+           "acceleration %.3f, jerk %.3f of the limits\n", samples, ramps, turned, worst_acc,
+           worst_jerk);
+    CHECK(worst_acc > 0.6 && worst_jerk > 0.6 && widest <= 0.0);
+    CHECK(CHECK_EACH > 1 || (samples > 100000 && ramps > 200 && turned > 50));
+}
+
+/* An axis of steady speed [pulses/s] is paused at a clock: way and time to rest. */
+struct rest { double way, time; };
+
+static struct rest pause(double speed, double acc, double jerk, double reserve)
+{
+    const struct player_config c = { 2304, 1, 0, 0 };
+    const struct player_job job = { .period = 50000, .reserve = reserve, .speed = { speed },
+                                    .acc = { acc }, .jerk = { jerk } };
+    const struct frame f = { { (int16_t)lround(speed * 1e-3) }, 0 };
+    int64_t a[FRAME_AXES], b[FRAME_AXES];
+    player_start(&p, &c);
+    player_begin(&p, &job, 0);
+    for (int i = 0; i < 2304; i++) {
+        player_push(&p, &f);
+    }
+    player_set_target(&p, 1);
+    player_advance(&p, 123457);
+    player_take(&p);
+    player_counts(&p, p.clock, a);
+    player_set_target(&p, 0);
+    const int64_t from = p.clock;
+    while (player_next(&p) < INT64_MAX) {
+        player_advance(&p, player_next(&p));
+    }
+    player_counts(&p, p.clock, b);
+    const struct player_told told = player_take(&p);
+    CHECK((told.what & PLAYER_REST) && told.clock[3] == p.clock && player_at_rest(&p));
+    return (struct rest){ (double)(b[0] - a[0]), TICK * (double)(p.clock - from) };
+}
+
+/* Without a limit of jerk the quickest ramp is that of dr/dt = -(1 - p r^2) A / V, p = 1 - reserve:
+ *     way  V^2 / (2 p A) ln(1 / (1 - p)),  time  V / (A sqrt p) artanh(sqrt p)
+ * but for the pieces of its grid, and never further than V^2 / (2 A reserve). With one, never
+ * further than the ramp with the bounds of r = 1 all the way, S and C: an S-shaped one. */
+static void distances(void)
+{
+    uint64_t seed = 7;
+    double longest = 0.0;
+    for (int i = 0; i < 300; i += CHECK_EACH) {
+        const double v = 1e3 * (double)check_random(&seed, 1, 300), reserve =
+                     check_real(&seed, 0.02, 0.6), a = v * check_real(&seed, 4.0, 40.0),
+                     q = 1.0 - reserve, j = check_random(&seed, 0, 1) ?
+                     a * check_real(&seed, 10.0, 200.0) : 0.0;
+        const struct rest r = pause(v, a, j, reserve);
+        const double pulse = 2.0 + v * TICK * 2.0 * PLAYER_GRID;
+        if (j == 0.0) {
+            const double way = v * v / (2.0 * q * a) * log(1.0 / reserve),
+                         time = v / (a * sqrt(q)) * 0.5 * log((1.0 + sqrt(q)) / (1.0 - sqrt(q)));
+            const double cost = 1.06 + 0.003 / reserve;
+            CHECK(r.way >= way - pulse && r.way <= cost * way + pulse);
+            CHECK(r.time >= time - 1e-4 && r.time <= cost * time + 1e-4);
+            CHECK(r.way <= v * v / (2.0 * a * reserve) + pulse);
+            longest = fmax(longest, r.way / way);
+        } else {
+            const double s = fmin(a * reserve / v, (1.0 - q) * j / (6.0 * q * a)),
+                         c = (1.0 - q) * j / (2.0 * v),
+                         time = s * s < c ? 1.0 / s + s / c : 2.0 / sqrt(c);
+            CHECK(r.way <= v * time / 2.0 + pulse && r.time <= time + 1e-4);
+            CHECK(r.way >= v * v / (2.0 * a) - pulse);
+        }
+    }
+    const struct rest card = pause(1e5, 1e6, 5e7, 0.1), hard = pause(1e5, 1e6, 0.0, 0.1);
+    printf("rate: at 100 mm/s, 1000 mm/s^2 (and 50000 mm/s^3), reserve 0.1, 1 um a pulse: "
+           "%.2f mm in %.0f ms (%.2f mm in %.0f ms); grid of the ramp costs at most %.3f\n",
+           1e-3 * hard.way, 1e3 * hard.time, 1e-3 * card.way, 1e3 * card.time, longest);
+    CHECK_NEAR(hard.way, 12.79e3, 0.08 * 12.79e3);
+    CHECK(card.way > hard.way && card.way < 50e3);
+}
+
+/* Slow axes and axes that stand do not delay; without limits the rate jumps. */
+static void at_once(void)
+{
+    const struct rest r = pause(1e5, 0.0, 0.0, 0.1);
+    CHECK(r.way <= 1.0 && r.time == 0.0);
+    CHECK(pause(1e3, 1e6, 5e7, 0.1).time < 0.15);
+}
+
+int main(void)
+{
+    limits_kept();
+    distances();
+    at_once();
+    return check_result();
+}
