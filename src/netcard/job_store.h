@@ -27,8 +27,7 @@
 #include "net_sha.h"
 
 enum {
-    STORE_BUFFER = 16,                          /* pages that wait for the chip */
-    STORE_PAGES_MAX = FLASH_PAGES - 2 * FLASH_SECTOR_PAGES,
+    STORE_BUFFER = 16,      /* pages that wait for the chip */
 };
 
 /* A job in the flash. */
@@ -59,6 +58,8 @@ struct job_store {
     struct job_place job;           /* in force */
     enum store_phase phase;
     struct job_place next;          /* the transfer under way */
+    bool     marked;                /* its mark is in the flash */
+    bool     again;                 /* JOB_BEGIN was that of the job in force */
     bool     ending;                /* JOB_END has come */
     bool     ended;                 /* job_store_ended has a result to tell, */
     enum net_code result;           /* this one */
@@ -74,7 +75,7 @@ struct job_store {
     uint8_t  dirty[FLASH_SECTORS / 8];      /* a bit for each sector to be erased */
 };
 
-/* Power-up: choose the job. Returns the time that the reading takes [ns]. */
+/* Power-up, the chip idle: choose the job. Returns the time that the reading takes [ns]. */
 int64_t job_store_start(struct job_store *s, struct flash_chip *f, int32_t slots,
                         const uint32_t start_speed[JOB_AXES], int64_t now);
 
@@ -91,7 +92,8 @@ enum net_code job_store_begin(struct job_store *s, uint32_t bytes,
 /* May JOB_BEGIN be answered: is it known what is missing? */
 bool job_store_known(const struct job_store *s);
 
-/* First page neither programmed nor in the buffer; -1: no transfer, or all are there. */
+/* First page neither programmed nor in the buffer; -1: no transfer, or all are there. Only when it
+ * is known. */
 int32_t job_store_missing(const struct job_store *s);
 
 /* Pages it can take now. */
@@ -101,8 +103,8 @@ int32_t job_store_credit(const struct job_store *s);
  * transfer), NET_PAGE (outside, or no credit), NET_BAD_JOB (not its CRC; the transfer goes on). */
 enum net_code job_store_page(struct job_store *s, uint32_t page, const uint8_t bytes[FLASH_PAGE]);
 
-/* JOB_END. NET_DONE: what comes of it is told by job_store_ended. NET_STATE: no transfer, or it
- * ends already; NET_PAGE: pages are missing; NET_BAD_JOB: not the CRC of JOB_BEGIN. */
+/* JOB_END, which may come again. NET_DONE: what comes of it is told by job_store_ended. NET_STATE: no
+ * transfer; NET_PAGE: pages are missing; NET_BAD_JOB: not the CRC of JOB_BEGIN. */
 enum net_code job_store_end(struct job_store *s, uint32_t crc);
 
 /* Begin the next operation or page of reading, if the chip is idle. Returns when to call again [ns

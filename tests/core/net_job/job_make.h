@@ -9,7 +9,7 @@
 #include "job_reader.h"
 #include "job_writer.h"
 
-enum { MAKE_FRAMES = 4000, MAKE_PAGES = 400 };
+enum { MAKE_FRAMES = 7000, MAKE_PAGES = 400 };
 
 struct made {
     struct job_header header;

@@ -34,7 +34,7 @@ static void any_frame(void)
 {
     uint64_t random = 5;
     int most = 0;
-    make_job(&m, &random, MAKE_FRAMES, 300);
+    make_job(&m, &random, 4000, 300);
     for (uint32_t k = 0; k <= m.header.frames; k += 1 + 6 * CHECK_EACH) {
         const int took = read_from(k);
         most = took > most ? took : most;

@@ -1,0 +1,171 @@
+#include "flash_chip.h"
+
+#include <string.h>
+
+/* splitmix64 */
+static uint64_t draw(uint64_t *random)
+{
+    uint64_t x = *random += 0x9e3779b97f4a7c15u;
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+    return x ^ x >> 31;
+}
+
+struct flash_config flash_config_usual(void)
+{
+    return (struct flash_config){
+        .program = {700000, 3000000}, .sector = {45000000, 400000000},
+        .block = {150000000, 2000000000}, .read_hz = 42000000, .seed = 1,
+    };
+}
+
+static bool time_good(const struct flash_time *t)
+{
+    return t->typical >= 1 && t->longest >= t->typical && t->longest <= 60000000000;
+}
+
+bool flash_config_good(const struct flash_config *c)
+{
+    return time_good(&c->program) && time_good(&c->sector) && time_good(&c->block)
+           && c->spread >= 0 && c->spread <= 1000 && c->read_hz >= 1000;
+}
+
+void flash_start(struct flash_chip *f, const struct flash_config *config)
+{
+    memset(f, 0, sizeof *f);
+    memset(f->array, 0xff, sizeof f->array);
+    f->config = *config;
+    f->random = config->seed;
+}
+
+bool flash_busy(const struct flash_chip *f, int64_t now)
+{
+    return f->work != FLASH_IDLE && now < f->end;
+}
+
+/* What is over has its effect. */
+static void settle(struct flash_chip *f, int64_t now)
+{
+    if (f->work == FLASH_IDLE || now < f->end)
+        return;
+    if (f->work == FLASH_ERASE)
+        memset(f->array + f->at, 0xff, (size_t)f->bytes);
+    else
+        for (int k = 0; k < FLASH_PAGE; k++)
+            f->array[f->at + k] &= f->page[k];
+    f->work = FLASH_IDLE;
+}
+
+static int64_t begin(struct flash_chip *f, enum flash_work work, int32_t at, int32_t bytes,
+                     const struct flash_time *time, int64_t now)
+{
+    /* the spread as a share of 2^-20 */
+    const int64_t share = (int64_t)(draw(&f->random) >> 44) * f->config.spread / 1000;
+    f->work = work;
+    f->at = at;
+    f->bytes = bytes;
+    f->begin = now;
+    f->end = now + time->typical + (((time->longest - time->typical) * share) >> 20);
+    return f->end - now;
+}
+
+/* May a thing of so many begin? What was before it is over then. */
+static bool ready(struct flash_chip *f, int32_t which, int32_t of, int64_t now)
+{
+    settle(f, now);
+    if (f->work == FLASH_IDLE && which >= 0 && which < of)
+        return true;
+    f->refused++;
+    return false;
+}
+
+int64_t flash_program(struct flash_chip *f, int32_t page, const uint8_t bytes[FLASH_PAGE],
+                      int64_t now)
+{
+    if (!ready(f, page, FLASH_PAGES, now))
+        return 0;
+    memcpy(f->page, bytes, FLASH_PAGE);
+    f->programs++;
+    return begin(f, FLASH_PROGRAM, page * FLASH_PAGE, FLASH_PAGE, &f->config.program, now);
+}
+
+int64_t flash_erase_sector(struct flash_chip *f, int32_t sector, int64_t now)
+{
+    if (!ready(f, sector, FLASH_SECTORS, now))
+        return 0;
+    f->wear[sector]++;
+    f->sector_erases++;
+    return begin(f, FLASH_ERASE, sector * FLASH_SECTOR, FLASH_SECTOR, &f->config.sector, now);
+}
+
+int64_t flash_erase_block(struct flash_chip *f, int32_t block, int64_t now)
+{
+    if (!ready(f, block, FLASH_BLOCKS, now))
+        return 0;
+    for (int k = 0; k < FLASH_BLOCK_SECTORS; k++)
+        f->wear[block * FLASH_BLOCK_SECTORS + k]++;
+    f->block_erases++;
+    return begin(f, FLASH_ERASE, block * FLASH_BLOCK, FLASH_BLOCK, &f->config.block, now);
+}
+
+int64_t flash_read(struct flash_chip *f, int32_t page, uint8_t bytes[FLASH_PAGE], int64_t now)
+{
+    if (!ready(f, page, FLASH_PAGES, now))
+        return 0;
+    memcpy(bytes, f->array + page * FLASH_PAGE, FLASH_PAGE);
+    const int64_t bits = 8 * (FLASH_PAGE + FLASH_COMMAND_BYTES);
+    return (bits * 1000000000 + f->config.read_hz - 1) / f->config.read_hz;
+}
+
+/* Eight bits, each 1 with a probability of p / 2^16. */
+static uint8_t bits_of(uint64_t *random, uint32_t p)
+{
+    const uint64_t low = draw(random), high = draw(random);
+    uint8_t bits = 0;
+    for (int k = 0; k < 8; k++)
+        bits |= (uint8_t)((((k < 4 ? low : high) >> 16 * (k % 4) & 0xffff) < p) << k);
+    return bits;
+}
+
+void flash_cut(struct flash_chip *f, int64_t now)
+{
+    settle(f, now);
+    const uint32_t p = f->work == FLASH_IDLE
+                       ? 0 : (uint32_t)(((now - f->begin) << 16) / (f->end - f->begin));
+    for (int32_t k = 0; f->work != FLASH_IDLE && k < f->bytes; k++) {
+        uint8_t *byte = f->array + f->at + k;
+        const uint8_t reached = bits_of(&f->random, p);
+        if (f->work == FLASH_PROGRAM) {
+            *byte &= (uint8_t)(f->page[k] | ~reached);
+            continue;
+        }
+        /* as before and erased where neither or both of two draws hold; else anything */
+        const uint8_t again = bits_of(&f->random, p), any = (uint8_t)draw(&f->random);
+        const uint8_t open = reached ^ again;
+        *byte = (uint8_t)((*byte & ~open) | (reached & again) | (any & open));
+    }
+    f->work = FLASH_IDLE;
+}
+
+uint32_t flash_wear(const struct flash_chip *f)
+{
+    uint32_t most = 0;
+    for (int k = 0; k < FLASH_SECTORS; k++)
+        most = f->wear[k] > most ? f->wear[k] : most;
+    return most;
+}
+
+const char *flash_damage(const struct flash_chip *f)
+{
+    if (!flash_config_good(&f->config))
+        return "the flash has other times";
+    if (f->work != FLASH_IDLE && f->work != FLASH_PROGRAM && f->work != FLASH_ERASE)
+        return "the flash does what it cannot";
+    const bool place = f->at >= 0 && f->bytes >= 0 && f->bytes <= FLASH_BLOCK
+                       && f->at <= FLASH_BYTES - f->bytes
+                       && (f->work != FLASH_PROGRAM || f->bytes == FLASH_PAGE);
+    if (f->work != FLASH_IDLE && (!place || f->begin < 0 || f->end <= f->begin
+                                  || f->end - f->begin > 60000000000))
+        return "an operation of the flash is damaged";
+    return NULL;
+}

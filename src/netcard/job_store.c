@@ -1,0 +1,204 @@
+#include "job_store.h"
+
+#include "store_layout.h"
+
+static const struct job_place NOWHERE = {.slot = -1};
+
+/* CRC of the file that a record tells; adds the time of its reading. */
+static uint32_t file_crc(const struct job_place *p, struct flash_chip *f, int64_t now,
+                         int64_t *took)
+{
+    uint32_t crc = 0;
+    for (uint32_t k = 0; k < store_pages(p); k++) {
+        uint8_t page[FLASH_PAGE] = {0};
+        *took += job_store_read(p, f, k, page, now);
+        crc = net_crc(crc, page, FLASH_PAGE);
+    }
+    return crc;
+}
+
+int64_t job_store_start(struct job_store *s, struct flash_chip *f, int32_t slots,
+                        const uint32_t start_speed[JOB_AXES], int64_t now)
+{
+    memset(s, 0, sizeof *s);
+    s->slots = slots;
+    memcpy(s->start_speed, start_speed, sizeof s->start_speed);
+    s->job = s->next = NOWHERE;
+    struct job_place found[2] = {NOWHERE, NOWHERE};
+    uint8_t page[FLASH_PAGE] = {0};
+    int64_t took = 0;
+    for (int32_t k = 0; k < slots; k++) {
+        const int32_t at = store_record_sector(slots, k) * FLASH_SECTOR_PAGES;
+        took += flash_read(f, at, page, now);
+        if (!store_read_record(&found[k], slots, k, page))
+            found[k] = NOWHERE;
+    }
+    /* the newest first */
+    const int newest = found[1].slot >= 0
+                       && (found[0].slot < 0 || found[1].sequence > found[0].sequence);
+    for (int k = 0; k < 2 && s->job.slot < 0; k++) {
+        const struct job_place *p = &found[k ? 1 - newest : newest];
+        if (p->slot >= 0 && file_crc(p, f, now, &took) == p->crc)
+            s->job = *p;
+    }
+    if (s->job.slot < 0)
+        return took;
+    struct job_place mark = {0};
+    took += flash_read(f, store_mark_sector(slots, s->job.slot) * FLASH_SECTOR_PAGES, page, now);
+    if (store_read_mark(&mark, page) && mark.bytes == s->job.bytes && mark.crc == s->job.crc)
+        memcpy(s->job.hash, mark.hash, sizeof mark.hash);
+    return took;
+}
+
+enum net_code job_store_load(struct job_store *s, struct flash_chip *f, const uint8_t *file,
+                             uint32_t bytes)
+{
+    if (bytes / FLASH_PAGE > store_room(s->slots))
+        return NET_TOO_LONG;
+    s->fault = job_check(&s->check, file, bytes, s->start_speed);
+    if (s->fault)
+        return NET_BAD_JOB;
+    s->job = (struct job_place){.sequence = 1, .bytes = bytes, .crc = net_crc(0, file, bytes),
+                                .id = s->check.header.id};
+    net_sha(file, bytes, s->job.hash);
+    memcpy(f->array, file, bytes);
+    store_write_record(&s->job, f->array + store_record_sector(s->slots, 0) * FLASH_SECTOR);
+    store_write_mark(&s->job, f->array + store_mark_sector(s->slots, 0) * FLASH_SECTOR);
+    return NET_DONE;
+}
+
+enum net_code job_store_begin(struct job_store *s, uint32_t bytes,
+                              const uint8_t hash[NET_SHA_BYTES], uint32_t crc)
+{
+    struct job_place want = {.slot = s->job.slot == 0 && s->slots == 2, .bytes = bytes, .crc = crc};
+    memcpy(want.hash, hash, sizeof want.hash);
+    if (bytes % FLASH_PAGE || bytes < 2 * FLASH_PAGE)
+        return NET_RANGE;
+    if (store_pages(&want) > store_room(s->slots))
+        return NET_TOO_LONG;
+    if (s->phase != STORE_REST && store_same(&s->next, &want))
+        return NET_DONE;
+    want.sequence = s->job.slot < 0 ? 1 : s->job.sequence + 1;
+    s->again = s->job.slot >= 0 && store_same(&s->job, &want);
+    s->phase = s->again ? STORE_REST : STORE_SCAN;
+    s->next = s->again ? NOWHERE : want;
+    s->marked = s->ending = s->ended = false;
+    s->fault = JOB_GOOD;
+    s->waiting = 0;
+    s->at = -1;
+    memset(s->have, 0, sizeof s->have);
+    memset(s->dirty, 0, sizeof s->dirty);
+    if (s->slots == 1 && !s->again)
+        s->job = NOWHERE;
+    return NET_DONE;
+}
+
+bool job_store_known(const struct job_store *s)
+{
+    return s->phase != STORE_SCAN;
+}
+
+static bool waits(const struct job_store *s, uint32_t page)
+{
+    for (int32_t k = 0; k < s->waiting; k++)
+        if (s->number[k] == page)
+            return true;
+    return false;
+}
+
+int32_t job_store_missing(const struct job_store *s)
+{
+    for (uint32_t k = 0; s->phase != STORE_REST && k < store_pages(&s->next); k++)
+        if (!store_bit(s->have, k) && !waits(s, k))
+            return (int32_t)k;
+    return -1;
+}
+
+int32_t job_store_credit(const struct job_store *s)
+{
+    return s->phase >= STORE_SCAN && s->phase <= STORE_TAKE ? STORE_BUFFER - s->waiting : 0;
+}
+
+enum net_code job_store_page(struct job_store *s, uint32_t page, const uint8_t bytes[FLASH_PAGE])
+{
+    if (s->phase == STORE_REST)
+        return s->again ? NET_DONE : NET_STATE;
+    if (page >= store_pages(&s->next))
+        return NET_PAGE;
+    if (!job_page_whole(bytes))
+        return NET_BAD_JOB;
+    if (store_bit(s->have, page) || waits(s, page))
+        return NET_DONE;
+    if (job_store_credit(s) == 0)
+        return NET_PAGE;
+    s->number[s->waiting] = (uint16_t)page;
+    memcpy(s->buffer[s->waiting++], bytes, FLASH_PAGE);
+    return NET_DONE;
+}
+
+enum net_code job_store_end(struct job_store *s, uint32_t crc)
+{
+    if (s->phase == STORE_REST && !s->again)
+        return NET_STATE;
+    if (crc != (s->again ? s->job.crc : s->next.crc))
+        return NET_BAD_JOB;
+    if (s->again) {
+        s->again = false;
+        s->ended = true;
+        s->result = NET_DONE;
+        return NET_DONE;
+    }
+    if (!job_store_known(s) || job_store_missing(s) >= 0)
+        return NET_PAGE;
+    s->ending = true;
+    return NET_DONE;
+}
+
+bool job_store_ended(struct job_store *s, enum net_code *result)
+{
+    const bool ended = s->ended;
+    if (ended)
+        *result = s->result;
+    s->ended = false;
+    return ended;
+}
+
+int64_t job_store_read(const struct job_place *job, struct flash_chip *f, uint32_t page,
+                       uint8_t bytes[FLASH_PAGE], int64_t now)
+{
+    if (job->slot < 0 || page >= store_pages(job))
+        return 0;
+    return flash_read(f, store_first_page(job->slot) + (int32_t)page, bytes, now);
+}
+
+static bool place_good(const struct job_place *p, int32_t slots)
+{
+    return p->slot == -1
+           || (p->slot >= 0 && p->slot < slots && p->bytes % FLASH_PAGE == 0
+               && p->bytes >= 2 * FLASH_PAGE && store_pages(p) <= store_room(slots));
+}
+
+const char *job_store_damage(const struct job_store *s)
+{
+    if (s->slots != 1 && s->slots != 2)
+        return "the store has other slots";
+    if (!place_good(&s->job, s->slots) || !place_good(&s->next, s->slots)
+        || (s->next.slot >= 0 && s->slots == 2 && s->next.slot == s->job.slot))
+        return "a job in the store is damaged";
+    if ((int)s->phase < STORE_REST || s->phase >= STORE_PHASES
+        || (s->phase == STORE_REST) != (s->next.slot < 0) || s->waiting < 0
+        || s->waiting > STORE_BUFFER || s->result >= NET_CODES || (s->again && s->job.slot < 0))
+        return "the store's transfer is damaged";
+    const int32_t pages = (int32_t)store_pages(&s->next);
+    for (int32_t k = 0; k < s->waiting; k++)
+        if (s->number[k] >= pages)
+            return "a page that waits for the flash is damaged";
+    if (s->phase != STORE_REST && (s->at < -1 || s->at >= pages))
+        return "the place of the store's transfer is damaged";
+    for (int32_t k = 0; k < FLASH_SECTORS; k++)
+        if (store_bit(s->dirty, (uint32_t)k)
+            && (s->next.slot < 0 || k < store_first_sector(s->next.slot)
+                || k > store_mark_sector(s->slots, s->next.slot)))
+            return "a sector to be erased is not of the transfer";
+    return NULL;
+}
