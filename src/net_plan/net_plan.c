@@ -63,6 +63,7 @@ bool net_plan_take(struct net_plan *p, const struct net_plan_vertex *v)
         return false;
     }
     if (!p->drawing) {
+        p->stops += p->lowered && p->told && !p->moving;
         begin_line(p);
     }
     if (!plan_chain_line(&p->chain, place, v->feed)) {

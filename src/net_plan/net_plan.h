@@ -17,6 +17,7 @@
 
 #include "job_page.h"
 #include "plan_chain.h"
+#include "scurve.h"
 
 enum net_plan_pen { NET_PLAN_OUTPUT, NET_PLAN_AXIS };
 

@@ -1,0 +1,184 @@
+"""The commands that make jobs of drawings, and show both."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from motionfmu.cli.card import card
+from motionfmu.cli.common import bare_table, out
+from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.netcard.figures import Figures
+    from motionfmu.netcard.job import Job
+    from motionfmu.netcard.plt import Drawing
+
+Config = Annotated[Path, typer.Option("-c", "--config", help="Configuration of the card.")]
+Corner = Annotated[tuple[float, float], typer.Option(metavar="X Y", help="Place of its 0 [mm].")]
+FrameOption = Annotated[
+    tuple[float, float, float, float] | None,
+    typer.Option("--frame", metavar="X1 Y1 X2 Y2", help="P1 and P2 of the machine, for SC."),
+]
+
+
+@card.command()
+def plan(  # noqa: PLR0913  (each is an option of the command)
+    file: Annotated[Path, typer.Argument(help="Drawing, a PLT file.")],
+    config: Config,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="Job file.")] = None,
+    order: Annotated[str, typer.Option(help="Of the contours: file or nearest.")] = "file",
+    corners: Annotated[str, typer.Option(help="At corners: round or stop.")] = "round",
+    pen: Annotated[list[int] | None, typer.Option(help="Only what this pen draws.")] = None,
+    speeds: Annotated[bool, typer.Option("--speeds", help="Keep speeds of VS.")] = False,
+    at: Corner = (0.0, 0.0),
+    frame: FrameOption = None,
+    report: Annotated[bool, typer.Option("--report", help="Write a page and a picture.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Plan a drawing: a job for the card, and what it comes to."""
+    from motionfmu.netcard import load, plt
+    from motionfmu.netcard.contours import clean, way_between
+    from motionfmu.netcard.figures import figures
+    from motionfmu.netcard.plan import Options, write
+    from motionfmu.netcard.plan import plan as planned
+
+    for name, value, known in (
+        ("--order", order, ("file", "nearest")),
+        ("--corners", corners, ("round", "stop")),
+    ):
+        if value not in known:
+            raise InputError(f"{name} {value}: {' or '.join(known)} wanted")
+    settings = load(config)
+    drawing = plt.read(file, frame)
+    found = planned(drawing, settings, Options(order, corners, pen or None, speeds, at))
+    numbers = figures(found, settings, at)
+    target = output or file.with_suffix(".mcj")
+    write(found.job, target)
+    told: dict[str, Any] = {"drawing": str(file), "job": str(target)} | numbers.numbers()
+    if order == "nearest":
+        told["way_up_file"] = way_between(clean(drawing, pen or None))
+    if as_json:
+        print(json.dumps(told, indent=1, allow_nan=False))
+    else:
+        _tell(file, target, numbers, told.get("way_up_file"))
+    if report:
+        folder = Path("results") / f"{file.stem}-plan"
+        _report(file.stem, found, drawing, told, folder)
+        if not as_json:
+            out.print(f"report: {folder / 'report.html'}", soft_wrap=True)
+
+
+def _tell(file: Path, target: Path, n: "Figures", by_file: float | None) -> None:
+    out.print(f"[bold]{file}[/]  {n.time:.3f} s, {n.contours} contours, {n.segments} segments")
+    out.print(f"pen down {n.way_down:.1f} mm in {n.time_down:.3f} s", end=", ")
+    out.print(f"up {n.way_up:.1f} mm in {n.time - n.time_down:.3f} s, the pen's own time too")
+    if by_file is not None:
+        out.print(f"between contours in the order of the file: {by_file:.1f} mm")
+    out.print(
+        f"off the drawing {n.off:.4f} mm, the drawing off the path {n.back:.4f} mm, "
+        f"{n.stops} stops, {100 * n.at_feed:.0f} % of the time at feed",
+        soft_wrap=True,
+    )
+    table = bare_table("axis", "v [mm/s]", "a [mm/s^2]", "j [mm/s^3]")
+    for name, v, a, j in zip("XYZU", n.speed, n.acceleration, n.jerk, strict=False):
+        table.add_row(name, f"{v:.1f}", f"{a:.0f}", f"{j:.0f}")
+    out.print(table)
+    out.print(
+        f"{target}: {n.size} bytes, {n.frames} frames, {100 * n.flash:.1f} % of the flash; "
+        f"planned in {n.planning:.2f} s",
+        soft_wrap=True,
+    )
+
+
+def _report(
+    name: str, found: Any, drawing: "Drawing", numbers: dict[str, Any], folder: Path
+) -> None:
+    from motionfmu.report import outcome
+    from motionfmu.report.card_page import plan_page
+    from motionfmu.report.card_pictures import draw_plan
+
+    outcome.usable(folder)
+    with outcome.whole(folder) as part:
+        draw_plan(found, name, part / "plan.png")
+        page = plan_page(name, found, drawing, numbers)
+        (part / "report.html").write_text(page, encoding="utf-8")
+        text = json.dumps(numbers, indent=1, allow_nan=False)
+        (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
+
+
+@card.command()
+def show(
+    file: Annotated[Path, typer.Argument(help="Drawing (.plt) or job (.mcj).")],
+    picture: Annotated[Path | None, typer.Option(help="Write a picture, .png or .svg.")] = None,
+    frame: FrameOption = None,
+) -> None:
+    """Show what a drawing or a job holds."""
+    from motionfmu.netcard import job, plt
+
+    if picture and picture.suffix not in (".png", ".svg"):
+        raise InputError(f"--picture {picture}: .png or .svg wanted")
+    if file.suffix == ".mcj":
+        _show_job(file, job.read(file), picture)
+    else:
+        _show_drawing(file, plt.read(file, frame), picture)
+    if picture:
+        out.print(f"picture: {picture}", soft_wrap=True)
+
+
+def _show_drawing(file: Path, drawing: "Drawing", picture: Path | None) -> None:
+    import numpy as np
+
+    low, high = drawing.extent
+    size = f"X {low[0]:.3f} .. {high[0]:.3f}, Y {low[1]:.3f} .. {high[1]:.3f} mm"
+    out.print(f"[bold]{file}[/]  {size}", soft_wrap=True)
+    table = bare_table("pen", "lines", "vertices", "way [mm]", "X [mm]", "Y [mm]")
+    for pen, lines in drawing.layers.items():
+        points = [p.points for p in lines]
+        way = sum(float(np.linalg.norm(np.diff(p, axis=0), axis=1).sum()) for p in points)
+        low, high = (f(np.vstack(points), axis=0) for f in (np.min, np.max))
+        spans = [f"{a:.3f} .. {b:.3f}" for a, b in zip(low, high, strict=True)]
+        table.add_row(f"{pen}", f"{len(lines)}", f"{sum(map(len, points))}", f"{way:.1f}", *spans)
+    out.print(table)
+    for n in drawing.notes:
+        times = f", {n.count} times" if n.count > 1 else ""
+        place = f"line {n.line}, column {n.column}, byte {n.byte}"
+        out.print(f"passed over {n.text}{times} ({place})", markup=False, soft_wrap=True)
+    if picture:
+        from motionfmu.report.card_pictures import draw_drawing
+
+        draw_drawing(drawing, file.name, picture)
+
+
+def _show_job(file: Path, found: "Job", picture: Path | None) -> None:
+    period = 1e-6 * found.period_ns
+    out.print(
+        f"[bold]{file}[/]  {found.time:.3f} s, {len(found.commands)} frames of {period:g} ms, "
+        f"{found.pages} pages, id {found.origin[:4][::-1].hex()}",
+        soft_wrap=True,
+    )
+    table = bare_table("axis", "pulses/mm", "from [mm]", "to [mm]", "end [pulses]", "most a frame")
+    places = found.positions
+    for k, name in enumerate("XYZU"):
+        if found.mask >> k & 1:
+            scale = found.pulses_per_m[k] / 1e3
+            low, high = min(0, places[:, k].min()), max(0, places[:, k].max())
+            table.add_row(
+                name,
+                f"{scale:g}",
+                *(f"{x / scale:.3f}" for x in (low, high)),
+                f"{places[-1, k]}",
+                f"{abs(found.commands[:, k]).max()}",
+            )
+    out.print(table)
+    for number, e in enumerate(found.events, 1):
+        what = f"pulse of {e.width} us" if e.pulse else "level"
+        pins = ", ".join(str(k) for k in range(16) if e.pins >> k & 1)
+        times = int((found.frame_events == number).sum())
+        active = "high" if e.level else "low"
+        out.print(f"event {number}: output {pins}, {what} {active}, {times} times")
+    if picture:
+        from motionfmu.report.card_pictures import draw_job
+
+        draw_job(found, file.name, picture)
