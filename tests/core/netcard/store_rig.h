@@ -67,6 +67,8 @@ static inline bool rig_step(struct rig *r, int64_t *took)
         r->now += *took;
         return true;
     }
+    for (int k = 0; c->work == FLASH_PROGRAM && k < c->bytes; k++)
+        CHECK_EQ(c->array[c->at + k], 0xff);    /* only what is erased is programmed */
     if (++r->operations != r->cut) {
         r->now += *took;
         return true;

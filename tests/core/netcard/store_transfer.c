@@ -95,6 +95,26 @@ static void any_order(void)
     }
 }
 
+/* Pages that come before it is known that they are there. */
+static void early(void)
+{
+    const struct sent a = sent_of(&file);
+    rig_start(&r, 2);
+    job_store_begin(&r.store, (uint32_t)file.bytes, a.hash, a.crc);
+    for (uint32_t k = 0; k < 10; k++)
+        CHECK_EQ(job_store_page(&r.store, k, page_of(&file, k)), NET_DONE);
+    steps();
+    rig_power(&r);
+    const uint32_t programs = r.chip.programs;
+    job_store_begin(&r.store, (uint32_t)file.bytes, a.hash, a.crc);
+    for (uint32_t k = 5; k < 15; k++)
+        CHECK_EQ(job_store_page(&r.store, k, page_of(&file, k)), NET_DONE);
+    CHECK(!job_store_known(&r.store));
+    steps();
+    CHECK_EQ(job_store_missing(&r.store), 15);
+    CHECK_EQ(r.chip.programs, programs + 5);
+}
+
 /* What the flash knows already is not sent again: the job in force, the one before it. */
 static void known(void)
 {
@@ -141,7 +161,8 @@ static void no_job(void)
     uint32_t sent = r.pages_sent;
     CHECK(rig_send(&r, &c, &result) && result == NET_BAD_JOB && rig_holds(&r, &a));
     CHECK_EQ(r.store.fault, JOB_GOOD);
-    CHECK_EQ(r.pages_sent, sent + other.bytes / FLASH_PAGE);
+    CHECK(rig_send(&r, &c, &result) && result == NET_BAD_JOB && rig_holds(&r, &a));
+    CHECK_EQ(r.pages_sent, sent + 2 * (other.bytes / FLASH_PAGE));
     c = sent_of(&other);
     c.crc ^= 1;
     sent = r.pages_sent;
@@ -236,6 +257,7 @@ int main(void)
     make_job(&other, &random, 1300, 300);
     refused();
     any_order();
+    early();
     known();
     no_job();
     fallen_back();
