@@ -47,7 +47,7 @@ def public_definitions(tree: ast.Module) -> list[ast.FunctionDef | ast.ClassDef]
     found = []
     for node in tree.body:
         if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
-            if any("app.command" in ast.unparse(d) for d in node.decorator_list):
+            if any(".command" in ast.unparse(d) for d in node.decorator_list):
                 continue  # a console command describes its options to the user who asks for help
             found.append(node)
             if isinstance(node, ast.ClassDef):

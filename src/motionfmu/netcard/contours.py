@@ -14,43 +14,20 @@ REACH = 0.3  # [mm]
 
 @dataclass(frozen=True)
 class Contour:
-    """A line with the pen down all along.
+    """A line with the pen down all along."""
 
-    Attributes
-    ----------
-    points : (n, 2) ndarray
-        [mm]; no two in a row are the same. One alone is a dot.
-    pen : int
-    closed : bool
-        It ends where it begins.
-    speed : float
-        [mm/s] that the drawing asks for; 0 none.
-    first : int
-        Byte of the file where it begins.
-    """
-
-    points: np.ndarray
+    points: np.ndarray  # [mm]; no two in a row are the same. One alone is a dot.
     pen: int
-    closed: bool
-    speed: float
-    first: int
+    closed: bool  # It ends where it begins
+    speed: float  # [mm/s] that the drawing asks for; 0 none
+    first: int  # Byte of the file where it begins
 
 
 def clean(drawing: Drawing, pens: list[int] | None = None, order: str = "file") -> list[Contour]:
-    """Contours of a drawing.
+    """Contours of a drawing in the order of the "file", or always to the "nearest" end.
 
-    Parameters
-    ----------
-    drawing : Drawing
-    pens : list of int, optional
-        Only of these; all if not given.
-    order : str
-        "file", or "nearest": always the one whose start, or end if it is open, is nearest.
-
-    Returns
-    -------
-    list of Contour
-        Lines that follow each other with the same pen and speed are one.
+    Lines that follow each other with the same pen and speed are one. A closed contour begins where
+    the file begins it; an open one may be turned round.
     """
     runs: list[list] = []
     for line in drawing.lines:
@@ -96,7 +73,7 @@ def _nearest(contours: list[Contour]) -> list[Contour]:
 
 
 def way_between(contours: list[Contour]) -> float:
-    """Way with the pen up, from 0 on. [mm]"""
+    """Way with the pen up, from 0 on [mm]."""
     at, way = np.zeros(2), 0.0
     for c in contours:
         way += float(np.linalg.norm(c.points[0] - at))

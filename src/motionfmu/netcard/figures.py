@@ -20,73 +20,33 @@ _AT_FEED = 0.99
 
 @dataclass(frozen=True)
 class Figures:
-    """Numbers of a plan.
+    """Numbers of a plan."""
 
-    Attributes
-    ----------
-    time, time_down : float
-        [s] of all, of drawing.
-    way_down, way_up : float
-        [mm]
-    contours, segments, stops : int
-        Stops are rests within contours.
-    off, back : float
-        [mm] largest distance of the path from the drawing, of the drawing from the path.
-    speed, acceleration, jerk : list of float
-        Largest of each axis, from the planned places. [mm/s], [mm/s^2], [mm/s^3]
-    frames, size : int
-        Frames and bytes of the job.
-    flash : float
-        Its share of a slot of the flash.
-    at_feed : float
-        Share of the drawing time at the feed.
-    planning : float
-        [s]
-    """
-
-    time: float
-    time_down: float
-    way_down: float
-    way_up: float
+    time: float  # [s]
+    time_down: float  # [s] drawing
+    way_down: float  # [mm]
+    way_up: float  # [mm]
     contours: int
     segments: int
-    stops: int
-    off: float
-    back: float
-    speed: list[float]
-    acceleration: list[float]
-    jerk: list[float]
+    stops: int  # rests within contours
+    off: float  # [mm] largest distance of the path from the drawing,
+    back: float  # [mm] of the drawing from the path
+    speed: list[float]  # [mm/s] of each axis the largest, from the planned places
+    acceleration: list[float]  # [mm/s^2]
+    jerk: list[float]  # [mm/s^3]
     frames: int
-    size: int
-    flash: float
-    at_feed: float
-    planning: float
+    size: int  # bytes of the job
+    flash: float  # its share of a slot of the flash
+    at_feed: float  # share of the drawing time at the feed
+    planning: float  # [s]
 
     def numbers(self) -> dict[str, Any]:
-        """All of them by name.
-
-        Returns
-        -------
-        dict
-        """
+        """All of them by name."""
         return asdict(self)
 
 
 def figures(plan: Plan, config: CardConfig, offset: tuple[float, float] = (0.0, 0.0)) -> Figures:
-    """Work out the numbers of a plan.
-
-    Parameters
-    ----------
-    plan : Plan
-    config : CardConfig
-        By which it was planned.
-    offset : tuple of 2 floats
-        [mm] of the drawing, see `Options`.
-
-    Returns
-    -------
-    Figures
-    """
+    """Work out the numbers of a plan."""
     drawing = plan.steps == DRAWS
     ways = np.linalg.norm(steps_of(plan), axis=1)
     places = np.vstack([np.zeros((4, 4)), plan.places, np.repeat(plan.places[-1:], 3, axis=0)])
@@ -122,12 +82,12 @@ def _at_feed(speeds: np.ndarray, feed: float) -> float:
 
 
 def steps_of(plan: Plan) -> np.ndarray:
-    """Way of each frame by axis. [mm]"""
+    """Way of each frame by axis [mm]."""
     return np.diff(plan.places, axis=0, prepend=np.zeros((1, 4)))
 
 
 def paths(plan: Plan) -> list[np.ndarray]:
-    """Places of X and Y of each contour, its begin included. [mm]"""
+    """Places of X and Y of each contour, its begin included [mm]."""
     drawing = np.concatenate([[False], plan.steps == DRAWS, [False]])
     edges = np.flatnonzero(np.diff(drawing))
     places = np.vstack([np.zeros(4), plan.places])[:, :2]
@@ -135,7 +95,7 @@ def paths(plan: Plan) -> list[np.ndarray]:
 
 
 def deviations(plan: Plan, offset: tuple[float, float]) -> tuple[float, float]:
-    """Largest distance of the path from the contours, and back. [mm]"""
+    """Largest distance of the path from the contours, and back [mm]."""
     driven = paths(plan)
     lines = [c.points + np.array(offset) for c in plan.contours]
     if len(driven) != len(lines):  # a pen that does not part them
@@ -177,5 +137,5 @@ def distance(points: np.ndarray, line: np.ndarray) -> float:
 
 
 def speeds(plan: Plan) -> np.ndarray:
-    """Of the tool in X and Y at each frame. [mm/s]"""
+    """Of the tool in X and Y at each frame [mm/s]."""
     return np.linalg.norm(steps_of(plan)[:, :2], axis=1) / plan.period

@@ -20,101 +20,44 @@ _EVENTS_AT = 160
 
 @dataclass(frozen=True)
 class Event:
-    """What a frame switches as it begins.
+    """What a frame switches as it begins."""
 
-    Attributes
-    ----------
-    pins : int
-        A bit for each output.
-    pulse : bool
-        Active for `width`, else from now on.
-    level : int
-        1 high, 0 low.
-    width : int
-        [us] of a pulse.
-    """
-
-    pins: int
-    pulse: bool
-    level: int
-    width: int = 0
+    pins: int  # A bit for each output
+    pulse: bool  # Active for `width`, else from now on
+    level: int  # 1 high, 0 low
+    width: int = 0  # [us] of a pulse
 
 
 @dataclass(frozen=True)
 class Job:
-    """A job file.
+    """A job file."""
 
-    Attributes
-    ----------
-    period_ns : int
-        [ns] of a frame.
-    mask : int
-        A bit for each axis that moves.
-    commands : (n, 4) ndarray of int32
-        [pulses] of each frame.
-    frame_events : (n,) ndarray
-        Number of the event at the begin of each frame; 0 none.
-    events : list of Event
-        Number 1 first.
-    pulses_per_m, speed_max, acc_max, jerk_max : tuple of 4 int
-        [pulses/m], [pulses/s], [pulses/s^2], [pulses/s^3]
-    origin : bytes
-        SHA-256 of drawing and settings.
-    pages : int
-        Data pages of the file it was read from.
-    """
-
-    period_ns: int
-    mask: int
-    commands: np.ndarray
-    frame_events: np.ndarray
-    events: list[Event] = field(default_factory=list)
+    period_ns: int  # [ns] of a frame
+    mask: int  # A bit for each axis that moves
+    commands: np.ndarray  # [pulses] of each frame
+    frame_events: np.ndarray  # Number of the event at the begin of each frame; 0 none
+    events: list[Event] = field(default_factory=list)  # Number 1 first
+    # [pulses/m], [pulses/s], [pulses/s^2], [pulses/s^3]
     pulses_per_m: tuple[int, ...] = (0,) * AXES
     speed_max: tuple[int, ...] = (0,) * AXES
     acc_max: tuple[int, ...] = (0,) * AXES
     jerk_max: tuple[int, ...] = (0,) * AXES
-    origin: bytes = bytes(32)
-    pages: int = 0
+    origin: bytes = bytes(32)  # SHA-256 of drawing and settings
+    pages: int = 0  # Data pages of the file it was read from
 
     @property
     def positions(self) -> np.ndarray:
-        """Place at the end of each frame.
-
-        Returns
-        -------
-        (n, 4) ndarray
-            [pulses]
-        """
+        """Place at the end of each frame."""
         return np.cumsum(self.commands, axis=0, dtype=np.int64)
 
     @property
     def time(self) -> float:
-        """Of all frames.
-
-        Returns
-        -------
-        float
-            [s]
-        """
+        """Of all frames."""
         return 1e-9 * self.period_ns * len(self.commands)
 
 
 def read(file: Path) -> Job:
-    """Read a job file.
-
-    Parameters
-    ----------
-    file : Path
-
-    Returns
-    -------
-    Job
-
-    Raises
-    ------
-    InputError
-        It cannot be read, or is no whole job; the message has the page.
-    """
+    """Read a job file."""
     try:
         return decode(Path(file).read_bytes(), str(file))
     except OSError as error:
@@ -122,23 +65,7 @@ def read(file: Path) -> Job:
 
 
 def decode(text: bytes, name: str = "job") -> Job:
-    """Job of the bytes of a file.
-
-    Parameters
-    ----------
-    text : bytes
-    name : str
-        Of the file, for messages.
-
-    Returns
-    -------
-    Job
-
-    Raises
-    ------
-    InputError
-        See `read`.
-    """
+    """Job of the bytes of a file."""
     if len(text) < 2 * PAGE or len(text) % PAGE:
         raise InputError(f"{name}: {len(text)} bytes are no job: whole pages of {PAGE} wanted")
     rows = np.frombuffer(text, np.uint8).reshape(-1, PAGE)
@@ -223,16 +150,7 @@ def _frames(
 
 
 def encode(job: Job) -> bytes:
-    """Bytes of a job file.
-
-    Parameters
-    ----------
-    job : Job
-
-    Returns
-    -------
-    bytes
-    """
+    """Bytes of a job file."""
     axes = [k for k in range(AXES) if job.mask >> k & 1]
     pages: list[bytes] = []
     payload, first, before = bytearray(), 0, [0] * len(axes)

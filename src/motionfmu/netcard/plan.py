@@ -26,86 +26,35 @@ RESTS, SLIDES, DRAWS = 1, 2, 3  # what a frame is part of
 
 @dataclass(frozen=True)
 class Plan:
-    """A job, and how it moves.
+    """A job, and how it moves."""
 
-    Attributes
-    ----------
-    job : bytes
-        The file for the card.
-    period : float
-        [s] of a frame.
-    places : (n, 4) ndarray
-        [mm] planned at the end of each frame.
-    commands : (n, 4) ndarray
-        [pulses] of each frame.
-    events : (n,) ndarray
-        1 lowers, 2 raises a pen by an output, at the begin of the frame; 0 none.
-    steps : (n,) ndarray
-        1 a rest while the pen moves, 2 pen up (or the pen's axis moves), 3 drawing.
-    stops : int
-        Rests within contours.
-    contours : list of Contour
-        What is drawn, in this order.
-    seconds : float
-        [s] that planning took.
-    """
-
-    job: bytes
-    period: float
-    places: np.ndarray
-    commands: np.ndarray
-    events: np.ndarray
-    steps: np.ndarray
-    stops: int
-    contours: list[Contour]
-    seconds: float
+    job: bytes  # The file for the card
+    period: float  # [s] of a frame
+    places: np.ndarray  # [mm] planned at the end of each frame
+    commands: np.ndarray  # [pulses] of each frame
+    events: np.ndarray  # 1 lowers, 2 raises a pen by an output, at the begin of the frame; 0 none
+    steps: np.ndarray  # 1 a rest while the pen moves, 2 pen up (or the pen's axis moves), 3 drawing
+    stops: int  # Rests within contours
+    contours: list[Contour]  # What is drawn, in this order
+    seconds: float  # [s] that planning took
 
 
 @dataclass(frozen=True)
 class Options:
-    """How a drawing is planned.
+    """How a drawing is planned."""
 
-    Attributes
-    ----------
-    order : str
-        "file" or "nearest": of the contours.
-    corners : str
-        "round" within the tolerance, or "stop": to rest exactly at vertices where the path turns
-        by more than the configuration's corner angle.
-    pens : list of int, optional
-        Only what these draw.
-    speeds : bool
-        Keep the speeds that the drawing asks for where they are below the feed.
-    offset : tuple of 2 floats
-        [mm] from the drawing's origin to the machine's position 0.
-    """
-
-    order: str = "file"
+    order: str = "file"  # "file" or "nearest": of the contours
+    # "round" within the tolerance, or "stop": to rest exactly at vertices where the path
+    # turns by more than the configuration's corner angle
     corners: str = "round"
-    pens: list[int] | None = None
-    speeds: bool = False
+    pens: list[int] | None = None  # Only what these draw
+    speeds: bool = False  # Keep the speeds that the drawing asks for where they are below the feed
+    # [mm] from the drawing's origin to the machine's position 0
     offset: tuple[float, float] = (0.0, 0.0)
 
 
 def plan(drawing: Drawing, config: CardConfig, options: Options | None = None) -> Plan:
-    """Plan a drawing for a card.
-
-    Parameters
-    ----------
-    drawing : Drawing
-    config : CardConfig
-        Of the card, with at least X and Y.
-    options : Options, optional
-
-    Returns
-    -------
-    Plan
-
-    Raises
-    ------
-    InputError
-        Nothing is drawn, or beyond the limits of an axis, or the job cannot be written.
-    """
+    """Plan a drawing for a card."""
     options = options or Options()
     if len(config.axes) < 2:
         raise InputError(f"{len(config.axes)} axes in the configuration, X and Y wanted")
@@ -136,18 +85,7 @@ def plan(drawing: Drawing, config: CardConfig, options: Options | None = None) -
 
 
 def write(job: bytes, file: Path) -> None:
-    """Write a job, whole or not at all.
-
-    Parameters
-    ----------
-    job : bytes
-    file : Path
-
-    Raises
-    ------
-    InputError
-        It cannot be written.
-    """
+    """Write a job, whole or not at all."""
     part = file.with_name(f".{file.name}.part")
     try:
         part.write_bytes(job)

@@ -14,79 +14,37 @@ __all__ = ["Drawing", "Note", "Polyline", "parse", "read"]
 
 @dataclass(frozen=True)
 class Note:
-    """What a file says that draws nothing here.
+    """What a file says that draws nothing here."""
 
-    Attributes
-    ----------
-    line, column, byte : int
-        Where it stands first; line and column from 1, byte from 0.
-    count : int
-        How many times.
-    text : str
-        What it is.
-    """
-
-    line: int
+    line: int  # Where it stands first; line and column from 1, byte from 0
     column: int
     byte: int
-    count: int
-    text: str
+    count: int  # How many times
+    text: str  # What it is
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a PLT file draws.
+    """What a PLT file draws."""
 
-    Attributes
-    ----------
-    lines : list of Polyline
-        In the file's order, moves with the pen up between them.
-    notes : list of Note
-    name : str
-        Of the file.
-    text : bytes
-        Of it.
-    """
-
-    lines: list[Polyline]
+    lines: list[Polyline]  # In the file's order, moves with the pen up between them
     notes: list[Note]
-    name: str = "drawing"
-    text: bytes = b""
+    name: str = "drawing"  # Of the file
+    text: bytes = b""  # Of it
 
     def where(self, byte: int) -> str:
-        """Say where a byte stands.
-
-        Parameters
-        ----------
-        byte : int
-
-        Returns
-        -------
-        str
-            ``file: line 3, column 14, byte 120``
-        """
+        """Say where a byte stands, in words."""
         return Scanner(self.text, self.name).where(byte)
 
     @property
     def layers(self) -> dict[int, list[Polyline]]:
-        """Drawn lines by pen.
-
-        Returns
-        -------
-        dict
-        """
+        """Drawn lines by pen."""
         pens = sorted({p.pen for p in self.lines if p.down})
         return {n: [p for p in self.lines if p.down and p.pen == n] for n in pens}
 
     @property
     def extent(self) -> np.ndarray:
-        """Lowest and highest place of the drawn lines.
-
-        Returns
-        -------
-        (2, 2) ndarray
-            [mm]; of nothing drawn zeros.
-        """
+        """Lowest and highest place of the drawn lines."""
         drawn = [p.points for p in self.lines if p.down]
         if not drawn:
             return np.zeros((2, 2))
@@ -97,25 +55,7 @@ class Drawing:
 def read(
     file: Path, frame: tuple[float, float, float, float] | None = None, fills: bool = True
 ) -> Drawing:
-    """Read a PLT file.
-
-    Parameters
-    ----------
-    file : Path
-    frame : tuple of 4 floats, optional
-        P1 and P2 of the machine [plotter units], for files that scale without IP.
-    fills : bool
-        Pass over filled areas with a note; else they are an error.
-
-    Returns
-    -------
-    Drawing
-
-    Raises
-    ------
-    InputError
-        It cannot be read, or is no HP-GL: with line, column and byte.
-    """
+    """Read a PLT file."""
     try:
         text = Path(file).read_bytes()
     except OSError as error:
@@ -129,25 +69,7 @@ def parse(
     frame: tuple[float, float, float, float] | None = None,
     fills: bool = True,
 ) -> Drawing:
-    """Read the text of a PLT file.
-
-    Parameters
-    ----------
-    text : bytes
-    name : str
-        Of the file, for messages.
-    frame, fills
-        See `read`.
-
-    Returns
-    -------
-    Drawing
-
-    Raises
-    ------
-    InputError
-        See `read`.
-    """
+    """Read the text of a PLT file."""
     plotter = Plotter(Scanner(text, name), frame, fills)
     plotter.run()
     return Drawing(plotter.lines, [Note(*n) for n in plotter.scan.notes()], name, text)

@@ -18,28 +18,14 @@ _DEGREE = math.pi / 180.0
 
 @dataclass(frozen=True)
 class Polyline:
-    """One move of the pen, down or up, through its vertices.
+    """One move of the pen, down or up, through its vertices."""
 
-    Attributes
-    ----------
-    pen : int
-        From 1; 0 draws nothing.
-    down : bool
-        It draws.
-    points : (n, 2) ndarray
-        [mm]
-    first, last : int
-        Bytes of the file that it comes from, the last one not included.
-    speed : float
-        [mm/s] that VS asks for; 0 none.
-    """
-
-    pen: int
-    down: bool
-    points: np.ndarray
-    first: int
+    pen: int  # From 1; 0 draws nothing
+    down: bool  # It draws
+    points: np.ndarray  # [mm]
+    first: int  # Bytes of the file that it comes from, the last one not included
     last: int
-    speed: float = 0.0
+    speed: float = 0.0  # [mm/s] that VS asks for; 0 none
 
 
 class Plotter:
@@ -63,20 +49,21 @@ class Plotter:
         self.entry: tuple[tuple[float, float], bool] = ((0.0, 0.0), False)
 
     def run(self) -> None:
+        """Work through the whole file."""
         for pair, numbers in self.scan.pairs():
             if (do := _DO.get(pair)) is not None:
                 do(self, numbers)
             elif pair == "PE":
-                self.encoded()
+                self._encoded()
             elif pair in _FILLS:
-                self.fill(pair)
+                self._fill(pair)
             else:
                 self.scan.skip(pair)
-        self.flush()
+        self._flush()
 
     # Lines
 
-    def flush(self) -> None:
+    def _flush(self) -> None:
         """End the line under way."""
         if self.stroke is None:
             return
@@ -91,7 +78,7 @@ class Plotter:
                 self.scan.refuse("a line leaves the window of IW; lines are not clipped")
         self.stroke = None
 
-    def move(self, xs: list[float], ys: list[float], down: bool) -> None:
+    def _move(self, xs: list[float], ys: list[float], down: bool) -> None:
         """Go through places of the sheet."""
         if self.polygon is not None:
             self.polygon[-1] += [(x, y, down) for x, y in zip(xs, ys, strict=True)]
@@ -100,7 +87,7 @@ class Plotter:
             down = down and self.pen != 0
             if self.stroke is None or self.stroke[0] != down:
                 if self.stroke is not None:
-                    self.flush_before()
+                    self._flush_before()
                 self.stroke = (down, [self.at[0]], [self.at[1]], self.scan.first)
                 self.count += 1
             self.stroke[1].extend(xs)
@@ -110,39 +97,39 @@ class Plotter:
         if self.count > VERTICES_MAX:
             self.scan.refuse(f"more than {VERTICES_MAX} vertices")
 
-    def flush_before(self) -> None:
+    def _flush_before(self) -> None:
         """End the line under way before this instruction."""
         after, self.scan.next = self.scan.next, self.scan.first
-        self.flush()
+        self._flush()
         self.scan.next = after
 
-    def coordinates(self, numbers: list[float]) -> None:
+    def _coordinates(self, numbers: list[float]) -> None:
         """PU PD PA PR with a list."""
         if not numbers:
             return
         if len(numbers) % 2:
             self.scan.refuse(f"{len(numbers)} coordinates, an even number wanted")
-        self.move(*self.frame.places(numbers, self.relative, self.at), self.down)
+        self._move(*self.frame.places(numbers, self.relative, self.at), self.down)
 
-    def pen_up(self, numbers: list[float]) -> None:
+    def _pen_up(self, numbers: list[float]) -> None:
         self.down = False
-        self.coordinates(numbers)
+        self._coordinates(numbers)
 
-    def pen_down(self, numbers: list[float]) -> None:
+    def _pen_down(self, numbers: list[float]) -> None:
         self.down = True
-        self.coordinates(numbers)
+        self._coordinates(numbers)
 
-    def plot_absolute(self, numbers: list[float]) -> None:
+    def _plot_absolute(self, numbers: list[float]) -> None:
         self.relative = False
-        self.coordinates(numbers)
+        self._coordinates(numbers)
 
-    def plot_relative(self, numbers: list[float]) -> None:
+    def _plot_relative(self, numbers: list[float]) -> None:
         self.relative = True
-        self.coordinates(numbers)
+        self._coordinates(numbers)
 
     # Curves, in user units
 
-    def chords(self, radius: float, sweep: float, chord: float | None) -> int:
+    def _chords(self, radius: float, sweep: float, chord: float | None) -> int:
         """Chords of an arc of a radius [user units] and angle [deg]."""
         if chord is not None and not self.deviation:
             step = min(max(abs(chord), 0.1), 180.0)
@@ -154,13 +141,13 @@ class Plotter:
             return _CHORDS_MAX
         return max(1, math.ceil(abs(sweep) / step * (1.0 - 1e-9)))
 
-    def arc(self, centre: tuple[float, float], sweep: float, chord: float | None) -> list[float]:
+    def _arc(self, centre: tuple[float, float], sweep: float, chord: float | None) -> list[float]:
         """Coordinates along an arc that begins at the pen, end included."""
         if abs(sweep) > 360.0:
             self.scan.refuse(f"an arc of {sweep:g} degrees, at most 360 wanted")
         x, y = self.frame.user(self.at)
         dx, dy = x - centre[0], y - centre[1]
-        n = self.chords(math.hypot(dx, dy), sweep, chord)
+        n = self._chords(math.hypot(dx, dy), sweep, chord)
         found = []
         for k in range(1, n + 1):
             c, s = math.cos(sweep * _DEGREE * k / n), math.sin(sweep * _DEGREE * k / n)
@@ -169,20 +156,20 @@ class Plotter:
             found[-2:] = [x, y]
         return found
 
-    def draw(self, numbers: list[float], down: bool) -> None:
-        self.move(*self.frame.places(numbers, False, self.at), down)
+    def _draw(self, numbers: list[float], down: bool) -> None:
+        self._move(*self.frame.places(numbers, False, self.at), down)
 
-    def arc_absolute(self, numbers: list[float]) -> None:
+    def _arc_absolute(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 3, 4)
         chord = numbers[3] if len(numbers) > 3 else None
-        self.draw(self.arc((numbers[0], numbers[1]), numbers[2], chord), self.down)
+        self._draw(self._arc((numbers[0], numbers[1]), numbers[2], chord), self.down)
 
-    def arc_relative(self, numbers: list[float]) -> None:
+    def _arc_relative(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 3, 4)
         x, y = self.frame.user(self.at)
-        self.arc_absolute([x + numbers[0], y + numbers[1], *numbers[2:]])
+        self._arc_absolute([x + numbers[0], y + numbers[1], *numbers[2:]])
 
-    def three_points(self, numbers: list[float]) -> None:
+    def _three_points(self, numbers: list[float]) -> None:
         """AT: arc through a place to another."""
         self.scan.wants(numbers, 4, 5)
         (x, y), (ix, iy, ex, ey) = self.frame.user(self.at), numbers[:4]
@@ -193,71 +180,71 @@ class Plotter:
         else:
             cross = 2.0 * (bx * cy - by * cx)
             if abs(cross) <= 1e-9 * (bx * bx + by * by + cx * cx + cy * cy):
-                self.draw([ix, iy, ex, ey], self.down)
+                self._draw([ix, iy, ex, ey], self.down)
                 return
             b, c = bx * bx + by * by, cx * cx + cy * cy
             bx, by = (cy * b - by * c) / cross, (bx * c - cx * b) / cross
             turn = math.atan2(cy - by, cx - bx) - math.atan2(-by, -bx)
             sweep = turn / _DEGREE % 360.0 - (0.0 if cross > 0.0 else 360.0)
         if bx == by == 0.0:
-            self.draw([ix, iy, ex, ey], self.down)
+            self._draw([ix, iy, ex, ey], self.down)
             return
         chord = numbers[4] if len(numbers) > 4 else None
-        points = self.arc((x + bx, y + by), sweep, chord)
-        self.draw([*points[:-2], ex, ey], self.down)
+        points = self._arc((x + bx, y + by), sweep, chord)
+        self._draw([*points[:-2], ex, ey], self.down)
 
-    def three_points_relative(self, numbers: list[float]) -> None:
+    def _three_points_relative(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 4, 5)
         x, y = self.frame.user(self.at)
         ix, iy, ex, ey = numbers[:4]
-        self.three_points([x + ix, y + iy, x + ex, y + ey, *numbers[4:]])
+        self._three_points([x + ix, y + iy, x + ex, y + ey, *numbers[4:]])
 
-    def around(self, corners: list[float], start: list[float]) -> None:
+    def _around(self, corners: list[float], start: list[float]) -> None:
         """Draw a closed line from a start, pen down, and come back to where the pen was."""
         at, (x, y) = self.at, self.frame.user(self.at)
         if start != [x, y]:
-            self.draw(start, False)
-        self.draw(corners, True)
+            self._draw(start, False)
+        self._draw(corners, True)
         if self.at != at:
-            self.move([at[0]], [at[1]], False)
+            self._move([at[0]], [at[1]], False)
 
-    def circle(self, numbers: list[float]) -> None:
+    def _circle(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 1, 2)
         at, (x, y) = self.at, self.frame.user(self.at)
         start = [x + numbers[0], y]
         self.at = self.frame.place(*start)
-        points = self.arc((x, y), 360.0, numbers[1] if len(numbers) > 1 else None)
+        points = self._arc((x, y), 360.0, numbers[1] if len(numbers) > 1 else None)
         self.at = at
-        self.around(points, start)
+        self._around(points, start)
 
-    def edge_rectangle(self, numbers: list[float]) -> None:
+    def _edge_rectangle(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 2, 2)
         (x, y), (ex, ey) = self.frame.user(self.at), numbers
-        self.around([ex, y, ex, ey, x, ey, x, y], [x, y])
+        self._around([ex, y, ex, ey, x, ey, x, y], [x, y])
 
-    def edge_rectangle_relative(self, numbers: list[float]) -> None:
+    def _edge_rectangle_relative(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 2, 2)
         x, y = self.frame.user(self.at)
-        self.edge_rectangle([x + numbers[0], y + numbers[1]])
+        self._edge_rectangle([x + numbers[0], y + numbers[1]])
 
-    def edge_wedge(self, numbers: list[float]) -> None:
+    def _edge_wedge(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 3, 4)
         at, (x, y) = self.at, self.frame.user(self.at)
         radius, start = numbers[0], numbers[1] * _DEGREE
         first = [x + radius * math.cos(start), y + radius * math.sin(start)]
         self.at = self.frame.place(*first)
-        points = self.arc((x, y), numbers[2], numbers[3] if len(numbers) > 3 else None)
+        points = self._arc((x, y), numbers[2], numbers[3] if len(numbers) > 3 else None)
         self.at = at
-        self.around([*first, *points, x, y], [x, y])
+        self._around([*first, *points, x, y], [x, y])
 
-    def bezier(self, numbers: list[float]) -> None:
+    def _bezier(self, numbers: list[float]) -> None:
         """BZ: curves by three control points each."""
-        self.curves(numbers, False)
+        self._curves(numbers, False)
 
-    def bezier_relative(self, numbers: list[float]) -> None:
-        self.curves(numbers, True)
+    def _bezier_relative(self, numbers: list[float]) -> None:
+        self._curves(numbers, True)
 
-    def curves(self, numbers: list[float], relative: bool) -> None:
+    def _curves(self, numbers: list[float], relative: bool) -> None:
         if not numbers or len(numbers) % 6:
             self.scan.refuse(f"{len(numbers)} numbers, a multiple of 6 wanted")
         x, y = self.frame.user(self.at)
@@ -272,15 +259,15 @@ class Plotter:
             parts = [(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3]
             found += (np.hstack(parts) @ corner).ravel().tolist()
             x, y = corner[3].tolist()
-        self.draw(found, self.down)
+        self._draw(found, self.down)
 
     # Polygons: parts, each a closed chain of places and whether the pen is down on the way there
 
-    def polygon_mode(self, numbers: list[float]) -> None:
+    def _polygon_mode(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 0, 1)
         mode = int(numbers[0]) if numbers else 0
         if mode == 0:
-            self.flush_before()
+            self._flush_before()
             self.entry = (self.at, self.down)
             self.polygon = [[(*self.at, False)]]
         elif self.polygon is None:
@@ -296,73 +283,73 @@ class Plotter:
         else:
             self.scan.refuse(f"{numbers[0]:g}: 0, 1 or 2 wanted")
 
-    def edge_polygon(self, numbers: list[float]) -> None:
+    def _edge_polygon(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 0, 0)
         if self.polygon is not None:
             self.scan.refuse("within polygon mode")
         at = self.at
         for part in self.kept:
             for k, (x, y, down) in enumerate(part):
-                self.move([x], [y], down and k > 0)
+                self._move([x], [y], down and k > 0)
         if self.at != at:
-            self.move([at[0]], [at[1]], False)
+            self._move([at[0]], [at[1]], False)
 
-    def fill(self, pair: str) -> None:
+    def _fill(self, pair: str) -> None:
         if not self.fills:
             self.scan.refuse("filled areas are not drawn")
         self.scan.skip(pair)
 
     # Mapping and tools
 
-    def initialize(self, numbers: list[float]) -> None:
-        self.defaults(numbers)
+    def _initialize(self, numbers: list[float]) -> None:
+        self._defaults(numbers)
         self.down, self.at = False, (0.0, 0.0)
 
-    def defaults(self, numbers: list[float]) -> None:
-        self.flush_before()
+    def _defaults(self, numbers: list[float]) -> None:
+        self._flush_before()
         self.scan.wants(numbers, 0, 0)
         self.frame.reset()
         self.relative, self.deviation, self.window = False, False, None
         self.polygon, self.kept = None, []
         self.scan.terminator = b"\x03"
 
-    def corners(self, numbers: list[float]) -> None:
-        self.told(self.frame.corners(numbers))
+    def _corners(self, numbers: list[float]) -> None:
+        self._told(self.frame.corners(numbers))
 
-    def scale(self, numbers: list[float]) -> None:
-        self.told(self.frame.scale(numbers))
+    def _scale(self, numbers: list[float]) -> None:
+        self._told(self.frame.scale(numbers))
 
-    def rotate(self, numbers: list[float]) -> None:
-        self.told(self.frame.rotate(numbers))
+    def _rotate(self, numbers: list[float]) -> None:
+        self._told(self.frame.rotate(numbers))
 
-    def told(self, wrong: str) -> None:
+    def _told(self, wrong: str) -> None:
         if wrong:
             self.scan.refuse(wrong)
 
-    def input_window(self, numbers: list[float]) -> None:
-        self.flush_before()
+    def _input_window(self, numbers: list[float]) -> None:
+        self._flush_before()
         self.window = None
         if numbers:
             self.scan.wants(numbers, 4, 4)
             xs, ys = self.frame.places(numbers, False, self.at)
             self.window = (min(xs), min(ys), max(xs), max(ys))
 
-    def chord_mode(self, numbers: list[float]) -> None:
+    def _chord_mode(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 0, 1)
         self.deviation = bool(numbers and numbers[0])
 
-    def select_pen(self, numbers: list[float]) -> None:
+    def _select_pen(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 0, 1)
         pen = int(numbers[0]) if numbers else 0
         if pen < 0 or pen > 255:
             self.scan.refuse(f"pen {pen}, 0 to 255 wanted")
         if pen != self.pen:
-            self.flush_before()
+            self._flush_before()
         self.pen = pen
 
-    def velocity(self, numbers: list[float]) -> None:
+    def _velocity(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 0, 2)
-        self.flush_before()
+        self._flush_before()
         pen = int(numbers[1]) if len(numbers) > 1 else 0
         if not numbers:
             self.speeds.clear()
@@ -371,43 +358,43 @@ class Plotter:
         else:
             self.speeds[pen] = 10.0 * numbers[0]
 
-    def encoded(self) -> None:
+    def _encoded(self) -> None:
         """PE: each pair by itself, relative but behind an equals sign."""
         down = True
         for what, numbers in self.scan.encoded():
             if what == ":":
-                self.select_pen(numbers)
+                self._select_pen(numbers)
                 continue
             down = "<" not in what
-            self.move(*self.frame.places(numbers, "=" not in what, self.at), down)
+            self._move(*self.frame.places(numbers, "=" not in what, self.at), down)
             self.down = down
 
 
 _FILLS = ("FP", "RA", "RR", "WG")
 _DO = {
-    "PU": Plotter.pen_up,
-    "PD": Plotter.pen_down,
-    "PA": Plotter.plot_absolute,
-    "PR": Plotter.plot_relative,
-    "AA": Plotter.arc_absolute,
-    "AR": Plotter.arc_relative,
-    "AT": Plotter.three_points,
-    "RT": Plotter.three_points_relative,
-    "BZ": Plotter.bezier,
-    "BR": Plotter.bezier_relative,
-    "CI": Plotter.circle,
-    "EA": Plotter.edge_rectangle,
-    "ER": Plotter.edge_rectangle_relative,
-    "EW": Plotter.edge_wedge,
-    "PM": Plotter.polygon_mode,
-    "EP": Plotter.edge_polygon,
-    "IN": Plotter.initialize,
-    "DF": Plotter.defaults,
-    "IP": Plotter.corners,
-    "SC": Plotter.scale,
-    "RO": Plotter.rotate,
-    "IW": Plotter.input_window,
-    "CT": Plotter.chord_mode,
-    "SP": Plotter.select_pen,
-    "VS": Plotter.velocity,
+    "PU": Plotter._pen_up,
+    "PD": Plotter._pen_down,
+    "PA": Plotter._plot_absolute,
+    "PR": Plotter._plot_relative,
+    "AA": Plotter._arc_absolute,
+    "AR": Plotter._arc_relative,
+    "AT": Plotter._three_points,
+    "RT": Plotter._three_points_relative,
+    "BZ": Plotter._bezier,
+    "BR": Plotter._bezier_relative,
+    "CI": Plotter._circle,
+    "EA": Plotter._edge_rectangle,
+    "ER": Plotter._edge_rectangle_relative,
+    "EW": Plotter._edge_wedge,
+    "PM": Plotter._polygon_mode,
+    "EP": Plotter._edge_polygon,
+    "IN": Plotter._initialize,
+    "DF": Plotter._defaults,
+    "IP": Plotter._corners,
+    "SC": Plotter._scale,
+    "RO": Plotter._rotate,
+    "IW": Plotter._input_window,
+    "CT": Plotter._chord_mode,
+    "SP": Plotter._select_pen,
+    "VS": Plotter._velocity,
 }

@@ -71,6 +71,7 @@ class Scanner:
         self.note(f"{pair}: {kind}")
 
     def note(self, what: str) -> None:
+        """Count something that does nothing here, from this place on."""
         found = self._skipped.setdefault(what, [self.first, 0])
         found[1] += 1
 
