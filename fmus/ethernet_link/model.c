@@ -1,0 +1,124 @@
+/* The link on the wires of a co-simulation: read at an instant, shown at the next. */
+#include <string.h>
+
+#include "ethernet.h"
+#include "vars.h"
+
+struct model {
+    struct ethernet link;
+    int64_t  period;        /* [ns] grid of the wires */
+    int64_t  instant;       /* [ns] next instant of it */
+    bool     unpublished;   /* what was read at the one before is not shown yet */
+    bool     wanted;        /* both ends wanted a connection then */
+    uint32_t warned;        /* faults when that was last said */
+};
+
+#include "fmi_model.h"
+#include "fmu_period.h"
+
+static const double second = 1e9;   /* [ns] */
+
+static int model_start(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    const double ticks = v->bus_period * second / FMU_TICK_NS;
+    struct ethernet_config c = {
+        .pipe = {
+            .rate = llround(v->rate), .delay = llround(v->delay * second),
+            .jitter = llround(v->jitter * second), .stall = llround(v->stall * second),
+            .loss = llround(v->loss * 1e6), .segment = v->segment, .overhead = v->overhead,
+        },
+        .seed = (uint32_t)v->seed,
+        .connect = llround(v->connect_time * second),
+        .away = llround(v->away * second),
+    };
+    if (!fmu_is_period(ticks))
+        return fmu_fail(f, "bus_period = %.17g s: not a whole number of 20 ns ticks",
+                        v->bus_period);
+    m->period = llround(ticks) * FMU_TICK_NS;
+    for (int k = 0; k < ETHERNET_CUTS; k++) {
+        c.cut_at[k] = llround(v->cut_at[k] * second);
+        c.cut_behind[ETHERNET_CARD][k] = v->cut_behind_card[k];
+        c.cut_behind[ETHERNET_HOST][k] = v->cut_behind_host[k];
+    }
+    ethernet_start(&m->link, &c);
+    return 0;
+}
+
+static const char *model_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+    const struct ether_config *c = &m->link.config.pipe;
+    if (m->period < FMU_TICK_NS || m->instant < s->now || m->instant - s->now >= m->period)
+        return "its next instant is another one";
+    if (c->rate < 1 || c->segment < 1 || c->segment > 1460 || c->overhead < 0 ||
+        c->overhead > 1000 || c->jitter < 0 || c->jitter > INT64_C(10000000000) || c->delay < 0 ||
+        c->delay > INT64_C(10000000000) || c->stall < 0 || c->stall > INT64_C(60000000000) ||
+        m->link.config.away < 0 || m->link.config.away > INT64_C(10000000000000))
+        return "its line is another one";
+    return ethernet_sound(&m->link) ? NULL : "its streams are damaged";
+}
+
+#define END(at, end) \
+    struct ethernet_seen *end = &seen[at]; \
+    memcpy(end->tx_words, v->end##_tx_words, sizeof end->tx_words); \
+    end->tx_count = v->end##_tx_count; \
+    end->rx_taken = v->end##_rx_taken;
+
+static void read_wires(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    struct ethernet_seen seen[ETHERNET_ENDS];
+    END(ETHERNET_CARD, card)
+    END(ETHERNET_HOST, host)
+    card->wants = v->card_connect;
+    host->wants = v->host_accept;
+    m->wanted = card->wants && host->wants;
+    ethernet_instant(&m->link, m->instant, m->instant + m->period, seen);
+    if (m->link.faults != m->warned)
+        fmu_warn(f, "counts that cannot be: card_tx_count = %d, card_rx_taken = %d, "
+                 "host_tx_count = %d, host_rx_taken = %d; the connection is closed",
+                 (int)v->card_tx_count, (int)v->card_rx_taken, (int)v->host_tx_count,
+                 (int)v->host_rx_taken);
+    m->warned = m->link.faults;
+}
+
+#define SHOW(at, end) \
+    memcpy(v->end##_rx_words, l->shown[at].rx_words, sizeof v->end##_rx_words); \
+    v->end##_rx_count = l->shown[at].rx_count; \
+    v->end##_tx_taken = l->shown[at].tx_taken; \
+    v->end##_bytes = (double)l->pipe[at].passed; \
+    v->on_the_way[at] = l->pipe[at].held; \
+    v->stalls[at] = (int32_t)(l->pipe[at].stalls & INT32_MAX);
+
+static void publish(struct fmu *f)
+{
+    struct vars *v = &f->s.v;
+    const struct model *m = &f->s.m;
+    const struct ethernet *l = &m->link;
+    SHOW(ETHERNET_CARD, card)
+    SHOW(ETHERNET_HOST, host)
+    v->connection = l->connection;
+    v->wanted = m->wanted;
+    v->cuts = (int32_t)(l->cuts & INT32_MAX);
+    v->faults = (int32_t)(l->faults & INT32_MAX);
+}
+
+static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    struct model *m = &f->s.m;
+    (void)t0;
+    for (;;) {
+        if (m->unpublished && m->instant <= t1) {
+            publish(f);
+            m->unpublished = false;
+        }
+        if (m->instant >= t1)
+            return 0;
+        read_wires(f);
+        m->instant += m->period;
+        m->unpublished = true;
+    }
+}
