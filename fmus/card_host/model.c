@@ -1,0 +1,274 @@
+/* The server's end on the wires of a co-simulation: read at an instant, shown at the next. */
+#include <string.h>
+
+#include "byte_ring.h"
+#include "net_host.h"
+#include "vars.h"
+
+struct model {
+    struct net_host host;
+    int64_t period;         /* [ns] grid of the wires */
+    int64_t instant;        /* [ns] next instant of it */
+    bool    unpublished;    /* what was done at the one before is not shown yet */
+    bool    stored;
+    int64_t stored_at;      /* [ns] */
+    int32_t connection;     /* as read last */
+    int32_t tx_words[BYTE_RING_WORDS];
+    int32_t tx_count, rx_taken;
+};
+
+#define MODEL_BLOB
+#include "fmi_model.h"
+#include "fmu_input.h"
+#include "fmu_period.h"
+
+enum { JOB_MOST = 8192 * NET_PAGE_BYTES };
+
+/* The job file. */
+struct job {
+    uint32_t bytes;
+    uint8_t  byte[JOB_MOST + 1];
+};
+
+static const double second = 1e9;   /* [ns] */
+
+static int read_job(struct fmu *f, struct job *job)
+{
+    const char *name = f->s.v.job;
+    FILE *file;
+    const char *why = file_open(name, &file);
+    if (why)
+        return fmu_fail(f, "job: cannot read %s: %s", name, why);
+    job->bytes = (uint32_t)fread(job->byte, 1, sizeof job->byte, file);
+    const bool bad = ferror(file);
+    fclose(file);
+    if (bad)
+        return fmu_fail(f, "job: cannot read %s", name);
+    if (job->bytes == 0 || job->bytes > JOB_MOST || job->bytes % NET_PAGE_BYTES)
+        return fmu_fail(f, "job: %s is not 1 to 8192 pages of 256 bytes", name);
+    return 0;
+}
+
+static int model_open(struct fmu *f)
+{
+    f->blob = calloc(1, sizeof(struct job));
+    if (!f->blob)
+        return fmu_fail(f, "no memory for the job");
+    return f->s.v.job[0] ? read_job(f, f->blob) : 0;
+}
+
+static void model_close(struct fmu *f)
+{
+    free(f->blob);
+}
+
+static int model_end(struct fmu *f)
+{
+    (void)f;
+    return 0;
+}
+
+static int hex_digit(char c)
+{
+    return c >= '0' && c <= '9' ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+static int read_key(struct fmu *f, uint8_t key[NET_SHA_BYTES])
+{
+    const char *text = f->s.v.key;
+    const size_t n = strlen(text);
+    if (n != 0 && n != 2 * NET_SHA_BYTES)
+        return fmu_fail(f, "key: %d characters, not 64 hexadecimal digits", (int)n);
+    for (size_t i = 0; i < n; i++) {
+        const int digit = hex_digit(text[i]);
+        if (digit < 0)
+            return fmu_fail(f, "key: character %d is not a hexadecimal digit", (int)i + 1);
+        key[i / 2] = (uint8_t)(key[i / 2] << 4 | digit);
+    }
+    return 0;
+}
+
+static int give_commands(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    for (int k = 0; k < NET_HOST_ORDERS; k++) {
+        const struct net_host_order order = {
+            .at = llround(v->command_at[k] * second), .type = (uint8_t)v->command[k],
+            .axes = (uint8_t)v->command_axes[k], .mode = v->command_pulse[k],
+            .level = v->command_high[k], .pins = (uint16_t)v->command_pins[k],
+            .width = (uint32_t)llround(v->command_width[k] * 1e6),
+        };
+        if (v->command[k] == 0)
+            continue;
+        if (v->command[k] < NET_START)
+            return fmu_fail(f, "command[%d] = %d: not 32 to 37", k + 1, (int)v->command[k]);
+        net_host_give(&f->s.m.host, &order);
+    }
+    return 0;
+}
+
+static void publish(struct fmu *f);
+
+static int model_start(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    const struct job *job = f->blob;
+    struct model *m = &f->s.m;
+    const double ticks = v->bus_period * second / FMU_TICK_NS;
+    struct net_host_config c = {.interval = (uint16_t)llround(v->status_interval * 1000.0)};
+    if (!fmu_is_period(ticks))
+        return fmu_fail(f, "bus_period = %.17g s: not a whole number of 20 ns ticks",
+                        v->bus_period);
+    m->period = llround(ticks) * FMU_TICK_NS;
+    for (int i = 0; i < 4; i++)
+        c.seed[i] = (uint8_t)((uint32_t)v->seed >> 8 * i);
+    if (read_key(f, c.key))
+        return -1;
+    net_host_start(&m->host, &c);
+    if (job->bytes > 0)
+        net_host_load(&m->host, job->byte, job->bytes);
+    if (give_commands(f))
+        return -1;
+    publish(f);
+    return 0;
+}
+
+static const char *model_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+    if (m->period < FMU_TICK_NS || m->instant < s->now || m->instant - s->now >= m->period)
+        return "its next instant is another one";
+    return m->tx_count >= 0 && m->rx_taken >= 0 && net_host_sound(&m->host)
+           ? NULL : "its link is damaged";
+}
+
+/* Another connection, or none: streams start anew. */
+static void see_connection(struct fmu *f)
+{
+    struct model *m = &f->s.m;
+    if (f->s.v.connection == m->connection)
+        return;
+    if (m->connection)
+        net_host_cut(&m->host);
+    m->connection = f->s.v.connection;
+    m->tx_count = m->rx_taken = 0;
+    if (m->connection)
+        net_host_connected(&m->host, m->instant);
+}
+
+static void carry(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    const struct job *job = f->blob;
+    struct model *m = &f->s.m;
+    uint8_t bytes[BYTE_RING_BYTES];
+    const size_t got = byte_ring_look(v->rx_words, v->rx_count, m->rx_taken, bytes, sizeof bytes);
+    const int32_t held = byte_ring_held(m->tx_count, v->tx_taken);
+    net_host_bytes(&m->host, bytes, got, m->instant);
+    m->rx_taken = byte_ring_on(m->rx_taken, got);
+    net_host_tick(&m->host, job->byte, m->instant);
+    if (held < 0)
+        return;
+    const size_t n = net_host_out(&m->host, bytes, (size_t)(BYTE_RING_BYTES - held));
+    byte_ring_put(m->tx_words, &m->tx_count, v->tx_taken, bytes, n);
+}
+
+static void read_wires(struct fmu *f)
+{
+    struct model *m = &f->s.m;
+    see_connection(f);
+    if (m->connection)
+        carry(f);
+    if (m->host.upload == NET_HOST_STORED && !m->stored) {
+        m->stored = true;
+        m->stored_at = m->instant;
+    }
+}
+
+static void publish_commands(struct vars *v, const struct net_host *h)
+{
+    const struct net_host_order *o = h->order;
+    for (int k = 0; k < NET_HOST_ORDERS; k++) {
+        v->command_code[k] = -1;
+        if (v->command[k] == 0)
+            continue;
+        v->command_stage[k] = o->stage;
+        v->command_number[k] = (int32_t)(o->number & INT32_MAX);
+        v->command_tries[k] = (int32_t)(o->times & INT32_MAX);
+        v->command_sent[k] = (double)o->first / second;
+        v->command_answered[k] = (double)o->answered / second;
+        if (o->stage == NET_HOST_ANSWERED) {
+            v->command_code[k] = o->code;
+            v->command_state[k] = o->state;
+        }
+        o++;
+    }
+}
+
+static void publish_card(struct vars *v, const struct net_host *h)
+{
+    const struct net_status *s = &h->status;
+    v->statuses = (int32_t)(h->statuses & INT32_MAX);
+    v->card_id = (int32_t)h->card;
+    v->card_state = h->statuses ? s->state : h->hello.state;
+    v->card_error = s->error;
+    v->card_inputs = s->inputs;
+    v->card_outputs = s->outputs;
+    v->card_stock = s->stock;
+    v->card_job = (int32_t)s->job;
+    v->card_frame = (int32_t)s->frame;
+    v->card_underflows = (int32_t)s->underflows;
+    v->card_switches = (int32_t)s->switches;
+    v->card_rate = s->rate / 1000.0;
+    v->card_wear = (int32_t)s->wear;
+    for (int i = 0; i < NET_AXES; i++)
+        v->card_position[i] = s->position[i];
+    for (int i = 0; i < 7; i++)
+        v->card_load[i] = s->load[i] / 1000.0;
+}
+
+static void publish(struct fmu *f)
+{
+    struct vars *v = &f->s.v;
+    const struct model *m = &f->s.m;
+    const struct net_host *h = &m->host;
+    memcpy(v->tx_words, m->tx_words, sizeof v->tx_words);
+    v->tx_count = m->tx_count;
+    v->rx_taken = m->rx_taken;
+    v->accept = net_host_accepts(h);
+    v->up = h->phase == NET_HOST_UP;
+    v->connections = (int32_t)(h->connections & INT32_MAX);
+    v->losses = (int32_t)(h->losses & INT32_MAX);
+    v->fault = h->fault;
+    v->upload = h->upload;
+    v->upload_code = h->code;
+    v->stored_at = (double)m->stored_at / second;
+    v->pages = (int32_t)(h->job.bytes / NET_PAGE_BYTES);
+    v->pages_sent = (int32_t)(h->pages_sent & INT32_MAX);
+    v->pages_again = (int32_t)(h->pages_again & INT32_MAX);
+    v->refusals = (int32_t)(h->naks & INT32_MAX);
+    publish_commands(v, h);
+    publish_card(v, h);
+}
+
+static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    const struct job *job = f->blob;
+    struct model *m = &f->s.m;
+    (void)t0;
+    if (m->host.job.bytes != job->bytes)
+        return fmu_fail(f, "the job of the state has %u bytes, not %u",
+                        (unsigned)m->host.job.bytes, (unsigned)job->bytes);
+    for (;;) {
+        if (m->unpublished && m->instant <= t1) {
+            publish(f);
+            m->unpublished = false;
+        }
+        if (m->instant >= t1)
+            return 0;
+        read_wires(f);
+        m->instant += m->period;
+        m->unpublished = true;
+    }
+}
