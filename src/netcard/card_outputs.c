@@ -1,0 +1,95 @@
+#include "card_outputs.h"
+
+#include <string.h>
+
+void card_outputs_start(struct card_outputs *c)
+{
+    memset(c, 0, sizeof *c);
+    for (int i = 0; i < CARD_OUTPUTS; i++) {
+        c->pulse_end[i] = INT64_MAX;
+    }
+}
+
+static bool good(const struct mc_po *po)
+{
+    return po->pin < CARD_OUTPUTS && po->active <= 1 &&
+           (po->mode == MC_PO_LEVEL || (po->mode == MC_PO_PULSE && po->width_us >= 1 &&
+                                        po->width_us <= MC_PO_WIDTH_LONGEST));
+}
+
+bool card_outputs_flag(struct card_outputs *c, const struct mc_po *po)
+{
+    if (!good(po)) {
+        return false;
+    }
+    c->merged += c->flag[po->pin];
+    c->po[po->pin] = *po;
+    c->flag[po->pin] = true;
+    return true;
+}
+
+bool card_outputs_flag_pins(struct card_outputs *c, uint32_t pins, const struct mc_po *po)
+{
+    struct mc_po each = *po;
+
+    each.pin = 0;
+    if (!good(&each) || pins >> CARD_OUTPUTS != 0) {
+        return false;
+    }
+    for (; each.pin < CARD_OUTPUTS; each.pin++) {
+        if (pins >> each.pin & 1) {
+            card_outputs_flag(c, &each);
+        }
+    }
+    return true;
+}
+
+uint32_t card_outputs_serve(struct card_outputs *c, int64_t now)
+{
+    uint32_t served = 0, high = 0;
+
+    card_outputs_advance(c, now);
+    for (int pin = 0; pin < CARD_OUTPUTS; pin++) {
+        const struct mc_po *po = &c->po[pin];
+        if (c->flag[pin]) {
+            served |= (uint32_t)1 << pin;
+            high |= (uint32_t)po->active << pin;
+            c->pulse_end[pin] = po->mode == MC_PO_PULSE ? now + 1000 * (int64_t)po->width_us
+                                                        : INT64_MAX;
+            c->flag[pin] = false;
+        }
+    }
+    c->levels = (c->levels & ~served) | high;
+    c->stores += served != 0;
+    return served;
+}
+
+int64_t card_outputs_next(const struct card_outputs *c)
+{
+    int64_t next = INT64_MAX;
+
+    for (int i = 0; i < CARD_OUTPUTS; i++) {
+        next = c->pulse_end[i] < next ? c->pulse_end[i] : next;
+    }
+    return next;
+}
+
+void card_outputs_advance(struct card_outputs *c, int64_t now)
+{
+    for (int i = 0; i < CARD_OUTPUTS; i++) {
+        if (c->pulse_end[i] <= now) {
+            c->pulse_end[i] = INT64_MAX;
+            c->levels ^= (uint32_t)1 << i;
+        }
+    }
+}
+
+bool card_outputs_sound(const struct card_outputs *c)
+{
+    bool ok = c->levels >> CARD_OUTPUTS == 0 && c->stores >= 0 && c->merged >= 0;
+
+    for (int i = 0; ok && i < CARD_OUTPUTS; i++) {
+        ok = c->pulse_end[i] >= 0 && (!c->flag[i] || (good(&c->po[i]) && c->po[i].pin == i));
+    }
+    return ok;
+}
