@@ -4,7 +4,7 @@
  *
  *     1 search   fast towards the switch, until its origin shows
  *       turn     met a limit switch first: back over the switch, then search once more
- *     2 back     off the switch, and `back` pulses further
+ *     2 back     fast off the switch, and `back` pulses further
  *     3 edge     slowly towards the switch: the place at which the origin shows
  *     4 offset   to that place plus the offset: there the position is 0
  *
@@ -72,8 +72,9 @@ struct home_course {
     enum home_cycle_phase phase;
     bool    stopping;       /* found; it comes to rest */
     bool    turned, passed; /* met a limit in the search; was on the switch in this phase */
+    bool    off;            /* phase 2: has left the switch, goes on; 3: was seen off it */
     int64_t begin;          /* [pulses] commanded, where the phase began */
-    int64_t place;          /* [pulses] what was found, then the target */
+    int64_t place;          /* [pulses] what was found, or the target */
     int64_t commanded;      /* [pulses] in whole */
     double  rest;           /* [pulses] of a pulse not yet given, within 0 .. 1 */
     double  speed;          /* [pulses/period] signed */
@@ -106,9 +107,8 @@ void home_cycle_stop(struct home_cycle *h);
 /* ENDED: count of an axis that is position 0 from now on [pulses]. */
 int64_t home_cycle_zero(const struct home_cycle *h, int axis);
 
-/* Level of the switch at which the trigger's edge ends, and whether it is an edge that counts. */
+/* Level of a switch that is on. An edge to it is what `latched` tells. */
 bool home_cycle_on_level(enum card_trigger trigger);
-bool home_cycle_by_edge(enum card_trigger trigger);
 
 /* Whether a state from outside can be worked with. */
 bool home_cycle_sound(const struct home_cycle *h);
