@@ -2,6 +2,7 @@
 
 import atexit
 import tempfile
+from ctypes import sizeof
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -18,40 +19,56 @@ CLOCK = 25e-9  # [s]
 AXES = 3
 PULSES_PER_MM = 1000
 LIMIT = 12.0  # [s] longest run
+WATCHED = {
+    "mcc": [
+        *("card_cmd_seq", "card_cmd_count", "card_cmd_frames", "pos2encoder_dir", "dry_run"),
+        *("done", "error", "position", "compensation", "starved", "status", "line"),
+    ],
+    "card": ["stock", "pulse_count", "frames_taken", "frames_refused", "underflows", "cmd_ack"],
+}
 
 
 class Wires:
-    """Outputs of one FMU to the inputs of another that bear the same name after a prefix."""
+    """Outputs of one FMU to the inputs of another that bear the same name after a prefix.
 
-    def __init__(self, slaves: dict[str, Slave]) -> None:
-        self.slaves, self.buffers = slaves, {}
-        self.gets, self.sets = [], []
+    One call gets all outputs of a type, and one sets the inputs that some of them are wired to.
+    """
+
+    def __init__(self, slaves: dict[str, Slave], watched: dict[str, list[str]]) -> None:
         mcc, card = fmus.ports("mcc"), fmus.ports("epcio")
-        pairs = [
-            (("mcc", "card_" + n[5:]), ("card", n))
-            for n in card
-            if n.startswith("host_") and "card_" + n[5:] in mcc
-        ]
-        pairs += [
-            (("card", n[5:]), ("mcc", n))
+        ports = {"mcc": mcc, "card": card}
+        pairs = {("mcc", "card_" + n[5:]): n for n in card if n.startswith("host_")}
+        pairs = {source: n for source, n in pairs.items() if source[1] in mcc}
+        pairs |= {
+            ("card", n[5:]): n
             for n, p in mcc.items()
             if n.startswith("card_") and p.causality == "input"
-        ]
-        self.ports = {"mcc": mcc, "card": card}
-        for source, target in pairs:
-            buffer = self.watch(*source)
-            to = self.ports[target[0]][target[1]]
-            self.sets.append(slaves[target[0]].access("Set", to.type, to.reference, buffer))
-
-    def watch(self, component: str, name: str) -> Any:
-        """Read this output at every communication point; returns its buffer."""
-        if (component, name) not in self.buffers:
-            port = self.ports[component][name]
-            slave = self.slaves[component]
-            buffer = slave.buffer(port.type, port.count)
-            self.gets.append(slave.access("Get", port.type, port.reference, buffer))
-            self.buffers[component, name] = buffer
-        return self.buffers[component, name]
+        }
+        outputs = {*pairs, *((c, n) for c, names in watched.items() for n in names)}
+        self.buffers: dict[tuple[str, str], Any] = {}
+        self.gets, self.sets = [], []
+        for component, other in (("mcc", "card"), ("card", "mcc")):
+            mine = sorted(o for o in outputs if o[0] == component)
+            for kind in sorted({ports[component][n].type for _, n in mine}):
+                some = [o for o in mine if ports[component][o[1]].type == kind]
+                some.sort(key=lambda o: o not in pairs)  # wired ones first
+                sources = [ports[component][n] for _, n in some]
+                targets = [ports[other][pairs[o]] for o in some if o in pairs]
+                whole = slaves[component].buffer(kind, sum(p.count for p in sources))
+                place = 0
+                for output, port in zip(some, sources, strict=True):
+                    part = type(slaves[component].buffer(kind, port.count))
+                    self.buffers[output] = part.from_buffer(whole, place)
+                    place += sizeof(part)
+                references = [p.reference for p in sources]
+                get = slaves[component].access("Get", kind, references[0], whole, *references[1:])
+                self.gets.append(get)
+                if targets:
+                    wired = slaves[other].buffer(kind, sum(p.count for p in targets))
+                    wired = type(wired).from_buffer(whole)
+                    references = [p.reference for p in targets]
+                    put = slaves[other].access("Set", kind, references[0], wired, *references[1:])
+                    self.sets.append(put)
 
 
 @dataclass
@@ -84,7 +101,7 @@ class Run:
             "mcc": Slave("mcc", unpacked("mcc"), 3, messages),
             "card": Slave("card", unpacked("epcio"), 3, messages),
         }
-        self.wires = Wires(self.slaves)
+        self.wires = Wires(self.slaves, WATCHED)
         self.give("mcc", "program", [str(file)])
         self.give("mcc", "ppr", [10 * PULSES_PER_MM] * 6)
         active = [i < AXES for i in range(6)]
@@ -106,23 +123,11 @@ class Run:
         self.slaves[component].assign(port.type, port.reference, values)
 
     def value(self, component: str, name: str) -> Any:
-        buffer = self.wires.watch(component, name)
+        buffer = self.wires.buffers[component, name]
         return buffer[0] if len(buffer) == 1 else list(buffer)
-
-    def watch_all(self) -> None:
-        for name in ("stock", "pulse_count", "frames_taken", "frames_refused", "underflows"):
-            self.wires.watch("card", name)
-        for name in ("card_cmd_seq", "card_cmd_count", "card_cmd_frames"):
-            self.wires.watch("mcc", name)
-        self.wires.watch("card", "cmd_ack")
-        for name in ("pos2encoder_dir", "dry_run"):
-            self.wires.watch("mcc", name)
-        for name in ("done", "error", "position", "compensation", "starved", "status"):
-            self.wires.watch("mcc", name)
 
     def go(self, after: float = 0.2) -> None:
         """Run until the program is done and `after` seconds more."""
-        self.watch_all()
         for slave in self.slaves.values():
             slave.initialize()
         for slave in self.slaves.values():

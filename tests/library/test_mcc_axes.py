@@ -134,7 +134,6 @@ def test_single_block_waits_for_cycle_start_before_each_line(tmp_path: Path) -> 
         if not seen or list(seen[-1]) != row:
             seen.append((row[0], row[1], row[2]))
 
-    link.wires.watch("mcc", "line")
     link.book = watch  # type: ignore[method-assign]
     try:
         link.go()

@@ -125,17 +125,18 @@ class Slave:
         c: Any = ctypes.c_int32 if self.fmi == 2 and kind == "Boolean" else _C[kind]
         return (c * count)()
 
-    def access(self, verb: str, kind: str, reference: int, buffer: Any) -> Any:
+    def access(self, verb: str, kind: str, reference: int, buffer: Any, *further: int) -> Any:
         """A function without arguments that gets or sets one variable through its buffer.
 
-        The verb is ``Get`` or ``Set``; the function raises InputError when the FMU refuses.
+        The verb is ``Get`` or ``Set``; the function raises InputError when the FMU refuses. With
+        FMI 3 the buffer may hold the values of further variables, one after the other.
         """
         count = len(buffer)
         if self.fmi == 3:
             call = getattr(self.slave.dll, f"fmi3{verb}{kind}")
-            one = (ctypes.c_uint32 * 1)(reference)
-            sizes = ctypes.c_size_t(1), ctypes.c_size_t(count)
-            arguments: tuple[Any, ...] = (self.slave.component, one, sizes[0], buffer, sizes[1])
+            all_of = (ctypes.c_uint32 * (1 + len(further)))(reference, *further)
+            sizes = ctypes.c_size_t(len(all_of)), ctypes.c_size_t(count)
+            arguments: tuple[Any, ...] = (self.slave.component, all_of, sizes[0], buffer, sizes[1])
         else:
             call = getattr(self.slave.dll, f"fmi2{verb}{_FMI2[kind]}")
             references = (ctypes.c_uint32 * count)(*range(reference, reference + count))
