@@ -19,7 +19,7 @@ void ether_pipe_start(struct ether_pipe *p, uint64_t seed)
 
 void ether_pipe_clear(struct ether_pipe *p, int64_t now)
 {
-    p->free = p->last = now;
+    p->free = now;
     p->first = p->held = p->sent = p->first_segment = p->segments = 0;
 }
 
@@ -49,9 +49,8 @@ void ether_pipe_send(struct ether_pipe *p, const struct ether_config *c, int64_t
             arrival += c->stall;
             p->stalls++;
         }
-        p->last = arrival > p->last ? arrival : p->last;
         p->segment[(p->first_segment + p->segments) % ETHER_SEGMENTS] =
-            (struct ether_segment){bytes, p->last};
+            (struct ether_segment){bytes, arrival};
         p->segments++;
         p->sent += bytes;
     }
@@ -89,5 +88,5 @@ bool ether_pipe_sound(const struct ether_pipe *p)
         bytes += s->bytes;
     }
     return p->sent == bytes && p->passed >= 0 && p->passed < INT64_MAX / 2 &&
-           p->free < INT64_MAX / 2 && p->last < INT64_MAX / 2 && p->free >= 0;
+           p->free >= 0 && p->free < INT64_MAX / 2;
 }

@@ -24,13 +24,12 @@ struct ether_config {
 
 struct ether_segment {
     int32_t bytes;
-    int64_t arrival;        /* [ns] */
+    int64_t arrival;        /* [ns] it waits for those ahead of it all the same */
 };
 
 struct ether_pipe {
     uint64_t random;                /* never 0 */
     int64_t  free;                  /* [ns] the line is */
-    int64_t  last;                  /* [ns] latest arrival */
     int32_t  first, held, sent;     /* bytes of the buffer: held, of which in segments */
     int32_t  first_segment, segments;
     int64_t  passed;                /* [byte] that left it, over all connections */

@@ -78,7 +78,9 @@ class Card(Stream):
         self.out = b""
         if self.connection:
             last = max(self.done, default=0)
-            hello = m.Hello(7, 1, 1, bytes([self.connection] * 16), 1, 2, 4, 16, last, bytes(32), 1, 9)
+            hello = m.Hello(
+                7, 1, 1, bytes([self.connection] * 16), 1, 2, 4, 16, last, bytes(32), 1, 9
+            )
             self.end = CardEnd(self.key, hello)
 
     def missing(self) -> int:

@@ -129,9 +129,10 @@ def test_an_upload_goes_on_where_the_link_was_cut(key: bytes, tmp_path: Path) ->
     card = Card(key or bytes(32), pages)
     host = host_of(job_file(tmp_path, pages), key=key.hex())
     cuts = {"cut_behind_card": [1500, 4000, 9000] + 5 * [0], "cut_at": [0.08] + 7 * [0.0]}
-    rig = Link(card, host, delay=3e-3, away=5e-3, **cuts)
+    rig = Link(card, host, delay=3e-3, away=0.0, connect_time=0.0, **cuts)
     rig.run(0.6)
     assert rig.link.get("cuts") == [4]
+    assert rig.link.get("faults") == [0]
     assert card.stored == NOISE[: pages * 256]
     assert card.twice == 0
     assert host.get("upload") == [5]
@@ -144,6 +145,17 @@ def test_an_upload_goes_on_where_the_link_was_cut(key: bytes, tmp_path: Path) ->
     assert host.get("command_code")[:5] == [0, 0, 0, 0, -1]
     times = list(zip(host.get("command_sent"), host.get("command_answered"), strict=True))[:4]
     assert all(sent + 6e-3 < answered for sent, answered in times)
+    rig.link.free()
+    host.free()
+
+
+def test_a_new_connection_waits_until_both_ends_have_let_go_of_the_old_one(tmp_path: Path) -> None:
+    """The host sees a cut some instants late: what it shows till then is not read."""
+    card, host = Card(bytes(32), 8), host_of(job_file(tmp_path, 8), bus_period=7 * STEP)
+    rig = Link(card, host, away=0.0, connect_time=0.0, cut_at=[0.05, 0.101, 0.153] + 5 * [0.0])
+    rig.run(0.5)
+    assert (rig.link.get("cuts"), rig.link.get("faults")) == ([3], [0])
+    assert card.stored == NOISE[: 8 * 256]
     rig.link.free()
     host.free()
 
