@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of sums of speeds: the last step may miss the target by so much [pulses]. */
+static const double ROUNDING = 1e-6;
+
 /* What an axis shall do in the next period. */
 struct order {
     bool   move;        /* to a target, else run */
@@ -275,7 +278,7 @@ static struct order order_of(const struct home_cycle *h, int i)
 
 /* Pulses of the next period. A speed can change by the acceleration, from rest to the start speed
  * and from below it to rest. A target is met with a last step that is no larger than that: before
- * it v + (v - a) + (v - 2 a) ... is at most what is left. */
+ * it v + (v - a) + .. + (v - k a) is what is left. */
 static int16_t go(struct home_course *c, const struct order *o, double acc, double start)
 {
     const double left = (double)(o->target - c->commanded) - c->rest, size = fabs(left),
@@ -283,7 +286,8 @@ static int16_t go(struct home_course *c, const struct order *o, double acc, doub
     double want = o->speed, low = c->speed - acc, high = c->speed + acc;
 
     if (o->move) {
-        const double brake = sqrt(2.0 * acc * size + 0.25 * acc * acc) - 0.5 * acc;
+        const double k = floor(0.5 * (sqrt(1.0 + 8.0 * size / acc) - 1.0)),
+                     brake = 0.5 * k * acc + size / (k + 1.0);
         want = copysign(size <= free ? size : fmin(o->speed, brake), left);
     }
     if (c->speed == 0.0) {
@@ -294,7 +298,7 @@ static int16_t go(struct home_course *c, const struct order *o, double acc, doub
     c->speed = fmin(fmax(want, low), high);
     int64_t pulses = (int64_t)floor(c->rest + c->speed);
     c->rest += c->speed - (double)pulses;
-    if (o->move && c->speed == left) {
+    if (o->move && fabs(c->speed - left) < ROUNDING) {
         pulses = o->target - c->commanded;
         c->rest = 0.0;
     }

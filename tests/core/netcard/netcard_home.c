@@ -89,6 +89,10 @@ static struct shown run(uint32_t mask, int stop)
             if (phase != HOME_CYCLE_NONE && s.begun[i] < 0) {
                 s.begun[i] = s.periods;
             }
+            const int64_t left = h.axis[i].place - h.axis[i].commanded;
+            if (phase == HOME_CYCLE_OFFSET) {   /* straight to its target */
+                CHECK(left == 0 || (left > 0) == (f.command[i] > 0) || f.command[i] == 0);
+            }
             s.ended[i] = f.command[i] != 0 ? s.periods : s.ended[i];
             CHECK(f.command[i] == 0 || phase != HOME_CYCLE_NONE);
         }

@@ -104,7 +104,8 @@ static void machine(uint64_t *seed, int clocks)
     for (int i = 0; i < FRAME_AXES; i++) {
         seen[i] = (struct seen){ -1, -1, -1, { false, false } };
     }
-    const int most = player_largest(&one, period), often = (int)check_random(seed, 10, 500);
+    const int most = player_largest(&one, period), often = (int)check_random(seed, 10, 500),
+              rare = check_random(seed, 0, 1) ? 600 : 30000;
     int64_t edge[FRAME_AXES] = { -1, -1, -1, -1 };
     for (int64_t clock = 0; clock < clocks && !check_failures; clock++) {
         struct frame f;
@@ -135,7 +136,7 @@ static void machine(uint64_t *seed, int clocks)
             compare_told(clock);
             edge[0] = edge[1] = edge[2] = edge[3] = -1;
         }
-        if (check_random(seed, 0, 30000) == 0) {
+        if (check_random(seed, 0, rare) == 0) {
             player_advance(&two, clock);
             if (check_random(seed, 0, 1)) {
                 player_whole(&one);
@@ -181,7 +182,7 @@ static void machine(uint64_t *seed, int clocks)
 static void against_ticks(void)
 {
     uint64_t seed = 1;
-    for (int i = 0; i < 60 && !check_failures; i += CHECK_EACH) {
+    for (int i = 0; i < 100 && !check_failures; i += CHECK_EACH) {
         machine(&seed, 20000);
     }
     printf("player: %lld pulses, %lld turns, %lld at the set-up's clock, %lld dead clocks, "

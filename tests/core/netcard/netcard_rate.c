@@ -50,8 +50,8 @@ static struct frame frame_of(const struct plan *m, int n)
     return f;
 }
 
-static double worst_acc, worst_jerk, widest;
-static long long samples, ramps, turned;
+static double worst_acc, worst_jerk;
+static long long samples, ramps, turned, tight;
 
 /* Planned time that has been played. */
 static double played(const struct player *q)
@@ -61,30 +61,72 @@ static double played(const struct player *q)
                    (double)q->rate / PLAYER_FULL_RATE * (double)(q->clock - q->base));
 }
 
-/* Limits at a sample of the ramp; the bend of its piece by the slopes around it. */
+/* The sample before: of a ramp that goes on, its slope; else 0. */
+static struct { int64_t clock; double rate, slope; struct rate_bounds bounds; } before;
+
+/* At a sample of a ramp: rate and slope go on from the sample before, within their bounds, and with
+ * them the motion is within its limits. The bend of a piece is that of the slopes around it. */
 static void within(const struct plan *m, const struct player_job *job)
 {
     const double t = TICK * (double)(p.clock - p.ramp_begin), end = rate_ramp_length(&p.ramp),
-                 dt = 1e-7;
+                 dt = TICK * (double)(p.clock - before.clock), near = 1e-7;
     double slope, s0, s1;
     if (t >= end) {
         return;
     }
-    const double r = rate_ramp_at(&p.ramp, t, &slope);
-    rate_ramp_at(&p.ramp, fmax(t - dt, 0.0), &s0);
-    rate_ramp_at(&p.ramp, fmin(t + dt, end - 1e-12), &s1);
-    const double bend = (s1 - s0) / (fmin(t + dt, end - 1e-12) - fmax(t - dt, 0.0));
+    const double r = rate_ramp_at(&p.ramp, t, &slope),
+                 middle = t + TICK * (double)(p.ramp_step - p.clock - PLAYER_GRID / 2);
+    CHECK_NEAR(player_rate(&p), rate_ramp_at(&p.ramp, middle, &s0), 0x1p-24);
+    rate_ramp_at(&p.ramp, fmax(t - near, 0.0), &s0);
+    rate_ramp_at(&p.ramp, fmin(t + near, end - 1e-12), &s1);
+    const double bend = (s1 - s0) / (fmin(t + near, end - 1e-12) - fmax(t - near, 0.0)),
+                 slope_most = rate_ramp_slope_most(&p.bounds, r),
+                 bend_most = rate_ramp_bend_most(&p.bounds, r);
+    CHECK(fabs(slope) <= slope_most * (1.0 + 1e-9));
+    CHECK(fabs(bend) <= bend_most * (1.0 + 1e-4));
+    tight += fmax(fabs(slope) / slope_most, fabs(bend) / bend_most) > 0.9;
+    const double bent = fmax(fmax(bend_most, rate_ramp_bend_most(&p.bounds, before.rate)),
+                             rate_ramp_bend_most(&before.bounds, before.rate));
+    CHECK(fabs(slope - before.slope) <= dt * bent * 1.001 + 1e-9);
+    CHECK(fabs(r - before.rate) <= dt * fmax(fabs(slope), fabs(before.slope)) + 0x1p-20);
     const double at = played(&p);
     for (int i = 0; i < 2; i++) {
         const double v = planned(m, i, 1, at), a = planned(m, i, 2, at), j = planned(m, i, 3, at);
         const double acc = fabs(r * r * a + slope * v) / job->acc[i],
                      jerk = fabs(r * r * r * j + 3.0 * r * slope * a + bend * v) / job->jerk[i];
+        CHECK(fabs(v) <= p.bounds.speed[i] * (1.0 + 1e-6));
         CHECK(acc <= 1.0 + 1e-9);
         CHECK(jerk <= 1.0 + 1e-6);
         worst_acc = fmax(worst_acc, acc);
         worst_jerk = fmax(worst_jerk, jerk);
     }
+    before.rate = r;
+    before.slope = slope;
+    before.bounds = p.bounds;
     samples++;
+}
+
+/* The bounds leave the motion exactly its limits, whatever v, a and j the plan has. */
+static void bounds_are_limits(void)
+{
+    uint64_t seed = 2;
+    int by_acc = 0, by_jerk = 0;
+    for (int n = 0; n < 20000; n++) {
+        const double a = pow(10.0, check_real(&seed, 3.0, 8.0)),
+                     j = a * pow(10.0, check_real(&seed, 0.0, 4.0)),
+                     v = a * pow(10.0, check_real(&seed, -3.0, 1.0)), r = check_real(&seed, 0, 1),
+                     reserve = check_real(&seed, 0.02, 1.0), q = 1.0 - reserve;
+        const struct rate_bounds b = { reserve, { 0.0, v }, { 1.0, a }, { 1.0, j } };
+        const double slope = rate_ramp_slope_most(&b, r), bend = rate_ramp_bend_most(&b, r),
+                     acc = (r * r * q * a + slope * v) / a,
+                     half = 3.0 * r * slope * q * a / ((1.0 - r * r * r * q) * j),
+                     jerk = r * r * r * q + (3.0 * r * slope * q * a + bend * v) / j;
+        CHECK(acc <= 1.0 + 1e-12 && half <= 0.5 + 1e-12 && jerk <= 1.0 + 1e-12);
+        CHECK(fmax(acc, half + 0.5) >= 1.0 - 1e-12);
+        by_acc += acc >= 1.0 - 1e-12;
+        by_jerk += jerk >= 1.0 - 1e-12;
+    }
+    CHECK(by_acc > 2000 && by_jerk > 2000);
 }
 
 /* Random pauses of a random plan, one that uses all that the reserve leaves it. */
@@ -92,7 +134,7 @@ static void limits_kept(void)
 {
     uint64_t seed = 3;
     for (int run = 0; run < 60 && !check_failures; run += CHECK_EACH) {
-        const struct player_config c = { 512, 50, 250, 250 };
+        const struct player_config c = { (int)check_random(&seed, 16, 512), 50, 250, 250 };
         struct plan m = { .frames = (int)check_random(&seed, 300, 2500),
                           .k = (int)check_random(&seed, 1, 4) };
         m.length = 1e-3 * m.frames;
@@ -105,20 +147,22 @@ static void limits_kept(void)
             job.acc[i] = largest(&m, i, 2) / (1.0 - job.reserve);
             job.jerk[i] = largest(&m, i, 3) / (1.0 - job.reserve);
         }
-        if (known) {            /* looks ahead in the FIFO alone */
-            job.speed[0] *= 100.0, job.speed[1] *= 100.0;
+        if (known) {            /* it looks ahead in the FIFO */
+            job.speed[0] *= 3.0, job.speed[1] *= 3.0;
         }
         player_start(&p, &c);
         player_begin(&p, &job, 0);
         int pushed = 0, target = 1;
         player_set_target(&p, 0);
-        for (; pushed < 512 && pushed < m.frames; pushed++) {
+        for (; pushed < c.depth && pushed < m.frames; pushed++) {
             const struct frame f = frame_of(&m, pushed);
             player_push(&p, &f);
         }
         player_set_target(&p, 1);
         int64_t change = check_random(&seed, 0, m.frames * 50000LL), last = 0;
-        double before = 1.0;
+        memset(&before, 0, sizeof before);
+        before.rate = 1.0;
+        before.bounds = p.bounds;
         while (p.begun) {
             const int64_t next = player_next(&p);
             player_advance(&p, next < change ? next : change);
@@ -133,13 +177,15 @@ static void limits_kept(void)
             }
             if (p.ramping) {
                 within(&m, &job);
-                widest = fmax(widest, fabs(player_rate(&p) - before) -
-                                      TICK * 2.0 * PLAYER_GRID *
-                                      rate_ramp_slope_most(&p.bounds, 0.0));
+            } else {
+                CHECK(!p.begun || fabs(player_rate(&p) - before.rate) <=
+                                      TICK * PLAYER_GRID * fabs(before.slope) + 0x1p-20);
+                before.rate = player_rate(&p);
+                before.slope = 0.0;
             }
-            before = player_rate(&p);
-            if (p.fifo.stock <= 256 && pushed < m.frames) {
-                for (; pushed < m.frames && p.fifo.stock < 512; pushed++) {
+            before.clock = p.clock;
+            if (p.fifo.stock <= c.depth / 2 && pushed < m.frames) {
+                for (; pushed < m.frames && p.fifo.stock < c.depth; pushed++) {
                     const struct frame f = frame_of(&m, pushed);
                     CHECK_EQ(player_push(&p, &f), PLAYER_OK);
                 }
@@ -156,9 +202,9 @@ static void limits_kept(void)
         CHECK(last > m.frames * 50000LL && p.dry == 0);
     }
     printf("rate: %lld samples in %lld ramps, %lld of them turned within one; largest "
-           "acceleration %.3f, jerk %.3f of the limits\n", samples, ramps, turned, worst_acc,
-           worst_jerk);
-    CHECK(worst_acc > 0.6 && worst_jerk > 0.6 && widest <= 0.0);
+           "acceleration %.3f, jerk %.3f of the limits; at a bound of the rate in %.0f %%\n",
+           samples, ramps, turned, worst_acc, worst_jerk, 100.0 * (double)tight / (double)samples);
+    CHECK(worst_acc > 0.6 && worst_jerk > 0.6 && 2 * tight > samples);
     CHECK(CHECK_EACH > 1 || (samples > 100000 && ramps > 200 && turned > 50));
 }
 
@@ -241,6 +287,7 @@ static void at_once(void)
 
 int main(void)
 {
+    bounds_are_limits();
     limits_kept();
     distances();
     at_once();
