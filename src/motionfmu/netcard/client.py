@@ -1,12 +1,12 @@
 """A soft card: the card's end of the protocol and a toy of a card, for tests and load."""
 
 import asyncio
+import contextlib
 import hashlib
 import os
 import random
 import zlib
 from collections import deque
-from collections.abc import Callable
 
 from motionfmu.netcard import messages as m
 from motionfmu.netcard.views import Code
@@ -129,25 +129,23 @@ class SoftCard:
         return Code.DONE
 
 
-async def serve_card(
-    card: SoftCard, host: str, port: int, changed: Callable[[], None] = lambda: None
-) -> None:
-    """Keep a card connected until this is cancelled."""
-    wait, chance = FIRST_WAIT, random.Random(card.id)
+async def serve_card(card: SoftCard, host: str, port: int, first_wait: float = FIRST_WAIT) -> None:
+    """Keep a card connected until this is cancelled; `first_wait` [s] until it connects again."""
+    wait, chance = first_wait, random.Random(card.id)
     while True:
-        try:
-            if await _converse(card, host, port, changed):
-                wait = FIRST_WAIT
-        except (OSError, m.WireError, asyncio.IncompleteReadError):
-            pass
+        end = CardEnd(card.key, card.hello())
+        with contextlib.suppress(OSError, m.WireError):
+            await _converse(card, end, *await asyncio.open_connection(host, port))
+        if end.ready:
+            wait = first_wait
         await asyncio.sleep(wait * chance.uniform(0.5, 1.0))
         wait = min(2 * wait, LAST_WAIT)
 
 
-async def _converse(card: SoftCard, host: str, port: int, changed: Callable[[], None]) -> bool:
-    """One connection; whether the handshake came to its end."""
-    reader, writer = await asyncio.open_connection(host, port)
-    end = CardEnd(card.key, card.hello())
+async def _converse(
+    card: SoftCard, end: CardEnd, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
+) -> None:
+    """One connection."""
     now = asyncio.get_running_loop().time
     heard = pinged = told = now()
     pings = 0
@@ -165,7 +163,6 @@ async def _converse(card: SoftCard, host: str, port: int, changed: Callable[[], 
             for sequence, kind, message in end.feed(data):
                 for answer in card.answer(sequence, kind, message):
                     end.send(answer)
-                changed()
             if now() - max(heard, pinged) >= PING:
                 pings, pinged = pings + 1, now()
                 if end.ready:
@@ -173,6 +170,5 @@ async def _converse(card: SoftCard, host: str, port: int, changed: Callable[[], 
             if end.ready and end.interval and now() - told >= end.interval / 1000:
                 told = now()
                 end.send(card.status())
-        return end.ready
     finally:
         writer.close()

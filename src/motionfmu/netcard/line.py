@@ -1,6 +1,7 @@
 """A connection of a card to the server: its bounds in bytes and in time."""
 
 import asyncio
+import socket
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, cast
@@ -25,6 +26,7 @@ class Limits:
     pings: int = 3  # without an answer
     write: int = 65536  # [byte] that wait to be sent
     answer: float = 5.0  # [s] for a command, reconnection included
+    retry: float = 2.0  # [s] until a busy card is asked again for a job that waits
     stall: float = 60.0  # [s] without progress of an upload
     lines: int = 100  # of the log [1/s]
 
@@ -75,6 +77,8 @@ class Line(asyncio.BufferedProtocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """A peer has connected."""
         self._transport = cast(asyncio.Transport, transport)
+        sock = transport.get_extra_info("socket")
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, self._host.limits.write)
         self.address, self.port = (transport.get_extra_info("peername") or ("", 0))[:2]
         self.open = True
         self._transport.set_write_buffer_limits(self._host.limits.write // 2)

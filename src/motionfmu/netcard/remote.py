@@ -22,7 +22,6 @@ from motionfmu.netcard.views import (
 )
 
 BURST = 4  # frames of a job before other cards have their turn
-RETRY = 2.0  # [s] until a busy card is asked again
 PROGRESS = 0.1  # [s] between two events of an upload
 
 
@@ -237,7 +236,7 @@ class RemoteCard:
             return
         self._transfer = None
         if code == Code.BUSY and (self._job.waits is None or self._job.waits.done()):
-            upload.waits, self._retry = TEXTS[Code.BUSY], now + RETRY
+            upload.waits, self._retry = TEXTS[Code.BUSY], now + self._limits.retry
             return
         if code == Code.DONE:
             self._in_flash = upload.job

@@ -207,7 +207,7 @@ class Cards:
         """Write a line of the log unless this second has had its share."""
         if (second := int(time.monotonic())) != self._second:
             if self._logged > self.limits.lines:
-                LOG.warning("%d lines dropped", self._logged - self.limits.lines)
+                LOG.info("%d lines dropped", self._logged - self.limits.lines)
             self._second, self._logged = second, 0
         self._logged += 1
         if self._logged <= self.limits.lines:

@@ -1,0 +1,539 @@
+"""The server of cards on real connections: commands, jobs, chaos, hostile peers, its death."""
+
+import asyncio
+import hashlib
+import random
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from card_links import HOST, PATIENCE, WAIT, Bench, ChaosLink, bench, job_of, run, until
+from conftest import ROOT
+from console import within
+
+from motionfmu.errors import InputError
+from motionfmu.netcard import messages as m
+from motionfmu.netcard.client import SoftCard, serve_card
+from motionfmu.netcard.control import ask
+from motionfmu.netcard.keys import new_key, read_keys
+from motionfmu.netcard.line import Limits
+from motionfmu.netcard.server import Cards
+from motionfmu.netcard.views import Code
+from motionfmu.netcard.wire import OPEN_KEY, CardEnd
+
+KEY = bytes(range(32))
+
+
+def numbers(card: SoftCard) -> list[int]:
+    """Numbers of the commands that a card has carried out."""
+    return [order.number for order in card.orders]
+
+
+def test_a_job_and_commands_reach_their_card_and_no_other() -> None:
+    async def main() -> None:
+        async with bench() as b:
+            soft = [SoftCard(i) for i in (1, 2)]
+            b.serve(*soft)
+            await b.online([1, 2])
+            queue = b.cards.subscribe()
+            assert (await b.cards.command(1, "start")).code == Code.NO_JOB
+            assert (await b.cards.upload(1, job_of(50))).ok
+            assert soft[0].job == job_of(50) and soft[1].job == b""
+            ends = [await b.cards.command(1, n) for n in ("start", "pause", "start", "stop")]
+            assert [(r.code, r.state) for r in ends] == [
+                (0, "RUNNING"),
+                (0, "PAUSED"),
+                (0, "RUNNING"),
+                (0, "READY"),
+            ]
+            assert (await b.cards.command(1, "home", axes=5)).ok
+            assert soft[0].orders[-1] == m.Home(soft[0].done, 5)
+            values = {"pins": 3, "mode": 1, "level": 1, "width": 500}
+            assert (await b.cards.command(1, "output", **values)).ok
+            assert soft[0].orders[-1] == m.Output(soft[0].done, 3, 1, 1, 500)
+            assert soft[1].orders == []
+            assert b.view(1).job == hashlib.sha256(job_of(50)).hexdigest()
+            assert soft[0].written == 50
+            assert (await b.cards.upload(1, job_of(50))).ok and soft[0].written == 50
+            kinds = [queue.get_nowait().kind for _ in range(queue.qsize())]
+            assert {"command", "result", "upload"} <= set(kinds)
+
+    run(main())
+
+
+def test_wrong_input_is_told_before_anything_is_sent(tmp_path: Path) -> None:
+    async def main() -> None:
+        async with bench() as b:
+            for values, told in (
+                ((1, "fly"), "no command 'fly'"),
+                ((-1, "start"), "-1 is no id"),
+                ((1, "home", 16), "axes = 16: 0 to 15"),
+                ((1, "output"), "level, mode, pins, width wanted"),
+            ):
+                given = {"axes": values[2]} if len(values) > 2 else {}
+                with pytest.raises(InputError, match=told):
+                    await b.cards.command(values[0], values[1], **given)
+            for job in (b"", b"MCJ1" + bytes(252), b"MCJ1" + bytes(1000), bytes(512)):
+                with pytest.raises(InputError, match="no job file"):
+                    await b.cards.upload(1, job)
+            assert (await b.cards.command(9, "start")).code == Code.OFFLINE
+            assert b.cards.list() == []
+        with pytest.raises(InputError, match="need keys"):
+            await Cards(tmp_path).listen("0.0.0.0", 0)
+
+    run(main())
+
+
+def test_keys_are_private_and_said_once(tmp_path: Path) -> None:
+    file = tmp_path / "keys.toml"
+    key = new_key(file, 7)
+    assert len(key) == 32 and file.stat().st_mode & 0o777 == 0o600
+    with pytest.raises(InputError, match="card 7 has a key"):
+        new_key(file, 7)
+    new_key(file, 5)
+    assert sorted(read_keys(file)) == [5, 7] and read_keys(file)[7] == key
+    for text, told in (
+        ('x = "00"', "keys.toml:1: 'x' is no id"),
+        ('1 = "00"', "keys.toml:1: key of card 1: 64"),
+        (f'\n1 = "{bytes(32).hex()}"', "keys.toml:2: key of card 1: zeros"),
+        ("1 = 5", "keys.toml:1: key of card 1: 64"),
+    ):
+        file.write_text(text)
+        with pytest.raises(InputError, match=told):
+            read_keys(file)
+    file.chmod(0o640)
+    with pytest.raises(InputError, match="others may read it"):
+        read_keys(file)
+
+
+def test_only_the_card_with_the_key_takes_the_place_of_the_old_connection(tmp_path: Path) -> None:
+    key = new_key(tmp_path / "keys.toml", 7)
+
+    async def main() -> None:
+        async with bench(folder=tmp_path) as b:
+            thief, first, second = SoftCard(7, KEY), SoftCard(7, key), SoftCard(7, key)
+            b.serve(thief)
+            b.serve(first)
+            await b.online([7])
+            address = b.view(7).address
+            await asyncio.sleep(0.05)
+            assert b.view(7).address == address
+            await b.unplug()
+            await until(lambda: not b.view(7).connected)
+            talk = asyncio.create_task(serve_card(first, HOST, b.port, PATIENCE))
+            await b.online([7])
+            address = b.view(7).address
+            b.serve(second)
+            await until(lambda: b.view(7).address not in ("", address))
+            await until(lambda: any("came again" in t for t in b.texts(7, "closed")))
+            assert (await b.cards.command(7, "reset")).ok
+            assert len(second.orders) == 1 and first.orders == []
+            talk.cancel()
+
+    run(main())
+
+
+@pytest.mark.parametrize(("seed", "twice"), [(0, False), (1, False), (2, True), (3, True)])
+def test_chaos_leaves_the_job_that_was_sent_and_commands_done_once(seed: int, twice: bool) -> None:
+    """Cuts every few kB in both directions; if `twice`, more connections of the same card."""
+
+    async def main() -> tuple[int, int]:
+        async with bench(Limits(answer=PATIENCE)) as b:
+            link = ChaosLink(b.port, seed, 3000)
+            soft, job = SoftCard(3), job_of(300, seed)
+            port = await link.listen()
+            b.serve(soft, port=port)
+            await b.online([3])
+            sent = asyncio.create_task(b.cards.upload(3, job))
+            results = []
+            while not sent.done():
+                results.append(await b.cards.command(3, "reset"))
+                if twice and len(results) % 25 == 0:
+                    b.serve(soft, port=port, wait=2 * PATIENCE)  # which comes once
+                if results[-1].code == Code.OFFLINE:
+                    await asyncio.sleep(WAIT)
+            assert (await sent).ok
+            assert soft.job == job
+            # Only what an older connection still carries can come behind the answer of a newer one.
+            assert soft.written == 300 or twice
+            assert numbers(soft) == sorted(set(numbers(soft)))
+            done = sum(r.ok for r in results)
+            lost = sum(r.code in (Code.NO_ANSWER, Code.STATE) for r in results)
+            assert done <= len(numbers(soft)) <= done + lost
+            await link.close()
+            return link.cuts, done
+
+    cuts, done = run(main())
+    print(f"{cuts} cuts, {done} commands")
+    assert cuts >= 5 and done >= 1
+
+
+class Reply:
+    """A soft card whose answers are lost as told."""
+
+    def __init__(self, card: SoftCard) -> None:
+        self.card = card
+        self.answers: list[m.Message] = []
+        self._heard: list[m.Message] = []
+
+    async def connect(self, port: int) -> tuple[CardEnd, socket.socket]:
+        """Shake hands; returns the end and its socket."""
+        loop = asyncio.get_running_loop()
+        sock = socket.socket()
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 16384)
+        sock.setblocking(False)
+        await loop.sock_connect(sock, (HOST, port))
+        end = CardEnd(self.card.key, self.card.hello())
+        while not end.ready:
+            await loop.sock_sendall(sock, end.take())
+            self._take(end, await loop.sock_recv(sock, 4096))
+        return end, sock
+
+    async def hear(self, end: CardEnd, sock: socket.socket) -> m.Message:
+        """The next message that is no ping."""
+        loop = asyncio.get_running_loop()
+        while not self._heard:
+            self._take(end, await loop.sock_recv(sock, 4096))
+        return self._heard.pop(0)
+
+    def _take(self, end: CardEnd, data: bytes) -> None:
+        for sequence, kind, message in end.feed(data):
+            if message and not isinstance(message, m.Ping):
+                self.answers = self.card.answer(sequence, kind, message)
+                self._heard.append(message)
+
+
+@pytest.mark.parametrize("power", [False, True], ids=["cut", "power cut"])
+def test_a_command_whose_answer_was_lost_is_not_done_again(power: bool) -> None:
+    async def main() -> None:
+        async with bench(Limits(answer=PATIENCE)) as b:
+            reply = Reply(SoftCard(3))
+            end, sock = await reply.connect(b.port)
+            await b.online([3])
+            order = asyncio.create_task(b.cards.command(3, "reset"))
+            first = await reply.hear(end, sock)
+            sock.close()
+            if power:
+                reply.card.life ^= 1
+                reply.card.done = 0
+            end, sock = await reply.connect(b.port)
+            if power:
+                assert (await order).code == Code.NO_ANSWER
+                again = asyncio.create_task(b.cards.command(3, "reset"))
+                assert (await reply.hear(end, sock)).number == first.number + 1
+                again.cancel()
+            else:
+                assert await reply.hear(end, sock) == first
+                end.send(reply.answers[0])
+                await asyncio.get_running_loop().sock_sendall(sock, end.take())
+                assert (await order).ok
+                assert len(reply.card.orders) == 1
+            sock.close()
+
+    run(main())
+
+
+def test_a_refused_page_is_asked_for_and_a_damaged_job_is_told() -> None:
+    class Forgetful(SoftCard):
+        """Has no room for page 40 at first, and loses a byte of the second job."""
+
+        refused = 0
+
+        def _take(self, message: m.Message) -> int:
+            if isinstance(message, m.JobData) and message.page == 40 and not self.refused:
+                self.refused += 1
+                return Code.PAGE
+            if isinstance(message, m.JobEnd) and self.job:
+                self.pages[3] = bytes(256)
+            return super()._take(message)
+
+    async def main() -> None:
+        async with bench() as b:
+            soft = Forgetful(3)
+            b.serve(soft)
+            await b.online([3])
+            assert (await b.cards.upload(3, job_of(100))).ok
+            assert soft.job == job_of(100) and soft.refused == 1
+            result = await b.cards.upload(3, job_of(100, 2))
+            assert (result.code, result.text) == (Code.BAD_JOB, "the job is damaged, or no job")
+            assert soft.job == job_of(100)
+            assert (await b.cards.command(3, "start")).ok
+            assert (await b.cards.upload(3, job_of(20, 3))).code == Code.BUSY
+            assert b.view(3).upload is None
+
+    run(main())
+
+
+def test_a_job_waits_on_disk_for_its_card_and_a_newer_one_takes_its_place(tmp_path: Path) -> None:
+    async def main() -> None:
+        async with bench(folder=tmp_path) as b:
+            first = asyncio.create_task(b.cards.upload(3, job_of(30)))
+            await until(lambda: b.cards.list() and b.view(3).upload)
+            second = asyncio.create_task(b.cards.upload(3, job_of(40)))
+            assert (await first).code == Code.REPLACED
+            await until(lambda: b.view(3).upload)
+            second.cancel()
+        async with bench(Limits(retry=0.05), tmp_path) as b:
+            assert b.view(3).upload.pages == 40
+            soft = SoftCard(3)
+            soft.state = m.State.RUNNING
+            b.serve(soft)
+            await until(lambda: b.view(3).upload.waits)
+            soft.state = m.State.READY
+            await until(lambda: soft.job)
+            await until(lambda: b.view(3).upload is None)
+            assert soft.job == job_of(40) and not (tmp_path / "3" / "job.mcj").exists()
+            number = (await b.cards.command(3, "reset"), soft.done)[1]
+        async with bench(folder=tmp_path) as b:
+            b.serve(soft)
+            await b.online([3])
+            assert (await b.cards.command(3, "reset")).ok and soft.done > number
+
+    run(main())
+
+
+def test_uploads_share_the_server() -> None:
+    async def main() -> None:
+        async with bench() as b:
+            soft = [SoftCard(i) for i in range(8)]
+            b.serve(*soft)
+            await b.online(range(8))
+            tasks = [asyncio.create_task(b.cards.upload(i, job_of(400, i))) for i in range(8)]
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            shares = [len(s.job) // 256 or len(s.pages) for s in soft]
+            print("pages when the first has all:", shares)
+            assert min(shares) > 40
+            assert all(r.ok for r in await asyncio.gather(*tasks))
+
+    run(main())
+
+
+async def drip(port: int, address: str) -> None:
+    """Send HELLO a byte now and then."""
+    _, writer = await asyncio.open_connection(HOST, port, local_addr=(address, 0))
+    for byte in CardEnd(OPEN_KEY, SoftCard(99).hello()).take():
+        if writer.transport.is_closing():
+            return
+        writer.write(bytes([byte]))
+        await asyncio.sleep(0.05)
+
+
+async def garbage(port: int, address: str, seed: int) -> None:
+    """Send bytes at random until the server has enough."""
+    chance = random.Random(seed)
+    _, writer = await asyncio.open_connection(HOST, port, local_addr=(address, 0))
+    while not writer.transport.is_closing():
+        writer.write(chance.randbytes(chance.randint(1, 20000)))
+        await asyncio.sleep(0.001)
+
+
+async def until_closed(*peers: "asyncio.Task[None]") -> None:
+    """Wait until the server has closed on all of them."""
+    async with asyncio.timeout(PATIENCE):
+        await asyncio.gather(*peers, return_exceptions=True)
+
+
+def test_slow_and_hostile_peers_are_closed_and_the_others_feel_nothing() -> None:
+    async def main() -> None:
+        async with bench(Limits(authenticate=0.3, strangers=30)) as b:
+            soft = [SoftCard(i) for i in range(10)]
+            b.serve(*soft)
+            await b.online(range(10))
+            bad = [drip(b.port, "127.0.0.2") for _ in range(5)]
+            bad += [garbage(b.port, "127.0.0.3", i) for i in range(10)]
+            tasks = [asyncio.create_task(x) for x in bad]
+            while not all(t.done() for t in tasks):
+                results = [b.cards.command(i, "reset") for i in range(10)]
+                assert all(r.ok for r in await asyncio.gather(*results))
+            await until_closed(*tasks)
+            assert all(b.texts(i, "closed") == [] for i in range(10))
+            assert [v.id for v in b.cards.list()] == list(range(10))
+
+    run(main())
+
+
+def test_who_does_not_read_is_closed_before_memory_fills() -> None:
+    async def main() -> None:
+        async with bench() as b:
+            end, sock = await Reply(SoftCard(3)).connect(b.port)
+            await b.online([3])
+            loop, sent = asyncio.get_running_loop(), 0
+            try:
+                while sent < 40 << 20:
+                    for token in range(500):
+                        end.send(m.Ping(token))
+                    data = end.take()
+                    sent += len(data)
+                    await loop.sock_sendall(sock, data)
+            except OSError:
+                pass
+            await until(lambda: not b.view(3).connected)
+            assert "does not read what is sent" in b.texts(3, "closed")
+            print(f"closed behind {sent >> 10} kB of pings")
+            sock.close()
+
+    run(main())
+
+
+def test_connections_are_counted_for_each_address_and_in_all() -> None:
+    async def main() -> None:
+        async with bench(Limits(strangers=3, connections=5, authenticate=0.3)) as b:
+
+            async def silent(address: str) -> bool:
+                """Whether the server closes at once."""
+                made = asyncio.open_connection(HOST, b.port, local_addr=(address, 0))
+                reader, writer = await made
+                start = time.monotonic()
+                try:
+                    await reader.read()
+                except OSError:
+                    pass
+                writer.close()
+                return time.monotonic() - start < 0.25
+
+            ends = [silent("127.0.0.2") for _ in range(6)] + [silent("127.0.0.3")]
+            assert sum(await asyncio.gather(*ends)) == 3
+            ends = [silent(f"127.0.0.{k}") for k in range(2, 9)]
+            assert sum(await asyncio.gather(*ends)) == 2
+
+    run(main())
+
+
+def test_all_cards_come_back_when_the_server_does(tmp_path: Path) -> None:
+    async def main() -> None:
+        soft = [SoftCard(i) for i in range(40)]
+        cards = Cards(tmp_path)
+        port = await cards.listen(HOST, 0)
+        b = Bench(cards, tmp_path, port)
+        b.serve(*soft)
+        await b.online(range(40))
+        await cards.close()
+        await asyncio.sleep(0.02)
+        b.cards = Cards(tmp_path)
+        await b.cards.listen(HOST, port)
+        await b.online(range(40))
+        ends = await asyncio.gather(*(b.cards.command(i, "reset") for i in range(40)))
+        assert all(r.ok for r in ends)
+        await b.unplug()
+        await b.cards.close()
+
+    run(main())
+
+
+class Thread:
+    """Soft cards on a loop of their own."""
+
+    def __init__(self, port: int, *soft: SoftCard) -> None:
+        self._loop = asyncio.new_event_loop()
+        self._tasks = [self._loop.create_task(serve_card(s, HOST, port, 0.02)) for s in soft]
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self._loop)
+        self._loop.run_until_complete(asyncio.wait(self._tasks))
+        self._loop.close()
+
+    def end(self) -> None:
+        """End them."""
+        for task in self._tasks:
+            self._loop.call_soon_threadsafe(task.cancel)
+        self._thread.join()
+
+
+def free_port() -> int:
+    """A port that was free just now."""
+    with socket.socket() as sock:
+        sock.bind((HOST, 0))
+        return int(sock.getsockname()[1])
+
+
+def serve(folder: Path, port: int) -> "subprocess.Popen[str]":
+    """A server in a process of its own, which has begun to listen."""
+    line = [sys.executable, "-m", "motionfmu", "card", "serve", "--page", "0"]
+    line += ["--port", str(port), "--folder", str(folder)]
+    server = subprocess.Popen(line, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    assert server.stdout and b"cards:" in server.stdout.readline()
+    return server
+
+
+def waiting(true: Callable[[], object]) -> None:
+    """Wait until something is so."""
+    end = time.monotonic() + PATIENCE
+    while not true():
+        assert time.monotonic() < end
+        time.sleep(0.002)
+
+
+def test_a_killed_server_goes_on_where_the_card_is(tmp_path: Path) -> None:
+    port, file = free_port(), tmp_path / "job.mcj"
+    job = job_of(600)
+    file.write_bytes(job)
+    asked = {"do": "upload", "card": 3, "bytes": len(job)}
+
+    class Slow(SoftCard):
+        """Takes its time, so that the server can be killed in the middle."""
+
+        def _take(self, message: m.Message) -> int:
+            time.sleep(0 if killed.is_set() else 0.002)
+            return super()._take(message)
+
+    killed = threading.Event()
+    soft = Slow(3)
+    cards = Thread(port, soft)
+    try:
+        server = serve(tmp_path / "cards", port)
+        waiting(lambda: ask(tmp_path / "cards", {"do": "list"})["cards"])
+        sender = threading.Thread(
+            target=lambda: lost.append(failed(tmp_path / "cards", asked, job))
+        )
+        lost: list[str] = []
+        sender.start()
+        waiting(lambda: len(soft.pages) > 100)
+        server.send_signal(signal.SIGKILL)
+        server.wait()
+        killed.set()
+        sender.join()
+        assert "without an answer" in lost[0] and not soft.job
+        had = soft.written
+        server = serve(tmp_path / "cards", port)
+        waiting(lambda: soft.job)
+        print(f"killed at {had} of 600 pages")
+        assert soft.job == job and soft.written == 600
+        folder = ("--folder", tmp_path / "cards")
+        for line, status, told in (
+            (("start", 3), 0, "card 3: done (RUNNING)"),
+            (("home", 3, "--axes", "XY"), 1, "card 3: not in this state (RUNNING)"),
+            (("stop", 3), 0, "card 3: done (READY)"),
+            (("home", 3, "--axes", "XY"), 0, "card 3: done (READY)"),
+            (("home", 3, "--axes", "XV"), 2, "--axes XV: letters of XYZU wanted"),
+            (("send", 3, file), 0, "card 3: done"),
+            (("send", 3, ROOT / "README.md"), 2, "no job file"),
+            (("pause", 4), 1, "card 4: the card is not connected"),
+            (("status", 3), 0, "READY"),
+            (("status", 4), 1, ""),
+            (("serve", "--page", 0), 2, "another server uses this folder"),
+        ):
+            end = within("card", *line, *folder)
+            assert (end.returncode, told in end.stdout + end.stderr) == (status, True), end
+        assert numbers(soft) == sorted(set(numbers(soft)))
+        server.terminate()
+        assert server.wait() == 0
+        assert within("card", "status", *folder).returncode == 2
+    finally:
+        server.kill()
+        cards.end()
+
+
+def failed(folder: Path, asked: dict[str, object], job: bytes) -> str:
+    """The message with which asking a server ends."""
+    try:
+        return str(ask(folder, asked, job))
+    except InputError as error:
+        return str(error)
