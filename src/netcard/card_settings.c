@@ -58,6 +58,15 @@ bool card_settings_good(const struct card_settings *s, struct card_wrong *wrong)
             return refuse(wrong, "home_speed", i, s->home_speed[i], "above speed_max");
         }
     }
+    if (s->program_us > s->program_most_us) {
+        return refuse(wrong, "program_us", 0, s->program_us, "above program_most_us");
+    }
+    if (s->erase_ms > s->erase_most_ms) {
+        return refuse(wrong, "erase_ms", 0, s->erase_ms, "above erase_most_ms");
+    }
+    if (s->block_ms > s->block_most_ms) {
+        return refuse(wrong, "block_ms", 0, s->block_ms, "above block_most_ms");
+    }
     return clocks(wrong, "period_ns", s->period_ns) &&
            clocks(wrong, "pulse_width_ns", s->pulse_width_ns) &&
            clocks(wrong, "dir_setup_ns", s->dir_setup_ns) &&

@@ -71,6 +71,8 @@ enum card_policy { CARD_SAFE, CARD_LITERAL };
       "From a change of direction to the first pulse, in whole 20 ns") \
     X(int32_t, dir_hold_ns, , "ns", 5000, 0, 1000000, \
       "From the last pulse to a change of direction, in whole 20 ns") \
+    X(double,  reserve, , "", 0.1, 0.02, 1.0, \
+      "Share of a job's acceleration and jerk that its plan leaves free for pauses") \
     X(int32_t, fsmc_word_ns, , "ns", 48, 1, 10000, \
       "A word of 16 bits written to the FPGA; a frame has five")
 
@@ -90,16 +92,23 @@ enum card_policy { CARD_SAFE, CARD_LITERAL };
     X(int32_t, packet_cycles, , "", 2500, 0, 100000000, "Cycles of a packet in the parser") \
     X(int32_t, byte_cycles, , "", 12, 0, 1000000, "Cycles of each of its bytes") \
     X(int32_t, frame_cycles, , "", 200, 0, 100000000, "Cycles of the decoding of a frame") \
-    X(int32_t, page_cycles, , "", 8400, 0, 100000000, \
-      "Cycles in which a page is read over SPI and checked") \
+    X(int32_t, page_cycles, , "", 3000, 0, 100000000, \
+      "Cycles in which a page that is read is checked") \
     X(int32_t, step_cycles, , "", 1500, 1, 100000000, \
       "Cycles of a step of the home, stop and pause tasks")
 
 #define CARD_SETTINGS_FLASH(X) \
     X(int32_t, slots, , "", 2, 1, 2, \
       "Slots for jobs: 2 keep the old job until the new one is whole, 1 has twice the room") \
-    X(int32_t, program_us, , "us", 700, 1, 100000, "Time of the program of a page") \
-    X(int32_t, erase_ms, , "ms", 45, 1, 10000, "Time of the erase of a sector of 4 KB") \
+    X(int32_t, program_us, , "us", 700, 1, 100000, "Usual time of the program of a page") \
+    X(int32_t, program_most_us, , "us", 3000, 1, 100000, "Its longest time") \
+    X(int32_t, erase_ms, , "ms", 45, 1, 100000, "Usual time of the erase of a sector of 4 KB") \
+    X(int32_t, erase_most_ms, , "ms", 400, 1, 100000, "Its longest time") \
+    X(int32_t, block_ms, , "ms", 150, 1, 100000, "Usual time of the erase of a block of 64 KB") \
+    X(int32_t, block_most_ms, , "ms", 2000, 1, 100000, "Its longest time") \
+    X(int32_t, flash_spread, , "", 0, 0, 1000, \
+      "Share of the way from usual to longest that a time is drawn from [1/1000]") \
+    X(int32_t, spi_hz, , "Hz", 42000000, 100000, 200000000, "Clock of the bus of the flash") \
     X(bool,    write_during_run, , "", false, false, true, \
       "A job may be received while another one runs")
 

@@ -115,6 +115,10 @@ enum kernel_status kernel_delay(struct kernel *k, int64_t ticks);   /* these: 0 
 enum kernel_status kernel_set_priority(struct kernel *k, int task, int32_t priority);
 enum kernel_status kernel_end_interrupt(struct kernel *k, bool yield);  /* of an interrupt */
 
+/* Can a kernel be in this state, one that may have come from outside: with so many tasks, only the
+ * first so many interrupts in use? */
+bool kernel_sound(const struct kernel *k, int tasks, int interrupts);
+
 /* A line of the caller's own in the log: no answer, it may stand anywhere. */
 void kernel_mark(struct kernel *k, int32_t number, int32_t value);
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 _NOTE = "/* Generated from the structs of the model's state; do not edit. */\n"
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*|^[ \t]*#(?:\\\n|[^\n])*", re.DOTALL | re.MULTILINE)
+_LIST = re.compile(r"^[ \t]*#define (\w+)\(X\)((?:\\\n|[^\n])*)", re.MULTILINE)
+_LISTED = re.compile(r"\bX\((\w+),\s*(\w+),|\b(\w+)\(X\)")
 _TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|\w+|[^\w\s]")
 
 
@@ -22,6 +24,7 @@ class _Member:
 class _Definitions:
     structs: dict[str, list[_Member]] = field(default_factory=dict)  # by "struct a" or "A"
     enums: dict[str, list[str]] = field(default_factory=dict)
+    lists: dict[str, str] = field(default_factory=dict)  # of X(type, name, ...), by their macro
 
 
 class _Reader:
@@ -31,6 +34,7 @@ class _Reader:
         self.tokens = [*_TOKEN.findall(_COMMENT.sub(" ", text)), "", "", ""]
         self.at = 0
         self.found = found
+        found.lists.update(_LIST.findall(re.sub(r"/\*.*?\*/", " ", text, flags=re.DOTALL)))
 
     def take(self) -> str:
         self.at += 1
@@ -95,7 +99,18 @@ class _Reader:
                 kind, of = "other", ""  # which of its members counts only the model knows
         elif word not in ("bool",):
             kind, of = "named", word
+        if word in self.found.lists:  # LIST(MACRO) makes a member of each X(type, name, ...)
+            self.at += 3
+            yield from self.listed(word)
+            return
         yield from self.declarators(owner, kind, of)
+
+    def listed(self, macro: str) -> Iterator[_Member]:
+        for kind, name, inner in _LISTED.findall(self.found.lists[macro]):
+            if inner:
+                yield from self.listed(inner)
+            else:
+                yield _Member(name, "bool" if kind == "bool" else "named", kind)
 
     def declarators(self, owner: str, kind: str, of: str) -> Iterator[_Member]:
         while True:

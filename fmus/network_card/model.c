@@ -1,0 +1,285 @@
+/* The network card on the wires of a co-simulation: grid, stream of bytes, terminals, job file. */
+#include <string.h>
+
+#include "byte_ring.h"
+#include "netcard.h"
+#include "vars.h"
+
+struct model {
+    struct netcard card;
+    int64_t period;         /* [ns] grid of the wires */
+    int64_t instant;        /* [ns] next instant of that grid */
+    int32_t connection;     /* as read last */
+    int32_t seq;            /* command taken last */
+};
+
+#define MODEL_BLOB
+#include "fmi_model.h"
+#include "fmu_input.h"
+#include "fmu_period.h"
+
+_Static_assert(NET_RESET - NET_START == (int)CARD_DO_RESET, "commands are those of the link");
+
+/* The job file. */
+struct job_file {
+    uint32_t bytes;
+    uint8_t  byte[FLASH_BYTES + 1];
+};
+
+static int model_open(struct fmu *f)
+{
+    const char *name = f->s.v.job;
+    struct job_file *b = malloc(sizeof *b);
+    FILE *file;
+
+    if (!b) {
+        return fmu_fail(f, "out of memory");
+    }
+    f->blob = b;
+    b->bytes = 0;
+    if (!name[0]) {
+        return 0;
+    }
+    const char *why = file_open(name, &file);
+    if (why) {
+        return fmu_fail(f, "job: cannot read %s: %s", name, why);
+    }
+    b->bytes = (uint32_t)fread(b->byte, 1, sizeof b->byte, file);
+    const bool bad = ferror(file) != 0;
+    fclose(file);
+    if (bad) {
+        return fmu_fail(f, "job: cannot read %s", name);
+    }
+    return b->bytes > 0 ? 0 : fmu_fail(f, "job: %s is empty", name);
+}
+
+static void model_close(struct fmu *f)
+{
+    free(f->blob);
+}
+
+static int model_end(struct fmu *f)
+{
+    (void)f;
+    return 0;
+}
+
+static int hex(char c)
+{
+    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+/* False: neither empty nor 64 hexadecimal digits. */
+static bool read_key(const char *text, uint8_t key[NET_SHA_BYTES])
+{
+    memset(key, 0, NET_SHA_BYTES);
+    for (size_t i = 0; text[0] && i < (size_t)2 * NET_SHA_BYTES; i++) {
+        const int digit = hex(text[i]);
+        if (digit < 0) {
+            return false;
+        }
+        key[i / 2] = (uint8_t)(key[i / 2] << 4 | digit);
+    }
+    return !text[0] || !text[2 * NET_SHA_BYTES];
+}
+
+static int read_settings(struct fmu *f, struct netcard_config *c)
+{
+    const struct vars *v = &f->s.v;
+    struct card_wrong w;
+
+#define SETTING(type, name, elements, unit, start, low, high, words) \
+    _Static_assert(sizeof c->settings.name == sizeof v->name, #name); \
+    memcpy(&c->settings.name, &v->name, sizeof v->name);
+    CARD_SETTINGS(SETTING)
+    if (!card_settings_good(&c->settings, &w)) {
+        return fmu_fail(f, "%s[%d] = %.17g: %s", w.name, (int)w.index + 1, w.value,
+                        w.why ? w.why : "out of range");
+    }
+    return read_key(v->key, c->key) ? 0
+           : fmu_fail(f, "key: 64 hexadecimal digits are wanted, or none");
+}
+
+static int32_t whole(int64_t value)
+{
+    return (int32_t)(uint32_t)(uint64_t)value;
+}
+
+static void publish_axes(struct vars *v, const struct netcard *c)
+{
+    int64_t counts[FRAME_AXES];
+
+    player_counts(&c->player, c->now / PLAYER_CLOCK_NS, counts);
+    for (int i = 0; i < CARD_AXES; i++) {
+        v->pulse_count[i] = whole(counts[i]);
+        v->pulse_rate[i] = player_velocity(&c->player, i);
+        v->position[i] = whole(netcard_position(c, i));
+        v->enable[i] = c->power && c->state != NET_FAULT;
+        v->error_clear[i] = c->power && c->now < c->clear_until;
+    }
+    v->frame = whole(c->player.frames);
+    v->stock = c->player.fifo.stock;
+    v->stock_least = c->least;
+    v->underflows = whole(c->player.dry);
+    v->rate = player_rate(&c->player);
+}
+
+static void publish_times(struct vars *v, const struct netcard *c)
+{
+    const struct kernel *k = &c->kernel;
+    int64_t interrupts = 0;
+
+    for (int i = 0; i < NETCARD_TASKS; i++) {
+        v->task_busy[i] = (double)kernel_busy(k, i) * 1e-9;
+    }
+    for (int i = 0; i < NETCARD_INTERRUPTS; i++) {
+        interrupts += kernel_busy(k, KERNEL_TASKS + i);
+        v->interrupts[i] = whole(c->served[i]);
+    }
+    v->interrupt_busy = (double)interrupts * 1e-9;
+    v->kernel_busy = (double)kernel_overhead(k) * 1e-9;
+    v->idle = (double)kernel_idle(k) * 1e-9;
+    v->task = k->current;
+}
+
+static void publish(struct fmu *f)
+{
+    const struct netcard *c = &f->s.m.card;
+    struct vars *v = &f->s.v;
+
+    publish_axes(v, c);
+    publish_times(v, c);
+    v->connect = netcard_wants_connection(c);
+    v->link_up = c->power && session_up(&c->session);
+    v->link_losses = c->session.losses;
+    v->out = (int32_t)c->outputs.levels;
+    v->state = (int32_t)c->state;
+    v->error = (int32_t)c->error;
+    v->homed = (int32_t)c->homed;
+    v->jobs = c->jobs;
+    v->results = c->result.count;
+    v->result = (int32_t)c->result.code;
+    v->receiving = c->store.phase != STORE_REST;
+    v->flash_programs = whole(c->flash.programs);
+    v->flash_erases = whole((int64_t)c->flash.sector_erases + c->flash.block_erases);
+    v->flash_wear = whole(flash_wear(&c->flash));
+    v->flash_slot = c->store.job.slot;
+}
+
+static int model_start(struct fmu *f)
+{
+    const struct job_file *b = f->blob;
+    const double clocks = f->s.v.bus_period * 1e9 / FMU_TICK_NS;
+    struct model *m = &f->s.m;
+    struct netcard_config config;
+
+    if (!fmu_is_period(clocks)) {
+        return fmu_fail(f, "bus_period = %.17g s: not a whole number of 20 ns clocks",
+                        f->s.v.bus_period);
+    }
+    if (read_settings(f, &config)) {
+        return -1;
+    }
+    m->period = llround(clocks) * FMU_TICK_NS;
+    const enum net_code code = netcard_start(&m->card, &config, b->byte, b->bytes);
+    if (code == NET_TOO_LONG) {
+        return fmu_fail(f, "job: %s is too long for a slot of the flash", f->s.v.job);
+    }
+    if (code != NET_DONE) {
+        return fmu_fail(f, "job: %s: page %d, frame %d: %s", f->s.v.job,
+                        (int)m->card.store.check.page, (int)m->card.store.check.frame,
+                        job_fault_text(m->card.store.fault));
+    }
+    publish(f);
+    return 0;
+}
+
+static const char *model_check(const struct state *s)
+{
+    const struct model *m = &s->m;
+
+    if (m->period < FMU_TICK_NS || m->period % FMU_TICK_NS || m->instant < s->now ||
+        m->instant - s->now >= m->period || m->instant % FMU_TICK_NS) {
+        return "its next instant is another one";
+    }
+    return netcard_damage(&m->card, s->now);
+}
+
+/* The stream of a connection; a new number begins a new one. */
+static void read_stream(struct fmu *f)
+{
+    struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    uint8_t bytes[BYTE_RING_BYTES];
+
+    if (v->connection != m->connection) {
+        if (m->connection) {
+            netcard_connected(&m->card, false);
+        }
+        m->connection = v->connection;
+        v->tx_count = v->rx_taken = 0;
+        if (m->connection) {
+            netcard_connected(&m->card, true);
+        }
+    }
+    if (!m->connection) {
+        return;
+    }
+    size_t n = byte_ring_look(v->rx_words, v->rx_count, v->rx_taken, bytes, sizeof bytes);
+    v->rx_taken = byte_ring_on(v->rx_taken, netcard_receive(&m->card, bytes, n));
+    const int32_t held = byte_ring_held(v->tx_count, v->tx_taken);
+    if (held >= 0) {
+        n = netcard_send(&m->card, bytes, (size_t)(BYTE_RING_BYTES - held));
+        byte_ring_put(v->tx_words, &v->tx_count, v->tx_taken, bytes, n);
+    }
+}
+
+static void read_command(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+
+    if (v->command_seq == m->seq) {
+        return;
+    }
+    m->seq = v->command_seq;
+    if (!netcard_command(&m->card, (enum card_command)(v->command - NET_START),
+                         (uint8_t)v->command_axes)) {
+        fmu_warn(f, "command_seq = %d: the card does not take it", (int)v->command_seq);
+    }
+}
+
+static void read_terminals(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct netcard *c = &f->s.m.card;
+    struct netcard_axes a = { .stop = v->emergency_stop };
+
+    for (int i = 0; i < CARD_AXES; i++) {
+        a.origin |= (uint32_t)v->origin[i] << i;
+        a.plus |= (uint32_t)v->limit_plus[i] << i;
+        a.minus |= (uint32_t)v->limit_minus[i] << i;
+        a.alarm |= (uint32_t)(v->alarm[i] != 0) << i;
+    }
+    netcard_set_axes(c, &a);
+    netcard_set_inputs(c, (uint32_t)v->in & 0xFFFFu);
+}
+
+/* Instants in [t0, t1) read the wires; the state shown is that at t1. */
+static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    struct model *m = &f->s.m;
+
+    (void)t0;
+    for (; m->instant < t1; m->instant += m->period) {
+        netcard_advance(&m->card, m->instant);
+        netcard_set_power(&m->card, f->s.v.power);
+        read_terminals(f);
+        read_stream(f);
+        read_command(f);
+    }
+    netcard_advance(&m->card, t1);
+    publish(f);
+    return 0;
+}

@@ -1,0 +1,115 @@
+#include "netcard_parts.h"
+
+/* Error clear of the drives. */
+static const int64_t CLEAR_NS = 20000000;
+
+static bool has_job(const struct netcard *c)
+{
+    return c->store.job.slot >= 0;
+}
+
+void card_rest(struct netcard *c)
+{
+    c->state = has_job(c) ? NET_READY : NET_EMPTY;
+}
+
+void card_fault(struct netcard *c, enum net_code error)
+{
+    if (c->state != NET_FAULT) {
+        player_clear(&c->player);
+        c->state = NET_FAULT;
+        c->error = error;
+        c->over = true;
+        c->told.what |= PLAYER_REST;    /* all that wait for the player look again */
+        card_pend(c, NETCARD_FPGA);
+    }
+}
+
+/* Why a start would be refused though its state is right. */
+static enum net_code startable(const struct netcard *c)
+{
+    if (!c->settings.write_during_run && c->store.phase != STORE_REST) {
+        return NET_BUSY;
+    }
+    for (int i = 0; c->settings.must_home && i < CARD_AXES; i++) {
+        if (c->settings.home_order[i] > 0 && !(c->homed >> i & 1)) {
+            return NET_NOT_HOMED;
+        }
+    }
+    return has_job(c) ? NET_DONE : NET_NO_JOB;
+}
+
+/* The document's scheme: each packet gives its semaphore, whatever the card does. A start ends a
+ * pause that holds the processor. */
+static int literal(struct netcard *c, enum card_command command, uint32_t axes)
+{
+    switch (command) {
+    case CARD_DO_START:
+        if (c->holds) {
+            c->released = true;
+            return -1;
+        }
+        return NETCARD_GIVE_RUN;
+    case CARD_DO_PAUSE:
+        return NETCARD_GIVE_PAUSE;
+    case CARD_DO_STOP:
+        return NETCARD_GIVE_STOP;
+    case CARD_DO_HOME:
+        c->home_axes = axes;
+        return NETCARD_GIVE_HOME;
+    default:
+        return -1;
+    }
+}
+
+/* The states that an accepted command leads to. */
+static int accepted(struct netcard *c, enum card_command command, uint32_t axes)
+{
+    switch (command) {
+    case CARD_DO_START:
+        if (c->state == NET_READY) {
+            c->state = NET_RUNNING;
+            return NETCARD_GIVE_RUN;
+        }
+        c->state = c->resumes;
+        return NETCARD_GIVE_PAUSE;
+    case CARD_DO_PAUSE:
+        c->resumes = c->state;
+        c->state = NET_PAUSING;
+        return NETCARD_GIVE_PAUSE;
+    case CARD_DO_STOP:
+        c->state = NET_STOPPING;
+        c->over = true;
+        return NETCARD_GIVE_STOP;
+    case CARD_DO_HOME:
+        c->state = NET_HOMING;
+        c->home_axes = axes;
+        c->over = true;
+        return NETCARD_GIVE_HOME;
+    default:
+        c->error = NET_DONE;
+        card_rest(c);
+        return -1;
+    }
+}
+
+int card_order(struct netcard *c, enum card_command command, uint32_t axes, enum net_code *code)
+{
+    const struct card_rule rule = card_rule(c->state, command);
+
+    *code = rule.code;
+    if (command == CARD_DO_RESET && c->state == NET_FAULT) {
+        c->clear_until = c->now + CLEAR_NS;
+    }
+    if (c->state == NET_FAULT && command == CARD_DO_RESET && (c->axes.stop || c->axes.alarm)) {
+        *code = NET_ALARM;
+    }
+    if (card_literal(c) && c->state != NET_FAULT) {
+        *code = NET_DONE;
+        return literal(c, command, axes);
+    }
+    if (*code == NET_DONE && command == CARD_DO_START && c->state == NET_READY) {
+        *code = startable(c);
+    }
+    return *code == NET_DONE && rule.acts ? accepted(c, command, axes) : -1;
+}

@@ -1,0 +1,248 @@
+#include "netcard_parts.h"
+
+#include <string.h>
+
+/* In which run reads and writes what fills the FIFO again. */
+static const int64_t ERASE_MARGIN_NS = 10000000;
+
+/* A step of a task: a frame of run and home, a turn of pause and stop. */
+static void mark(struct netcard *c, enum netcard_task task)
+{
+    kernel_mark(&c->kernel, NETCARD_STEP, task);
+}
+
+/* Longest time of an operation of the chip, as it is set. [ns] */
+static int64_t longest(const struct flash_config *f)
+{
+    const struct flash_time *t[] = { &f->sector, &f->block };
+    int64_t most = 0;
+
+    for (int i = 0; i < 2; i++) {
+        const int64_t ns = t[i]->typical + (t[i]->longest - t[i]->typical) / 1000 * f->spread;
+        most = ns > most ? ns : most;
+    }
+    return most + ERASE_MARGIN_NS;
+}
+
+/* Could the FIFO run dry while the chip is at its longest operation? Then run reads first. */
+static bool must_wait(const struct netcard *c)
+{
+    const int64_t stock = c->player.fifo.stock * (int64_t)c->player.job.period;
+
+    return c->job && !c->over && !c->read && stock * PLAYER_CLOCK_NS < longest(&c->flash.config);
+}
+
+void card_store(struct netcard *c)
+{
+    enum { WAIT, LOOK, READ };
+    struct netcard_page *p = &c->page;
+    int64_t ns;
+
+    switch (c->step[NETCARD_STORAGE]) {
+    case WAIT:
+        card_take(c, NETCARD_STORAGE, NETCARD_GIVE_STORAGE, LOOK);
+        return;
+    case READ:
+        p->wanted = false;
+        p->good = p->good && job_page_whole(p->bytes);
+        c->step[NETCARD_STORAGE] = LOOK;
+        kernel_give(&c->kernel, NETCARD_GIVE_PAGE);
+        return;
+    default:
+        break;
+    }
+    if (flash_busy(&c->flash, c->now)) {        /* nobody reads while it writes */
+        card_take(c, NETCARD_STORAGE, NETCARD_GIVE_FLASH, LOOK);
+        return;
+    }
+    if (p->wanted) {
+        ns = job_store_read(&c->place, &c->flash, p->number, p->bytes, c->now);
+        p->good = ns > 0;
+        card_spend(c, NETCARD_STORAGE, ns + card_cycles_ns(c->settings.page_cycles), READ);
+        return;
+    }
+    c->deferred = c->store.phase != STORE_REST && must_wait(c);
+    ns = c->deferred ? 0 : job_store_step(&c->store, &c->flash, c->now);
+    card_tell_store(c);
+    if (ns > 0) {
+        kernel_pend(&c->kernel, NETCARD_FLASH, c->now + ns - c->boot);
+        card_take(c, NETCARD_STORAGE, NETCARD_GIVE_FLASH, LOOK);
+    } else {
+        card_take(c, NETCARD_STORAGE, NETCARD_GIVE_STORAGE, LOOK);
+    }
+}
+
+void card_stop(struct netcard *c)
+{
+    enum { WAIT, LOOK, ACT, RELEASE, RELEASE_HOME };
+    const int step = c->step[NETCARD_STOP];
+
+    if (step == WAIT) {
+        card_take(c, NETCARD_STOP, NETCARD_GIVE_STOP, LOOK);
+    } else if (step == LOOK) {
+        card_work(c, NETCARD_STOP, c->settings.step_cycles, ACT);
+    } else if (step == RELEASE) {       /* run and home give up */
+        c->step[NETCARD_STOP] = c->homing ? RELEASE_HOME : WAIT;
+        kernel_give(&c->kernel, NETCARD_GIVE_FIFO);
+    } else if (step == RELEASE_HOME) {
+        c->step[NETCARD_STOP] = WAIT;
+        kernel_give(&c->kernel, NETCARD_GIVE_HOME);
+    } else if (card_literal(c)) {
+        mark(c, NETCARD_STOP);
+        player_clear(&c->player);
+        c->over = c->job;
+        c->step[NETCARD_STOP] = RELEASE;
+    } else if (c->state != NET_STOPPING) {
+        c->dropped++;
+        c->step[NETCARD_STOP] = WAIT;
+    } else if (!player_at_rest(&c->player)) {
+        mark(c, NETCARD_STOP);
+        player_set_target(&c->player, 0);
+        c->step[NETCARD_STOP] = WAIT;
+    } else {
+        mark(c, NETCARD_STOP);
+        player_clear(&c->player);
+        c->home.state = HOME_CYCLE_IDLE;
+        card_rest(c);
+        c->step[NETCARD_STOP] = RELEASE;
+    }
+}
+
+/* The literal pause has the processor until a start. */
+static void hold(struct netcard *c)
+{
+    enum { WAIT, LOOK, ACT };
+
+    mark(c, NETCARD_PAUSE);
+    if (!c->holds) {
+        c->holds = true;
+        c->released = false;
+        c->resumes = c->state;
+    }
+    c->state = NET_PAUSED;
+    if (c->released) {
+        c->holds = false;
+        c->state = c->resumes;
+        c->step[NETCARD_PAUSE] = WAIT;
+    } else {
+        card_work(c, NETCARD_PAUSE, c->settings.step_cycles, ACT);
+    }
+}
+
+void card_pause(struct netcard *c)
+{
+    enum { WAIT, LOOK, ACT, RELEASE };
+    const int step = c->step[NETCARD_PAUSE];
+    const bool goes = c->state == NET_RUNNING || c->state == NET_HOMING;
+
+    if (step == WAIT) {
+        card_take(c, NETCARD_PAUSE, NETCARD_GIVE_PAUSE, LOOK);
+    } else if (step == LOOK) {
+        card_work(c, NETCARD_PAUSE, c->settings.step_cycles, ACT);
+    } else if (step == RELEASE) {       /* they look what has become of the motion meanwhile */
+        c->step[NETCARD_PAUSE] = WAIT;
+        kernel_give(&c->kernel,
+                    c->state == NET_HOMING ? NETCARD_GIVE_HOME : NETCARD_GIVE_FIFO);
+    } else if (card_literal(c)) {
+        hold(c);
+    } else {
+        c->step[NETCARD_PAUSE] = WAIT;
+        if (c->state == NET_PAUSING) {
+            mark(c, NETCARD_PAUSE);
+            player_set_target(&c->player, 0);
+            c->state = player_at_rest(&c->player) ? NET_PAUSED : NET_PAUSING;
+        } else if (goes) {
+            mark(c, NETCARD_PAUSE);
+            if (c->state == NET_RUNNING ? c->primed : c->home.state != HOME_CYCLE_IDLE) {
+                player_set_target(&c->player, 1);
+            }
+            c->step[NETCARD_PAUSE] = RELEASE;
+        } else {
+            c->dropped += c->state != NET_PAUSED;
+        }
+    }
+}
+
+/* The semaphores that what the FPGA tells is for. */
+static uint32_t told(struct netcard *c)
+{
+    const uint32_t what = c->told.what, events = c->told.events;
+    uint32_t gives = 0;
+
+    memset(&c->told, 0, sizeof c->told);
+    if (what & (PLAYER_HALF | PLAYER_DRY | PLAYER_ENDED | PLAYER_REST)) {
+        gives |= 1u << NETCARD_GIVE_FIFO;
+    }
+    if (what & (PLAYER_REST | PLAYER_ENDED) && !card_literal(c)) {
+        gives |= c->state == NET_PAUSING ? 1u << NETCARD_GIVE_PAUSE : 0;
+        gives |= c->state == NET_STOPPING ? 1u << NETCARD_GIVE_STOP : 0;
+        gives |= c->homing && (c->state == NET_HOMING || c->state == NET_FAULT)
+                 ? 1u << NETCARD_GIVE_HOME : 0;
+    }
+    for (uint32_t i = 1; events && i <= c->reader.header.events; i++) {
+        const struct job_event *e = &c->reader.header.event[i - 1];
+        if (events >> i & 1) {
+            card_outputs_flag_pins(&c->outputs, e->pins,
+                                   &(struct mc_po){ 0, e->mode, e->level, e->width_us });
+        }
+    }
+    if (events) {
+        card_pend(c, NETCARD_SOFTWARE);
+    }
+    return gives;
+}
+
+/* An input's routine: what it does is a command like any other. */
+static uint32_t served(struct netcard *c, int vector)
+{
+    static const enum card_command COMMAND[] = {
+        [CARD_START] = CARD_DO_START, [CARD_PAUSE] = CARD_DO_PAUSE, [CARD_STOP] = CARD_DO_STOP,
+        [CARD_HOME] = CARD_DO_HOME
+    };
+    const struct card_input_served s = card_inputs_serve(&c->inputs, vector, c->now);
+    enum net_code code;
+
+    if (s.line < 0 || s.action == CARD_NONE || s.action == CARD_EVENT) {
+        return 0;
+    }
+    const int give = card_order(c, COMMAND[s.action], (1u << CARD_AXES) - 1, &code);
+    return give >= 0 ? 1u << give : 0;
+}
+
+void card_interrupt(struct netcard *c, int interrupt)
+{
+    enum { ENTER, SERVE, GIVE };
+    int32_t *step = &c->step[NETCARD_TASKS + interrupt];
+    uint32_t *gives = &c->gives[interrupt];
+
+    if (*step == ENTER) {
+        c->served[interrupt]++;
+        card_work(c, NETCARD_TASKS + interrupt, c->settings.isr_cycles, SERVE);
+        return;
+    }
+    if (*step == SERVE) {
+        *step = GIVE;
+        if (interrupt < CARD_VECTORS) {
+            *gives = served(c, interrupt);
+        } else if (interrupt == NETCARD_FPGA) {
+            *gives = told(c);
+        } else if (interrupt == NETCARD_SOFTWARE) {
+            card_outputs_serve(&c->outputs, c->now);
+        } else {
+            *gives = 1u << (interrupt == NETCARD_FLASH ? NETCARD_GIVE_FLASH : NETCARD_GIVE_BYTES);
+        }
+    }
+    for (int i = 0; *gives; i++) {
+        if (*gives >> i & 1) {
+            *gives &= ~(1u << i);
+            kernel_give(&c->kernel, i);
+            return;
+        }
+    }
+    if (interrupt < CARD_VECTORS && card_inputs_vectors(&c->inputs) >> interrupt & 1) {
+        card_work(c, NETCARD_TASKS + interrupt, c->settings.isr_cycles, SERVE);
+        return;
+    }
+    *step = ENTER;
+    kernel_end_interrupt(&c->kernel, true);
+}
