@@ -16,8 +16,8 @@
 enum {
     JOB_PAYLOAD_AT = 24,
     JOB_PAYLOAD = JOB_CRC_AT - JOB_PAYLOAD_AT,
-    JOB_PAGE_FRAMES = JOB_PAYLOAD,                  /* at most: one axis, a byte each */
-    JOB_FRAME_BYTES = 3 * JOB_AXES + 1              /* at most: differences of 2 * 32767, an event */
+    JOB_PAGE_FRAMES = JOB_PAYLOAD,          /* at most: one axis, a byte each */
+    JOB_FRAME_BYTES = 3 * JOB_AXES + 1      /* at most: differences of 2 * 32767, an event */
 };
 
 struct job_frame {

@@ -13,8 +13,8 @@ struct job_reader {
     struct job_header header;
     uint32_t low, high;         /* data pages among which the next one is sought; low <= high */
     uint32_t frame;             /* the next */
-    int32_t  position[JOB_AXES];/* [pulses] at the begin of the next frame, once its page is there */
-    bool     known;             /* that position: the next page must begin there */
+    int32_t  position[JOB_AXES];/* [pulses] at the begin of the next frame, if that is */
+    bool     known;             /* then the next page must begin there */
     int32_t  at;                /* in the page */
     struct job_page page;       /* frames 0: none is there */
 };

@@ -14,7 +14,7 @@
 
 struct job_writer {
     struct job_header header;       /* pages, frames and end are those so far */
-    enum job_fault fault;           /* of the first frame that was refused; then no other is taken */
+    enum job_fault fault;           /* of the first frame refused; no other is taken then */
     uint32_t first;                 /* frame of the page under way, */
     int32_t  begin[JOB_AXES];       /* [pulses] where it begins, */
     int32_t  frames, bytes;         /* and what it has */

@@ -103,8 +103,8 @@ int32_t job_store_credit(const struct job_store *s);
  * transfer), NET_PAGE (outside, or no credit), NET_BAD_JOB (not its CRC; the transfer goes on). */
 enum net_code job_store_page(struct job_store *s, uint32_t page, const uint8_t bytes[FLASH_PAGE]);
 
-/* JOB_END, which may come again. NET_DONE: what comes of it is told by job_store_ended. NET_STATE: no
- * transfer; NET_PAGE: pages are missing; NET_BAD_JOB: not the CRC of JOB_BEGIN. */
+/* JOB_END, which may come again. NET_DONE: what comes of it is told by job_store_ended. NET_STATE:
+ * no transfer; NET_PAGE: pages are missing; NET_BAD_JOB: not the CRC of JOB_BEGIN. */
 enum net_code job_store_end(struct job_store *s, uint32_t crc);
 
 /* Begin the next operation or page of reading, if the chip is idle. Returns when to call again [ns

@@ -22,7 +22,8 @@ bool store_read_record(struct job_place *p, int32_t slots, int32_t slot,
         .slot = slot, .sequence = job_get32(page + 4), .bytes = job_get32(page + 12),
         .crc = job_get32(page + 16), .id = job_get32(page + 20),
     };
-    if (memcmp(page, "MCR1", 4) || job_get32(page + RECORD_CRC_AT) != net_crc(0, page, RECORD_CRC_AT)
+    if (memcmp(page, "MCR1", 4)
+        || job_get32(page + RECORD_CRC_AT) != net_crc(0, page, RECORD_CRC_AT)
         || job_get32(page + 8) != (uint32_t)slot || read.bytes % FLASH_PAGE
         || read.bytes < 2 * FLASH_PAGE || store_pages(&read) > store_room(slots))
         return false;

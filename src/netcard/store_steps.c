@@ -68,8 +68,9 @@ static int64_t scan_page(struct job_store *s, struct flash_chip *f, int64_t now)
         store_set(s->dirty, (uint32_t)at / FLASH_SECTOR_PAGES, true);
     if (k + 1 < store_pages(&s->next))
         return took;
+    const uint32_t first = (uint32_t)store_first_sector(s->next.slot);
     for (uint32_t j = 0; j <= k; j++)
-        if (store_bit(s->dirty, (uint32_t)store_first_sector(s->next.slot) + j / FLASH_SECTOR_PAGES))
+        if (store_bit(s->dirty, first + j / FLASH_SECTOR_PAGES))
             store_set(s->have, j, false);
     s->at = 0;
     s->phase = STORE_ERASE;

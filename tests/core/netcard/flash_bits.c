@@ -1,4 +1,4 @@
-/* The chip: what programs, erases and cuts do to its bits, against a plain array; times, refusals. */
+/* The chip: what programs, erases and cuts do to its bits, against a plain array; its times. */
 #include "check.h"
 #include "flash_chip.h"
 

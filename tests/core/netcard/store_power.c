@@ -7,8 +7,8 @@ static struct rig base, cut, again;
 static const int32_t SHARE[] = {0, 30, 300, 500, 700, 970, 1000};
 enum { SHARES = sizeof SHARE / sizeof *SHARE, EACH_SHARE = CHECK_EACH == 1 ? 1 : 3 };
 
-/* At power-up: 1 the new job, 0 the old one, which is none on an empty chip and may be none with one
- * slot; -1: neither. */
+/* At power-up: 1 the new job, 0 the old one, which is none on an empty chip and may be none with
+ * one slot; -1: neither. */
 static int which(struct rig *r, const struct sent *old, const struct sent *new)
 {
     if (rig_holds(r, new))
@@ -36,15 +36,15 @@ static bool kept(const struct rig *r, const struct rig *before)
     const int32_t slot = before->store.job.slot;
     const size_t half = FLASH_BYTES / 2, sectors = FLASH_SECTORS / 2;
     return slot < 0
-           || (!memcmp(r->chip.array + half * (size_t)slot, before->chip.array + half * (size_t)slot,
-                       half)
+           || (!memcmp(r->chip.array + half * (size_t)slot,
+                       before->chip.array + half * (size_t)slot, half)
                && !memcmp(r->chip.wear + sectors * (size_t)slot,
                           before->chip.wear + sectors * (size_t)slot,
                           sectors * sizeof *r->chip.wear));
 }
 
-/* Cut an upload over `base` in every operation, or in those at its begin and end and every `each`-th
- * between, and cut the recovery in one of its operations too. */
+/* Cut an upload over `base` in every operation, or in those at its begin and end and every
+ * `each`-th between, and cut the recovery in one of its operations too. */
 static void everywhere(const char *what, const struct sent *old, const struct sent *new,
                        uint32_t each)
 {

@@ -1,4 +1,4 @@
-/* A transfer: what is refused and with what word, pages in any order, what is known already, times. */
+/* A transfer: what is refused with what word, pages in any order, what is known already, times. */
 #include "store_rig.h"
 
 static struct made file, other;
