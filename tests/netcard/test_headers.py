@@ -26,7 +26,7 @@ COMPILERS = [
 # By hand, from the example's file and the two changes below.
 WANTED = {
     "MC_IP_0": 192, "MC_IP_3": 50, "MC_NETMASK_2": 255, "MC_NETMASK_3": 0, "MC_GATEWAY_3": 1,
-    "MC_MAC_0": 2, "MC_MAC_5": 1, "MC_SERVER_IP_3": 10, "MC_SERVER_PORT": 4013, "MC_CARD_ID": 1,
+    "MC_MAC_0": 2, "MC_MAC_5": 1, "MC_SERVER_IP_3": 10, "MC_SERVER_PORT": 8765, "MC_CARD_ID": 1,
     "MC_AXES": 2, "MC_X_PULSES_PER_M": 1_000_000, "MC_X_LIMIT_NEG": -5000,
     "MC_X_LIMIT_POS": 410_000, "MC_Y_LIMIT_POS": 290_000, "MC_X_LIMIT_LEVEL": 1,
     "MC_X_SPEED_MAX": 200_000, "MC_X_SPEED_MIN": 500, "MC_X_ACC_MAX": 1_000_000,
@@ -167,7 +167,7 @@ def test_the_command_is_a_hook_wrong_values_end_the_build(tmp_path: Path) -> Non
     file = tmp_path / "card.toml"
     file.write_text(TEXT)
     assert within("card", "headers", file, "-o", tmp_path / "inc").returncode == 0
-    file.write_text(TEXT.replace("4013", "0").replace("dwell    = 0.03", "dwell = -1"))
+    file.write_text(TEXT.replace("8765", "0").replace("dwell    = 0.03", "dwell = -1"))
     result = within("card", "headers", file, "-o", tmp_path / "other")
     assert result.returncode == 2
     assert [m.split(": ")[1] for m in result.stderr.splitlines()[1:]] == ["motion.pen.dwell = -1"]

@@ -82,7 +82,7 @@ class Network(Table):
     server: Annotated[Address, Is("Address of the server", macro="SERVER_IP")] = "192.168.1.10"
     port: Annotated[
         int, Is("Port of the server", "", "SERVER_PORT", low=1, high=65535, suffix="U")
-    ] = 4013
+    ] = 8765
     id: Annotated[
         int, Is("Number of the card", "", "CARD_ID", low=1, high=2**31 - 1, parameter="card_id")
     ] = 1

@@ -1,0 +1,109 @@
+// The job: opened here, drawn with its speeds and the live tool, sent into the card. What changes
+// here is told to the page by an event "job".
+import { part, post } from "./link.js";
+import { draw } from "./picture.js";
+
+const pictures = new Map(); // by the job's hash; null: the server has none
+const sendings = new Map(); // by card: what the last upload said
+let opened = null, card = null, about = "", wrong = "";
+
+// The picture to be shown: what was opened last, else the job in the card.
+const picture = () => opened || pictures.get(card?.job) || null;
+
+// Pulses per mm of each axis, as the job in the card has them.
+export function scaleOf(one) {
+  return (pictures.get(one.job) || opened)?.pulses_per_mm;
+}
+
+export function showJob(now) {
+  card = now;
+  if (card.job && !pictures.has(card.job)) fetchPicture(card.job);
+  const shown = picture(), upload = card.upload;
+  part("job-name").textContent = shown ? shown.name : "Job";
+  const inCard = shown && shown.job === card.job;
+  part("send").disabled = !opened || !!upload || (inCard && card.connected);
+  part("sending").hidden = !upload;
+  if (upload) {
+    [part("progress").max, part("progress").value] = [upload.pages, upload.taken];
+    part("sent").textContent = `${upload.taken} of ${upload.pages} pages`
+      + (upload.waits ? `, waits: ${upload.waits}` : "");
+  }
+  const last = upload ? "" : sendings.get(card.id) || "";
+  const words = shown ? described(shown) + (inCard && !last ? " In the card." : "")
+    : card.job ? `The card has job ${card.job.slice(0, 8)}; open its file to see it.`
+      : "A drawing (PLT) is planned with the configuration; a job file (mcj) is taken as it is.";
+  about = [wrong || words, last].filter(Boolean).join(" ");
+  if (part("job-about").textContent !== about) part("job-about").textContent = about;
+  part("job-about").classList.toggle("bad", !!wrong);
+  part("scale").hidden = !shown;
+  if (shown) part("fastest").textContent = `${shown.fastest.toFixed(0)} mm/s`;
+  show();
+}
+
+function show() {
+  const shown = picture(), s = card?.connected && card.status;
+  const per = shown?.pulses_per_mm;
+  const tool = s && shown && per[0] && per[1]
+    ? [s.position[0] / per[0], s.position[1] / per[1]] : null;
+  const runs = ["RUNNING", "PAUSING", "PAUSED", "STOPPING"].includes(card?.state);
+  draw(part("picture"), shown, tool, runs && shown?.job === card.job ? s.frame : null);
+}
+
+function described(p) {
+  const time = p.time < 100 ? `${p.time.toFixed(1)} s`
+    : `${Math.floor(p.time / 60)} min ${Math.round(p.time % 60)} s`;
+  const [w, h] = [0, 1].map((k) => (p.high[k] - p.low[k]).toFixed(1));
+  const more = p.notes.length > 1 ? ` and ${p.notes.length - 1} more` : "";
+  const notes = p.notes.length ? ` Note: ${p.notes[0]}${more}.` : "";
+  return `${time}, ${w} × ${h} mm, ${p.lines} ${p.lines === 1 ? "line" : "lines"}, ${(p.drawn / 1000).toFixed(2)} m drawn, `
+    + `${(p.moved / 1000).toFixed(2)} m with the tool up, ${(p.bytes / 1024).toFixed(0)} kB.${notes}`;
+}
+
+async function fetchPicture(job) {
+  pictures.set(job, null);
+  try {
+    pictures.set(job, await post("/picture", { job }));
+    dispatchEvent(new Event("job"));
+  } catch { /* it was not opened at this server */ }
+}
+
+async function open(file) {
+  wrong = "";
+  part("job-about").textContent = `${file.name} …`;
+  try {
+    opened = await post(`/open?name=${encodeURIComponent(file.name)}`, file);
+    pictures.set(opened.job, opened);
+  } catch (error) {
+    wrong = error.message;
+  }
+  dispatchEvent(new Event("job"));
+}
+
+part("file").addEventListener("change", (event) => {
+  const [file] = event.target.files;
+  if (file) open(file);
+  event.target.value = ""; // the same file may be opened again
+});
+
+const drop = document.querySelector(".job");
+for (const kind of ["dragover", "drop"]) {
+  drop.addEventListener(kind, (event) => {
+    event.preventDefault();
+    if (kind === "drop" && event.dataTransfer.files.length) open(event.dataTransfer.files[0]);
+  });
+}
+
+part("send").addEventListener("click", async () => {
+  const { id } = card, { job, name } = opened;
+  sendings.set(id, "");
+  part("send").disabled = true;
+  try {
+    const result = await post(`/cards/${id}/job`, { job });
+    sendings.set(id, result.ok ? `${name} is in the card.` : `${name} was refused: ${result.text}.`);
+  } catch (error) {
+    sendings.set(id, error.message);
+  }
+  dispatchEvent(new Event("job"));
+});
+
+addEventListener("resize", show);

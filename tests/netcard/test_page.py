@@ -1,0 +1,479 @@
+"""The page of the cards: without a socket, then in a browser on cards that answer as real ones."""
+
+import io
+import json
+import shutil
+import socket
+import threading
+import time
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import uvicorn
+from conftest import ROOT
+from fleet import Fleet, circle, status
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from starlette.testclient import TestClient
+from starlette.websockets import WebSocketDisconnect
+
+from motionfmu.errors import InputError
+from motionfmu.netcard.config import CardConfig, load, read
+from motionfmu.netcard.config_text import text_of
+from motionfmu.netcard.job import decode
+from motionfmu.netcard.page import application
+from motionfmu.netcard.page.form import form
+from motionfmu.netcard.page.guard import HEADERS
+from motionfmu.netcard.page.pictures import POINTS, picture
+
+CARD = ROOT / "examples/network_card_firmware/card.toml"
+TOKEN, HOST, LIVE = "a-token", "http://127.0.0.1:8766", "ws://127.0.0.1:8766/live"
+BROWSER = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
+)
+
+
+def client(fleet: Fleet, config: Path | None = None, **headers: str) -> TestClient:
+    own = {"authorization": f"Bearer {TOKEN}"} | headers
+    return TestClient(application(fleet, TOKEN, config), HOST, headers=own)
+
+
+@pytest.fixture
+def fleet() -> Fleet:
+    cards = Fleet()
+    cards.add(1, "READY")
+    cards.add(2, "EMPTY")
+    return cards
+
+
+# Who may.
+
+
+@pytest.mark.parametrize(
+    ("headers", "allowed"),
+    [
+        ({}, True),
+        ({"origin": HOST}, True),
+        ({"origin": "http://localhost:8766", "host": "localhost:8766"}, True),
+        ({"origin": "http://evil.example"}, False),
+        ({"origin": "null"}, False),
+        ({"origin": "http://127.0.0.1:1"}, False),
+        ({"origin": "https://127.0.0.1:8766"}, False),
+        ({"host": "evil.example:8766"}, False),
+        ({"host": "evil.example:8766", "origin": "http://evil.example:8766"}, False),
+        ({"host": "127.0.0.1.evil.example"}, False),
+        ({"authorization": "Bearer another"}, False),
+        ({"authorization": ""}, False),
+        ({"authorization": "Bearer \u00e4"}, False),
+    ],
+)
+def test_only_this_page_with_the_token_starts_a_card(
+    fleet: Fleet, headers: dict[str, str], allowed: bool
+) -> None:
+    given_headers: Any = {k: v.encode("latin-1") for k, v in headers.items()}
+    answer = client(fleet).post("/cards/1/command", json={"name": "start"}, headers=given_headers)
+    assert answer.status_code == (200 if allowed else 403)
+    assert fleet.done == ([(1, "start")] if allowed else [])
+    assert all(answer.headers[k] == v for k, v in HEADERS.items())
+
+
+@pytest.mark.parametrize(
+    ("headers", "token"),
+    [({"origin": "http://evil.example"}, TOKEN), ({"host": "evil.example"}, TOKEN), ({}, "x")],
+)
+def test_nobody_else_hears_of_the_cards(fleet: Fleet, headers: Any, token: str) -> None:
+    with pytest.raises(WebSocketDisconnect) as error:
+        with client(fleet).websocket_connect(LIVE, headers=headers) as line:
+            line.send_text(token)
+            line.receive_text()
+    assert error.value.code == 1008
+    assert fleet.queues == []
+
+
+def test_the_page_is_whole_without_any_other_server(fleet: Fleet) -> None:
+    c = client(fleet, authorization="")
+    text = c.get("/?token=x").text
+    assert "a-token" not in text and "style=" not in text and "<script>" not in text
+    folder = ROOT / "src/motionfmu/netcard/page"
+    for file in folder.glob("*.[jch]*s*"):
+        assert c.get(f"/{file.name}").text == file.read_text()
+        assert "://" not in file.read_text().replace("ws://${location.host}", "")
+    assert c.get("/app.py").status_code == 404 and c.get("/..%2fconfig.py").status_code == 404
+    assert c.get("/cards/1/command").status_code == 405
+
+
+# Cards.
+
+
+def test_a_command_is_answered_with_its_end_and_its_reason(fleet: Fleet) -> None:
+    c = client(fleet)
+    fleet.add(3, connected=False)
+
+    def told(card: int, name: str) -> tuple[bool, str, str]:
+        said = c.post(f"/cards/{card}/command", json={"name": name}).json()
+        return said["ok"], said["text"], said["state"]
+
+    assert told(1, "start") == (True, "done", "RUNNING")
+    assert told(1, "home") == (False, "not in this state", "RUNNING")
+    assert told(2, "start") == (False, "there is no job in the card", "EMPTY")
+    assert told(3, "stop") == (False, "the card is not connected", "")
+    assert fleet.done == [(1, "start")]
+    assert c.post("/cards/1/command", content=b"[1]").json() == {
+        "errors": ["a JSON object is wanted"]
+    }
+    assert c.post("/cards/1/command", content=b"[" * 100_000).status_code == 422
+    assert c.post("/cards/x/command", json={}).status_code == 404
+
+
+def test_a_page_hears_of_all_cards_then_of_those_that_change(fleet: Fleet) -> None:
+    fleet.tell("connected", 2, "hello")
+    c = client(fleet)
+    with c.websocket_connect(LIVE, headers={"origin": HOST}) as line:
+        line.send_text(TOKEN)
+        first = line.receive_json()
+        assert [card["id"] for card in first["cards"]] == [1, 2]
+        assert first["cards"][0]["status"]["load"] == list(status().load)
+        assert [e["text"] for e in first["events"]] == ["hello"]
+        c.post("/cards/1/command", json={"name": "start"})
+        then = line.receive_json()
+        assert [(card["id"], card["state"]) for card in then["cards"]] == [(1, "RUNNING")]
+        assert [e["text"] for e in then["events"]] == ["start: done"]
+        del fleet.cards[2]
+        fleet.tell("status", 1, "")
+        assert line.receive_json() == {"cards": [], "gone": [2], "events": []}
+    deadline = time.monotonic() + 5
+    while fleet.queues and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert fleet.queues == []
+
+
+# Jobs.
+
+
+def test_a_picture_has_the_speed_the_pen_and_the_places_of_the_job() -> None:
+    data = circle(40.0)
+    p = picture(decode(data), data, "circle.mcj")
+    x, y, v = (np.array(p[k]) for k in ("x", "y", "speed"))
+    down = np.array(p["down"], bool)
+    assert np.abs(np.hypot(x - 40.0, y) - 40.0).max() < 2e-3  # half a pulse in each axis
+    ways = np.hypot(np.diff(x), np.diff(y)) / 1e-3
+    assert np.abs(ways - v[1:]).max() < 0.06 + 0.7  # its rounding, and that of the places
+    assert p["fastest"] == pytest.approx(
+        2 * np.pi * 40 / 2.6 * 2, rel=2e-2
+    )  # sin^2: twice its mean
+    assert p["drawn"] == pytest.approx(2 * np.pi * 40, rel=1e-3) and p["moved"] == 0
+    assert not down[:10].any() and down[12:2600].all() and not down[2670:].any()
+    assert p["lines"] == 1 and p["low"] == [0, -40] and p["high"] == [80, 40]
+
+
+def test_a_long_job_is_thinned_where_it_does_not_show() -> None:
+    data = circle(40.0, turns=8)
+    p = picture(decode(data), data, "long.mcj")
+    x, y = np.array(p["x"]), np.array(p["y"])
+    assert len(x) <= POINTS + 4 < p["frames"] and p["frame"][-1] == p["frames"]
+    middle = np.hypot((x[1:] + x[:-1]) / 2 - 40, (y[1:] + y[:-1]) / 2)
+    assert 39.9 < middle.min() and np.hypot(x - 40, y).max() < 40.002
+    assert np.all(np.diff(p["frame"]) > 0)
+
+
+def test_a_drawing_is_planned_with_the_configuration_and_sent(fleet: Fleet, tmp_path: Path) -> None:
+    drawing = b"IN;SP1;PU400,400;PD2000,400,2000,1600;PU0,0;SP0;"
+    config = tmp_path / "card.toml"
+    shutil.copy(CARD, config)
+    c = client(fleet, config)
+    p = c.post("/open?name=a.plt", content=drawing).json()
+    assert (p["name"], p["lines"], p["low"], p["high"]) == ("a.plt", 1, [10, 10], [50, 40])
+    assert p["drawn"] == pytest.approx(70, abs=0.1)
+    assert p["fastest"] > 90
+    assert c.post("/picture", json={"job": p["job"]}).json() == p
+    assert c.post("/cards/2/job", json={"job": p["job"]}).json()["ok"]
+    assert fleet.cards[2].job == p["job"] and fleet.cards[2].state == "READY"
+    wrong = c.post("/open?name=b.plt", content=b"IN;SP1;PD20000,0;")
+    assert wrong.status_code == 422
+    assert "X = 500.000 mm, beyond the limit 410 mm" in wrong.json()["errors"][0]
+    assert c.post("/picture", json={"job": "0"}).status_code == 404
+    assert "not open any more" in c.post("/cards/2/job", json={"job": 1}).json()["errors"][0]
+    told = client(fleet).post("/open?name=c.plt", content=drawing).json()["errors"]
+    assert told == ["c.plt: a drawing needs the card's configuration: fill it in first"]
+    damaged = bytearray(circle())
+    damaged[300] ^= 1
+    assert c.post("/open", content=bytes(damaged)).status_code == 422
+
+
+def test_more_bytes_than_a_job_can_have_are_not_kept(fleet: Fleet) -> None:
+    answer = client(fleet).post("/open", content=bytes((16 << 20) + 1))
+    assert answer.json() == {"errors": ["more than 16777216 bytes"]}
+
+
+# Configuration.
+
+
+def test_the_form_has_every_field_of_the_file() -> None:
+    config = load(CARD).model_dump()
+    pen = config["motion"].pop("pen")
+    rows = {s["place"]: {f["name"]: f for f in s["fields"]} for s in form()}
+    for place in ("network", "motion", "pulse", "fifo", "tasks"):
+        assert set(rows[place]) == set(config[place])
+    assert set(rows["motion.pen"]) == set(pen) and set(rows["inputs"]) == set(config["inputs"][0])
+    assert set(rows["axes"]) == set(config["axes"][0]) - {"name"}
+    period = rows["motion"]["period"]
+    assert (period["low"], period["high"], period["unit"]) == pytest.approx((250e-6, 0.01, "s"))
+    assert rows["motion"]["reserve"]["high"] == 0.9 and rows["tasks"]["run"]["kind"] == "whole"
+    assert rows["inputs"]["action"]["choices"][2] == "pause"
+    assert rows["axes"]["maximum"]["default"] is None
+    assert rows["motion"]["must_home"]["kind"] == "yes" and rows["network"]["ip"]["kind"] == "text"
+
+
+def test_values_are_checked_as_the_file_is_and_saved_whole(fleet: Fleet, tmp_path: Path) -> None:
+    file = tmp_path / "card.toml"
+    shutil.copy(CARD, file)
+    c = client(fleet, file)
+    values = c.post("/config/form").json()["values"]
+    assert c.post("/config/check", json=values).json() == {"faults": []}
+    values["axes"][0]["speed_max"], values["network"]["port"] = 600, 0
+    found = c.post("/config/check", json=values).json()["faults"]
+    assert [f["place"] for f in found] == ["network.port", "axes.0.speed_max"]
+    before = file.read_text()
+    assert c.post("/config/save", json=values).status_code == 422
+    assert c.post("/config/headers", json=values).status_code == 422
+    assert file.read_text() == before
+    values["axes"][0]["speed_max"], values["network"]["port"] = 150, 9000
+    assert c.post("/config/save", json=values).json() == {"file": str(file)}
+    assert load(file).axes[0].speed_max == 150 and load(file).network.port == 9000
+    assert [f.name for f in tmp_path.iterdir()] == ["card.toml"]
+    answer = c.post("/config/headers", json=values)
+    archive = zipfile.ZipFile(io.BytesIO(answer.content))
+    assert len(archive.namelist()) == 6
+    assert b"MC_X_SPEED_MAX 150000UL" in archive.read("mc_axes.h")
+    assert c.post("/config/headers", json=values).content == answer.content
+    said = c.post("/config/read", json={"text": before, "name": "x.toml"}).json()
+    assert said["values"] == json.loads(load(CARD).model_dump_json())
+    told = c.post("/config/read", json={"text": "[network]\nport = 0\n", "name": "x.toml"}).json()
+    assert told["errors"][1].startswith("x.toml:2: network.port = 0: ")
+    with pytest.raises(InputError):
+        application(fleet, TOKEN, tmp_path / "none.toml")
+
+
+NUMBERS = st.floats(0.5, 400).map(lambda x: round(x, 6))
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.data())
+def test_the_text_of_a_configuration_is_read_as_the_same(data: Any) -> None:
+    tree = load(CARD).model_dump()
+    tree["axes"][0]["speed_max"] = data.draw(st.floats(20, 500))
+    tree["axes"][1]["maximum"] = data.draw(NUMBERS)
+    tree["motion"]["tolerance"] = data.draw(st.floats(1e-9, 10))
+    tree["motion"]["must_home"] = data.draw(st.booleans())
+    tree["inputs"][data.draw(st.integers(0, 15))]["edge"] = "both"
+    tree["outputs"][data.draw(st.integers(6, 15))] = data.draw(st.from_regex(r"\A[a-z][0-9_]{2}\Z"))
+    config = CardConfig.model_validate(tree)
+    assert read(text_of(config), "card.toml") == config
+
+
+# In a browser.
+
+
+@dataclass
+class Served:
+    fleet: Fleet
+    port: int
+    config: Path
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    if not BROWSER:
+        pytest.skip("no Chromium here: the page is not tried in a browser")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as p:
+        found = p.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"])
+        yield found
+        found.close()
+
+
+@pytest.fixture
+def served(tmp_path: Path) -> Iterator[Served]:
+    fleet, config = Fleet(), tmp_path / "card.toml"
+    shutil.copy(CARD, config)
+    fleet.add(1, "EMPTY")
+    fleet.add(4, "FAULT")
+    with socket.socket() as listening:
+        listening.bind(("127.0.0.1", 0))
+        app = application(fleet, TOKEN, config)
+        server = uvicorn.Server(uvicorn.Config(app, log_level="warning"))
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
+        thread.start()
+        yield Served(fleet, listening.getsockname()[1], config)
+        server.should_exit = True
+        thread.join(10)
+
+
+@pytest.fixture
+def tab(browser: Any, served: Served) -> Iterator[Any]:
+    context = browser.new_context(viewport={"width": 390, "height": 844})
+    page = context.new_page()
+    page.set_default_timeout(10_000)
+    told: list[str] = []
+    page.on("pageerror", lambda error: told.append(str(error)))
+    page.on("console", lambda m: told.append(m.text) if m.type == "error" else None)
+    page.goto(f"http://127.0.0.1:{served.port}/?token={TOKEN}")
+    yield page
+    context.close()
+    assert told == []
+
+
+def test_a_job_is_opened_sent_started_paused_stopped_homed(tab: Any, served: Served) -> None:
+    from playwright.sync_api import expect
+
+    fleet = served.fleet
+    state, said = tab.locator("#state"), tab.locator("#told")
+
+    def press(name: str, words: str) -> None:
+        tab.get_by_role("button", name=name, exact=True).click()
+        expect(said).to_have_text(words)
+
+    expect(state).to_have_text("EMPTY")
+    assert "token" not in tab.url
+    press("Start", "Start refused: there is no job in the card (EMPTY)")
+    file = {"name": "circle.mcj", "mimeType": "application/octet-stream", "buffer": circle()}
+    tab.get_by_label("Open drawing or job").set_input_files(files=[file])
+    expect(tab.locator("#job-about")).to_contain_text("mm, 1 line, 0.25 m drawn")
+    fleet.going = False
+    tab.get_by_role("button", name="Send to card").click()
+    expect(tab.locator("#sent")).to_contain_text("waits: the card is away")
+    assert tab.get_by_role("progressbar", name="Upload").get_attribute("value") == "0"
+    tab.reload()  # the upload goes on without the page, and is seen again
+    expect(tab.locator("#sent")).to_contain_text("waits: the card is away")
+    fleet.going = True
+    expect(state).to_have_text("READY")
+    expect(tab.locator("#job-name")).to_have_text("circle.mcj")
+    expect(tab.locator("#job-about")).to_contain_text("In the card.")
+    press("Start", "Start: done (RUNNING)")
+    expect(state).to_have_text("RUNNING")
+    press("Home", "Home refused: not in this state (RUNNING)")
+    # The focus is on a button: space pauses and presses it not.
+    tab.keyboard.press("Space")
+    expect(said).to_have_text("Pause: done (PAUSED)")
+    press("Start", "Start: done (RUNNING)")
+    press("Pause", "Pause: done (PAUSED)")
+    press("Stop", "Stop: done (READY)")
+    press("Home", "Home: done (HOMING)")
+    expect(state).to_have_text("HOMING")
+    names = ["start", "pause", "start", "pause", "stop", "home"]
+    assert fleet.done == [(1, name) for name in names]
+    expect(tab.locator("#events li").first).to_contain_text("home: done")
+    tab.get_by_role("button", name="Card 4").click()
+    press("Reset", "Reset: done (READY)")
+    assert fleet.done[-1] == (4, "reset")
+    # Nothing is wider than a telephone's screen, and Stop is on it.
+    assert tab.locator("html").evaluate("e => e.scrollWidth") == 390
+    box = tab.get_by_role("button", name="Stop").bounding_box()
+    assert box["y"] + box["height"] <= 844 and box["width"] > 300
+
+
+def test_the_picture_shows_the_speed_and_the_tool(tab: Any, served: Served) -> None:
+    from playwright.sync_api import expect
+
+    file = {"name": "circle.mcj", "mimeType": "application/octet-stream", "buffer": circle()}
+    tab.get_by_label("Open drawing or job").set_input_files(files=[file])
+    expect(tab.locator("#fastest")).to_have_text("194 mm/s")
+    expect(tab.locator("#position li").nth(1)).to_have_text("Y20.500mm")
+    canvas = tab.locator("#picture")
+
+    def ink(x: float, y: float) -> list[int]:
+        """The strongest colour around a place [mm]."""
+        return canvas.evaluate(
+            """(c, [x, y]) => {
+                const [w, h] = [c.clientWidth, c.clientHeight], room = 34;
+                const scale = Math.min((w - 2 * room) / 80, (h - 2 * room) / 80);
+                const u = (w - scale * 80) / 2 + scale * x;
+                const v = (h + scale * 80) / 2 - scale * (y + 40);
+                const d = c.getContext("2d").getImageData(u - 3, v - 3, 7, 7).data;
+                let best = [0, 0, 0], most = -1;
+                for (let k = 0; k < d.length; k += 4) {
+                    const rgb = [d[k], d[k + 1], d[k + 2]];
+                    const spread = d[k + 3] * (Math.max(...rgb) - Math.min(...rgb));
+                    if (spread > most) [best, most] = [rgb, spread];
+                }
+                return best;
+            }""",
+            [x, y],
+        )
+
+    red, _, blue = ink(0.05, 2.0)  # where it begins, slowly
+    assert red > 2 * blue
+    red, _, blue = ink(80.0, 0.0)  # half way, at its fastest
+    assert blue > 2 * red
+    assert max(ink(40.0, 0.0)) - min(ink(40.0, 0.0)) < 30  # nothing is drawn in the middle
+    served.fleet.cards[1].status = status(position=(40_000, 0, 0, 0))
+    served.fleet.tell("status", 1, "")
+    expect(tab.locator("#position li").first).to_have_text("X40.000mm")
+    tab.wait_for_timeout(100)
+    arm = canvas.evaluate(
+        """c => { const d = c.getContext("2d").getImageData(
+            c.width / 2 - 12, c.height / 2 - 12, 24, 24).data;
+            let n = 0; for (let k = 3; k < d.length; k += 4) n += d[k] > 200; return n; }"""
+    )
+    assert arm > 60
+
+
+def test_the_form_checks_as_it_is_typed_and_saves(tab: Any, served: Served) -> None:
+    from playwright.sync_api import expect
+
+    tab.get_by_role("tab", name="Configuration").click()
+    field = tab.get_by_label("Highest speed [mm/s], axis X")
+    expect(field).to_have_value("200")
+    verdict, save = tab.locator("#verdict"), tab.get_by_role("button", name="Save")
+    expect(verdict).to_have_text("All values are good")
+    field.fill("600")
+    expect(verdict).to_have_text("1 value is wrong")
+    expect(tab.get_by_text("that is 600000 pulses/s; 1 .. 500000 wanted")).to_be_visible()
+    expect(save).to_be_disabled()
+    field.fill("150")
+    tab.get_by_label("Does, input 7").select_option("event")
+    box = tab.get_by_label("Start only when homed")
+    box.focus()
+    tab.keyboard.press("Space")  # in the form space is the form's
+    expect(verdict).to_have_text("All values are good")
+    save.click()
+    expect(verdict).to_contain_text("Saved in")
+    saved = load(served.config)
+    assert saved.axes[0].speed_max == 150 and saved.inputs[7].action == "event"
+    assert saved.motion.must_home and served.fleet.done == []
+    with tab.expect_download() as got:
+        tab.get_by_role("button", name="Download headers").click()
+    assert len(zipfile.ZipFile(got.value.path()).namelist()) == 6
+    assert tab.locator("html").evaluate("e => e.scrollWidth") == 390
+
+
+def test_another_page_cannot_press_start(browser: Any, served: Served) -> None:
+    """A page of another origin knows even the token, and is refused all the same."""
+    served.fleet.add(1, "READY")
+    context = browser.new_context()
+    page = context.new_page()
+    page.route("http://evil.example/*", lambda r: r.fulfill(body="<title>evil</title>"))
+    page.goto("http://evil.example/")
+    here = f"127.0.0.1:{served.port}"
+    page.evaluate(
+        """([here, token]) => fetch(`http://${here}/cards/1/command`, { method: "POST",
+            mode: "no-cors", body: JSON.stringify({ name: "start" }) }).catch(() => 0)
+            .then(() => fetch(`http://${here}/cards/1/command`, { method: "POST",
+            headers: { authorization: `Bearer ${token}` },
+            body: JSON.stringify({ name: "start" }) })).catch(() => 0)""",
+        [here, TOKEN],
+    )
+    heard = page.evaluate(
+        """([here, token]) => new Promise((done) => { const w = new WebSocket(`ws://${here}/live`);
+            w.onopen = () => w.send(token); w.onmessage = (e) => done(e.data);
+            w.onerror = w.onclose = () => done(""); })""",
+        [here, TOKEN],
+    )
+    assert heard == "" and served.fleet.done == [] and served.fleet.queues == []
+    context.close()
