@@ -75,7 +75,7 @@ def test_a_lost_segment_is_a_stall_and_no_gap() -> None:
 
 @BOTH
 def test_a_cut_takes_what_is_on_its_way_and_nothing_else(fmi: int) -> None:
-    """At a time, behind 700 bytes to the card, behind 5000 to the host: what came is a beginning."""
+    """At a time, behind bytes either way: what came is a beginning."""
     card, host = Stream(NOISE[:20000]), Stream(NOISE[20000:40000])
     cuts = {"cut_at": [0.05] + 7 * [0.0], "cut_behind_card": [700] + 7 * [0]}
     rig = Link(
