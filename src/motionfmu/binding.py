@@ -46,6 +46,9 @@ def library() -> ctypes.CDLL:
     c.binding_fields.restype = ctypes.POINTER(_Field)
     c.binding_mcc.restype = c.binding_machine.restype = ctypes.c_void_p
     c.fault_text.restype = ctypes.c_char_p
+    c.netcard_receive.restype = c.netcard_send.restype = ctypes.c_size_t
+    c.netcard_wants_connection.restype = c.binding_netcard_start.restype = ctypes.c_bool
+    c.binding_netcard_card.restype = c.binding_netcard_flash.restype = ctypes.c_void_p
     for name in ("acc_step", "dec_step", "dda", "over_spd", "ptp_ospd"):
         getattr(c, f"MCC_get_{name}").restype = ctypes.c_double
     for name in ("acc_type", "dec_type"):
@@ -65,6 +68,7 @@ _TYPES: dict[str, Any] = {
     "i": np.int32,
     "l": np.int64,
     "u": np.uint32,
+    "B": np.uint8,
     "d": np.float64,
     "?": np.bool_,
     "c": "S1",

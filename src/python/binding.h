@@ -13,7 +13,7 @@
 struct field {
     char    name[24];
     char    unit[16];       /* empty: none */
-    int32_t kind;           /* i int32, l int64, u uint32, d double, ? bool, c char */
+    int32_t kind;           /* i int32, l int64, u uint32, B uint8, d double, ? bool, c char */
     int32_t offset, count, stride;  /* [byte], elements, [byte] from one to the next */
 };
 
@@ -24,7 +24,8 @@ struct table {
     size_t bytes, size;     /* of the fields, of the struct */
 };
 /* Each up to a name NULL. */
-extern const struct table MCC_TABLES[], ROBOT_TABLES[], GCODE_TABLES[], PLAN_TABLES[];
+extern const struct table MCC_TABLES[], ROBOT_TABLES[], GCODE_TABLES[], PLAN_TABLES[],
+                          NETCARD_TABLES[];
 
 enum { BINDING_REPORTS = 64 };      /* room for all faults and notes of a part program */
 struct fault_list;
@@ -37,6 +38,7 @@ void binding_reports(const struct fault_list *all, struct fault_report *r, int32
 /* Of a member or of an array's elements. */
 #define KIND(x) \
     _Generic((x), int32_t: 'i', int64_t: 'l', uint32_t: 'u', double: 'd', bool: '?', char: 'c', \
+             uint8_t: 'B', \
              int32_t *: 'i', int64_t *: 'l', uint32_t *: 'u', double *: 'd', bool *: '?')
 #define OFFSET(type, m) (int32_t)offsetof(struct type, m)
 #define SIZE(type, m) (int32_t)sizeof(((struct type *)0)->m)
