@@ -1,20 +1,15 @@
-"""The page of the cards: without a socket, then in a browser on cards that answer as real ones."""
+"""The page of the cards, without a socket: who may, commands, jobs, configuration."""
 
 import io
 import json
 import shutil
-import socket
-import threading
 import time
 import zipfile
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-import uvicorn
 from conftest import ROOT
 from fleet import Fleet, circle, status
 from hypothesis import given, settings
@@ -33,9 +28,6 @@ from motionfmu.netcard.page.pictures import POINTS, picture
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
 TOKEN, HOST, LIVE = "a-token", "http://127.0.0.1:8766", "ws://127.0.0.1:8766/live"
-BROWSER = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
-)
 
 
 def client(fleet: Fleet, config: Path | None = None, **headers: str) -> TestClient:
@@ -196,7 +188,7 @@ def test_a_drawing_is_planned_with_the_configuration_and_sent(fleet: Fleet, tmp_
     wrong = c.post("/open?name=b.plt", content=b"IN;SP1;PD20000,0;")
     assert wrong.status_code == 422
     assert "X = 500.000 mm, beyond the limit 410 mm" in wrong.json()["errors"][0]
-    assert c.post("/picture", json={"job": "0"}).status_code == 404
+    assert c.post("/picture", json={"job": "0"}).json() is None
     assert "not open any more" in c.post("/cards/2/job", json={"job": 1}).json()["errors"][0]
     told = client(fleet).post("/open?name=c.plt", content=drawing).json()["errors"]
     assert told == ["c.plt: a drawing needs the card's configuration: fill it in first"]
@@ -274,206 +266,3 @@ def test_the_text_of_a_configuration_is_read_as_the_same(data: Any) -> None:
     tree["outputs"][data.draw(st.integers(6, 15))] = data.draw(st.from_regex(r"\A[a-z][0-9_]{2}\Z"))
     config = CardConfig.model_validate(tree)
     assert read(text_of(config), "card.toml") == config
-
-
-# In a browser.
-
-
-@dataclass
-class Served:
-    fleet: Fleet
-    port: int
-    config: Path
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    if not BROWSER:
-        pytest.skip("no Chromium here: the page is not tried in a browser")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as p:
-        found = p.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"])
-        yield found
-        found.close()
-
-
-@pytest.fixture
-def served(tmp_path: Path) -> Iterator[Served]:
-    fleet, config = Fleet(), tmp_path / "card.toml"
-    shutil.copy(CARD, config)
-    fleet.add(1, "EMPTY")
-    fleet.add(4, "FAULT")
-    with socket.socket() as listening:
-        listening.bind(("127.0.0.1", 0))
-        app = application(fleet, TOKEN, config)
-        server = uvicorn.Server(uvicorn.Config(app, log_level="warning"))
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
-        thread.start()
-        yield Served(fleet, listening.getsockname()[1], config)
-        server.should_exit = True
-        thread.join(10)
-
-
-@pytest.fixture
-def tab(browser: Any, served: Served) -> Iterator[Any]:
-    context = browser.new_context(viewport={"width": 390, "height": 844})
-    page = context.new_page()
-    page.set_default_timeout(10_000)
-    told: list[str] = []
-    page.on("pageerror", lambda error: told.append(str(error)))
-    page.on("console", lambda m: told.append(m.text) if m.type == "error" else None)
-    page.goto(f"http://127.0.0.1:{served.port}/?token={TOKEN}")
-    yield page
-    context.close()
-    assert told == []
-
-
-def test_a_job_is_opened_sent_started_paused_stopped_homed(tab: Any, served: Served) -> None:
-    from playwright.sync_api import expect
-
-    fleet = served.fleet
-    state, said = tab.locator("#state"), tab.locator("#told")
-
-    def press(name: str, words: str) -> None:
-        tab.get_by_role("button", name=name, exact=True).click()
-        expect(said).to_have_text(words)
-
-    expect(state).to_have_text("EMPTY")
-    assert "token" not in tab.url
-    press("Start", "Start refused: there is no job in the card (EMPTY)")
-    file = {"name": "circle.mcj", "mimeType": "application/octet-stream", "buffer": circle()}
-    tab.get_by_label("Open drawing or job").set_input_files(files=[file])
-    expect(tab.locator("#job-about")).to_contain_text("mm, 1 line, 0.25 m drawn")
-    fleet.going = False
-    tab.get_by_role("button", name="Send to card").click()
-    expect(tab.locator("#sent")).to_contain_text("waits: the card is away")
-    assert tab.get_by_role("progressbar", name="Upload").get_attribute("value") == "0"
-    tab.reload()  # the upload goes on without the page, and is seen again
-    expect(tab.locator("#sent")).to_contain_text("waits: the card is away")
-    fleet.going = True
-    expect(state).to_have_text("READY")
-    expect(tab.locator("#job-name")).to_have_text("circle.mcj")
-    expect(tab.locator("#job-about")).to_contain_text("In the card.")
-    press("Start", "Start: done (RUNNING)")
-    expect(state).to_have_text("RUNNING")
-    press("Home", "Home refused: not in this state (RUNNING)")
-    # The focus is on a button: space pauses and presses it not.
-    tab.keyboard.press("Space")
-    expect(said).to_have_text("Pause: done (PAUSED)")
-    press("Start", "Start: done (RUNNING)")
-    press("Pause", "Pause: done (PAUSED)")
-    press("Stop", "Stop: done (READY)")
-    press("Home", "Home: done (HOMING)")
-    expect(state).to_have_text("HOMING")
-    names = ["start", "pause", "start", "pause", "stop", "home"]
-    assert fleet.done == [(1, name) for name in names]
-    expect(tab.locator("#events li").first).to_contain_text("home: done")
-    tab.get_by_role("button", name="Card 4").click()
-    press("Reset", "Reset: done (READY)")
-    assert fleet.done[-1] == (4, "reset")
-    # Nothing is wider than a telephone's screen, and Stop is on it.
-    assert tab.locator("html").evaluate("e => e.scrollWidth") == 390
-    box = tab.get_by_role("button", name="Stop").bounding_box()
-    assert box["y"] + box["height"] <= 844 and box["width"] > 300
-
-
-def test_the_picture_shows_the_speed_and_the_tool(tab: Any, served: Served) -> None:
-    from playwright.sync_api import expect
-
-    file = {"name": "circle.mcj", "mimeType": "application/octet-stream", "buffer": circle()}
-    tab.get_by_label("Open drawing or job").set_input_files(files=[file])
-    expect(tab.locator("#fastest")).to_have_text("194 mm/s")
-    expect(tab.locator("#position li").nth(1)).to_have_text("Y20.500mm")
-    canvas = tab.locator("#picture")
-
-    def ink(x: float, y: float) -> list[int]:
-        """The strongest colour around a place [mm]."""
-        return canvas.evaluate(
-            """(c, [x, y]) => {
-                const [w, h] = [c.clientWidth, c.clientHeight], room = 34;
-                const scale = Math.min((w - 2 * room) / 80, (h - 2 * room) / 80);
-                const u = (w - scale * 80) / 2 + scale * x;
-                const v = (h + scale * 80) / 2 - scale * (y + 40);
-                const d = c.getContext("2d").getImageData(u - 3, v - 3, 7, 7).data;
-                let best = [0, 0, 0], most = -1;
-                for (let k = 0; k < d.length; k += 4) {
-                    const rgb = [d[k], d[k + 1], d[k + 2]];
-                    const spread = d[k + 3] * (Math.max(...rgb) - Math.min(...rgb));
-                    if (spread > most) [best, most] = [rgb, spread];
-                }
-                return best;
-            }""",
-            [x, y],
-        )
-
-    red, _, blue = ink(0.05, 2.0)  # where it begins, slowly
-    assert red > 2 * blue
-    red, _, blue = ink(80.0, 0.0)  # half way, at its fastest
-    assert blue > 2 * red
-    assert max(ink(40.0, 0.0)) - min(ink(40.0, 0.0)) < 30  # nothing is drawn in the middle
-    served.fleet.cards[1].status = status(position=(40_000, 0, 0, 0))
-    served.fleet.tell("status", 1, "")
-    expect(tab.locator("#position li").first).to_have_text("X40.000mm")
-    tab.wait_for_timeout(100)
-    arm = canvas.evaluate(
-        """c => { const d = c.getContext("2d").getImageData(
-            c.width / 2 - 12, c.height / 2 - 12, 24, 24).data;
-            let n = 0; for (let k = 3; k < d.length; k += 4) n += d[k] > 200; return n; }"""
-    )
-    assert arm > 60
-
-
-def test_the_form_checks_as_it_is_typed_and_saves(tab: Any, served: Served) -> None:
-    from playwright.sync_api import expect
-
-    tab.get_by_role("tab", name="Configuration").click()
-    field = tab.get_by_label("Highest speed [mm/s], axis X")
-    expect(field).to_have_value("200")
-    verdict, save = tab.locator("#verdict"), tab.get_by_role("button", name="Save")
-    expect(verdict).to_have_text("All values are good")
-    field.fill("600")
-    expect(verdict).to_have_text("1 value is wrong")
-    expect(tab.get_by_text("that is 600000 pulses/s; 1 .. 500000 wanted")).to_be_visible()
-    expect(save).to_be_disabled()
-    field.fill("150")
-    tab.get_by_label("Does, input 7").select_option("event")
-    box = tab.get_by_label("Start only when homed")
-    box.focus()
-    tab.keyboard.press("Space")  # in the form space is the form's
-    expect(verdict).to_have_text("All values are good")
-    save.click()
-    expect(verdict).to_contain_text("Saved in")
-    saved = load(served.config)
-    assert saved.axes[0].speed_max == 150 and saved.inputs[7].action == "event"
-    assert saved.motion.must_home and served.fleet.done == []
-    with tab.expect_download() as got:
-        tab.get_by_role("button", name="Download headers").click()
-    assert len(zipfile.ZipFile(got.value.path()).namelist()) == 6
-    assert tab.locator("html").evaluate("e => e.scrollWidth") == 390
-
-
-def test_another_page_cannot_press_start(browser: Any, served: Served) -> None:
-    """A page of another origin knows even the token, and is refused all the same."""
-    served.fleet.add(1, "READY")
-    context = browser.new_context()
-    page = context.new_page()
-    page.route("http://evil.example/*", lambda r: r.fulfill(body="<title>evil</title>"))
-    page.goto("http://evil.example/")
-    here = f"127.0.0.1:{served.port}"
-    page.evaluate(
-        """([here, token]) => fetch(`http://${here}/cards/1/command`, { method: "POST",
-            mode: "no-cors", body: JSON.stringify({ name: "start" }) }).catch(() => 0)
-            .then(() => fetch(`http://${here}/cards/1/command`, { method: "POST",
-            headers: { authorization: `Bearer ${token}` },
-            body: JSON.stringify({ name: "start" }) })).catch(() => 0)""",
-        [here, TOKEN],
-    )
-    heard = page.evaluate(
-        """([here, token]) => new Promise((done) => { const w = new WebSocket(`ws://${here}/live`);
-            w.onopen = () => w.send(token); w.onmessage = (e) => done(e.data);
-            w.onerror = w.onclose = () => done(""); })""",
-        [here, TOKEN],
-    )
-    assert heard == "" and served.fleet.done == [] and served.fleet.queues == []
-    context.close()

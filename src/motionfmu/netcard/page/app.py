@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 from starlette.requests import Request
-from starlette.responses import JSONResponse, PlainTextResponse, Response
+from starlette.responses import JSONResponse, Response
 from starlette.routing import Route, WebSocketRoute
 
 from motionfmu.errors import InputError
@@ -149,9 +149,9 @@ class _Page:
         return JSONResponse(job.picture)
 
     async def picture(self, request: Request) -> Response:
-        """The picture of a job that was opened before."""
+        """The picture of a job that was opened before, or null."""
         job = self._pictures.get(str((await values(request)).get("job")))
-        return JSONResponse(job.picture) if job else PlainTextResponse("not opened here", 404)
+        return JSONResponse(job.picture if job else None)
 
     async def send(self, request: Request) -> Response:
         """Bring an opened job into a card; answers when it is there, or refused."""

@@ -5,34 +5,37 @@ import { draw } from "./picture.js";
 
 const pictures = new Map(); // by the job's hash; null: the server has none
 const sendings = new Map(); // by card: what the last upload said
-let opened = null, card = null, about = "", wrong = "";
+const openings = new Map(); // by card: what was opened for it
+let last = null, card = null, wrong = "", opening = "";
 
-// The picture to be shown: what was opened last, else the job in the card.
-const picture = () => opened || pictures.get(card?.job) || null;
+// The picture to be shown: what was opened for the card, else its job, else what was opened last.
+const picture = () => openings.get(card?.id) || pictures.get(card?.job) || last;
 
 // Pulses per mm of each axis, as the job in the card has them.
 export function scaleOf(one) {
-  return (pictures.get(one.job) || opened)?.pulses_per_mm;
+  return (pictures.get(one.job) || last)?.pulses_per_mm;
 }
 
 export function showJob(now) {
+  if (card?.id !== now.id) wrong = "";
   card = now;
   if (card.job && !pictures.has(card.job)) fetchPicture(card.job);
   const shown = picture(), upload = card.upload;
   part("job-name").textContent = shown ? shown.name : "Job";
   const inCard = shown && shown.job === card.job;
-  part("send").disabled = !opened || !!upload || (inCard && card.connected);
+  part("send").disabled = !shown || !!upload || (inCard && card.connected);
   part("sending").hidden = !upload;
   if (upload) {
     [part("progress").max, part("progress").value] = [upload.pages, upload.taken];
+    const waits = card.connected ? upload.waits : "the card is not connected";
     part("sent").textContent = `${upload.taken} of ${upload.pages} pages`
-      + (upload.waits ? `, waits: ${upload.waits}` : "");
+      + (waits ? `, waits: ${waits}` : "");
   }
-  const last = upload ? "" : sendings.get(card.id) || "";
-  const words = shown ? described(shown) + (inCard && !last ? " In the card." : "")
+  const sent = upload ? "" : sendings.get(card.id) || "";
+  const words = shown ? described(shown) + (inCard && !sent ? " In the card." : "")
     : card.job ? `The card has job ${card.job.slice(0, 8)}; open its file to see it.`
       : "A drawing (PLT) is planned with the configuration; a job file (mcj) is taken as it is.";
-  about = [wrong || words, last].filter(Boolean).join(" ");
+  const about = opening ? `${opening} …` : [wrong || words, sent].filter(Boolean).join(" ");
   if (part("job-about").textContent !== about) part("job-about").textContent = about;
   part("job-about").classList.toggle("bad", !!wrong);
   part("scale").hidden = !shown;
@@ -46,8 +49,10 @@ function show() {
   const tool = s && shown && per[0] && per[1]
     ? [s.position[0] / per[0], s.position[1] / per[1]] : null;
   const runs = ["RUNNING", "PAUSING", "PAUSED", "STOPPING"].includes(card?.state);
-  draw(part("picture"), shown, tool, runs && shown?.job === card.job ? s.frame : null);
+  draw(part("picture"), shown, tool, s && runs && shown?.job === card.job ? s.frame : null);
 }
+
+const metres = (mm) => `${(mm / 1000).toFixed(2)} m`;
 
 function described(p) {
   const time = p.time < 100 ? `${p.time.toFixed(1)} s`
@@ -55,8 +60,9 @@ function described(p) {
   const [w, h] = [0, 1].map((k) => (p.high[k] - p.low[k]).toFixed(1));
   const more = p.notes.length > 1 ? ` and ${p.notes.length - 1} more` : "";
   const notes = p.notes.length ? ` Note: ${p.notes[0]}${more}.` : "";
-  return `${time}, ${w} × ${h} mm, ${p.lines} ${p.lines === 1 ? "line" : "lines"}, ${(p.drawn / 1000).toFixed(2)} m drawn, `
-    + `${(p.moved / 1000).toFixed(2)} m with the tool up, ${(p.bytes / 1024).toFixed(0)} kB.${notes}`;
+  const lines = p.lines === 1 ? "1 line" : `${p.lines} lines`;
+  return `${time}, ${w} × ${h} mm, ${lines}, ${metres(p.drawn)} drawn, `
+    + `${metres(p.moved)} with the tool up, ${(p.bytes / 1024).toFixed(0)} kB.${notes}`;
 }
 
 async function fetchPicture(job) {
@@ -64,18 +70,22 @@ async function fetchPicture(job) {
   try {
     pictures.set(job, await post("/picture", { job }));
     dispatchEvent(new Event("job"));
-  } catch { /* it was not opened at this server */ }
+  } catch { /* the server is away */ }
 }
 
 async function open(file) {
-  wrong = "";
-  part("job-about").textContent = `${file.name} …`;
+  const { id } = card;
+  [wrong, opening] = ["", file.name];
+  dispatchEvent(new Event("job"));
   try {
-    opened = await post(`/open?name=${encodeURIComponent(file.name)}`, file);
-    pictures.set(opened.job, opened);
+    last = await post(`/open?name=${encodeURIComponent(file.name)}`, file);
+    pictures.set(last.job, last);
+    openings.set(id, last);
+    sendings.delete(id);
   } catch (error) {
     wrong = error.message;
   }
+  opening = "";
   dispatchEvent(new Event("job"));
 }
 
@@ -94,7 +104,7 @@ for (const kind of ["dragover", "drop"]) {
 }
 
 part("send").addEventListener("click", async () => {
-  const { id } = card, { job, name } = opened;
+  const { id } = card, { job, name } = picture();
   sendings.set(id, "");
   part("send").disabled = true;
   try {
