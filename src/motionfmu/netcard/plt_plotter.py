@@ -28,6 +28,17 @@ class Polyline:
     speed: float = 0.0  # [mm/s] that VS asks for; 0 none
 
 
+@dataclass
+class _Stroke:
+    """A line under way: [plotter units], bytes."""
+
+    down: bool
+    xs: list[float]
+    ys: list[float]
+    first: int
+    last: int = 0
+
+
 class Plotter:
     """The state of a plotter while it works through a file."""
 
@@ -43,7 +54,7 @@ class Plotter:
         self.deviation = False  # CT1: chords by their distance from the arc
         self.speeds: dict[int, float] = {}
         self.window: tuple[float, float, float, float] | None = None
-        self.stroke: tuple[bool, list[float], list[float], int] | None = None
+        self.stroke: _Stroke | None = None
         self.polygon: list[list[tuple[float, float, bool]]] | None = None  # under way
         self.kept: list[list[tuple[float, float, bool]]] = []  # the latest whole one
         self.entry: tuple[tuple[float, float], bool] = ((0.0, 0.0), False)
@@ -65,43 +76,35 @@ class Plotter:
 
     def _flush(self) -> None:
         """End the line under way."""
-        if self.stroke is None:
+        if (s := self.stroke) is None:
             return
-        down, xs, ys, first = self.stroke
-        points = np.stack([np.array(xs), np.array(ys)], axis=1) * UNIT
+        points = np.stack([np.array(s.xs), np.array(s.ys)], axis=1) * UNIT
         speed = self.speeds.get(self.pen, self.speeds.get(0, 0.0))
-        self.lines.append(Polyline(self.pen, down, points, first, self.scan.next, speed))
-        if self.window is not None and down:
+        self.lines.append(Polyline(self.pen, s.down, points, s.first, s.last, speed))
+        if self.window is not None and s.down:
             low, high = points.min(axis=0) / UNIT, points.max(axis=0) / UNIT
             w = self.window
             if low[0] < w[0] or low[1] < w[1] or high[0] > w[2] or high[1] > w[3]:
-                self.scan.refuse("a line leaves the window of IW; lines are not clipped")
+                self.scan.refuse("a line leaves the window of IW; lines are not clipped", s.first)
         self.stroke = None
 
     def _move(self, xs: list[float], ys: list[float], down: bool) -> None:
         """Go through places of the sheet."""
-        if self.polygon is not None:
-            self.polygon[-1] += [(x, y, down) for x, y in zip(xs, ys, strict=True)]
-            self.count += len(xs)
-        else:
-            down = down and self.pen != 0
-            if self.stroke is None or self.stroke[0] != down:
-                if self.stroke is not None:
-                    self._flush_before()
-                self.stroke = (down, [self.at[0]], [self.at[1]], self.scan.first)
-                self.count += 1
-            self.stroke[1].extend(xs)
-            self.stroke[2].extend(ys)
-            self.count += len(xs)
-        self.at = (xs[-1], ys[-1])
+        self.count += len(xs)
         if self.count > VERTICES_MAX:
             self.scan.refuse(f"more than {VERTICES_MAX} vertices")
-
-    def _flush_before(self) -> None:
-        """End the line under way before this instruction."""
-        after, self.scan.next = self.scan.next, self.scan.first
-        self._flush()
-        self.scan.next = after
+        if self.polygon is not None:
+            self.polygon[-1] += [(x, y, down) for x, y in zip(xs, ys, strict=True)]
+        else:
+            down = down and self.pen != 0
+            if self.stroke is None or self.stroke.down != down:
+                self._flush()
+                self.stroke = _Stroke(down, [self.at[0]], [self.at[1]], self.scan.first)
+                self.count += 1
+            self.stroke.xs.extend(xs)
+            self.stroke.ys.extend(ys)
+            self.stroke.last = self.scan.next
+        self.at = (xs[-1], ys[-1])
 
     def _coordinates(self, numbers: list[float]) -> None:
         """PU PD PA PR with a list."""
@@ -118,6 +121,8 @@ class Plotter:
     def _pen_down(self, numbers: list[float]) -> None:
         self.down = True
         self._coordinates(numbers)
+        if not numbers and self.polygon is None:  # a dot, or the begin of a line
+            self._move([self.at[0]], [self.at[1]], True)
 
     def _plot_absolute(self, numbers: list[float]) -> None:
         self.relative = False
@@ -267,7 +272,7 @@ class Plotter:
         self.scan.wants(numbers, 0, 1)
         mode = int(numbers[0]) if numbers else 0
         if mode == 0:
-            self._flush_before()
+            self._flush()
             self.entry = (self.at, self.down)
             self.polygon = [[(*self.at, False)]]
         elif self.polygon is None:
@@ -275,7 +280,7 @@ class Plotter:
         elif mode in (1, 2):
             part = self.polygon[-1]
             if part and part[-1][:2] != part[0][:2]:
-                part.append((*part[0][:2], True))
+                part.append((*part[0][:2], self.down))
             self.polygon.append([])
             if mode == 2:
                 self.kept, self.polygon = self.polygon, None
@@ -306,7 +311,7 @@ class Plotter:
         self.down, self.at = False, (0.0, 0.0)
 
     def _defaults(self, numbers: list[float]) -> None:
-        self._flush_before()
+        self._flush()
         self.scan.wants(numbers, 0, 0)
         self.frame.reset()
         self.relative, self.deviation, self.window = False, False, None
@@ -327,7 +332,7 @@ class Plotter:
             self.scan.refuse(wrong)
 
     def _input_window(self, numbers: list[float]) -> None:
-        self._flush_before()
+        self._flush()
         self.window = None
         if numbers:
             self.scan.wants(numbers, 4, 4)
@@ -344,12 +349,12 @@ class Plotter:
         if pen < 0 or pen > 255:
             self.scan.refuse(f"pen {pen}, 0 to 255 wanted")
         if pen != self.pen:
-            self._flush_before()
+            self._flush()
         self.pen = pen
 
     def _velocity(self, numbers: list[float]) -> None:
         self.scan.wants(numbers, 0, 2)
-        self._flush_before()
+        self._flush()
         pen = int(numbers[1]) if len(numbers) > 1 else 0
         if not numbers:
             self.speeds.clear()

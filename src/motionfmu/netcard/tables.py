@@ -177,8 +177,8 @@ class Pen(Table):
         0.03
     )
     axis: Annotated[Literal["X", "Y", "Z", "U"], Is("Its axis")] = "Z"
-    up: Annotated[float, Is("Position of the axis, up", "mm")] = 2.0
-    down: Annotated[float, Is("Position of the axis, down", "mm")] = 0.0
+    up: Annotated[float, Is("Position of the axis, up", "mm", low=-(10**6), high=10**6)] = 2.0
+    down: Annotated[float, Is("Position of the axis, down", "mm", low=-(10**6), high=10**6)] = 0.0
 
 
 class Motion(Table):

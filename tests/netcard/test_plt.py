@@ -1,0 +1,210 @@
+"""HP-GL: outputs of foreign programs as another reader sees them, each command, what is wrong."""
+
+import json
+from pathlib import Path
+
+import ezhpgl
+import numpy as np
+import pytest
+from lines_apart import Lines, apart, length
+
+from motionfmu.errors import InputError
+from motionfmu.netcard import plt
+
+FILES = sorted((Path(__file__).parent / "plt").glob("*.plt"))
+
+
+def drawn(text: bytes | str, **options: object) -> Lines:
+    """Drawn lines in plotter units."""
+    text = text.encode("latin-1") if isinstance(text, str) else text
+    return [p.points / 0.025 for p in plt.parse(text, **options).lines if p.down]  # type: ignore[arg-type]
+
+
+def foreign(text: bytes) -> Lines:
+    """The same as ezhpgl draws them, pieces between the ends of its operations."""
+    read = json.loads(ezhpgl.parse(text, strict=False).to_json())
+    found: Lines = []
+    for page in read["pages"]:
+        for operation in page["operations"]:
+            g = operation["geometry"]
+            for part in [g] if "points" in g else g["contours"]:
+                points = np.array([[p["x"], p["y"]] for p in part["points"]]) / 0.025
+                edges = part.get("edges", [{"start": 0, "end": len(points), "pen_down": True}])
+                found += [points[e["start"] : e["end"] + 1] for e in edges if e["pen_down"]]
+    return [p for p in found if len(p) > 1]
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda f: f.stem)
+def test_a_foreign_file_is_drawn_as_another_reader_draws_it(file: Path) -> None:
+    text = file.read_bytes()
+    if file.stem == "commands":  # that reader rotates only with the size of a sheet
+        text = text[: text.index(b"RO90")]
+    ours = [p for p in drawn(text) if len(p) > 1]
+    theirs = foreign(text if text.rstrip().endswith(b";") else text + b";")
+    # Arcs: our chords are 0.005 mm off, theirs 5 degrees long.
+    chords = file.stem == "commands"
+    within = 0.5 if chords else 1e-6
+    assert max(apart(ours, theirs), apart(theirs, ours)) < within
+    assert length(ours) == pytest.approx(length(theirs), rel=1e-3 if chords else 1e-9)
+    assert length(ours) > 5000.0
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("INPU;PD5,6", [[[0, 0], [5, 6]]]),
+        ("in;sp1;pu-4,-4;pd4,5,4,7;", [[[-4, -4], [4, 5], [4, 7]]]),
+        ("PD5,6", [[[0, 0], [5, 6]]]),
+        ("PU1,1;PD;PA2,2;PA3,3;", [[[1, 1], [1, 1], [2, 2], [3, 3]]]),
+        ("IN;PU10,10;PR;PD0,-4,-1,-4;PA;PU0,0", [[[10, 10], [10, 6], [9, 2]]]),
+        ("SP1;PU0,0\r\nPD0,10\r\n20,30\r\n", [[[0, 0], [0, 10], [20, 30]]]),
+        ("PU0,0PD1-2+3.5,.5", [[[0, 0], [1, -2], [3.5, 0.5]]]),
+        ("PU 0 0;PD\t1 , 2 ;", [[[0, 0], [1, 2]]]),
+        ("MK4,4,0,0;IN;PA;SP1;CB1;PU4,4;PD4,5;;!PG;;", [[[4, 4], [4, 5]]]),
+        ("\x1b.(\x1b.@100;2:\x1b%0BIN;PD1,1;\x1b%0A rubbish \x1b%-12345X", [[[0, 0], [1, 1]]]),
+        ("@PJL ENTER PD7,7\nIN;PD1,1;@ \0\x1a", [[[0, 0], [1, 1]]]),
+        ("LBPD9,9;\x03PD1,1", [[[0, 0], [1, 1]]]),
+        ("DT#;LBPD9,9;\x03#PD1,1;IN;LBx\x03", [[[0, 0], [1, 1]]]),
+        ('CO"PD9,9"PD1,1;SMPPD2,2', [[[0, 0], [1, 1], [2, 2]]]),
+        ("SP0;PD5,5;SP2;PU0,0;PD1,1", [[[0, 0], [1, 1]]]),
+        ("SP1;PD1,1;SP2;PD2,2", [[[0, 0], [1, 1]], [[1, 1], [2, 2]]]),
+        ("IP0,0,100,200;SC0,10,0,10;PU1,1;PD2,2;SC;PD5,5", [[[10, 20], [20, 40], [5, 5]]]),
+        ("IP0,0,100,200;SC0,10,0,10,1;PD10,10", [[[0, 0], [100, 150]]]),
+        ("IP10,20,90,90;SC5,2,6,3,2;PU5,6;PD6,7", [[[10, 20], [12, 23]]]),
+        ("RO90;PU10,0;PD20,0,20,5;RO;PD1,1", [[[0, 10], [0, 20], [-5, 20], [1, 1]]]),
+        ("RO270;PD10,5", [[[0, 0], [5, -10]]]),
+        ("PU1,1;EA3,2;PD9,9", [[[1, 1], [3, 1], [3, 2], [1, 2], [1, 1], [9, 9]]]),
+        ("PM0;PD2,0,2,2;PM1;PU5,5;PD6,5,6,6;PM2;EP", [[[0, 0], [2, 0], [2, 2], [0, 0]],
+                                                       [[5, 5], [6, 5], [6, 6], [5, 5]]]),
+        ("PD;AA0,0,90;PU10,0;PD;AA0,0,90,45", [[[10, 0], [10, 0], [7.0711, 7.0711], [0, 10]]]),
+        ("PU10,0;CI10,120", [[[20, 0], [5, 8.6603], [5, -8.6603], [20, 0]]]),
+        ("PU1,1;PD;PU", [[[1, 1], [1, 1]]]),
+        ("IW0,0,9,9;PD9,9", [[[0, 0], [9, 9]]]),
+    ],
+)  # fmt: skip
+def test_commands_and_quirks(text: str, lines: list) -> None:
+    found = [p for p in drawn(text) if len(p) > 1]
+    if "AA0,0,90;" in text:
+        found = found[-1:]
+    assert [np.round(p, 4).tolist() for p in found] == [
+        np.asarray(p, float).tolist() for p in lines
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "where", "why"),
+    [
+        ("IN;\nPD1,2,3;", "line 2, column 1, byte 4", "PD: 3 coordinates, an even number"),
+        ("IN;\r\n PD1,2-;", "line 2, column 7, byte 11", "'-' is no number"),
+        ("PD1,1073741825;", "line 1, column 1, byte 0", "is beyond 1073741824"),
+        ("PD1,1;#", "line 1, column 7, byte 6", "'#' begins no instruction"),
+        ("SC0,1,0,1;", "line 1, column 1, byte 0", "scale without P1 and P2"),
+        ("SC0,1,0;", "byte 0", "3 numbers, 0, 4, 5 or 7 wanted"),
+        ("IP0,0,1,1;SC1,1,0,1;", "byte 10", "a range that is empty"),
+        ("IN;LBno end", "line 1, column 4, byte 3", "the text has no end"),
+        ("CI;", "byte 0", "0 numbers, 1 to 2 wanted"),
+        ("AA1,1,400;", "byte 0", "an arc of 400 degrees"),
+        ("RO45;", "byte 0", "0, 90, 180 or 270"),
+        ("SP-1;", "byte 0", "pen -1, 0 to 255"),
+        ("IW0,0,5,5;PD6,6;", "byte 10", "leaves the window"),
+        ("PM2;", "byte 0", "polygon mode has not begun"),
+        ("VS0;", "byte 0", "above 0 wanted"),
+        ("PE?", "byte 2", "an encoded number that does not end"),
+        ("PE\xc1;", "byte 3", "an odd number of coordinates"),
+        ("BZ1,2,3;", "byte 0", "a multiple of 6"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_place(text: str, where: str, why: str) -> None:
+    with pytest.raises(InputError) as told:
+        plt.parse(text.encode("latin-1"), "x.plt")
+    assert str(told.value).startswith("x.plt: line ")
+    assert where in str(told.value) and why in str(told.value), told.value
+
+
+def test_fills_are_noted_or_refused() -> None:
+    text = b"PM0;PD2,0,2,2;PM2;FP;EP;FP;"
+    notes = plt.parse(text).notes
+    assert [(n.text, n.count, n.byte) for n in notes] == [("FP: filled area", 2, 18)]
+    with pytest.raises(InputError, match="filled areas are not drawn"):
+        plt.parse(text, fills=False)
+
+
+def test_a_frame_of_the_machine_scales_files_without_ip() -> None:
+    (line,) = drawn("SC0,1,0,1;PD1,1", frame=(100.0, 200.0, 300.0, 500.0))
+    assert line.tolist() == [[0, 0], [300, 500]]
+
+
+def encoded(values: np.ndarray, base: int, fraction: int) -> str:
+    """Numbers as PE has them."""
+    text = ""
+    for value in np.round(values * 2.0**fraction).astype(int).tolist():
+        rest = 2 * abs(value) + (value < 0)
+        while rest >= base:
+            text += chr(63 + rest % base)
+            rest //= base
+        text += chr((191 if base == 64 else 95) + rest)
+    return text
+
+
+@pytest.mark.parametrize(("base", "fraction"), [(64, 0), (32, 0), (64, 3), (32, 5)])
+def test_encoded_polylines(base: int, fraction: int) -> None:
+    draws = np.random.default_rng(base + fraction)
+    steps = np.round(draws.normal(0.0, 300.0, (50, 2)) * 2.0**fraction) / 2.0**fraction
+    flags = ("7" if base == 32 else "") + (f">{encoded(np.array([fraction]), base, 0)}")
+    start = encoded(np.array([100.0, -50.0]), base, fraction)
+    text = f"PE{flags}<={start}{encoded(steps.ravel(), base, fraction)};"
+    (line,) = drawn(text)
+    wanted = np.vstack([[100.0, -50.0], steps]).cumsum(axis=0)
+    np.testing.assert_allclose(line, wanted, atol=1e-6)
+    pens = plt.parse(f"PE:{encoded(np.array([3]), 64, 0)}{encoded(steps[0], 64, 0)};".encode("l1"))
+    assert list(pens.layers) == [3]
+
+
+def test_layers_bytes_and_speeds() -> None:
+    text = b"IN;SP2;VS5;PU0,0;PD4,0;SP1;VS;PU8,8;PD9,9;"
+    read = plt.parse(text)
+    assert {pen: len(lines) for pen, lines in read.layers.items()} == {1: 1, 2: 1}
+    (second,) = read.layers[2]
+    assert text[second.first : second.last] == b"PD4,0;" and second.speed == 50.0
+    assert read.layers[1][0].speed == 0.0
+    np.testing.assert_allclose(read.extent, [[0.0, 0.0], [0.225, 0.225]])
+
+
+def test_arcs_keep_to_their_tolerance() -> None:
+    (line,) = drawn("PU1000,2000;CI5000;")
+    radius = np.linalg.norm(line - (1000, 2000), axis=1)
+    np.testing.assert_allclose(radius, 5000.0, rtol=1e-12)
+    middle = np.linalg.norm(0.5 * (line[1:] + line[:-1]) - (1000, 2000), axis=1)
+    off = (5000.0 - middle).max() * 0.025
+    assert 0.0045 < off <= 0.005 + 1e-9
+
+
+def test_nothing_but_input_errors_and_no_hang() -> None:
+    """Random changes of the corpus: bytes put in, taken out, swapped; cuts; parts of two files."""
+    texts = [f.read_bytes()[:1500] for f in FILES]
+    texts += [
+        b"PE7>%<=abcdefghijklmnopqrst;PE:\xe0<\xc0\xd0;CI5;SC0,1,0,1;IP0,0,1,1;RO90;PM0;PM2;EP"
+    ]
+    draws = np.random.default_rng(5)
+    refused = 0
+    for _ in range(500):
+        text = bytearray(texts[draws.integers(len(texts))])
+        for _ in range(draws.integers(1, 3)):
+            at = int(draws.integers(len(text) + 1))
+            kind = draws.integers(4)
+            if kind == 0:
+                text[at : at + 1] = bytes([draws.integers(256)])
+            elif kind == 1:
+                del text[at : at + int(draws.integers(1, 40))]
+            elif kind == 2:
+                text[at:at] = b"PUPDPAPRCIAAARATRTEAEREWPMEPSCIPROIWPELBDTCTBZ-9.,;0"[
+                    (k := 2 * int(draws.integers(26))) : k + 2
+                ]
+            else:
+                other = texts[draws.integers(len(texts))]
+                text[at:] = other[int(draws.integers(len(other))) :]
+        try:
+            plt.parse(bytes(text))
+        except InputError:
+            refused += 1
+    assert 50 < refused < 480
