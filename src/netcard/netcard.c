@@ -281,6 +281,7 @@ void netcard_advance(struct netcard *c, int64_t until)
         if (who >= 0) {
             card_advance_player(c);
             answer(c, who);
+            card_advance_player(c);     /* an answer makes it tell, too */
         } else {
             hardware(c);
         }
@@ -340,6 +341,7 @@ void netcard_set_axes(struct netcard *c, const struct netcard_axes *axes)
     c->axes = a;
     if (c->power) {
         guard(c);
+        card_advance_player(c);
     }
 }
 

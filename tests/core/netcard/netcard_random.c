@@ -3,7 +3,7 @@
  * has the processor and all times add up; cut at random places the run is the same to the bit. */
 #include "card_bench.h"
 
-enum { CARDS = 40, STEPS = 120 };
+enum { CARDS = 20, STEPS = 60 };
 
 static struct netcard c, twin;
 static uint64_t seed;
@@ -53,7 +53,7 @@ static void pass(int64_t ns)
     bool could = may_move();
 
     for (const int64_t end = c.now + ns; c.now < end;) {
-        const int64_t slice = 50000 + draw(400000);
+        const int64_t slice = 50000 + draw(2000000);
         const uint32_t origin = bench_count(&c, 0) <= -200;
         if (origin != (c.axes.origin & 1)) {
             netcard_set_axes(&c, &(struct netcard_axes){ .origin = origin, .stop = c.axes.stop });
@@ -63,7 +63,7 @@ static void pass(int64_t ns)
         const int64_t to = c.now + slice < end ? c.now + slice : end;
         netcard_advance(&twin, to);
         while (c.now < to) {        /* in pieces */
-            const int64_t piece = c.now + 1 + draw(200000);
+            const int64_t piece = c.now + 1 + draw(1000000);
             netcard_advance(&c, piece < to ? piece : to);
             check_urgent(&c.kernel);
         }
