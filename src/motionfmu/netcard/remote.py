@@ -249,7 +249,7 @@ class RemoteCard:
             return
         if not self._keeping.locked():  # else the file is already the next one
             self._outbox.drop()
-        result = Result.of(code, self._state)
+        result = Result.of(code)
         self.tell("upload", f"{job.upload.pages} pages: {result.text}")
         if job.waits and not job.waits.done():
             job.waits.set_result(result)

@@ -1,0 +1,59 @@
+"""The command that runs cards as programs."""
+
+import asyncio
+import contextlib
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from motionfmu.cli.card import card
+from motionfmu.cli.common import out
+from motionfmu.errors import InputError
+
+CARDS_MAX = 1000
+SPEED = (0.001, 1000.0)
+
+
+@card.command()
+def sim(  # noqa: PLR0913  (each is an option of the command)
+    server: Annotated[str, typer.Option(metavar="HOST:PORT")] = "127.0.0.1:8765",
+    cards: Annotated[int, typer.Option(help="How many; ids count up from --id.")] = 1,
+    id: Annotated[int, typer.Option(help="Id of the first.")] = 1,
+    speed: Annotated[float, typer.Option(help="So much faster than the clock.")] = 1.0,
+    keys: Annotated[Path | None, typer.Option("--key-file", help="As made by card key.")] = None,
+    flash: Annotated[Path | None, typer.Option(help="Folder that keeps their flash.")] = None,
+    config: Annotated[Path | None, typer.Option("-c", help="card.toml of all of them.")] = None,
+) -> None:
+    """Run cards: the card's own code as a client of a server; until Ctrl-C."""
+    from motionfmu.netcard.config import load
+    from motionfmu.netcard.keys import CARD_MAX, read_keys
+    from motionfmu.netcard.sim import FlashFile, VirtualCard, simulate
+    from motionfmu.netcard.wire import OPEN_KEY
+
+    host, _, port = server.rpartition(":")
+    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+        raise InputError(f"--server {server}: HOST:PORT wanted")
+    if not 1 <= cards <= CARDS_MAX:
+        raise InputError(f"--cards {cards}: 1 to {CARDS_MAX} wanted")
+    if not 0 <= id <= min(2**31, CARD_MAX) - cards:
+        raise InputError(f"--id {id}: 0 to {2**31 - cards} wanted")
+    if not SPEED[0] <= speed <= SPEED[1]:
+        raise InputError(f"--speed {speed}: {SPEED[0]} to {SPEED[1]:g} wanted")
+    known = read_keys(keys) if keys else {}
+    parameters = load(config).as_parameters() if config else {}
+    made: list[tuple[VirtualCard, FlashFile | None]] = []
+    for i in range(id, id + cards):
+        file = FlashFile(flash / f"{i}.flash") if flash else None
+        held = file.load() if file else b""
+        made.append((VirtualCard(i, known.get(i, OPEN_KEY), held, **parameters), file))
+
+    def keep() -> None:
+        for one, file in made:
+            if file:
+                file.save(one)
+
+    out.print(f"{cards} cards from id {id}, server {server}", soft_wrap=True)
+    with contextlib.suppress(KeyboardInterrupt):
+        asyncio.run(simulate([one for one, _ in made], (host, int(port)), speed, keep))
+    keep()
