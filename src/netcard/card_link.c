@@ -79,6 +79,7 @@ static int job_data(struct netcard *c, const struct session_message *m)
         }
     }
     c->credit = credit(c);
+    session_drop(&c->session);      /* the credit counts from behind this message */
     session_ack(&c->session, c->credit, missing(c));
     return NETCARD_GIVE_STORAGE;
 }

@@ -101,7 +101,7 @@ def bring(card: VirtualCard, pc: Pc, chance: random.Random | None = None) -> int
             pc.open()
             card.connected(True)
             up = True
-        elif up and (not card.wants or (chance and chance.random() < 0.01)):
+        elif up and (not card.wants or (chance and chance.random() < 0.04)):
             card.connected(False)
             up = False
             cuts += 1
