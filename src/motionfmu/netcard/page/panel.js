@@ -51,7 +51,8 @@ export function showCard(card) {
   set(part("where"), card.address || "not connected");
   set(part("state"), state);
   part("reset").hidden = state !== "FAULT";
-  const axes = [...AXES].slice(0, card.axes || 4), scale = scaleOf(card);
+  const scale = scaleOf(card); // an axis that a job does not know is not there
+  const axes = [...AXES].slice(0, card.axes || 4).filter((_, k) => !scale || scale[k]);
   rows(part("position"), axes, (axis) => {
     const item = made("li");
     item.append(made("span", axis), made("b"), made("small"));

@@ -79,7 +79,7 @@ def picture(job: Job, data: bytes, name: str) -> dict[str, Any]:
         "drawn": float(steps[down].sum()),
         "moved": float(steps[~down].sum()),
         "lines": int(np.count_nonzero(np.diff(down.astype(int), prepend=0) == 1)),
-        "fastest": float(speed.max(initial=0.0)),
+        "fastest": float(speed[down].max(initial=0.0)),  # with the tool down
         "low": span.min(axis=0).round(3).tolist(),
         "high": span.max(axis=0).round(3).tolist(),
         "frame": keep.tolist(),
