@@ -189,6 +189,7 @@ static void read_wires(struct fmu *f)
 static void publish_commands(struct vars *v, const struct net_host *h)
 {
     const struct net_host_order *o = h->order;
+    v->commands_sent = v->commands_again = v->commands_done = v->commands_refused = 0;
     for (int k = 0; k < NET_HOST_ORDERS; k++) {
         v->command_code[k] = -1;
         if (v->command[k] == 0)
@@ -198,7 +199,13 @@ static void publish_commands(struct vars *v, const struct net_host *h)
         v->command_tries[k] = (int32_t)(o->times & INT32_MAX);
         v->command_sent[k] = (double)o->first / second;
         v->command_answered[k] = (double)o->answered / second;
+        if (o->times > 0) {
+            v->commands_sent++;
+            v->commands_again += v->command_tries[k] - 1;
+        }
         if (o->stage == NET_HOST_ANSWERED) {
+            v->commands_done += o->code == NET_DONE;
+            v->commands_refused += o->code != NET_DONE;
             v->command_code[k] = o->code;
             v->command_state[k] = o->state;
         }
