@@ -15,9 +15,10 @@ void net_plan_start(struct net_plan *p, const struct net_plan_config *config)
     p->chain.open = false;
 }
 
-static double free_acc(const struct net_plan *p, int axis)
+/* What the reserve leaves of a limit. */
+static double planned(const struct net_plan *p, double limit)
 {
-    return p->config.axis[axis].acc * (1.0 - p->config.reserve);
+    return limit * (1.0 - p->config.reserve);
 }
 
 static double period(const struct net_plan *p)
@@ -34,8 +35,8 @@ static void begin_line(struct net_plan *p)
     for (int i = 0; i < AXES; i++) {
         const int k = i < 2 ? i : 0;
         l.speed[i] = p->config.axis[k].speed;
-        l.acc[i] = free_acc(p, k);
-        l.jerk[i] = p->config.axis[k].jerk;
+        l.acc[i] = planned(p, p->config.axis[k].acc);
+        l.jerk[i] = planned(p, p->config.axis[k].jerk);
     }
     memcpy(place, p->goal, sizeof p->goal);
     plan_chain_start(&p->chain, place, p->config.tolerance, &l);
@@ -100,8 +101,8 @@ static void slide(struct net_plan *p, const double to[JOB_AXES])
         const double share = fabs(p->slope[i]);
         if (share > 0.0) {
             l.speed = fmin(l.speed, p->config.axis[i].speed / share);
-            l.acc = fmin(l.acc, free_acc(p, i) / share);
-            l.jerk = fmin(l.jerk, p->config.axis[i].jerk / share);
+            l.acc = fmin(l.acc, planned(p, p->config.axis[i].acc) / share);
+            l.jerk = fmin(l.jerk, planned(p, p->config.axis[i].jerk) / share);
         }
     }
     l.dec = l.acc;

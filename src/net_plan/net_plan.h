@@ -36,7 +36,7 @@ struct net_plan_config {
     int32_t period_ns;          /* [ns] of a frame */
     double tolerance;           /* [mm] > 0 of the curve from the vertices, both ways */
     double rapid;               /* [mm/s] > 0 with the pen up, and of an axis that moves it */
-    double reserve;             /* 0 .. < 1 share of the accelerations left free */
+    double reserve;             /* 0 .. < 1 share of acceleration and jerk left free */
     enum net_plan_pen pen;
     int32_t pen_axis;           /* 2 or 3 */
     double up, down;            /* [mm] its places */
