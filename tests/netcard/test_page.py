@@ -3,14 +3,20 @@
 import io
 import json
 import shutil
+import signal
+import socket
+import subprocess
+import sys
 import time
 import zipfile
 from pathlib import Path
 from typing import Any
 
+import httpx2
 import numpy as np
 import pytest
 from conftest import ROOT
+from console import within
 from fleet import Fleet, circle, status
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -266,3 +272,30 @@ def test_the_text_of_a_configuration_is_read_as_the_same(data: Any) -> None:
     tree["outputs"][data.draw(st.integers(6, 15))] = data.draw(st.from_regex(r"\A[a-z][0-9_]{2}\Z"))
     config = CardConfig.model_validate(tree)
     assert read(text_of(config), "card.toml") == config
+
+
+# The command.
+
+
+def test_the_command_serves_the_page_and_ends_with_it(tmp_path: Path) -> None:
+    line = ["card", "serve", "--port", "0", "--folder", tmp_path / "cards", "-c", CARD]
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        refused = within(*line, "--page", port)
+    assert refused.returncode == 2 and refused.stdout == ""
+    assert refused.stderr == f"motionfmu: page 127.0.0.1:{port}: Address already in use\n"
+    command = [sys.executable, "-m", "motionfmu", *map(str, line), "--page", str(port)]
+    server = subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
+    assert server.stdout and server.stdout.readline().startswith("cards: 127.0.0.1:")
+    address = server.stdout.readline().removeprefix("page: ").strip()
+    head, _, token = address.partition("?token=")
+    assert head == f"http://127.0.0.1:{port}/" and len(token) >= 20
+    answer = httpx2.post(f"{head}config/form", headers={"authorization": f"Bearer {token}"})
+    assert answer.json()["file"] == str(CARD)
+    assert (
+        httpx2.post(f"{head}config/form", headers={"authorization": "Bearer x"}).status_code == 403
+    )
+    server.send_signal(signal.SIGINT)
+    assert server.wait(20) == 0

@@ -2,24 +2,23 @@
 
 import asyncio
 import shutil
-import socket
 import threading
 import zipfile
 from collections.abc import Awaitable, Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
-import uvicorn
 from conftest import ROOT
 from fleet import Fleet, circle, status
 
 from motionfmu.netcard import messages
 from motionfmu.netcard.client import SoftCard, serve_card
 from motionfmu.netcard.config import load
-from motionfmu.netcard.page import application
+from motionfmu.netcard.page import Serving, application
 from motionfmu.netcard.server import Cards
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
@@ -51,22 +50,22 @@ def browser() -> Iterator[Any]:
 @contextmanager
 def serving(cards: Any, config: Path, beside: Callable[[], Awaitable[Any]]) -> Iterator[int]:
     """The page on a loop of its own, with what else runs there; its port."""
-    with socket.socket() as listening:
-        listening.bind(("127.0.0.1", 0))
-        app = application(cards, TOKEN, config)
-        server = uvicorn.Server(uvicorn.Config(app, log_level="warning"))
+    ended, found = asyncio.Event(), Future[tuple[asyncio.AbstractEventLoop, int]]()
 
-        async def main() -> None:
+    async def main() -> None:
+        async with Serving(application(cards, TOKEN, config), 0) as port:
             other = asyncio.ensure_future(beside())
-            await server.serve([listening])
+            found.set_result((asyncio.get_running_loop(), port))
+            await ended.wait()
             other.cancel()
 
-        thread = threading.Thread(target=asyncio.run, args=(main(),), daemon=True)
-        thread.start()
-        yield listening.getsockname()[1]
-        server.should_exit = True
-        thread.join(10)
-        assert not thread.is_alive()
+    thread = threading.Thread(target=asyncio.run, args=(main(),), daemon=True)
+    thread.start()
+    loop, port = found.result(10)
+    yield port
+    loop.call_soon_threadsafe(ended.set)
+    thread.join(10)
+    assert not thread.is_alive()
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """The commands of the server of cards, and of those who talk to it."""
 
 import asyncio
+import contextlib
 import json
 import logging
 from pathlib import Path
@@ -13,6 +14,7 @@ from motionfmu.cli.common import FAILED, bare_table, out
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
+    from motionfmu.netcard.page import Serving
     from motionfmu.netcard.server import Cards
 
 AXES = "XYZU"
@@ -43,36 +45,41 @@ def serve(  # noqa: PLR0913  (each is an option of the command)
 async def _serve(
     cards: "Cards", folder: Path, places: tuple[str, int, int], config: Path | None
 ) -> None:
-    import secrets
     import signal
 
     from motionfmu.netcard.control import Control
 
     bind, port, page = places
+    serving, address = _page(cards, page, config) if page else (contextlib.nullcontext(), "")
     control = Control(cards, folder)
     await control.listen()
+    ended = asyncio.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, ended.set)
     try:
         port = await cards.listen(bind, port)
         out.print(f"cards: {bind}:{port}, folder {folder}", soft_wrap=True)
-        if page:
-            import uvicorn
-
-            from motionfmu.netcard.page import application
-
-            token = secrets.token_urlsafe(16)
-            out.print(f"page: http://127.0.0.1:{page}/?token={token}", soft_wrap=True)
-            served = uvicorn.Config(
-                application(cards, token, config), "127.0.0.1", page, log_level="warning"
-            )
-            await uvicorn.Server(served).serve()
-        else:
-            ended = asyncio.Event()
-            for number in (signal.SIGINT, signal.SIGTERM):
-                asyncio.get_running_loop().add_signal_handler(number, ended.set)
+        async with serving:
+            if page:
+                out.print(f"page: {address}", soft_wrap=True)
             await ended.wait()
     finally:
         await cards.close()
         await control.close()
+
+
+def _page(cards: "Cards", port: int, config: Path | None) -> "tuple[Serving, str]":
+    """The page, and the address that lets a browser in."""
+    import secrets
+
+    try:
+        from motionfmu.netcard.page import Serving, application
+    except ImportError as error:
+        text = f'{error.name} is missing; pip install "motionfmu[card]", or --page 0'
+        raise InputError(f"--page: {text}") from None
+    token = secrets.token_urlsafe(16)
+    serving = Serving(application(cards, token, config), port)
+    return serving, f"http://127.0.0.1:{port}/?token={token}"
 
 
 def _ask(folder: Path, request: dict[str, Any], file: bytes = b"") -> None:

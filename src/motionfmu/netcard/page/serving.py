@@ -1,0 +1,65 @@
+"""The page on a port of this machine, on the event loop of the cards."""
+
+import asyncio
+import contextlib
+import os
+import socket
+from collections.abc import Iterator
+from types import TracebackType
+
+import uvicorn
+from starlette.applications import Starlette
+
+from motionfmu.errors import InputError
+
+HOST = "127.0.0.1"
+CLOSING = 1.0  # [s] for pages that are open when it ends
+
+
+class _Server(uvicorn.Server):
+    """A server that leaves the signals to who started it."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
+
+
+class Serving:
+    """The page on a port of this machine, within ``async with``, which gives the port.
+
+    Parameters
+    ----------
+    app : Starlette
+        See `application`.
+    port : int
+        0: the system chooses.
+
+    Raises
+    ------
+    InputError
+        The port is taken.
+    """
+
+    def __init__(self, app: Starlette, port: int) -> None:
+        try:
+            self._socket = socket.create_server((HOST, port))
+        except OSError as error:
+            told = os.strerror(error.errno or 0)
+            raise InputError(f"page {HOST}:{port}: {told}") from None
+        self._server = _Server(
+            uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=int(CLOSING))
+        )
+
+    async def __aenter__(self) -> int:
+        self._task = asyncio.create_task(self._server.serve([self._socket]))
+        return int(self._socket.getsockname()[1])
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._server.should_exit = True
+        await self._task
+        self._socket.close()
