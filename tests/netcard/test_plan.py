@@ -13,11 +13,11 @@ from typer.testing import CliRunner
 
 from motionfmu.cli import app
 from motionfmu.errors import InputError
-from motionfmu.netcard import CardConfig, job, plt
+from motionfmu.netcard import CardConfig, job, load, plt
 from motionfmu.netcard.config import read as config_of
 from motionfmu.netcard.contours import clean, corners, way_between
 from motionfmu.netcard.figures import figures, paths
-from motionfmu.netcard.plan import DRAWS, Options, Plan, plan
+from motionfmu.netcard.plan import DRAWS, Options, Plan, origin, plan
 
 ACC, JERK, SCALE = 1000.0, 50_000.0, 800.0
 AXIS = f"""
@@ -257,3 +257,15 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         run(app, [*words, "--order", "far"], catch_exceptions=False)
     with pytest.raises(InputError, match=r"cannot read b\.plt"):
         run(app, ["card", "show", "b.plt"], catch_exceptions=False)
+
+
+def test_the_job_of_the_scenario_is_of_its_drawing() -> None:
+    folder = ROOT / "scenarios/plt_plate"
+    drawing, settings = plt.read(folder / "plate.plt"), load(folder / "card.toml")
+    kept = job.read(folder / "plate.mcj")
+    assert kept.origin == origin(drawing, settings, Options())
+    (line,) = clean(drawing)
+    vertices = np.loadtxt(folder / "plate.txt")[:, :2]
+    np.testing.assert_allclose(line.points, vertices, atol=1e-9)
+    fresh = plan(drawing, settings)
+    assert len(fresh.steps) == pytest.approx(len(kept.commands), rel=0.05)

@@ -2,6 +2,7 @@
 
 import ctypes
 import hashlib
+import json
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,6 +22,10 @@ ROOM = 1 << 15  # frames of a call
 _PAYLOAD, _FRAME = 228, 13  # bytes of a page, of a frame at most
 _EVENTS = 11
 _MOVE, _DRAW, _STOP = range(3)
+# What the planner of C is given.
+_SETTINGS = (
+    "pulses_per_mm speed acc jerk period_ns tolerance rapid reserve pen pen_axis up down dwell"
+).split()
 RESTS, SLIDES, DRAWS = 1, 2, 3  # what a frame is part of
 
 
@@ -64,9 +69,7 @@ def plan(drawing: Drawing, config: CardConfig, options: Options | None = None) -
     _within(drawing, contours, config, options.offset)
     began = time.perf_counter()
     planner = _planner(config)
-    settings = f"{config.model_dump_json()} {options!r}"
-    origin = hashlib.sha256(drawing.text + b"\0" + settings.encode()).digest()
-    _start(planner, config, origin)
+    _start(planner, config, origin(drawing, config, options))
     pages: list[bytes] = []
     blocks = list(_run(planner, _vertices(contours, config, options), pages))
     job = _end(planner, pages, drawing.name)
@@ -82,6 +85,20 @@ def plan(drawing: Drawing, config: CardConfig, options: Options | None = None) -
         contours=contours,
         seconds=time.perf_counter() - began,
     )
+
+
+def origin(drawing: Drawing, config: CardConfig, options: Options) -> bytes:
+    """SHA-256 of a drawing and all that its plan depends on: what a job's header has."""
+    planner, motion = _planner(config), config.motion
+    settings = {name: planner[name] for name in _SETTINGS}
+    settings |= {
+        "feed": motion.feed,
+        "corner": motion.corner_angle,
+        "pen_output": motion.pen.output,
+    }
+    settings |= {"pen": [motion.pen.output, motion.pen.up_level], "options": repr(options)}
+    told = json.dumps(settings, sort_keys=True, default=lambda row: row.tolist())
+    return hashlib.sha256(drawing.text + b"\0" + told.encode()).digest()
 
 
 def write(job: bytes, file: Path) -> None:
