@@ -72,12 +72,12 @@ def test_the_outline_keeps_its_tolerance_both_ways(planned: Plan, config: CardCo
 
 
 def test_the_outline_is_near_the_least_time(config: CardConfig) -> None:
-    """The bound has the acceleration that is kept free for a pause, and no limit of jerk."""
+    """The bound has what is kept free for a pause, and no limit of jerk."""
     sys.path.append(str(ROOT / "scenarios/short_lines"))
     from shape_paths import lines, shaped
     from study import bound
 
-    part = outline()[:1500]
+    part = outline()[:700]
     found = plan(plt.parse(written([part])), config)
     least = bound(shaped(lines(part * 0.025, 0.02, 0.02))[0], 100.0)
     time = int((found.steps == DRAWS).sum()) * found.period
@@ -91,7 +91,7 @@ def test_each_axis_keeps_its_limits(planned: Plan, config: CardConfig) -> None:
     ]
     assert (peaks[0] < 200.0).all() and (peaks[0] > 90.0).all()
     assert (peaks[1] <= 0.9 * ACC * (1 + 1e-6)).all() and (peaks[1] > 0.95 * 0.9 * ACC).all()
-    assert (peaks[2] <= JERK * (1 + 1e-6)).all() and (peaks[2] > 0.95 * JERK).all()
+    assert (peaks[2] <= 0.9 * JERK * (1 + 1e-6)).all() and (peaks[2] > 0.95 * 0.9 * JERK).all()
     assert figures(planned, config).jerk == pytest.approx(peaks[2].tolist())
 
 

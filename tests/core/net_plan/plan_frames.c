@@ -107,13 +107,13 @@ static void check_limits(const struct net_plan_config *c, const struct net_plan_
         }
     }
     for (int i = 0; i < 3; i++) {
-        const double acc = c->axis[i].acc * (1.0 - RESERVE);
+        const double acc = c->axis[i].acc * (1.0 - RESERVE), jerk = JERK * (1.0 - RESERVE);
         CHECK(most[0][i] <= SPEED * (1.0 + rounding));
         CHECK(most[1][i] <= acc * (1.0 + rounding));
-        CHECK(most[2][i] <= JERK * (1.0 + rounding));
+        CHECK(most[2][i] <= jerk * (1.0 + rounding));
         if (i < 2) {
             CHECK(most[1][i] > 0.97 * acc);
-            CHECK(most[2][i] > 0.97 * JERK);
+            CHECK(most[2][i] > 0.97 * jerk);
         }
     }
 }
