@@ -153,7 +153,8 @@ struct card_input_served card_inputs_serve(struct card_inputs *c, int vector, in
 
 bool card_inputs_sound(const struct card_inputs *c)
 {
-    bool ok = ((c->levels | c->taken | c->pending | c->waiting | c->ended) & ~(uint32_t)LINES) == 0 &&
+    const uint32_t bits = c->levels | c->taken | c->pending | c->waiting | c->ended;
+    bool ok = (bits & ~(uint32_t)LINES) == 0 &&
               c->edges >= 0 && c->lost >= 0 && c->ignored >= 0;
 
     for (int i = 0; ok && i < CARD_INPUTS; i++) {

@@ -1,18 +1,7 @@
 #include "home_cycle.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Of sums of speeds: the last step may miss the target by so much [pulses]. */
-static const double ROUNDING = 1e-6;
-
-/* What an axis shall do in the next period. */
-struct order {
-    bool   move;        /* to a target, else run */
-    double speed;       /* [pulses/period] run: signed; move: largest */
-    int64_t target;     /* [pulses] */
-};
 
 bool home_cycle_on_level(enum card_trigger trigger)
 {
@@ -45,12 +34,6 @@ bool home_cycle_valid(const struct home_cycle_config *c)
     return ok;
 }
 
-/* At the target of its move. */
-static bool there(const struct home_course *c)
-{
-    return c->commanded == c->place && c->rest == 0.0;
-}
-
 static double way(const struct home_axis *a)
 {
     return a->plus ? 1.0 : -1.0;
@@ -69,7 +52,7 @@ static bool limit(const struct home_cycle_input *in, int i, double direction)
 static void enter(struct home_course *c, enum home_cycle_phase phase)
 {
     c->phase = phase;
-    c->begin = c->commanded;
+    c->begin = c->motion.commanded;
     c->stopping = c->passed = c->off = false;
 }
 
@@ -109,7 +92,7 @@ void home_cycle_begin(struct home_cycle *h, const struct home_cycle_config *conf
     h->config = *config;
     h->fault_axis = -1;
     for (int i = 0; i < CARD_AXES; i++) {
-        h->axis[i].commanded = in->position[i];
+        h->axis[i].motion.commanded = in->position[i];
         h->mask |= config->axis[i].order > 0 ? mask & (uint32_t)1 << i : 0;
     }
     next_order(h, in);
@@ -165,10 +148,10 @@ static void back(struct home_cycle *h, int i, const struct home_cycle_input *in,
     if (limit(in, i, -way(a))) {
         fail(h, i, HOME_CYCLE_LIMIT);
     } else if (c->off) {
-        c->stopping = there(c);
+        c->stopping = home_motion_at(&c->motion, c->place);
     } else if (c->passed && !on(h, i, in)) {
         c->off = true;
-        c->place = c->commanded - (int64_t)way(a) * a->back;
+        c->place = c->motion.commanded - (int64_t)way(a) * a->back;
     }
 }
 
@@ -219,7 +202,7 @@ static void look(struct home_cycle *h, int i, const struct home_cycle_input *in)
     const bool seen = on(h, i, in) || (in->latched >> i & 1) != 0;
 
     if (c->stopping) {
-        if (c->still >= h->config.settle) {
+        if (c->motion.still >= h->config.settle) {
             next_phase(h, i);
         }
         return;
@@ -238,78 +221,54 @@ static void look(struct home_cycle *h, int i, const struct home_cycle_input *in)
         edge(h, i, in);
         break;
     case HOME_CYCLE_OFFSET:
-        c->stopping = there(c);
-        if (!c->stopping && limit(in, i, (double)(c->place - c->commanded))) {
+        c->stopping = home_motion_at(&c->motion, c->place);
+        if (!c->stopping && limit(in, i, (double)(c->place - c->motion.commanded))) {
             fail(h, i, HOME_CYCLE_LIMIT);
         }
         return;
     default:
         return;
     }
-    if (!c->stopping && llabs(c->commanded - c->begin) > h->config.axis[i].travel) {
+    if (!c->stopping && llabs(c->motion.commanded - c->begin) > h->config.axis[i].travel) {
         fail(h, i, c->phase == HOME_CYCLE_BACK ? HOME_CYCLE_STUCK : HOME_CYCLE_NO_ORIGIN);
     }
 }
 
-static struct order order_of(const struct home_cycle *h, int i)
+/* Speed of a phase, but for the ways to a place. [pulses/s] */
+static double speed_of(const struct home_axis *a, enum home_cycle_phase phase)
 {
-    const struct home_axis *a = &h->config.axis[i];
-    const struct home_course *c = &h->axis[i];
-    const double fast = a->fast * h->config.period, slow = a->slow * h->config.period;
-
-    if (c->stopping || h->state != HOME_CYCLE_RUNNING) {
-        return (struct order){ false, 0.0, 0 };
-    }
-    switch (c->phase) {
+    switch (phase) {
     case HOME_CYCLE_SEARCH:
-        return (struct order){ false, way(a) * fast, 0 };
+        return way(a) * a->fast;
     case HOME_CYCLE_TURN:
-        return (struct order){ false, -way(a) * fast, 0 };
     case HOME_CYCLE_BACK:
-        return (struct order){ c->off, c->off ? fast : -way(a) * fast, c->place };
+        return -way(a) * a->fast;
     case HOME_CYCLE_EDGE:
-        return (struct order){ false, way(a) * slow, 0 };
-    case HOME_CYCLE_OFFSET:
-        return (struct order){ true, fast, c->place };
+        return way(a) * a->slow;
     default:
-        return (struct order){ false, 0.0, 0 };
+        return 0.0;
     }
 }
 
-/* Pulses of the next period. A speed can change by the acceleration, from rest to the start speed
- * and from below it to rest. A target is met with a last step that is no larger than that: before
- * it v + (v - a) + .. + (v - k a) is what is left. */
-static int16_t go(struct home_course *c, const struct order *o, double acc, double start)
+/* Pulses of the next period. */
+static int32_t go(struct home_cycle *h, int i)
 {
-    const double left = (double)(o->target - c->commanded) - c->rest, size = fabs(left),
-                 free = fmax(acc, start);
-    double want = o->speed, low = c->speed - acc, high = c->speed + acc;
+    const struct home_axis *a = &h->config.axis[i];
+    const double period = h->config.period;
+    const struct home_limits limits = { a->acc * period * period, a->start * period };
+    struct home_course *c = &h->axis[i];
 
-    if (o->move) {
-        const double k = floor(0.5 * (sqrt(1.0 + 8.0 * size / acc) - 1.0)),
-                     brake = 0.5 * k * acc + size / (k + 1.0);
-        want = copysign(size <= free ? size : fmin(o->speed, brake), left);
+    if (c->stopping || h->state != HOME_CYCLE_RUNNING) {
+        return home_motion_run(&c->motion, &limits, 0.0);
     }
-    if (c->speed == 0.0) {
-        low = -free, high = free;
-    } else if (fabs(c->speed) <= free) {
-        low = fmin(low, 0.0), high = fmax(high, 0.0);
+    if (c->phase == HOME_CYCLE_OFFSET || (c->phase == HOME_CYCLE_BACK && c->off)) {
+        return home_motion_to(&c->motion, &limits, c->place, a->fast * period);
     }
-    c->speed = fmin(fmax(want, low), high);
-    int64_t pulses = (int64_t)floor(c->rest + c->speed);
-    c->rest += c->speed - (double)pulses;
-    if (o->move && fabs(c->speed - left) < ROUNDING) {
-        pulses = o->target - c->commanded;
-        c->rest = 0.0;
-    }
-    c->commanded += pulses;
-    c->still = pulses == 0 && c->speed == 0.0 ? c->still + 1 : 0;
-    return (int16_t)pulses;
+    return home_motion_run(&c->motion, &limits, speed_of(a, c->phase) * period);
 }
 
 struct frame home_cycle_step(struct home_cycle *h, const struct home_cycle_input *in)
 {
-    const double period = h->config.period;
     struct frame frame = { { 0 }, 0 };
     bool done = true, still = true;
 
@@ -325,10 +284,8 @@ struct frame home_cycle_step(struct home_cycle *h, const struct home_cycle_input
         return frame;
     }
     for (int i = 0; i < CARD_AXES; i++) {
-        const struct home_axis *a = &h->config.axis[i];
-        const struct order o = order_of(h, i);
-        frame.command[i] = go(&h->axis[i], &o, a->acc * period * period, a->start * period);
-        still = still && h->axis[i].still > 0;
+        frame.command[i] = (int16_t)go(h, i);
+        still = still && h->axis[i].motion.still > 0;
     }
     if (h->state == HOME_CYCLE_STOPPING && still) {
         h->state = h->fault == HOME_CYCLE_OK ? HOME_CYCLE_STOPPED : HOME_CYCLE_FAILED;
@@ -348,8 +305,7 @@ bool home_cycle_sound(const struct home_cycle *h)
         const struct home_course *c = &h->axis[i];
         ok = (int)c->phase >= HOME_CYCLE_NONE && c->phase <= HOME_CYCLE_DONE &&
              llabs(c->begin) < INT64_MAX / 4 && llabs(c->place) < INT64_MAX / 4 &&
-             llabs(c->commanded) < INT64_MAX / 4 && between(c->rest, 0.0, 1.0) &&
-             between(c->speed, -INT16_MAX + 1, INT16_MAX - 1) && c->still >= 0;
+             home_motion_sound(&c->motion, INT16_MAX - 1);
     }
     return ok;
 }

@@ -22,6 +22,7 @@
 
 #include "card_settings.h"
 #include "frame_fifo.h"
+#include "home_motion.h"
 
 struct home_axis {
     int32_t order;          /* 1 .. 4; 0: the axis is not homed */
@@ -75,10 +76,7 @@ struct home_course {
     bool    off;            /* phase 2: has left the switch, goes on; 3: was seen off it */
     int64_t begin;          /* [pulses] commanded, where the phase began */
     int64_t place;          /* [pulses] what was found, or the target */
-    int64_t commanded;      /* [pulses] in whole */
-    double  rest;           /* [pulses] of a pulse not yet given, within 0 .. 1 */
-    double  speed;          /* [pulses/period] signed */
-    int32_t still;          /* periods without a pulse */
+    struct home_motion motion;
 };
 
 struct home_cycle {

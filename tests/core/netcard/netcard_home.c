@@ -77,7 +77,7 @@ static struct shown run(uint32_t mask, int stop)
         CHECK(home_cycle_sound(&h));
         for (int i = 0; i < CARD_AXES; i++) {
             const struct home_axis *a = &config.axis[i];
-            const double t = config.period, v = h.axis[i].speed, dv = fabs(v - last[i]),
+            const double t = config.period, v = h.axis[i].motion.speed, dv = fabs(v - last[i]),
                          acc = a->acc * t * t, start = a->start * t + 1e-12;
             CHECK(fabs(v) <= fmax(a->fast, a->slow) * t && fabs(f.command[i] - v) <= 1.0);
             /* up to the start speed it may start and stop at once */
@@ -89,7 +89,7 @@ static struct shown run(uint32_t mask, int stop)
             if (phase != HOME_CYCLE_NONE && s.begun[i] < 0) {
                 s.begun[i] = s.periods;
             }
-            const int64_t left = h.axis[i].place - h.axis[i].commanded;
+            const int64_t left = h.axis[i].place - h.axis[i].motion.commanded;
             if (phase == HOME_CYCLE_OFFSET) {   /* straight to its target */
                 CHECK(left == 0 || (left > 0) == (f.command[i] > 0) || f.command[i] == 0);
             }
@@ -237,6 +237,23 @@ static void faults(void)
     CHECK(!home_cycle_valid(&config));
 }
 
+/* A switch that is on again before the slow approach: its edge cannot be found. */
+static void on_again(enum card_trigger trigger)
+{
+    one_axis();
+    config.axis[1].trigger = trigger;
+    in = (struct home_cycle_input){ .origin = home_cycle_on_level(trigger) ? 2 : 0 };
+    home_cycle_begin(&h, &config, 2, &in);
+    CHECK_EQ(h.axis[1].phase, HOME_CYCLE_BACK);
+    for (int n = 0; n < 5000 && h.state != HOME_CYCLE_FAILED; n++) {
+        const bool on = n < 10 || h.axis[1].phase == HOME_CYCLE_EDGE;
+        in.origin = on == home_cycle_on_level(trigger) ? 2 : 0;
+        home_cycle_step(&h, &in);
+    }
+    CHECK(h.state == HOME_CYCLE_FAILED && h.fault == HOME_CYCLE_STUCK);
+    CHECK_EQ(h.axis[1].phase, HOME_CYCLE_EDGE);
+}
+
 /* Stopped at any period: at rest within v^2 / 2a and what is on its way. */
 static void stopped(void)
 {
@@ -248,8 +265,8 @@ static void stopped(void)
             continue;
         }
         CHECK(h.state == HOME_CYCLE_STOPPED && h.fault == HOME_CYCLE_OK);
-        CHECK_EQ(axis[1].position, h.axis[1].commanded);
-        CHECK_EQ(h.axis[1].speed, 0.0);
+        CHECK_EQ(axis[1].position, h.axis[1].motion.commanded);
+        CHECK_EQ(h.axis[1].motion.speed, 0.0);
     }
 }
 
@@ -257,6 +274,8 @@ int main(void)
 {
     any_start();
     faults();
+    on_again(CARD_RISING);
+    on_again(CARD_LOW);
     stopped();
     return check_result();
 }
