@@ -40,16 +40,16 @@ static void compress(uint32_t hash[8], const uint8_t block[NET_SHA_BLOCK])
         w[t] = w[t - 16] + s0 + w[t - 7] + s1;
     }
     memcpy(v, hash, sizeof v);
-    for (int t = 0; t < 64; t++) {
-        const uint32_t a = v[0], e = v[4];
+    for (unsigned t = 0; t < 64; t++) {
+        /* The eight move up by one each round: the standard's a is where h was in the round before. */
+        uint32_t *h = &v[(7 - t) % 8];
+        const uint32_t a = v[-t % 8], b = v[(1 - t) % 8], c = v[(2 - t) % 8], e = v[(4 - t) % 8];
         const uint32_t s1 = turn(e, 6) ^ turn(e, 11) ^ turn(e, 25);
-        const uint32_t choose = (e & v[5]) ^ (~e & v[6]);
-        const uint32_t t1 = v[7] + s1 + choose + round_constant[t] + w[t];
+        const uint32_t choose = (e & v[(5 - t) % 8]) ^ (~e & v[(6 - t) % 8]);
+        const uint32_t t1 = *h + s1 + choose + round_constant[t] + w[t];
         const uint32_t s0 = turn(a, 2) ^ turn(a, 13) ^ turn(a, 22);
-        const uint32_t majority = (a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]);
-        memmove(v + 1, v, 7 * sizeof v[0]);
-        v[4] += t1;
-        v[0] = t1 + s0 + majority;
+        v[(3 - t) % 8] += t1;
+        *h = t1 + s0 + ((a & b) ^ (a & c) ^ (b & c));
     }
     for (int i = 0; i < 8; i++)
         hash[i] += v[i];
