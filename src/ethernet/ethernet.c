@@ -28,8 +28,8 @@ static void cut(struct ethernet *e, int64_t now)
     disconnect(e, now);
 }
 
-/* Is a cut due: a time since the latest instant, or the bytes of an end? A cut behind bytes comes an
- * instant behind them, so that the end has seen the last one. */
+/* Is a cut due: a time since the latest instant, or the bytes of an end? A cut behind bytes comes
+ * an instant behind them, so that the end has seen the last one. */
 static bool cut_is_due(const struct ethernet *e, int64_t now)
 {
     const struct ethernet_config *c = &e->config;

@@ -1,5 +1,5 @@
-/* ethernet - the link between a card and its host: a connection of two streams that comes about when
- * both want it, and is cut at times or behind bytes.
+/* ethernet - the link between a card and its host: a connection of two streams that comes about
+ * when both want it, and is cut at times or behind bytes.
  *
  * Each end shows words and counts as byte_ring.h has it, all 0 while there is no connection. A cut
  * takes what is on its way; the next connection comes once both ends show counts of 0 again.

@@ -1,9 +1,10 @@
-/* net_host - the server's end of the link to one card: handshake, upload, commands, status. It has no
- * socket and no clock: bytes in, bytes out, times are arguments [ns].
+/* net_host - the server's end of the link to one card: handshake, upload, commands, status. It has
+ * no socket and no clock: bytes in, bytes out, times are arguments [ns].
  *
- * An upload outlives connections: only pages that the card misses are sent again. So does a command:
- * its number stays, and the card does each number once. A card that has lost its power meanwhile
- * (HELLO has another life) has forgotten its numbers: what had no result then is lost, not repeated.
+ * An upload outlives connections: only pages that the card misses are sent again. So does a
+ * command: its number stays, and the card does each number once. A card that has lost its power
+ * meanwhile (HELLO has another life) has forgotten its numbers: what had no result then is lost,
+ * not repeated.
  */
 #ifndef NET_HOST_H
 #define NET_HOST_H

@@ -1,5 +1,5 @@
-/* net_crc - CRC-32 of frames, pages and records: polynomial 04C11DB7, reflected, start and final XOR
- * FFFFFFFF, as in IEEE 802.3 and zlib. "123456789" gives CBF43926. The CRC unit of an STM32F407
+/* net_crc - CRC-32 of frames, pages and records: polynomial 04C11DB7, reflected, start and final
+ * XOR FFFFFFFF, as in IEEE 802.3 and zlib. "123456789" gives CBF43926. The CRC unit of an STM32F407
  * computes another one (words, not reflected, no final XOR). */
 #ifndef NET_CRC_H
 #define NET_CRC_H

@@ -1,6 +1,6 @@
-/* net_message - the messages of the link, declared once: a list of type, name and elements for each,
- * from which come its struct, its bytes and its length. Bytes are little-endian, members follow each
- * other without gaps. Spare bytes are written 0 and not read.
+/* net_message - the messages of the link, declared once: a list of type, name and elements for
+ * each, from which come its struct, its bytes and its length. Bytes are little-endian, members
+ * follow each other without gaps. Spare bytes are written 0 and not read.
  *
  *     card -> server   HELLO            AUTH            ACK NAK RESULT CONFIG STATUS   PING PONG
  *     server -> card         CHALLENGE       WELCOME    JOB_* commands CONFIG_GET/SET  PING PONG

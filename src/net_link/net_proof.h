@@ -14,8 +14,8 @@ struct net_secret {
 /* What a proof is for: its first byte. */
 enum net_proof { NET_OF_SERVER = 'S', NET_OF_CARD = 'C', NET_OF_SESSION = 'K' };
 
-/* HMAC-SHA256(key, first byte + card nonce + server nonce + card + protocol). That of the session is
- * its key. */
+/* HMAC-SHA256(key, first byte + card nonce + server nonce + card + protocol). That of the session
+ * is its key. */
 void net_prove(const struct net_secret *s, enum net_proof of, uint8_t proof[NET_SHA_BYTES]);
 
 bool net_is_open(const uint8_t key[NET_SHA_BYTES]);

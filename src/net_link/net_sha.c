@@ -41,7 +41,7 @@ static void compress(uint32_t hash[8], const uint8_t block[NET_SHA_BLOCK])
     }
     memcpy(v, hash, sizeof v);
     for (unsigned t = 0; t < 64; t++) {
-        /* The eight move up by one each round: the standard's a is where h was in the round before. */
+        /* The eight move up by one each round: the standard's a is where h was before. */
         uint32_t *h = &v[(7 - t) % 8];
         const uint32_t a = v[-t % 8], b = v[(1 - t) % 8], c = v[(2 - t) % 8], e = v[(4 - t) % 8];
         const uint32_t s1 = turn(e, 6) ^ turn(e, 11) ^ turn(e, 25);

@@ -1,6 +1,6 @@
-/* session - the card's end of the link: bytes of a connection in, messages for the card out; answers
- * in, bytes out. It has no socket and no clock: times are arguments [ns], and session_next_time()
- * says when session_tick() has something to do.
+/* session - the card's end of the link: bytes of a connection in, messages for the card out;
+ * answers in, bytes out. It has no socket and no clock: times are arguments [ns], and
+ * session_next_time() says when session_tick() has something to do.
  *
  *     IDLE --time--> CALLING --connected--> GREETING --CHALLENGE--> PROVING --WELCOME--> UP
  *       ^______________________ cut, fault, no answer in time ___________________________|

@@ -309,7 +309,7 @@ static void check_room(void)
     CHECK(message(&p) == NET_START);        /* it goes on */
 }
 
-/* Silence: PING at 1, 2, 3 s, lost at 4 s; the next attempts 0.5 s doubling to 30 s, within 25 %. */
+/* Silence: PING at 1, 2, 3 s, lost at 4 s; the next attempts 0.5 s doubling to 30 s, +-25 %. */
 static void check_times(void)
 {
     struct peer p;

@@ -1,4 +1,5 @@
-/* Links at random: split, late, cut, with bytes that change on the way; and a card that loses its power. */
+/* Links at random: split, late, cut, with bytes that change on the way; and a card that loses its
+ * power. */
 #include "link_rig.h"
 
 enum { ROUNDS = 300, CUTS = 6, MOST_MS = 400000 };

@@ -1,5 +1,5 @@
-/* Both ends of the link with what lies between: a store that programs a page a ms, and two streams of bytes
- * that can be slow, late, cut. */
+/* Both ends of the link with what lies between: a store that programs a page a ms, and two streams
+ * of bytes that can be slow, late, cut. */
 #ifndef LINK_RIG_H
 #define LINK_RIG_H
 
@@ -316,13 +316,16 @@ static int rig_orders(struct rig *r)
     static const uint8_t type[] = {NET_START, NET_HOME, NET_PAUSE, NET_OUTPUT, NET_START, NET_STOP};
     enum { ORDERS = sizeof type };
     for (int i = 0; i < ORDERS; i++) {
-        const struct net_host_order order = {.at = (3 + 4 * i) * RIG_MS, .type = type[i], .axes = 3};
+        const struct net_host_order order = {
+            .at = (3 + 4 * i) * RIG_MS, .type = type[i], .axes = 3
+        };
         CHECK(net_host_give(&r->host, &order));
     }
     return ORDERS;
 }
 
-/* The property: the job as it was sent, no page that the card had, each command once and in order. */
+/* The property: the job as it was sent, no page that the card had, each command once and in
+ * order. */
 static void rig_check(const struct rig *r, int orders)
 {
     const struct rig_card *c = &r->card;

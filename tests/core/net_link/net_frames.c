@@ -1,5 +1,5 @@
-/* A channel takes whole frames cut anywhere, and nothing else: what is damaged, forged, replayed or out
- * of order closes it, and no byte behind that is looked at. */
+/* A channel takes whole frames cut anywhere, and nothing else: what is damaged, forged, replayed or
+ * out of order closes it, and no byte behind that is looked at. */
 #include <string.h>
 
 #include "byte_ring.h"
@@ -71,7 +71,8 @@ static void check_pieces(bool keyed)
     CHECK_EQ(net_channel_payload(&card)[0], 77);
 }
 
-/* Each bit of three frames turned over: what was whole before it is taken, nothing from there on. */
+/* Each bit of three frames turned over: what was whole before it is taken, nothing from there
+ * on. */
 static void check_damage(bool keyed)
 {
     uint8_t bytes[2 * NET_FRAME];

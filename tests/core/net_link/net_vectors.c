@@ -61,7 +61,8 @@ static void check_sha(const char *text, const char *want)
     for (size_t step = 1; step < 70; step += 7) {
         net_sha_start(&s);
         for (size_t at = 0; at < strlen(text); at += step)
-            net_sha_add(&s, bytes_of(text) + at, strlen(text + at) < step ? strlen(text + at) : step);
+            net_sha_add(&s, bytes_of(text) + at,
+                        strlen(text + at) < step ? strlen(text + at) : step);
         net_sha_end(&s, hash);
         check_hex(hash, want, __LINE__);
     }
