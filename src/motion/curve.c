@@ -30,18 +30,24 @@ void curve_start(struct curve *c, struct curve_plan *m, const struct ring *r)
     c->place = m->pace.at;
 }
 
+/* Places that are nearer to each other are one: a goal at the end of a piece is that end, though
+ * lengths summed from elsewhere tell it otherwise by their rounding. A sliver of 1e-16 mm between
+ * them would have no acceleration that could be told. [mm] */
+static const double NEAR = 1e-9;
+
 /* The next finished piece, or what is left of it, or what lies before the goal, to the pace. */
 static bool join_one(const struct curve *c, struct curve_plan *m)
 {
     const struct piece *whole = shape_piece(&m->shape, m->joined);
-    const double to = fmin(c->goal - m->joined_way, whole->length);
+    const double goal = c->goal - m->joined_way;
+    const double to = goal > whole->length - NEAR ? whole->length : fmax(goal, m->part);
     struct piece part;
 
     if (m->part <= 0.0 && to >= whole->length) {
         if (!pace_join(&m->pace, whole)) {
             return false;
         }
-    } else if (to > m->part) {
+    } else if (to > m->part + NEAR) {
         part = *whole;
         shape_cut(&part, m->part, to);
         if (!pace_join(&m->pace, &part)) {
@@ -167,7 +173,7 @@ static double next_block(const struct curve *c, const struct curve_plan *m, doub
 {
     for (int32_t i = 0; i < shape_marks(&m->shape); i++) {
         const double at = shape_mark(&m->shape, i)->at;
-        if (at > way_of(c) && at >= way && begins_block(c, m, i)) {
+        if (at > way_of(c) + NEAR && at >= way && begins_block(c, m, i)) {
             return at;
         }
     }
@@ -177,9 +183,6 @@ static double next_block(const struct curve *c, const struct curve_plan *m, doub
 /* Ways that differ by such a share of the way to rest may not be told apart. */
 static const double MARGIN = 0.02;
 
-/* Blocks begin further apart than that. [mm] */
-static const double NEXT = 1e-9;
-
 /* With limited jerk: the chain ends before the first block before which it can come to rest. */
 static double halt_smooth(struct curve *c, struct curve_plan *m)
 {
@@ -188,7 +191,7 @@ static double halt_smooth(struct curve *c, struct curve_plan *m)
 
     while (!ends && goal < m->start + m->pace.end) {
         ends = pace_smooth_end(&m->pace, goal - m->start);
-        goal = ends ? goal : next_block(c, m, goal + NEXT);
+        goal = ends ? goal : next_block(c, m, goal + NEAR);
     }
     if (ends) {
         m->joined = c->at;
@@ -272,7 +275,8 @@ void curve_single(struct curve *c, struct curve_plan *m, bool on)
     c->halts = on && !curve_waits(c);
     if (!on && !curve_waits(c)) {
         c->goal = INFINITY;
-        m->pace.closed = m->pace.closed && m->part <= 0.0;
+        m->pace.closed = m->part <= 0.0 && m->joined > 0 &&
+                         shape_piece(&m->shape, m->joined - 1)->rest;
     }
 }
 
@@ -287,7 +291,7 @@ void curve_go(struct curve *c, struct curve_plan *m, bool single)
 
 bool curve_waits(const struct curve *c)
 {
-    return c->place.rate == 0.0 && way_of(c) >= c->goal;
+    return c->place.rate == 0.0 && way_of(c) >= c->goal - NEAR;
 }
 
 void curve_sample(struct curve *c, struct curve_plan *m)

@@ -72,7 +72,7 @@ const struct shape_mark *curve_begun(struct curve *c, const struct curve_plan *m
 void curve_drop(struct curve *c, struct curve_plan *m);
 
 /* Smallest and largest coordinates of the way from the tool to where an override of 0 brings it to
- * rest, or up to 1 nm more. [mm] */
+ * rest by pace_stop_way, or up to 1 nm more. [mm] */
 void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[AXES],
                        double high[AXES]);
 

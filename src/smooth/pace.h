@@ -71,7 +71,8 @@ bool pace_join(struct pace *p, const struct piece *piece);
  * Returns the time left: above 0 only at rest at the end of the chain. */
 double pace_advance(struct pace *p, double override, double dt);
 
-/* Where an override of 0 brings it to rest, or a little before. [mm] */
+/* Where an override of 0 brings it to rest, or a little before: as a bend takes less and less, it
+ * can brake harder than this counts with, which is told anew where x has halved. [mm] */
 double pace_stop_way(const struct pace *p);
 
 /* Whether, that much further [mm], it brakes for the end of the pieces that are known. */
