@@ -37,13 +37,16 @@ static const struct pace_plan *held(const struct ride *r)
     return &r->p->plan[r->p->held];
 }
 
+/* The next one begins where this ends, to the bit: between two a motion that rests would be at the
+ * end of the one, and no plan would lead on. */
 static void append(struct pace *p, const struct pace_box *g)
 {
-    if (p->count > 0 && p->at.planned < p->count &&
-        pace_box_join(box_at(p, p->count - 1), g)) {
-        return;
+    if (p->count == 0 || p->at.planned == p->count ||
+        !pace_box_join(box_at(p, p->count - 1), g)) {
+        *box_at(p, p->count++) = *g;
     }
-    *box_at(p, p->count++) = *g;
+    const struct pace_box *last = box_at(p, p->count - 1);
+    p->end = last->from + last->length;
 }
 
 bool pace_smooth_join(struct pace *p, const struct piece *piece)
@@ -55,10 +58,9 @@ bool pace_smooth_join(struct pace *p, const struct piece *piece)
         return false;
     }
     for (pace_part_first(&part, piece); pace_part_next(&part); ) {
-        pace_box_make(&g, piece, &p->limits, p->end + part.from, part.to - part.from, &part.bounds);
+        pace_box_make(&g, piece, &p->limits, p->end, part.to - part.from, &part.bounds);
         append(p, &g);
     }
-    p->end += piece->length;
     p->at.left = box_at(p, 0)->from + box_at(p, 0)->length - p->at.here;
     return true;
 }
