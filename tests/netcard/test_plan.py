@@ -153,6 +153,26 @@ def test_a_damaged_job_is_refused(planned: Plan) -> None:
         assert page == 0 or at % job.PAGE >= job.FIRST_BYTE
 
 
+@pytest.mark.parametrize(
+    ("payload", "why"),
+    [
+        ([0x80, 0x00, 0], "a number that is not the shortest"),
+        ([0x80, 0x80, 0x80, 1, 0], "a number that does not end"),
+        ([0, 0x80], "a number that does not end"),
+        ([0], "fewer numbers than 1 frames have"),
+        ([1, 0], "fewer numbers than 1 frames have"),
+        ([0, 0, 0], "more numbers than 1 frames have"),
+        ([1, 0, 9], "an event or a command beyond its range"),
+    ],
+)
+def test_numbers_of_a_page_are_judged(payload: list[int], why: str) -> None:
+    one = job.Job(1_000_000, 3, np.zeros((1, 4), np.int32), np.zeros(1, int))
+    text = job.encode(one)
+    page = job._page(0, np.zeros(4, int), 1, bytes(payload))
+    with pytest.raises(InputError, match=f"x: page 1: {why}"):
+        job.decode(text[: job.PAGE] + job._sealed(page), "x")
+
+
 def squares() -> list[np.ndarray]:
     """Ten by ten closed squares and a line, in an order that goes to and fro."""
     square = np.array([[0, 0], [200, 0], [200, 200], [0, 200], [0, 0]])
@@ -166,6 +186,10 @@ def test_nearest_neighbours_save_way(config: CardConfig) -> None:
     assert way_between(nearest) < 0.5 * way_between(by_file)
     ends = [sorted(c.points.round(3).tolist()) for c in by_file]
     assert sorted(ends) == sorted(sorted(c.points.round(3).tolist()) for c in nearest)
+    begins = {c.first: c.points[:2].tolist() for c in by_file if c.closed}
+    assert begins == {c.first: c.points[:2].tolist() for c in nearest if c.closed}
+    (line,) = (c for c in nearest if not c.closed)
+    assert line.points[0].tolist() == [100.0, 2.5]  # turned round
     assert [c.closed for c in by_file] == [True] * 20 + [False]
     quick, slow = (plan(drawing, config, Options(order=o)) for o in ("nearest", "file"))
     assert len(quick.steps) < 0.9 * len(slow.steps)
