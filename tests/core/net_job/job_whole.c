@@ -188,6 +188,19 @@ static void rest(void)
         }
 }
 
+/* As many frames as a page can hold, a byte each, and the number of one more. */
+static void full_page(void)
+{
+    m.header = make_header(1, 0);
+    m.frames = 2 * JOB_PAGE_FRAMES;
+    memset(m.frame, 0, sizeof m.frame);
+    make_file(&m);
+    CHECK_EQ(m.header.pages, 2);
+    CHECK_EQ(judged(0), JOB_GOOD);
+    CHECK_EQ(with(1, 20, JOB_PAGE_FRAMES + 1, 2, 1), JOB_FRAMES);
+    CHECK_EQ(with(1, 20, JOB_PAGE_FRAMES - 1, 2, 1), JOB_VARINT);
+}
+
 /* What a writer does not take, and the widest way. */
 static void refused(void)
 {
@@ -235,6 +248,7 @@ int main(void)
 {
     any_frame();
     rest();
+    full_page();
     refused();
     uint64_t random = 2;
     do

@@ -4,8 +4,8 @@
 
 static struct made first_file, second_file, third_file, large_file;
 static struct rig base, cut, again;
-static const int32_t SHARE[] = {0, 30, 300, 500, 700, 970, 1000};
-enum { SHARES = sizeof SHARE / sizeof *SHARE, EACH_SHARE = CHECK_EACH == 1 ? 1 : 3 };
+static const int32_t SHARE[] = {0, 100, 500, 900, 1000};
+enum { SHARES = sizeof SHARE / sizeof *SHARE, EACH_SHARE = CHECK_EACH == 1 ? 1 : 2 };
 
 /* At power-up: 1 the new job, 0 the old one, which is none on an empty chip and may be none with
  * one slot; -1: neither. */
