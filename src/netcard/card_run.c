@@ -56,7 +56,7 @@ static bool begin(struct netcard *c)
     return player_begin(&c->player, &job, card_clock(c)) == PLAYER_OK;
 }
 
-/* The position of a job's page, counted from where it began. */
+/* Does the frame taken last lead to a position that the axes may have? */
 static bool within(const struct netcard *c)
 {
     for (int i = 0; i < CARD_AXES; i++) {
@@ -74,12 +74,22 @@ static void page(struct netcard *c)
     if (!c->page.good || job_reader_page(&c->reader, c->page.bytes) != JOB_GOOD) {
         card_fault(c, NET_BAD_JOB);
         leave(c);
-    } else if (!within(c)) {
-        card_fault(c, NET_LIMIT);
-        leave(c);
     } else {
         go(c, NEXT);
     }
+}
+
+/* The job leads out of the range: it is stopped while its frames in stock still lie within. */
+static void stop(struct netcard *c)
+{
+    if (card_literal(c)) {
+        card_fault(c, NET_LIMIT);
+        return;
+    }
+    c->error = NET_LIMIT;
+    c->state = NET_STOPPING;
+    leave(c);
+    kernel_give(&c->kernel, NETCARD_GIVE_STOP);
 }
 
 static void push(struct netcard *c)
@@ -88,6 +98,10 @@ static void push(struct netcard *c)
     struct frame to;
 
     job_reader_next(&c->reader, &f);
+    if (!within(c)) {
+        stop(c);
+        return;
+    }
     for (int i = 0; i < FRAME_AXES; i++) {
         to.command[i] = (int16_t)f.command[i];
     }

@@ -103,7 +103,11 @@ void card_stop(struct netcard *c)
         mark(c, NETCARD_STOP);
         player_clear(&c->player);
         c->home.state = HOME_CYCLE_IDLE;
-        card_rest(c);
+        if (c->error == NET_DONE) {
+            card_rest(c);
+        } else {
+            c->state = NET_FAULT;
+        }
         c->step[NETCARD_STOP] = RELEASE;
     }
 }

@@ -1,0 +1,246 @@
+/* What comes in by wires and goes out: homing on a switch, limits, alarms, inputs, outputs of a job,
+ * the loss of power. */
+#include "card_bench.h"
+
+static struct netcard c;
+static const int64_t SWITCH = -1234;    /* [pulses] origin switch of axis X: on from here down */
+
+static void wires(bool stop)
+{
+    const uint32_t origin = bench_count(&c, 0) <= SWITCH;
+
+    netcard_set_axes(&c, &(struct netcard_axes){ .origin = origin, .stop = stop });
+}
+
+static void pass(int64_t us, bool stop)
+{
+    for (int64_t i = 0; i < us / 20; i++) {
+        wires(stop);
+        netcard_advance(&c, c.now + 20000);
+    }
+}
+
+static struct netcard_config one_axis(void)
+{
+    struct netcard_config config = bench_config();
+
+    config.settings.home_order[1] = config.settings.home_order[2] = 0;
+    config.settings.home_order[3] = 0;
+    config.settings.home_back[0] = 300;
+    config.settings.home_offset[0] = 77;
+    return config;
+}
+
+/* Homing ends 77 pulses from the switch's edge, wherever it began and was paused; a job that runs is
+ * given up for it. */
+static void goes_home(void)
+{
+    const struct netcard_config config = one_axis();
+
+    bench_make(3000, 100, NULL, 0);
+    for (int from = 0; from < 2; from++) {
+        bench_start(&c, &config);
+        if (from) {
+            CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+            pass(300000, false);
+            CHECK_EQ(c.state, NET_RUNNING);
+        }
+        CHECK_EQ(bench_order(&c, CARD_DO_HOME), NET_DONE);
+        CHECK_EQ(c.state, NET_HOMING);
+        pass(200000, false);
+        CHECK_EQ(bench_order(&c, CARD_DO_PAUSE), NET_DONE);
+        pass(200000, false);
+        CHECK_EQ(c.state, NET_PAUSED);
+        const int64_t at = bench_count(&c, 0);
+        pass(50000, false);
+        CHECK_EQ(bench_count(&c, 0), at);
+        CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+        for (int i = 0; i < 400 && c.state == NET_HOMING; i++) {
+            pass(10000, false);
+        }
+        CHECK_EQ(c.state, NET_READY);
+        CHECK_EQ(c.homed, 1);
+        CHECK_NEAR((double)(bench_count(&c, 0) - SWITCH), 77.0, 1.0);
+        CHECK_EQ(netcard_position(&c, 0), 0);
+        const int64_t rest = bench_count(&c, 0);
+        pass(100000, false);
+        CHECK_EQ(bench_count(&c, 0), rest);
+        CHECK_EQ(c.jobs, from);
+        bench_times(&c);
+    }
+}
+
+/* Homing without a switch ends in a fault behind the travel; a stop ends it at any time. */
+static void finds_no_home(void)
+{
+    struct netcard_config config = one_axis();
+
+    config.settings.home_travel[0] = 1000;
+    bench_start(&c, &config);
+    CHECK_EQ(bench_order(&c, CARD_DO_HOME), NET_DONE);
+    pass(1000000, false);
+    CHECK_EQ(c.state, NET_FAULT);
+    CHECK_EQ(c.error, NET_NOT_HOMED);
+    CHECK(bench_count(&c, 0) < -900 && bench_count(&c, 0) > SWITCH);
+    CHECK_EQ(bench_order(&c, CARD_DO_RESET), NET_DONE);
+    CHECK_EQ(bench_order(&c, CARD_DO_HOME), NET_DONE);
+    pass(20000, false);
+    CHECK_EQ(bench_order(&c, CARD_DO_STOP), NET_DONE);
+    pass(300000, false);
+    CHECK_EQ(c.state, NET_READY);
+    CHECK_EQ(c.kernel.processor.task[NETCARD_HOME].priority, 5);
+}
+
+/* The emergency stop ends all pulses at once; only RESET and a new start move again. */
+static void stops_at_once(void)
+{
+    const struct netcard_config config = one_axis();
+
+    bench_make(2000, 100, NULL, 0);
+    bench_start(&c, &config);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    pass(300000, false);
+    wires(true);
+    const int64_t at = bench_count(&c, 0);
+    CHECK_EQ(c.state, NET_FAULT);
+    pass(100000, true);
+    CHECK_EQ(bench_count(&c, 0), at);
+    CHECK_EQ(bench_order(&c, CARD_DO_RESET), NET_ALARM);
+    pass(20, false);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_ALARM);
+    CHECK_EQ(bench_order(&c, CARD_DO_RESET), NET_DONE);
+    pass(100000, false);
+    CHECK_EQ(bench_count(&c, 0), at);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    pass(2100000, false);
+    CHECK_EQ(c.state, NET_READY);
+    CHECK_EQ(bench_count(&c, 0), at + bench_end[0]);
+}
+
+/* A limit switch stops a job that moves towards it, and no other. */
+static void keeps_off_limits(void)
+{
+    const struct netcard_config config = bench_config();
+
+    bench_start(&c, &config);
+    netcard_set_axes(&c, &(struct netcard_axes){ .minus = 1 });
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    bench_pass(&c, 300);
+    CHECK_EQ(c.state, NET_RUNNING);
+    netcard_set_axes(&c, &(struct netcard_axes){ .plus = 1 });
+    CHECK_EQ(c.state, NET_FAULT);
+    CHECK_EQ(c.error, NET_LIMIT);
+    CHECK_EQ(bench_order(&c, CARD_DO_RESET), NET_DONE);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    bench_pass(&c, 30);     /* the first frame that moves meets it */
+    CHECK_EQ(c.state, NET_FAULT);
+}
+
+/* Buttons: a pause within microseconds of the edge, a start behind the deaf time. */
+static void hears_buttons(void)
+{
+    struct netcard_config config = bench_config();
+
+    config.settings.in_action[3] = CARD_PAUSE;
+    config.settings.in_action[12] = CARD_START;
+    bench_make(2000, 100, NULL, 0);
+    bench_start(&c, &config);
+    bench_pass(&c, 1);
+    netcard_set_inputs(&c, 1u << 12);
+    bench_pass(&c, 9);
+    CHECK_EQ(c.state, NET_READY);
+    bench_pass(&c, 2);
+    CHECK_EQ(c.state, NET_RUNNING);
+    bench_pass(&c, 200);
+    netcard_set_inputs(&c, 1u << 3);
+    netcard_advance(&c, c.now + 15000);
+    CHECK_EQ(c.player.target, 0);
+    CHECK_EQ(c.state, NET_PAUSING);
+    CHECK_EQ(c.served[3], 1);
+    bench_pass(&c, 400);
+    CHECK_EQ(c.state, NET_PAUSED);
+}
+
+/* Events switch outputs at their frames: together, within microseconds of the frame's begin. */
+static void switches_outputs(void)
+{
+    const struct netcard_config config = bench_config();
+    const struct job_event events[] = { { 0x8003, 0, 1, 0 }, { 0x0001, 0, 0, 0 },
+                                        { 0x0040, 1, 1, 25000 } };
+    int64_t at = -1;
+
+    bench_make(1000, 100, events, 3);
+    bench_start(&c, &config);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    for (int k = 1; k <= 3; k++) {
+        static const uint32_t LEVELS[] = { 0, 0x8003, 0x8002, 0x8042 };
+        while (c.outputs.levels == LEVELS[k - 1] && c.now < 1000 * BENCH_MS) {
+            netcard_advance(&c, c.now + 500);
+        }
+        CHECK_EQ(c.outputs.levels, LEVELS[k]);
+        CHECK_EQ(c.player.frames, 100 * k + 1);
+        CHECK(at < 0 || llabs(c.now - at - 100 * BENCH_MS) < 20000);
+        at = c.now;
+    }
+    netcard_advance(&c, at + 24900000);
+    CHECK_EQ(c.outputs.levels, 0x8042);
+    netcard_advance(&c, at + 25100000);
+    CHECK_EQ(c.outputs.levels, 0x8002);
+}
+
+/* Power goes while a job runs: no pulse more; the job is there when it comes again. */
+static void loses_power(void)
+{
+    const struct netcard_config config = bench_config();
+
+    bench_make(2000, 100, NULL, 0);
+    bench_start(&c, &config);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    bench_pass(&c, 300);
+    netcard_set_power(&c, false);
+    const int64_t at = bench_count(&c, 0);
+    bench_pass(&c, 300);
+    CHECK(!netcard_command(&c, CARD_DO_START, 15));
+    CHECK_EQ(bench_count(&c, 0), at);
+    netcard_set_power(&c, true);
+    bench_pass(&c, 300);
+    CHECK_EQ(c.state, NET_READY);
+    CHECK_EQ(bench_count(&c, 0), at);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    bench_pass(&c, 2100);
+    CHECK_EQ(bench_count(&c, 0), at + bench_end[0]);
+    bench_times(&c);
+}
+
+/* A job that leads beyond the axis' range is stopped before it is there, without a jump of speed. */
+static void keeps_range(void)
+{
+    struct netcard_config config = bench_config();
+
+    config.settings.position_high[0] = 60000;
+    bench_start(&c, &config);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    for (int64_t was = 0, step = 0; c.now < 2100 * BENCH_MS;) {
+        bench_pass(&c, 1);
+        const int64_t now = bench_count(&c, 0);
+        CHECK(llabs(now - was - step) <= 6);        /* 4 pulses a period are its acceleration */
+        step = now - was;
+        was = now;
+    }
+    CHECK_EQ(c.state, NET_FAULT);
+    CHECK_EQ(c.error, NET_LIMIT);
+    CHECK(bench_count(&c, 0) <= 60000 && bench_count(&c, 0) > 10000);
+}
+
+int main(void)
+{
+    goes_home();
+    finds_no_home();
+    stops_at_once();
+    keeps_off_limits();
+    hears_buttons();
+    switches_outputs();
+    loses_power();
+    keeps_range();
+    return check_result();
+}
