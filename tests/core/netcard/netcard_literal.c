@@ -83,6 +83,10 @@ static void begin(void)
     config.settings.home_back[0] = 100;
     bench_make(300, 100, NULL, 0);
     bench_start(&c, &config);
+    for (int i = 0; i < NETCARD_TASKS; i++) {       /* the document's, 7 and 6 are ours */
+        static const int PRIORITY[] = { 7, 6, 5, 4, 3, 1 };
+        CHECK_EQ(c.kernel.processor.task[i].priority, PRIORITY[i]);
+    }
     length = 0;
     seen = units = 0;
     text[0] = '\0';
