@@ -147,6 +147,19 @@ def test_everything_wrong_is_told_at_once_in_the_order_of_the_file() -> None:
     assert messages[2].endswith("-5.0 is not < maximum = -10.0")
 
 
+def test_a_fault_hides_no_other_and_makes_no_other() -> None:
+    text = TEXT.replace(
+        "home_back        = 2\nhome_travel      = 320", "home_back = 0\nhome_travl = 320"
+    )
+    messages = told(text.replace('"192.168.1.50"', '"192.168.1"'))
+    places = [m.split(" ")[1] for m in messages]
+    assert places == ["network.ip", "axes.1.home_back", "axes.1.home_travl"]
+    # The speed of the exact approach is above the default that stands in for what is wrong.
+    text = TEXT.replace("home_speed       = 20", 'home_speed = "50"', 1)
+    messages = told(text.replace("home_slow        = 1", "home_slow = 30", 1))
+    assert [m.split(" ")[1] for m in messages] == ["axes.0.home_speed"]
+
+
 def test_no_axis_and_five_axes_are_refused() -> None:
     assert "axes" in told("[network]\nid = 2\n")[0]
     axis = '[[axes]]\nname = "X"\npulses_per_mm = 100\nminimum = 0\nmaximum = 9\nspeed_max = 30\n'

@@ -88,7 +88,8 @@ def test_a_jerk_of_more_than_32_bits_is_one_number_where_there_is_long_long(tmp_
     assert compiled(["gcc", "-std=c11"], tmp_path, good).returncode == 0
     assert compiled(["gcc", "-std=c11"], tmp_path, good.replace("5000", "5001")).returncode != 0
     assert "long long" in compiled(["gcc", "-std=c89"], tmp_path, good).stderr
-    assert "MC_X_JERK_MAX 50000000UL /*" in (tmp_path / "mc_axes.h").read_text()
+    text = (tmp_path / "mc_axes.h").read_text()
+    assert "MC_X_JERK_MAX 50000000UL /*" in text and "MC_Y_JERK_MAX 5000000000ULL /*" in text
 
 
 def test_every_macro_is_named_once_and_has_a_comment_and_a_range() -> None:

@@ -1,6 +1,7 @@
 """The page of the cards in a browser: on cards that answer as real ones, and on the real server."""
 
 import asyncio
+import functools
 import shutil
 import threading
 import zipfile
@@ -8,6 +9,7 @@ from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
@@ -128,7 +130,8 @@ def test_a_job_is_opened_sent_started_paused_stopped_homed(tab: Any, served: Ser
     press("Start", "Start: done (RUNNING)")
     expect(state).to_have_text("RUNNING")
     press("Home", "Home refused: not in this state (RUNNING)")
-    # The focus is on a button: space pauses and presses it not.
+    # Space pauses, and does not press the button that has the focus.
+    tab.get_by_role("button", name="Start", exact=True).focus()
     tab.keyboard.press("Space")
     expect(said).to_have_text("Pause: done (PAUSED)")
     press("Start", "Start: done (RUNNING)")
@@ -223,13 +226,15 @@ def test_the_form_checks_as_it_is_typed_and_saves(tab: Any, served: Served) -> N
     assert tab.locator("html").evaluate("e => e.scrollWidth") == 390
 
 
-def test_another_page_cannot_press_start(browser: Any, served: Served) -> None:
+def test_another_page_cannot_press_start(browser: Any, served: Served, tmp_path: Path) -> None:
     """A page of another origin knows even the token, and is refused all the same."""
     served.fleet.add(1, "READY")
     context = browser.new_context()
     page = context.new_page()
-    page.route("http://evil.example/*", lambda r: r.fulfill(body="<title>evil</title>"))
-    page.goto("http://evil.example/")
+    handler = functools.partial(SimpleHTTPRequestHandler, directory=tmp_path)
+    other = ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    threading.Thread(target=other.serve_forever, daemon=True).start()
+    page.goto(f"http://127.0.0.1:{other.server_port}/")
     here = f"127.0.0.1:{served.port}"
     page.evaluate(
         """([here, token]) => fetch(`http://${here}/cards/1/command`, { method: "POST",
@@ -247,6 +252,8 @@ def test_another_page_cannot_press_start(browser: Any, served: Served) -> None:
     )
     assert heard == "" and served.fleet.done == [] and served.fleet.queues == []
     context.close()
+    other.shutdown()
+    other.server_close()
 
 
 def test_the_page_works_on_the_real_server_with_a_card_that_comes_late(

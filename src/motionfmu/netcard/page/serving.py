@@ -1,10 +1,8 @@
 """The page on a port of this machine, on the event loop of the cards."""
 
 import asyncio
-import contextlib
 import os
 import socket
-from collections.abc import Iterator
 from types import TracebackType
 
 import uvicorn
@@ -16,16 +14,8 @@ HOST = "127.0.0.1"
 CLOSING = 1.0  # [s] for pages that are open when it ends
 
 
-class _Server(uvicorn.Server):
-    """A server that leaves the signals to who started it."""
-
-    @contextlib.contextmanager
-    def capture_signals(self) -> Iterator[None]:
-        yield
-
-
 class Serving:
-    """The page on a port of this machine, within ``async with``, which gives the port.
+    """The page on a port of this machine, in ``async with``.
 
     Parameters
     ----------
@@ -46,7 +36,7 @@ class Serving:
         except OSError as error:
             told = os.strerror(error.errno or 0)
             raise InputError(f"page {HOST}:{port}: {told}") from None
-        self._server = _Server(
+        self._server = uvicorn.Server(
             uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=int(CLOSING))
         )
 
