@@ -1,7 +1,7 @@
 /* ether_pipe - a byte stream one way over Ethernet, as TCP shows it: late, in order, complete.
  *
- * Bytes that wait go out in segments as soon as the line is free; each takes
- * 8 (payload + overhead) / rate on the line, then delay and jitter to arrive. A lost segment is seen as a stall: it comes
+ * Bytes that wait go out in segments as soon as the line is free; each takes 8 (payload + overhead)
+ * / rate on the line, then delay and jitter to arrive. A lost segment is seen as a stall: it comes
  * `stall` later, and what was sent behind it waits for it. Times are integer ns.
  */
 #ifndef ETHER_PIPE_H
