@@ -15,6 +15,8 @@ struct model {
     int32_t connection;     /* as read last */
     int32_t tx_words[BYTE_RING_WORDS];
     int32_t tx_count, rx_taken;
+    double  owed;           /* packets of the flood */
+    uint32_t asked;
 };
 
 #define MODEL_BLOB
@@ -139,6 +141,8 @@ static const char *model_check(const struct state *s)
     const struct model *m = &s->m;
     if (m->period < FMU_TICK_NS || m->instant < s->now || m->instant - s->now >= m->period)
         return "its next instant is another one";
+    if (!(m->owed >= 0.0 && m->owed <= 1.0))
+        return "its flood is damaged";
     return m->tx_count >= 0 && m->rx_taken >= 0 && net_host_sound(&m->host)
            ? NULL : "its link is damaged";
 }
@@ -157,6 +161,22 @@ static void see_connection(struct fmu *f)
         net_host_connected(&m->host, m->instant);
 }
 
+/* Ask for the first setting as often as the flood has it; what finds no room is not made up for. */
+static void flood(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+    const double now = (double)m->instant / second;
+    if (now < v->flood_window[0] || now >= v->flood_window[1])
+        return;
+    m->owed += v->flood * (double)m->period / second;
+    while (m->owed >= 1.0 && net_host_ask(&m->host, 0, 0)) {
+        m->owed -= 1.0;
+        m->asked++;
+    }
+    m->owed = m->owed < 1.0 ? m->owed : 1.0;
+}
+
 static void carry(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -168,6 +188,7 @@ static void carry(struct fmu *f)
     net_host_bytes(&m->host, bytes, got, m->instant);
     m->rx_taken = byte_ring_on(m->rx_taken, got);
     net_host_tick(&m->host, job->byte, m->instant);
+    flood(f);
     if (held < 0)
         return;
     const size_t n = net_host_out(&m->host, bytes, (size_t)(BYTE_RING_BYTES - held));
@@ -255,6 +276,8 @@ static void publish(struct fmu *f)
     v->pages_sent = (int32_t)(h->pages_sent & INT32_MAX);
     v->pages_again = (int32_t)(h->pages_again & INT32_MAX);
     v->refusals = (int32_t)(h->naks & INT32_MAX);
+    v->asked = (int32_t)(m->asked & INT32_MAX);
+    v->told = (int32_t)(h->settings & INT32_MAX);
     publish_commands(v, h);
     publish_card(v, h);
 }

@@ -218,6 +218,10 @@ static void hear(struct net_host *h, int64_t now)
         net_get_status(net_channel_payload(c), &h->status);
         h->statuses++;
         break;
+    case NET_CONFIG:
+        net_get_config(net_channel_payload(c), &h->setting);
+        h->settings++;
+        break;
     case NET_PING:
         net_channel_put(&h->channel, NET_PONG, net_channel_payload(c), net_channel_length(c));
         break;

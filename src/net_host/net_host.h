@@ -101,7 +101,8 @@ struct net_host {
     struct net_host_flight flight[NET_HOST_FLIGHTS];
     struct net_host_order order[NET_HOST_ORDERS];
     struct net_status status;
-    uint32_t statuses, connections, losses, naks, pages_sent, pages_again;
+    struct net_config setting;      /* the latest told */
+    uint32_t settings, statuses, connections, losses, naks, pages_sent, pages_again;
 };
 
 void net_host_start(struct net_host *h, const struct net_host_config *c);
@@ -129,6 +130,9 @@ size_t net_host_out(struct net_host *h, uint8_t *bytes, size_t most);
 
 /* Queue what is due; `job` is the file. Call it behind bytes in or out, and each few ms. */
 void net_host_tick(struct net_host *h, const uint8_t *job, int64_t now);
+
+/* Ask for a setting; false if there is no room. */
+bool net_host_ask(struct net_host *h, uint16_t id, uint16_t index);
 
 /* Is every index within its array? */
 bool net_host_sound(const struct net_host *h);

@@ -118,6 +118,15 @@ static void send_job(struct net_host *h, const uint8_t *job, int64_t now)
         send_end(h);
 }
 
+bool net_host_ask(struct net_host *h, uint16_t id, uint16_t index)
+{
+    const struct net_config_get get = {id, index};
+    uint8_t payload[NET_BYTES_config_get];
+    net_put_config_get(payload, &get);
+    return h->phase == NET_HOST_UP &&
+           net_channel_put(&h->channel, NET_CONFIG_GET, payload, sizeof payload);
+}
+
 void net_host_tick(struct net_host *h, const uint8_t *job, int64_t now)
 {
     enum net_alive_event event;
