@@ -277,6 +277,9 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         shown = run(app, ["card", "show", file, "--picture", "x.png"], catch_exceptions=False)
         assert shown.exit_code == 0 and text in shown.stdout
         assert Path("x.png").stat().st_size > 10_000
+    monkeypatch.setattr("motionfmu.netcard.figures.SLOT", 3)
+    long = run(app, words, catch_exceptions=False)
+    assert long.exit_code == 1 and "too long for a slot of the card's flash" in long.stdout
     with pytest.raises(InputError, match="--order far: file or nearest wanted"):
         run(app, [*words, "--order", "far"], catch_exceptions=False)
     with pytest.raises(InputError, match=r"cannot read b\.plt"):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from motionfmu.cli.card import card
-from motionfmu.cli.common import bare_table, out
+from motionfmu.cli.common import FAILED, bare_table, out
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
@@ -68,6 +68,10 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
         _report(file.stem, found, drawing, told, folder)
         if not as_json:
             out.print(f"report: {folder / 'report.html'}", soft_wrap=True)
+    if numbers.flash > 1.0:
+        if not as_json:
+            out.print(f"{target}: too long for a slot of the card's flash", soft_wrap=True)
+        raise typer.Exit(FAILED)
 
 
 def _tell(file: Path, target: Path, n: "Figures", by_file: float | None) -> None:
