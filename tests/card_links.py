@@ -3,14 +3,17 @@
 import asyncio
 import contextlib
 import random
+import socket
 import tempfile
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterable
 from pathlib import Path
 from typing import Any
 
+from motionfmu.netcard import messages as m
 from motionfmu.netcard.client import SoftCard, serve_card
 from motionfmu.netcard.line import Limits
 from motionfmu.netcard.server import Cards
+from motionfmu.netcard.wire import CardEnd
 
 HOST = "127.0.0.1"
 PATIENCE = 10.0  # [s] for what comes at once on a machine that is not asleep
@@ -84,6 +87,46 @@ async def bench(limits: Limits | None = None, folder: Path | None = None) -> Asy
         finally:
             await made.unplug()
             await cards.close()
+
+
+class Puppet:
+    """A soft card that answers only what it is told to."""
+
+    def __init__(self, card: SoftCard) -> None:
+        self.card = card
+        self.answers: list[m.Message] = []
+        self._heard: list[m.Message] = []
+
+    async def connect(self, port: int) -> tuple[CardEnd, socket.socket]:
+        """Shake hands; returns the end and its socket."""
+        loop = asyncio.get_running_loop()
+        sock = socket.socket()
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 16384)
+        sock.setblocking(False)
+        await loop.sock_connect(sock, (HOST, port))
+        end = CardEnd(self.card.key, self.card.hello())
+        while not end.ready:
+            await loop.sock_sendall(sock, end.take())
+            self._take(end, await loop.sock_recv(sock, 4096))
+        return end, sock
+
+    async def hear(self, end: CardEnd, sock: socket.socket) -> m.Message:
+        """The next message that is no ping."""
+        loop = asyncio.get_running_loop()
+        while not self._heard:
+            self._take(end, await loop.sock_recv(sock, 4096))
+        return self._heard.pop(0)
+
+    def _take(self, end: CardEnd, data: bytes) -> None:
+        for sequence, kind, message in end.feed(data):
+            if message and not isinstance(message, m.Ping):
+                self.answers = self.card.answer(sequence, kind, message)
+                self._heard.append(message)
+
+
+def numbers(card: SoftCard) -> list[int]:
+    """Numbers of the commands that a card has carried out."""
+    return [order.number for order in card.orders]
 
 
 class ChaosLink:

@@ -5,7 +5,7 @@
 #include "binding.h"
 #include "netcard.h"
 
-static const int64_t LOOK_NS = 1000000;     /* from one look at the machine's switches to the next */
+static const int64_t LOOK_NS = 1000000;     /* between two looks at the machine's switches */
 
 /* A card and its machine: an origin switch is on from its place onwards in the way of homing; no
  * limit is ever met, no drive has an alarm. */

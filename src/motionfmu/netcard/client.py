@@ -154,7 +154,9 @@ async def _converse(
             writer.write(end.take())
             await writer.drain()
             try:
-                data = await asyncio.wait_for(reader.read(4096), end.interval / 1000 or PING)
+                # Not wait_for: in Python 3.11 it may swallow a cancellation.
+                async with asyncio.timeout(end.interval / 1000 or PING):
+                    data = await reader.read(4096)
                 if not data:
                     break
                 heard, pings = now(), 0

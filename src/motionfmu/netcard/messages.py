@@ -303,7 +303,7 @@ class Status(Message):
 
 @dataclass(frozen=True)
 class Ping(Message):
-    """Is somebody there?"""
+    """Asks whether somebody is there."""
 
     TYPE = 96
     LAYOUT = "I"
@@ -312,7 +312,7 @@ class Ping(Message):
 
 @dataclass(frozen=True)
 class Pong(Message):
-    """Yes."""
+    """Says yes."""
 
     TYPE = 97
     LAYOUT = "I"

@@ -163,7 +163,8 @@ class RemoteCard:
         self.tell("command", f"{name} {number}")
         order.frame = self.line.send(order.message)
         try:
-            result = await asyncio.wait_for(order.result, self._limits.answer)
+            async with asyncio.timeout(self._limits.answer):
+                result = await order.result
         except TimeoutError:
             result = Result.of(Code.NO_ANSWER, self._state)
         finally:
