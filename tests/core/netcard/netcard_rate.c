@@ -133,7 +133,7 @@ static void bounds_are_limits(void)
 static void limits_kept(void)
 {
     uint64_t seed = 3;
-    for (int run = 0; run < 60 && !check_failures; run += CHECK_EACH) {
+    for (int run = 0; run < 40 && !check_failures; run += CHECK_EACH) {
         const struct player_config c = { (int)check_random(&seed, 16, 512), 50, 250, 250 };
         struct plan m = { .frames = (int)check_random(&seed, 300, 2500),
                           .k = (int)check_random(&seed, 1, 4) };
