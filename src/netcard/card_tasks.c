@@ -11,25 +11,21 @@ static void mark(struct netcard *c, enum netcard_task task)
     kernel_mark(&c->kernel, NETCARD_STEP, task);
 }
 
-/* Longest time of an operation of the chip, as it is set. [ns] */
-static int64_t longest(const struct flash_config *f)
+/* Frames of a job have still to be read. */
+static bool reads(const struct netcard *c)
 {
-    const struct flash_time *t[] = { &f->sector, &f->block };
-    int64_t most = 0;
-
-    for (int i = 0; i < 2; i++) {
-        const int64_t ns = t[i]->typical + (t[i]->longest - t[i]->typical) / 1000 * f->spread;
-        most = ns > most ? ns : most;
-    }
-    return most + ERASE_MARGIN_NS;
+    return c->job && !c->over && !c->read;
 }
 
-/* Could the FIFO run dry while the chip is at its longest operation? Then run reads first. */
+/* Could the FIFO run dry while the chip erases a sector? Then run reads first. */
 static bool must_wait(const struct netcard *c)
 {
+    const struct flash_config *f = &c->flash.config;
+    const int64_t erase = f->sector.typical +
+                          (f->sector.longest - f->sector.typical) / 1000 * f->spread;
     const int64_t stock = c->player.fifo.stock * (int64_t)c->player.job.period;
 
-    return c->job && !c->over && !c->read && stock * PLAYER_CLOCK_NS < longest(&c->flash.config);
+    return stock * PLAYER_CLOCK_NS < erase + ERASE_MARGIN_NS;
 }
 
 void card_store(struct netcard *c)
@@ -61,7 +57,8 @@ void card_store(struct netcard *c)
         card_spend(c, NETCARD_STORAGE, ns + card_cycles_ns(c->settings.page_cycles), READ);
         return;
     }
-    c->deferred = c->store.phase != STORE_REST && must_wait(c);
+    c->store.hurried = reads(c);
+    c->deferred = c->store.phase != STORE_REST && reads(c) && must_wait(c);
     ns = c->deferred ? 0 : job_store_step(&c->store, &c->flash, c->now);
     card_tell_store(c);
     if (ns > 0) {

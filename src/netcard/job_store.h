@@ -58,6 +58,7 @@ struct job_store {
     struct job_place job;           /* in force */
     enum store_phase phase;
     struct job_place next;          /* the transfer under way */
+    bool     hurried;               /* the caller's: no erase longer than that of a sector */
     bool     marked;                /* its mark is in the flash */
     bool     again;                 /* JOB_BEGIN was that of the job in force */
     bool     ending;                /* JOB_END has come */

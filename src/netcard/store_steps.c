@@ -77,13 +77,13 @@ static int64_t scan_page(struct job_store *s, struct flash_chip *f, int64_t now)
     return took;
 }
 
-/* Erase a sector that is to be; its whole block if all of it is. */
+/* Erase a sector that is to be; its whole block if all of it is and there is time. */
 static int64_t erase(struct job_store *s, struct flash_chip *f, int32_t sector, int64_t now)
 {
     const int32_t block = sector / FLASH_BLOCK_SECTORS;
-    bool all = true;
-    for (int32_t k = 0; k < FLASH_BLOCK_SECTORS; k++)
-        all = all && store_bit(s->dirty, (uint32_t)(block * FLASH_BLOCK_SECTORS + k));
+    bool all = !s->hurried;
+    for (int32_t k = 0; all && k < FLASH_BLOCK_SECTORS; k++)
+        all = store_bit(s->dirty, (uint32_t)(block * FLASH_BLOCK_SECTORS + k));
     if (!all) {
         store_set(s->dirty, (uint32_t)sector, false);
         return flash_erase_sector(f, sector, now);
