@@ -104,9 +104,9 @@ static void finish(struct netcard *c)
             c->homed |= 1u << i;
         }
     }
-    if (!card_literal(c)) {
-        card_rest(c);
-    } else if (c->job) {        /* run goes on with its next frame, from here */
+    card_rest(c);
+    if (card_literal(c) && c->job) {        /* run goes on with its next frame, from here */
+        c->state = NET_RUNNING;
         player_begin(&c->player, &c->plays, card_clock(c));
         player_set_target(&c->player, 1);
         c->ended = c->read;
@@ -142,7 +142,9 @@ void card_home(struct netcard *c)
         kernel_give(&c->kernel, NETCARD_GIVE_FIFO);     /* run gives its job up */
         return;
     case STILL:
-        if (!card_literal(c) && !player_at_rest(&c->player)) {
+        if (card_literal(c)) {
+            c->state = NET_HOMING;
+        } else if (!player_at_rest(&c->player)) {
             player_set_target(&c->player, 0);
             card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, STILL);
             return;
@@ -173,6 +175,9 @@ void card_home(struct netcard *c)
         go(c, RAISE);
         return;
     default:
+        if (card_literal(c) && c->state == NET_HOMING) {    /* stopped */
+            card_rest(c);
+        }
         c->homing = false;
         go(c, WAIT);
         kernel_set_priority(&c->kernel, NETCARD_HOME, c->settings.priority_home);

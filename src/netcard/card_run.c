@@ -14,6 +14,9 @@ static void leave(struct netcard *c)
 {
     c->job = c->primed = c->over = false;
     go(c, WAIT);
+    if (card_literal(c) && c->state == NET_RUNNING) {
+        card_rest(c);
+    }
 }
 
 static void want(struct netcard *c, uint32_t page, int step)

@@ -127,6 +127,9 @@ static void play(void)
             state = c.state;
             netcard_advance(&c, c.now + 1);
         }
+        for (int k = 0; k < 400; k++) {     /* what the tasks do about it, in small pieces */
+            netcard_advance(&c, c.now + 250);
+        }
         netcard_advance(&twin, c.now);
         enum net_code code = wanted(state, command);
         if (command == CARD_DO_RESET && state == NET_FAULT && c.axes.stop) {

@@ -1,0 +1,86 @@
+/* A card's state from outside with one thing wrong is refused. */
+#include "card_bench.h"
+
+static struct netcard c, good;
+
+/* With the statement done to it, the state is refused; what it was before is none the worse. */
+#define REFUSED(...) \
+    do { \
+        __VA_ARGS__; \
+        CHECK(netcard_damage(&c, c.now) != NULL); \
+        memcpy(&c, &good, sizeof c); \
+        CHECK(netcard_damage(&c, c.now) == NULL); \
+    } while (0)
+
+static void card(void)
+{
+    REFUSED(c.settings.tick_ns = 0);
+    REFUSED(c.now += 20);
+    REFUSED(c.boot = -1);
+    REFUSED(c.state = NET_STATES);
+    REFUSED(c.resumes = NET_PAUSED);
+    REFUSED(c.first = NETCARD_ORDERS);
+    REFUSED(c.first = -1);
+    REFUSED(c.orders = NETCARD_ORDERS + 1);
+    REFUSED(c.order[3].command = CARD_COMMANDS);
+    REFUSED(c.jobs = INT32_MAX);
+    REFUSED(c.result.count = INT32_MAX);
+    REFUSED(c.dropped = -1);
+    REFUSED(c.zero[2] = INT64_MAX);
+    REFUSED(c.latch[0] = INT64_MIN);
+    REFUSED(c.origin[3] = INT64_MAX);
+    REFUSED(c.served[10] = -1);
+    REFUSED(c.place.slot = 2);
+    REFUSED(c.place.bytes = FLASH_BYTES + 1);
+    REFUSED(c.place.slot = -1; c.page.wanted = true);
+    REFUSED(c.reader.page.frames = JOB_PAGE_FRAMES + 1);
+    REFUSED(c.reader.at = -1);
+    REFUSED(c.reader.at = c.reader.page.frames + 1);
+    REFUSED(c.reader.header.events = JOB_EVENTS + 1);
+    REFUSED(c.reader.frame = c.reader.header.frames + 1);
+}
+
+static void parts(void)
+{
+    REFUSED(c.kernel.config.tasks = 7);
+    REFUSED(c.kernel.config.tick = -1);
+    REFUSED(c.kernel.config.tick = 0);
+    REFUSED(c.kernel.next_tick = c.kernel.processor.clock + 2 * c.kernel.config.tick);
+    REFUSED(c.kernel.current = KERNEL_TASKS);
+    REFUSED(c.kernel.events = -1);
+    REFUSED(c.kernel.turns = INT64_MAX);
+    REFUSED(c.kernel.processor.tasks = PROCESSOR_TASKS + 1);
+    REFUSED(c.kernel.processor.running = PROCESSOR_TASKS);
+    REFUSED(c.kernel.processor.clock++);
+    REFUSED(c.kernel.processor.task[NETCARD_TASKS].ready = true);
+    REFUSED(c.kernel.processor.task[KERNEL_TASKS + NETCARD_INTERRUPTS].ready = true);
+    REFUSED(c.kernel.processor.task[NETCARD_RUN].left = -1);
+    REFUSED(c.kernel.processor.task[NETCARD_RUN].busy = -1);
+    REFUSED(c.kernel.pending[NETCARD_INTERRUPTS] = 0);
+    REFUSED(c.flash.work = (enum flash_work)3);
+    REFUSED(c.flash.at = -1; c.flash.work = FLASH_ERASE);
+    REFUSED(c.store.waiting = STORE_BUFFER + 1);
+    REFUSED(c.store.slots = 3);
+    REFUSED(c.player.clock++);
+    REFUSED(c.player.fifo.stock = FRAME_FIFO_LARGEST + 1);
+    REFUSED(c.player.fifo.head = -1);
+    REFUSED(c.inputs.pending = 1u << 16);
+    REFUSED(c.outputs.levels = 1u << 16);
+    REFUSED(c.session.channel.held = NET_FRAME + 1);
+    REFUSED(c.session.channel.out_first = NET_OUT);
+}
+
+int main(void)
+{
+    const struct netcard_config config = bench_config();
+
+    bench_make(1000, 100, NULL, 0);
+    bench_start(&c, &config);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    bench_pass(&c, 100);
+    memcpy(&good, &c, sizeof good);
+    CHECK(netcard_damage(&c, c.now) == NULL);
+    card();
+    parts();
+    return check_result();
+}
