@@ -1,8 +1,8 @@
 /* The document's scheme on the card itself, from the log of its kernel: its traps, token for token
- * as the FreeRTOS kernel (V11.1.0+) shows them (the scheme alone: tasks_sequences.c). rN is unit N of
- * work: a frame that run writes; p, s a turn of pause and stop, h a frame of homing. !x an interrupt
- * with packet x; >t task t gets the processor. What serves these only is left out: the storage task,
- * interrupts of flash and FPGA. */
+ * as the FreeRTOS kernel (V11.1.0+) shows them (the scheme alone: tasks_sequences.c). rN is unit N
+ * of work: a frame that run writes; p, s a turn of pause and stop, h a frame of homing. !x an
+ * interrupt with packet x; >t task t gets the processor. What serves these only is left out: the
+ * storage task, interrupts of flash and FPGA. */
 #include <stdarg.h>
 
 #include "card_bench.h"

@@ -1,6 +1,7 @@
 /* Commands at random under the table: a literal copy of it says what each one does; nothing moves
- * behind stop, home, fault without a new start; at each stop of the clock the most urgent ready task
- * has the processor and all times add up; cut at random places the run is the same to the bit. */
+ * behind stop, home, fault without a new start; at each stop of the clock the most urgent ready
+ * task has the processor and all times add up; cut at random places the run is the same to the
+ * bit. */
 #include "card_bench.h"
 
 enum { CARDS = 20, STEPS = 60 };

@@ -1,5 +1,5 @@
-/* What comes in by wires and goes out: homing on a switch, limits, alarms, inputs, outputs of a job,
- * the loss of power. */
+/* What comes in by wires and goes out: homing on a switch, limits, alarms, inputs, outputs of a
+ * job, the loss of power. */
 #include "card_bench.h"
 
 static struct netcard c;
@@ -31,8 +31,8 @@ static struct netcard_config one_axis(void)
     return config;
 }
 
-/* Homing ends 77 pulses from the switch's edge, wherever it began and was paused; a job that runs is
- * given up for it. */
+/* Homing ends 77 pulses from the switch's edge, wherever it began and was paused; a job that runs
+ * is given up for it. */
 static void goes_home(void)
 {
     const struct netcard_config config = one_axis();
@@ -212,7 +212,7 @@ static void loses_power(void)
     bench_times(&c);
 }
 
-/* A job that leads beyond the axis' range is stopped before it is there, without a jump of speed. */
+/* A job that leads out of the axis' range is stopped before it is there, without a jump of speed. */
 static void keeps_range(void)
 {
     struct netcard_config config = bench_config();
