@@ -212,7 +212,7 @@ static void loses_power(void)
     bench_times(&c);
 }
 
-/* A job that leads out of the axis' range is stopped before it is there, without a jump of speed. */
+/* A job that leads out of the axis' range is stopped before that, without a jump of speed. */
 static void keeps_range(void)
 {
     struct netcard_config config = bench_config();
