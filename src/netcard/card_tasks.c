@@ -47,10 +47,6 @@ void card_store(struct netcard *c)
     default:
         break;
     }
-    if (flash_busy(&c->flash, c->now)) {        /* nobody reads while it writes */
-        card_take(c, NETCARD_STORAGE, NETCARD_GIVE_FLASH, LOOK);
-        return;
-    }
     if (p->wanted) {
         ns = job_store_read(&c->place, &c->flash, p->number, p->bytes, c->now);
         p->good = ns > 0;
@@ -61,7 +57,7 @@ void card_store(struct netcard *c)
     c->deferred = c->store.phase != STORE_REST && reads(c) && must_wait(c);
     ns = c->deferred ? 0 : job_store_step(&c->store, &c->flash, c->now);
     card_tell_store(c);
-    if (ns > 0) {
+    if (ns > 0) {       /* nobody reads while it writes */
         kernel_pend(&c->kernel, NETCARD_FLASH, c->now + ns - c->boot);
         card_take(c, NETCARD_STORAGE, NETCARD_GIVE_FLASH, LOOK);
     } else {

@@ -120,8 +120,26 @@ static void home_during_run(void)
         CHECK_EQ(atoi(at + 1), 4 + last);
         at = strchr(at, ' ') + 1;
     }
+    pass(BENCH_MS);
+    CHECK(c.read && c.state == NET_RUNNING);    /* written, not yet played */
+    pass(350 * BENCH_MS);
+    CHECK_EQ(c.state, NET_READY);
     snprintf(tokens, sizeof tokens, "h%d 2>5 >run r%d r%d ", 3 + last, 4 + last, 5 + last);
     shows(tokens);
+}
+
+/* Homing behind the last frame that run writes leaves nothing of the job. */
+static void home_behind_the_job(void)
+{
+    begin();
+    send_behind(300, CARD_DO_HOME);
+    for (int i = 0; i < 400 && !strstr(text, "2>5 "); i++) {
+        pass(BENCH_MS);
+    }
+    pass(BENCH_MS);
+    CHECK_EQ(c.state, NET_READY);
+    CHECK(!c.job);
+    pass(100000);
 }
 
 /* Homing does not start while a pause holds the processor. */
@@ -168,6 +186,7 @@ static void pause_while_idle(void)
 int main(void)
 {
     home_during_run();
+    home_behind_the_job();
     home_during_pause();
     start_twice_then_stop();
     pause_while_idle();

@@ -38,7 +38,7 @@ static void check_urgent(const struct kernel *k)
         return;
     }
     for (int i = 0; i < NETCARD_TASKS; i++) {
-        CHECK(!p->task[i].ready || p->task[i].priority <= p->task[r].priority || i == r);
+        CHECK(k->task[i].wait != KERNEL_READY || p->task[i].priority <= p->task[r].priority || i == r);
     }
 }
 
