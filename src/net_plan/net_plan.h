@@ -4,11 +4,11 @@
  *                                         ├──> net_plan_next ──> frames
  *     raise, rapid, lower, draw ──────────┘
  *
- * - X and Y draw. A move raises the pen, goes there on a straight line with limited jerk, and lowers
- *   the pen when something is drawn. An output moves the pen (events of the job, with a dwell), or
- *   an axis does.
- * - Speed, acceleration and jerk of each axis keep to its limits at every instant; a share of the last
- *   two is left free, by which the card can slow down for a pause.
+ * - X and Y draw. A move raises the pen, goes there on a straight line with limited jerk, and
+ *   lowers the pen when something is drawn. An output moves the pen (events of the job, with a
+ *   dwell), or an axis does.
+ * - Speed, acceleration and jerk of each axis keep to its limits at every instant; a share of the
+ *   last two is left free, by which the card can slow down for a pause.
  * - A command is the difference of two rounded places: half a pulse off at most, nothing adds up.
  * - Constant size, however long the drawing.
  */

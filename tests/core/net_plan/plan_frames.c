@@ -190,7 +190,8 @@ static void test_pen_axis(void)
 static void test_order_of_calls(void)
 {
     const struct net_plan_config c = config_of(NET_PLAN_OUTPUT);
-    const int32_t n = draw(), late = run(&c, n, false, frame[0]), early = run(&c, n, true, frame[1]);
+    const int32_t n = draw();
+    const int32_t late = run(&c, n, false, frame[0]), early = run(&c, n, true, frame[1]);
 
     CHECK_EQ(late, early);
     for (int32_t k = 0; k < late; k++) {
