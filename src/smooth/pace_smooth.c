@@ -127,7 +127,7 @@ static void land(struct ride *r)
     const struct pace_step step = pace_step_land(r->at.state);
     const double goal = r->at.here + step.way, end = held(r)->end;
 
-    set_out(r, step, goal > end - SAME * step.way ? end : goal);
+    set_out(r, step, fabs(goal - end) <= SAME * step.way || goal > r->p->end ? end : goal);
 }
 
 /* Between a c that is good and one that is not: nearly the last good one. */
