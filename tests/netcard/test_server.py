@@ -262,9 +262,9 @@ def test_uploads_share_the_server() -> None:
     async def main() -> None:
         async with bench() as b:
             soft = [SoftCard(i) for i in range(8)]
-            b.serve(*soft)
-            await b.online(range(8))
             tasks = [asyncio.create_task(b.cards.upload(i, job_of(400, i))) for i in range(8)]
+            await until(lambda: sum(v.upload is not None for v in b.cards.list()) == 8)
+            b.serve(*soft)  # all jobs are on the disk: the cards begin together
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
             shares = [len(s.job) // 256 or len(s.pages) for s in soft]
             print("pages when the first has all:", shares)

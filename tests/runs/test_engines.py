@@ -107,7 +107,8 @@ def agree(scenario: str, engine: str, fmi: int) -> None:
     flags = {k for k, x in one.signals.items() if x.dtype == bool}
     found = differing(one, other)
     assert [k for k in found if not (engine == "fmpy" and k in flags)] == []
-    begin = max((np.max(v) for k, v in body.set.items() if k.endswith("start_delay")), default=0.0)
+    late = (np.max(v) for k, v in body.set.items() if k.endswith(("start_delay", "command_at")))
+    begin = max(late, default=0.0)
     driven = min((t for d in body.drive for t in d.at), default=0.0)
     assert moved(one) or scenario == "circle" or stop <= max(begin, driven) or stop < SHORT
 
