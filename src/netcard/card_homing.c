@@ -133,6 +133,7 @@ void card_home(struct netcard *c)
             return;
         }
         c->home.state = HOME_CYCLE_IDLE;
+        c->over = c->over && c->job;        /* a stop from here on is one of homing too */
         c->homing = true;
         go(c, LOWERED);
         kernel_set_priority(&c->kernel, NETCARD_HOME, c->settings.priority_home_active);

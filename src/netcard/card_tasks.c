@@ -75,7 +75,7 @@ void card_stop(struct netcard *c)
     } else if (step == LOOK) {
         card_work(c, NETCARD_STOP, c->settings.step_cycles, ACT);
     } else if (step == RELEASE) {       /* run and home give up */
-        c->step[NETCARD_STOP] = c->homing ? RELEASE_HOME : WAIT;
+        c->step[NETCARD_STOP] = c->homing && !card_literal(c) ? RELEASE_HOME : WAIT;
         kernel_give(&c->kernel, NETCARD_GIVE_FIFO);
     } else if (step == RELEASE_HOME) {
         c->step[NETCARD_STOP] = WAIT;
@@ -83,7 +83,7 @@ void card_stop(struct netcard *c)
     } else if (card_literal(c)) {
         mark(c, NETCARD_STOP);
         player_clear(&c->player);
-        c->over = c->job;
+        c->over = c->job || c->homing;
         c->step[NETCARD_STOP] = RELEASE;
     } else if (c->state != NET_STOPPING) {
         c->dropped++;

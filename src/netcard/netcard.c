@@ -202,17 +202,23 @@ void card_advance_player(struct netcard *c)
     }
 }
 
-/* What the hardware does at c->now. */
-static void hardware(struct netcard *c)
+/* Vectors of inputs that have become pending; one that was so already comes no second time. */
+static void pend_vectors(struct netcard *c, uint32_t vectors)
 {
-    card_advance_player(c);
-    guard(c);
-    const uint32_t vectors = card_inputs_advance(&c->inputs, c->now);
     for (int i = 0; i < CARD_VECTORS; i++) {
         if (vectors >> i & 1) {
             card_pend(c, i);
         }
     }
+}
+
+/* What the hardware does at c->now. */
+static void hardware(struct netcard *c)
+{
+    card_advance_player(c);
+    guard(c);
+    const uint32_t before = card_inputs_vectors(&c->inputs);
+    pend_vectors(c, card_inputs_advance(&c->inputs, c->now) & ~before);
     card_outputs_advance(&c->outputs, c->now);
     if (session_next_time(&c->session) <= c->now) {
         session_tick(&c->session, c->now);
@@ -298,12 +304,8 @@ void netcard_set_inputs(struct netcard *c, uint32_t levels)
     if (!c->power) {
         return;
     }
-    const uint32_t vectors = card_inputs_set(&c->inputs, levels, c->now);
-    for (int i = 0; i < CARD_VECTORS; i++) {
-        if (vectors >> i & 1) {
-            card_pend(c, i);
-        }
-    }
+    const uint32_t before = card_inputs_vectors(&c->inputs);
+    pend_vectors(c, card_inputs_set(&c->inputs, levels, c->now) & ~before);
 }
 
 /* Origins whose edge of the trigger's kind comes now: the FPGA keeps the count. */

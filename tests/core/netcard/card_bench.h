@@ -108,4 +108,18 @@ static inline void bench_times(const struct netcard *c)
     CHECK_EQ(all, c->now - c->boot);
 }
 
+/* The running task is the most urgent one that is ready. */
+static inline void bench_urgent(const struct kernel *k)
+{
+    const struct processor *p = &k->processor;
+    const int r = p->running;
+
+    if (r < 0 || r >= KERNEL_TASKS || k->chooses) {
+        return;
+    }
+    for (int i = 0; i < NETCARD_TASKS; i++) {
+        CHECK(k->task[i].wait != KERNEL_READY || p->task[i].priority <= p->task[r].priority || i == r);
+    }
+}
+
 #endif

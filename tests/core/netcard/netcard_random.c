@@ -28,20 +28,6 @@ static enum net_code wanted(enum net_state state, enum card_command command)
     return code == 'A' ? NET_ALARM : (enum net_code)(code - '0');
 }
 
-/* The running task is the most urgent one that is ready. */
-static void check_urgent(const struct kernel *k)
-{
-    const struct processor *p = &k->processor;
-    const int r = p->running;
-
-    if (r < 0 || r >= KERNEL_TASKS || k->chooses) {
-        return;
-    }
-    for (int i = 0; i < NETCARD_TASKS; i++) {
-        CHECK(k->task[i].wait != KERNEL_READY || p->task[i].priority <= p->task[r].priority || i == r);
-    }
-}
-
 /* May the axes move, and where from? */
 static bool may_move(void)
 {
@@ -66,7 +52,7 @@ static void pass(int64_t ns)
         while (c.now < to) {        /* in pieces */
             const int64_t piece = c.now + 1 + draw(1000000);
             netcard_advance(&c, piece < to ? piece : to);
-            check_urgent(&c.kernel);
+            bench_urgent(&c.kernel);
         }
         const int64_t now = bench_count(&c, 0);
         if (!could && !may_move()) {
