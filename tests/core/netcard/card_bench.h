@@ -118,7 +118,8 @@ static inline void bench_urgent(const struct kernel *k)
         return;
     }
     for (int i = 0; i < NETCARD_TASKS; i++) {
-        CHECK(k->task[i].wait != KERNEL_READY || p->task[i].priority <= p->task[r].priority || i == r);
+        CHECK(i == r || k->task[i].wait != KERNEL_READY
+              || p->task[i].priority <= p->task[r].priority);
     }
 }
 
