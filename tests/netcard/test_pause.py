@@ -54,7 +54,8 @@ def played(planned: Plan, seed: int, pauses: int) -> tuple[np.ndarray, int]:
     near = np.where(chance.random(2 * pauses) < 0.4, 0.1, 1.0)
     gaps = near * chance.integers(50, 1300, 2 * pauses)
     presses = 100 + np.cumsum(gaps.astype(int) + 1)  # [ms] some in the ramp of the one before
-    counts, stood, was = [], 0, State.READY
+    counts: list[list[int]] = []
+    stood, was = 0, State.READY
 
     def press(button: int) -> None:
         card.set_inputs(button)
