@@ -49,6 +49,59 @@ def test_a_foreign_file_is_drawn_as_another_reader_draws_it(file: Path) -> None:
     assert length(ours) > 5000.0
 
 
+# One use of each command that draws or maps, each way it may be written.
+EACH = [
+    "IN;SP1;PU100,200;PD300,400,500,100;PU0,0;PD10,700;",
+    "IN;SP1;PU100,100;PR;PD50,60,-20,30;PU10,10;PD5,5;PA;PD0,0;",
+    "IN;SP1;PR100,100;PD;PR10,20,30,-5;PA500,500;",
+    "IN;SP1;PU1000,0;PD;AA0,0,90,5;AA0,0,-180,5;",
+    "IN;SP1;PU1000,0;PD;AR-500,100,120,5;",
+    "IN;SP1;PU1000,1000;CI500,5;PD2000,2000;",
+    "IN;SP1;PU1000,1000;PD;CI500,5;PD2000,2000;",
+    "IN;SP1;PU1000,1000;CI-500,30;",
+    "IN;SP1;PU100,100;EA500,300;PD200,200;",
+    "IN;SP1;PU100,100;ER400,-300;PD200,200;",
+    "IN;SP1;PU1000,1000;EW400,30,100,5;",
+    "IN;SP1;PU1000,1000;EW-400,30,-100,5;",
+    "IN;SP1;PU0,0;PD;AT500,500,1000,0,5;",
+    "IN;SP1;PU100,100;PD;RT500,500,1000,0,5;",
+    "IN;IP100,200,1100,2200;SC0,100,0,100;SP1;PU10,10;PD50,50,90,10;",
+    "IN;IP0,0,1000,1000;SC0,10,0,10;IP100,100;SP1;PU1,1;PD5,5;",
+    "IN;IP0,0,1000,1000;SC10,0,10,0;SP1;PU1,1;PD5,6;",
+    "IN;IP0,0,1000,3000;SC0,10,0,10,1;SP1;PU1,1;PD5,6;",
+    "IN;IP0,0,1000,3000;SC0,10,0,10,1,0,0;SP1;PU1,1;PD5,6;",
+    "IN;IP0,0,1000,3000;SC0,3,0,2,2;SP1;PU1,1;PD5,6;",
+    "IN;IP0,0,1000,1000;SC0,10,0,10;SP1;PU5,5;CI2,5;PD;AA5,5,90,5;",
+    "IN;IP0,0,1000,1000;SC0,10,0,10;SP1;PU1,1;PD5,6;SC;PD700,700;",
+    "IN;SP1;PU1,1;PR;DF;PD100,100;PD200,50;",
+    "IN;SP1;PU100,100;PD200,200;IN;SP1;PD300,300;",
+    "IN;SP1;PU100,100;PD200,200;SP0;PD400,400;SP2;PD500,500;",
+    "IN;SP1;PU100,100;PM0;PD500,100,500,500;PM2;EP;",
+    "IN;SP1;PU100,100;PM0;PD500,100,500,500;PM1;PU200,150;PD300,150,300,250;PM2;EP;PD0,0;",
+    "IN;SP1;PU100,100;PM0;PD500,100;PU500,500;PD100,500;PM2;EP;",
+    "IN;SP1;PU1000,1000;PM0;CI500,30;PM2;EP;",
+    "IN;SP1;VS10;PU100,100;PD200,200;VS20,2;PD300,300;",
+    "IN;SP1;SI0.2,0.3;SR;DI1,0;PU100,100;PD200,200;",
+    "IN;SP1;PU1,1;PD20,20;@ ",
+    "IN;IW-100,-100,5000,5000;SP1;PU1,1;PD20,20;",
+    "IN;SP1;PU1.5,1.25;PD-20.75,+.5;",
+    "INSP1PU1,1PD20,20",
+    "in;sp1;pu1,1;pd20,20;pa;",
+    "IN;SP1;PU 10 20;PD 30 , 40 , 50 60;",
+    "IN;SP1;PU10,20;PD30,40\nPU50,50\nPD60,60\n",
+    "IN;SP1;PU1000,0;AA0,0,90,5;PD0,0;",
+    "IN;SP1;CT1;PU1000,1000;CI500,10;",
+    "IN;IP0,0,1000,1000;SC0,10,0,10;SP1;PU1,1;PR;PD1,2,3,-1;",
+]
+
+
+@pytest.mark.parametrize("text", EACH)
+def test_each_command_is_drawn_as_another_reader_draws_it(text: str) -> None:
+    ours = [p for p in drawn(text) if len(p) > 1]
+    theirs = foreign(text.encode() if text.rstrip().endswith(";") else text.encode() + b";")
+    assert max(apart(ours, theirs), apart(theirs, ours)) < 0.01
+
+
 @pytest.mark.parametrize(
     ("text", "lines"),
     [
