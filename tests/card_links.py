@@ -4,7 +4,9 @@ import asyncio
 import contextlib
 import random
 import socket
+import struct
 import tempfile
+import zlib
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterable
 from pathlib import Path
 from typing import Any
@@ -13,6 +15,7 @@ from motionfmu.netcard import messages as m
 from motionfmu.netcard.client import SoftCard, serve_card
 from motionfmu.netcard.line import Limits
 from motionfmu.netcard.server import Cards
+from motionfmu.netcard.sim import FLASH_BYTES
 from motionfmu.netcard.wire import CardEnd
 
 HOST = "127.0.0.1"
@@ -23,6 +26,17 @@ WAIT = 0.005  # [s] until a soft card connects again
 def job_of(pages: int, seed: int = 1) -> bytes:
     """A file that the server takes for a job."""
     return b"MCJ1" + random.Random(seed).randbytes(256 * pages - 4)
+
+
+def flash_with(job: bytes) -> bytes:
+    """A flash with this job in its first slot."""
+    flash = bytearray(b"\xff" * FLASH_BYTES)
+    flash[: len(job)] = job
+    words = (1, 0, len(job), zlib.crc32(job), struct.unpack_from("<I", job, 8)[0], 0)
+    record = b"MCR1" + struct.pack("<6I", *words)
+    record += struct.pack("<I", zlib.crc32(record))
+    flash[254 * 4096 : 254 * 4096 + len(record)] = record
+    return bytes(flash)
 
 
 def run(main: Coroutine[Any, Any, Any]) -> Any:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import kinematics
+import network
 import numpy as np
 import plans
 import scurve_moves
@@ -190,6 +191,7 @@ def main() -> None:
         plans.Plans("in motion to rest", scurve_moves.to_rest),
     ]
     arm = kinematics.Kinematics()
+    net = network.Network()
     robot = Timed(ROBOT, stop=20.0)
     rounds(
         [
@@ -200,6 +202,7 @@ def main() -> None:
             *cards,
             interpreter,
             arm,
+            net,
             robot,
             *curves,
             *segments.ALL,
@@ -228,6 +231,7 @@ def main() -> None:
     print(f"{'read, checked, planned':28}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
     plans.table(curves)
     segments.table(curves[0].ruckig)
+    net.table(curves[0].ruckig)
     arm.table()
     study = studies.Study()
     study()
@@ -251,6 +255,12 @@ def main() -> None:
         verdict(f"{s.name}, million segments/s", 1e-6 / max(s.cost.values()), least=least)
         verdict(f"{s.name}, 256 over 16 commands", s.growth, most=1.5)
     verdict("the same, 100,000 over 1,000 segments", segments.LONG.growth, most=1.2)
+    verdict(
+        f"{network.SEGMENTS:,} lines of a drawing, s to plan", network.SEGMENTS * net.plan, most=2.0
+    )
+    verdict(
+        f"{network.CARDS} network cards, times real time", 1 / net.card / network.CARDS, least=1.0
+    )
     verdict("arm, all eight branches, us", 1e6 * arm.inverse, most=1.0)
     verdict("py-opw-kinematics / ours", arm.other / arm.inverse, least=1.0)
     verdict("sweep, efficiency of all cores", study.efficiency, least=0.9)

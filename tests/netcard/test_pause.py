@@ -1,16 +1,14 @@
 """Pauses of a planned job on the card: its own pulses, differentiated, and the path they draw."""
 
-import struct
-import zlib
-
 import numpy as np
 import pytest
+from card_links import flash_with
 
 from motionfmu.netcard import plt
 from motionfmu.netcard.config import read as config_of
 from motionfmu.netcard.messages import State
 from motionfmu.netcard.plan import Plan, plan
-from motionfmu.netcard.sim import FLASH_BYTES, VirtualCard
+from motionfmu.netcard.sim import VirtualCard
 
 ACC, JERK, SCALE = 1000.0, 50_000.0, 3000.0  # [mm/s^2] [mm/s^3] [pulses/mm]
 MS = 1_000_000  # [ns]
@@ -31,17 +29,6 @@ START, PAUSE = 1, 2  # inputs
 def planned() -> Plan:
     config = config_of("".join(f'[[axes]]\nname = "{n}"{AXIS}' for n in "XY"), "card.toml")
     return plan(plt.parse(DRAWING, "shapes.plt"), config)
-
-
-def flash_with(job: bytes) -> bytes:
-    """A flash with this job in its first slot."""
-    flash = bytearray(b"\xff" * FLASH_BYTES)
-    flash[: len(job)] = job
-    words = (1, 0, len(job), zlib.crc32(job), struct.unpack_from("<I", job, 8)[0], 0)
-    record = b"MCR1" + struct.pack("<6I", *words)
-    record += struct.pack("<I", zlib.crc32(record))
-    flash[254 * 4096 : 254 * 4096 + len(record)] = record
-    return bytes(flash)
 
 
 def played(planned: Plan, seed: int, pauses: int) -> tuple[np.ndarray, int]:

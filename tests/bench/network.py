@@ -1,0 +1,66 @@
+"""What a short line of a drawing costs from the file to the job, and a card that plays it."""
+
+import time
+
+import numpy as np
+from card_links import flash_with
+
+from motionfmu.netcard import plt
+from motionfmu.netcard.config import read
+from motionfmu.netcard.plan import plan
+from motionfmu.netcard.sim import VirtualCard
+
+SEGMENTS = 100_000
+CARDS = 100
+SECONDS = 2.0  # of a card's motion
+AXIS = """
+pulses_per_mm = 800
+minimum = -1000
+maximum = 1000
+speed_max = 200
+acceleration_max = 1000
+jerk_max = 50000
+"""
+
+
+def drawing() -> bytes:
+    """A closed curve again and again, rounded to the plotter's units: 0.05 mm a line."""
+    t = 2.0 * np.pi * np.arange(SEGMENTS + 1) / 6000
+    r = 320.0 * (np.exp(np.cos(t)) - 2.0 * np.cos(4.0 * t) + np.sin(t / 12.0) ** 5)
+    points = np.round(np.stack([r * np.cos(t), r * np.sin(t)], axis=1)).astype(int).tolist()
+    return b"IN;SP1;PU%d,%d;PD" % tuple(points[0]) + b",".join(b"%d,%d" % (x, y) for x, y in points)
+
+
+class Network:
+    """Processor time of each, best of all rounds."""
+
+    def __init__(self) -> None:
+        self.text = drawing()
+        axes = "".join(f'[[axes]]\nname = "{name}"{AXIS}' for name in "XY")
+        self.config = read(axes, "card.toml")
+        self.parse = self.plan = self.card = np.inf  # [s] a segment, a segment, a simulated second
+
+    def __call__(self) -> None:
+        start = time.process_time()
+        read = plt.parse(self.text, "lines.plt")
+        parsed = time.process_time()
+        job = plan(read, self.config).job
+        planned = time.process_time()
+        self.parse = min(self.parse, (parsed - start) / SEGMENTS)
+        self.plan = min(self.plan, (planned - parsed) / SEGMENTS)
+        actions, deaf = [1] + [0] * 15, [0] * 16
+        card = VirtualCard(1, flash=flash_with(job), in_action=actions, in_debounce_us=deaf)
+        card.set_inputs(1)
+        card.run(500_000_000)
+        begin, at = time.process_time(), card.now
+        for k in range(1, round(SECONDS * 100) + 1):
+            card.run(at + 10_000_000 * k)
+        self.card = min(self.card, (time.process_time() - begin) / SECONDS)
+        assert card.state.name == "RUNNING" and card.pulses[0]
+
+    def table(self, ruckig: float) -> None:
+        """Cost of a segment beside that of a rest-to-rest move by ruckig [s]; of a card."""
+        print(f"\n{'one line of a drawing':28}{'ns':>10}{'ruckig/it':>11}{'million/s':>11}")
+        for name, cost in (("parsed", self.parse), ("planned", self.plan)):
+            print(f"{name:28}{cost * 1e9:10.0f}{ruckig / cost:11.2f}{1e-6 / cost:11.2f}")
+        print(f"{'network card, ns a ms':28}{self.card * 1e6:10.0f}")
