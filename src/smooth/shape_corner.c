@@ -7,11 +7,19 @@
  * paths of a curvature of 1 that touch, of its square. Where the search begins. */
 static const double CUT = 0.1875, CUT_CURVED = 0.035;
 
-/* The first attempt takes a little less, each one so much less than the one before, and none less
- * than that. [mm] */
-static const double FIRST = 0.99, SHORTER = 0.85, LEAST = 1e-6;
+/* A curve that swings out first: where it swings out as far as it cuts in, its middle is off the
+ * vertex by SWING times the cosine of half the angle, or more, of its half length times half the
+ * turn. r'' there, of half the turn by the half length, falls along a line from one quintic's
+ * (2 CUT, BEND). With r''' = 0 at the line's end it would be 8 - 20 of that part, which lets V rise
+ * on the way out; a little less swings out farther. The slope is the one with the least times.
+ */
+static const double SWING = 0.05, BEND = 1.5, MORE_BEND = 17.0;
 
-enum { ATTEMPTS = 24 };
+/* The first attempt takes a little less, each one so much less than the one before (one that swings
+ * out, and another), and none less than that. [mm] */
+static const double FIRST = 0.99, SWING_SHORTER = 0.97, SHORTER = 0.85, LEAST = 1e-6;
+
+enum { SWINGS = 64, ATTEMPTS = 24 };
 
 /* Of a curve at least this part is left or nothing: a sliver's derivatives would be rounding. */
 static const double SLIVER = 0.1;
@@ -137,68 +145,131 @@ static bool way_behind(struct shape *s, double before, double half, double toler
     return n > 0;
 }
 
-/* A quintic that takes `half` of either side. The numbers of the pieces that it cuts, and where. */
-static bool attempt(struct shape *s, double half, double tolerance, struct piece *p,
-                    int64_t cut[2], double at[2])
+/* The middle of a curve that swings out and then cuts in, `part` of its half length times half the
+ * turn off the vertex. Between lines r' along the bisector is constant, as in one quintic, so that
+ * all else is along the normal and the same for each turn. How far off. [mm]
+ */
+static double middle(const struct piece_state *in, const struct piece_state *out, double half,
+                   double part, struct piece_state *m)
 {
-    struct shape_way way;
-    struct piece_state a, b;
+    const double bend = (BEND + MORE_BEND * (2.0 * CUT - part)) / half;
+    double square = 0.0;
 
-    cut[0] = s->corner_made - 1;
-    cut[1] = s->corner_made;
-    at[0] = shape_made(s, cut[0])->length - half;
-    while (at[0] < 0.0) {
-        cut[0]--;
-        at[0] += shape_made(s, cut[0])->length;
+    for (int i = 0; i < AXES; i++) {
+        const double turn = 0.5 * (out->slope[i] - in->slope[i]);
+        m->point[i] = in->point[i] + part * half * turn;
+        m->slope[i] = 0.5 * (in->slope[i] + out->slope[i]);
+        m->bend[i] = 0.5 * (in->bend[i] + out->bend[i]) + bend * turn;
+        square += turn * turn;
     }
-    at[1] = half;
-    while (at[1] > shape_made(s, cut[1])->length) {
-        at[1] -= shape_made(s, cut[1])->length;
-        cut[1]++;
-    }
-    const struct piece *x = shape_made(s, cut[0]), *y = shape_made(s, cut[1]);
-    const double more = x->kind == PIECE_CURVE ? fmax(0.0, SLIVER * x->length - at[0]) : 0.0;
-    const double less = y->kind == PIECE_CURVE
-        ? fmax(0.0, at[1] - (1.0 - SLIVER) * y->length) : 0.0;
-    at[0] += more;
-    at[1] -= less;
-    way.points = 0;
-    if (!(half - more > 0.0 && half - less > 0.0) || !way_before(s, half - more, &way)
-        || !way_behind(s, half - more, half - less, tolerance, &way)) {
-        return false;
-    }
-    piece_at(x, at[0], &a);
-    piece_at(y, at[1], &b);
-    return shape_join(p, &a, &b, 2.0 * half - more - less, &way);
+    return part * half * sqrt(square);
 }
 
-/* Puts the curve in the place of what it cuts off. */
-static void insert(struct shape *s, const struct piece *p, const int64_t cut[2],
-                   const double at[2])
+/* What is cut off: pieces and where in them. */
+struct cut {
+    int64_t piece[2];
+    double at[2];
+};
+
+/* A curve that takes `half` of either side: with part > 0 two quintics that meet `part` of the half
+ * length times half the turn off the vertex, else one. Their number; 0: not within the tolerance.
+ */
+static int32_t attempt(struct shape *s, double half, double part, double tolerance,
+                       struct piece p[2], struct cut *c)
+{
+    struct shape_way way = { .points = 0 };
+    struct piece_state a, b, in, out, m;
+
+    c->piece[0] = s->corner_made - 1;
+    c->piece[1] = s->corner_made;
+    piece_at(shape_made(s, c->piece[0]), shape_made(s, c->piece[0])->length, &in);
+    piece_at(shape_made(s, c->piece[1]), 0.0, &out);
+    c->at[0] = shape_made(s, c->piece[0])->length - half;
+    while (c->at[0] < 0.0) {
+        c->piece[0]--;
+        c->at[0] += shape_made(s, c->piece[0])->length;
+    }
+    c->at[1] = half;
+    while (c->at[1] > shape_made(s, c->piece[1])->length) {
+        c->at[1] -= shape_made(s, c->piece[1])->length;
+        c->piece[1]++;
+    }
+    const struct piece *x = shape_made(s, c->piece[0]), *y = shape_made(s, c->piece[1]);
+    const double more = x->kind == PIECE_CURVE ? fmax(0.0, SLIVER * x->length - c->at[0]) : 0.0;
+    const double less = y->kind == PIECE_CURVE
+        ? fmax(0.0, c->at[1] - (1.0 - SLIVER) * y->length) : 0.0;
+    c->at[0] += more;
+    c->at[1] -= less;
+    const double before = half - more, behind = half - less;
+    if (!(before > 0.0 && behind > 0.0) || !way_before(s, before, &way)) {
+        return 0;
+    }
+    piece_at(x, c->at[0], &a);
+    piece_at(y, c->at[1], &b);
+    if (part <= 0.0) {
+        return way_behind(s, before, behind, tolerance, &way)
+            && shape_join(&p[0], &a, &b, before + behind, &way);
+    }
+    const double off = middle(&in, &out, half, part, &m);
+    if (off > way.tolerance[way.points - 1] || !shape_join(&p[0], &a, &m, before, &way)) {
+        return 0;
+    }
+    way.points = 0;
+    add(&way, in.point, 0.0, tolerance);
+    return way_behind(s, 0.0, behind, tolerance, &way) && off <= way.tolerance[1]
+        && shape_join(&p[1], &m, &b, behind, &way) ? 2 : 0;
+}
+
+/* Puts n pieces in the place of what they cut off. */
+static void insert(struct shape *s, const struct piece *p, int32_t pieces, const struct cut *c)
 {
     struct piece behind[SHAPE_SPANS];
     int32_t n = 0;
 
-    for (int64_t k = cut[1]; k < s->made; k++) {
+    for (int64_t k = c->piece[1]; k < s->made; k++) {
         behind[n++] = *shape_made(s, k);
     }
     const double length = behind[0].length;
-    const bool left = at[1] < length;
+    const bool left = c->at[1] < length;
     if (left) {
-        shape_cut(&behind[0], at[1], length);
+        shape_cut(&behind[0], c->at[1], length);
     }
-    s->made = cut[0];
-    if (at[0] > 0.0) {
-        shape_cut(shape_made(s, cut[0]), 0.0, at[0]);
+    s->made = c->piece[0];
+    if (c->at[0] > 0.0) {
+        shape_cut(shape_made(s, c->piece[0]), 0.0, c->at[0]);
         s->made++;
     }
-    *shape_made(s, s->made) = *p;
-    s->made++;
+    for (int32_t k = 0; k < pieces; k++) {
+        *shape_made(s, s->made) = p[k];
+        s->made++;
+    }
     s->stretch = s->made;
     for (int32_t k = left ? 0 : 1; k < n; k++) {
         *shape_made(s, s->made) = behind[k];
         s->made++;
     }
+}
+
+/* Rounds the corner so, if that stays within the tolerance. */
+static bool rounded(struct shape *s, double half, double part, double tolerance)
+{
+    const struct piece *a = shape_made(s, s->corner_made - 1);
+    struct piece curve[2] = { { .feed = a->feed, .cap = a->cap, .ramp = a->ramp } };
+    struct cut c;
+
+    curve[1] = curve[0];
+    const int32_t n = attempt(s, half, part, tolerance, curve, &c);
+    if (n == 0) {
+        return false;
+    }
+    for (int64_t k = c.piece[0]; k <= c.piece[1]; k++) {
+        const struct piece *x = shape_made(s, k);
+        for (int32_t i = 0; i < n; i++) {
+            shape_obey(&curve[i], x->feed, x->cap, &x->ramp);
+        }
+    }
+    insert(s, curve, n, &c);
+    return true;
 }
 
 void shape_corner_round(struct shape *s, double tolerance)
@@ -237,20 +308,27 @@ void shape_corner_round(struct shape *s, double tolerance)
         ? s->tail_tolerance[s->tail_points - 1] : s->corner_tolerance;
     const double of_b = b->kind == PIECE_CURVE ? s->run.vertex[1].tolerance : tolerance;
     const double p = CUT * turn, q = CUT_CURVED * (kin + kout), most = fmin(of_a, of_b);
-    double half = 2.0 * most / (p + sqrt(p * p + 4.0 * q * most));
-    half = fmin(FIRST * half, fmin(before * (1.0 - 1e-9), behind));
-    half = a->kind != PIECE_LINE && a->kind != PIECE_CURVE ? fmin(half, ARC / kin) : half;
-    half = b->kind != PIECE_LINE && b->kind != PIECE_CURVE ? fmin(half, ARC / kout) : half;
-    for (int k = 0; k < ATTEMPTS && turn < BACK && half > LEAST; k++, half *= SHORTER) {
-        struct piece curve = { .feed = a->feed, .cap = a->cap, .ramp = a->ramp };
-        int64_t cut[2];
-        double at[2];
-        if (attempt(s, half, tolerance, &curve, cut, at)) {
-            for (int64_t n = cut[0]; n <= cut[1]; n++) {
-                const struct piece *x = shape_made(s, n);
-                shape_obey(&curve, x->feed, x->cap, &x->ramp);
-            }
-            insert(s, &curve, cut, at);
+    const double plain = 2.0 * most / (p + sqrt(p * p + 4.0 * q * most));
+    double room = fmin(before * (1.0 - 1e-9), behind);
+    room = a->kind != PIECE_LINE && a->kind != PIECE_CURVE ? fmin(room, ARC / kin) : room;
+    room = b->kind != PIECE_LINE && b->kind != PIECE_CURVE ? fmin(room, ARC / kout) : room;
+    if (turn >= BACK) {
+        a->rest = true;
+        return;
+    }
+    const bool arcs = (a->kind != PIECE_LINE && a->kind != PIECE_CURVE)
+        || (b->kind != PIECE_LINE && b->kind != PIECE_CURVE);
+    const double off = FIRST * most * (arcs ? 1.0 - SAGITTA : 1.0) / (0.5 * turn);
+    double half = fmin(room, off / (SWING * sqrt(1.0 - 0.25 * turn * turn)));
+    for (int k = 0; k < SWINGS && half > fmax(plain, 0.5 * off / CUT) && half > LEAST;
+         k++, half *= SWING_SHORTER) {
+        if (rounded(s, half, off / half, tolerance)) {
+            return;
+        }
+    }
+    half = fmin(FIRST * plain, room);
+    for (int k = 0; k < ATTEMPTS && half > LEAST; k++, half *= SHORTER) {
+        if (rounded(s, half, 0.0, tolerance)) {
             return;
         }
     }

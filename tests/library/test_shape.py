@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from shape_paths import Array, both_ways, jumps, least_time, lines, shaped
+from shape_paths import Array, Piece, both_ways, jumps, least_time, lines, shaped
 
 TURN = 2.0 * math.pi
 
@@ -203,9 +203,59 @@ def test_steps_of_every_size_and_reversals(seed: int) -> None:
 def test_without_merging_only_corners_are_rounded() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]])
     pieces, _ = shaped(lines(points, 0.02, 0.0))
-    assert [p.kind for p in pieces] == ["line", "curve", "line", "curve", "line"]
-    # two lines: the curve's middle is 0.1875 of its half length times the turn off the corner
-    half = 0.5 * pieces[1].length
-    middle = pieces[1].at(np.array([half]))[0][0, :2]
-    assert math.dist(middle, (1.0, 0.0)) == pytest.approx(0.1875 * half * math.sqrt(2.0))
+    assert [p.kind for p in pieces] == ["line", *(["curve", "curve", "line"] * 2)]
+    middle = pieces[2].at(np.zeros(1))[0][0, :2]
     assert 0.95 * 0.02 < math.dist(middle, (1.0, 0.0)) <= 0.02
+
+
+def test_where_there_is_no_room_one_quintic_rounds_a_corner() -> None:
+    points = np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.2, 0.1]])
+    pieces, _ = shaped(lines(points, 0.02, 0.0))
+    curves = [p for p in pieces if p.kind == "curve"]
+    assert len(curves) == 2
+    # two lines: the curve's middle is 0.1875 of its half length times the turn off the corner
+    half = 0.5 * curves[0].length
+    middle = curves[0].at(np.array([half]))[0][0, :2]
+    assert math.dist(middle, (0.1, 0.0)) == pytest.approx(0.1875 * half * math.sqrt(2.0))
+    assert math.dist(middle, (0.1, 0.0)) <= 0.02
+
+
+def one_quintic(turn: float, side: float, tolerance: float) -> list[Piece]:
+    """Two lines from and to rest whose corner is cut by all of a tolerance, on the inside alone."""
+    ways = np.zeros((2, 6))
+    ways[:, :2] = polar(np.ones(2), np.array([0.0, turn]))
+    half = tolerance / (0.1875 * np.linalg.norm(ways[1] - ways[0]))
+    at = np.array([-1.0, -0.6, -0.2])[:, None] * half
+    control = np.vstack([at * ways[0], -at[::-1] * ways[1]])
+    return [
+        Piece("line", side - half, False, np.r_[-side * ways[0], ways[0]]),
+        Piece("curve", 2.0 * half, False, np.r_[np.zeros(6), control.ravel()]),
+        Piece("line", side - half, True, np.r_[half * ways[1], ways[1]]),
+    ]
+
+
+@pytest.mark.parametrize("degrees", [20.0, 30.0, 60.0, 90.0, 120.0, 150.0])
+def test_a_corner_takes_the_tolerance_on_both_sides(degrees: float) -> None:
+    tolerance, side, turn = 0.05, 14.0, math.radians(degrees)
+    points = np.array([[-side, 0.0], [0.0, 0.0], [side * math.cos(turn), side * math.sin(turn)]])
+    pieces, _ = shaped(lines(points, tolerance, 0.0))
+    there, back = both_ways(pieces, points, tolerance)
+    curves = [p for p in pieces if p.kind == "curve"]
+    first = curves[0].at(np.linspace(0.0, curves[0].length, 2001))[0]
+    x, y = first[:, 0], first[:, 1]
+    swing = (y < 0.0) | ((x > 0.0) & (x * math.sin(turn) > y * math.cos(turn)))
+    outside = np.hypot(np.maximum(x, 0.0), y)[swing].max()  # off the line or its end
+    inside = float(np.linalg.norm(first[-1, :2]))
+    new, old = (
+        least_time(pieces, 1000.0, 100.0),
+        least_time(one_quintic(turn, side, tolerance), 1000.0, 100.0),
+    )
+    print(
+        f"{degrees} degrees: {curves[0].length:.3f} mm, out {outside:.5f}, in {inside:.5f}, off "
+        f"{there:.5f} {back:.5f} of {tolerance}, {new:.5f} s, one quintic {old:.5f} s"
+    )
+    assert [p.kind for p in pieces] == ["line", "curve", "curve", "line"]
+    assert there <= tolerance and back <= tolerance
+    assert 0.9 * tolerance < outside and 0.98 * tolerance < inside
+    assert max(jumps(pieces)) < 1e-8
+    assert new < old
