@@ -127,7 +127,7 @@ class Grid(interpolator.AbstractGeometricPath):
         ways, states, at = [], [], 0.0
         pieces = [p for p in pieces if p.length > SLIVER]
         for n, p in enumerate(pieces):
-            count = max(12, int(np.ceil(p.length / 0.05)))
+            count = max(48, int(np.ceil(p.length / 0.05)))
             u = np.linspace(0.0, p.length, count + 1)[: count + (n == len(pieces) - 1)]
             states.append(np.stack(p.at(u), axis=1)[:, :, :3])
             ways.append(at + u)
