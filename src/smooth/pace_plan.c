@@ -24,6 +24,10 @@ static const double SAME = 1e-12;
 /* Limits are met, and a state is met again, to such a share. */
 static const double NEARLY = 1e-9;
 
+/* At the most speed a state that is so much as steep as the next one is made flatter: of mere
+ * shares there may be no end. */
+static const double STEEP = 0.97;
+
 /* Share of the jerk that a state may take that is made to fit a box. */
 static const double ROOM = 0.8;
 
@@ -315,6 +319,7 @@ static bool step_back(struct pace_plan *p, const struct pace_road *r, int32_t bo
             found = flat;
         } else {
             found = (struct pace_state){ top, found.b * top / found.x };
+            found = found.b < STEEP * last.b ? ease(p, r, at, box, found) : found;
         }
     }
     found.b = fmin(found.b, 0.0);

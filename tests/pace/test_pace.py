@@ -191,6 +191,17 @@ def test_smooth_line() -> None:
             assert np.abs(rate - 0.5e-3 * (gain[1:] + gain[:-1])).max() < 0.5 * 50_000.0 * 1e-6
 
 
+@pytest.mark.parametrize("feed", [0.5, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 30.0])
+def test_smooth_slow_line(feed: float) -> None:
+    """A line at a low feed is driven at that feed: two ramps and the rest."""
+    chain = Chain(feed=feed)
+    chain.line(place(), place(30))
+    ramp = 2 * np.sqrt(feed / 50_000.0) if feed < 20.0 else feed / 1000.0 + 0.02
+    ratio = ride(chain.told(), limits(1000.0, jerk=50_000.0)).time / (30 / feed + ramp)
+    print(f"{feed} mm/s: {ratio:.5f}")
+    assert 1 - 1e-6 < ratio < 1.012
+
+
 @pytest.mark.parametrize(
     ("name", "told", "most"),
     [
