@@ -46,7 +46,7 @@ LIBRARY.pace_batch_path.argtypes = [
 ]
 LIBRARY.pace_batch_path.restype = None
 LIBRARY.pace_batch_go.argtypes = [ctypes.c_int64, ctypes.c_double, ctypes.c_double, _SAMPLE]
-for each in ("pieces", "ride", "stop_way", "go"):
+for each in ("pieces", "ride", "stop_way", "gap", "go"):
     getattr(LIBRARY, f"pace_batch_{each}").restype = ctypes.c_double
 
 

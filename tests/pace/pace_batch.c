@@ -96,7 +96,7 @@ double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, do
             at++;
         }
         while (joined < n && joined <= at + ahead && pace_join(&pace, &pieces[joined])) {
-            joined++;
+            starts[++joined] = pace.end;
         }
         const double left = pace_advance(&pace, override[i < count ? i : count - 1], dt);
         if (s) {
@@ -113,6 +113,20 @@ double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, do
 double pace_batch_stop_way(void)
 {
     return pace_stop_way(&pace);
+}
+
+/* Widest gap between the parts that the ride knows with limited jerk, or behind them. [mm] */
+double pace_batch_gap(void)
+{
+    double widest = 0.0;
+
+    for (int32_t i = 0; i < pace.count; i++) {
+        const struct pace_box *g = &pace.box[(pace.at.head + i) % PACE_CELLS];
+        const double next = i + 1 < pace.count
+            ? pace.box[(pace.at.head + i + 1) % PACE_CELLS].from : pace.end;
+        widest = fmax(widest, fabs(next - (g->from + g->length)));
+    }
+    return widest;
 }
 
 /* Go on with the ride as it is; returns the time left at its end, and the sample. [s] */

@@ -202,6 +202,14 @@ def test_smooth_slow_line(feed: float) -> None:
     assert 1 - 1e-6 < ratio < 1.012
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_smooth_parts_meet(seed: int) -> None:
+    """Parts of pieces end where the next ones begin, to the bit: no rest between them."""
+    told = random_chain(np.random.default_rng(seed), 10, 3.0).told()
+    ride(told, limits(1000.0, jerk=50_000.0), Orders(most=1))
+    assert LIBRARY.pace_batch_gap() == 0.0
+
+
 @pytest.mark.parametrize(
     ("name", "told", "most"),
     [
