@@ -12,6 +12,9 @@ static const double SAME = 1e-12;
 /* A bend that takes less of the limits is as good as none. */
 static const double SLIGHT = 0.05;
 
+/* Of a way to rest that is told, so much is more than counted. */
+static const double SLOWER = 1e-3;
+
 static struct pace_cell *cell_at(struct pace *p, int32_t i)
 {
     return &p->cell[(uint32_t)(p->at.head + i) % PACE_CELLS];
@@ -293,13 +296,11 @@ double pace_advance(struct pace *p, double override, double dt)
     return left;
 }
 
-double pace_stop_way(const struct pace *p)
+/* Where the most braking leads that is looked for only where a stretch ends. */
+static double rest_way(const struct pace *p)
 {
     double x = p->at.rate * p->at.rate, base = p->at.base;
 
-    if (p->smooth) {
-        return pace_smooth_stop_way(p);
-    }
     for (int32_t i = 0; i < p->count; i++) {
         const struct pace_cell *c = cell_peek(p, i);
         double left = i == 0 ? p->at.left : c->length;
@@ -314,6 +315,15 @@ double pace_stop_way(const struct pace *p)
         base += c->length;
     }
     return p->end;
+}
+
+double pace_stop_way(const struct pace *p)
+{
+    if (p->smooth) {
+        return pace_smooth_stop_way(p);
+    }
+    const double way = rest_way(p);
+    return fmin(p->end, way + SLOWER * (way - p->at.way));
 }
 
 bool pace_nears_end(const struct pace *p, double further)

@@ -71,8 +71,11 @@ bool pace_join(struct pace *p, const struct piece *piece);
  * Returns the time left: above 0 only at rest at the end of the chain. */
 double pace_advance(struct pace *p, double override, double dt);
 
-/* Where an override of 0 brings it to rest, or a little before: as a bend takes less and less, it
- * can brake harder than this counts with, which is told anew where x has halved. [mm] */
+/* Where an override of 0 brings it to rest. Without a limit of jerk there or before: as a bend
+ * takes less and less, it can brake harder than this counts with, which is told anew where x has
+ * halved; and where a bend helps to brake, a motion that has become slower brakes less, for which
+ * it adds a thousandth of the way. Of 20,000 rides the way was at most 0.24 of it shorter, none
+ * longer (4e-4 of it without that). [mm] */
 double pace_stop_way(const struct pace *p);
 
 /* Whether, that much further [mm], it brakes for the end of the pieces that are known. */

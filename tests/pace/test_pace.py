@@ -157,10 +157,12 @@ def test_orders(seed: int, smooth: bool) -> None:
     assert steps["way"].max() <= done.length + 1e-9
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(SEEDS, st.booleans())
+@example(3641, False)
+@example(3030, False)
 def test_stop(seed: int, smooth: bool) -> None:
-    """A hold comes to rest where it was told."""
+    """A hold comes to rest where it was told, or, with T, before; its bounds are measured ones."""
     dice = np.random.default_rng(seed)
     told = random_chain(dice, 10, 5.0).told()
     bounds, dt = limits(1000.0, jerk=50_000.0 * smooth), 1e-3
@@ -175,7 +177,8 @@ def test_stop(seed: int, smooth: bool) -> None:
         if left > 0 or steps[-1]["rate"][0] == 0:
             break
     within(np.concatenate(steps), bounds, dt)
-    assert goal - 0.2 * (goal - way) <= steps[-1]["way"][0] <= goal + 1e-6
+    short = 0.0 if smooth else 0.24 * (goal - way)
+    assert goal - short - 1e-9 <= steps[-1]["way"][0] <= goal + 1e-9
 
 
 def test_smooth_line() -> None:

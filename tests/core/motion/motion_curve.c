@@ -429,7 +429,7 @@ static void extent(void)
         most = fmax(most, stop - curve.start - curve.place.way);
         CHECK(stop - curve.start - curve.place.way > -1e-9);
     }
-    CHECK(most < 0.01 && most > 1e-3);
+    CHECK(most < 0.015 && most > 1e-3);
     printf("rests up to %.1f um before it is told\n", 1e3 * most);
 }
 
