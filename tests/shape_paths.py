@@ -25,6 +25,7 @@ class Piece:
     length: float
     rest: bool
     data: Array
+    feed: float = 0.0
 
     def at(self, u: Array) -> tuple[Array, Array, Array]:
         """Place, r' and r'' at u."""
@@ -90,7 +91,7 @@ def shaped(rows: list[str]) -> tuple[list[Piece], list[float]]:
         elif kind != "commands":
             assert kind in ("line", "curve", "arc", "cubic"), line
             x = [float(n) for n in numbers]
-            pieces.append(Piece(kind, x[0], x[2] == 1.0, np.array(x[3:])))
+            pieces.append(Piece(kind, x[0], x[2] == 1.0, np.array(x[3:]), x[1]))
     return pieces, marks
 
 

@@ -234,8 +234,21 @@ def one_quintic(turn: float, side: float, tolerance: float) -> list[Piece]:
     ]
 
 
-@pytest.mark.parametrize("degrees", [20.0, 30.0, 60.0, 90.0, 120.0, 150.0])
-def test_a_corner_takes_the_tolerance_on_both_sides(degrees: float) -> None:
+@pytest.mark.parametrize("slow", [2, 3])
+def test_a_corner_keeps_the_lower_feed(slow: int) -> None:
+    rows = lines(np.array([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]), 0.02, 0.0)
+    rows[slow] = rows[slow].replace(" 100 ", " 40 ")
+    pieces, _ = shaped(rows)
+    assert [p.kind for p in pieces] == ["line", "curve", "curve", "line"]
+    assert [p.feed for p in pieces[1:3]] == [40.0, 40.0]
+    assert sorted((pieces[0].feed, pieces[3].feed)) == [40.0, 100.0]
+
+
+@pytest.mark.parametrize(
+    ("degrees", "part"),
+    [(20.0, 0.968), (30.0, 0.968), (60.0, 0.983), (90.0, 0.989), (120.0, 0.988), (150.0, 0.997)],
+)
+def test_a_corner_takes_the_tolerance_on_both_sides(degrees: float, part: float) -> None:
     tolerance, side, turn = 0.05, 14.0, math.radians(degrees)
     points = np.array([[-side, 0.0], [0.0, 0.0], [side * math.cos(turn), side * math.sin(turn)]])
     pieces, _ = shaped(lines(points, tolerance, 0.0))
@@ -258,4 +271,4 @@ def test_a_corner_takes_the_tolerance_on_both_sides(degrees: float) -> None:
     assert there <= tolerance and back <= tolerance
     assert 0.9 * tolerance < outside and 0.98 * tolerance < inside
     assert max(jumps(pieces)) < 1e-8
-    assert new < old
+    assert new < part * old
