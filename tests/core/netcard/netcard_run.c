@@ -53,8 +53,27 @@ static void pauses_leave_the_path(void)
     bench_times(&c);
 }
 
+/* A frame is five words on the bus to the FPGA: run's time grows by that, to the ns. */
+static void words_take_their_time(void)
+{
+    int64_t busy[2];
+
+    bench_make(2000, 100, NULL, 0);
+    for (int i = 0; i < 2; i++) {
+        struct netcard_config config = bench_config();
+        config.settings.fsmc_word_ns += 300 * i;
+        bench_start(&c, &config);
+        CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+        until(NET_READY, 2100);
+        busy[i] = kernel_busy(&c.kernel, NETCARD_RUN);
+    }
+    CHECK_EQ(busy[1] - busy[0], 2000 * 5 * 300);
+    printf("run: %.0f ns a frame\n", (double)busy[0] / 2000);
+}
+
 int main(void)
 {
+    words_take_their_time();
     plays_to_its_end();
     pauses_leave_the_path();
     return check_result();
