@@ -44,6 +44,10 @@ class Lines:
             elif key := re.match(r"""\s*("[^"]*"|'[^']*'|[A-Za-z0-9_.-]+)\s*=""", line):
                 self._at.setdefault((table, key[1].strip("\"'")), number)
 
+    def has(self, table: str, key: str = "") -> bool:
+        """Whether this very key, or table, stands on a line of its own."""
+        return (table, key) in self._at
+
     def of(self, table: str, key: str = "") -> int:
         """Line of a key, else of the nearest table around it, else 1.
 

@@ -64,9 +64,18 @@ static void start_inputs(struct netcard *c)
     card_inputs_start(&c->inputs, &inputs, c->input_levels);
 }
 
+static struct player_config player_of(const struct card_settings *s)
+{
+    return (struct player_config){
+        s->fifo_depth, s->pulse_width_ns / PLAYER_CLOCK_NS, s->dir_setup_ns / PLAYER_CLOCK_NS,
+        s->dir_hold_ns / PLAYER_CLOCK_NS
+    };
+}
+
 /* All that power brings up; the flash and the counts of pulses have kept what they had. */
 static void boot(struct netcard *c)
 {
+    const struct player_config player = player_of(&c->settings);
     uint32_t start_speed[JOB_AXES];
 
     for (int i = 0; i < JOB_AXES; i++) {
@@ -84,6 +93,7 @@ static void boot(struct netcard *c)
     c->resumes = NET_RUNNING;
     c->credit = 0;
     job_store_start(&c->store, &c->flash, c->settings.slots, start_speed, c->now);
+    player_power(&c->player, &player);
     start_inputs(c);
     card_outputs_start(&c->outputs);
     start_kernel(c);
@@ -117,6 +127,7 @@ enum net_code netcard_start(struct netcard *c, const struct netcard_config *conf
 {
     const struct card_settings *s = &config->settings;
     const struct flash_config flash = flash_of(s);
+    const struct player_config player = player_of(s);
     enum net_code code = NET_DONE;
 
     memset(c, 0, sizeof *c);
@@ -124,10 +135,7 @@ enum net_code netcard_start(struct netcard *c, const struct netcard_config *conf
     c->power = true;
     c->least = s->fifo_depth;
     flash_start(&c->flash, &flash);
-    player_start(&c->player, &(struct player_config){
-        s->fifo_depth, s->pulse_width_ns / PLAYER_CLOCK_NS, s->dir_setup_ns / PLAYER_CLOCK_NS,
-        s->dir_hold_ns / PLAYER_CLOCK_NS
-    });
+    player_start(&c->player, &player);
     c->store.slots = s->slots;
     start_link(c, config->key);
     if (bytes > 0) {

@@ -233,6 +233,17 @@ void player_clear(struct player *p)
     frame_fifo_reset(&p->fifo, p->config.depth);
 }
 
+bool player_power(struct player *p, const struct player_config *config)
+{
+    if (!player_good_config(config)) {
+        return false;
+    }
+    player_clear(p);
+    p->config = *config;
+    frame_fifo_reset(&p->fifo, config->depth);
+    return true;
+}
+
 /* Clock of the period's end; INT64_MAX: it stands. */
 static int64_t boundary(const struct player *p)
 {

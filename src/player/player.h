@@ -114,6 +114,10 @@ struct player {
 /* Power on: all counts 0, nothing moves. False: no such configuration. */
 bool player_start(struct player *p, const struct player_config *config);
 
+/* Power on again, maybe with another configuration: nothing moves, the counts stay. False: no such
+ * configuration, nothing changed. */
+bool player_power(struct player *p, const struct player_config *config);
+
 /* Largest |command| of a frame at this period: room for pulses of full width. [pulses] */
 int32_t player_largest(const struct player *p, int32_t period);
 

@@ -29,6 +29,7 @@ static const struct field sim_fields[] = {
     SEEN(result.count, "answered", ""), SEEN(jobs, "jobs", ""), SEEN(played_id, "played", ""),
     SEEN(session.connections, "connections", ""), SEEN(session.repeats, "repeats", ""),
     SEEN(session.fault, "fault", ""), SEEN(flash.programs, "programs", ""),
+    SEEN(session.phase, "phase", ""),
     SEEN(flash.sector_erases, "sector_erases", ""), SEEN(flash.block_erases, "block_erases", ""),
 };
 

@@ -9,9 +9,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from motionfmu.netcard import messages
+from motionfmu.netcard.config import CardConfig
 from motionfmu.netcard.job import Event as Switch
 from motionfmu.netcard.job import Job, decode, encode
-from motionfmu.netcard.views import CardView, Code, Event, Result, Upload
+from motionfmu.netcard.settings import asked
+from motionfmu.netcard.views import CardView, Code, Configured, Event, Result, Setting, Upload
 
 # State behind a command by the state before it; what is not here is refused with STATE.
 TABLE = {
@@ -84,6 +86,16 @@ class Fleet:
         view.upload, view.job, view.state = None, digest, "READY"
         self.tell("upload", card, f"job {digest[:8]} is in the card")
         return Result.of(Code.DONE, "READY")
+
+    async def configure(self, card: int, config: CardConfig) -> Configured:
+        view = self.cards.get(card, CardView(card))
+        if not view.connected:
+            return Configured(Result.of(Code.OFFLINE))
+        value = asked(config)["speed_max", 0]
+        busy = view.state not in ("EMPTY", "READY", "FAULT")
+        end = Result.of(Code.BUSY if busy else Code.DONE, view.state)
+        self.done.append((card, f"speed_max {value}"))
+        return Configured(end, (Setting("speed_max", 0, 1000, value, False, end),))
 
     def subscribe(self) -> "asyncio.Queue[Event]":
         self.queues.append(asyncio.Queue())

@@ -25,7 +25,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from motionfmu.errors import InputError
 from motionfmu.netcard.config import CardConfig, load, read
-from motionfmu.netcard.config_text import text_of
+from motionfmu.netcard.config_text import text_of, with_values
 from motionfmu.netcard.job import decode
 from motionfmu.netcard.page import application
 from motionfmu.netcard.page.form import form
@@ -255,6 +255,62 @@ def test_values_are_checked_as_the_file_is_and_saved_whole(fleet: Fleet, tmp_pat
     assert told["errors"][1].startswith("x.toml:2: network.port = 0: ")
     with pytest.raises(InputError):
         application(fleet, TOKEN, tmp_path / "none.toml")
+
+
+def test_comments_stay_or_their_loss_is_told_before(fleet: Fleet, tmp_path: Path) -> None:
+    file = tmp_path / "card.toml"
+    text = CARD.read_text() + "# the end\n"
+    file.write_text(text)
+    c = client(fleet, file)
+    values = c.post("/config/form").json()["values"]
+    c.post("/config/save", json=values)
+    assert file.read_text() == text
+    values["axes"][1]["speed_max"], values["inputs"][7]["action"] = 150, "stop"
+    values["pulse"]["width"], values["outputs"][5] = 0.8e-6, "air"
+    assert c.post("/config/save", json=values).json() == {"file": str(file)}
+    saved = file.read_text()
+    assert saved.count("#") == text.count("#") and saved.startswith(text[:200])
+    assert load(file) == CardConfig.model_validate(values) != load(CARD)
+    del values["axes"][1]
+    assert c.post("/config/save", json=values).json() == {"file": str(file), "loses": True}
+    assert file.read_text() == saved
+    assert c.post("/config/save?lose", json=values).json() == {"file": str(file)}
+    assert len(load(file).axes) == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("feed = 1 # a", "feed = 7 # a"),
+        ("'feed'=1.0#a", "'feed'=7#a"),
+        ("feed = 1e0\r\n", "feed = 7\r\n"),
+        ("# feed = 1", "feed = 7\n# feed = 1"),
+        ("feed = 1\n[outputs]\n1 = 'a#b' # c", "feed = 7\n[outputs]\n1 = 'a#b' # c"),
+    ],
+)
+def test_only_the_value_is_replaced(old: str, new: str) -> None:
+    text = CARD.read_text()
+    head = text[text.index("[[axes]]") : text.index("[motion]")]
+    config = read(f"{head}[motion]\n{new}".replace("a#b", "ab"), "")
+    changed = with_values(f"{head}[motion]\n{old}".replace("a#b", "ab"), config)
+    assert changed == f"{head}[motion]\n{new}".replace("a#b", "ab")
+
+
+def test_the_form_is_sent_to_a_card(fleet: Fleet) -> None:
+    c = client(fleet, CARD)
+    values = c.post("/config/form").json()["values"]
+    line = "Axis X: Highest speed: 1 -> 200 mm/s: "
+    said = c.post("/config/send/1", json=values).json()
+    assert said == {"ok": True, "text": "done", "lines": [f"{line}done"]}
+    assert fleet.done == [(1, "speed_max 200000")]
+    fleet.move(1, "RUNNING")
+    said = c.post("/config/send/1", json=values).json()
+    assert not said["ok"] and said["lines"][0].startswith(f"{line}the card is busy")
+    values["axes"][0]["speed_max"] = 600
+    assert c.post("/config/send/1", json=values).status_code == 422
+    assert len(fleet.done) == 2
+    headers = {"authorization": ""}
+    assert c.post("/config/send/1", json=values, headers=headers).status_code == 403
 
 
 NUMBERS = st.floats(0.5, 400).map(lambda x: round(x, 6))

@@ -217,6 +217,11 @@ def test_the_form_checks_as_it_is_typed_and_saves(tab: Any, served: Served) -> N
     expect(verdict).to_have_text("All values are good")
     save.click()
     expect(verdict).to_contain_text("Saved in")
+    assert "# " in served.config.read_text()
+    send = tab.get_by_role("button", name="Send to card 1")
+    send.click()
+    expect(verdict).to_contain_text("Axis X: Highest speed: 1 -> 150 mm/s: done")
+    assert served.fleet.done.pop() == (1, "speed_max 150000")
     saved = load(served.config)
     assert saved.axes[0].speed_max == 150 and saved.inputs[7].action == "event"
     assert saved.motion.must_home and served.fleet.done == []

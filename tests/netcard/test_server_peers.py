@@ -35,6 +35,8 @@ from motionfmu.netcard.line import Limits
 from motionfmu.netcard.server import Cards
 from motionfmu.netcard.wire import OPEN_KEY, CardEnd
 
+CARD = ROOT / "examples/network_card_firmware/card.toml"
+
 
 async def drip(port: int, address: str) -> None:
     """Send HELLO a byte now and then, and never the last one, until the server closes."""
@@ -237,16 +239,23 @@ def test_a_killed_server_goes_on_where_the_card_is(tmp_path: Path) -> None:
         assert soft.job == job and soft.written == 600
         folder = ("--folder", tmp_path / "cards")
         for line, status, told in (
+            (("configure", 3, "-c", CARD), 0, "Axis X: Highest speed: 0 pulses -> 200 mm/s: done"),
+            (("configure", 3, "-c", CARD), 0, "card 3: done: it has these settings"),
+            (("configure", 3, "-c", ROOT / "README.md"), 2, "README.md:3: "),
+            (("settings", 3), 0, "Highest speed"),
+            (("settings", 4), 1, "card 4: the card is not connected"),
             (("start", 3), 0, "card 3: done (RUNNING)"),
             (("home", 3, "--axes", "XY"), 1, "card 3: not in this state (RUNNING)"),
             (("stop", 3), 0, "card 3: done (READY)"),
             (("home", 3, "--axes", "XY"), 0, "card 3: done (READY)"),
             (("home", 3, "--axes", "XV"), 2, "--axes XV: letters of XYZU wanted"),
             (("send", 3, file), 0, "card 3: done"),
-            (("send", 3, ROOT / "README.md"), 2, "no job file"),
+            (("send", 3, ROOT / "README.md"), 2, "README.md: no job file"),
             (("pause", 4), 1, "card 4: the card is not connected"),
             (("status", 3), 0, "READY"),
-            (("status", 4), 1, ""),
+            (("status", 4), 1, "card 4 has never called"),
+            (("serve", "--port", 70000), 2, "70000 is no port, 0 to 65535"),
+            (("serve", "--page", 0, "-c", CARD), 2, "--page 0 wants none"),
             (("serve", "--page", 0), 2, "another server uses this folder"),
         ):
             end = within("card", *line, *folder)

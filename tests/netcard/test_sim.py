@@ -3,12 +3,15 @@
 import asyncio
 import hashlib
 import random
+import signal
 import struct
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from card_links import HOST, bench, run, until
+from conftest import ROOT
 from fmi_tools import OK, Instance
 
 from motionfmu.binding import library
@@ -247,6 +250,25 @@ def test_the_flash_outlives_the_program(tmp_path: Path) -> None:
         file.load()
     with pytest.raises(InputError, match=r"fifo_depth\[0\] = 1: out of range"):
         VirtualCard(5, fifo_depth=1)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_card_that_is_ended_keeps_its_flash(tmp_path: Path, number: signal.Signals) -> None:
+    async def main() -> None:
+        async with bench() as b:
+            line = [sys.executable, "-m", "motionfmu", "card", "sim", "--flash", str(tmp_path)]
+            program = await asyncio.create_subprocess_exec(
+                *line, "--server", f"{HOST}:{b.port}", stdout=asyncio.subprocess.DEVNULL, cwd=ROOT
+            )
+            await b.online([1])
+            assert (await b.cards.upload(1, job_of(300))).ok
+            program.send_signal(number)
+            assert await program.wait() == 0
+        kept = VirtualCard(1, flash=FlashFile(tmp_path / "1.flash").load())
+        kept.run(10 * MS)
+        assert kept.state == m.State.READY
+
+    run(main())
 
 
 def test_inputs_and_homing_of_the_machine() -> None:

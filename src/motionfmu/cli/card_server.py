@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from motionfmu.cli.card import card
+from motionfmu.cli.card import card, on_end
 from motionfmu.cli.common import FAILED, bare_table, out
 from motionfmu.errors import InputError
 
@@ -36,8 +36,12 @@ def serve(  # noqa: PLR0913  (each is an option of the command)
     config: Annotated[Path | None, typer.Option("-c", help="card.toml of the page's form.")] = None,
 ) -> None:
     """Serve cards: jobs, commands, their states on a page; until Ctrl-C."""
-    from motionfmu.netcard.server import Cards
+    from motionfmu.netcard.server import Cards, check_port
 
+    check_port(port)
+    check_port(page)
+    if config and not page:
+        raise InputError(f"-c {config}: is the page's, and --page 0 wants none")
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
     asyncio.run(_serve(Cards(folder, keys=keys), folder, (bind, port, page), config))
 
@@ -45,8 +49,6 @@ def serve(  # noqa: PLR0913  (each is an option of the command)
 async def _serve(
     cards: "Cards", folder: Path, places: tuple[str, int, int], config: Path | None
 ) -> None:
-    import signal
-
     from motionfmu.netcard.control import Control
 
     bind, port, page = places
@@ -54,8 +56,7 @@ async def _serve(
     control = Control(cards, folder)
     await control.listen()
     ended = asyncio.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, ended.set)
+    on_end(ended.set)
     try:
         port = await cards.listen(bind, port)
         out.print(f"cards: {bind}:{port}, folder {folder}", soft_wrap=True)
@@ -102,10 +103,16 @@ def send(
     id: Id, file: Annotated[Path, typer.Argument(help="job.mcj")], folder: Folder = HERE
 ) -> None:
     """Bring a job file into a card; ends when it is there, or refused."""
+    from motionfmu.netcard.server import check_job
+
     try:
         job = file.read_bytes()
     except OSError as error:
         raise InputError(f"cannot read {file}: {error.strerror}") from None
+    try:
+        check_job(job)
+    except InputError as error:
+        raise InputError(f"{file}: {error}; card plan makes one of a drawing") from None
     _ask(folder, {"do": "upload", "card": id, "bytes": len(job)}, job)
 
 
@@ -157,6 +164,8 @@ def status(
     cards = [c for c in ask(folder, {"do": "list"})["cards"] if id in (None, c["id"])]
     if as_json:
         print(json.dumps(cards, indent=1))
+    elif not cards:
+        out.print("no card has called" if id is None else f"card {id} has never called")
     else:
         table = bare_table("card", "address", "state", "job", "frame", "position", "upload")
         for c in cards:

@@ -3,11 +3,11 @@
 import asyncio
 import contextlib
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 import typer
 
-from motionfmu.cli.card import card
+from motionfmu.cli.card import card, on_end
 from motionfmu.cli.common import out
 from motionfmu.errors import InputError
 
@@ -48,12 +48,30 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
         held = file.load() if file else b""
         made.append((VirtualCard(i, known.get(i, OPEN_KEY), held, **parameters), file))
 
+    told = -1
+
+    def tell() -> None:
+        nonlocal told
+        if (now := sum(one.online for one, _ in made)) != told:
+            told = now
+            what = "" if now else "; they go on to try"
+            out.print(f"{now} of {cards} connected{what}", soft_wrap=True)
+
+    def each() -> None:
+        tell()
+        keep()
+
     def keep() -> None:
         for one, file in made:
             if file:
                 file.save(one)
 
     out.print(f"{cards} cards from id {id}, server {server}", soft_wrap=True)
-    with contextlib.suppress(KeyboardInterrupt):
-        asyncio.run(simulate([one for one, _ in made], (host, int(port)), speed, keep))
+
+    async def until_ended() -> None:
+        on_end(cast("asyncio.Task[None]", asyncio.current_task()).cancel)
+        await simulate([one for one, _ in made], (host, int(port)), speed, each)
+
+    with contextlib.suppress(KeyboardInterrupt, asyncio.CancelledError):
+        asyncio.run(until_ended())
     keep()

@@ -31,6 +31,7 @@ class SoftCard:
         self.life = random.getrandbits(16)
         self.orders: list[m.Message] = []  # every command that was carried out
         self.written = 0  # pages that were taken, those taken again too
+        self.settings: dict[tuple[int, int], int] = {}  # by number and index; others are 0
         self._results: deque[m.Result] = deque(maxlen=KEPT)
 
     def hello(self) -> m.Hello:
@@ -66,6 +67,9 @@ class SoftCard:
         if isinstance(message, m.JobBegin | m.JobData | m.JobEnd):
             code = self._take(message)
             return [m.Nak(sequence, code, 0) if code else self._ack(sequence)]
+        if isinstance(message, m.ConfigGet):
+            place = message.id, message.index
+            return [m.Config(*place, self.settings.get(place, 0))]
         if hasattr(message, "number"):
             return [self._order(message, message.number)]
         return []
@@ -121,6 +125,10 @@ class SoftCard:
             m.Stop: ((m.State.RUNNING, m.State.PAUSED), m.State.READY),
             m.Home: ((m.State.READY,), m.State.READY),
         }
+        if isinstance(message, m.ConfigSet):
+            if self.state not in (m.State.EMPTY, m.State.READY, m.State.FAULT):
+                return Code.BUSY
+            self.settings[message.id, message.index] = message.value
         if type(message) in moves:
             allowed, then = moves[type(message)]
             if self.state not in allowed:

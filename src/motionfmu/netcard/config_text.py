@@ -1,9 +1,16 @@
 """A card's configuration as the text of its file."""
 
+import re
+from collections.abc import Iterator
 from typing import Any
 
-from motionfmu.netcard.config import CardConfig
+from motionfmu.errors import InputError
+from motionfmu.netcard.config import CardConfig, read
 from motionfmu.netcard.tables import Input
+from motionfmu.toml_lines import Lines
+
+Place = tuple[str, str]  # table, key
+_ROW = re.compile(r"""([^=]*=\s*)(?:"[^"]*"|'[^']*'|[^#"'\s]+)(\s*(?:#.*)?)""")
 
 
 def text_of(config: CardConfig) -> str:
@@ -38,3 +45,47 @@ def _value(value: Any) -> str:
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         return str(int(value))
     return f'"{value}"' if isinstance(value, str) else repr(value)
+
+
+def with_values(text: str, config: CardConfig) -> str | None:
+    """Text of a file in which only values that differ are replaced; None if it cannot be so."""
+    try:
+        has = dict(_leaves(read(text, "").model_dump()))
+    except InputError:
+        return None
+    wanted = dict(_leaves(config.model_dump()))
+    if has.keys() != wanted.keys():  # another number of axes
+        return None
+    lines, at = text.split("\n"), Lines(text)
+    new: dict[str, list[str]] = {}
+    for (table, key), value in wanted.items():
+        if has[table, key] == value:
+            continue
+        if not at.has(table, key):
+            new.setdefault(table, []).append(f"{key} = {_value(value)}")
+            continue
+        k = at.of(table, key) - 1
+        row = _ROW.fullmatch(lines[k])
+        if not row:
+            return None
+        lines[k] = f"{row[1]}{_value(value)}{row[2]}"
+    for table in sorted(new, key=at.of, reverse=True):  # from below: numbers above stay
+        if at.has(table):
+            lines[at.of(table) : at.of(table)] = new[table]
+    for table in (t for t in new if not at.has(t)):
+        lines += [f"[{table}]", *new[table], ""]
+    try:
+        found = "\n".join(lines)
+        return found if read(found, "") == config else None
+    except InputError:
+        return None
+
+
+def _leaves(tree: Any, table: str = "") -> Iterator[tuple[Place, Any]]:
+    """Values by their places."""
+    rows = enumerate(tree) if isinstance(tree, list) else tree.items()
+    for key, value in rows:
+        if isinstance(value, dict | list):
+            yield from _leaves(value, f"{table}.{key}".lstrip("."))
+        else:
+            yield (table, str(key)), value

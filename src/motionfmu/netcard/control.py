@@ -16,7 +16,10 @@ from typing import Any
 
 from motionfmu.errors import InputError
 from motionfmu.netcard import messages as m
+from motionfmu.netcard.config import CardConfig
 from motionfmu.netcard.server import JOB_MAX, Cards
+from motionfmu.netcard.settings import asked as wanted
+from motionfmu.netcard.settings import lines
 from motionfmu.netcard.views import CardView
 
 SOCKET, LOCK = "control", "lock"
@@ -33,8 +36,11 @@ class Control:
 
     async def listen(self) -> None:
         """Take requests; InputError if another server uses the folder."""
-        self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-        self._lock = os.open(self._folder / LOCK, os.O_RDWR | os.O_CREAT, 0o600)
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            self._lock = os.open(self._folder / LOCK, os.O_RDWR | os.O_CREAT, 0o600)
+        except OSError as error:
+            raise InputError(f"folder {self._folder}: {error.strerror}") from None
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
@@ -77,6 +83,13 @@ class Control:
         if asked["do"] == "command":
             values = asked.get("values", {})
             result = await self._cards.command(asked["card"], asked["name"], **values)
+        elif asked["do"] == "settings":
+            result, found = await self._cards.settings(asked["card"])
+            return asdict(result) | {"settings": [[*key, value] for key, value in found.items()]}
+        elif asked["do"] == "configure":
+            config = CardConfig.model_validate(asked["config"])
+            end = await self._cards.configure(asked["card"], config)
+            return asdict(end.result) | {"lines": [*lines(wanted(config), end)]}
         else:
             if not 0 <= asked["bytes"] <= JOB_MAX * m.PAGE:
                 raise InputError(f"a file of {asked['bytes']} bytes is too long")

@@ -18,7 +18,7 @@ def read_keys(file: Path) -> dict[int, bytes]:
     """Key of each card; InputError if others than the owner may read the file."""
     text = text_of(file)
     if others := stat.S_IMODE(file.stat().st_mode) & 0o077:
-        raise InputError(f"{file}: others may read it (mode {others:03o} beside 600)")
+        raise InputError(f"{file}: others may use it; chmod 600 it (now {others | 0o600:03o})")
     found = {}
     for name, value in tables_of(text, file).items():
         line = Lines(text).of("", name)

@@ -103,6 +103,8 @@ def origin(drawing: Drawing, config: CardConfig, options: Options) -> bytes:
 
 def write(job: bytes, file: Path) -> None:
     """Write a job, whole or not at all."""
+    if file.is_dir():
+        raise InputError(f"cannot write {file}: it is a folder")
     part = file.with_name(f".{file.name}.part")
     try:
         part.write_bytes(job)

@@ -3,12 +3,13 @@
 import asyncio
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from motionfmu.netcard import messages as m
 from motionfmu.netcard.line import Limits, Line
 from motionfmu.netcard.outbox import Outbox
+from motionfmu.netcard.settings import Key, at_power_up, in_order, numbers
 from motionfmu.netcard.transfer import JobFile, Transfer
 from motionfmu.netcard.views import (
     EVENTS_KEPT,
@@ -16,8 +17,10 @@ from motionfmu.netcard.views import (
     TEXTS,
     CardView,
     Code,
+    Configured,
     Event,
     Result,
+    Setting,
     Upload,
 )
 
@@ -32,6 +35,20 @@ class _Order:
     message: m.Message
     result: "asyncio.Future[Result]"
     frame: int = 0  # in which it was sent last
+
+
+@dataclass
+class _Question:
+    """A setting that was asked for; its answer is a code and a value."""
+
+    message: m.ConfigGet
+    frame: int
+    answer: "asyncio.Future[tuple[int, int]]"
+
+    def end(self, code: int, value: int = 0) -> None:
+        """It is answered, or never will be."""
+        if not self.answer.done():
+            self.answer.set_result((code, value))
 
 
 @dataclass
@@ -67,6 +84,8 @@ class RemoteCard:
         job = outbox.load()
         self._job = _Job(JobFile(job)) if job else None
         self._keeping = asyncio.Lock()
+        self._question: _Question | None = None
+        self._configuring = asyncio.Lock()
 
     @property
     def idle(self) -> bool:
@@ -116,6 +135,8 @@ class RemoteCard:
     def left(self, line: Line, why: str) -> None:
         """A line is over."""
         self.tell("closed", why)
+        if self._question:
+            self._question.end(Code.OFFLINE)
         if line is self.line:
             self.line = self._transfer = None
 
@@ -130,6 +151,9 @@ class RemoteCard:
             self._offer()
         elif isinstance(message, m.Result):
             self._answer(message.number, message.code, message.state)
+        elif isinstance(message, m.Config) and self._question:
+            if self._question.message == m.ConfigGet(message.id, message.index):
+                self._question.end(Code.DONE, message.value)
         elif isinstance(message, m.Ack) and self._transfer:
             self._transfer.ack(message)
             self._moved()
@@ -137,6 +161,8 @@ class RemoteCard:
             for number, order in list(self._orders.items()):
                 if order.frame == message.sequence:
                     self._answer(number, message.code, None)
+            if self._question and self._question.frame == message.sequence:
+                self._question.end(message.code)
             if self._transfer:
                 self._transfer.nak(message)
                 self._moved()
@@ -158,18 +184,19 @@ class RemoteCard:
         number = self._outbox.number(self._done)
         if self.line is None or not number:
             return self._ended(name, Result.of(Code.RANGE if self.line else Code.OFFLINE))
-        order = _Order(make(number), self._loop.create_future())
-        self._orders[number] = order
         self.tell("command", f"{name} {number}")
-        order.frame = self.line.send(order.message)
+        return self._ended(f"{name} {number}", await self._do(number, make(number), self.line))
+
+    async def _do(self, number: int, message: m.Message, line: Line) -> Result:
+        order = self._orders[number] = _Order(message, self._loop.create_future())
+        order.frame = line.send(message)
         try:
             async with asyncio.timeout(self._limits.answer):
-                result = await order.result
+                return await order.result
         except TimeoutError:
-            result = Result.of(Code.NO_ANSWER, self._state)
+            return Result.of(Code.NO_ANSWER, self._state)
         finally:
             del self._orders[number]
-        return self._ended(f"{name} {number}", result)
 
     def _ended(self, what: str, result: Result) -> Result:
         self.tell("result", f"{what}: {result.text}")
@@ -181,6 +208,55 @@ class RemoteCard:
             self._see(state)
         if (order := self._orders.get(number)) and not order.result.done():
             order.result.set_result(Result.of(code, self._state))
+
+    # Settings.
+
+    async def settings(self, keys: Iterable[Key]) -> tuple[Result, dict[Key, int]]:
+        """Ask for settings, one after the other; those that were told before one was not."""
+        async with self._configuring:
+            return await self._settings(keys)
+
+    async def _settings(self, keys: Iterable[Key]) -> tuple[Result, dict[Key, int]]:
+        found: dict[Key, int] = {}
+        for key in keys:
+            code, value = await self._get(m.ConfigGet(numbers()[key[0]][0], key[1]))
+            if code:
+                return Result.of(code, self._state), found
+            found[key] = value
+        return Result.of(Code.DONE, self._state), found
+
+    async def _get(self, message: m.ConfigGet) -> tuple[int, int]:
+        if self.line is None:
+            return Code.OFFLINE, 0
+        answer: asyncio.Future[tuple[int, int]] = self._loop.create_future()
+        self._question = _Question(message, self.line.send(message), answer)
+        try:
+            async with asyncio.timeout(self._limits.answer):
+                return await answer
+        except TimeoutError:
+            return Code.NO_ANSWER, 0
+        finally:
+            self._question = None
+
+    async def configure(self, wanted: Mapping[Key, int]) -> Configured:
+        """Send the settings that differ, one after the other, to the first that is not taken."""
+        async with self._configuring:
+            end, has = await self._settings(wanted)
+            changed: list[Setting] = []
+            for name, index in in_order(wanted, has) if end.ok else ():
+                value, number = wanted[name, index], self._outbox.number(self._done)
+                if self.line is None or not number:
+                    end = Result.of(Code.RANGE if self.line else Code.OFFLINE, self._state)
+                else:
+                    message = m.ConfigSet(number, numbers()[name][0], index, value)
+                    end = await self._do(number, message, self.line)
+                before, later = has[name, index], at_power_up(name)
+                changed.append(Setting(name, index, before, value, later, end))
+                if not end.ok:
+                    break
+        done = sum(s.result.ok for s in changed)
+        self._ended(f"configure, {done} settings changed", end)
+        return Configured(end, tuple(changed))
 
     # The job.
 

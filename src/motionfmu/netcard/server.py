@@ -3,9 +3,12 @@
 import asyncio
 import ipaddress
 import logging
+import os
+import socket
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from motionfmu.errors import InputError
 from motionfmu.netcard import messages as m
@@ -13,8 +16,12 @@ from motionfmu.netcard.keys import CARD_MAX, Keys
 from motionfmu.netcard.line import READ_MAX, Limits, Line
 from motionfmu.netcard.outbox import Outbox
 from motionfmu.netcard.remote import RemoteCard
-from motionfmu.netcard.views import FLEETING, CardView, Code, Event, Result
+from motionfmu.netcard.settings import Key, asked, numbers
+from motionfmu.netcard.views import FLEETING, CardView, Code, Configured, Event, Result
 from motionfmu.toml_lines import shown
+
+if TYPE_CHECKING:
+    from motionfmu.netcard.config import CardConfig
 
 LOG = logging.getLogger("motionfmu.netcard")
 PORT = 8765
@@ -48,6 +55,12 @@ def check_card(card: int) -> None:
         raise InputError(f"{shown(card)} is no id of a card, 0 to {CARD_MAX}")
 
 
+def check_port(port: int) -> None:
+    """InputError if this is no port; 0: the system chooses."""
+    if not 0 <= port <= 65535:
+        raise InputError(f"{port} is no port, 0 to 65535")
+
+
 def check_job(job: bytes) -> None:
     """InputError if these bytes cannot be a job file."""
     if len(job) % m.PAGE or not 2 <= len(job) // m.PAGE <= JOB_MAX:
@@ -79,6 +92,7 @@ class Cards:
         keys = self._keys = Keys(self._key_file, demanded=not is_local(host))
         if not is_local(host) and not len(keys):
             raise InputError(f"{host}: cards from outside need keys, {self._key_file} has none")
+        check_port(port)
         loop = asyncio.get_running_loop()
         self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         for place in sorted(self._folder.iterdir()):
@@ -89,7 +103,9 @@ class Cards:
                 lambda: Line(self, keys.of, loop.time), host, port
             )
         except OSError as error:
-            raise InputError(f"{host}:{port}: {error.strerror}") from None
+            known = not isinstance(error, socket.gaierror) and error.errno
+            told = os.strerror(error.errno or 0) if known else error.strerror
+            raise InputError(f"{host}:{port}: {told}") from None
         self._watching = loop.create_task(self._watch())
         return int(self._server.sockets[0].getsockname()[1])
 
@@ -129,6 +145,24 @@ class Cards:
         if card not in self._cards:
             return Result.of(Code.OFFLINE)
         return await self._cards[card].command(lambda n: kind(n, *(values[f] for f in most)), name)
+
+    async def settings(self, card: int) -> tuple[Result, dict[Key, int]]:
+        """All settings of a card, by name and element, as it tells them."""
+        check_card(card)
+        if card not in self._cards:
+            return Result.of(Code.OFFLINE), {}
+        known = numbers().items()
+        return await self._cards[card].settings((n, i) for n, (_, k) in known for i in range(k))
+
+    async def configure(self, card: int, config: "CardConfig") -> Configured:
+        """Send the settings of a configuration that differ from the card's, one by one.
+
+        The first that the card does not take ends it: while it moves, it takes none. Its id stays.
+        """
+        check_card(card)
+        if card not in self._cards:
+            return Configured(Result.of(Code.OFFLINE))
+        return await self._cards[card].configure(asked(config))
 
     async def upload(self, card: int, job: bytes) -> Result:
         """Bring a job file into a card's flash; returns when it is there, or refused.

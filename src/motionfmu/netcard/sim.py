@@ -23,6 +23,7 @@ TICK = 0.01  # [s] from one look at the clock to the next
 AHEAD_NS = 1_000_000  # a card answers at once: it may be so far ahead of the clock
 MOST_NS = 100_000_000  # a card that is later than this does not catch up
 CHUNK = 4096  # [byte]
+UP = 4  # SESSION_UP of src/netcard/session.h
 SAVE = 1.0  # [s] between two looks at the flash
 
 
@@ -70,6 +71,11 @@ class VirtualCard:
     def flash(self) -> bytes:
         """Its flash as it is now."""
         return ctypes.string_at(self._c.binding_netcard_flash(self._sim.pointer), FLASH_BYTES)
+
+    @property
+    def online(self) -> bool:
+        """Whether it has a connection whose handshake is over."""
+        return bool(self._sim["phase"] == UP)
 
     @property
     def wants(self) -> bool:

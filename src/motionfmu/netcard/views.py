@@ -73,6 +73,26 @@ class Result:
 
 
 @dataclass(frozen=True)
+class Setting:
+    """A setting that was sent to a card."""
+
+    name: str
+    index: int
+    before: int
+    value: int
+    later: bool  # acts from the next power-up on only
+    result: Result
+
+
+@dataclass(frozen=True)
+class Configured:
+    """How the sending of a configuration ended: that of the first setting that was not done."""
+
+    result: Result
+    changed: tuple[Setting, ...] = ()  # that differed and were sent
+
+
+@dataclass(frozen=True)
 class Event:
     """Something that happened; `kind` is one of the words below."""
 

@@ -14,6 +14,7 @@ from matplotlib import pyplot as plt
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap
 
+from motionfmu.errors import InputError
 from motionfmu.netcard.figures import speeds
 from motionfmu.netcard.job import Job
 from motionfmu.netcard.plan import DRAWS, Plan
@@ -52,6 +53,8 @@ def _sheet(file: Path, title: str, rows: int) -> Iterator[list[Any]]:
                 one.tick_params(length=0)
             plain = {"Date": None} if file.suffix == ".svg" else None
             figure.savefig(file, dpi=140, metadata=plain)
+        except OSError as error:
+            raise InputError(f"cannot write {file}: {error.strerror}") from None
         finally:
             plt.close(figure)
 

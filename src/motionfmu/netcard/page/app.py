@@ -18,7 +18,7 @@ from motionfmu.netcard.page.configuration import Configuration
 from motionfmu.netcard.page.guard import Guard
 from motionfmu.netcard.page.live import Live
 from motionfmu.netcard.page.pictures import Pictures, opened
-from motionfmu.netcard.views import CardView, Event, Result
+from motionfmu.netcard.views import CardView, Configured, Event, Result
 
 FILES = Path(__file__).parent
 KINDS = {
@@ -42,6 +42,9 @@ class Fleet(Protocol):
 
     async def upload(self, card: int, job: bytes) -> Result:
         """Bring a job."""
+
+    async def configure(self, card: int, config: CardConfig) -> Configured:
+        """Send settings that differ."""
 
     def subscribe(self) -> "asyncio.Queue[Event]":
         """Events from now on."""
@@ -130,7 +133,7 @@ class _Page:
         self._cards = cards
         self._pictures = Pictures()
         self._planning = asyncio.Lock()
-        self.configuration = Configuration(config, file, values)
+        self.configuration = Configuration(config, file, values, cards.configure)
 
     async def command(self, request: Request) -> Response:
         """Do a command: its name, and its values."""

@@ -12,20 +12,26 @@ from starlette.routing import Route
 
 from motionfmu.errors import InputError
 from motionfmu.netcard.config import CardConfig, faults, read
-from motionfmu.netcard.config_text import text_of
+from motionfmu.netcard.config_text import text_of, with_values
 from motionfmu.netcard.headers import texts
 from motionfmu.netcard.page.form import form
+from motionfmu.netcard.settings import asked, lines
+from motionfmu.netcard.views import Configured
+from motionfmu.toml_lines import is_file
 
 NAME = "card.toml"
 LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the date of all headers: equal ones are equal bytes
 Values = Callable[[Request], Awaitable[dict[str, Any]]]
+Configure = Callable[[int, CardConfig], Awaitable[Configured]]
 
 
 class Configuration:
     """The configuration in use, and the file it is kept in."""
 
-    def __init__(self, used: CardConfig | None, file: Path | None, values: Values) -> None:
-        self.used, self._file, self._values = used, file, values
+    def __init__(
+        self, used: CardConfig | None, file: Path | None, values: Values, configure: Configure
+    ) -> None:
+        self.used, self._file, self._values, self._configure = used, file, values, configure
 
     def routes(self) -> list[Route]:
         """What the page asks for."""
@@ -37,6 +43,7 @@ class Configuration:
             "save": self._save,
             "headers": self._headers,
         }
+        named["send/{card:int}"] = self._send
         return [Route(f"/config/{n}", answer, methods=["POST"]) for n, answer in named.items()]
 
     async def _form(self, request: Request) -> Response:
@@ -65,10 +72,18 @@ class Configuration:
         return JSONResponse({"text": text_of(await self._good(request))})
 
     async def _save(self, request: Request) -> Response:
-        """Use a configuration from now on, and keep it if there is a file."""
+        """Use a configuration from now on, and keep it if there is a file.
+
+        Comments of the file that would be lost are told first; with ``?lose`` it is done.
+        """
         config = await self._good(request)
         text = text_of(config)
         if self._file:
+            before = self._file.read_text("utf-8", "replace") if is_file(self._file) else ""
+            kept = with_values(before, config)
+            if kept is None and "#" in before and "lose" not in request.query_params:
+                return JSONResponse({"file": str(self._file), "loses": True})
+            text = kept or text
             part = self._file.with_name(f".{self._file.name}.part")
             try:
                 part.write_text(text, encoding="utf-8")
@@ -77,6 +92,13 @@ class Configuration:
                 raise InputError(f"cannot write {self._file}: {error.strerror}") from None
         self.used = config
         return JSONResponse({"file": str(self._file) if self._file else ""})
+
+    async def _send(self, request: Request) -> Response:
+        """Send what differs to a card."""
+        config = await self._good(request)
+        end = await self._configure(request.path_params["card"], config)
+        said = {"ok": end.result.ok, "text": end.result.text}
+        return JSONResponse(said | {"lines": [*lines(asked(config), end)]})
 
     async def _headers(self, request: Request) -> Response:
         """The C headers, in an archive."""

@@ -2,7 +2,7 @@
 import { download, made, part, post } from "./link.js";
 
 const AXES = "XYZU", PINS = 16, CHECK = 250; // [ms] of rest before a check
-let sections = null, file = "", values = null, timer = 0, asked = 0;
+let sections = null, file = "", values = null, timer = 0, asked = 0, card = null, right = false;
 
 export async function showForm() {
   if (sections) return;
@@ -13,6 +13,13 @@ export async function showForm() {
   } catch (error) {
     verdict(error.message, false);
   }
+}
+
+// The card that the form is sent to.
+export function formCard(id) {
+  card = id;
+  part("config-send").textContent = id === null ? "Send to card" : `Send to card ${id}`;
+  part("config-send").disabled = id === null || !right;
 }
 
 const fieldsOf = (place) => sections.find((s) => s.place === place).fields;
@@ -151,15 +158,21 @@ async function check() {
     const rest = [...why].map(([place, words]) => `${place}: ${words}`).join("; ");
     const count = faults.length === 1 ? "1 value is wrong" : `${faults.length} values are wrong`;
     verdict(faults.length ? rest || count : "All values are good", !faults.length);
+    usable(!faults.length);
   } catch (error) {
     verdict(error.message, false);
   }
 }
 
+function usable(good) {
+  right = good;
+  for (const id of ["config-save", "config-headers", "config-toml"]) part(id).disabled = !good;
+  formCard(card);
+}
+
 function verdict(words, good) {
   part("verdict").textContent = words;
   part("verdict").className = `verdict ${good ? "good" : "bad"}`;
-  for (const id of ["config-save", "config-headers", "config-toml"]) part(id).disabled = !good;
 }
 
 async function act(done) {
@@ -172,8 +185,19 @@ async function act(done) {
 
 part("form").addEventListener("submit", (event) => event.preventDefault());
 part("config-save").addEventListener("click", () => act(async () => {
-  const said = await post("/config/save", values);
+  let said = await post("/config/save", values);
+  if (said.loses) {
+    if (!confirm(`The comments of ${said.file} will be lost.`)) return verdict("Not saved", false);
+    said = await post("/config/save?lose", values);
+  }
   verdict(said.file ? `Saved in ${said.file}` : "In use from now on", true);
+}));
+part("config-send").addEventListener("click", () => act(async () => {
+  const id = card;
+  verdict(`Card ${id} …`, true);
+  const said = await post(`/config/send/${id}`, values);
+  const none = said.ok && !said.lines.length ? ", it has these values" : "";
+  verdict([`Card ${id}: ${said.text}${none}`, ...said.lines].join("\n"), said.ok);
 }));
 part("config-toml").addEventListener("click", () => act(async () => {
   const { text } = await post("/config/text", values);

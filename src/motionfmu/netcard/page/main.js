@@ -1,6 +1,6 @@
 // The page: cards by id, the one that is shown, commands, views.
 import { live, made, part, post } from "./link.js";
-import { showForm } from "./form.js";
+import { formCard, showForm } from "./form.js";
 import { showJob } from "./job.js";
 import { showCard, showList } from "./panel.js";
 
@@ -28,6 +28,7 @@ function show() {
   const list = [...cards.values()].sort((a, b) => a.id - b.id);
   showList(list, shown, select);
   const card = cards.get(shown);
+  formCard(card ? shown : null);
   part("none").hidden = list.length > 0;
   part("panel").hidden = !card;
   if (!card) return;
