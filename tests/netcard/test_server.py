@@ -2,6 +2,7 @@
 
 import asyncio
 import hashlib
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -92,6 +93,9 @@ def test_keys_are_private_and_said_once(tmp_path: Path) -> None:
         new_key(file, 7)
     new_key(file, 5)
     assert sorted(read_keys(file)) == [5, 7] and read_keys(file)[7] == key
+    with ThreadPoolExecutor(8) as pool:
+        made = list(pool.map(lambda i: new_key(file, i), range(10, 40)))
+    assert [read_keys(file)[i] for i in range(10, 40)] == made
     for text, told in (
         ('x = "00"', "keys.toml:1: 'x' is no id"),
         ('1 = "00"', "keys.toml:1: key of card 1: 64"),

@@ -1,9 +1,11 @@
 """Keys of cards: a file of lines ``id = "64 hexadecimal digits"`` that only its owner reads."""
 
 import contextlib
+import fcntl
 import os
 import secrets
 import stat
+from collections.abc import Iterator
 from pathlib import Path
 
 from motionfmu.errors import InputError
@@ -18,7 +20,7 @@ def read_keys(file: Path) -> dict[int, bytes]:
     """Key of each card; InputError if others than the owner may read the file."""
     text = text_of(file)
     if others := stat.S_IMODE(file.stat().st_mode) & 0o077:
-        raise InputError(f"{file}: others may use it; chmod 600 it (now {others | 0o600:03o})")
+        raise InputError(f"{file}: others may read it; chmod 600 it (now {others | 0o600:03o})")
     found = {}
     for name, value in tables_of(text, file).items():
         line = Lines(text).of("", name)
@@ -40,14 +42,29 @@ def new_key(file: Path, card: int) -> bytes:
     """Make a key for a card that has none, and write it into the file."""
     if not 0 <= card <= CARD_MAX:
         raise InputError(f"{shown(card)} is no id of a card, 0 to {CARD_MAX}")
-    keys = read_keys(file) if file.exists() else {}
-    if card in keys:
-        raise InputError(f"{file}: card {card} has a key; take its line out to make a new one")
-    keys[card] = secrets.token_bytes(KEY_BYTES)
-    text = "".join(f'{i} = "{k.hex()}"\n' for i, k in sorted(keys.items()))
-    file.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(file, text.encode())
+    with _alone(file.parent):
+        keys = read_keys(file) if file.exists() else {}
+        if card in keys:
+            raise InputError(f"{file}: card {card} has a key; take its line out to make a new one")
+        keys[card] = secrets.token_bytes(KEY_BYTES)
+        text = "".join(f'{i} = "{k.hex()}"\n' for i, k in sorted(keys.items()))
+        write_whole(file, text.encode())
     return keys[card]
+
+
+@contextlib.contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Nobody else makes a key in this folder meanwhile."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        held = os.open(folder, os.O_RDONLY)
+    except OSError as error:
+        raise InputError(f"{folder}: {error.strerror}") from None
+    try:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(held)
 
 
 def write_whole(file: Path, data: bytes) -> None:
