@@ -227,7 +227,9 @@ def test_settings_make_the_motion(config: CardConfig) -> None:
     slow, quick = plan(drawing, config, Options(speeds=True)), plan(drawing, config)
     assert figures(slow, config).speed[0] <= 200.0
     tops = [np.diff(p.places[p.steps == DRAWS, 0]).max() * 1e3 for p in (slow, quick)]
-    assert tops == pytest.approx([20.0, 100.0], rel=1e-4)
+    # With limited jerk the end of a ramp is eased towards the feed.
+    assert np.all(np.array(tops) <= [20.0 + 1e-9, 100.0 + 1e-9])
+    assert tops == pytest.approx([20.0, 100.0], rel=2e-3)
     moved = plan(drawing, config, Options(offset=(5.0, -3.0)))
     assert (moved.places[-1] - quick.places[-1])[:2].tolist() == pytest.approx([5.0, -3.0])
     assert moved.job[128:160] != quick.job[128:160] == plan(drawing, config).job[128:160]
