@@ -6,6 +6,7 @@ import random
 import signal
 import struct
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from motionfmu.netcard.job import Job, encode
 from motionfmu.netcard.keys import new_key
 from motionfmu.netcard.sim import FLASH_BYTES, FlashFile, VirtualCard, simulate
 from motionfmu.netcard.transfer import JobFile, Transfer
+from motionfmu.netcard.views import Code
 from motionfmu.netcard.wire import OPEN_KEY, PcEnd
 
 KEY = bytes(range(32))
@@ -49,6 +51,7 @@ class Pc:
         self.file, self.key = JobFile(job), key
         self.sent = 0  # pages
         self.results: list[m.Result] = []
+        self.told: list[m.Message] = []
         self.open()
 
     def open(self) -> None:
@@ -63,6 +66,8 @@ class Pc:
                 self.end.send(m.Pong(message.token))
             elif isinstance(message, m.Result):
                 self.results.append(message)
+            elif isinstance(message, m.Config):
+                self.told.append(message)
             elif isinstance(message, m.Ack) and self.transfer:
                 self.transfer.ack(message)
             elif isinstance(message, m.Nak) and self.transfer:
@@ -158,6 +163,46 @@ def test_the_pulses_are_the_jobs_whatever_pauses_came_between() -> None:
     assert card.pulses == [6000, -6000, 0, 0]
     assert begin(card, pc, m.Start(number)).code == pc.results[-1].code
     assert card["repeats"] == 1
+
+
+def test_settings_are_told_and_changed_where_they_may() -> None:
+    parameters = tomllib.loads((ROOT / "fmus/network_card/fmu.toml").read_text())["parameter"]
+    names = [name for name in parameters if name not in ("bus_period", "job", "key")]
+    card, pc = VirtualCard(5), Pc(job_of())
+    bring(card, pc)
+
+    def asked(name: str, index: int = 0) -> int:
+        """A setting, as the card tells it."""
+        before = len(pc.told)
+        pc.end.send(m.ConfigGet(names.index(name), index))
+        while len(pc.told) == before:
+            exchange(card, pc)
+            card.run(card.now + MS // 10)
+        found = pc.told[-1]
+        assert isinstance(found, m.Config)
+        assert (found.id, found.index) == (names.index(name), index)
+        return found.value
+
+    for name in names:
+        if parameters[name]["type"] != "f64" and name != "card_id":
+            assert asked(name) == parameters[name]["start"], name
+    for number, (name, index, value, code) in enumerate(
+        [
+            ("acc_max", 3, 777, Code.DONE),
+            ("acc_max", 4, 777, Code.RANGE),
+            ("position_low", 1, -5, Code.DONE),
+            ("fifo_depth", 0, 15, Code.RANGE),
+            ("period_ns", 0, 1_000_010, Code.RANGE),
+        ],
+        1,
+    ):
+        set_to = m.ConfigSet(number, names.index(name), index, value)
+        assert begin(card, pc, set_to).code == code, name
+    assert (asked("acc_max", 3), asked("position_low", 1)) == (777, -5)
+    assert (asked("fifo_depth"), asked("period_ns")) == (512, MS)
+    assert begin(card, pc, m.Start(6)).code == Code.DONE
+    assert begin(card, pc, m.ConfigSet(7, names.index("acc_max"), 0, 5)).code == Code.BUSY
+    assert asked("acc_max") == parameters["acc_max"]["start"]
 
 
 def test_a_command_before_the_power_went_is_not_known_behind_it() -> None:
@@ -296,6 +341,7 @@ def test_cards_serve_a_server_in_real_time(tmp_path: Path) -> None:
             task = asyncio.create_task(simulate(cards, (HOST, b.port), 10.0))
             await b.online([1, 2])
             assert (await b.cards.command(1, "start")).text == "there is no job in the card"
+            assert (await b.cards.command(1, "set", id=1, index=2, value=-9)).ok
             ends = await asyncio.gather(*(b.cards.upload(i, job_of()) for i in (1, 2)))
             assert all(r.ok for r in ends)
             await until(lambda: b.view(1).state == "READY")
