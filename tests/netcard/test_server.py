@@ -110,13 +110,17 @@ def test_keys_are_private_and_said_once(tmp_path: Path) -> None:
         read_keys(file)
 
 
-def test_only_the_card_with_the_key_takes_the_place_of_the_old_connection(tmp_path: Path) -> None:
+def test_only_the_card_with_the_key_takes_the_place_of_the_old_connection(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO", "motionfmu.netcard")
     key = new_key(tmp_path / "keys.toml", 7)
 
     async def main() -> None:
         async with bench(folder=tmp_path) as b:
             thief, first, second = SoftCard(7, KEY), SoftCard(7, key), SoftCard(7, key)
             b.serve(thief)
+            await until(lambda: "card 7 does not know this server's key" in caplog.text)
             b.serve(first)
             await b.online([7])
             address = b.view(7).address

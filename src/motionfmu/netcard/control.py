@@ -125,7 +125,9 @@ def ask(folder: Path, request: dict[str, Any], file: bytes = b"") -> dict[str, A
                 line = stream.readline()
         except OSError as error:
             told = error.strerror or str(error)
-            raise InputError(f"{folder}: no server runs here ({told})") from None
+            raise InputError(
+                f"{folder}: no server runs here ({told}); --folder names another"
+            ) from None
     if not line:
         raise InputError(f"{folder}: the server ended without an answer")
     answer: dict[str, Any] = json.loads(line)

@@ -145,6 +145,9 @@ class Line(asyncio.BufferedProtocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         """The connection is over."""
+        hello = self.end.hello
+        if self.open and hello and not self.end.ready:
+            self._why += f": card {hello.card} does not know this server's key, or left"
         self.open = False
         self._host.lost(self, self._why)
 
