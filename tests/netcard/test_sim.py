@@ -341,7 +341,6 @@ def test_cards_serve_a_server_in_real_time(tmp_path: Path) -> None:
             task = asyncio.create_task(simulate(cards, (HOST, b.port), 10.0))
             await b.online([1, 2])
             assert (await b.cards.command(1, "start")).text == "there is no job in the card"
-            assert (await b.cards.command(1, "set", id=1, index=2, value=-9)).ok
             ends = await asyncio.gather(*(b.cards.upload(i, job_of()) for i in (1, 2)))
             assert all(r.ok for r in ends)
             await until(lambda: b.view(1).state == "READY")

@@ -30,8 +30,7 @@ QUEUE_MAX = 1000  # events
 JOB_MAX = 8192  # pages of the largest flash
 JOB_MAGIC = b"MCJ1"
 
-# What a command is made of, behind its number: name and highest value of each field; that of a
-# setting may be as far below 0.
+# What a command is made of, behind its number: name and highest value of each field.
 _COMMANDS: dict[str, tuple[Callable[..., m.Message], dict[str, int]]] = {
     "start": (m.Start, {}),
     "pause": (m.Pause, {}),
@@ -39,7 +38,6 @@ _COMMANDS: dict[str, tuple[Callable[..., m.Message], dict[str, int]]] = {
     "home": (m.Home, {"axes": 15}),
     "reset": (m.Reset, {}),
     "output": (m.Output, {"pins": 0xFFFF, "mode": 1, "level": 1, "width": 1_000_000}),
-    "set": (m.ConfigSet, {"id": 0xFFFF, "index": 0xFFFF, "value": 2**63 - 1}),
 }
 
 
@@ -126,9 +124,7 @@ class Cards:
         return [self._cards[i].view() for i in sorted(self._cards)]
 
     async def command(self, card: int, name: str, **values: int) -> Result:
-        """Do start, pause, stop, home (axes), reset, output (pins, mode, level, width) or set.
-
-        What is set by id, index and value is a setting of src/netcard/card_settings.h.
+        """Do start, pause, stop, home (axes), reset or output (pins, mode, level, width).
 
         Never raises for what the card or the link does: a Result says it. InputError for a name
         or a value that no card knows.
@@ -141,10 +137,8 @@ class Cards:
         for field, value in values.items():
             if field not in most:
                 raise InputError(f"{name} has no {shown(field)}")
-            least = -most[field] if field == "value" else 0
-            if type(value) is not int or not least <= value <= most[field]:
-                wanted = f"{least} to {most[field]} wanted"
-                raise InputError(f"{name}: {field} = {shown(value)}: {wanted}")
+            if type(value) is not int or not 0 <= value <= most[field]:
+                raise InputError(f"{name}: {field} = {shown(value)}: 0 to {most[field]} wanted")
         if missing := most.keys() - values.keys():
             raise InputError(f"{name}: {', '.join(sorted(missing))} wanted")
         check_card(card)
