@@ -16,6 +16,7 @@ from conftest import ROOT
 from fmi_tools import OK, Instance
 
 from motionfmu.binding import library
+from motionfmu.cli.card_sim import sim
 from motionfmu.errors import InputError
 from motionfmu.netcard import messages as m
 from motionfmu.netcard.job import Job, encode
@@ -307,6 +308,8 @@ def test_a_card_that_is_ended_keeps_its_flash(tmp_path: Path, number: signal.Sig
             )
             await b.online([1])
             assert (await b.cards.upload(1, job_of(300))).ok
+            with pytest.raises(InputError, match="another program uses this folder"):
+                sim(server=f"{HOST}:{b.port}", flash=tmp_path)
             program.send_signal(number)
             assert await program.wait() == 0
         kept = VirtualCard(1, flash=FlashFile(tmp_path / "1.flash").load())

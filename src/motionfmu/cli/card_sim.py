@@ -27,7 +27,7 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Run cards: the card's own code as a client of a server; until Ctrl-C."""
     from motionfmu.netcard.config import load
-    from motionfmu.netcard.keys import CARD_MAX, read_keys
+    from motionfmu.netcard.keys import CARD_MAX, alone, read_keys
     from motionfmu.netcard.sim import FlashFile, VirtualCard, simulate
     from motionfmu.netcard.wire import OPEN_KEY
 
@@ -41,6 +41,9 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
     if not SPEED[0] <= speed <= SPEED[1]:
         raise InputError(f"--speed {speed}: {SPEED[0]} to {SPEED[1]:g} wanted")
     known = read_keys(keys) if keys else {}
+    folders = contextlib.ExitStack()  # to the end: two that write one flash leave neither's
+    if flash:
+        folders.enter_context(alone(flash, wait=False))
     parameters = load(config).as_parameters() if config else {}
     made: list[tuple[VirtualCard, FlashFile | None]] = []
     for i in range(id, id + cards):
@@ -75,3 +78,4 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
     with contextlib.suppress(KeyboardInterrupt, asyncio.CancelledError):
         asyncio.run(until_ended())
     keep()
+    folders.close()

@@ -42,7 +42,7 @@ def new_key(file: Path, card: int) -> bytes:
     """Make a key for a card that has none, and write it into the file."""
     if not 0 <= card <= CARD_MAX:
         raise InputError(f"{shown(card)} is no id of a card, 0 to {CARD_MAX}")
-    with _alone(file.parent):
+    with alone(file.parent):
         keys = read_keys(file) if file.exists() else {}
         if card in keys:
             raise InputError(f"{file}: card {card} has a key; take its line out to make a new one")
@@ -53,15 +53,18 @@ def new_key(file: Path, card: int) -> bytes:
 
 
 @contextlib.contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Nobody else makes a key in this folder meanwhile."""
+def alone(folder: Path, wait: bool = True) -> Iterator[None]:
+    """Nobody else is in here with this folder; InputError if one is and shall not be waited for."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         held = os.open(folder, os.O_RDONLY)
     except OSError as error:
         raise InputError(f"{folder}: {error.strerror}") from None
     try:
-        fcntl.flock(held, fcntl.LOCK_EX)
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        except BlockingIOError:
+            raise InputError(f"{folder}: another program uses this folder") from None
         yield
     finally:
         os.close(held)
