@@ -185,7 +185,9 @@ def test_a_drawing_is_planned_with_the_configuration_and_sent(fleet: Fleet, tmp_
     shutil.copy(CARD, config)
     c = client(fleet, config)
     p = c.post("/open?name=a.plt", content=drawing).json()
-    assert (p["name"], p["lines"], p["low"], p["high"]) == ("a.plt", 1, [10, 10], [50, 40])
+    assert (p["name"], p["lines"]) == ("a.plt", 1)
+    # A corner swings out by the tolerance at most.
+    assert [*p["low"], *p["high"]] == pytest.approx([10, 10, 50, 40], abs=0.021)
     assert p["drawn"] == pytest.approx(70, abs=0.1)
     assert p["fastest"] > 90
     assert c.post("/picture", json={"job": p["job"]}).json() == p
