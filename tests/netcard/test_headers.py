@@ -192,7 +192,7 @@ def test_the_firmware_project_builds_runs_and_builds_no_more_than_it_must(tmp_pa
         return result.stdout + result.stderr
 
     listed = re.findall(r"\]\(([\w.]+)\)", (EXAMPLE / "README.md").read_text())
-    assert {f.name for f in project.iterdir()} == {*listed, "README.md"}
+    assert {f.name for f in project.iterdir()} == {*listed, "README.md", "page.png"}
     printed = make("run")
     assert printed.count(" -c ") == 2
     assert "frame 100: output 0 high output 5 pulse 30000 us\n" in printed
