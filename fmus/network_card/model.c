@@ -118,7 +118,8 @@ static void publish_axes(struct vars *v, const struct netcard *c)
         v->enable[i] = c->power && c->state != NET_FAULT;
         v->error_clear[i] = c->power && c->now < c->clear_until;
     }
-    v->frame = whole(c->player.frames);
+    v->frame = whole(netcard_frames(c));
+    v->approach = c->approach;
     v->stock = c->player.fifo.stock;
     v->stock_least = c->least;
     v->underflows = whole(c->player.dry);

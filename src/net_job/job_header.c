@@ -57,7 +57,7 @@ static enum job_fault judge(const struct job_header *h)
     if (h->pages == 0 || h->frames < h->pages || h->events > JOB_EVENTS
         || (h->frames - 1) / JOB_PAGE_FRAMES >= h->pages)
         return JOB_COUNT;
-    return JOB_GOOD;
+    return h->rest > h->events ? JOB_EVENT : JOB_GOOD;
 }
 
 static enum job_fault read_page(struct job_header *h, const uint8_t page[JOB_PAGE_BYTES])
@@ -72,6 +72,7 @@ static enum job_fault read_page(struct job_header *h, const uint8_t page[JOB_PAG
     h->id = job_get32(page + ID_AT);
     h->period_ns = job_get32(page + 12);
     h->axes = page[16];
+    h->rest = page[17];
     h->pages = job_get32(page + 20);
     h->frames = job_get32(page + 24);
     h->events = job_get32(page + 28);
@@ -85,7 +86,7 @@ static enum job_fault read_page(struct job_header *h, const uint8_t page[JOB_PAG
     memcpy(h->origin, page + ORIGIN_AT, JOB_ORIGIN_BYTES);
     if (memcmp(page + ID_AT, page + ORIGIN_AT, 4))
         return JOB_ID;
-    if (job_get(page + 17, 3) || job_get32(page + EVENTS_END))
+    if (job_get(page + 18, 2) || job_get32(page + EVENTS_END))
         return JOB_FILL;
     const enum job_fault fault = judge(h);
     return fault ? fault : read_events(h, page);
@@ -108,6 +109,7 @@ void job_header_write(const struct job_header *h, uint8_t page[JOB_PAGE_BYTES])
     memcpy(page + ID_AT, h->origin, 4);
     job_put(page + 12, h->period_ns, 4);
     job_put(page + 16, h->axes, 1);
+    job_put(page + 17, h->rest, 1);
     job_put(page + 20, h->pages, 4);
     job_put(page + 24, h->frames, 4);
     job_put(page + 28, h->events, 4);

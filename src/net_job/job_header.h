@@ -1,7 +1,7 @@
 /* job_header - first page of a job file: what the job is, with its table of output events.
  *
  *     0 "MCJ1"   4 u16 version   6 u16 page bytes   8 u32 id   12 u32 period_ns   16 u8 axes
- *     20 u32 pages   24 u32 frames   28 u32 events   32 u32[4] pulses_per_m   48 u32[4] speed_max
+ *     17 u8 rest   20 u32 pages   24 u32 frames   28 u32 events   32 u32[4] pulses_per_m   48 u32[4] speed_max
  *     64 u32[4] acc_max   80 u64[4] jerk_max   112 i32[4] end   128 u8[32] origin
  *     160 11 x {u16 pins, u8 mode, u8 level, u32 width_us}   252 u32 CRC-32 of the 252 before
  *
@@ -38,7 +38,7 @@ enum job_fault {
     JOB_PERIOD,     /* header: outside its range or no whole number of clocks */
     JOB_MASK,       /* header: no axis, or more than four */
     JOB_COUNT,      /* header: no page or frame, more frames than the pages hold, too many events */
-    JOB_EVENT,      /* an event with a bad member, or a frame's event that is not in the table */
+    JOB_EVENT,      /* an event with a bad member; a frame's or the rest's is not in the table */
     JOB_FILL,       /* a byte without meaning is not 0 (header) or FF (behind a payload) */
     JOB_FRAMES,     /* a page does not begin with the frame it should, or has none */
     JOB_VARINT,     /* a number that does not end, is not the shortest, or does not fill the page */
@@ -60,6 +60,7 @@ struct job_header {
     uint32_t id;                            /* first four bytes of origin */
     uint32_t period_ns;                     /* [ns] of a frame */
     uint32_t axes;                          /* bit mask of those the frames hold */
+    uint32_t rest;                          /* event when the job is given up; 0 none */
     uint32_t pages;                         /* data pages */
     uint32_t frames;
     uint32_t events;                        /* in use, numbers 1 .. events */

@@ -15,7 +15,8 @@ static bool place_sound(const struct netcard *c, const struct job_place *p)
 static bool reader_sound(const struct job_reader *r)
 {
     return between(r->page.frames, 0, JOB_PAGE_FRAMES) && between(r->at, 0, r->page.frames) &&
-           r->header.events <= JOB_EVENTS && r->frame <= r->header.frames;
+           r->header.events <= JOB_EVENTS &&
+           r->header.rest <= r->header.events && r->frame <= r->header.frames;
 }
 
 static bool counts_sound(const struct netcard *c)
@@ -24,14 +25,15 @@ static bool counts_sound(const struct netcard *c)
               between(c->jobs, 0, INT32_MAX - 1) && between(c->dropped, 0, INT32_MAX - 1) &&
               between(c->result.count, 0, INT32_MAX - 1) && c->state < NET_STATES &&
               (c->resumes == NET_RUNNING || c->resumes == NET_HOMING || card_literal(c)) &&
-              c->resumes < NET_STATES;
+              c->resumes < NET_STATES && between(c->loading, 0, LARGEST);
 
     for (int i = 0; i < NETCARD_ORDERS; i++) {
         ok = ok && c->order[i].command < CARD_COMMANDS;
     }
     for (int i = 0; i < CARD_AXES; i++) {
         ok = ok && between(c->zero[i], -LARGEST, LARGEST) &&
-             between(c->latch[i], -LARGEST, LARGEST) && between(c->origin[i], -LARGEST, LARGEST);
+             between(c->latch[i], -LARGEST, LARGEST) && between(c->origin[i], -LARGEST, LARGEST) &&
+             home_motion_sound(&c->way[i], INT16_MAX - 1);
     }
     for (int i = 0; i < NETCARD_INTERRUPTS; i++) {
         ok = ok && between(c->served[i], 0, LARGEST);

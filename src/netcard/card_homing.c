@@ -113,11 +113,13 @@ static void finish(struct netcard *c)
     }
 }
 
+/* A stop lowers the rate: until rest it is given frames. */
 void card_home(struct netcard *c)
 {
     const int at = c->step[NETCARD_HOME];
+    const bool stops = c->state == NET_STOPPING && (at == STEP || at == LAST);
 
-    if ((at > LOWERED && at < RAISE && !wanted(c)) ||
+    if ((at > LOWERED && at < RAISE && !wanted(c) && !stops) ||
         (at > CLEARED && at < RAISE && c->home.state == HOME_CYCLE_IDLE)) {
         go(c, RAISE);
         return;
@@ -151,6 +153,7 @@ void card_home(struct netcard *c)
             return;
         }
         player_clear(&c->player);
+        card_put_rest(c);
         go(c, CLEARED);
         return;
     case CLEARED:
@@ -164,7 +167,7 @@ void card_home(struct netcard *c)
         step(c);
         return;
     case LAST:
-        if (!c->ended) {
+        if (!c->ended || stops) {
             if (card_literal(c)) {
                 card_spend(c, NETCARD_HOME, c->settings.period_ns, LAST);
             } else {

@@ -97,16 +97,41 @@ static int job_end(struct netcard *c, const uint8_t *payload)
     return NETCARD_GIVE_STORAGE;
 }
 
+static void answer(struct netcard *c, uint32_t number, enum card_command command,
+                   enum net_code code)
+{
+    c->result = (struct netcard_result){ c->result.count + 1, command, code };
+    if (number) {
+        session_result(&c->session, number, code, (uint8_t)c->state);
+    }
+}
+
 static int order(struct netcard *c, uint32_t number, enum card_command command, uint32_t axes)
 {
     enum net_code code;
     const int give = card_order(c, command, axes, &code);
 
-    c->result = (struct netcard_result){ c->result.count + 1, command, code };
-    if (number) {
-        session_result(&c->session, number, code, (uint8_t)c->state);
+    if (code == NET_CODES) {
+        c->clears = true;
+        c->cleared = false;
+        c->clears_number = number;
+        return -1;
     }
+    answer(c, number, command, code);
     return give;
+}
+
+/* The RESET that has waited for the drives; a drive that still has its alarm is in its way. */
+static void end_clear(struct netcard *c)
+{
+    const enum net_code code = c->axes.stop || c->axes.alarm ? NET_ALARM : NET_DONE;
+
+    c->clears = c->cleared = false;
+    if (code == NET_DONE) {
+        c->error = NET_DONE;
+        card_rest(c);
+    }
+    answer(c, c->clears_number, CARD_DO_RESET, code);
 }
 
 static void output(struct netcard *c, const uint8_t *payload)
@@ -214,7 +239,7 @@ void card_tell_status(struct netcard *c)
         .state = (uint8_t)c->state, .error = (uint8_t)c->error,
         .inputs = (uint16_t)c->input_levels, .outputs = (uint16_t)c->outputs.levels,
         .stock = (uint16_t)c->player.fifo.stock, .job = c->job ? c->played_id : c->store.job.id,
-        .frame = (uint32_t)c->player.frames, .underflows = (uint32_t)c->player.dry,
+        .frame = (uint32_t)netcard_frames(c), .underflows = (uint32_t)c->player.dry,
         .switches = switches(c), .rate = (uint16_t)(player_rate(&c->player) * 1000.0),
         .wear = flash_wear(&c->flash)
     };
@@ -258,11 +283,14 @@ static void give(struct netcard *c, int semaphore)
 
 void card_parse(struct netcard *c)
 {
-    enum { WAIT, LOOK, MESSAGE, ORDER, STATUS };
+    enum { LOAD, WAIT, LOOK, MESSAGE, ORDER, STATUS, CLEARED };
     struct session_message m;
     int semaphore;
 
     switch (c->step[NETCARD_PARSER]) {
+    case LOAD:          /* before all else: the job is looked for in the flash */
+        card_spend(c, NETCARD_PARSER, c->loading, WAIT);
+        return;
     case WAIT:
         card_take(c, NETCARD_PARSER, NETCARD_GIVE_BYTES, LOOK);
         return;
@@ -280,6 +308,10 @@ void card_parse(struct netcard *c)
         c->orders--;
         give(c, semaphore);
         return;
+    case CLEARED:
+        c->step[NETCARD_PARSER] = LOOK;
+        end_clear(c);
+        return;
     case STATUS:
         c->step[NETCARD_PARSER] = LOOK;
         card_tell_status(c);
@@ -287,7 +319,9 @@ void card_parse(struct netcard *c)
     default:
         break;
     }
-    if (c->orders > 0) {
+    if (c->cleared) {
+        card_work(c, NETCARD_PARSER, c->settings.step_cycles, CLEARED);
+    } else if (c->orders > 0) {
         card_work(c, NETCARD_PARSER, c->settings.packet_cycles, ORDER);
     } else if (session_next(&c->session, &m, c->now)) {
         card_work(c, NETCARD_PARSER, c->settings.packet_cycles +

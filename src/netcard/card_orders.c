@@ -13,10 +13,26 @@ void card_rest(struct netcard *c)
     c->state = has_job(c) ? NET_READY : NET_EMPTY;
 }
 
+/* An event of a frame that still waits for its interrupt is not put out behind it. */
+void card_put_rest(struct netcard *c)
+{
+    const struct job_header *h = &c->reader.header;
+
+    if (c->works && h->rest) {
+        const struct job_event *e = &h->event[h->rest - 1];
+        c->told.events = 0;
+        card_outputs_flag_pins(&c->outputs, e->pins,
+                               &(struct mc_po){ 0, e->mode, e->level, e->width_us });
+        card_pend(c, NETCARD_SOFTWARE);
+    }
+    c->works = false;
+}
+
 void card_fault(struct netcard *c, enum net_code error)
 {
     if (c->state != NET_FAULT) {
         player_clear(&c->player);
+        card_put_rest(c);
         c->state = NET_FAULT;
         c->error = error;
         c->over = true;
@@ -99,10 +115,12 @@ int card_order(struct netcard *c, enum card_command command, uint32_t axes, enum
 
     *code = rule.code;
     if (command == CARD_DO_RESET && c->state == NET_FAULT) {
+        if (c->clears) {
+            *code = NET_BUSY;
+            return -1;
+        }
         c->clear_until = c->now + CLEAR_NS;
-    }
-    if (c->state == NET_FAULT && command == CARD_DO_RESET && (c->axes.stop || c->axes.alarm)) {
-        *code = NET_ALARM;
+        *code = c->axes.stop ? NET_ALARM : c->axes.alarm ? NET_CODES : NET_DONE;
     }
     if (card_literal(c) && c->state != NET_FAULT) {
         *code = NET_DONE;

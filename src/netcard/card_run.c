@@ -1,7 +1,7 @@
 /* The run task: a job from flash to the FPGA. */
 #include "netcard_parts.h"
 
-enum { WAIT, BEGIN, HEADER, NEXT, PAGE, DECODED, WRITTEN, FULL, LAST };
+enum { WAIT, BEGIN, HEADER, NEXT, PAGE, DECODED, WRITTEN, FULL, LAST, ARRIVED };
 enum { FRAME_WORDS = 5 };
 
 static void go(struct netcard *c, int step)
@@ -12,7 +12,8 @@ static void go(struct netcard *c, int step)
 /* Give the job up, or end it. */
 static void leave(struct netcard *c)
 {
-    c->job = c->primed = c->over = false;
+    c->player.frames = netcard_frames(c);
+    c->job = c->primed = c->over = c->approach = false;
     go(c, WAIT);
     if (card_literal(c) && c->state == NET_RUNNING) {
         card_rest(c);
@@ -37,7 +38,24 @@ static void prime(struct netcard *c)
     }
 }
 
+/* Frames are given from now on, those of the approach if there is one. */
 static bool begin(struct netcard *c)
+{
+    c->primed = c->approach = false;
+    if (!card_literal(c) && card_approach_due(c)) {
+        c->works = true;
+        card_put_rest(c);
+        return card_approach_begin(c);
+    }
+    for (int i = 0; i < CARD_AXES; i++) {
+        c->origin[i] = netcard_position(c, i);
+    }
+    c->works = !card_literal(c);
+    c->read = c->ended = false;
+    return player_begin(&c->player, &c->plays, card_clock(c)) == PLAYER_OK;
+}
+
+static bool header(struct netcard *c)
 {
     struct job_header h;
     struct player_job job;
@@ -55,8 +73,7 @@ static bool begin(struct netcard *c)
     }
     c->plays = job;
     c->played_id = h.id;
-    c->read = c->ended = false;
-    return player_begin(&c->player, &job, card_clock(c)) == PLAYER_OK;
+    return true;
 }
 
 /* Does the frame taken last lead to a position that the axes may have? */
@@ -100,15 +117,19 @@ static void push(struct netcard *c)
     struct job_frame f = { .event = 0 };
     struct frame to;
 
-    job_reader_next(&c->reader, &f);
-    if (!within(c)) {
-        stop(c);
-        return;
+    if (c->approach) {
+        to = card_approach_next(c);
+    } else {
+        job_reader_next(&c->reader, &f);
+        if (!within(c)) {
+            stop(c);
+            return;
+        }
+        for (int i = 0; i < FRAME_AXES; i++) {
+            to.command[i] = (int16_t)f.command[i];
+        }
+        to.event = (uint8_t)f.event;
     }
-    for (int i = 0; i < FRAME_AXES; i++) {
-        to.command[i] = (int16_t)f.command[i];
-    }
-    to.event = (uint8_t)f.event;
     kernel_mark(&c->kernel, NETCARD_STEP, NETCARD_RUN);
     if (player_push(&c->player, &to) != PLAYER_OK) {
         card_fault(c, NET_BAD_JOB);
@@ -119,14 +140,16 @@ static void push(struct netcard *c)
 /* What comes behind a frame: another one, a page, or nothing more. */
 static void next(struct netcard *c)
 {
-    const uint32_t wants = job_reader_wants(&c->reader);
+    const uint32_t wants = c->approach ? 0 : job_reader_wants(&c->reader);
     const bool full = c->player.fifo.stock == c->player.config.depth;
+    const bool last = c->approach ? card_approach_given(c)
+                                  : !wants && c->reader.frame == c->reader.header.frames;
 
-    if (!wants && c->reader.frame == c->reader.header.frames) {
+    if (last) {
         c->read = true;
         player_whole(&c->player);
         prime(c);
-        go(c, LAST);
+        go(c, c->approach ? ARRIVED : LAST);
     } else if (full) {
         if (!c->primed) {
             prime(c);
@@ -168,9 +191,6 @@ void card_run(struct netcard *c)
         c->place = c->store.job;
         c->jobs++;
         c->state = NET_RUNNING;
-        for (int i = 0; i < CARD_AXES; i++) {
-            c->origin[i] = netcard_position(c, i);
-        }
         want(c, 0, HEADER);
         return;
     case HEADER:
@@ -181,7 +201,7 @@ void card_run(struct netcard *c)
             leave(c);
         } else if (step == PAGE) {
             page(c);
-        } else if (begin(c)) {
+        } else if (header(c) && begin(c)) {
             go(c, NEXT);
         } else {
             card_fault(c, NET_BAD_JOB);
@@ -196,11 +216,22 @@ void card_run(struct netcard *c)
         return;
     case LAST:
         if (c->ended && (card_literal(c) || c->state == NET_RUNNING)) {
+            c->works = false;
             card_rest(c);
             leave(c);
             return;
         }
         card_take(c, NETCARD_RUN, NETCARD_GIVE_FIFO, LAST);
+        return;
+    case ARRIVED:
+        if (!c->ended || c->state != NET_RUNNING) {
+            card_take(c, NETCARD_RUN, NETCARD_GIVE_FIFO, ARRIVED);
+        } else if (begin(c)) {
+            go(c, NEXT);
+        } else {
+            card_fault(c, NET_RANGE);
+            leave(c);
+        }
         return;
     default:
         next(c);

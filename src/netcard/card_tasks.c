@@ -95,6 +95,7 @@ void card_stop(struct netcard *c)
     } else {
         mark(c, NETCARD_STOP);
         player_clear(&c->player);
+        card_put_rest(c);
         c->home.state = HOME_CYCLE_IDLE;
         if (c->error == NET_DONE) {
             card_rest(c);

@@ -87,12 +87,13 @@ static void boot(struct netcard *c)
     memset(&c->page, 0, sizeof c->page);
     c->job = c->primed = c->read = c->ended = c->over = c->holds = c->released = false;
     c->deferred = c->asked = c->homing = false;
+    c->works = c->approach = c->clears = c->cleared = false;
     c->first = c->orders = 0;
     c->homed = c->latched = 0;
     c->error = NET_DONE;
     c->resumes = NET_RUNNING;
     c->credit = 0;
-    job_store_start(&c->store, &c->flash, c->settings.slots, start_speed, c->now);
+    c->loading = job_store_start(&c->store, &c->flash, c->settings.slots, start_speed, c->now);
     player_power(&c->player, &player);
     start_inputs(c);
     card_outputs_start(&c->outputs);
@@ -172,6 +173,20 @@ int64_t netcard_position(const struct netcard *c, int axis)
     return counts[axis] - c->zero[axis];
 }
 
+int64_t netcard_frames(const struct netcard *c)
+{
+    return c->approach ? 0 : c->player.frames;
+}
+
+/* The drives' error clear has helped or its time is over: the parser answers the RESET. */
+static void look_cleared(struct netcard *c)
+{
+    if (c->clears && !c->cleared && (!c->axes.alarm || c->axes.stop || c->now >= c->clear_until)) {
+        c->cleared = true;
+        card_pend(c, NETCARD_NETWORK);
+    }
+}
+
 /* A limit switch in the way of a job, an alarm, the emergency stop. */
 static void guard(struct netcard *c)
 {
@@ -225,6 +240,7 @@ static void hardware(struct netcard *c)
 {
     card_advance_player(c);
     guard(c);
+    look_cleared(c);
     const uint32_t before = card_inputs_vectors(&c->inputs);
     pend_vectors(c, card_inputs_advance(&c->inputs, c->now) & ~before);
     card_outputs_advance(&c->outputs, c->now);
@@ -253,6 +269,9 @@ static int64_t horizon(const struct netcard *c, int64_t until)
     }
     if (status > c->now) {
         until = earlier(until, status);
+    }
+    if (c->clears && !c->cleared) {
+        until = earlier(until, c->clear_until);
     }
     until = earlier(until, card_inputs_next(&c->inputs));
     until = earlier(until, card_outputs_next(&c->outputs));
@@ -351,6 +370,7 @@ void netcard_set_axes(struct netcard *c, const struct netcard_axes *axes)
     c->axes = a;
     if (c->power) {
         guard(c);
+        look_cleared(c);
         card_advance_player(c);
     }
 }

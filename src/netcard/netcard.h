@@ -20,6 +20,7 @@
 #include "card_state.h"
 #include "flash_chip.h"
 #include "home_cycle.h"
+#include "home_motion.h"
 #include "job_reader.h"
 #include "job_store.h"
 #include "kernel.h"
@@ -101,6 +102,9 @@ struct netcard {
     enum net_code error;        /* why FAULT; NET_DONE none */
     uint32_t homed;             /* axes */
     int64_t clear_until;        /* [ns] the drives' error clear is given */
+    bool    clears, cleared;    /* a RESET waits for its end; the parser is to answer it, */
+    uint32_t clears_number;     /* with this number */
+    int64_t loading;            /* [ns] that power-up reads the flash */
     int64_t zero[CARD_AXES];    /* [pulses] count at which the position is 0 */
     uint32_t latched;           /* origins that a latch of the FPGA has seen, */
     int64_t latch[CARD_AXES];   /* [pulses] and where */
@@ -115,6 +119,9 @@ struct netcard {
     bool    read;               /* all of it is in the FIFO, */
     bool    ended;              /* and out of it */
     bool    over;               /* it is to be given up */
+    bool    works;              /* its outputs may be on: its rest event is owed */
+    bool    approach;           /* the axes are on their way to its begin, */
+    struct home_motion way[CARD_AXES];  /* so far */
     bool    holds, released;    /* literal: pause has the processor; it is to end */
     bool    homing;             /* the home task has something under way */
     bool    deferred;           /* storage waits for a full FIFO */
@@ -164,6 +171,9 @@ bool netcard_wants_connection(const struct netcard *c);
 
 /* Position of an axis at c->now [pulses]. */
 int64_t netcard_position(const struct netcard *c, int axis);
+
+/* Frames of the job begun so far. */
+int64_t netcard_frames(const struct netcard *c);
 
 /* What is wrong with a state that came as bytes, or NULL. */
 const char *netcard_damage(const struct netcard *c, int64_t now);

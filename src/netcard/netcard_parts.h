@@ -20,11 +20,23 @@ void card_pause(struct netcard *c);
 void card_run(struct netcard *c);
 void card_interrupt(struct netcard *c, int interrupt);
 
-/* A command by the table of the policy. Returns the semaphore to be given; -1 none. */
+/* A command by the table of the policy. Returns the semaphore to be given; -1 none. NET_CODES:
+ * a RESET that is answered when the drives' error clear is over. */
 int card_order(struct netcard *c, enum card_command command, uint32_t axes, enum net_code *code);
 
 /* Rest: READY or EMPTY, as the flash has it. */
 void card_rest(struct netcard *c);
+
+/* The job's rest event, if it is owed. */
+void card_put_rest(struct netcard *c);
+
+/* The way of the axes to position 0, where a job begins: the tool's (Z, U) first, then X and Y
+ * together, each within its own speed and acceleration. Whether they stand elsewhere; false: they
+ * cannot move with these settings; whether all frames are given; the next one. */
+bool card_approach_due(const struct netcard *c);
+bool card_approach_begin(struct netcard *c);
+bool card_approach_given(const struct netcard *c);
+struct frame card_approach_next(struct netcard *c);
 
 /* FAULT at once: no more pulses, the job and homing are over. */
 void card_fault(struct netcard *c, enum net_code error);

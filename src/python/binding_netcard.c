@@ -26,7 +26,7 @@ static const struct field sim_fields[] = {
     SEEN(now, "now", "ns"), SEEN(homed, "homed", "bits"), SEEN(outputs.levels, "outputs", "bits"),
     SEEN(player.frames, "frames", ""), SEEN(player.fifo.stock, "stock", ""),
     SEEN(player.dry, "underflows", ""), SEEN(least, "stock_least", ""),
-    SEEN(result.count, "answered", ""), SEEN(jobs, "jobs", ""), SEEN(played_id, "played", ""),
+    SEEN(result.count, "answered", ""), SEEN(jobs, "jobs", ""), SEEN(approach, "approach", ""), SEEN(played_id, "played", ""),
     SEEN(session.connections, "connections", ""), SEEN(session.repeats, "repeats", ""),
     SEEN(session.fault, "fault", ""), SEEN(flash.programs, "programs", ""),
     SEEN(session.phase, "phase", ""),

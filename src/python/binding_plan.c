@@ -28,6 +28,7 @@ static const struct field planner_fields[] = {
     SET(config.pen_axis, "pen_axis", ""), SET(config.up, "up", "mm"),
     SET(config.down, "down", "mm"), SET(config.dwell, "dwell", "s"),
     SET(header.axes, "axes", "bits"), SET(header.events, "events", ""),
+    SET(header.rest, "rest", ""),
     ROW(planner, header.pulses_per_m, "pulses_per_m", "pulses/m"),
     ROW(planner, header.speed_max, "speed_max", "pulses/s"),
     ROW(planner, header.acc_max, "acc_max", "pulses/s^2"),

@@ -12,7 +12,7 @@ from motionfmu.errors import InputError
 PAGE, AXES, EVENTS = 256, 4, 11
 PAYLOAD, FIRST_BYTE, CRC_AT = 228, 24, 252
 COMMAND_MAX = 32767
-_HEADER = struct.Struct("<4sHHIIB3xIII4I4I4I4Q4i32s")
+_HEADER = struct.Struct("<4sHHIIBB2xIII4I4I4I4Q4i32s")
 _EVENT = struct.Struct("<HBBI")
 _PAGE = struct.Struct("<I4iHH")
 _EVENTS_AT = 160
@@ -44,6 +44,7 @@ class Job:
     jerk_max: tuple[int, ...] = (0,) * AXES
     origin: bytes = bytes(32)  # SHA-256 of drawing and settings
     pages: int = 0  # Data pages of the file it was read from
+    rest: int = 0  # Event put out when the job is given up; 0 none
 
     @property
     def positions(self) -> np.ndarray:
@@ -73,14 +74,16 @@ def decode(text: bytes, name: str = "job") -> Job:
         if zlib.crc32(row[:CRC_AT].tobytes()) != int.from_bytes(row[CRC_AT:].tobytes(), "little"):
             raise InputError(f"{name}: page {k}: its CRC is wrong")
     h = _HEADER.unpack_from(text)
-    magic, version, size, ident, period, mask, pages, frames, count = h[:9]
+    magic, version, size, ident, period, mask, rest, pages, frames, count = h[:10]
     if magic != b"MCJ1" or version != 1 or size != PAGE:
         raise InputError(f"{name}: no job of version 1")
-    origin = h[29]
+    origin = h[30]
     if ident != int.from_bytes(origin[:4], "little"):
         raise InputError(f"{name}: its id {ident:#x} is not of its origin")
     if not 0 < mask < 1 << AXES or not 0 < period or count > EVENTS or pages != len(rows) - 1:
         raise InputError(f"{name}: page 0: axes {mask}, period {period} ns, {pages} pages")
+    if rest > count:
+        raise InputError(f"{name}: page 0: event {rest} for rest, {count} in the table")
     events = []
     for k in range(count):
         pins, mode, level, width = _EVENT.unpack_from(text, _EVENTS_AT + k * _EVENT.size)
@@ -102,11 +105,11 @@ def decode(text: bytes, name: str = "job") -> Job:
         at += n
         commands.append(full)
         numbers.append(switched)
-    if at != frames or list(place) != list(h[25:29]):
+    if at != frames or list(place) != list(h[26:30]):
         raise InputError(f"{name}: {at} frames to {place.tolist()}, not as its header says")
     return Job(
         period, mask, np.vstack(commands), np.concatenate(numbers), events,
-        h[9:13], h[13:17], h[17:21], h[21:25], origin, pages,
+        h[10:14], h[14:18], h[18:22], h[22:26], origin, pages, rest,
     )  # fmt: skip
 
 
@@ -167,8 +170,8 @@ def encode(job: Job) -> bytes:
     pages.append(_page(first, begin, len(job.commands) - first, bytes(payload)))
     header = _HEADER.pack(
         b"MCJ1", 1, PAGE, int.from_bytes(job.origin[:4], "little"), job.period_ns, job.mask,
-        len(pages), len(job.commands), len(job.events), *job.pulses_per_m, *job.speed_max,
-        *job.acc_max, *job.jerk_max, *place.tolist(), job.origin,
+        job.rest, len(pages), len(job.commands), len(job.events), *job.pulses_per_m,
+        *job.speed_max, *job.acc_max, *job.jerk_max, *place.tolist(), job.origin,
     )  # fmt: skip
     header = header.ljust(_EVENTS_AT, b"\0")
     header += b"".join(_EVENT.pack(e.pins, e.pulse, e.level, e.width) for e in job.events)

@@ -145,7 +145,7 @@ def _planner(config: CardConfig) -> Struct:
     p["up"], p["down"], p["dwell"] = pen.up, pen.down, pen.dwell
     scales = [round(row[0] * 1000) for row in rows]
     p["axes"], p["pulses_per_m"] = (1 << len(config.axes)) - 1, scales
-    p["events"] = 2 if pen.kind == "output" else 0
+    p["events"] = p["rest"] = 2 if pen.kind == "output" else 0
     for name, k in (("speed_max", 1), ("acc_max", 2)):
         p[name] = [min(2**32 - 1, round(row[k] * row[0])) for row in rows]
     return p

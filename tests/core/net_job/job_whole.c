@@ -99,7 +99,9 @@ static void header_faults(void)
     CHECK_EQ(with(0, 12, 1000010, 4, 0), JOB_PERIOD);
     CHECK_EQ(with(0, 16, 0, 1, 0), JOB_MASK);
     CHECK_EQ(with(0, 16, 16, 1, 0), JOB_MASK);
-    CHECK_EQ(with(0, 17, 1, 1, 0), JOB_FILL);
+    CHECK_EQ(with(0, 17, m.header.events, 1, 0), JOB_GOOD);
+    CHECK_EQ(with(0, 17, m.header.events + 1, 1, 0), JOB_EVENT);
+    CHECK_EQ(with(0, 18, 1, 1, 0), JOB_FILL);
     CHECK_EQ(with(0, 19, 1, 1, 0), JOB_FILL);
     CHECK_EQ(with(0, 20, 0, 4, 0), JOB_COUNT);
     CHECK_EQ(with(0, 20, m.header.pages + 1, 4, 1), JOB_SIZE);

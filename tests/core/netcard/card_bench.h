@@ -12,18 +12,21 @@
 
 #define BENCH_MS INT64_C(1000000)
 
-enum { BENCH_JOB = 1 << 19 };
+enum { BENCH_JOB = 1 << 19, BENCH_FRAMES = 4096 };
 
 static uint8_t bench_job[BENCH_JOB];    /* file of the latest bench_make() */
 static uint32_t bench_bytes;
 static int64_t bench_end[CARD_AXES];    /* [pulses] where it ends */
+static int64_t bench_path[BENCH_FRAMES][2]; /* [pulses] X, Y where the first frames begin */
+static uint32_t bench_rest;             /* the last event is for rest, in no frame */
 
 /* A job of so many frames of 1 ms: axes X and Y up to `top` pulses a frame and back to rest, with
  * a sine on Y; events as the table says, event n in frame 100 n. */
 static inline void bench_make(int32_t frames, int32_t top, const struct job_event *events, int n)
 {
     static struct job_writer w;
-    struct job_header h = { .period_ns = 1000000, .axes = 3, .events = (uint32_t)n };
+    struct job_header h = { .period_ns = 1000000, .axes = 3, .events = (uint32_t)n,
+                            .rest = bench_rest };
     uint8_t page[JOB_PAGE_BYTES];
 
     for (int i = 0; i < JOB_AXES; i++) {
@@ -41,9 +44,14 @@ static inline void bench_make(int32_t frames, int32_t top, const struct job_even
     bench_bytes = JOB_PAGE_BYTES;
     for (int32_t k = 0; k < frames; k++) {
         const int32_t ramp = k < frames - 1 - k ? k : frames - 1 - k;
-        struct job_frame f = { .event = k % 100 == 0 && k / 100 <= n ? k / 100 : 0 };
+        const int event = k / 100;
+        struct job_frame f = { 0 };
+        f.event = k % 100 == 0 && event <= n - (bench_rest > 0) ? event : 0;
         f.command[0] = ramp < top ? ramp : top;
         f.command[1] = (int32_t)lround(f.command[0] * sin(k * 0.01));
+        for (int i = 0; i < 2 && k < BENCH_FRAMES; i++) {
+            bench_path[k][i] = bench_end[i];
+        }
         bench_end[0] += f.command[0];
         bench_end[1] += f.command[1];
         if (job_writer_add(&w, &f, page)) {
@@ -81,7 +89,7 @@ static inline enum net_code bench_order(struct netcard *c, enum card_command com
     const int32_t before = c->result.count;
 
     CHECK(netcard_command(c, command, 15));
-    for (int i = 0; i < 100 && c->result.count == before; i++) {
+    for (int i = 0; i < 50000 && c->result.count == before; i++) {
         netcard_advance(c, c->now + 10000);
     }
     CHECK_EQ(c->result.count, before + 1);

@@ -37,6 +37,11 @@ static void card(void)
     REFUSED(c.reader.at = -1);
     REFUSED(c.reader.at = c.reader.page.frames + 1);
     REFUSED(c.reader.header.events = JOB_EVENTS + 1);
+    REFUSED(c.reader.header.rest = c.reader.header.events + 1);
+    REFUSED(c.loading = -1);
+    REFUSED(c.way[1].commanded = INT64_MAX);
+    REFUSED(c.way[2].speed = NAN);
+    REFUSED(c.way[3].rest = -1.0);
     REFUSED(c.reader.frame = c.reader.header.frames + 1);
 }
 

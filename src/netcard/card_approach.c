@@ -1,0 +1,84 @@
+/* From where a stop, a job or homing has left the axes to where the next job begins. */
+#include "netcard_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Axes that go together, in turn. */
+static const uint32_t TURNS[] = { 0xC, 0x3 };
+enum { TURN_COUNT = sizeof TURNS / sizeof TURNS[0] };
+
+bool card_approach_due(const struct netcard *c)
+{
+    bool due = false;
+
+    for (int i = 0; i < CARD_AXES; i++) {
+        due = due || netcard_position(c, i) != 0;
+    }
+    return due;
+}
+
+/* Highest speed: that of the axis, or what leaves a pulse its width. [pulses/period] */
+static double fastest(const struct netcard *c, int axis)
+{
+    const struct card_settings *s = &c->settings;
+    const int32_t most = player_largest(&c->player, s->period_ns / PLAYER_CLOCK_NS);
+
+    return fmin(s->speed_max[axis] * (s->period_ns * 1e-9), most - 1.0);
+}
+
+bool card_approach_begin(struct netcard *c)
+{
+    const struct card_settings *s = &c->settings;
+    struct player_job job = { .period = s->period_ns / PLAYER_CLOCK_NS, .reserve = s->reserve };
+
+    memset(c->way, 0, sizeof c->way);
+    for (int i = 0; i < CARD_AXES; i++) {
+        if (fastest(c, i) <= 0.0) {
+            return false;
+        }
+        c->way[i].commanded = netcard_position(c, i);
+        job.speed[i] = s->speed_max[i];
+        job.acc[i] = s->acc_max[i];
+    }
+    c->approach = c->read = true;       /* nothing of the job is read meanwhile */
+    c->ended = false;
+    return player_begin(&c->player, &job, card_clock(c)) == PLAYER_OK;
+}
+
+static bool there(const struct netcard *c, uint32_t axes)
+{
+    bool all = true;
+
+    for (int i = 0; i < CARD_AXES; i++) {
+        all = all && (!(axes >> i & 1) || home_motion_at(&c->way[i], 0));
+    }
+    return all;
+}
+
+bool card_approach_given(const struct netcard *c)
+{
+    return there(c, (1u << CARD_AXES) - 1);
+}
+
+/* A step from or to rest keeps within the speed, too. */
+struct frame card_approach_next(struct netcard *c)
+{
+    const struct card_settings *s = &c->settings;
+    const double period = s->period_ns * 1e-9;
+    struct frame f = { .event = 0 };
+    int turn = 0;
+
+    while (turn < TURN_COUNT - 1 && there(c, TURNS[turn])) {
+        turn++;
+    }
+    for (int i = 0; i < CARD_AXES; i++) {
+        if (TURNS[turn] >> i & 1) {
+            const double speed = fastest(c, i), acc = s->acc_max[i] * (1.0 - s->reserve);
+            const struct home_limits limits = { fmin(acc * period * period, speed),
+                                                fmin(s->speed_min[i] * period, speed) };
+            f.command[i] = (int16_t)home_motion_to(&c->way[i], &limits, 0, speed);
+        }
+    }
+    return f;
+}
