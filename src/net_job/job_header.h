@@ -1,7 +1,8 @@
 /* job_header - first page of a job file: what the job is, with its table of output events.
  *
  *     0 "MCJ1"   4 u16 version   6 u16 page bytes   8 u32 id   12 u32 period_ns   16 u8 axes
- *     17 u8 rest   20 u32 pages   24 u32 frames   28 u32 events   32 u32[4] pulses_per_m   48 u32[4] speed_max
+ *     17 u8 rest   20 u32 pages   24 u32 frames   28 u32 events   32 u32[4] pulses_per_m
+ *     48 u32[4] speed_max
  *     64 u32[4] acc_max   80 u64[4] jerk_max   112 i32[4] end   128 u8[32] origin
  *     160 11 x {u16 pins, u8 mode, u8 level, u32 width_us}   252 u32 CRC-32 of the 252 before
  *

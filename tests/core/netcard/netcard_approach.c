@@ -41,7 +41,7 @@ static void on_the_path(void)
     }
 }
 
-/* Runs until the state is another one, or the time is over; returns the last frame that was seen. */
+/* Runs until the state is another one, or the time is over; returns the last frame seen. */
 static int64_t play(int64_t ms)
 {
     const enum net_state state = c.state;

@@ -252,7 +252,8 @@ static void reads_first(void)
     config.settings.spi_hz = 1000000;
     bench_start(&c, &config);
     CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
-    CHECK_NEAR((double)c.now * 1e-9, 8.0 * 256.0 * (pages + 3.0) / 1e6, 0.03 * (double)c.now * 1e-9);
+    CHECK_NEAR((double)c.now * 1e-9, 8.0 * 256.0 * (pages + 3.0) / 1e6,
+               0.03 * (double)c.now * 1e-9);
     bench_times(&c);
 }
 
