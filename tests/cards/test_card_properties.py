@@ -30,7 +30,7 @@ from hypothesis.stateful import (
 )
 
 RUNS = settings(
-    max_examples=int(os.environ.get("CARD_EXAMPLES", "200")),
+    max_examples=int(os.environ.get("CARD_EXAMPLES", "120")),
     stateful_step_count=int(os.environ.get("CARD_STEPS", "60")),
     deadline=None,
     derandomize=True,
