@@ -21,73 +21,16 @@ struct model {
 
 #define MODEL_BLOB
 #include "fmi_model.h"
-#include "fmu_input.h"
 #include "fmu_period.h"
-
-enum { JOB_MOST = 8192 * NET_PAGE_BYTES };
-
-/* The job file. */
-struct job {
-    uint32_t bytes;
-    uint8_t  byte[JOB_MOST + 1];
-};
+#include "job_file.h"
 
 static const double second = 1e9;   /* [ns] */
 
-static int read_job(struct fmu *f, struct job *job)
+/* Whole pages, no more than the flash of a card has. */
+static int check_job(struct fmu *f, const struct job_file *job)
 {
-    const char *name = f->s.v.job;
-    FILE *file;
-    const char *why = file_open(name, &file);
-    if (why)
-        return fmu_fail(f, "job: cannot read %s: %s", name, why);
-    job->bytes = (uint32_t)fread(job->byte, 1, sizeof job->byte, file);
-    const bool bad = ferror(file);
-    fclose(file);
-    if (bad)
-        return fmu_fail(f, "job: cannot read %s", name);
-    if (job->bytes == 0 || job->bytes > JOB_MOST || job->bytes % NET_PAGE_BYTES)
-        return fmu_fail(f, "job: %s is not 1 to 8192 pages of 256 bytes", name);
-    return 0;
-}
-
-static int model_open(struct fmu *f)
-{
-    f->blob = calloc(1, sizeof(struct job));
-    if (!f->blob)
-        return fmu_fail(f, "no memory for the job");
-    return f->s.v.job[0] ? read_job(f, f->blob) : 0;
-}
-
-static void model_close(struct fmu *f)
-{
-    free(f->blob);
-}
-
-static int model_end(struct fmu *f)
-{
-    (void)f;
-    return 0;
-}
-
-static int hex_digit(char c)
-{
-    return c >= '0' && c <= '9' ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
-static int read_key(struct fmu *f, uint8_t key[NET_SHA_BYTES])
-{
-    const char *text = f->s.v.key;
-    const size_t n = strlen(text);
-    if (n != 0 && n != 2 * NET_SHA_BYTES)
-        return fmu_fail(f, "key: %d characters, not 64 hexadecimal digits", (int)n);
-    for (size_t i = 0; i < n; i++) {
-        const int digit = hex_digit(text[i]);
-        if (digit < 0)
-            return fmu_fail(f, "key: character %d is not a hexadecimal digit", (int)i + 1);
-        key[i / 2] = (uint8_t)(key[i / 2] << 4 | digit);
-    }
+    if (job->bytes > JOB_FILE_MOST || job->bytes % NET_PAGE_BYTES)
+        return fmu_fail(f, "job: %s is not 1 to 8192 pages of 256 bytes", f->s.v.job);
     return 0;
 }
 
@@ -115,7 +58,7 @@ static void publish(struct fmu *f);
 static int model_start(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
-    const struct job *job = f->blob;
+    const struct job_file *job = f->blob;
     struct model *m = &f->s.m;
     const double ticks = v->bus_period * second / FMU_TICK_NS;
     struct net_host_config c = {.interval = (uint16_t)llround(v->status_interval * 1000.0)};
@@ -125,7 +68,7 @@ static int model_start(struct fmu *f)
     m->period = llround(ticks) * FMU_TICK_NS;
     for (int i = 0; i < 4; i++)
         c.seed[i] = (uint8_t)((uint32_t)v->seed >> 8 * i);
-    if (read_key(f, c.key))
+    if (check_job(f, job) || job_key(f, c.key))
         return -1;
     net_host_start(&m->host, &c);
     if (job->bytes > 0)
@@ -180,7 +123,7 @@ static void flood(struct fmu *f)
 static void carry(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
-    const struct job *job = f->blob;
+    const struct job_file *job = f->blob;
     struct model *m = &f->s.m;
     uint8_t bytes[BYTE_RING_BYTES];
     const size_t got = byte_ring_look(v->rx_words, v->rx_count, m->rx_taken, bytes, sizeof bytes);
@@ -284,7 +227,7 @@ static void publish(struct fmu *f)
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
-    const struct job *job = f->blob;
+    const struct job_file *job = f->blob;
     struct model *m = &f->s.m;
     (void)t0;
     if (m->host.job.bytes != job->bytes)

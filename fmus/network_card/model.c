@@ -15,74 +15,11 @@ struct model {
 
 #define MODEL_BLOB
 #include "fmi_model.h"
-#include "fmu_input.h"
 #include "fmu_period.h"
+#include "job_file.h"
 
+_Static_assert(sizeof ((struct job_file *)0)->byte == FLASH_BYTES + 1, "a whole flash");
 _Static_assert(NET_RESET - NET_START == (int)CARD_DO_RESET, "commands are those of the link");
-
-/* The job file. */
-struct job_file {
-    uint32_t bytes;
-    uint8_t  byte[FLASH_BYTES + 1];
-};
-
-static int model_open(struct fmu *f)
-{
-    const char *name = f->s.v.job;
-    struct job_file *b = malloc(sizeof *b);
-    FILE *file;
-
-    if (!b) {
-        return fmu_fail(f, "out of memory");
-    }
-    f->blob = b;
-    b->bytes = 0;
-    if (!name[0]) {
-        return 0;
-    }
-    const char *why = file_open(name, &file);
-    if (why) {
-        return fmu_fail(f, "job: cannot read %s: %s", name, why);
-    }
-    b->bytes = (uint32_t)fread(b->byte, 1, sizeof b->byte, file);
-    const bool bad = ferror(file) != 0;
-    fclose(file);
-    if (bad) {
-        return fmu_fail(f, "job: cannot read %s", name);
-    }
-    return b->bytes > 0 ? 0 : fmu_fail(f, "job: %s is empty", name);
-}
-
-static void model_close(struct fmu *f)
-{
-    free(f->blob);
-}
-
-static int model_end(struct fmu *f)
-{
-    (void)f;
-    return 0;
-}
-
-static int hex(char c)
-{
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
-/* False: neither empty nor 64 hexadecimal digits. */
-static bool read_key(const char *text, uint8_t key[NET_SHA_BYTES])
-{
-    memset(key, 0, NET_SHA_BYTES);
-    for (size_t i = 0; text[0] && i < (size_t)2 * NET_SHA_BYTES; i++) {
-        const int digit = hex(text[i]);
-        if (digit < 0) {
-            return false;
-        }
-        key[i / 2] = (uint8_t)(key[i / 2] << 4 | digit);
-    }
-    return !text[0] || !text[2 * NET_SHA_BYTES];
-}
 
 static int read_settings(struct fmu *f, struct netcard_config *c)
 {
@@ -97,8 +34,7 @@ static int read_settings(struct fmu *f, struct netcard_config *c)
         return fmu_fail(f, "%s[%d] = %.17g: %s", w.name, (int)w.index + 1, w.value,
                         w.why ? w.why : "out of range");
     }
-    return read_key(v->key, c->key) ? 0
-           : fmu_fail(f, "key: 64 hexadecimal digits are wanted, or none");
+    return job_key(f, c->key);
 }
 
 static int32_t whole(int64_t value)

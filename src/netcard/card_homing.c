@@ -4,7 +4,6 @@
 #include <string.h>
 
 enum { WAIT, LOOK, LOWERED, STILL, CLEARED, STEP, LAST, RAISE };
-enum { FRAME_WORDS = 5 };
 
 static void go(struct netcard *c, int step)
 {
@@ -87,8 +86,8 @@ static void step(struct netcard *c)
         player_whole(&c->player);
         go(c, LAST);
     }
-    card_spend(c, NETCARD_HOME, card_cycles_ns(c->settings.step_cycles) +
-               FRAME_WORDS * (int64_t)c->settings.fsmc_word_ns, c->step[NETCARD_HOME]);
+    card_spend(c, NETCARD_HOME, card_frame_ns(c, c->settings.step_cycles),
+               c->step[NETCARD_HOME]);
 }
 
 /* All frames are played. */

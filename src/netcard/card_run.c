@@ -2,7 +2,6 @@
 #include "netcard_parts.h"
 
 enum { WAIT, BEGIN, HEADER, NEXT, PAGE, DECODED, WRITTEN, FULL, LAST, ARRIVED };
-enum { FRAME_WORDS = 5 };
 
 static void go(struct netcard *c, int step)
 {
@@ -159,8 +158,7 @@ static void next(struct netcard *c)
         want(c, wants, PAGE);
         return;
     } else {
-        card_spend(c, NETCARD_RUN, card_cycles_ns(c->settings.frame_cycles) +
-                   FRAME_WORDS * (int64_t)c->settings.fsmc_word_ns, WRITTEN);
+        card_spend(c, NETCARD_RUN, card_frame_ns(c, c->settings.frame_cycles), WRITTEN);
         return;
     }
     if (c->deferred) {

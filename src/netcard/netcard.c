@@ -9,6 +9,13 @@ int64_t card_cycles_ns(int64_t cycles)
     return (cycles * 125 + 20) / 21;    /* 168 MHz, rounded up */
 }
 
+int64_t card_frame_ns(const struct netcard *c, int64_t cycles)
+{
+    enum { WORDS = 5 };
+
+    return card_cycles_ns(cycles) + WORDS * (int64_t)c->settings.fsmc_word_ns;
+}
+
 void card_spend(struct netcard *c, int context, int64_t ns, int step)
 {
     c->step[context] = step;

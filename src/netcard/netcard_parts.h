@@ -11,6 +11,9 @@ void card_spend(struct netcard *c, int context, int64_t ns, int step);
 void card_take(struct netcard *c, enum netcard_task task, int semaphore, int step);
 int64_t card_cycles_ns(int64_t cycles);
 
+/* So many cycles, and a frame of five words on the bus to the FPGA. [ns] */
+int64_t card_frame_ns(const struct netcard *c, int64_t cycles);
+
 /* What one context does next; each gives the kernel one answer. */
 void card_parse(struct netcard *c);
 void card_store(struct netcard *c);

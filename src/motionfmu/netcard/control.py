@@ -101,13 +101,7 @@ class Control:
 def shown(view: CardView) -> dict[str, Any]:
     """A card as JSON has it."""
     status = view.status
-    return {
-        "id": view.id,
-        "connected": view.connected,
-        "address": view.address,
-        "state": view.state,
-        "job": view.job,
-        "upload": asdict(view.upload) if view.upload else None,
+    return view.outline() | {
         "frame": status.frame if status else 0,
         "position": list(status.position) if status else [],
         "stock": status.stock if status else 0,

@@ -2,7 +2,8 @@
 
 import enum
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 from motionfmu.netcard import messages
 
@@ -127,3 +128,10 @@ class CardView:
     job: str = ""  # SHA-256 of the job in its flash, hexadecimal; empty: none
     upload: Upload | None = None
     events: deque[Event] = field(default_factory=lambda: deque(maxlen=EVENTS_KEPT))
+
+    def outline(self) -> dict[str, Any]:
+        """What is told of a card wherever it is told, as JSON has it."""
+        names = ("id", "connected", "address", "state", "job")
+        return {n: getattr(self, n) for n in names} | {
+            "upload": asdict(self.upload) if self.upload else None
+        }

@@ -1,14 +1,9 @@
 /* The card with a PC: upload, commands, a flood of packets, writes while it runs, a lost link. */
-#include "card_bench.h"
+#include "card_cable.h"
 
-#include "net_host.h"
-
-static struct netcard c;
-static struct net_host host;
 static uint8_t file[BENCH_JOB];     /* the one that is sent */
 static uint32_t file_bytes;
 static bool cut;                    /* the cable */
-static bool linked;
 static bool flood;                  /* JOB_DATA without end, as fast as the line */
 static int64_t carried;             /* [byte] to the card */
 
@@ -16,36 +11,16 @@ enum { STEP = 20000, LINE = 250 };  /* [ns], [byte] of a step at 100 Mbit/s */
 
 static void carry(void)
 {
-    static uint8_t bytes[4096];
-    static uint8_t wait[4096];
-    static size_t waiting;
-    const bool wants = netcard_wants_connection(&c) && !cut && net_host_accepts(&host);
-
-    if (wants != linked) {
-        linked = wants;
-        waiting = 0;
-        netcard_connected(&c, linked);
-        if (linked) {
-            net_host_connected(&host, c.now);
-        } else {
-            net_host_cut(&host);
-        }
-    }
+    cable_plug(netcard_wants_connection(&c) && !cut && net_host_accepts(&host));
     if (!linked) {
         return;
     }
-    net_host_bytes(&host, bytes, netcard_send(&c, bytes, LINE), c.now);
-    net_host_tick(&host, file, c.now);
+    cable_up(file, LINE);
     if (flood && host.phase == NET_HOST_UP && net_channel_room(&host.channel, 1028, 0)) {
         static uint8_t payload[1028] = { 0, 0, 4 };
         net_channel_put(&host.channel, NET_JOB_DATA, payload, sizeof payload);
     }
-    const size_t room = sizeof wait - waiting < LINE ? sizeof wait - waiting : LINE;
-    waiting += net_host_out(&host, wait + waiting, room);
-    const size_t taken = netcard_receive(&c, wait, waiting);
-    memmove(wait, wait + taken, waiting - taken);
-    waiting -= taken;
-    carried += (int64_t)taken;
+    carried += (int64_t)cable_down(LINE);
 }
 
 static void pass(int64_t ms)

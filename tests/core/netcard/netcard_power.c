@@ -1,41 +1,20 @@
 /* The power of the card goes in each operation of its flash while a job comes over the link: behind
  * it the old job is there or the new one, whole, and the upload goes on by itself to its end. */
-#include "card_bench.h"
-
-#include "net_host.h"
+#include "card_cable.h"
 
 enum { STEP = 200000, LINE = 2500, SHARES = 3 };    /* [ns], [byte] of a step at 100 Mbit/s */
 
-static struct netcard c, first;
-static struct net_host host, first_host;
-static bool linked;
-static uint8_t old[BENCH_JOB], new[BENCH_JOB], wait[4096];
+static struct netcard first;
+static struct net_host first_host;
+static uint8_t old[BENCH_JOB], new[BENCH_JOB];
 static uint32_t old_bytes, new_bytes;
-static size_t waiting;
 
 static void pass(void)
 {
-    static uint8_t bytes[4096];
-    const bool wants = netcard_wants_connection(&c) && net_host_accepts(&host);
-
-    if (wants != linked) {
-        linked = wants;
-        waiting = 0;
-        netcard_connected(&c, linked);
-        if (linked) {
-            net_host_connected(&host, c.now);
-        } else {
-            net_host_cut(&host);
-        }
-    }
+    cable_plug(netcard_wants_connection(&c) && net_host_accepts(&host));
     if (linked) {
-        net_host_bytes(&host, bytes, netcard_send(&c, bytes, LINE), c.now);
-        net_host_tick(&host, new, c.now);
-        const size_t room = sizeof wait - waiting < LINE ? sizeof wait - waiting : LINE;
-        waiting += net_host_out(&host, wait + waiting, room);
-        const size_t taken = netcard_receive(&c, wait, waiting);
-        memmove(wait, wait + taken, waiting - taken);
-        waiting -= taken;
+        cable_up(new, LINE);
+        cable_down(LINE);
     }
     netcard_advance(&c, c.now + STEP);
 }
@@ -98,7 +77,7 @@ int main(void)
             c = first;
             host = first_host;
             linked = true;
-            waiting = 0;
+            waiting.count = 0;
             while (operations() < k) {
                 pass();
             }

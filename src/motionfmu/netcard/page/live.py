@@ -77,13 +77,7 @@ async def _closed(page: WebSocket) -> None:
 def told(card: CardView) -> dict[str, Any]:
     """A card as the page knows it."""
     hello = card.hello
-    return {
-        "id": card.id,
-        "connected": card.connected,
-        "address": card.address,
-        "state": card.state,
-        "job": card.job,
-        "upload": asdict(card.upload) if card.upload else None,
+    return card.outline() | {
         "status": asdict(card.status) if card.status else None,
         "firmware": hello.firmware if hello else 0,
         "axes": hello.axes if hello else 0,
