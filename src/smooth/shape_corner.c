@@ -250,6 +250,11 @@ static void insert(struct shape *s, const struct piece *p, int32_t pieces, const
     }
 }
 
+static bool is_arc(const struct piece *p)
+{
+    return p->kind != PIECE_LINE && p->kind != PIECE_CURVE;
+}
+
 /* Rounds the corner so, if that stays within the tolerance. */
 static bool rounded(struct shape *s, double half, double part, double tolerance)
 {
@@ -310,15 +315,14 @@ void shape_corner_round(struct shape *s, double tolerance)
     const double p = CUT * turn, q = CUT_CURVED * (kin + kout), most = fmin(of_a, of_b);
     const double plain = 2.0 * most / (p + sqrt(p * p + 4.0 * q * most));
     double room = fmin(before * (1.0 - 1e-9), behind);
-    room = a->kind != PIECE_LINE && a->kind != PIECE_CURVE ? fmin(room, ARC / kin) : room;
-    room = b->kind != PIECE_LINE && b->kind != PIECE_CURVE ? fmin(room, ARC / kout) : room;
+    const bool arcs[2] = { is_arc(a), is_arc(b) };
+    room = arcs[0] ? fmin(room, ARC / kin) : room;
+    room = arcs[1] ? fmin(room, ARC / kout) : room;
     if (turn >= BACK) {
         a->rest = true;
         return;
     }
-    const bool arcs = (a->kind != PIECE_LINE && a->kind != PIECE_CURVE)
-        || (b->kind != PIECE_LINE && b->kind != PIECE_CURVE);
-    const double off = FIRST * most * (arcs ? 1.0 - SAGITTA : 1.0) / (0.5 * turn);
+    const double off = FIRST * most * (arcs[0] || arcs[1] ? 1.0 - SAGITTA : 1.0) / (0.5 * turn);
     double half = fmin(room, off / (SWING * sqrt(1.0 - 0.25 * turn * turn)));
     for (int k = 0; k < SWINGS && half > fmax(plain, 0.5 * off / CUT) && half > LEAST;
          k++, half *= SWING_SHORTER) {
