@@ -19,9 +19,9 @@ enum mc_po_mode { MC_PO_LEVEL, MC_PO_PULSE };
 
 enum { MC_PO_WIDTH_LONGEST = 1000000 };     /* [us] */
 
-/* What an output shall do. */
+/* What an output shall do. No padding: it is copied whole into the state. */
 struct mc_po {
-    uint8_t  pin;           /* 0 .. 15 */
+    uint16_t pin;           /* 0 .. 15 */
     uint8_t  mode;          /* enum mc_po_mode */
     uint8_t  active;        /* level: what it becomes; pulse: its level: 1 high, 0 low */
     uint32_t width_us;      /* of a pulse, 1 .. MC_PO_WIDTH_LONGEST */
