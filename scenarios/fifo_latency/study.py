@@ -17,7 +17,7 @@ import numpy as np
 from rich.progress import track
 
 import motionfmu
-from motionfmu.report.study_picture import save
+from motionfmu.report.studies.study_picture import save
 
 HERE = Path(__file__).parent
 BASE = 2**12 * 10 * 25e-9  # [s] DDA time of the first two settings

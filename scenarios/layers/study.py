@@ -18,7 +18,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import motionfmu
-from motionfmu.report.study_picture import save
+from motionfmu.report.studies.study_picture import save
 
 HERE = Path(__file__).parent
 CLOCK = 25e-9  # [s]

@@ -20,7 +20,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import motionfmu
-from motionfmu.report.study_picture import save
+from motionfmu.report.studies.study_picture import save
 
 HERE = Path(__file__).parent
 HERTZ = 40e6

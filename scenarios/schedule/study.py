@@ -17,7 +17,7 @@ import numpy as np
 from rich.progress import track
 
 import motionfmu
-from motionfmu.report.study_picture import save
+from motionfmu.report.studies.study_picture import save
 
 HERE = Path(__file__).parent
 # Times of a point [ns]: a grid, and the last that holds and one clock more for both modules.

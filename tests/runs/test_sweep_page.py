@@ -41,7 +41,7 @@ def test_the_page_shows_the_cost_over_what_was_varied(
 ) -> None:
     from PIL import Image
 
-    from motionfmu.report import sweep, sweep_field
+    from motionfmu.report.studies import sweep, sweep_field
 
     names = [f"{GAIN}[{i + 1}]" for i in range(count)]
     outcome = synthetic(names, sampling, runs, tmp_path)
@@ -69,7 +69,7 @@ def test_the_page_shows_the_cost_over_what_was_varied(
 def test_a_page_of_equal_costs_or_of_none_is_written(
     cost: float | None, count: int, tmp_path: Path
 ) -> None:
-    from motionfmu.report import sweep
+    from motionfmu.report.studies import sweep
 
     names = [f"{GAIN}[{i + 1}]" for i in range(count)]
     outcome = synthetic(names, "grid", 3, tmp_path)
@@ -82,7 +82,7 @@ def test_a_page_of_equal_costs_or_of_none_is_written(
     "cost", [[0.0, 1.0], [3.0, 3.0], [-4e-7, 9e-7], [1e-3, 40.0], [2.0, 2.5], [0.0, 0.0]]
 )
 def test_levels_are_round_and_span_the_cost(cost: list[float]) -> None:
-    from motionfmu.report.sweep_field import levels
+    from motionfmu.report.studies.sweep_field import levels
 
     found = levels(np.array([*cost, math.nan]))
     assert found[0] <= min(cost) and found[-1] >= max(cost)

@@ -13,7 +13,7 @@ import motionfmu
 from motionfmu.errors import InputError, NoNumber
 from motionfmu.explain import explain_path
 from motionfmu.report import outcome
-from motionfmu.report.path_causes_page import write_path_explanation
+from motionfmu.report.causes.path_causes_page import write_path_explanation
 from motionfmu.study import columns
 
 PART = """%

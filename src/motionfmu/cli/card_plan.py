@@ -100,8 +100,8 @@ def _report(
     name: str, found: Any, drawing: "Drawing", numbers: dict[str, Any], folder: Path
 ) -> None:
     from motionfmu.report import outcome
-    from motionfmu.report.card_page import plan_page
-    from motionfmu.report.card_pictures import draw_plan
+    from motionfmu.report.jobs.card_page import plan_page
+    from motionfmu.report.jobs.card_pictures import draw_plan
 
     outcome.usable(folder)
     with outcome.whole(folder) as part:
@@ -150,7 +150,7 @@ def _show_drawing(file: Path, drawing: "Drawing", picture: Path | None) -> None:
         place = f"line {n.line}, column {n.column}, byte {n.byte}"
         out.print(f"passed over {n.text}{times} ({place})", markup=False, soft_wrap=True)
     if picture:
-        from motionfmu.report.card_pictures import draw_drawing
+        from motionfmu.report.jobs.card_pictures import draw_drawing
 
         draw_drawing(drawing, file.name, picture)
 
@@ -183,6 +183,6 @@ def _show_job(file: Path, found: "Job", picture: Path | None) -> None:
         active = "high" if e.level else "low"
         out.print(f"event {number}: output {pins}, {what} {active}, {times} times")
     if picture:
-        from motionfmu.report.card_pictures import draw_job
+        from motionfmu.report.jobs.card_pictures import draw_job
 
         draw_job(found, file.name, picture)

@@ -67,8 +67,8 @@ def _with_bar(work: Callable[..., T], name: str, path: Path, settings: dict[str,
 def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
     from motionfmu.explain import explain_path
     from motionfmu.report import outcome
+    from motionfmu.report.causes.path_causes_page import HEADS, write_path_explanation
     from motionfmu.report.numbers import length
-    from motionfmu.report.path_causes_page import HEADS, write_path_explanation
     from motionfmu.scenario.document import scenario_file
 
     name = scenario_file(path).parent.name
@@ -101,7 +101,7 @@ def bar_columns() -> tuple[Any, ...]:
 def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
     from motionfmu.explain import explain
     from motionfmu.report import outcome
-    from motionfmu.report.explain_page import write_explanation
+    from motionfmu.report.causes.explain_page import write_explanation
     from motionfmu.report.numbers import length
     from motionfmu.scenario.document import scenario_file
 

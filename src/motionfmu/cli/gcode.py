@@ -103,7 +103,13 @@ def _show(file: Path, program: "Program", target: Path) -> None:
     """Print what was found and write the report."""
     from motionfmu.gcode import strokes, summarise
     from motionfmu.report import outcome
-    from motionfmu.report.gcode_page import clock, fault_lines, metres, page_text, write_picture
+    from motionfmu.report.jobs.gcode_page import (
+        clock,
+        fault_lines,
+        metres,
+        page_text,
+        write_picture,
+    )
 
     for text in fault_lines(str(file), program):
         out.print(text, markup=False, soft_wrap=True)

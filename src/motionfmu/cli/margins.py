@@ -49,7 +49,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.linear import model
     from motionfmu.linear.opened import held
     from motionfmu.report import outcome
-    from motionfmu.report.margin_page import numbers, page_text
+    from motionfmu.report.servo.margin_page import numbers, page_text
 
     if gain is not None and loop is None:
         raise InputError(f"--gain {gain}: say with --loop which loop it belongs to")

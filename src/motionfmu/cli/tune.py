@@ -31,7 +31,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Find servo gains for a scenario's own path; write gains.toml and a report."""
     from motionfmu.report import outcome
-    from motionfmu.report.tune_page import page_text
+    from motionfmu.report.servo.tune_page import page_text
     from motionfmu.run import load
     from motionfmu.tune import problem, read
     from motionfmu.tune.words import plant_text

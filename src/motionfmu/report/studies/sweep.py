@@ -12,8 +12,7 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.report.packed import packed
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, COLORSCALE, INK, MUTED, axis, layout
-from motionfmu.report.sweep_field import (
+from motionfmu.report.studies.sweep_field import (
     CURVE,
     FIELD,
     MATRIX,
@@ -26,6 +25,7 @@ from motionfmu.report.sweep_field import (
     levels,
     logarithmic,
 )
+from motionfmu.report.style import AXES, COLORSCALE, INK, MUTED, axis, layout
 from motionfmu.report.tables import cards, picture_links, table
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def write_sweep(outcome: "Outcome", folder: Path) -> Path:
     part = folder / f".{PAGE}.part{os.getpid()}"
     try:
         if np.isfinite(outcome.cost).any():
-            from motionfmu.report.sweep_picture import write_picture
+            from motionfmu.report.studies.sweep_picture import write_picture
 
             write_picture(outcome, folder)
         part.write_text(page(outcome), encoding="utf-8")

@@ -10,8 +10,7 @@ from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, LogNorm, No
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from motionfmu.report.pictures import PLAIN, STABLE
-from motionfmu.report.style import AXES, GRID, HEAT, INK, MUTED
-from motionfmu.report.sweep_field import (
+from motionfmu.report.studies.sweep_field import (
     CURVE,
     FIELD,
     Dimension,
@@ -22,6 +21,7 @@ from motionfmu.report.sweep_field import (
     levels,
     logarithmic,
 )
+from motionfmu.report.style import AXES, GRID, HEAT, INK, MUTED
 
 if TYPE_CHECKING:
     from motionfmu.study.outcome import Outcome

@@ -9,7 +9,7 @@ from matplotlib.colors import to_hex
 from motionfmu.netcard.figures import speeds
 from motionfmu.netcard.plan import DRAWS, Plan
 from motionfmu.netcard.plt import Drawing
-from motionfmu.report.card_pictures import MOST, SPEEDS
+from motionfmu.report.jobs.card_pictures import MOST, SPEEDS
 from motionfmu.report.packed import packed
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, RAPID, axis, layout

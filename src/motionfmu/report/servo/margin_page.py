@@ -12,8 +12,8 @@ from motionfmu.freq.study import LoopStudy
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit
 from motionfmu.linear.opened import held, worst
-from motionfmu.report.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.numbers import figure
+from motionfmu.report.servo.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.tables import cards, table
 

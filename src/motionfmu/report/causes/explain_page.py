@@ -12,8 +12,8 @@ from motionfmu.contour.circles import CircularTest
 from motionfmu.explain import ballbar
 from motionfmu.explain.ballbar import Signature
 from motionfmu.explain.decompose import Effect, Explanation
+from motionfmu.report.causes.explain_picture import CAUSE, FORMULA, write_picture
 from motionfmu.report.decimate import keep_peaks
-from motionfmu.report.explain_picture import CAUSE, FORMULA, write_picture
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.sheet import Frame, Sheet

@@ -1,0 +1,1 @@
+"""Where the contour error comes from: its pages and pictures."""

@@ -1,0 +1,1 @@
+"""Programs and drawings before they run: their pages and pictures."""

@@ -1,0 +1,1 @@
+"""Margins and tuned gains: their pages and pictures."""
