@@ -3,7 +3,7 @@
     .venv/bin/python scenarios/robot_ivu/ten.py [picture.png]
 
 The first five runs begin each stroke from the one side, the others from the other side. The run of
-500 s takes about a minute; its report with the moving picture is results/robot_ivu_ten/report.html.
+500 s takes about a minute; its report with the moving picture is results/robot_ivu.ten/report.html.
 """
 
 import sys
@@ -24,7 +24,7 @@ from motionfmu.iso9283 import CommandPath, Cycle, Cycles, Evaluation, analyse
 from motionfmu.report import write_report
 
 HERE = Path(__file__).parent
-OUT = Path("results/robot_ivu_ten")
+OUT = Path("results/robot_ivu.ten")
 STOP = 500.0  # [s]
 WIDTH = 1.0  # [mm] of the pen
 SPEED = 8.0  # [mm/s]

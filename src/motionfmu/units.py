@@ -33,6 +33,11 @@ SYMBOLS: dict[str, tuple[float, dict[str, int]]] = {
 }
 
 
+# As a reader wants them on pages, in pictures and on the console; data keep FMI's names.
+SPELLED = {"um": "µm", "us": "µs", "deg": "°", "Ohm": "Ω"}
+POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
 @dataclass(frozen=True)
 class Unit:
     """A unit by its factor to SI and its base-unit exponents."""
@@ -73,6 +78,16 @@ def parse(name: str) -> Unit:
     if not 0.0 < factor < math.inf:
         raise ValueError(f'unit "{name}": beyond all numbers')
     return Unit(name, factor, tuple(total[b] for b in BASE))
+
+
+def spelled(name: str | None) -> str:
+    """A unit for a reader: ``mm/s²``, ``N·m``, ``°/s``, ``µm``; nothing for a bare number."""
+
+    def symbol(match: re.Match[str]) -> str:
+        return SPELLED.get(match[1], match[1]) + match[2].translate(POWERS)
+
+    plain = "" if name in (None, "1") else str(name)
+    return re.sub(r"([A-Za-z]+)(-?[0-9]*)", symbol, plain).replace(".", "·")
 
 
 def convertible(a: str | None, b: str | None) -> bool:

@@ -23,7 +23,7 @@ def test_a_good_program_gets_a_report(tmp_path: Path) -> None:
     code, text = command(GOOD, "--out", tmp_path)
     assert code == 0, text
     assert "T1" in text and "T2" in text
-    folder = tmp_path / "post_mill-gcode"
+    folder = tmp_path / "post_mill.gcode"
     assert {f.name for f in folder.iterdir()} == {
         *("report.html", "path.png", "path.svg", "result.json")
     }
@@ -62,7 +62,7 @@ def test_notes_are_told_and_on_the_page(tmp_path: Path) -> None:
     file.write_text("G1 X5 F60 (PRINT, <b>)\nM19\nM2\n")
     code, text = command(file, "--out", tmp_path)
     assert code == 0 and f"{file}:2:1: note: the spindle stops, it has no angle M19" in text
-    page = (tmp_path / "part-gcode" / "report.html").read_text()
+    page = (tmp_path / "part.gcode" / "report.html").read_text()
     assert "(PRINT, &lt;b&gt;)" in page and "Accepted, and without effect" in page
 
 

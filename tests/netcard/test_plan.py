@@ -270,9 +270,9 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     numbers = json.loads(told.stdout)
     assert numbers["contours"] == 3 and numbers["way_up"] <= numbers["way_up_file"] + 1e-6
     assert numbers["size"] == Path("a.mcj").stat().st_size
-    assert json.loads(Path("results/a-plan/result.json").read_text()) == numbers
-    page = Path("results/a-plan/report.html").read_text()
-    assert "Speed of the axes" in page and Path("results/a-plan/plan.png").stat().st_size > 10_000
+    assert json.loads(Path("results/a.plan/result.json").read_text()) == numbers
+    page = Path("results/a.plan/report.html").read_text()
+    assert "Speed of the axes" in page and Path("results/a.plan/plan.png").stat().st_size > 10_000
     plain = run(app, words, catch_exceptions=False)
     assert "3 contours, 12 segments" in plain.stdout
     for file, text in (("a.plt", "pen"), ("a.mcj", "event 1: output 0, level high, 3 times")):

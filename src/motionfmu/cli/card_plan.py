@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from motionfmu.cli.card import card
-from motionfmu.cli.common import FAILED, bare_table, out
+from motionfmu.cli.common import FAILED, bare_table, out, results
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     else:
         _tell(file, target, numbers, told.get("way_up_file"))
     if report:
-        folder = Path("results") / f"{file.stem}-plan"
+        folder = results(file.stem, "plan")
         _report(file.stem, found, drawing, told, folder)
         if not as_json:
             out.print(f"report: {folder / 'report.html'}", soft_wrap=True)

@@ -55,6 +55,12 @@ def settings(texts: list[str]) -> dict[str, Any]:
     return found
 
 
+def results(name: str, kind: str = "") -> Path:
+    """The folder in which a command leaves its result."""
+    # A run's has the scenario's name alone; any other ends with the command's: circle.tune.
+    return Path("results") / (f"{name}.{kind}" if kind else name)
+
+
 def bare_table(*headings: str) -> Table:
     """Table without lines."""
     table = Table(box=None, header_style="dim")

@@ -13,6 +13,7 @@ from motionfmu.cli.common import (
     bare_table,
     out,
     progress_bar,
+    results,
     run_shown,
     settings,
 )
@@ -72,7 +73,7 @@ def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> 
     from motionfmu.scenario.document import scenario_file
 
     name = scenario_file(path).parent.name
-    target = outcome.usable(folder or Path("results") / f"{name}_path")
+    target = outcome.usable(folder or results(name, "iso9283"))
     found = _with_bar(explain_path, name, path, settings)
     kinds = [n for n in HEADS if n in found.figures]
     table = bare_table("cause")
@@ -106,7 +107,7 @@ def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
     from motionfmu.scenario.document import scenario_file
 
     name = scenario_file(path).parent.name
-    target = outcome.usable(folder or Path("results") / f"{name}_contour")
+    target = outcome.usable(folder or results(name, "contour"))
     found = _with_bar(explain, name, path, settings)
     table = bare_table("cause")
     for heading in ("largest", "99 %", "theory", "error without"):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from motionfmu.cli.common import FAILED, app, bare_table, out
+from motionfmu.cli.common import FAILED, app, bare_table, out, results
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         found = _numbers(program)
         told[str(file)] = found
         if not as_json:
-            target = (folder or Path("results")) / f"{file.stem}-gcode"
+            target = (folder / f"{file.stem}.gcode") if folder else results(file.stem, "gcode")
             _show(file, program, target)
     if as_json:
         print(json.dumps(told, indent=1, allow_nan=False))

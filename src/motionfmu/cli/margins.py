@@ -15,6 +15,7 @@ from motionfmu.cli.common import (
     bare_table,
     out,
     progress_bar,
+    results,
     setting,
     settings,
 )
@@ -55,7 +56,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
         raise InputError(f"--gain {gain}: say with --loop which loop it belongs to")
     point = dict(setting(text) for text in at)
     linear = model(path, axis, point, settings(set_))
-    target = outcome.usable(folder or Path("results") / f"{linear.scenario.name}-margins")
+    target = outcome.usable(folder or results(linear.scenario.name, "margins"))
     gains = {loop: gain} if loop is not None and gain is not None else {}
     studies = _study(linear, Asked(loop, gains, simulate, kick))
     with outcome.whole(target) as part:

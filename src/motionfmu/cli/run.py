@@ -13,6 +13,7 @@ from motionfmu.cli.common import (
     app,
     bare_table,
     out,
+    results,
     run_shown,
     settings,
 )
@@ -72,7 +73,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.run import load
 
     scenario = load(path)
-    target = outcome.usable(folder or Path("results") / scenario.name)
+    target = outcome.usable(folder or results(scenario.name))
     options: dict[str, Any] = {
         "engine": engine,
         "fmi": _version(engine, fmi),

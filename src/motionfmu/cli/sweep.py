@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from motionfmu.cli.common import FAILED, STOPPED, Set, app, out, progress_bar, settings
+from motionfmu.cli.common import (
+    FAILED,
+    STOPPED,
+    Set,
+    app,
+    out,
+    progress_bar,
+    results,
+    settings,
+)
 
 if TYPE_CHECKING:
     from motionfmu.sweep import Outcome, Study, Ways
@@ -79,7 +88,7 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
     given["set"] = settings(set_) or None
     given["axis"] = dict(option(text) for text in vary) or None
     chosen = sweeps.study(path, given)
-    target = folder or Path("results") / f"{chosen.name}.sweep"
+    target = folder or results(chosen.name, "sweep")
     outcome = _sweep(chosen, target, sweeps.Ways(workers, scheduler, new))
     before = f", {outcome.resumed} of them before" if outcome.resumed else ""
     out.print(f"{chosen.name}: {len(outcome.rows)} runs{before}, {outcome.errors} with an error")

@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from motionfmu.cli.common import ScenarioPath, Set, app, bare_table, out, progress_bar, settings
+from motionfmu.cli.common import (
+    ScenarioPath,
+    Set,
+    app,
+    bare_table,
+    out,
+    progress_bar,
+    results,
+    settings,
+)
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
@@ -44,7 +53,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     values |= {"axes": "equal"} if equal else {}
     values |= {"cost": cost} if cost else {}
     asked = problem(values)
-    target = outcome.usable(folder or Path("results") / f"{scenario.name}-tune")
+    target = outcome.usable(folder or results(scenario.name, "tune"))
     tuned = _tune(scenario, asked, settings(set_))
     with outcome.whole(target) as part:
         (part / "report.html").write_text(page_text(tuned), encoding="utf-8")

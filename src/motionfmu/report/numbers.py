@@ -2,18 +2,26 @@
 
 import math
 
+from motionfmu.units import spelled
+
 MINUS = "\N{MINUS SIGN}"
 # At the chosen magnification the usual error, and the largest, are these parts of the path's size.
 SHARE_USUAL = 0.05
 SHARE_LARGEST = 0.2
 # The largest error stays below this part of the way between two corners: details stay apart.
 SHARE_REACH = 0.5
-# Lengths from here on read better in mm than in um [mm].
+# Lengths from here on read better in mm than in µm [mm].
 MILLIMETRES_FROM = 1.0
 
 
+def label(name: str, unit: str | None) -> str:
+    """A quantity with its unit as it is spelled on all pages."""
+    text = spelled(unit)
+    return f"{name} [{text}]" if text else name
+
+
 def length(value: float, sign: bool = False) -> str:
-    """A length [mm] in um or mm: three or four digits, a true minus."""
+    """A length [mm] in µm or mm: three or four digits, a true minus."""
     size = abs(value)
     if size >= MILLIMETRES_FROM:
         return f"{figure(value, sign)} mm"

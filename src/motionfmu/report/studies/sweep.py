@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionfmu.errors import InputError
+from motionfmu.report.numbers import label
 from motionfmu.report.packed import packed
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.studies.sweep_field import (
@@ -21,7 +22,6 @@ from motionfmu.report.studies.sweep_field import (
     dimensions,
     field,
     kind,
-    label,
     levels,
     logarithmic,
 )

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import griddata
 from scipy.spatial import QhullError
 
+from motionfmu.report.numbers import label
+
 if TYPE_CHECKING:
     from motionfmu.study.axes import Value
     from motionfmu.study.outcome import Outcome
@@ -55,11 +57,6 @@ class Field:
     x: Array  # (n,) in the variable's unit
     y: Array  # (m,)
     z: Array  # (m, n) cost; NaN where there is none
-
-
-def label(name: str, unit: str) -> str:
-    """A quantity with its unit, which may be empty."""
-    return f"{name} [{unit}]" if unit and unit != "1" else name
 
 
 def cost_label(outcome: "Outcome") -> str:
