@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator, ScalarFormatter
 
@@ -34,11 +33,8 @@ def write_charts(charts: Sequence[Chart], folder: Path) -> None:
     with matplotlib.rc_context(PLAIN | STABLE | MARKS):
         for number, chart in enumerate(charts, 1):
             picture = chart_picture(chart)
-            try:
-                picture.savefig(folder / f"figure{number}.png", dpi=DPI)
-                picture.savefig(folder / f"figure{number}.svg", metadata={"Date": None})
-            finally:
-                plt.close(picture)
+            picture.savefig(folder / f"figure{number}.png", dpi=DPI)
+            picture.savefig(folder / f"figure{number}.svg", metadata={"Date": None})
 
 
 def chart_picture(chart: Chart) -> Figure:
@@ -48,7 +44,7 @@ def chart_picture(chart: Chart) -> Figure:
     rows = sum(_rows(p) for p in chart.panels if p.legend)
     sizes = heights(chart, HEIGHTS)
     height = head + sum(sizes) + LEGEND_ROW * rows + BELOW
-    picture = plt.figure(figsize=(WIDTH, height))
+    picture = Figure(figsize=(WIDTH, height))
     left, top = MARGIN / WIDTH, 1.0 - MARGIN / height
     place: Any = {"ha": "left", "va": "top", "linespacing": 1.2}
     picture.text(left, top, "\n".join(title), fontsize=14, fontweight="bold", **place)

@@ -4,11 +4,8 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-
-matplotlib.use("Agg")  # no window, no display
-
 import numpy as np
-from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
 
 from motionfmu.contour.circles import plane_axes
 from motionfmu.iso9283 import Evaluation, Performance
@@ -26,24 +23,19 @@ def write_picture(name: str, found: Evaluation, folder: Path) -> None:
     path = found.path
     drawn = parts(path)
     with matplotlib.rc_context(PLAIN | STABLE):
-        picture = plt.figure(figsize=(12.0, 5.4), layout="constrained")
-        try:
-            grid: Any = picture.add_gridspec(len(drawn), 2)
-            factor = _plan(picture.add_subplot(grid[:, 0]), path)
-            for i in range(len(drawn)):
-                _along(picture.add_subplot(grid[i, 1]), path, i)
-            told = (
-                f"{name}: {len(path.given.cycles)} cycles, deviation {factor:,.0f} times as large"
-            )
-            numbers = f"AT_P {length(float(path.accuracy.max()))}"
-            if path.repeatability is not None:
-                numbers += f", RT_P {length(float(path.repeatability.max()))}"
-            picture.suptitle(f"{told}\n{numbers}", x=0.01, ha="left", fontsize=13)
-            for file in PICTURES:
-                plain = {"Date": None} if file.endswith("svg") else None
-                picture.savefig(folder / file, dpi=120, metadata=plain)
-        finally:
-            plt.close(picture)
+        picture = Figure(figsize=(12.0, 5.4), layout="constrained")
+        grid: Any = picture.add_gridspec(len(drawn), 2)
+        factor = _plan(picture.add_subplot(grid[:, 0]), path)
+        for i in range(len(drawn)):
+            _along(picture.add_subplot(grid[i, 1]), path, i)
+        told = f"{name}: {len(path.given.cycles)} cycles, deviation {factor:,.0f} times as large"
+        numbers = f"AT_P {length(float(path.accuracy.max()))}"
+        if path.repeatability is not None:
+            numbers += f", RT_P {length(float(path.repeatability.max()))}"
+        picture.suptitle(f"{told}\n{numbers}", x=0.01, ha="left", fontsize=13)
+        for file in PICTURES:
+            plain = {"Date": None} if file.endswith("svg") else None
+            picture.savefig(folder / file, dpi=120, metadata=plain)
 
 
 def _plan(axes: Any, path: Performance) -> float:

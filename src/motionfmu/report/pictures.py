@@ -4,13 +4,10 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-
-matplotlib.use("Agg")  # no window, no display
-
 import numpy as np
-from matplotlib import pyplot as plt
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from motionfmu.contour import ContourResult
@@ -34,37 +31,40 @@ PLAIN: dict[Any, Any] = {
 def write_pictures(name: str, contour: ContourResult, drawing: Drawing, folder: Path) -> None:
     """Draw the path with its magnified error, as `PICTURES`."""
     with matplotlib.rc_context(PLAIN | STABLE):
-        figure = plt.figure(figsize=(10.0, 8.0), layout="constrained")
-        try:
-            space = len(drawing.names) == 3
-            axes: Any = figure.add_subplot(projection="3d" if space else None)
-            lines = _draw(axes, drawing)
-            bar = figure.colorbar(lines, ax=axes, shrink=0.7, aspect=28, pad=0.02)
-            bar.set_label("Contour error [µm]")
-            bar.outline.set_visible(False)
-            _dress(axes, drawing)
-            axes.set_title(
-                f"{name}: contour error drawn {drawing.magnify:,.0f} times as large",
-                loc="left",
-                fontsize=14,
-                fontweight="bold",
-                pad=26 if not space else 10,
-            )
-            numbers = f"largest {length(contour.error.max)} in line {contour.error.line}"
-            place = axes.text2D if space else axes.text
-            place(
-                0.0,
-                1.02,
-                f"{numbers}, RMS {length(contour.error.rms)}",
-                transform=axes.transAxes,
-                color=MUTED,
-                fontsize=11,
-            )
-            for file in PICTURES:
-                plain = {"Date": None} if file.endswith("svg") else None
-                figure.savefig(folder / file, dpi=160, metadata=plain)
-        finally:
-            plt.close(figure)
+        figure = path_picture(name, contour, drawing)
+        for file in PICTURES:
+            plain = {"Date": None} if file.endswith("svg") else None
+            figure.savefig(folder / file, dpi=160, metadata=plain)
+
+
+def path_picture(name: str, contour: ContourResult, drawing: Drawing) -> Figure:
+    """The path with its magnified error."""
+    figure = Figure(figsize=(10.0, 8.0), layout="constrained")
+    space = len(drawing.names) == 3
+    axes: Any = figure.add_subplot(projection="3d" if space else None)
+    lines = _draw(axes, drawing)
+    bar = figure.colorbar(lines, ax=axes, shrink=0.7, aspect=28, pad=0.02)
+    bar.set_label("Contour error [µm]")
+    bar.outline.set_visible(False)
+    _dress(axes, drawing)
+    axes.set_title(
+        f"{name}: contour error drawn {drawing.magnify:,.0f} times as large",
+        loc="left",
+        fontsize=14,
+        fontweight="bold",
+        pad=26 if not space else 10,
+    )
+    numbers = f"largest {length(contour.error.max)} in line {contour.error.line}"
+    place = axes.text2D if space else axes.text
+    place(
+        0.0,
+        1.02,
+        f"{numbers}, RMS {length(contour.error.rms)}",
+        transform=axes.transAxes,
+        color=MUTED,
+        fontsize=11,
+    )
+    return figure
 
 
 def _draw(axes: Any, drawing: Drawing) -> Any:

@@ -5,11 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import matplotlib
-
-matplotlib.use("Agg")  # no window, no display
-
 import numpy as np
-from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
 
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.pictures import PLAIN, STABLE
@@ -27,18 +24,15 @@ def write_picture(found: "Explanation", folder: Path) -> None:
     """Draw the causes, and the first circle run both ways round."""
     polar = bool(found.signatures)
     with matplotlib.rc_context(PLAIN | STABLE):
-        drawn = plt.figure(figsize=(11.0, 4.6) if polar else (8.0, 4.0), layout="constrained")
-        try:
-            left: Any = drawn.add_subplot(1, 2 if polar else 1, 1)
-            _bars(left, [e for e in found.effects if e.judged and (e.size > 0.0 or e.theory.value)])
-            left.set_title(f"{found.result.name}: causes of the contour error", loc="left")
-            if polar:
-                _polar(drawn.add_subplot(1, 2, 2, projection="polar"), found)
-            for file in PICTURES:
-                plain = {"Date": None} if file.endswith("svg") else None
-                drawn.savefig(folder / file, dpi=100, metadata=plain)
-        finally:
-            plt.close(drawn)
+        drawn = Figure(figsize=(11.0, 4.6) if polar else (8.0, 4.0), layout="constrained")
+        left: Any = drawn.add_subplot(1, 2 if polar else 1, 1)
+        _bars(left, [e for e in found.effects if e.judged and (e.size > 0.0 or e.theory.value)])
+        left.set_title(f"{found.result.name}: causes of the contour error", loc="left")
+        if polar:
+            _polar(drawn.add_subplot(1, 2, 2, projection="polar"), found)
+        for file in PICTURES:
+            plain = {"Date": None} if file.endswith("svg") else None
+            drawn.savefig(folder / file, dpi=100, metadata=plain)
 
 
 def _bars(axes: Any, effects: "list[Effect]") -> None:

@@ -6,11 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-
-matplotlib.use("Agg")  # no window, no display
-
 import numpy as np
-from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
 
 from motionfmu.explain.path_causes import FIGURES, PathEffect, PathExplanation
 from motionfmu.report.numbers import figure, length, unit
@@ -145,26 +142,23 @@ def _write_picture(found: PathExplanation, folder: Path) -> None:
     factor, name = unit(max(e.size for e in effects))
     height = 0.8 / len(kinds)
     with matplotlib.rc_context(PLAIN | STABLE):
-        drawn = plt.figure(figsize=(9.0, 1.4 + 0.62 * len(effects)), layout="constrained")
-        try:
-            axes: Any = drawn.add_subplot()
-            place = np.arange(len(effects))
-            for i, kind in enumerate(kinds):
-                sizes = [factor * e.figures[kind] for e in effects]
-                shift = (i - 0.5 * (len(kinds) - 1)) * height
-                color = AXES[len(kinds) - 1 - i]
-                axes.barh(place + shift, sizes, 0.92 * height, color=color, label=HEADS[kind])
-            axes.set_yticks(place, [e.title for e in effects], color=INK)
-            axes.set_xlabel(f"Of the change by the cause [{name}]")
-            told = f"AT_P {length(found.figures['accuracy'])}"
-            axes.set_title(f"{found.result.name}: causes of the deviation, {told}", loc="left")
-            axes.grid(axis="x", color=GRID)
-            axes.set_axisbelow(True)
-            axes.tick_params(length=0)
-            axes.spines[:].set_visible(False)
-            axes.legend(frameon=False, loc="lower right", reverse=True)
-            for file in PICTURES:
-                plain = {"Date": None} if file.endswith("svg") else None
-                drawn.savefig(folder / file, dpi=100, metadata=plain)
-        finally:
-            plt.close(drawn)
+        drawn = Figure(figsize=(9.0, 1.4 + 0.62 * len(effects)), layout="constrained")
+        axes: Any = drawn.add_subplot()
+        place = np.arange(len(effects))
+        for i, kind in enumerate(kinds):
+            sizes = [factor * e.figures[kind] for e in effects]
+            shift = (i - 0.5 * (len(kinds) - 1)) * height
+            color = AXES[len(kinds) - 1 - i]
+            axes.barh(place + shift, sizes, 0.92 * height, color=color, label=HEADS[kind])
+        axes.set_yticks(place, [e.title for e in effects], color=INK)
+        axes.set_xlabel(f"Of the change by the cause [{name}]")
+        told = f"AT_P {length(found.figures['accuracy'])}"
+        axes.set_title(f"{found.result.name}: causes of the deviation, {told}", loc="left")
+        axes.grid(axis="x", color=GRID)
+        axes.set_axisbelow(True)
+        axes.tick_params(length=0)
+        axes.spines[:].set_visible(False)
+        axes.legend(frameon=False, loc="lower right", reverse=True)
+        for file in PICTURES:
+            plain = {"Date": None} if file.endswith("svg") else None
+            drawn.savefig(folder / file, dpi=100, metadata=plain)

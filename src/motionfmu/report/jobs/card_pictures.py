@@ -6,13 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-
-matplotlib.use("Agg")  # no window, no display
-
 import numpy as np
-from matplotlib import pyplot as plt
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
 
 from motionfmu.errors import InputError
 from motionfmu.netcard.figures import speeds
@@ -33,13 +30,8 @@ def _sheet(file: Path, title: str, rows: int) -> Iterator[list[Any]]:
     with matplotlib.rc_context(PLAIN | STABLE):
         high = (7.5, 9.5, 10.5)[rows - 1]
         ratios = [5.0, *[1.3] * (rows - 1)]
-        figure, axes = plt.subplots(
-            rows,
-            figsize=(9.0, high),
-            layout="constrained",
-            height_ratios=ratios,
-            squeeze=False,
-        )
+        figure = Figure(figsize=(9.0, high), layout="constrained")
+        axes: Any = figure.subplots(rows, height_ratios=ratios, squeeze=False)
         try:
             path = axes[0, 0]
             path.set(xlabel="X [mm]", ylabel="Y [mm]")
@@ -55,8 +47,6 @@ def _sheet(file: Path, title: str, rows: int) -> Iterator[list[Any]]:
             figure.savefig(file, dpi=140, metadata=plain)
         except OSError as error:
             raise InputError(f"cannot write {file}: {error.strerror}") from None
-        finally:
-            plt.close(figure)
 
 
 def _lines(axes: Any, parts: list[np.ndarray], **look: Any) -> None:

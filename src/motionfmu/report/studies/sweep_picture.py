@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
-from matplotlib import pyplot as plt
 from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, LogNorm, Normalize
+from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from motionfmu.report.pictures import PLAIN, STABLE
@@ -56,11 +56,8 @@ def write_picture(outcome: "Outcome", folder: Path) -> None:
             picture = _curve(outcome)
         else:
             picture = _matrix(outcome)
-        try:
-            picture.savefig(folder / "sweep.png", dpi=DPI)
-            picture.savefig(folder / "sweep.svg", metadata={"Date": None})
-        finally:
-            plt.close(picture)
+        picture.savefig(folder / "sweep.png", dpi=DPI)
+        picture.savefig(folder / "sweep.svg", metadata={"Date": None})
 
 
 def _dress(axes: Any) -> None:
@@ -117,7 +114,8 @@ def _marks(outcome: "Outcome", axes: Any, shown: list[Dimension]) -> None:
 def _field(outcome: "Outcome") -> Any:
     found, shown = field(outcome), dimensions(outcome)
     assert found is not None, "kind() has seen it"
-    picture, axes = plt.subplots(figsize=(8.2, 5.6), layout="constrained")
+    picture = Figure(figsize=(8.2, 5.6), layout="constrained")
+    axes: Any = picture.add_subplot()
     steps = levels(found.z)
     drawn, at = (np.log10(found.z), np.log10(steps)) if logarithmic(found.z) else (found.z, steps)
     whole, names = (
@@ -147,7 +145,8 @@ def _field(outcome: "Outcome") -> Any:
 
 def _curve(outcome: "Outcome") -> Any:
     (shown,), cost = dimensions(outcome), outcome.cost
-    picture, axes = plt.subplots(figsize=(8.2, 4.2), layout="constrained")
+    picture = Figure(figsize=(8.2, 4.2), layout="constrained")
+    axes: Any = picture.add_subplot()
     x = shown.numbers
     order = np.argsort(x, kind="stable")
     line = "-" if shown.numeric else ""
@@ -182,9 +181,8 @@ def _matrix(outcome: "Outcome") -> Any:
     limits = np.nanmin(cost), np.nanmax(cost)
     norm = (LogNorm if logarithmic(cost) else Normalize)(*limits)
     size = (SIDE * n + 1.6, SIDE * n + 0.6)
-    picture, grid = plt.subplots(
-        n, n, figsize=size, layout="constrained", sharex="col", squeeze=False
-    )
+    picture = Figure(figsize=size, layout="constrained")
+    grid: Any = picture.subplots(n, n, sharex="col", squeeze=False)
     points: Any = None
     for i in range(n):
         for j in range(n):
