@@ -12,7 +12,7 @@ import numpy as np
 from fmpy import extract, fmi2, fmi3, read_model_description
 from fmpy.fmi1 import FMICallException
 
-from motionfmu.scenario.fmus import fmu_path
+from motionfmu.scenarios.fmus import fmu_path
 
 OK, WARNING, ERROR = 0, 1, 3
 _FOLDERS: list[tempfile.TemporaryDirectory[str]] = []

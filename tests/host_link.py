@@ -12,7 +12,7 @@ import numpy as np
 from fmpy import extract
 
 from motionfmu.run.engines.slave import Slave
-from motionfmu.scenario import fmus
+from motionfmu.scenarios import fmus
 
 STEP = 1e-4  # [s] communication step and bus period
 CLOCK = 25e-9  # [s]

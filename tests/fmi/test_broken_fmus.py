@@ -10,7 +10,7 @@ from conftest import FMUS, ROOT
 
 import motionfmu
 from motionfmu import sweep
-from motionfmu.scenario import fmus
+from motionfmu.scenarios import fmus
 
 NAME = "velocity_axes"
 Files = dict[str, bytes]

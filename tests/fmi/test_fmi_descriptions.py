@@ -13,7 +13,7 @@ from conftest import ROOT
 from fmi_tools import unpacked
 from fmpy.validation import validate_fmu
 
-from motionfmu.scenario.fmus import fmu_names, fmu_path
+from motionfmu.scenarios.fmus import fmu_names, fmu_path
 
 every_fmu = pytest.mark.parametrize("name", fmu_names())
 both = pytest.mark.parametrize("fmi", (2, 3))

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from fmi_tools import ERROR, OK, Instance, Variable, start_values, unpacked
 
-from motionfmu.scenario.fmus import fmu_names
+from motionfmu.scenarios.fmus import fmu_names
 
 every_fmu = pytest.mark.parametrize("name", fmu_names())
 both = pytest.mark.parametrize("fmi", (2, 3))

@@ -9,7 +9,7 @@ from fmi_tools import OK, Instance, random_inputs, run, start_values, unpacked
 from fmpy import simulate_fmu
 from fmpy.build import build_platform_binary
 
-from motionfmu.scenario.fmus import fmu_names, fmu_path
+from motionfmu.scenarios.fmus import fmu_names, fmu_path
 
 STEPS = 40
 VERSIONS = (2, 3)

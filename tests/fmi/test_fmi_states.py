@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from fmi_tools import ERROR, OK, Instance, start_values
 
-from motionfmu.scenario.fmus import fmu_names
+from motionfmu.scenarios.fmus import fmu_names
 
 STEP = 1e-3  # [s]
 

@@ -26,7 +26,7 @@ from motionfmu.errors import InputError
 from motionfmu.fmu import fmu_toml
 from motionfmu.fmu.modelica import description
 from motionfmu.run.engines.slave import Slave
-from motionfmu.scenario.fmus import fmu_path
+from motionfmu.scenarios.fmus import fmu_path
 
 SECONDS = float(os.environ.get("MOTIONFMU_FUZZ", "0"))
 ROUND = 500  # examples between two looks at the clock

@@ -13,7 +13,7 @@ from fmi_tools import OK, Instance
 from motionfmu.linear import law
 from motionfmu.linear.block import Sampled, reaches
 from motionfmu.linear.form import Form, evaluate
-from motionfmu.scenario import fmus
+from motionfmu.scenarios import fmus
 
 LAWS = sorted(p.parent.name for p in ROOT.glob("fmus/*/linear.toml"))
 AXIS = 2

@@ -13,8 +13,8 @@ from conftest import ROOT
 import motionfmu
 from motionfmu.run import contrary
 from motionfmu.run.checks import judge
-from motionfmu.scenario import document
-from motionfmu.scenario.document import Check
+from motionfmu.scenarios import document
+from motionfmu.scenarios.document import Check
 
 FOLDERS = sorted(p.parent for p in ROOT.glob("scenarios/*/scenario.toml"))
 SMALL = ROOT / "scenarios/interrupt_sources/scenario.toml"

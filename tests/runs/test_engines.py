@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu.scenario import document
+from motionfmu.scenarios import document
 
 NAMES = sorted(p.parent.name for p in ROOT.glob("scenarios/*/scenario.toml"))
 # A scenario's tests go to one worker, which makes its usual run once.

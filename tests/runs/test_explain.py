@@ -20,7 +20,7 @@ from motionfmu.errors import InputError
 from motionfmu.explain import causes, decompose, explain, servo, signature, theory
 from motionfmu.explain.expression import evaluate
 from motionfmu.explain.servo import Axis
-from motionfmu.scenario import fmus
+from motionfmu.scenarios import fmus
 
 RADIUS, FEED, GAIN = 10.0, 30.0, 400  # [mm], [mm/s], register
 PER_GAIN = 20.0 / 65536.0 * 300.0 / 60.0 * 10_000 / 2**6  # [1/s] position gain per register unit

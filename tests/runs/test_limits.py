@@ -11,7 +11,7 @@ import motionfmu
 from motionfmu import sweep, toml_lines, tune
 from motionfmu.errors import InputError
 from motionfmu.run.session import Session
-from motionfmu.scenario import recording
+from motionfmu.scenarios import recording
 from motionfmu.toml_lines import SIZE_MAX, tables_of, text_of, word
 
 TRACE = '[component]\ntrace = "scope"\n'

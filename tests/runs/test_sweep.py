@@ -22,8 +22,8 @@ from hypothesis import strategies as st
 
 import motionfmu
 from motionfmu.run.session import Session
-from motionfmu.scenario.document import Check
-from motionfmu.scenario.system import End
+from motionfmu.scenarios.document import Check
+from motionfmu.scenarios.system import End
 from motionfmu.study import axes, book, columns, processes, worker
 from motionfmu.sweep import Outcome, Study, Ways, conduct, study
 

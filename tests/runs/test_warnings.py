@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 
 from motionfmu import load
 from motionfmu.cli import app
-from motionfmu.scenario import fmus
-from motionfmu.scenario.grids import grid
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.grids import grid
 
 THEORY = ROOT / "scenarios/circle_theory"
 LAG, H = 5e-3, 2e-3

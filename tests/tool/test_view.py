@@ -180,7 +180,7 @@ def test_a_scene_is_the_run(circle, tmp_path: Path) -> None:
 
 def recorded(view: dict, **signals):
     """A run of an arm that no FMU here has made."""
-    from motionfmu.scenario.analyses import View
+    from motionfmu.scenarios.analyses import View
 
     def port(shape, causality="output", unit="m"):
         return SimpleNamespace(shape=shape, causality=causality, unit=unit, count=math.prod(shape))

@@ -12,7 +12,7 @@ from motionfmu.errors import InputError
 @app.command("list")
 def list_all() -> None:
     """List the FMUs that are built and the scenarios of this project."""
-    from motionfmu.scenario import document, fmus
+    from motionfmu.scenarios import document, fmus
 
     out.print("[bold]FMUs[/]")
     for name in fmus.fmu_names():
@@ -25,7 +25,7 @@ def list_all() -> None:
 @app.command()
 def info(what: Annotated[str, typer.Argument(help="An FMU's name, or a scenario.")]) -> None:
     """Show the variables of an FMU, or what a scenario is made of."""
-    from motionfmu.scenario import fmus
+    from motionfmu.scenarios import fmus
 
     if what in fmus.fmu_names():
         _describe(what)
@@ -60,7 +60,7 @@ def describe(
         return
     import zipfile
 
-    from motionfmu.scenario import fmus
+    from motionfmu.scenarios import fmus
 
     path = fmus.fmu_path(name, fmi)
     try:
@@ -71,7 +71,7 @@ def describe(
 
 
 def _describe(name: str) -> None:
-    from motionfmu.scenario import fmus
+    from motionfmu.scenarios import fmus
 
     table = bare_table()
     for heading in ("", "variable", "type", "unit"):

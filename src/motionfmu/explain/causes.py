@@ -16,12 +16,12 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from motionfmu.errors import InputError
 from motionfmu.explain.expression import evaluate
 from motionfmu.fmu.pack import EXTRA
-from motionfmu.scenario import fmus
+from motionfmu.scenarios import fmus
 from motionfmu.toml_lines import tables_of
 
 if TYPE_CHECKING:
     from motionfmu.run import Result, Scenario
-    from motionfmu.scenario.fmus import Port
+    from motionfmu.scenarios.fmus import Port
 
 RESOURCE = f"{EXTRA}/causes.toml"
 THEORY = "theory"

@@ -16,8 +16,8 @@ from motionfmu.explain.causes import Cause, Off
 from motionfmu.explain.effects import Effects
 from motionfmu.explain.servo import Array
 from motionfmu.run import load
-from motionfmu.scenario import recording
-from motionfmu.scenario.contour_signals import library_of
+from motionfmu.scenarios import recording
+from motionfmu.scenarios.contour_signals import library_of
 
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult

@@ -20,9 +20,9 @@ from motionfmu.linear.margins import moving
 from motionfmu.linear.wiring import Port
 from motionfmu.run import Options
 from motionfmu.run.engines.slave import Slave
-from motionfmu.scenario import fmus
-from motionfmu.scenario.system import System, Wire
-from motionfmu.scenario.values import values_of
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.system import System, Wire
+from motionfmu.scenarios.values import values_of
 
 Array = NDArray[np.float64]
 # Logarithm of how far a start must have died away, and how long that may take [s].

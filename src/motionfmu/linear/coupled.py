@@ -10,8 +10,8 @@ from scipy.linalg import block_diag
 from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear.block import Plant, Sampled
 from motionfmu.linear.plant import Point
-from motionfmu.scenario.fmus import Port
-from motionfmu.scenario.system import Wire
+from motionfmu.scenarios.fmus import Port
+from motionfmu.scenarios.system import Wire
 
 # What a law names: in order, and with a value.
 _NAMES = "inputs", "commands", "states", "outputs", "early", "direct"

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from motionfmu.run import Scenario
-from motionfmu.scenario.fmus import Port
-from motionfmu.scenario.system import System
+from motionfmu.scenarios.fmus import Port
+from motionfmu.scenarios.system import System
 
 
 def element(ports: Mapping[str, Port], name: str, axis: int) -> tuple[Port, int]:

@@ -15,8 +15,8 @@ from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.fmu.pack import EXTRA
 from motionfmu.linear.block import Sampled
 from motionfmu.linear.form import Form, Gain, Quantity, evaluate
-from motionfmu.scenario import fmus
-from motionfmu.scenario.system import nanoseconds
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.system import nanoseconds
 
 LAW = "linear.toml"
 # Decimal periods are not exact in binary: a quotient is off by far less than this share.

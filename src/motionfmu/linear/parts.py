@@ -15,9 +15,9 @@ from motionfmu.linear.given import Values
 from motionfmu.linear.plant import Linearised, Point
 from motionfmu.linear.wiring import Port
 from motionfmu.run import Options, Scenario
-from motionfmu.scenario.fmus import Port as Declared
-from motionfmu.scenario.system import System, Wire
-from motionfmu.scenario.values import settings
+from motionfmu.scenarios.fmus import Port as Declared
+from motionfmu.scenarios.system import System, Wire
+from motionfmu.scenarios.values import settings
 
 
 @functools.cache

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear.block import Matrix, Plant
-from motionfmu.scenario.system import nanoseconds
+from motionfmu.scenarios.system import nanoseconds
 
 # As src/plant/plant_model.c chooses its sub-steps: (h/n) |lambda| <= 2.
 H_LAMBDA = 2.0

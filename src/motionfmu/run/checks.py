@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.scenario import rates
-from motionfmu.scenario.document import Body, Check, Pair
+from motionfmu.scenarios import rates
+from motionfmu.scenarios.document import Body, Check, Pair
 
 TABLES = ("contour", "iso9283")  # analyses whose figures can be checked, by table
 BOUNDS = ("min", "max", "absmax", "peak", "rms", "final", "changes", "order")

@@ -11,7 +11,7 @@ from motionfmu import units
 from motionfmu.contour import ContourInput, ContourResult, Path, Trace, analyse, read_path
 from motionfmu.errors import InputError, NoNumber
 from motionfmu.run.recorded import Recorded
-from motionfmu.scenario.contour_signals import CARD, library_of
+from motionfmu.scenarios.contour_signals import CARD, library_of
 
 CLOCK = 25e-9  # [s] of the card
 

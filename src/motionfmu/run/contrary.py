@@ -4,9 +4,9 @@ from typing import Any
 
 from motionfmu.errors import InputError
 from motionfmu.run.checks import Verdict
-from motionfmu.scenario import system
-from motionfmu.scenario.document import Contrary, Document
-from motionfmu.scenario.values import settings
+from motionfmu.scenarios import system
+from motionfmu.scenarios.document import Contrary, Document
+from motionfmu.scenarios.values import settings
 
 
 def check(resolver: system.Resolver) -> None:

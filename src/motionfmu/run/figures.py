@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.run.recorded import Recorded
-from motionfmu.scenario import rates, recording
-from motionfmu.scenario.document import Document, Plot
-from motionfmu.scenario.system import End, Resolver
+from motionfmu.scenarios import rates, recording
+from motionfmu.scenarios.document import Document, Plot
+from motionfmu.scenarios.system import End, Resolver
 
 # Signals that a report without figures shows.
 OVERVIEW = 12

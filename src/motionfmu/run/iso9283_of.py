@@ -19,8 +19,8 @@ from motionfmu.iso9283 import (
 )
 from motionfmu.iso9283.simplify import simplified
 from motionfmu.run.recorded import Recorded
-from motionfmu.scenario.document import Document
-from motionfmu.scenario.system import Resolver
+from motionfmu.scenarios.document import Document
+from motionfmu.scenarios.system import Resolver
 
 TABLE = "iso9283"
 # A unit quaternion counts as so many mm when a recorded command is thinned out: 1e-5 rad stay.

@@ -10,7 +10,7 @@ from motionfmu.errors import InputError
 from motionfmu.run import contrary, figures, waveforms
 from motionfmu.run.checks import misplaced
 from motionfmu.run.iso9283_of import written_path
-from motionfmu.scenario import (
+from motionfmu.scenarios import (
     contour_signals,
     iso9283_signals,
     rates,
@@ -19,7 +19,7 @@ from motionfmu.scenario import (
     values,
     view_signals,
 )
-from motionfmu.scenario import document as files
+from motionfmu.scenarios import document as files
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.scenario.system import Resolver
+from motionfmu.scenarios.system import Resolver
 
 
 class Recorded(Protocol):

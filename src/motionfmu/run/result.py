@@ -12,8 +12,8 @@ from motionfmu.run import figures, waveforms
 from motionfmu.run.checks import Verdict, is_figure, judge
 from motionfmu.run.figures import Chart
 from motionfmu.run.prepared import Prepared
-from motionfmu.scenario import values
-from motionfmu.scenario.system import Resolver
+from motionfmu.scenarios import values
+from motionfmu.scenarios.system import Resolver
 
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult

@@ -10,8 +10,8 @@ from motionfmu.run.engines import ENGINES
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
 from motionfmu.run.wired import Wired, own_settings
-from motionfmu.scenario import grids
-from motionfmu.scenario.system import System
+from motionfmu.scenarios import grids
+from motionfmu.scenarios.system import System
 
 
 class Scenario(Prepared):

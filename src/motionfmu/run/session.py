@@ -10,8 +10,8 @@ from motionfmu.run.engines.native import Container
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
 from motionfmu.run.wired import Wired, own_settings
-from motionfmu.scenario.system import End, Setting, System
-from motionfmu.scenario.values import settings, start_values
+from motionfmu.scenarios.system import End, Setting, System
+from motionfmu.scenarios.values import settings, start_values
 
 FMI = 3
 

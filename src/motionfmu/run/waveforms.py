@@ -5,9 +5,9 @@ from numpy.typing import NDArray
 
 from motionfmu.run.figures import Chart, Curve, Panel
 from motionfmu.run.recorded import Recorded
-from motionfmu.scenario import rates, recording
-from motionfmu.scenario.analyses import Waveform
-from motionfmu.scenario.system import End, Resolver
+from motionfmu.scenarios import rates, recording
+from motionfmu.scenarios.analyses import Waveform
+from motionfmu.scenarios.system import End, Resolver
 
 SIGNALS = ("speed", "torque", "following_error")
 PULSES = "pulses_per_turn"

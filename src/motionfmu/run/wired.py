@@ -10,8 +10,8 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
-from motionfmu.scenario import recording
-from motionfmu.scenario.system import End, System
+from motionfmu.scenarios import recording
+from motionfmu.scenarios.system import End, System
 
 PLANNED = "path.csv"
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from motionfmu.errors import InputError
-from motionfmu.scenario.system import End
+from motionfmu.scenarios.system import End
 from motionfmu.toml_lines import word
 
 Value = float | int | bool | str

@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from motionfmu.errors import InputError
-from motionfmu.scenario.fmus import PACKAGE
+from motionfmu.scenarios.fmus import PACKAGE
 from motionfmu.study.axes import Point
 from motionfmu.study.study import Job
 from motionfmu.study.worker import CRASH, Row

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from motionfmu import units
 from motionfmu.iso9283.simplify import simplified
 from motionfmu.run.recorded import Recorded
-from motionfmu.scenario.system import Resolver
-from motionfmu.scenario.view_signals import JOINTS
+from motionfmu.scenarios.system import Resolver
+from motionfmu.scenarios.view_signals import JOINTS
 from motionfmu.view.arm import Arm
 
 Array = NDArray[np.float64]

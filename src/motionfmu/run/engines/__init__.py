@@ -6,7 +6,7 @@ Each is a module with ``run(system, fmi, progress)``; ENGINES finds them by name
 from collections.abc import Callable
 
 from motionfmu.run.engines import fmpy_container, native, reference
-from motionfmu.scenario.system import System
+from motionfmu.scenarios.system import System
 
 Progress = Callable[[float], None]
 Engine = Callable[[System, int, Progress], list[str]]

@@ -22,8 +22,8 @@ from fmpy.model_description import (
 
 from motionfmu.errors import InputError
 from motionfmu.run.engines.slave import Slave, element_names
-from motionfmu.scenario import fmus
-from motionfmu.scenario.system import End, System
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.system import End, System
 
 TOKEN = "{6d6f7469-6f6e-666d-7500-636f6e746169}"
 

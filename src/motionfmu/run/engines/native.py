@@ -15,8 +15,8 @@ from typing import Any
 from fmu_manipulation_toolbox.container import FMUContainer
 
 from motionfmu.run.engines.slave import Slave, element_names
-from motionfmu.scenario import fmus
-from motionfmu.scenario.system import End, System
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.system import End, System
 
 IDENTIFIER = "system"
 # A run is cut into at least so many steps of the container, so that progress shows.

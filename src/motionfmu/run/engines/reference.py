@@ -7,8 +7,8 @@ from collections.abc import Callable
 from contextlib import ExitStack
 
 from motionfmu.run.engines.slave import Slave
-from motionfmu.scenario import fmus
-from motionfmu.scenario.system import System, Wire
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.system import System, Wire
 
 
 def _wire(slaves: dict[str, Slave], wire: Wire) -> tuple[Callable[[], None], Callable[[], None]]:

@@ -16,7 +16,7 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.logging import addLoggerProxy
 
 from motionfmu.errors import InputError
-from motionfmu.scenario.system import End
+from motionfmu.scenarios.system import End
 
 _C = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_bool}
 _FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.scenario import fmus
-from motionfmu.scenario.fmus import Port
-from motionfmu.scenario.system import STEPS_MAX, End, Resolver, Setting, System, Wire
-from motionfmu.scenario.values import start_values, values_of
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.fmus import Port
+from motionfmu.scenarios.system import STEPS_MAX, End, Resolver, Setting, System, Wire
+from motionfmu.scenarios.values import start_values, values_of
 
 AXES = 6
 # Channels of one scope FMU: groups of six and single ones, by the type they hold.

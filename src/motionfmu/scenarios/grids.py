@@ -6,9 +6,9 @@ import zipfile
 from collections.abc import Mapping
 
 from motionfmu.fmu.pack import EXTRA, GRID
-from motionfmu.scenario import fmus
-from motionfmu.scenario.system import System, nanoseconds
-from motionfmu.scenario.values import start_values
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.system import System, nanoseconds
+from motionfmu.scenarios.values import start_values
 
 
 @functools.cache

@@ -6,9 +6,9 @@ from typing import Any
 
 from motionfmu.errors import InputError
 from motionfmu.fmu.describe import STRING_MAX
-from motionfmu.scenario.document import Document
-from motionfmu.scenario.fmus import Port
-from motionfmu.scenario.system import (
+from motionfmu.scenarios.document import Document
+from motionfmu.scenarios.fmus import Port
+from motionfmu.scenarios.system import (
     NS_TOLERANCE,
     TIME_MAX,
     End,

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from motionfmu.errors import InputError
-from motionfmu.scenario.analyses import Iso9283, View, Waveform
+from motionfmu.scenarios.analyses import Iso9283, View, Waveform
 from motionfmu.toml_lines import KEY_MAX, Lines, is_file, shown, tables_of, text_of
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]

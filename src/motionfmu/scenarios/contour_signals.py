@@ -1,8 +1,8 @@
 """What a scenario with a [contour] table records for the analysis."""
 
 from motionfmu import units
-from motionfmu.scenario import recording
-from motionfmu.scenario.system import Resolver
+from motionfmu.scenarios import recording
+from motionfmu.scenarios.system import Resolver
 
 # Outputs the analysis wants beside position and pulses, by their owner.
 LIBRARY = ("command", "command_newest", "path_feed", "card_dda_length", "card_dda_divider")

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.scenario.system import NS_TOLERANCE
+from motionfmu.scenarios.system import NS_TOLERANCE
 
 
 def change(

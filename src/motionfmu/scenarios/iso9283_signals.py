@@ -2,8 +2,8 @@
 
 from motionfmu import units
 from motionfmu.errors import InputError
-from motionfmu.scenario import recording
-from motionfmu.scenario.system import Resolver
+from motionfmu.scenarios import recording
+from motionfmu.scenarios.system import Resolver
 
 TABLE = "iso9283"
 

@@ -1,8 +1,8 @@
 """What the moving picture of a scenario records beside what is recorded anyway."""
 
-from motionfmu.scenario import recording
-from motionfmu.scenario.iso9283_signals import check_position
-from motionfmu.scenario.system import Resolver
+from motionfmu.scenarios import recording
+from motionfmu.scenarios.iso9283_signals import check_position
+from motionfmu.scenarios.system import Resolver
 
 TABLE = "view"
 JOINTS = "link_angle"

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from motionfmu import units
 from motionfmu.errors import InputError
-from motionfmu.scenario import fmus
-from motionfmu.scenario.document import Document
-from motionfmu.scenario.fmus import Port
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.document import Document
+from motionfmu.scenarios.fmus import Port
 
 Values = tuple[float | int | bool | str, ...]
 # A time in decimal seconds is off a whole number of ns by rounding only.
