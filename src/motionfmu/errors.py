@@ -1,5 +1,17 @@
 """The exceptions for everything a user can get wrong, or can miss."""
 
+import difflib
+from collections.abc import Iterable
+
+# How alike two words are from which on one may be meant for the other; 1 is the same.
+ALIKE = 0.5
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """What a misspelt word may be meant for, as the end of a message; else empty."""
+    close = difflib.get_close_matches(word, list(known), 1, ALIKE)
+    return f"; did you mean {close[0]!r}?" if close else ""
+
 
 class InputError(ValueError):
     """Wrong input; the text is the message a user reads.

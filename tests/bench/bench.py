@@ -77,7 +77,7 @@ class Timed:
     @property
     def simulated(self) -> float:
         """Simulated time [s]."""
-        return float(self.options.get("stop") or self.scenario.document.body.stop)
+        return float(self.options.get("stop") or self.scenario.document.body.stop_limit)
 
     @property
     def fmus(self) -> int:

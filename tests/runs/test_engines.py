@@ -69,7 +69,7 @@ def test_every_scenario_holds_its_verdict(scenario: str) -> None:
 def test_fmi_2_gives_the_bits_of_fmi_3(scenario: str) -> None:
     whole = native(scenario)
     loaded = motionfmu.load(ROOT / "scenarios" / scenario)
-    stop = min(LONG, loaded.document.body.stop)
+    stop = min(LONG, loaded.document.body.stop_limit)
     other = loaded.run(fmi=2, stop=stop)
     assert differing(other, whole, rows=len(other.time)) == []
     assert stop == LONG or whole.geometry == other.geometry
@@ -125,7 +125,7 @@ def test_engines_agree_over_a_whole_run(engine: str, fmi: int) -> None:
 @pytest.mark.parametrize("scenario", SCENARIOS)
 def test_dividing_the_step_changes_no_bit(scenario: str, divisor: int) -> None:
     loaded = motionfmu.load(ROOT / "scenarios" / scenario)
-    stop = min(loaded.document.body.stop, 2.0)
+    stop = min(loaded.document.body.stop_limit, 2.0)
     coarse = native(scenario, stop)
     fine = loaded.run(step=loaded.document.body.step / divisor, stop=stop)
     assert len(fine.time) == divisor * len(coarse.time)

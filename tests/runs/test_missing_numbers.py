@@ -73,7 +73,7 @@ def test_a_table_that_stands_still_has_no_circle_and_says_so(tmp_path: Path) -> 
 def test_every_scenario_cut_short_gives_verdicts(name: str, tmp_path: Path) -> None:
     scenario = motionfmu.load(ROOT / "scenarios" / name)
     body = scenario.document.body
-    result = scenario.run(stop=body.step * max(2, round(0.01 * body.stop / body.step)))
+    result = scenario.run(stop=body.step * max(2, round(0.01 * body.stop_limit / body.step)))
     assert result.ok in (True, False)
     assert all(v.reason for v in result.checks if not math.isfinite(v.value))
     if body.contour is not None:

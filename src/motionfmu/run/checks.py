@@ -37,7 +37,7 @@ def misplaced(name: str, body: Body, recorded: Mapping[str, tuple[int, ...]]) ->
     whole, bracket, rest = name.partition("[")
     if whole not in recorded or (bracket and not _is_axis(rest, recorded[whole])):
         return f"{name} is not recorded"
-    told = next((text for c in checks if (text := _no_time(c, body.stop))), "")
+    told = next((text for c in checks if (text := _no_time(c, body.stop_limit))), "")
     return f"{name}: {told}" if told else ""
 
 

@@ -82,7 +82,7 @@ def wanted(resolver: Resolver) -> list[End]:
 
 def check(document: Document, step_ns: int) -> None:
     """Refuse a window or a rate that does not fit a run of such steps."""
-    stop = document.body.stop
+    stop = document.body.stop_limit
     for i, figure in enumerate(document.body.figure):
         if figure.window is not None:
             start, end = figure.window

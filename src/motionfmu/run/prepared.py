@@ -36,8 +36,12 @@ class Options:
         Value by ``component.variable``, stronger than the scenario's.
     stop, step : float or None
         Instead of the scenario's [s].
+    every : int or None
+        Instead of the scenario's: of so many steps one is recorded.
     undriven : collection of str
         Inputs whose [[drive]] is left out.
+    source : mapping
+        Name of the file that a value of `set` is from, by ``component.variable``.
     progress : callable
         Called with the share done, 0 to 1.
     """
@@ -47,8 +51,15 @@ class Options:
     set: Mapping[str, Any] = field(default_factory=dict)
     stop: float | None = None
     step: float | None = None
+    every: int | None = None
     undriven: Collection[str] = ()
+    source: Mapping[str, str] = field(default_factory=dict)
     progress: Callable[[float], None] = lambda share: None
+
+    def given(self) -> dict[str, Any]:
+        """What a result keeps of it: how to run so again."""
+        names = ("engine", "fmi", "set", "stop", "step", "every")
+        return {name: getattr(self, name) for name in names} | {"set": dict(self.set)}
 
 
 class Prepared:
@@ -71,6 +82,11 @@ class Prepared:
         """Name of the scenario's folder."""
         return self.document.file.parent.name
 
+    @property
+    def stop_limit(self) -> float:
+        """When a run ends at the latest [s]."""
+        return self.document.body.stop_limit
+
     def _recorded(self) -> list[str]:
         asked = [*contour_signals.wanted(self.resolver), *iso9283_signals.wanted(self.resolver)]
         written_path(self.document)
@@ -87,7 +103,7 @@ class Prepared:
         """All that an engine needs, with the options' values."""
         document, body = self.document, self.document.body
         step_ns = self._time("step", options.step, body.step)
-        stop_ns = self._time("stop", options.stop, body.stop)
+        stop_ns = self._time("stop", options.stop, body.stop_limit)
         given = options.stop is not None or options.step is not None
         if step_ns % system.CLOCK_NS:
             text = f"step = {step_ns * 1e-9:.9g} s is no whole number of {system.CLOCK_NS} ns"
@@ -109,13 +125,13 @@ class Prepared:
             ),
             step_ns=step_ns,
             steps=stop_ns // step_ns,
-            every=body.record.every,
+            every=body.record.every if options.every is None else options.every,
         )
         system.check_inputs(self.resolver, resolved)
         figures.check(document, resolved.sample_ns)
         for name, checks in body.check.items():
             for rate in (c.rate for c in checks if c.rate is not None):
-                if text := rates.wrong(rate, resolved.sample_ns, body.stop):
+                if text := rates.wrong(rate, resolved.sample_ns, body.stop_limit):
                     raise document.error(f"{name}: {text}", "check", name)
         return resolved
 

@@ -1,7 +1,8 @@
 """What a run gave: signals, contour, verdicts."""
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,12 @@ from motionfmu.scenarios.system import Resolver
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult
     from motionfmu.iso9283 import Evaluation
+
+
+def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
+    """From when on a signal is not 0 to the end [s]; None if it never was 0 or is so at last."""
+    zero = np.flatnonzero(x == 0)
+    return float(time[zero[-1] + 1]) if len(zero) and zero[-1] + 1 < len(x) else None
 
 
 @dataclass
@@ -37,6 +44,12 @@ class Result:
         The planned path as the library wrote it (CSV), if the scenario has a contour.
     warnings : tuple of str
         What the FMUs warned of, and grids that do not divide each other; each once.
+    options : mapping
+        How it was run, as given: engine, fmi, set, stop, step, every.
+    overrides : list of str
+        In what it was not run as written, in words; empty if it was.
+    stopped : str
+        Why it ended: ``stop = 4 s``, ``mcc.done at 16.213 s``.
     """
 
     scenario: Prepared
@@ -45,6 +58,10 @@ class Result:
     parameters: dict[str, Any]
     geometry: str | None = None
     warnings: tuple[str, ...] = ()
+    options: Mapping[str, Any] = field(default_factory=dict)
+    overrides: list[str] = field(default_factory=list)
+    stopped: str = ""
+    _stop_signal: float | None = None  # [s] when it came
     _contour: "ContourResult | NoNumber | None" = None
     _iso9283: "Evaluation | NoNumber | None" = None
 
@@ -97,6 +114,18 @@ class Result:
         if isinstance(self._contour, NoNumber):
             raise self._contour
         return self._contour
+
+    @property
+    def done_at(self) -> float | None:
+        """When the scenario's program was done [s].
+
+        None if that is unknown, or it never was.
+        """
+        if self._stop_signal is not None:
+            return self._stop_signal
+        recorded = (x for n, x in self.signals.items() if n.endswith(".done") and x.ndim == 1)
+        times = [t for x in recorded if (t := since(self.time, x)) is not None]
+        return max(times, default=None)
 
     @property
     def no_contour(self) -> str:

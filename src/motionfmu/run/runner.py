@@ -67,7 +67,7 @@ class Scenario(Prepared):
                 told = ENGINES[asked.engine](system, asked.fmi, asked.progress)
                 return (*grids.warnings(wired.plain), *told)
 
-            return wired.run(engine, asked.set)
+            return wired.run(engine, asked)
 
 
 def load(path: str | Path) -> Scenario:

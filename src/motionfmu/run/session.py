@@ -10,19 +10,10 @@ from motionfmu.run.engines.native import Container
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
 from motionfmu.run.wired import Wired, own_settings
-from motionfmu.scenarios.system import End, Setting, System
+from motionfmu.scenarios.system import End, Setting, System, split
 from motionfmu.scenarios.values import settings, start_values
 
 FMI = 3
-
-
-def split(name: str) -> tuple[str, int | None]:
-    """Part ``component.variable[i]``, i from 1, into variable and element, from 0 or None."""
-    whole, bracket, rest = name.partition("[")
-    index = rest.removesuffix("]")
-    if bracket and rest.endswith("]") and index.isdecimal():
-        return whole, int(index) - 1
-    return name, None
 
 
 class Session:
@@ -120,9 +111,8 @@ class Session:
             self._container.run(system, self._options.progress)
             return ()
 
-        names = {split(n)[0] for n in given} | set(self._options.set)
         run = replace(self._wired, plain=plain, system=system)
-        return run.run(engine, dict.fromkeys(names))
+        return run.run(engine, replace(self._options, set={**self._options.set, **given}))
 
     def close(self) -> None:
         """Free the FMUs and their files."""

@@ -30,7 +30,7 @@ def wanted(resolver: Resolver) -> list[End]:
         if pulses.port.count < asked.axis:
             text = f"pulses = {asked.pulses!r}: there is no axis {asked.axis}"
             raise resolver.document.error(text, table, "pulses")
-        stop = resolver.document.body.stop
+        stop = resolver.document.body.stop_limit
         if asked.window is not None and not 0.0 <= asked.window[0] < asked.window[1] <= stop:
             text = f"window = {asked.window!r}: from and to within 0 .. {stop:g} s wanted"
             raise resolver.document.error(text, table, "window")

@@ -1,6 +1,6 @@
 """A scenario with the scopes that record it: what an engine runs, and the result made of it."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.errors import InputError
+from motionfmu.run.overrides import overrides
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
 from motionfmu.scenarios import recording
@@ -39,14 +40,14 @@ class Wired:
         plain = scenario.resolved(options)
         return cls(scenario, plain, *recording.plan(plain, ends, folder))
 
-    def run(self, engine: Callable[[System], Iterable[str]], given: Mapping[str, Any]) -> Result:
+    def run(self, engine: Callable[[System], Iterable[str]], options: Options) -> Result:
         """Run it; an FMU's message says where its value stands."""
         planned = self.traces.folder / PLANNED
         planned.unlink(missing_ok=True)
         try:
             warnings = engine(self.system)
         except InputError as error:
-            raise self.scenario.located(error, self.plain, given) from None
+            raise self.scenario.located(error, self.plain, options.set) from None
         return Result(
             self.scenario,
             np.arange(self.system.samples, dtype=np.float64) * (self.system.sample_ns * 1e-9),
@@ -54,4 +55,7 @@ class Wired:
             {s.end.name: s.values for s in self.plain.settings},
             planned.read_text(encoding="utf-8") if planned.is_file() else None,
             tuple(warnings),
+            options.given(),
+            overrides(self.scenario, options, self.plain),
+            f"stop = {self.system.steps * self.system.step_ns * 1e-9:.9g} s",
         )

@@ -128,6 +128,11 @@ class Body(BaseModel):
     check: dict[str, Checks] = Field(default_factory=dict, max_length=LISTED_MAX)
     contrary: list[Contrary] = Field(default_factory=list, max_length=LISTED_MAX)
 
+    @property
+    def stop_limit(self) -> float:
+        """When a run ends at the latest [s]."""
+        return self.stop
+
 
 @dataclass(frozen=True)
 class Document:

@@ -61,7 +61,7 @@ def _check_keys(resolver: Resolver) -> None:
         raise wrong("between", "during and between go together")
     if table.command_quaternion is not None and table.command is None:
         raise wrong("command_quaternion", "command_quaternion goes with command")
-    stop = document.body.stop
+    stop = document.body.stop_limit
     for low, high in table.cycles or ():
         if not 0.0 <= low < high <= stop:
             raise wrong("cycles", f"cycles: [{low:g}, {high:g}] s is not within 0 .. {stop:g} s")

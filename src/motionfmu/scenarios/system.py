@@ -1,13 +1,11 @@
 """A scenario resolved against the FMUs it names: every wire and value checked."""
 
-import difflib
 import fnmatch
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from motionfmu import units
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, suggestion
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.fmus import Port
@@ -100,6 +98,15 @@ def nanoseconds(key: str, seconds: float) -> int:
     return round(ns)
 
 
+def split(name: str) -> tuple[str, int | None]:
+    """Part ``component.variable[i]``, i from 1, into variable and element, from 0 or None."""
+    whole, bracket, rest = name.partition("[")
+    index = rest.removesuffix("]")
+    if bracket and rest.endswith("]") and index.isdecimal():
+        return whole, int(index) - 1
+    return name, None
+
+
 class Resolver:
     """Looks names up in the FMUs a scenario uses."""
 
@@ -117,7 +124,7 @@ class Resolver:
         component, _, variable = name.partition(".")
         if component not in self.ports:
             raise self.document.error(
-                f"{name}: no component {component!r}{_nearest(component, self.ports)}", table, key
+                f"{name}: no component {component!r}{suggestion(component, self.ports)}", table, key
             )
         if variable not in self.ports[component]:
             fmu = self.document.body.component[component]
@@ -125,7 +132,7 @@ class Resolver:
             hint = (
                 f"; wires and values take whole arrays: {component}.{whole}"
                 if whole in self.ports[component]
-                else _nearest(variable, self.ports[component])
+                else suggestion(variable, self.ports[component])
             )
             raise self.document.error(
                 f"{name}: {fmu} has no variable {variable!r}{hint}", table, key
@@ -141,11 +148,6 @@ class Resolver:
             if port.causality == causality
             and fnmatch.fnmatchcase(f"{component}.{port.name}", pattern)
         ]
-
-
-def _nearest(name: str, known: Iterable[str]) -> str:
-    close = difflib.get_close_matches(name, list(known), 1, 0.5)
-    return f"; did you mean {close[0]!r}?" if close else ""
 
 
 def _check_wire(document: Document, wire: Wire, key: str) -> None:

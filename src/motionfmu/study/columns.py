@@ -13,12 +13,11 @@ from motionfmu.iso9283.evaluation import unit as units_of
 from motionfmu.run import Scenario
 from motionfmu.run.checks import is_figure, wrong_figure
 from motionfmu.run.result import Result
-from motionfmu.run.session import split
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.contour_signals import wanted as of_contour
 from motionfmu.scenarios.document import Check
 from motionfmu.scenarios.iso9283_signals import wanted as of_iso9283
-from motionfmu.scenarios.system import End
+from motionfmu.scenarios.system import End, split
 
 Array = NDArray[Any]
 

@@ -11,9 +11,8 @@ from pydantic import ValidationError
 
 from motionfmu.errors import InputError
 from motionfmu.run import Options, Scenario, load
-from motionfmu.run.session import split
 from motionfmu.scenarios import fmus
-from motionfmu.scenarios.system import End
+from motionfmu.scenarios.system import End, split
 from motionfmu.study import axes as ax
 from motionfmu.study.columns import Column, column, usual
 from motionfmu.study.study_file import Body, Origin, read

@@ -1,0 +1,47 @@
+"""In what a run differs from its scenario, in words."""
+
+from typing import TYPE_CHECKING, Any
+
+from motionfmu.scenarios.system import System, split
+from motionfmu.scenarios.values import settings, start_values
+from motionfmu.toml_lines import shown
+
+if TYPE_CHECKING:
+    from motionfmu.run.prepared import Options, Prepared
+
+
+def _value(values: tuple[Any, ...]) -> str:
+    """One value if all elements have it."""
+    same = len(set(values)) == 1
+    if any(isinstance(v, float) for v in values):
+        texts = [f"{v:.9g}" for v in values]
+        return texts[0] if same else f"[{', '.join(texts)}]"
+    text = shown(values[0] if same else list(values))
+    return text.lower() if isinstance(values[0], bool) else text
+
+
+def overrides(scenario: "Prepared", options: "Options", system: System) -> list[str]:
+    """One line for each value that is not the scenario's own; none if it runs as written."""
+    body = scenario.document.body
+    written = {s.end.name: s for s in settings(scenario.resolver, {})}
+    given = {split(name)[0] for name in options.set}
+    found = []
+    for end, values in ((s.end, s.values) for s in system.settings if s.end.name in given):
+        before = written[end.name].values if end.name in written else start_values(end.port)
+        if values == before:
+            continue
+        unit = f" {end.port.unit}" if end.port.unit not in (None, "1") else ""
+        file = f"{options.source[end.name]}: " if end.name in options.source else ""
+        place = "scenario" if end.name in written else "default"
+        found.append(f"{file}{end.name} = {_value(values)}{unit} ({place}: {_value(before)})")
+    for key, asked, own, unit in (
+        ("stop", options.stop, body.stop, " s"),
+        ("step", options.step, body.step, " s"),
+        ("every", options.every, body.record.every, ""),
+    ):
+        if asked is not None and asked != own:
+            text = own if isinstance(own, str) else f"{own:.9g}{unit}"
+            found.append(f"{key} = {asked:.9g}{unit} (scenario: {text})")
+    driven = {d.input for d in body.drive}
+    found += [f"{name}: its [[drive]] is left out" for name in sorted(driven & {*options.undriven})]
+    return found
