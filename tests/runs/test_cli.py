@@ -31,6 +31,7 @@ def test_run_writes_a_whole_result_and_says_where(demo: tuple[Path, str]) -> Non
         "signals.csv",
         "result.json",
         "contour.json",
+        "contour.npz",
         "report.html",
         "path.png",
         "path.svg",

@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import math
 import os
 import shutil
 from collections.abc import Iterator, Mapping
@@ -13,37 +12,9 @@ import numpy as np
 
 from motionfmu.errors import InputError
 from motionfmu.run.result import Result
+from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, numbers, track
 
-SIGNALS, NUMBERS, TABLE = "signals.npz", "result.json", "signals.csv"
-
-
-def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
-    """The result, and how it was run, for JSON."""
-    found: dict[str, Any] = {
-        "scenario": result.name,
-        "about": result.about,
-        "options": dict(options),
-        "samples": len(result.time),
-        "ok": result.ok,
-        "warnings": list(result.warnings),
-        "checks": [
-            {
-                "name": v.name,
-                "bounds": v.bounds,
-                "value": _number(v.value),
-                "ok": v.ok,
-                "reason": v.reason,
-            }
-            for v in result.checks
-        ],
-    }
-    if result.scenario.document.body.contour is not None:
-        found["contour"] = None if result.no_contour else result.contour().numbers()
-        found["no_contour"] = result.no_contour
-    if result.scenario.document.body.iso9283 is not None:
-        found["iso9283"] = None if result.no_iso9283 else result.iso9283().numbers()
-        found["no_iso9283"] = result.no_iso9283
-    return found
+TABLE = "signals.csv"
 
 
 def _write_csv(result: Result, file: Path) -> None:
@@ -68,11 +39,6 @@ def usable(folder: Path) -> Path:
     return folder
 
 
-def _number(value: float) -> float | None:
-    """JSON has no NaN."""
-    return value if math.isfinite(value) else None
-
-
 def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = False) -> Path:
     """Write a run's folder, whole or not at all; give the report."""
     # An older result is replaced; anything else in the folder is an InputError.
@@ -87,6 +53,8 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
 
         wanted = result.scenario.document.body.contour is not None and not result.no_contour
         contour = result.contour() if wanted else None
+        if contour is not None:
+            np.savez_compressed(part / TRACK, **track(contour))
         shown = write_report(result, contour, part).name
     return folder.resolve() / shown
 

@@ -1,0 +1,105 @@
+"""A run as it is stored: its numbers, how it was made, its way along the path."""
+
+import hashlib
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from motionfmu.run.result import Result
+from motionfmu.scenario import fmus
+from motionfmu.scenario.system import wires
+from motionfmu.toml_lines import is_file
+
+if TYPE_CHECKING:
+    from motionfmu.contour import ContourResult
+
+SIGNALS, NUMBERS, TRACK = "signals.npz", "result.json", "contour.npz"
+DIGITS = 16  # of a file's SHA-256: enough to tell two files apart
+
+
+def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
+    """The result, and how it was run, for JSON."""
+    body = result.scenario.document.body
+    found: dict[str, Any] = {
+        "scenario": result.name,
+        "about": result.about,
+        "options": dict(options),
+        "samples": len(result.time),
+        "ok": result.ok,
+        "warnings": list(result.warnings),
+        "checks": [
+            {
+                "name": v.name,
+                "bounds": v.bounds,
+                "value": v.value if math.isfinite(v.value) else None,  # JSON has no NaN
+                "ok": v.ok,
+                "reason": v.reason,
+            }
+            for v in result.checks
+        ],
+    }
+    if body.contour is not None:
+        found["contour"] = None if result.no_contour else result.contour().numbers()
+        found["no_contour"] = result.no_contour
+    if body.iso9283 is not None:
+        found["iso9283"] = None if result.no_iso9283 else result.iso9283().numbers()
+        found["no_iso9283"] = result.no_iso9283
+    found["units"] = {n: result.resolver.end(n, "", "").port.unit or "1" for n in result.signals}
+    found["figures"] = [figure.model_dump() for figure in body.figure]
+    return found | {"run": _made(result, options)}
+
+
+def _made(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
+    """All that a run depends on: what two runs may differ in."""
+    document, library = result.scenario.document, result.scenario.library()
+    folder, body = document.file.parent, document.body
+    own = f"{library}.path_file"
+    given = {n: list(v) for n, v in sorted(result.parameters.items()) if n != own}
+    named = [x for v in given.values() for x in v if isinstance(x, str) and x and is_file(Path(x))]
+    return {
+        "components": dict(body.component),
+        "fmus": {name: _digest(fmus.fmu_path(name)) for name in set(body.component.values())},
+        "wires": {w.target.name: w.source.name for w in wires(result.resolver)},
+        "settings": {n: [_beside(x, folder) for x in v] for n, v in given.items()},
+        "files": {_beside(x, folder): _digest(Path(x)) for x in named},
+        "drives": [drive.model_dump() for drive in body.drive],
+        "step": options.get("step") or body.step,
+        "every": options.get("every") or body.record.every,
+        "stop": options.get("stop") or body.stop,
+    }
+
+
+def _digest(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()[:DIGITS]
+
+
+def _beside(value: Any, folder: Path) -> Any:
+    """A file beside the scenario by its name alone."""
+    path = Path(value) if isinstance(value, str) and value else None
+    return str(path.relative_to(folder)) if path and path.is_relative_to(folder) else value
+
+
+def track(contour: "ContourResult") -> dict[str, Any]:
+    """The contour error along the path, and the ways round its circles, as arrays."""
+    # time [s]; along the path, error, nearest point and gap to it [mm], NaN where nothing is cut;
+    # of circle i and each way round it the angle [rad] and the radial deviation [mm].
+    way, cut = contour.track, contour.cutting
+    size = way.distance if way.signed is None else way.signed
+    gap = np.where(cut[:, None], contour.run.actual[:, :3] - way.foot, np.nan)
+    found: dict[str, Any] = {
+        "time": contour.run.time,
+        "along": way.along,
+        "error": np.where(cut, size, np.nan),
+        "foot": way.foot.astype(np.float32),
+        "gap": gap.astype(np.float32),
+    }
+    for test in contour.circles:
+        for name, one in (("ccw", test.ccw), ("cw", test.cw)):
+            if one is not None:
+                x, y = one.points.T
+                found[f"circles.{test.place}.{name}.angle"] = np.arctan2(y, x)
+                found[f"circles.{test.place}.{name}.deviation"] = np.hypot(x, y) - test.radius
+    return found
