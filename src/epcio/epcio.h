@@ -15,6 +15,7 @@
 #ifndef EPCIO_H
 #define EPCIO_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -42,7 +43,7 @@ enum {
     EPCIO_FIFO_DEPTH = 63,
     EPCIO_WIDTH_MAX = 65535,    /* [clocks] of a pulse: 16-bit register */
 };
-_Static_assert((int)EPCIO_AXES <= (int)DDA_CHANNELS_MAX, "a DDA channel per axis");
+static_assert((int)EPCIO_AXES <= (int)DDA_CHANNELS_MAX, "a DDA channel per axis");
 
 /* What is wired and set before power on. */
 struct epcio_config {

@@ -23,6 +23,7 @@
 #ifndef SINGLE_BUFFER_H
 #define SINGLE_BUFFER_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -32,7 +33,7 @@
 #include "irq.h"
 #include "status.h"
 
-_Static_assert((int)EPCIO_AXES <= (int)DDA_CHANNELS_MAX, "a DDA channel per axis");
+static_assert((int)EPCIO_AXES <= (int)DDA_CHANNELS_MAX, "a DDA channel per axis");
 
 struct single_buffer_config {
     bool active[EPCIO_AXES];

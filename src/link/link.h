@@ -13,6 +13,7 @@
 #ifndef LINK_H
 #define LINK_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -84,7 +85,7 @@ LINK_STRUCT(link_card, LINK_SHOWN(LINK_MEMBER) LINK_SHOWN_MACHINE(LINK_MEMBER));
 
 #define LINK_CARRY(to, from) \
     do { \
-        _Static_assert(sizeof (to) == sizeof (from), "one type on both sides of the link"); \
+        static_assert(sizeof (to) == sizeof (from), "one type on both sides of the link"); \
         memcpy(&(to), &(from), sizeof (to)); \
     } while (0);
 
@@ -97,10 +98,10 @@ inline int32_t link_wrap(int64_t count)
 /* Has a mailbox a number that was not taken yet? It is now. */
 inline bool link_new(int32_t *taken, int32_t number)
 {
-    const bool new = number != *taken;
+    const bool fresh = number != *taken;
 
     *taken = number;
-    return new;
+    return fresh;
 }
 
 #endif

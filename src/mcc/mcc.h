@@ -135,7 +135,8 @@ struct mcc {
 /* What the mover of a library uses. */
 static inline struct mover_beside mcc_beside(struct mcc *m)
 {
-    return (struct mover_beside){ &m->ring, &m->mean, &m->curve_plan };
+    const struct mover_beside beside = { &m->ring, &m->mean, &m->curve_plan };
+    return beside;
 }
 
 /* System. MCC_init_motion: at rest at the origin, settings from the machine. */

@@ -95,21 +95,24 @@ static inline void mccl_give_char(const char from[AXES], char *const to[AXES])
 static inline int MCC_Line(struct mcc *m, double x, double y, double z, double u, double v,
                            double w)
 {
-    return MCC_line(m, (const double[AXES]){ x, y, z, u, v, w });
+    const double target[AXES] = { x, y, z, u, v, w };
+    return MCC_line(m, target);
 }
 
 /* All axes arrive together. */
 static inline int MCC_SyncPtP(struct mcc *m, double x, double y, double z, double u, double v,
                               double w)
 {
-    return MCC_ptp(m, (const double[AXES]){ x, y, z, u, v, w });
+    const double target[AXES] = { x, y, z, u, v, w };
+    return MCC_ptp(m, target);
 }
 
 /* Each axis for itself. */
 static inline int MCC_PtP(struct mcc *m, double x, double y, double z, double u, double v,
                           double w)
 {
-    return MCC_ptp_asyn(m, (const double[AXES]){ x, y, z, u, v, w });
+    const double target[AXES] = { x, y, z, u, v, w };
+    return MCC_ptp_asyn(m, target);
 }
 
 /* Direction -1, +1; 0 stops. */
@@ -131,7 +134,8 @@ static inline int MCC_JogPulse(struct mcc *m, int pulses, int axis)
 /* Axes with order 1 together, then those with 2, ...; 0: not. */
 static inline int MCC_Home(struct mcc *m, int x, int y, int z, int u, int v, int w)
 {
-    return MCC_go_home(m, (const int32_t[AXES]){ x, y, z, u, v, w });
+    const int32_t order[AXES] = { x, y, z, u, v, w };
+    return MCC_go_home(m, order);
 }
 
 /* The table counts at once; there, from MCC_UpdateCompParam on. */
@@ -155,14 +159,16 @@ static inline int MCC_DisableSingleBlock(struct mcc *m)
     static inline int MCC_Arc##plane##UVW(struct mcc *m, double ra, double rb, double a, double b, \
                                           double u, double v, double w)                          \
     {                                                                                            \
-        return MCC_arc_##lower##uvw(m, (const double[4]){ ra, rb, a, b },                        \
-                                    (const double[3]){ u, v, w });                               \
+        const double points[4] = { ra, rb, a, b };                                               \
+        const double uvw[3] = { u, v, w };                                                       \
+        return MCC_arc_##lower##uvw(m, points, uvw);                                             \
     }                                                                                            \
     static inline int MCC_Circle##plane##UVW(struct mcc *m, double ca, double cb, double u,      \
                                              double v, double w, int direction)                  \
     {                                                                                            \
-        return MCC_circle_##lower##uvw(m, (const double[2]){ ca, cb }, direction,                \
-                                       (const double[3]){ u, v, w });                            \
+        const double centre[2] = { ca, cb };                                                     \
+        const double uvw[3] = { u, v, w };                                                       \
+        return MCC_circle_##lower##uvw(m, centre, direction, uvw);                               \
     }
 
 MCCL_TURNS(XY, xy)
@@ -174,7 +180,8 @@ MCCL_TURNS(ZX, zx)
 #define MCCL_SIX(type, give, set, get, set_six, get_six)                                         \
     static inline int set(struct mcc *m, type x, type y, type z, type u, type v, type w)         \
     {                                                                                            \
-        return set_six(m, (const type[AXES]){ x, y, z, u, v, w });                               \
+        const type six[AXES] = { x, y, z, u, v, w };                                             \
+        return set_six(m, six);                                                                  \
     }                                                                                            \
     MCCL_GET(type, give, get, get_six)
 
@@ -183,8 +190,9 @@ MCCL_TURNS(ZX, zx)
                           type *w)                                                               \
     {                                                                                            \
         type six[AXES] = { 0 };                                                                  \
+        type *const to[AXES] = { x, y, z, u, v, w };                                             \
         const int code = get_six(m, six);                                                        \
-        give(six, (type *const[AXES]){ x, y, z, u, v, w });                                      \
+        give(six, to);                                                                           \
         return code;                                                                             \
     }
 

@@ -5,17 +5,16 @@
 #ifndef FIXED_H
 #define FIXED_H
 
+#include <assert.h>
 #include <stdint.h>
 
-_Static_assert(-3 >> 1 == -2, "a shift to the right must be arithmetic, as RRA is");
-
-enum { FIXED_WORD_MAX = 32767, FIXED_WORD_MIN = -32768 };
+static_assert(-3 >> 1 == -2, "a shift to the right must be arithmetic, as RRA is");
 
 /* The low word, as signed: what is left of a number in a 16-bit register. */
 static inline int16_t fixed_word(int64_t x)
 {
     const int32_t low = (int32_t)((uint64_t)x & 0xFFFFu);
-    return (int16_t)(low > FIXED_WORD_MAX ? low - 65536 : low);
+    return (int16_t)(low > INT16_MAX ? low - 65536 : low);
 }
 
 /* a - b modulo 2^16, as SUB.W does: right as long as the true difference is within 16 bit. */
@@ -27,7 +26,7 @@ static inline int16_t fixed_subtract(uint16_t a, uint16_t b)
 /* Nearest number of 16 bit. */
 static inline int16_t fixed_saturate16(int64_t x)
 {
-    return (int16_t)(x > FIXED_WORD_MAX ? FIXED_WORD_MAX : x < FIXED_WORD_MIN ? FIXED_WORD_MIN : x);
+    return (int16_t)(x > INT16_MAX ? INT16_MAX : x < INT16_MIN ? INT16_MIN : x);
 }
 
 /* Nearest number of 32 bit. */

@@ -109,7 +109,7 @@ struct netcard {
     uint32_t latched;           /* origins that a latch of the FPGA has seen, */
     int64_t latch[CARD_AXES];   /* [pulses] and where */
 
-    int32_t step[NETCARD_TASKS + NETCARD_INTERRUPTS];
+    int32_t step[(int)NETCARD_TASKS + (int)NETCARD_INTERRUPTS];
     uint32_t gives[NETCARD_INTERRUPTS]; /* semaphores an interrupt has still to give, a bit each */
     struct player_told told;    /* by the FPGA, for its interrupt */
     int64_t served[NETCARD_INTERRUPTS]; /* interrupts so far */

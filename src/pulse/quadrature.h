@@ -41,10 +41,13 @@ static inline void quadrature_sample(struct quadrature *q, double phase, int64_t
     q->to = phase;
     q->clock = clock;
     q->end = quarter;
-    if (!q->primed)
-        *q = (struct quadrature){.primed = true, .from = phase, .to = phase, .from_clock = clock,
-                                 .clock = clock, .quarter = quarter, .end = quarter,
-                                 .start = quarter};
+    if (!q->primed) {
+        q->primed = true;
+        q->from = phase;
+        q->from_clock = clock;
+        q->quarter = quarter;
+        q->start = quarter;
+    }
 }
 
 /* [clock] of the next edge: the first clock at which it has passed; INT64_MAX if there is none. */

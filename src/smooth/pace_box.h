@@ -74,13 +74,15 @@ double pace_box_twist(const struct pace_box *g, struct pace_state s);
 /* The state at the end of a step. */
 static inline struct pace_state pace_step_to(struct pace_state from, double c, double s)
 {
-    return (struct pace_state){ from.x + s * (from.b + 0.5 * c * s), from.b + c * s };
+    const struct pace_state to = { from.x + s * (from.b + 0.5 * c * s), from.b + c * s };
+    return to;
 }
 
 /* The state at its start. */
 static inline struct pace_state pace_step_from(struct pace_state to, double c, double s)
 {
-    return (struct pace_state){ to.x - s * (to.b - 0.5 * c * s), to.b - c * s };
+    const struct pace_state from = { to.x - s * (to.b - 0.5 * c * s), to.b - c * s };
+    return from;
 }
 
 /* Most x on a step. */

@@ -24,13 +24,15 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
+#include <assert.h>
+
 #include "processor.h"
 
 enum {
     KERNEL_TASKS = 15, KERNEL_INTERRUPTS = 12, KERNEL_SEMAPHORES = 16,
     KERNEL_LOG = 256
 };
-_Static_assert(KERNEL_TASKS + KERNEL_INTERRUPTS + 1 == PROCESSOR_TASKS, "and the kernel itself");
+static_assert(KERNEL_TASKS + KERNEL_INTERRUPTS + 1 == PROCESSOR_TASKS, "and the kernel itself");
 
 /* All times in units of the caller's clock. */
 struct kernel_config {

@@ -2,6 +2,7 @@
 
 import graphlib
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "src"))
 
-from motionfmu.fmu import cores  # noqa: E402
+from motionfmu.fmu import cores, pack  # noqa: E402
 
 SOURCE = ROOT / "src"
 CORES = sorted(f.parent.name for f in SOURCE.glob("*/core.toml"))
@@ -107,6 +108,39 @@ def test_a_core_stands_alone(core: str, tmp_path: Path) -> None:
     whole = ["-Wl,--whole-archive", *[ROOT / f"build/lib{n}.a" for n in names]]
     link = ["-shared", "-Wl,--no-undefined", *whole, "-Wl,--no-whole-archive", "-lm"]
     subprocess.run(["cc", *link, "-o", tmp_path / "core.so"], check=True)
+
+
+def warnings(text: str, standard: str, headers: Path, folder: Path) -> list[str]:
+    """What g++ has against a C++ text; every C++ compiler takes the anonymous structs of C11."""
+    (folder / "text.cpp").write_text(text)
+    command = ["g++", f"-std={standard}", "-Wall", "-Wextra", "-Wpedantic", "-fsyntax-only"]
+    see = ["-I", headers, folder / "text.cpp"]
+    told = subprocess.run([*command, *see], capture_output=True, text=True).stderr.splitlines()
+    return [t for t in told if re.search("warning|error", t) and "anonymous structs" not in t]
+
+
+def test_installed_headers_are_cxx(tmp_path: Path) -> None:
+    """All of them in two orders; each stands alone in C."""
+    if not shutil.which("g++"):
+        pytest.skip("no g++ here")
+    pack.headers(SOURCE, tmp_path / "motionfmu")
+    names = sorted(f.name for core in CORES for f in files(core) if f.suffix == ".h")
+    assert names == sorted(f.name for f in (tmp_path / "motionfmu").iterdir())
+    lines = [f"#include <motionfmu/{name}>\n" for name in names]
+    assert warnings("".join(lines), "c++17", tmp_path, tmp_path) == []
+    assert warnings("".join(reversed(lines)), "c++20", tmp_path, tmp_path) == []
+    literal = "struct s { int a; };\ninline s f() { return (s){ .a = 1 }; }\n"
+    assert len(warnings(literal, "c++17", tmp_path, tmp_path)) == 2
+
+
+def test_a_header_that_cannot_be_installed_is_told(tmp_path: Path) -> None:
+    header = tmp_path / "a.h"
+    header.write_text('#ifndef A_H\n#define A_H\nint a(void);\n#include "b.h"\n\n#endif\n')
+    with pytest.raises(ValueError, match=r"a\.h: a declaration stands before the last #include"):
+        cores.cxx(header)
+    header.write_text("#pragma once\nint a(void);\n")
+    with pytest.raises(ValueError, match=r"a\.h: no guard around the whole file"):
+        cores.cxx(header)
 
 
 def test_the_design_draws_the_cores_as_they_are() -> None:

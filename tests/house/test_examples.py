@@ -1,6 +1,7 @@
-"""The examples: the build line works, C and Python print the same, the numbers are right."""
+"""The examples, outside the tree: C, C++ and Python print the same, the numbers are right."""
 
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,38 +14,64 @@ EXAMPLES = [
     ("station", "virtual_card", "mcc", ["part.ngc"]),
     ("robot_station", "virtual_robot", "robot", ["plate.job", "plate.points"]),
 ]
+CMAKE = Path(sys.executable).parent / "cmake"
 
 
-def output(*command: str | Path) -> str:
-    return subprocess.run(
-        [str(c) for c in command], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout
+def output(*command: str | Path, cwd: Path = ROOT) -> str:
+    done = subprocess.run([str(c) for c in command], cwd=cwd, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
 
 
-def printed(core: str, name: str, package: str, inputs: list[str], folder: Path) -> str:
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Libraries, headers and packages as they are installed."""
+    folder = tmp_path_factory.mktemp("prefix")
+    output(CMAKE, "--install", "build", "--prefix", folder, "--component", "development")
+    return folder
+
+
+def needs(tool: str) -> None:
+    if not shutil.which(tool):
+        pytest.skip(f"no {tool} here")
+
+
+def copied(name: str, folder: Path) -> Path:
+    return shutil.copytree(ROOT / "examples" / name, folder / name)
+
+
+def build_line(source: Path, prefix: Path) -> str:
+    """Build an example by the line in its head; the line."""
+    needs("pkg-config")
+    (line,) = re.findall(r"(?:cc|c\+\+) -O2 .*", source.read_text())
+    where = f"PKG_CONFIG_PATH={prefix}/lib/pkgconfig"
+    # The packages know their own folder: no other path is needed.
+    output("sh", "-c", f"export {where}; {line} -Wall -Wextra -Werror", cwd=source.parent)
+    return line
+
+
+def printed(example: tuple[str, str, str, list[str]], prefix: Path, folder: Path) -> str:
     """What both programs print."""
-    head = (ROOT / f"src/{core}/example/{name}.c").read_text().split("*/")[0]
-    build = re.search(rf"gcc .*?-o {name}", head, re.S)
-    assert build
-    line = build[0].replace("\\\n *", "").replace(f"-o {name}", f"-o {folder / name}")
-    assert "-O2" in line
-    line = line.replace("-O2", "-O0")  # compiled in a fourth of the time
-    output("sh", "-c", line)
-    files = [f"src/{core}/example/{f}" for f in inputs]
-    in_c = output(folder / name, *files)
-    assert in_c == output(sys.executable, "-m", f"motionfmu.{package}.example", *files)
+    core, name, package, inputs = example
+    project = copied(name, folder)
+    line = build_line(project / f"{name}.c", prefix)
+    assert line in (project / "README.md").read_text() and f"motionfmu-{core})" in line
+    in_c = output(project / name, *inputs, cwd=project)
+    assert in_c == output(
+        sys.executable, "-m", f"motionfmu.{package}.example", *inputs, cwd=project
+    )
     return in_c
 
 
-def test_card_in_c_and_python_prints_the_same_numbers(tmp_path: Path) -> None:
-    text = printed(*EXAMPLES[0], tmp_path)
+def test_card_in_c_and_python_prints_the_same_numbers(prefix: Path, tmp_path: Path) -> None:
+    text = printed(EXAMPLES[0], prefix, tmp_path)
     assert re.findall(r"pulses (.*), int", text) == ["0 0 0", "15000 12000 5000"]
     assert re.findall(r"underflows (.*)", text) == ["0", "0"]
     assert "refused: -7" in text
 
 
-def test_robot_in_c_and_python_prints_the_same_numbers(tmp_path: Path) -> None:
-    text = printed(*EXAMPLES[1], tmp_path)
+def test_robot_in_c_and_python_prints_the_same_numbers(prefix: Path, tmp_path: Path) -> None:
+    text = printed(EXAMPLES[1], prefix, tmp_path)
     rests = re.findall(r"X +(\S+)  Y +(\S+)  Z +(\S+) mm +0.00 mm/s", text)
     ends = [(1000, 200, 700), (1000, -100, 500), (1000, -100, 550)]
     for found, wanted in zip((rests[0], *rests[-2:]), ends, strict=True):
@@ -53,9 +80,25 @@ def test_robot_in_c_and_python_prints_the_same_numbers(tmp_path: Path) -> None:
     assert "out of reach at" in text and text.count("OT 1") > 50
 
 
-@pytest.mark.parametrize("core", [e[0] for e in EXAMPLES])
-def test_every_example_is_in_the_readme(core: str) -> None:
-    folder = ROOT / f"src/{core}/example"
+def test_a_project_finds_the_package_in_c_and_cxx(prefix: Path, tmp_path: Path) -> None:
+    needs("g++")
+    project = copied("virtual_card", tmp_path)
+    output(CMAKE, "-G", "Ninja", "-B", "build", f"-DCMAKE_PREFIX_PATH={prefix}", cwd=project)
+    output(CMAKE, "--build", "build", cwd=project)
+    in_c = output(project / "build/virtual_card", "part.ngc", cwd=project)
+    assert in_c.splitlines()[-1].startswith("pulses 15000 12000 5000,")
+    by_cmake = output(project / "build/square")
+    build_line(project / "square.cpp", prefix)
+    assert output(project / "square") == by_cmake
+    exact, path = map(float, re.findall(r"([\d.]+) s", by_cmake))
+    # 10 mm at 20 mm/s with ramps of 0.1 s: 0.6 s a side; blends save one ramp at each of three.
+    assert exact == pytest.approx(2.4, abs=0.02)
+    assert path == pytest.approx(2.1, abs=0.02)
+
+
+@pytest.mark.parametrize("name", [e[1] for e in EXAMPLES])
+def test_every_example_is_in_the_readme(name: str) -> None:
+    folder = ROOT / "examples" / name
     files = {f.name for f in folder.iterdir()} - {"README.md"}
     assert files == set(re.findall(r"\]\(([\w.]+)\)", (folder / "README.md").read_text()))
 

@@ -16,7 +16,7 @@ import motionfmu.robot as robots
 from motionfmu.errors import InputError
 from motionfmu.robot import Kinematics, RobotError, VirtualRobot, matrix_of, pose_of
 
-EXAMPLE = ROOT / "src/robot_station/example"
+EXAMPLE = ROOT / "examples/virtual_robot"
 JOB, POINTS = ((EXAMPLE / name).read_text() for name in ("plate.job", "plate.points"))
 PART = (
     "G21 G90\nG0 X1000 Y0 Z900\nG64 P1\nG1 X1050 F9000\nM62 P2\nG1 Y60\nG4 P0.02\nG1 Y0 C170\nM2\n"

@@ -8,6 +8,9 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+_GUARD = re.compile(r"^#ifndef (\w+)\n#define \1\n", re.MULTILINE)
+_END = "\n#endif\n"
 _INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 
@@ -31,6 +34,20 @@ def closure(source: Path, names: Iterable[str]) -> list[str]:
 def included(file: Path) -> list[str]:
     """Names of the headers a C file includes, in their order."""
     return _INCLUDE.findall(file.read_text())
+
+
+def cxx(header: Path) -> str:
+    """A header as it is installed: its functions are those of C in C++, its guard is its own."""
+    own = r"#ifndef MOTIONFMU_\1\n#define MOTIONFMU_\1\n"
+    text, guards = _GUARD.subn(own, header.read_text(), count=1)
+    if not guards or not text.endswith(_END):
+        raise ValueError(f"{header}: no guard around the whole file")
+    *_, last = re.finditer(r"^#(?:define MOTIONFMU_\w+|include .*)\n", text, re.MULTILINE)
+    head, body = text[: last.end()], text[last.end() : -len(_END)]
+    if re.search(r"^[^#\s]", _COMMENT.sub("", head), re.MULTILINE):
+        raise ValueError(f"{header}: a declaration stands before the last #include")
+    opened = '#ifdef __cplusplus\nextern "C" {\n#endif\n'
+    return f"{head}\n{opened}{body}\n#ifdef __cplusplus\n}}\n#endif\n{_END}"
 
 
 def reached(

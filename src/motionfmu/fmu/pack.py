@@ -1,8 +1,9 @@
-"""Generate an FMU's C and XML, and pack its .fmu files; called by the build.
+"""Generate an FMU's C and XML, pack its .fmu files, make headers; called by the build.
 
 python src/pack.py generate fmus/epcio build/gen/epcio
 python src/pack.py flags    fmus/epcio build/gen/epcio
 python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.so epcio.fmi3.fmu
+python src/pack.py headers  src build/include/motionfmu
 """
 
 import json
@@ -152,12 +153,21 @@ def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> N
             archive_file.writestr(info, data)
 
 
+def headers(source: Path, out: Path) -> None:
+    """Write the headers of all cores into one folder, fit for C++."""
+    made = {f.name: f for core in source.glob("*/core.toml") for f in core.parent.glob("*.h")}
+    for name, header in made.items():
+        _write(out / name, cores.cxx(header))
+    for old in {f.name for f in out.iterdir()} - set(made):
+        (out / old).unlink()
+
+
 def main(arguments: list[str]) -> int:
-    """Run one of the three as in the module's first lines; 0, or 2 after one message on stderr."""
+    """Run one of the four as in the module's first lines; 0, or 2 after one message on stderr."""
     try:
-        if arguments[0] in ("generate", "flags"):
-            make = generate if arguments[0] == "generate" else flags
-            make(Path(arguments[1]), Path(arguments[2]))
+        two = {"generate": generate, "flags": flags, "headers": headers}
+        if arguments[0] in two:
+            two[arguments[0]](Path(arguments[1]), Path(arguments[2]))
         else:
             fmu, out, fmi, library, target = arguments[1:]
             archive(Path(fmu), Path(out), int(fmi), Path(library), Path(target))

@@ -1,6 +1,6 @@
 """A program of the MCC library on the virtual card.
 
-src/station/example/virtual_card.c does the same.
+examples/virtual_card/virtual_card.c does the same.
 """
 
 import sys

@@ -1,6 +1,6 @@
 """A program on the virtual robot: moves by calls, one of them refused, then a job.
 
-src/robot_station/example/virtual_robot.c does the same.
+examples/virtual_robot/virtual_robot.c does the same.
 """
 
 import sys

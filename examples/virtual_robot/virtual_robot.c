@@ -1,14 +1,13 @@
 /* A program on the virtual robot: moves by calls, one of them refused, then a job in the robot
  * language. motionfmu.robot.example does the same.
  *
- *     gcc -O2 $(find src -name core.toml -printf '-I%h %h/[a-z]*.c ') \
- *         src/robot_station/example/virtual_robot.c -lm -o virtual_robot
- *     ./virtual_robot src/robot_station/example/plate.job src/robot_station/example/plate.points
+ *     cc -O2 virtual_robot.c $(pkg-config --cflags --libs motionfmu-robot_station) -o virtual_robot
+ *     ./virtual_robot plate.job plate.points
  */
 #include <stdio.h>
 
-#include "robot_station.h"
-#include "soft_words.h"
+#include <motionfmu/robot_station.h>
+#include <motionfmu/soft_words.h>
 
 static struct robot_station station;    /* 600 kB: not on the stack */
 static struct inform_points points;

@@ -1,13 +1,12 @@
 /* A program of the MCC library on the virtual card: lines and a circle by calls of the API, then a
  * part program. motionfmu.mcc.example does the same.
  *
- *     gcc -O2 $(find src -name core.toml -printf '-I%h %h/[a-z]*.c ') \
- *         src/station/example/virtual_card.c -lm -o virtual_card
- *     ./virtual_card src/station/example/part.ngc
+ *     cc -O2 virtual_card.c $(pkg-config --cflags --libs motionfmu-station) -o virtual_card
+ *     ./virtual_card part.ngc
  */
 #include <stdio.h>
 
-#include "station.h"
+#include <motionfmu/station.h>
 
 static struct station station;  /* 400 kB: not on the stack */
 
