@@ -1,0 +1,207 @@
+"""The position gain Kp of a loop in 1/s, whatever units its parameter has."""
+
+import cmath
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motionfmu.errors import InputError
+from motionfmu.fmu.modelica.ode import Ode
+from motionfmu.linear import coupled, law
+from motionfmu.linear.axis import AxisModel, model
+from motionfmu.linear.loops import feedbacks
+from motionfmu.linear.opened import listed, matrices
+from motionfmu.run import Scenario, load
+from motionfmu.scenario import system
+
+# Frequency [rad/s] that is as good as none, for time constants up to a minute.
+_SLOW = 1e-4
+# A loop has a position gain if (z - 1)/T times it changes less than this over an octave there.
+_STEADY = 1e-3
+# What rounding leaves of the difference of two loops is below this share of them.
+_SAME = 1e-9
+# The motion for which a gain is told where nobody says one: slow, but no creeping, by unit.
+_MOTION = {"rad/s": 10.0, "m/s": 0.01}
+
+
+@dataclass(frozen=True)
+class LoopGain:
+    """A parameter that sets the position gain of a loop.
+
+    Attributes
+    ----------
+    name : str
+        Parameter, ``component.variable``.
+    axis : int
+        From 1; 0 for a parameter that is no array.
+    value : float or int
+        Of the parameter, in its own units.
+    kp : float
+        Position gain Kp: speed that the loop asks for over the position error [1/s].
+    """
+
+    name: str
+    axis: int
+    value: float
+    kp: float
+
+    def __str__(self) -> str:
+        return in_lines([self])[0]
+
+
+def _told(gain: LoopGain) -> str:
+    return f"{gain.value:.6g} (Kp {in_words(gain.kp)})"
+
+
+def in_words(kp: float) -> str:
+    """A position gain [1/s] with three digits and its unit."""
+    return f"{kp:.0f} 1/s" if kp >= 1000.0 else f"{kp:.3g} 1/s"
+
+
+def kp_of(axis: AxisModel, name: str) -> float | None:
+    """Position gain Kp [1/s] that a parameter gives a loop.
+
+    The return ratio of the parameter, ``(L(p) - L(0))/(1 + L(0))`` with L the open loop that it is
+    in, approaches ``Kp T/(z - 1)`` for slow motions; integral parts of the position loop are off.
+
+    Parameters
+    ----------
+    axis : AxisModel
+    name : str
+        ``component.variable``.
+
+    Returns
+    -------
+    float or None
+        None if it sets no position gain: it acts on no loop, is not above 0, or what it acts on
+        does not add speed up to a position.
+    """
+    value = axis.value(name)
+    if isinstance(value, bool | str) or not value > 0:
+        return None
+    other = (value - 1 if value > 1 else value + 1) if isinstance(value, int) else 0.5 * value
+    still = {n: type(axis.value(n))(0) for n in listed(axis, "integral") if n != name}
+    models = [_with(axis, {**still, name: v}) for v in (value, other)]
+    for at, cut in feedbacks(axis).items():
+        rates = [_rate(models, (value, other), (at, cut), w) for w in (_SLOW, 2.0 * _SLOW)]
+        if rates[0] is None or rates[1] is None:
+            continue
+        if abs(rates[0] - rates[1]) < _STEADY * abs(rates[0]) and rates[0].real > 0.0:
+            return float(rates[0].real)
+    return None
+
+
+def _with(axis: AxisModel, values: Mapping[str, Any]) -> AxisModel:
+    """The model with values for its own axis; a shared parameter for all."""
+    ports = axis.scenario.resolver.ports
+    every: dict[str, Any] = {}
+    for name, value in values.items():
+        component, _, variable = name.partition(".")
+        port = ports[component][variable]
+        every[name] = [value] * port.count if port.shape else value
+    return axis.changed(every)
+
+
+def _rate(
+    models: list[AxisModel], values: tuple[float, float], loop: tuple[str, tuple[str, ...]], w: float
+) -> complex | None:
+    """(z - 1)/T times the return ratio of a parameter with two values; None if it has none."""
+    (at, cut), found = loop, []
+    component, _, port = at.partition(".")
+    for axis in models:
+        source = ".".join(axis.wires[component, port])
+        parts = matrices(axis, [at], [source], [at, *cut])
+        a, b, c, d = (np.asarray(m, dtype=float) for m in (parts.a, parts.b, parts.c, parts.d))
+        period = parts.period_ns * 1e-9
+        z = cmath.exp(1j * w * period)
+        found.append(-complex((c @ np.linalg.solve(z * np.eye(len(a)) - a, b) + d)[0, 0]))
+    own, other = found
+    part = values[0] * (own - other) / (values[0] - values[1])
+    if abs(part) <= _SAME * abs(own):
+        return None
+    return (z - 1.0) / period * part / (1.0 + own - part)
+
+
+def gain_of(
+    scenario: Scenario | str | Path,
+    set: Mapping[str, Any] | None = None,
+    axis: int | None = None,
+    at: Mapping[str, float] | None = None,
+) -> tuple[LoopGain, ...]:
+    """Position gains of a scenario's loops in 1/s, of parameters in other units.
+
+    Parameters
+    ----------
+    scenario : Scenario, str or Path
+    set : mapping, optional
+        Values by ``component.variable``, stronger than the scenario's.
+    axis : int, optional
+        From 1; else all.
+    at : mapping, optional
+        Operating point as in `model`; else a slow motion, 10 rad/s of a motor or 10 mm/s.
+
+    Returns
+    -------
+    tuple of LoopGain
+        By parameter, then axis; empty if no loop of the scenario has such a gain.
+    """
+    loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
+    points = [dict(at)] if at else _motions(loaded)
+    models: dict[int, AxisModel | None] = {}
+    found = []
+    for component, fmu in loaded.document.body.component.items():
+        own, ports = law.carried(fmu), loaded.resolver.ports[component]
+        kinds = own.gain if isinstance(own, law.Law) else {}
+        for name in [n for n, k in kinds.items() if k == "position" and ports[n].unit != "1/s"]:
+            count = ports[name].count if ports[name].shape else 0
+            for k in range(1, max(count, 1) + 1):
+                if axis not in (None, k):
+                    continue
+                if k not in models:
+                    models[k] = _first(loaded, k, points, set or {})
+                whole, made = f"{component}.{name}", models[k]
+                if made is not None and (kp := kp_of(made, whole)) is not None:
+                    found.append(LoopGain(whole, k if count else 0, made.value(whole), kp))
+    return tuple(found)
+
+
+def _first(
+    scenario: Scenario, axis: int, points: Iterable[dict[str, float]], set_: Mapping[str, Any]
+) -> AxisModel | None:
+    """The model at the first point that the plants have; None if the axis has none."""
+    for at in points:
+        try:
+            return model(scenario, axis, at, set_)
+        except InputError:  # not active, or an end stop or load in the way
+            continue
+    return None
+
+
+def _motions(scenario: Scenario) -> list[dict[str, float]]:
+    """Slow motions of the plants that a law moves, both ways: speed by output."""
+    found = {}
+    said = {c: law.carried(fmu) for c, fmu in scenario.document.body.component.items()}
+    wires = [(w.source.component, w.target.component) for w in system.wires(scenario.resolver)]
+    for component, own in said.items():
+        moved = any(t == component and isinstance(said[s], law.Law) for s, t in wires)
+        if not isinstance(own, Ode) or coupled.couples(own) or not moved:
+            continue
+        ports, shown = scenario.resolver.ports[component], [d.name for d in own.outputs]
+        for unit, value in _MOTION.items():
+            if speeds := [n for n in shown if n in ports and ports[n].unit == unit]:
+                found[f"{component}.{speeds[0]}"] = value
+                break
+    return [{n: sign * v for n, v in found.items()} for sign in (1.0, -1.0)]
+
+
+def in_lines(gains: Iterable[LoopGain]) -> list[str]:
+    """Gains in words, a line each; alike ones of one parameter together."""
+    found = []
+    for (name, told), group in groupby(gains, key=lambda g: (g.name, _told(g))):
+        axes = ",".join(str(g.axis) for g in group if g.axis)
+        found.append(f"{name}[{axes}] = {told}" if axes else f"{name} = {told}")
+    return found
