@@ -192,7 +192,8 @@ def test_the_command_writes_a_report_with_all_numbers(tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = run(THEORY, "--set", "machine.tau=1e-3", "--out", out)
     assert done.exit_code == 0, done.output
-    assert "card.enc_phase" in done.output
+    assert "card.enc_phase" in done.output and "mcc.p_gain[1] = 200 (Kp 47.7 1/s)" in done.output
+    assert "Position gain Kp" in (out / "report.html").read_text()
     numbers = json.loads((out / "result.json").read_text())
     (loop,) = numbers["loops"]
     model = theory(machine__tau=1e-3)

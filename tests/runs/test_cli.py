@@ -93,7 +93,8 @@ def test_list_info_describe_and_check() -> None:
     assert all(str(p.parent.relative_to(ROOT)) in listed for p in ROOT.glob("scenarios/*/*.toml"))
     described = command("info", "servo_drives").stdout
     assert "velocity_gain" in described and "N.m.s/rad" in described
-    assert "ball_screw_axes" in command("info", "scenarios/circle").stdout
+    told = command("info", "scenarios/circle").stdout
+    assert "ball_screw_axes" in told and "mcc.p_gain[1,2] = 200 (Kp 47.7 1/s)" in told
     assert command("describe", "scope", "--xml", "--fmi", "2").stdout.startswith("<?xml")
     checked = command("check", "scenarios/mismatch_line", "scenarios/square")
     assert checked.returncode == 0 and checked.stdout.count("ok ") == 2

@@ -47,8 +47,9 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Margins and largest stable gains of a scenario's loops, and their report."""
     from motionfmu.freq.study import Asked
-    from motionfmu.linear import model
+    from motionfmu.linear import gain_of, model
     from motionfmu.linear.opened import held
+    from motionfmu.linear.position_gain import in_lines
     from motionfmu.report import outcome
     from motionfmu.report.servo.margin_page import numbers, page_text
 
@@ -74,6 +75,8 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
         limits = f"{s.linear.gain:.5g}", f"{ringing:.5g}"
         table.add_row(name, *cells, f"{m.sensitivity:.4g}", *limits)
     out.print(table)
+    for line in in_lines(gain_of(linear.scenario, linear.set, axis, linear.at)):
+        out.print(line, markup=False)
     if kept := held(linear):
         out.print(kept, markup=False)
     for s in studies:

@@ -1,12 +1,15 @@
 """The commands that list and describe FMUs and scenarios."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from motionfmu.cli.common import app, bare_table, out
 from motionfmu.errors import InputError
+
+if TYPE_CHECKING:
+    from motionfmu.run import Scenario
 
 
 @app.command("list")
@@ -41,11 +44,21 @@ def info(what: Annotated[str, typer.Argument(help="An FMU's name, or a scenario.
     out.print(f"{body.stop:g} s in steps of {body.step:g} s")
     for name, fmu in body.component.items():
         out.print(f"  {name:12} {fmu}")
+    for line in _gains(scenario):
+        out.print(f"  gain {line}", markup=False)
     for check, tables in body.check.items():
         for bounds in tables:
             out.print(f"  check {check}  [dim]{bounds.model_dump(exclude_none=True)}[/]")
     for case in body.contrary:
         out.print(f"  contrary: {case.off}  [dim]{case.set}[/]")
+
+
+def _gains(scenario: "Scenario") -> list[str]:
+    """Position gains of the scenario's loops, also in 1/s."""
+    from motionfmu.linear import gain_of
+    from motionfmu.linear.position_gain import in_lines
+
+    return in_lines(gain_of(scenario))
 
 
 @app.command()

@@ -39,6 +39,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
 ) -> None:
     """Find servo gains for a scenario's own path; write gains.toml and a report."""
+    from motionfmu.linear.position_gain import in_lines
     from motionfmu.report import outcome
     from motionfmu.report.servo.tune_page import page_text
     from motionfmu.run import load
@@ -72,6 +73,8 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     out.print(table)
     for name, value in tuned.settings.items():
         out.print(f"{name} = {value}".replace("[", r"\["))
+    for line in in_lines(tuned.position_gains(tuned.z)):
+        out.print(line, markup=False)
     for text in tuned.stopped_by:
         out.print(f"stopped by: {text}")
     out.print(f"gains: {target / 'gains.toml'}", soft_wrap=True)

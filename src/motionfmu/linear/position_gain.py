@@ -2,7 +2,7 @@
 
 import cmath
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from motionfmu.linear.axis import AxisModel, model
 from motionfmu.linear.loops import feedbacks
 from motionfmu.linear.opened import listed, matrices
 from motionfmu.run import Scenario, load
-from motionfmu.scenario import system
+from motionfmu.scenarios import system
 
 # Frequency [rad/s] that is as good as none, for time constants up to a minute.
 _SLOW = 1e-4
@@ -42,12 +42,28 @@ class LoopGain:
         Of the parameter, in its own units.
     kp : float
         Position gain Kp: speed that the loop asks for over the position error [1/s].
+    loop : str
+        The input at which the loop can be opened, ``component.variable``.
     """
 
     name: str
     axis: int
     value: float
     kp: float
+    loop: str
+
+    def at(self, value: float) -> "LoopGain":
+        """The same with another value of the parameter.
+
+        Parameters
+        ----------
+        value : float
+
+        Returns
+        -------
+        LoopGain
+        """
+        return replace(self, value=value, kp=self.kp * value / self.value)
 
     def __str__(self) -> str:
         return in_lines([self])[0]
@@ -80,6 +96,12 @@ def kp_of(axis: AxisModel, name: str) -> float | None:
         None if it sets no position gain: it acts on no loop, is not above 0, or what it acts on
         does not add speed up to a position.
     """
+    found = _acting(axis, name)
+    return None if found is None else found[0]
+
+
+def _acting(axis: AxisModel, name: str) -> tuple[float, str] | None:
+    """Position gain [1/s] of a parameter, and where its loop can be opened."""
     value = axis.value(name)
     if isinstance(value, bool | str) or not value > 0:
         return None
@@ -91,7 +113,7 @@ def kp_of(axis: AxisModel, name: str) -> float | None:
         if rates[0] is None or rates[1] is None:
             continue
         if abs(rates[0] - rates[1]) < _STEADY * abs(rates[0]) and rates[0].real > 0.0:
-            return float(rates[0].real)
+            return float(rates[0].real), at
     return None
 
 
@@ -107,7 +129,10 @@ def _with(axis: AxisModel, values: Mapping[str, Any]) -> AxisModel:
 
 
 def _rate(
-    models: list[AxisModel], values: tuple[float, float], loop: tuple[str, tuple[str, ...]], w: float
+    models: list[AxisModel],
+    values: tuple[float, float],
+    loop: tuple[str, tuple[str, ...]],
+    w: float,
 ) -> complex | None:
     """(z - 1)/T times the return ratio of a parameter with two values; None if it has none."""
     (at, cut), found = loop, []
@@ -158,14 +183,13 @@ def gain_of(
         kinds = own.gain if isinstance(own, law.Law) else {}
         for name in [n for n, k in kinds.items() if k == "position" and ports[n].unit != "1/s"]:
             count = ports[name].count if ports[name].shape else 0
-            for k in range(1, max(count, 1) + 1):
-                if axis not in (None, k):
-                    continue
+            every = range(1, count + 1) if count else (axis or 1,)
+            for k in [k for k in every if axis in (None, k)]:
                 if k not in models:
                     models[k] = _first(loaded, k, points, set or {})
                 whole, made = f"{component}.{name}", models[k]
-                if made is not None and (kp := kp_of(made, whole)) is not None:
-                    found.append(LoopGain(whole, k if count else 0, made.value(whole), kp))
+                if made is not None and (kp := _acting(made, whole)) is not None:
+                    found.append(LoopGain(whole, k if count else 0, made.value(whole), *kp))
     return tuple(found)
 
 

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from motionfmu.linear import LoopGain, gain_of
+from motionfmu.linear.position_gain import in_lines
 from motionfmu.run import Result
 from motionfmu.tune.curve import margin
 from motionfmu.tune.path import Measured, PathError
@@ -135,6 +137,23 @@ class Tuned:
         gains = self.study.gains(z)
         return {k: part.lag(gains[k]) for k, part in self.study.parts[0].items()}
 
+    def position_gains(self, z: Array) -> list[LoopGain]:
+        """Position gains in 1/s of the axes tuned, nominal plant.
+
+        Parameters
+        ----------
+        z : ndarray
+            Rounded to the registers.
+
+        Returns
+        -------
+        list of LoopGain
+        """
+        study = self.study
+        given = {**study.set, **settings(study, z)}
+        found = [gain_of(study.scenario, given, k, study.at) for k in study.axes]
+        return list(dict.fromkeys(sorted(sum(found, ()), key=lambda g: (g.name, g.axis))))
+
     def toml(self) -> str:
         """The gains file, for ``motionfmu run SCENARIO --set FILE``.
 
@@ -147,6 +166,7 @@ class Tuned:
             *(f"# {text}" for text in assumptions(self.study)),
             *(f"# Stopped by: {text}" for text in self.stopped_by),
             *(f"# Lag of axis {k}: {v * 1e3:.4g} ms" for k, v in self.lags(self.z).items()),
+            *(f"# {text}" for text in in_lines(self.position_gains(self.z))),
         ]
         for name, value in self.settings.items():
             shown = f"[{', '.join(map(repr, value))}]" if isinstance(value, list) else repr(value)
@@ -167,6 +187,10 @@ class Tuned:
             "assumed": assumptions(study),
             "gains": self.settings,
             "lag": {"before": self.lags(study.present), "after": self.lags(self.z)},
+            "position_gains": {
+                "before": [asdict(g) for g in self.position_gains(study.present)],
+                "after": [asdict(g) for g in self.position_gains(self.z)],
+            },
             "stopped_by": self.stopped_by,
             "cost": {
                 "name": study.problem.cost,

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from motionfmu.freq.study import LoopStudy
-from motionfmu.linear import AxisModel
+from motionfmu.linear import AxisModel, LoopGain, gain_of
 from motionfmu.linear.loops import Limit
 from motionfmu.linear.opened import held, worst
+from motionfmu.linear.position_gain import in_lines, in_words
 from motionfmu.report.numbers import figure
 from motionfmu.report.servo.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.sheet import Frame, Sheet
@@ -36,11 +37,17 @@ def page_text(axis: AxisModel, studies: Sequence[LoopStudy]) -> str:
         rows = [[escape(text)] for text in told]
         page.section("Worst case", note, table(["taken"], rows, 1))
     for k, study in enumerate(studies):
-        _add(page, study, f"loop{k}")
+        _add(page, study, f"loop{k}", _gains(axis, study))
     page.section("Operating point", _point_note(axis), _points(axis))
     name = f"{axis.scenario.name}, axis {axis.axis}"
     frame = Frame(name, axis.scenario.document.about, "margins report", [], FOOTER)
     return page.text(frame)
+
+
+def _gains(axis: AxisModel, study: LoopStudy) -> list[LoopGain]:
+    """Position gains that the loop has."""
+    found = gain_of(axis.scenario, axis.set, axis.axis, axis.at)
+    return [g for g in found if g.loop == study.at]
 
 
 def numbers(axis: AxisModel, studies: Sequence[LoopStudy]) -> dict[str, Any]:
@@ -54,6 +61,7 @@ def numbers(axis: AxisModel, studies: Sequence[LoopStudy]) -> dict[str, Any]:
             "states": list(s.loop.state_labels),
             "margins": asdict(s.margins),
             "gain": s.gain or f"factor on the wire to {s.at}",
+            "position_gains": [asdict(g) for g in _gains(axis, s)],
             "largest_gain": asdict(s.linear),
             "largest_gain_simulated": asdict(s.simulated) if s.simulated else None,
             "kick": s.kick,
@@ -103,7 +111,7 @@ def _unlimited(value: float, text: str) -> str:
     return text if math.isfinite(value) else "unlimited"
 
 
-def _add(page: Sheet, study: LoopStudy, name: str) -> None:
+def _add(page: Sheet, study: LoopStudy, name: str, gains: Sequence[LoopGain]) -> None:
     m = study.margins
     decibel = 20.0 * math.log10(m.gain) if 0.0 < m.gain < math.inf else math.inf
     rows = [
@@ -124,6 +132,9 @@ def _add(page: Sheet, study: LoopStudy, name: str) -> None:
         ("Sensitivity peak", figure(m.sensitivity), _hertz(m.omega_sensitivity)),
         ("Bandwidth", f"{figure(m.bandwidth / (2.0 * math.pi))} Hz", "closed loop, &minus;3 dB"),
     ]
+    for gain in gains:
+        told = in_lines([gain])[0].partition(" (")[0]
+        rows.append(("Position gain Kp", in_words(gain.kp), escape(told)))
     boxes = cards(rows, "repeat(auto-fit,minmax(165px,1fr))")
     if not m.stable:
         wrong = '<span class="mark fail">✗ This loop is unstable as it is;</span>'
@@ -133,7 +144,7 @@ def _add(page: Sheet, study: LoopStudy, name: str) -> None:
         note += f", with {escape(', '.join(study.cut))} cut"
     states = ", ".join(study.loop.state_labels)
     note += f". {study.loop.nstates} states: {escape(states)}."
-    page.section(f"Loop at {escape(study.at)}", note, boxes + _limits(study))
+    page.section(f"Loop at {escape(study.at)}", note, boxes + _limits(study, gains))
     left = page.place(f"{name}_bode", bode(study))
     note = "Green: where |L| crosses 1; red: where the phase crosses &minus;180°."
     page.section("Bode diagram", note + _deviation(study), left)
@@ -157,25 +168,33 @@ def _deviation(study: LoopStudy) -> str:
     return "".join(told)
 
 
-def _limits(study: LoopStudy) -> str:
+def _limits(study: LoopStudy, gains: Sequence[LoopGain]) -> str:
     what = escape(study.gain) if study.gain else f"factor on the wire to {escape(study.at)}"
-    rows = [(f"{what}: by the poles of the linear model", *_limit(study.linear), "")]
+    rows = [(f"{what}: by the poles of the linear model", *_limit(study.linear, study, gains), "")]
     if study.simulated is not None:
         share = study.simulated.gain / study.linear.gain - 1.0 if study.linear.gain else math.nan
         told = f"{figure(100.0 * share, sign=True)} %" if math.isfinite(share) else ""
         name = f"{what}: by running the FMUs until they ring after a step of {study.kick:.3g}"
-        rows.append((name, *_limit(study.simulated), told))
+        rows.append((name, *_limit(study.simulated, study, gains), told))
     elif study.silent:
         rows.append((f"FMUs not run: {escape(study.silent)}", "", "", ""))
     heads = ("Largest stable gain", "value", "rings at", "difference")
     return table(heads, rows)
 
 
-def _limit(limit: Limit) -> tuple[str, str]:
+def _limit(limit: Limit, study: LoopStudy, gains: Sequence[LoopGain]) -> tuple[str, str]:
     if not math.isfinite(limit.gain):
         return "none found", ""
     ring = limit.omega / (2.0 * math.pi)
-    return f"{limit.gain:.4g}", f"{figure(ring)} Hz" if math.isfinite(ring) else ""
+    told = "".join(f" (Kp {in_words(kp)})" for kp in kp_at(limit, study, gains))
+    return f"{limit.gain:.4g}{told}", f"{figure(ring)} Hz" if math.isfinite(ring) else ""
+
+
+def kp_at(limit: Limit, study: LoopStudy, gains: Sequence[LoopGain]) -> list[float]:
+    """Position gain [1/s] at a limit, if it is one of a position gain or a factor on its loop."""
+    if study.gain is None:
+        return [g.kp * limit.gain for g in gains]
+    return [g.at(limit.gain).kp for g in gains if g.name == study.gain]
 
 
 def _point_note(axis: AxisModel) -> str:

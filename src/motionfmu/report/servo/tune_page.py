@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from motionfmu.linear import LoopGain
+from motionfmu.linear.position_gain import in_words
 from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.sheet import Frame, Sheet
@@ -74,13 +76,19 @@ def _short(tuned: Tuned) -> str:
 
 def _gains(tuned: Tuned) -> str:
     study, rows = tuned.study, []
+    kps = [{(g.name, g.axis): g for g in tuned.position_gains(z)} for z in (study.present, tuned.z)]
     for k, (variable, share) in enumerate(zip(study.variables, tuned.z, strict=True)):
         port = study.scenario.resolver.end(variable.name, "set", variable.name).port
         found = tuned.found.z[k]
         cells = [variable.start, variable.value(float(found)), variable.value(float(share))]
         bounds = f"{variable.low:.4g} to {variable.high:.4g}"
         doc = f'{escape(variable.title)}<div class="sub">{escape(port.doc)}</div>'
-        rows.append([doc, port.unit or "", *(f"{c:.6g}" for c in cells), bounds])
+        # of the first of its axes: they have the same value
+        whose = variable.name, variable.axes[0] if port.shape else 0
+        known = [kps[0].get(whose), *2 * [kps[1].get(whose)]]
+        said = [_kp(g and g.at(c)) for g, c in zip(known, cells, strict=True)]
+        values = (f"{c:.6g}{kp}" for c, kp in zip(cells, said, strict=True))
+        rows.append([doc, port.unit or "", *values, bounds])
     exact, rounded = tuned.lags(tuned.found.z), tuned.lags(tuned.z)
     for k, before in tuned.lags(study.present).items():
         name = f'lag of axis {k}<div class="sub">Following error over speed in slow motion</div>'
@@ -88,6 +96,10 @@ def _gains(tuned: Tuned) -> str:
         rows.append([name, "ms", *lags, ""])
     heads = ["gain", "unit", "before", "found", "rounded", "searched"]
     return table(heads, rows, 2)
+
+
+def _kp(gain: LoopGain | None) -> str:
+    return "" if gain is None else f'<div class="sub">Kp {in_words(gain.kp)}</div>'
 
 
 def _trial(trial: Trial) -> str:
