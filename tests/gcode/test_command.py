@@ -7,7 +7,7 @@ import pytest
 from conftest import ROOT
 from typer.testing import CliRunner
 
-from motionfmu.cli.common import app
+from motionfmu.cli import app
 from motionfmu.gcode import read, strokes, summarise
 
 GOOD = ROOT / "tests/gcode/programs/post_mill.ngc"

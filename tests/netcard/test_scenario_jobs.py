@@ -6,7 +6,7 @@ import pytest
 from conftest import ROOT
 from typer.testing import CliRunner
 
-from motionfmu.cli.common import app
+from motionfmu.cli import app
 
 DRAWN = sorted(p for p in (ROOT / "scenarios").glob("*/*.mcj") if p.with_suffix(".plt").exists())
 

@@ -1,23 +1,78 @@
 """The console command: each module here brings its own.
 
-Exit status: 0 all checks hold, 1 a check failed, 2 the input is wrong (one message on stderr).
+Exit status: 0 all checks hold, 1 a check failed, 2 the input is wrong (one message on stderr),
+130 it was ended by Ctrl-C (one line on stderr).
 """
 
-import importlib
-import pkgutil
 import sys
+from typing import TYPE_CHECKING, Any
 
-from motionfmu.cli.common import WRONG, app
-from motionfmu.errors import InputError
+if TYPE_CHECKING:
+    import typer
 
-for module in pkgutil.iter_modules(__path__, f"{__name__}."):
-    importlib.import_module(module.name)
+
+def __getattr__(name: str) -> Any:
+    """Import the commands when they are first used: an interrupt is to find `main` before that."""
+    if name == "app":
+        return _commands()
+    raise AttributeError(f"module 'motionfmu.cli' has no attribute {name!r}")
+
+
+def _commands() -> "typer.Typer":
+    import importlib
+    import pkgutil
+
+    from motionfmu.cli.common import app
+
+    for module in pkgutil.iter_modules(__path__, f"{__name__}."):
+        importlib.import_module(module.name)
+    return app
 
 
 def main() -> None:
-    """Entry point: one message and status 2 for wrong input."""
+    """Entry point: one line and a status for wrong input and for Ctrl-C."""
     try:
-        app()
+        status, told = _status()
+    except KeyboardInterrupt:
+        status, told = 130, "stopped"
+    if told:
+        print(f"motionfmu: {told}", file=sys.stderr)
+    if status:
+        sys.exit(status)
+
+
+def _status() -> tuple[int, str]:
+    """Run the command of the command line; status, and what is to be told on stderr."""
+    import atexit
+    import signal
+
+    app = _commands()
+    from typer.exceptions import TyperException
+
+    from motionfmu.cli.common import STOPPED, WRONG, Stopped
+    from motionfmu.errors import InputError
+
+    # All is done then; an interrupt would only show where Python is.
+    atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
+    try:
+        status = app(prog_name="motionfmu", standalone_mode=False) or 0
     except InputError as error:
-        print(f"motionfmu: {error}", file=sys.stderr)
-        sys.exit(WRONG)
+        return WRONG, str(error)
+    except TyperException as error:  # of the command line itself
+        return error.exit_code, _usage(error)
+    except Stopped as stopped:
+        return STOPPED, f"stopped: {stopped}"
+    return status, "stopped" if status == STOPPED else ""
+
+
+def _usage(error: Any) -> str:
+    """What is wrong with the command line; all help, if nothing was asked."""
+    if type(error).__name__ == "NoArgsIsHelpError":
+        error.show()
+        return ""
+    text = str(error.format_message())
+    if near := getattr(error, "possibilities", None):
+        text = f"{error.message}; did you mean {near[0]!r}?"
+    text = text.rstrip(".").replace(". Did you", "; did you")
+    where = error.ctx.command_path if getattr(error, "ctx", None) else "motionfmu"
+    return f"{text[:1].lower()}{text[1:]} (help: {where} --help)"

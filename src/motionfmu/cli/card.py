@@ -6,9 +6,14 @@ from collections.abc import Callable
 
 import typer
 
-from motionfmu.cli.common import app
+from motionfmu.cli.common import Group, app
 
-card = typer.Typer(help="Network motion card: plan, serve, simulate.", no_args_is_help=True)
+card = typer.Typer(
+    cls=Group,
+    rich_markup_mode=None,
+    help="Network motion card: plan, serve, simulate.",
+    no_args_is_help=True,
+)
 app.add_typer(card, name="card")
 
 

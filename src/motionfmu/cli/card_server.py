@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from motionfmu.cli.card import card, on_end
-from motionfmu.cli.common import FAILED, bare_table, out
+from motionfmu.cli.common import FAILED, Group, bare_table, out
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ Folder = Annotated[Path, typer.Option("--folder", help="The server's folder.")]
 Id = Annotated[int, typer.Argument(metavar="ID", help="The card's id.")]
 HERE = Path("cards")
 
-key = typer.Typer(help="Keys of cards.", no_args_is_help=True)
+key = typer.Typer(cls=Group, rich_markup_mode=None, help="Keys of cards.", no_args_is_help=True)
 card.add_typer(key, name="key")
 
 

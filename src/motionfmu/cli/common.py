@@ -1,29 +1,85 @@
 """What the commands share: the application, its options, settings, a run with a progress bar."""
 
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.table import Table
+from typer.core import TyperGroup
 
 from motionfmu.errors import InputError
 from motionfmu.toml_lines import tables_of, text_of, word
 
 if TYPE_CHECKING:
+    from rich.console import Console
     from rich.progress import Progress, ProgressColumn
+    from rich.table import Table
 
     from motionfmu.run import Result, Scenario
 
+
+class Group(TyperGroup):
+    """Commands whose help is listed whole, not cut to a line."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the list of commands."""
+        with formatter.section("Commands"):
+            firsts = ((n, (self.commands[n].help or "").split("\n\n")[0]) for n in self.commands)
+            formatter.write_dl([(name, text.replace("\n", " ")) for name, text in firsts])
+
+
 app = typer.Typer(
+    cls=Group,
     help="Motion controllers as FMI co-simulation FMUs.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # to load what draws boxes takes longer than all else
 )
-out = Console(highlight=False)
 
 FAILED, WRONG, STOPPED = 1, 2, 130
+
+
+class Stopped(Exception):
+    """Ctrl-C has ended a command; the text says what is done."""
+
+
+class Out:
+    """The console; it is loaded when something is first printed."""
+
+    @functools.cached_property
+    def console(self) -> "Console":
+        """The console of rich, without colours of its own choice."""
+        from rich.console import Console
+
+        return Console(highlight=False)
+
+    def print(self, *things: Any, **options: Any) -> None:
+        """Print, options as of rich."""
+        self.console.print(*things, **options)
+
+
+out = Out()
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        print(f"motionfmu {version('motionfmu')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _all(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Show it and exit."),
+    ] = False,
+) -> None:
+    pass
+
+
 ScenarioPath = Annotated[Path, typer.Argument(help="Folder of a scenario, or its scenario.toml.")]
 Set = Annotated[
     list[str],
@@ -61,8 +117,10 @@ def results(name: str, kind: str = "") -> Path:
     return Path("results") / (f"{name}.{kind}" if kind else name)
 
 
-def bare_table(*headings: str) -> Table:
+def bare_table(*headings: str) -> "Table":
     """Table without lines."""
+    from rich.table import Table
+
     table = Table(box=None, header_style="dim")
     for heading in headings:
         table.add_column(heading)
@@ -73,7 +131,8 @@ def progress_bar(*columns: "ProgressColumn") -> "Progress":
     """Progress bar with these columns, or those of rich if none, which shows on a terminal only."""
     from rich.progress import Progress
 
-    return Progress(*columns, console=out, disable=not out.is_terminal, transient=True)
+    console = out.console
+    return Progress(*columns, console=console, disable=not console.is_terminal, transient=True)
 
 
 def run_shown(scenario: "Scenario", options: dict[str, Any]) -> "Result":

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.markup import escape
 
 from motionfmu.cli.common import (
     FAILED,
@@ -45,7 +44,7 @@ def _verdicts(result: "Result") -> None:
 
 def _warnings(result: "Result") -> None:
     for told in result.warnings:
-        out.print(f"[yellow]warning[/] {escape(told)}", soft_wrap=True)
+        out.print("[yellow]warning[/]", told.replace("[", r"\["), soft_wrap=True)
 
 
 def _reasons(result: "Result") -> dict[str, list[str]]:

@@ -1,6 +1,5 @@
 """The command that runs a scenario at many points."""
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,8 +8,8 @@ import typer
 
 from motionfmu.cli.common import (
     FAILED,
-    STOPPED,
     Set,
+    Stopped,
     app,
     out,
     progress_bar,
@@ -51,8 +50,7 @@ def _sweep(study: "Study", folder: Path, ways: "Ways") -> "Outcome":
             return conduct(study, folder, replace(ways, progress=show))
         except KeyboardInterrupt:
             told = f"{at[0]} of {len(study.points)} runs are done; the same command goes on"
-            print(f"motionfmu: stopped: {told}", file=sys.stderr)
-            raise typer.Exit(STOPPED) from None
+            raise Stopped(told) from None
 
 
 @app.command()
