@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionfmu.run.result import Result
-from motionfmu.scenario import fmus
-from motionfmu.scenario.system import wires
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.system import wires
 from motionfmu.toml_lines import is_file
 
 if TYPE_CHECKING:
@@ -20,8 +20,10 @@ SIGNALS, NUMBERS, TRACK = "signals.npz", "result.json", "contour.npz"
 DIGITS = 16  # of a file's SHA-256: enough to tell two files apart
 
 
-def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
+def numbers(result: Result, options: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """The result, and how it was run, for JSON."""
+    # Options are those of the result, if none are given.
+    options = result.options if options is None else options
     body = result.scenario.document.body
     found: dict[str, Any] = {
         "scenario": result.name,
@@ -29,6 +31,9 @@ def numbers(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
         "options": dict(options),
         "samples": len(result.time),
         "ok": result.ok,
+        "overrides": list(result.overrides),
+        "stopped": result.stopped,
+        "done_at": result.done_at,
         "warnings": list(result.warnings),
         "checks": [
             {
