@@ -1,7 +1,6 @@
 """The page says what was computed: its curves hold the very numbers, peaks included."""
 
 import base64
-import json
 import re
 from pathlib import Path
 
@@ -11,12 +10,14 @@ import pytest
 from conftest import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
+from page_curves import curve, page_data, unwoven
 
 import motionfmu
 from motionfmu.report import write_report
 from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import figure, length, magnification
 from motionfmu.report.packed import packed
+from motionfmu.report.samples import COARSE, bits
 
 FLOAT32 = 1e-6
 
@@ -31,10 +32,8 @@ def unpacked(value: object) -> np.ndarray:
 def reported(tmp_path_factory: pytest.TempPathFactory):
     folder = tmp_path_factory.mktemp("report")
     result = motionfmu.load(ROOT / "scenarios/circle").run()
-    page = write_report(result, result.contour(), folder).read_text()
-    data = re.search(r'id="data">(.*?)</script>', page, re.DOTALL)
-    assert data
-    return result, folder, page, json.loads(data[1])
+    page = write_report(result, result.contour(), folder)
+    return result, folder, page.read_text(), page_data(page)
 
 
 def traces(data, name: str) -> list[dict]:
@@ -60,13 +59,35 @@ def test_packed_numbers_come_back(values: list[float]) -> None:
     assert np.array_equal(unpacked(packed(np.array(values))), np.array(values, np.float32))
 
 
+@given(
+    st.one_of(
+        st.lists(st.integers(-(2**31), 2**31 - 1), max_size=40).map(lambda v: np.array(v, "i4")),
+        st.lists(st.floats(-1e6, 1e6), max_size=40).map(np.array),
+        st.lists(st.floats(-1.0, 1.0), max_size=40).map(lambda v: 1e7 + np.array(v)),
+        st.lists(st.sampled_from([0.5, np.nan, -3.0]), max_size=9).map(np.array),
+        st.lists(st.booleans(), max_size=9).map(lambda v: np.array(v, dtype=bool)),
+    )
+)
+def test_samples_come_back(values: np.ndarray) -> None:
+    back = unwoven(bits(values))
+    assert len(back) == len(values)
+    if values.dtype.kind in "bi":
+        assert np.array_equal(back, values)
+    elif len(values):
+        known = values[np.isfinite(values)]
+        height = np.ptp(known) if len(known) else 0.0
+        assert np.array_equal(np.isnan(back), np.isnan(values))
+        assert np.nanmax(np.abs(back - values), initial=0.0) <= COARSE * height
+
+
 def test_the_error_curve_has_the_largest_error(reported) -> None:
     result, _, _, data = reported
     error = result.contour().error
-    curve, peak = (t for t in traces(data, "error") if "y" in t)
-    shown = np.abs(unpacked(curve["y"]))
+    whole, peak = traces(data, "error")
+    time, values = curve(data, whole)
+    shown = np.abs(values)
     assert np.nanmax(shown) == pytest.approx(1e3 * error.max, rel=FLOAT32)
-    at = unpacked(curve["x"])[np.nanargmax(shown)]
+    at = time[np.nanargmax(shown)]
     assert at == pytest.approx(error.time, abs=1e-4)
     assert unpacked(peak["x"])[0] == error.time and length(error.max) in peak["text"][0]
 
@@ -79,11 +100,11 @@ def test_the_path_is_drawn_with_the_true_error(reported) -> None:
     assert np.allclose(foot, 50.0, atol=1e-4)  # the nearest point is on the commanded circle
 
 
-def test_the_fifo_curve_reaches_the_least_stock(reported) -> None:
+def test_the_fifo_curve_is_the_least_stock(reported) -> None:
     result, _, _, data = reported
-    least = result["card.stock"][:, :2].min(axis=1)
-    shown = np.concatenate([unpacked(t["y"]) for t in traces(data, "fifo") if "y" in t])
-    assert least[100:-100].min() in shown
+    time, stock = curve(data, traces(data, "fifo")[0])
+    assert np.allclose(time, result.time, rtol=0, atol=1e-12)
+    assert np.array_equal(stock, result["card.stock"][:, :2].min(axis=1))
 
 
 def test_the_polar_plot_shows_both_ways(reported) -> None:

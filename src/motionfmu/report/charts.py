@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from motionfmu.report.decimate import keep_peaks, keep_steps
-from motionfmu.report.sheet import Sheet
-from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
+from motionfmu.report.samples import Samples, sampled
+from motionfmu.report.sheet import RUN, Sheet
+from motionfmu.report.style import AXES, INK, MUTED, axis, layout
 from motionfmu.report.tables import picture_links
 from motionfmu.run.figures import Chart, Curve, Panel
 
@@ -70,7 +71,7 @@ def add_charts(page: Sheet, charts: Sequence[Chart], pictures: bool = True) -> N
     names = [name for c in charts for p in c.panels for name in p.levels]
     right = RIGHT + math.ceil(CHARACTER * max((len(n) for n in names), default=0))
     for number, chart in enumerate(charts, 1):
-        content = page.place(f"figure{number}", chart_figure(chart, right), chart.whole)
+        content = page.place(f"figure{number}", chart_figure(chart, right), chart.whole, RUN)
         if pictures:
             content += picture_links(f"figure{number}")
         page.section(escape(chart.title), escape(chart.note), content)
@@ -122,14 +123,9 @@ def _vertical(panel: Panel, domain: list[float]) -> Figure:
 
 
 def _series(curve: Curve, number: int, key: str) -> Figure:
-    part = shown(curve)
-    line = {
-        "dash": DASHES[number // len(AXES) % len(DASHES)],
-        "width": 1.4,
-        "shape": "hv" if curve.steps else "linear",
-    }
     name, color = escape(curve.name, quote=False), AXES[number % len(AXES)]
-    drawn = plotted(part.time, part.values, name, color, exact=True, **line)
+    samples = Samples(curve.time, curve.values, curve.steps)
+    drawn = sampled(samples, name, color, dash=DASHES[number // len(AXES) % len(DASHES)])
     return drawn | {"yaxis": "y" + key, "legend": "legend" + key}
 
 

@@ -1,35 +1,143 @@
-"use strict";
 const page = JSON.parse(document.getElementById("data").textContent);
 const options = {
-  responsive: true, displaylogo: false, displayModeBar: "hover",
-  modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
+  responsive: true, displaylogo: false, displayModeBar: true, doubleClick: "reset",
+  modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "sendChartToCloud"],
+};
+const QUIET = { bgcolor: "rgba(0,0,0,0)", color: "#8a98a5", activecolor: "#0b5cad" };
+// So much more than what is in view is drawn on either side, for those who shift it.
+const BESIDE = 1;
+
+const narrow = document.documentElement.clientWidth < 500;
+if (narrow) page.figures.forEach(fitted);
+
+// A telephone: a scene from further away, a scale below its plot, no taller than it needs to be;
+// a finger scrolls the page until a tool of the plot is chosen.
+function fitted({ data, layout }) {
+  const eye = layout.scene?.camera?.eye;
+  for (const axis in eye) eye[axis] *= 2;
+  if (!layout.scene) layout.dragmode = false;
+  const alike = layout.yaxis?.scaleanchor || layout.polar || layout.scene;
+  if (alike) layout.height = Math.min(layout.height, 440);
+  for (const trace of data) {
+    const bar = trace.colorbar ?? trace.marker?.colorbar;
+    if (!bar) continue;
+    Object.assign(bar, { orientation: "h", x: 0.5, y: layout.scene ? -0.02 : -0.22, len: 0.9,
+      yanchor: "top", thickness: 10 });
+    if (bar.title) bar.title.text = bar.title.text.replaceAll("<br>", " ");
+    if (bar.tickvals?.length > 6) {
+      const thin = (_, i) => i % Math.ceil(bar.tickvals.length / 6) === 0;
+      [bar.ticktext, bar.tickvals] = [bar.ticktext.filter(thin), bar.tickvals.filter(thin)];
+    }
+  }
+}
+
+const clear = (color, part) => {
+  const parts = [1, 3, 5].map((k) => parseInt(color.slice(k, k + 2), 16));
+  return `rgba(${parts.join(",")},${part})`;
 };
 
-// On a telephone the tools of a plot would cover its legend, and a scene is seen from further away.
-const narrow = document.documentElement.clientWidth < 500;
-if (narrow) options.displayModeBar = false;
+class Plot {
+  constructor({ id, data, layout, over_time, cursors }, clocks) {
+    Object.assign(this, { place: document.getElementById(id), data, layout, cursors });
+    this.overTime = over_time;
+    this.span = layout.xaxis?.range;
+    this.traces = data.map((trace, k) => [trace, k]).filter(([trace]) => trace.samples)
+      .map(([trace, k]) => ({ trace, k, packed: trace.samples, clock: clocks }));
+    layout.modebar = QUIET;
+  }
 
-const plots = page.figures.map((figure) => {
-  const place = document.getElementById(figure.id);
-  const eye = narrow && figure.layout.scene?.camera?.eye;
-  for (const axis in eye) eye[axis] *= 2;
-  Plotly.newPlot(place, figure.data, figure.layout, options);
-  return { place, overTime: figure.over_time };
-});
+  // Samples are unpacked, and a band stands behind each curve, for where it swings.
+  async open() {
+    for (const own of this.traces) {
+      const { trace, packed } = own;
+      own.curve = { time: await own.clock[packed.time], values: await unwoven(packed.values),
+        lines: packed.lines && await unwoven(packed.lines), steps: packed.steps, dots: packed.dots };
+      own.band = this.data.push({ type: "scatter", mode: "lines", fill: "toself", x: [], y: [],
+        fillcolor: clear(trace.line.color, 0.2), line: { color: clear(trace.line.color, 0.6),
+          width: 0.8 }, hoverinfo: "skip", showlegend: false, legendgroup: `${own.k}`,
+        yaxis: trace.yaxis ?? "y" }) - 1;
+      Object.assign(trace, { legendgroup: `${own.k}`, x: [], y: [] });
+      delete trace.samples;
+    }
+    if (this.traces.length && !this.span) {
+      const ends = this.traces.map(({ curve: { time } }) => [time[0], time.at(-1)]);
+      this.span = [Math.min(...ends.map((e) => e[0])), Math.max(...ends.map((e) => e[1]))];
+      this.layout.xaxis.range = [...this.span];
+    }
+    await Plotly.newPlot(this.place, this.data, this.layout, options);
+    if (!this.traces.length) return;
+    this.note = this.place.parentElement.appendChild(document.createElement("p"));
+    this.note.className = "note band";
+    this.note.textContent = "Bands reach from the least to the largest value, the line in them is"
+      + " the mean; zoomed in, single values show.";
+    await this.refine(this.span);
+    this.place.on("plotly_relayout", (change) => {
+      const range = change["xaxis.range"] ?? ("xaxis.range[0]" in change
+        ? [change["xaxis.range[0]"], change["xaxis.range[1]"]] : null);
+      if (change["xaxis.autorange"]) Plotly.relayout(this.place, { "xaxis.range": [...this.span] });
+      else if (range) { this.refine(range); this.moved?.(range); }
+    });
+  }
+
+  get view() { return this.place._fullLayout.xaxis.range.map(Number); }
+
+  // Draw what is between two times; the latest of many calls counts.
+  async refine([from, to]) {
+    const beside = BESIDE * (to - from), columns = Math.max(200, this.place.clientWidth);
+    const ends = [Math.max(this.span[0], from - beside), Math.min(this.span[1], to + beside)];
+    const share = Math.max(1, (ends[1] - ends[0]) / (to - from || 1));
+    const change = { x: [], y: [], mode: [], "line.shape": [], customdata: [], hovertemplate: [] };
+    const which = [];
+    let bands = false;
+    for (const { trace, k, band, curve } of this.traces) {
+      const axis = this.layout["yaxis" + (trace.yaxis ?? "y").slice(1)];
+      const height = axis.range ? axis.range[1] - axis.range[0] : 0;
+      const shown = drawn(curve, ...ends, Math.round(columns * share), height);
+      const dotted = curve.dots && shown.single;
+      bands ||= shown.band !== null;
+      which.push(k, band);
+      change.x.push(shown.x, shown.band?.x ?? []);
+      change.y.push(shown.y, shown.band?.y ?? []);
+      change.mode.push(dotted ? "markers" : "lines", "lines");
+      change["line.shape"].push(curve.steps && !shown.band ? "hv" : "linear", "linear");
+      change.customdata.push(shown.custom, null);
+      change.hovertemplate.push(shown.band
+        ? "mean %{y:.5g}, %{customdata[0]:.5g} to %{customdata[1]:.5g}" : trace.hovertemplate, "");
+    }
+    this.note.hidden = !bands;
+    await Plotly.restyle(this.place, change, which);
+  }
+}
 
 // All plots over time show the same stretch of it.
-let linking = false;
-const timed = plots.filter((p) => p.overTime).map((p) => p.place);
-for (const source of timed) {
-  source.on("plotly_relayout", (change) => {
-    if (linking) return;
-    const range = change["xaxis.range"] ||
-      ("xaxis.range[0]" in change && [change["xaxis.range[0]"], change["xaxis.range[1]"]]);
-    const reset = change["xaxis.autorange"];
-    if (!range && !reset) return;
-    linking = true;
-    const same = reset ? { "xaxis.autorange": true } : { "xaxis.range": range };
-    Promise.all(timed.filter((p) => p !== source).map((p) => Plotly.relayout(p, same)))
-      .finally(() => { linking = false; });
-  });
+function linked(plots) {
+  let linking = false;
+  for (const source of plots) {
+    source.moved = (range) => {
+      if (linking) return;
+      linking = true;
+      const others = plots.filter((p) => p !== source);
+      Promise.all(others.map((p) => Plotly.relayout(p.place, { "xaxis.range": [...range] })))
+        .finally(() => { linking = false; });
+    };
+  }
 }
+
+// On paper a plot is as wide as the paper.
+const PAPER = 720;
+function printed(on) {
+  document.documentElement.classList.toggle("paper", on);
+  for (const { place } of plots) {
+    Plotly.relayout(place, on ? { width: Math.min(PAPER, place.clientWidth) } : { width: null });
+  }
+}
+
+const clocks = page.times.map(timesOf);
+const plots = page.figures.map((figure) => new Plot(figure, clocks));
+// For tests: everything is drawn.
+const opened = Promise.all(plots.map((p) => p.open())).then(() => {
+  linked(plots.filter((p) => p.overTime));
+  measured(plots.filter((p) => p.cursors && p.traces.length));
+  addEventListener("beforeprint", () => printed(true));
+  addEventListener("afterprint", () => printed(false));
+});

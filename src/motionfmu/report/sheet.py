@@ -10,7 +10,12 @@ from typing import Any
 
 import plotly.offline
 
+from motionfmu.report.samples import Samples, bits, clock
 from motionfmu.report.tables import Check
+
+# Cursors of all plots over the time of one run are the same two.
+RUN = "run"
+SCRIPTS = ("samples.js", "cursors.js", "page.js")
 
 
 @dataclass(frozen=True)
@@ -30,12 +35,36 @@ class Sheet:
     def __init__(self) -> None:
         self.sections: list[str] = []
         self.plots: list[dict[str, Any]] = []
+        self.times: list[dict[str, Any]] = []
+        self._known: dict[bytes, int] = {}
 
-    def place(self, name: str, drawn: dict[str, Any], over_time: bool = False) -> str:
+    def place(
+        self, name: str, drawn: dict[str, Any], over_time: bool = False, cursors: str = ""
+    ) -> str:
         """Add a plotly plot; give its HTML element, for a section."""
-        # Those over time are zoomed together.
-        self.plots.append({"id": name, "over_time": over_time} | drawn)
-        return f'<div id="{name}" style="min-height:{drawn["layout"]["height"]}px"></div>'
+        # Those over time are zoomed together, and share the cursors of the run. Others whose
+        # curves are `sampled` may have cursors of their own, by a name: plots of one name share.
+        data = [self._trace(trace) for trace in drawn["data"]]
+        more = {"over_time": over_time, "cursors": cursors or (RUN if over_time else "")}
+        self.plots.append({"id": name, "data": data, "layout": drawn["layout"]} | more)
+        height = drawn["layout"]["height"]
+        return f'<div class="plot"><div id="{name}" style="min-height:{height}px"></div></div>'
+
+    def _trace(self, trace: dict[str, Any]) -> dict[str, Any]:
+        """A trace as the page's script takes it: samples packed, times named."""
+        whole: Samples | None = trace.get("samples")
+        if whole is None:
+            return trace
+        few = whole.few()
+        key = few.time.tobytes()
+        if key not in self._known:
+            self._known[key] = len(self.times)
+            self.times.append(clock(few.time))
+        samples = {"time": self._known[key], "values": bits(few.values)}
+        samples |= {"steps": few.steps, "dots": few.dots, "all": len(few.time) == len(whole.time)}
+        if few.lines is not None:
+            samples["lines"] = bits(few.lines)
+        return trace | {"samples": samples}
 
     def section(self, title: str, note: str, content: str) -> None:
         """Add a section of HTML; the note may be empty."""
@@ -45,8 +74,8 @@ class Sheet:
     def text(self, frame: Frame, scripts: Sequence[str] = (), **data: Any) -> str:
         """The whole page; scripts that follow page.js, data for them."""
         here = files("motionfmu.report")
-        everything = {"figures": self.plots} | data
-        run = [(here / s).read_text(encoding="utf-8") for s in ("page.js", *scripts)]
+        everything = {"figures": self.plots, "times": self.times} | data
+        run = [(here / s).read_text(encoding="utf-8") for s in (*SCRIPTS, *scripts)]
         return Template((here / "page.html").read_text(encoding="utf-8")).substitute(
             title=escape(f"{frame.name}: {frame.kind}"),
             kicker=escape(f"motionfmu {frame.kind}"),

@@ -6,14 +6,12 @@ import numpy as np
 
 from motionfmu.contour import ContourResult
 from motionfmu.contour.geometry import Array
-from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import length, unit
-from motionfmu.report.packed import packed
-from motionfmu.report.style import AXES, HEAT, INK, axis, layout, plotted
+from motionfmu.report.samples import Samples, sampled
+from motionfmu.report.style import AXES, HEAT, INK, axis, layout
 
 Figure = dict[str, Any]
 
-BUCKETS = 1200
 TIME = "Time [s]"
 ROOM = 0.16  # above and below the error, for the label of its peak
 NAMES = "XYZUVW"
@@ -25,10 +23,8 @@ def error_figure(contour: ContourResult) -> Figure:
     value = track.distance if track.signed is None else track.signed
     factor, name = unit(contour.error.max)
     value = np.where(contour.cutting, value, np.nan) * factor
-    kept = keep_peaks(np.where(contour.cutting, value, 0.0), 2 * BUCKETS)
     lines = np.array([s.label.line for s in contour.run.path.segments])[track.segment]
-    trace = _series(time[kept], value[kept], "contour error", HEAT[2])
-    trace["customdata"] = packed(lines[kept])
+    trace = sampled(Samples(time, value, lines=lines), "contour error", HEAT[2])
     trace["hovertemplate"] = "%{y:.4g} " + name + ", line %{customdata}<extra></extra>"
     worst = int(np.searchsorted(time, contour.error.time))
     peak = {
@@ -62,12 +58,8 @@ def following_figure(contour: ContourResult) -> Figure:
     """Following error of each axis against time."""
     time, value = contour.run.time, contour.following
     factor, name = unit(float(np.abs(value).max()))
-    traces = []
-    for i in contour.run.axes:
-        kept = keep_peaks(value[:, i], BUCKETS)
-        traces.append(_series(time[kept], value[kept, i] * factor, NAMES[i], AXES[i]))
-    more = _axis(f"Following error [{name}]")
-    return {"data": traces, "layout": _over_time(270, time, yaxis=more)}
+    shown = [(NAMES[i], value[:, i] * factor, AXES[i]) for i in contour.run.axes]
+    return _curves(time, shown, f"Following error [{name}]", 270)
 
 
 def fifo_figure(contour: ContourResult) -> Figure | None:
@@ -77,17 +69,12 @@ def fifo_figure(contour: ContourResult) -> Figure | None:
     rows = []
     if run.stock is not None:
         stock = run.stock if run.stock.ndim == 1 else run.stock[:, list(run.axes)].min(axis=1)
-        kept = keep_peaks(stock.astype(float), BUCKETS)
-        trace = _series(run.time[kept], stock[kept], "FIFO stock", AXES[0], shape="hv")
-        traces.append(trace | {"fill": "tozeroy", "fillcolor": "rgba(0,114,178,0.12)"})
+        traces.append(sampled(Samples(run.time, stock, steps=True), "FIFO stock", AXES[0]))
         rows.append("FIFO stock<br>[commands]")
     if run.interrupts is not None:
         at = run.time[1:][np.diff(run.interrupts) > 0]
-        between = np.diff(at) * 1e3
-        kept = keep_peaks(between, BUCKETS) if len(between) else np.empty(0, dtype=np.int64)
-        trace = _series(at[1:][kept], between[kept], "interrupts", AXES[1])
-        trace |= {"mode": "markers", "marker": {"size": 4, "color": AXES[1]}}
-        traces.append(trace)
+        between = Samples(at[1:], np.diff(at) * 1e3, dots=True)
+        traces.append(sampled(between, "since last interrupt", AXES[1]))
         rows.append("Since last<br>interrupt [ms]")
     if not traces:
         return None
@@ -97,7 +84,8 @@ def fifo_figure(contour: ContourResult) -> Figure | None:
         high = 1.0 if i == 0 else 0.46
         key = "" if i == 0 else "2"
         trace |= {"yaxis": "y" + key, "showlegend": False}
-        more["yaxis" + key] = _axis(title, domain=[low, high], rangemode="tozero", nticks=5)
+        ends = _range(trace["samples"].values, zero=i == 0)
+        more["yaxis" + key] = _axis(title, domain=[low, high], range=ends, nticks=5)
     figure = _over_time(300 if len(rows) == 2 else 230, run.time, **more)
     figure["xaxis"]["anchor"] = "y2" if len(rows) == 2 else "y"
     return {"data": traces, "layout": figure}
@@ -108,20 +96,32 @@ def trace_figures(contour: ContourResult) -> list[tuple[str, Figure]]:
     out = []
     for trace in contour.run.traces:
         columns = trace.values.reshape(len(contour.run.time), -1)
-        series = []
-        for i in contour.run.axes if columns.shape[1] > 1 else (0,):
-            kept = keep_peaks(columns[:, i], BUCKETS)
-            name = NAMES[i] if columns.shape[1] > 1 else trace.name
-            series.append(_series(contour.run.time[kept], columns[kept, i], name, AXES[i]))
-            series[-1]["showlegend"] = columns.shape[1] > 1
+        several = columns.shape[1] > 1
+        shown = [
+            (NAMES[i] if several else trace.name, columns[:, i], AXES[i])
+            for i in (contour.run.axes if several else (0,))
+        ]
         title = f"{trace.name} [{trace.unit}]" if trace.unit else trace.name
-        figure = _over_time(230, contour.run.time, yaxis=_axis(title))
-        out.append((trace.name, {"data": series, "layout": figure}))
+        out.append((trace.name, _curves(contour.run.time, shown, title, 230)))
     return out
 
 
-def _series(time: Array, values: Array, name: str, color: str, shape: str = "linear") -> Figure:
-    return plotted(time, values, name, color, width=1.4, shape=shape)
+def _curves(time: Array, shown: list[tuple[str, Array, str]], title: str, height: int) -> Figure:
+    """Curves of a name and a colour on one pair of axes."""
+    data = [sampled(Samples(time, values), name, color) for name, values, color in shown]
+    for trace in data:
+        trace["showlegend"] = len(data) > 1
+    ends = _range(np.concatenate([values for _, values, _ in shown]))
+    return {"data": data, "layout": _over_time(height, time, yaxis=_axis(title, range=ends))}
+
+
+def _range(values: Array, zero: bool = False) -> list[float]:
+    """Ends of a vertical axis, with room about the curve; zero is in it if wanted."""
+    known = values[np.isfinite(values)]
+    low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
+    low, high = (min(low, 0.0), max(high, 0.0)) if zero else (low, high)
+    room = 0.08 * (high - low) or 0.1 * abs(high) or 0.5
+    return [low - room, high + room]
 
 
 def _axis(title: str, **more: Any) -> Figure:

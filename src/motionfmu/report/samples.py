@@ -1,0 +1,81 @@
+"""All samples of a curve, for a page that draws what is in view and measures it."""
+
+import base64
+import zlib
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.report.decimate import keep_peaks, keep_steps
+
+# So many samples of a curve go into a page; of more, the peaks.
+MOST = 120_000
+LEVEL = 3  # of zlib: half the time of its usual one, a few per cent larger
+# 32 bits do for a real number if they move it by less than this part of the curve's height.
+COARSE = 1e-6
+EVEN = 1e-9  # [s] times that lie so near to even ones are even
+
+
+@dataclass(frozen=True)
+class Samples:
+    """A curve over time as it was recorded."""
+
+    time: NDArray[Any]  # (n,) increases
+    values: NDArray[Any]  # (n,) as shown; NaN is a gap
+    steps: bool = False  # a value holds until the next one
+    dots: bool = False  # single events, no line between them
+    lines: NDArray[Any] | None = None  # (n,) of the program, said beside the value
+
+    def few(self) -> "Samples":
+        """The samples that a page holds: all up to `MOST`."""
+        if len(self.time) <= MOST:
+            return self
+        plain = np.nan_to_num(np.asarray(self.values, dtype=np.float64))
+        kept = (keep_steps if self.steps else keep_peaks)(plain, MOST // 2)
+        lines = None if self.lines is None else self.lines[kept]
+        return Samples(self.time[kept], self.values[kept], self.steps, self.dots, lines)
+
+
+def sampled(samples: Samples, name: str, color: str, **line: Any) -> dict[str, Any]:
+    """A curve over time of a plotly figure, for `Sheet.place`."""
+    style = {"color": color, "width": 1.4, "shape": "hv" if samples.steps else "linear"}
+    plain = {"type": "scatter", "mode": "lines", "name": name}
+    return plain | {"line": style | line, "samples": samples}
+
+
+def bits(values: NDArray[Any]) -> dict[str, Any]:
+    """Numbers as one short text: whole ones exact, real ones to 7 digits of the height."""
+    # Differences of their bits, the bytes sorted by their place: those of a smooth curve are alike.
+    kind = _kind(values)
+    word = np.dtype(f"<u{kind[1]}")
+    raw = np.ascontiguousarray(values, dtype="<" + kind).view(word)
+    change = np.diff(raw, prepend=word.type(0))
+    woven = change.view(np.uint8).reshape(len(raw), word.itemsize).T
+    packed = zlib.compress(np.ascontiguousarray(woven).tobytes(), LEVEL)
+    return {"kind": kind, "count": len(raw), "bdata": base64.b64encode(packed).decode()}
+
+
+def clock(time: NDArray[Any]) -> dict[str, Any]:
+    """Times, even ones as start and step."""
+    count = len(time)
+    step = float(time[-1] - time[0]) / (count - 1) if count > 1 else 0.0
+    if count and np.abs(time - (time[0] + step * np.arange(count))).max() < EVEN:
+        return {"start": float(time[0]), "step": step, "count": count}
+    return bits(np.asarray(time, dtype=np.float64))
+
+
+def _kind(values: NDArray[Any]) -> str:
+    if values.dtype.kind in "biu" and values.dtype.itemsize <= np.dtype("i4").itemsize:
+        return "i4" if values.dtype != np.uint32 else "f8"
+    real = values[np.isfinite(values)]
+    if not len(real):
+        return "f4"
+    ends = float(real.min()), float(real.max())
+    top = np.iinfo(np.int32).max
+    whole = len(real) == len(values) and -top <= ends[0] and ends[1] <= top
+    if whole and np.array_equal(real, np.rint(real)):
+        return "i4"
+    near = np.abs(real - real.astype(np.float32)).max() <= COARSE * (ends[1] - ends[0])
+    return "f4" if near else "f8"
