@@ -42,6 +42,11 @@ def polar_figure(test: CircularTest) -> Figure:
                 "hovertemplate": "%{theta:.1f}°: %{r:.2f} µm<extra>" + name + "</extra>",
             }
         )
+    return polar_rings(traces, top, polar_names(test.axes))
+
+
+def polar_rings(traces: list[Figure], top: float, names: list[str]) -> Figure:
+    """Curves of deviations to `top` [µm] over an angle [°], about the nominal circle."""
     ring = round_up(max(top, RING_MIN))
     nominal = {
         "type": "scatterpolar",
@@ -62,7 +67,6 @@ def polar_figure(test: CircularTest) -> Figure:
         "hoverinfo": "skip",
         "showlegend": False,
     }
-    names = polar_names(test)
     more = {
         "margin": {"l": 40, "r": 40, "t": 56, "b": 30},
         "legend": layout(0)["legend"] | {"y": 1.07},
@@ -88,9 +92,9 @@ def polar_figure(test: CircularTest) -> Figure:
     return {"data": [nominal, *traces, labels], "layout": layout(520, **more)}
 
 
-def polar_names(test: CircularTest) -> list[str]:
+def polar_names(axes: Array) -> list[str]:
     """Labels at 0, 45, ... degrees: the axes' names at the quarters."""
-    first, second = (NAMES[int(np.argmax(np.abs(a)))] for a in test.axes)
+    first, second = (NAMES[int(np.argmax(np.abs(a)))] for a in axes)
     return [
         f"+{first}",
         "45°",
@@ -104,7 +108,7 @@ def polar_names(test: CircularTest) -> list[str]:
 
 
 def polar_trace(way: Way, radius: float) -> tuple[Array, Array]:
-    """Angle [deg] and radial deviation [um] of one way, decimated."""
+    """Angle [°] and radial deviation [µm] of one way, decimated."""
     deviation = np.hypot(way.points[:, 0], way.points[:, 1]) - radius
     kept = keep_peaks(deviation, BUCKETS)
     angle = np.arctan2(way.points[kept, 1], way.points[kept, 0])

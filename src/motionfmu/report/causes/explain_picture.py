@@ -84,7 +84,7 @@ def _polar(axes: Any, found: "Explanation") -> None:
     axes.set_rlim(-2.2 * top, 1.05 * top)
     axes.set_rticks([-top, 0.0], [length(-1e-3 * top), "0"], fontsize=8, color=MUTED)
     axes.set_rlabel_position(67.5)
-    axes.set_xticks(np.radians(np.arange(0, 360, 45)), polar_names(test), fontsize=9)
+    axes.set_xticks(np.radians(np.arange(0, 360, 45)), polar_names(test.axes), fontsize=9)
     axes.grid(color=GRID)
     axes.spines["polar"].set_color(GRID)
     named = [f"{f.name} {length(f.size)}" for f in mark.findings if f.named]

@@ -1,0 +1,95 @@
+"""The command that lays one run over another."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from motionfmu.cli.common import FAILED, Set, app, bare_table, out, results, settings
+
+if TYPE_CHECKING:
+    from motionfmu.compare import Comparison
+
+Run = Annotated[Path, typer.Argument(help="Folder of a run's result, or a scenario to run.")]
+SIGNALS = 8  # are told on the console
+NUMBERS = (("error.max", "largest contour error"), ("error.rms", "RMS contour error"))
+
+
+@app.command()
+def compare(  # noqa: PLR0913  (each is an option of the command)
+    a: Run,
+    b: Run,
+    signals: Annotated[
+        list[str], typer.Option(metavar="PATTERN", help="Signals, as 'card.*'; all if none.")
+    ] = [],  # noqa: B006
+    set_: Set = [],  # noqa: B006
+    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON; without --out nothing is written.")
+    ] = False,
+) -> None:
+    """Lay run B over run A: signals, contour, verdicts; status 1 if a verdict is worse.
+
+    --set is for the run of B: compare scenarios/circle scenarios/circle --set mcc.p_gain=300.
+    """
+    from motionfmu import compare as pairs
+    from motionfmu.report import outcome
+
+    if folder:
+        outcome.usable(folder)
+    found = pairs.compare(a, b, signals or ("*",), settings(set_))
+    shown = None
+    if folder or not as_json:
+        target = folder or results(found.a.numbers["scenario"], "compare")
+        shown = found.save(target)
+    if as_json:
+        print(json.dumps(found.numbers(), indent=1, allow_nan=False, default=str))
+    else:
+        _tell(found)
+        out.print(f"report: {shown}", soft_wrap=True)
+    if not found.ok:
+        raise typer.Exit(FAILED)
+
+
+def _tell(found: "Comparison") -> None:
+    from motionfmu.compare.words import GONE, change_text, text_of
+
+    for name, x in (("A", found.a), ("B", found.b)):
+        held, count = sum(c["ok"] for c in x.numbers["checks"]), len(x.numbers["checks"])
+        out.print(f"{name}: {x.name}, {held} of {count} checks hold", markup=False, soft_wrap=True)
+    for d in found.different:
+        out.print(f"  {d.what}: {d.a} → {d.b}", markup=False, soft_wrap=True)
+    known = {n.name: n for n in found.table("contour")}
+    table = bare_table("", "A", "B", "change")
+    for name, words in NUMBERS:
+        if name in known:
+            n = known[name]
+            table.add_row(words, text_of(n.a, "mm"), text_of(n.b, "mm"), change_text(n))
+    if table.row_count:
+        out.print(table)
+    apart = sorted(
+        (s for s in found.signals if not s.same), key=lambda s: -_share(s.largest, s.span)
+    )
+    for s in apart[:SIGNALS]:
+        largest = text_of(s.largest, _unit(s.unit), sign=True)
+        out.print(f"  {s.element}: {largest} at {s.at:.6g} s", markup=False, soft_wrap=True)
+    same = len(found.signals) - len(apart)
+    out.print(
+        f"{len(apart)} signals differ ({GONE}), {same} are the same, {len(found.left)} not compared"
+    )
+    for told in found.common.words:
+        out.print(told, markup=False, soft_wrap=True)
+    words = "no verdict is worse" if found.ok else f"FAILED in B: {', '.join(found.worse)}"
+    out.print(words, markup=False, soft_wrap=True)
+
+
+def _share(difference: float, span: float) -> float:
+    """Size of a difference, of the range of the signal."""
+    return abs(difference) / span if span else float("inf")
+
+
+def _unit(name: str) -> str:
+    from motionfmu.units import spelled
+
+    return spelled(name)

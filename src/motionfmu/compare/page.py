@@ -1,0 +1,199 @@
+"""The page of a comparison."""
+
+import json
+from collections.abc import Iterable
+from html import escape
+from pathlib import Path
+
+from motionfmu.compare import plots
+from motionfmu.compare.comparison import Apart, Comparison
+from motionfmu.compare.differences import NOTHING, Checked, port_of
+from motionfmu.compare.figures import Number
+from motionfmu.compare.words import CIRCLE, CONTOUR, GONE, change_text, row_of, signed, text_of
+from motionfmu.iso9283.evaluation import unit as unit_of_iso9283
+from motionfmu.report import outcome
+from motionfmu.report.numbers import MINUS, figure, length
+from motionfmu.report.sheet import Frame, Sheet
+from motionfmu.report.tables import cards, table
+from motionfmu.run.stored import NUMBERS
+from motionfmu.units import spelled
+
+PAGE = "report.html"
+ELEMENTS = 40  # of signals are drawn; all are in the table
+SIDES = ("", "A", "B", GONE, "change")
+FOOTER = (
+    f"Every difference is {GONE}. RMS of a difference: root of the mean square over the common"
+    ' samples and all elements. Every number is in <a href="result.json">result.json</a>.'
+)
+
+
+def write_comparison(found: Comparison, folder: Path) -> Path:
+    """Write the page and result.json, whole or not at all."""
+    with outcome.whole(folder) as part:
+        text = json.dumps(found.numbers(), indent=1, allow_nan=False, default=str)
+        (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
+        (part / PAGE).write_text(page_text(found), encoding="utf-8")
+    return folder.resolve() / PAGE
+
+
+def page_text(found: Comparison) -> str:
+    """The whole HTML page of a comparison."""
+    page = Sheet()
+    page.sections.append(_cards(found))
+    _add_different(page, found)
+    if found.checks:
+        note = "A check that held in A and fails in B stands first."
+        page.section("Verdicts", note, _checks(found.checks))
+    if found.a.track and found.b.track:
+        _add_contour(page, found)
+    elif found.table("contour"):
+        page.section("Contour error", "", _numbers(found, "contour", CONTOUR))
+    rows = found.table("iso9283")
+    if rows:
+        page.section("Path performance, ISO 9283", "", table(SIDES, map(_performance, rows)))
+    _add_figures(page, found)
+    _add_signals(page, found)
+    about = f"A: {found.a.name} · B: {found.b.name}"
+    names = dict.fromkeys(x.numbers["scenario"] for x in (found.a, found.b))
+    frame = Frame(" and ".join(names), about, "comparison", (), FOOTER)
+    return page.text(frame)
+
+
+def _cards(found: Comparison) -> str:
+    shown = []
+    for name, x in (("Run A", found.a), ("Run B", found.b)):
+        held, count = sum(c["ok"] for c in x.numbers["checks"]), len(x.numbers["checks"])
+        kind = "pass" if x.numbers["ok"] else "fail"
+        value = (
+            f'<span class="{kind}">{held} of {count} checks hold</span>' if count else "no checks"
+        )
+        shown.append((name, value, escape(x.name)))
+    verdict = "no check is worse" if found.ok else f"{len(found.worse)} worse"
+    kind, where = ("pass", "") if found.ok else ("fail", escape(", ".join(found.worse)))
+    shown.append(("Verdict of B against A", f'<span class="{kind}">{verdict}</span>', where))
+    numbers = {n.name: n for n in found.table("contour")}
+    for name, words in (("error.max", "Largest contour error"), ("error.rms", "RMS contour error")):
+        n = numbers.get(name)
+        if n is not None and n.a is not None and n.b is not None:
+            where = f"{length(n.a)} → {length(n.b)}"
+            shown.append((words, change_text(n) or signed(n), where))
+    done = Number("", *(x.numbers.get("done_at") for x in (found.a, found.b)))
+    if done.difference is not None:
+        where = f"{done.a:.9g} s → {done.b:.9g} s"
+        shown.append(("Program done", f"{figure(done.difference, sign=True)} s", where))
+    return cards(shown)
+
+
+def _add_different(page: Sheet, found: Comparison) -> None:
+    rows = [tuple(map(escape, (d.what, d.a, d.b))) for d in found.different]
+    content = table(("", "A", "B"), rows, 3) if rows else "<p>Nothing: both were made alike.</p>"
+    page.section("What was run differently", "", content)
+
+
+def _checks(checks: Iterable[Checked]) -> str:
+    marks = {True: ("✓", "pass"), False: ("✗", "fail"), None: (NOTHING, "")}
+    rows = []
+    for c in sorted(checks, key=lambda c: (not c.worse, c.ok[1] is not False)):
+        cells = []
+        for ok, value in zip(c.ok, c.values, strict=True):
+            mark, kind = marks[ok]
+            text = NOTHING if value is None else f"{value:.6g}".replace("-", MINUS)
+            cells.append(f'<span class="mark {kind}">{mark}</span> {text}')
+        n = Number(c.name, *c.values)
+        bounds = dict.fromkeys(b for b in c.bounds if b is not None)
+        told = "; ".join(dict.fromkeys(r for r in c.reasons if r))
+        words = " → ".join(bounds) + (f"; {told}" if told else "")
+        rows.append((escape(c.name), escape(words), *cells, change_text(n)))
+    return table(("Check", "Bounds", "A", "B", "change"), rows, 2)
+
+
+def _add_contour(page: Sheet, found: Comparison) -> None:
+    drawn, factor = plots.path_figure(found.a, found.b)
+    note = f"Both errors are drawn <b>{factor:,.0f} times</b> as large as they are."
+    left = page.place("path", drawn)
+    right = f"<h3>Errors</h3>{_numbers(found, 'contour', CONTOUR)}"
+    content = f'<div class="wide"><div>{left}</div><div>{right}</div></div>'
+    page.section("Path and contour error", note, content)
+    if plots.same_path(found.a, found.b):
+        drawn, largest = plots.error_figure(found.a, found.b)
+        note = (
+            f"Over the way along the path, where both cut; they differ by up to {length(largest)}."
+        )
+        page.section(
+            "Contour error along the path", note, page.place("along", drawn, False, "along")
+        )
+    else:
+        page.section("Contour error along the path", "The two paths are not the same.", "")
+    places = {n.split(".")[1] for n in (*found.a.track, *found.b.track) if n.startswith("circles.")}
+    for place in sorted(map(int, places)):
+        round_ = plots.circle_figure(found, place)
+        if round_ is None:
+            continue
+        radius = found.a.numbers["contour"]["circles"][place]["radius"]
+        rows = _numbers(found, "contour", [(f"circles.{place}.{n}", w, u) for n, w, u in CIRCLE])
+        plot = page.place(f"circle{place}", round_)
+        note = "ISO 230-4. Radial deviation from the nominal circle about its nominal centre."
+        content = f'<div class="two">{plot}<div>{rows}</div></div>'
+        page.section(f"Circular test, radius {radius:g} mm", note, content)
+
+
+def _numbers(found: Comparison, name: str, wanted: Iterable[tuple[str, str, str]]) -> str:
+    known = {n.name: n for n in found.table(name)}
+    return table(SIDES, [row_of(w, known[n], u) for n, w, u in wanted if n in known])
+
+
+def _performance(n: Number) -> tuple[str, ...]:
+    return row_of(escape(n.name), n, spelled(unit_of_iso9283(n.name.rpartition(".")[2])))
+
+
+def _add_figures(page: Sheet, found: Comparison) -> None:
+    asked = {f["title"]: f for f in (*found.b.numbers["figures"], *found.a.numbers["figures"])}
+    for i, one in enumerate(asked.values()):
+        if (drawn := plots.figure_of(found, one)) is not None:
+            whole = one["window"] is None
+            page.section(escape(one["title"]), "", page.place(f"figure{i}", drawn, whole, "run"))
+
+
+def _add_signals(page: Sheet, found: Comparison) -> None:
+    apart = [s for s in found.signals if not s.same]
+    same = [s.name for s in found.signals if s.same]
+    time = found.common.time
+    notes = [
+        f"{len(time)} common samples from {time[0]:.9g} to {time[-1]:.9g} s",
+        *found.common.words,
+    ]
+    notes = [escape(n[0].upper() + n[1:] + ".") for n in notes]
+    content = table(
+        ("Signal", f"largest {GONE}", "in", "at", f"RMS of {GONE}", "range of A"),
+        map(_apart, apart),
+    )
+    if not apart:
+        content = "<p>Every signal is the same in both, sample by sample.</p>"
+    elif same:
+        listed = ", ".join(map(escape, same))
+        content += f'<p class="note">The same in both, sample by sample: {listed}.</p>'
+    if found.left:
+        listed = "; ".join(escape(f"{name}: {why}") for name, why in found.left.items())
+        content += f'<p class="note">Not compared: {listed}.</p>'
+    page.section("Signals", " ".join(notes), content)
+    left, hidden = ELEMENTS, []
+    for i, s in enumerate(apart):
+        both = found[s.name]
+        left -= len(both.differing)
+        if left < 0:
+            hidden.append(s.name)
+            continue
+        port = port_of(found.a, s.name)
+        words = f"{escape(port.doc.partition(';')[0])} " if port and port.doc else ""
+        title = f"{words}<code>{escape(s.name)}</code>"
+        page.section(title, "", page.place(f"signal{i}", plots.signal_figure(both), True))
+    if hidden:
+        listed = ", ".join(map(escape, hidden))
+        told = f"{listed}. Choose with <code>--signals</code>."
+        page.section("Signals that differ and are not drawn", told, "")
+
+
+def _apart(s: Apart) -> tuple[str, ...]:
+    unit = spelled(s.unit)
+    largest, rms, span = (text_of(x, unit) for x in (s.largest, s.rms, s.span))
+    return (escape(s.name), largest, escape(s.element), f"{s.at:.9g} s", rms, span)

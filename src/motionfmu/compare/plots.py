@@ -1,0 +1,254 @@
+"""What the page of a comparison draws: A blue, B orange, their difference below."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.compare.comparison import Comparison
+from motionfmu.compare.overlay import Pair
+from motionfmu.compare.side import Side
+from motionfmu.compare.words import GONE
+from motionfmu.contour.circles import plane_axes
+from motionfmu.report.charts import chart_figure
+from motionfmu.report.decimate import keep_peaks
+from motionfmu.report.numbers import label, magnification, unit
+from motionfmu.report.packed import packed
+from motionfmu.report.path_plot import CAMERA, scene
+from motionfmu.report.polar_plot import polar_names, polar_rings
+from motionfmu.report.samples import Samples, sampled
+from motionfmu.report.style import AXES, PATH, axis, layout, plotted
+from motionfmu.run.figures import Chart, Curve, Panel
+from motionfmu.scenarios.rates import change
+
+Figure = dict[str, Any]
+Array = NDArray[np.float64]
+
+RUN_A, RUN_B = "run A", "run B"
+A, B = AXES[0], AXES[1]
+DIFFERENCE = ("#5a0f45", *AXES[2:], AXES[0], AXES[1])  # of one element, of several
+POINTS, BUCKETS = 2400, 400
+FLAT = 1e-6  # part of its size by which a path in a plane leaves it
+SAME_PATH = 1e-2  # [mm] two paths whose points lie nearer are one: lengths are kept in 32 bits
+
+
+def signal_figure(both: Pair) -> Figure:
+    """A signal of both runs, a panel for each element that differs, and the difference."""
+    chosen = both.differing
+    names = both.names
+    panels = [_panel(label(names[i], both.unit), [_curves(both, i)]) for i in chosen]
+    gone = [Curve(names[i], both.time, both.difference[:, i], both.steps) for i in chosen]
+    last = Panel(label(GONE, both.unit), tuple(gone), {}, len(gone) > 1)
+    span = float(both.time[0]), float(both.time[-1])
+    chart = Chart(both.name, "", span, True, (*panels, last))
+    drawn = chart_figure(chart)
+    colors = [c for _ in panels for c in (A, B)]
+    several = DIFFERENCE[1:] if len(gone) > 1 else DIFFERENCE
+    colors += [several[i % len(several)] for i in range(len(gone))]
+    return _colored(drawn, colors)
+
+
+def _curves(both: Pair, i: int) -> tuple[Curve, Curve]:
+    return (
+        Curve(RUN_A, both.time, both.a[:, i], both.steps),
+        Curve(RUN_B, both.time, both.b[:, i], both.steps),
+    )
+
+
+def _panel(words: str, pairs: Sequence[tuple[Curve, Curve]]) -> Panel:
+    return Panel(words, tuple(c for pair in pairs for c in pair), {}, True)
+
+
+def _colored(drawn: Figure, colors: Sequence[str], dashes: Sequence[str] = ()) -> Figure:
+    for k, (trace, color) in enumerate(zip(drawn["data"], colors, strict=True)):
+        trace["line"] |= {"color": color, "dash": dashes[k] if dashes else "solid"}
+    return drawn
+
+
+def figure_of(found: Comparison, asked: Mapping[str, Any]) -> Figure | None:
+    """A figure of the scenario with the curves of both runs; None if they do not have them."""
+    panels: list[Panel] = []
+    colors: list[str] = []
+    dashes: list[str] = []
+    for plot in asked["plot"]:
+        pairs = _plotted(found, plot)
+        if not pairs:
+            return None
+        one = len(pairs) == 1
+        names = [f"{name}, " if not one else "" for name, *_ in pairs]
+        curves = [
+            Curve(n + run, time, values, steps)
+            for n, (_, time, a, b, steps) in zip(names, pairs, strict=True)
+            for run, values in ((RUN_A, a), (RUN_B, b))
+        ]
+        panels.append(Panel(plot["label"], tuple(curves), dict(plot["levels"]), True))
+        gone = tuple(Curve(n, time, b - a, steps) for n, time, a, b, steps in pairs)
+        panels.append(Panel(f"{GONE} {_unit(plot['label'])}".strip(), gone, {}, not one))
+        for i in range(len(pairs)):
+            colors += [A, B] if one else [AXES[i % len(AXES)]] * 2
+            dashes += ["solid", "solid" if one else "dash"]
+        colors += [DIFFERENCE[0]] if one else [AXES[i % len(AXES)] for i in range(len(pairs))]
+        dashes += ["solid"] * len(pairs)
+    whole = float(found.common.time[0]), float(found.common.time[-1])
+    window = asked["window"]
+    span = (window[0], window[1]) if window else whole
+    drawn = chart_figure(Chart(asked["title"], "", span, window is None, tuple(panels)))
+    return _colored(drawn, colors, dashes)
+
+
+def _unit(words: str) -> str:
+    """The unit of an axis' label with its brackets."""
+    return words[words.rindex("[") :] if words.endswith("]") else ""
+
+
+def _plotted(
+    found: Comparison, plot: Mapping[str, Any]
+) -> list[tuple[str, Array, Array, Array, bool]]:
+    """Name, times and values of both runs of each curve of a panel, all on the common time."""
+    named: list[tuple[str, Pair, int]] = []
+    for signal in plot["signals"]:
+        whole, bracket, index = signal.partition("[")
+        if whole not in found.names:
+            return []
+        both = found[whole]
+        wanted = [int(index.removesuffix("]")) - 1] if bracket else range(both.a.shape[1])
+        named += [(both.names[i], both, i) for i in wanted]
+    names = plot["names"] or [name for name, *_ in named]
+    rows = []
+    for name, (_, both, i) in zip(names, named, strict=True):
+        a, b, time = both.a[:, i], both.b[:, i], both.time
+        if plot["rate"] is not None:
+            (_, a), (time, b) = (change(time, x, plot["rate"]) for x in (a, b))
+        if len(time):
+            scale = plot["scale"]
+            rows.append((name, time, scale * a, scale * b, plot["steps"] or both.steps))
+    return rows
+
+
+def same_path(a: Side, b: Side) -> bool:
+    """Whether both runs follow the same path, as far as both go."""
+    one, other = (_cut(x) for x in (a, b))
+    inside = (one[0] >= other[0][0]) & (one[0] <= other[0][-1])
+    if not inside.any():
+        return False
+    feet = [np.interp(one[0][inside], other[0], c) for c in other[2].T]
+    near = np.linalg.norm(np.column_stack(feet) - one[2][inside], axis=1)
+    return float(np.quantile(near, 0.99)) < SAME_PATH
+
+
+def _cut(x: Side) -> tuple[Array, Array, Array]:
+    """Way along the path, error and point of the path, where the tool cuts; the way increases."""
+    error = x.track["error"]
+    known = np.flatnonzero(np.isfinite(error))
+    along, first = np.unique(x.track["along"][known], return_index=True)
+    return along, error[known[first]], x.track["foot"][known[first]].astype(np.float64)
+
+
+def error_figure(a: Side, b: Side) -> tuple[Figure, float]:
+    """Contour error of both runs along the path, the difference below, and how large it is [mm]."""
+    one, other = _cut(a), _cut(b)
+    inside = (one[0] >= other[0][0]) & (one[0] <= other[0][-1])
+    way = one[0][inside]
+    gone = np.interp(way, other[0], other[1]) - one[1][inside]
+    factor, name = unit(max(np.abs(one[1]).max(), np.abs(other[1]).max()))
+    finer, fine = unit(float(np.abs(gone).max()))
+    data = [
+        sampled(Samples(x[0], factor * x[1]), run, color)
+        for x, run, color in ((one, RUN_A, A), (other, RUN_B, B))
+    ]
+    data.append(sampled(Samples(way, finer * gone), GONE, DIFFERENCE[0]) | {"yaxis": "y2"})
+    ends = [float(min(one[0][0], other[0][0])), float(max(one[0][-1], other[0][-1]))]
+    both = np.concatenate([one[1], other[1]]) * factor
+    more = {
+        "xaxis": axis("Along the path [mm]", range=ends, anchor="y2"),
+        "yaxis": _upright(f"Contour error [{name}]", both, [0.42, 1.0]),
+        "yaxis2": _upright(f"{GONE} [{fine}]", finer * gone, [0.0, 0.34]),
+        "hovermode": "x",
+        "margin": {"l": 84, "r": 20, "t": 34, "b": 48},
+    }
+    return {"data": data, "layout": layout(430, **more)}, float(np.abs(gone).max())
+
+
+def _upright(title: str, values: Array, domain: list[float]) -> Figure:
+    low, high = min(0.0, float(values.min())), max(0.0, float(values.max()))
+    room = 0.06 * (high - low) or 0.5
+    ends = [low - room, high + room]
+    return axis(title, domain=domain, range=ends, automargin=False, nticks=6)
+
+
+def path_figure(a: Side, b: Side) -> tuple[Figure, float]:
+    """Both paths with their errors so many times as large, and how many."""
+    feet = [x.track["foot"][np.isfinite(x.track["error"])] for x in (a, b)]
+    every = np.concatenate(feet).astype(np.float64)
+    size = np.ptp(every, axis=0)
+    chosen = np.sort(np.argsort(size)[1:])  # the plane of the two longest sides
+    flat = float(size.min()) <= FLAT * float(size.max())
+    drawn = chosen if flat else np.arange(3)
+    errors = np.concatenate([np.abs(x.track["error"]) for x in (a, b)])
+    known = errors[np.isfinite(errors)]
+    corners = max(len(x.numbers["contour"]["corners"]) for x in (a, b))
+    reach = max(float(x.track["along"].max()) for x in (a, b)) / (corners + 1)
+    worst = float(np.percentile(known, 95)), float(known.max())
+    factor = magnification(worst, float(size.max()), reach)
+    kind = "scatter" if flat else "scatter3d"
+    data: list[Figure] = []
+    for x, run, color in ((a, RUN_A, A), (b, RUN_B, B)):
+        kept = _kept(x.track["error"])
+        foot, gap = (x.track[k][kept][:, drawn].astype(np.float64) for k in ("foot", "gap"))
+        if not data:
+            nominal = np.where(np.isfinite(gap), foot, np.nan)
+            data.append(_line(kind, nominal, "programmed path", PATH, 1.4))
+        trace = _line(kind, foot + factor * gap, run, color, 1.8)
+        told = 1e3 * x.track["error"][kept]
+        trace |= {"customdata": packed(told), "hoverinfo": "all"}
+        trace["hovertemplate"] = f"%{{customdata:.2f}} µm<extra>{run}</extra>"
+        data.append(trace)
+    titles = [f"{'XYZ'[i]} [mm]" for i in drawn]
+    more: Figure = {} if flat else scene(titles, CAMERA)
+    if flat:
+        more = {
+            "xaxis": axis(titles[0], constrain="domain"),
+            "yaxis": axis(titles[1], scaleanchor="x", scaleratio=1, constrain="domain"),
+        }
+    return {"data": data, "layout": layout(600, hovermode="closest", **more)}, factor
+
+
+def _kept(error: Array) -> NDArray[np.int64]:
+    """Samples that draw the error well: even ones, peaks, and both sides of a gap."""
+    cut = np.isfinite(error)
+    edges = np.flatnonzero(np.diff(cut)) if len(cut) > 1 else np.empty(0, dtype=np.int64)
+    even = np.flatnonzero(cut)[np.linspace(0, cut.sum() - 1, POINTS).astype(np.int64)]
+    peaks = keep_peaks(np.nan_to_num(error), BUCKETS)
+    return np.unique(np.concatenate([even, peaks, edges, edges + 1]))
+
+
+def _line(kind: str, points: Array, name: str, color: str, width: float) -> Figure:
+    found = plotted(points[:, 0], points[:, 1], name, color, width=width)
+    more = {"z": packed(points[:, 2])} if points.shape[1] == 3 else {}
+    return found | {"type": kind, "hoverinfo": "skip"} | more
+
+
+def circle_figure(found: Comparison, place: int) -> Figure | None:
+    """Radial deviation of both runs round a circle; None if a run did not go round it."""
+    traces: list[Figure] = []
+    top, done = 0.0, set()
+    for x, run, color in ((found.a, RUN_A, A), (found.b, RUN_B, B)):
+        for way, words, dash in (("ccw", "counter-clockwise", "solid"), ("cw", "clockwise", "dot")):
+            angle = x.track.get(f"circles.{place}.{way}.angle")
+            if angle is None:
+                continue
+            done.add(run)
+            deviation = 1e3 * x.track[f"circles.{place}.{way}.deviation"]
+            top = max(top, float(np.abs(deviation).max()))
+            kept = keep_peaks(deviation, BUCKETS)
+            trace: Figure = {"type": "scatterpolar", "mode": "lines", "name": f"{run}, {words}"}
+            trace |= {"theta": packed(angle[kept] * 180.0 / math.pi), "r": packed(deviation[kept])}
+            trace["line"] = {"color": color, "width": 2, "dash": dash}
+            trace["hovertemplate"] = f"%{{theta:.1f}}°: %{{r:.2f}} µm<extra>{run}, {words}</extra>"
+            traces.append(trace)
+    if len(done) < 2:
+        return None
+    normal = np.array(found.a.numbers["contour"]["circles"][place]["normal"])
+    return polar_rings(traces, top, polar_names(plane_axes(normal)))

@@ -1,0 +1,80 @@
+"""One of two runs: from its folder of results, or as it has just been run."""
+
+import json
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.errors import InputError
+from motionfmu.run import Result, Scenario, load
+from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, numbers, track
+from motionfmu.toml_lines import is_file
+
+WANTED = ("scenario", "ok", "checks", "units", "figures", "run")
+
+
+@dataclass(frozen=True)
+class Side:
+    """A run by what it leaves on disk."""
+
+    name: str  # of its folder or scenario
+    numbers: dict[str, Any] = field(repr=False)  # as in result.json
+    time: NDArray[np.float64] = field(repr=False)  # [s]
+    signals: dict[str, NDArray[Any]] = field(repr=False)
+    track: dict[str, NDArray[Any]] = field(repr=False)  # as in contour.npz; empty without a contour
+
+
+def side(given: "str | Path | Scenario | Result", set: Mapping[str, Any] | None = None) -> Side:
+    """A folder of results as it is; a scenario is run, with values set."""
+    if isinstance(given, Result):
+        found, place = given, given.name
+    elif isinstance(given, Scenario):
+        found, place = given.run(set=set or {}), given.name
+    elif is_file(Path(given) / NUMBERS):
+        if set:
+            raise InputError(f"{given}: a folder of results; only a scenario can be run with --set")
+        return _read(Path(given))
+    else:
+        found = load(given).run(set=set or {})
+        place = str(given)
+    made = json.loads(json.dumps(numbers(found), default=str, allow_nan=False))
+    way = track(found.contour()) if made.get("contour") else {}
+    return Side(place, made, found.time, found.signals, way)
+
+
+def _read(folder: Path) -> Side:
+    file = folder / NUMBERS
+    try:
+        made = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot read {file}: {error.strerror}") from None
+    except ValueError as error:
+        raise InputError(f"{file}: no JSON: {error}") from None
+    if not is_file(folder / SIGNALS):
+        raise InputError(f"{folder}: no {SIGNALS}; the folder of a run is wanted")
+    if missing := [k for k in WANTED if not isinstance(made, dict) or k not in made]:
+        raise InputError(f"{file}: no {missing[0]!r}: written by another version; run it again")
+    signals = _arrays(folder / SIGNALS)
+    if "time" not in signals or (strange := sorted({*signals} - {"time", *made["units"]})):
+        told = f"signal {strange[0]!r} is not in {NUMBERS}" if "time" in signals else "no time"
+        raise InputError(f"{folder / SIGNALS}: {told}")
+    time = signals.pop("time")
+    if short := next((n for n, x in signals.items() if len(x) != len(time)), ""):
+        raise InputError(f"{folder / SIGNALS}: {short} has not as many samples as the time")
+    way = _arrays(folder / TRACK) if made.get("contour") and is_file(folder / TRACK) else {}
+    return Side(str(folder), made, time, signals, way)
+
+
+def _arrays(file: Path) -> dict[str, NDArray[Any]]:
+    try:
+        with np.load(file) as stored:
+            return dict(stored)
+    except OSError as error:
+        raise InputError(f"cannot read {file}: {error.strerror or error}") from None
+    except (ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError(f"{file}: no arrays of numpy: {error}") from None
