@@ -61,7 +61,7 @@ def _tell(found: "Comparison") -> None:
     for d in found.different:
         out.print(f"  {d.what}: {d.a} → {d.b}", markup=False, soft_wrap=True)
     known = {n.name: n for n in found.table("contour")}
-    table = bare_table("", "A", "B", "change")
+    table = bare_table("", "A", "B", "change of size")
     for name, words in NUMBERS:
         if name in known:
             n = known[name]

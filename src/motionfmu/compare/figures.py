@@ -23,9 +23,10 @@ class Number:
 
     @property
     def change(self) -> float | None:
-        """Of B against A's size [%]; None from 0."""
-        gone = self.difference
-        return None if gone is None or not self.a else 100.0 * gone / abs(self.a)
+        """How much larger B's size is than A's [%]; None from 0, and where the sign turns."""
+        if self.a is None or self.b is None or not self.a or self.a * self.b < 0.0:
+            return None
+        return 100.0 * (abs(self.b) - abs(self.a)) / abs(self.a)
 
 
 def side_by_side(a: Mapping[str, Any] | None, b: Mapping[str, Any] | None) -> list[Number]:

@@ -20,7 +20,7 @@ from motionfmu.units import spelled
 
 PAGE = "report.html"
 ELEMENTS = 40  # of signals are drawn; all are in the table
-SIDES = ("", "A", "B", GONE, "change")
+SIDES = ("", "A", "B", GONE, "change of size")
 FOOTER = (
     f"Every difference is {GONE}. RMS of a difference: root of the mean square over the common"
     ' samples and all elements. Every number is in <a href="result.json">result.json</a>.'
@@ -70,6 +70,7 @@ def _cards(found: Comparison) -> str:
         shown.append((name, value, escape(x.name)))
     verdict = "no check is worse" if found.ok else f"{len(found.worse)} worse"
     kind, where = ("pass", "") if found.ok else ("fail", escape(", ".join(found.worse)))
+    where = where.replace(".", ".<wbr>")
     shown.append(("Verdict of B against A", f'<span class="{kind}">{verdict}</span>', where))
     numbers = {n.name: n for n in found.table("contour")}
     for name, words in (("error.max", "Largest contour error"), ("error.rms", "RMS contour error")):
@@ -80,7 +81,8 @@ def _cards(found: Comparison) -> str:
     done = Number("", *(x.numbers.get("done_at") for x in (found.a, found.b)))
     if done.difference is not None:
         where = f"{done.a:.9g} s → {done.b:.9g} s"
-        shown.append(("Program done", f"{figure(done.difference, sign=True)} s", where))
+        gone = f"{figure(done.difference, sign=True)} s" if done.difference else "no change"
+        shown.append(("Program done", gone, where))
     return cards(shown)
 
 
@@ -104,7 +106,7 @@ def _checks(checks: Iterable[Checked]) -> str:
         told = "; ".join(dict.fromkeys(r for r in c.reasons if r))
         words = " → ".join(bounds) + (f"; {told}" if told else "")
         rows.append((escape(c.name), escape(words), *cells, change_text(n)))
-    return table(("Check", "Bounds", "A", "B", "change"), rows, 2)
+    return table(("Check", "Bounds", "A", "B", "change of size"), rows, 2)
 
 
 def _add_contour(page: Sheet, found: Comparison) -> None:
@@ -195,5 +197,6 @@ def _add_signals(page: Sheet, found: Comparison) -> None:
 
 def _apart(s: Apart) -> tuple[str, ...]:
     unit = spelled(s.unit)
-    largest, rms, span = (text_of(x, unit) for x in (s.largest, s.rms, s.span))
+    largest = text_of(s.largest, unit, sign=True)
+    rms, span = (text_of(x, unit) for x in (s.rms, s.span))
     return (escape(s.name), largest, escape(s.element), f"{s.at:.9g} s", rms, span)

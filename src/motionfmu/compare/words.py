@@ -52,12 +52,14 @@ def text_of(value: float | None, unit: str, sign: bool = False) -> str:
         return f"{figure(math.degrees(value), sign)}°"
     if unit == "s" and abs(value) < 1.0:
         return f"{figure(value * 1e3, sign)} ms"
+    if unit == "mm/s":
+        return f"{figure(value, sign)} {unit}"
     text = f"{value:{'+' if sign else ''}.5g}".replace("-", MINUS)
     return f"{text} {unit}" if unit else text
 
 
 def change_text(n: Number) -> str:
-    """Change of B against A in percent, signed; empty where there is none."""
+    """Change of the size of B against A's in percent; empty where there is none."""
     if n.change is None:
         return ""
     size = abs(n.change)
