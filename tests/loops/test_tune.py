@@ -183,7 +183,7 @@ def test_the_demo_is_tuned_to_its_limit(tuned: Tuned) -> None:
     for said in ("card.enc_phase reads machine.motor_phase", "card samples every 100 us"):
         assert said in text
     first = tuned.settings["mcc.p_gain"][0]
-    assert f"= {first} (Kp {first / 200 * 47.683716:.3g} 1/s)" in text
+    assert f"= {first} (Kp {first / 200 * 47.683716:#.3g} 1/s)" in text
     first, second = tuned.found.starts
     assert first == pytest.approx(second, rel=1e-4)
 

@@ -75,7 +75,7 @@ def _told(gain: LoopGain) -> str:
 
 def in_words(kp: float) -> str:
     """A position gain [1/s] with three digits and its unit."""
-    return f"{kp:.0f} 1/s" if kp >= 1000.0 else f"{kp:.3g} 1/s"
+    return f"{kp:.0f} 1/s" if kp >= 100.0 else f"{kp:#.3g} 1/s"
 
 
 def kp_of(axis: AxisModel, name: str) -> float | None:
@@ -157,7 +157,7 @@ def gain_of(
     axis: int | None = None,
     at: Mapping[str, float] | None = None,
 ) -> tuple[LoopGain, ...]:
-    """Position gains of a scenario's loops in 1/s, of parameters in other units.
+    """Position gains of a scenario in 1/s, of any registers.
 
     Parameters
     ----------

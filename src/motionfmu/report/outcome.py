@@ -45,17 +45,20 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
     with whole(folder) as part:
         arrays: dict[str, Any] = {"time": result.time, **result.signals}
         np.savez_compressed(part / SIGNALS, **arrays)
-        text = json.dumps(numbers(result, options), indent=1, allow_nan=False)
-        (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
-        if csv:
-            _write_csv(result, part / TABLE)
         from motionfmu.report import write_report
+        from motionfmu.report.ran import ran_of
 
         wanted = result.scenario.document.body.contour is not None and not result.no_contour
         contour = result.contour() if wanted else None
+        ran = ran_of(result, contour)
+        found = numbers(result, options) | ran.numbers()
+        text = json.dumps(found, indent=1, allow_nan=False)
+        (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
+        if csv:
+            _write_csv(result, part / TABLE)
         if contour is not None:
             np.savez_compressed(part / TRACK, **track(contour))
-        shown = write_report(result, contour, part).name
+        shown = write_report(result, contour, part, ran).name
     return folder.resolve() / shown
 
 

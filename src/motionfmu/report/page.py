@@ -15,9 +15,11 @@ from motionfmu.report.numbers import figure, length
 from motionfmu.report.packed import packed
 from motionfmu.report.path_plot import path_figure
 from motionfmu.report.pictures import write_pictures
-from motionfmu.report.plain import Result, add_performance, deviations, plain_text
+from motionfmu.report.plain import add_performance, deviations, plain_text
 from motionfmu.report.polar_plot import polar_figure
+from motionfmu.report.ran import Ran, add_ran, add_speed, as_written, ran_of
 from motionfmu.report.sheet import Frame, Sheet
+from motionfmu.report.shown_run import Result
 from motionfmu.report.tables import (
     CORNERS_SHOWN,
     cards,
@@ -53,7 +55,9 @@ FOOTER = (
 )
 
 
-def write_report(result: Result, contour: ContourResult | None, folder: str | Path) -> Path:
+def write_report(
+    result: Result, contour: ContourResult | None, folder: str | Path, ran: Ran | None = None
+) -> Path:
     """Write the page, the pictures and the contour's numbers of a run.
 
     Parameters
@@ -66,6 +70,8 @@ def write_report(result: Result, contour: ContourResult | None, folder: str | Pa
         Made if it is not there; gets report.html, figure1.png, figure1.svg and so on, and with a
         contour path.svg, path.png and contour.json; with figures after ISO 9283 iso9283.svg and
         iso9283.png.
+    ran : Ran, optional
+        How the run went, if it was looked at before.
 
     Returns
     -------
@@ -78,13 +84,14 @@ def write_report(result: Result, contour: ContourResult | None, folder: str | Pa
         The folder cannot be written.
     """
     folder = Path(folder)
-    charts = result.figures()
+    charts = as_written(result, result.figures())
+    ran = ran or ran_of(result, contour)
     if contour is None:
-        page = plain_text(result, charts)
+        page = plain_text(result, charts, ran)
         folder.mkdir(parents=True, exist_ok=True)
     else:
         drawing = draw(contour)
-        page = page_text(result, contour, drawing, charts)
+        page = page_text((result, ran), contour, drawing, charts)
         numbers = json.dumps(contour.numbers(), indent=1, allow_nan=False)
         folder.mkdir(parents=True, exist_ok=True)
         write_pictures(result.name, contour, drawing, folder)
@@ -97,20 +104,23 @@ def write_report(result: Result, contour: ContourResult | None, folder: str | Pa
 
 
 def page_text(
-    result: Result, contour: ContourResult, drawing: Drawing, charts: Sequence[Chart]
+    run: tuple[Result, Ran], contour: ContourResult, drawing: Drawing, charts: Sequence[Chart]
 ) -> str:
     """The whole HTML page of a run with a contour."""
+    result, ran = run
     page = Sheet()
     page.sections.append(_cards(contour))
     _add_path(page, contour, drawing)
     if result.checks:
         page.section("Verdict", "", check_table(result.checks))
+    add_ran(page, result, ran)
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))
     views = add_view(page, scene_of(result, deviations(result) or [from_contour(contour)]))
     add_performance(page, result)
     for i, test in enumerate(contour.circles[:CIRCLES_SHOWN]):
         _add_circle(page, f"circle{i}", test)
+    add_speed(page, ran)
     _add_time(page, contour)
     add_charts(page, charts)
     _add_corners(page, contour)

@@ -54,6 +54,12 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: int = 1)
     )
 
 
+def facts(rows: Iterable[tuple[str, str]]) -> str:
+    """A table without a head: names, and ready HTML beside them."""
+    body = "".join(f"<tr><th>{escape(name)}</th><td>{text}</td></tr>" for name, text in rows)
+    return f'<table class="facts"><tbody>{body}</tbody></table>'
+
+
 def cards(rows: Iterable[tuple[str, str, str]], columns: str = "") -> str:
     """Large numbers: what each is; in HTML, its value and where."""
     # Columns are those of the grid in CSS, else the page's own; a long value is written small.

@@ -1,5 +1,6 @@
 """The interactive plots over time."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -8,13 +9,25 @@ from motionfmu.contour import ContourResult
 from motionfmu.contour.geometry import Array
 from motionfmu.report.numbers import length, unit
 from motionfmu.report.samples import Samples, sampled
-from motionfmu.report.style import AXES, HEAT, INK, axis, layout
+from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID, axis, layout
 
 Figure = dict[str, Any]
 
 TIME = "Time [s]"
 ROOM = 0.16  # above and below the error, for the label of its peak
 NAMES = "XYZUVW"
+
+
+@dataclass(frozen=True)
+class Speeds:
+    """Speeds of a tool over time, in one unit."""
+
+    time: Array  # (n,) [s]
+    tool: Array  # (n,)
+    planned: Array | None  # (n,) by the controller
+    programmed: Array | None  # (n,) NaN where nothing is
+    unit: tuple[str, str]  # and what the tool's is from
+    done: float | None  # when the program was done [s]
 
 
 def error_figure(contour: ContourResult) -> Figure:
@@ -104,6 +117,40 @@ def trace_figures(contour: ContourResult) -> list[tuple[str, Figure]]:
         title = f"{trace.name} [{trace.unit}]" if trace.unit else trace.name
         out.append((trace.name, _curves(contour.run.time, shown, title, 230)))
     return out
+
+
+def speed_figure(speeds: Speeds) -> Figure:
+    """Speed of the tool against time, planned and programmed beside it."""
+    shown = [
+        ("programmed", speeds.programmed, RAPID, True),
+        ("planned", speeds.planned, INK, False),
+    ]
+    data = []
+    for name, values, color, steps in [*shown, ("tool", speeds.tool, AXES[0], False)]:
+        if values is not None:
+            data.append(sampled(Samples(speeds.time, values, steps=steps), name, color))
+    data[0]["line"] |= {"width": 3.0} if speeds.programmed is not None else {}
+    known = [v for v in (speeds.tool, speeds.planned, speeds.programmed) if v is not None]
+    ends = _range(np.concatenate(known), zero=True)
+    title = "Feed" if speeds.unit[0] == "mm/min" else "Speed"
+    more: Figure = {"yaxis": _axis(f"{title} [{speeds.unit[0]}]", range=[0.0, ends[1]])}
+    if speeds.done is not None:
+        at = {"x0": speeds.done, "x1": speeds.done, "y0": 0, "y1": 1, "yref": "paper"}
+        line = {"color": MUTED, "width": 1, "dash": "dot"}
+        more["shapes"] = [{"type": "line", **at, "line": line}]
+        more["annotations"] = [
+            {
+                "x": speeds.done,
+                "y": 1,
+                "yref": "paper",
+                "text": "done",
+                "showarrow": False,
+                "xanchor": "right",
+                "yanchor": "top",
+                "font": {"size": 12, "color": MUTED},
+            }
+        ]
+    return {"data": data, "layout": _over_time(270, speeds.time, **more)}
 
 
 def _curves(time: Array, shown: list[tuple[str, Array, str]], title: str, height: int) -> Figure:

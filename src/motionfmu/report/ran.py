@@ -1,0 +1,186 @@
+"""What was run: overrides, times, ways, gains, and the speed of the tool beside the programmed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from html import escape
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.contour import ContourResult
+from motionfmu.linear import LoopGain, gain_of
+from motionfmu.linear.position_gain import in_lines
+from motionfmu.report.numbers import length
+from motionfmu.report.sheet import Sheet
+from motionfmu.report.shown_run import Result
+from motionfmu.report.tables import facts
+from motionfmu.report.time_plots import Speeds, speed_figure
+from motionfmu.run import Scenario
+from motionfmu.run.figures import Chart
+from motionfmu.view.scene import STANDS, millimetres, tool_signal
+
+Array = NDArray[np.float64]
+# The speed of the tool is its mean over twice this time [s], or over two samples.
+OVER, OVER_PULSES = 1e-3, 5e-3
+# Fewer points are no curve.
+_LEAST = 3
+# What a library has of its axes: pulses per turn, gear, lead [mm]; and its speed along the path.
+PLANNED = "path_feed"
+AXIS = ("ppr", "gear_ratio", "lead", PLANNED)
+# Feeds of part programs are in mm/min, speeds of other tools in mm/s.
+MINUTE = 60.0
+AS_WRITTEN = "Note of the scenario as written: "
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What a run was, for page and JSON."""
+
+    began: float | None  # first command of the program, else first motion of the tool [s]
+    done: float | None  # [s]
+    distance: float | None  # way of the tool [mm]
+    programmed: tuple[float, float] | None  # of it, as programmed: cutting and rapids [mm]
+    speeds: Speeds | None
+    gains: tuple[LoopGain, ...]
+
+    @property
+    def cycle(self) -> float | None:
+        """Time of the program [s]."""
+        known = self.began is not None and self.done is not None
+        return self.done - self.began if known else None  # type: ignore[operator]
+
+    def numbers(self) -> dict[str, Any]:
+        """The same for JSON."""
+        gains = [{"name": g.name, "axis": g.axis, "value": g.value, "kp": g.kp} for g in self.gains]
+        return {
+            "began_at": self.began,
+            "cycle_time": self.cycle,
+            "distance": self.distance,
+            "position_gains": gains,
+        }
+
+
+def ran_of(result: Result, contour: ContourResult | None) -> Ran:
+    """Look at how a run went."""
+    scenario, given = result.scenario, result.options.get("set", {})
+    gains = gain_of(scenario, given) if isinstance(scenario, Scenario) else ()
+    tool, source, over = _tool(result, contour)
+    way, began = None, None
+    if contour is not None:
+        began = _first(contour.run.command > 0, result.time)
+        cut = sum(s.length for s in contour.run.path.segments if s.label.kind != "ptp")
+        way = cut, float(contour.run.path.offsets[-1]) - cut
+    elif tool is not None:
+        began = _first((np.abs(tool - tool[0]) > STANDS).any(axis=1), result.time)
+    if tool is None or began is None:
+        return Ran(began, result.done_at, None, way, None, gains)
+    every = max(1, round(over / (result.time[1] - result.time[0])))
+    time, points = result.time[::every], tool[::every]
+    distance = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    if len(time) < _LEAST:
+        return Ran(began, result.done_at, distance, way, None, gains)
+    speed = np.linalg.norm(np.gradient(points, time, axis=0), axis=1)
+    planned, programmed = _planned(result), _programmed(result, contour)
+    factor, unit = (1.0, "mm/s") if contour is None else (MINUTE, "mm/min")
+    rest = [None if v is None else factor * v[::every] for v in (planned, programmed)]
+    speeds = Speeds(time, factor * speed, rest[0], rest[1], (unit, source), result.done_at)
+    return Ran(began, result.done_at, distance, way, speeds, gains)
+
+
+def _tool(result: Result, contour: ContourResult | None) -> tuple[Array | None, str, float]:
+    """Positions of the tool (n, 3) [mm], what they are from, and a time for its speed [s]."""
+    if contour is not None:
+        return contour.run.actual[:, :3], "positions", OVER
+    name = tool_signal(result)
+    if name is not None and name in result.signals:
+        tool = millimetres(result.resolver, name, result[name])
+        return tool if np.isfinite(tool).all() else None, "positions", OVER
+    pulses = [x for n, x in result.signals.items() if n.endswith(".pulse_count") and x.ndim > 1]
+    for component, ports in result.resolver.ports.items():
+        if pulses and all(n in ports for n in AXIS) and not ports[PLANNED].shape:
+            ppr, gear, lead = (np.array(result.parameter(f"{component}.{n}")) for n in AXIS[:3])
+            return (pulses[0] * lead / (ppr * gear))[:, :3], "pulses", OVER_PULSES
+    return None, "", OVER
+
+
+def _programmed(result: Result, contour: ContourResult | None) -> Array | None:
+    """The speed that program or scenario asks for [mm/s], NaN where it asks for none."""
+    if contour is not None:
+        feeds = np.array([s.label.feed for s in contour.run.path.segments])
+        command = contour.run.command
+        on = (command > 0) & (result.time <= (result.done_at or np.inf))
+        return np.where(on, feeds[contour.run.path.segment_of(command)], np.nan)
+    asked = result.resolver.document.body.iso9283
+    if asked is None or asked.speed is None:
+        return None
+    cycles = asked.cycles or [[float(result.time[0]), float(result.time[-1])]]
+    on = np.any([(a <= result.time) & (result.time <= b) for a, b in cycles], axis=0)
+    return np.where(on, asked.speed, np.nan)
+
+
+def _first(there: NDArray[np.bool_], time: Array) -> float | None:
+    return float(time[int(np.argmax(there))]) if there.any() else None
+
+
+def _planned(result: Result) -> Array | None:
+    """The speed along the path as the controller planned it [mm/s], if one recorded says so."""
+    for name, values in result.signals.items():
+        if name.endswith(f".{PLANNED}") and values.ndim == 1:
+            return np.asarray(values, dtype=np.float64)
+    return None
+
+
+def add_ran(page: Sheet, result: Result, ran: Ran) -> None:
+    """Add the section that says what was run, and the speed over time."""
+    options = result.options
+    step = options.get("step") or result.resolver.document.body.step
+    every = options.get("every") or result.resolver.document.body.record.every
+    seen = f", one of {every} recorded" if every > 1 else ""
+    rows = [
+        ("Overrides", "<br>".join(map(escape, result.overrides)) or "none: as written"),
+        (
+            "Engine",
+            f"{escape(str(options.get('engine', '')))}, FMI {options.get('fmi', '')},"
+            f" communication step {step * 1e3:g} ms{seen}",
+        ),
+        ("Ended by", escape(result.stopped)),
+    ]
+    if ran.done is not None:
+        rows.append(("Program done", f"at {ran.done:.3f} s"))
+    elif any(name.endswith(".done") for name in result.signals):
+        rows.append(("Program done", "not within the run"))
+    if ran.cycle is not None:
+        since = "first command" if ran.programmed else "first motion of the tool"
+        rows.append(("Cycle time", f"{ran.cycle:.3f} s, from the {since} to done"))
+    if ran.distance is not None:
+        told = ""
+        if ran.programmed:
+            cut, rapid = ran.programmed
+            told = f"; programmed {length(cut)} of cutting, {length(rapid)} of rapids"
+        rows.append(("Way of the tool", f"{length(ran.distance)}{told}"))
+    if ran.gains:
+        rows.append(("Position gains", "<br>".join(map(escape, in_lines(ran.gains)))))
+    told = "Not as the scenario is written: see the overrides." if result.overrides else ""
+    page.section("What was run", told, facts(rows))
+
+
+def add_speed(page: Sheet, ran: Ran) -> None:
+    """Add the speed of the tool over time."""
+    if ran.speeds is None:
+        return
+    told = [f"Of the tool, from its {ran.speeds.unit[1]}"]
+    if ran.speeds.planned is not None:
+        told.append("as the controller planned it")
+    if ran.speeds.programmed is not None:
+        rapids = ", rapids at their own speed" if ran.programmed else ""
+        told.append(f"as programmed{rapids}")
+    title = "Feed" if ran.programmed else "Speed of the tool"
+    page.section(title, "; ".join(told) + ".", page.place("speed", speed_figure(ran.speeds), True))
+
+
+def as_written(result: Result, charts: Sequence[Chart]) -> list[Chart]:
+    """The figures; where something is overridden, notes are marked as the scenario's."""
+    if not result.overrides:
+        return list(charts)
+    return [replace(c, note=AS_WRITTEN + c.note) if c.note else c for c in charts]

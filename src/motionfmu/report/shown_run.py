@@ -1,0 +1,67 @@
+"""What the report needs to know of a run."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+from motionfmu.iso9283 import Evaluation
+from motionfmu.report.tables import Check
+from motionfmu.run.figures import Chart
+from motionfmu.run.prepared import Prepared
+from motionfmu.run.recorded import Recorded
+
+
+class Result(Recorded, Protocol):
+    """A run beside its contour; `motionfmu.Result` is one."""
+
+    @property
+    def name(self) -> str:
+        """Name of the scenario."""
+
+    @property
+    def about(self) -> str:
+        """What the scenario shows."""
+
+    @property
+    def checks(self) -> Sequence[Check]:
+        """Its verdicts."""
+
+    @property
+    def scenario(self) -> Prepared:
+        """What was run."""
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """How it was run."""
+
+    @property
+    def overrides(self) -> Sequence[str]:
+        """In what not as written."""
+
+    @property
+    def stopped(self) -> str:
+        """Why it ended."""
+
+    @property
+    def done_at(self) -> float | None:
+        """When the program was done [s]."""
+
+    @property
+    def no_contour(self) -> str:
+        """Why the run has no contour; empty if it has one or wants none."""
+
+    @property
+    def warnings(self) -> Sequence[str]:
+        """What FMUs and runner warned of."""
+
+    def figures(self) -> Sequence[Chart]:
+        """The figures that the scenario asks for."""
+
+    @property
+    def no_iso9283(self) -> str:
+        """Why the run has no figures after ISO 9283; empty if it has them or wants none."""
+
+    def iso9283(self) -> Evaluation:
+        """Its figures after ISO 9283."""
+
+    def overview(self) -> Sequence[Chart]:
+        """A figure of each recorded signal."""
