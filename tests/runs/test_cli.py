@@ -2,15 +2,17 @@
 
 import json
 from html.parser import HTMLParser
+from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import ROOT
-from console import command
+from console import command, within
 
 import motionfmu
 from motionfmu.report.outcome import save
+from motionfmu.scenarios import fmus
 
 
 @pytest.fixture(scope="module")
@@ -86,19 +88,70 @@ def test_an_older_result_is_replaced(tmp_path: Path) -> None:
     assert [p.name for p in tmp_path.iterdir()] == ["r"]
 
 
-def test_list_info_describe_and_check() -> None:
-    listed = command("list").stdout
+def test_list_tells_all_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    listed = within("list").stdout
     names = {p.parent.name for p in ROOT.glob("fmus/*/fmu.toml")}
     assert all(name in listed for name in names)
     assert all(str(p.parent.relative_to(ROOT)) in listed for p in ROOT.glob("scenarios/*/*.toml"))
-    described = command("info", "servo_drives").stdout
-    assert "velocity_gain" in described and "N.m.s/rad" in described
-    told = command("info", "scenarios/circle").stdout
-    assert "ball_screw_axes" in told and "mcc.p_gain[1,2] = 200 (Kp 47.7 1/s)" in told
-    assert command("describe", "scope", "--xml", "--fmi", "2").stdout.startswith("<?xml")
-    checked = command("check", "scenarios/mismatch_line", "scenarios/square")
-    assert checked.returncode == 0 and checked.stdout.count("ok ") == 2
-    assert "error.max" in command("contour", "scenarios/mismatch_line", "--figures").stdout
+    monkeypatch.setenv("MOTIONFMU_FMUS", str(tmp_path))
+    told = f"none is built in {tmp_path}; "
+    assert within("list").stdout.startswith(f"FMUs: {told}make build builds them\n")
+    assert within("info", "mcc").stderr.endswith(f"nor a scenario (FMUs: {told}run make build)\n")
+
+
+@pytest.mark.parametrize("columns", [80, 160])
+def test_info_crops_nothing(columns: int) -> None:
+    done = within("info", "servo_drives", columns=columns)
+    assert max(map(len, done.stdout.splitlines())) <= columns
+    words = " ".join(done.stdout.split())
+    for port in fmus.ports("servo_drives").values():
+        assert port.name in words and " ".join(port.doc.split()) in words
+    assert "velocity_gain Float64[6] N.m.s/rad 0.5 >= 0 " in words
+
+
+def test_info_chooses_variables() -> None:
+    found = within("info", "mcc", "home_*", "hold").stdout
+    names = [line.split()[0] for line in found.splitlines() if line[2:3].strip() and "_" in line]
+    assert {n for n in names if n.islower()} >= {"home_first", "home_settle"}
+    assert "p_gain" not in found and "\n  hold " in found
+    of_scenario = within("info", "scenarios/circle", "mcc.p_*", "card.enc_phase").stdout
+    assert "mcc.p_gain" in of_scenario and "here 200; P gain" in of_scenario
+    assert "from machine.motor_phase; " in of_scenario
+    wrong = within("info", "mcc", "hme_first")
+    assert wrong.returncode == 2
+    assert wrong.stderr == "motionfmu: no variable 'hme_first'; did you mean 'home_first'?\n"
+
+
+def test_info_of_a_scenario_and_of_an_fmu_s_xml() -> None:
+    words = " ".join(within("info", "scenarios/circle").stdout.split())
+    assert "machine ball_screw_axes Six ball-screw axes" in words
+    assert "mcc.p_gain 200" in words and "mcc.done final = true" in words
+    assert "friction at reversal machine.motor_coulomb = 0" in words and "1/s" in words
+    assert within("info", "scope", "--xml", "--fmi", "2").stdout.startswith("<?xml")
+    assert within("info", "scenarios/circle", "--xml").returncode == 2
+
+
+def test_wrong_words_get_one_line_with_what_was_meant() -> None:
+    for line, told in (
+        ("rnu", "no such command 'rnu'; did you mean 'run'? (help: motionfmu --help)"),
+        ("describe mcc", "no such command 'describe'; did you mean 'info'? (help"),
+        ("run --enginee x", "no such option: --enginee; did you mean '--engine'? (help: motion"),
+        ("card srve", "no such command 'srve'; did you mean 'serve'? (help: motionfmu card --h"),
+        ("run", "missing argument 'path' (help: motionfmu run --help)"),
+    ):
+        done = within(*line.split())
+        assert done.returncode == 2 and done.stdout == ""
+        assert done.stderr.startswith(f"motionfmu: {told}") and done.stderr.count("\n") == 1
+    version = within("--version")
+    assert (version.returncode, version.stdout) == (
+        0,
+        f"motionfmu {metadata.version('motionfmu')}\n",
+    )
+
+
+def test_help_lists_commands_whole() -> None:
+    words = " ".join(within("--help").stdout.split())
+    assert "resumes where an earlier call was ended." in words and "..." not in words
 
 
 def test_the_readme_example_runs() -> None:

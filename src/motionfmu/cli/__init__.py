@@ -70,9 +70,11 @@ def _usage(error: Any) -> str:
     if type(error).__name__ == "NoArgsIsHelpError":
         error.show()
         return ""
-    text = str(error.format_message())
+    text = str(error.format_message()).rstrip(".")
     if near := getattr(error, "possibilities", None):
         text = f"{error.message}; did you mean {near[0]!r}?"
-    text = text.rstrip(".").replace(". Did you", "; did you")
+    if "'describe'" in text:
+        text += "; did you mean 'info'?"
+    text = text.replace(". Did you", "; did you")
     where = error.ctx.command_path if getattr(error, "ctx", None) else "motionfmu"
     return f"{text[:1].lower()}{text[1:]} (help: {where} --help)"

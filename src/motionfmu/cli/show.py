@@ -1,100 +1,246 @@
 """The commands that list and describe FMUs and scenarios."""
 
+import fnmatch
+import math
+import shutil
+import textwrap
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from motionfmu.cli.common import app, bare_table, out
-from motionfmu.errors import InputError
+from motionfmu.cli.common import app
+from motionfmu.errors import InputError, suggestion
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
+    from motionfmu.scenarios.fmus import Port
+
+HEADINGS = {
+    "parameter": "parameters",
+    "input": "inputs",
+    "output": "outputs",
+    "local": "locals",
+}
+BESIDE = 36  # columns that a text needs to stand beside a row; else below it
+START_MAX = 16  # columns of a start value
 
 
 @app.command("list")
 def list_all() -> None:
     """List the FMUs that are built and the scenarios of this project."""
-    from motionfmu.scenarios import document, fmus
-
-    out.print("[bold]FMUs[/]")
-    for name in fmus.fmu_names():
-        out.print(f"  {name}")
-    out.print("[bold]Scenarios[/]")
-    for file in sorted(Path("scenarios").glob("*/scenario.toml")):
-        out.print(f"  {file.parent}  [dim]{document.read(file).about}[/]")
-
-
-@app.command()
-def info(what: Annotated[str, typer.Argument(help="An FMU's name, or a scenario.")]) -> None:
-    """Show the variables of an FMU, or what a scenario is made of."""
     from motionfmu.scenarios import fmus
 
-    if what in fmus.fmu_names():
-        _describe(what)
-        return
-    from motionfmu.run import load
-
-    if not Path(what).exists():
-        known = ", ".join(fmus.fmu_names())
-        raise InputError(f"{what}: neither an FMU ({known}) nor a scenario")
-    scenario = load(what)
-    body = scenario.document.body
-    out.print(f"[bold]{scenario.name}[/]  {scenario.document.about}")
-    out.print(f"{body.stop:g} s in steps of {body.step:g} s")
-    for name, fmu in body.component.items():
-        out.print(f"  {name:12} {fmu}")
-    for line in _gains(scenario):
-        out.print(f"  gain {line}", markup=False)
-    for check, tables in body.check.items():
-        for bounds in tables:
-            out.print(f"  check {check}  [dim]{bounds.model_dump(exclude_none=True)}[/]")
-    for case in body.contrary:
-        out.print(f"  contrary: {case.off}  [dim]{case.set}[/]")
+    if names := fmus.fmu_names():
+        print("FMUs")
+        _rows([((name,), fmus.about(name)) for name in names])
+    else:
+        print(f"FMUs: none is built in {fmus.folder()}; make build builds them")
+    if files := sorted(Path("scenarios").glob("*/scenario.toml")):
+        print("Scenarios")
+        _rows([((str(file.parent),), _first_line(file)) for file in files])
+    else:
+        print("Scenarios: none in ./scenarios; motionfmu new scenario NAME makes one")
 
 
-def _gains(scenario: "Scenario") -> list[str]:
-    """Position gains of the scenario's loops, also in 1/s."""
-    from motionfmu.linear import gain_of
-    from motionfmu.linear.position_gain import in_lines
-
-    return in_lines(gain_of(scenario))
+def _first_line(file: Path) -> str:
+    """What a scenario shows, be it right or wrong."""
+    with file.open(encoding="utf-8", errors="replace") as stream:
+        return stream.readline(1000).strip().lstrip("# ")
 
 
 @app.command()
-def describe(
-    name: Annotated[str, typer.Argument(help="An FMU's name.")],
-    xml: Annotated[bool, typer.Option("--xml", help="Print its modelDescription.xml.")] = False,
+def info(
+    what: Annotated[str, typer.Argument(help="An FMU's name, or a scenario.")],
+    patterns: Annotated[
+        list[str] | None, typer.Argument(help="Variables, as 'home_*'; all if none.")
+    ] = None,
+    xml: Annotated[bool, typer.Option("--xml", help="Print the FMU's description.")] = False,
     fmi: Annotated[int, typer.Option(help="FMI version of the XML: 2 or 3.")] = 3,
 ) -> None:
-    """Show the variables of an FMU with units, start values and meaning."""
-    if not xml:
-        _describe(name)
+    """Show the variables of an FMU with units, ranges and meaning, or what a scenario is made of.
+
+    Of a scenario's FMUs, patterns choose variables by component, as 'mcc.home_*', and each is
+    shown with its value in the scenario.
+    """
+    from motionfmu.scenarios import fmus
+
+    known = fmus.fmu_names()
+    if what in known or (xml and not Path(what).exists()):
+        if xml:
+            print(fmus.description_text(what, fmi), end="")
+            return
+        ports = fmus.ports(what)
+        print(_wrapped(fmus.about(what), f"{what}: ", "  "))
+        _variables([ports[name] for name in _chosen(ports, patterns)])
         return
-    import zipfile
+    if xml:
+        raise InputError(f"--xml: {what} is no FMU")
+    if not Path(what).exists():
+        names = ", ".join(known) or f"none is built in {fmus.folder()}; run make build"
+        hint = suggestion(what, known)
+        raise InputError(f"{what}: neither an FMU nor a scenario{hint} (FMUs: {names})")
+    from motionfmu.run import load
 
+    scenario = load(what)
+    if patterns:
+        _variables_of(scenario, patterns)
+    else:
+        _scenario(scenario)
+
+
+def _chosen(names: Iterable[str], patterns: Sequence[str] | None) -> list[str]:
+    """Names that a pattern fits; a pattern that fits none is wrong."""
+    names = list(names)
+    for pattern in patterns or ():
+        if not fnmatch.filter(names, pattern):
+            raise InputError(f"no variable {pattern!r}{suggestion(pattern, names)}")
+    return [n for n in names if not patterns or any(fnmatch.fnmatch(n, p) for p in patterns)]
+
+
+def _width() -> int:
+    """Columns of the terminal, or of COLUMNS; a pipe has 80."""
+    return max(shutil.get_terminal_size().columns, 40)
+
+
+def _rows(rows: Sequence[tuple[Sequence[str], str]], indent: str = "  ") -> None:
+    """Print cells in columns and a text beside them, or below them where there is no room."""
+    widths = [max(map(len, column)) for column in zip(*(cells for cells, _ in rows), strict=True)]
+    left = len(indent) + sum(w + 2 for w in widths)
+    beside = _width() - left >= BESIDE
+    hang = " " * left if beside else indent + "    "
+    for cells, text in rows:
+        row = "  ".join(c.ljust(w) for c, w in zip(cells, widths, strict=True))
+        row = f"{indent}{row}"
+        if beside:
+            print(_wrapped(text, f"{row}  " if cells else indent, hang))
+        else:
+            print(row.rstrip())
+            if text:
+                print(_wrapped(text, hang, hang))
+
+
+def _wrapped(text: str, first: str, hang: str) -> str:
+    if not text:
+        return first.rstrip()
+    return textwrap.fill(
+        text,
+        _width(),
+        initial_indent=first,
+        subsequent_indent=hang,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def _variables(ports: Sequence["Port"]) -> None:
+    """Variables by what they are: name, type, unit, start, range, meaning."""
+    for causality, heading in HEADINGS.items():
+        if found := [p for p in ports if p.causality == causality]:
+            head = (heading.upper(), "type", "unit", "start", "range")
+            _rows([(head, ""), *map(_row, found)])
+
+
+def _row(port: "Port") -> tuple[tuple[str, ...], str]:
+    kind = port.type + "".join(f"[{n}]" for n in port.shape)
+    values = (port.start or "").split() if port.type != "String" else [port.start or ""]
+    start = values[0] if len(set(values)) == 1 else " ".join(values)
+    text = port.doc + (" (may change in a run)" if port.tunable else "")
+    if len(start) > START_MAX:
+        text, start = f"{text}; start {start}", "..."
+    return (port.name, kind, port.unit or "", start, _range(port)), text
+
+
+def _range(port: "Port") -> str:
+    low, high = (f"{x:.10g}" for x in (port.low, port.high))
+    if math.isfinite(port.low) and math.isfinite(port.high):
+        return f"{low} .. {high}"
+    return f">= {low}" if math.isfinite(port.low) else f"<= {high}" * math.isfinite(port.high)
+
+
+def _variables_of(scenario: "Scenario", patterns: Sequence[str]) -> None:
+    """Variables of a scenario's FMUs, and what the scenario makes of them."""
+    from motionfmu.scenarios import fmus
+    from motionfmu.scenarios.system import wires
+
+    body = scenario.document.body
+    ports = {
+        f"{component}.{name}": port
+        for component, fmu in body.component.items()
+        for name, port in fmus.ports(fmu).items()
+    }
+    sources = {wire.target.name: wire.source.name for wire in wires(scenario.resolver)}
+    print(_wrapped(scenario.document.about, f"{scenario.name}: ", "  "))
+    rows: list[tuple[Sequence[str], str]] = [(("", "type", "unit", "start", "range"), "")]
+    for name in _chosen(ports, patterns):
+        (_, *cells), text = _row(ports[name])
+        if name in body.set:
+            text = f"here {_value(body.set[name])}; {text}"
+        elif name in sources:
+            text = f"from {sources[name]}; {text}"
+        rows.append(((name, *cells), text))
+    _rows(rows)
+
+
+def _value(value: Any) -> str:
+    """A value as TOML has it."""
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f'"{value}"' if isinstance(value, str) else f"{value:.10g}"
+
+
+def _scenario(scenario: "Scenario") -> None:
+    from motionfmu.linear import gain_of
+    from motionfmu.linear.position_gain import in_lines
     from motionfmu.scenarios import fmus
 
-    path = fmus.fmu_path(name, fmi)
-    try:
-        with zipfile.ZipFile(path) as archive:
-            print(archive.read("modelDescription.xml").decode(), end="")
-    except (zipfile.BadZipFile, KeyError) as error:
-        raise InputError(f"{path}: no readable modelDescription.xml ({error.args[0]})") from None
+    body = scenario.document.body
+    print(_wrapped(scenario.document.about, f"{scenario.name}: ", "  "))
+    print(_until(body))
+    print("components")
+    _rows([((name, fmu), fmus.about(fmu)) for name, fmu in body.component.items()])
+    _section("values", [(_set(name, scenario), _value(v)) for name, v in body.set.items()])
+    for line in in_lines(gain_of(scenario)):
+        print(_wrapped(line, "  gain ", "    "))
+    steps = [(d.input, f"{_value(d.value)} at {_value(d.at)} s") for d in body.drive]
+    _section("steps of inputs", steps)
+    every = f", of {body.record.every} steps one" if body.record.every > 1 else ""
+    _section(f"recorded{every}", [("", ", ".join(body.record.signals))])
+    _section("figures", [("", figure.title) for figure in body.figure])
+    checks = [
+        (name, _bounds(check.model_dump(exclude_none=True)))
+        for name, tables in body.check.items()
+        for check in tables
+    ]
+    _section("checks", checks)
+    _section("what fails them", [(case.off, _bounds(case.set)) for case in body.contrary])
 
 
-def _describe(name: str) -> None:
+def _until(body: Any) -> str:
+    limit = getattr(body, "limit", None)
+    at_most = f", {limit:g} s at most" if limit else ""
+    end = f"{body.stop:g} s" if isinstance(body.stop, float) else f"until {body.stop}{at_most}"
+    return f"{end}, in steps of {body.step:g} s"
+
+
+def _set(name: str, scenario: "Scenario") -> str:
+    component, _, variable = name.partition(".")
     from motionfmu.scenarios import fmus
 
-    table = bare_table()
-    for heading in ("", "variable", "type", "unit"):
-        table.add_column(heading, no_wrap=True)
-    table.add_column("start", overflow="fold", max_width=12)
-    table.add_column("meaning", min_width=24)
-    for port in fmus.ports(name).values():
-        kind = port.type + "".join(f"[{n}]" for n in port.shape)
-        values = (port.start or "").split()
-        start = values[0] if values and len(set(values)) == 1 else (port.start or "")
-        cells = (port.causality, port.name, kind, port.unit or "", start, port.doc)
-        table.add_row(*(c.replace("[", r"\[") for c in cells))
-    out.print(table)
+    port = fmus.ports(scenario.document.body.component[component]).get(variable.split("[")[0])
+    return f"{name} [{port.unit}]" if port and port.unit else name
+
+
+def _bounds(values: dict[str, Any]) -> str:
+    return ", ".join(f"{key} = {_value(value)}" for key, value in values.items())
+
+
+def _section(heading: str, rows: Sequence[tuple[str, str]]) -> None:
+    """A heading and rows of a name and a text, or of texts; nothing if there are no rows."""
+    if rows:
+        print(heading)
+        named = all(name for name, _ in rows)
+        _rows([((name,), text) if named else ((), text) for name, text in rows])

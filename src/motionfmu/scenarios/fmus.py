@@ -1,6 +1,7 @@
 """Where the FMUs are and what they declare."""
 
 import _ctypes
+import contextlib
 import ctypes
 import functools
 import math
@@ -8,13 +9,13 @@ import os
 import tempfile
 import zipfile
 import zlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-
-from fmpy import read_model_description
+from typing import IO
+from xml.etree import ElementTree
 
 from motionfmu.errors import InputError
-from motionfmu.fmu.pack import platform_folder
 from motionfmu.toml_lines import is_file
 
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -82,6 +83,8 @@ def runnable(name: str, fmi: int) -> Path:
 @functools.cache
 def _refused(path: Path, fmi: int, state: tuple[int, int]) -> str:
     """Why the library in this state of a file does not load; empty if it does."""
+    from motionfmu.fmu.pack import platform_folder  # with all that makes FMUs
+
     folder = f"binaries/{platform_folder(fmi)}/"
     try:
         with zipfile.ZipFile(path) as archive:
@@ -104,35 +107,53 @@ def _refused(path: Path, fmi: int, state: tuple[int, int]) -> str:
     return "" if there else f"{inside[0]} does not load: it has no {wanted}"
 
 
+@contextlib.contextmanager
+def _description(name: str, fmi: int = 3) -> Iterator[IO[bytes]]:
+    """The open modelDescription.xml of a built FMU; what is wrong with it is an InputError."""
+    path = fmu_path(name, fmi)
+    try:
+        with zipfile.ZipFile(path) as archive, archive.open("modelDescription.xml") as stream:
+            yield stream
+    except (OSError, zipfile.BadZipFile, zlib.error, SyntaxError, KeyError, ValueError) as error:
+        told = error.args[0] if error.args else type(error).__name__
+        raise InputError(f"{path}: no readable modelDescription.xml ({told})") from None
+
+
+def description_text(name: str, fmi: int = 3) -> str:
+    """The modelDescription.xml of a built FMU."""
+    with _description(name, fmi) as stream:
+        return stream.read().decode()
+
+
+def about(name: str) -> str:
+    """What an FMU is, as it says itself."""
+    with _description(name) as stream:
+        _, root = next(iter(ElementTree.iterparse(stream, events=("start",))))
+        return root.get("description", "")
+
+
 @functools.cache
 def ports(name: str) -> dict[str, Port]:
     """Variables of an FMU by name, from the FMI 3 description, without the independent variable."""
-    path = fmu_path(name)
-    try:
-        description = read_model_description(str(path))
-    except Exception as error:  # of zipfile, lxml or FMPy: the file is not one of ours
-        told = str(error.args[0]) if error.args else type(error).__name__
-        raise InputError(f"{path}: no readable modelDescription.xml ({told})") from None
-    found = {}
-    for v in description.modelVariables:
-        if v.causality == "independent":
-            continue
-        start = " ".join(v.start) if isinstance(v.start, list) else v.start
-        low, high = (
-            side if limit is None else float(limit)
-            for limit, side in ((v.min, -math.inf), (v.max, math.inf))
-        )
-        found[v.name] = Port(
-            v.name,
-            v.type,
-            v.causality,
-            v.variability == "tunable",
-            v.description or "",
-            tuple(int(d.start) for d in v.dimensions),
-            v.unit,
-            v.valueReference,
-            start,
-            low,
-            high,
-        )
-    return found
+    # Not FMPy's reader: to import it and to look at the schema takes longer than most commands.
+    with _description(name) as stream:
+        rows = ElementTree.parse(stream).find("ModelVariables")
+        found = [_port(row) for row in ([] if rows is None else rows)]
+    return {port.name: port for port in found if port.causality != "independent"}
+
+
+def _port(row: ElementTree.Element) -> Port:
+    texts = [start.get("value", "") for start in row.findall("Start")]
+    return Port(
+        row.attrib["name"],
+        row.tag,
+        row.get("causality", "local"),
+        row.get("variability") == "tunable",
+        row.get("description", ""),
+        tuple(int(size.attrib["start"]) for size in row.findall("Dimension")),
+        row.get("unit"),
+        int(row.attrib["valueReference"]),
+        " ".join(texts) if texts else row.get("start"),
+        float(row.get("min", -math.inf)),
+        float(row.get("max", math.inf)),
+    )
