@@ -99,15 +99,27 @@ def setting(text: str) -> tuple[str, Any]:
 
 def settings(texts: list[str]) -> dict[str, Any]:
     """Values by name of all ``--set``, the later one counts; a TOML file is taken whole."""
-    found: dict[str, Any] = {}
+    return {name: value for name, (value, _) in _given(texts).items()}
+
+
+def files_of(texts: list[str]) -> dict[str, str]:
+    """Name of the file that a value of `settings` is from, by the value's name."""
+    return {name: Path(file).name for name, (_, file) in _given(texts).items() if file}
+
+
+def _given(texts: list[str]) -> dict[str, tuple[Any, str]]:
+    """Values by name, and the file each is from; empty for the command line."""
+    found: dict[str, tuple[Any, str]] = {}
     for text in texts:
         if "=" in text or not text.endswith(".toml"):
-            found.update([setting(text)])
+            name, value = setting(text)
+            found[name] = (value, "")
             continue
         try:
-            found.update(tables_of(text_of(text), text))
+            tables = tables_of(text_of(text), text)
         except InputError as error:
             raise InputError(f"--set {error}") from None
+        found.update({name: (value, text) for name, value in tables.items()})
     return found
 
 

@@ -1,0 +1,176 @@
+"""Many scenarios judged, one after the other or in processes of this machine."""
+
+import contextlib
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from motionfmu.errors import InputError
+from motionfmu.run import contrary
+from motionfmu.run.checks import Verdict
+from motionfmu.run.runner import load
+from motionfmu.toml_lines import is_file
+
+FILE = "scenario.toml"
+PATIENCE = 10  # [s] for a process to remove its files when it is told to end
+Run = Callable[..., Any]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run of a scenario and its verdict, or the reason why there is none."""
+
+    scenario: str
+    path: str
+    off: str = ""  # what was switched off; empty for the scenario as written
+    seconds: float = 0.0  # [s] that it took
+    checks: tuple[Verdict, ...] = ()
+    holding: tuple[str, ...] = ()  # checks that hold although something is off
+    warnings: tuple[str, ...] = ()
+    error: str = ""
+
+    @property
+    def ok(self) -> bool:
+        """Whether all checks hold; with something off, whether those named fail."""
+        good = not self.holding if self.off else all(v.ok for v in self.checks)
+        return good and not self.error
+
+
+def found(paths: Sequence[Path]) -> list[Path]:
+    """Scenarios that paths mean: themselves, or those in the folders of a folder."""
+    chosen: list[Path] = []
+    for path in paths:
+        if is_file(path) or is_file(path / FILE):
+            chosen.append(path)
+        elif not path.is_dir():
+            raise InputError(f"{path}: no such scenario, nor a folder of scenarios")
+        elif inside := sorted(file.parent for file in path.glob(f"*/{FILE}")):
+            chosen += inside
+        else:
+            raise InputError(f"{path}: neither {FILE} nor a folder with one in it")
+    return chosen
+
+
+def _run(scenario: Any, **options: Any) -> Any:
+    return scenario.run(**options)
+
+
+def judged(
+    path: Path, options: Mapping[str, Any], contraries: bool = False, run: Run = _run
+) -> list[Case]:
+    """Run a scenario, or each of its contraries; `run` runs one with options."""
+    folder = path.parent if path.name == FILE else path
+    bare = Case(folder.resolve().name, str(folder))
+    start = time.perf_counter()
+    try:
+        scenario = load(path)
+        bare = replace(bare, scenario=scenario.name)
+        if not contraries:
+            result = run(scenario, **options)
+            used = time.perf_counter() - start
+            told = tuple(result.checks), tuple(result.warnings)
+            return [replace(bare, seconds=used, checks=told[0], warnings=told[1])]
+        cases = []
+        for case in scenario.document.body.contrary:
+            own = contrary.options(scenario.document, case)
+            result = run(scenario, **{**options, **own})
+            named = tuple(v for v in result.checks if v.name in case.fails)
+            hold = tuple(contrary.survivors(case, result.checks))
+            used = time.perf_counter() - start
+            cases.append(replace(bare, off=case.off, seconds=used, checks=named, holding=hold))
+            start = time.perf_counter()
+        return cases or [replace(bare, error=f"{path}: no [[contrary]]")]
+    except InputError as error:
+        return [replace(bare, seconds=time.perf_counter() - start, error=str(error))]
+
+
+class _Worker:
+    """A process that judges one scenario after the other."""
+
+    def __init__(self, temporary: str) -> None:
+        self.pipe, theirs = Pipe()
+        place = str(Path(__file__).resolve().parents[2])
+        path = [place, *filter(None, [os.environ.get("PYTHONPATH")])]
+        with theirs:
+            program = f"from motionfmu.run.suite import serve; serve({theirs.fileno()})"
+            self.process = subprocess.Popen(
+                [sys.executable, "-P", "-c", program],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                env={**os.environ, "TMPDIR": temporary, "PYTHONPATH": os.pathsep.join(path)},
+                start_new_session=True,  # an interrupt from the keyboard is for us alone
+            )
+
+    def judged(self, *task: Any) -> list[Case] | None:
+        """Cases of a scenario; None if the process has ended over it."""
+        try:
+            self.pipe.send(task)
+            return list(self.pipe.recv())
+        except (EOFError, OSError):
+            return None
+
+    def end(self) -> int:
+        """End the process; its status."""
+        self.process.terminate()
+        self.pipe.close()
+        try:
+            return self.process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            return self.process.wait()
+
+
+def serve(pipe: int) -> None:
+    """Judge what the process that started this one sends, until it is gone."""
+    import signal
+
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # files are removed on the way out
+    with Connection(pipe) as connection, contextlib.suppress(EOFError, OSError):
+        while True:
+            connection.send(judged(*connection.recv()))
+
+
+def together(
+    paths: Sequence[Path], options: Mapping[str, Any], contraries: bool, workers: int
+) -> Iterator[list[Case]]:
+    """Cases of each scenario, in the order of the paths, whatever the number of processes."""
+    running: list[_Worker] = []
+    own, lock = threading.local(), threading.Lock()
+
+    def one(path: Path) -> list[Case]:
+        worker: _Worker | None = getattr(own, "worker", None)
+        if worker is None:
+            with lock:  # a pipe's other end is open in no other child
+                worker = own.worker = _Worker(temporary)
+                running.append(worker)
+        cases = worker.judged(path, options, contraries)
+        if cases is not None:
+            return cases
+        own.worker = None
+        code = worker.process.wait()
+        how = f"signal {-code}" if code < 0 else f"status {code}"
+        return [Case(path.resolve().name, str(path), error=f"{path}: it ended its process ({how})")]
+
+    with (
+        tempfile.TemporaryDirectory(prefix="motionfmu-", ignore_cleanup_errors=True) as temporary,
+        ThreadPoolExecutor(workers) as pool,
+    ):
+        futures = [pool.submit(one, path) for path in paths]
+        try:
+            for future in futures:
+                yield future.result()
+        finally:
+            for future in futures:
+                future.cancel()
+            for worker in running:
+                worker.end()
