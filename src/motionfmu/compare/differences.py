@@ -58,7 +58,8 @@ def _plain(x: Side) -> dict[str, str]:
     options, run = x.numbers.get("options", {}), x.numbers["run"]
     found = {"scenario": x.numbers["scenario"]}
     found |= {k: str(options[k]) for k in ("engine", "fmi") if options.get(k) is not None}
-    found |= {k: _text(run[k], "" if isinstance(run[k], str) else "s") for k in ("step", "stop")}
+    found["step"] = f"{1e3 * run['step']:.9g} ms"
+    found["stop"] = _text(run["stop"], "" if isinstance(run["stop"], str) else "s")
     return found | {"every": f"{run['every']} steps"}
 
 

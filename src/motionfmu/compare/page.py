@@ -180,15 +180,14 @@ def _add_signals(page: Sheet, found: Comparison) -> None:
     page.section("Signals", " ".join(notes), content)
     left, hidden = ELEMENTS, []
     for i, s in enumerate(apart):
-        both = found[s.name]
-        left -= len(both.differing)
+        left -= len(found[s.name].differing)
         if left < 0:
             hidden.append(s.name)
             continue
         port = port_of(found.a, s.name)
         words = f"{escape(port.doc.partition(';')[0])} " if port and port.doc else ""
         title = f"{words}<code>{escape(s.name)}</code>"
-        page.section(title, "", page.place(f"signal{i}", plots.signal_figure(both), True))
+        page.section(title, "", page.place(f"signal{i}", plots.signal_figure(found, s.name), True))
     if hidden:
         listed = ", ".join(map(escape, hidden))
         told = f"{listed}. Choose with <code>--signals</code>."

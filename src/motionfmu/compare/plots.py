@@ -12,7 +12,7 @@ from motionfmu.compare.overlay import Pair
 from motionfmu.compare.side import Side
 from motionfmu.compare.words import GONE
 from motionfmu.contour.circles import plane_axes
-from motionfmu.report.charts import chart_figure
+from motionfmu.report.charts import CHARACTER, RIGHT, chart_figure
 from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import label, magnification, unit
 from motionfmu.report.packed import packed
@@ -21,7 +21,7 @@ from motionfmu.report.polar_plot import polar_names, polar_rings
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, PATH, axis, layout, plotted
 from motionfmu.run.figures import Chart, Curve, Panel
-from motionfmu.scenarios.rates import change
+from motionfmu.scenarios.rates import change, wrong
 
 Figure = dict[str, Any]
 Array = NDArray[np.float64]
@@ -34,31 +34,34 @@ FLAT = 1e-6  # part of its size by which a path in a plane leaves it
 SAME_PATH = 1e-2  # [mm] two paths whose points lie nearer are one: lengths are kept in 32 bits
 
 
-def signal_figure(both: Pair) -> Figure:
+def signal_figure(found: Comparison, name: str) -> Figure:
     """A signal of both runs, a panel for each element that differs, and the difference."""
-    chosen = both.differing
-    names = both.names
-    panels = [_panel(label(names[i], both.unit), [_curves(both, i)]) for i in chosen]
-    gone = [Curve(names[i], both.time, both.difference[:, i], both.steps) for i in chosen]
-    last = Panel(label(GONE, both.unit), tuple(gone), {}, len(gone) > 1)
-    span = float(both.time[0]), float(both.time[-1])
-    chart = Chart(both.name, "", span, True, (*panels, last))
-    drawn = chart_figure(chart)
-    colors = [c for _ in panels for c in (A, B)]
-    several = DIFFERENCE[1:] if len(gone) > 1 else DIFFERENCE
-    colors += [several[i % len(several)] for i in range(len(gone))]
-    return _colored(drawn, colors)
+    both = found[name]
+    panels, colors = [], []
+    gone: list[Curve] = []
+    for i in both.differing:
+        curves = [
+            Curve(run, x.time, _column(x, name, i), both.steps)
+            for run, x in ((RUN_A, found.a), (RUN_B, found.b))
+        ]
+        panels.append(Panel(label(both.names[i], both.unit), tuple(curves), {}, True))
+        colors += [A, B]
+        gone.append(Curve(both.names[i], both.time, both.difference[:, i], both.steps))
+    several = len(gone) > 1
+    panels.append(Panel(label(GONE, both.unit), tuple(gone), {}, several))
+    colors += [DIFFERENCE[(i + several) % len(DIFFERENCE)] for i in range(len(gone))]
+    return _colored(chart_figure(Chart(name, "", _whole(found), True, tuple(panels))), colors)
 
 
-def _curves(both: Pair, i: int) -> tuple[Curve, Curve]:
-    return (
-        Curve(RUN_A, both.time, both.a[:, i], both.steps),
-        Curve(RUN_B, both.time, both.b[:, i], both.steps),
-    )
+def _column(x: Side, name: str, i: int) -> Array:
+    data = x.signals[name]
+    return data.reshape(len(data), -1)[:, i].astype(np.float64)
 
 
-def _panel(words: str, pairs: Sequence[tuple[Curve, Curve]]) -> Panel:
-    return Panel(words, tuple(c for pair in pairs for c in pair), {}, True)
+def _whole(found: Comparison) -> tuple[float, float]:
+    """From the earliest sample of both runs to the latest."""
+    ends = [t for x in (found.a, found.b) for t in (float(x.time[0]), float(x.time[-1]))]
+    return min(ends), max(ends)
 
 
 def _colored(drawn: Figure, colors: Sequence[str], dashes: Sequence[str] = ()) -> Figure:
@@ -72,41 +75,38 @@ def figure_of(found: Comparison, asked: Mapping[str, Any]) -> Figure | None:
     panels: list[Panel] = []
     colors: list[str] = []
     dashes: list[str] = []
-    for plot in asked["plot"]:
-        pairs = _plotted(found, plot)
-        if not pairs:
-            return None
-        one = len(pairs) == 1
-        names = [f"{name}, " if not one else "" for name, *_ in pairs]
-        curves = [
-            Curve(n + run, time, values, steps)
-            for n, (_, time, a, b, steps) in zip(names, pairs, strict=True)
-            for run, values in ((RUN_A, a), (RUN_B, b))
-        ]
-        panels.append(Panel(plot["label"], tuple(curves), dict(plot["levels"]), True))
-        gone = tuple(Curve(n, time, b - a, steps) for n, time, a, b, steps in pairs)
-        panels.append(Panel(f"{GONE} {_unit(plot['label'])}".strip(), gone, {}, not one))
-        for i in range(len(pairs)):
-            colors += [A, B] if one else [AXES[i % len(AXES)]] * 2
-            dashes += ["solid", "solid" if one else "dash"]
-        colors += [DIFFERENCE[0]] if one else [AXES[i % len(AXES)] for i in range(len(pairs))]
-        dashes += ["solid"] * len(pairs)
-    whole = float(found.common.time[0]), float(found.common.time[-1])
     window = asked["window"]
-    span = (window[0], window[1]) if window else whole
-    drawn = chart_figure(Chart(asked["title"], "", span, window is None, tuple(panels)))
-    return _colored(drawn, colors, dashes)
+    for plot in asked["plot"]:
+        named = _named(found, plot)
+        if not named:
+            return None
+        one = len(named) == 1
+        curves, gone = [], []
+        for k, (words, both, i) in enumerate(named):
+            for run, x in ((RUN_A, found.a), (RUN_B, found.b)):
+                own = Curve("", x.time, _column(x, both.name, i), both.steps)
+                curves.append(_drawn(own, plot, run if one else f"{words}, {run}", window))
+            apart = Curve("", both.time, both.difference[:, i], both.steps)
+            gone.append(_drawn(apart, plot, words, window))
+            colors += [A, B] if one else [AXES[k % len(AXES)]] * 2
+            dashes += ["solid", "solid" if one else "dash"]
+        if len(_known(curves)) < len(curves):
+            return None
+        panels.append(Panel(plot["label"], _known(curves), dict(plot["levels"]), True))
+        unit_of = plot["label"][plot["label"].rindex("[") :] if "[" in plot["label"] else ""
+        if len(_known(gone)) == len(gone):  # else the common times do not bear the rate
+            panels.append(Panel(f"{GONE} {unit_of}".strip(), _known(gone), {}, not one))
+            colors += [DIFFERENCE[0]] if one else [AXES[k % len(AXES)] for k in range(len(gone))]
+            dashes += ["solid"] * len(gone)
+    levels = [n for p in asked["plot"] for n in p["levels"]]
+    right = RIGHT + math.ceil(CHARACTER * max((len(n) for n in levels), default=0))
+    span = (window[0], window[1]) if window else _whole(found)
+    chart = Chart(asked["title"], "", span, window is None, tuple(panels))
+    return _colored(chart_figure(chart, right), colors, dashes)
 
 
-def _unit(words: str) -> str:
-    """The unit of an axis' label with its brackets."""
-    return words[words.rindex("[") :] if words.endswith("]") else ""
-
-
-def _plotted(
-    found: Comparison, plot: Mapping[str, Any]
-) -> list[tuple[str, Array, Array, Array, bool]]:
-    """Name, times and values of both runs of each curve of a panel, all on the common time."""
+def _named(found: Comparison, plot: Mapping[str, Any]) -> list[tuple[str, Pair, int]]:
+    """Name, signal and element of each curve of a panel; none if a run lacks one."""
     named: list[tuple[str, Pair, int]] = []
     for signal in plot["signals"]:
         whole, bracket, index = signal.partition("[")
@@ -116,15 +116,27 @@ def _plotted(
         wanted = [int(index.removesuffix("]")) - 1] if bracket else range(both.a.shape[1])
         named += [(both.names[i], both, i) for i in wanted]
     names = plot["names"] or [name for name, *_ in named]
-    rows = []
-    for name, (_, both, i) in zip(names, named, strict=True):
-        a, b, time = both.a[:, i], both.b[:, i], both.time
-        if plot["rate"] is not None:
-            (_, a), (time, b) = (change(time, x, plot["rate"]) for x in (a, b))
-        if len(time):
-            scale = plot["scale"]
-            rows.append((name, time, scale * a, scale * b, plot["steps"] or both.steps))
-    return rows
+    return [(words, both, i) for words, (_, both, i) in zip(names, named, strict=True)]
+
+
+def _drawn(
+    own: Curve, plot: Mapping[str, Any], name: str, window: Sequence[float] | None
+) -> Curve | None:
+    """A curve as the figure asks for it; None if a rate does not fit its times."""
+    time, values = own.time, own.values
+    if plot["rate"] is not None:
+        step = round(1e9 * (time[1] - time[0])) if len(time) > 1 else 0
+        if not step or wrong(plot["rate"], step, float(time[-1])):
+            return None
+        time, values = change(time, values, plot["rate"])
+    low, high = window or (-math.inf, math.inf)
+    first = max(0, int(np.searchsorted(time, low, side="right")) - 1)
+    part = slice(first, int(np.searchsorted(time, high)) + 1)
+    return Curve(name, time[part], plot["scale"] * values[part], plot["steps"] or own.steps)
+
+
+def _known(curves: Sequence[Curve | None]) -> tuple[Curve, ...]:
+    return tuple(c for c in curves if c is not None)
 
 
 def same_path(a: Side, b: Side) -> bool:

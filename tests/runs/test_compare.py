@@ -1,0 +1,269 @@
+"""Two runs laid over one another: against their raw samples, the page's own data, theory."""
+
+import base64
+import json
+import re
+import zlib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from console import within
+
+import motionfmu
+from motionfmu.compare import Comparison, compare, overlay, plots
+from motionfmu.compare.figures import Number
+from motionfmu.compare.page import page_text
+from motionfmu.compare.side import Side
+from motionfmu.compare.words import GONE
+from motionfmu.errors import InputError
+from motionfmu.run import Result, stored
+
+THEORY = ROOT / "scenarios/circle_theory"
+POSITION, STOCK = "machine.table_position", "card.stock"
+
+
+def leave(result: Result, folder: Path) -> Path:
+    """The folder of a run, without its report."""
+    folder.mkdir()
+    np.savez(folder / stored.SIGNALS, time=result.time, **result.signals)
+    np.savez(folder / stored.TRACK, **stored.track(result.contour()))
+    (folder / stored.NUMBERS).write_text(json.dumps(stored.numbers(result)))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def runs() -> tuple[Result, Result]:
+    scenario = motionfmu.load(THEORY)
+    return scenario.run(), scenario.run(set={"mcc.p_gain": 300})
+
+
+@pytest.fixture(scope="module")
+def found(runs: tuple[Result, Result]) -> Comparison:
+    return compare(*runs)
+
+
+@pytest.fixture(scope="module")
+def folders(
+    runs: tuple[Result, Result], tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Path, Path]:
+    place = tmp_path_factory.mktemp("runs")
+    return leave(runs[0], place / "a"), leave(runs[1], place / "b")
+
+
+def numbers(packed: dict) -> np.ndarray:
+    """Values of a curve of a page: sums of differences of their bits."""
+    kind = np.dtype("<" + packed["kind"])
+    raw = np.frombuffer(zlib.decompress(base64.b64decode(packed["bdata"])), np.uint8)
+    word = np.ascontiguousarray(raw.reshape(kind.itemsize, -1).T).view(f"<u{kind.itemsize}")
+    return np.cumsum(word.ravel(), dtype=word.dtype).view(kind).astype(float)
+
+
+def data_of(page: str) -> dict:
+    return json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
+
+
+def test_a_difference_is_b_minus_a_at_every_sample(
+    runs: tuple[Result, Result], found: Comparison
+) -> None:
+    a, b = runs
+    assert found.names == list(a.signals) and not found.left
+    for s in found.signals:
+        gone = b.signals[s.name].astype(float) - a.signals[s.name].astype(float)
+        assert np.array_equal(found[s.name].difference.reshape(gone.shape), gone)
+        assert s.same == (not gone.any())
+        assert abs(s.largest) == np.abs(gone).max() and s.largest in gone
+        assert s.rms == pytest.approx(np.sqrt((gone**2).mean()), rel=1e-12)
+    # A stiffer loop is ahead: with the axis moving up, B - A of the position is positive.
+    way = found[POSITION]
+    up = np.argmax(np.gradient(way.a[:, 0]))
+    assert way.difference[up, 0] > 0.0
+
+
+def test_the_page_shows_both_runs_and_b_minus_a(
+    runs: tuple[Result, Result], found: Comparison
+) -> None:
+    page = page_text(found)
+    data = data_of(page)
+    drawn = {f["id"]: f for f in data["figures"]}
+    apart = [s for s in found.signals if not s.same]
+    assert POSITION in {s.name for s in apart}
+    of = [f["data"] for name, f in drawn.items() if name.startswith("signal")]
+    assert len(of) == len(apart), "a signal that differs is not drawn"
+    for s, traces in zip(apart, of, strict=True):
+        both = found[s.name]
+        shown = [numbers(t["samples"]["values"]) for t in traces]
+        for k, i in enumerate(both.differing):
+            gone = both.difference[:, i]
+            near = 1e-5 * np.ptp(both.a[:, i]) + 1e-12
+            assert traces[2 * k]["name"] == "run A" and traces[2 * k + 1]["name"] == "run B"
+            assert np.abs(shown[2 * k] - both.a[:, i]).max() <= near
+            assert np.abs(shown[2 * k + 1] - both.b[:, i]).max() <= near
+            last = shown[2 * len(both.differing) + k]
+            assert np.abs(last - gone).max() <= 1e-5 * np.ptp(gone)
+    for name in runs[0].signals:
+        assert name in page
+    assert "mcc.p_gain" in page and GONE in page
+    assert " um" not in page.partition("<script>")[0]
+
+
+def test_the_contour_of_both_stands_side_by_side(
+    runs: tuple[Result, Result], found: Comparison
+) -> None:
+    a, b = (r.contour() for r in runs)
+    table = {n.name: n for n in found.table("contour")}
+    for name in ("error.max", "error.rms", "following.x.max", "circles.0.ccw.g", "lag"):
+        n = table[name]
+        assert (n.a, n.b) == (a.number(name), b.number(name))
+        assert n.difference == n.b - n.a
+    # The radius shrinks by V^2/(2 R Kp^2): at 3/2 of the gain to 4/9.
+    assert table["error.rms"].change == pytest.approx(100.0 * (4 / 9 - 1), abs=3.0)
+    drawn, largest = plots.error_figure(found.a, found.b)
+    over = {t["name"]: t["samples"] for t in drawn["data"]}
+    assert over["run A"].values.max() > over["run B"].values.max() > 0.0
+    middle = len(over[GONE].values) // 2
+    gone = over["run B"].values.max() - over["run A"].values.max()
+    assert over[GONE].values[middle] == pytest.approx(gone, rel=0.2)
+    assert largest == pytest.approx(np.abs(over[GONE].values).max() * 1e-3)
+    rings = plots.circle_figure(found, 0)["data"]
+    told = {t["name"] for t in rings if t.get("name")}
+    assert {"run A, counter-clockwise", "run B, counter-clockwise"} <= told
+    path, factor = plots.path_figure(found.a, found.b)
+    assert [t["name"] for t in path["data"]] == ["programmed path", "run A", "run B"]
+    assert factor > 1
+
+
+def test_a_change_is_that_of_the_size_and_a_difference_has_a_sign() -> None:
+    assert (Number("", -0.04, -0.02).difference, Number("", -0.04, -0.02).change) == (0.02, -50.0)
+    assert Number("", 0.02, 0.03).change == pytest.approx(50.0)
+    assert Number("", 0.0, 0.03).change is None and Number("", 1.0, -1.0).change is None
+    assert Number("", None, 1.0).difference is None
+
+
+def test_folders_say_what_the_runs_themselves_do(
+    found: Comparison, folders: tuple[Path, Path]
+) -> None:
+    again = compare(*folders)
+    assert (again.a.name, again.b.name) == tuple(map(str, folders))
+    told, same = again.numbers(), found.numbers()
+    for key in ("different", "common", "checks", "contour", "signals", "worse"):
+        assert json.loads(json.dumps(told[key])) == json.loads(json.dumps(same[key])), key
+
+
+def test_what_was_run_differently_is_listed(found: Comparison, folders: tuple[Path, Path]) -> None:
+    assert [(d.what, d.a, d.b) for d in found.different] == [("mcc.p_gain", "200", "300")]
+    a, b = (compare(f, f).a for f in folders)
+    run = json.loads(json.dumps(a.numbers["run"]))
+    run["files"] = dict.fromkeys(run["files"], "another")
+    run["fmus"]["mcc"] = "another"
+    run["settings"]["machine.tau"] = [0.5] * 6
+    del run["settings"]["mcc.p_gain"]
+    run |= {"step": 2e-4, "every": 3}
+    other = replace(b, numbers=b.numbers | {"run": run})
+    told = {d.what: (d.a, d.b) for d in compare_sides(a, other).different}
+    assert told["file circle.ngc"] == ("one content", "another content")
+    assert "FMU mcc" in told and "FMU epcio" not in told
+    assert told["step"][1] == "0.2 ms" and told["every"] == ("1 steps", "3 steps")
+    assert told["machine.tau"][1].startswith("0.5")
+    assert told["mcc.p_gain"][1].endswith("(default)")
+
+
+def compare_sides(a: Side, b: Side) -> Comparison:
+    return Comparison(a, b, overlay.common(a, b), [n for n in a.signals if n in b.signals], {})
+
+
+def synthetic(time: np.ndarray, **signals: np.ndarray) -> Side:
+    made = {"units": dict.fromkeys(signals, "mm"), "ok": True, "checks": []}
+    return Side("x", made, time, signals, {})
+
+
+def test_other_steps_and_lengths_are_compared_on_the_common_time() -> None:
+    fine, coarse = np.arange(1000) * 1e-3, np.arange(350) * 2e-3
+    a = synthetic(fine, x=np.sin(fine), n=(fine * 100).astype(int))
+    b = synthetic(coarse, x=np.sin(coarse) - 0.25, n=(coarse * 100).astype(int) + 2)
+    for first, second, sign, names in ((a, b, -1, "AB"), (b, a, 1, "BA")):
+        found = compare_sides(first, second)
+        assert np.array_equal(found.common.time, coarse) and found.common.between == (False, False)
+        assert np.allclose(found["x"].difference, 0.25 * sign, atol=1e-15)
+        assert np.array_equal(found["n"].difference[:, 0], np.full(350, -2.0 * sign))
+        steps, ends = found.common.words
+        assert "350 common instants" in steps
+        assert ends.startswith(f"{names[1]} ends at 0.7 s, {names[0]} at 1 s")
+
+
+def test_values_between_samples_lie_on_lines_and_counts_hold() -> None:
+    three, ten = np.arange(40) * 3e-3, np.arange(11) * 1e-2
+    a = synthetic(three, x=5 * three, n=np.arange(40))
+    b = synthetic(ten, x=5 * ten + 1, n=np.arange(11))
+    found = compare_sides(a, b)
+    assert found.common.between == (True, False) and len(found.common.words) == 3
+    assert np.allclose(found["x"].difference, 1.0, atol=1e-12)
+    assert np.array_equal(found["n"].a[:, 0], [0, 3, 6, 10, 13, 16, 20, 23, 26, 30, 33])
+    with pytest.raises(InputError, match="no time in common"):
+        overlay.common(a, synthetic(ten + 5, x=ten))
+
+
+def test_what_only_one_run_has_is_said(folders: tuple[Path, Path], tmp_path: Path) -> None:
+    less = tmp_path / "less"
+    less.mkdir()
+    arrays = dict(np.load(folders[1] / stored.SIGNALS))
+    made = json.loads((folders[1] / stored.NUMBERS).read_text())
+    del arrays[STOCK]
+    made["units"][POSITION] = "mm"
+    np.savez(less / stored.SIGNALS, **arrays)
+    (less / stored.NUMBERS).write_text(json.dumps(made))
+    found = compare(folders[0], less)
+    assert found.left == {STOCK: "only in A", POSITION: "[m] in A, [mm] in B"}
+    page = page_text(found)
+    assert f"{STOCK}: only in A" in page
+    with pytest.raises(InputError, match="is not compared: only in A"):
+        found[STOCK]
+    with pytest.raises(InputError, match=r"did you mean 'mcc\.done'"):
+        found["mcc.dono"]
+
+
+def test_the_console_says_it_and_its_status_is_the_verdict(
+    folders: tuple[Path, Path], tmp_path: Path
+) -> None:
+    a, b = folders
+    worse = within("compare", a, b, "--json")
+    told = json.loads(worse.stdout)
+    assert worse.returncode == 1 and not told["ok"] and not list(tmp_path.iterdir())
+    failed = {c["name"] for c in told["checks"] if c["worse"]}
+    assert failed == {*told["worse"]} and any("radius_change" in n for n in failed)
+    for c in told["checks"]:
+        assert c["worse"] == (c["ok"] == {"a": True, "b": False})
+    better = within("compare", b, a, "--out", tmp_path / "back", "--signals", "card.*")
+    assert better.returncode == 0, better.stderr
+    assert "mcc.p_gain: 300 → 200" in better.stdout and "no verdict is worse" in better.stdout
+    assert {p.name for p in (tmp_path / "back").iterdir()} == {"report.html", "result.json"}
+    names = {s["name"] for s in json.loads((tmp_path / "back/result.json").read_text())["signals"]}
+    assert names and all(n.startswith("card.") for n in names)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        (("{b}", "--signals", "card.stok"), "no signal 'card.stok'"),
+        (("{none}",), "no such scenario"),
+        (("{half}",), "no signals.npz"),
+        (("{broken}",), "no JSON"),
+        (("{old}",), "written by another version"),
+        (("{b}", "--set", "mcc.p_gain=3"), "only a scenario can be run with --set"),
+    ],
+)
+def test_wrong_input_is_one_message(
+    line: tuple[str, ...], told: str, folders: tuple[Path, Path], tmp_path: Path
+) -> None:
+    places = {n: tmp_path / n for n in ("none", "half", "broken", "old")} | {"b": folders[1]}
+    for name, text in (("half", "{}"), ("broken", "{"), ("old", "{}")):
+        places[name].mkdir()
+        (places[name] / stored.NUMBERS).write_text(text)
+    np.savez(places["old"] / stored.SIGNALS, time=np.zeros(2))
+    wrong = within(
+        "compare", folders[0], *(x.format(**places) for x in line), "--out", tmp_path / "x"
+    )
+    assert wrong.returncode == 2 and told in wrong.stderr, wrong.stderr
+    assert wrong.stderr.count("\n") == 1 and not (tmp_path / "x").exists()
