@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
-    from motionfmu.run import Result, Scenario, load
+    from motionfmu.run import Result, Scenario, load, scenario
 
-__all__ = ["InputError", "Result", "Scenario", "load"]
+__all__ = ["InputError", "Result", "Scenario", "load", "scenario"]
 
 
 def __getattr__(name: str) -> Any:

@@ -1,7 +1,13 @@
 """The exceptions for everything a user can get wrong, or can miss."""
 
+import contextlib
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from typing import TypeVar
+
+T = TypeVar("T")
+# Things that are wrong and told at once.
+TOLD_MAX = 50
 
 # How alike two words are from which on one may be meant for the other; 1 is the same.
 ALIKE = 0.5
@@ -31,6 +37,38 @@ class InputError(ValueError):
 
     def __str__(self) -> str:
         return "\n".join(self.args)
+
+
+class Faults:
+    """Gathers what is wrong, to be told at once.
+
+    An `InputError` without a line is one of which the cause is told elsewhere.
+    """
+
+    def __init__(self, lines: Iterable[str] = ()) -> None:
+        self.lines = list(lines)
+
+    @contextlib.contextmanager
+    def each(self) -> Iterator[None]:
+        """Keep an error of the block; what follows the block goes on."""
+        try:
+            yield
+        except InputError as error:
+            self.lines += error.args
+
+    def of(self, make: Callable[[], T]) -> T | None:
+        """What a function makes; None if it finds an error, which is kept."""
+        with self.each():
+            return make()
+        return None
+
+    def tell(self) -> None:
+        """Raise what was gathered as one error; nothing if there is none."""
+        lines = list(dict.fromkeys(self.lines))
+        if len(lines) > TOLD_MAX:
+            lines = [*lines[:TOLD_MAX], f"and {len(lines) - TOLD_MAX} more"]
+        if lines:
+            raise InputError(*lines)
 
 
 class NoNumber(InputError):

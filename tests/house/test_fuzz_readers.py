@@ -76,8 +76,9 @@ def answer(reader: Callable[..., Any], *arguments: Any) -> Any:
         try:
             found = reader(*arguments)
         except InputError as error:
-            text = str(error)
-            assert text and text.isprintable() and len(text) < 3000, text
+            lines = error.args  # one for each thing that is wrong
+            assert 1 <= len(lines) <= 51, lines
+            assert all(t and t.isprintable() and len(t) < 3000 for t in lines), lines
             return None
     assert found is not None
     return found

@@ -23,14 +23,14 @@ def scenario(folder: Path, old: str = "", new: str = "", program: str = PROGRAM)
     return folder
 
 
-def message(folder: Path, *arguments: str) -> str:
+def message(folder: Path, *arguments: str, lines: int = 1) -> str:
     """The one message of the command, which must end with status 2 and write nothing."""
     out = folder.parent / "out" / "result"
     run = within("run", folder, "--out", out, *arguments)
     assert run.returncode == 2, run.stdout + run.stderr
     assert run.stdout == ""
     assert "Traceback" not in run.stderr
-    assert run.stderr.startswith("motionfmu: ") and run.stderr.count("\n") == 1, run.stderr
+    assert run.stderr.startswith("motionfmu: ") and run.stderr.count("\n") == lines, run.stderr
     assert not out.exists() and not list(folder.parent.glob("out/.*"))
     return run.stderr.removeprefix("motionfmu: ").rstrip("\n")
 
@@ -88,7 +88,7 @@ def test_a_wrong_part_program(tmp_path: Path, line: int, program: str, what: str
         ('"circle.ngc"', '"/"', '"mcc.program"', "'/'"),
         ('"card.dac",', '"card.irq_clock*x",', "signals", "matches no output"),
         ('"card.dac",', '"card.enc_phase",', "signals", "card.enc_phase is no output"),
-        ('"mcc.done"    = {', '"mcc.services" = {', '"mcc.services"', "is not recorded"),
+        ('"mcc.done"    = {', '"mcc.servics" = {', '"mcc.servics"', "did you mean 'services'?"),
         ("{ final = true }", "{ last = true }", '"mcc.done"', "unknown key 'last'"),
         ("radius_change", "radius_chance", '"contour.circles', "radius_chance"),
     ],
@@ -180,7 +180,7 @@ def test_files_that_are_no_scenario(tmp_path: Path) -> None:
             (tmp_path / name).mkdir()
             raw = content if isinstance(content, bytes) else content.encode()
             (tmp_path / name / "scenario.toml").write_bytes(raw)
-        assert what in message(tmp_path / name)
+        assert what in message(tmp_path / name, lines=3 if name == "short" else 1)
 
 
 def test_a_foreign_folder_is_never_replaced(tmp_path: Path) -> None:

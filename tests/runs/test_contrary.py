@@ -14,7 +14,7 @@ import motionfmu
 from motionfmu.run import contrary
 from motionfmu.run.checks import judge
 from motionfmu.scenarios import document
-from motionfmu.scenarios.document import Check
+from motionfmu.scenarios.body import Check
 
 FOLDERS = sorted(p.parent for p in ROOT.glob("scenarios/*/scenario.toml"))
 SMALL = ROOT / "scenarios/interrupt_sources/scenario.toml"

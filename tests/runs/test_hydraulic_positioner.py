@@ -46,7 +46,7 @@ def changed(name: str, folder: Path, drives: str, **keys: str) -> motionfmu.Scen
 def test_windows_of_a_check() -> None:
     """Both ends count, nothing between windows does, a window without samples fails."""
     from motionfmu.run.checks import judge
-    from motionfmu.scenarios.document import Check
+    from motionfmu.scenarios.body import Check
 
     time = np.arange(5) * 0.1
     data = np.array([0.0, 1.0, 9.0, 2.0, 3.0])

@@ -16,7 +16,7 @@ from motionfmu.contour.names import wrong
 from motionfmu.errors import NoNumber
 from motionfmu.report.outcome import save
 from motionfmu.run.checks import judge
-from motionfmu.scenarios.document import Check
+from motionfmu.scenarios.body import Check
 from motionfmu.study import processes, worker
 from motionfmu.sweep import Ways, conduct, study
 

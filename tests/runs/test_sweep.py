@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 import motionfmu
 from motionfmu.run.session import Session
-from motionfmu.scenarios.document import Check
+from motionfmu.scenarios.body import Check
 from motionfmu.scenarios.system import End
 from motionfmu.study import axes, book, columns, processes, worker
 from motionfmu.sweep import Outcome, Study, Ways, conduct, study

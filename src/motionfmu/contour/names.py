@@ -7,6 +7,7 @@ from motionfmu.contour.corners import Corner
 from motionfmu.contour.iso230 import BothWays, Reading
 from motionfmu.contour.result import AXES
 from motionfmu.contour.statistics import Statistics
+from motionfmu.errors import suggestion
 
 NUMBER = (int, float)
 
@@ -44,5 +45,6 @@ def wrong(name: str) -> str:
         else:
             there = ", ".join(here) if isinstance(here, dict) else "a number, from 0"
             there = "nothing" if here is None else there
-            return f"no contour number {name!r}: no {part!r}, there is {there}"
+            hint = suggestion(part, here if isinstance(here, dict) else ())
+            return f"no contour number {name!r}: no {part!r}, there is {there}{hint}"
     return "" if here is None else f"contour number {name!r} is not a number but several"

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.errors import NoNumber
+from motionfmu.errors import NoNumber, suggestion
 from motionfmu.iso9283.performance import Performance
 from motionfmu.iso9283.pose import PoseResult
 
@@ -162,7 +162,8 @@ def wrong(name: str) -> str:
             here = here[part] if isinstance(here, dict) else ()
         else:
             there = "a number, from 0" if isinstance(here, list) else ", ".join(here) or "nothing"
-            return f"no ISO 9283 figure {name!r}: no {part!r}, there is {there}"
+            hint = suggestion(part, () if isinstance(here, list) else here)
+            return f"no ISO 9283 figure {name!r}: no {part!r}, there is {there}{hint}"
         if here == () and k < len(parts) - 1:
             return f"no ISO 9283 figure {name!r}: {part!r} is a number"
     return "" if here == () else f"ISO 9283 figure {name!r} is not a number but several"

@@ -2,7 +2,7 @@
 
 from motionfmu.run.prepared import Options
 from motionfmu.run.result import Result
-from motionfmu.run.runner import Scenario, load
+from motionfmu.run.runner import Scenario, load, scenario
 from motionfmu.run.session import Session
 
-__all__ = ["Options", "Result", "Scenario", "Session", "load"]
+__all__ = ["Options", "Result", "Scenario", "Session", "load", "scenario"]

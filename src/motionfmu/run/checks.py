@@ -1,6 +1,5 @@
 """Verdicts: bounds of signals and contour figures."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -8,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.scenarios import rates
-from motionfmu.scenarios.document import Body, Check, Pair
+from motionfmu.scenarios.body import Body, Check, Pair
 
 TABLES = ("contour", "iso9283")  # analyses whose figures can be checked, by table
 BOUNDS = ("min", "max", "absmax", "peak", "rms", "final", "changes", "order")
@@ -25,8 +24,8 @@ class Verdict:
     reason: str = ""  # why there is no number; else empty
 
 
-def misplaced(name: str, body: Body, recorded: Mapping[str, tuple[int, ...]]) -> str:
-    """What is wrong with a [check] line, given the shapes of recorded signals; empty if nothing."""
+def misplaced(name: str, body: Body) -> str:
+    """What is wrong with a [check] line beside the name of its signal; empty if nothing."""
     checks = body.check[name]
     if any(all(getattr(c, bound) is None for bound in BOUNDS) for c in checks):
         return f"{name}: no bound ({', '.join(BOUNDS)})"
@@ -34,9 +33,6 @@ def misplaced(name: str, body: Body, recorded: Mapping[str, tuple[int, ...]]) ->
         if any((c.windows, c.at, c.rate) != (None, None, None) for c in checks):
             return f"{name}: a figure has no time, no windows and no rate"
         return wrong_figure(name, body)
-    whole, bracket, rest = name.partition("[")
-    if whole not in recorded or (bracket and not _is_axis(rest, recorded[whole])):
-        return f"{name} is not recorded"
     told = next((text for c in checks if (text := _no_time(c, body.stop_limit))), "")
     return f"{name}: {told}" if told else ""
 
@@ -55,12 +51,6 @@ def wrong_figure(name: str, body: Body) -> str:
     if getattr(body, table) is None:
         return f"{name}: there is no [{table}] table"
     return (of_contour if table == "contour" else of_iso9283)(figure)
-
-
-def _is_axis(rest: str, shape: tuple[int, ...]) -> bool:
-    """Whether there is an axis ``i]``, i from 1."""
-    index = rest.removesuffix("]")
-    return bool(shape) and index.isdecimal() and 1 <= int(index) <= shape[0]
 
 
 def _no_time(check: Check, stop: float) -> str:

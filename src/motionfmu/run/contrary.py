@@ -2,41 +2,59 @@
 
 from typing import Any
 
-from motionfmu.errors import InputError
+from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.run.checks import Verdict
 from motionfmu.scenarios import system
-from motionfmu.scenarios.document import Contrary, Document
-from motionfmu.scenarios.values import settings
+from motionfmu.scenarios.body import Contrary
+from motionfmu.scenarios.document import Document
+from motionfmu.scenarios.values import setting, unplaced
 
 
-def check(resolver: system.Resolver) -> None:
+def check(resolver: system.Resolver, named: bool = True) -> None:
     """Refuse a [[contrary]] with a wrong name, value or check, of no effect, or named as
-    another.
+    another; its checks only if the scenario's are well named.
     """
-    document, seen = resolver.document, set()
-    wired = {w.target.name for w in system.wires(resolver)} if document.body.contrary else ()
+    document, faults = resolver.document, Faults()
+    wired: set[str] = set()
+    if document.body.contrary:
+        wired = {w.target.name for w in Faults().of(lambda: system.wires(resolver)) or []}
+    offs = [case.off for case in document.body.contrary]
     for number, case in enumerate(document.body.contrary):
         table = f"contrary.{number}"
-        if case.off in seen:
-            raise document.error(f"off = {case.off!r} is there twice", table, "off")
-        seen.add(case.off)
-        for name in case.fails:
-            if name not in document.body.check:
-                raise document.error(f"fails: {name} is not in [check]", table, "fails")
+        with faults.each():
+            if case.off in offs[:number]:
+                raise document.error(f"off = {case.off!r} is there twice", table, "off")
+        for name in case.fails if named else ():
+            with faults.each():
+                if name not in document.body.check:
+                    hint = suggestion(name, document.body.check)
+                    text = f"fails: {name} is not in [check]{hint}"
+                    raise document.error(text, table, "fails")
         for name, value in case.set.items():
-            if name in wired:
-                text = f"{name} is connected: a value has no effect"
-                raise document.error(text, f"{table}.set", name)
-            try:
-                settings(resolver, {name: value})
-            except InputError as error:
-                raise document.error(str(error), f"{table}.set", name) from None
+            with faults.each():
+                _check_value(resolver, wired, table, name, value)
+    faults.tell()
+
+
+def _check_value(
+    resolver: system.Resolver, wired: set[str], table: str, name: str, value: Any
+) -> None:
+    document = resolver.document
+    if system.split(name)[0] in wired:
+        text = f"{name} is connected: a value has no effect"
+        raise document.error(text, f"{table}.set", name)
+    try:
+        setting(resolver, name, value, {})
+    except InputError as error:
+        if not error.args:
+            raise
+        raise document.error(str(unplaced(document, error)), f"{table}.set", name) from None
 
 
 def options(document: Document, case: Contrary) -> dict[str, Any]:
     """Options of `Scenario.run` for a case; a value of a driven input stands for the whole run."""
     driven = {d.input for d in document.body.drive}
-    return {"set": case.set, "undriven": driven & set(case.set)}
+    return {"set": case.set, "undriven": driven & {system.split(name)[0] for name in case.set}}
 
 
 def survivors(case: Contrary, verdicts: list[Verdict]) -> list[str]:

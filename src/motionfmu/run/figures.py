@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.errors import Faults
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios import rates, recording
-from motionfmu.scenarios.document import Document, Plot
+from motionfmu.scenarios.body import Plot
+from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.system import End, Resolver
 
 # Signals that a report without figures shows.
@@ -48,50 +50,47 @@ class Chart:
     panels: tuple[Panel, ...]  # from top to bottom, with a common time axis
 
 
-def _elements(resolver: Resolver, name: str, table: str) -> tuple[End, tuple[int, ...]]:
-    """The output that a signal of a figure names, and which of its elements, from 1."""
-    whole, bracket, rest = name.partition("[")
-    end = recording.output(resolver, whole, table, "signals")
-    shape = end.port.shape
-    if not bracket:
-        return end, tuple(range(1, end.port.count + 1)) if shape else ()
-    index = rest.removesuffix("]")
-    if not (shape and rest.endswith("]") and index.isascii() and index.isdigit()):
-        kind = f"an array of {shape[0]}" if shape else "a single value"
-        raise resolver.document.error(f"{name}: {whole} is {kind}", table, "signals")
-    if not 1 <= int(index) <= shape[0]:
-        text = f"{name}: {whole} has elements 1 to {shape[0]}"
-        raise resolver.document.error(text, table, "signals")
-    return end, (int(index),)
-
-
 def wanted(resolver: Resolver) -> list[End]:
     """Outputs that figures show, for recording; a wrong element or too few names are refused."""
-    found = []
+    found: list[End] = []
+    faults = Faults()
     for i, figure in enumerate(resolver.document.body.figure):
-        for j, plot in enumerate(figure.plot):
-            table = f"figure.{i}.plot.{j}"
-            named = [_elements(resolver, name, table) for name in plot.signals]
-            count = sum(max(1, len(elements)) for _, elements in named)
-            if plot.names is not None and len(plot.names) != count:
-                text = f"names = {plot.names!r}: {len(plot.names)} names for {count} curves"
-                raise resolver.document.error(text, table, "names")
-            found += [end for end, _ in named]
+        for j in range(len(figure.plot)):
+            with faults.each():
+                found += _of_plot(resolver, figure.plot[j], f"figure.{i}.plot.{j}")
+    faults.tell()
     return found
+
+
+def _of_plot(resolver: Resolver, plot: Plot, table: str) -> list[End]:
+    named = []
+    faults = Faults()
+    for name in plot.signals:
+        with faults.each():
+            named.append(recording.elements(resolver, name, table, "signals"))
+    faults.tell()
+    count = sum(max(1, len(elements)) for _, elements in named)
+    if plot.names is not None and len(plot.names) != count and len(named) == len(plot.signals):
+        text = f"names = {plot.names!r}: {len(plot.names)} names for {count} curves"
+        raise resolver.document.error(text, table, "names")
+    return [end for end, _ in named]
 
 
 def check(document: Document, step_ns: int) -> None:
     """Refuse a window or a rate that does not fit a run of such steps."""
-    stop = document.body.stop_limit
+    stop, faults = document.body.stop_limit, Faults()
     for i, figure in enumerate(document.body.figure):
-        if figure.window is not None:
-            start, end = figure.window
-            if not 0.0 <= start < end <= stop:
-                text = f"window = {figure.window!r}: from and to within 0 .. {stop:g} s wanted"
-                raise document.error(text, f"figure.{i}", "window")
+        with faults.each():
+            if figure.window is not None:
+                start, end = figure.window
+                if not 0.0 <= start < end <= stop:
+                    text = f"window = {figure.window!r}: from and to within 0 .. {stop:g} s wanted"
+                    raise document.error(text, f"figure.{i}", "window")
         for j, plot in enumerate(figure.plot):
-            if plot.rate is not None and (text := rates.wrong(plot.rate, step_ns, stop)):
-                raise document.error(text, f"figure.{i}.plot.{j}", "rate")
+            with faults.each():
+                if plot.rate is not None and (text := rates.wrong(plot.rate, step_ns, stop)):
+                    raise document.error(text, f"figure.{i}.plot.{j}", "rate")
+    faults.tell()
 
 
 def charts(run: Recorded) -> list[Chart]:
@@ -109,7 +108,7 @@ def charts(run: Recorded) -> list[Chart]:
 def _panel(run: Recorded, plot: Plot, table: str, span: tuple[float, float]) -> Panel:
     names, columns = [], []
     for signal in plot.signals:
-        end, elements = _elements(run.resolver, signal, table)
+        end, elements = recording.elements(run.resolver, signal, table, "signals")
         data = run.signals[end.name]
         names += [f"{end.name}[{k}]" for k in elements] or [end.name]
         columns += [data[:, k - 1] for k in elements] or [data]

@@ -36,7 +36,9 @@ def written_path(document: Document) -> CommandPath | None:
         if table.points is not None:
             return CommandPath.of(np.array(table.points))
         if table.file is not None:
-            return read_points(document.file.parent / table.file)
+            return read_points(
+                document.beside(table.file) or document.sources[0].folder / table.file
+            )
     except ValueError as error:
         raise document.error(str(error), TABLE, "file" if table.file else "points") from None
     return None

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import InputError
+from motionfmu.errors import Faults, InputError
 from motionfmu.run import contrary, figures, waveforms
-from motionfmu.run.checks import misplaced
+from motionfmu.run.checks import is_figure, misplaced
 from motionfmu.run.iso9283_of import written_path
 from motionfmu.scenarios import (
     contour_signals,
@@ -20,6 +20,7 @@ from motionfmu.scenarios import (
     view_signals,
 )
 from motionfmu.scenarios import document as files
+from motionfmu.scenarios.sources import of_file
 
 
 @dataclass(frozen=True)
@@ -65,75 +66,144 @@ class Options:
 class Prepared:
     """A scenario with its FMUs, and what is recorded of it; checked."""
 
-    def __init__(self, path: str | Path) -> None:
-        self.document = files.read(path)
-        self.resolver = system.Resolver(self.document)
-        listed = recording.chosen(self.resolver, self._recorded())
-        drawn = [*figures.wanted(self.resolver), *waveforms.wanted(self.resolver)]
-        self.ends = list({e.name: e for e in (*listed, *drawn)}.values())
-        self.only_drawn = {e.name for e in drawn} - {e.name for e in listed}
+    def __init__(self, source: str | Path | files.Document) -> None:
+        self.document: files.Document = (
+            source if isinstance(source, files.Document) else files.parsed(of_file(source))
+        )
+        self.ends: list[system.End] = []
+        self.only_drawn: set[str] = set()
+        faults = Faults(self.document.wrong)
+        self.resolver = system.Resolver(self.document, faults)
+        self._check_names(faults)
+        self._check_whole(faults)
+        self.document.refuse(faults.lines)
         wired, _ = recording.plan(self.resolved(Options()), self.ends, Path())
         self.check_recording(wired, Options())
-        self._check_checks()
-        contrary.check(self.resolver)
+
+    def _check_names(self, faults: Faults) -> None:
+        """Look up what is recorded, drawn and checked."""
+        resolver, body = self.resolver, self.document.body
+        listed = faults.of(lambda: recording.chosen(resolver, body.record.signals)) or []
+        for wanted in (contour_signals, iso9283_signals, view_signals):
+            with faults.each():
+                listed += recording.chosen(resolver, wanted.wanted(resolver))
+        faults.of(lambda: written_path(self.document))
+        drawn = faults.of(lambda: figures.wanted(resolver)) or []
+        if not self._damaged("stop", "limit", "step"):
+            drawn += faults.of(lambda: waveforms.wanted(resolver)) or []
+        checks = Faults()
+        for name in body.check:
+            with checks.each():
+                drawn += self._checked(name)
+        faults.lines += checks.lines
+        named = not checks.lines and not self._damaged("check")
+        faults.of(lambda: contrary.check(resolver, named))
+        self.ends = list({e.name: e for e in (*listed, *drawn)}.values())
+        self.only_drawn = {e.name for e in drawn} - {e.name for e in listed}
+
+    def _damaged(self, *tables: str) -> bool:
+        """Whether something is wrong with the form of one of these tables."""
+        return not self.document.damaged.isdisjoint(tables)
+
+    def _checked(self, name: str) -> list[system.End]:
+        """The output of which a [check] line is; none if that is of an analysis."""
+        if is_figure(name) and self._damaged(name.partition(".")[0]):
+            return []
+        found = []
+        if not is_figure(name):
+            found = [recording.elements(self.resolver, name, "check", name)[0]]
+        if told := misplaced(name, self.document.body):
+            raise self.document.error(told, "check", name)
+        return found
+
+    def _check_whole(self, faults: Faults) -> None:
+        """Resolve it as far as it can be: times, wires, values, what is open."""
+        parts = Faults()
+        made = self._made(Options(), parts)
+        if made is None or self._damaged("component", "connect", "set", "drive", "leave"):
+            faults.lines += parts.lines
+            return
+        if not self.resolver.lost and not parts.lines:
+            parts.of(lambda: system.check_inputs(self.resolver, made))
+        self._check_times(made, parts)
+        faults.lines += parts.lines
 
     @property
     def name(self) -> str:
-        """Name of the scenario's folder."""
-        return self.document.file.parent.name
+        """Name of the scenario: that of its folder, or as a program says."""
+        return self.document.name
 
     @property
     def stop_limit(self) -> float:
         """When a run ends at the latest [s]."""
         return self.document.body.stop_limit
 
-    def _recorded(self) -> list[str]:
-        asked = [*contour_signals.wanted(self.resolver), *iso9283_signals.wanted(self.resolver)]
-        written_path(self.document)
-        shown = view_signals.wanted(self.resolver)
-        return [*self.document.body.record.signals, *asked, *shown]
-
-    def _check_checks(self) -> None:
-        recorded = {e.name: e.port.shape for e in self.ends}
-        for name in self.document.body.check:
-            if told := misplaced(name, self.document.body, recorded):
-                raise self.document.error(told, "check", name)
-
     def resolved(self, options: Options) -> system.System:
         """All that an engine needs, with the options' values."""
+        faults = Faults()
+        made = self._made(options, faults)
+        faults.tell()
+        assert made is not None
+        system.check_inputs(self.resolver, made)
+        self._check_times(made, faults)
+        faults.tell()
+        return made
+
+    def _made(self, options: Options, faults: Faults) -> system.System | None:
+        """The system of these options; None without times, what else is wrong is left out."""
+        body, resolver = self.document.body, self.resolver
+        timing = Faults() if self._damaged("stop", "limit", "step") else faults
+        times = timing.of(lambda: self._times(options))
+        wires = faults.of(lambda: system.wires(resolver)) or []
+        given = faults.of(lambda: values.settings(resolver, options.set)) or []
+        if times is None:
+            return None
+        step_ns, steps = times
+        driven = faults.of(lambda: values.stimuli(resolver, step_ns)) or []
+        until = None
+        if options.stop is None:
+            until = faults.of(lambda: system.until(resolver, step_ns))
+        return system.System(
+            components=dict(body.component),
+            wires=tuple(wires),
+            settings=tuple(given),
+            stimuli=tuple(s for s in driven if s.end.name not in options.undriven),
+            step_ns=step_ns,
+            steps=steps,
+            every=body.record.every if options.every is None else options.every,
+            until=until,
+        )
+
+    def _times(self, options: Options) -> tuple[int, int]:
+        """Communication step [ns] and how many there are at most."""
         document, body = self.document, self.document.body
+        key = "stop" if isinstance(body.stop, float) else "limit"
         step_ns = self._time("step", options.step, body.step)
-        stop_ns = self._time("stop", options.stop, body.stop_limit)
+        stop_ns = self._time(key, options.stop, body.stop_limit)
         given = options.stop is not None or options.step is not None
         if step_ns % system.CLOCK_NS:
             text = f"step = {step_ns * 1e-9:.9g} s is no whole number of {system.CLOCK_NS} ns"
             raise InputError(text) if given else document.error(text, "", "step")
         if stop_ns % step_ns:
-            text = f"stop = {stop_ns * 1e-9:.9g} s is no whole number of steps"
-            raise InputError(text) if given else document.error(text, "", "stop")
+            key = "stop" if options.stop is not None else key
+            text = f"{key} = {stop_ns * 1e-9:.9g} s is no whole number of steps"
+            raise InputError(text) if given else document.error(text, "", key)
         if stop_ns // step_ns > system.STEPS_MAX:
             text = f"{stop_ns // step_ns} steps; {system.STEPS_MAX} are the most"
             raise InputError(text) if given else document.error(text, "", "step")
-        resolved = system.System(
-            components=dict(body.component),
-            wires=tuple(system.wires(self.resolver)),
-            settings=tuple(values.settings(self.resolver, options.set)),
-            stimuli=tuple(
-                s
-                for s in values.stimuli(self.resolver, step_ns)
-                if s.end.name not in options.undriven
-            ),
-            step_ns=step_ns,
-            steps=stop_ns // step_ns,
-            every=body.record.every if options.every is None else options.every,
-        )
-        system.check_inputs(self.resolver, resolved)
-        figures.check(document, resolved.sample_ns)
+        return step_ns, stop_ns // step_ns
+
+    def _check_times(self, made: system.System, faults: Faults) -> None:
+        """Refuse windows and rates that do not fit the run."""
+        document, body = self.document, self.document.body
+        if self._damaged("stop", "limit", "step", "record"):
+            return
+        faults.of(lambda: figures.check(document, made.sample_ns))
         for name, checks in body.check.items():
             for rate in (c.rate for c in checks if c.rate is not None):
-                if text := rates.wrong(rate, resolved.sample_ns, body.stop_limit):
-                    raise document.error(f"{name}: {text}", "check", name)
-        return resolved
+                with faults.each():
+                    if text := rates.wrong(rate, made.sample_ns, body.stop_limit):
+                        raise document.error(f"{name}: {text}", "check", name)
 
     def check_recording(self, wired: system.System, options: Options) -> None:
         """Refuse a recording that no memory holds, or two of one file; names setting or option."""

@@ -50,6 +50,8 @@ class Result:
         In what it was not run as written, in words; empty if it was.
     stopped : str
         Why it ended: ``stop = 4 s``, ``mcc.done at 16.213 s``.
+    signal_at : float or None
+        When the signal that ends the run came [s]; None if it did not, or a time ends it.
     """
 
     scenario: Prepared
@@ -61,7 +63,7 @@ class Result:
     options: Mapping[str, Any] = field(default_factory=dict)
     overrides: list[str] = field(default_factory=list)
     stopped: str = ""
-    _stop_signal: float | None = None  # [s] when it came
+    signal_at: float | None = None
     _contour: "ContourResult | NoNumber | None" = None
     _iso9283: "Evaluation | NoNumber | None" = None
 
@@ -121,8 +123,8 @@ class Result:
 
         None if that is unknown, or it never was.
         """
-        if self._stop_signal is not None:
-            return self._stop_signal
+        if self.signal_at is not None:
+            return self.signal_at
         recorded = (x for n, x in self.signals.items() if n.endswith(".done") and x.ndim == 1)
         times = [t for x in recorded if (t := since(self.time, x)) is not None]
         return max(times, default=None)

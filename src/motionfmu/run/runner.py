@@ -1,17 +1,21 @@
 """Load a scenario and run it."""
 
 import tempfile
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import InputError
+from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.run.engines import ENGINES
+from motionfmu.run.engines.ending import Ran
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
 from motionfmu.run.wired import Wired, own_settings
 from motionfmu.scenarios import grids
+from motionfmu.scenarios.document import changed, made, plain
 from motionfmu.scenarios.system import System
+from motionfmu.toml_lines import shown
 
 
 class Scenario(Prepared):
@@ -19,8 +23,8 @@ class Scenario(Prepared):
 
     Parameters
     ----------
-    path : str or Path
-        A scenario.toml or the folder that holds it.
+    source : str, Path or Document
+        A scenario.toml or the folder that holds it; or tables, see `scenario`.
 
     Attributes
     ----------
@@ -36,38 +40,139 @@ class Scenario(Prepared):
     Raises
     ------
     InputError
-        Anything wrong in the file; one message with file, line and value.
+        Anything wrong in the file; a line for each thing, with file, line and value.
     """
 
-    def run(self, **options: Any) -> Result:
+    def run(  # noqa: PLR0913  (each is a keyword)
+        self,
+        *,
+        engine: str = "native",
+        fmi: int | None = None,
+        set: Mapping[str, Any] | None = None,
+        stop: float | None = None,
+        step: float | None = None,
+        every: int | None = None,
+        undriven: Collection[str] = (),
+        source: Mapping[str, str] | None = None,
+        progress: Callable[[float], None] | None = None,
+        **unknown: Any,
+    ) -> Result:
         """Run the scenario.
 
         Parameters
         ----------
-        **options : engine, fmi, set, stop, step, undriven, progress
-            See `Options`.
+        engine : str
+            ``native``, ``python`` or ``fmpy``; all give the same bits.
+        fmi : int, optional
+            2 or 3; if not given 3, and 2 for the engine ``fmpy``.
+        set : mapping, optional
+            Value by ``component.variable`` or, for one element, ``component.variable[i]``, i from
+            1; stronger than the scenario's.
+        stop : float, optional
+            When the run ends instead of the scenario's time or signal [s].
+        step : float, optional
+            Communication step instead of the scenario's [s].
+        every : int, optional
+            Of so many steps one is recorded, instead of the scenario's.
+        undriven : collection of str, optional
+            Inputs whose [[drive]] is left out.
+        source : mapping, optional
+            Name of the file that a value of `set` is from, for the report.
+        progress : callable, optional
+            Called with the share done, 0 to 1.
+        **unknown
+            There are no others: an error that suggests one of these.
 
         Raises
         ------
         InputError
-            An option is wrong, or an FMU refused something; one message.
+            An option is wrong, or an FMU refused something; a line for each thing that is wrong.
         """
-        asked = Options(**options)
-        if asked.engine not in ENGINES:
-            raise InputError(f"no engine {asked.engine!r} (there are: {', '.join(ENGINES)})")
-        if asked.fmi not in (2, 3):
-            raise InputError(f"FMI {asked.fmi!r}: 2 or 3")
+        known = [f.name for f in fields(Options)]
+        for name in unknown:
+            raise InputError(f"run: no option {name!r}{suggestion(name, known)}")
+        asked = Options(
+            engine=engine,
+            fmi=(2 if engine == "fmpy" else 3) if fmi is None else fmi,
+            set=plain(set or {}),
+            stop=stop,
+            step=step,
+            every=every,
+            undriven=undriven,
+            source=source or {},
+            progress=progress or (lambda share: None),
+        )
+        _check(asked)
         with tempfile.TemporaryDirectory(prefix="motionfmu-") as name:
             folder = Path(name)
             given = replace(asked, set={**asked.set, **own_settings(self, folder)})
             wired = Wired.plan(self, given, self.ends, folder)
             self.check_recording(wired.system, given)
 
-            def engine(system: System) -> tuple[str, ...]:
-                told = ENGINES[asked.engine](system, asked.fmi, asked.progress)
-                return (*grids.warnings(wired.plain), *told)
+            def master(system: System) -> Ran:
+                ran = ENGINES[asked.engine](system, asked.fmi, asked.progress)
+                return replace(ran, warnings=[*grids.warnings(wired.plain), *ran.warnings])
 
-            return wired.run(engine, asked)
+            return wired.run(master, asked)
+
+    def changed(  # noqa: PLR0913  (each is a keyword)
+        self,
+        *,
+        set: Mapping[str, Any] | None = None,
+        connect: Mapping[str, str | None] | None = None,
+        leave: Iterable[str] | None = None,
+        record: Mapping[str, Any] | Iterable[str] | None = None,
+        stop: float | str | None = None,
+        step: float | None = None,
+        drive: Iterable[Mapping[str, Any]] | None = None,
+        check: Mapping[str, Any] | None = None,
+        component: Mapping[str, str | None] | None = None,
+        name: str | None = None,
+        **tables: Any,
+    ) -> "Scenario":
+        """Make another scenario from this one; nothing is written.
+
+        Tables are merged key by key, and None takes a key away. Names of `leave` and `record` are
+        added. `drive` and other arrays of tables take the place of the scenario's.
+
+        Parameters
+        ----------
+        set, connect, component, check : mapping, optional
+            Entries of these tables; a value of `set` may be of one element,
+            ``component.variable[i]``.
+        leave : iterable of str, optional
+            More inputs that are left at their start values.
+        record : iterable of str or mapping, optional
+            More outputs to record, or the table: ``{"every": 10, "signals": [...]}``.
+        stop : float or str, optional
+            When the run ends [s], or the signal that ends it (with ``limit=`` [s]).
+        step : float, optional
+            Communication step [s].
+        drive : iterable of mapping, optional
+            Inputs that step, instead of the scenario's: ``{"input", "at", "value"}``.
+        name : str, optional
+            For messages and reports; the scenario's own if not given.
+        **tables
+            Any other key or table of a scenario.toml: limit, settle, contour, figure, ...
+
+        Returns
+        -------
+        Scenario
+            Checked against its FMUs.
+
+        Raises
+        ------
+        InputError
+            Something is wrong; a line for each, with ``<name>:[table] key``.
+        """
+        given: dict[str, Any] = {"set": set, "connect": connect, "component": component}
+        given |= {"leave": None if leave is None else _names(leave), "check": check}
+        given |= {"stop": stop, "step": step, "drive": None if drive is None else list(drive)}
+        given["record"] = record
+        if record is not None and not isinstance(record, Mapping):
+            given["record"] = {"signals": _names(record)}
+        given = {k: v for k, v in given.items() if v is not None} | tables
+        return type(self)(changed(self.document, given, name or self.name))
 
 
 def load(path: str | Path) -> Scenario:
@@ -84,3 +189,64 @@ def load(path: str | Path) -> Scenario:
         Anything wrong in the file; one message with file, line and value.
     """
     return Scenario(path)
+
+
+def scenario(
+    given: Mapping[str, Any] | str | Path,
+    *,
+    name: str = "scenario",
+    folder: str | Path = ".",
+    about: str = "",
+) -> Scenario:
+    """Make a scenario of a dictionary with the tables of a scenario.toml.
+
+    Parameters
+    ----------
+    given : mapping, str or Path
+        The tables: ``{"stop": 1.0, "step": 1e-4, "component": {...}, ...}``, with ``extends`` if
+        they change another scenario; or the path of a scenario, as of `load`.
+    name : str
+        For messages and reports.
+    folder : str or Path
+        What texts of the tables name, a part program, lies here.
+    about : str
+        What the scenario shows; the title of its report.
+
+    Returns
+    -------
+    Scenario
+        Checked against its FMUs.
+
+    Raises
+    ------
+    InputError
+        Something is wrong; a line for each, with ``<name>:[table] key``.
+    """
+    if not isinstance(given, Mapping):
+        return load(given)
+    return Scenario(made(given, name, Path(folder).resolve(), about))
+
+
+def _names(given: Iterable[str]) -> list[str]:
+    """A list of names; a single one is a list of one."""
+    return [given] if isinstance(given, str) else list(given)
+
+
+def _check(asked: Options) -> None:
+    """Refuse options that no run can have."""
+    faults = Faults()
+    if asked.engine not in ENGINES:
+        known = f"(there are: {', '.join(ENGINES)}){suggestion(str(asked.engine), ENGINES)}"
+        faults.lines.append(f"no engine {asked.engine!r} {known}")
+    if asked.fmi not in (2, 3):
+        faults.lines.append(f"FMI {asked.fmi!r}: 2 or 3")
+    if not isinstance(asked.set, Mapping):
+        faults.lines.append(f"set = {shown(asked.set)}: values by name wanted")
+    for key in ("stop", "step"):
+        value = getattr(asked, key)
+        if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
+            faults.lines.append(f"{key} = {shown(value)}: seconds wanted")
+    every = asked.every
+    if every is not None and (isinstance(every, bool) or not isinstance(every, int) or every < 1):
+        faults.lines.append(f"every = {shown(every)}: a whole number from 1 wanted")
+    faults.tell()

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from motionfmu.run.engines.ending import Ran
 from motionfmu.run.engines.native import Container
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
@@ -62,33 +63,18 @@ class Session:
         ends = [scenario.resolver.end(split(n)[0], "set", n) for n in varied]
         usual = {e.name: start_values(e.port) for e in ends}
         written = scenario.document.body.set
-        usual = {n: v for n, v in usual.items() if n not in {**written, **self._given}}
-        base = replace(self._options, set={**usual, **self._given})
+        there = {split(n)[0] for n in (*written, *self._given)}
+        self._unset = {n: v for n, v in usual.items() if n not in there}
+        base = replace(self._options, set={**self._unset, **self._given})
         used = scenario.ends if signals is None else list(signals)
         self._wired = Wired.plan(scenario, base, used, self._folder)
         plain, system = self._wired.plain, self._wired.system
-        self._usual = {s.end.name: s.values for s in plain.settings}
         self._scopes = system.settings[len(plain.settings) :]
         return Container(system, FMI, self._folder / "container")
 
     def _values(self, given: Mapping[str, Any]) -> list[Setting]:
         """All settings of a run; a value for one element leaves the others as they are."""
-        merged: dict[str, Any] = {}
-        for name, value in sorted(given.items(), key=lambda pair: split(pair[0])[1] is not None):
-            whole, element = split(name)
-            if element is None:
-                merged[name] = value
-                continue
-            before = merged.get(whole, self._usual[whole])
-            every = (
-                [*before]
-                if isinstance(before, tuple | list)
-                else [before] * len(self._usual[whole])
-            )
-            every[element] = value
-            merged[whole] = every
-        usual = {n: v for n, v in self._usual.items() if n not in self.scenario.document.body.set}
-        return settings(self.scenario.resolver, {**usual, **self._given, **merged})
+        return settings(self.scenario.resolver, self._unset, self._given, given)
 
     def run(self, given: Mapping[str, Any]) -> Result:
         """Run once.
@@ -107,9 +93,8 @@ class Session:
         system = replace(self._wired.system, settings=(*plain.settings, *self._scopes))
         self.scenario.check_recording(system, replace(self._options, set=given))
 
-        def engine(system: System) -> tuple[str, ...]:
-            self._container.run(system, self._options.progress)
-            return ()
+        def engine(system: System) -> Ran:
+            return replace(self._container.run(system, self._options.progress), warnings=[])
 
         run = replace(self._wired, plain=plain, system=system)
         return run.run(engine, replace(self._options, set={**self._options.set, **given}))

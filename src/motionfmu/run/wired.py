@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.errors import InputError
+from motionfmu.run.engines.ending import Ran
 from motionfmu.run.overrides import overrides
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
@@ -40,22 +41,43 @@ class Wired:
         plain = scenario.resolved(options)
         return cls(scenario, plain, *recording.plan(plain, ends, folder))
 
-    def run(self, engine: Callable[[System], Iterable[str]], options: Options) -> Result:
+    def run(self, engine: Callable[[System], Ran], options: Options) -> Result:
         """Run it; an FMU's message says where its value stands."""
         planned = self.traces.folder / PLANNED
         planned.unlink(missing_ok=True)
         try:
-            warnings = engine(self.system)
+            ran = engine(self.system)
         except InputError as error:
             raise self.scenario.located(error, self.plain, options.set) from None
+        stopped, signal = self._stopped(ran)
+        never: tuple[str, ...] = ()
+        if (until := self.system.until) is not None and signal is None:
+            limit = self._seconds(self.system.steps)
+            never = (f"{until.name} never came within {limit:.9g} s",)
         return Result(
-            self.scenario,
-            np.arange(self.system.samples, dtype=np.float64) * (self.system.sample_ns * 1e-9),
-            self.traces.load(),
-            {s.end.name: s.values for s in self.plain.settings},
-            planned.read_text(encoding="utf-8") if planned.is_file() else None,
-            tuple(warnings),
-            options.given(),
-            overrides(self.scenario, options, self.plain),
-            f"stop = {self.system.steps * self.system.step_ns * 1e-9:.9g} s",
+            scenario=self.scenario,
+            time=np.arange(self.system.rows(ran.steps), dtype=np.float64)
+            * (self.system.sample_ns * 1e-9),
+            signals=self.traces.load(),
+            parameters={s.end.name: s.values for s in self.plain.settings},
+            geometry=planned.read_text(encoding="utf-8") if planned.is_file() else None,
+            warnings=(*ran.warnings, *never),
+            options=options.given(),
+            overrides=overrides(self.scenario, options, self.plain),
+            stopped=stopped,
+            signal_at=signal,
         )
+
+    def _stopped(self, ran: Ran) -> tuple[str, float | None]:
+        """Why the run ended, and when the signal that ends it came [s]."""
+        until = self.system.until
+        if until is None:
+            return f"stop = {self._seconds(ran.steps):.9g} s", None
+        if ran.signal is None:
+            return f"limit {self._seconds(ran.steps):.9g} s, {until.name} never came", None
+        at = self._seconds(ran.signal)
+        return f"{until.name} at {at:.9g} s", at
+
+    def _seconds(self, steps: int) -> float:
+        """How long so many steps are [s]."""
+        return steps * self.system.step_ns / 1e9

@@ -1,179 +1,145 @@
-"""A scenario file: which FMUs, how they are wired, set, driven, recorded and judged."""
+"""A scenario as read: which FMUs, how they are wired, set, driven, recorded and judged."""
 
+import copy
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ValidationError
 
-from motionfmu.errors import InputError
-from motionfmu.scenarios.analyses import Iso9283, View, Waveform
-from motionfmu.toml_lines import KEY_MAX, Lines, is_file, shown, tables_of, text_of
+from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.scenarios import body as tables_
+from motionfmu.scenarios.body import Body
+from motionfmu.scenarios.sources import Source, Tables, chain, merged, of_file, ordered
+from motionfmu.toml_lines import is_file, shown
 
-Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
-Pair = tuple[float, float]
-_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-# Each is an FMU with a library and a folder of its own.
-COMPONENTS_MAX = 64
-# The name becomes that of an instance and of a file; the recorder's own begin with "_".
-Component = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
-# Names and patterns are looked up in all variables of all components.
-LISTED_MAX = 1000
-FIGURES_MAX = 100  # a picture each
-Name = Annotated[str, Field(max_length=KEY_MAX)]
-Names = Annotated[list[Name], Field(max_length=LISTED_MAX)]
-
-
-class Drive(BaseModel):
-    """An input that steps to given values at given times [s]."""
-
-    model_config = _STRICT
-    input: Name
-    at: list[float] = Field(min_length=1)
-    value: list[Value] = Field(min_length=1)
-
-
-class Check(BaseModel):
-    """Bounds of one signal or figure; each one given must hold."""
-
-    model_config = _STRICT
-    min: float | Pair | None = None
-    max: float | Pair | None = None
-    absmax: float | Pair | None = None
-    peak: Pair | None = None
-    rms: Pair | None = None
-    final: bool | float | Pair | None = None
-    changes: float | Pair | None = None
-    order: tuple[float, ...] | None = Field(default=None, min_length=1, max_length=LISTED_MAX)
-    rate: float | None = None
-    at: float | None = None
-    windows: tuple[Pair, ...] | None = Field(default=None, min_length=1)
-
-
-class Contrary(BaseModel):
-    """Values that switch off a claim; the checks named must fail."""
-
-    model_config = _STRICT
-    off: str = Field(min_length=1)
-    set: dict[str, Value] = Field(min_length=1)
-    fails: Names = Field(min_length=1)
-
-
-class Contour(BaseModel):
-    """Which signals hold the actual position and the pulses put out."""
-
-    model_config = _STRICT
-    position: Name
-    pulses: Name
-
-
-class Record(BaseModel):
-    """What is recorded: names or patterns of outputs, at every step or every so many."""
-
-    model_config = _STRICT
-    every: int = Field(default=1, ge=1, le=1_000_000)  # [steps]
-    signals: Names = Field(min_length=1)
-
-
-class Plot(BaseModel):
-    """One panel of a figure: signals, and how they are shown."""
-
-    model_config = _STRICT
-    signals: Names = Field(min_length=1)
-    label: str = Field(min_length=1)
-    steps: bool = False
-    rate: float | None = None
-    scale: float = 1.0
-    levels: dict[str, float] = Field(default_factory=dict)
-    names: list[str] | None = None
-
-
-class Figure(BaseModel):
-    """Panels above each other that share the time axis [s]."""
-
-    model_config = _STRICT
-    title: str = Field(min_length=1)
-    note: str = ""
-    window: list[float] | None = Field(default=None, min_length=2, max_length=2)
-    plot: list[Plot] = Field(min_length=1, max_length=FIGURES_MAX)
-
-
-def _listed(x: Any) -> Any:
-    """One table of bounds, or several."""
-    return tuple(x) if isinstance(x, list | tuple) else (x,)
-
-
-Checks = Annotated[
-    tuple[Check, ...], BeforeValidator(_listed), Field(min_length=1, max_length=LISTED_MAX)
-]
-
-
-class Body(BaseModel):
-    """The tables of a scenario.toml."""
-
-    model_config = _STRICT
-    stop: float = Field(gt=0)
-    step: float = Field(gt=0)
-    component: dict[Component, Name] = Field(min_length=1, max_length=COMPONENTS_MAX)
-    connect: dict[str, Name] = Field(default_factory=dict, max_length=LISTED_MAX)
-    set: dict[str, Value] = Field(default_factory=dict)
-    drive: list[Drive] = Field(default_factory=list, max_length=LISTED_MAX)
-    leave: Names = Field(default_factory=list)
-    record: Record
-    contour: Contour | None = None
-    iso9283: Iso9283 | None = None
-    view: View = View()
-    figure: list[Figure] = Field(default_factory=list, max_length=FIGURES_MAX)
-    waveform: list[Waveform] = Field(default_factory=list, max_length=FIGURES_MAX)
-    check: dict[str, Checks] = Field(default_factory=dict, max_length=LISTED_MAX)
-    contrary: list[Contrary] = Field(default_factory=list, max_length=LISTED_MAX)
-
-    @property
-    def stop_limit(self) -> float:
-        """When a run ends at the latest [s]."""
-        return self.stop
+# Tables of which each key is the user's own.
+OPEN = ("component", "connect", "set", "check")
+ARRAYS = ("drive", "figure", "waveform", "contrary")
+# What takes the place of a table that cannot be read, so that the others are looked at.
+SOUND: Tables = {"stop": tables_.LONGEST, "step": 1e-4, "record": {"signals": ["*"]}}
 
 
 @dataclass(frozen=True)
 class Document:
-    """A scenario as read: tables, file and line numbers."""
+    """A scenario's tables, and where each key stands."""
 
-    file: Path  # the scenario.toml
+    name: str  # of its folder, or as a program says
     about: str  # what its first line says
     body: Body
-    lines: Lines  # line numbers of the keys
+    tables: Tables  # of all sources together
+    sources: tuple[Source, ...]  # the strongest first
+    wrong: tuple[str, ...] = ()  # what is wrong with keys and types, which body does not have
+    damaged: frozenset[str] = frozenset()  # tables and keys at the top of which something is wrong
 
-    def error(self, text: str, table: str = "", key: str = "") -> InputError:
-        """Make the error for a key of this file; where it stands as in `Lines.of`."""
-        return InputError(f"{self.file}:{self.lines.of(table, key)}: {text}")
+    @property
+    def file(self) -> Path:
+        """The scenario.toml, or ``<name>`` of one that a program made."""
+        return Path(self.sources[0].name)
+
+    @property
+    def files(self) -> list[Path]:
+        """The scenario.toml and those that it extends."""
+        return [Path(s.name) for s in self.sources if s.lines is not None]
+
+    def beside(self, name: str) -> Path | None:
+        """A file of this name beside the scenario, or beside one that it extends."""
+        places = (s.folder / name for s in self.sources)
+        return next((p for p in places if is_file(p)), None) if name else None
+
+    def error(self, text: str, table: str = "", key: str = "", item: Any = None) -> InputError:
+        """Make the error for a key; where it stands as in `Lines.of`, in a list for an item."""
+        return InputError(f"{_place(self.sources, table, key, item)}: {text}")
+
+    def refuse(self, lines: list[str]) -> None:
+        """Tell everything that is wrong, in the order of the lines; nothing if that is nothing."""
+        Faults(ordered(lines, self.sources)).tell()
 
 
-def scenario_file(path: str | Path) -> Path:
-    """The scenario.toml, absolute, that a user's path means: itself or the folder that holds it."""
-    file = Path(path)
-    file = file / "scenario.toml" if is_file(file / "scenario.toml") else file
-    if not is_file(file):
-        raise InputError(f"{file}: no such scenario")
-    return file.resolve()
+def _place(sources: tuple[Source, ...], table: str, key: str, item: Any = None) -> str:
+    """Where a key stands, or the nearest table around it, in the strongest source that has it."""
+    tries = [(table, key, item), (table, key, None)]
+    parts = table.split(".")
+    tries += [(".".join(parts[:n]), "", None) for n in range(len(parts), 0, -1)]
+    for wanted in tries if table or key else []:
+        for source in sources:
+            if source.has(*wanted):
+                return source.place(table if source.lines else wanted[0], key)
+    if sources[0].lines is None:
+        return sources[0].place(table, key)
+    return f"{sources[0].name}:{sources[0].lines.of(table, key)}"
 
 
 def read(path: str | Path) -> Document:
     """Read a scenario.toml, or the folder that holds it, and check its keys and their types."""
-    file = scenario_file(path)
-    text = text_of(file)
-    tables = tables_of(text, file)
-    lines = Lines(text)
-    first = text.split("\n", 1)[0]
-    if not first.startswith("#"):
-        raise InputError(f"{file}:1: the first line is a comment that says what the scenario shows")
+    document = parsed(of_file(path))
+    document.refuse(list(document.wrong))
+    return document
+
+
+def made(tables: Mapping[str, Any], name: str, folder: Path, about: str) -> Document:
+    """The document of a dictionary; texts name files beside a folder."""
+    own = Source(f"<{name}>", folder, plain(tables), None, about)
+    return parsed(chain(own), name)
+
+
+def changed(document: Document, tables: Mapping[str, Any], name: str) -> Document:
+    """A document with other tables, merged as those of a file that extends it."""
+    own = Source(f"<{name}>", document.sources[0].folder, plain(tables), None, document.about)
+    return parsed([own, *document.sources], name)
+
+
+def plain(value: Any) -> Any:
+    """What a program gives as TOML would give it."""
+    if isinstance(value, Mapping):
+        return {str(k): plain(v) for k, v in value.items()}
+    if hasattr(value, "tolist"):  # numpy's
+        return value.tolist()
+    if isinstance(value, list | tuple | set | frozenset):
+        return [plain(v) for v in value]
+    return str(value) if isinstance(value, Path) else value
+
+
+def parsed(sources: list[Source], name: str = "") -> Document:
+    """Check keys and types; what is wrong is in the document, which has the rest."""
+    tables = merged(sources)
+    places = tuple(sources)
+    sound = _numbers(copy.deepcopy(tables))
+    wrong: list[str] = []
+    damaged: set[str] = set()
     try:
-        body = Body.model_validate(_floats(tables))
+        body = Body.model_validate(sound)
     except ValidationError as error:
-        raise InputError(_first(error, file, lines)) from None
-    return Document(file, first.lstrip("# "), body, lines)
+        wrong = _told(error, places)
+        damaged = {str(found["loc"][0]) for found in error.errors()}
+        try:
+            body = Body.model_validate(_without(sound, error))
+        except ValidationError:  # nothing is left to look at
+            Faults(ordered(wrong, sources)).tell()
+            raise
+    if not damaged & {"stop", "limit", "settle"} and (told := _ending(body, places)):
+        wrong += told
+        damaged.add("stop")
+    about = next((s.about for s in sources if s.about), name)
+    name = name or sources[0].folder.name
+    return Document(name, about, body, tables, places, tuple(wrong), frozenset(damaged))
 
 
-def _floats(tables: dict[str, Any]) -> dict[str, Any]:
+def _ending(body: Body, sources: tuple[Source, ...]) -> list[str]:
+    """What is wrong with stop, limit and settle together."""
+    if isinstance(body.stop, str) and body.limit is None:
+        text = f"stop = {body.stop!r} is a signal: limit = seconds, the longest run, is missing"
+        return [f"{_place(sources, '', 'stop')}: {text}"]
+    found = []
+    for key in ("limit", "settle"):
+        if isinstance(body.stop, float) and getattr(body, key) is not None:
+            text = f"{key} goes with a stop that is a signal; stop = {body.stop:g} is a time"
+            found.append(f"{_place(sources, '', key)}: {text}")
+    return found
+
+
+def _numbers(tables: Tables) -> Tables:
     """Whole numbers where a time or a bound is meant; pairs become tuples."""
 
     def number(x: Any) -> Any:
@@ -182,7 +148,7 @@ def _floats(tables: dict[str, Any]) -> dict[str, Any]:
         return float(x) if isinstance(x, int) and not isinstance(x, bool) else x
 
     out = dict(tables)
-    for key in ("stop", "step"):
+    for key in ("stop", "limit", "settle", "step"):
         if key in out:
             out[key] = number(out[key])
     for row in out.get("drive", []) if isinstance(out.get("drive"), list) else []:
@@ -196,33 +162,99 @@ def _floats(tables: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
-def _first(error: ValidationError, file: Path, lines: Lines) -> str:
-    """One line for the first thing pydantic found."""
-    found = error.errors()[0]
-    place = [str(p) for p in found["loc"]]
-    if place[0] == "check":
-        del place[2:3]  # number of the table: the key names them all
+def _without(tables: Tables, error: ValidationError) -> Tables:
+    """Tables without what pydantic refused; without an array of tables if one of it is wrong."""
+    out = dict(tables)
+    for found in error.errors():
+        top, *rest = found["loc"]
+        if top in OPEN and rest and isinstance(out.get(str(top)), dict):
+            out[str(top)] = {k: v for k, v in out[str(top)].items() if k != rest[0]}
+        elif top in SOUND:
+            out[str(top)] = SOUND[str(top)]
+        else:
+            out.pop(str(top), None)
+    return out
+
+
+def _told(error: ValidationError, sources: tuple[Source, ...]) -> list[str]:
+    """A line for each place at which pydantic found something."""
+    found: dict[tuple[str, ...], str] = {}
+    missing: dict[tuple[str, ...], list[str]] = {}
+    for one in error.errors():
+        if one["type"] == "missing":
+            *around, key = (str(p) for p in one["loc"])
+            missing.setdefault(tuple(around), []).append(key)
+    meant: set[tuple[str, ...]] = set()
+    unknown_first = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
+    for one in unknown_first:
+        place = tuple(str(p) for p in one["loc"])
+        if one["type"] == "extra_forbidden":
+            close, likely = _meant(place, missing.get(place[:-1], []))
+            meant.add((*place[:-1], likely))
+            what = "table" if len(place) == 1 and isinstance(one["input"], dict | list) else "key"
+            named = f"[{place[-1]}]" if what == "table" else repr(place[-1])
+            found[place] = f"{_spot(sources, place)}: unknown {what} {named}{close}"
+        elif place not in meant:
+            place, text = _one(one, place, sources)
+            found.setdefault(place, text)
+    return list(found.values())
+
+
+def _meant(place: tuple[str, ...], missing: list[str]) -> tuple[str, str]:
+    """What an unknown key may be meant for: words of a message, and the key."""
+    model: type[BaseModel] = Body
+    for part in place[:-1]:
+        if part in tables_.MODELS:
+            model = tables_.MODELS[part]
+    for known in (missing, list(model.model_fields)):
+        if close := suggestion(place[-1], known):
+            return close, close.split("'")[1]
+    return "", ""
+
+
+def _one(
+    found: Any, place: tuple[str, ...], sources: tuple[Source, ...]
+) -> tuple[tuple[str, ...], str]:
+    """The place without the members of a choice of types, and a line."""
+    top = place[0]
+    if top in OPEN and top != "check":
+        place = place[:2]  # what follows is a type, or the place in a list
+    elif top in ("stop", "limit", "settle", "step"):
+        place = place[:1]
     if found["type"] == "missing" and len(place) == 1:
-        return f"{file}: {place[0]} is missing"
-    table, key = _place(place)
+        return place, f"{sources[0].name}: {place[0]} is missing"
+    spot = _spot(sources, place)
     if found["type"] == "missing" and isinstance(found["loc"][-1], int):
-        what, few = ".".join(place[:-1]), list(found["input"])
-        return f"{file}:{lines.of(table, key)}: {what} = {shown(few)}: too few values"
+        few = list(found["input"])
+        shorter = [p for i, p in enumerate(place[:-1]) if not (top == "check" and i == 2)]
+        return place, f"{spot}: {'.'.join(shorter)} = {shown(few)}: too few values"
     if found["type"] == "missing":
-        return f"{file}:{lines.of(table)}: {place[-1]} is missing"
-    name = ".".join(place[1:] if place[0] == "set" else place)
-    if found["type"] == "extra_forbidden":
-        return f"{file}:{lines.of(table, key)}: unknown key {place[-1]!r}"
-    value = "..." if isinstance(found["input"], dict) and found["input"] else found["input"]
+        around = _place(sources, *_table_key(place[:-1]))
+        return place, f"{around}: {place[-1]} is missing"
+    name = list(place[1:] if top == "set" else place)
+    if top == "check":
+        del name[2:3]  # number of the table: the key names them all
+    value = found["input"]
+    if top in ("set", "connect", "component") and isinstance(value, dict) and found["loc"][1:]:
+        first = next(iter(value), "")
+        return (
+            place,
+            f'{spot}: {place[-1]}.{first}: a name with a dot wants quotes: "{place[-1]}.{first}"',
+        )
+    value = "..." if isinstance(value, dict) and value else value
     value = list(value) if isinstance(value, tuple) else value
-    return f"{file}:{lines.of(table, key)}: {name} = {shown(value)}: {found['msg'].lower()}"
+    return place, f"{spot}: {'.'.join(name)} = {shown(value)}: {found['msg'].lower()}"
 
 
-def _place(place: list[str]) -> tuple[str, str]:
+def _spot(sources: tuple[Source, ...], place: tuple[str, ...]) -> str:
+    return _place(sources, *_table_key(place))
+
+
+def _table_key(place: tuple[str, ...]) -> tuple[str, str]:
     """Table and key that `Lines` knows, of a place that pydantic names."""
     if len(place) == 1:
         return "", place[0]
     depth = 1
-    if place[0] in ("drive", "figure", "waveform", "contrary"):
-        depth = 4 if place[2:3] == ["plot"] and len(place) > 3 else 2
+    if place[0] in ARRAYS:
+        depth = 4 if place[2:3] == ("plot",) and len(place) > 3 else 2
     return ".".join(place[:depth]), place[depth] if len(place) > depth else ""

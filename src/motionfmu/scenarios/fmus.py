@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import IO
 from xml.etree import ElementTree
 
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, suggestion
 from motionfmu.toml_lines import is_file
 
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -60,8 +60,10 @@ def fmu_path(name: str, fmi: int = 3) -> Path:
     """Find a built FMU by its folder's name under fmus/; else the message lists what there is."""
     path = folder() / f"{name}.fmi{fmi}.fmu"
     if "/" in name or not is_file(path):
-        known = ", ".join(fmu_names()) or "none is built; run make build"
-        raise InputError(f"no FMU {name!r} for FMI {fmi} in {folder()} (there are: {known})")
+        names = fmu_names()
+        known = ", ".join(names) or "none is built; run make build"
+        text = f"no FMU {name!r} for FMI {fmi} in {folder()} (there are: {known})"
+        raise InputError(text + suggestion(name, names))
     return path
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.errors import Faults
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.fmus import Port
 from motionfmu.scenarios.system import STEPS_MAX, End, Resolver, Setting, System, Wire
@@ -91,26 +92,50 @@ def output(resolver: Resolver, name: str, table: str, key: str) -> End:
     end = resolver.end(name, table, key)
     if end.port.causality != "output":
         text = f"{name} is no output ({end.port.causality})"
-        raise resolver.document.error(text, table, key)
+        raise resolver.document.error(text, table, key, name)
     if not recordable(end):
         text = f"{name}: only numbers, single or in groups of six"
         text += " (real ones also of three and four), can be recorded"
-        raise resolver.document.error(text, table, key)
+        raise resolver.document.error(text, table, key, name)
     return end
+
+
+def elements(resolver: Resolver, name: str, table: str, key: str) -> tuple[End, tuple[int, ...]]:
+    """The output of which a name is, or an element, and which elements these are, from 1."""
+    whole, bracket, rest = name.partition("[")
+    end = output(resolver, whole, table, key)
+    shape = end.port.shape
+    if not bracket:
+        return end, tuple(range(1, end.port.count + 1)) if shape else ()
+    index = rest.removesuffix("]")
+    if not (shape and rest.endswith("]") and index.isascii() and index.isdigit()):
+        kind = f"an array of {shape[0]}" if shape else "a single value"
+        raise resolver.document.error(f"{name}: {whole} is {kind}", table, key, name)
+    if not 1 <= int(index) <= shape[0]:
+        text = f"{name}: {whole} has elements 1 to {shape[0]}"
+        raise resolver.document.error(text, table, key, name)
+    return end, (int(index),)
 
 
 def chosen(resolver: Resolver, patterns: Iterable[str]) -> list[End]:
     """Outputs that names and patterns name, each once; a pattern passes over the unrecordable."""
-    document, found = resolver.document, {}
+    found: dict[str, End] = {}
+    faults = Faults()
     for pattern in patterns:
-        if "*" in pattern or "?" in pattern:
-            ends = [e for e in resolver.matching(pattern, "output") if recordable(e)]
-            if not ends:
-                raise document.error(f"{pattern!r} matches no output", "record", "signals")
-        else:
-            ends = [output(resolver, pattern, "record", "signals")]
-        found.update({e.name: e for e in ends})
+        with faults.each():
+            found.update({e.name: e for e in _matching(resolver, pattern)})
+    faults.tell()
     return list(found.values())
+
+
+def _matching(resolver: Resolver, pattern: str) -> list[End]:
+    if "*" not in pattern and "?" not in pattern:
+        return [output(resolver, pattern, "record", "signals")]
+    ends = [e for e in resolver.matching(pattern, "output") if recordable(e)]
+    if not ends and not resolver.lost:
+        text = f"{pattern!r} matches no output"
+        raise resolver.document.error(text, "record", "signals", pattern)
+    return ends
 
 
 def _allocate(ends: Iterable[End]) -> list[Column]:

@@ -5,8 +5,9 @@ import math
 from dataclasses import dataclass
 
 from motionfmu import units
-from motionfmu.errors import InputError, suggestion
+from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.scenarios import fmus
+from motionfmu.scenarios.body import LONGEST
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.fmus import Port
 
@@ -14,7 +15,7 @@ Values = tuple[float | int | bool | str, ...]
 # A time in decimal seconds is off a whole number of ns by rounding only.
 NS_TOLERANCE = 1e-3
 # Limits of a run: more than a day of machine time, hours of computing.
-TIME_MAX = 1e5  # [s]
+TIME_MAX = LONGEST  # [s]
 STEPS_MAX = 100_000_000
 # Clock of card and recorder; no FMU here steps by a part of it.
 CLOCK_NS = 25
@@ -59,6 +60,20 @@ class Stimulus:
 
 
 @dataclass(frozen=True)
+class Until:
+    """A signal that ends a run."""
+
+    end: End
+    element: int | None  # of an array, from 0
+    settle: int  # steps that follow the communication point at which it is not 0
+
+    @property
+    def name(self) -> str:
+        """The output, or the element of it."""
+        return self.end.name + (f"[{self.element + 1}]" if self.element is not None else "")
+
+
+@dataclass(frozen=True)
 class System:
     """All that an engine needs."""
 
@@ -69,16 +84,16 @@ class System:
     step_ns: int  # communication step [ns]
     steps: int  # how many
     every: int = 1  # of them is recorded
+    until: Until | None = None  # ends the run before
 
     @property
     def sample_ns(self) -> int:
         """Between two rows of the recording."""
         return self.step_ns * self.every
 
-    @property
-    def samples(self) -> int:
-        """Rows of the recording."""
-        return -(-self.steps // self.every)
+    def rows(self, steps: int) -> int:
+        """Rows of the recording of so many steps."""
+        return -(-steps // self.every)
 
     def due(self) -> dict[int, list[Stimulus]]:
         """Stimuli by the step before which they act."""
@@ -110,22 +125,29 @@ def split(name: str) -> tuple[str, int | None]:
 class Resolver:
     """Looks names up in the FMUs a scenario uses."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, faults: Faults | None = None) -> None:
         self.document = document
         self.ports: dict[str, dict[str, Port]] = {}
+        kept = Faults() if faults is None else faults
         for name, fmu in document.body.component.items():
-            try:
-                self.ports[name] = fmus.ports(fmu)
-            except InputError as error:
-                raise document.error(str(error), "component", name) from None
+            with kept.each():
+                try:
+                    self.ports[name] = fmus.ports(fmu)
+                except InputError as error:
+                    raise document.error(str(error), "component", name) from None
+        # Components of which it was told already that they cannot be.
+        self.lost = set(document.tables.get("component", {})) - set(self.ports)
+        if faults is None:
+            kept.tell()
 
     def end(self, name: str, table: str, key: str) -> End:
         """Find ``component.variable``, written at table and key, or suggest the nearest."""
         component, _, variable = name.partition(".")
+        if component in self.lost:
+            raise InputError()
         if component not in self.ports:
-            raise self.document.error(
-                f"{name}: no component {component!r}{suggestion(component, self.ports)}", table, key
-            )
+            text = f"{name}: no component {component!r}{suggestion(component, self.ports)}"
+            raise self.document.error(text, table, key, name)
         if variable not in self.ports[component]:
             fmu = self.document.body.component[component]
             whole = variable.partition("[")[0]
@@ -134,9 +156,8 @@ class Resolver:
                 if whole in self.ports[component]
                 else suggestion(variable, self.ports[component])
             )
-            raise self.document.error(
-                f"{name}: {fmu} has no variable {variable!r}{hint}", table, key
-            )
+            text = f"{name}: {fmu} has no variable {variable!r}{hint}"
+            raise self.document.error(text, table, key, name)
         return End(component, self.ports[component][variable])
 
     def matching(self, pattern: str, causality: str) -> list[End]:
@@ -174,51 +195,117 @@ def _kind(port: Port) -> str:
 
 def wires(resolver: Resolver) -> list[Wire]:
     """All wires of the scenario, wildcards expanded; types, shapes, units, directions checked."""
-    document, found = resolver.document, {}
+    document, faults = resolver.document, Faults()
+    found: dict[str, Wire] = {}
     for left, right in document.body.connect.items():
-        if left.endswith("*") != right.endswith("*"):
-            raise document.error(
-                f"{left} = {right}: a group needs * on both sides", "connect", left
-            )
-        if left.endswith("*"):
-            targets = resolver.matching(left, "input")
-            sources = {e.name: e for e in resolver.matching(right, "output")}
-            pairs = [
-                Wire(sources[name], target)
-                for target in targets
-                if (name := right[:-1] + target.name[len(left) - 1 :]) in sources
-            ]
-            if not pairs:
-                raise document.error(f"{left} = {right} joins nothing", "connect", left)
-        else:
-            pairs = [
-                Wire(resolver.end(right, "connect", left), resolver.end(left, "connect", left))
-            ]
-        for wire in pairs:
-            _check_wire(document, wire, left)
-            if wire.target.name in found:
-                raise document.error(f"{wire.target.name} has two sources", "connect", left)
-            found[wire.target.name] = wire
+        with faults.each():
+            for wire in _joined(resolver, left, right):
+                _check_wire(document, wire, left)
+                if wire.target.name in found:
+                    raise document.error(f"{wire.target.name} has two sources", "connect", left)
+                found[wire.target.name] = wire
+    faults.tell()
     return list(found.values())
 
 
-def check_inputs(resolver: Resolver, system: System) -> None:
-    """Refuse an input that nothing or two things feed; the message names it."""
+def _joined(resolver: Resolver, left: str, right: str) -> list[Wire]:
+    """The wires of one line of [connect]."""
     document = resolver.document
+    if left.endswith("*") != right.endswith("*"):
+        raise document.error(f"{left} = {right}: a group needs * on both sides", "connect", left)
+    if not left.endswith("*"):
+        faults = Faults()
+        source = faults.of(lambda: resolver.end(right, "connect", left))
+        target = faults.of(lambda: resolver.end(left, "connect", left))
+        if source is None or target is None:
+            raise InputError(*faults.lines)
+        return [Wire(source, target)]
+    targets = resolver.matching(left, "input")
+    sources = {e.name: e for e in resolver.matching(right, "output")}
+    pairs = [
+        Wire(sources[name], target)
+        for target in targets
+        if (name := right[:-1] + target.name[len(left) - 1 :]) in sources
+    ]
+    if not pairs:
+        if resolver.lost & {left.partition(".")[0], right.partition(".")[0]}:
+            raise InputError()
+        raise document.error(f"{left} = {right} joins nothing", "connect", left)
+    return pairs
+
+
+# Open inputs named in a message.
+NAMED_MAX = 8
+
+
+def check_inputs(resolver: Resolver, system: System) -> None:
+    """Refuse inputs that nothing or two things feed; the message names them."""
+    document, faults = resolver.document, Faults()
     wired = {w.target.name for w in system.wires}
     driven = {s.end.name for s in system.stimuli}
-    if both := sorted(wired & driven):
-        raise document.error(f"{both[0]} is connected and driven", "connect", both[0])
+    for name in sorted(wired & driven):
+        with faults.each():
+            raise document.error(f"{name} is connected and driven", "connect", name)
     given = wired | driven | {s.end.name for s in system.settings}
     left = set()
     for pattern in document.body.leave:
         matched = {e.name for e in resolver.matching(pattern, "input")}
-        if not matched:
-            raise document.error(f"leave: {pattern!r} matches no input", "", "leave")
+        with faults.each():
+            if not matched:
+                hint = suggestion(pattern, (e.name for e in resolver.matching("*", "input")))
+                text = f"leave: {pattern!r} matches no input{hint}"
+                raise document.error(text, "", "leave", pattern)
         left |= matched
-    for end in resolver.matching("*", "input"):
-        if end.name not in given | left:
-            raise document.error(
-                f"input {end.name} is open: connect, drive or set it, or name it in leave",
-                "connect",
-            )
+    names = [e.name for e in resolver.matching("*", "input") if e.name not in given | left]
+    if names:
+        some = ", ".join(names[:NAMED_MAX])
+        some += f" and {len(names) - NAMED_MAX} more" if len(names) > NAMED_MAX else ""
+        text = f"input {some} is open: connect, drive or set it, or name it in leave"
+        if len(names) > 1:
+            text = f"inputs {some} are open: connect, drive or set them, or name them in leave"
+        with faults.each():
+            raise document.error(text, "connect")
+    faults.tell()
+
+
+def until(resolver: Resolver, step_ns: int) -> Until | None:
+    """The signal that ends a run; None if a time does."""
+    body, document = resolver.document.body, resolver.document
+    if not isinstance(body.stop, str):
+        return None
+    name = body.stop
+    if "." not in name:
+        name = _only(resolver, name)
+    whole, element = split(name)
+    end = resolver.end(whole, "", "stop")
+    text, kind = f"stop = {body.stop!r}", end.port.type
+    if end.port.causality != "output":
+        raise document.error(f"{text}: {end.name} is no output", "", "stop")
+    if kind not in ("Boolean", "Int32"):
+        wanted = "a Boolean or a whole number wanted"
+        raise document.error(f"{text}: {end.name} is {kind}; {wanted}", "", "stop")
+    if end.port.shape and element is None:
+        raise document.error(f"{text}: which element, {end.name}[1]?", "", "stop")
+    if element is not None and not 0 <= element < end.port.count * bool(end.port.shape):
+        raise document.error(f"{text}: {end.name} has no element {element + 1}", "", "stop")
+    settle = body.settle or 0.0
+    steps = round(settle * 1e9 / step_ns)
+    if abs(settle * 1e9 - steps * step_ns) > NS_TOLERANCE * max(1.0, settle):
+        raise document.error(f"settle = {settle!r} s is no whole number of steps", "", "settle")
+    return Until(end, element, steps)
+
+
+def _only(resolver: Resolver, name: str) -> str:
+    """The one output of this name that a component has."""
+    whole, bracket, rest = name.partition("[")
+    ends = resolver.matching("*", "output")
+    having = [e.component for e in ends if e.port.name == whole]
+    if len(having) == 1:
+        return f"{having[0]}.{whole}{bracket}{rest}"
+    if having:
+        told = f"{' and '.join(having)} have such an output: which, {having[0]}.{name}?"
+    elif resolver.lost:
+        raise InputError()
+    else:
+        told = f"no component has such an output{suggestion(whole, {e.port.name for e in ends})}"
+    raise resolver.document.error(f"stop = {name!r}: {told}", "", "stop")

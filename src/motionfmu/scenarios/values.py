@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from motionfmu.errors import InputError
+from motionfmu.errors import Faults, InputError
 from motionfmu.fmu.describe import STRING_MAX
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.fmus import Port
@@ -16,8 +16,9 @@ from motionfmu.scenarios.system import (
     Setting,
     Stimulus,
     Values,
+    split,
 )
-from motionfmu.toml_lines import is_file, shown
+from motionfmu.toml_lines import shown
 
 
 def values_of(end: End, value: Any) -> Values:
@@ -60,67 +61,95 @@ def start_values(port: Port) -> Values:
 
 def _file_beside(document: Document, values: Values) -> Values:
     """A string that names a file beside the scenario becomes its path."""
-    folder = document.file.parent
-    return tuple(
-        str(folder / x) if isinstance(x, str) and x and is_file(folder / x) else x for x in values
-    )
+    return tuple(str(document.beside(x) or x) if isinstance(x, str) else x for x in values)
 
 
-def settings(resolver: Resolver, overrides: Mapping[str, Any]) -> list[Setting]:
-    """Values set before the run: the scenario's, then the caller's, which are stronger."""
-    document, found = resolver.document, {}
-    for source, pairs in (("set", document.body.set), ("", overrides)):
-        for name, value in pairs.items():
-            end = resolver.end(name, source, name) if source else _override_end(resolver, name)
-            if end.port.causality not in ("parameter", "input"):
-                text = f"{name} is an {end.port.causality} and cannot be set"
-                raise document.error(text, "set", name) if source else InputError(f"set {text}")
-            try:
-                found[name] = Setting(end, _file_beside(document, values_of(end, value)))
-            except ValueError as error:
-                raise (
-                    document.error(str(error), "set", name)
-                    if source
-                    else InputError(f"set {error}")
-                ) from None
+def settings(resolver: Resolver, *stronger: Mapping[str, Any]) -> list[Setting]:
+    """Values set before the run: the scenario's, then the caller's, each stronger than before.
+
+    A value of one element, ``component.variable[i]``, leaves the others as they are.
+    """
+    document, faults = resolver.document, Faults()
+    found: dict[str, Setting] = {}
+    for layer, pairs in enumerate((document.body.set, *stronger)):
+        for name in sorted(pairs, key=lambda n: split(n)[1] is not None):
+            with faults.each():
+                try:
+                    given = setting(resolver, name, pairs[name], found)
+                    found[given.end.name] = given
+                except InputError as error:
+                    raise error if layer == 0 else unplaced(document, error) from None
+    faults.tell()
     return list(found.values())
 
 
-def _override_end(resolver: Resolver, name: str) -> End:
+def setting(resolver: Resolver, name: str, value: Any, found: Mapping[str, Setting]) -> Setting:
+    """A value for a variable, or for an element of what it has so far."""
+    document = resolver.document
+    whole, element = split(name)
+    end = resolver.end(whole, "set", name)
+    if end.port.causality not in ("parameter", "input"):
+        text = f"{name} is an {end.port.causality} and cannot be set"
+        raise document.error(text, "set", name)
     try:
-        return resolver.end(name, "set", name)
-    except InputError as error:
-        text = str(error).removeprefix(f"{resolver.document.file}:").partition(": ")[2]
-        raise InputError(f"set {text}") from None
+        if element is not None:
+            if not 0 <= element < end.port.count * bool(end.port.shape):
+                raise ValueError(f"{name}: {whole} has {_elements(end)}")
+            if isinstance(value, list | tuple):
+                raise ValueError(f"{name} = {shown(value)}: one value wanted")
+            before = found[whole].values if whole in found else start_values(end.port)
+            value = [*before[:element], value, *before[element + 1 :]]
+        return Setting(end, _file_beside(document, values_of(end, value)))
+    except ValueError as error:
+        raise document.error(str(error), "set", name) from None
+
+
+def _elements(end: End) -> str:
+    return f"elements 1 to {end.port.count}" if end.port.shape else "a single value"
+
+
+def unplaced(document: Document, error: InputError) -> InputError:
+    """The error of a value that is not the scenario's: without a place in its file."""
+    names = [s.name for s in document.sources]
+    ends = [max(len(n) for n in ["", *names] if line.startswith(n)) for line in error.args]
+    texts = (line[end:].partition(": ")[2] for line, end in zip(error.args, ends, strict=True))
+    return InputError(*(f"set {text}" for text in texts))
 
 
 def stimuli(resolver: Resolver, step_ns: int) -> list[Stimulus]:
     """Stimuli of the scenario on its communication steps, ordered by step."""
-    document, found = resolver.document, []
-    for number, drive in enumerate(document.body.drive):
-        table = f"drive.{number}"
-        end = resolver.end(drive.input, table, "input")
-        if end.port.causality != "input" and not end.port.tunable:
-            raise document.error(f"{end.name} is no input ({end.port.causality})", table, "input")
-        if len(drive.at) != len(drive.value):
-            raise document.error(
-                f"{len(drive.at)} times for {len(drive.value)} values", table, "value"
-            )
-        last = -1
-        for time, value in zip(drive.at, drive.value, strict=True):
-            if not 0.0 <= time <= TIME_MAX:
-                text = f"at = {time!r} s is not within 0 .. {TIME_MAX:g} s"
-                raise document.error(text, table, "at")
-            step = round(time * 1e9 / step_ns)
-            if abs(time * 1e9 - step * step_ns) > NS_TOLERANCE * max(1.0, time):
-                raise document.error(f"at = {time!r} s is no whole number of steps", table, "at")
-            if step <= last:
-                raise document.error(
-                    f"at = {time!r} s does not come after the one before", table, "at"
-                )
-            last = step
-            try:
-                found.append(Stimulus(end, step, values_of(end, value)))
-            except ValueError as error:
-                raise document.error(str(error), table, "value") from None
+    found: list[Stimulus] = []
+    faults = Faults()
+    for number in range(len(resolver.document.body.drive)):
+        with faults.each():
+            found += _driven(resolver, number, step_ns)
+    faults.tell()
     return sorted(found, key=lambda s: s.step)
+
+
+def _driven(resolver: Resolver, number: int, step_ns: int) -> list[Stimulus]:
+    """The steps of one [[drive]]."""
+    document, table = resolver.document, f"drive.{number}"
+    drive, found, last = document.body.drive[number], [], -1
+    end = resolver.end(drive.input, table, "input")
+    if end.port.causality != "input" and not end.port.tunable:
+        raise document.error(f"{end.name} is no input ({end.port.causality})", table, "input")
+    if len(drive.at) != len(drive.value):
+        text = f"{len(drive.at)} times for {len(drive.value)} values"
+        raise document.error(text, table, "value")
+    for time, value in zip(drive.at, drive.value, strict=True):
+        if not 0.0 <= time <= TIME_MAX:
+            text = f"at = {time!r} s is not within 0 .. {TIME_MAX:g} s"
+            raise document.error(text, table, "at")
+        step = round(time * 1e9 / step_ns)
+        if abs(time * 1e9 - step * step_ns) > NS_TOLERANCE * max(1.0, time):
+            raise document.error(f"at = {time!r} s is no whole number of steps", table, "at")
+        if step <= last:
+            text = f"at = {time!r} s does not come after the one before"
+            raise document.error(text, table, "at")
+        last = step
+        try:
+            found.append(Stimulus(end, step, values_of(end, value)))
+        except ValueError as error:
+            raise document.error(str(error), table, "value") from None
+    return found

@@ -14,8 +14,8 @@ from motionfmu.run import Scenario
 from motionfmu.run.checks import is_figure, wrong_figure
 from motionfmu.run.result import Result
 from motionfmu.scenarios import recording
+from motionfmu.scenarios.body import Check
 from motionfmu.scenarios.contour_signals import wanted as of_contour
-from motionfmu.scenarios.document import Check
 from motionfmu.scenarios.iso9283_signals import wanted as of_iso9283
 from motionfmu.scenarios.system import End, split
 

@@ -16,7 +16,7 @@ from motionfmu.scenarios.system import End, split
 from motionfmu.study import axes as ax
 from motionfmu.study.columns import Column, column, usual
 from motionfmu.study.study_file import Body, Origin, read
-from motionfmu.toml_lines import is_file, shown, tables_of, text_of
+from motionfmu.toml_lines import shown, tables_of, text_of
 
 
 @dataclass(frozen=True)
@@ -139,13 +139,12 @@ def digest(scenario: Scenario, given: Iterable[Any] = ()) -> str:
     """Fingerprint of a scenario, the files it names and its FMUs."""
     # Given values may name files beside the scenario, too.
     names = sorted({*scenario.document.body.component.values(), "scope"})
-    found = hashlib.sha256(scenario.document.file.read_bytes())
-    beside = scenario.document.file.parent
-    files = [fmus.fmu_path(name) for name in names]
+    found = hashlib.sha256()
+    files = [*scenario.document.files, *(fmus.fmu_path(name) for name in names)]
     for value in (*scenario.document.body.set.values(), *given):
         listed = value if isinstance(value, list) else [value]
         texts = (x for x in listed if isinstance(x, str) and x)
-        files += [beside / x for x in texts if is_file(beside / x)]
+        files += [file for x in texts if (file := scenario.document.beside(x))]
     for file in files:
         found.update(hashlib.sha256(file.read_bytes()).digest())
     return found.hexdigest()

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.errors import InputError
-from motionfmu.scenarios.document import Name, Names, Value
+from motionfmu.scenarios.body import Name, Names, Value
 from motionfmu.toml_lines import Lines, is_file, shown, tables_of, text_of
 
 FILE = "sweep.toml"

@@ -21,6 +21,7 @@ from fmpy.model_description import (
 )
 
 from motionfmu.errors import InputError
+from motionfmu.run.engines.ending import Ending, Ran
 from motionfmu.run.engines.slave import Slave, element_names
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
@@ -28,13 +29,15 @@ from motionfmu.scenarios.system import End, System
 TOKEN = "{6d6f7469-6f6e-666d-7500-636f6e746169}"
 
 
-def _outer(name: str, kind: str, reference: int, start: str | None) -> ModelVariable:
+def _outer(
+    name: str, kind: str, reference: int, start: str | None, causality: str = "input"
+) -> ModelVariable:
     """The container's variable for one element; text can be given by its start value only."""
     return ModelVariable(
         type=kind,
         name=name,
         valueReference=reference,
-        causality="input",
+        causality=causality,
         variability="discrete",
         start=start,
     )
@@ -73,6 +76,12 @@ def _configuration(system: System, folder: Path) -> Configuration:
             name = f"{end.component}.{inner.name}"
             shown = _outer(name, end.port.type, len(outer) + 1, texts.get(end.name))
             outer[shown] = [(components[end.component], inner)]
+    if system.until is not None:
+        end = system.until.end
+        for inner in _elements(variables[end.component], end):
+            name = f"{end.component}.{inner.name}"
+            shown = _outer(name, end.port.type, len(outer) + 1, None, "output")
+            outer[shown] = [(components[end.component], inner)]
     step = system.step_ns * 1e-9
     description = ModelDescription(
         fmiVersion="3.0",
@@ -105,8 +114,18 @@ def _give(slave: Slave, end: End, values: Iterable[Any]) -> None:
         slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], [value])
 
 
-def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
-    """Run a system inside FMPy's container FMU, FMI 2 only; returns what the FMUs warned of."""
+def _ending(slave: Slave, system: System) -> Ending:
+    """Where the run ends; the signal is an output of the container."""
+    if system.until is None:
+        return Ending(system)
+    end = system.until.end
+    first, *further = (slave.references[f"{end.component}.{n}"] for n in element_names(end))
+    values = slave.buffer(end.port.type, end.port.count)
+    return Ending(system, slave.access("Get", end.port.type, first, values, *further), values)
+
+
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> Ran:
+    """Run a system inside FMPy's container FMU, FMI 2 only."""
     if fmi != 2:
         raise InputError(f"engine fmpy runs FMI 2 components only, not FMI {fmi}")
     with ExitStack() as stack:
@@ -123,12 +142,10 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str
         slave.start()
         due = system.due()
         step = system.step_ns * 1e-9
-        for k in range(system.steps):
+        ending = _ending(slave, system)
+        for k in ending.points(progress):
             for now in due.get(k, ()):
                 _give(slave, now.end, now.values)
             slave.step(k * system.step_ns * 1e-9, step)
-            if k % max(1, system.steps // 100) == 0:
-                progress(k / system.steps)
         slave.end()
-        progress(1.0)
-        return [told for told in slave.warnings if not told.startswith(f"{slave.name}: ")]
+        return ending.ran([w for w in slave.warnings if not w.startswith(f"{slave.name}: ")])

@@ -1,7 +1,8 @@
 """The native engine: the system becomes one container FMU whose master is C.
 
 The container is made by fmucontainer of the FMU manipulation toolbox in its parallel mode, which
-exchanges all values and then steps all FMUs (Jacobi). It is run by FMPy in few long steps.
+exchanges all values and then steps all FMUs (Jacobi). It is run by FMPy in few long steps, or step
+by step if a signal ends the run.
 """
 
 import logging
@@ -14,13 +15,12 @@ from typing import Any
 
 from fmu_manipulation_toolbox.container import FMUContainer
 
+from motionfmu.run.engines.ending import SHARES, Ending, Ran
 from motionfmu.run.engines.slave import Slave, element_names
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
 
 IDENTIFIER = "system"
-# A run is cut into at least so many steps of the container, so that progress shows.
-PARTS = 100
 
 
 def _exposed(end: End, fmi: int) -> list[str]:
@@ -70,6 +70,10 @@ def build(system: System, fmi: int, folder: Path) -> Path:
         for end in {e.name: e for e in ends}.values():
             for name in _exposed(end, fmi):
                 container.add_input(f"{end.component}.{name}", f"{end.component}.fmu", name)
+        if system.until is not None:
+            end = system.until.end
+            for name in _exposed(end, fmi):
+                container.add_output(f"{end.component}.fmu", name, f"{end.component}.{name}")
         container.make_fmu(f"{IDENTIFIER}.fmu", step_size=system.step_ns * 1e-9, debug=True)
     finally:
         log.disabled = before
@@ -93,8 +97,8 @@ class Container:
         self._slave = Slave(IDENTIFIER, build(system, fmi, folder), fmi, [])
         self._used = False
 
-    def run(self, system: System, progress: Callable[[float], None]) -> list[str]:
-        """Run from the start; returns what the FMUs warned of.
+    def run(self, system: System, progress: Callable[[float], None]) -> Ran:
+        """Run from the start.
 
         The system is the one of the constructor, or one that differs in values only.
         """
@@ -106,24 +110,48 @@ class Container:
             _give(slave, s.end, s.values)
         slave.initialize()
         slave.start()
-        part = max(1, system.steps // PARTS)
-        due = system.due()
+        ending = self._ending(system)
+        if system.until is None:
+            self._in_parts(system, progress)
+        else:
+            due, step = system.due(), system.step_ns * 1e-9
+            advance = slave.stepper(step)
+            for k in ending.points(progress):
+                for now in due.get(k, ()):
+                    _give(slave, now.end, now.values)
+                advance(k * system.step_ns * 1e-9)
+        slave.end()
+        return ending.ran([w for w in slave.warnings if not w.startswith(f"{IDENTIFIER}: ")])
+
+    def _ending(self, system: System) -> Ending:
+        """Where the run ends; the signal is an output of the container."""
+        if system.until is None:
+            return Ending(system)
+        slave, end = self._slave, system.until.end
+        first, *further = (
+            slave.references[f"{end.component}.{name}"] for name in _exposed(end, slave.fmi)
+        )
+        values = slave.buffer(end.port.type, end.port.count)
+        return Ending(system, slave.access("Get", end.port.type, first, values, *further), values)
+
+    def _in_parts(self, system: System, progress: Callable[[float], None]) -> None:
+        """Run in few long steps."""
+        slave, due = self._slave, system.due()
+        part = max(1, system.steps // SHARES)
         cuts = sorted({0, *range(0, system.steps, part), *(k for k in due if k < system.steps)})
         for k, following in zip(cuts, [*cuts[1:], system.steps], strict=True):
             for now in due.get(k, ()):
                 _give(slave, now.end, now.values)
             slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
             progress(following / system.steps)
-        slave.end()
-        return [told for told in slave.warnings if not told.startswith(f"{IDENTIFIER}: ")]
 
     def free(self) -> None:
         """Free the instance and the library."""
         self._slave.free()
 
 
-def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
-    """Run a system inside a container FMU; returns what the FMUs warned of."""
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> Ran:
+    """Run a system inside a container FMU."""
     with ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
         container = Container(system, fmi, Path(folder))

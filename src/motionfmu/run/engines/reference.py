@@ -6,6 +6,7 @@ At each communication point all outputs are read, then all inputs written, then 
 from collections.abc import Callable
 from contextlib import ExitStack
 
+from motionfmu.run.engines.ending import Ending, Ran
 from motionfmu.run.engines.slave import Slave
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import System, Wire
@@ -29,8 +30,17 @@ def _wire(slaves: dict[str, Slave], wire: Wire) -> tuple[Callable[[], None], Cal
     return get, convert
 
 
-def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str]:
-    """Run a system with FMPy, one Python call per value; returns what the FMUs warned of."""
+def _ending(slaves: dict[str, Slave], system: System) -> Ending:
+    """Where the run ends; the signal is read in the FMU that shows it."""
+    if system.until is None:
+        return Ending(system)
+    slave, port = slaves[system.until.end.component], system.until.end.port
+    values = slave.buffer(port.type, port.count)
+    return Ending(system, slave.access("Get", port.type, port.reference, values), values)
+
+
+def run(system: System, fmi: int, progress: Callable[[float], None]) -> Ran:
+    """Run a system with FMPy, one Python call per value."""
     messages: list[str] = []
     with ExitStack() as stack:
         slaves: dict[str, Slave] = {}
@@ -47,7 +57,8 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str
         wires = [_wire(slaves, w) for w in system.wires]
         due = system.due()
         step = system.step_ns * 1e-9
-        for k in range(system.steps):
+        ending = _ending(slaves, system)
+        for k in ending.points(progress):
             for now in due.get(k, ()):
                 port = now.end.port
                 slaves[now.end.component].assign(port.type, port.reference, now.values)
@@ -57,9 +68,6 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> list[str
                 put()
             for slave in slaves.values():
                 slave.step(k * system.step_ns * 1e-9, step)
-            if k % max(1, system.steps // 100) == 0:
-                progress(k / system.steps)
         for slave in slaves.values():
             slave.end()
-        progress(1.0)
-        return [told for slave in slaves.values() for told in slave.warnings]
+        return ending.ran([told for slave in slaves.values() for told in slave.warnings])

@@ -5,7 +5,7 @@ import itertools
 import re
 import shutil
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from ctypes import byref
 from pathlib import Path
 from typing import Any
@@ -128,8 +128,8 @@ class Slave:
     def access(self, verb: str, kind: str, reference: int, buffer: Any, *further: int) -> Any:
         """A function without arguments that gets or sets one variable through its buffer.
 
-        The verb is ``Get`` or ``Set``; the function raises InputError when the FMU refuses. With
-        FMI 3 the buffer may hold the values of further variables, one after the other.
+        The verb is ``Get`` or ``Set``; the function raises InputError when the FMU refuses. The
+        buffer may hold the values of further variables, one after the other.
         """
         count = len(buffer)
         if self.fmi == 3:
@@ -139,7 +139,8 @@ class Slave:
             arguments: tuple[Any, ...] = (self.slave.component, all_of, sizes[0], buffer, sizes[1])
         else:
             call = getattr(self.slave.dll, f"fmi2{verb}{_FMI2[kind]}")
-            references = (ctypes.c_uint32 * count)(*range(reference, reference + count))
+            listed = (reference, *further) if further else range(reference, reference + count)
+            references = (ctypes.c_uint32 * count)(*listed)
             arguments = (self.slave.component, references, ctypes.c_size_t(count), buffer)
 
         def run() -> None:
@@ -176,6 +177,22 @@ class Slave:
     def step(self, time: float, size: float) -> None:
         """Advance from a communication point by one step [s]."""
         self._do("doStep", currentCommunicationPoint=time, communicationStepSize=size)
+
+    def stepper(self, size: float) -> Callable[[float], None]:
+        """A quick `step` of one size [s]: a function of the communication point [s]."""
+        call = getattr(self.slave.dll, f"fmi{self.fmi}DoStep")
+        instance, length = self.slave.component, ctypes.c_double(size)
+        if self.fmi == 3:
+            flags = [byref(ctypes.c_bool()) for _ in range(3)]
+            rest: tuple[Any, ...] = (ctypes.c_bool(True), *flags, byref(ctypes.c_double()))
+        else:
+            rest = (ctypes.c_int(1),)
+
+        def advance(time: float) -> None:
+            if call(instance, ctypes.c_double(time), length, *rest) >= _ERROR:
+                raise self.failure("doStep")
+
+        return advance
 
     def end(self) -> None:
         """Terminate: the FMU writes its files."""

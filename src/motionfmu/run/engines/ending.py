@@ -1,0 +1,55 @@
+"""Where a run ends: at its last step, or behind a signal."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from motionfmu.scenarios.system import System
+
+# Calls of the progress in a run.
+SHARES = 100
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What an engine tells of a run beside the files of its scopes."""
+
+    warnings: list[str]  # of the FMUs
+    steps: int  # done
+    signal: int | None = None  # communication point at which the signal that ends it came
+
+
+class Ending:
+    """Ends a run behind the first communication point at which a signal is not 0.
+
+    `read` fills `values`, the signal's elements; both are of the engine.
+    """
+
+    def __init__(
+        self, system: System, read: Callable[[], None] = lambda: None, values: Any = ()
+    ) -> None:
+        self._system, self._read, self._values = system, read, values
+        self._until = system.until
+        self.steps = system.steps
+        self.signal: int | None = None
+
+    def ran(self, warnings: list[str]) -> Ran:
+        """What is told at the end."""
+        return Ran(warnings, self.steps, self.signal)
+
+    def points(self, progress: Callable[[float], None]) -> Iterator[int]:
+        """Communication points from which a step is to be made, one after the other."""
+        part, element, k = max(1, self.steps // SHARES), 0, 0
+        if self._until is not None and self._until.element is not None:
+            element = self._until.element
+        while k < self.steps:
+            if self._until is not None and self.signal is None:
+                self._read()
+                if self._values[element]:
+                    self.signal = k
+                    self.steps = min(self.steps, k + 1 + self._until.settle)
+            yield k
+            if k % part == 0:
+                progress(k / self._system.steps)
+            k += 1
+        progress(1.0)

@@ -1,0 +1,149 @@
+"""The tables of a scenario: their keys and types."""
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+from motionfmu.scenarios.analyses import Iso9283, View, Waveform
+from motionfmu.toml_lines import KEY_MAX
+
+Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+Pair = tuple[float, float]
+_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+# Each is an FMU with a library and a folder of its own.
+COMPONENTS_MAX = 64
+# The name becomes that of an instance and of a file; the recorder's own begin with "_".
+Component = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
+# Names and patterns are looked up in all variables of all components.
+LISTED_MAX = 1000
+FIGURES_MAX = 100  # a picture each
+LONGEST = 1e5  # [s] run: more than a day of machine time
+Name = Annotated[str, Field(max_length=KEY_MAX)]
+Names = Annotated[list[Name], Field(max_length=LISTED_MAX)]
+
+
+class Drive(BaseModel):
+    """An input that steps to given values at given times [s]."""
+
+    model_config = _STRICT
+    input: Name
+    at: list[float] = Field(min_length=1)
+    value: list[Value] = Field(min_length=1)
+
+
+class Check(BaseModel):
+    """Bounds of one signal or figure; each one given must hold."""
+
+    model_config = _STRICT
+    min: float | Pair | None = None
+    max: float | Pair | None = None
+    absmax: float | Pair | None = None
+    peak: Pair | None = None
+    rms: Pair | None = None
+    final: bool | float | Pair | None = None
+    changes: float | Pair | None = None
+    order: tuple[float, ...] | None = Field(default=None, min_length=1, max_length=LISTED_MAX)
+    rate: float | None = None
+    at: float | None = None
+    windows: tuple[Pair, ...] | None = Field(default=None, min_length=1)
+
+
+class Contrary(BaseModel):
+    """Values that switch off a claim; the checks named must fail."""
+
+    model_config = _STRICT
+    off: str = Field(min_length=1)
+    set: dict[str, Value] = Field(min_length=1)
+    fails: Names = Field(min_length=1)
+
+
+class Contour(BaseModel):
+    """Which signals hold the actual position and the pulses put out."""
+
+    model_config = _STRICT
+    position: Name
+    pulses: Name
+
+
+class Record(BaseModel):
+    """What is recorded: names or patterns of outputs, at every step or every so many."""
+
+    model_config = _STRICT
+    every: int = Field(default=1, ge=1, le=1_000_000)  # [steps]
+    signals: Names = Field(min_length=1)
+
+
+class Plot(BaseModel):
+    """One panel of a figure: signals, and how they are shown."""
+
+    model_config = _STRICT
+    signals: Names = Field(min_length=1)
+    label: str = Field(min_length=1)
+    steps: bool = False
+    rate: float | None = None
+    scale: float = 1.0
+    levels: dict[str, float] = Field(default_factory=dict)
+    names: list[str] | None = None
+
+
+class Figure(BaseModel):
+    """Panels above each other that share the time axis [s]."""
+
+    model_config = _STRICT
+    title: str = Field(min_length=1)
+    note: str = ""
+    window: list[float] | None = Field(default=None, min_length=2, max_length=2)
+    plot: list[Plot] = Field(min_length=1, max_length=FIGURES_MAX)
+
+
+def _listed(x: Any) -> Any:
+    """One table of bounds, or several."""
+    return tuple(x) if isinstance(x, list | tuple) else (x,)
+
+
+Checks = Annotated[
+    tuple[Check, ...], BeforeValidator(_listed), Field(min_length=1, max_length=LISTED_MAX)
+]
+
+
+class Body(BaseModel):
+    """The tables of a scenario.toml."""
+
+    model_config = _STRICT
+    stop: Annotated[float, Field(gt=0)] | Name
+    limit: float | None = Field(default=None, gt=0)
+    settle: float | None = Field(default=None, ge=0)
+    step: float = Field(gt=0)
+    component: dict[Component, Name] = Field(min_length=1, max_length=COMPONENTS_MAX)
+    connect: dict[str, Name] = Field(default_factory=dict, max_length=LISTED_MAX)
+    set: dict[str, Value] = Field(default_factory=dict)
+    drive: list[Drive] = Field(default_factory=list, max_length=LISTED_MAX)
+    leave: Names = Field(default_factory=list)
+    record: Record
+    contour: Contour | None = None
+    iso9283: Iso9283 | None = None
+    view: View = View()
+    figure: list[Figure] = Field(default_factory=list, max_length=FIGURES_MAX)
+    waveform: list[Waveform] = Field(default_factory=list, max_length=FIGURES_MAX)
+    check: dict[str, Checks] = Field(default_factory=dict, max_length=LISTED_MAX)
+    contrary: list[Contrary] = Field(default_factory=list, max_length=LISTED_MAX)
+
+    @property
+    def stop_limit(self) -> float:
+        """When a run ends at the latest [s]."""
+        return self.stop if isinstance(self.stop, float) else self.limit or LONGEST
+
+
+# The model of a table, by its name.
+MODELS: dict[str, type[BaseModel]] = {
+    "drive": Drive,
+    "check": Check,
+    "contrary": Contrary,
+    "contour": Contour,
+    "record": Record,
+    "figure": Figure,
+    "plot": Plot,
+    "iso9283": Iso9283,
+    "view": View,
+    "waveform": Waveform,
+}
