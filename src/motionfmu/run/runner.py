@@ -198,7 +198,7 @@ def scenario(
     folder: str | Path = ".",
     about: str = "",
 ) -> Scenario:
-    """Make a scenario of a dictionary with the tables of a scenario.toml.
+    """Make a scenario of tables like those of a scenario.toml.
 
     Parameters
     ----------
