@@ -1,5 +1,15 @@
-"""Motion controllers as FMI co-simulation FMUs, run under FMPy."""
+"""Motion controllers as FMI co-simulation FMUs, run under FMPy.
 
+>>> import motionfmu
+>>> result = motionfmu.load("scenarios/circle").run()  # doctest: +SKIP
+>>> result.plot("mcc.path_feed")  # doctest: +SKIP
+
+The library and the card without FMUs are in `motionfmu.mcc`, the robot in `motionfmu.robot`, part
+programs in `motionfmu.gcode`, linear models in `motionfmu.linear`.
+"""
+
+import importlib
+import pkgutil
 from typing import TYPE_CHECKING, Any
 
 from motionfmu.errors import InputError
@@ -11,14 +21,20 @@ __all__ = ["InputError", "Result", "Scenario", "load", "scenario"]
 
 
 def __getattr__(name: str) -> Any:
-    """Import the runner when it is first used; the build needs descriptions only."""
+    """Import the runner, or a folder, when it is first used; the build needs descriptions only."""
     if name in __all__:
         from motionfmu import run
 
         return getattr(run, name)
+    if name in _folders():
+        return importlib.import_module(f"motionfmu.{name}")
     raise AttributeError(f"module 'motionfmu' has no attribute {name!r}")
 
 
+def _folders() -> list[str]:
+    return [module.name for module in pkgutil.iter_modules(__path__) if module.ispkg]
+
+
 def __dir__() -> list[str]:
-    """Names of `__all__`, though the runner is not imported yet."""
-    return __all__
+    """Names of `__all__` and of the folders, though they are not imported yet."""
+    return [*__all__, *_folders()]

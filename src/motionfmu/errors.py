@@ -76,3 +76,7 @@ class NoNumber(InputError):
 
     A check of it has failed; in a study its cell is empty.
     """
+
+
+class UnknownSignal(InputError, KeyError):
+    """A result has no such signal, or a signal no such element."""

@@ -32,6 +32,13 @@ def imported(text: str) -> Iterator[tuple[str, str]]:
             yield from ((node.module or "", a.name) for a in node.names)
 
 
+def by_name(text: str) -> list[str]:
+    """What a module imports by a text that says which."""
+    calls = [n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Call)]
+    made = [c.args[0] for c in calls if "import_module" in ast.unparse(c.func)]
+    return [ast.unparse(what) for what in made]
+
+
 def graph(texts: dict[str, str]) -> Graph:
     """Which modules each module of the package imports."""
     return {
@@ -87,6 +94,15 @@ def test_no_module_imports_what_comes_later_on_the_way() -> None:
 def test_every_part_of_the_package_has_its_place_on_the_way() -> None:
     own = {f.parent.name for f in PACKAGE.glob("*/*.py")} | {f.stem for f in PACKAGE.glob("*.py")}
     assert sorted(way()) == sorted(own - {"__init__", "__main__", "motionfmu"})
+
+
+def test_only_what_a_result_shows_of_itself_is_imported_by_name() -> None:
+    found = {name: told for name, f in modules().items() if (told := by_name(f.read_text()))}
+    assert found == {
+        "motionfmu": ["f'motionfmu.{name}'"],
+        "motionfmu.cli": ["module.name"],
+        "motionfmu.run.result": ["f'motionfmu.report.{module}'"],
+    }
 
 
 @pytest.mark.parametrize("line", ["from p.b import y", "def f():\n    from p import b"])

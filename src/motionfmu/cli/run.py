@@ -96,7 +96,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
         "every": every,
     }
     result = run_shown(scenario, options | {"source": files_of(set_)})
-    shown = outcome.save(result, target, options, csv)
+    shown = outcome.save(result, target, csv)
     verdicts(result.checks)
     warnings(result.warnings)
     for line in result.overrides:

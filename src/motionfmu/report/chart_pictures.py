@@ -2,7 +2,7 @@
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -37,14 +37,14 @@ def write_charts(charts: Sequence[Chart], folder: Path) -> None:
             picture.savefig(folder / f"figure{number}.svg", metadata={"Date": None})
 
 
-def chart_picture(chart: Chart) -> Figure:
-    """The picture of a figure, a pair of axes per panel."""
+def chart_picture(chart: Chart, make: Callable[..., Figure] = Figure) -> Figure:
+    """The picture of a figure, a pair of axes per panel; `make` as of `path_picture`."""
     title, note = textwrap.wrap(chart.title, TITLE), textwrap.wrap(chart.note, NOTE)
     head = MARGIN + TITLE_ROW * len(title) + NOTE_ROW * len(note)
     rows = sum(_rows(p) for p in chart.panels if p.legend)
     sizes = heights(chart, HEIGHTS)
     height = head + sum(sizes) + LEGEND_ROW * rows + BELOW
-    picture = Figure(figsize=(WIDTH, height))
+    picture = make(figsize=(WIDTH, height))
     left, top = MARGIN / WIDTH, 1.0 - MARGIN / height
     place: Any = {"ha": "left", "va": "top", "linespacing": 1.2}
     picture.text(left, top, "\n".join(title), fontsize=14, fontweight="bold", **place)

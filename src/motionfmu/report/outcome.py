@@ -4,7 +4,7 @@ import contextlib
 import json
 import os
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +39,7 @@ def usable(folder: Path) -> Path:
     return folder
 
 
-def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = False) -> Path:
+def save(result: Result, folder: Path, csv: bool = False) -> Path:
     """Write a run's folder, whole or not at all; give the report."""
     # An older result is replaced; anything else in the folder is an InputError.
     with whole(folder) as part:
@@ -51,7 +51,7 @@ def save(result: Result, folder: Path, options: Mapping[str, Any], csv: bool = F
         wanted = result.scenario.document.body.contour is not None and not result.no_contour
         contour = result.contour() if wanted else None
         ran = ran_of(result, contour)
-        found = numbers(result, options) | ran.numbers()
+        found = numbers(result) | ran.numbers()
         text = json.dumps(found, indent=1, allow_nan=False)
         (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
         if csv:

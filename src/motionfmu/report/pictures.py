@@ -1,5 +1,6 @@
 """The main picture, as SVG and PNG."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -37,9 +38,11 @@ def write_pictures(name: str, contour: ContourResult, drawing: Drawing, folder: 
             figure.savefig(folder / file, dpi=160, metadata=plain)
 
 
-def path_picture(name: str, contour: ContourResult, drawing: Drawing) -> Figure:
-    """The path with its magnified error."""
-    figure = Figure(figsize=(10.0, 8.0), layout="constrained")
+def path_picture(
+    name: str, contour: ContourResult, drawing: Drawing, make: Callable[..., Figure] = Figure
+) -> Figure:
+    """The path with its magnified error, in a figure of pyplot's or one by itself."""
+    figure = make(figsize=(10.0, 8.0), layout="constrained")
     space = len(drawing.names) == 3
     axes: Any = figure.add_subplot(projection="3d" if space else None)
     lines = _draw(axes, drawing)

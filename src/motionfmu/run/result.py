@@ -1,15 +1,17 @@
 """What a run gave: signals, contour, verdicts."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.errors import NoNumber
-from motionfmu.run import figures, waveforms
+from motionfmu.run import figures, signals, waveforms
 from motionfmu.run.checks import Verdict, is_figure, judge
 from motionfmu.run.figures import Chart
 from motionfmu.run.prepared import Prepared
@@ -17,6 +19,9 @@ from motionfmu.scenarios import values
 from motionfmu.scenarios.system import Resolver
 
 if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
     from motionfmu.contour import ContourResult
     from motionfmu.iso9283 import Evaluation
 
@@ -27,9 +32,17 @@ def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
     return float(time[zero[-1] + 1]) if len(zero) and zero[-1] + 1 < len(x) else None
 
 
-@dataclass
-class Result:
-    """What a run gave.
+def _report(module: str) -> Any:
+    """A module of the report: what a result shows of itself is made there, where it is asked."""
+    return import_module(f"motionfmu.report.{module}")
+
+
+@dataclass(eq=False, repr=False)
+class Result(Mapping[str, NDArray[Any]]):
+    """What a run gave: its signals by name, verdicts, analyses.
+
+    ``result["card.stock"]`` is a signal, ``result["card.stock[1]"]`` its first axis. Arrays are
+    those that the analyses read, so they cannot be written to: ``.copy()`` gives one that can.
 
     Attributes
     ----------
@@ -52,6 +65,14 @@ class Result:
         Why it ended: ``stop = 4 s``, ``mcc.done at 16.213 s``.
     signal_at : float or None
         When the signal that ends the run came [s]; None if it did not, or a time ends it.
+
+    Examples
+    --------
+    >>> result = motionfmu.load("scenarios/circle").run()  # doctest: +SKIP
+    >>> result  # doctest: +SKIP
+    <Result circle: 13 of 13 checks hold, 80000 rows of 20 signals, 8 s>
+    >>> result.to_pandas(["mcc.path_feed", "machine.*"]).describe()  # doctest: +SKIP
+    >>> result.plot("mcc.path_feed", ("drives.torque[1]", "drives.torque[2]"))  # doctest: +SKIP
     """
 
     scenario: Prepared
@@ -67,17 +88,131 @@ class Result:
     _contour: "ContourResult | NoNumber | None" = None
     _iso9283: "Evaluation | NoNumber | None" = None
 
+    def __post_init__(self) -> None:
+        signals.locked(self.time)
+        for data in self.signals.values():
+            signals.locked(data)
+
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
     def __getitem__(self, name: str) -> NDArray[Any]:
         """A signal, or with ``name[i]`` one axis of it, i from 1."""
-        if name in self.signals:
-            return self.signals[name]
-        whole, bracket, rest = name.partition("[")
-        index = rest.removesuffix("]")
-        if bracket and whole in self.signals and index.isdecimal():
-            data = self.signals[whole]
-            if data.ndim == 2 and 1 <= int(index) <= data.shape[1]:
-                return data[:, int(index) - 1]
-        raise KeyError(f"{name} is not recorded (recorded: {', '.join(sorted(self.signals))})")
+        return signals.signal(self.signals, name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.signals)
+
+    def __len__(self) -> int:
+        return len(self.signals)
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __repr__(self) -> str:
+        checks = self.checks
+        hold = sum(v.ok for v in checks)
+        judged = f"{hold} of {len(checks)} checks hold" if checks else "no checks"
+        return f"<Result {self.name}: {judged}, {self.size}>"
+
+    def _repr_html_(self) -> str:
+        return str(_report("notebook").html(self))
+
+    @property
+    def size(self) -> str:
+        """How much was recorded, in words."""
+        n, rows = len(self.signals), len(self.time)
+        return f"{rows} rows of {n} signal{'s' * (n != 1)}, {self.seconds:.6g} s"
+
+    @property
+    def seconds(self) -> float:
+        """From the first sample to the end of the last [s]."""
+        return float(2.0 * self.time[-1] - self.time[-2]) if len(self.time) > 1 else 0.0
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every signal by its name; "1" for a plain number."""
+        ends = {name: self.resolver.end(name, "record", "signals") for name in self.signals}
+        return {name: end.port.unit or "1" for name, end in ends.items()}
+
+    def to_pandas(self, names: str | Iterable[str] | None = None) -> "pandas.DataFrame":
+        """The signals as a table, in memory of its own.
+
+        Also called `to_dataframe`.
+
+        Parameters
+        ----------
+        names : str or iterable of str, optional
+            Signals, elements such as ``card.stock[1]``, patterns with ``*`` and ``?``; else all.
+
+        Returns
+        -------
+        DataFrame
+            A row a sample, its index the time [s]; a column an element. ``attrs["units"]`` has the
+            unit of each column, ``attrs["scenario"]`` the name.
+
+        Raises
+        ------
+        InputError
+            There is no such signal (an `UnknownSignal`), or pandas is not installed.
+        """
+        found = signals.table(self.time, self.signals, names)
+        units = self.units
+        found.attrs["units"] = {c: units[c.partition("[")[0]] for c in found.columns}
+        found.attrs["scenario"] = self.name
+        return found
+
+    to_dataframe = to_pandas
+
+    def plot(
+        self, *names: str | tuple[str, ...], window: tuple[float, float] | None = None
+    ) -> "Figure":
+        """Draw signals over time, or what the report begins with.
+
+        In a script ``matplotlib.pyplot.show()`` shows it; a notebook shows what is returned.
+
+        Parameters
+        ----------
+        *names : str or tuple of str
+            Signals or elements; each gets a panel, those of a tuple share one. None: the path with
+            its contour error, else the scenario's first figure, else the first signal.
+        window : tuple of float, optional
+            From and to [s]; else the whole run.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        InputError
+            There is no such signal (an `UnknownSignal`), or the window is not within the run.
+        """
+        figure: Figure = _report("notebook").plot(self, names, window)
+        return figure
+
+    def save(self, folder: str | Path, csv: bool = False) -> Path:
+        """Write the folder that ``motionfmu run`` writes, with its report.
+
+        Parameters
+        ----------
+        folder : str or Path
+            New, empty, or with an older result, which is replaced.
+        csv : bool
+            Also ``signals.csv``.
+
+        Returns
+        -------
+        Path
+            The report.
+
+        Raises
+        ------
+        InputError
+            The folder holds something else, or cannot be written.
+        """
+        shown: Path = _report("outcome").save(self, Path(folder), csv)
+        return shown
 
     def parameter(self, name: str) -> Any:
         """Value of a parameter in this run, set or from its description.

@@ -2,7 +2,6 @@
 
 import hashlib
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,15 +19,13 @@ SIGNALS, NUMBERS, TRACK = "signals.npz", "result.json", "contour.npz"
 DIGITS = 16  # of a file's SHA-256: enough to tell two files apart
 
 
-def numbers(result: Result, options: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def numbers(result: Result) -> dict[str, Any]:
     """The result, and how it was run, for JSON."""
-    # Options are those of the result, if none are given.
-    options = result.options if options is None else options
     body = result.scenario.document.body
     found: dict[str, Any] = {
         "scenario": result.name,
         "about": result.about,
-        "options": dict(options),
+        "options": dict(result.options),
         "samples": len(result.time),
         "ok": result.ok,
         "overrides": list(result.overrides),
@@ -52,21 +49,22 @@ def numbers(result: Result, options: Mapping[str, Any] | None = None) -> dict[st
     if body.iso9283 is not None:
         found["iso9283"] = None if result.no_iso9283 else result.iso9283().numbers()
         found["no_iso9283"] = result.no_iso9283
-    found["units"] = {n: result.resolver.end(n, "", "").port.unit or "1" for n in result.signals}
+    found["units"] = result.units
     found["figures"] = [figure.model_dump() for figure in body.figure]
-    return found | {"run": _made(result, options)}
+    return found | {"run": _made(result)}
 
 
-def _made(result: Result, options: Mapping[str, Any]) -> dict[str, Any]:
+def _made(result: Result) -> dict[str, Any]:
     """All that a run depends on: what two runs may differ in."""
     document, library = result.scenario.document, result.scenario.library()
+    options = result.options
     folder, body = document.file.parent, document.body
     own = f"{library}.path_file"
     given = {n: list(v) for n, v in sorted(result.parameters.items()) if n != own}
     named = [x for v in given.values() for x in v if isinstance(x, str) and x and is_file(Path(x))]
     return {
         "components": dict(body.component),
-        "fmus": {name: _digest(fmus.fmu_path(name)) for name in set(body.component.values())},
+        "fmus": {name: _digest(fmus.fmu_path(name)) for name in sorted({*body.component.values()})},
         "wires": {w.target.name: w.source.name for w in wires(result.resolver)},
         "settings": {n: [_beside(x, folder) for x in v] for n, v in given.items()},
         "files": {_beside(x, folder): _digest(Path(x)) for x in named},

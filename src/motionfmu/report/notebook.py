@@ -1,0 +1,227 @@
+"""What a result shows of itself in Python: figures of matplotlib, a view for notebooks."""
+
+import base64
+import io
+from collections.abc import Callable, Iterable, Sequence
+from html import escape
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.backends import BackendFilter, backend_registry
+from matplotlib.figure import Figure
+
+from motionfmu.errors import InputError
+from motionfmu.report.chart_pictures import MARKS, chart_picture
+from motionfmu.report.drawing import draw
+from motionfmu.report.numbers import figure, label, length
+from motionfmu.report.pictures import PLAIN, STABLE, path_picture
+from motionfmu.run import Result
+from motionfmu.run.checks import Verdict
+from motionfmu.run.figures import Chart, Curve, Panel
+from motionfmu.run.signals import elements
+from motionfmu.units import spelled
+
+# Checks that the view shows; those that failed come first.
+CHECKS_SHOWN = 15
+# Of the view's picture: of a path, with its size in inches, and of a figure; it has twice as many.
+PATH_WIDTH, PATH_SIZE, WIDTH = 400, (5.2, 4.3), 680  # [pixel]
+NOTHING = "the run records no signal"
+# Text takes the colour of the page that it stands on; a picture has its own white one.
+STYLE = """
+.motionfmu { font: 13px/1.45 Inter, "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
+.motionfmu p { margin: 0 0 8px; }
+.motionfmu .head b { font-size: 16px; }
+.motionfmu .sub { opacity: .7; }
+.motionfmu .row { display: flex; flex-wrap: wrap; gap: 12px 28px; align-items: flex-start; }
+.motionfmu img { background: #fff; border-radius: 6px; max-width: 100%; margin: 0; }
+.motionfmu table { border-collapse: collapse; margin: 0 0 12px; font-size: 13px; }
+.motionfmu th, .motionfmu td { text-align: left; padding: 2px 14px 2px 0; border: 0;
+  border-bottom: 1px solid rgba(128, 128, 128, .3); background: none; vertical-align: top; }
+.motionfmu th { font-weight: 600; opacity: .7; }
+.motionfmu .n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.motionfmu .ok { color: #2a9d5c; font-weight: 600; }
+.motionfmu .failed { color: #e5533d; font-weight: 600; }
+.motionfmu summary { cursor: pointer; opacity: .7; }
+"""
+
+
+def plot(
+    result: Result,
+    names: Sequence[str | tuple[str, ...]],
+    window: tuple[float, float] | None,
+) -> Figure:
+    """The figure of `Result.plot`."""
+    make: Callable[..., Figure] = Figure
+    windows = backend_registry.list_builtin(BackendFilter.INTERACTIVE)
+    if matplotlib.get_backend().lower() in (name.lower() for name in windows):
+        from matplotlib import pyplot
+
+        make = pyplot.figure  # else show() does not know it; a notebook would show it twice
+    with matplotlib.rc_context(PLAIN | STABLE | MARKS):
+        if not names and window is None:
+            return _first(result, make)
+        panels = names or tuple(result)[:1]
+        if not panels:
+            raise InputError(NOTHING)
+        return chart_picture(_chart(result, panels, window), make)
+
+
+def _first(result: Result, make: Callable[..., Figure] = Figure) -> Figure:
+    """What the report begins with."""
+    if _has_contour(result):
+        contour = result.contour()
+        return path_picture(result.name, contour, draw(contour), make)
+    charts = result.figures() or result.overview()[:1]
+    if not charts:
+        raise InputError(NOTHING)
+    return chart_picture(charts[0], make)
+
+
+def _has_contour(result: Result) -> bool:
+    return result.scenario.document.body.contour is not None and not result.no_contour
+
+
+def _chart(
+    result: Result, panels: Iterable[str | tuple[str, ...]], window: tuple[float, float] | None
+) -> Chart:
+    """Signals over time as the figure of a scenario, a panel each."""
+    whole = float(result.time[0]), float(result.time[-1])
+    span = whole if window is None else window
+    try:
+        start, end = map(float, span)
+    except (TypeError, ValueError):
+        raise InputError(f"window = {window!r}: two times [s] wanted, from and to") from None
+    if not 0.0 <= start < end <= result.seconds:
+        text = f"window = {window!r}: from and to within 0 .. {result.seconds:g} s wanted"
+        raise InputError(text)
+    first = max(0, int(np.searchsorted(result.time, start, side="right")) - 1)
+    part = slice(first, int(np.searchsorted(result.time, end, side="left")) + 1)
+    found = []
+    for names in panels:
+        together = (names,) if isinstance(names, str) else tuple(names)
+        columns = {n: data for name in together for n, data in elements(result, name).items()}
+        whole_names = {name.partition("[")[0] for name in columns}
+        named = {result.units[name] for name in whole_names}
+        unit = named.pop() if len(named) == 1 else "1"
+        words = together[0] if len(together) == 1 else ", ".join(sorted(whole_names))
+        curves = tuple(
+            Curve(n, result.time[part], data[part].astype(np.float64), data.dtype.kind != "f")
+            for n, data in columns.items()
+        )
+        logic = all(data.dtype == bool for data in columns.values())
+        text = label(words, unit if unit != "1" else None)
+        found.append(Panel(text, curves, {}, len(curves) > 1, logic))
+    return Chart(result.name, result.about, (start, end), window is None, tuple(found))
+
+
+def html(result: Result) -> str:
+    """The view of a result in a notebook."""
+    checks = result.checks
+    failed = sum(not v.ok for v in checks)
+    words = (
+        f"{failed} of {len(checks)} checks FAILED" if failed else f"all {len(checks)} checks hold"
+    )
+    mark = "failed" if failed else "ok"
+    verdict = f' <span class="{mark}">{words}</span>' if checks else ""
+    reasons = dict.fromkeys([*(v.reason for v in checks), result.no_contour])
+    told = "".join(f'<p class="sub">{escape(r)}</p>' for r in reasons if r)
+    left = _checks(checks) + _contour(result) + told
+    return (
+        f'<div class="motionfmu"><style>{STYLE}</style>'
+        f'<p class="head"><b>{escape(result.name)}</b>{verdict}'
+        f' <span class="sub">{escape(result.size)}</span></p><p>{escape(result.about)}</p>'
+        f"{_overrides(result)}"
+        f'<div class="row"><div>{left}</div>{_picture(result)}</div>'
+        f"{_warnings(result)}{_signals(result)}</div>"
+    )
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: Sequence[int] = ()) -> str:
+    """A table of ready HTML; numeric columns stand to the right."""
+
+    def line(tag: str, cells: Sequence[str]) -> str:
+        kinds = [' class="n"' if i in numeric else "" for i in range(len(cells))]
+        parts = (f"<{tag}{k}>{c}</{tag}>" for k, c in zip(kinds, cells, strict=True))
+        return f"<tr>{''.join(parts)}</tr>"
+
+    body = "".join(line("td", row) for row in rows)
+    return f"<table><thead>{line('th', heads)}</thead><tbody>{body}</tbody></table>"
+
+
+def _checks(checks: Sequence[Verdict]) -> str:
+    if not checks:
+        return ""
+    listed = sorted(checks, key=lambda v: v.ok)
+    rows = [
+        (
+            '<span class="ok">ok</span>' if v.ok else '<span class="failed">FAILED</span>',
+            escape(v.name),
+            "none" if v.reason else f"{v.value:.6g}",
+            escape(v.bounds),
+        )
+        for v in listed[:CHECKS_SHOWN]
+    ]
+    rest = len(listed) - len(rows)
+    more = f'<p class="sub">and {rest} more in <code>result.checks</code></p>' if rest else ""
+    return _table(("", "Check", "Found", "Asked"), rows, (2,)) + more
+
+
+def _contour(result: Result) -> str:
+    if not _has_contour(result):
+        return ""
+    contour = result.contour()
+    error, command = contour.error, contour.command_error
+    rows = [
+        ("Contour error", length(error.max), length(error.rms), length(error.p95)),
+        ("Command error", length(command.max), length(command.rms), length(command.p95)),
+    ]
+    lag = f'<p class="sub">servo lag {figure(contour.lag * 1e3)} ms</p>'
+    return _table(("", "Max", "RMS", "95 %"), rows, (1, 2, 3)) + lag
+
+
+def _picture(result: Result) -> str:
+    if not len(result):
+        return ""
+    file, width = io.BytesIO(), WIDTH
+    with matplotlib.rc_context(PLAIN | STABLE | MARKS):
+        drawn = _first(result)
+        if _has_contour(result):
+            width = PATH_WIDTH
+            _small(drawn, draw(result.contour()).magnify)
+        drawn.savefig(file, format="png", dpi=2 * width / drawn.get_figwidth())
+    data = base64.b64encode(file.getvalue()).decode()
+    return f'<img width="{width}" alt="{escape(result.name)}" src="data:image/png;base64,{data}"/>'
+
+
+def _small(drawn: Figure, factor: float) -> None:
+    """Make the picture of a path fit beside the checks; its numbers stand below them."""
+    drawn.set_size_inches(PATH_SIZE)
+    axes = drawn.axes[0]
+    for text in list(axes.texts):
+        text.remove()
+    axes.set_title(f"Contour error {factor:,.0f} times as large", loc="left", fontsize=11, pad=6)
+
+
+def _overrides(result: Result) -> str:
+    if not result.overrides:
+        return ""
+    return f'<p><span class="sub">not as written:</span> {escape("; ".join(result.overrides))}</p>'
+
+
+def _warnings(result: Result) -> str:
+    return "".join(
+        f'<p><span class="failed">warning</span> {escape(w)}</p>' for w in result.warnings
+    )
+
+
+def _signals(result: Result) -> str:
+    """What was recorded, folded away."""
+    rows: list[Any] = []
+    for name, data in result.items():
+        port = result.resolver.end(name, "record", "signals").port
+        shape = f"{data.shape[1]}" if data.ndim == 2 else ""
+        rows.append((escape(name), shape, escape(spelled(port.unit)), escape(port.doc)))
+    heads = ("Signal", "Elements", "Unit", "Is")
+    count = f"{len(rows)} signal{'s' * (len(rows) != 1)}"
+    return f"<details><summary>{count}</summary>{_table(heads, rows, (1,))}</details>"
