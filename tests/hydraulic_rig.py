@@ -24,7 +24,7 @@ HARD = (
 START = {"start_position": 0.096}
 STEP = 25e-6  # [s] micro step
 # What the states show as: all but the speed of the spool.
-SHOWN = ("current", "spool", "pressure_a", "pressure_b", "position", "velocity")
+SHOWN = ("current", "spool", "pressure_a", "pressure_b", "table_position", "table_speed")
 
 
 @functools.cache
@@ -97,7 +97,7 @@ def drive_all(run, pieces, **how):
     """Outputs along a trajectory of held inputs."""
     times = np.diff([0.0, *(piece[0] for piece in pieces)])
     parts = [
-        drive(run, seconds, **how, voltage=voltage, load_force=force)
+        drive(run, seconds, **how, voltage=voltage, force=force)
         for seconds, (_, voltage, force) in zip(times, pieces, strict=True)
     ]
     return np.concatenate(parts)

@@ -13,7 +13,7 @@ SMOOTH = {
 }
 # Limits far away, and counts so small that rounding does not show.
 WIDE = {
-    "drives.enc_counts": 2**30,
+    "drives.encoder_counts": 2**30,
     "drives.torque_limit": 1e6,
     "drives.speed_limit": 1e6,
     "drives.error_limit": 1e6,

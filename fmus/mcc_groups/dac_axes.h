@@ -11,7 +11,7 @@
                       .gear_ratio = v->card##K##_dac_gear_ratio[i], \
                       .ppr = v->card##K##_dac_ppr[i], .rpm = v->card##K##_dac_max_rpm[i], \
                       .inverted = v->card##K##_dac_pos2encoder_dir[i] == 1, \
-                      .track_limit = v->card##K##_dac_track_limit[i] }, \
+                      .track_limit = v->card##K##_dac_track_error_limit[i] }, \
             .encoder = v->card##K##_dac_encoder[i] - 1, \
             .position_gain = v->card##K##_dac_position_gain[i], \
             .speed_per_volt = v->card##K##_dac_speed_per_volt[i], \

@@ -50,10 +50,10 @@ model HydraulicAxis
   parameter Real home_position(unit = "m") = -0.08 "The home switch is on from here downwards";
   parameter Real start_position(unit = "m") = 0 "Position at the start";
   input Real voltage(unit = "V", start = 0) "Command to the amplifier";
-  input Real load_force(unit = "N", start = 0) "External force on the table";
-  output Real scale_phase(unit = "1") "Linear scale [line periods]";
-  output Real position(unit = "m") "Position of the table";
-  output Real velocity(unit = "m/s") "Speed of the table";
+  input Real force(unit = "N", start = 0) "External force on the table";
+  output Real table_phase(unit = "1") "Linear scale on the table [line periods]";
+  output Real table_position(unit = "m") "Table position";
+  output Real table_speed(unit = "m/s") "Table speed";
   output Real current(unit = "A") "Valve current";
   output Real spool(unit = "1") "Spool position as a share of the full stroke";
   output Real pressure_a(unit = "Pa") "Pressure in chamber a";
@@ -62,7 +62,7 @@ model HydraulicAxis
   output Real flow_b(unit = "m3/s") "Oil from the valve into chamber b";
   output Real supply_flow(unit = "m3/s") "Oil taken from the pump";
   output Real stop_force(unit = "N") "Force of the end stops on the piston";
-  output Boolean home "Home switch: the table is at or below the home position";
+  output Boolean home_switch "Home switch: the table is at or below the home position";
   output Real rod_position(unit = "m") "Position of piston and rod";
   output Real rod_phase(unit = "1") "A scale like that of the table, on the rod [line periods]";
 protected
@@ -110,13 +110,13 @@ equation
   connect(joint.b, table.flange);
   amplifier.voltage = voltage;
   valve.current = amplifier.current;
-  table.load = load_force;
+  table.load = force;
   joint.acceleration = der(table.speed);
   scale.position = table.position;
   rod_scale.position = joint.a.s;
-  scale_phase = scale.phase;
-  position = table.position;
-  velocity = table.speed;
+  table_phase = scale.phase;
+  table_position = table.position;
+  table_speed = table.speed;
   current = amplifier.current;
   spool = valve.stroke;
   pressure_a = cylinder.pressure_a;
@@ -125,7 +125,7 @@ equation
   flow_b = cylinder.b.q;
   supply_flow = valve.supply.q;
   stop_force = stops.force;
-  home = table.position <= home_position;
+  home_switch = table.position <= home_position;
   rod_position = joint.a.s;
   rod_phase = rod_scale.phase;
 end HydraulicAxis;

@@ -13,10 +13,10 @@ model StepperAxis "Stepping motor with a table on a screw: follows its pulses, o
     "Speed at which the back EMF is the voltage of the drive";
   parameter Real rotor_inertia(unit = "kg.m2", min = 1e-9) = 3e-5 "Moment of inertia of the rotor";
   parameter Real load_inertia(unit = "kg.m2", min = 0) = 1e-5 "Moment of inertia of the screw";
-  parameter Real coulomb(unit = "N.m", min = 0) = 0.02 "Friction torque of motor and screw";
-  parameter Real viscous(unit = "N.m.s/rad", min = 0) = 2e-4
+  parameter Real motor_coulomb(unit = "N.m", min = 0) = 0.02 "Friction torque of motor and screw";
+  parameter Real motor_viscous(unit = "N.m.s/rad", min = 0) = 2e-4
     "Friction torque of motor and screw per speed";
-  parameter Real rest_speed(unit = "rad/s", min = 1e-9) = 0.05
+  parameter Real motor_rest_speed(unit = "rad/s", min = 1e-9) = 0.05
     "Speed that counts as rest, see friction";
   parameter Real lead(unit = "m", min = 1e-9) = 0.005 "Travel of the table per motor turn";
   parameter Real table_mass(unit = "kg", min = 0) = 5 "Mass of the table with its load";
@@ -59,8 +59,8 @@ equation
   motor.speed = speed;
   der(turned) = speed;
   (rotor_inertia + load_inertia + table_mass*ratio^2)*der(speed) = motor.torque + ratio*force
-    - friction(speed, coulomb + ratio*table_coulomb, coulomb + ratio*table_coulomb, 1,
-      viscous + ratio^2*table_viscous, rest_speed);
+    - friction(speed, motor_coulomb + ratio*table_coulomb, motor_coulomb + ratio*table_coulomb, 1,
+      motor_viscous + ratio^2*table_viscous, motor_rest_speed);
   motor_torque = motor.torque;
   torque_margin = motor.pull_out - abs(motor.torque);
   motor_angle = turned + start_position/ratio;

@@ -14,7 +14,7 @@ model VelocityAxis "Velocity-controlled axis: a voltage sets the speed after a f
   output Real motor_phase(unit = "1") "Motor encoder [line periods]";
   output Real table_position(unit = "m") "Table position";
   output Real table_speed(unit = "m/s") "Table speed";
-  output Real load_phase(unit = "1") "Linear scale [line periods]";
+  output Real table_phase(unit = "1") "Linear scale [line periods]";
 protected
   Lag speed_loop(tau = tau) "Velocity loop of the drive";
   RotaryEncoder encoder(lines = encoder_lines) "On the motor shaft";
@@ -28,5 +28,5 @@ equation
   encoder.angle = motor_angle;
   motor_phase = encoder.phase;
   scale.position = table_position;
-  load_phase = scale.phase;
+  table_phase = scale.phase;
 end VelocityAxis;

@@ -29,7 +29,10 @@ from motionfmu.linear import largest_gain
 
 HERE = Path(__file__).parent
 SCALE = "controller.scale_phase"
-AT = {"axis.velocity": 0.05, "axis.position": 0.0}  # at the middle, where the oil is softest
+AT = {
+    "axis.table_speed": 0.05,
+    "axis.table_position": 0.0,
+}  # at the middle, where the oil is softest
 # P alone; no dry friction, which is no damping ratio; a short timer routine: no edge is lost
 COMMON: dict[str, Any] = {
     "controller.law": 0,
@@ -125,7 +128,7 @@ def move(loop: str, gain: float) -> tuple[np.ndarray, np.ndarray, int]:
     own |= {"axis.start_position": -0.02, "axis.table_coulomb": 200.0, "axis.table_static": 300.0}
     result = motionfmu.load(HERE).run(set=own, stop=1.3)
     lost = int(np.max(result["controller.lost"]))
-    return result.time, result["axis.velocity"].ravel() * 1e3, lost
+    return result.time, result["axis.table_speed"].ravel() * 1e3, lost
 
 
 def draw(rows: list[Row], tuned: float, picture: Path) -> list[str]:

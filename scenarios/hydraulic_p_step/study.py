@@ -64,7 +64,7 @@ def step() -> tuple[np.ndarray, np.ndarray]:
     """Time since TRACK jumped [s] and position in percent of the step."""
     r = motionfmu.load(HERE).run()
     jumped = r.time[np.argmax(r["p.track"] > 0)] - 1e-4  # shown a pin period later
-    way = (r["axis.position"] - r["axis.position"][0]) / (STEP * COUNT)
+    way = (r["axis.table_position"] - r["axis.table_position"][0]) / (STEP * COUNT)
     return r.time - jumped, 100.0 * way
 
 

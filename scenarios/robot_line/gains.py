@@ -102,7 +102,7 @@ class Pose:
         resolvent = self.z[:, None, None] * np.eye(len(a)) - a
         plant = d + c @ np.linalg.solve(resolvent, np.broadcast_to(b, (len(self.z), *b.shape)))
         self.motor, self.link = plant[:, :6], plant[:, 6:]
-        self.line = 2.0 * math.pi / values["enc_lines"]  # [rad] of a line period
+        self.line = 2.0 * math.pi / values["encoder_lines"]  # [rad] of a line period
         self.forward, self.filter = values["feed_forward"], values["feed_forward_time"]
         arm = axis.values("arm")
         self.ratio = np.array([arm[f"gear_ratio[{k}]"] for k in range(1, 7)])

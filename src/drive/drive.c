@@ -41,7 +41,7 @@ static double speed_command(const struct drive_config *c, struct drive_state *s,
         return clamp((in->volts + c->volt_offset) * c->speed_per_volt, c->speed_limit);
     double ppt = c->pulses_per_turn;
     out->following_error =
-        (double)s->command / ppt - (double)(s->counts - s->zero) / c->enc_counts;
+        (double)s->command / ppt - (double)(s->counts - s->zero) / c->encoder_counts;
     if (c->feed_forward_time > 0.0)
         s->forward += (pulses / (ppt * c->period) - s->forward) *
                       (c->period / (c->feed_forward_time + c->period));
@@ -54,7 +54,7 @@ static double speed_command(const struct drive_config *c, struct drive_state *s,
 enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,
                              const struct drive_input *in, struct drive_output *out)
 {
-    double counts = floor(in->phase * c->enc_counts / c->enc_lines);
+    double counts = floor(in->phase * c->encoder_counts / c->encoder_lines);
     if (!(fabs(counts) <= DRIVE_COUNTS_MAX))
         return DRIVE_BAD_PHASE;
     int64_t moved = s->primed ? (int64_t)counts - s->counts : 0;
@@ -67,7 +67,7 @@ enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s
     s->reset = in->alarm_reset;
 
     *out = (struct drive_output){0};
-    out->speed = (double)moved * RPM_PER_TURN_PER_S / (c->enc_counts * c->period);
+    out->speed = (double)moved * RPM_PER_TURN_PER_S / (c->encoder_counts * c->period);
     bool run = in->enable && s->alarm == DRIVE_NO_ALARM;
     bool first = run && !s->on;
     if (first) {

@@ -22,8 +22,8 @@ struct drive_config {
     double  period;             /* [s] sampling period */
     double  speed_per_volt;     /* [rpm/V] velocity mode */
     double  volt_offset;        /* [V] added to the command voltage */
-    int32_t enc_lines;          /* [line periods/turn] */
-    int32_t enc_counts;         /* [counts/turn] the drive resolves */
+    int32_t encoder_lines;          /* [line periods/turn] */
+    int32_t encoder_counts;         /* [counts/turn] the drive resolves */
     int32_t pulses_per_turn;    /* [pulses/turn] position mode */
     double  velocity_gain;      /* [N.m.s/rad] */
     double  velocity_time;      /* [s] integral time; 0: no integral */

@@ -14,6 +14,8 @@ PACKAGE = Path(__file__).resolve().parent
 # Clocks of the cards in a second.
 CLOCK_HZ = 40_000_000
 _SECOND_MAX = 2**62 // CLOCK_HZ
+# Clocks that a setting in seconds may make.
+_CLOCKS_MAX = 2.0**62
 _MILLISECOND = CLOCK_HZ // 1000
 
 
@@ -27,6 +29,8 @@ class _Field(ctypes.Structure):
         ("offset", ctypes.c_int32),
         ("count", ctypes.c_int32),
         ("stride", ctypes.c_int32),
+        ("times", ctypes.c_int32),
+        ("over", ctypes.c_int32),
     )
 
 
@@ -120,22 +124,37 @@ class Struct:
         memory: Any = self._memory
         return np.ndarray((f.count,), kind, memory, f.offset, (f.stride,))
 
+    def _given(self, name: str) -> np.ndarray:
+        """A member in the units in which it is given."""
+        view, f = self._view(name), self._fields[name]
+        if f.times == f.over:
+            return view
+        return ~view if view.dtype.kind == "b" else view * float(f.over) / f.times
+
     def __getitem__(self, name: str) -> Any:
-        view = self._view(name)
+        view = self._given(name)
         if len(view) > 1:
             return view.copy()
         value = view[0].item()
         return value.decode() if isinstance(value, bytes) else value
 
     def __setitem__(self, name: str, value: Any) -> None:
-        view = self._view(name)
-        kind = view.dtype.kind
+        view, f = self._view(name), self._fields[name]
+        kind = view.dtype.kind if f.times == f.over or view.dtype.kind == "b" else "f"
         try:
             given = np.asarray(value.encode() if kind == "S" else value)
-            accepted = "iu" if kind in "iu" else kind if kind in "bS" else "iuf"
+            accepted = {"i": "iu", "u": "iu", "b": "biu", "S": "S"}.get(kind, "iuf")
             fits = given.dtype.kind in accepted
             if not (fits and given.ndim <= 1 and given.size in (1, len(view))):
                 raise ValueError
+            if kind == "b" and not np.isin(given, (0, 1)).all():
+                raise ValueError
+            if view.dtype.kind in "iu" and kind == "f":
+                given = np.rint(given * float(f.times) / f.over)
+                if not (np.abs(given) < _CLOCKS_MAX).all():
+                    raise ValueError
+            elif f.times != f.over:
+                given = given == 0 if kind == "b" else given * float(f.times) / f.over
             if kind in "iu" and not np.array_equal(given.astype(view.dtype), given):
                 raise ValueError
             if kind == "S" and len(value) != 1:

@@ -15,7 +15,15 @@ struct field {
     char    unit[16];       /* empty: none */
     int32_t kind;           /* i int32, l int64, u uint32, B uint8, d double, ? bool, c char */
     int32_t offset, count, stride;  /* [byte], elements, [byte] from one to the next */
+    int32_t times, over;    /* the member is what Python is given * times / over */
 };
+
+/* How a member counts what Python gives it: the same; mm/s for mm/min; clocks of 25 ns for seconds;
+ * a bool the other way round. */
+#define SAME 1, 1
+#define PER_MINUTE 1, 60
+#define SECONDS 40000000, 1
+#define OPPOSITE (-1), 1
 
 /* A struct; without fields Python only keeps its bytes. */
 struct table {
@@ -44,10 +52,12 @@ void binding_reports(const struct fault_list *all, struct fault_report *r, int32
 #define SIZE(type, m) (int32_t)sizeof(((struct type *)0)->m)
 
 /* A member; an array. */
-#define ONE(type, m, name, unit) \
-    { name, unit, KIND(((struct type *)0)->m), OFFSET(type, m), 1, SIZE(type, m) }
-#define ROW(type, m, name, unit) \
+#define ONE_IN(type, m, name, unit, ...) \
+    { name, unit, KIND(((struct type *)0)->m), OFFSET(type, m), 1, SIZE(type, m), __VA_ARGS__ }
+#define ROW_IN(type, m, name, unit, ...) \
     { name, unit, KIND(((struct type *)0)->m[0]), OFFSET(type, m), \
-      SIZE(type, m) / SIZE(type, m[0]), SIZE(type, m[0]) }
+      SIZE(type, m) / SIZE(type, m[0]), SIZE(type, m[0]), __VA_ARGS__ }
+#define ONE(type, m, name, unit) ONE_IN(type, m, name, unit, SAME)
+#define ROW(type, m, name, unit) ROW_IN(type, m, name, unit, SAME)
 
 #endif

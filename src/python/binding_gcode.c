@@ -22,12 +22,14 @@ struct gcode_reader {
     struct curve_plan curve;
 };
 
-#define OPTION(m, name, unit) ONE(gcode_reader, m, name, unit)
+#define OPTION_IN(m, name, unit, ...) ONE_IN(gcode_reader, m, name, unit, __VA_ARGS__)
+#define OPTION(m, name, unit) OPTION_IN(m, name, unit, SAME)
 #define JOINTS(m, name, unit) \
     { name, unit, KIND(((struct gcode_reader *)0)->program.machine.joint[0].m), \
-      OFFSET(gcode_reader, program.machine.joint[0].m), AXES, sizeof(struct joint) }
+      OFFSET(gcode_reader, program.machine.joint[0].m), AXES, sizeof(struct joint), SAME }
 #define FLAT(type, m, name, unit) \
-    { name, unit, 'd', OFFSET(type, m), SIZE(type, m) / (int32_t)sizeof(double), sizeof(double) }
+    { name, unit, 'd', OFFSET(type, m), SIZE(type, m) / (int32_t)sizeof(double), \
+      sizeof(double), SAME }
 static const struct field reader_fields[] = {
     OPTION(program.block_delete, "block_delete", ""),
     OPTION(program.optional_stop, "optional_stop", ""), OPTION(program.angles, "angles", ""),
@@ -38,7 +40,7 @@ static const struct field reader_fields[] = {
     ROW(gcode_reader, program.machine.axis, "axes", ""), JOINTS(used, "used", ""),
     JOINTS(scale, "scale", "pulses/mm"), JOINTS(speed, "speed", "mm/s"),
     JOINTS(bounded, "bounded", ""), JOINTS(low, "low", "mm"),
-    JOINTS(high, "high", "mm"), OPTION(program.limits.feed, "max_feed", "mm/s"),
+    JOINTS(high, "high", "mm"), OPTION_IN(program.limits.feed, "max_feed", "mm/min", PER_MINUTE),
     OPTION(program.limits.rapid, "rapid", ""),
     OPTION(program.limits.up.acc, "acceleration", "mm/s^2"),
     OPTION(program.limits.down.acc, "deceleration", "mm/s^2"),
@@ -47,14 +49,14 @@ static const struct field reader_fields[] = {
     ROW(gcode_reader, curve.limits.speed, "axis_speed", "mm/s"),
     ROW(gcode_reader, curve.limits.acc, "axis_acc", "mm/s^2"),
     ROW(gcode_reader, curve.limits.jerk, "axis_jerk", "mm/s^3"),
-    OPTION(feed, "feed", "mm/s"), FLAT(gcode_reader, point, "point", "mm"),
+    OPTION_IN(feed, "feed", "mm/min", PER_MINUTE), FLAT(gcode_reader, point, "point", "mm"),
     FLAT(gcode_reader, origin, "origin", "mm"),
     OPTION(period, "period", "s"), OPTION(in.line, "line", ""), OPTION(in.ended, "ended", ""),
 };
 
 #define SEEN(m, name, unit) ONE(command, m, name, unit)
 static const struct field command_fields[] = {
-    { "type", "", 'i', OFFSET(command, type), 1, sizeof(enum command_type) },
+    { "type", "", 'i', OFFSET(command, type), 1, sizeof(enum command_type), SAME },
     SEEN(line, "line", ""), SEEN(blend, "blend", ""), SEEN(tolerance, "tolerance", "mm"),
     SEEN(feed, "feed", "mm/s"), SEEN(dwell, "dwell", "s"), SEEN(set, "set", "bits"),
     SEEN(clear, "clear", "bits"), SEEN(spindle, "spindle", "rpm"), SEEN(coolant, "coolant", "bits"),
@@ -63,7 +65,7 @@ static const struct field command_fields[] = {
     SEEN(analog.set, "analog_set", "bits"), FLAT(command, analog.value, "analog", ""),
     SEEN(probes, "probes", ""), SEEN(path.arc, "arc", ""),
     SEEN(path.cubic, "cubic", ""), FLAT(command, path.bezier.inner, "inner", "mm"),
-    { "plane", "", 'i', OFFSET(command, path.plane), 1, sizeof(enum path_plane) },
+    { "plane", "", 'i', OFFSET(command, path.plane), 1, sizeof(enum path_plane), SAME },
     ROW(command, path.start, "start", "mm"), ROW(command, path.end, "end", "mm"),
     ROW(command, path.centre, "centre", "mm"), SEEN(path.radius, "radius", "mm"),
     SEEN(path.growth, "growth", "mm"), SEEN(path.angle, "angle", "rad"),

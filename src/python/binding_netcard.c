@@ -17,7 +17,7 @@ struct netcard_sim {
 
 #define OF_SETTING(type, name, elements, unit, start, low, high, words) \
     { #name, unit, KIND((type){ 0 }), OFFSET(netcard_sim, config.settings.name), \
-      (int32_t)(sizeof(type elements) / sizeof(type)), sizeof(type) },
+      (int32_t)(sizeof(type elements) / sizeof(type)), sizeof(type), SAME },
 #define SEEN(m, name, unit) ONE(netcard_sim, card.m, name, unit)
 static const struct field sim_fields[] = {
     CARD_SETTINGS(OF_SETTING)

@@ -15,16 +15,17 @@ struct planner {
 
 #define SET(m, name, unit) ONE(planner, m, name, unit)
 #define AXIS(m, unit) \
-    { #m, unit, 'd', OFFSET(planner, config.axis[0].m), JOB_AXES, sizeof(struct net_plan_axis) }
+    { #m, unit, 'd', OFFSET(planner, config.axis[0].m), JOB_AXES, \
+      sizeof(struct net_plan_axis), SAME }
 #define EVENT(m, kind) \
     { "event_" #m, "", kind, OFFSET(planner, header.event[0].m), JOB_EVENTS, \
-      sizeof(struct job_event) }
+      sizeof(struct job_event), SAME }
 static const struct field planner_fields[] = {
     AXIS(pulses_per_mm, "pulses/mm"), AXIS(speed, "mm/s"), AXIS(acc, "mm/s^2"),
     AXIS(jerk, "mm/s^3"), SET(config.period_ns, "period_ns", "ns"),
     SET(config.tolerance, "tolerance", "mm"), SET(config.rapid, "rapid", "mm/s"),
     SET(config.reserve, "reserve", ""),
-    { "pen", "", 'i', OFFSET(planner, config.pen), 1, sizeof(enum net_plan_pen) },
+    { "pen", "", 'i', OFFSET(planner, config.pen), 1, sizeof(enum net_plan_pen), SAME },
     SET(config.pen_axis, "pen_axis", ""), SET(config.up, "up", "mm"),
     SET(config.down, "down", "mm"), SET(config.dwell, "dwell", "s"),
     SET(header.axes, "axes", "bits"), SET(header.events, "events", ""),
@@ -38,13 +39,13 @@ static const struct field planner_fields[] = {
 #define VERTEX(m, name, unit) ONE(net_plan_vertex, m, name, unit)
 static const struct field vertex_fields[] = {
     ROW(net_plan_vertex, point, "point", "mm"), VERTEX(feed, "feed", "mm/s"),
-    { "kind", "", 'i', OFFSET(net_plan_vertex, kind), 1, sizeof(enum net_plan_kind) },
+    { "kind", "", 'i', OFFSET(net_plan_vertex, kind), 1, sizeof(enum net_plan_kind), SAME },
 };
 
 static const struct field frame_fields[] = {
     ROW(net_plan_frame, job.command, "command", "pulses"),
     ONE(net_plan_frame, job.event, "event", ""), ROW(net_plan_frame, place, "place", "mm"),
-    { "step", "", 'i', OFFSET(net_plan_frame, step), 1, sizeof(enum net_plan_step) },
+    { "step", "", 'i', OFFSET(net_plan_frame, step), 1, sizeof(enum net_plan_step), SAME },
 };
 _Static_assert(sizeof(enum net_plan_kind) == sizeof(int32_t) &&
                sizeof(enum net_plan_step) == sizeof(int32_t) &&

@@ -22,11 +22,12 @@ struct robot_program {
 
 #define SETTING(type, m, elements, unit, start, low, high) \
     { #m, unit, KIND(((struct soft_settings *)0)->m), OFFSET(robot_station_config, soft.m), \
-      SIZE(robot_station_config, soft.m) / (int32_t)sizeof(type), sizeof(type) },
+      SIZE(robot_station_config, soft.m) / (int32_t)sizeof(type), sizeof(type), SAME },
 #define CARD(m, unit) ONE(robot_station_config, card.m, #m, unit)
 static const struct field config_fields[] = {
     SOFT_SETTINGS(SETTING)
-    CARD(irq_every, "clocks"), CARD(input_irq_mask, "bits"), CARD(follow_mask, "bits"),
+    ONE_IN(robot_station_config, card.irq_every, "irq_every", "s", SECONDS),
+    CARD(input_irq_mask, "bits"), CARD(follow_mask, "bits"),
     CARD(stop_mask, "bits"), CARD(stop_low, "bits"), CARD(alarm_stops, ""),
     CARD(stop_servo_off, ""),
 };
@@ -41,7 +42,9 @@ static const struct field reading_fields[] = {
 };
 
 #define SEEN(m, name, unit) ONE(robot_station, m, name, unit)
-#define REPORT(m, unit) ONE(robot_station, soft.report.m, #m, unit)
+/* Names and units of the FMU's outputs. */
+#define REPORT(m, name) ONE(robot_station, soft.report.m, name, "")
+#define TIME(m, name) ONE_IN(robot_station, soft.report.m, name, "s", SECONDS)
 static const struct field seen_fields[] = {
     SEEN(clock, "clock", "clocks"), SEEN(soft.robot.speed, "path_feed", "mm/s"),
     SEEN(soft.robot.length, "path_length", "mm"), SEEN(soft.given, "move", ""),
@@ -56,11 +59,12 @@ static const struct field seen_fields[] = {
     SEEN(card.irq.seq, "interrupts", ""), SEEN(card.irq.clock, "irq_clock", "clocks"),
     SEEN(card.underruns, "underruns", ""), SEEN(card.late, "late", ""),
     SEEN(card.refused, "refused", ""), ROW(robot_station, card.dropped, "dropped", "pulses"),
-    REPORT(runs, ""), SEEN(soft.report.late, "deadline_misses", ""), REPORT(wait, "clocks"),
-    REPORT(wait_most, "clocks"), REPORT(run, "clocks"), REPORT(run_most, "clocks"),
-    REPORT(spare, "clocks"), REPORT(busy, "clocks"), REPORT(polls, ""), REPORT(lines, ""),
-    REPORT(points, ""), REPORT(starved, ""), SEEN(soft.report.line, "line_latency", "clocks"),
-    REPORT(line_most, "clocks"), REPORT(told_most, "clocks"),
+    REPORT(runs, "runs"), REPORT(late, "deadline_misses"), REPORT(polls, "polls"),
+    REPORT(lines, "lines_done"), REPORT(points, "points_computed"), REPORT(starved, "starved"),
+    TIME(wait, "irq_wait"), TIME(wait_most, "irq_wait_most"), TIME(run, "cycle_time"),
+    TIME(run_most, "cycle_time_most"), TIME(spare, "spare_time"), TIME(busy, "busy"),
+    TIME(line, "line_latency"), TIME(line_most, "line_latency_most"),
+    TIME(told_most, "line_known_most"),
 };
 
 #define KEY(m) ONE(robot_station, soft.m.pressed, "press_" #m, "")

@@ -24,9 +24,10 @@ bool robot_station_start(struct robot_station *s, const struct robot_station_con
     card.slot_clocks = config->soft.slot_clocks;
     card.format = (enum fpga_format)config->soft.pulse_format;
     if (card.irq_every < 1 || card.irq_every > INT32_MAX || card.irq_every % card.slot_clocks) {
+        const double slot = (double)card.slot_clocks / FPGA_CLOCK_HZ;   /* [s], as it is given */
         *wrong = (struct soft_wrong){ .name = "irq_every", .why = "not a whole number of slots",
-                                      .value = (double)card.irq_every,
-                                      .low = card.slot_clocks, .high = card.slot_clocks };
+                                      .value = (double)card.irq_every / FPGA_CLOCK_HZ,
+                                      .low = slot, .high = slot };
         return false;
     }
     memset(s, 0, sizeof *s);

@@ -249,8 +249,8 @@ void station_read(const struct station *s, struct station_reading *r)
         .ipo_cycle = pc_ipo_cycle(&s->pc), .queue = m->queue.count, .starved = p->starved,
         .status = task_status(m), .error = MCC_get_errcode(m),
         .line = m->written.line, .command = m->written.command,
-        .digital = (int32_t)m->written.outputs.digital, .coolant = m->written.outputs.coolant,
-        .spindle = m->written.outputs.spindle,
+        .digital_out = (int32_t)m->written.outputs.digital, .coolant = m->written.outputs.coolant,
+        .spindle_speed = m->written.outputs.spindle,
         .stopped = MCC_check_stop(m) && card_rests(&s->card)
     };
     read_axes(s, r);

@@ -81,9 +81,9 @@ struct station_reading {
     int32_t status;                 /* enum task_status */
     int32_t error;                  /* run-time error, 0 none */
     int32_t line, command;          /* that moves */
-    int32_t digital;                /* digital outputs of the program, a bit each */
+    int32_t digital_out;            /* digital outputs of the program, a bit each */
     int32_t coolant;                /* bits: 0 mist, 1 flood */
-    double  spindle;                /* [rpm] negative: counter-clockwise */
+    double  spindle_speed;          /* [rpm] negative: counter-clockwise */
     bool    stopped;                /* MCC_check_stop, and the card has put out every pulse */
 };
 

@@ -57,7 +57,7 @@ def test_an_output_is_a_number_or_the_call_says_why_not(name: str) -> None:
 
 # Set before the start or after a step; the time of the message is that of the first odd output.
 CASES = [
-    ("hydraulic_axis", "scale_offset", 0, "axis 1: scale_phase is -inf at 0.000000000 s"),
+    ("hydraulic_axis", "scale_offset", 0, "axis 1: table_phase is -inf at 0.000000000 s"),
     ("hydraulic_axis", "valve_leakage", 0, "axis 1: flow_a is nan at 0.000000000 s"),
     ("velocity_axes", "voltage", 0, "axis 1: motor_speed is inf at 0.000000000 s"),
     ("velocity_axes", "voltage", 1, "axis 1: motor_angle is inf at 0.002000000 s"),

@@ -116,7 +116,7 @@ def test_times_are_those_of_trapezia() -> None:
 def test_places_are_those_of_the_axes_within_their_limits() -> None:
     """A diagonal of 60 and 80 mm: the quicker axis has its 1000 mm/s^2, the path 1250."""
     text = "G64 P0.01\nG1 X60 Y80 F6000"
-    program = read(text, axis_acc=[1000.0] * 6, max_feed=100.0)
+    program = read(text, axis_acc=[1000.0] * 6, max_feed=6000.0)
     places, times = program.places(), program.seconds()
     assert times.sum() == pytest.approx(1.0 + 100.0 / 1250.0, abs=2e-3)
     assert len(places) * 1e-3 == pytest.approx(times.sum(), abs=1.001e-3)

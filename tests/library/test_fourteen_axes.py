@@ -91,7 +91,7 @@ def test_an_axis_turned_round_moves_the_other_way(together: motionfmu.Result) ->
 
 def test_the_following_error_of_a_voltage_axis_is_watched(together: motionfmu.Result) -> None:
     """W lags 1358 counts behind: with a limit of 1200 its group stops, the others do not."""
-    result = run(card1_dac_track_limit=1200)
+    result = run(card1_dac_track_error_limit=1200)
     assert result["groups.error"][-1].tolist() == [0, 0xF806, 0, 0, 0, 0]
     assert result["groups.done"][-1, :3].tolist() == [True, False, True]
     told = np.flatnonzero(result["groups.error"][:, 1])[0]

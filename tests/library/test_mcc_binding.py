@@ -5,6 +5,7 @@ import pickle
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ import motionfmu.mcc as mcc
 from motionfmu.binding import Struct
 from motionfmu.errors import InputError
 from motionfmu.mcc import Mcc, MccError, VirtualCard
+from motionfmu.mcc.state import configuration
 
 HEADER = (ROOT / "src/mcc/mcc.h").read_text()
 
@@ -33,6 +35,37 @@ def members(header: str, struct: str) -> set[str]:
     return {f.strip("*") for f in found if f}
 
 
+# What a setting is called where the struct says it shorter, and those that the FMU has not.
+RENAMED = {
+    "used": "active", "pitch": "lead", "rpm": "max_rpm", "inverted": "pos2encoder_dir",
+    "index_low": "index_on", "check_ot": "check_over_travel", "track_limit": "track_error_limit",
+    "acc": "axis_acc", "jerk": "axis_jerk", "bus": "bus_period", "ipo": "ipo_period",
+    "latency": "irq_latency", "jitter": "irq_jitter", "interpreter": "interpreter_period",
+    "process": "process_period", "module_unit": "module_unit_time", "module_most": "module_units",
+    "home_direction": "home_dir",
+}  # fmt: skip
+OWN = {"max_dda", "ptp_ratio", "limit_check", "encoder_backward"}
+
+
+def test_settings_have_names_and_units_of_the_fmu() -> None:
+    fmu = tomllib.loads((ROOT / "fmus/mcc/fmu.toml").read_text())["parameter"]
+    have = {n: unit for n, (_, unit) in mcc.defaults().items() if not n.startswith("asyn_")}
+    assert set(have) - set(fmu) == OWN
+    units = {n: fmu[n]["unit"] for n in set(have) - OWN if "unit" in fmu[n]}
+    assert units == {n: have[n] for n in units}
+    other = {have[n] for n in set(have) - set(units)}
+    assert other <= {"", "bit", "bits", "pulses", "counts"}  # those FMI has no unit for
+    # As the FMU takes them: feed [mm/min], times in whole clocks, the index ON when high.
+    assert mcc.defaults()["feed"][0] == fmu["feed"]["start"] == 600.0
+    assert mcc.defaults()["bus_period"][0] == fmu["bus_period"]["start"] == 1e-4
+    assert mcc.defaults()["index_on"][0].all() and fmu["index_on"]["start"] is True
+    config = configuration({"ipo_period": 1.00001e-3, "pos2encoder_dir": [1, 0, 0, 0, 0, 1]})
+    assert config["ipo_period"] == 1e-3 and config["pos2encoder_dir"].sum() == 2
+    for name, value in (("ipo_period", np.nan), ("module_time", 1e300), ("active", 2)):
+        with pytest.raises(InputError, match=f"^{name} = .*: one .* wanted"):
+            configuration({name: value})
+
+
 def test_every_setting_of_library_and_pc_has_its_name() -> None:
     have = set(mcc.defaults())
     machine = (ROOT / "src/mcc/machine.h").read_text()
@@ -45,6 +78,7 @@ def test_every_setting_of_library_and_pc_has_its_name() -> None:
     wanted |= {f"asyn_{n}" for n in members(machine, "machine_asyn")}
     homing = (ROOT / "src/mcc/home.h").read_text()
     wanted |= {f"home_{n}" for n in members(homing, "home_config")}
+    wanted = {RENAMED.get(n, n) for n in wanted}
     assert wanted <= have, wanted - have
 
 
@@ -71,7 +105,7 @@ def test_every_call_of_the_library_is_a_method() -> None:
 
 
 def test_library_alone_plans_pulses() -> None:
-    library = Mcc(feed=20.0, acc_time=0.05)
+    library = Mcc(feed=1200.0, acc_time=0.05)
     assert library.line([3.0, -1.5, 0, 0, 0, 0]) == 1
     frames = library.take(10_000)
     assert frames.sum(axis=0).tolist() == [3000, -1500, 0, 0, 0, 0]
@@ -108,7 +142,7 @@ MOVES: list[tuple[str, tuple[Any, ...], list[float]]] = [
 
 @pytest.mark.parametrize(("name", "arguments", "end"), MOVES, ids=[m[0] for m in MOVES])
 def test_each_move_ends_where_it_should(name: str, arguments: Any, end: list[float]) -> None:
-    library = Mcc(used=True, acc_time=0.02, dec_time=0.02)
+    library = Mcc(active=True, acc_time=0.02, dec_time=0.02)
     assert getattr(library, name)(*arguments) == 1
     frames = library.take(100_000)
     assert library.get_cpos().tolist() == pytest.approx(end, abs=1e-9)
@@ -211,7 +245,7 @@ def test_ring_full_and_closed_library() -> None:
     library.close_motion()
     with pytest.raises(MccError, match="init_motion"):
         library.line_x(1)
-    library.init_motion(feed=3.0)
+    library.init_motion(feed=180.0)
     assert library.line_x(1) == 1
 
 
@@ -221,14 +255,14 @@ def test_ring_full_and_closed_library() -> None:
         ({"fed": 1.0}, "no 'fed' here; did you mean 'feed'?"),
         ({"feed": "fast"}, "feed = 'fast': one number wanted"),
         ({"ppr": 1.5}, "ppr = 1.5: one whole number or 6 of them wanted"),
-        ({"pitch": [1, 2]}, "pitch = [1, 2]: one number or 6 of them wanted"),
+        ({"lead": [1, 2]}, "lead = [1, 2]: one number or 6 of them wanted"),
         ({"acc_type": "TS"}, "acc_type = 'TS': one letter wanted"),
-        ({"used": 2}, "used = 2: one truth value or 6 of them wanted"),
+        ({"active": 2}, "active = 2: one truth value or 6 of them wanted"),
         ({"acc_time": 0.1, "feed": -1.0}, "feed = -1.0 is out of range"),
-        ({"bus": 0}, "bus = 0 is out of range"),
+        ({"bus_period": 0}, "bus_period = 0 is out of range"),
         ({"min_stock": 60, "batch": 16}, "min_stock = 60 is out of range"),
         ({"min_stock": 55, "batch": 16}, "do not fit together: min_stock = 55, batch = 16"),
-        ({"feed": 2000.0, "max_feed": 1500.0}, "feed = 2000.0 is out of range"),
+        ({"feed": 120e3, "max_feed": 90e3}, "feed = 120000.0 is out of range"),
         ({"output_mode": 3}, "output_mode = 3 is out of range"),
     ],
 )
@@ -278,7 +312,7 @@ def test_switches_are_named() -> None:
 
 
 def test_record_is_what_single_runs_read() -> None:
-    a, b = VirtualCard(jitter=9000.0), VirtualCard(jitter=9000.0)
+    a, b = VirtualCard(irq_jitter=225e-6), VirtualCard(irq_jitter=225e-6)
     for card in (a, b):
         card.mcc.circle_xy([3, 4], mcc.CCW)
     found = a.record(0.7, 0.001, "pulses", "stock", "path_feed")
@@ -310,13 +344,17 @@ def test_part_program_and_its_faults() -> None:
     with pytest.raises(MccError, match="part program runs"):
         card.mcc.line_x(1)
     end = card.run_until_stop()
-    assert end.pulses[:3].tolist() == [6000, 0, 1000] and end.digital == 8
+    assert end.pulses[:3].tolist() == [6000, 0, 1000] and end.digital_out == 8
+
+
+# Settings of the card and parameters of the FMU; 1500 rpm are 125 mm/s.
+SAME = {"irq_jitter": 1e-4, "irq_latency": 3e-4, "lead": 5.0, "max_rpm": 1500.0, "max_feed": 6000.0}
 
 
 def fmu_pulses(fmi: int, folder: Path, steps: int) -> np.ndarray:
     program = folder / "part.ngc"
     program.write_text(PART)
-    wired = Machine(fmi, {"program": str(program), "output_mode": 0, "irq_jitter": 1e-4})
+    wired = Machine(fmi, {"program": str(program), "output_mode": 0, **SAME})
     rows = []
     for _ in range(steps):
         rows.append([wired.card.get(n) for n in ("pulse_count", "stock", "irq_clock")])
@@ -327,7 +365,7 @@ def fmu_pulses(fmi: int, folder: Path, steps: int) -> np.ndarray:
 
 def test_card_is_the_fmus_clock_by_clock(tmp_path: Path) -> None:
     steps = 6000
-    card = VirtualCard(jitter=4000.0)
+    card = VirtualCard(**SAME)
     card.mcc.task_start(PART)
     found = card.record(steps * 1e-4, 1e-4, "pulses", "stock", "irq_clock")
     rows = np.c_[found["pulses"][:, :3], found["stock"][:, :3], found["irq_clock"]][:steps]
@@ -346,7 +384,7 @@ def test_binding_works_outside_the_source_tree(tmp_path: Path) -> None:
 
 
 def test_axes_move_for_themselves() -> None:
-    card = VirtualCard(used=True)
+    card = VirtualCard(active=True)
     card.mcc.set_ptp_asyn_acc_type("TTTSSS")
     card.mcc.set_ptp_asyn_decc_type("STSTST")
     card.mcc.set_ptp_asyn_acc_step([50] * 6)

@@ -14,7 +14,7 @@ from motionfmu import InputError, freq, linear
 ENC = "card.enc_phase"
 N = 500  # samples of a period
 LINES = np.unique(np.round(np.geomspace(1, N // 2 - 1, 40)).astype(int))
-FINE = {"machine.encoder_lines": 2**20, "drives.enc_lines": 2**20}
+FINE = {"machine.encoder_lines": 2**20, "drives.encoder_lines": 2**20}
 # kp of the card with FINE encoders: 50 1/s
 SLOW_CARD = {"mcc.p_gain": 1, "card.p_scale": 7}
 LAG = {"mcc.p_gain": 200, "machine.tau": 1e-3}
@@ -53,7 +53,7 @@ def errors(
 CASES: list[Any] = [
     # velocity_axes: alone, with its lag, and in the card's loop
     (THEORY, 1, {"machine.tau": 0.0}, "machine.voltage", ["motor_speed", "table_position"], 5.0),
-    (THEORY, 1, LAG, "machine.voltage", ["motor_speed", "motor_phase", "load_phase"], 5.0),
+    (THEORY, 1, LAG, "machine.voltage", ["motor_speed", "motor_phase", "table_phase"], 5.0),
     (THEORY, 2, LAG, ENC, ["motor_speed", "table_position"], 1500.0),
     # servo_drives in velocity mode, with ball_screw_axes
     (MODES, 2, {}, "drives.dac", ["motor_speed", "table_speed", "screw_force"], 5.0),

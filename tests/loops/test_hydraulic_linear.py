@@ -18,7 +18,10 @@ from motionfmu.linear.margins import margins
 
 SCENARIO = ROOT / "scenarios/hydraulic_positioning"
 SCALE = "controller.scale_phase"
-AT = {"axis.velocity": 0.05, "axis.position": 0.0}  # through the middle, where the oil is softest
+AT = {
+    "axis.table_speed": 0.05,
+    "axis.table_position": 0.0,
+}  # through the middle, where the oil is softest
 # A short timer routine: the scale may then move ten times as fast before an edge is lost.
 P = {
     "controller.law": 0,
@@ -55,7 +58,7 @@ def test_frequency_response_is_that_of_the_fmus(case: str) -> None:
     Not at the resonance itself, 380 to 450 rad/s: it moves by as much while the axis travels.
     """
     axis = model(**CASES[case])
-    outputs = ["axis.velocity", "axis.spool"]
+    outputs = ["axis.table_speed", "axis.spool"]
     system = axis.system(SCALE, outputs)
     setup = freq.setup(axis, SCALE, outputs)
     for omega in (60.0, 150.0, 300.0, 600.0, 800.0):
@@ -102,7 +105,7 @@ def test_gain_of_the_loop_at_low_frequency() -> None:
 
 
 def model_at(speed: float) -> linear.AxisModel:
-    return linear.model(SCENARIO, at={**AT, "axis.velocity": speed}, set=P)
+    return linear.model(SCENARIO, at={**AT, "axis.table_speed": speed}, set=P)
 
 
 def test_an_input_is_not_moved_faster_than_it_is_followed() -> None:
@@ -142,7 +145,7 @@ def test_what_has_no_linear_model_is_refused(changed: dict[str, Any], told: str)
 
 
 def test_the_command_at_a_moving_point(tmp_path) -> None:
-    arguments = ["--at", "axis.velocity=0.05", "--at", "axis.position=0"]
+    arguments = ["--at", "axis.table_speed=0.05", "--at", "axis.table_position=0"]
     arguments += ["--set", "controller.law=0", "--set", "axis.start_position=-0.02"]
     done = CliRunner().invoke(
         app, ["margins", str(SCENARIO), *arguments, "--out", str(tmp_path / "o")]
@@ -150,14 +153,15 @@ def test_the_command_at_a_moving_point(tmp_path) -> None:
     assert done.exit_code == 0, done.output
     page = (tmp_path / "o/report.html").read_text()
     assert "controller.scale_phase" in done.output and "Phase margin" in page
-    axis = linear.model(SCENARIO, at={"axis.velocity": 0.05}, set={"controller.law": 0})
+    axis = linear.model(SCENARIO, at={"axis.table_speed": 0.05}, set={"controller.law": 0})
     assert margins(axis.loop(SCALE)).stable
 
 
 def test_the_literal_integral_is_its_worst_case(tmp_path) -> None:
     """The scenario's own law: unstable in the end, said so, and no FMU is made to ring."""
     done = CliRunner().invoke(
-        app, ["margins", str(SCENARIO), "--at", "axis.velocity=0.05", "--out", str(tmp_path / "o")]
+        app,
+        ["margins", str(SCENARIO), "--at", "axis.table_speed=0.05", "--out", str(tmp_path / "o")],
     )
     assert done.exit_code == 0, done.output
     assert "unstable" in done.output

@@ -59,7 +59,7 @@ def test_gain_of_a_hydraulic_axis_is_that_of_its_ramps() -> None:
     scenario = motionfmu.load(ROOT / "scenarios/hydraulic_p_step")
     result = scenario.run(set=given, stop=0.6)
     slow, fast = (result[f"{p}.error"][-500:].mean() for p in ("p", "gap"))
-    between = {"axis.velocity": 0.03, "gap_axis.velocity": 0.03}
+    between = {"axis.table_speed": 0.03, "gap_axis.table_speed": 0.03}
     gains = linear.gain_of(scenario, set=given, at=between)
     assert [(g.name, g.axis) for g in gains] == [("p.p_gain", 0), ("gap.p_gain", 0)]
     for gain in gains:

@@ -9,7 +9,7 @@ import motionfmu
 from motionfmu import linear
 
 GAP = 1e-4  # [m]
-BOTH = ("position", "rod_position", "velocity")
+BOTH = ("table_position", "rod_position", "table_speed")
 SMOOTH = {"table_coulomb": 0.0, "table_static": 0.0, "table_viscous": 0.0}
 
 
@@ -20,12 +20,14 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Library:
 
 def test_without_clearance_rod_and_table_are_one_to_the_bit(library: Library) -> None:
     """Whatever the joint would be; -0 and 0 are the same number."""
-    names = (*SHOWN, "rod_position", "scale_phase", "rod_phase", "stop_force", "flow_a")
+    names = (*SHOWN, "rod_position", "table_phase", "rod_phase", "stop_force", "flow_a")
     plain = drive_all(started(library, **START), HARD, names=names)
     joint = {"rod_mass": 50.0, "joint_stiffness": 1e6, "joint_damping": 0.0}
     assert np.array_equal(plain, drive_all(started(library, **START, **joint), HARD, names=names))
-    assert np.array_equal(plain[:, names.index("rod_position")], plain[:, names.index("position")])
-    assert np.array_equal(plain[:, names.index("rod_phase")], plain[:, names.index("scale_phase")])
+    assert np.array_equal(
+        plain[:, names.index("rod_position")], plain[:, names.index("table_position")]
+    )
+    assert np.array_equal(plain[:, names.index("rod_phase")], plain[:, names.index("table_phase")])
 
 
 def test_without_clearance_the_joint_is_a_mode_that_decays() -> None:
@@ -97,11 +99,11 @@ def test_the_contact_never_pulls(library: Library) -> None:
 def test_a_load_beyond_friction_takes_the_clearance(library: Library) -> None:
     """Valve shut: the table goes to the other side of the gap at once, the rod waits for it."""
     run = started(library, clearance=GAP)
-    low = drive(run, 0.5, 1e-3, BOTH, load_force=-1000.0)[-1]
-    high = drive(run, 0.5, 1e-3, BOTH, load_force=1000.0)[-1]
+    low = drive(run, 0.5, 1e-3, BOTH, force=-1000.0)[-1]
+    high = drive(run, 0.5, 1e-3, BOTH, force=1000.0)[-1]
     assert low[1] - low[0] == pytest.approx(GAP / 2 + 700.0 / 1e8, rel=0.02)
     assert high[1] - high[0] == pytest.approx(-GAP / 2 - 700.0 / 1e8, rel=0.02)
-    for scale, place in (("scale_phase", high[0]), ("rod_phase", high[1])):
+    for scale, place in (("table_phase", high[0]), ("rod_phase", high[1])):
         assert float(run.get(scale)) == pytest.approx(place / 2e-5, rel=1e-12)
 
 
@@ -115,10 +117,10 @@ def test_a_rod_heavier_than_all_is_refused(library: Library, mass: float) -> Non
 
 def test_the_operating_point_is_in_contact() -> None:
     """Ahead by half the clearance and what the friction at 50 mm/s bends the contact."""
-    at, values = {"axis.velocity": 0.05, "axis.position": 0.0}, {"axis.clearance": GAP}
+    at, values = {"axis.table_speed": 0.05, "axis.table_position": 0.0}, {"axis.clearance": GAP}
     point = linear.model(ROOT / "scenarios/hydraulic_positioning", at=at, set=values).points["axis"]
     friction = 200.0 + 100.0 / (1.0 + 25.0) + 50.0
-    ahead = point.values["rod_position"] - point.values["position"]
+    ahead = point.values["rod_position"] - point.values["table_position"]
     assert ahead == pytest.approx(GAP / 2 + friction / 1e8, rel=1e-6)
 
 
@@ -141,7 +143,7 @@ def test_what_clearance_leaves_and_the_full_closed_loop_cures(clearance: float) 
     values = {f"{n}_axis.clearance": clearance for n in names}
     r = motionfmu.load(ROOT / "scenarios/hydraulic_clearance").run(set=values, stop=5.0)
     for n in names:
-        place = r[f"{n}_axis.position"]
+        place = r[f"{n}_axis.table_position"]
         found = [
             float(np.mean(place[(r.time > t) & (r.time < t + 0.1)]) - target) * 1e6
             for t, target in ((1.9, 0.02), (3.9, 0.01), (4.9, 0.01))
@@ -163,7 +165,7 @@ def test_a_coarse_output_shakes_like_a_relay(gain: int) -> None:
     needed = 1.3e-12 * 800.0 / 9.46e-4**2 / 5e-6 / 49.48  # leakage over the gain of the valve
     low = 1000 + gain * int(needed / gain)
     assert set(r["coarse.duty"][late]) == {low, low + gain}
-    speed = r["coarse_axis.velocity"][late]
+    speed = r["coarse_axis.table_speed"][late]
     amplitude = 2.0 * gain / (np.pi * 3.61) * 5e-6
     expected = amplitude * 237.0 / np.sqrt(2.0)
     # A relay that is not half the time up swings by less; a mean speed is part of it.

@@ -50,7 +50,7 @@ def test_fmu_against_radau(exact, fmi):
     rows, t0 = [], 0.0
     for t1, voltage, force in HARD:
         fmu.set("voltage", voltage)
-        fmu.set("load_force", force)
+        fmu.set("force", force)
         for _ in range(round((t1 - t0) / 1e-4)):
             assert fmu.step(1e-4) == OK
             rows.append([fmu.get(name)[0] for name in SHOWN])
@@ -74,7 +74,7 @@ def test_trajectory_against_the_simulator_of_rumoca(library):
 
     text = (
         f"model T MotionControl.HydraulicAxis a(start_position = {START['start_position']}); "
-        f"equation a.voltage = {held(1)}; a.load_force = {held(2)}; end T;"
+        f"equation a.voltage = {held(1)}; a.force = {held(2)}; end T;"
     )
     model = rumoca.Session(roots=[str(PACKAGE)]).loads(text, model="T")
     config = rumoca.SimConfig(solver="rk-like", rtol=1e-9, atol=1e-12)
@@ -90,7 +90,7 @@ def test_trajectory_against_the_simulator_of_rumoca(library):
 def test_oil_is_conserved_at_every_sample(library):
     """Oil through the valve and past the piston = swept volume + compression, in both chambers."""
     areas = {"area_a": 1.2e-3, "area_b": 8e-4, "cylinder_leakage": 5e-12}
-    names = ("flow_a", "flow_b", "pressure_a", "pressure_b", "position", "velocity")
+    names = ("flow_a", "flow_b", "pressure_a", "pressure_b", "table_position", "table_speed")
     run = started(library, **START, **areas)
     before = np.array([[float(run.get(n)) for n in names]])
     rows = np.concatenate([before, drive_all(run, HARD, names=names)])
@@ -122,7 +122,7 @@ def test_oil_is_conserved_at_every_sample(library):
 
 def test_stops_push_back_only(library):
     run = started(library, start_position=0.099)
-    names = ("position", "stop_force")
+    names = ("table_position", "stop_force")
     rows = np.concatenate(
         [drive(run, 0.05, names=names, voltage=10.0), drive(run, 0.9, 2e-4, names, voltage=-10.0)]
     )
@@ -139,7 +139,7 @@ def test_stops_push_back_only(library):
 def test_a_soft_stop_is_left_without_a_pull(library):
     """Faster off the stop than 1/damping the force is 0, though the dent is still there."""
     run = started(library, start_position=0.099, stop_stiffness=1e6, stop_damping=10.0)
-    names = ("position", "velocity", "stop_force")
+    names = ("table_position", "table_speed", "stop_force")
     drive(run, 0.1, 1e-3, names, voltage=10.0)
     s, v, f = drive(run, 0.1, names=names, voltage=-10.0).T
     quick = (s > 0.1) & (v < -0.1)
@@ -151,10 +151,10 @@ def test_a_soft_stop_is_left_without_a_pull(library):
 def test_scale_and_home_switch(library):
     for start, on in ((0.0, 0.0), (-0.0799, 0.0), (-0.08, 1.0), (-0.1, 1.0)):
         run = started(library, start_position=start, scale_pitch=1e-5, scale_offset=-0.02)
-        assert float(run.get("home")) == on
-        assert float(run.get("position")) == start
-        assert float(run.get("scale_phase")) == pytest.approx((start + 0.02) / 1e-5, rel=1e-13)
-    rows = drive(run, 0.2, 1e-3, ("position", "scale_phase", "home"), voltage=10.0)
+        assert float(run.get("home_switch")) == on
+        assert float(run.get("table_position")) == start
+        assert float(run.get("table_phase")) == pytest.approx((start + 0.02) / 1e-5, rel=1e-13)
+    rows = drive(run, 0.2, 1e-3, ("table_position", "table_phase", "home_switch"), voltage=10.0)
     assert rows[:, 1] == pytest.approx((rows[:, 0] + 0.02) / 1e-5, rel=1e-12)
     assert np.array_equal(rows[:, 2] == 1.0, rows[:, 0] <= -0.08)
     assert rows[-1, 2] == 0.0
@@ -183,7 +183,7 @@ def test_any_split_gives_the_same_bits(library, cuts, switch, volts):
             assert r.step((2500 * tick - r.now) * 1e-9) == 0
             seen[tick] = [float(r.get(name)) for name in SHOWN]
             if tick == switch:
-                r.set(voltage=volts, load_force=1000.0)
+                r.set(voltage=volts, force=1000.0)
         return seen
 
     fine, coarse = run(cuts), run(())

@@ -89,7 +89,7 @@ def test_the_fmu_carries_its_linear_model():
     ode = carried("hydraulic_axis")
     assert isinstance(ode, Ode)
     linear, p = Linearised(ode), np.array(ode.p0)
-    at = linear.point(p, {"velocity": 0.05, "load_force": 0.0})
+    at = linear.point(p, {"table_speed": 0.05, "force": 0.0})
     omega, zeta = resonance(linear.matrices(at.x, at.u, p)[0])
     assert omega == pytest.approx(385.4, rel=5e-3)
     assert zeta == pytest.approx(0.076, abs=0.002)
@@ -105,7 +105,7 @@ def test_no_load_speed(library, areas):
             library, **NO_FRICTION, valve_leakage=0.0, cylinder_leakage=0.0,
             area_a=a, area_b=b, laminar_drop=1e3,
         )  # fmt: skip
-        v = drive(run, 0.2, 1e-3, ("velocity",), voltage=sign * 10.0)[-1, 0]
+        v = drive(run, 0.2, 1e-3, ("table_speed",), voltage=sign * 10.0)[-1, 0]
         assert v == pytest.approx(sign * gain * np.sqrt(force / (a**3 + b**3)), rel=1e-5)
 
 
@@ -119,7 +119,7 @@ def test_stall_force(library):
     assert force == pytest.approx(-supply * area, rel=1e-6)
     for share, way in ((0.98, 1.0), (1.02, -1.0)):
         run = started(library, **values)
-        s = drive(run, 1.0, 1e-2, ("position",), voltage=10.0, load_force=-share * supply * area)
+        s = drive(run, 1.0, 1e-2, ("table_position",), voltage=10.0, force=-share * supply * area)
         assert np.sign(s[-1, 0] - s[-20, 0]) == way
 
 
@@ -127,7 +127,7 @@ def test_inside_the_deadband_only_leakage_moves_the_table(library):
     speeds = {}
     for volts in (0.29, -0.29, 0.32):
         run = started(library, **NO_FRICTION, valve_rounding=1e-5)
-        s = drive(run, 3.0, 1e-2, ("position",), voltage=volts)[:, 0]
+        s = drive(run, 3.0, 1e-2, ("table_position",), voltage=volts)[:, 0]
         speeds[volts] = (s[-1] - s[-11]) / 0.1
     full = 1.667e-4 * np.sqrt(138e5 / (2 * 35e5)) / 9.46e-4
     assert abs(speeds[0.29]) < 1e-6 * full
@@ -181,7 +181,7 @@ def p_loop(run, command, seconds, every=1e-4):
     """Voltage = transducer * (command(t) - position); the errors [m]."""
     errors = []
     for k in range(round(seconds / every)):
-        errors.append(command(k * every) - float(run.get("position")))
+        errors.append(command(k * every) - float(run.get("table_position")))
         run.set(voltage=FIGURES["transducer"] * errors[-1])
         assert run.step(every) == 0, run.said
     return np.array(errors)
@@ -198,10 +198,10 @@ def test_textbook_gain():
     """Speed per voltage of the linear model in a uniform motion, times the transducer's."""
     case = Case(**esposito())
     linear = Linearised(case.ode)
-    at = linear.point(case.p, {"velocity": 2.0 * INCH})
+    at = linear.point(case.p, {"table_speed": 2.0 * INCH})
     a, b, c, _ = linear.matrices(at.x, at.u, case.p)
     keep = [1, 2, 3, 4, 6]  # without the position, which only adds up, and the ideal current
-    a, b, row = a[np.ix_(keep, keep)], b[keep, 0], c[case.names.index("velocity"), keep]
+    a, b, row = a[np.ix_(keep, keep)], b[keep, 0], c[case.names.index("table_speed"), keep]
     gain = FIGURES["transducer"] * -row @ np.linalg.solve(a, b)
     assert gain == pytest.approx(BOOK["gain"], rel=THREE_DIGITS)
     assert gain == pytest.approx(BOOK["frequency"] / 3, rel=THREE_DIGITS)
@@ -221,7 +221,7 @@ def test_textbook_tracking_error(library):
     """Error at a speed that just does not saturate the valve; a faster one is lost."""
     begin, ramp = -4.5 * INCH, 0.4
     run = started(library, **esposito(), start_position=begin)
-    fastest = drive(run, 0.3, 1e-3, ("velocity",), voltage=10.0)[-1, 0]
+    fastest = drive(run, 0.3, 1e-3, ("table_speed",), voltage=10.0)[-1, 0]
     for share, kept in ((0.999, True), (1.05, False)):
         run = started(library, **esposito(), start_position=begin)
 

@@ -94,7 +94,7 @@ def test_pure_integrator_and_lag_against_closed_forms(velocity):
     assert r.get("motor_angle") == pytest.approx(angle, rel=1e-7)
     assert r.get("table_position") == pytest.approx(angle * 0.02 / (2 * np.pi), rel=1e-7)
     assert r.get("motor_phase") == pytest.approx(2500 * angle / (2 * np.pi), rel=1e-7)
-    assert r.get("load_phase") == pytest.approx(angle * 0.02 / (2 * np.pi) / 2e-5, rel=1e-7)
+    assert r.get("table_phase") == pytest.approx(angle * 0.02 / (2 * np.pi) / 2e-5, rel=1e-7)
 
 
 def test_runge_kutta_has_order_four(velocity):

@@ -15,7 +15,7 @@ from scipy.special import ellipk
 P, HOLD, TAU, EMF, LEAD = 50, 1.2, 2e-4, 110.0, 0.005
 RATIO = LEAD / (2 * math.pi)
 INERTIA = 3e-5 + 1e-5 + 5 * RATIO**2
-FREE = dict.fromkeys(("coulomb", "viscous", "table_coulomb", "table_viscous"), 0.0)
+FREE = dict.fromkeys(("motor_coulomb", "motor_viscous", "table_coulomb", "table_viscous"), 0.0)
 IDEAL = {**FREE, "winding_time": 1e-5, "emf_speed": 1e12}
 FINE = 4_000_000  # pulses per turn
 SWING = math.sqrt(P * HOLD / INERTIA)  # [rad/s] of small oscillations
@@ -82,7 +82,7 @@ def test_small_swings_follow_teeth_torque_and_inertia(library):
 def test_held_torque_is_the_sine_of_the_lag(library):
     """Up to the holding torque; above it the motor slips by steps that are multiples of 4."""
     share = np.array([-0.9, 0.2, 0.5, 0.8, 0.99, 1.01])
-    run = started(library, **{**FREE, "viscous": 0.02})
+    run = started(library, **{**FREE, "motor_viscous": 0.02})
     for part in np.linspace(0, 1, 201):
         run.set(force=-share * part * HOLD / RATIO)
         assert run.step(2e-3) == 0

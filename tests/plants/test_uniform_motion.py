@@ -39,67 +39,67 @@ def _linearised() -> Linearised:
     ("parameters", "speed", "load"),
     [
         ({}, 0.105, {}),
-        ({}, 0.2, {"load_force": -800.0}),
-        ({}, -0.235, {"load_force": 0.0}),
-        (esposito(), 0.05, {"load_force": 0.0}),
+        ({}, 0.2, {"force": -800.0}),
+        ({}, -0.235, {"force": 0.0}),
+        (esposito(), 0.05, {"force": 0.0}),
         (VISCOUS, 0.0495, {}),
-        (VISCOUS, -0.05, {"load_force": 2000.0}),
+        (VISCOUS, -0.05, {"force": 2000.0}),
     ],
     ids=["slow", "load", "fast", "book", "viscous", "viscous and load"],
 )
 def test_the_plant_moves_as_the_motion_says(library, parameters, speed, load) -> None:
     """With the voltage that was found, the running plant reaches the speed and stays at it."""
-    at = found(parameters, velocity=speed, **load)
-    force = load.get("load_force", 0.0)
-    assert at.values["velocity"] == pytest.approx(speed, rel=1e-9)
-    assert at.values["position"] == 0.0 and at.values["load_force"] == force
+    at = found(parameters, table_speed=speed, **load)
+    force = load.get("force", 0.0)
+    assert at.values["table_speed"] == pytest.approx(speed, rel=1e-9)
+    assert at.values["table_position"] == 0.0 and at.values["force"] == force
     ends = 4.5 * INCH if parameters else 0.09
     run = started(library, **parameters, start_position=-ends if speed > 0.0 else ends)
-    run.set(load_force=force)
-    seen = drive(run, 0.35, 1e-3, ("velocity",), voltage=at.values["voltage"])[-50:, 0]
+    run.set(force=force)
+    seen = drive(run, 0.35, 1e-3, ("table_speed",), voltage=at.values["voltage"])[-50:, 0]
     assert seen == pytest.approx(speed, rel=2e-4)
 
 
 def test_the_fastest_motion_is_found_and_the_next_is_not(library) -> None:
     """At 10 V the amplifier gives all it has."""
     run = started(library, start_position=-0.09)
-    fastest = drive(run, 0.4, 1e-3, ("velocity",), voltage=10.0)[-1, 0]
+    fastest = drive(run, 0.4, 1e-3, ("table_speed",), voltage=10.0)[-1, 0]
     assert 0.24 < fastest < 0.25
-    at = found({}, velocity=0.99 * fastest, load_force=0.0)
+    at = found({}, table_speed=0.99 * fastest, force=0.0)
     assert 9.5 < at.values["voltage"] < 10.0
     with pytest.raises(
-        ValueError, match=r"no uniform motion with velocity = .*, while load_force = 0"
+        ValueError, match=r"no uniform motion with table_speed = .*, while force = 0"
     ):
-        found({}, velocity=1.01 * fastest, load_force=0.0)
+        found({}, table_speed=1.01 * fastest, force=0.0)
 
 
 @pytest.mark.parametrize("speed", [0.12, 0.24])
 def test_how_long_a_motion_lasts(speed: float) -> None:
     """From the middle to the end stop, 0.1 m; looked at every 12 %."""
-    lasts = found({}, velocity=speed, load_force=0.0).lasts
+    lasts = found({}, table_speed=speed, force=0.0).lasts
     assert 0.88 * 0.1 / speed < lasts <= 0.1 / speed
 
 
 def test_an_input_that_nobody_stated_is_told(tmp_path: Path) -> None:
     """What the scenario does with the load is kept, and said on console and page."""
-    at = {"axis.velocity": 0.05, "axis.position": 0.0}
+    at = {"axis.table_speed": 0.05, "axis.table_position": 0.0}
     point = linear.model(LOADED, at=at).points["axis"]
-    assert point.stated == {"velocity": 0.05, "position": 0.0}
-    assert point.held == {"load_force": -1000.0} and point.values["load_force"] == -1000.0
+    assert point.stated == {"table_speed": 0.05, "table_position": 0.0}
+    assert point.held == {"force": -1000.0} and point.values["force"] == -1000.0
     with pytest.raises(
-        InputError, match=r"velocity = 0\.26, position = 0, while load_force = -1000"
+        InputError, match=r"table_speed = 0\.26, table_position = 0, while force = -1000"
     ):
-        linear.model(LOADED, at=at | {"axis.velocity": 0.26})
+        linear.model(LOADED, at=at | {"axis.table_speed": 0.26})
     out = tmp_path / "out"
     stated = [word for name, value in at.items() for word in ("--at", f"{name}={value}")]
     done = CliRunner().invoke(
         app, ["margins", str(LOADED), *stated, "--no-simulate", "--out", str(out)]
     )
-    told = "Not stated, kept as the scenario has them: axis.load_force = -1000"
+    told = "Not stated, kept as the scenario has them: axis.force = -1000"
     assert told in " ".join(done.output.split())
     assert told in (out / "report.html").read_text()
     numbers = json.loads((out / "result.json").read_text())
-    assert numbers["operating_point"]["axis"]["held"] == {"load_force": -1000.0}
+    assert numbers["operating_point"]["axis"]["held"] == {"force": -1000.0}
 
 
 SHARP = {"valve_leakage": 0.0, "cylinder_leakage": 0.0, "valve_rounding": 1e-6}
@@ -117,10 +117,10 @@ SHARP = {"valve_leakage": 0.0, "cylinder_leakage": 0.0, "valve_rounding": 1e-6}
 )
 def test_every_force_and_flow_is_in_balance(parameters, speed, load) -> None:
     """Shut without leakage, sticking, unequal areas: nothing but the position changes."""
-    at = found(parameters, velocity=speed, load_force=load)
+    at = found(parameters, table_speed=speed, force=load)
     rates = Case(**parameters).rhs(at.x, at.u).full().ravel()
     place = [d.name for d in Case().ode.states].index("table.position")
     assert rates[place] == pytest.approx(speed, rel=1e-9)
     terms = np.abs(Case(**parameters).slope(at.x, at.u).full()) @ np.maximum(np.abs(at.x), 1e-9)
     assert np.delete(np.abs(rates) / terms, place).max() < 1e-6
-    assert abs(at.values["position"]) < 1e-3 and 0.0 < abs(at.values["voltage"]) < 10.0
+    assert abs(at.values["table_position"]) < 1e-3 and 0.0 < abs(at.values["voltage"]) < 10.0

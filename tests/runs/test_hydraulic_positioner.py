@@ -134,7 +134,7 @@ def test_quadrature_both_ways() -> None:
     assert len(served) == 193 == r["written.interrupts"][-1]
     assert np.abs(counter - r["written.edges"]).max() <= 1
     assert np.array_equal(r["repaired.counter"][-1:], r["written.counter"][-1:])
-    quarter = np.floor(4 * r["axis.scale_phase"]).astype(int)
+    quarter = np.floor(4 * r["axis.table_phase"]).astype(int)
     assert np.abs(np.diff(quarter - quarter[0] - r["written.edges"])).max() <= 1
 
 
@@ -149,7 +149,7 @@ def test_counts_are_lost_beyond_the_border_speed(cycles: int) -> None:
         speed = (np.floor(edge * share * s.PERIOD) + 0.382) / s.PERIOD
         r = s.held(cycles, speed)
         assert s.measure(r).speed == pytest.approx(speed, rel=2e-3)
-        steps = edges((r["axis.position"] / s.pitch(speed)), 800)
+        steps = edges((r["axis.table_position"] / s.pitch(speed)), 800)
         for repaired, name in enumerate(s.NAMES):
             lost, turned = served(steps, 8000, cycles, bool(repaired))
             assert (r[f"{name}.lost"][-1], r[f"{name}.turned"][-1]) == (lost, turned)
@@ -178,7 +178,7 @@ def test_the_counter_wraps_and_nothing_else_does() -> None:
 
 LOADS = """
 [[drive]]
-input = "axis.load_force"
+input = "axis.force"
 at    = [0.25, 0.75]
 value = [{force}, {after}]
 """
@@ -195,7 +195,7 @@ def test_held_within_a_count_under_any_load(
     values = {"axis.start_position": place, "axis.scale_offset": place - COUNT / 2}
     r = scenario.run(set=values)
     t, error = r.time, r["controller.error"]
-    place_now = (r["axis.position"] - place) / COUNT
+    place_now = (r["axis.table_position"] - place) / COUNT
     assert np.array_equal(r["controller.counter"][-1:], r["controller.edges"][-1:])
     v_a, v_b = 5e-5 + 9.46e-4 * (0.1 + place), 5e-5 + 9.46e-4 * (0.1 - place)
     stiffness = 1.2e9 * 9.46e-4**2 * (1 / v_a + 1 / v_b)
@@ -215,7 +215,7 @@ def test_a_harder_blow_loses_counts(tmp_path: Path) -> None:
     drives = LOADS.format(force=6000, after=6000)
     scenario = changed("hydraulic_load", tmp_path, drives, stop="1.0")
     r = scenario.run()
-    assert np.abs(r["axis.velocity"]).max() > 17505 * COUNT
+    assert np.abs(r["axis.table_speed"]).max() > 17505 * COUNT
     assert r["controller.lost"][-1] + r["controller.turned"][-1] > 0
     assert r["controller.counter"][-1] != r["controller.edges"][-1]
     fast = scenario.run(set={"controller.timer_cycles": 150})
@@ -248,9 +248,9 @@ def faulty(folder: Path, button: str, more: str, **values: Any) -> motionfmu.Res
         "hydraulic_load",
         folder,
         FAULTS.format(button=button, more=more),
-        leave='["*.adc", "*.load_force", "*.home", "*.pb*", "*.target"]',
+        leave='["*.adc", "*.force", "*.home", "*.pb*", "*.target"]',
         stop="1.0",
-        signals='["controller.*", "axis.position", "axis.velocity"]',
+        signals='["controller.*", "axis.table_position", "axis.table_speed"]',
     )
     return scenario.run(set={f"controller.{k}": v for k, v in values.items()})
 
@@ -265,7 +265,7 @@ def stopped(r: motionfmu.Result, code: int) -> float:
     assert set(r["controller.duty"][begin + 8 :]) == {1000}
     assert r["controller.lost"][-1] == r["controller.turned"][-1] == 0
     assert r["controller.counter"][-1] == r["controller.edges"][-1]
-    assert abs(r["axis.velocity"][-1]) < 1e-4
+    assert abs(r["axis.table_speed"][-1]) < 1e-4
     return float(r.time[begin])
 
 
@@ -301,7 +301,9 @@ def test_a_scale_that_is_unplugged(tmp_path: Path, at: float, silent: float) -> 
     last = r.time[inside[-1]] if len(inside) else at
     opened = np.argmax((np.abs(r["controller.duty"] - 1000) >= 200) & (r.time > last))
     assert 0.0 < when - max(last, r.time[opened]) < silent + 3e-3
-    run_on = (r["axis.position"][-1] - r["axis.position"][np.searchsorted(r.time, at)]) / COUNT
+    run_on = (
+        r["axis.table_position"][-1] - r["axis.table_position"][np.searchsorted(r.time, at)]
+    ) / COUNT
     assert run_on > 100, "the axis did move, unseen"
 
 
@@ -309,7 +311,7 @@ def test_a_plug_put_in_again_costs_whole_periods_only(tmp_path: Path) -> None:
     more = UNPLUG.format(at="0.3, 0.45").replace("[true]", "[true, false]")
     r = faulty(tmp_path, "pb2", more, target=10000, scale_time=0.05)
     stopped(r, 4)
-    phase, edges = r["axis.position"][-1] / (4 * COUNT), r["controller.edges"][-1]
+    phase, edges = r["axis.table_position"][-1] / (4 * COUNT), r["controller.edges"][-1]
     assert abs((phase + 0.125 - edges / 4) - round(phase + 0.125 - edges / 4)) < 0.26
 
 
@@ -318,7 +320,7 @@ def test_a_blocked_axis_is_the_same_to_the_controller(tmp_path: Path) -> None:
     fast = {"speed": 60000.0, "acceleration": 1e6, "error_limit": 32767, "timer_cycles": 100}
     r = faulty(tmp_path, "pb2", "", target=30000, **fast)
     assert 0.6 < stopped(r, 4) < 0.9
-    assert r["axis.position"][-1] == pytest.approx(0.1, abs=2e-3)
+    assert r["axis.table_position"][-1] == pytest.approx(0.1, abs=2e-3)
 
 
 @pytest.mark.parametrize(("home", "code", "way"), [(True, 5, 1), (False, 6, -1)])

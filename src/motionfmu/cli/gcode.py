@@ -34,7 +34,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Check part programs: faults, cycle time, extents, tools; draw their paths."""
     settings: dict[str, Any] = {
-        "max_feed": max_feed / 60.0,
+        "max_feed": max_feed,
         "speed": rapid / 60.0,
         "acceleration": acceleration,
         "deceleration": acceleration,

@@ -165,7 +165,8 @@ def defaults() -> dict[str, Any]:
     Returns
     -------
     dict
-        Lengths in mm, speeds in mm/s, accelerations in mm/s^2, jerks in mm/s^3 (0: unlimited).
+        Lengths in mm, feed and max_feed in mm/min, speeds in mm/s, accelerations in mm/s^2,
+        jerks in mm/s^3 (0: unlimited).
     """
     reader = _reader({})
     return {name: reader[name] for name in reader if name not in ("line", "ended")}

@@ -61,7 +61,7 @@ class VirtualCard(Station[Reading]):
 
     Examples
     --------
-    >>> card = VirtualCard(feed=20.0)
+    >>> card = VirtualCard(feed=1200)
     >>> index = card.mcc.line([10, 5, 0, 0, 0, 0])
     >>> card.run_until_stop().pulses[:2].tolist()
     [10000, 5000]

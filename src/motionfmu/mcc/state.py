@@ -36,8 +36,8 @@ def defaults() -> dict[str, tuple[Any, str]]:
     Returns
     -------
     dict
-        Value and unit by name; arrays have an element an axis (irq_sources and irq_priority: a
-        page of sources). Clocks are 25 ns.
+        Value and unit by name, those of the FMU mcc's parameters; arrays have an element an axis
+        (irq_sources and irq_priority: a page of sources).
     """
     config = configuration({})
     return {name: (config[name], unit) for name, unit in config.units.items()}

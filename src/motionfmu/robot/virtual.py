@@ -24,7 +24,7 @@ def defaults() -> dict[str, tuple[Any, str]]:
     dict
         Value and unit by name: the parameters of the FMU soft_controller (their meanings are in its
         fmu.toml), and of the card irq_every, input_irq_mask, follow_mask, stop_mask, stop_low,
-        alarm_stops, stop_servo_off. Clocks are 25 ns.
+        alarm_stops, stop_servo_off.
     """
     config = configuration({})
     return {name: (config[name], unit) for name, unit in config.units.items()}
@@ -60,9 +60,10 @@ class Reading(Values):
         Line of the program that moves; moves given, moves whose points are passed.
     done, stopped, rests : bool
         The program has ended; a stop of the card acts; nothing is left to do.
-    wait, run, spare, busy, line_latency : int
+    irq_wait, cycle_time, spare_time, busy, line_latency : float
         Of the driver's latest cycle: interrupt to begin, to mark, mark to its pulses; in all; a
-        line's way to its first slot [clocks]; the longest are wait_most, run_most, line_most.
+        line's way to its first slot [s]; the longest are irq_wait_most, cycle_time_most,
+        line_latency_most.
     ... :
         All names: ``dir(reading)``; meanings in src/soft/soft.h and src/fpga/fpga.h.
     """

@@ -9,8 +9,8 @@ static const double pi = 3.14159265358979323846;
 static struct drive_config usual(int32_t mode)
 {
     return (struct drive_config){
-        .mode = mode, .period = 1e-4, .speed_per_volt = 300.0, .enc_lines = 2500,
-        .enc_counts = 1048576, .pulses_per_turn = 10000, .velocity_gain = 0.5,
+        .mode = mode, .period = 1e-4, .speed_per_volt = 300.0, .encoder_lines = 2500,
+        .encoder_counts = 1048576, .pulses_per_turn = 10000, .velocity_gain = 0.5,
         .velocity_time = 0.02, .position_gain = 50.0, .torque_limit = 10.0, .speed_limit = 5000.0,
         .error_limit = 5.0,
     };

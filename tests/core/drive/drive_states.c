@@ -8,8 +8,8 @@
 static struct drive_config config(int32_t mode)
 {
     return (struct drive_config){
-        .mode = mode, .period = 1e-4, .speed_per_volt = 300.0, .enc_lines = 2500,
-        .enc_counts = 10000, .pulses_per_turn = 10000, .velocity_gain = 0.5,
+        .mode = mode, .period = 1e-4, .speed_per_volt = 300.0, .encoder_lines = 2500,
+        .encoder_counts = 10000, .pulses_per_turn = 10000, .velocity_gain = 0.5,
         .velocity_time = 0.02, .position_gain = 50.0, .torque_limit = 10.0, .speed_limit = 3000.0,
         .error_limit = 0.5,
     };
@@ -82,7 +82,7 @@ static void following_error_alarm(void)
 static void overspeed_alarm(void)
 {
     struct drive_config c = config(DRIVE_VELOCITY);
-    c.enc_counts = 1000000;
+    c.encoder_counts = 1000000;
     struct drive_state s = {0};
     struct drive_output out;
     struct drive_input in = {.enable = true};

@@ -168,7 +168,7 @@ static void program(void)
     CHECK_EQ(station_run(&s, 3 * (int64_t)STATION_HZ, &source), STATION_OK);
     const struct station_reading r = reading(&s);
     CHECK_EQ(r.pulses[0], 5000);
-    CHECK_EQ(r.digital, 4);
+    CHECK_EQ(r.digital_out, 4);
     CHECK_EQ(r.line, 3);
     CHECK(s.pc.mcc.signals.home == 1 && s.pc.mcc.signals.upper == 2 &&
           s.pc.mcc.signals.lower == 4 && !s.pc.mcc.signals.stop);
