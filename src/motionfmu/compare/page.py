@@ -6,9 +6,9 @@ from html import escape
 from pathlib import Path
 
 from motionfmu.compare import plots
-from motionfmu.compare.comparison import Apart, Comparison
 from motionfmu.compare.differences import NOTHING, Checked, port_of
 from motionfmu.compare.figures import Number
+from motionfmu.compare.pairing import Apart, Pairing
 from motionfmu.compare.words import CIRCLE, CONTOUR, GONE, change_text, row_of, signed, text_of
 from motionfmu.iso9283.evaluation import unit as unit_of_iso9283
 from motionfmu.report import outcome
@@ -27,7 +27,7 @@ FOOTER = (
 )
 
 
-def write_comparison(found: Comparison, folder: Path) -> Path:
+def write_comparison(found: Pairing, folder: Path) -> Path:
     """Write the page and result.json, whole or not at all."""
     with outcome.whole(folder) as part:
         text = json.dumps(found.numbers(), indent=1, allow_nan=False, default=str)
@@ -36,7 +36,7 @@ def write_comparison(found: Comparison, folder: Path) -> Path:
     return folder.resolve() / PAGE
 
 
-def page_text(found: Comparison) -> str:
+def page_text(found: Pairing) -> str:
     """The whole HTML page of a comparison."""
     page = Sheet()
     page.sections.append(_cards(found))
@@ -59,7 +59,7 @@ def page_text(found: Comparison) -> str:
     return page.text(frame)
 
 
-def _cards(found: Comparison) -> str:
+def _cards(found: Pairing) -> str:
     shown = []
     for name, x in (("Run A", found.a), ("Run B", found.b)):
         held, count = sum(c["ok"] for c in x.numbers["checks"]), len(x.numbers["checks"])
@@ -86,7 +86,7 @@ def _cards(found: Comparison) -> str:
     return cards(shown)
 
 
-def _add_different(page: Sheet, found: Comparison) -> None:
+def _add_different(page: Sheet, found: Pairing) -> None:
     rows = [tuple(map(escape, (d.what, d.a, d.b))) for d in found.different]
     content = table(("", "A", "B"), rows, 3) if rows else "<p>Nothing: both were made alike.</p>"
     page.section("What was run differently", "", content)
@@ -109,7 +109,7 @@ def _checks(checks: Iterable[Checked]) -> str:
     return table(("Check", "Bounds", "A", "B", "change of size"), rows, 2)
 
 
-def _add_contour(page: Sheet, found: Comparison) -> None:
+def _add_contour(page: Sheet, found: Pairing) -> None:
     drawn, factor = plots.path_figure(found.a, found.b)
     note = f"Both errors are drawn <b>{factor:,.0f} times</b> as large as they are."
     left = page.place("path", drawn)
@@ -139,7 +139,7 @@ def _add_contour(page: Sheet, found: Comparison) -> None:
         page.section(f"Circular test, radius {radius:g} mm", note, content)
 
 
-def _numbers(found: Comparison, name: str, wanted: Iterable[tuple[str, str, str]]) -> str:
+def _numbers(found: Pairing, name: str, wanted: Iterable[tuple[str, str, str]]) -> str:
     known = {n.name: n for n in found.table(name)}
     return table(SIDES, [row_of(w, known[n], u) for n, w, u in wanted if n in known])
 
@@ -148,7 +148,7 @@ def _performance(n: Number) -> tuple[str, ...]:
     return row_of(escape(n.name), n, spelled(unit_of_iso9283(n.name.rpartition(".")[2])))
 
 
-def _add_figures(page: Sheet, found: Comparison) -> None:
+def _add_figures(page: Sheet, found: Pairing) -> None:
     asked = {f["title"]: f for f in (*found.b.numbers["figures"], *found.a.numbers["figures"])}
     for i, one in enumerate(asked.values()):
         if (drawn := plots.figure_of(found, one)) is not None:
@@ -156,7 +156,7 @@ def _add_figures(page: Sheet, found: Comparison) -> None:
             page.section(escape(one["title"]), "", page.place(f"figure{i}", drawn, whole, "run"))
 
 
-def _add_signals(page: Sheet, found: Comparison) -> None:
+def _add_signals(page: Sheet, found: Pairing) -> None:
     apart = [s for s in found.signals if not s.same]
     same = [s.name for s in found.signals if s.same]
     time = found.common.time

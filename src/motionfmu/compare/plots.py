@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.compare.comparison import Comparison
 from motionfmu.compare.overlay import Pair
+from motionfmu.compare.pairing import Pairing
 from motionfmu.compare.side import Side
 from motionfmu.compare.words import GONE
 from motionfmu.contour.circles import plane_axes
@@ -34,7 +34,7 @@ FLAT = 1e-6  # part of its size by which a path in a plane leaves it
 SAME_PATH = 1e-2  # [mm] two paths whose points lie nearer are one: lengths are kept in 32 bits
 
 
-def signal_figure(found: Comparison, name: str) -> Figure:
+def signal_figure(found: Pairing, name: str) -> Figure:
     """A signal of both runs, a panel for each element that differs, and the difference."""
     both = found[name]
     panels, colors = [], []
@@ -58,7 +58,7 @@ def _column(x: Side, name: str, i: int) -> Array:
     return data.reshape(len(data), -1)[:, i].astype(np.float64)
 
 
-def _whole(found: Comparison) -> tuple[float, float]:
+def _whole(found: Pairing) -> tuple[float, float]:
     """From the earliest sample of both runs to the latest."""
     ends = [t for x in (found.a, found.b) for t in (float(x.time[0]), float(x.time[-1]))]
     return min(ends), max(ends)
@@ -70,7 +70,7 @@ def _colored(drawn: Figure, colors: Sequence[str], dashes: Sequence[str] = ()) -
     return drawn
 
 
-def figure_of(found: Comparison, asked: Mapping[str, Any]) -> Figure | None:
+def figure_of(found: Pairing, asked: Mapping[str, Any]) -> Figure | None:
     """A figure of the scenario with the curves of both runs; None if they do not have them."""
     panels: list[Panel] = []
     colors: list[str] = []
@@ -105,7 +105,7 @@ def figure_of(found: Comparison, asked: Mapping[str, Any]) -> Figure | None:
     return _colored(chart_figure(chart, right), colors, dashes)
 
 
-def _named(found: Comparison, plot: Mapping[str, Any]) -> list[tuple[str, Pair, int]]:
+def _named(found: Pairing, plot: Mapping[str, Any]) -> list[tuple[str, Pair, int]]:
     """Name, signal and element of each curve of a panel; none if a run lacks one."""
     named: list[tuple[str, Pair, int]] = []
     for signal in plot["signals"]:
@@ -242,7 +242,7 @@ def _line(kind: str, points: Array, name: str, color: str, width: float) -> Figu
     return found | {"type": kind, "hoverinfo": "skip"} | more
 
 
-def circle_figure(found: Comparison, place: int) -> Figure | None:
+def circle_figure(found: Pairing, place: int) -> Figure | None:
     """Radial deviation of both runs round a circle; None if a run did not go round it."""
     traces: list[Figure] = []
     top, done = 0.0, set()
