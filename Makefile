@@ -3,12 +3,24 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: demo test check bench fuzz build clean
+# What is needed beforehand is said before anything is made. The program is one that any Python reads.
+NEEDS := import sys; v = sys.version_info; \
+  sys.exit(None if v >= (3, 11) else "%s is Python %d.%d, 3.11 or newer is needed: make PYTHON=..." % ((sys.executable,) + tuple(v[:2])))
+VENV := import ensurepip, venv
+
+.PHONY: needs demo test check bench fuzz build clean
 
 demo: build                     ## build all and run the demo scenario
 	$(BIN)/motionfmu run scenarios/circle
 
-build: .venv/installed
+needs:
+	@command -v $(CC) > /dev/null || { echo "There is no C compiler $(CC): install gcc, or make CC=..." >&2; exit 1; }
+	@p=$(BIN)/python; test -x $$p || p=$(PYTHON); \
+	  command -v $$p > /dev/null || { echo "There is no $$p: Python 3.11 or newer is needed, or make PYTHON=..." >&2; exit 1; }; \
+	  $$p -c '$(NEEDS)' || exit 1; \
+	  test -x $(BIN)/python || $$p -c '$(VENV)' 2> /dev/null || { echo "$$p has no venv: install it (Debian: python3-venv)" >&2; exit 1; }
+
+build: needs .venv/installed
 	@test -f build/build.ninja || cmake --preset default -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
 	@cmake --build build
 
@@ -19,7 +31,7 @@ test: build check               ## everything: style, C tests (also sanitized), 
 	@ctest --test-dir build/asan -j 2 --output-on-failure
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
-check: .venv/installed          ## formatting, lint, types
+check: needs .venv/installed          ## formatting, lint, types
 	$(BIN)/ruff format --check src tests scenarios
 	$(BIN)/ruff check src tests scenarios
 	$(BIN)/mypy
@@ -29,14 +41,14 @@ bench: build                    ## speed, as ratios measured in one run
 	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py
 
 SECONDS ?= 120
-fuzz: .venv/installed           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each
+fuzz: needs .venv/installed           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each
 	tests/fuzz/run.sh $(SECONDS)
 	MOTIONFMU_FUZZ=$(SECONDS) $(BIN)/python -m pytest -n 2 tests/house/test_fuzz_readers.py
 
 clean:
 	rm -rf build results
 
-.venv/installed: pyproject.toml Makefile
+.venv/installed: pyproject.toml Makefile | needs
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	@echo "Installing the Python packages into .venv (once, about a minute) ..."
 	@$(BIN)/python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; \

@@ -311,7 +311,7 @@ def test_a_card_that_is_ended_keeps_its_flash(tmp_path: Path, number: signal.Sig
             with pytest.raises(InputError, match="another program uses this folder"):
                 sim(server=f"{HOST}:{b.port}", flash=tmp_path)
             program.send_signal(number)
-            assert await program.wait() == 0
+            assert await program.wait() == (130 if number == signal.SIGINT else 0)
         kept = VirtualCard(1, flash=FlashFile(tmp_path / "1.flash").load())
         kept.run(10 * MS)
         assert kept.state == m.State.READY

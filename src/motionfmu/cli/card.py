@@ -1,7 +1,5 @@
 """The commands of the network card: ``motionfmu card ...``; each ``card_*.py`` brings its own."""
 
-import asyncio
-import signal
 from collections.abc import Callable
 
 import typer
@@ -17,7 +15,25 @@ card = typer.Typer(
 app.add_typer(card, name="card")
 
 
-def on_end(end: Callable[[], object]) -> None:
-    """Call this at Ctrl-C and at SIGTERM, on the event loop that runs."""
+def on_end(end: Callable[[], object]) -> list[int]:
+    """Call this at Ctrl-C and at SIGTERM, on the event loop that runs; the list gets which."""
+    import asyncio
+    import signal
+
+    came: list[int] = []
+
+    def ended(number: int) -> None:
+        came.append(number)
+        end()
+
     for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, end)
+        asyncio.get_running_loop().add_signal_handler(number, ended, number)
+    return came
+
+
+def stopped(came: list[int]) -> None:
+    """Ctrl-C is told and has its status; SIGTERM is how a service is asked to end."""
+    import signal
+
+    if signal.SIGINT in came:
+        raise KeyboardInterrupt

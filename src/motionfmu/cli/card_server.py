@@ -1,15 +1,12 @@
 """The commands of the server of cards, and of those who talk to it."""
 
-import asyncio
-import contextlib
 import json
-import logging
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from motionfmu.cli.card import card, on_end
+from motionfmu.cli.card import card, on_end, stopped
 from motionfmu.cli.common import FAILED, Group, bare_table, out
 from motionfmu.errors import InputError
 
@@ -36,6 +33,9 @@ def serve(  # noqa: PLR0913  (each is an option of the command)
     config: Annotated[Path | None, typer.Option("-c", help="card.toml of the page's form.")] = None,
 ) -> None:
     """Serve cards: jobs, commands, their states on a page; until Ctrl-C."""
+    import asyncio
+    import logging
+
     from motionfmu.netcard.server import Cards, check_port
 
     check_port(port)
@@ -49,6 +49,9 @@ def serve(  # noqa: PLR0913  (each is an option of the command)
 async def _serve(
     cards: "Cards", folder: Path, places: tuple[str, int, int], config: Path | None
 ) -> None:
+    import asyncio
+    import contextlib
+
     from motionfmu.netcard.control import Control
 
     bind, port, page = places
@@ -56,7 +59,7 @@ async def _serve(
     control = Control(cards, folder)
     await control.listen()
     ended = asyncio.Event()
-    on_end(ended.set)
+    came = on_end(ended.set)
     try:
         port = await cards.listen(bind, port)
         out.print(f"cards: {bind}:{port}, folder {folder}", soft_wrap=True)
@@ -67,6 +70,7 @@ async def _serve(
     finally:
         await cards.close()
         await control.close()
+    stopped(came)
 
 
 def _page(cards: "Cards", port: int, config: Path | None) -> "tuple[Serving, str]":

@@ -1,13 +1,11 @@
 """The command that runs cards as programs."""
 
-import asyncio
-import contextlib
 from pathlib import Path
 from typing import Annotated, cast
 
 import typer
 
-from motionfmu.cli.card import card, on_end
+from motionfmu.cli.card import card, on_end, stopped
 from motionfmu.cli.common import out
 from motionfmu.errors import InputError
 
@@ -26,6 +24,9 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
     config: Annotated[Path | None, typer.Option("-c", help="card.toml of all of them.")] = None,
 ) -> None:
     """Run cards: the card's own code as a client of a server; until Ctrl-C."""
+    import asyncio
+    import contextlib
+
     from motionfmu.netcard.config import load
     from motionfmu.netcard.keys import CARD_MAX, alone, read_keys
     from motionfmu.netcard.sim import FlashFile, VirtualCard, simulate
@@ -71,11 +72,16 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
 
     out.print(f"{cards} cards from id {id}, server {server}", soft_wrap=True)
 
+    came: list[list[int]] = []
+
     async def until_ended() -> None:
-        on_end(cast("asyncio.Task[None]", asyncio.current_task()).cancel)
+        came.append(on_end(cast("asyncio.Task[None]", asyncio.current_task()).cancel))
         await simulate([one for one, _ in made], (host, int(port)), speed, each)
 
-    with contextlib.suppress(KeyboardInterrupt, asyncio.CancelledError):
-        asyncio.run(until_ended())
-    keep()
-    folders.close()
+    with folders:
+        try:
+            with contextlib.suppress(asyncio.CancelledError):
+                asyncio.run(until_ended())
+        finally:
+            keep()
+    stopped(*came)

@@ -1,0 +1,82 @@
+"""Ctrl-C at any moment: one line, status 130, nothing half written."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+# Ends its own process as Ctrl-C does when a module of this name is looked for.
+PROGRAM = """
+import importlib.abc, os, signal, sys
+
+class Interrupt(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name == module:
+            sys.meta_path.remove(self)
+            os.kill(os.getpid(), signal.SIGINT)
+
+module = sys.argv.pop(1)
+from motionfmu.cli import main
+sys.meta_path.insert(0, Interrupt())
+main()
+"""
+RUN = "run scenarios/mismatch_line --stop 0.02 --out"
+
+
+def environment(folder: Path) -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT / "src"), "TMPDIR": str(folder)}
+
+
+@pytest.mark.parametrize(
+    ("line", "module"),
+    [
+        ("list", "typer"),
+        ("--help", "motionfmu.cli.show"),
+        (RUN, "numpy"),
+        (RUN, "matplotlib.figure"),  # for the report, whose folder is there by then
+        ("card serve --page 0 --port 0 --folder", "motionfmu.netcard.control"),
+    ],
+)
+def test_an_interrupt_while_modules_are_loaded(line: str, module: str, tmp_path: Path) -> None:
+    words = line.split()
+    if words[-1].startswith("--") and words[-1] != "--help":
+        words.append(str(tmp_path / "out"))
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, module, *words],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        env=environment(tmp_path),
+        timeout=60,
+    )
+    assert (done.returncode, done.stderr) == (130, "motionfmu: stopped\n")
+    assert "run" not in line or list(tmp_path.iterdir()) == []
+
+
+def children(process: int) -> list[str]:
+    threads = Path(f"/proc/{process}/task").glob("*/children")
+    return [child for file in threads for child in file.read_text().split()]
+
+
+def test_an_interrupt_of_a_check_in_processes_ends_them_all(tmp_path: Path) -> None:
+    line = ["check", "scenarios/square", "scenarios/mismatch_line", "-j", "2"]
+    program = subprocess.Popen(
+        [sys.executable, "-m", "motionfmu", *line, "--junit", str(tmp_path / "check.xml")],
+        cwd=ROOT,
+        env=environment(tmp_path),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while len(started := children(program.pid)) < 2 and program.poll() is None:
+        time.sleep(0.01)
+    program.send_signal(signal.SIGINT)
+    out, err = program.communicate(timeout=60)
+    assert (program.returncode, out, err) == (130, "", "motionfmu: stopped\n")
+    assert [child for child in started if Path(f"/proc/{child}").exists()] == []
+    assert list(tmp_path.iterdir()) == []
