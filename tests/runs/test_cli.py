@@ -75,9 +75,21 @@ def test_a_failed_check_is_status_1_and_named(tmp_path: Path) -> None:
     out = tmp_path / "circle"
     done = command("run", "scenarios/mismatch_line", "--set", "mcc.p_gain=200", "--out", out)
     assert done.returncode == 1
+    assert "not as written: mcc.p_gain = 200 (scenario: [200, 160, 0, 0, 0, 0])" in done.stdout
+    assert "ended: stop = 2 s; the program was done at 1." in done.stdout
     assert "a check FAILED" in done.stdout and (out / "report.html").is_file()
     row = next(r for r in done.stdout.splitlines() if "FAILED" in r and "contour.error.max" in r)
     assert ">= 0.2608" in row
+
+
+def test_values_of_a_file_are_told_with_its_name_and_every_thins(tmp_path: Path) -> None:
+    (tmp_path / "gains.toml").write_text('"mcc.p_gain" = [150, 150, 0, 0, 0, 0]\n')
+    line = ["scenarios/mismatch_line", "--set", tmp_path / "gains.toml", "--stop", "0.2"]
+    done = within("run", *line, "--every", 10, "--out", tmp_path / "r")
+    assert "not as written: gains.toml: mcc.p_gain = [150, 150, 0, 0, 0, 0]" in done.stdout
+    assert "not as written: every = 10 (scenario: 1)" in done.stdout
+    with np.load(tmp_path / "r/signals.npz") as signals:
+        assert len(signals["time"]) == 200
 
 
 def test_an_older_result_is_replaced(tmp_path: Path) -> None:

@@ -1,0 +1,91 @@
+"""The commands that make a new FMU or scenario from templates that work."""
+
+import contextlib
+import os
+import re
+import shutil
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from motionfmu.cli.common import Group, app
+from motionfmu.errors import InputError
+
+TEMPLATES = Path(__file__).parent / "templates"
+Name = Annotated[str, typer.Argument(help="Small letters, digits and _; its folder's name.")]
+
+new = typer.Typer(
+    cls=Group,
+    rich_markup_mode=None,
+    help="Make a new FMU or scenario that works, to be changed.",
+    no_args_is_help=True,
+)
+app.add_typer(new, name="new")
+
+
+@new.command()
+def fmu(name: Name) -> None:
+    """Make a first-order filter: fmus/NAME and a test of it, in the project's folder."""
+    _usable(name)
+    if not (Path("fmus").is_dir() and Path("src/fmi/fmi_model.h").is_file()):
+        raise InputError("no fmus/ and src/fmi/ here: go to the folder of the project's sources")
+    test = Path("tests/fmi") / f"test_{name}.py"
+    folder = Path("fmus") / name
+    _free(folder, test)
+    _make(TEMPLATES / "fmu", folder, name, {"test.py.in": test})
+    print(f"{folder}: {', '.join(sorted(p.name for p in folder.iterdir()))}")
+    print(f"test: {test}")
+    print("contract: src/fmi/fmi_model.h; keys of fmu.toml: CONTRIBUTING.md")
+    print(f"next: make build && .venv/bin/python -m pytest tests/fmi -k {name}")
+
+
+@new.command()
+def scenario(name: Name) -> None:
+    """Make an axis that moves, with checks and what fails them: scenarios/NAME, else NAME here."""
+    _usable(name)
+    folder = Path("scenarios") / name if Path("scenarios").is_dir() else Path(name)
+    _free(folder)
+    _make(TEMPLATES / "scenario", folder, name, {})
+    print(f"{folder}: {', '.join(sorted(p.name for p in folder.iterdir()))}")
+    print(f"next: motionfmu run {folder}; motionfmu check {folder} --contrary")
+
+
+def _usable(name: str) -> None:
+    if len(name) > 48 or not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", name):
+        told = "small letters and digits, in parts with _ between, 48 at most, wanted"
+        raise InputError(f"NAME {name!r}: {told}")
+
+
+def _free(*paths: Path) -> None:
+    for path in paths:
+        if os.path.lexists(path):
+            raise InputError(f"{path} is there already")
+
+
+def rendered(template: Path, name: str) -> str:
+    """Text of a template for a name, which is CamelCase as {{Name}}."""
+    camel = "".join(part.capitalize() for part in name.split("_"))
+    text = template.read_text(encoding="utf-8")
+    return text.replace("{{name}}", name).replace("{{Name}}", camel)
+
+
+def _make(templates: Path, folder: Path, name: str, elsewhere: dict[str, Path]) -> None:
+    """Write a folder whole or not at all, and the files that stand elsewhere."""
+    part = folder.with_name(f".{folder.name}.part{os.getpid()}")
+    try:
+        part.mkdir()
+        for template in templates.iterdir():
+            target = elsewhere.get(template.name, part / template.name)
+            target.write_text(rendered(template, name), encoding="utf-8")
+        part.rename(folder)
+    except BaseException as error:
+        for file in elsewhere.values():
+            with contextlib.suppress(OSError):
+                file.unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            told = error.strerror or error
+            raise InputError(f"cannot write {folder}: {told}") from None
+        raise
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
