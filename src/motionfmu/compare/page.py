@@ -9,9 +9,10 @@ from motionfmu.compare import plots
 from motionfmu.compare.differences import NOTHING, Checked, port_of
 from motionfmu.compare.figures import Number
 from motionfmu.compare.pairing import Apart, Pairing
-from motionfmu.compare.words import CIRCLE, CONTOUR, GONE, change_text, row_of, signed, text_of
+from motionfmu.compare.words import GONE, change_text, row_of, signed, text_of
 from motionfmu.iso9283.evaluation import unit as unit_of_iso9283
 from motionfmu.report import outcome
+from motionfmu.report.contour_words import CIRCLE, CONTOUR
 from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.tables import cards, table

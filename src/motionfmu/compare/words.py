@@ -6,38 +6,7 @@ from motionfmu.compare.differences import NOTHING
 from motionfmu.compare.figures import Number
 from motionfmu.report.numbers import MINUS, figure, length
 
-# Dotted name of a number, what it is, its unit: mm for lengths, which are shown in µm or mm.
-CONTOUR = [
-    ("error.max", "Contour error, largest", "mm"),
-    ("error.rms", "Contour error, RMS", "mm"),
-    ("error.p50", "Contour error, median", "mm"),
-    ("error.p95", "Contour error, 95 %", "mm"),
-    ("command_error.max", "Command error, largest", "mm"),
-    ("command_error.rms", "Command error, RMS", "mm"),
-    *((f"following.{a}.max", f"Following error {a.upper()}, largest", "mm") for a in "xyzuvw"),
-    *((f"following.{a}.rms", f"Following error {a.upper()}, RMS", "mm") for a in "xyzuvw"),
-    ("lag", "Servo lag", "s"),
-]
 GONE = f"B {MINUS} A"
-WAYS = (("ccw", "counter-clockwise"), ("cw", "clockwise"))
-CIRCLE = [
-    ("both.g", "G(b), both ways", "mm"),
-    ("both.d", "D, both ways", "mm"),
-    *(
-        (f"{way}.{name}", f"{title}, {words}", unit)
-        for name, title, unit in (
-            ("g", "G", "mm"),
-            ("f_max", "F max", "mm"),
-            ("f_min", "F min", "mm"),
-            ("radius_change", "Radius change", "mm"),
-            ("major_change", "Major semi-axis", "mm"),
-            ("minor_change", "Minor semi-axis", "mm"),
-            ("orientation", "Ellipse direction", "rad"),
-            ("speed", "Speed", "mm/s"),
-        )
-        for way, words in WAYS
-    ),
-]
 
 
 def text_of(value: float | None, unit: str, sign: bool = False) -> str:

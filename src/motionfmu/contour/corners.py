@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.circles import SPEED_SPAN, speed_along
-from motionfmu.contour.geometry import Array
+from motionfmu.contour.geometry import Arc, Array
 from motionfmu.contour.path import Path
 from motionfmu.contour.track import Track
 
 # Smallest change of direction that is called a corner [rad].
 ANGLE_MIN = math.radians(10.0)
+# A path that turns back by so much along an arc is run the other way: no corner [rad].
+ANGLE_BACK = math.pi - ANGLE_MIN
 
 
 @dataclass(frozen=True)
@@ -23,7 +25,7 @@ class Corner:
     line_before: int  # of the program
     line_after: int
     point: tuple[float, float, float]  # [mm]
-    angle: float  # change of direction; pi turns back [rad]
+    angle: float  # change of direction; pi for a line that turns back [rad]
     error: float  # largest contour error on the two moves within the servo window [mm]
     time: float  # when it is largest [s]
     speed: float  # least commanded speed within the servo window [mm/s]
@@ -50,7 +52,8 @@ def find_corners(
             continue
         first, second = path.segments[before], path.segments[after]
         angle = _turn(first.tangent(np.array([first.length])), second.tangent(np.zeros(1)))
-        if angle < ANGLE_MIN:
+        curved = isinstance(first, Arc) or isinstance(second, Arc)
+        if angle < ANGLE_MIN or (curved and angle > ANGLE_BACK):
             continue
         passed = int(np.searchsorted(track.segment, after))
         if passed == len(time):  # the run ends before

@@ -96,10 +96,12 @@ class Explanation(Effects[Effect]):
 
     def numbers(self) -> dict[str, Any]:
         """Every number, ready for JSON; mm, rad."""
-        sizes = {
+        # The whole error as everywhere, over time where the tool cuts; the rest over the way.
+        error = self.result.contour().error
+        sizes = {"contour_error": {"max": error.max, "rms": error.rms}} | {
             name: {"max": _top(values[self.counts]), "rms": _rms(values[self.counts])}
             for name, values in (
-                ("contour_error", self.whole),
+                ("contour_error_along", self.whole),
                 ("sum_of_effects", self.together),
                 ("residual", self.residual),
             )

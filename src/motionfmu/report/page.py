@@ -22,6 +22,7 @@ from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.shown_run import Result
 from motionfmu.report.tables import (
     CORNERS_SHOWN,
+    RMS,
     cards,
     check_table,
     circle_table,
@@ -141,7 +142,7 @@ def _cards(contour: ContourResult) -> str:
     gain = f"as a position gain of {figure(1.0 / contour.lag)} 1/s" if contour.lag > 0 else ""
     rows = [
         ("Largest contour error", length(error.max), f"line {error.line}, at {error.time:.3f} s"),
-        ("RMS contour error", length(error.rms), f"95 % below {length(error.p95)}"),
+        ("RMS contour error", length(error.rms), f"{RMS}; 95 % below {length(error.p95)}"),
         ("Largest command error", length(command.max), f"RMS {length(command.rms)}"),
         ("Servo lag", lag, gain),
     ]
@@ -213,4 +214,5 @@ def _add_corners(page: Sheet, contour: ContourResult) -> None:
         more = f", worst {CORNERS_SHOWN} of {count}" if count > CORNERS_SHOWN else ""
         parts += f"<div><h2>Corners{more}</h2>{corner_table(contour)}</div>"
     parts += f"<div><h2>Worst lines of the program</h2>{line_table(contour)}</div>"
-    page.sections.append(f'<section><div class="two">{parts}</div></section>')
+    parts = f'<div class="two">{parts}</div>' if contour.corners else parts
+    page.sections.append(f"<section>{parts}</section>")

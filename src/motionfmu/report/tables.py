@@ -9,6 +9,8 @@ from motionfmu.contour import ContourResult
 from motionfmu.contour.circles import CircularTest, Way
 from motionfmu.report.numbers import MINUS, figure, length
 
+# What the RMS of a contour error is, on every page.
+RMS = "over time where the tool cuts"
 CORNERS_SHOWN = 10
 LINES_SHOWN = 10
 # Letters from which on the value of a card is written small.
@@ -114,7 +116,10 @@ def error_table(contour: ContourResult) -> str:
     for axis, both in per_axis.items():
         cells = (length(both["max"]), length(both["rms"]), "", "")
         rows.append((f"Following error {axis.upper()}", *cells))
-    return table(("", "Max", "RMS", "Median", "95 %"), rows)
+    note = (
+        f'<p class="note">RMS, median and 95 % are {RMS}; of following errors where it moves.</p>'
+    )
+    return table(("", "Max", "RMS", "Median", "95 %"), rows) + note
 
 
 def circle_table(test: CircularTest) -> str:

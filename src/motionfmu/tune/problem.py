@@ -56,7 +56,7 @@ class Problem(BaseModel):
         ``each`` axis its own gains, or ``equal`` gains.
     cost : str
         ``contour_rms`` or ``contour_max`` on the scenario's path, ``error_rms`` or ``error_max`` on
-        its move; ``ise``, ``iae`` or ``itae`` after a step.
+        its move; ``ise``, ``iae`` or ``itae`` after a step, the sum over the axes.
     command, position : str or None
         For a scenario without [contour]: the output that says where the axis is to be, and the one
         that says where it is, ``component.variable``.

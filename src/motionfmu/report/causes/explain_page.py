@@ -18,11 +18,12 @@ from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
-from motionfmu.report.tables import cards, circle_table, table
+from motionfmu.report.tables import RMS, cards, circle_table, facts, table
 
 PAGE, NUMBERS = "report.html", "result.json"
 # Points of a curve over the path: twice as many as a screen has columns.
 BUCKETS = 1200
+OVER_WAY = "over the way"
 BAR_HEIGHT = 44  # [pixel]
 FOOTER = (
     "A cause is the change of the contour error between the run and the same run without it, at the"
@@ -47,6 +48,9 @@ def page_text(found: Explanation) -> str:
     """The whole HTML page."""
     page = Sheet()
     page.sections.append(_cards(found))
+    if found.result.overrides:
+        lines = "<br>".join(map(escape, found.result.overrides))
+        page.section("What was run", "", facts([("Overrides", lines)]))
     note = "Largest change of the contour error by each cause: simulated beside theory."
     content = page.place("causes", _bars(found)) + _effects(found)
     page.section("Causes", note, content)
@@ -75,10 +79,10 @@ def _cards(found: Explanation) -> str:
     whole, total, rest = (numbers[n] for n in ("contour_error", "sum_of_effects", "residual"))
     theory = "" if first.theory.value is None else f"theory {length(first.theory.value)}"
     rows = [
-        ("Largest contour error", length(whole["max"]), f"RMS {length(whole['rms'])}"),
+        ("Largest contour error", length(whole["max"]), f"RMS {length(whole['rms'])}, {RMS}"),
         (f"First cause: {first.title}", length(first.size), theory),
-        ("Sum of all effects", length(total["max"]), f"RMS {length(total['rms'])}"),
-        ("Residual: interaction", length(rest["max"]), f"RMS {length(rest['rms'])}"),
+        ("Sum of all effects", length(total["max"]), f"RMS {length(total['rms'])}, {OVER_WAY}"),
+        ("Residual: interaction", length(rest["max"]), f"RMS {length(rest['rms'])}, {OVER_WAY}"),
     ]
     return cards(rows)
 
@@ -125,18 +129,31 @@ def _bars(found: Explanation) -> dict[str, Any]:
 
 def _effects(found: Explanation) -> str:
     rows = []
-    for e in found.effects:
+    still = {e.name for e in idle(found)}
+    for e in (e for e in found.effects if e.name not in still):
         said = "" if e.theory.value is None else length(e.theory.value)
         title = f'{escape(e.title)}<br><span class="sub">{escape(_wrap(e.how))}</span>'
-        formula = f'<span class="sub">{escape(e.theory.formula)}</span>'
+        formula = f'<span class="formula">{escape(e.theory.formula)}</span>'
         line = str(e.where) if e.where else ""
         without = "" if e.without is None else length(e.without)
         sizes = (length(e.size), line, length(e.usual), length(e.rms), without, said)
         if not e.judged:
             sizes = ("not judged", "", "", "", "", said)
         rows.append((title, formula, *sizes))
-    heads = ("Cause, and how it is off", "Formula", "Largest", "Line", "99 %", "RMS")
-    return table((*heads, "Error without", "Theory"), rows, numeric=2)
+    heads = ("Cause, and how it is off", "Formula", "Largest", "Line", "99 %", f"RMS {OVER_WAY}")
+    return table((*heads, "Error without", "Theory"), rows, numeric=2) + _without(idle(found))
+
+
+def idle(found: Explanation) -> list[Effect]:
+    """Causes that change nothing, and should not."""
+    return [e for e in found.effects if e.judged and e.size == 0.0 and not e.theory.value]
+
+
+def _without(effects: list[Effect]) -> str:
+    if not effects:
+        return ""
+    told = escape(", ".join(e.title for e in effects))
+    return f'<p class="note">Switched off without any change: {told}.</p>'
 
 
 def _wrap(text: str, most: int = 5) -> str:

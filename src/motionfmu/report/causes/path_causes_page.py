@@ -14,7 +14,7 @@ from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, GRID, INK, MUTED, axis, layout, plotted
-from motionfmu.report.tables import cards, picture_links, table
+from motionfmu.report.tables import cards, facts, picture_links, table
 
 PAGE, NUMBERS = "report.html", "result.json"
 PICTURES = ("causes.svg", "causes.png")
@@ -43,6 +43,9 @@ def write_path_explanation(found: PathExplanation, folder: Path) -> Path:
     _write_picture(found, folder)
     page = Sheet()
     page.sections.append(_cards(found))
+    if found.result.overrides:
+        lines = "<br>".join(map(escape, found.result.overrides))
+        page.section("What was run", "", facts([("Overrides", lines)]))
     note = "What each cause alone does to the mean line: as an error of its own."
     content = page.place("causes", _bars(found)) + picture_links("causes") + _effects(found)
     page.section("Causes", note, content)
@@ -106,7 +109,8 @@ def _bars(found: PathExplanation) -> dict[str, Any]:
 def _effects(found: PathExplanation) -> str:
     kinds = [n for n in FIGURES if n in found.figures]
     rows = []
-    for e in found.effects:
+    idle = [e for e in found.effects if e.judged and e.size == 0.0]
+    for e in (e for e in found.effects if not (e.judged and e.size == 0.0)):
         title = f'{escape(e.title)}<br><span class="sub">{escape(e.how)}</span>'
         sizes = [length(e.figures[n]) for n in kinds] if e.judged else ["not judged"]
         sizes += [""] * (len(kinds) - len(sizes))
@@ -115,7 +119,9 @@ def _effects(found: PathExplanation) -> str:
     whole = [length(found.figures[n]) for n in kinds]
     rows.append(("<b>The whole run</b>", *whole, ""))
     heads = ("Cause, and how it is off", *(HEADS[n] for n in kinds), "AT_P without it")
-    return table(heads, rows)
+    told = escape(", ".join(e.title for e in idle))
+    note = f'<p class="note">Switched off without any change: {told}.</p>' if idle else ""
+    return table(heads, rows) + note
 
 
 def _curves(found: PathExplanation) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from motionfmu.linear.position_gain import in_lines, in_words
 from motionfmu.report.numbers import figure
 from motionfmu.report.servo.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.tables import cards, table
+from motionfmu.report.tables import cards, facts, table
 
 FOOTER = (
     "L is the open loop, cut at the input named, once around, with all delays of the FMUs, of their"
@@ -36,6 +36,9 @@ def page_text(axis: AxisModel, studies: Sequence[LoopStudy]) -> str:
         note = "The model is the worst that the FMUs can become; they are not run."
         rows = [[escape(text)] for text in told]
         page.section("Worst case", note, table(["taken"], rows, 1))
+    if axis.set:
+        given = "<br>".join(escape(f"{n} = {v}") for n, v in axis.set.items())
+        page.section("What was looked at", "", facts([("Overrides", given)]))
     for k, study in enumerate(studies):
         _add(page, study, f"loop{k}", _gains(axis, study))
     page.section("Operating point", _point_note(axis), _points(axis))

@@ -12,7 +12,7 @@ from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, RAPID, axis, layout, plotted
-from motionfmu.report.tables import cards, table
+from motionfmu.report.tables import RMS, cards, facts, table
 from motionfmu.tune.problem import ON_PATH
 from motionfmu.tune.result import Run, Tuned
 from motionfmu.tune.trial import Trial
@@ -36,11 +36,13 @@ def page_text(tuned: Tuned) -> str:
     """The whole HTML page."""
     page = Sheet()
     page.sections.append(_cards(tuned))
+    if told := tuned.before[0].result.overrides:
+        page.section("What was run", "", facts([("Overrides", "<br>".join(map(escape, told)))]))
     page.section("Gains", "", _gains(tuned))
     if tuned.trial is not None:
         note = f"{tuned.trial.stopped_by}. Runs of the FMUs with the gains above."
         page.section(f"Trial of {tuned.trial.name}", note, _trial(tuned.trial))
-    note = "The same program, run by the FMUs before and after."
+    note = f"The same program, run by the FMUs before and after. RMS {_over(tuned)}."
     page.section(
         tuned.study.path.what.capitalize(),
         note,
@@ -61,12 +63,17 @@ def _cards(tuned: Tuned) -> str:
     least = tuned.margins(tuned.z)
     tight = max(least, key=lambda m: m.sensitivity)
     rows = [
-        (f"RMS {what}", length(after.rms), f"before {length(before.rms)}"),
+        (f"RMS {what}", length(after.rms), f"{_over(tuned)}; before {length(before.rms)}"),
         (f"Largest {what}", length(after.max), f"before {length(before.max)}"),
         ("Largest |1/(1 + L)|", figure(tight.sensitivity), f"axis {tight.axis}, {tight.loop}"),
         ("Stopped by", _short(tuned), ""),
     ]
     return cards(rows)
+
+
+def _over(tuned: Tuned) -> str:
+    """What the RMS is over."""
+    return RMS if tuned.study.problem.command is None else "over the whole run"
 
 
 def _short(tuned: Tuned) -> str:
@@ -206,8 +213,8 @@ def _search(tuned: Tuned) -> str:
     factor, name = units_of(study.problem.cost)
     starts = ", ".join(f"{c * factor:.5g}" if np.isfinite(c) else "none" for c in found.starts)
     text = (
-        f"{study.problem.cost}, worst of {len(study.plants)} plant(s): NLP (CasADi, IPOPT) from"
-        f" {len(found.starts)} start(s) found {starts} {name} with"
+        f"{study.problem.cost}{_summed(tuned)}, worst of {len(study.plants)} plant(s): NLP (CasADi,"
+        f" IPOPT) from {len(found.starts)} start(s) found {starts} {name} with"
         f" {found.evaluations[0]} evaluations in {found.seconds[0]:.2g} s;"
     )
     if np.isfinite(found.check):
@@ -220,6 +227,14 @@ def _search(tuned: Tuned) -> str:
     if study.problem.cost in ON_PATH and len(study.plants) > 1:
         text += f" Largest cost of a plant: {tuned.values.worst * factor:.5g} {name}."
     return escape(text)
+
+
+def _summed(tuned: Tuned) -> str:
+    """What a cost after a step is with several axes."""
+    study = tuned.study
+    if study.problem.cost in ON_PATH or len(study.axes) == 1:
+        return ""
+    return f", the sum over axes {', '.join(map(str, study.axes))}"
 
 
 def _assumed(tuned: Tuned) -> str:
