@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from html import escape
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.ran import Ran, add_ran, add_speed, as_written, ran_of
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.shown_run import Result
+from motionfmu.report.signal_words import titled, words_of
 from motionfmu.report.tables import (
     CORNERS_SHOWN,
     RMS,
@@ -113,7 +115,7 @@ def page_text(
     page.sections.append(_cards(contour))
     _add_path(page, contour, drawing)
     if result.checks:
-        page.section("Verdict", "", check_table(result.checks))
+        page.section("Verdict", "", check_table(result.checks, partial(words_of, result.resolver)))
     add_ran(page, result, ran)
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))
@@ -122,7 +124,7 @@ def page_text(
     for i, test in enumerate(contour.circles[:CIRCLES_SHOWN]):
         _add_circle(page, f"circle{i}", test)
     add_speed(page, ran)
-    _add_time(page, contour)
+    _add_time(page, result, contour)
     add_charts(page, charts)
     _add_corners(page, contour)
     path = {
@@ -190,7 +192,7 @@ def _add_circle(page: Sheet, name: str, test: CircularTest) -> None:
     page.section(title, note, f'<div class="two">{plot}<div>{circle_table(test)}</div></div>')
 
 
-def _add_time(page: Sheet, contour: ContourResult) -> None:
+def _add_time(page: Sheet, result: Result, contour: ContourResult) -> None:
     sign = "" if contour.track.signed is None else " Positive is left of the direction of travel."
     zoom = " Zooming one plot zooms all plots over time."
     note = "Where the tool is cutting." + sign + zoom
@@ -204,7 +206,8 @@ def _add_time(page: Sheet, contour: ContourResult) -> None:
         page.section("FIFO and interrupts", note, page.place("fifo", fifo, True))
     for i, (title, drawn) in enumerate(trace_figures(contour)):
         content = page.place(f"trace{i}", drawn, True)
-        page.section(escape(title), "", content)
+        doc = result.resolver.end(title, "", "").port.doc
+        page.section(escape(titled(title, doc)), "", content)
 
 
 def _add_corners(page: Sheet, contour: ContourResult) -> None:

@@ -1,6 +1,7 @@
 """The report of a run without a contour: its verdict and its signals over time."""
 
 from collections.abc import Sequence
+from functools import partial
 from html import escape
 
 from motionfmu.report.charts import add_charts
@@ -8,6 +9,7 @@ from motionfmu.report.iso9283_section import add_iso9283
 from motionfmu.report.ran import Ran, add_ran, add_speed
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.shown_run import Result
+from motionfmu.report.signal_words import words_of
 from motionfmu.report.tables import check_table, warning_list
 from motionfmu.report.view_section import SCRIPTS, add_view
 from motionfmu.run.figures import Chart
@@ -38,7 +40,7 @@ def plain_text(result: Result, charts: Sequence[Chart], ran: Ran) -> str:
     # If there are no figures, the recorded signals are shown.
     page = Sheet()
     if result.checks:
-        page.section("Verdict", "", check_table(result.checks))
+        page.section("Verdict", "", check_table(result.checks, partial(words_of, result.resolver)))
     add_ran(page, result, ran)
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))
@@ -46,9 +48,9 @@ def plain_text(result: Result, charts: Sequence[Chart], ran: Ran) -> str:
         page.section("Contour error", escape(result.no_contour), "")
     views = add_view(page, scene_of(result, deviations(result)))
     add_performance(page, result)
-    add_speed(page, ran)
     shown = charts or result.overview()
     add_charts(page, shown, pictures=bool(charts))
+    add_speed(page, ran)
     footer = FOOTER
     if not charts and len(shown) < len(result.signals):
         footer += f" {len(shown)} of {len(result.signals)} recorded signals are shown."

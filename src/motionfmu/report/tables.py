@@ -1,7 +1,7 @@
 """The tables, cards and lists of the page."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from typing import Any, Protocol
 
@@ -86,8 +86,8 @@ def warning_list(warnings: Sequence[str]) -> str:
     return f"<ul>{''.join(f'<li>{escape(told)}</li>' for told in warnings)}</ul>"
 
 
-def check_table(checks: Sequence[Check]) -> str:
-    """Verdicts of the scenario, failures first."""
+def check_table(checks: Sequence[Check], words: Callable[[str], tuple[str, str]]) -> str:
+    """Verdicts of the scenario, failures first; `words` say what is checked, and its unit."""
     rows = []
     for check in sorted(checks, key=lambda c: c.ok):
         mark, kind = ("✓ pass", "pass") if check.ok else ("✗ fail", "fail")
@@ -95,11 +95,13 @@ def check_table(checks: Sequence[Check]) -> str:
         text = str(value)
         if isinstance(value, float) and not math.isnan(value):
             text = f"{value:.6g}".replace("-", MINUS)
+        said, unit = words(check.name)
+        sub = f'<div class="sub">{escape(said)}</div>' if said else ""
         rows.append(
             (
                 f'<span class="mark {kind}">{mark}</span>',
-                escape(check.name),
-                escape(text),
+                f"{escape(check.name)}{sub}",
+                escape(f"{text} {unit}" if unit and not check.reason else text),
                 escape(check.bounds if not check.reason else f"{check.bounds}; {check.reason}"),
             )
         )

@@ -16,6 +16,7 @@ from motionfmu.linear.position_gain import in_lines, in_words
 from motionfmu.report.numbers import figure
 from motionfmu.report.servo.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.sheet import Frame, Sheet
+from motionfmu.report.signal_words import words_of
 from motionfmu.report.tables import cards, facts, table
 
 FOOTER = (
@@ -228,9 +229,16 @@ def _over(axis: AxisModel) -> str:
     return f" It goes on for {figure(min(ends))} s, to where parts meet or part."
 
 
+def _named(axis: AxisModel, name: str) -> str:
+    """A quantity of a plant, and what it is in words."""
+    words, unit = words_of(axis.scenario.resolver, name)
+    told = ", ".join(text for text in (words, unit) if text)
+    return f'{escape(name)}<div class="sub">{escape(told)}</div>' if told else escape(name)
+
+
 def _points(axis: AxisModel) -> str:
     rows = [
-        (escape(f"{c}.{name}"), f"{value:.6g}")
+        (_named(axis, f"{c}.{name}"), f"{value:.6g}")
         for c, p in axis.points.items()
         for name, value in p.values.items()
     ]
