@@ -32,8 +32,10 @@ model HydraulicAxis
   parameter Real clearance(unit = "m", min = 0) = 0
     "Lost motion between rod and table; 0: they are one body";
   parameter Real rod_mass(unit = "kg", min = 1e-9) = 5 "Part of the mass on the rod's side of it";
-  parameter Real joint_stiffness(unit = "N/m", min = 1) = 1e8 "Of rod and table in contact";
-  parameter Real joint_damping(unit = "N.s/m", min = 0) = 1e4 "Of rod and table in contact";
+  parameter Real joint_stiffness(unit = "N/m", min = 1) = 1e8
+    "Stiffness of rod and table in contact";
+  parameter Real joint_damping(unit = "N.s/m", min = 0) = 1e4
+    "Damping of rod and table in contact";
   parameter Real table_coulomb(unit = "N", min = 0) = 200 "Friction while sliding fast";
   parameter Real table_static(unit = "N", min = 0) = 300 "Friction at break-away";
   parameter Real table_stribeck_speed(unit = "m/s", min = 1e-9) = 1e-2
