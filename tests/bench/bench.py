@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import commands
 import kinematics
 import network
 import numpy as np
@@ -193,6 +194,7 @@ def main() -> None:
     arm = kinematics.Kinematics()
     net = network.Network()
     robot = Timed(ROBOT, stop=20.0)
+    asked = commands.all_commands()
     rounds(
         [
             fused,
@@ -204,6 +206,7 @@ def main() -> None:
             arm,
             net,
             robot,
+            *asked,
             *curves,
             *segments.ALL,
             segments.LONG,
@@ -263,6 +266,8 @@ def main() -> None:
     )
     verdict("arm, all eight branches, us", 1e6 * arm.inverse, most=1.0)
     verdict("py-opw-kinematics / ours", arm.other / arm.inverse, least=1.0)
+    for command in asked:
+        verdict(f"motionfmu {command.line}, processor s", command.seconds, most=0.3)
     verdict("sweep, efficiency of all cores", study.efficiency, least=0.9)
 
 

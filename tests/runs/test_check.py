@@ -22,7 +22,7 @@ def scenarios(tmp_path_factory: pytest.TempPathFactory) -> Path:
             (folder / place / file).write_text(rendered(TEMPLATES / "scenario" / file, place))
     slow, wrong = (folder / place / "scenario.toml" for place in ("slow", "wrong"))
     slow.write_text(slow.read_text().replace("value = [1.0]", "value = [0.5]"))
-    wrong.write_text(wrong.read_text().replace('"axis.tau" ', '"axis.taw" '))
+    wrong.write_text(wrong.read_text().replace('"axis.tau" ', '"axis.taw" ', 1))
     (folder / "notes").mkdir()
     return folder
 

@@ -26,7 +26,9 @@ def junit(cases: Sequence[Case], started: datetime) -> str:
         about = {"classname": _class(case), "name": _text(name), "time": f"{case.seconds:.3f}"}
         row = ET.SubElement(suite, "testcase", about)
         if case.error:
-            ET.SubElement(row, "error", message=_text(case.error), type="InputError")
+            lines = [_text(line) for line in case.error.split("\n")]
+            error = ET.SubElement(row, "error", message=lines[0], type="InputError")
+            error.text = "\n".join(lines)
         elif not case.ok:
             lines = [_text(line) for line in _failed(case)]
             failure = ET.SubElement(row, "failure", message=lines[0], type="check")
