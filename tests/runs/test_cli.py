@@ -75,7 +75,7 @@ def test_the_report_needs_no_network(demo: tuple[Path, str]) -> None:
 
 def test_a_failed_check_is_status_1_and_named(tmp_path: Path) -> None:
     out = tmp_path / "circle"
-    done = command("run", "scenarios/mismatch_line", "--set", "mcc.p_gain=200", "--out", out)
+    done = within("run", "scenarios/mismatch_line", "--set", "mcc.p_gain=200", "--out", out)
     assert done.returncode == 1
     assert "not as written: mcc.p_gain = 200 (scenario: [200, 160, 0, 0, 0, 0])" in done.stdout
     assert "ended: stop = 2 s; the program was done at 1." in done.stdout
@@ -97,7 +97,7 @@ def test_values_of_a_file_are_told_with_its_name_and_every_thins(tmp_path: Path)
 def test_an_older_result_is_replaced(tmp_path: Path) -> None:
     out = tmp_path / "r"
     for stop in ("0.2", "0.3"):
-        command("run", "scenarios/mismatch_line", "--stop", stop, "--out", out)
+        within("run", "scenarios/mismatch_line", "--stop", stop, "--out", out)
         assert json.loads((out / "result.json").read_text())["options"]["stop"] == float(stop)
     assert [p.name for p in tmp_path.iterdir()] == ["r"]
 
