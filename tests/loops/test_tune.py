@@ -25,6 +25,7 @@ from motionfmu.tune.curve import Loop, margin
 from motionfmu.tune.solve import solve
 from motionfmu.tune.steps import lifted, scan
 from motionfmu.tune.study import Study, Values
+from motionfmu.tune.words import assumptions
 
 GAINS = ["mcc.p_gain", "drives.velocity_gain", "drives.velocity_time"]
 SIGNALS = Signals("card.pulses", "machine.table_position", ("drives.torque", "card.dac"))
@@ -293,6 +294,7 @@ def test_the_ise_of_a_lag_is_the_published_formula() -> None:
     """(1 + tau K)/(2 K) without delay; the 1.5 periods of the loop add less than half of them."""
     study, values = stepped(200, 0.005)
     k = kp_of(study.axes[1])
+    assert any("ise is the sum over axes 1, 2" in text for text in assumptions(study))
     more = values.costs[0] / 2.0 - (1.0 + 0.005 * k) / (2.0 * k)
     assert 0.0 < more < 0.75e-4
 

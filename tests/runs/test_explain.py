@@ -20,6 +20,8 @@ from motionfmu.errors import InputError
 from motionfmu.explain import causes, decompose, explain, servo, signature, theory
 from motionfmu.explain.expression import evaluate
 from motionfmu.explain.servo import Axis
+from motionfmu.report.causes.explain_page import page_text
+from motionfmu.report.numbers import length
 from motionfmu.scenarios import fmus
 
 RADIUS, FEED, GAIN = 10.0, 30.0, 400  # [mm], [mm/s], register
@@ -123,6 +125,13 @@ def test_an_injected_cause_is_named_first_with_its_size(name: str, tmp_path: Pat
         assert by_hand * 0.95 <= effect.theory.value <= by_hand * 1.5
     # What does not add up is stated, and small here.
     numbers = found.numbers()
+    error = found.result.contour().error  # one RMS, over time, wherever the error is told
+    assert numbers["contour_error"] == {"max": error.max, "rms": error.rms}
+    page = page_text(found)
+    assert f"RMS {length(error.rms)}, over time where the tool cuts" in page
+    idle = [e for e in found.effects if e.judged and e.size == 0.0 and not e.theory.value]
+    assert idle and not any(f'<td class="key">{e.title}' in page for e in idle)
+    assert f"Switched off without any change: {idle[0].title}" in page
     assert numbers["residual"]["max"] <= 0.2 * numbers["contour_error"]["max"]
     assert np.allclose(found.together + found.residual, found.whole)
     if effect.without is not None:

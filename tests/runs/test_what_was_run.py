@@ -47,7 +47,7 @@ def test_the_page_says_what_was_run(circle) -> None:
     assert numbers["overrides"] == ["mcc.p_gain = 300 (scenario: 200)"]
     assert words(page, "Program done") == f"at {result.done_at:.3f} s"
     # two turns of R 50 and a rapid of 50 mm there and back; the tool cuts 19 um off the radius
-    assert "programmed 628 mm of cutting, 100 mm of rapids" in words(page, "Way of the tool")
+    assert "programmed 628.3 mm of cutting, 100 mm of rapids" in words(page, "Way of the tool")
     assert numbers["distance"] == pytest.approx(200.0 * np.pi + 100.0, abs=0.4)
     # 0.1 s to the feed and from it: a move takes way/feed + 0.1 s, or 2 sqrt(way 0.1 s/feed)
     moves = 2.0 * (100.0 * np.pi / 100.0 + 0.1) + 2.0 * 2.0 * np.sqrt(50.0 * 0.1 / 500.0)
@@ -70,6 +70,17 @@ def test_the_feed_stands_beside_the_programmed(circle) -> None:
     assert np.isnan(programmed[time > result.done_at]).all() and (time > result.done_at).any()
     way = float(np.sum(planned[:-1] * np.diff(time)) / 60.0)
     assert way == pytest.approx(200.0 * np.pi + 100.0, rel=2e-3)
+
+
+def test_the_circle_the_other_way_round_is_no_corner(circle) -> None:
+    result, page, _, _ = circle
+    assert result.contour().corners == () and "<h2>Corners" not in page
+    assert "<h2>Worst lines of the program</h2>" in page
+    assert 'class="two"><div><h2>' not in page  # nor half a page left empty
+    # in words beside the name, with its unit
+    row = re.search(r'contour\.error\.max<div class="sub">(.*?)</div>.*?<td class="n">(.*?)<', page)
+    assert row and row[1] == "Contour error, largest" and row[2].endswith(" mm")
+    assert "<h2>Torque command to the current loop (drives.torque)</h2>" in page
 
 
 def test_notes_of_figures_are_the_scenarios_where_something_is_overridden(tmp_path: Path) -> None:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from motionfmu.contour import ContourResult
 from motionfmu.linear import LoopGain, gain_of
 from motionfmu.linear.position_gain import in_lines
-from motionfmu.report.numbers import length
 from motionfmu.report.sheet import Sheet
 from motionfmu.report.shown_run import Result
 from motionfmu.report.tables import facts
@@ -157,8 +156,9 @@ def add_ran(page: Sheet, result: Result, ran: Ran) -> None:
         told = ""
         if ran.programmed:
             cut, rapid = ran.programmed
-            told = f"; programmed {length(cut)} of cutting, {length(rapid)} of rapids"
-        rows.append(("Way of the tool", f"{length(ran.distance)}{told}"))
+            told = f"; programmed {cut:.4g} mm of cutting"
+            told += f", {rapid:.4g} mm of rapids" if rapid > STANDS else ""
+        rows.append(("Way of the tool", f"{ran.distance:.4g} mm{told}"))
     if ran.gains:
         rows.append(("Position gains", "<br>".join(map(escape, in_lines(ran.gains)))))
     told = "Not as the scenario is written: see the overrides." if result.overrides else ""

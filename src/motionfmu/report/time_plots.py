@@ -7,7 +7,7 @@ import numpy as np
 
 from motionfmu.contour import ContourResult
 from motionfmu.contour.geometry import Array
-from motionfmu.report.numbers import length, unit
+from motionfmu.report.numbers import label, length, unit
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID, axis, layout
 
@@ -114,7 +114,7 @@ def trace_figures(contour: ContourResult) -> list[tuple[str, Figure]]:
             (NAMES[i] if several else trace.name, columns[:, i], AXES[i])
             for i in (contour.run.axes if several else (0,))
         ]
-        title = f"{trace.name} [{trace.unit}]" if trace.unit else trace.name
+        title = label(trace.name, trace.unit)
         out.append((trace.name, _curves(contour.run.time, shown, title, 230)))
     return out
 

@@ -17,7 +17,7 @@ def assumptions(study: Study) -> list[str]:
         if isinstance(axis.blocks[source[0]], Plant):
             doc = ports[source[0]][source[1]].doc
             found.append(f"Feedback: {'.'.join(target)} reads {'.'.join(source)} ({doc})")
-    found.append(f"Judged: {study.signals.position}")
+    found.append(f"Judged: {study.signals.position}{summed(study)}")
     for name, block in axis.blocks.items():
         grid = f"{block.grid_ns * 1e-3:g} us"
         if isinstance(block, Sampled) and _acts(block):
@@ -37,6 +37,14 @@ def assumptions(study: Study) -> list[str]:
     return found
 
 
+def summed(study: Study) -> str:
+    """What a cost after a step is with several axes."""
+    cost = study.problem.cost
+    if cost in ON_PATH or len(study.axes) == 1:
+        return ""
+    return f", {cost} is the sum over axes {', '.join(map(str, study.axes))}"
+
+
 def _acts(block: Sampled) -> bool:
     """Whether an output moves at all."""
     first = len(block.states)
@@ -52,4 +60,4 @@ def units_of(cost: str) -> tuple[float, str]:
     """Factor and unit in which a cost is shown."""
     if cost in ON_PATH:
         return 1e3, "µm"
-    return {"ise": (1e3, "ms"), "iae": (1e3, "ms"), "itae": (1e6, "ms^2")}[cost]
+    return {"ise": (1e3, "ms"), "iae": (1e3, "ms"), "itae": (1e6, "ms²")}[cost]

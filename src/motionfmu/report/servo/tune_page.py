@@ -213,7 +213,7 @@ def _search(tuned: Tuned) -> str:
     factor, name = units_of(study.problem.cost)
     starts = ", ".join(f"{c * factor:.5g}" if np.isfinite(c) else "none" for c in found.starts)
     text = (
-        f"{study.problem.cost}{_summed(tuned)}, worst of {len(study.plants)} plant(s): NLP (CasADi,"
+        f"{study.problem.cost}, worst of {len(study.plants)} plant(s): NLP (CasADi,"
         f" IPOPT) from {len(found.starts)} start(s) found {starts} {name} with"
         f" {found.evaluations[0]} evaluations in {found.seconds[0]:.2g} s;"
     )
@@ -227,14 +227,6 @@ def _search(tuned: Tuned) -> str:
     if study.problem.cost in ON_PATH and len(study.plants) > 1:
         text += f" Largest cost of a plant: {tuned.values.worst * factor:.5g} {name}."
     return escape(text)
-
-
-def _summed(tuned: Tuned) -> str:
-    """What a cost after a step is with several axes."""
-    study = tuned.study
-    if study.problem.cost in ON_PATH or len(study.axes) == 1:
-        return ""
-    return f", the sum over axes {', '.join(map(str, study.axes))}"
 
 
 def _assumed(tuned: Tuned) -> str:
