@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import ROOT
 
@@ -115,3 +116,18 @@ def test_the_example_of_the_robot_station_runs() -> None:
     assert code
     told, where = output(sys.executable, "-c", code[1]).splitlines()
     assert "joint 1 to 190 deg, limit 180 deg" in told and where == "[1000.0, 100.0, 900.0]"
+
+
+def test_the_script_of_a_student_shows_half_the_backlash(tmp_path: Path) -> None:
+    folder = ROOT / "examples/student_backlash"
+    rows = output(sys.executable, folder / "backlash.py", cwd=tmp_path).splitlines()[2:]
+    gap, largest, rms = np.array([row.split() for row in rows], dtype=float).T
+    assert gap.tolist() == [0, 5, 10, 20] and (np.diff(rms) > 0.0).all()
+    assert np.diff(largest) / np.diff(gap) == pytest.approx([0.5] * 3, abs=0.02)
+    assert (tmp_path / "backlash.png").read_bytes()[:4] == (folder / "backlash.png").read_bytes()[
+        :4
+    ]
+    code = (folder / "backlash.py").read_text().splitlines()
+    assert sum(bool(line) for line in code) < 30
+    files = {f.name for f in folder.iterdir()} - {"README.md"}
+    assert files == set(re.findall(r"\]\(([\w.]+)\)", (folder / "README.md").read_text()))
