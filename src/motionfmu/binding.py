@@ -1,14 +1,14 @@
 """What the C stations have in common for Python: their library, structs, a run on the clock."""
 
 import ctypes
-import difflib
 import functools
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, suggestion
 
 PACKAGE = Path(__file__).resolve().parent
 # Clocks of the cards in a second.
@@ -116,9 +116,8 @@ class Struct:
 
     def _view(self, name: str) -> np.ndarray:
         if name not in self._fields:
-            near = difflib.get_close_matches(name, self._fields, 1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
-            raise InputError(f"no {name!r} here{hint} (there are: {', '.join(self._fields)})")
+            hint = suggestion(name, self._fields) or _there_are(self._fields)
+            raise InputError(f"no setting {name!r}{hint}")
         f = self._fields[name]
         kind: np.dtype = np.dtype(_TYPES[chr(f.kind)])
         memory: Any = self._memory
@@ -163,7 +162,7 @@ class Struct:
             wanted = {"i": "whole number", "u": "whole number", "f": "number", "b": "truth value"}
             shape = f" or {len(view)} of them" if len(view) > 1 else ""
             kind_name = wanted.get(kind, "letter")
-            raise InputError(f"{name} = {value!r}: one {kind_name}{shape} wanted") from None
+            raise InputError(f"{name} = {value!r:.80}: one {kind_name}{shape} wanted") from None
         view[:] = given
 
     def __contains__(self, name: str) -> bool:
@@ -181,6 +180,20 @@ def whole(value: float) -> int:
     raise InputError(f"{value!r}: a whole number of 32 bits wanted")
 
 
+def real(value: float) -> float:
+    """Take a number; InputError if it is none."""
+    if isinstance(value, int | float | np.number) and not isinstance(value, bool):
+        return float(value)
+    raise InputError(f"{value!r}: a number wanted")
+
+
+def text(value: str) -> bytes:
+    """Take a text; InputError if it is none."""
+    if isinstance(value, str):
+        return value.encode()
+    raise InputError(f"{value!r:.80}: a text wanted")
+
+
 class Values:
     """What there is to see at one clock, by attributes; `time` is the clock in seconds."""
 
@@ -188,10 +201,19 @@ class Values:
         self.__dict__.update(values, time=values["clock"] / CLOCK_HZ)
 
     def __getattr__(self, name: str) -> Any:
-        raise AttributeError(f"no reading {name!r} (there are: {', '.join(self.__dict__)})")
+        raise AttributeError(unread(name, self.__dict__))
 
     def __repr__(self) -> str:
         return f"Reading({', '.join(f'{k}={v}' for k, v in self.__dict__.items())})"
+
+
+def unread(name: str, known: Collection[str]) -> str:
+    """What a misspelt reading is told."""
+    return f"no reading {name!r}" + (suggestion(name, known) or _there_are(known))
+
+
+def _there_are(known: Iterable[str]) -> str:
+    return f" (there are: {', '.join(known)})"
 
 
 R = TypeVar("R", bound=Values)
@@ -241,7 +263,9 @@ class Station(Generic[R]):
         CardError
             A virtual card takes no frame any more, or a motor is beyond what an encoder can follow.
         """
-        self._advance(ctypes.c_int64(clock))
+        if not isinstance(clock, int | np.integer) or abs(clock) > _CLOCKS_MAX:
+            raise InputError(f"clock {clock!r}: a whole number of 25 ns wanted")
+        self._advance(ctypes.c_int64(int(clock)))
         return self.read()
 
     def run(self, seconds: float) -> R:
@@ -259,7 +283,7 @@ class Station(Generic[R]):
         CardError
             See `run_to`.
         """
-        if not 0 <= seconds <= _SECOND_MAX:
+        if not 0 <= real(seconds) <= _SECOND_MAX:
             raise InputError(f"{seconds} s cannot be run")
         return self.run_to(self.clock + round(seconds * CLOCK_HZ))
 
@@ -281,6 +305,8 @@ class Station(Generic[R]):
         CardError
             See `run_to`.
         """
+        if not 0 <= real(limit) <= _SECOND_MAX:
+            raise InputError(f"limit = {limit} s cannot be run")
         last = self.clock + round(limit * CLOCK_HZ)
         reading = self.run_to(min(last, self.clock + _MILLISECOND))
         while not getattr(reading, self._at_rest) and reading.clock < last:
@@ -312,12 +338,12 @@ class Station(Generic[R]):
         CardError
             See `run_to`.
         """
-        clocks = round(step * CLOCK_HZ)
-        if clocks < 1 or not 0 <= seconds <= _SECOND_MAX:
+        clocks = round(real(step) * CLOCK_HZ) if 0 < real(step) <= _SECOND_MAX else 0
+        if clocks < 1 or not 0 <= real(seconds) <= _SECOND_MAX:
             raise InputError(f"step {step} s, {seconds} s: cannot be run")
         first = self.read()
         if unknown := [n for n in names if n not in first.__dict__]:
-            raise InputError(f"no reading {unknown[0]!r} (there are: {', '.join(first.__dict__)})")
+            raise InputError(unread(unknown[0], first.__dict__))
         rows = [first]
         for k in range(1, round(seconds * CLOCK_HZ) // clocks + 1):
             rows.append(self.run_to(first.clock + k * clocks))

@@ -15,8 +15,9 @@ ALIKE = 0.5
 
 def suggestion(word: str, known: Iterable[str]) -> str:
     """What a misspelt word may be meant for, as the end of a message; else empty."""
-    close = difflib.get_close_matches(word, list(known), 1, ALIKE)
-    return f"; did you mean {close[0]!r}?" if close else ""
+    small = {name.lower(): name for name in known}
+    close = difflib.get_close_matches(word.lower(), list(small), 1, ALIKE)
+    return f"; did you mean {small[close[0]]!r}?" if close else ""
 
 
 class InputError(ValueError):

@@ -87,7 +87,7 @@ def test_member_finder_can_fail() -> None:
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        ({"fed": 1.0}, "no 'fed' here; did you mean 'feed'?"),
+        ({"fed": 1.0}, "no setting 'fed'; did you mean 'feed'?"),
         ({"feed": "fast"}, "feed = 'fast': one number wanted"),
         ({"ppr": 1.5}, "ppr = 1.5: one whole number or 6 of them wanted"),
         ({"lead": [1, 2]}, "lead = [1, 2]: one number or 6 of them wanted"),

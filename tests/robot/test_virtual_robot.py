@@ -302,7 +302,7 @@ def test_ring_of_moves_is_full_in_the_end() -> None:
 
 
 def test_wrong_settings_are_named() -> None:
-    with pytest.raises(InputError, match="no 'feeds' here; did you mean 'feed'"):
+    with pytest.raises(InputError, match="no setting 'feeds'; did you mean 'feed'"):
         VirtualRobot(feeds=1)
     with pytest.raises(RobotError, match=r"joint_low = 90 \(element 1\): not below joint_high"):
         VirtualRobot(joint_low=90, joint_high=[180, 90, 180, 180, 180, 180])

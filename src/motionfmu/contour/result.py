@@ -100,7 +100,7 @@ class ContourInput:
                 raise ValueError(f"{name} is not finite at {self.time[bad[0]]:g} s")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ContourResult:
     """Contour error of a run.
 
@@ -138,6 +138,11 @@ class ContourResult:
     def following(self) -> Array:
         """Commanded minus actual position, shape (n, 6) [mm]."""
         return self.run.commanded - self.run.actual
+
+    def __repr__(self) -> str:
+        error = self.error
+        parts = f"{len(self.circles)} circles, {len(self.corners)} corners"
+        return f"<ContourResult: max {error.max:.4g} mm, RMS {error.rms:.4g} mm, {parts}>"
 
     def numbers(self) -> dict[str, Any]:
         """Every number of the analysis, ready for JSON; mm, s, rad."""

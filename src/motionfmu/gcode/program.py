@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.binding import Struct, dtype, library
+from motionfmu.binding import text as text_of
 from motionfmu.errors import InputError
 
 AXES = 6
@@ -82,8 +83,8 @@ class Program:
     """
 
     def __init__(self, text: str, reader: Struct) -> None:
+        self._bytes = text_of(text)
         self.text, self._reader = text, reader
-        self._bytes = text.encode()
         begin = library().binding_gcode_begin
         begin(reader.pointer, self._bytes, ctypes.c_int64(len(self._bytes)))
         check = library().binding_gcode_check
@@ -91,6 +92,10 @@ class Program:
             self._bytes, lambda rows, count: check(reader.pointer, rows, count)
         )
         self.commands = self._read()
+
+    def __repr__(self) -> str:
+        faults = f"{len(self.faults)}{' or more' if self.more else ''}"
+        return f"<Program: {len(self.commands)} commands, {faults} faults>"
 
     def _read(self) -> np.ndarray:
         c, result, report = library(), ctypes.c_int32(_MORE), Struct("report")

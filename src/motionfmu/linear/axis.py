@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, suggestion
 from motionfmu.linear.block import Block
 from motionfmu.linear.parts import Parts, parts
 from motionfmu.linear.plant import Point
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from motionfmu.linear.systems import System  # its import takes a second, a tuning does without
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class AxisModel:
     """Linear blocks of one axis, wired and timed as its FMUs.
 
@@ -53,6 +53,11 @@ class AxisModel:
     points: Mapping[str, Point]
     left_out: tuple[str, ...]
     _parts: Parts = field(repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        return (
+            f"<AxisModel {self.scenario.name}: axis {self.axis}, inputs {', '.join(self.inputs)}>"
+        )
 
     @property
     def inputs(self) -> list[str]:
@@ -231,7 +236,8 @@ class AxisModel:
         if name not in known:
             note = f" (no linear law: {', '.join(self.left_out)})" if self.left_out else ""
             raise InputError(
-                f"{name} is no {kind} of the linear model{note}; there are: {', '.join(known)}"
+                f"{name} is no {kind} of the linear model{note}"
+                + (suggestion(name, known) or f"; there are: {', '.join(known)}")
             )
         component, _, variable = name.partition(".")
         return component, variable

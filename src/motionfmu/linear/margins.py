@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
+from motionfmu.errors import InputError
+
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 System: TypeAlias = Any  # control.StateSpace or control.TransferFunction
@@ -121,7 +123,14 @@ def margins(loop: System) -> Margins:
     Returns
     -------
     Margins
+
+    Raises
+    ------
+    InputError
+        This is no loop.
     """
+    if not hasattr(loop, "poles"):
+        raise InputError(f"{loop!r:.80}: an open loop wanted, such as model(...).loop(at)")
     omega = grid(loop)
     values = response(loop, omega)
 

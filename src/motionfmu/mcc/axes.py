@@ -3,7 +3,10 @@
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from motionfmu.binding import Struct, whole
+from motionfmu.errors import InputError
 from motionfmu.mcc.calls import Calls
 
 
@@ -39,6 +42,8 @@ class Axes(Calls):
         """
         table = Struct("comp")
         table["interval"], table["home"] = whole(interval), whole(home)
+        if not rows or any(not isinstance(r, Sequence | np.ndarray) or not len(r) for r in rows):
+            raise InputError(f"rows {rows!r:.80}: one or two lists of pulses wanted")
         for name, row in zip(("forward", "backward"), (rows * 2)[:2], strict=True):
             whole_row = [whole(v) for v in row]
             count = len(table[name])

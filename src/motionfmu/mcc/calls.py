@@ -1,10 +1,10 @@
 """How Python values become the arguments of a C call."""
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
-from motionfmu.binding import library, whole
+from motionfmu.binding import library, real, whole
 from motionfmu.errors import InputError
 from motionfmu.mcc.library import AXES, MccError
 
@@ -13,17 +13,31 @@ Numbers = Sequence[float]
 
 def doubles(values: Numbers, count: int = AXES) -> Any:
     """Make a C array of doubles, of just so many."""
-    return _array(ctypes.c_double, [float(v) for v in values], count)
+    return _array(ctypes.c_double, [real(v) for v in _several(values, count)], count)
 
 
 def integers(values: Sequence[int], count: int = AXES) -> Any:
     """Make a C array of int32, of just so many."""
-    return _array(ctypes.c_int32, [whole(v) for v in values], count)
+    return _array(ctypes.c_int32, [whole(v) for v in _several(values, count)], count)
 
 
 def letters(values: str, count: int = AXES) -> Any:
     """Make a C array of characters, of just so many letters."""
-    return _array(ctypes.c_char, [v.encode() for v in values], count)
+    return _array(ctypes.c_char, [letter(v) for v in _several(values, count)], count)
+
+
+def letter(value: str) -> Any:
+    """Make a C character of one letter."""
+    if not isinstance(value, str) or len(value) != 1 or not value.isascii():
+        raise InputError(f"{value!r}: one letter wanted")
+    return ctypes.c_char(value.encode())
+
+
+def _several(values: Any, count: int) -> Any:
+    """Refuse what has no elements."""
+    if not isinstance(values, Iterable):
+        raise InputError(f"{values!r}: {count} values wanted")
+    return values
 
 
 def _array(kind: Any, values: list[Any], count: int) -> Any:

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-from motionfmu.binding import Station, Struct, Values, library
+from motionfmu.binding import Station, Struct, Values, library, real
 from motionfmu.errors import InputError
 from motionfmu.mcc.state import Mcc, configuration
 
@@ -99,6 +99,9 @@ class VirtualCard(Station[Reading]):
         self._library.station_read(self._state.pointer, reading.pointer)
         return Reading({name: reading[name] for name in reading})
 
+    def __repr__(self) -> str:
+        return f"<VirtualCard at {self.read().time:.9g} s: {self.mcc!r}>"
+
     def set_switches(self, name: str, *axes: int) -> None:
         """Switches of the axes at the card's terminals.
 
@@ -114,7 +117,7 @@ class VirtualCard(Station[Reading]):
         InputError
             There is no such switch or axis.
         """
-        if name not in ("home", "up", "down") or not set(axes) <= set(range(6)):
+        if name not in ("home", "up", "down") or not all(a in range(6) for a in axes):
             raise InputError(f"switch {name!r} of axes {axes}: home, up or down of 0 .. 5 wanted")
         self._state[name] = sum(1 << a for a in set(axes))
 
@@ -133,6 +136,7 @@ class VirtualCard(Station[Reading]):
         InputError
             There is no such encoder.
         """
+        real(counts)
         if encoder not in (6, 7, 8):
             raise InputError(f"encoder {encoder}: 6 .. 8 wanted; 0 .. 5 are the motors'")
         phase = self._state["phase"]

@@ -3,7 +3,7 @@
 import ctypes
 from collections.abc import Sequence
 
-from motionfmu.mcc.calls import Calls, Numbers, doubles, integers, letters, whole
+from motionfmu.mcc.calls import Calls, Numbers, doubles, integers, letters, real, whole
 
 
 class Manual(Calls):
@@ -18,11 +18,11 @@ class Manual(Calls):
 
     def jog_c(self, axis: int, direction: int, percent: float) -> None:
         """Jog on until stopped: direction -1, +1, 0 stops; > 0 .. 100 % of the safe motor speed."""
-        self._do("MCC_jog_c", whole(axis), whole(direction), float(percent))
+        self._do("MCC_jog_c", whole(axis), whole(direction), real(percent))
 
     def jog_i(self, axis: int, distance: float, percent: float) -> None:
         """Jog a way [mm] at > 0 .. 100 % of the safe motor speed."""
-        self._do("MCC_jog_i", whole(axis), float(distance), float(percent))
+        self._do("MCC_jog_i", whole(axis), real(distance), real(percent))
 
     def jog_s(self, axis: int, pulses: int) -> None:
         """Jog some pulses."""
@@ -30,7 +30,7 @@ class Manual(Calls):
 
     def MPG_set(self, axis: int, encoder: int, ratio: float) -> None:
         """Let an axis follow a hand wheel: counter 0 .. 8, ratio [pulses/count]."""
-        self._do("MCC_MPG_set", whole(axis), whole(encoder), float(ratio))
+        self._do("MCC_MPG_set", whole(axis), whole(encoder), real(ratio))
 
     def MPG_disable(self) -> None:
         """Bring the axes that follow a hand wheel to rest."""

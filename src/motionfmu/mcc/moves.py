@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from motionfmu.mcc.calls import Calls, Numbers, doubles, whole
+from motionfmu.mcc.calls import Calls, Numbers, doubles, real, whole
 
 # Directions of a circle.
 CW, CCW = 0, 1
@@ -17,11 +17,11 @@ class Moves(Calls):
     """
 
     def _arc(self, plane: str, via: Numbers, end: Numbers) -> int:
-        return self._do(f"MCC_arc_{plane}", *doubles([*via, *end], 4))
+        return self._do(f"MCC_arc_{plane}", *doubles(via, 2), *doubles(end, 2))
 
     def _arc_uvw(self, plane: str, points: Sequence[Numbers], uvw: Numbers) -> int:
-        flat = doubles([*points[0], *points[1]], 4)
-        return self._do(f"MCC_arc_{plane}uvw", flat, doubles(uvw, 3))
+        both = (*doubles(points[0], 2), *doubles(points[1], 2))
+        return self._do(f"MCC_arc_{plane}uvw", doubles(both, 4), doubles(uvw, 3))
 
     def _circle(self, plane: str, centre: Numbers, direction: int) -> int:
         return self._do(f"MCC_circle_{plane}", *doubles(centre, 2), whole(direction))
@@ -36,15 +36,15 @@ class Moves(Calls):
 
     def line_x(self, x: float) -> int:
         """Straight line of X [mm]."""
-        return self._do("MCC_line_x", float(x))
+        return self._do("MCC_line_x", real(x))
 
     def line_y(self, y: float) -> int:
         """Straight line of Y [mm]."""
-        return self._do("MCC_line_y", float(y))
+        return self._do("MCC_line_y", real(y))
 
     def line_z(self, z: float) -> int:
         """Straight line of Z [mm]."""
-        return self._do("MCC_line_z", float(z))
+        return self._do("MCC_line_z", real(z))
 
     def arc_xy(self, via: Numbers, end: Numbers) -> int:
         """Arc in the plane X Y through a point to its end [mm]."""
@@ -100,20 +100,20 @@ class Moves(Calls):
 
     def ptp_x(self, x: float) -> int:
         """Rapid of X [mm]."""
-        return self._do("MCC_ptp_x", float(x))
+        return self._do("MCC_ptp_x", real(x))
 
     def ptp_y(self, y: float) -> int:
         """Rapid of Y [mm]."""
-        return self._do("MCC_ptp_y", float(y))
+        return self._do("MCC_ptp_y", real(y))
 
     def ptp_z(self, z: float) -> int:
         """Rapid of Z [mm]."""
-        return self._do("MCC_ptp_z", float(z))
+        return self._do("MCC_ptp_z", real(z))
 
     def ptp_uvw(self, u: float, v: float, w: float) -> int:
         """Rapid of U V W, which arrive together [mm]."""
-        return self._do("MCC_ptp_uvw", float(u), float(v), float(w))
+        return self._do("MCC_ptp_uvw", real(u), real(v), real(w))
 
     def motion_delay(self, ms: float) -> int:
         """Dwell [ms]."""
-        return self._do("MCC_motion_delay", float(ms))
+        return self._do("MCC_motion_delay", real(ms))

@@ -3,8 +3,8 @@
 import ctypes
 from collections.abc import Sequence
 
-from motionfmu.binding import whole
-from motionfmu.mcc.calls import Calls, Numbers, doubles, integers
+from motionfmu.binding import real, whole
+from motionfmu.mcc.calls import Calls, Numbers, doubles, integers, letter
 
 
 class Settings(Calls):
@@ -27,11 +27,11 @@ class Settings(Calls):
 
     def set_fspd(self, feed: float) -> None:
         """Feed of lines, arcs and circles [mm/s]."""
-        self._do("MCC_set_fspd", float(feed))
+        self._do("MCC_set_fspd", real(feed))
 
     def set_ptp_spd(self, percent: float) -> None:
         """Speed of rapids, > 0 .. 100 % of the safe motor speed."""
-        self._do("MCC_set_ptp_spd", float(percent))
+        self._do("MCC_set_ptp_spd", real(percent))
 
     def enable_quit(self) -> None:
         """Continuous path from the next command on."""
@@ -47,7 +47,7 @@ class Settings(Calls):
 
     def set_acc_type(self, kind: str) -> None:
         """Kind of acceleration: T at a constant rate, S S-shaped."""
-        self._do("MCC_set_acc_type", ctypes.c_char(kind.encode()))
+        self._do("MCC_set_acc_type", letter(kind))
 
     def get_acc_type(self) -> str:
         """Kind of acceleration, T or S."""
@@ -55,7 +55,7 @@ class Settings(Calls):
 
     def set_dec_type(self, kind: str) -> None:
         """Kind of deceleration: T at a constant rate, S S-shaped."""
-        self._do("MCC_set_dec_type", ctypes.c_char(kind.encode()))
+        self._do("MCC_set_dec_type", letter(kind))
 
     def get_dec_type(self) -> str:
         """Kind of deceleration, T or S."""
@@ -63,7 +63,7 @@ class Settings(Calls):
 
     def set_acc_step(self, ms: float) -> None:
         """Time from rest to the commanded feed [ms]."""
-        self._do("MCC_set_acc_step", float(ms))
+        self._do("MCC_set_acc_step", real(ms))
 
     def get_acc_step(self) -> float:
         """Time from rest to the commanded feed [ms]."""
@@ -71,7 +71,7 @@ class Settings(Calls):
 
     def set_dec_step(self, ms: float) -> None:
         """Time from the commanded feed to rest [ms]."""
-        self._do("MCC_set_dec_step", float(ms))
+        self._do("MCC_set_dec_step", real(ms))
 
     def get_dec_step(self) -> float:
         """Time from the commanded feed to rest [ms]."""
@@ -79,7 +79,7 @@ class Settings(Calls):
 
     def set_dda(self, ms: float) -> None:
         """DDA time [ms], at standstill only; the nearest that the card can do is taken."""
-        self._do("MCC_set_dda", float(ms))
+        self._do("MCC_set_dda", real(ms))
 
     def get_dda(self) -> float:
         """DDA time the card has [ms]."""
@@ -103,7 +103,7 @@ class Settings(Calls):
 
     def set_over_spd(self, percent: float) -> None:
         """Override of lines, arcs and circles, 0 .. 200 %, at once."""
-        self._do("MCC_set_over_spd", float(percent))
+        self._do("MCC_set_over_spd", real(percent))
 
     def get_over_spd(self) -> float:
         """Override of lines, arcs and circles [%]."""
@@ -111,7 +111,7 @@ class Settings(Calls):
 
     def set_ptp_ospd(self, percent: float) -> None:
         """Override of rapids, 0 .. 200 %, at once; never above the safe motor speed."""
-        self._do("MCC_set_ptp_ospd", float(percent))
+        self._do("MCC_set_ptp_ospd", real(percent))
 
     def get_ptp_ospd(self) -> float:
         """Override of rapids [%]."""
@@ -119,11 +119,11 @@ class Settings(Calls):
 
     def set_tolerance(self, mm: float) -> None:
         """Look-ahead from here on: corners are rounded by at most this [mm]; 0 switches it off."""
-        self._do("mcc_set_tolerance", float(mm))
+        self._do("mcc_set_tolerance", real(mm))
 
     def set_curve(self, on: bool, merge: float = 0.0) -> None:
         """Look-ahead as a curve; runs of short commands merge within so much [mm]."""
-        self._do("mcc_set_curve", ctypes.c_bool(on), float(merge))
+        self._do("mcc_set_curve", ctypes.c_bool(on), real(merge))
 
     def task_set_origin(self, system: int, origin: Numbers) -> None:
         """Origin [mm] a part program begins with; the system is 1 for G54 .. 6 for G59."""

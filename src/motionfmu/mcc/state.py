@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.binding import Struct
+from motionfmu.binding import Struct, text, whole
 from motionfmu.errors import InputError
 from motionfmu.gcode.program import judged
 from motionfmu.mcc.axes import Axes
@@ -68,6 +68,11 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         super().__init__(state.pointer, state)
         self._text: bytes | None = None
         self.init_motion(**settings)
+
+    def __repr__(self) -> str:
+        names = ("RUNNING", "STOPPED", "HOLD", "DELAY", "BLOCK", "WHEEL")
+        where = ", ".join(f"{x:.6g}" for x in self.get_cpos())
+        return f"<Mcc {names[self.task_status()]} at [{where}] mm>"
 
     @classmethod
     def _of_card(cls, pointer: ctypes.c_void_p, owner: object) -> "Mcc":
@@ -174,9 +179,9 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         InputError
             All faults, a line each, with their line, text and column.
         """
-        text, check = program.encode(), self._library.binding_check
-        size = ctypes.c_int64(len(text))
-        faults, _, more = judged(text, lambda *rows: check(self._pointer, text, size, *rows))
+        given, check = text(program), self._library.binding_check
+        size = ctypes.c_int64(len(given))
+        faults, _, more = judged(given, lambda *rows: check(self._pointer, given, size, *rows))
         if faults:
             raise InputError(*map(str, faults), *(["... and more"] if more else []))
 
@@ -197,7 +202,7 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         """
         self.task_check(program)
         self._do("task_start")
-        self._text = program.encode()
+        self._text = text(program)
 
     def task_continue(self) -> None:
         """Go on behind M0 or M1."""
@@ -242,7 +247,9 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         (n, 6) ndarray of int
             Pulses of each DDA time; n < `count` if the axes rest.
         """
-        frames = np.zeros((count, AXES), np.int32)
+        if whole(count) < 0:
+            raise InputError(f"count = {count!r}: 0 or more wanted")
+        frames = np.zeros((whole(count), AXES), np.int32)
         where = frames.ctypes.data_as(ctypes.c_void_p)
         n = self._library.binding_take(
             self._pointer, *self._program(), where, ctypes.c_int32(count)

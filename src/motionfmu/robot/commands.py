@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.binding import Struct, library
+from motionfmu.binding import Struct, library, text
+from motionfmu.errors import suggestion
 from motionfmu.robot.kinematics import Kinematics, pose_of
 from motionfmu.robot.refusal import RobotError, message, numbers, refused, within
 
@@ -63,7 +64,9 @@ class Commands:
         }
         given |= {"singular": "slow", "via": np.zeros(3)}
         if unknown := set(how) - set(given):
-            raise RobotError(f"{call}: no {unknown.pop()!r} (there are: {', '.join(given)})")
+            name = unknown.pop()
+            hint = suggestion(name, given) or f" (there are: {', '.join(given)})"
+            raise RobotError(f"{call}: no {name!r}{hint}")
         given |= how
         mode = given["singular"]
         if mode not in _SINGULAR:
@@ -104,10 +107,14 @@ class Commands:
         """
         six = numbers("direction", direction, 6)
         before = {n: self._panel[n] for n in ("jog", "frame", "jog_speed", "jog_way")}
-        self._panel["jog"] = six
-        self._panel["frame"] = int(within("frame", frame, 0, 2))
-        self._panel["jog_speed"] = within("speed", speed, 1e-3, 1.0)
-        self._panel["jog_way"] = within("way", way, 0.0, 1e6)
+        asked = {
+            "jog": six,
+            "frame": int(within("frame", frame, 0, 2)),
+            "jog_speed": within("speed", speed, 1e-3, 1.0),
+            "jog_way": within("way", way, 0.0, 1e6),
+        }
+        for name, value in asked.items():
+            self._panel[name] = value
         why, words = Struct("robot_refusal"), message()
         code = library().binding_robot_jog(self._state.pointer, why.pointer, words)
         if code:
@@ -141,7 +148,7 @@ class Commands:
         if not self._rests():
             raise RobotError("start: not now: the arm moves", "BUSY")
         read, words = Struct("robot_program"), message()
-        texts = [program.encode(), points.encode()]
+        texts = [text(program), text(points)]
         places = (ctypes.c_char_p * 2)(*texts)
         lengths = (ctypes.c_int64 * 2)(*map(len, texts))
         gcode = ctypes.c_bool(language == "gcode")
@@ -149,7 +156,7 @@ class Commands:
         if c.binding_robot_read(read.pointer, places, lengths, gcode, words):
             raise RobotError(words.value.decode(), "PROGRAM")
         trial = Struct("robot_soft")
-        name = job.encode()
+        name = text(job)
         if c.binding_robot_start(self._state.pointer, read.pointer, name, trial.pointer, words):
             first, *more = words.value.decode(errors="replace").split("\n")
             raise RobotError(first, "PROGRAM", more=more)

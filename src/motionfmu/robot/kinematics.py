@@ -117,6 +117,10 @@ class Kinematics:
         state = switched_on(settings)
         self._library.binding_robot_arm(state.pointer, self._arm.pointer)
 
+    def __repr__(self) -> str:
+        where = ", ".join(f"{x:.6g}" for x in pose_of(self.forward(np.zeros(6))).round(6) + 0.0)
+        return f"<Kinematics: joints at 0, tip at [{where}]>"
+
     def forward(self, joints: Any) -> np.ndarray:
         """Where the tip of the tool is.
 

@@ -8,7 +8,7 @@ import numpy as np
 from motionfmu.binding import Station, Struct, Values, library
 from motionfmu.robot.commands import Commands
 from motionfmu.robot.kinematics import configuration, switched_on
-from motionfmu.robot.refusal import message
+from motionfmu.robot.refusal import message, within
 
 # Answers of reading.status.
 IDLE, RUNNING, HOLD, WAITING, DELAY, PAUSED, JOG, ERROR, STOPPED = range(9)
@@ -104,6 +104,12 @@ class VirtualRobot(Commands, Station[Reading]):
         state = switched_on(settings)
         Commands.__init__(self, state, settings)
 
+    def __repr__(self) -> str:
+        seen = self.read()
+        names = "IDLE RUNNING HOLD WAITING DELAY PAUSED JOG ERROR STOPPED".split()
+        where = ", ".join(f"{x:.6g}" for x in seen.pose.round(6) + 0.0)
+        return f"<VirtualRobot at {seen.time:.9g} s: {names[seen.status]} at [{where}]>"
+
     def _advance(self, until: ctypes.c_int64) -> None:
         program = self._program.pointer if self._program else None
         library().binding_robot_run(self._state.pointer, until, program)
@@ -169,7 +175,7 @@ class VirtualRobot(Commands, Station[Reading]):
         RobotError
             There is no such joint.
         """
-        self._panel["alarm"] = sum({1 << (self._number("joint", j + 1, 6) - 1) for j in joints})
+        self._panel["alarm"] = sum({1 << (int(within("joint", j, 0, 5))) for j in joints})
 
     def set_stop(self, pressed: bool) -> None:
         """Emergency stop at the card's terminal.

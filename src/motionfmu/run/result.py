@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.errors import NoNumber
+from motionfmu.errors import InputError, NoNumber
 from motionfmu.run import figures, signals, waveforms
-from motionfmu.run.checks import Verdict, is_figure, judge
+from motionfmu.run.checks import TABLES, Verdict, is_figure, judge
 from motionfmu.run.figures import Chart
 from motionfmu.run.prepared import Prepared
 from motionfmu.scenarios import values
@@ -316,10 +316,14 @@ class Result(Mapping[str, NDArray[Any]]):
 
         Raises
         ------
+        InputError
+            No analysis has such a figure, or the scenario does not ask for it.
         NoNumber
             This run does not have it; the reason.
         """
         table, _, own = name.partition(".")
+        if table not in TABLES or not own:
+            raise InputError(f"no figure {name!r}: contour.error.max and iso9283.AT_P are some")
         return self.contour().number(own) if table == "contour" else self.iso9283().number(own)
 
     def figures(self) -> list[Chart]:

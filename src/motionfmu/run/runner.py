@@ -43,6 +43,14 @@ class Scenario(Prepared):
         Anything wrong in the file; a line for each thing, with file, line and value.
     """
 
+    def __repr__(self) -> str:
+        body = self.document.body
+        stop = body.stop if isinstance(body.stop, str) else f"{body.stop:g} s"
+        fmus = ", ".join(dict.fromkeys(body.component.values()))
+        checks = sum(len(listed) for listed in body.check.values())
+        counts = f"{len(self.ends)} signals recorded, {checks} checks"
+        return f"<Scenario {self.name}: {fmus}; until {stop}, {counts}>"
+
     def run(  # noqa: PLR0913  (each is a keyword)
         self,
         *,

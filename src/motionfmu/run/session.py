@@ -2,10 +2,11 @@
 
 import tempfile
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from motionfmu.errors import InputError, suggestion
 from motionfmu.run.engines.ending import Ran
 from motionfmu.run.engines.native import Container
 from motionfmu.run.prepared import Options, Prepared
@@ -47,6 +48,9 @@ class Session:
         signals: Iterable[End] | None = None,
         **options: Any,
     ) -> None:
+        known = [f.name for f in fields(Options)]
+        if unknown := [n for n in options if n not in known]:
+            raise InputError(f"no option {unknown[0]!r}{suggestion(unknown[0], known)}")
         self.scenario, self._options = scenario, Options(**options)
         self._temporary = tempfile.TemporaryDirectory(prefix="motionfmu-")
         try:
@@ -59,6 +63,8 @@ class Session:
 
     def _prepare(self, varied: Iterable[str], signals: Iterable[End] | None) -> Container:
         scenario = self.scenario
+        varied = [varied] if isinstance(varied, str) else list(varied)
+        self._varied = {split(n)[0] for n in varied}
         self._given = {**self._options.set, **own_settings(scenario, self._folder)}
         ends = [scenario.resolver.end(split(n)[0], "set", n) for n in varied]
         usual = {e.name: start_values(e.port) for e in ends}
@@ -89,6 +95,9 @@ class Session:
         InputError
             A value is wrong, or an FMU refused something; one message.
         """
+        if unknown := [n for n in given if split(n)[0] not in self._varied]:
+            hint = suggestion(unknown[0], self._varied)
+            raise InputError(f"{unknown[0]} is not varied by this session{hint}")
         plain = replace(self._wired.plain, settings=tuple(self._values(given)))
         system = replace(self._wired.system, settings=(*plain.settings, *self._scopes))
         self.scenario.check_recording(system, replace(self._options, set=given))
@@ -98,6 +107,9 @@ class Session:
 
         run = replace(self._wired, plain=plain, system=system)
         return run.run(engine, replace(self._options, set={**self._options.set, **given}))
+
+    def __repr__(self) -> str:
+        return f"<Session {self.scenario.name}: varies {', '.join(sorted(self._varied))}>"
 
     def close(self) -> None:
         """Free the FMUs and their files."""

@@ -33,7 +33,7 @@ class Job:
     step: float | None  # [s]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study:
     """A study whose every name and value was checked.
 
@@ -65,6 +65,10 @@ class Study:
     seed: int
     cost: str
     tuned: dict[str, ax.Value]
+
+    def __repr__(self) -> str:
+        axes = ", ".join(axis.name for axis in self.axes)
+        return f"<Study {self.name}: {len(self.points)} runs over {axes}; cost {self.cost}>"
 
     @property
     def digest(self) -> str:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, suggestion
 from motionfmu.scenarios.body import Name, Names, Value
 from motionfmu.toml_lines import Lines, is_file, shown, tables_of, text_of
 
@@ -79,7 +79,9 @@ def _body(origin: Origin, keys: dict[str, Any]) -> Body:
         key = str(found["loc"][0])
         place = (key, str(found["loc"][1])) if key == "set" and found["loc"][1:] else ("", key)
         if found["type"] == "extra_forbidden":
-            raise origin.error(f"unknown key {key!r}", "", key) from None
+            raise origin.error(
+                f"unknown key {key!r}{suggestion(key, Body.model_fields)}", "", key
+            ) from None
         name = ".".join(str(x) for x in found["loc"][:2]) if key == "set" else key
         text = f"{name} = {shown(found['input'])}: {found['msg'].lower()}"
         raise origin.error(text, *place) from None

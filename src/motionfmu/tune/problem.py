@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, suggestion
 from motionfmu.toml_lines import Lines, shown, tables_of, text_of
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
@@ -132,7 +132,12 @@ def problem(values: Mapping[str, Any], lines: Lines | None = None, file: str = "
         first = error.errors()[0]
         keys = [str(k) for k in first["loc"]]
         given = "" if isinstance(first["input"], dict) else f" = {shown(first['input'])}"
-        text = f"{'.'.join(keys)}{given}: {first['msg'].lower()}"
+        told = first["msg"].lower()
+        if first["type"] == "extra_forbidden":
+            holders: dict[str, type[BaseModel]] = {"limits": Limits, "margins": Margins}
+            holder = holders.get(keys[-2], Problem) if keys[1:] else Problem
+            told = "unknown key" + suggestion(keys[-1], holder.model_fields)
+        text = f"{'.'.join(keys)}{given}: {told}"
         raise _located(text, keys, lines, file) from None
     for table in ("bounds", "family", "trial"):
         for name, (low, high) in getattr(found, table).items():
