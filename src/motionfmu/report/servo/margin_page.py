@@ -139,7 +139,7 @@ def _add(page: Sheet, study: LoopStudy, name: str, gains: Sequence[LoopGain]) ->
     for gain in gains:
         told = in_lines([gain])[0].partition(" (")[0]
         rows.append(("Position gain Kp", in_words(gain.kp), escape(told)))
-    boxes = cards(rows, "repeat(auto-fit,minmax(165px,1fr))")
+    boxes = cards(rows, "repeat(auto-fit,minmax(140px,1fr))")
     if not m.stable:
         wrong = '<span class="mark fail">✗ This loop is unstable as it is;</span>'
         boxes = f'<p class="note">{wrong} margins are distances to &minus;1.</p>{boxes}'

@@ -180,7 +180,7 @@ def _limits(tuned: Tuned) -> str:
         values = (
             ("largest |1/(1 + L)|", before.sensitivity, after.sensitivity, asked.sensitivity),
             ("gain margin, factor", before.gain, after.gain, asked.gain),
-            ("phase margin [deg]", before.phase, after.phase, asked.phase),
+            ("phase margin [°]", before.phase, after.phase, asked.phase),
         )
         for what, had, has, wanted in values:
             sign = "at most " if what.startswith("largest") else "at least "
