@@ -7,6 +7,7 @@ import pytest
 
 import motionfmu
 
+pytest_plugins = ["browser"]
 ROOT = Path(__file__).resolve().parent.parent
 FMUS = Path(os.environ.setdefault("MOTIONFMU_FMUS", str(ROOT / "build" / "fmus")))
 

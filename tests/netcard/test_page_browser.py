@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from browser import tab as browser_tab
 from conftest import ROOT
 from fleet import Fleet, circle, status
 
@@ -25,9 +26,6 @@ from motionfmu.netcard.server import Cards
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
 TOKEN = "a-token"
-BROWSER = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
-)
 
 
 @dataclass
@@ -35,18 +33,6 @@ class Served:
     fleet: Fleet
     port: int
     config: Path
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    if not BROWSER:
-        pytest.skip("no Chromium here: the page is not tried in a browser")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as p:
-        found = p.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"])
-        yield found
-        found.close()
 
 
 @contextmanager
@@ -80,24 +66,13 @@ def served(tmp_path: Path) -> Iterator[Served]:
         yield Served(fleet, port, config)
 
 
-@contextmanager
-def tab_of(browser: Any, port: int) -> Iterator[Any]:
-    """The page in a browser of a telephone's size, without an error."""
-    context = browser.new_context(viewport={"width": 390, "height": 844})
-    page = context.new_page()
-    page.set_default_timeout(10_000)
-    told: list[str] = []
-    page.on("pageerror", lambda error: told.append(str(error)))
-    page.on("console", lambda m: told.append(m.text) if m.type == "error" else None)
-    page.goto(f"http://127.0.0.1:{port}/?token={TOKEN}")
-    yield page
-    context.close()
-    assert told == []
+def address(port: int) -> str:
+    return f"http://127.0.0.1:{port}/?token={TOKEN}"
 
 
 @pytest.fixture
 def tab(browser: Any, served: Served) -> Iterator[Any]:
-    with tab_of(browser, served.port) as page:
+    with browser_tab(browser, address(served.port)) as page:
         yield page
 
 
@@ -281,7 +256,7 @@ def test_the_page_works_on_the_real_server_with_a_card_that_comes_late(
             waits.cancel()
             await cards.close()
 
-    with serving(cards, config, beside) as port, tab_of(browser, port) as tab:
+    with serving(cards, config, beside) as port, browser_tab(browser, address(port)) as tab:
         expect(tab.locator("#state")).to_have_text("OFFLINE")
         expect(tab.locator("#sent")).to_contain_text("waits")
         tab.get_by_role("button", name="Start", exact=True).click()

@@ -10,6 +10,7 @@ import numpy as np
 from motionfmu.report.decimate import keep_peaks, keep_steps
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.sheet import RUN, Sheet
+from motionfmu.report.signal_words import titled
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout
 from motionfmu.report.tables import picture_links
 from motionfmu.run.figures import Chart, Curve, Panel
@@ -74,7 +75,9 @@ def add_charts(page: Sheet, charts: Sequence[Chart], pictures: bool = True) -> N
         content = page.place(f"figure{number}", chart_figure(chart, right), chart.whole, RUN)
         if pictures:
             content += picture_links(f"figure{number}")
-        page.section(escape(chart.title), escape(chart.note), content)
+            page.section(escape(chart.title), escape(chart.note), content)
+        else:
+            page.section(escape(titled(chart.title, chart.note)), "", content)
 
 
 def chart_figure(chart: Chart, right: int = RIGHT) -> Figure:

@@ -28,7 +28,8 @@ class Cursors {
   constructor(plots) {
     this.on = false;
     this.at = [NaN, NaN];
-    this.members = plots.map((plot) => new Measured(plot, this));
+    this.members = [];
+    for (const plot of plots) this.members.push(new Measured(plot, this));
   }
 
   // Shown on all plots; one that is out of the view of the plot asked goes into it.
@@ -152,6 +153,7 @@ class Measured {
       const cells = COLUMNS.slice(1).map(() => made(tr, "td", { class: "n" }));
       return { tr, cells, curve, k };
     });
+    if (this.cursors.members.length) return; // said once
     made(this.readout, "p", { class: "note" }, "Least, largest, mean and RMS are those of the"
       + " samples from A to B. Drag a cursor, or move it with \u2190 \u2192: a sample, with shift a"
       + " hundredth of what is in view; Home and End go to its ends.");

@@ -7,6 +7,7 @@ import numpy as np
 
 from motionfmu.iso9283 import Evaluation, Performance
 from motionfmu.iso9283.evaluation import ANGLES
+from motionfmu.report.formula import readable
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.sheet import Sheet
 from motionfmu.report.style import AXES, INK, axis, layout, plotted
@@ -34,7 +35,7 @@ def add_iso9283(page: Sheet, found: Evaluation) -> None:
         f" perpendicular to the command path of {figure(path.given.path.length)} mm. Left out:"
         f" {_left_out(path, start, end)}."
     )
-    content = f'<div class="two"><div>{_figures(found)}</div><div>{_cycles(found)}</div></div>'
+    content = _figures(found) + _cycles(found)
     content += page.place("iso9283", deviation_figure(path)) + picture_links(PICTURE)
     if found.poses:
         content += f"<h3>Poses</h3>{_poses(found)}"
@@ -75,11 +76,13 @@ def _figures(found: Evaluation) -> str:
             gap = "" if strokes["gap"] == 0.0 else f", white between them {length(strokes['gap'])}"
             told = f"all paint {strokes['common']:.0%} of the width{gap}"
             rows.append((_named(name, f"painted band; {told}"), length(strokes["band"])))
-    return table(("Figure", "Value"), rows)
+    half = (len(rows) + 1) // 2
+    parts = (table(("Figure", "Value"), part) for part in (rows[:half], rows[half:]))
+    return f'<div class="two">{"".join(parts)}</div>'
 
 
 def _named(title: str, what: str) -> str:
-    return f'{escape(title)}<br><span class="sub">{escape(what)}</span>'
+    return f'{readable(title)}<br><span class="sub">{escape(what)}</span>'
 
 
 def _speed(value: float) -> str:
@@ -106,7 +109,7 @@ def _poses(found: Evaluation) -> str:
         )
         for k, p in enumerate(found.poses, 1)
     ]
-    return table(("Pose", "AP_P", "AP_x", "AP_y", "AP_z", "RP_l"), rows)
+    return table(("Pose", *map(readable, ("AP_P", "AP_x", "AP_y", "AP_z", "RP_l"))), rows)
 
 
 def parts(path: Performance) -> list[tuple[str, Any, Any]]:

@@ -6,6 +6,7 @@ const options = {
 const QUIET = { bgcolor: "rgba(0,0,0,0)", color: "#8a98a5", activecolor: "#0b5cad" };
 // So much more than what is in view is drawn on either side, for those who shift it.
 const BESIDE = 1;
+const LEGEND = 34; // [pixel] margin above a plot of `layout` in style.py
 
 const narrow = document.documentElement.clientWidth < 500;
 if (narrow) page.figures.forEach(fitted);
@@ -14,11 +15,16 @@ if (narrow) page.figures.forEach(fitted);
 // a finger scrolls the page until a tool of the plot is chosen.
 function fitted({ data, layout }) {
   const eye = layout.scene?.camera?.eye;
-  for (const axis in eye) eye[axis] *= 2;
+  for (const axis in eye) eye[axis] *= 1.5;
   if (!layout.scene) layout.dragmode = false;
   const alike = layout.yaxis?.scaleanchor || layout.polar || layout.scene;
-  if (alike) layout.height = Math.min(layout.height, 440);
+  if (alike) layout.height = Math.min(layout.height, layout.scene ? 360 : 440);
   for (const trace of data) {
+    if (trace.orientation === "h") { // the names of bars in short lines
+      trace.y = trace.y.map((name) => name.replace(/(.{8,}?) /g, "$1<br>"));
+      Object.assign(layout.margin, { l: 20, r: 70 });
+      layout.xaxis.nticks = 4;
+    }
     const bar = trace.colorbar ?? trace.marker?.colorbar;
     if (!bar) continue;
     Object.assign(bar, { orientation: "h", x: 0.5, y: layout.scene ? -0.02 : -0.22, len: 0.9,
@@ -44,6 +50,10 @@ class Plot {
     this.traces = data.map((trace, k) => [trace, k]).filter(([trace]) => trace.samples)
       .map(([trace, k]) => ({ trace, k, packed: trace.samples, clock: clocks }));
     layout.modebar = QUIET;
+    this.place.style.minHeight = `${layout.height}px`;
+    // Room for a legend only where there is one.
+    const named = data.filter((trace) => trace.showlegend !== false).length > 1 || layout.showlegend;
+    if (!named && layout.margin.t === LEGEND) layout.margin.t = 20;
   }
 
   // Samples are unpacked, and a band stands behind each curve, for where it swings.
@@ -93,7 +103,7 @@ class Plot {
       const axis = this.layout["yaxis" + (trace.yaxis ?? "y").slice(1)];
       const height = axis.range ? axis.range[1] - axis.range[0] : 0;
       const shown = drawn(curve, ...ends, Math.round(columns * share), height);
-      const dotted = curve.dots && shown.single;
+      const dotted = curve.dots && !shown.band;
       bands ||= shown.band !== null;
       which.push(k, band);
       change.x.push(shown.x, shown.band?.x ?? []);

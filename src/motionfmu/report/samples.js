@@ -60,56 +60,57 @@ function between({ time, values }, from, to) {
   return { ...found, mean: sum / count, rms: Math.sqrt(squares / count) };
 }
 
-// What is drawn of a curve from one time to another, in at most so many columns: every sample,
-// or the peaks of each column; where it swings within them, a band from least to largest and its
-// mean. A curve swings if its columns are far higher than their means differ.
-const SWING = 4, HIGH = 0.03;
+// Samples from one index to another in so many bins: peaks of each, mean, how far they reach.
+function binned({ time, values }, first, last, count) {
+  const found = { kept: [], at: [], low: [], high: [], mean: [], spread: 0, drift: 0 };
+  const { kept, at, low, high, mean } = found;
+  for (let c = 0; c < count; c++) {
+    const [a, b] = [c, c + 1].map((k) => first + Math.round(k / count * (last - first)));
+    let least = -1, largest = -1, sum = 0, known = 0;
+    for (let k = a; k < b; k++) {
+      const v = values[k];
+      if (Number.isNaN(v) !== Number.isNaN(values[k - 1])) kept.push(k); // an end of a gap
+      if (Number.isNaN(v)) continue;
+      if (least < 0 || v < values[least]) least = k;
+      if (largest < 0 || v > values[largest]) largest = k;
+      sum += v;
+      known++;
+    }
+    at.push((time[a] + time[b - 1]) / 2);
+    low.push(values[least] ?? NaN);
+    high.push(values[largest] ?? NaN);
+    mean.push(sum / known);
+    if (!known) { kept.push(a); continue; }
+    kept.push(Math.min(least, largest), Math.max(least, largest));
+    found.spread += values[largest] - values[least];
+    if (c && !Number.isNaN(mean[c - 1])) found.drift += Math.abs(mean[c] - mean[c - 1]);
+  }
+  return found;
+}
+
+// What is drawn of a curve from one time to another, in so many columns of the screen: every
+// sample, or the peaks of each column; where it swings within `BROAD` columns, which would be a
+// solid block, a band from least to largest and its mean. A curve swings if the bins are far
+// higher than their means differ.
+const BROAD = 6, SWING = 4, HIGH = 0.03;
 function drawn(curve, from, to, columns, height) {
   const { time, values, lines } = curve;
   const first = Math.max(0, upTo(time, from) - 1);
   const last = Math.min(time.length, upTo(time, to) + 1);
   if (last - first <= 2 * columns) {
     const custom = lines ? Array.from(lines.subarray(first, last)) : null;
-    return { x: time.slice(first, last), y: values.slice(first, last), custom, band: null,
-      single: true };
+    return { x: time.slice(first, last), y: values.slice(first, last), custom, band: null };
   }
-  const kept = [], at = [], low = [], high = [], mean = [];
-  let spread = 0, drift = 0;
-  for (let c = 0; c < columns; c++) {
-    const [a, b] = [0, 1].map((k) => first + Math.round((c + k) / columns * (last - first)));
-    let least = -1, largest = -1, sum = 0, count = 0;
-    for (let k = a; k < b; k++) {
-      const v = values[k];
-      if (Number.isNaN(v)) continue;
-      if (least < 0 || v < values[least]) least = k;
-      if (largest < 0 || v > values[largest]) largest = k;
-      sum += v;
-      count++;
-    }
-    at.push((time[a] + time[b - 1]) / 2);
-    if (!count) {
-      kept.push(a);
-      for (const part of [low, high, mean]) part.push(NaN);
-      continue;
-    }
-    // A gap keeps its ends.
-    if (count < b - a) kept.push(...Array.from({ length: b - a }, (_, k) => a + k)
-      .filter((k) => Number.isNaN(values[k]) !== Number.isNaN(values[k - 1])));
-    kept.push(Math.min(least, largest), Math.max(least, largest));
-    low.push(values[least]);
-    high.push(values[largest]);
-    mean.push(sum / count);
-    spread += values[largest] - values[least];
-    if (c && !Number.isNaN(mean[c - 1])) drift += Math.abs(mean[c] - mean[c - 1]);
-  }
-  if (!lines && spread > SWING * drift && spread / columns > HIGH * height) {
-    [at[0], at[columns - 1]] = [time[first], time[last - 1]];
+  const count = Math.round(columns / BROAD), broad = binned(curve, first, last, count);
+  const { at, low, high, mean, spread, drift } = broad;
+  if (!lines && spread > SWING * drift && spread / count > HIGH * height) {
+    [at[0], at[count - 1]] = [time[first], time[last - 1]];
     const custom = at.map((_, c) => [low[c], high[c]]);
     const band = { x: [...at, ...at.toReversed()], y: [...high, ...low.toReversed()] };
-    return { x: at, y: mean, custom, band, single: false };
+    return { x: at, y: mean, custom, band };
   }
-  const chosen = [first, ...kept, last - 1].sort((a, b) => a - b)
-    .filter((k, i, all) => !i || k !== all[i - 1]);
+  const { kept } = binned(curve, first, last, columns);
+  const chosen = [...new Set([first, ...kept, last - 1])].sort((a, b) => a - b);
   return { x: chosen.map((k) => time[k]), y: chosen.map((k) => values[k]), band: null,
-    custom: lines ? chosen.map((k) => lines[k]) : null, single: false };
+    custom: lines ? chosen.map((k) => lines[k]) : null };
 }

@@ -1,6 +1,7 @@
 """The tables, cards and lists of the page."""
 
 import math
+import re
 from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from typing import Any, Protocol
@@ -14,7 +15,10 @@ RMS = "over time where the tool cuts"
 CORNERS_SHOWN = 10
 LINES_SHOWN = 10
 # Letters from which on the value of a card is written small.
-LONG, SMALL = 16, ' style="font-size:15px"'
+LONG, SMALL = 13, ' style="font-size:17px"'
+# Letters from which on the text of a column may break into lines.
+WIDE = 26
+_DASH = re.compile(r"(?<![\w.>-])-(?=\d)|^-(?=\d)")  # before a number a minus
 
 
 class Check(Protocol):
@@ -45,11 +49,16 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: int = 1)
     """A table of ready HTML cells; numbers stand to the right."""
     # Columns from `numeric` on are numbers.
 
-    def cells(tag: str, row: Sequence[str]) -> str:
-        kinds = ["key" if i < numeric else "n" for i in range(len(row))]
-        return "".join(f'<{tag} class="{k}">{c}</{tag}>' for k, c in zip(kinds, row, strict=True))
+    listed = [tuple(row) for row in rows]
+    wide = [_width(column) > WIDE for column in zip(*listed, strict=True)]
+    texts = ["key wide" if w else "key" for w in wide] or ["key"] * len(heads)
 
-    body = "".join(f"<tr>{cells('td', row)}</tr>" for row in rows)
+    def cells(tag: str, row: Sequence[str]) -> str:
+        kinds = [texts[i] if i < numeric else "n" for i in range(len(row))]
+        shown = [c if i < numeric else _DASH.sub(MINUS, c) for i, c in enumerate(row)]
+        return "".join(f'<{tag} class="{k}">{c}</{tag}>' for k, c in zip(kinds, shown, strict=True))
+
+    body = "".join(f"<tr>{cells('td', row)}</tr>" for row in listed)
     return (
         f'<div class="scroll"><table><thead><tr>{cells("th", heads)}</tr></thead>'
         f"<tbody>{body}</tbody></table></div>"
@@ -60,6 +69,12 @@ def facts(rows: Iterable[tuple[str, str]]) -> str:
     """A table without a head: names, and ready HTML beside them."""
     body = "".join(f"<tr><th>{escape(name)}</th><td>{text}</td></tr>" for name, text in rows)
     return f'<table class="facts"><tbody>{body}</tbody></table>'
+
+
+def _width(column: Sequence[str]) -> int:
+    """Letters of the longest line in a column of cells."""
+    lines = (re.sub("<[^>]*>", "", part) for cell in column for part in re.split("<br>|<div", cell))
+    return max(map(len, lines), default=0)
 
 
 def cards(rows: Iterable[tuple[str, str, str]], columns: str = "") -> str:
@@ -105,7 +120,7 @@ def check_table(checks: Sequence[Check], words: Callable[[str], tuple[str, str]]
                 escape(check.bounds if not check.reason else f"{check.bounds}; {check.reason}"),
             )
         )
-    return table(("Verdict", "Check", "Value", "Bounds"), rows, numeric=2)
+    return table(("Verdict", "Check", "Value", "Bounds"), rows, numeric=4)
 
 
 def error_table(contour: ContourResult) -> str:

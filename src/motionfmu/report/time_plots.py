@@ -87,7 +87,8 @@ def fifo_figure(contour: ContourResult) -> Figure | None:
     if run.interrupts is not None:
         at = run.time[1:][np.diff(run.interrupts) > 0]
         between = Samples(at[1:], np.diff(at) * 1e3, dots=True)
-        traces.append(sampled(between, "since last interrupt", AXES[1]))
+        trace = sampled(between, "since last interrupt", AXES[1])
+        traces.append(trace | {"marker": {"size": 3, "color": AXES[1]}})
         rows.append("Since last<br>interrupt [ms]")
     if not traces:
         return None
@@ -105,7 +106,7 @@ def fifo_figure(contour: ContourResult) -> Figure | None:
 
 
 def trace_figures(contour: ContourResult) -> list[tuple[str, Figure]]:
-    """Titles and figures of the further signals against time."""
+    """Names and figures of the further signals against time."""
     out = []
     for trace in contour.run.traces:
         columns = trace.values.reshape(len(contour.run.time), -1)
@@ -114,7 +115,7 @@ def trace_figures(contour: ContourResult) -> list[tuple[str, Figure]]:
             (NAMES[i] if several else trace.name, columns[:, i], AXES[i])
             for i in (contour.run.axes if several else (0,))
         ]
-        title = label(trace.name, trace.unit)
+        title = label(trace.name.rpartition(".")[2], trace.unit)
         out.append((trace.name, _curves(contour.run.time, shown, title, 230)))
     return out
 

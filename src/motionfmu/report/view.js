@@ -298,7 +298,7 @@ function machineView(data) {
   function lookFrom(name) {
     const [what, azimuth, elevation] = WAYS[name]();
     Object.assign(view, { azimuth, elevation, target: [...what.centre],
-      distance: 3.2 * (what.radius || 1) });
+      distance: (canvas.clientWidth < canvas.clientHeight ? 4 : 3.2) * (what.radius || 1) });
     later();
   }
 
@@ -372,7 +372,6 @@ function machineView(data) {
   for (const name of ["machine", "solid", "magnify"]) part(name)?.addEventListener("input", later);
   new ResizeObserver(later).observe(canvas);
   readTheme();
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readTheme(); later(); });
   lookFrom("whole");
   // For those who write in the console, and for tests.
   root.machineView = { view, go, play, lookFrom, zoom, turn, draw };

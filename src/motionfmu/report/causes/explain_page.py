@@ -14,6 +14,7 @@ from motionfmu.explain.ballbar import Signature
 from motionfmu.explain.decompose import Effect, Explanation
 from motionfmu.report.causes.explain_picture import CAUSE, FORMULA, write_picture
 from motionfmu.report.decimate import keep_peaks
+from motionfmu.report.formula import readable
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.sheet import Frame, Sheet
@@ -133,7 +134,7 @@ def _effects(found: Explanation) -> str:
     for e in (e for e in found.effects if e.name not in still):
         said = "" if e.theory.value is None else length(e.theory.value)
         title = f'{escape(e.title)}<br><span class="sub">{escape(_wrap(e.how))}</span>'
-        formula = f'<span class="formula">{escape(e.theory.formula)}</span>'
+        formula = f'<span class="formula">{readable(e.theory.formula)}</span>'
         line = str(e.where) if e.where else ""
         without = "" if e.without is None else length(e.without)
         sizes = (length(e.size), line, length(e.usual), length(e.rms), without, said)

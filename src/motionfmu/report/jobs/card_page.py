@@ -11,6 +11,7 @@ from motionfmu.netcard.plan import DRAWS, Plan
 from motionfmu.netcard.plt import Drawing
 from motionfmu.report.jobs.card_pictures import MOST, SPEEDS
 from motionfmu.report.packed import packed
+from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, RAPID, axis, layout
 from motionfmu.report.tables import cards, table
@@ -106,19 +107,12 @@ def _over_time(plan: Plan, order: int) -> dict[str, Any]:
     """Speeds (1) or accelerations (2) of the axes that move."""
     every = np.vstack([np.zeros((order, 4)), plan.places])
     rates = np.diff(every, order, axis=0) / plan.period**order
-    step = -(-len(rates) // MOST)
-    time = np.arange(1, len(rates) + 1)[::step] * plan.period
+    time = np.arange(1, len(rates) + 1) * plan.period
     traces = [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "name": name,
-            "x": packed(time),
-            "y": packed(rates[::step, k]),
-            "line": {"color": AXES[k], "width": 1.2},
-        }
+        sampled(Samples(time, rates[:, k]), name, AXES[k], width=1.2)
         for k, name in enumerate("XYZU")
         if rates[:, k].any()
     ]
-    title = ("speed [mm/s]", "acceleration [mm/s²]")[order - 1]
-    return {"data": traces, "layout": layout(260, xaxis=axis("time [s]"), yaxis=axis(title))}
+    title = ("Speed [mm/s]", "Acceleration [mm/s²]")[order - 1]
+    titles = {"xaxis": axis("Time [s]"), "yaxis": axis(title)}
+    return {"data": traces, "layout": layout(260, hovermode="x", **titles)}

@@ -50,7 +50,7 @@ def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Str
     page = Sheet()
     low, high = summary.feeds
     feeds = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
-    size = " x ".join(
+    size = " \N{MULTIPLICATION SIGN} ".join(
         f"{b - a:.4g}" for a, b in zip(summary.low[:3], summary.high[:3], strict=True)
     )
     total = summary.feed_way + summary.rapid_way

@@ -139,7 +139,7 @@ def _add(page: Sheet, study: LoopStudy, name: str, gains: Sequence[LoopGain]) ->
     for gain in gains:
         told = in_lines([gain])[0].partition(" (")[0]
         rows.append(("Position gain Kp", in_words(gain.kp), escape(told)))
-    boxes = cards(rows, "repeat(auto-fit,minmax(140px,1fr))")
+    boxes = cards(rows, "repeat(auto-fit,minmax(min(140px,45%),1fr))")
     if not m.stable:
         wrong = '<span class="mark fail">✗ This loop is unstable as it is;</span>'
         boxes = f'<p class="note">{wrong} margins are distances to &minus;1.</p>{boxes}'
@@ -156,7 +156,10 @@ def _add(page: Sheet, study: LoopStudy, name: str, gains: Sequence[LoopGain]) ->
     titles = "Nyquist diagram, and the disk that L keeps out of", "Poles over a factor on the loop"
     cells = "".join(f"<div><h3>{t}</h3>{p}</div>" for t, p in zip(titles, two, strict=True))
     page.sections.append(f'<section><div class="two">{cells}</div></section>')
-    two = page.place(f"{name}_step", step(study)), page.place(f"{name}_s", sensitivity(study))
+    two = (
+        page.place(f"{name}_step", step(study), cursors=f"{name}_step"),
+        page.place(f"{name}_s", sensitivity(study)),
+    )
     titles = "Step response of the closed loop", "Sensitivity"
     cells = "".join(f"<div><h3>{t}</h3>{p}</div>" for t, p in zip(titles, two, strict=True))
     page.sections.append(f'<section><div class="two">{cells}</div></section>')

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from motionfmu.freq.study import LoopStudy
 from motionfmu.linear.margins import closed_poles, grid, response
 from motionfmu.report.packed import packed
+from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
 
 Figure = dict[str, Any]
@@ -192,11 +193,9 @@ def step(study: LoopStudy) -> Figure:
         x = a @ x + b
     time = np.arange(len(shown)) * (keep * loop.dt * 1e3)
     values = np.clip(np.nan_to_num(np.array(shown), nan=0.0), -3.0, 5.0)
-    drawn = _line(time, values, "L/(1 + L)", BLUE)
-    if keep == 1:
-        drawn["line"] = drawn["line"] | {"shape": "hv"}
+    drawn = sampled(Samples(time, values, steps=keep == 1), "L/(1 + L)", BLUE, width=2)
     more = {
-        "xaxis": axis("time [ms]"),
+        "xaxis": axis("Time [ms]"),
         "yaxis": axis("response to a step of 1"),
         "shapes": [_level(1.0, "y")],
     }

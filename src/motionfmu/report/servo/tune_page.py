@@ -8,10 +8,10 @@ import numpy as np
 
 from motionfmu.linear import LoopGain
 from motionfmu.linear.position_gain import in_words
-from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import figure, length, unit
+from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, RAPID, axis, layout, plotted
+from motionfmu.report.style import AXES, RAPID, axis, layout
 from motionfmu.report.tables import RMS, cards, facts, table
 from motionfmu.tune.problem import ON_PATH
 from motionfmu.tune.result import Run, Tuned
@@ -19,7 +19,6 @@ from motionfmu.tune.trial import Trial
 from motionfmu.tune.words import assumptions, plant_text, units_of
 
 BEFORE, AFTER = RAPID, AXES[0]
-_BUCKETS = 1200
 _STEPS = 600
 _WIDTH = 1.6  # [pixel] of a curve
 FOOTER = (
@@ -50,7 +49,7 @@ def page_text(tuned: Tuned) -> str:
     )
     page.section("Margins and limits", _limits_note(tuned), _limits(tuned))
     note = "Position after a small step of the command, linear model, nominal plant."
-    page.section("Step", note, page.place("step", _step(tuned)))
+    page.section("Step", note, page.place("step", _step(tuned), cursors="step"))
     page.section("How it was found", _search(tuned), _assumed(tuned))
     scenario = tuned.study.scenario
     frame = Frame(scenario.name, scenario.document.about, "tuning report", [], FOOTER)
@@ -135,15 +134,17 @@ def _errors(tuned: Tuned) -> dict[str, Any]:
         ("after", tuned.after[0], AFTER),
     )
     factor, name = unit(max(r.fmus.max for _, r, _ in runs))
-    data = []
+    data, ends = [], []
     for title, run, colour in runs:
         values = run.fmus.values
-        kept = keep_peaks(np.nan_to_num(values), _BUCKETS)
-        data.append(
-            plotted(run.fmus.time[kept], values[kept] * factor, title, colour, width=_WIDTH)
-        )
+        samples = Samples(run.fmus.time, values * factor)
+        data.append(sampled(samples, title, colour, width=_WIDTH))
+        ends.append((np.nanmin(samples.values), np.nanmax(samples.values)))
+    low, high = float(min(a for a, _ in ends)), float(max(b for _, b in ends))
+    room = 0.06 * (high - low) or 1.0
     what = tuned.study.path.what.capitalize()
-    titles = {"xaxis": axis("Time [s]"), "yaxis": axis(f"{what} [{name}]")}
+    up = axis(f"{what} [{name}]", range=[low - room, high + room])
+    titles = {"xaxis": axis("Time [s]"), "yaxis": up, "hovermode": "x"}
     return {"data": data, "layout": layout(320, **titles)}
 
 
@@ -158,7 +159,9 @@ def _step(tuned: Tuned) -> dict[str, Any]:
             answer = part.step(gains[k], periods, _STEPS, False).outputs[0]
             time = part.period * periods * 1e3 * np.arange(_STEPS, dtype=np.float64)
             color = AXES[(k - 1) % len(AXES)]
-            data.append(plotted(time, answer, f"axis {k} {title}", color, width=_WIDTH, dash=dash))
+            samples = Samples(time, answer, steps=periods == 1)
+            name = f"axis {k} {title}"
+            data.append(sampled(samples, name, color, width=_WIDTH, dash=dash))
     titles = {"xaxis": axis("Time [ms]"), "yaxis": axis("Share of the step")}
     return {"data": data, "layout": layout(300, **titles)}
 
