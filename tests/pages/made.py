@@ -9,6 +9,7 @@ from conftest import ROOT
 import motionfmu
 from motionfmu.report.page import page_text
 from motionfmu.report.plain import plain_text
+from motionfmu.report.ran import ran_of
 
 CIRCLE = ROOT / "scenarios/circle"
 
@@ -22,12 +23,21 @@ def contour(result: motionfmu.Result) -> str:
     from motionfmu.report.drawing import draw
 
     found = result.contour()
-    return page_text(result, found, draw(found), result.figures())
+    return page_text((result, ran_of(result, found)), found, draw(found), result.figures())
 
 
 def plain(name: str, stop: float) -> str:
     result = motionfmu.load(ROOT / "scenarios" / name).run(stop=stop)
-    return plain_text(result, result.figures())
+    return plain_text(result, result.figures(), ran_of(result, None))
+
+
+def compared(result: motionfmu.Result) -> str:
+    """The circle over itself at a higher gain."""
+    from motionfmu.compare import compare
+    from motionfmu.compare.page import page_text as compare_page
+
+    other = motionfmu.load(ROOT / "scenarios/fifo_latency").run(stop=0.8, set={"mcc.p_gain": 250})
+    return compare_page(compare(result, other))
 
 
 def margins() -> str:
@@ -107,6 +117,7 @@ def made(folder: Path) -> tuple[dict[str, Path], motionfmu.Result]:
         "contour": lambda: contour(result),
         "iso9283": lambda: plain("plt_plate", 2.5),
         "robot": lambda: plain("robot_pick", 0.2),
+        "compare": lambda: compared(result),
         "margins": margins,
         "tune": tuned,
         "causes": causes,
