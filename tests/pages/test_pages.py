@@ -188,9 +188,7 @@ def test_cursors_read_the_samples_of_the_run(browser: Any, pages: Any) -> None:
         page.mouse.down()
         page.mouse.move(x + 50, y)
         page.mouse.up()
-        wide = page.evaluate(
-            "plots[0].place && document.getElementById('following')._fullLayout.xaxis._length"
-        )
+        wide = page.evaluate("document.getElementById('following')._fullLayout.xaxis._length")
         moved = check()[0] - first[0]
         assert moved == pytest.approx(50 / wide * len(run.time), abs=2)
         # By number, to the nearest sample; then a zoom to what is between them.

@@ -17,6 +17,8 @@ function written(value, digits = 6) {
   return String(Number(value.toPrecision(digits))).replace("-", "\u2212");
 }
 
+const typed = (t) => String(Number(t.toPrecision(12)));
+
 const withoutMarks = (text) => {
   const html = new DOMParser().parseFromString(text.replaceAll("<br>", " "), "text/html");
   return html.body.textContent;
@@ -129,7 +131,9 @@ class Measured {
       label.append(` ${this.unit}`);
       input.addEventListener("change", () => {
         const t = Number(input.value);
-        this.cursors.move(k, input.value && Number.isFinite(t) ? this.snapped(t) : this.cursors.at[k]);
+        const at = input.value && Number.isFinite(t) ? this.snapped(t) : this.cursors.at[k];
+        this.cursors.move(k, at);
+        input.value = typed(at);
       });
       return input;
     });
@@ -165,7 +169,9 @@ class Measured {
     this.readout.hidden = !on;
     this.lay();
     if (!on) return;
-    this.inputs.forEach((input, k) => { input.value = String(Number(at[k].toPrecision(12))); });
+    this.inputs.forEach((input, k) => { // but not under the hands of who types
+      if (input !== document.activeElement) input.value = typed(at[k]);
+    });
     const rate = RECIPROCAL[this.unit] ?? `1/${this.unit}`;
     this.length.textContent = `\u0394t = ${written(dt, 9)} ${this.unit}, 1/\u0394t = `
       + (dt ? `${written(1 / Math.abs(dt))} ${rate}` : "\u2013");
