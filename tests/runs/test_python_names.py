@@ -109,5 +109,5 @@ def test_what_a_user_looks_at_is_one_line(theory: Scenario, axis: Any) -> None:
 
 
 def test_a_suggestion_does_not_mind_capitals() -> None:
-    assert suggestion("card.Stok", ["card.stock", "card.dac"]) == "; did you mean 'card.stock'?"
+    assert suggestion("CARD.STOCK", ["card.stock", "card.dac"]) == "; did you mean 'card.stock'?"
     assert suggestion("xyz", ["card.stock"]) == ""
