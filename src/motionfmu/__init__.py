@@ -9,7 +9,6 @@ programs in `motionfmu.gcode`, linear models in `motionfmu.linear`.
 """
 
 import importlib
-import pkgutil
 from typing import TYPE_CHECKING, Any
 
 from motionfmu.errors import InputError
@@ -32,6 +31,8 @@ def __getattr__(name: str) -> Any:
 
 
 def _folders() -> list[str]:
+    import pkgutil  # not before an interrupt finds the console command
+
     return [module.name for module in pkgutil.iter_modules(__path__) if module.ispkg]
 
 

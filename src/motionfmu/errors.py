@@ -1,7 +1,6 @@
 """The exceptions for everything a user can get wrong, or can miss."""
 
 import contextlib
-import difflib
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
@@ -15,6 +14,8 @@ ALIKE = 0.5
 
 def suggestion(word: str, known: Iterable[str]) -> str:
     """What a misspelt word may be meant for, as the end of a message; else empty."""
+    import difflib
+
     small = {name.lower(): name for name in known}
     close = difflib.get_close_matches(word.lower(), list(small), 1, ALIKE)
     return f"; did you mean {small[close[0]]!r}?" if close else ""

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from conftest import ROOT
 
 MARK = "/* made by the second checkout */\n"
@@ -52,3 +53,27 @@ def test_a_second_checkout_builds_its_own_sources(tmp_path: Path) -> None:
         done = subprocess.run(line, capture_output=True, text=True, env=tools)
         assert done.returncode == 0, done.stdout + done.stderr
     assert (build / "gen/scope/vars.h").read_text().startswith(MARK)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("PYTHON=./old", "is Python 3.9, 3.11 or newer is needed: make PYTHON=..."),
+        ("PYTHON=./none", "There is no ./none: Python 3.11 or newer is needed, or make PYTHON=..."),
+        ("CC=./none", "There is no C compiler ./none: install gcc, or make CC=..."),
+    ],
+)
+def test_make_says_what_it_needs_before_it_makes_anything(
+    given: str, told: str, tmp_path: Path
+) -> None:
+    for file in ("Makefile", "pyproject.toml"):
+        shutil.copy(ROOT / file, tmp_path)
+    old = "import sys; sys.version_info = (3, 9, 2)\n"
+    (tmp_path / "sitecustomize.py").write_text(old)
+    (tmp_path / "old").write_text(f'#!/bin/sh\nPYTHONPATH=. exec {sys.executable} "$@"\n')
+    (tmp_path / "old").chmod(0o755)
+    before = sorted(tmp_path.rglob("*"))
+    done = subprocess.run(["make", "demo", given], cwd=tmp_path, capture_output=True, text=True)
+    lines = done.stderr.splitlines()
+    assert done.returncode == 2 and lines[0].endswith(told) and len(lines) == 2
+    assert [p for p in sorted(tmp_path.rglob("*")) if "__pycache__" not in str(p)] == before
