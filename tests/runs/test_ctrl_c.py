@@ -69,13 +69,14 @@ def test_an_interrupt_of_a_check_in_processes_ends_them_all(tmp_path: Path) -> N
         [sys.executable, "-m", "motionfmu", *line, "--junit", str(tmp_path / "check.xml")],
         cwd=ROOT,
         env=environment(tmp_path),
+        start_new_session=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
     while len(started := children(program.pid)) < 2 and program.poll() is None:
         time.sleep(0.01)
-    program.send_signal(signal.SIGINT)
+    os.killpg(program.pid, signal.SIGINT)  # as a terminal does
     out, err = program.communicate(timeout=60)
     assert (program.returncode, out, err) == (130, "", "motionfmu: stopped\n")
     assert [child for child in started if Path(f"/proc/{child}").exists()] == []
