@@ -145,12 +145,14 @@ def together(
 ) -> Iterator[list[Case]]:
     """Cases of each scenario, in the order of the paths, whatever the number of processes."""
     running: list[_Worker] = []
-    own, lock = threading.local(), threading.Lock()
+    own, lock, ended = threading.local(), threading.Lock(), threading.Event()
 
     def one(path: Path) -> list[Case]:
         worker: _Worker | None = getattr(own, "worker", None)
         if worker is None:
             with lock:  # a pipe's other end is open in no other child
+                if ended.is_set():
+                    return []
                 worker = own.worker = _Worker(temporary)
                 running.append(worker)
         cases = worker.judged(path, options, contraries)
@@ -172,5 +174,7 @@ def together(
         finally:
             for future in futures:
                 future.cancel()
+            with lock:  # none is being started
+                ended.set()
             for worker in running:
                 worker.end()
