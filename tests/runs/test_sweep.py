@@ -30,7 +30,7 @@ from motionfmu.sweep import Outcome, Study, Ways, conduct, study
 CIRCLE = ROOT / "scenarios/circle_theory"
 GAIN, TAU = "mcc.p_gain", "machine.tau"
 RESULTS = ["card.err_count.absmax", "machine.table_position[1].final", "mcc.starved.max"]
-SHORT = {"stop": 0.03, "results": RESULTS}
+SHORT = {"stop": 0.03, "results": RESULTS, "cost": RESULTS[0]}
 
 
 def small(n: int = 6, **more: object) -> Study:

@@ -88,3 +88,74 @@ def test_levels_are_round_and_span_the_cost(cost: list[float]) -> None:
     assert found[0] <= min(cost) and found[-1] >= max(cost)
     assert 2 <= len(found) <= 20 and (np.diff(found) > 0).all()
     assert all(float(f"{v:.3g}") == pytest.approx(v, rel=1e-9, abs=1e-12) for v in found)
+
+
+def test_nothing_is_drawn_below_zero_of_a_cost_that_is_not_negative(tmp_path: Path) -> None:
+    from motionfmu.report.studies import sweep
+
+    for count in (1, 2, 3):
+        names = [f"{GAIN}[{i + 1}]" for i in range(count)]
+        outcome = synthetic(names, "grid", 5, tmp_path)
+        outcome.rows[1:] = [replace(r, values=(r.run % 25, 0.0, 0.0)) for r in outcome.rows[1:]]
+        text = sweep.page(outcome)
+        (drawn,) = json.loads(re.search(r'id="data">(.*?)</script>', text, re.S)[1])["figures"]
+        if count == 2:
+            even = drawn["data"][0]["contours"]
+            assert even["start"] - even["size"] == pytest.approx(0.0, abs=1e-12)
+            dots = next(t for t in drawn["data"] if t.get("name") == "runs")
+            assert len(dots["x"]) == len(outcome.rows) - 1  # one has no cost: a cross
+        else:
+            axis = drawn["layout"]["yaxis" if count == 1 else "yaxis4"]
+            assert axis["rangemode"] == "nonnegative"
+
+
+def test_units_stand_beside_every_number_of_a_page(tmp_path: Path) -> None:
+    from motionfmu.report.studies import sweep
+
+    results = ["contour.error.max", "contour.circles.0.ccw.radius_change", "contour.lag"]
+    given = {"axis": {"mcc.irq_latency": [2e-4, 3e-3]}, "results": results, "stop": 0.03}
+    chosen = study(CIRCLE, given)
+    assert [c.unit for c in chosen.columns] == ["mm", "mm", "s"]
+    rows = [worker.Row(i, "ok", "", True, (0.0625 * (i + 1), -0.04, 0.02)) for i in range(2)]
+    outcome = Outcome(chosen, rows, tmp_path, 0)
+    page = sweep.page(outcome)
+    assert "contour.error.max [µm]" in page and "mcc.irq_latency [s]" in page
+    assert "mcc.irq_latency = 0.0002 s" in page and ">62.5<" in page
+    for word in ("radius_change [mm]", "contour.lag [s]"):
+        assert word in page
+
+
+def test_a_best_run_at_the_edge_of_the_study_is_said(tmp_path: Path) -> None:
+    from motionfmu.report.studies import sweep
+
+    names = [f"{GAIN}[1]", f"{GAIN}[2]"]
+    outcome = synthetic(names, "grid", 7, tmp_path)
+    assert outcome.at_the_edge == []
+    assert "edge of the study" not in sweep.page(outcome)
+    last = [replace(r, values=(float(-r.run), 0.0, 0.0)) for r in outcome.rows[1:]]
+    outcome.rows[1:] = last
+    assert outcome.best == 48
+    assert outcome.at_the_edge == [f"{n} = 1000, the largest of the study" for n in names]
+    assert "The best run is at the edge of the study" in sweep.page(outcome)
+    # A cost that does not depend on an axis has no edge there.
+    outcome.rows[1:] = [replace(r, values=(float(-(r.run // 7)), 0.0, 0.0)) for r in last]
+    assert outcome.at_the_edge == [f"{names[0]} = 1000, the largest of the study"]
+    drawn = synthetic(names, "latin", 60, tmp_path)
+    drawn.rows[1:] = [
+        replace(r, values=(drawn.study.points[r.run][0], 0.0, 0.0)) for r in drawn.rows[1:]
+    ]
+    assert [t.partition(" = ")[0] for t in drawn.at_the_edge] == names[:1]
+
+
+def test_without_a_cost_no_run_is_the_best(tmp_path: Path) -> None:
+    from motionfmu.report.studies import sweep
+
+    given = {"axis": {GAIN: [100, 200]}, "results": ["card.err_count.absmax"], "stop": 0.03}
+    chosen = study(CIRCLE, given)
+    assert chosen.cost == "" and chosen.shown == "card.err_count.absmax"
+    rows = [worker.Row(i, "ok", "", True, (float(i),)) for i in range(2)]
+    outcome = Outcome(chosen, rows, tmp_path, 0)
+    page = sweep.write_sweep(outcome, tmp_path).read_text()
+    assert outcome.best is None and outcome.at_the_edge == []
+    assert "Best runs" not in page and "best: run" not in page and "Smallest" not in page
+    assert "No cost was named" in page and (tmp_path / "sweep.png").exists()

@@ -85,7 +85,7 @@ def _tell(file: Path, target: Path, n: "Figures", by_file: float | None) -> None
         f"{n.stops} stops, {100 * n.at_feed:.0f} % of the time at feed",
         soft_wrap=True,
     )
-    table = bare_table("axis", "v [mm/s]", "a [mm/s^2]", "j [mm/s^3]")
+    table = bare_table("axis", "v [mm/s]", "a [mm/s²]", "j [mm/s³]")
     for name, v, a, j in zip("XYZU", n.speed, n.acceleration, n.jerk, strict=False):
         table.add_row(name, f"{v:.1f}", f"{a:.0f}", f"{j:.0f}")
     out.print(table)

@@ -21,8 +21,8 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     tools: Annotated[Path | None, typer.Option(help="Tool table: lines T1 P1 Z10 D6.")] = None,
     max_feed: Annotated[float, typer.Option(help="Highest feed [mm/min].")] = 30000.0,
     rapid: Annotated[float, typer.Option(help="Highest speed of an axis [mm/min].")] = 30000.0,
-    acceleration: Annotated[float, typer.Option(help="Along the path [mm/s^2].")] = 1000.0,
-    jerk: Annotated[float, typer.Option(help="Of it [mm/s^3]; 0 none.")] = 0.0,
+    acceleration: Annotated[float, typer.Option(help="Along the path [mm/s²].")] = 1000.0,
+    jerk: Annotated[float, typer.Option(help="Of it [mm/s³]; 0 none.")] = 0.0,
     limit: Annotated[
         list[str], typer.Option(metavar="AXIS=LO:HI", help="Travel of an axis [mm].")
     ] = [],  # noqa: B006

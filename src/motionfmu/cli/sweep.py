@@ -79,7 +79,9 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Run a scenario at many points; resumes where an earlier call was ended."""
     from motionfmu import sweep as sweeps
+    from motionfmu.report.numbers import length
     from motionfmu.study.axes import option
+    from motionfmu.units import spelled
 
     given: dict[str, Any] = {"sampling": sampling, "runs": runs, "seed": seed, "cost": cost}
     given |= {"tuned": tuned, "stop": stop, "step": step, "results": result or None}
@@ -91,10 +93,20 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
     before = f", {outcome.resumed} of them before" if outcome.resumed else ""
     out.print(f"{chosen.name}: {len(outcome.rows)} runs{before}, {outcome.errors} with an error")
     if (best := outcome.best) is not None:
-        for name, value in zip(chosen.job.axes, chosen.points[best], strict=True):
-            out.print(f"  {name} = {value}", markup=False)
-        out.print(f"  {chosen.cost} = {outcome.cost[best]:.6g}  [dim]smallest, run {best}[/]")
+        for axis, value in zip(chosen.axes, chosen.points[best], strict=True):
+            out.print(f"  {axis.name} = {value} {spelled(axis.unit)}".rstrip(), markup=False)
+        unit, least = (
+            next(c.unit for c in chosen.columns if c.name == chosen.cost),
+            outcome.cost[best],
+        )
+        text = length(least) if unit == "mm" else f"{least:.6g} {spelled(unit)}".rstrip()
+        cost = f"{chosen.cost} = {text}".replace("[", r"\[")
+        out.print(f"  {cost}  [dim]smallest, run {best}[/]")
+        for told in outcome.at_the_edge:
+            out.print(f"at the edge of the study: {told}; less may lie beyond", markup=False)
+    elif not chosen.cost:
+        out.print("no cost was named, so no run is the best: --cost RESULT")
     out.print(f"table: {outcome.folder / 'sweep.parquet'}", soft_wrap=True)
     out.print(f"report: {outcome.folder / 'report.html'}", soft_wrap=True)
-    if outcome.best is None:
+    if outcome.errors == len(outcome.rows) or (chosen.cost and outcome.best is None):
         raise typer.Exit(FAILED)

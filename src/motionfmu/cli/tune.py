@@ -68,7 +68,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
             ("rms", old.rms, new.rms, after.model.rms),
             ("largest", old.max, new.max, after.model.max),
         ):
-            cells = (f"{x * 1e3:.4g} um" for x in (a, b, c))
+            cells = (f"{x * 1e3:.4g} µm" for x in (a, b, c))
             table.add_row(plant_text(before.plant), what, *cells)
     out.print(table)
     for name, value in tuned.settings.items():

@@ -34,6 +34,22 @@ def _tree() -> dict[str, Any]:
     }
 
 
+# By the last part of a name that is no index; everything else is a length [mm].
+UNITS = {
+    **dict.fromkeys(("lag", "window", "time"), "s"),
+    **dict.fromkeys(("coverage", "orientation", "angle"), "rad"),
+    "speed": "mm/s",
+    **dict.fromkeys(("samples", "samples_cutting", "line", "lines", "command", "normal"), ""),
+    **dict.fromkeys(("line_before", "line_after"), ""),
+}
+
+
+def unit(name: str) -> str:
+    """Unit of a contour number by its name, as FMI spells it; empty for a bare number."""
+    last = next((p for p in reversed(name.split(".")) if not p.isdecimal()), "")
+    return UNITS.get(last, "mm")
+
+
 def wrong(name: str) -> str:
     """Why no run can have a number of this name, as in `ContourResult.number`; empty if one can."""
     here: Any = _tree()

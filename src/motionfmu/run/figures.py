@@ -13,6 +13,7 @@ from motionfmu.scenarios import rates, recording
 from motionfmu.scenarios.body import Plot
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.system import End, Resolver
+from motionfmu.units import spelled
 
 # Signals that a report without figures shows.
 OVERVIEW = 12
@@ -139,7 +140,8 @@ def overview(run: Recorded, ends: Sequence[End]) -> list[Chart]:
     span = (float(run.time[0]), float(run.time[-1]))
     found = []
     for end in ends[:OVERVIEW]:
-        label = f"{end.name} [{end.port.unit}]" if end.port.unit else end.name
+        unit = spelled(end.port.unit)
+        label = f"{end.name} [{unit}]" if unit else end.name
         steps = end.port.type != "Float64"
         plot = Plot(signals=[end.name], label=label, steps=steps)
         panel = _panel(run, plot, "record", span)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 from motionfmu.scenarios.system import System, split
 from motionfmu.scenarios.values import settings, start_values
 from motionfmu.toml_lines import shown
+from motionfmu.units import spelled
 
 if TYPE_CHECKING:
     from motionfmu.run.prepared import Options, Prepared
@@ -30,7 +31,7 @@ def overrides(scenario: "Prepared", options: "Options", system: System) -> list[
         before = written[end.name].values if end.name in written else start_values(end.port)
         if values == before:
             continue
-        unit = f" {end.port.unit}" if end.port.unit not in (None, "1") else ""
+        unit = f" {spelled(end.port.unit)}".rstrip()
         file = f"{options.source[end.name]}: " if end.name in options.source else ""
         place = "scenario" if end.name in written else "default"
         found.append(f"{file}{end.name} = {_value(values)}{unit} ({place}: {_value(before)})")

@@ -71,6 +71,18 @@ class Axis:
         """Whether the logarithm is what is even."""
         return isinstance(self.source, Span) and self.source.log
 
+    def place(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Where values lie between the axis' ends, 0 to 1."""
+        if isinstance(self.source, Span):
+            low, high = self.source.low, self.source.high
+        else:
+            low, high = float(values.min()), float(values.max())
+        if low == high:
+            return np.full(len(values), 0.5)
+        if self.log:
+            values, low, high = np.log(values), math.log(low), math.log(high)
+        return (values - low) / (high - low)
+
     def check(self, sampling: str) -> None:
         """Refuse values that this variable or this sampling cannot take."""
         # Values outside the range that the variable declares are no mistake of the study.

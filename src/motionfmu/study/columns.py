@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.contour.names import unit as unit_of
 from motionfmu.errors import NoNumber
 from motionfmu.iso9283.evaluation import unit as units_of
 from motionfmu.run import Scenario
@@ -21,7 +22,6 @@ from motionfmu.scenarios.system import End, split
 
 Array = NDArray[Any]
 
-LENGTHS = ("error", "command_error", "following")  # tables of contour figures in mm
 # Over all samples and all elements.
 STATISTICS: dict[str, Callable[[Array], float]] = {
     "final": lambda x: float(x[-1]),
@@ -48,11 +48,8 @@ class Column:
         """Unit of the signal or the figure; else empty."""
         if self.end:
             return self.end.port.unit or ""
-        kind, table, *_ = self.name.split(".")
-        figure = self.name.rpartition(".")[2]
-        if kind == "iso9283":
-            return units_of(figure)
-        return "mm" if table in LENGTHS and figure not in ("time", "line", "command") else ""
+        kind, _, figure = self.name.partition(".")
+        return units_of(figure.rpartition(".")[2]) if kind == "iso9283" else unit_of(figure)
 
     def of(self, result: Result) -> float:
         """The number, in the signal's unit or as the analysis has it."""

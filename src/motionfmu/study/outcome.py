@@ -7,9 +7,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.study.axes import Value
+from motionfmu.study.axes import Normal, Value
 from motionfmu.study.study import Study
 from motionfmu.study.worker import OK, Row
+from motionfmu.units import spelled
+
+EDGE = 0.02  # part of an axis that counts as its end, where points are drawn at random
 
 
 @dataclass(frozen=True)
@@ -87,15 +90,36 @@ class Outcome:
 
     @property
     def cost(self) -> NDArray[np.float64]:
-        """The study's cost, shape (n,); NaN where a run gave none."""
-        return self.column(self.study.cost)
+        """The cost, or the first result, shape (n,); NaN for none."""
+        return self.column(self.study.shown)
 
     @property
     def best(self) -> int | None:
         """Run of the smallest cost without an error, or None."""
+        # None, too, if the study has no cost.
+        if not self.study.cost:
+            return None
         good = np.array([row.status == OK for row in self.rows], dtype=bool)
         cost = np.where(good, self.cost, np.nan)
         return None if np.isnan(cost).all() else int(np.nanargmin(cost))
+
+    @property
+    def at_the_edge(self) -> list[str]:
+        """Axes at an end of which the best run lies, in words."""
+        # A smaller cost may lie beyond.
+        if (best := self.best) is None:
+            return []
+        ties = np.flatnonzero(self.cost == self.cost[best])
+        found = []
+        for axis in self.study.axes:
+            if axis.end.port.type not in ("Float64", "Int32") or isinstance(axis.source, Normal):
+                continue
+            place = axis.place(np.array(self.axis(axis.name), dtype=np.float64))[ties]
+            for end, name in ((place <= EDGE, "smallest"), (place >= 1.0 - EDGE, "largest")):
+                if end.all():
+                    value = f"{self.axis(axis.name)[best]:.6g} {spelled(axis.unit)}".strip()
+                    found.append(f"{axis.name} = {value}, the {name} of the study")
+        return found
 
     @property
     def errors(self) -> int:

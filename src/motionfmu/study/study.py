@@ -18,6 +18,8 @@ from motionfmu.study.columns import Column, column, usual
 from motionfmu.study.study_file import Body, Origin, read
 from motionfmu.toml_lines import shown, tables_of, text_of
 
+USUAL_COST = "contour.error.max"  # where none is named
+
 
 @dataclass(frozen=True)
 class Job:
@@ -50,7 +52,7 @@ class Study:
     sampling, seed : str, int
         How the points were made.
     cost : str
-        The column that is to be small.
+        The column that is to be small; empty if none is.
     tuned : dict
         Values of the tuned point by axis; empty if there is none.
     """
@@ -69,6 +71,11 @@ class Study:
     def __repr__(self) -> str:
         axes = ", ".join(axis.name for axis in self.axes)
         return f"<Study {self.name}: {len(self.points)} runs over {axes}; cost {self.cost}>"
+
+    @property
+    def shown(self) -> str:
+        """The column that is drawn: the cost, without one the first."""
+        return self.cost or self.columns[0].name
 
     @property
     def digest(self) -> str:
@@ -247,7 +254,7 @@ def _columns(origin: Origin, scenario: Scenario, names: list[str]) -> tuple[Colu
 def _cost(origin: Origin, body: Body, columns: tuple[Column, ...]) -> str:
     names = [c.name for c in columns]
     if body.cost is None:
-        return next((n for n in names if n == "contour.error.max"), names[0])
+        return USUAL_COST if USUAL_COST in names else ""
     if body.cost not in names:
         text = f"cost = {body.cost!r} is none of the results ({', '.join(names)})"
         raise origin.error(text, "", "cost")

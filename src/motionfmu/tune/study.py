@@ -111,7 +111,7 @@ class Study(Family):
                         texts.append(f"gain margin {asked.gain:g} of the loop at {loop}")
                         texts.append(f"gain reduction 1/{asked.gain:g} of the loop at {loop}")
                     if asked.phase is not None:
-                        texts.append(f"phase margin {asked.phase:g} deg of the loop at {loop}")
+                        texts.append(f"phase margin {asked.phase:g}° of the loop at {loop}")
                 if self.problem.limits.overshoot is not None:
                     texts.append(f"overshoot {100.0 * self.problem.limits.overshoot:g} %")
                 if self.problem.limits.recovery is not None:

@@ -49,7 +49,7 @@ class Trial:
 
 
 def _um(length: float) -> str:
-    return f"{length * 1e3:.3g} um"
+    return f"{length * 1e3:.3g} µm"
 
 
 def tried(

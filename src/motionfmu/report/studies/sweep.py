@@ -19,14 +19,17 @@ from motionfmu.report.studies.sweep_field import (
     MATRIX,
     Dimension,
     cost_label,
+    cost_of,
     dimensions,
     field,
     kind,
     levels,
     logarithmic,
+    rangemode,
 )
 from motionfmu.report.style import AXES, COLORSCALE, INK, MUTED, axis, layout
 from motionfmu.report.tables import cards, picture_links, table
+from motionfmu.units import spelled
 
 if TYPE_CHECKING:
     from motionfmu.study.outcome import Outcome
@@ -41,7 +44,7 @@ BEST = {"symbol": "star", "size": 17, "color": "#ffffff", "line": {"color": INK,
 TUNED = {"symbol": "diamond", "size": 12, "color": AXES[0], "line": {"color": "#fff", "width": 1}}
 WORDS = {
     CURVE: "One point is one run.",
-    FIELD: "Lines of equal cost; a run without a cost is a cross.",
+    FIELD: "Lines of equal cost; a dot is a run, a cross one without a cost.",
     MATRIX: "One point is one run, its colour is the cost; the smallest lie on top.",
 }
 
@@ -71,10 +74,10 @@ def page(outcome: "Outcome") -> str:
         way = kind(outcome)
         draw = {CURVE: _curve, FIELD: _field}.get(way, _matrix)
         content = sheet.place("cost", draw(outcome)) + picture_links("sweep")
-        sheet.section(escape(cost_label(outcome)), WORDS[way], content)
-        sheet.section(
-            "Best runs", "Smallest cost first; checks: those of the scenario.", _best(outcome)
-        )
+        sheet.section(escape(cost_label(outcome)), f"{WORDS[way]} {_told_best(outcome)}", content)
+        if outcome.best is not None:
+            note = "Smallest cost first; checks: those of the scenario."
+            sheet.section("Best runs", note, _best(outcome))
     if outcome.errors:
         sheet.section("Errors", "Runs that gave no row, by message.", _told(outcome, False))
     if any(row.status == "ok" and row.message for row in outcome.rows):
@@ -85,6 +88,16 @@ def page(outcome: "Outcome") -> str:
     footer += "" if study.sampling == "grid" else f", seed {study.seed}"
     footer += "; every row is in sweep.parquet."
     return sheet.text(Frame(study.name, study.about, "sweep", (), footer))
+
+
+def _told_best(outcome: "Outcome") -> str:
+    """Where the best run lies at an end of the study; that there is none without a cost."""
+    if not outcome.study.cost:
+        return "No cost was named, so no run is the best: <code>--cost</code>."
+    if not outcome.at_the_edge:
+        return ""
+    places = escape("; ".join(outcome.at_the_edge))
+    return f"<b>The best run is at the edge of the study</b>: {places}. Less may lie beyond."
 
 
 def _number(value: Any) -> str:
@@ -100,17 +113,16 @@ def _cards(outcome: "Outcome") -> str:
     if any(row.checks is not None for row in rows):
         shown.append(("Checks hold", str(held), f"of {len(rows)} runs"))
     if best is not None:
-        where = ", ".join(
-            f"{n} = {_number(v)}" for n, v in zip(study.job.axes, study.points[best], strict=True)
-        )
-        shown.append((f"Smallest {cost_label(outcome)}", f"{outcome.cost[best]:.4g}", where))
+        point = zip(study.axes, study.points[best], strict=True)
+        where = ", ".join(f"{a.name} = {_number(v)} {spelled(a.unit)}".strip() for a, v in point)
+        shown.append((f"Smallest {cost_label(outcome)}", f"{cost_of(outcome)[best]:.4g}", where))
     return cards(shown)
 
 
 def _best(outcome: "Outcome") -> str:
     study = outcome.study
-    known = np.flatnonzero(np.isfinite(outcome.cost))
-    order = known[np.argsort(outcome.cost[known], kind="stable")][:BEST_SHOWN]
+    known = np.flatnonzero(np.isfinite(cost_of(outcome)))
+    order = known[np.argsort(cost_of(outcome)[known], kind="stable")][:BEST_SHOWN]
     words = {True: "✓", False: "✗", None: ""}
     body = []
     for i in order:
@@ -162,7 +174,7 @@ def _series(name: str, x: Iterable[Any], y: Iterable[Any], marker: Figure) -> Fi
 def _marks(outcome: "Outcome", shown: list[Dimension]) -> list[Figure]:
     """The best run, the tuned point, and runs with an error."""
     found, values = [], [d.values for d in shown]
-    bad = np.flatnonzero(~np.isfinite(outcome.cost))
+    bad = np.flatnonzero(~np.isfinite(cost_of(outcome)))
     if len(bad):
         cross = {"symbol": "x-thin-open", "size": 6, "color": MUTED}
         x, y = ([v[i] for i in bad] for v in values)
@@ -183,10 +195,13 @@ def _field(outcome: "Outcome") -> Figure:
     log, steps = logarithmic(found.z), levels(found.z)
     z = np.log10(found.z) if log else found.z
     at = np.log10(steps) if log else steps
-    bar: Figure = {"outlinewidth": 0}
+    title = {"text": escape(cost_label(outcome)), "side": "right", "font": {"size": 12}}
+    bar: Figure = {"outlinewidth": 0, "title": title}
     bar |= {"tickvals": at.tolist(), "ticktext": [f"{s:g}" for s in steps]}
-    size = (at[-1] - at[0]) / LINES if log else at[1] - at[0]
-    even = {"start": float(at[0]), "end": float(at[-1]), "size": float(size)}
+    # The lowest and the highest colour reach a step beyond: to the ends of the levels.
+    steps_shown = LINES if log else max(len(at) - 1, 2)
+    size = float(at[-1] - at[0]) / steps_shown
+    even = {"start": float(at[0]) + size, "end": float(at[-1]) - size, "size": size}
     drawn = {
         "type": "contour",
         "x": packed(found.x, exact=True),
@@ -197,13 +212,16 @@ def _field(outcome: "Outcome") -> Figure:
         "contours": even | {"coloring": "fill", "showlabels": not log},
         "line": {"width": 0.8, "color": "#ffffff"},
         "colorbar": bar,
-        "hovertemplate": f"{escape(shown[0].name)} %{{x:.6g}}<br>{escape(shown[1].name)} %{{y:.6g}}"
-        "<br>cost %{customdata:.6g}<extra></extra>",
+        "hovertemplate": f"{escape(shown[0].label)} %{{x:.6g}}"
+        f"<br>{escape(shown[1].label)} %{{y:.6g}}"
+        f"<br>{escape(cost_label(outcome))} %{{customdata:.6g}}<extra></extra>",
     }
     data = [drawn]
-    if outcome.study.sampling != "grid":
-        dot = {"size": 4, "color": INK, "opacity": 0.5}
-        data.append(_series("runs", shown[0].values, shown[1].values, dot))
+    known = np.isfinite(outcome.cost)
+    dot = {"size": 4, "color": INK, "opacity": 0.5}
+    x, y = ([v for v, k in zip(d.values, known, strict=True) if k] for d in shown)
+    runs = _series("runs", x, y, dot) | {"hoverinfo": "skip"}
+    data.append(runs)
     ends = ([float(d.even.min()), float(d.even.max())] for d in shown)
     across, up = (_scale(d, range=e) for d, e in zip(shown, ends, strict=True))
     more: Figure = {"xaxis": across, "yaxis": up, "showlegend": True}
@@ -211,7 +229,7 @@ def _field(outcome: "Outcome") -> Figure:
 
 
 def _curve(outcome: "Outcome") -> Figure:
-    (shown,), cost = dimensions(outcome), outcome.cost
+    (shown,), cost = dimensions(outcome), cost_of(outcome)
     order = np.argsort(shown.numbers, kind="stable")
     x = [shown.values[i] for i in order]
     y = [None if np.isnan(c) else float(c) for c in cost[order]]
@@ -221,6 +239,7 @@ def _curve(outcome: "Outcome") -> Figure:
     if (best := outcome.best) is not None:
         data.append(_series(f"best: run {best}", [shown.values[best]], [float(cost[best])], BEST))
     kinds = {"type": "log" if logarithmic(cost) else "linear", "exponentformat": "power"}
+    kinds |= {"rangemode": rangemode(cost)}
     more: Figure = {"xaxis": _scale(shown), "showlegend": True}
     more["yaxis"] = axis(escape(cost_label(outcome)), **kinds)
     if shown.name in outcome.study.tuned:
@@ -234,20 +253,21 @@ def _curve(outcome: "Outcome") -> Figure:
 
 
 def _matrix(outcome: "Outcome") -> Figure:
-    shown, cost, study = dimensions(outcome), outcome.cost, outcome.study
+    shown, cost, study = dimensions(outcome), cost_of(outcome), outcome.study
     order = np.argsort(-np.where(np.isfinite(cost), cost, np.inf), kind="stable")
     order = order[np.isfinite(cost[order])]
     log = logarithmic(cost)
     color = np.log10(cost[order]) if log else cost[order]
     steps = levels(cost)
-    bar: Figure = {"outlinewidth": 0}
+    title = {"text": escape(cost_label(outcome)), "side": "right", "font": {"size": 12}}
+    bar: Figure = {"outlinewidth": 0, "title": title}
     bar |= {"tickvals": (np.log10(steps) if log else steps).tolist()}
     bar |= {"ticktext": [f"{s:g}" for s in steps]}
 
     def cloud(name: str, columns: list[list[Any]], costs: list[Any], marker: Figure) -> Figure:
         named = zip([d.label for d in shown], columns, strict=True)
         listed = [{"label": escape(n), "values": c} for n, c in named]
-        listed.append({"label": "cost", "values": costs})
+        listed.append({"label": escape(cost_label(outcome)), "values": costs})
         half = {"diagonal": {"visible": False}, "showupperhalf": False}
         return {"type": "splom", "name": name, "dimensions": listed, "marker": marker} | half
 
@@ -267,5 +287,6 @@ def _matrix(outcome: "Outcome") -> Figure:
             more[way + key] = _scale(d)
     last = str(len(shown) + 1)
     for way in ("xaxis", "yaxis"):
-        more[way + last] = axis("cost", type="log" if log else "linear", zeroline=False)
+        kinds = {"type": "log" if log else "linear", "rangemode": rangemode(cost)}
+        more[way + last] = axis(escape(cost_label(outcome)), zeroline=False, **kinds)
     return {"data": data, "layout": layout(CELL * len(shown) + 90, **more)}

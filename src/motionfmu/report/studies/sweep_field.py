@@ -10,6 +10,7 @@ from scipy.interpolate import griddata
 from scipy.spatial import QhullError
 
 from motionfmu.report.numbers import label
+from motionfmu.report.numbers import unit as length_unit
 
 if TYPE_CHECKING:
     from motionfmu.study.axes import Value
@@ -60,9 +61,22 @@ class Field:
 
 
 def cost_label(outcome: "Outcome") -> str:
-    """The cost with its unit."""
+    """The cost as it is drawn, with its unit."""
     study = outcome.study
-    return label(study.cost, next(c.unit for c in study.columns if c.name == study.cost))
+    unit = next(c.unit for c in study.columns if c.name == study.shown)
+    return label(study.shown, _scaled(outcome, unit)[1])
+
+
+def cost_of(outcome: "Outcome") -> Array:
+    """The cost of each run as it is drawn: small lengths in µm."""
+    unit = next(c.unit for c in outcome.study.columns if c.name == outcome.study.shown)
+    return outcome.cost * _scaled(outcome, unit)[0]
+
+
+def _scaled(outcome: "Outcome", unit: str) -> tuple[float, str]:
+    """Factor and unit in which the cost reads well."""
+    known = np.abs(outcome.cost[np.isfinite(outcome.cost)])
+    return length_unit(float(known.max())) if unit == "mm" and len(known) else (1.0, unit)
 
 
 def dimensions(outcome: "Outcome") -> list[Dimension]:
@@ -89,7 +103,7 @@ def field(outcome: "Outcome") -> Field | None:
     # A grid as it is; scattered points interpolated linearly inside their hull. None if the points
     # span no area.
     first, second = dimensions(outcome)
-    u, v, cost = first.numbers, second.numbers, outcome.cost
+    u, v, cost = first.numbers, second.numbers, cost_of(outcome)
     x, i = np.unique(u, return_inverse=True)
     y, j = np.unique(v, return_inverse=True)
     if min(len(x), len(y)) < 2 or np.isfinite(cost).sum() < 3:
@@ -135,3 +149,9 @@ def levels(cost: Array) -> Array:
         found = np.arange(first - 1, last + 2) * step  # rounding may push one out
     first, last = np.flatnonzero(found <= low)[-1], np.flatnonzero(found >= high)[0]
     return found[first : max(last, first + 1) + 1]
+
+
+def rangemode(cost: Array) -> str:
+    """How far an axis of the cost may reach: never below 0 if no cost does."""
+    known = cost[np.isfinite(cost)]
+    return "nonnegative" if len(known) and known.min() >= 0.0 else "normal"

@@ -15,11 +15,13 @@ from motionfmu.report.studies.sweep_field import (
     FIELD,
     Dimension,
     cost_label,
+    cost_of,
     dimensions,
     field,
     kind,
     levels,
     logarithmic,
+    rangemode,
 )
 from motionfmu.report.style import AXES, GRID, HEAT, INK, MUTED
 
@@ -79,6 +81,12 @@ def _ticks(scale: Any) -> None:
     scale.set_minor_formatter(NullFormatter())
 
 
+def _not_below(axes: Any, cost: Any) -> None:
+    """No room below 0 for a cost that is never negative."""
+    if rangemode(cost) == "nonnegative" and not logarithmic(cost):
+        axes.set_ylim(bottom=max(0.0, axes.get_ylim()[0]))
+
+
 def _legend(axes: Any) -> None:
     """The marks, beside the title."""
     place: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
@@ -102,11 +110,11 @@ def _scales(axes: Any, first: Dimension, second: Dimension) -> None:
 def _marks(outcome: "Outcome", axes: Any, shown: list[Dimension]) -> None:
     """The best run, the tuned point, and runs with an error."""
     x, y = (d.numbers for d in shown)
-    bad = ~np.isfinite(outcome.cost)
+    bad = ~np.isfinite(cost_of(outcome))
     if bad.any():
         axes.scatter(x[bad], y[bad], marker="x", s=18, color=MUTED, lw=1, label="no cost")
     if (best := outcome.best) is not None:
-        axes.scatter(x[best], y[best], **BEST, label=f"best: {outcome.cost[best]:.4g}")
+        axes.scatter(x[best], y[best], **BEST, label=f"best: {cost_of(outcome)[best]:.4g}")
     if tuned := outcome.study.tuned:
         axes.scatter(*(float(tuned[d.name]) for d in shown), **TUNED, label="tuned")
 
@@ -132,9 +140,10 @@ def _field(outcome: "Outcome") -> Any:
     bar.set_ticklabels(list(names.values()))
     bar.outline.set_visible(False)
     bar.set_label(cost_label(outcome))
-    if outcome.study.sampling != "grid":
-        x, y = (d.numbers for d in shown)
-        axes.scatter(x, y, s=5, color=INK, alpha=0.5, linewidths=0, zorder=3)
+    known = np.isfinite(outcome.cost)
+    x, y = (d.numbers[known] for d in shown)
+    dot: Any = {"s": 6, "color": INK, "alpha": 0.5, "linewidths": 0, "clip_on": False}
+    axes.scatter(x, y, zorder=3, **dot)
     _scales(axes, *shown)
     _marks(outcome, axes, shown)
     _dress(axes)
@@ -144,7 +153,7 @@ def _field(outcome: "Outcome") -> Any:
 
 
 def _curve(outcome: "Outcome") -> Any:
-    (shown,), cost = dimensions(outcome), outcome.cost
+    (shown,), cost = dimensions(outcome), cost_of(outcome)
     picture = Figure(figsize=(8.2, 4.2), layout="constrained")
     axes: Any = picture.add_subplot()
     x = shown.numbers
@@ -163,6 +172,7 @@ def _curve(outcome: "Outcome") -> Any:
         axes.axvline(tuned, color=AXES[0], lw=1.4, ls="--", label="tuned")
     if shown.log:
         _log(axes, "x")
+    _not_below(axes, cost)
     axes.set_xlabel(shown.label)
     axes.set_ylabel(cost_label(outcome))
     axes.grid(color=GRID, lw=0.8)
@@ -175,7 +185,7 @@ def _curve(outcome: "Outcome") -> Any:
 
 def _matrix(outcome: "Outcome") -> Any:
     """Every pair of axes, the cost as colour; the cost itself in the last row."""
-    shown, cost = dimensions(outcome), outcome.cost
+    shown, cost = dimensions(outcome), cost_of(outcome)
     n = len(shown)
     order = np.argsort(-np.where(np.isfinite(cost), cost, np.inf))  # the smallest on top
     limits = np.nanmin(cost), np.nanmax(cost)
@@ -209,7 +219,7 @@ def _matrix(outcome: "Outcome") -> Any:
 
 
 def _cell(outcome: "Outcome", axes: Any, at: tuple[int, int], shown: list[Dimension]) -> None:
-    (i, j), cost, study = at, outcome.cost, outcome.study
+    (i, j), cost, study = at, cost_of(outcome), outcome.study
     if (best := outcome.best) is not None:
         y = cost[best] if i == j else shown[i].numbers[best]
         told = f"best: {cost[best]:.4g}"
@@ -219,12 +229,14 @@ def _cell(outcome: "Outcome", axes: Any, at: tuple[int, int], shown: list[Dimens
         axes.scatter(x, y, **TUNED | {"s": 40}, label="tuned")
     if shown[j].log:
         _log(axes, "x")
+    if i == j:
+        _not_below(axes, cost)
     if logarithmic(cost) if i == j else shown[i].log:
         _log(axes, "y")
     if i == len(shown) - 1:
         axes.set_xlabel(shown[j].label)
     if i == j:
-        axes.set_ylabel("cost", color=MUTED)
+        axes.set_ylabel(cost_label(outcome), color=MUTED)
     elif j == 0:
         axes.set_ylabel(shown[i].label)
     for way, d in (("x", shown[j]), ("y", shown[i])):
