@@ -2,6 +2,8 @@
 #ifndef PROGRAM_FAULT_H
 #define PROGRAM_FAULT_H
 
+#include <math.h>
+
 #include "fault.h"
 #include "program_file.h"
 
@@ -27,8 +29,11 @@ static int tell_fault(struct fmu *f, const char *name, struct program_file *prog
     if (r->other_length) {
         snprintf(detail, sizeof detail, " beside \"%s\"",
                  quote(program, r, r->other_at, r->other_length).text);
-    } else if (r->fault == FAULT_FEED || r->fault == FAULT_SPEED) {
+    } else if (r->fault == FAULT_FEED) {
         snprintf(detail, sizeof detail, " (%.6g, limit %.6g)", r->value, r->limit);
+    } else if (r->fault == FAULT_SPEED) {
+        snprintf(detail, sizeof detail, " (%.6g, limit %.6g; F%.0f mm/min is possible)", r->value,
+                 r->limit, floor(r->feed));
     } else if (r->fault == FAULT_TRAVEL) {
         snprintf(detail, sizeof detail, " (%c to %.6g mm, limit %.6g mm)", "XYZUVW"[r->axis],
                  r->value, r->limit);

@@ -138,6 +138,7 @@ struct fault_report {
     int32_t    axis;            /* of TRAVEL, SPEED: the joint */
     double     value, limit;    /* ARC_END, ARC_CHORD, TRAVEL [mm], FEED [mm/min];
                                  * SPEED: of the joint's highest, and 1 */
+    double     feed;            /* SPEED: the largest that is possible there [mm/min] */
 };
 
 /* All that is wrong with a part program, a line each, and the notes, once each. */

@@ -51,6 +51,7 @@ enum fault block_refusal(enum command_status s, const struct command_refusal *wh
         r->axis = why->joint;
         r->value = why->value;
         r->limit = why->limit;
+        r->feed = s == COMMAND_FAST ? why->feed * 60.0 : 0.0;
     }
     return s == COMMAND_FAST ? FAULT_SPEED
          : s == COMMAND_FAR ? FAULT_RANGE

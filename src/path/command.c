@@ -70,7 +70,7 @@ enum command_status command_move(struct command *c, const struct mechanism *m,
     }
     const double safe = safe_speed(&w, m, &joint);
     if (feed > safe) {
-        *r = (struct command_refusal){ joint, feed / safe, 1.0 };
+        *r = (struct command_refusal){ joint, feed / safe, 1.0, safe };
         return COMMAND_FAST;
     }
     set_speed(c, l, feed, fmin(safe, l->feed));

@@ -65,6 +65,7 @@ enum command_status {
 struct command_refusal {
     int joint;
     double value, limit;    /* FAST [of the highest speed] and 1; OUTSIDE [mm] */
+    double feed;            /* FAST: the largest at which no joint is too fast [mm/s] */
 };
 
 /* Complete a command whose path is set (and is not a point): type and feed [mm/s] given; cap, acc

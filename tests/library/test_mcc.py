@@ -41,7 +41,10 @@ def start(fmi: int, text: str | bytes, folder: Path, **values: Any) -> tuple[int
         ("G2 X10 R4 (tight)", 'half the distance to the end "G2 X10 R4 (tight)" (4 mm, half'),
         ("G2 X10 I6", '"G2 X10 I6" (by 2 mm)'),
         ("F60001", 'feed above max_feed [mm/min] "F60001" (60001, limit 60000)'),
-        ("G1 X10 F40000", 'above max_rpm [rpm] "G1 X10 F40000" (4000, limit 3000)'),
+        (
+            "G1 X10 F40000",
+            'above max_rpm [rpm] "G1 X10 F40000" (4000, limit 3000; F30000 mm/min is possible)',
+        ),
         ("G1 X1\n\x00", "line 2: byte 0, which no text has, behind"),
         (b"G1 X1 \xff\xfe", "line 1: unexpected character"),
         ("G1 W1", 'axis is not active "W1"'),

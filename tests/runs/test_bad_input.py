@@ -62,7 +62,24 @@ def test_a_wrong_part_program(tmp_path: Path, line: int, program: str, what: str
         ("step = 1e-4", "step = 1.5e-10", "step", "not a whole number of ns"),
         ("step = 1e-4", 'step = "fast"', "step", "'fast'"),
         ("step = 1e-4", "step = 1e-4\nspeed = 3", "speed", "unknown key 'speed'"),
-        ('= "epcio"', '= "epcoi"', "card ", "no FMU 'epcoi'"),
+        ("step = 1e-4", "stpe = 1e-4", "stpe", "unknown key 'stpe'; did you mean 'step'?"),
+        ("[record]", "[recrod]", "[recrod]", "unknown table [recrod]; did you mean 'record'?"),
+        ("signals = [", "signal = [", "signal", "'signal'; did you mean 'signals'?"),
+        ("step = 1e-4", "limit = 2.0\nstep = 1e-4", "limit", "goes with a stop that is a signal"),
+        ("stop = 3.0", 'stop = "mcc.done"', "stop", "the longest run, is missing"),
+        ("stop = 3.0", 'stop = "dnoe"\nlimit = 1', "stop", "such an output; did you mean 'done'?"),
+        ("stop = 3.0", 'stop = "mcc.path_feed"\nlimit = 1', "stop", "Boolean or a whole number"),
+        ("stop = 3.0", 'stop = "card.stock"\nlimit = 1', "stop", "which element, card.stock[1]?"),
+        ("stop = 3.0", 'stop = "mcc.hold"\nlimit = 1', "stop", "mcc.hold is no output"),
+        (
+            "stop = 3.0",
+            'stop = "done"\nlimit = 1\nsettle = 1e-5',
+            "settle",
+            "no whole number of steps",
+        ),
+        ('= "epcio"', '= "epcoi"', "card ", "did you mean 'epcio'?"),
+        ('"mcc.p_gain"     = 200', "mcc.p_gain = 200", "mcc.p_gain", 'quotes: "mcc.p_gain"'),
+        ('"mcc.p_gain"     = 200', '"mcc.p_gain[7]" = 2', '"mcc.p_gain[7]"', "elements 1 to 6"),
         ('"card.dac"', '"card.dca"', '"machine.voltage"', "did you mean 'dac'?"),
         ('"card.dac"', '"cart.dac"', '"machine.voltage"', "did you mean 'card'?"),
         ('"card.dac"', '"card.dac[1]"', '"machine.voltage"', "whole arrays: card.dac"),
@@ -90,7 +107,7 @@ def test_a_wrong_part_program(tmp_path: Path, line: int, program: str, what: str
         ('"card.dac",', '"card.enc_phase",', "signals", "card.enc_phase is no output"),
         ('"mcc.done"    = {', '"mcc.servics" = {', '"mcc.servics"', "did you mean 'services'?"),
         ("{ final = true }", "{ last = true }", '"mcc.done"', "unknown key 'last'"),
-        ("radius_change", "radius_chance", '"contour.circles', "radius_chance"),
+        ("radius_change", "radius_chance", '"contour.circles', "did you mean 'radius_change'?"),
     ],
 )
 def test_a_wrong_scenario(tmp_path: Path, old: str, new: str, key: str, what: str) -> None:
@@ -104,6 +121,32 @@ def test_a_wrong_scenario(tmp_path: Path, old: str, new: str, key: str, what: st
     text = message(folder)
     assert text.startswith(f"{file}:{number}: "), text
     assert what in text
+
+
+def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
+    folder = scenario(tmp_path)
+    file = folder / "scenario.toml"
+    wrong = file.read_text()
+    for old, new in (
+        ("step = 1e-4", "stpe = 1e-4"),
+        ('"card.host_*"', '"cart.host_*"'),
+        ('"card.dac"', '"card.dca"'),
+        ('"mcc.p_gain" ', '"mcc.p_gian" '),
+        ("[record]", '[[drive]]\ninput = "mcc.hold"\nat = [0.01]\nvalue = [1]\n\n[record]'),
+        ('"mcc.done", ', '"mcc.doen", '),
+        ("{ final = true }", "{ last = true }"),
+        ("radius_change", "radius_chance"),
+    ):
+        assert old in wrong
+        wrong = wrong.replace(old, new, 1)
+    file.write_text(wrong)
+    told = message(folder, lines=8).splitlines()
+    words = ("'step'", "joins nothing", "'dac'", "'p_gain'", "Boolean", "'done'", "'last'")
+    assert all(w in t for w, t in zip((*words, "'radius_change'"), told, strict=True)), told
+    places = [int(t.removeprefix(f"{file}:").partition(":")[0]) for t in told]
+    lines = file.read_text().splitlines()
+    assert places == sorted(places) and lines[places[0] - 1].startswith("stpe")
+    assert "dca" in lines[places[2] - 1] and lines[places[4] - 1].startswith("value")
 
 
 def test_an_open_input_is_named(tmp_path: Path) -> None:
@@ -146,6 +189,7 @@ def test_two_sources_for_one_input(tmp_path: Path) -> None:
         (("--set", "mcc.p_gain"), "COMP.VAR=VALUE wanted"),
         (("--set", "mcc.program=none.ngc"), "set mcc.program = 'none.ngc'"),
         (("--set", "card.loop_period=1.2e-7"), "set card.loop_period = 1.2e-07"),
+        (("--set", "mcc.p_gain[0]=3"), "mcc.p_gain has elements 1 to 6"),
         (("--engine", "steam"), "no engine 'steam' (there are: native, python, fmpy)"),
         (("--fmi", "4"), "FMI 4: 2 or 3"),
         (("--step", "3e-5"), "no whole number of steps"),

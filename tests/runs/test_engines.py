@@ -8,6 +8,7 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
+from motionfmu.run.session import Session
 from motionfmu.scenarios import document
 
 NAMES = sorted(p.parent.name for p in ROOT.glob("scenarios/*/scenario.toml"))
@@ -69,8 +70,9 @@ def test_every_scenario_holds_its_verdict(scenario: str) -> None:
 def test_fmi_2_gives_the_bits_of_fmi_3(scenario: str) -> None:
     whole = native(scenario)
     loaded = motionfmu.load(ROOT / "scenarios" / scenario)
-    stop = min(LONG, loaded.document.body.stop_limit)
+    stop = LONG if whole.time[-1] > LONG else None
     other = loaded.run(fmi=2, stop=stop)
+    assert stop or (len(other.time), other.stopped) == (len(whole.time), whole.stopped)
     assert differing(other, whole, rows=len(other.time)) == []
     assert stop == LONG or whole.geometry == other.geometry
 
@@ -164,6 +166,60 @@ def test_stimuli_reach_every_engine_alike(driven: Path) -> None:
 def test_stimuli_stay_where_they_are_when_the_step_is_divided(driven: Path, divisor: int) -> None:
     loaded = motionfmu.load(driven)
     assert differing(loaded.run(), loaded.run(step=1e-4 / divisor), divisor) == []
+
+
+@pytest.fixture(scope="module")
+def short(tmp_path_factory: pytest.TempPathFactory) -> motionfmu.Scenario:
+    """A move of a hundredth of a second."""
+    file = tmp_path_factory.mktemp("short") / "part.ngc"
+    file.write_text("G21 G17 G90\nG1 X0.02 F3000\nM2\n")
+    base = motionfmu.load(ROOT / "scenarios/circle_theory")
+    return base.changed(set={"mcc.program": str(file)}, record=["mcc.services"])
+
+
+def test_a_signal_ends_every_engine_alike(short: motionfmu.Scenario) -> None:
+    whole = short.run(stop=0.2)
+    first = int(np.argmax(whole["mcc.done"]))
+    assert 50 < first < 1500 and not whole["mcc.done"][0]
+    assert whole.done_at == whole.time[first] and whole.stopped == "stop = 0.2 s"
+    ended = short.changed(stop="done", limit=0.5, settle=0.002)
+    for engine, fmi in (("native", 3), ("native", 2), ("python", 3), ("fmpy", None)):
+        run = ended.run(engine=engine, fmi=fmi)
+        assert len(run.time) == first + 1 + 20, (engine, fmi)
+        assert run.stopped == f"mcc.done at {first * 1e-4:.9g} s" and run.overrides == []
+        assert run.done_at == pytest.approx(first * 1e-4, abs=1e-12)
+        found = differing(run, whole, rows=len(run.time))
+        assert [k for k in found if not (engine == "fmpy" and k == "mcc.done")] == []
+    at_once = short.changed(stop="mcc.done", limit=0.5).run()
+    assert len(at_once.time) == first + 1 and at_once["mcc.done"][-1]
+    assert not at_once["mcc.done"][:-1].any()
+    fine = ended.run(step=5e-5)
+    assert differing(ended.run(), fine, 2, rows=None) == [] and len(fine.time) == 2 * first + 1 + 40
+
+
+def test_a_signal_that_never_comes_is_told(short: motionfmu.Scenario) -> None:
+    run = short.changed(stop="mcc.done", limit=0.005, settle=0.01).run()
+    assert run.stopped == "limit 0.005 s, mcc.done never came" and run.done_at is None
+    assert "mcc.done never came within 0.005 s" in run.warnings and len(run.time) == 50
+    late = short.changed(stop="mcc.services", limit=0.05, settle=0.2).run()
+    assert late.stopped.startswith("mcc.services at 0") and len(late.time) == 500
+
+
+def test_a_session_ends_by_a_signal(short: motionfmu.Scenario) -> None:
+    ended = short.changed(stop="mcc.done", limit=0.5)
+    with Session(ended, ["mcc.p_gain", "mcc.acc_time"]) as session:
+        for given in ({"mcc.p_gain": 300}, {"mcc.p_gain[1]": 200}, {"mcc.acc_time": 0.1}):
+            one, other = session.run(given), ended.run(set=given)
+            assert differing(one, other) == [] and one.stopped == other.stopped
+            assert one.options["set"] == given and one.overrides == other.overrides
+
+
+def test_rows_of_every_so_many_steps(short: motionfmu.Scenario) -> None:
+    ended = short.changed(stop="mcc.done", limit=0.5, settle=0.01, record={"every": 7})
+    rows, whole = ended.run(), short.changed(stop="mcc.done", limit=0.5, settle=0.01).run()
+    assert len(rows.time) == -(-len(whole.time) // 7)
+    assert differing(rows, whole, 7) == [] and rows.stopped == whole.stopped
+    assert differing(rows, whole.scenario.run(every=7)) == []
 
 
 def test_more_signals_than_one_scope_holds() -> None:

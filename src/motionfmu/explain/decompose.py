@@ -15,14 +15,14 @@ from motionfmu.explain.ballbar import Signature, signature
 from motionfmu.explain.causes import Cause, Off
 from motionfmu.explain.effects import Effects
 from motionfmu.explain.servo import Array
-from motionfmu.run import load
+from motionfmu.run import Scenario, load
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.contour_signals import library_of
 
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult
     from motionfmu.contour.track import Track
-    from motionfmu.run import Result, Scenario
+    from motionfmu.run import Result
 
 # Places along the path at which runs are compared.
 PLACES = 20_000
@@ -114,7 +114,7 @@ class Explanation(Effects[Effect]):
 
 
 def explain(
-    path: str | Path,
+    path: "str | Path | Scenario",
     set: Mapping[str, Any] | None = None,
     stop: float | None = None,
     progress: Callable[[str, float], None] = lambda what, share: None,
@@ -127,7 +127,7 @@ def explain(
 
     Parameters
     ----------
-    path : str or Path
+    path : str, Path or Scenario
         A scenario with a [contour] table.
     set : mapping, optional
         Value by ``component.variable``, stronger than the scenario's.
@@ -141,7 +141,8 @@ def explain(
     InputError
         The scenario or a setting is wrong, or has no contour; one message.
     """
-    scenario = load(path)
+    # One of its own, as more is recorded of it.
+    scenario = path.changed() if isinstance(path, Scenario) else load(path)
     if scenario.document.body.contour is None:
         raise InputError(f"{scenario.document.file}: the scenario has no [contour] table")
     given = dict(set or {})

@@ -14,11 +14,11 @@ from motionfmu.explain.decompose import NOTHING, SAME, short, watch
 from motionfmu.explain.effects import Effects
 from motionfmu.explain.servo import Array
 from motionfmu.iso9283 import Performance
-from motionfmu.run import load
+from motionfmu.run import Scenario, load
 from motionfmu.run.iso9283_of import evaluation_of
 
 if TYPE_CHECKING:
-    from motionfmu.run import Result, Scenario
+    from motionfmu.run import Result
 
 REST = "rest"
 REST_TITLE = "What is left: commands, servo"
@@ -81,7 +81,7 @@ class PathExplanation(Effects[PathEffect]):
 
 
 def explain_path(
-    path: str | Path,
+    path: "str | Path | Scenario",
     set: Mapping[str, Any] | None = None,
     stop: float | None = None,
     progress: Callable[[str, float], None] = lambda what, share: None,
@@ -94,7 +94,7 @@ def explain_path(
 
     Parameters
     ----------
-    path : str or Path
+    path : str, Path or Scenario
         A scenario with an [iso9283] table.
     set : mapping, optional
         Value by ``component.variable``, stronger than the scenario's.
@@ -108,7 +108,8 @@ def explain_path(
     InputError
         The scenario or a setting is wrong, or has no figures; one message.
     """
-    scenario = load(path)
+    # One of its own, as more is recorded of it.
+    scenario = path.changed() if isinstance(path, Scenario) else load(path)
     if scenario.document.body.iso9283 is None:
         raise InputError(f"{scenario.document.file}: the scenario has no [iso9283] table")
     given = dict(set or {})

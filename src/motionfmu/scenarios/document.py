@@ -236,11 +236,10 @@ def _one(
         del name[2:3]  # number of the table: the key names them all
     value = found["input"]
     if top in ("set", "connect", "component") and isinstance(value, dict) and found["loc"][1:]:
-        first = next(iter(value), "")
-        return (
-            place,
-            f'{spot}: {place[-1]}.{first}: a name with a dot wants quotes: "{place[-1]}.{first}"',
-        )
+        dotted = f"{place[-1]}.{next(iter(value), '')}"
+        owner = next((s for s in sources if s.has(top, place[-1], None)), sources[0])
+        text = f'a name with a dot wants quotes: "{dotted}"'
+        return place, f"{owner.place(top, dotted)}: {dotted}: {text}"
     value = "..." if isinstance(value, dict) and value else value
     value = list(value) if isinstance(value, tuple) else value
     return place, f"{spot}: {'.'.join(name)} = {shown(value)}: {found['msg'].lower()}"
