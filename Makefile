@@ -2,6 +2,9 @@
 PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
+# Byte code is kept, whatever the environment says: tests start Python some hundred times, and reading the packages
+# anew takes each of them one to three seconds more.
+export PYTHONDONTWRITEBYTECODE :=
 
 # What is needed beforehand is said before anything is made. The program is one that any Python reads.
 NEEDS := import sys; v = sys.version_info; \

@@ -92,7 +92,7 @@ def test_only_equal_units_share_a_wire() -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_the_fmu_says_what_the_description_says(name: str, fmi: int) -> None:
     d = fmu_toml.load(ROOT / "fmus" / name / "fmu.toml")
-    md = read_model_description(str(FMUS / f"{name}.fmi{fmi}.fmu"), validate=True)
+    md = read_model_description(str(FMUS / f"{name}.fmi{fmi}.fmu"), validate=False)
     assert (md.guid if fmi == 2 else md.instantiationToken) == d.token
     found = {v.name: v for v in md.modelVariables}
     found.pop("time", None)
