@@ -77,6 +77,11 @@ def test_tables_merge_key_by_key(base: motionfmu.Scenario) -> None:
     assert same(faster, base.run(stop=0.2, every=5)) and len(faster.time) == 400
 
 
+def test_what_is_checked_is_recorded(base: motionfmu.Scenario) -> None:
+    run = base.changed(check={"mcc.services": {"max": 99}}).run(stop=0.01)
+    assert "mcc.services" in run.signals and "mcc.services" not in base.run(stop=0.01).signals
+
+
 def test_one_element_leaves_the_others(base: motionfmu.Scenario) -> None:
     name = "mcc.p_gain[2]"
     changed = base.changed(set={name: 300})
