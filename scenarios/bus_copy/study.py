@@ -3,7 +3,7 @@
     .venv/bin/python scenarios/bus_copy/study.py [picture.png]
 
 A run takes the wait, the copy in and the copy out; it is in time while that is less than the
-100 us that a memory plays.
+100 µs that a memory plays.
 """
 
 import sys
@@ -60,7 +60,7 @@ def main(picture: Path) -> None:
     """Run the sweep, print the table, draw the picture."""
     scenario = motionfmu.load(HERE)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(9, 6.5))
-    print(f"{'kind':28} {'bytes out':>9} {'run':>9} {'formula':>9} {'memory each':>12}  [us]")
+    print(f"{'kind':28} {'bytes out':>9} {'run':>9} {'formula':>9} {'memory each':>12}  [µs]")
     for colour, kind in zip(COLOURS, KINDS, strict=True):
         edge = last(kind)
         sizes = sorted({*range(0, 3073, 512), 192, *([edge, edge + 1] if edge else [])})
@@ -74,8 +74,8 @@ def main(picture: Path) -> None:
         below.plot(sizes, found[:, 1], color=colour, marker="o", markersize=4, linewidth=1)
     above.axhline(100.0, color="black", linewidth=1, linestyle=":")
     above.set_title("A run of the driver; dotted: its cycle. Lines: formula", loc="left")
-    above.set_ylabel("run [us]")
-    below.set_ylabel("from memory to memory [us]")
+    above.set_ylabel("run [µs]")
+    below.set_ylabel("from memory to memory [µs]")
     below.set_ylim(0, None)
     below.set_xlabel("bytes copied to the card")
     above.legend(frameon=False)

@@ -28,7 +28,7 @@ PROGRAMS = ("circle", "square", "lookahead")
 # Load and stiffness of the axes: 60 kg less, 100 kg more on the table; a screw at its far end.
 FAMILY = {"machine.table_mass": [40.0, 200.0], "machine.screw_stiffness": [6e7, 1.2e8]}
 LEAD, COUNTS = 0.01, 10_000  # [m], [counts] per turn
-INERTIA = 2e-3 + 100.0 * (LEAD / (2.0 * math.pi)) ** 2  # [kg m^2] motor, and table at the motor
+INERTIA = 2e-3 + 100.0 * (LEAD / (2.0 * math.pi)) ** 2  # [kg·m²] motor, and table at the motor
 # Kp of one unit of the card's register [1/s]: 2^-6 * (20 V / 65536) * 300 rpm/V * counts / 60
 UNIT = 2.0**-6 * 20.0 / 65536.0 * 300.0 * COUNTS / 60.0
 OVERSHOOT = 1e-3  # a rule without overshoot still leaves room for rounding
@@ -45,7 +45,7 @@ def rule(kp: float, hertz: float, integral: float) -> dict[str, float]:
 
 # Yaskawa Sigma-II user's manual, 6.4.4, machines of high rigidity (ball screw directly coupled):
 # 50 to 70 1/s, 50 to 70 Hz, 5 to 20 ms. Kp = wv/4: damping 1 with a first-order velocity loop.
-WV = 0.5 / INERTIA  # [rad/s] of the scenario's own velocity gain, 0.5 N m s/rad
+WV = 0.5 / INERTIA  # [rad/s] of the scenario's own velocity gain, 0.5 N·m s/rad
 RULES = {
     "Yaskawa, high rigidity": rule(60.0, 60.0, 0.0125),
     "Kp = wv/4": rule(WV / 4.0, WV / (2.0 * math.pi), 0.02),
@@ -119,7 +119,7 @@ def rows(name: str, program: str, tuned: Tuned) -> list[str]:
 def table() -> None:
     """Print the table of the README."""
     heads = "program|gains|Kp|Kv|Ti|rms|max|rms|max|gain|phase|peak S"
-    units = "||1/s|Hz|ms|nominal um|nominal um|worst um|worst um|margin|deg|"
+    units = "||1/s|Hz|ms|nominal µm|nominal µm|worst µm|worst µm|margin|°|"
     lines = [f"| {' | '.join(heads.split('|'))} |", "|" + "---|" * 12]
     lines.append(f"| {' | '.join(units.split('|'))} |")
     jobs = list(itertools.product(PROGRAMS, RULES.items()))
@@ -138,10 +138,10 @@ def brute() -> None:
         ("position and velocity loop, equal axes", {"velocity": True, "axes": "equal"}, 7, 10),
     ):
         tuned = tune(scenario, asked)
-        print(f"{title}: tuner {tuned.found.values.worst * 1e3:.4f} um, all {tuned.seconds:.1f} s")
+        print(f"{title}: tuner {tuned.found.values.worst * 1e3:.4f} µm, all {tuned.seconds:.1f} s")
         cost, seconds, count = _grid(tuned.study, points, rounds)
         off = tuned.found.values.worst / cost - 1.0
-        print(f"  brute force {cost * 1e3:.4f} um, {seconds:.1f} s, {count} points: {off:+.3%}")
+        print(f"  brute force {cost * 1e3:.4f} µm, {seconds:.1f} s, {count} points: {off:+.3%}")
 
 
 def _grid(study: Study, points: int, rounds: int) -> tuple[float, float, int]:

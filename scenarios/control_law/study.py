@@ -25,7 +25,7 @@ from motionfmu.contour import ContourResult
 HERE = Path(__file__).parent
 GAINS = (40.0, 30.0)  # [1/s] Kx, Ky
 SLOWEST = 1.0 / min(GAINS)  # [s]
-CROSS, INTEGRAL = 100.0, 2000.0  # [1/s], [1/s^2]
+CROSS, INTEGRAL = 100.0, 2000.0  # [1/s], [1/s²]
 # Lines of the part program.
 PATHS = {"line at 30°": (4,), "square corner": (9, 10), "circle R20": (13, 15)}
 # Time from the start of a path that counts [s]: without the stops at its ends.
@@ -127,8 +127,8 @@ def draw(cases: list[Case], picture: Path) -> None:
         for a in (top, low):
             a.grid(alpha=0.25)
             a.spines[["top", "right"]].set_visible(False)
-    axes[0, 0].set_ylabel("contour error, positive to the left [um]")
-    axes[1, 0].set_ylabel("largest (full), RMS (pale) [um]")
+    axes[0, 0].set_ylabel("contour error, positive to the left [µm]")
+    axes[1, 0].set_ylabel("largest (full), RMS (pale) [µm]")
     axes[0, 0].legend(frameon=False, fontsize=9)
     figure.suptitle(
         "The same paths with Kx = 40/s, Ky = 30/s: what each part of the control law buys",
@@ -142,7 +142,7 @@ def draw(cases: list[Case], picture: Path) -> None:
 def main(picture: Path) -> None:
     """Run all cases; print the table, draw the picture."""
     cases = [run(name, more) for name, more in CASES.items()]
-    print("| [um] max / RMS | " + " | ".join(PATHS) + " | line, steady | lag of an axis |")
+    print("| [µm] max / RMS | " + " | ".join(PATHS) + " | line, steady | lag of an axis |")
     print("|---" * (len(PATHS) + 3) + "|")
     for case in cases:
         sizes = [" / ".join(f"{x * 1e3:.1f}" for x in case.size(path)) for path in PATHS]

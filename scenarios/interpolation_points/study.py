@@ -91,7 +91,7 @@ def draw(rows: list[Row], picture: Path) -> None:
         right.annotate(
             text, (row.points, row.error * 1e3), (6, 4), textcoords="offset points", fontsize=8
         )
-    right.set(xlabel="interpolation points a turn", ylabel="largest error of the pulses [um]")
+    right.set(xlabel="interpolation points a turn", ylabel="largest error of the pulses [µm]")
     right.set_xlim(right=points.max() * 2.2)
     right.set_xticks(points, [f"{n:.0f}" for n in points])
     right.minorticks_off()
@@ -108,7 +108,7 @@ def main(picture: Path) -> None:
     quiet = not sys.stdout.isatty()
     rows = [measure(d) for d in track(BATCH, "runs", transient=True, disable=quiet)]
     print(
-        f"{'T [ms]':>9}{'points':>8}{'error [um]':>12}{'theory [um]':>13}"
+        f"{'T [ms]':>9}{'points':>8}{'error [µm]':>12}{'theory [µm]':>13}"
         f"{'N':>4}{'interrupts/s':>14}"
     )
     for r in rows:

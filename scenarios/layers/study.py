@@ -79,9 +79,9 @@ def reactions() -> list[np.ndarray]:
 
 
 def text(clocks: float) -> str:
-    """A time in us or ms."""
-    us = clocks * CLOCK * 1e6
-    return f"{us:.3f} us" if us < 1000.0 else f"{us / 1000.0:.3f} ms"
+    """A time in µs or ms."""
+    micro = clocks * CLOCK * 1e6
+    return f"{micro:.3f} µs" if micro < 1000.0 else f"{micro / 1000.0:.3f} ms"
 
 
 def main(picture: Path) -> None:

@@ -1,4 +1,4 @@
-"""The last times that the 100 us cycle holds and the next that break it; what a short queue costs.
+"""The last times that the 100 µs cycle holds and the next that break it; what a short queue costs.
 
     .venv/bin/python scenarios/line_latency/study.py [picture.png]
 
@@ -23,7 +23,7 @@ CLOCK = 25e-9  # [s]
 CYCLE, SLOT = 4000, 200  # [clocks]
 WAIT, COPY_IN, COPY_OUT, POINT = 20, 308, 924, 1440  # [clocks] the document's
 BYTES_OUT, LINES = 3072, 4
-MOVES, LENGTH, ACC, POLL = 40, 0.5, 2000.0, 36e-3  # [mm], [mm/s^2], [s]
+MOVES, LENGTH, ACC, POLL = 40, 0.5, 2000.0, 36e-3  # [mm], [mm/s²], [s]
 
 
 def setting(quantity: str, clocks: int) -> dict[str, float]:
@@ -67,7 +67,7 @@ def rests(depth: int) -> bool:
 def main(picture: Path) -> None:
     """Run all, print the tables, draw the picture."""
     scenario = motionfmu.load(HERE)
-    print(f"{'quantity':12} {'clocks':>7} {'time':>9} {'run':>9} [us] {'underruns':>10}")
+    print(f"{'quantity':12} {'clocks':>7} {'time':>9} {'run':>9} [µs] {'underruns':>10}")
     for quantity in ("wait", "copy out", "a point", "four lines"):
         for clocks in (most(quantity), most(quantity) + (LINES if "lines" in quantity else 1)):
             result = scenario.run(set=setting(quantity, clocks))
@@ -94,8 +94,8 @@ def main(picture: Path) -> None:
     )
     above.plot(times * CLOCK * 1e6, np.array(found) * 1e6, **style, label="run")
     above.set_title("From the interrupt that executes four lines to their first slot", loc="left")
-    above.set_xlabel("time of a line [us]")
-    above.set_ylabel("latency [us]")
+    above.set_xlabel("time of a line [µs]")
+    above.set_ylabel("latency [µs]")
     above.set_ylim(0, None)
     depths = (1, 2, 4, 5, 8, 10, 20, 40)
     print(f"{'queue':>6} {'moves take':>11} {'formula':>8} [s] {'starved':>8}")

@@ -27,7 +27,7 @@ from motionfmu.contour import ContourInput, analyse, read_path
 HERE = Path(__file__).parent
 TOLERANCE, FEED = make_program.TOLERANCE, make_program.FEED / 60.0  # [mm], [mm/s]
 RAMP = 0.05  # [s] from rest to FEED
-ACC = FEED / RAMP  # [mm/s^2] of a T ramp
+ACC = FEED / RAMP  # [mm/s²] of a T ramp
 CORNER = (34.0, 9.0)  # [mm] of the detail
 BEFORE = len(make_program.BEFORE.splitlines())
 EDGE = (BEFORE + 1, BEFORE + 1 + len(make_program.edge()))  # commands of the wavy edge, and behind
@@ -71,7 +71,7 @@ class Row:
 
     @property
     def acceleration(self) -> float:
-        """Largest acceleration of the points [mm/s^2]."""
+        """Largest acceleration of the points [mm/s²]."""
         step = float(np.median(np.diff(self.time)))
         return float(np.hypot(*np.diff(self.place, 2, axis=0).T).max()) / step**2
 
@@ -177,7 +177,7 @@ def draw_bars(axes: plt.Axes, rows: list[Row]) -> None:
     axes.axvline(TOLERANCE * 1e3, color=GREY, linestyle="--", linewidth=0.8)
     axes.set_yticks(at, [r.way.name.replace(", ", ",\n") for r in rows], fontsize=8)
     axes.invert_yaxis()
-    axes.set(xlabel="largest deviation [um]", xlim=(0, 1.2e3 * max(r.machine for r in rows)))
+    axes.set(xlabel="largest deviation [µm]", xlim=(0, 1.2e3 * max(r.machine for r in rows)))
     axes.set_title("Command (dark), machine (pale)", loc="left", fontsize=10, color=INK)
 
 
@@ -216,8 +216,8 @@ def main(picture: Path) -> None:
     feeds = dict.fromkeys(WAYS, FEED) | {MIX: equal_tolerance(MIX)}
     rows = [run(way, feed) for way, feed in feeds.items()]
     print(
-        f"{'way':22}{'F':>6}{'time [s]':>10}{'saved':>8}{'command [um]':>14}"
-        f"{'machine [um]':>14}{'acceleration [mm/s^2]':>23}"
+        f"{'way':22}{'F':>6}{'time [s]':>10}{'saved':>8}{'command [µm]':>14}"
+        f"{'machine [µm]':>14}{'acceleration [mm/s²]':>23}"
     )
     for row in rows:
         saved = 1.0 - row.duration / rows[0].duration

@@ -79,8 +79,8 @@ def main() -> None:
     card = card.model_copy(update={"axes": wide})
     least.ACC = card.axes[0].acceleration_max * (1.0 - card.motion.reserve)
     print(
-        "| shape | segments | drawing [s] | over bound | off / back [um] | a [mm/s^2] "
-        "| j [m/s^3] | at feed | stops | planning [ms per 1000] | job [bytes] |\n"
+        "| shape | segments | drawing [s] | over bound | off / back [µm] | a [mm/s²] "
+        "| j [m/s³] | at feed | stops | planning [ms per 1000] | job [bytes] |\n"
         + "|---" * 11
         + "|"
     )

@@ -78,10 +78,10 @@ def main(picture: Path) -> None:
         panel = figure.add_subplot(grid[n, 1])
         for places, what, colour in ((pulses, "pulses", "#999999"), (table, "table", "#0072b2")):
             off = (distance(places[cut], contour) - RADIUS) * 1e3
-            print(f"{name}, {what}: {off.min():.1f} to {off.max():.1f} um")
+            print(f"{name}, {what}: {off.min():.1f} to {off.max():.1f} µm")
             panel.plot(time[cut], off, ".", markersize=1.5, color=colour)
             panel.plot([], [], color=colour, label=what)
-        panel.set(ylabel="beside it [um]", ylim=(-280, 280))
+        panel.set(ylabel="beside it [µm]", ylim=(-280, 280))
         panel.set_title(f"Edge of the mill from the {name}", loc="left", fontsize=10)
         panel.legend(frameon=False, fontsize=8, loc="lower left", ncols=2)
     panel.set(xlabel="time [s]")

@@ -5,7 +5,7 @@
 A run of the driver is late if its wait w is S slots less the copies, or more. With w = L0 + x, x
 exponential of mean m, and with the probability e uniform up to U instead:
 
-    P = (1 - e) exp(-B / m) + e (1 - B / U)          B = S * 5 us - 30.8 us - L0, rounded to clocks
+    P = (1 - e) exp(-B / m) + e (1 - B / U)          B = S * 5 µs - 30.8 µs - L0, rounded to clocks
 """
 
 import math
@@ -114,7 +114,7 @@ def main(picture: Path) -> None:
                     markersize=6,
                     label=None if k else "preset itself, 300 s",
                 )
-    print(f"{'slots':>6} {'latency':>8} [us] {'good':>8} {'graphics':>9} [1/h]")
+    print(f"{'slots':>6} {'latency':>8} [µs] {'good':>8} {'graphics':>9} [1/h]")
     for slots in (20, 30, 38, 39, 64, 128, 139, 140):
         good, graphics = (pc.hourly(slots) for pc in PCS)
         print(f"{slots:6d} {slots * 5:8d}      {good:8.2f} {graphics:9.2f}")
@@ -127,7 +127,7 @@ def main(picture: Path) -> None:
     below.set_yscale("log")
     below.set_ylim(0.1, 1000.0)
     below.axvline(128, color="black", linewidth=1, linestyle=":")
-    below.set_xlabel("slots of a pulse memory, 5 us each; dotted: 4 KB have no more")
+    below.set_xlabel("slots of a pulse memory, 5 µs each; dotted: 4 KB have no more")
     for axes in (above, below):
         axes.legend(frameon=False)
     save(figure, picture)

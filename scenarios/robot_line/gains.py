@@ -58,7 +58,7 @@ def settings(gains: Gains) -> dict[str, list[float]]:
 
 
 def inertia(pose: str) -> Gains:
-    """Inertia that each motor moves if gears are rigid and the other joints stand [kg m^2]."""
+    """Inertia that each motor moves if gears are rigid and the other joints stand [kg·m²]."""
     axis = at(pose)
     parts, p = linearised(axis, "arm")
     point, own = axis.points["arm"], axis.values("arm")
@@ -190,9 +190,9 @@ def table(told: Callable[[str], None] = print) -> None:
     moved = inertia("line")
     rows = {name: rule(*given, moved) for name, given in RULES.items()}
     rows["tuned"] = tuned(rows["Yaskawa, upper"], [Pose(p) for p in POSES])
-    told("| gains | pose | gain margin | phase margin [deg] | peak S |"
+    told("| gains | pose | gain margin | phase margin [°] | peak S |"
          " bandwidth [Hz] | peak of a link | mode [Hz] | damping |"
-         " lag [units] | line [um] |")  # fmt: skip
+         " lag [units] | line [µm] |")  # fmt: skip
     told("|" + "---|" * 11)
     for name, gains in rows.items():
         line = line_cells(gains)

@@ -71,7 +71,7 @@ def main(picture: Path) -> None:
         axes.plot(fine, [truly(f, rest) for f in fine], color=COLOURS[name], linewidth=1)
         axes.axvline(cap(rest), color=COLOURS[name], linewidth=1, linestyle=":")
     axes.plot(fine, fine, color="black", linewidth=0.7, label="feed")
-    axes.set_title("Points: run; lines: formula; dotted: cap of the 100 us cycle", loc="left")
+    axes.set_title("Points: run; lines: formula; dotted: cap of the 100 µs cycle", loc="left")
     axes.set_xlabel("feed [mm/s]")
     axes.set_ylabel("true speed of the tool [mm/s]")
     axes.legend(frameon=False)

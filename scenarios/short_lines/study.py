@@ -1,4 +1,4 @@
-"""Study planners: every shape by every planner, at 1000 mm/s^2 of each axis.
+"""Study planners: every shape by every planner, at 1000 mm/s² of each axis.
 
     .venv/bin/python scenarios/short_lines/study.py [picture.png]
 
@@ -31,7 +31,7 @@ sys.path.append(str(HERE.parents[1] / "tests"))
 from shape_paths import Chords, Piece, shaped  # noqa: E402
 
 toppra.setup_logging("ERROR")
-TOLERANCE, ACC, JERK, PERIOD = 0.02, 1000.0, 50000.0, 1e-3  # [mm], [mm/s^2], [mm/s^3], [s]
+TOLERANCE, ACC, JERK, PERIOD = 0.02, 1000.0, 50000.0, 1e-3  # [mm], [mm/s²], [mm/s³], [s]
 CHORD = 5e-4  # [mm] of arcs as chords
 SLIVER, STRAIGHT = 1e-6, 1e-6  # [mm], [1/mm] less than toppra can resolve
 RUNS = [(name, 100.0) for name in shapes.SHAPES]
@@ -326,8 +326,8 @@ def draw(found: dict[tuple[str, float], dict[str, Row]], picture: Path) -> None:
 def main(picture: Path) -> None:
     """Print the table, draw the picture."""
     print(
-        "| shape | F [mm/s] | planner | time [s] | over bound | off / back [um] | v [mm/s] "
-        "| a [mm/s^2] | j [m/s^3] | machine off [um] |\n" + "|---" * 10 + "|"
+        "| shape | F [mm/s] | planner | time [s] | over bound | off / back [µm] | v [mm/s] "
+        "| a [mm/s²] | j [m/s³] | machine off [µm] |\n" + "|---" * 10 + "|"
     )
     found = {}
     for name, feed in RUNS:

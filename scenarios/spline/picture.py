@@ -41,7 +41,7 @@ def main(picture: Path) -> None:
         line = {"linestyle": "--", "linewidth": 2.2} if first == 9 else {"linewidth": 1.2}
         right.plot(along, off, color=colour, label=name, **line)
         middle = (along > 10.0) & (along < 50.0)
-        print(f"{name}: {off[middle].max():.1f} um on the wave")
+        print(f"{name}: {off[middle].max():.1f} µm on the wave")
     left.set(xlabel="X [mm]", ylabel="Y [mm]", aspect="equal")
     left.set_title("Table of the machine", loc="left", fontsize=10)
     left.legend(frameon=False, loc="upper center", fontsize=8, bbox_to_anchor=(0.5, -0.2), ncols=3)
@@ -50,7 +50,7 @@ def main(picture: Path) -> None:
         text = "V²/(2 Kp² R) at the top of the wave, curve and copy" if size == 1.0 else None
         right.axhline(lag, color="#777777", linestyle=":", linewidth=1.2, label=text)
     right.legend(handles=right.lines[-2:-1], frameon=False, fontsize=8, loc="upper center")
-    right.set(xlabel="along the curve, in its own size [mm]", ylabel="contour error [um]")
+    right.set(xlabel="along the curve, in its own size [mm]", ylabel="contour error [µm]")
     right.set(xlim=(0, 80), ylim=(0, None))
     right.set_title("Distance from the exact curve", loc="left", fontsize=10)
     for axes in (left, right):

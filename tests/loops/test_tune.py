@@ -181,7 +181,7 @@ def test_the_demo_is_tuned_to_its_limit(tuned: Tuned) -> None:
     assert tuned.after[0].result["mcc.done"][-1]
     assert tuned.values.feasible()
     text = " ".join(tuned.toml().splitlines())
-    for said in ("card.enc_phase reads machine.motor_phase", "card samples every 100 us"):
+    for said in ("card.enc_phase reads machine.motor_phase", "card samples every 100 µs"):
         assert said in text
     first = tuned.settings["mcc.p_gain"][0]
     assert f"= {first} (Kp {first / 200 * 47.683716:#.3g} 1/s)" in text

@@ -223,6 +223,8 @@ def test_the_form_has_every_field_of_the_file() -> None:
     assert set(rows["axes"]) == set(config["axes"][0]) - {"name"}
     period = rows["motion"]["period"]
     assert (period["low"], period["high"], period["unit"]) == pytest.approx((250e-6, 0.01, "s"))
+    assert rows["axes"]["jerk_max"]["unit"] == "mm/s³"
+    assert rows["motion"]["corner_angle"]["unit"] == "°"
     assert rows["motion"]["reserve"]["high"] == 0.9 and rows["tasks"]["run"]["kind"] == "whole"
     assert rows["inputs"]["action"]["choices"][2] == "pause"
     assert rows["axes"]["maximum"]["default"] is None

@@ -58,6 +58,7 @@ def settings(
 def _tell(found: dict[str, list[int]]) -> None:
     from motionfmu.netcard.settings import fields, shown, words
     from motionfmu.netcard.tables import Axis, Input
+    from motionfmu.units import spelled
 
     used = [i for i, action in enumerate(found["in_action"]) if action]
     tables: dict[Any, Any] = {
@@ -75,7 +76,7 @@ def _tell(found: dict[str, list[int]]) -> None:
             for i in columns
         ]
         tables[None if one else of].add_row(
-            words(name, 0) if one else what.words, *values, what.unit
+            words(name, 0) if one else what.words, *values, spelled(what.unit)
         )
     for of, table in tables.items():
         if of is not Input or used:

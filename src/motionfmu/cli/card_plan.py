@@ -177,7 +177,7 @@ def _show_job(file: Path, found: "Job", picture: Path | None) -> None:
             )
     out.print(table)
     for number, e in enumerate(found.events, 1):
-        what = f"pulse of {e.width} us" if e.pulse else "level"
+        what = f"pulse of {e.width} µs" if e.pulse else "level"
         pins = ", ".join(str(k) for k in range(16) if e.pins >> k & 1)
         times = int((found.frame_events == number).sum())
         active = "high" if e.level else "low"

@@ -12,6 +12,7 @@ import typer
 
 from motionfmu.cli.common import app
 from motionfmu.errors import InputError, suggestion
+from motionfmu.units import spelled
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
@@ -149,7 +150,7 @@ def _row(port: "Port") -> tuple[tuple[str, ...], str]:
     text = port.doc + (" (may change in a run)" if port.tunable else "")
     if len(start) > START_MAX:
         text, start = f"{text}; start {start}", "..."
-    return (port.name, kind, port.unit or "", start, _range(port)), text
+    return (port.name, kind, spelled(port.unit), start, _range(port)), text
 
 
 def _range(port: "Port") -> str:
@@ -231,7 +232,8 @@ def _set(name: str, scenario: "Scenario") -> str:
     from motionfmu.scenarios import fmus
 
     port = fmus.ports(scenario.document.body.component[component]).get(variable.split("[")[0])
-    return f"{name} [{port.unit}]" if port and port.unit else name
+    unit = spelled(port.unit) if port else ""
+    return f"{name} [{unit}]" if unit else name
 
 
 def _bounds(values: dict[str, Any]) -> str:

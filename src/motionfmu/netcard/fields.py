@@ -6,6 +6,8 @@ from typing import Any, ClassVar, Literal, Self, get_args, get_origin
 from pydantic import BaseModel, ConfigDict, model_validator
 from pydantic.fields import FieldInfo
 
+from motionfmu.units import spelled
+
 STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 # Field, "<" or "<=", field of the same table; the card's numbers keep it, too.
 Rule = tuple[str, str, str]
@@ -44,13 +46,13 @@ class Number:
     def wrong(self) -> str:
         """What is wrong with it, in words; else empty."""
         w = self.what
-        told = f"{self.value} {w.counts}".rstrip()
+        told = f"{self.value} {spelled(w.counts)}".rstrip()
         if not w.low <= self.value <= w.high:
             return f"that is {told}; {w.low} .. {w.high} wanted"
         if self.value % w.step:
             return f"that is {told}; a multiple of {w.step} wanted"
         exactly = self.source * w.factor if w.exact else self.value
-        return f"no whole number of {w.counts}" if abs(exactly - self.value) > 1e-6 else ""
+        return f"no whole number of {spelled(w.counts)}" if abs(exactly - self.value) > 1e-6 else ""
 
 
 class Wrong(ValueError):

@@ -10,6 +10,7 @@ from motionfmu.binding import dtype
 from motionfmu.netcard.fields import Is, Table, choices, described
 from motionfmu.netcard.tables import AXES, Axis, Fifo, Input, Motion, Pulse, Tasks
 from motionfmu.netcard.views import Configured
+from motionfmu.units import spelled
 
 if TYPE_CHECKING:
     from motionfmu.netcard.config import CardConfig
@@ -90,7 +91,7 @@ def lines(wanted: Mapping[Key, int], end: Configured) -> Iterator[str]:
     for s in end.changed:
         scale: Any = ("pulses_per_m", s.index)
         new = wanted.get(scale, 1)
-        unit = fields()[s.name][2].unit
+        unit = spelled(fields()[s.name][2].unit)
         change = f"{shown(s.name, s.before, before.get(scale, new))} -> "
         change += f"{shown(s.name, s.value, new)} {unit}".rstrip()
         later = ", acts from the next power-up on" if s.later and s.result.ok else ""

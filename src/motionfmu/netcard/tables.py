@@ -124,12 +124,12 @@ class Axis(Table):
     speed_min: Annotated[float, _speed("Speed at which it starts at once", "SPEED_MIN", 0)] = 0.0
     acceleration_max: Annotated[
         float,
-        Is("Highest acceleration", "mm/s^2", "ACC_MAX", "pulses/s^2", 1, 2 * 10**9, pulses=True,
+        Is("Highest acceleration", "mm/s2", "ACC_MAX", "pulses/s2", 1, 2 * 10**9, pulses=True,
            parameter="acc_max"),
     ]  # fmt: skip
     jerk_max: Annotated[
         float,
-        Is("Highest jerk", "mm/s^3", "JERK_MAX", "pulses/s^3", 1, 10**15, "ULL", pulses=True,
+        Is("Highest jerk", "mm/s3", "JERK_MAX", "pulses/s3", 1, 10**15, "ULL", pulses=True,
            parameter="jerk_max"),
     ] = 50_000.0  # fmt: skip
     limit_level: Annotated[

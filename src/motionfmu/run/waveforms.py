@@ -73,5 +73,5 @@ def _chart(run: Recorded, asked: Waveform) -> Chart:
         Panel("deviation\n[command units]", (curve("deviation", units, True),), {}, False),
     )
     title = asked.title or f"Drive of axis {asked.axis}"
-    note = asked.note or f"100 % is {asked.rated:g} N.m; {turn:g} command units are a motor turn."
+    note = asked.note or f"100 % is {asked.rated:g} N·m; {turn:g} command units are a motor turn."
     return Chart(title, note, (low, high), asked.window is None, panels)

@@ -19,15 +19,15 @@ def assumptions(study: Study) -> list[str]:
             found.append(f"Feedback: {'.'.join(target)} reads {'.'.join(source)} ({doc})")
     found.append(f"Judged: {study.signals.position}{summed(study)}")
     for name, block in axis.blocks.items():
-        grid = f"{block.grid_ns * 1e-3:g} us"
+        grid = f"{block.grid_ns * 1e-3:g} µs"
         if isinstance(block, Sampled) and _acts(block):
             found.append(f"Delay: {name} samples every {grid} and shows it one period later")
             if len(block.laws) > 1:
-                cycle = f"{block.cycle_ns * 1e-3:g} us"
+                cycle = f"{block.cycle_ns * 1e-3:g} µs"
                 found.append(f"Delay: {name} computes its law every {cycle}")
         elif isinstance(block, Plant):
             found.append(f"Delay: {name} holds its input over {grid}")
-    found.append(f"Delay: the wires none, communication step {axis.step_ns * 1e-3:g} us")
+    found.append(f"Delay: the wires none, communication step {axis.step_ns * 1e-3:g} µs")
     found += [f"Worst case: {text}" for text in worst(axis)]
     point = ", ".join(f"{n} = {v:.4g}" for n, v in study.at.items()) or "at rest"
     found.append(f"Operating point: {point}")

@@ -7,6 +7,7 @@ from pydantic_core import PydanticUndefined
 
 from motionfmu.netcard.fields import Is, Table, choices, described
 from motionfmu.netcard.tables import Axis, Fifo, Input, Motion, Network, Pen, Pulse, Tasks
+from motionfmu.units import spelled
 
 PARTS: tuple[tuple[str, str, type[Table]], ...] = (
     ("network", "Network", Network),
@@ -32,7 +33,7 @@ def form() -> list[dict[str, Any]]:
 def _field(name: str, table: type[Table]) -> dict[str, Any]:
     field, what = described(table)[name]
     kind: Any = field.annotation
-    row: dict[str, Any] = {"name": name, "words": what.words, "unit": what.unit}
+    row: dict[str, Any] = {"name": name, "words": what.words, "unit": spelled(what.unit)}
     row["default"] = None if field.default is PydanticUndefined else field.default
     if words := choices(field):
         return row | {"kind": "choice", "choices": words}

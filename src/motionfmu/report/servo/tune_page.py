@@ -17,6 +17,7 @@ from motionfmu.tune.problem import ON_PATH
 from motionfmu.tune.result import Run, Tuned
 from motionfmu.tune.trial import Trial
 from motionfmu.tune.words import assumptions, plant_text, units_of
+from motionfmu.units import spelled
 
 BEFORE, AFTER = RAPID, AXES[0]
 _STEPS = 600
@@ -94,7 +95,7 @@ def _gains(tuned: Tuned) -> str:
         known = [kps[0].get(whose), *2 * [kps[1].get(whose)]]
         said = [_kp(g and g.at(c)) for g, c in zip(known, cells, strict=True)]
         values = (f"{c:.6g}{kp}" for c, kp in zip(cells, said, strict=True))
-        rows.append([doc, port.unit or "", *values, bounds])
+        rows.append([doc, spelled(port.unit), *values, bounds])
     exact, rounded = tuned.lags(tuned.found.z), tuned.lags(tuned.z)
     for k, before in tuned.lags(study.present).items():
         name = f'lag of axis {k}<div class="sub">Following error over speed in slow motion</div>'
