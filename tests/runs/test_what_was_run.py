@@ -75,7 +75,7 @@ def test_the_feed_stands_beside_the_programmed(circle) -> None:
 def test_the_circle_the_other_way_round_is_no_corner(circle) -> None:
     result, page, _, _ = circle
     assert result.contour().corners == () and "<h2>Corners" not in page
-    assert "<h2>Worst lines of the program</h2>" in page
+    assert "<h3>Worst lines</h3>" in page
     assert 'class="two"><div><h2>' not in page  # nor half a page left empty
     # in words beside the name, with its unit
     row = re.search(r'contour\.error\.max<div class="sub">(.*?)</div>.*?<td class="n">(.*?)<', page)

@@ -176,7 +176,8 @@ def _add_path(page: Sheet, contour: ContourResult, drawing: Drawing) -> None:
         " large as it is; colour is its true size."
     )
     left = f"<div>{control}{page.place('path', path_figure(drawing))}</div>"
-    content = f'<div class="wide">{left}<div><h3>Errors</h3>{error_table(contour)}</div></div>'
+    right = f"<h3>Errors</h3>{error_table(contour)}<h3>Worst lines</h3>{line_table(contour)}"
+    content = f'<div class="wide">{left}<div>{right}</div></div>'
     page.section("Path and contour error", note, content)
 
 
@@ -211,11 +212,7 @@ def _add_time(page: Sheet, result: Result, contour: ContourResult) -> None:
 
 
 def _add_corners(page: Sheet, contour: ContourResult) -> None:
-    parts = ""
     if contour.corners:
         count = len(contour.corners)
         more = f", worst {CORNERS_SHOWN} of {count}" if count > CORNERS_SHOWN else ""
-        parts += f"<div><h2>Corners{more}</h2>{corner_table(contour)}</div>"
-    parts += f"<div><h2>Worst lines of the program</h2>{line_table(contour)}</div>"
-    parts = f'<div class="two">{parts}</div>' if contour.corners else parts
-    page.sections.append(f"<section>{parts}</section>")
+        page.section(f"Corners{more}", "", corner_table(contour))
