@@ -255,7 +255,7 @@ static void check(const struct station_reading *was)
     HOLDS(r.services == c.services && r.missed == c.missed && r.starved == c.starved);
     HOLDS(r.status == c.status && r.error == c.error && r.command == c.command);
     HOLDS(r.missed >= was->missed && r.services >= was->services && r.starved >= was->starved);
-    HOLDS(isfinite(r.path_feed) && r.path_feed >= 0.0 && isfinite(r.spindle));
+    HOLDS(isfinite(r.path_feed) && r.path_feed >= 0.0 && isfinite(r.spindle_speed));
     HOLDS(stopped_by_pin || r.frames_refused == 0);
     if (r.stopped && !s.pc.mcc.signals.stop && r.error != MCC_ERROR_STOP) {
         check_rest(&r);
