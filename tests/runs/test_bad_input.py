@@ -213,9 +213,12 @@ def test_every_engine_tells_the_fmus_own_message(tmp_path: Path, engine: str) ->
 
 
 def test_files_that_are_no_scenario(tmp_path: Path) -> None:
+    scenario(tmp_path)
+    lines = {"empty": 5, "about": 4, "short": 3}
     for name, content, what in (
-        ("none", None, "none: no such scenario"),
+        ("mien", None, "mien: no such scenario; did you mean 'mine'?"),
         ("empty", "", "empty/scenario.toml:1: the first line is a comment"),
+        ("about", "stop = 1.0\nstpe = 2.0", "unknown key 'stpe'; did you mean 'step'?"),
         ("torn", "# about\nstop = \n", "torn/scenario.toml:2: "),
         ("binary", b"\xff\xfe\x00", "not UTF-8 text"),
         ("short", "# about\nstop = 1.0\n", "step is missing"),
@@ -224,7 +227,7 @@ def test_files_that_are_no_scenario(tmp_path: Path) -> None:
             (tmp_path / name).mkdir()
             raw = content if isinstance(content, bytes) else content.encode()
             (tmp_path / name / "scenario.toml").write_bytes(raw)
-        assert what in message(tmp_path / name, lines=3 if name == "short" else 1)
+        assert what in message(tmp_path / name, lines=lines.get(name, 1))
 
 
 def test_a_foreign_folder_is_never_replaced(tmp_path: Path) -> None:

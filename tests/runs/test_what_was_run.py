@@ -11,6 +11,7 @@ from page_curves import curve, page_data
 
 import motionfmu
 from motionfmu.report import outcome
+from motionfmu.report.signal_words import sentence, titled
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +79,9 @@ def test_the_circle_the_other_way_round_is_no_corner(circle) -> None:
     assert "<h3>Worst lines</h3>" in page
     assert 'class="two"><div><h2>' not in page  # nor half a page left empty
     # in words beside the name, with its unit
-    row = re.search(r'contour\.error\.max<div class="sub">(.*?)</div>.*?<td class="n">(.*?)<', page)
+    row = re.search(
+        r'contour\.error\.max<div class="sub">(.*?)</div>.*?<td class="key">(.*?)<', page
+    )
     assert row and row[1] == "Contour error, largest" and row[2].endswith(" mm")
     assert "<h2>Torque command to the current loop (drives.torque)</h2>" in page
 
@@ -99,3 +102,12 @@ def test_notes_of_figures_are_the_scenarios_where_something_is_overridden(tmp_pa
     written = outcome.save(scenario.run(), tmp_path / "written", {}).read_text()
     assert mark not in written and "The PC answers one clock" in written
     assert words(written, "Overrides") == "none: as written"
+
+
+def test_a_list_of_values_is_no_title_but_stands_beside_its_check() -> None:
+    doc = "0 none, 1 following error, 2 overspeed; held until alarm_reset"
+    assert titled("drives.alarm", doc) == "drives.alarm"
+    assert (
+        titled("card.dac", "DAC voltage of the axes, held") == "DAC voltage of the axes (card.dac)"
+    )
+    assert sentence(doc) == "0 none, 1 following error, 2 overspeed"

@@ -63,7 +63,8 @@ def _reasons(checks: "Sequence[Verdict]") -> dict[str, list[str]]:
 def _ends(result: "Result") -> list[str]:
     """Why a run ended, and when its program was done."""
     done = result.done_at
-    told = f"; the program was done at {done:.6g} s" if done is not None else ""
+    own = isinstance(result.scenario.document.body.stop, str) and done is not None
+    told = "" if done is None or own else f"; the program was done at {done:.6g} s"
     return [f"ended: {result.stopped}{told}"]
 
 

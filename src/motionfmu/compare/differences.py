@@ -60,7 +60,7 @@ def _plain(x: Side) -> dict[str, str]:
     found |= {k: str(options[k]) for k in ("engine", "fmi") if options.get(k) is not None}
     found["step"] = f"{1e3 * run['step']:.9g} ms"
     found["stop"] = _text(run["stop"], "" if isinstance(run["stop"], str) else "s")
-    return found | {"every": f"{run['every']} steps"}
+    return found | {"every": f"{run['every']} step{'s' * (run['every'] != 1)}"}
 
 
 def _rows(what: str, a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterable[Different]:

@@ -208,8 +208,8 @@ class ContourResult:
         for place, reason in self.missing.items():
             if name.startswith((f"{place}.", f"{place.rpartition('.')[0]}.both.")):
                 return reason
-        there = ", ".join(value) if isinstance(value, dict) and value else "nothing"
-        return f"no {part!r}, there is {there}"
+        there = ", ".join(value) if isinstance(value, dict) else ""
+        return f"no {part!r}, there is {there}" if there else "the run has none"
 
     def _per_command(self) -> list[dict[str, Any]]:
         rows = []

@@ -6,13 +6,19 @@ from motionfmu.report.contour_words import in_words
 from motionfmu.scenarios.system import Resolver
 from motionfmu.units import spelled
 
-# Where the first clause of a description ends.
-_END = re.compile(r"[;:(\[]|, ")
+# Where the first clause of a description ends, and its first sentence.
+_END, _SENTENCE = re.compile(r"[;:(\[]|, "), re.compile(r"[;(\[]|\. ")
 
 
 def head(doc: str) -> str:
-    """The first clause of a description, for a title."""
-    return _END.split(doc, maxsplit=1)[0].strip()
+    """The first clause of a description, for a title; empty if it is a list of values."""
+    first = _END.split(doc, maxsplit=1)[0].strip()
+    return "" if first[:1].isdigit() else first
+
+
+def sentence(doc: str) -> str:
+    """What a description says first, for a table."""
+    return _SENTENCE.split(doc, maxsplit=1)[0].strip()
 
 
 def titled(name: str, doc: str) -> str:
@@ -28,4 +34,6 @@ def words_of(resolver: Resolver, name: str) -> tuple[str, str]:
         text, unit = in_words(name.partition(".")[2])
         return text, spelled(unit)
     port = resolver.ports.get(table, {}).get(own)
-    return (head(port.doc), spelled(port.unit)) if port is not None else ("", "")
+    if port is None:
+        return "", ""
+    return sentence(port.doc), spelled(port.unit)

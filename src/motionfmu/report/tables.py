@@ -108,16 +108,19 @@ def check_table(checks: Sequence[Check], words: Callable[[str], tuple[str, str]]
         mark, kind = ("✓ pass", "pass") if check.ok else ("✗ fail", "fail")
         value = check.value
         text = str(value)
-        if isinstance(value, float) and not math.isnan(value):
+        if check.reason:
+            text = "none"
+        elif isinstance(value, float):
             text = f"{value:.6g}".replace("-", MINUS)
         said, unit = words(check.name)
-        sub = f'<div class="sub">{escape(said)}</div>' if said else ""
+        below = (t for t in (said, check.reason) if t)
+        sub = "".join(f'<div class="sub">{escape(t)}</div>' for t in below)
         rows.append(
             (
                 f'<span class="mark {kind}">{mark}</span>',
                 f"{escape(check.name)}{sub}",
                 escape(f"{text} {unit}" if unit and not check.reason else text),
-                escape(check.bounds if not check.reason else f"{check.bounds}; {check.reason}"),
+                escape(check.bounds),
             )
         )
     return table(("Verdict", "Check", "Value", "Bounds"), rows, numeric=4)

@@ -47,8 +47,8 @@ class Scenario(Prepared):
         body = self.document.body
         stop = body.stop if isinstance(body.stop, str) else f"{body.stop:g} s"
         fmus = ", ".join(dict.fromkeys(body.component.values()))
-        checks = sum(len(listed) for listed in body.check.values())
-        counts = f"{len(self.ends)} signals recorded, {checks} checks"
+        n, checks = len(self.ends), sum(map(len, body.check.values()))
+        counts = f"{n} signal{'s' * (n != 1)} recorded, {checks} check{'s' * (checks != 1)}"
         return f"<Scenario {self.name}: {fmus}; until {stop}, {counts}>"
 
     def run(  # noqa: PLR0913  (each is a keyword)

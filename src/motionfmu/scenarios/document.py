@@ -17,6 +17,7 @@ from motionfmu.toml_lines import is_file, shown
 # Tables of which each key is the user's own.
 OPEN = ("component", "connect", "set", "check")
 ARRAYS = ("drive", "figure", "waveform", "contrary")
+ABOUT = "the first line is a comment that says what the scenario shows"
 # What takes the place of a table that cannot be read, so that the others are looked at.
 SOUND: Tables = {"stop": tables_.LONGEST, "step": 1e-4, "record": {"signals": ["*"]}}
 
@@ -106,12 +107,12 @@ def parsed(sources: list[Source], name: str = "") -> Document:
     tables = merged(sources)
     places = tuple(sources)
     sound = _numbers(copy.deepcopy(tables))
-    wrong: list[str] = []
+    wrong = [f"{s.name}:1: {ABOUT}" for s in sources if s.lines is not None and not s.about]
     damaged: set[str] = set()
     try:
         body = Body.model_validate(sound)
     except ValidationError as error:
-        wrong = _told(error, places)
+        wrong += _told(error, places)
         damaged = {str(found["loc"][0]) for found in error.errors()}
         try:
             body = Body.model_validate(_without(sound, error))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, suggestion
 from motionfmu.toml_lines import Lines, is_file, shown, tables_of, text_of
 
 Tables = dict[str, Any]
@@ -67,7 +67,9 @@ def scenario_file(path: str | Path) -> Path:
     file = Path(path)
     file = file / "scenario.toml" if is_file(file / "scenario.toml") else file
     if not is_file(file):
-        raise InputError(f"{file}: no such scenario")
+        beside = file.parent.iterdir() if file.parent.is_dir() else ()
+        near = [p.name for p in beside if is_file(p / "scenario.toml")]
+        raise InputError(f"{file}: no such scenario{suggestion(file.name, near)}")
     return file.resolve()
 
 
@@ -102,9 +104,8 @@ def _read(file: Path) -> Source:
     text = text_of(file)
     tables = tables_of(text, file)
     first = text.split("\n", 1)[0]
-    if not first.startswith("#"):
-        raise InputError(f"{file}:1: the first line is a comment that says what the scenario shows")
-    return Source(str(file), file.parent, tables, Lines(text), first.lstrip("# "))
+    about = first.lstrip("# ") if first.startswith("#") else ""
+    return Source(str(file), file.parent, tables, Lines(text), about)
 
 
 def merged(sources: Iterable[Source]) -> Tables:
