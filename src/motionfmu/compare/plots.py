@@ -46,7 +46,8 @@ def signal_figure(found: Pairing, name: str) -> Figure:
         ]
         panels.append(Panel(label(both.names[i], both.unit), tuple(curves), {}, True))
         colors += [A, B]
-        gone.append(Curve(both.names[i], both.time, both.difference[:, i], both.steps))
+        element = both.names[i].removeprefix(name)  # "[1]": the title has the name
+        gone.append(Curve(element, both.time, both.difference[:, i], both.steps))
     several = len(gone) > 1
     panels.append(Panel(label(GONE, both.unit), tuple(gone), {}, several))
     colors += [DIFFERENCE[(i + several) % len(DIFFERENCE)] for i in range(len(gone))]
