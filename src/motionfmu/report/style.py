@@ -62,6 +62,7 @@ def layout(height: int, **more: Any) -> dict[str, Any]:
             "y": 1.0,
             "yanchor": "bottom",
             "font": {"size": 12},
+            "bgcolor": "rgba(255, 255, 255, 0)",  # a mark at the upper edge stays whole
         },
     }
     return plain | more
