@@ -59,15 +59,15 @@ struct model {
 
 static const double plant_h_lambda = 2.0;
 
-/* Bound of the largest |eigenvalue| of an n x n matrix, a[i][j] at a[i * n + j], which it destroys:
- * |lambda| <= norm(a^m)^(1/m) for every m; with m = 2^squarings, of 2^10 at most some per cent too
- * large. */
+/* Bound of the largest |eigenvalue| of an n x n matrix, [i][j] at [i * n + j]: |lambda| <=
+ * norm(a^m)^(1/m) for every m; with m = 2^squarings, of 2^10 at most some per cent too large. */
 enum { PLANT_ROUGH = 4, PLANT_FINE = 10 };
-static double plant_spectral_radius(double *a, int squarings)
+static double plant_spectral_radius(const double *matrix, int squarings)
 {
     enum { n = PLANT_STATES };
-    double logarithm = 0.0, share = 1.0;
-    for (int k = 0; k <= squarings; k++, share *= 0.5) {
+    double a[n * n], square[n * n], logarithm = 0.0, share = 1.0;
+    memcpy(a, matrix, sizeof a);
+    for (int k = 0;; k++, share *= 0.5) {
         double norm = 0.0;
         for (int i = 0; i < n; i++) {
             double sum = 0.0;
@@ -80,22 +80,24 @@ static double plant_spectral_radius(double *a, int squarings)
             return norm;
         }
         logarithm += share * log(norm);
-        double b[n * n], square[n * n];
+        if (k == squarings) {
+            return exp(logarithm);
+        }
         for (int i = 0; i < n * n; i++) {
-            b[i] = a[i] / norm;
+            a[i] /= norm;
         }
         memset(square, 0, sizeof square);
         for (int i = 0; i < n; i++) {
             for (int q = 0; q < n; q++) {
-                const double factor = b[i * n + q];
+                const double factor = a[i * n + q], *row = &a[q * n];
+                double *sum = &square[i * n];
                 for (int j = 0; j < n && factor != 0.0; j++) {
-                    square[i * n + j] += factor * b[q * n + j];
+                    sum[j] += factor * row[j];
                 }
             }
         }
         memcpy(a, square, sizeof square);
     }
-    return exp(logarithm);
 }
 
 /* [1/s] bound of |lambda| at a point with these branches; branches that exclude each other may give
