@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -44,10 +45,11 @@ def cases(draw):
 
 
 @settings(max_examples=200, deadline=None)
-@given(cases())
-def test_no_monotone_assignment_is_better(case) -> None:
+@given(cases(), st.integers(1, 12))
+def test_no_monotone_assignment_is_better(case, together) -> None:
     points, segments, first, last = case
-    chosen = assign(points, segments, first, last)
+    with patch("motionfmu.contour.assign.TOGETHER", together):
+        chosen = assign(points, segments, first, last)
     assert (np.diff(chosen) >= 0).all()
     assert (chosen >= first).all() and (chosen <= last).all()
     cost = sum(

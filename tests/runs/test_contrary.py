@@ -1,8 +1,8 @@
 """Every scenario's verdict fails when what the scenario shows is switched off."""
 
-import functools
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from conftest import ROOT
 import motionfmu
 from motionfmu.run import contrary
 from motionfmu.run.checks import judge
+from motionfmu.run.session import Session
 from motionfmu.scenarios import document
 from motionfmu.scenarios.body import Check
 
@@ -25,7 +26,7 @@ def numbers(folder: Path) -> list[int | None]:
     return [*range(len(document.read(folder).body.contrary))] or [None]
 
 
-def weakness(tried: motionfmu.Scenario, number: int | None) -> str:
+def weakness(tried: "motionfmu.Scenario | Once", number: int | None) -> str:
     """Why a verdict proves nothing; empty if it fails as it must."""
     if number is None:
         return f"{tried.name}: no [[contrary]] says with which settings its verdict fails"
@@ -35,18 +36,67 @@ def weakness(tried: motionfmu.Scenario, number: int | None) -> str:
     return f"{tried.name}: {', '.join(hold)} hold without {case.off}" if hold else ""
 
 
-loaded_once = functools.cache(motionfmu.load)
+class Once:
+    """The cases of one scenario: it is loaded once and, but for those of driven inputs, built
+    once. A session gives the bits of a run (tests/runs/test_sweep.py).
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.scenario = motionfmu.load(folder)
+        self.name, self.document = self.scenario.name, self.scenario.document
+        cases = self.document.body.contrary
+        self.options = [contrary.options(self.document, case) for case in cases]
+        varied = {n for o in self.options if not o["undriven"] for n in o["set"]}
+        self.session = Session(self.scenario, sorted(varied)) if varied else None
+
+    def run(self, **options: Any) -> motionfmu.Result:
+        """As `Scenario.run`."""
+        if self.session is None or options["undriven"]:
+            return self.scenario.run(**options)
+        return self.session.run(options["set"])
+
+    def close(self) -> None:
+        """Free the FMUs."""
+        if self.session is not None:
+            self.session.close()
 
 
-CASES = [(f, n) for f in FOLDERS for n in numbers(f)]
+@pytest.fixture(scope="module")
+def built() -> Iterator[Callable[[Path], Once]]:
+    """A scenario's `Once`; that of the one before is closed."""
+    last: list[tuple[Path, Once]] = []
+
+    def of(folder: Path) -> Once:
+        if not last or last[0][0] != folder:
+            while last:
+                last.pop()[1].close()
+            last.append((folder, Once(folder)))
+        return last[0][1]
+
+    yield of
+    for _, once in last:
+        once.close()
 
 
-@pytest.mark.parametrize(
-    ("folder", "number"), CASES, ids=[f"{f.name}-{'none' if n is None else n}" for f, n in CASES]
-)
-def test_a_verdict_fails_with_what_is_shown_switched_off(folder: Path, number: int | None) -> None:
+# A scenario's cases go to one worker.
+CASES = [
+    pytest.param(
+        f,
+        n,
+        id=f"{f.name}-{'none' if n is None else n}",
+        marks=pytest.mark.xdist_group(f"contrary {f.name}"),
+    )
+    for f in FOLDERS
+    for n in numbers(f)
+]
+
+
+@pytest.mark.parametrize(("folder", "number"), CASES)
+def test_a_verdict_fails_with_what_is_shown_switched_off(
+    folder: Path, number: int | None, built: Callable[[Path], Once]
+) -> None:
     """By the checks it names, not by an error."""
-    assert weakness(loaded_once(folder), number) == ""
+    assert weakness(built(folder), number) == ""
 
 
 def made_up(folder: Path, cases: str) -> Path:

@@ -1,13 +1,17 @@
 """Which segment each sample belongs to: monotone along the path."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.contour.geometry import Array, Segment
+from motionfmu.contour.geometry import Array, Line, Lines, Segment
 
 Index = NDArray[np.int64]
 # First sample of a segment's candidates; for each of them: sample of entry, segment before it.
 Row = tuple[int, NDArray[np.int32], NDArray[np.int32]]
+# Samples of short lines that are taken in one go: few calls, and little memory.
+TOGETHER = 20_000
 
 
 def assign(points: Array, segments: tuple[Segment, ...], first: Index, last: Index) -> Index:
@@ -31,10 +35,8 @@ def assign(points: Array, segments: tuple[Segment, ...], first: Index, last: Ind
     table: dict[int, Row] = {}
     begin = np.searchsorted(last, np.arange(len(segments)), side="left")
     end = np.searchsorted(first, np.arange(len(segments)), side="right")
-    for s, (a, b) in enumerate(zip(begin.tolist(), end.tolist(), strict=True)):
-        if a >= b:
-            continue
-        square = segments[s].foot(points[a:b]).distance ** 2
+    for s, square in _squares(points, segments, begin, end):
+        a, b = int(begin[s]), int(end[s])
         total = np.cumsum(square)
         enter = np.concatenate([[0.0 if a == 0 else least[a - 1]], least[a : b - 1]])
         enter = enter - (total - square)
@@ -48,6 +50,35 @@ def assign(points: Array, segments: tuple[Segment, ...], first: Index, last: Ind
         least[a:b][better] = cost[better]
         owner[a:b][better] = s
     return _trace_back(count, int(owner[-1]), table)
+
+
+def _squares(
+    points: Array, segments: tuple[Segment, ...], begin: Index, end: Index
+) -> Iterator[tuple[int, Array]]:
+    """Each segment that has candidates, and their squared distances."""
+    counts = np.maximum(end - begin, 0)
+    upto = np.concatenate([[0], np.cumsum(counts)])
+    s = 0
+    while s < len(segments):
+        stop = s
+        while (
+            stop < len(segments)
+            and isinstance(segments[stop], Line)
+            and upto[stop + 1] - upto[s] <= TOGETHER
+        ):
+            stop += 1
+        if stop <= s + 1:
+            if counts[s]:
+                yield s, segments[s].foot(points[begin[s] : end[s]]).distance ** 2
+            s += 1
+            continue
+        which = np.repeat(np.arange(stop - s), counts[s:stop])
+        row = np.arange(len(which)) + (begin[s:stop] - upto[s:stop] + upto[s])[which]
+        lines = Lines([x for x in segments[s:stop] if isinstance(x, Line)])
+        square = lines.foot(points[row], which).distance ** 2
+        for i in np.flatnonzero(counts[s:stop]).tolist():
+            yield s + i, square[upto[s + i] - upto[s] : upto[s + i + 1] - upto[s]]
+        s = stop
 
 
 def _trace_back(count: int, s: int, table: dict[int, Row]) -> Index:

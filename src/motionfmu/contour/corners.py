@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.circles import SPEED_SPAN, speed_along
-from motionfmu.contour.geometry import Arc, Array
+from motionfmu.contour.geometry import Arc, Array, Line, Segment
 from motionfmu.contour.path import Path
 from motionfmu.contour.track import Track
 
@@ -51,7 +51,7 @@ def find_corners(
         if not _joined(path, before, after):
             continue
         first, second = path.segments[before], path.segments[after]
-        angle = _turn(first.tangent(np.array([first.length])), second.tangent(np.zeros(1)))
+        angle = _turn(_leaving(first), _entering(second))
         curved = isinstance(first, Arc) or isinstance(second, Arc)
         if angle < ANGLE_MIN or (curved and angle > ANGLE_BACK):
             continue
@@ -91,7 +91,19 @@ def _joined(path: Path, before: int, after: int) -> bool:
     return all(path.segments[s].length == 0.0 for s in range(before + 1, after))
 
 
+def _entering(segment: Segment) -> Array:
+    """Unit tangent (3,) at the start."""
+    return segment.direction if isinstance(segment, Line) else segment.tangent(np.zeros(1))[0]
+
+
+def _leaving(segment: Segment) -> Array:
+    """Unit tangent (3,) at the end."""
+    if isinstance(segment, Line):
+        return segment.direction
+    return segment.tangent(np.array([segment.length]))[0]
+
+
 def _turn(before: Array, after: Array) -> float:
-    (a, b, c), (x, y, z) = before[0].tolist(), after[0].tolist()  # np.cross takes 20 us
+    (a, b, c), (x, y, z) = before.tolist(), after.tolist()  # np.cross takes 20 us
     cross = math.hypot(b * z - c * y, c * x - a * z, a * y - b * x)
-    return math.atan2(cross, float(before[0] @ after[0]))
+    return math.atan2(cross, float(before @ after))

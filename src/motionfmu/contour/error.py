@@ -101,8 +101,16 @@ def _follow(positions: Array, path: Path, owners: Index) -> Track:
     points = positions[:, :3]
     foot, along = np.empty_like(points), np.empty(len(points))
     distance, tangent = np.empty(len(points)), np.empty_like(points)
+    place = np.cumsum(path.straight) - 1  # of a line among the lines
+    flat = path.straight[owners]
+    if flat.any():
+        which = place[owners[flat]]
+        near = path.lines.foot(points[flat], which)
+        foot[flat], distance[flat] = near.point, near.distance
+        tangent[flat] = path.lines.direction[which]
+        along[flat] = path.offsets[owners[flat]] + near.along
     cuts = np.searchsorted(owners, np.arange(len(path.segments) + 1))
-    for s in np.unique(owners).tolist():
+    for s in np.unique(owners[~flat]).tolist():
         own = slice(int(cuts[s]), int(cuts[s + 1]))
         segment = path.segments[s]
         near = segment.foot(points[own])

@@ -1,6 +1,7 @@
 """Exact path segments in X Y Z and the nearest point on each."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -55,22 +56,42 @@ class Line:
         return float(np.linalg.norm(self.end - self.start))
 
     @cached_property
-    def _direction(self) -> Array:
+    def direction(self) -> Array:
+        """Unit vector (3,) from start to end; zero for a line without length."""
         return (self.end - self.start) / (self.length or 1.0)
 
     def at(self, along: Array) -> Array:
         """Points (n, 3) of the segment at distances (n,) from the start [mm]."""
-        return self.start + np.multiply.outer(along, self._direction)
+        return self.start + np.multiply.outer(along, self.direction)
 
     def tangent(self, along: Array) -> Array:
         """Unit tangents (n, 3) at distances from the start [mm]; zero for a line without length."""
-        return np.broadcast_to(self._direction, (len(along), 3))
+        return np.broadcast_to(self.direction, (len(along), 3))
 
     def foot(self, points: Array) -> Foot:
         """Nearest points of the segment to points (n, 3) [mm]."""
-        along = np.clip((points - self.start) @ self._direction, 0.0, self.length)
+        along = np.clip((points - self.start) @ self.direction, 0.0, self.length)
         point = self.at(along)
         point[along >= self.length] = self.end
+        return Foot(point, along, _norm(points - point))
+
+
+class Lines:
+    """Many straight segments, to find the nearest points on all of them in one go."""
+
+    def __init__(self, lines: Sequence[Line]) -> None:
+        self.start = np.array([line.start for line in lines])
+        self.end = np.array([line.end for line in lines])
+        self.direction = np.array([line.direction for line in lines])
+        self.length = np.array([line.length for line in lines])
+
+    def foot(self, points: Array, which: NDArray[np.int64]) -> Foot:
+        """Nearest point to each of the points (n, 3) [mm] on the line of its index (n,)."""
+        start, way, length = self.start[which], self.direction[which], self.length[which]
+        along = np.clip(np.einsum("ij,ij->i", points - start, way), 0.0, length)
+        point = start + along[:, None] * way
+        ended = along >= length
+        point[ended] = self.end[which[ended]]
         return Foot(point, along, _norm(points - point))
 
 

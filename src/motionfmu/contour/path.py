@@ -11,7 +11,7 @@ from pathlib import Path as File
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.contour.geometry import TURN, Arc, Array, Cubic, Label, Line, Segment
+from motionfmu.contour.geometry import TURN, Arc, Array, Cubic, Label, Line, Lines, Segment
 
 KINDS = {0: "ptp", 1: "line", 2: "arc", 3: "arc", 4: "helix", 5: "helix", 14: "curve"}
 DELAY = 6
@@ -54,6 +54,16 @@ class Path:
     def commands(self) -> NDArray[np.int64]:
         """Command index of each segment."""
         return np.array([s.label.command for s in self.segments])
+
+    @cached_property
+    def straight(self) -> NDArray[np.bool_]:
+        """Which segments are lines."""
+        return np.array([isinstance(s, Line) for s in self.segments])
+
+    @cached_property
+    def lines(self) -> Lines:
+        """The straight segments in their order."""
+        return Lines([s for s in self.segments if isinstance(s, Line)])
 
     @cached_property
     def offsets(self) -> Array:

@@ -1,6 +1,7 @@
 """What a contour analysis takes and gives."""
 
 from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -169,9 +170,14 @@ class ContourResult:
                 for i in self.run.axes
             },
             "circles": self._circles(),
-            "corners": [asdict(c) for c in self.corners],
+            "corners": [dict(vars(c)) for c in self.corners],  # flat: asdict copies deeply
             "commands": self._per_command(),
         }
+
+    @cached_property
+    def _numbers(self) -> dict[str, Any]:
+        """`numbers`, made once: a scenario's checks ask for one after the other."""
+        return self.numbers()
 
     def _circles(self) -> list[dict[str, Any] | None]:
         """By their number in the path, so that a name means the same circle in every run."""
@@ -192,7 +198,7 @@ class ContourResult:
         NoNumber
             There is no such number; the message gives the reason, or names what is there.
         """
-        value: Any = self.numbers()
+        value: Any = self._numbers
         for part in name.split("."):
             if isinstance(value, list):
                 value = {str(i): item for i, item in enumerate(value)}
