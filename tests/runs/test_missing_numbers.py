@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
-from console import command
+from console import command, within
 from contour_runs import Machine, Program, run_along
 
 import motionfmu
@@ -36,10 +36,11 @@ def written(folder: Path) -> dict:
 
 def test_a_run_that_ends_before_its_circle_is_status_1_with_a_whole_result(tmp_path: Path) -> None:
     out = tmp_path / "r"
-    done = command("run", "scenarios/circle", "--stop", "1", "--out", out)
+    done = within("run", ROOT / "scenarios/circle", "--stop", "1", "--out", out, columns=72)
     assert done.returncode == 1, done.stdout + done.stderr
     assert done.stderr == "" and "a check FAILED" in done.stdout
     found = written(out)
+    assert re.search(r"FAILED +contour\.circles\.0\.ccw\.radius_change +none", done.stdout)
     missing = {c["name"]: c for c in found["checks"] if c["reason"]}
     name = "contour.circles.0.ccw.radius_change"
     assert missing[name]["value"] is None and missing[name]["ok"] is False

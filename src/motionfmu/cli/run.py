@@ -36,6 +36,7 @@ def version(engine: str, fmi: int | None) -> int:
 def verdicts(checks: "Sequence[Verdict]") -> None:
     """Each bound, and why there are numbers missing."""
     table = bare_table("", "check", "found", "asked")
+    table.columns[1].no_wrap = True  # so that bounds break, not names
     for v in checks:
         mark = "[green]ok[/]" if v.ok else "[bold red]FAILED[/]"
         found = "none" if v.reason else f"{v.value:.6g}"
