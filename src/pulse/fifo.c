@@ -1,6 +1,7 @@
 #include "fifo.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Place of the n-th entry, n = 0 for the oldest. */
 static int32_t place(const struct fifo *f, int32_t n)
@@ -11,7 +12,8 @@ static int32_t place(const struct fifo *f, int32_t n)
 
 void fifo_reset(struct fifo *f, int32_t depth)
 {
-    *f = (struct fifo){.depth = depth};
+    memset(f, 0, sizeof *f);    /* padding, too: equal states are equal bytes */
+    f->depth = depth;
 }
 
 bool fifo_push(struct fifo *f, int32_t *entry, int32_t command)

@@ -1,6 +1,7 @@
 #include "pulse.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* divider 4, width 3 or more; a pulse less than there are ticks, forward, whose last lies on the
  * boundary, and then as many backward; one column is one clock
@@ -50,7 +51,8 @@ static int32_t pulses_until(const struct dda *d, int channel, int64_t clock)
 
 void pulse_reset(struct pulse *p)
 {
-    *p = (struct pulse){.last = -1};
+    memset(p, 0, sizeof *p);    /* padding, too: equal states are equal bytes */
+    p->last = -1;
 }
 
 void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct dda *d,
