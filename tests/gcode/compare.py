@@ -28,6 +28,7 @@ AT_FIRST |= {"surface": (0.0, 0.0), "analog": {}}
 def settings_of(options: Options) -> dict[str, Any]:
     """The same options for the C interpreter."""
     found = {n: getattr(options, n) for n in OPTIONS}
+    found["feed"] *= 60.0  # the second one has mm/s, `read` mm/min
     return MACHINE | found | {"point": list(options.point)}
 
 

@@ -120,7 +120,7 @@ def test_info_crops_nothing(columns: int) -> None:
     words = " ".join(done.stdout.split())
     for port in fmus.ports("servo_drives").values():
         assert port.name in words and " ".join(port.doc.split()) in words
-    assert "velocity_gain Float64[6] N.m.s/rad 0.5 >= 0 " in words
+    assert "velocity_gain Float64[6] N·m·s/rad 0.5 >= 0 " in words
 
 
 def test_info_chooses_variables() -> None:

@@ -165,7 +165,7 @@ def test_what_was_run_differently_is_listed(found: Comparison, folders: tuple[Pa
     told = {d.what: (d.a, d.b) for d in compare_sides(a, other).different}
     assert told["file circle.ngc"] == ("one content", "another content")
     assert "FMU mcc" in told and "FMU epcio" not in told
-    assert told["step"][1] == "0.2 ms" and told["every"] == ("1 steps", "3 steps")
+    assert told["step"][1] == "0.2 ms" and told["every"] == ("1 step", "3 steps")
     assert told["machine.tau"][1].startswith("0.5")
     assert told["mcc.p_gain"][1].endswith("(default)")
 

@@ -159,7 +159,7 @@ def test_the_command_names_what_holds_and_what_fails(tmp_path: Path) -> None:
     )
     made_up(tmp_path, "")
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "src")
-    assert done.returncode == 1 and "no [[contrary]]" in done.stdout
+    assert done.returncode == 1 and "there is no [[contrary]]" in done.stdout
     made_up(tmp_path, case.format('"mcc.irq_sources" = 0').replace(', "mcc.error"', ""))
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "src")
     assert done.returncode == 0 and done.stdout.startswith("ok")

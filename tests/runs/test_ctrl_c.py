@@ -21,6 +21,7 @@ class Interrupt(importlib.abc.MetaPathFinder):
             os.kill(os.getpid(), signal.SIGINT)
 
 module = sys.argv.pop(1)
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background
 from motionfmu.cli import main
 sys.meta_path.insert(0, Interrupt())
 main()
@@ -70,6 +71,7 @@ def test_an_interrupt_of_a_check_in_processes_ends_them_all(tmp_path: Path) -> N
         cwd=ROOT,
         env=environment(tmp_path),
         start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

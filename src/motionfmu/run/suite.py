@@ -89,7 +89,7 @@ def judged(
             used = time.perf_counter() - start
             cases.append(replace(bare, off=case.off, seconds=used, checks=named, holding=hold))
             start = time.perf_counter()
-        return cases or [replace(bare, error=f"{path}: no [[contrary]]")]
+        return cases or [replace(bare, off="nothing", holding=("all, there is no [[contrary]]",))]
     except InputError as error:
         return [replace(bare, seconds=time.perf_counter() - start, error=str(error))]
 
