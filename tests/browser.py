@@ -34,7 +34,7 @@ def tab(browser: Any, address: str, size: dict[str, int] = PHONE) -> Iterator[An
     """A page in a browser of some size; it is wrong if it tells an error in its console."""
     context = browser.new_context(viewport=size, is_mobile=size is PHONE, has_touch=size is PHONE)
     page = context.new_page()
-    page.set_default_timeout(10_000)
+    page.set_default_timeout(60_000)
     told: list[str] = []
     page.on("pageerror", lambda error: told.append(str(error)))
     page.on("console", lambda m: told.append(m.text) if m.type == "error" else None)
