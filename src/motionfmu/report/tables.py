@@ -71,6 +71,11 @@ def facts(rows: Iterable[tuple[str, str]]) -> str:
     return f'<table class="facts"><tbody>{body}</tbody></table>'
 
 
+def overrides(told: Iterable[str]) -> str:
+    """What was run otherwise than written, a line each."""
+    return facts([("Overrides", "<br>".join(map(escape, told)))])
+
+
 def _width(column: Sequence[str]) -> int:
     """Letters of the longest line in a column of cells."""
     lines = (re.sub("<[^>]*>", "", part) for cell in column for part in re.split("<br>|<div", cell))

@@ -19,7 +19,7 @@ from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
-from motionfmu.report.tables import RMS, cards, circle_table, facts, table
+from motionfmu.report.tables import RMS, cards, circle_table, overrides, table
 
 PAGE, NUMBERS = "report.html", "result.json"
 # Points of a curve over the path: twice as many as a screen has columns.
@@ -50,8 +50,7 @@ def page_text(found: Explanation) -> str:
     page = Sheet()
     page.sections.append(_cards(found))
     if found.result.overrides:
-        lines = "<br>".join(map(escape, found.result.overrides))
-        page.section("What was run", "", facts([("Overrides", lines)]))
+        page.section("What was run", "", overrides(found.result.overrides))
     note = "Largest change of the contour error by each cause: simulated beside theory."
     content = page.place("causes", _bars(found)) + _effects(found)
     page.section("Causes", note, content)

@@ -14,7 +14,7 @@ from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, GRID, INK, MUTED, axis, layout, plotted
-from motionfmu.report.tables import cards, facts, picture_links, table
+from motionfmu.report.tables import cards, overrides, picture_links, table
 
 PAGE, NUMBERS = "report.html", "result.json"
 PICTURES = ("causes.svg", "causes.png")
@@ -44,8 +44,7 @@ def write_path_explanation(found: PathExplanation, folder: Path) -> Path:
     page = Sheet()
     page.sections.append(_cards(found))
     if found.result.overrides:
-        lines = "<br>".join(map(escape, found.result.overrides))
-        page.section("What was run", "", facts([("Overrides", lines)]))
+        page.section("What was run", "", overrides(found.result.overrides))
     note = "What each cause alone does to the mean line: as an error of its own."
     content = page.place("causes", _bars(found)) + picture_links("causes") + _effects(found)
     page.section("Causes", note, content)

@@ -17,7 +17,7 @@ from motionfmu.report.numbers import figure
 from motionfmu.report.servo.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.signal_words import words_of
-from motionfmu.report.tables import cards, facts, table
+from motionfmu.report.tables import cards, overrides, table
 
 FOOTER = (
     "L is the open loop, cut at the input named, once around, with all delays of the FMUs, of their"
@@ -38,8 +38,8 @@ def page_text(axis: AxisModel, studies: Sequence[LoopStudy]) -> str:
         rows = [[escape(text)] for text in told]
         page.section("Worst case", note, table(["taken"], rows, 1))
     if axis.set:
-        given = "<br>".join(escape(f"{n} = {v}") for n, v in axis.set.items())
-        page.section("What was looked at", "", facts([("Overrides", given)]))
+        given = overrides(f"{n} = {v}" for n, v in axis.set.items())
+        page.section("What was looked at", "", given)
     for k, study in enumerate(studies):
         _add(page, study, f"loop{k}", _gains(axis, study))
     page.section("Operating point", _point_note(axis), _points(axis))

@@ -12,7 +12,7 @@ from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, RAPID, axis, layout
-from motionfmu.report.tables import RMS, cards, facts, table
+from motionfmu.report.tables import RMS, cards, overrides, table
 from motionfmu.tune.problem import ON_PATH
 from motionfmu.tune.result import Run, Tuned
 from motionfmu.tune.trial import Trial
@@ -37,7 +37,7 @@ def page_text(tuned: Tuned) -> str:
     page = Sheet()
     page.sections.append(_cards(tuned))
     if told := tuned.before[0].result.overrides:
-        page.section("What was run", "", facts([("Overrides", "<br>".join(map(escape, told)))]))
+        page.section("What was run", "", overrides(told))
     page.section("Gains", "", _gains(tuned))
     if tuned.trial is not None:
         note = f"{tuned.trial.stopped_by}. Runs of the FMUs with the gains above."

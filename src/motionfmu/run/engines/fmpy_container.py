@@ -21,8 +21,8 @@ from fmpy.model_description import (
 )
 
 from motionfmu.errors import InputError
-from motionfmu.run.engines.ending import Ending, Ran
-from motionfmu.run.engines.slave import Slave, element_names
+from motionfmu.run.engines.ending import Ran
+from motionfmu.run.engines.slave import Slave, element_names, ending_of
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
 
@@ -114,16 +114,6 @@ def _give(slave: Slave, end: End, values: Iterable[Any]) -> None:
         slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], [value])
 
 
-def _ending(slave: Slave, system: System) -> Ending:
-    """Where the run ends; the signal is an output of the container."""
-    if system.until is None:
-        return Ending(system)
-    end = system.until.end
-    first, *further = (slave.references[f"{end.component}.{n}"] for n in element_names(end))
-    values = slave.buffer(end.port.type, end.port.count)
-    return Ending(system, slave.access("Get", end.port.type, first, values, *further), values)
-
-
 def run(system: System, fmi: int, progress: Callable[[float], None]) -> Ran:
     """Run a system inside FMPy's container FMU, FMI 2 only."""
     if fmi != 2:
@@ -142,7 +132,7 @@ def run(system: System, fmi: int, progress: Callable[[float], None]) -> Ran:
         slave.start()
         due = system.due()
         step = system.step_ns * 1e-9
-        ending = _ending(slave, system)
+        ending = ending_of(slave, system)
         for k in ending.points(progress):
             for now in due.get(k, ()):
                 _give(slave, now.end, now.values)

@@ -15,17 +15,12 @@ from typing import Any
 
 from fmu_manipulation_toolbox.container import FMUContainer
 
-from motionfmu.run.engines.ending import SHARES, Ending, Ran
-from motionfmu.run.engines.slave import Slave, element_names
+from motionfmu.run.engines.ending import SHARES, Ran
+from motionfmu.run.engines.slave import Slave, ending_of, exposed
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
 
 IDENTIFIER = "system"
-
-
-def _exposed(end: End, fmi: int) -> list[str]:
-    """Names of a port, by element in FMI 2."""
-    return [end.port.name] if fmi == 3 else element_names(end)
 
 
 class _Folder(FMUContainer):
@@ -68,11 +63,11 @@ def build(system: System, fmi: int, folder: Path) -> Path:
             )
         ends = [*(s.end for s in system.settings), *(s.end for s in system.stimuli)]
         for end in {e.name: e for e in ends}.values():
-            for name in _exposed(end, fmi):
+            for name in exposed(end, fmi):
                 container.add_input(f"{end.component}.{name}", f"{end.component}.fmu", name)
         if system.until is not None:
             end = system.until.end
-            for name in _exposed(end, fmi):
+            for name in exposed(end, fmi):
                 container.add_output(f"{end.component}.fmu", name, f"{end.component}.{name}")
         container.make_fmu(f"{IDENTIFIER}.fmu", step_size=system.step_ns * 1e-9, debug=True)
     finally:
@@ -81,7 +76,7 @@ def build(system: System, fmi: int, folder: Path) -> Path:
 
 
 def _give(slave: Slave, end: End, values: tuple[Any, ...]) -> None:
-    names = _exposed(end, slave.fmi)
+    names = exposed(end, slave.fmi)
     parts = [values] if len(names) == 1 else [(v,) for v in values]
     for name, part in zip(names, parts, strict=True):
         slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], part)
@@ -110,7 +105,7 @@ class Container:
             _give(slave, s.end, s.values)
         slave.initialize()
         slave.start()
-        ending = self._ending(system)
+        ending = ending_of(slave, system)
         if system.until is None:
             self._in_parts(system, progress)
         else:
@@ -122,17 +117,6 @@ class Container:
                 advance(k * system.step_ns * 1e-9)
         slave.end()
         return ending.ran([w for w in slave.warnings if not w.startswith(f"{IDENTIFIER}: ")])
-
-    def _ending(self, system: System) -> Ending:
-        """Where the run ends; the signal is an output of the container."""
-        if system.until is None:
-            return Ending(system)
-        slave, end = self._slave, system.until.end
-        first, *further = (
-            slave.references[f"{end.component}.{name}"] for name in _exposed(end, slave.fmi)
-        )
-        values = slave.buffer(end.port.type, end.port.count)
-        return Ending(system, slave.access("Get", end.port.type, first, values, *further), values)
 
     def _in_parts(self, system: System, progress: Callable[[float], None]) -> None:
         """Run in few long steps."""

@@ -16,7 +16,8 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.logging import addLoggerProxy
 
 from motionfmu.errors import InputError
-from motionfmu.scenarios.system import End
+from motionfmu.run.engines.ending import Ending
+from motionfmu.scenarios.system import End, System
 
 _C = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_bool}
 _FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
@@ -35,6 +36,11 @@ def element_names(end: End) -> list[str]:
         return [end.port.name]
     indices = itertools.product(*(range(1, n + 1) for n in end.port.shape))
     return [f"{end.port.name}[{','.join(map(str, index))}]" for index in indices]
+
+
+def exposed(end: End, fmi: int) -> list[str]:
+    """Names of a port in a container, by element in FMI 2."""
+    return [end.port.name] if fmi == 3 else element_names(end)
 
 
 def _unnamed(message: str) -> bool:
@@ -217,3 +223,14 @@ class Slave:
         finally:
             if self._own:
                 shutil.rmtree(self._own, ignore_errors=True)
+
+
+def ending_of(container: Slave, system: System) -> Ending:
+    """Where a container's run ends; the signal is one of its outputs."""
+    if system.until is None:
+        return Ending(system)
+    end = system.until.end
+    names = (f"{end.component}.{n}" for n in exposed(end, container.fmi))
+    first, *further = (container.references[n] for n in names)
+    values = container.buffer(end.port.type, end.port.count)
+    return Ending(system, container.access("Get", end.port.type, first, values, *further), values)
