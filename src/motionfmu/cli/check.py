@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from motionfmu.cli.common import FAILED, WRONG, app, out, run_shown
-from motionfmu.cli.run import Engine, Fmi, verdicts, version, warnings
+from motionfmu.cli.run import Engine, Fmi, verdicts, warnings
 from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def check(  # noqa: PLR0913  (each is an option of the command)
         list[Path] | None,
         typer.Argument(help="Scenarios, or folders of scenarios; ./scenarios if none."),
     ] = None,
-    engine: Engine = "native",
+    engine: Engine = None,
     fmi: Fmi = None,
     contrary: Annotated[
         bool, typer.Option("--contrary", help="Whether verdicts fail with what is shown off.")
@@ -44,7 +44,7 @@ def check(  # noqa: PLR0913  (each is an option of the command)
     if junit and (junit.is_dir() or not junit.absolute().parent.is_dir()):
         raise InputError(f"--junit {junit}: a file in a folder that exists wanted")
     chosen = suite.found(paths or [Path("scenarios")])
-    options = {"engine": engine, "fmi": version(engine, fmi)}
+    options = {"engine": engine, "fmi": fmi}
     started, begin = datetime.now(), time.perf_counter()
     cases: list[Case] = []
     for some in _judged(chosen, options, contrary, jobs):

@@ -24,13 +24,8 @@ if TYPE_CHECKING:
     from motionfmu.run.checks import Verdict
     from motionfmu.run.result import Result
 
-Engine = Annotated[str, typer.Option(help="native, python or fmpy.")]
+Engine = Annotated[str | None, typer.Option(help="native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
-
-
-def version(engine: str, fmi: int | None) -> int:
-    """FMPy's container runs FMI 2 components only."""
-    return fmi if fmi is not None else 2 if engine == "fmpy" else 3
 
 
 def verdicts(checks: "Sequence[Verdict]") -> None:
@@ -72,7 +67,7 @@ def _ends(result: "Result") -> list[str]:
 @app.command()
 def run(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
-    engine: Engine = "native",
+    engine: Engine = None,
     fmi: Fmi = None,
     set_: Set = [],  # noqa: B006  (typer makes a new list)
     stop: Annotated[float | None, typer.Option(help="Seconds, instead of the scenario's.")] = None,
@@ -91,7 +86,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     target = outcome.usable(folder or results(scenario.name))
     options: dict[str, Any] = {
         "engine": engine,
-        "fmi": version(engine, fmi),
+        "fmi": fmi,
         "set": settings(set_),
         "stop": stop,
         "step": step,

@@ -1,7 +1,7 @@
 """A scenario read and checked against its FMUs."""
 
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -29,8 +29,8 @@ class Options:
 
     Attributes
     ----------
-    engine : str
-        A name of `motionfmu.run.engines.ENGINES`.
+    engine : str or None
+        A name of `motionfmu.run.engines.ENGINES`; None for the quickest that can run it.
     fmi : int
         2 or 3.
     set : mapping
@@ -47,7 +47,7 @@ class Options:
         Called with the share done, 0 to 1.
     """
 
-    engine: str = "native"
+    engine: str | None = None
     fmi: int = 3
     set: Mapping[str, Any] = field(default_factory=dict)
     stop: float | None = None
@@ -77,8 +77,7 @@ class Prepared:
         self._check_names(faults)
         self._check_whole(faults)
         self.document.refuse(faults.lines)
-        wired, _ = recording.plan(self.resolved(Options()), self.ends, Path())
-        self.check_recording(wired, Options())
+        self.check_recording(self.resolved(Options()), self.ends, Options())
 
     def _check_names(self, faults: Faults) -> None:
         """Look up what is recorded, drawn and checked."""
@@ -205,9 +204,11 @@ class Prepared:
                     if text := rates.wrong(rate, made.sample_ns, body.stop_limit):
                         raise document.error(f"{name}: {text}", "check", name)
 
-    def check_recording(self, wired: system.System, options: Options) -> None:
+    def check_recording(
+        self, plain: system.System, ends: Iterable[system.End], options: Options
+    ) -> None:
         """Refuse a recording that no memory holds, or two of one file; names setting or option."""
-        name, told = recording.refused(wired)
+        name, told = recording.refused(recording.plan(plain, ends, Path())[0])
         if not told:
             return
         body = self.document.body

@@ -2,13 +2,14 @@
 
 import tempfile
 from collections.abc import Callable, Collection, Iterable, Mapping
+from contextlib import closing
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import Faults, InputError, suggestion
-from motionfmu.run.engines import ENGINES
-from motionfmu.run.engines.ending import Ran
+from motionfmu.run import engines
+from motionfmu.run.engines.job import Ran
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
 from motionfmu.run.wired import Wired, own_settings
@@ -54,7 +55,7 @@ class Scenario(Prepared):
     def run(  # noqa: PLR0913  (each is a keyword)
         self,
         *,
-        engine: str = "native",
+        engine: str | None = None,
         fmi: int | None = None,
         set: Mapping[str, Any] | None = None,
         stop: float | None = None,
@@ -69,7 +70,7 @@ class Scenario(Prepared):
 
         Parameters
         ----------
-        engine : str
+        engine : str, optional
             ``native``, ``python`` or ``fmpy``; all give the same bits.
         fmi : int, optional
             2 or 3; if not given 3, and 2 for the engine ``fmpy``.
@@ -99,9 +100,11 @@ class Scenario(Prepared):
         known = [f.name for f in fields(Options)]
         for name in unknown:
             raise InputError(f"run: no option {name!r}{suggestion(name, known)}")
+        faults = Faults()
+        chosen = faults.of(lambda: engines.named(engine)) or ""
         asked = Options(
-            engine=engine,
-            fmi=(2 if engine == "fmpy" else 3) if fmi is None else fmi,
+            engine=chosen,
+            fmi=engines.version(chosen, fmi),
             set=plain(set or {}),
             stop=stop,
             step=step,
@@ -110,16 +113,16 @@ class Scenario(Prepared):
             source=source or {},
             progress=progress or (lambda share: None),
         )
-        _check(asked)
+        _check(asked, faults)
         with tempfile.TemporaryDirectory(prefix="motionfmu-") as name:
             folder = Path(name)
             given = replace(asked, set={**asked.set, **own_settings(self, folder)})
             wired = Wired.plan(self, given, self.ends, folder)
-            self.check_recording(wired.system, given)
 
             def master(system: System) -> Ran:
-                ran = ENGINES[asked.engine](system, asked.fmi, asked.progress)
-                return replace(ran, warnings=[*grids.warnings(wired.plain), *ran.warnings])
+                with closing(engines.ENGINES[chosen](wired.job(asked.fmi))) as ready:
+                    ran = ready.run(system, asked.progress)
+                return replace(ran, warnings=[*grids.warnings(system), *ran.warnings])
 
             return wired.run(master, asked)
 
@@ -240,12 +243,8 @@ def _names(given: Iterable[str]) -> list[str]:
     return [given] if isinstance(given, str) else list(given)
 
 
-def _check(asked: Options) -> None:
+def _check(asked: Options, faults: Faults) -> None:
     """Refuse options that no run can have."""
-    faults = Faults()
-    if asked.engine not in ENGINES:
-        known = f"(there are: {', '.join(ENGINES)}){suggestion(str(asked.engine), ENGINES)}"
-        faults.lines.append(f"no engine {asked.engine!r} {known}")
     if asked.fmi not in (2, 3):
         faults.lines.append(f"FMI {asked.fmi!r}: 2 or 3")
     if not isinstance(asked.set, Mapping):

@@ -7,15 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import InputError, suggestion
-from motionfmu.run.engines.ending import Ran
-from motionfmu.run.engines.native import Container
+from motionfmu.run import engines
+from motionfmu.run.engines.job import Engine, Ran
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
 from motionfmu.run.wired import Wired, own_settings
 from motionfmu.scenarios.system import End, Setting, System, split
 from motionfmu.scenarios.values import settings, start_values
-
-FMI = 3
 
 
 class Session:
@@ -32,7 +30,7 @@ class Session:
         ``component.variable[i]``.
     signals : iterable of End, optional
         Outputs to record; the scenario's own if none are given.
-    **options : set, stop, step
+    **options : engine, fmi, set, stop, step
         For all runs; see `Options`.
 
     Raises
@@ -51,17 +49,18 @@ class Session:
         known = [f.name for f in fields(Options)]
         if unknown := [n for n in options if n not in known]:
             raise InputError(f"no option {unknown[0]!r}{suggestion(unknown[0], known)}")
-        self.scenario, self._options = scenario, Options(**options)
+        asked = Options(**options)
+        self.scenario = scenario
+        self._options = replace(asked, engine=engines.named(asked.engine))
         self._temporary = tempfile.TemporaryDirectory(prefix="motionfmu-")
         try:
             self._folder = Path(self._temporary.name)
-            (self._folder / "container").mkdir()
-            self._container = self._prepare(varied, signals)
+            self._engine = self._prepare(varied, signals)
         except BaseException:
             self._temporary.cleanup()
             raise
 
-    def _prepare(self, varied: Iterable[str], signals: Iterable[End] | None) -> Container:
+    def _prepare(self, varied: Iterable[str], signals: Iterable[End] | None) -> Engine:
         scenario = self.scenario
         varied = [varied] if isinstance(varied, str) else list(varied)
         self._varied = {split(n)[0] for n in varied}
@@ -74,9 +73,7 @@ class Session:
         base = replace(self._options, set={**self._unset, **self._given})
         used = scenario.ends if signals is None else list(signals)
         self._wired = Wired.plan(scenario, base, used, self._folder)
-        plain, system = self._wired.plain, self._wired.system
-        self._scopes = system.settings[len(plain.settings) :]
-        return Container(system, FMI, self._folder / "container")
+        return engines.ENGINES[str(self._options.engine)](self._wired.job(self._options.fmi))
 
     def _values(self, given: Mapping[str, Any]) -> list[Setting]:
         """All settings of a run; a value for one element leaves the others as they are."""
@@ -98,15 +95,16 @@ class Session:
         if unknown := [n for n in given if split(n)[0] not in self._varied]:
             hint = suggestion(unknown[0], self._varied)
             raise InputError(f"{unknown[0]} is not varied by this session{hint}")
-        plain = replace(self._wired.plain, settings=tuple(self._values(given)))
-        system = replace(self._wired.system, settings=(*plain.settings, *self._scopes))
-        self.scenario.check_recording(system, replace(self._options, set=given))
+        wired = replace(
+            self._wired, system=replace(self._wired.system, settings=tuple(self._values(given)))
+        )
+        options = replace(self._options, set=given)
+        self.scenario.check_recording(wired.system, wired.recorded, options)
 
         def engine(system: System) -> Ran:
-            return replace(self._container.run(system, self._options.progress), warnings=[])
+            return replace(self._engine.run(system, self._options.progress), warnings=[])
 
-        run = replace(self._wired, plain=plain, system=system)
-        return run.run(engine, replace(self._options, set={**self._options.set, **given}))
+        return wired.run(engine, replace(self._options, set={**self._options.set, **given}))
 
     def __repr__(self) -> str:
         return f"<Session {self.scenario.name}: varies {', '.join(sorted(self._varied))}>"
@@ -114,7 +112,7 @@ class Session:
     def close(self) -> None:
         """Free the FMUs and their files."""
         try:
-            self._container.free()
+            self._engine.close()
         finally:
             self._temporary.cleanup()
 

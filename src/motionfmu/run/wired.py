@@ -1,4 +1,4 @@
-"""A scenario with the scopes that record it: what an engine runs, and the result made of it."""
+"""A scenario as an engine runs it, and the result made of that."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from motionfmu.errors import InputError
-from motionfmu.run.engines.ending import Ran
+from motionfmu.run.engines.job import Job, Ran
 from motionfmu.run.overrides import overrides
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
-from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import End, System
 
 PLANNED = "path.csv"
@@ -29,26 +28,31 @@ class Wired:
     """One run, ready for an engine."""
 
     scenario: Prepared
-    plain: System  # without scopes
-    system: System  # with them
-    traces: recording.Recording
+    system: System
+    recorded: tuple[End, ...]
+    folder: Path  # for its files
 
     @classmethod
     def plan(
         cls, scenario: Prepared, options: Options, ends: Iterable[End], folder: Path
     ) -> "Wired":
-        """Add the scopes that record these outputs in files of a folder."""
-        plain = scenario.resolved(options)
-        return cls(scenario, plain, *recording.plan(plain, ends, folder))
+        """Say what is run and recorded, with files in a folder."""
+        planned = cls(scenario, scenario.resolved(options), tuple(ends), folder)
+        scenario.check_recording(planned.system, planned.recorded, options)
+        return planned
+
+    def job(self, fmi: int) -> Job:
+        """What an engine is to make ready."""
+        return Job(self.system, self.recorded, self.folder, fmi)
 
     def run(self, engine: Callable[[System], Ran], options: Options) -> Result:
         """Run it; an FMU's message says where its value stands."""
-        planned = self.traces.folder / PLANNED
+        planned = self.folder / PLANNED
         planned.unlink(missing_ok=True)
         try:
             ran = engine(self.system)
         except InputError as error:
-            raise self.scenario.located(error, self.plain, options.set) from None
+            raise self.scenario.located(error, self.system, options.set) from None
         stopped, signal = self._stopped(ran)
         never: tuple[str, ...] = ()
         if (until := self.system.until) is not None and signal is None:
@@ -58,12 +62,12 @@ class Wired:
             scenario=self.scenario,
             time=np.arange(self.system.rows(ran.steps), dtype=np.float64)
             * (self.system.sample_ns * 1e-9),
-            signals=self.traces.load(),
-            parameters={s.end.name: s.values for s in self.plain.settings},
+            signals=dict(ran.signals),
+            parameters={s.end.name: s.values for s in self.system.settings},
             geometry=planned.read_text(encoding="utf-8") if planned.is_file() else None,
             warnings=(*ran.warnings, *never),
             options=options.given(),
-            overrides=overrides(self.scenario, options, self.plain),
+            overrides=overrides(self.scenario, options, self.system),
             stopped=stopped,
             signal_at=signal,
         )

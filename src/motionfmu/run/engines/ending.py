@@ -1,22 +1,14 @@
 """Where a run ends: at its last step, or behind a signal."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
+from motionfmu.run.engines.job import Ran
+from motionfmu.run.engines.scoped import Scoped
 from motionfmu.scenarios.system import System
 
 # Calls of the progress in a run.
 SHARES = 100
-
-
-@dataclass(frozen=True)
-class Ran:
-    """What an engine tells of a run beside the files of its scopes."""
-
-    warnings: list[str]  # of the FMUs
-    steps: int  # done
-    signal: int | None = None  # communication point at which the signal that ends it came
 
 
 class Ending:
@@ -33,9 +25,9 @@ class Ending:
         self.steps = system.steps
         self.signal: int | None = None
 
-    def ran(self, warnings: list[str]) -> Ran:
+    def ran(self, scopes: Scoped, warnings: list[str]) -> Ran:
         """What is told at the end."""
-        return Ran(warnings, self.steps, self.signal)
+        return Ran(scopes.signals(), warnings, self.steps, self.signal)
 
     def points(self, progress: Callable[[float], None]) -> Iterator[int]:
         """Communication points from which a step is to be made, one after the other."""

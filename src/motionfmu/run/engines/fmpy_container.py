@@ -5,7 +5,7 @@ so its components are the FMI 2 FMUs, whose elements are variables of their own.
 """
 
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,8 @@ from fmpy.model_description import (
 )
 
 from motionfmu.errors import InputError
-from motionfmu.run.engines.ending import Ran
+from motionfmu.run.engines.job import Job, Progress, Ran
+from motionfmu.run.engines.scoped import Scoped
 from motionfmu.run.engines.slave import Slave, element_names, ending_of
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
@@ -114,28 +115,44 @@ def _give(slave: Slave, end: End, values: Iterable[Any]) -> None:
         slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], [value])
 
 
-def run(system: System, fmi: int, progress: Callable[[float], None]) -> Ran:
-    """Run a system inside FMPy's container FMU, FMI 2 only."""
-    if fmi != 2:
-        raise InputError(f"engine fmpy runs FMI 2 components only, not FMI {fmi}")
-    with ExitStack() as stack:
-        name = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
-        folder = Path(name)
-        (folder / "unzipped").mkdir()
-        configuration = _configuration(system, folder)
-        create_container_fmu(configuration, folder / "unzipped", folder / "container.fmu")
-        slave = Slave("container_fmu", folder / "container.fmu", 3, [])
-        stack.callback(slave.free)
-        for s in (s for s in system.settings if s.end.port.type != "String"):
-            _give(slave, s.end, s.values)
-        slave.initialize()
-        slave.start()
-        due = system.due()
-        step = system.step_ns * 1e-9
-        ending = ending_of(slave, system)
-        for k in ending.points(progress):
-            for now in due.get(k, ()):
-                _give(slave, now.end, now.values)
-            slave.step(k * system.step_ns * 1e-9, step)
-        slave.end()
-        return ending.ran([w for w in slave.warnings if not w.startswith(f"{slave.name}: ")])
+class Container:
+    """A container of its own for each run."""
+
+    def __init__(self, job: Job) -> None:
+        if job.fmi != 2:
+            raise InputError(f"engine fmpy runs FMI 2 components only, not FMI {job.fmi}")
+        self._scopes = Scoped(job)
+
+    def run(self, system: System, progress: Progress) -> Ran:
+        """Run from the start."""
+        system = self._scopes.of(system)
+        with ExitStack() as stack:
+            name = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
+            folder = Path(name)
+            (folder / "unzipped").mkdir()
+            configuration = _configuration(system, folder)
+            create_container_fmu(configuration, folder / "unzipped", folder / "container.fmu")
+            slave = Slave("container_fmu", folder / "container.fmu", 3, [])
+            stack.callback(slave.free)
+            for s in (s for s in system.settings if s.end.port.type != "String"):
+                _give(slave, s.end, s.values)
+            slave.initialize()
+            slave.start()
+            due = system.due()
+            step = system.step_ns * 1e-9
+            ending = ending_of(slave, system)
+            for k in ending.points(progress):
+                for now in due.get(k, ()):
+                    _give(slave, now.end, now.values)
+                slave.step(k * system.step_ns * 1e-9, step)
+            slave.end()
+            told = [w for w in slave.warnings if not w.startswith(f"{slave.name}: ")]
+            return ending.ran(self._scopes, told)
+
+    def close(self) -> None:
+        """Nothing is held between runs."""
+
+
+def opened(job: Job) -> Container:
+    """Plan a job."""
+    return Container(job)

@@ -8,14 +8,14 @@ by step if a signal ends the run.
 import logging
 import tempfile
 import zipfile
-from collections.abc import Callable
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 from fmu_manipulation_toolbox.container import FMUContainer
 
-from motionfmu.run.engines.ending import SHARES, Ran
+from motionfmu.run.engines.ending import SHARES
+from motionfmu.run.engines.job import Job, Progress, Ran
+from motionfmu.run.engines.scoped import Scoped
 from motionfmu.run.engines.slave import Slave, ending_of, exposed
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
@@ -85,19 +85,23 @@ def _give(slave: Slave, end: End, values: tuple[Any, ...]) -> None:
 class Container:
     """A system as a container FMU, built once, run many times.
 
-    The system's settings say what can be set in a run; the folder, an empty one, is not removed.
+    The system's settings say what can be set in a run.
     """
 
-    def __init__(self, system: System, fmi: int, folder: Path) -> None:
-        self._slave = Slave(IDENTIFIER, build(system, fmi, folder), fmi, [])
+    def __init__(self, job: Job) -> None:
+        self._scopes = Scoped(job)
+        self._folder = tempfile.TemporaryDirectory(prefix="motionfmu-")
+        try:
+            built = build(self._scopes.system, job.fmi, Path(self._folder.name))
+            self._slave = Slave(IDENTIFIER, built, job.fmi, [])
+        except BaseException:
+            self._folder.cleanup()
+            raise
         self._used = False
 
-    def run(self, system: System, progress: Callable[[float], None]) -> Ran:
-        """Run from the start.
-
-        The system is the one of the constructor, or one that differs in values only.
-        """
-        slave = self._slave
+    def run(self, system: System, progress: Progress) -> Ran:
+        """Run from the start."""
+        slave, system = self._slave, self._scopes.of(system)
         if self._used:
             slave.renew()
         self._used = True
@@ -116,9 +120,10 @@ class Container:
                     _give(slave, now.end, now.values)
                 advance(k * system.step_ns * 1e-9)
         slave.end()
-        return ending.ran([w for w in slave.warnings if not w.startswith(f"{IDENTIFIER}: ")])
+        warnings = [w for w in slave.warnings if not w.startswith(f"{IDENTIFIER}: ")]
+        return ending.ran(self._scopes, warnings)
 
-    def _in_parts(self, system: System, progress: Callable[[float], None]) -> None:
+    def _in_parts(self, system: System, progress: Progress) -> None:
         """Run in few long steps."""
         slave, due = self._slave, system.due()
         part = max(1, system.steps // SHARES)
@@ -129,15 +134,14 @@ class Container:
             slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
             progress(following / system.steps)
 
-    def free(self) -> None:
-        """Free the instance and the library."""
-        self._slave.free()
+    def close(self) -> None:
+        """Free the instance, the library and its files."""
+        try:
+            self._slave.free()
+        finally:
+            self._folder.cleanup()
 
 
-def run(system: System, fmi: int, progress: Callable[[float], None]) -> Ran:
-    """Run a system inside a container FMU."""
-    with ExitStack() as stack:
-        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="motionfmu-"))
-        container = Container(system, fmi, Path(folder))
-        stack.callback(container.free)
-        return container.run(system, progress)
+def opened(job: Job) -> Container:
+    """Build the container of a job."""
+    return Container(job)

@@ -6,7 +6,9 @@ At each communication point all outputs are read, then all inputs written, then 
 from collections.abc import Callable
 from contextlib import ExitStack
 
-from motionfmu.run.engines.ending import Ending, Ran
+from motionfmu.run.engines.ending import Ending
+from motionfmu.run.engines.job import Job, Progress, Ran
+from motionfmu.run.engines.scoped import Scoped
 from motionfmu.run.engines.slave import Slave
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import System, Wire
@@ -39,35 +41,50 @@ def _ending(slaves: dict[str, Slave], system: System) -> Ending:
     return Ending(system, slave.access("Get", port.type, port.reference, values), values)
 
 
-def run(system: System, fmi: int, progress: Callable[[float], None]) -> Ran:
-    """Run a system with FMPy, one Python call per value."""
-    messages: list[str] = []
-    with ExitStack() as stack:
-        slaves: dict[str, Slave] = {}
-        for name, fmu in system.components.items():
-            slaves[name] = Slave(name, fmus.runnable(fmu, fmi), fmi, messages)
-            stack.callback(slaves[name].free)
-        for s in system.settings:
-            port = s.end.port
-            slaves[s.end.component].assign(port.type, port.reference, s.values)
-        for slave in slaves.values():
-            slave.initialize()
-        for slave in slaves.values():
-            slave.start()
-        wires = [_wire(slaves, w) for w in system.wires]
-        due = system.due()
-        step = system.step_ns * 1e-9
-        ending = _ending(slaves, system)
-        for k in ending.points(progress):
-            for now in due.get(k, ()):
-                port = now.end.port
-                slaves[now.end.component].assign(port.type, port.reference, now.values)
-            for get, _ in wires:
-                get()
-            for _, put in wires:
-                put()
+class Master:
+    """FMUs of their own for each run, one Python call per value."""
+
+    def __init__(self, job: Job) -> None:
+        self._fmi, self._scopes = job.fmi, Scoped(job)
+
+    def run(self, system: System, progress: Progress) -> Ran:
+        """Run from the start."""
+        system, messages = self._scopes.of(system), list[str]()
+        with ExitStack() as stack:
+            slaves: dict[str, Slave] = {}
+            for name, fmu in system.components.items():
+                slaves[name] = Slave(name, fmus.runnable(fmu, self._fmi), self._fmi, messages)
+                stack.callback(slaves[name].free)
+            for s in system.settings:
+                port = s.end.port
+                slaves[s.end.component].assign(port.type, port.reference, s.values)
             for slave in slaves.values():
-                slave.step(k * system.step_ns * 1e-9, step)
-        for slave in slaves.values():
-            slave.end()
-        return ending.ran([told for slave in slaves.values() for told in slave.warnings])
+                slave.initialize()
+            for slave in slaves.values():
+                slave.start()
+            wires = [_wire(slaves, w) for w in system.wires]
+            due = system.due()
+            step = system.step_ns * 1e-9
+            ending = _ending(slaves, system)
+            for k in ending.points(progress):
+                for now in due.get(k, ()):
+                    port = now.end.port
+                    slaves[now.end.component].assign(port.type, port.reference, now.values)
+                for get, _ in wires:
+                    get()
+                for _, put in wires:
+                    put()
+                for slave in slaves.values():
+                    slave.step(k * system.step_ns * 1e-9, step)
+            for slave in slaves.values():
+                slave.end()
+            told = [told for slave in slaves.values() for told in slave.warnings]
+            return ending.ran(self._scopes, told)
+
+    def close(self) -> None:
+        """Nothing is held between runs."""
+
+
+def opened(job: Job) -> Master:
+    """Plan a job."""
+    return Master(job)

@@ -1,0 +1,43 @@
+"""What an engine is given to run, and what it tells of it."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+from motionfmu.scenarios.system import End, System
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Job:
+    """What one run or many are made of; runs differ in values only."""
+
+    system: System
+    recorded: tuple[End, ...]
+    folder: Path  # for the files of the signals; the run's own
+    fmi: int  # 2 or 3
+    name: str = "system"  # for messages of what is wrong with the whole
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What an engine tells of a run."""
+
+    signals: Mapping[str, NDArray[Any]]  # a row a sample
+    warnings: list[str]  # of the FMUs
+    steps: int  # done
+    signal: int | None = None  # communication point at which the signal that ends it came
+
+
+class Engine(Protocol):
+    """A system that is ready to run, once or many times."""
+
+    def run(self, system: System, progress: Progress) -> Ran:
+        """Run from the start a system that differs from the job's in values only."""
+
+    def close(self) -> None:
+        """Free what it holds."""
