@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "npy_head.h"
+
 struct trace {
     const double  *real;
     const int32_t *ints;
@@ -17,20 +19,11 @@ struct trace {
     int64_t        period; /* [ns] between two rows */
 };
 
-/* Head of a .npy file: a Python dictionary padded to 64 bytes. `type`: f8 or i4. */
+/* Head of a .npy file. `type`: f8 or i4. */
 static bool trace_write_head(FILE *file, const char *type, int64_t rows, size_t columns)
 {
-    const uint16_t one = 1;
-    char order = *(const char *)&one == 1 ? '<' : '>';
-    char head[128];
-    int n = 10 + snprintf(head + 10, sizeof head - 10,
-                          "{'descr': '%c%s', 'fortran_order': False, 'shape': (%" PRId64
-                          ", %zu), }", order, type, rows, columns);
-    memset(head + n, ' ', sizeof head - (size_t)n);
-    memcpy(head, "\x93NUMPY\x01\x00", 8);
-    head[8] = (char)(sizeof head - 10); /* size of the dictionary, two bytes, low one first */
-    head[9] = 0;
-    head[sizeof head - 1] = '\n';
+    char head[NPY_HEAD];
+    npy_head(head, type, rows, (int64_t)columns);
     return fwrite(head, 1, sizeof head, file) == sizeof head;
 }
 

@@ -20,7 +20,7 @@ typedef struct __stat64 file_stat;
 typedef struct stat file_stat;
 #endif
 
-static const char *file_regular(const file_stat *s)
+static inline const char *file_regular(const file_stat *s)
 {
     return S_ISREG(s->st_mode) ? NULL
            : S_ISDIR(s->st_mode) ? strerror(EISDIR) : "not a regular file";

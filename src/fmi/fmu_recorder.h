@@ -1,0 +1,263 @@
+/* Records values in a folder of .npy files, one a signal: `<name>.npy` and `time.npy` [s], each
+ * with a row for every row recorded, shape (rows,) or (rows, count). Rows wait in blocks of memory
+ * and go to the files a block at a time. The folder appears under its name in full at the end, in
+ * the place of nothing, an empty folder or an older recording. Functions that return an int: 0, or
+ * -1, and recorder.why says what is wrong. */
+#ifndef FMU_RECORDER_H
+#define FMU_RECORDER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fmu_recorder_folder.h"
+#include "npy_head.h"
+
+/* What is recorded; a name is that of a file, too. */
+struct recorder_column {
+    const char *name;
+    const void *value; /* where its values are when a row is recorded */
+    char        kind;  /* 'd' double, 'i' int32_t, 'b' bool */
+    int32_t     count; /* values; of 1 the shape is (rows,) */
+};
+
+/* A column on its way to its file. */
+struct recorder_stream {
+    const char *value;
+    char       *block;
+    size_t      width; /* [byte] of a row */
+    int         column;
+    FILE       *file;
+};
+
+struct recorder {
+    struct recorder_folder folder;
+    const struct recorder_column *columns; /* the caller's, as long as it is open */
+    struct recorder_stream *streams;       /* time.npy among them, those of one width together */
+    char    *blocks;
+    int      count;       /* streams */
+    double   time, period; /* [s] */
+    int64_t  row;         /* the next one */
+    int64_t  first;       /* row at the begin of the blocks */
+    int64_t  room;        /* rows in a block */
+    char     why[RECORDER_WHY];
+};
+
+/* All blocks together. With a quarter of it the kernel needs half as much again, with four times as
+ * much no less. */
+enum { RECORDER_BYTES = 1 << 22 };
+
+static inline size_t recorder_size(char kind)
+{
+    _Static_assert(sizeof(bool) == 1, "a Boolean of NumPy is a byte");
+    return kind == 'd' ? sizeof(double) : kind == 'i' ? sizeof(int32_t) : sizeof(bool);
+}
+
+static inline struct recorder_column recorder_column_of(const struct recorder *r, int column)
+{
+    return column < 0 ? (struct recorder_column){"time", &r->time, 'd', 1} : r->columns[column];
+}
+
+static inline int recorder_fail(struct recorder *r, const char *name, const char *error)
+{
+    snprintf(r->why, sizeof r->why, "cannot write %.*s/%s.npy: %s", RECORDER_PATH, r->folder.name,
+             name, error);
+    return -1;
+}
+
+/* Give up; half-written files go. Also the end of a recorder that recorder_end has ended. */
+static inline void recorder_close(struct recorder *r)
+{
+    if (!r) {
+        return;
+    }
+    for (int k = 0; k < r->count; k++) {
+        if (r->streams[k].file) {
+            fclose(r->streams[k].file);
+        }
+        if (r->folder.part[0]) {
+            char name[RECORDER_FILE];
+            remove(recorder_file(name, &r->folder,
+                                 recorder_column_of(r, r->streams[k].column).name));
+        }
+    }
+    recorder_folder_drop(&r->folder);
+    free(r->streams);
+    free(r->blocks);
+    free(r);
+}
+
+/* The head of a stream's file, at its begin. */
+static inline bool recorder_head(const struct recorder *r, const struct recorder_stream *s)
+{
+    const struct recorder_column c = recorder_column_of(r, s->column);
+    char head[NPY_HEAD];
+    npy_head(head, c.kind == 'd' ? "f8" : c.kind == 'i' ? "i4" : "b1", r->row,
+             c.count == 1 ? -1 : c.count);
+    return recorder_seek(s->file, 0) == 0 && fwrite(head, 1, sizeof head, s->file) == sizeof head;
+}
+
+/* Streams by width, blocks behind one another. */
+static inline bool recorder_layout(struct recorder *r)
+{
+    size_t bytes = 0, at = 0;
+    for (int k = 0; k < r->count; k++) {
+        const struct recorder_column c = recorder_column_of(r, k - 1);
+        struct recorder_stream s = {c.value, NULL, recorder_size(c.kind) * (size_t)c.count, k - 1,
+                                    NULL};
+        int place = k;
+        for (; place > 0 && r->streams[place - 1].width > s.width; place--) {
+            r->streams[place] = r->streams[place - 1];
+        }
+        r->streams[place] = s;
+        bytes += s.width;
+    }
+    /* An odd number: blocks whose sizes are powers of two would take the same lines of a cache. */
+    r->room = (int64_t)(RECORDER_BYTES / bytes) | 1;
+    r->blocks = malloc(bytes * (size_t)r->room);
+    for (int k = 0; k < r->count && r->blocks; k++) {
+        r->streams[k].block = r->blocks + at;
+        at += r->streams[k].width * (size_t)r->room;
+    }
+    return r->blocks;
+}
+
+/* Begin: the folder that holds `folder` must exist. `period` [s] from row to row. NULL: `why`, of
+ * so much room, says what is wrong, and nothing is left behind. */
+static inline struct recorder *recorder_open(const char *folder,
+                                             const struct recorder_column *columns, int count,
+                                             double period, char *why, size_t room)
+{
+    struct recorder *r = calloc(1, sizeof *r);
+    if (r) {
+        r->columns = columns;
+        r->period = period;
+        r->streams = calloc((size_t)count + 1, sizeof *r->streams);
+        r->count = r->streams ? count + 1 : 0;
+    }
+    if (!r || !r->streams || !recorder_layout(r)) {
+        snprintf(why, room, "no memory to record %s", folder);
+        recorder_close(r);
+        return NULL;
+    }
+    const char *error = recorder_folder_begin(&r->folder, folder);
+    if (error) {
+        snprintf(why, room, "cannot write %s: %s", folder, error);
+        recorder_close(r);
+        return NULL;
+    }
+    for (int k = 0; k < r->count; k++) {
+        struct recorder_stream *s = &r->streams[k];
+        char name[RECORDER_FILE];
+        const char *own = recorder_column_of(r, s->column).name;
+        s->file = fopen(recorder_file(name, &r->folder, own), "wbx");
+        if (s->file) {
+            setvbuf(s->file, NULL, _IONBF, 0); /* what is written are blocks already */
+        }
+        if (!s->file || !recorder_head(r, s)) {
+            recorder_fail(r, own, strerror(errno));
+            snprintf(why, room, "%s", r->why);
+            recorder_close(r);
+            return NULL;
+        }
+    }
+    return r;
+}
+
+/* Write what waits. */
+static inline int recorder_flush(struct recorder *r)
+{
+    const size_t rows = (size_t)(r->row - r->first);
+    for (int k = 0; k < r->count; k++) {
+        const struct recorder_stream *s = &r->streams[k];
+        errno = 0;
+        if (fwrite(s->block, s->width, rows, s->file) != rows) {
+            return recorder_fail(r, recorder_column_of(r, s->column).name,
+                                 strerror(errno ? errno : EIO));
+        }
+    }
+    r->first = r->row;
+    return 0;
+}
+
+/* Record one row of all values, as they are now. */
+static inline int recorder_row(struct recorder *r)
+{
+    const struct recorder_stream *s = r->streams, *const end = s + r->count;
+    const size_t k = (size_t)(r->row - r->first);
+    if (r->why[0]) {
+        return -1;
+    }
+    r->time = (double)r->row * r->period;
+    while (s < end) {
+        const size_t width = s->width;
+/* A copy of a known size is a few instructions without a call. */
+#define RECORDER_COPY(size) \
+    case size: \
+        for (; s < end && s->width == (size); s++) { \
+            memcpy(s->block + k * (size), s->value, (size)); \
+        } \
+        break
+        switch (width) {
+            RECORDER_COPY(1);  /* a Boolean */
+            RECORDER_COPY(4);  /* an integer */
+            RECORDER_COPY(6);  /* six Booleans */
+            RECORDER_COPY(8);  /* a number */
+            RECORDER_COPY(24); /* three numbers, six integers */
+            RECORDER_COPY(32); /* four numbers */
+            RECORDER_COPY(48); /* six numbers */
+        default:
+            memcpy(s->block + k * width, s->value, width);
+            s++;
+        }
+#undef RECORDER_COPY
+    }
+    r->row++;
+    return r->row - r->first < r->room ? 0 : recorder_flush(r);
+}
+
+/* The next row is this one, as after a state was restored: later ones are forgotten, and rows that
+ * were never recorded are 0. */
+static inline int recorder_at(struct recorder *r, int64_t row)
+{
+    if (row == r->row) {
+        return 0;
+    }
+    if (r->why[0] || recorder_flush(r) != 0) {
+        return -1;
+    }
+    for (int k = 0; k < r->count; k++) {
+        const struct recorder_stream *s = &r->streams[k];
+        const int64_t at = NPY_HEAD + row * (int64_t)s->width;
+        if (recorder_cut(s->file, at) != 0 || recorder_seek(s->file, at) != 0) {
+            return recorder_fail(r, recorder_column_of(r, s->column).name, strerror(errno));
+        }
+    }
+    r->row = r->first = row;
+    return 0;
+}
+
+/* End well: the folder appears. Then, as after an error, only recorder_close is left. */
+static inline int recorder_end(struct recorder *r)
+{
+    if (r->why[0] || recorder_flush(r) != 0) {
+        return -1;
+    }
+    for (int k = 0; k < r->count; k++) {
+        struct recorder_stream *s = &r->streams[k];
+        errno = 0;
+        const bool headed = recorder_head(r, s), good = fclose(s->file) == 0 && headed;
+        s->file = NULL;
+        if (!good) {
+            return recorder_fail(r, recorder_column_of(r, s->column).name,
+                                 strerror(errno ? errno : EIO));
+        }
+    }
+    const char *error = recorder_folder_show(&r->folder);
+    if (error) {
+        snprintf(r->why, sizeof r->why, "cannot write %s: %s", r->folder.name, error);
+        return -1;
+    }
+    return 0;
+}
+
+#endif

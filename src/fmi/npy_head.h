@@ -1,0 +1,33 @@
+/* Head of a .npy file (format version 1.0): a Python dictionary, padded to a fixed size, so that it
+ * can be written again once the rows are known.
+ * https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html */
+#ifndef NPY_HEAD_H
+#define NPY_HEAD_H
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { NPY_HEAD = 128 }; /* [byte], a multiple of 64: so data is aligned when it is mapped */
+
+/* `type`: f8, i4 or b1; `columns` -1: one value a row, its shape is (rows,). */
+static inline void npy_head(char head[NPY_HEAD], const char *type, int64_t rows, int64_t columns)
+{
+    const uint16_t one = 1;
+    const char order = type[1] == '1' ? '|' : *(const char *)&one == 1 ? '<' : '>';
+    char wide[24] = "";
+    if (columns >= 0) {
+        snprintf(wide, sizeof wide, " %" PRId64, columns);
+    }
+    const int n = 10 + snprintf(head + 10, NPY_HEAD - 10,
+                                "{'descr': '%c%s', 'fortran_order': False, 'shape': (%" PRId64
+                                ",%s), }",
+                                order, type, rows, wide);
+    memset(head + n, ' ', (size_t)(NPY_HEAD - n));
+    memcpy(head, "\x93NUMPY\x01\x00", 8);
+    head[8] = (char)(NPY_HEAD - 10); /* size of the dictionary, two bytes, low one first */
+    head[9] = 0;
+    head[NPY_HEAD - 1] = '\n';
+}
+
+#endif
