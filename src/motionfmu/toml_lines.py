@@ -3,6 +3,7 @@
 import re
 import stat
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,8 @@ DEPTH_MAX = 16  # brackets inside each other, parts of a key
 KEY_MAX = 200  # characters
 INTEGER_MAX = 2**63  # what TOML asks a reader to hold
 SHOWN_MAX = 200  # characters of a value in a message
+_PLACE = re.compile(r"^(.+?):(\d+): ")  # of a message
+_UNQUOTED = str.maketrans("", "", "\"'")
 # Strings and comments as a whole, however they end, then what brackets, keys and lines are made of.
 _TOKEN = re.compile(
     r'"""(?:\\.|[^\\])*?(?:"""|\\?\Z)'
@@ -70,7 +73,7 @@ def _numbered(header: str, counts: dict[str, int]) -> str:
     for part in around.split(".") if dot else ():
         name += part.strip()
         name += f".{counts[name]}." if name in counts else "."
-    return name + own.strip()
+    return (name + own.strip()).translate(_UNQUOTED)
 
 
 def is_file(path: Path) -> bool:
@@ -160,6 +163,19 @@ def _beyond(tables: dict[str, Any], text: str) -> str:
         if told:
             return f"{Lines(text).of('.'.join(path[:-1]), key)}: {told}"
     return ""
+
+
+def ordered(lines: Iterable[str], files: Iterable[str]) -> list[str]:
+    """Messages in the order of files and their lines; what has no line comes first."""
+    names = list(files)
+
+    def order(line: str) -> tuple[int, int]:
+        place = _PLACE.match(line)
+        if place is None or place[1] not in names:
+            return -1, 0
+        return names.index(place[1]), int(place[2])
+
+    return sorted(lines, key=order)
 
 
 def shown(value: Any) -> str:

@@ -52,6 +52,27 @@ def test_a_wrong_description_names_the_line_and_the_value(rows: str, message: st
     assert message in wrong(rows)
 
 
+def test_all_that_is_wrong_with_a_description_is_told_at_once() -> None:
+    text = HEAD.replace("tick_ns=25", 'tick_sn=25\ngrid="periode"').replace('"A"', '"a"')
+    text += '[paramter]\n[parameter]\nperiod={type="f64", strat=1.0, min="0"}\n'
+    text += (
+        '[input]\nx={type="i23", dox="d", start=0}\ny={type="i32", start=0, dims=[0], doc="d"}\n'
+    )
+    with pytest.raises(ValueError) as caught:
+        fmu_toml.parse(text, "fmu.toml")
+    told = [line.removeprefix("fmu.toml:") for line in str(caught.value).splitlines()]
+    starts = ("1: name 'a' is not CamelCase", "3: unknown key 'tick_sn'; did you mean 'tick_ns'?",
+              "4: grid 'periode': the name of a parameter of type f64 wanted; did you mean 'period",
+              "7: unknown key 'paramter'; did you mean 'parameter'?",
+              "9: parameter period: unknown key 'strat'; did you mean 'start'?",
+              "9: parameter period: doc is missing", "9: parameter period: min '0' is not of type",
+              "11: input x: unknown key 'dox'; did you mean 'doc'?",
+              "11: input x: type 'i23' is not one of f64, i32, bool, string; did you mean 'i32'?",
+              "12: input y: dims [0]: one or two")  # fmt: skip
+    for line, start in zip(told, starts, strict=True):
+        assert line.startswith(start), line
+
+
 def test_a_wrong_file_stops_the_build_with_status_2_and_writes_nothing(tmp_path: Path) -> None:
     (tmp_path / "fmu.toml").write_text(HEAD + '[input]\nx={type="f64", start=true, doc="d"}')
     command = [sys.executable, "-m", "motionfmu.fmu.pack", "generate", tmp_path, tmp_path / "out"]

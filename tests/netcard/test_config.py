@@ -104,8 +104,11 @@ def test_parameters_are_pulses_and_an_axis_that_is_not_there_stands() -> None:
         ('5 = "valve"', '16 = "valve"', "outputs.16", "pins are 0 .. 15"),
         ('5 = "valve"', '5 = "*/ x"', "outputs.5", "should match"),
         ("[inputs.3]", "[inputs.x]", "inputs.x", "pins are 0 .. 15"),
-        ('action = "pause"', 'action = "paus"', "inputs.3.action", "'pause'"),
-        ("dwell    = 0.03 ", "dwel = 0.03 ", "motion.pen.dwel", "unknown key"),
+        ('action = "pause"', 'action = "paus"', "inputs.3.action", "; did you mean 'pause'?"),
+        ("dwell    = 0.03 ", "dwel = 0.03 ", "motion.pen.dwel", "key; did you mean 'dwell'?"),
+        ("maximum          = 410", "maximun = 4", "axes.0.maximun", "key; did you mean 'maximum'?"),
+        ('action = "pause"', 'acton = "pause"', "inputs.3.acton", "did you mean 'action'?"),
+        ("[network]", "[netwrok]", "netwrok", "unknown key; did you mean 'network'?"),
         ("[network]", "[tasks]\npause = 5\n[network]", "tasks.pause", "5 is not < stop = 4"),
     ],
 )

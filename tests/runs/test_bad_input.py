@@ -149,6 +149,16 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
     assert "dca" in lines[places[2] - 1] and lines[places[4] - 1].startswith("value")
 
 
+def test_an_empty_list_is_told_in_words(tmp_path: Path) -> None:
+    folder = scenario(tmp_path)
+    file = folder / "scenario.toml"
+    before, rest = file.read_text().split("signals = [", 1)
+    file.write_text(f"{before}signals = []{rest.split(']', 1)[1]}")
+    line = 1 + before.count("\n")
+    what = 'record.signals = []: the name of an output, or a pattern such as "card.*", wanted'
+    assert message(folder) == f"{file}:{line}: {what}"
+
+
 def test_an_open_input_is_named(tmp_path: Path) -> None:
     text = message(scenario(tmp_path, '"card.enc_phase"  = "machine.motor_phase"\n'))
     assert "input card.enc_phase is open: connect, drive or set it, or name it in leave" in text

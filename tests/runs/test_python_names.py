@@ -12,6 +12,8 @@ from motionfmu import gcode, linear, mcc, robot, sweep, tune
 from motionfmu.errors import InputError, suggestion
 from motionfmu.run import Scenario, Session
 
+CIRCLE = ROOT / "scenarios/circle/circle.ngc"
+
 
 @pytest.fixture(scope="module")
 def theory() -> Scenario:
@@ -55,11 +57,17 @@ def arm() -> robot.VirtualRobot:
         (lambda c: c.record(1, "1", "pulses"), "'1': a number wanted"),
         (lambda c: c.set_encoder(6, "a"), "'a': a number wanted"),
         (lambda c: gcode.read(5), "5: a text wanted"),
+        (
+            lambda c: gcode.read(str(CIRCLE)),
+            f"{str(CIRCLE)!r} is the name of a file; Path({str(CIRCLE)!r}) reads it",
+        ),
         (lambda c: gcode.read("", jerkk=5), "no setting 'jerkk'; did you mean 'jerk'?"),
         (
             lambda c: tune.problem({"gain": ["a"]}),
             "gain = ['a']: unknown key; did you mean 'gains'?",
         ),
+        (lambda c: sweep.Ways(worker=3), "Ways: no option 'worker'; did you mean 'workers'?"),
+        (lambda c: motionfmu.load(5), "5: the path of a scenario wanted"),
         (lambda c: linear.margins(3), "3: an open loop wanted, such as model(...).loop(at)"),
     ],
 )
@@ -94,11 +102,12 @@ def test_a_wrong_name_of_a_scenario_is_told(theory: Scenario, axis: Any) -> None
         assert repr(session) == "<Session circle_theory: varies mcc.p_gain>"
     with pytest.raises(InputError, match=r"no input.*; did you mean 'card.enc_phase'\?"):
         axis.loop("card.enc_phas")
-    with pytest.raises(InputError, match=r"unknown key 'axi'; did you mean 'axis'\?"):
+    with pytest.raises(InputError, match=r"unknown table \[axi\]; did you mean 'axis'\?"):
         sweep.study(ROOT / "scenarios/circle", {"axi": {}})
 
 
 def test_what_a_user_looks_at_is_one_line(theory: Scenario, axis: Any) -> None:
+    assert len(gcode.read(CIRCLE).commands) > 3
     program = gcode.read("G1 X10 F600\nM2")
     study = sweep.study(ROOT / "scenarios/circle")
     contour = theory.run(stop=1.0).contour()

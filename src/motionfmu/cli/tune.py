@@ -48,7 +48,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
 
     scenario = load(path)
     beside = scenario.document.file.parent / "tune.toml"
-    values = read(file) if file else read(beside) if beside.is_file() else {}
+    values = read(file or beside, scenario) if file or beside.is_file() else {}
     values |= {"velocity": True} if velocity else {}
     values |= {"feed_forward": True} if forward else {}
     values |= {"axes": "equal"} if equal else {}

@@ -5,10 +5,12 @@ import itertools
 import json
 import math
 import re
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from motionfmu import units
+from motionfmu.errors import InputError, suggestion
 from motionfmu.toml_lines import shown
 
 TYPES = ("f64", "i32", "bool", "string")
@@ -129,6 +131,8 @@ def _check_value(variable: Variable, value: Any) -> Scalar:
 
 def _dims(given: Any) -> tuple[int, ...]:
     """Array dimensions; a state of all elements has a size."""
+    if given == ():
+        return ()
     whole = isinstance(given, list | tuple) and all(type(n) is int and n >= 1 for n in given)
     if not whole or len(given) > 2 or math.prod(given) > COUNT_MAX:
         text = f"one or two positive numbers, {COUNT_MAX} elements at most, wanted"
@@ -136,58 +140,86 @@ def _dims(given: Any) -> tuple[int, ...]:
     return tuple(given)
 
 
+def _wrong(causality: str, name: str, row: dict[str, Any]) -> Iterator[str]:
+    """What is wrong with a row besides its start and its name among the others."""
+    for key in sorted(set(row) - _KEYS - {"continuous"}):
+        yield f"unknown key {key!r}{suggestion(key, _KEYS)}"
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+        yield "a name is snake_case"
+    if not row.get("doc"):
+        if not any("'doc'?" in suggestion(key, _KEYS) for key in set(row) - _KEYS):
+            yield "doc is missing"
+    elif not isinstance(row["doc"], str) or not row["doc"].isprintable():
+        yield f"doc {shown(row['doc'])} is not a line of text"
+    for key in ("tunable", "continuous"):
+        if not isinstance(row.get(key, False), bool):
+            yield f"{key} {shown(row[key])} is not true or false"
+    if causality in ("output", "local") and row.get("start") is not None:
+        yield "it is calculated and has no start"
+    if row.get("type") not in TYPES:
+        kind = row.get("type")
+        close = suggestion(kind, TYPES) if isinstance(kind, str) else ""
+        yield f"type {shown(kind)} is not one of {', '.join(TYPES)}{close}"
+        return
+    for check in (_check_unit, _check_limits, _check_nominal, lambda r: _dims(r.get("dims") or ())):
+        try:
+            check(row)
+        except ValueError as error:
+            yield str(error)
+
+
+def _check_unit(row: dict[str, Any]) -> None:
+    if row.get("unit") is not None:
+        if row["type"] != "f64" or not isinstance(row["unit"], str):
+            raise ValueError(f"unit {shown(row['unit'])} on type {row['type']}")
+        units.parse(row["unit"])
+
+
 def _check_limits(row: dict[str, Any]) -> None:
-    """Limits are numbers of the variable's type; the usual size of an f64 is positive."""
-    numeric = row["type"] in ("f64", "i32")
+    """Limits are numbers of the variable's type."""
     for key in ("min", "max"):
         if row.get(key) is not None:
-            if not numeric:
+            if row["type"] not in ("f64", "i32"):
                 raise ValueError(f"{key} {shown(row[key])} on type {row['type']}")
             if not math.isfinite(_of_type(row["type"], key, row[key])):
                 raise ValueError(f"{key} {row[key]!r} is not finite")
-    nominal = row.get("nominal")
-    if nominal is not None:
+
+
+def _check_nominal(row: dict[str, Any]) -> None:
+    """The usual size of an f64 is positive."""
+    if (nominal := row.get("nominal")) is not None:
         size = _of_type("f64", "nominal", nominal)
         if row["type"] != "f64" or not 0.0 < float(size) < math.inf:
             raise ValueError(f"nominal {shown(nominal)} is not a positive size of an f64")
-    for key in ("tunable", "continuous"):
-        if not isinstance(row.get(key, False), bool):
-            raise ValueError(f"{key} {shown(row[key])} is not true or false")
 
 
 def variable(name: str, causality: str, row: dict[str, Any]) -> Variable:
-    """Make a Variable from a row as in fmu.toml; a ValueError names the variable and the value."""
-    try:
-        if not isinstance(row, dict):
-            raise ValueError(f"{shown(row)} is no table")
-        if unknown := sorted(set(row) - _KEYS - {"continuous"}):
-            raise ValueError(f"unknown key {unknown[0]!r}")
-        if row.get("type") not in TYPES:
-            raise ValueError(f"type {shown(row.get('type'))} is not one of {', '.join(TYPES)}")
-        if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
-            raise ValueError("a name is snake_case")
-        if not row.get("doc"):
-            raise ValueError("doc is missing")
-        if not isinstance(row["doc"], str) or not row["doc"].isprintable():
-            raise ValueError(f"doc {shown(row['doc'])} is not a line of text")
-        if row.get("unit") is not None:
-            if row["type"] != "f64" or not isinstance(row["unit"], str):
-                raise ValueError(f"unit {shown(row['unit'])} on type {row['type']}")
-            units.parse(row["unit"])
-        dims = _dims(row["dims"]) if row.get("dims") else ()
-        _check_limits(row)
-        bare = Variable(name, causality, **{**row, "dims": dims, "start": None})
-        start = row.get("start")
-        if causality in ("output", "local"):
-            if start is not None:
-                raise ValueError("it is calculated and has no start")
-            return bare
-        if start is None:
-            raise ValueError("start is missing")
-        values = list(start) if isinstance(start, list) else [start] * bare.count
-        if len(values) != bare.count:
-            raise ValueError(f"start has {len(values)} values for {bare.count} elements")
-        checked = [_check_value(bare, v) for v in values]
-        return Variable(name, causality, **{**row, "dims": dims, "start": checked})
-    except ValueError as error:
-        raise ValueError(f"{causality} {name}: {error}") from None
+    """Make a Variable from a row as in fmu.toml.
+
+    What is wrong is an InputError with a line for each thing: the variable, what, the value.
+    """
+    if not isinstance(row, dict):
+        raise InputError(f"{causality} {name}: {shown(row)} is no table")
+    told = list(_wrong(causality, name, row))
+    found: Variable | None = None
+    if not told:
+        bare = Variable(
+            name, causality, **{**row, "dims": tuple(row.get("dims") or ()), "start": None}
+        )
+        try:
+            found = bare if causality in ("output", "local") else _started(bare, row.get("start"))
+        except ValueError as error:
+            told = [str(error)]
+    if found is None:
+        raise InputError(*(f"{causality} {name}: {text}" for text in told))
+    return found
+
+
+def _started(bare: Variable, start: Any) -> Variable:
+    """A variable with its start values."""
+    if start is None:
+        raise ValueError("start is missing")
+    values = list(start) if isinstance(start, list) else [start] * bare.count
+    if len(values) != bare.count:
+        raise ValueError(f"start has {len(values)} values for {bare.count} elements")
+    return replace(bare, start=[_check_value(bare, v) for v in values])

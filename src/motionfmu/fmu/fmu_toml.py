@@ -2,11 +2,12 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
-from motionfmu.errors import InputError
+from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.fmu.describe import CAUSALITIES, Description, variable
-from motionfmu.fmu.head import check_head, line_of, matches
-from motionfmu.toml_lines import shown, tables_of, text_of
+from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
+from motionfmu.toml_lines import ordered, shown, tables_of, text_of
 
 HEAD = {"name", "description", "tick_ns", "experiment", "cores"}
 MAY = {"grid"}
@@ -14,38 +15,42 @@ _CORE = r"[a-z][a-z0-9_]{0,63}"
 
 
 def parse(text: str, file: str = "fmu.toml") -> Description:
-    """Read the text of an fmu.toml; anything wrong is a ValueError, ``file:line: what``."""
-    doc = tables_of(text, file)
+    """Read the text of an fmu.toml; what is wrong is an InputError, ``file:line: what`` each."""
+    doc, faults = tables_of(text, file), Faults()
     rows = []
     for causality in CAUSALITIES:
         table = doc.pop(causality, {})
-        if not isinstance(table, dict):
+        if isinstance(table, dict):
+            rows += [(causality, name, row) for name, row in table.items()]
+        else:
             where = line_of(text, causality)
-            raise InputError(f"{file}:{where}: {causality} = {shown(table)} is no table")
-        rows += [(causality, name, row) for name, row in table.items()]
-    if unknown := sorted(set(doc) - HEAD - MAY):
-        raise InputError(f"{file}:{line_of(text, unknown[0])}: unknown key {unknown[0]!r}")
-    if missing := sorted(HEAD - set(doc)):
-        raise InputError(f"{file}: {missing[0]!r} is missing")
-    check_head(doc, text, file)
-    for core in doc["cores"] if isinstance(doc["cores"], list) else [doc["cores"]]:
-        if not isinstance(doc["cores"], list) or not matches(_CORE, core):
-            told = f"cores {shown(doc['cores'])}: names of folders wanted"
-            raise InputError(f"{file}:{line_of(text, 'cores')}: {told}")
+            faults.lines.append(f"{file}:{where}: {causality} = {shown(table)} is no table")
+    faults.lines += wrong_keys(doc, (HEAD, MAY, set(CAUSALITIES)), text, file)
+    faults.lines += wrong_head(doc, text, file)
+    cores = doc.get("cores", [])
+    if not isinstance(cores, list) or not all(matches(_CORE, core) for core in cores):
+        told = f"cores {shown(cores)}: names of folders wanted"
+        faults.lines.append(f"{file}:{line_of(text, 'cores')}: {told}")
     variables, names = [], set()
     for causality, name, row in rows:
         try:
             variables.append(variable(name, causality, row))
-        except ValueError as error:
-            raise InputError(f"{file}:{line_of(text, name)}: {error}") from None
+        except InputError as error:
+            faults.lines += (f"{file}:{line_of(text, name)}: {told}" for told in error.args)
         if name in names:
-            raise InputError(f"{file}:{line_of(text, name)}: {name} is described twice")
+            faults.lines.append(f"{file}:{line_of(text, name)}: {name} is described twice")
         names.add(name)
-    periods = [v.name for v in variables if v.causality == "parameter" and v.type == "f64"]
+    periods = {n for causality, n, row in rows if causality == "parameter" and _real(row)}
     if "grid" in doc and doc["grid"] not in periods:
         told = f"grid {shown(doc['grid'])}: the name of a parameter of type f64 wanted"
-        raise InputError(f"{file}:{line_of(text, 'grid')}: {told}")
-    return Description(**{**doc, "cores": tuple(doc["cores"])}, variables=tuple(variables))
+        told += suggestion(str(doc["grid"]), periods)
+        faults.lines.append(f"{file}:{line_of(text, 'grid')}: {told}")
+    Faults(ordered(faults.lines, [file])).tell()
+    return Description(**{**doc, "cores": tuple(cores)}, variables=tuple(variables))
+
+
+def _real(row: Any) -> bool:
+    return isinstance(row, dict) and row.get("type") == "f64"
 
 
 def names_modelica(text: str) -> bool:

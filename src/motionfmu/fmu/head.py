@@ -2,32 +2,51 @@
 
 import math
 import re
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
-from motionfmu.errors import InputError
+from motionfmu.errors import suggestion
 from motionfmu.toml_lines import shown
 
 TICK_MAX = 1_000_000_000  # [ns]
 _NAME = r"[A-Z][A-Za-z0-9]{0,63}"  # it is part of the name of C functions and of files
 
 
-def check_head(doc: dict[str, Any], text: str, file: str) -> None:
-    """Check an fmu.toml's name, description, tick_ns and experiment; else ``file:line: what``."""
+def wrong_keys(
+    doc: Mapping[str, Any], keys: Sequence[Collection[str]], text: str, file: str
+) -> list[str]:
+    """Unknown keys and missing ones, as messages; those a file must have come first in `keys`."""
+    known = set().union(*keys)
+    found, meant = [], ""
+    for key in sorted(set(doc) - known):
+        close = suggestion(key, known)
+        meant += close
+        found.append(f"{file}:{line_of(text, key)}: unknown key {key!r}{close}")
+    lost = (key for key in sorted(set(keys[0]) - set(doc)) if repr(key) not in meant)
+    return [*found, *(f"{file}: {key!r} is missing" for key in lost)]
 
-    def refuse(key: str, what: str) -> InputError:
-        return InputError(f"{file}:{line_of(text, key)}: {key} {shown(doc[key])} {what}")
 
-    if not matches(_NAME, doc["name"]):
-        raise refuse("name", "is not CamelCase")
-    if not isinstance(doc["description"], str) or not doc["description"].isprintable():
-        raise refuse("description", "is not a line of text")
-    tick = doc["tick_ns"]
-    if not isinstance(tick, int) or isinstance(tick, bool) or not 1 <= tick <= TICK_MAX:
-        raise refuse("tick_ns", f"is not a positive integer, {TICK_MAX} at most")
-    experiment = doc["experiment"]
-    good = isinstance(experiment, dict) and set(experiment) == {"stop", "step"}
-    if not good or not all(_positive(x) for x in experiment.values()):
-        raise refuse("experiment", "is not { stop = seconds, step = seconds }")
+def wrong_head(doc: Mapping[str, Any], text: str, file: str) -> list[str]:
+    """What is wrong with an fmu.toml's name, description, tick_ns and experiment, if it has them.
+
+    Each is ``file:line: what``.
+    """
+    found = []
+
+    def look(key: str, good: Callable[[Any], bool], what: str) -> None:
+        if key in doc and not good(doc[key]):
+            found.append(f"{file}:{line_of(text, key)}: {key} {shown(doc[key])} {what}")
+
+    look("name", lambda x: matches(_NAME, x), "is not CamelCase")
+    look("description", lambda x: isinstance(x, str) and x.isprintable(), "is not a line of text")
+    ticks = f"is not a positive integer, {TICK_MAX} at most"
+    look("tick_ns", lambda x: type(x) is int and 1 <= x <= TICK_MAX, ticks)
+    look("experiment", _experiment, "is not { stop = seconds, step = seconds }")
+    return found
+
+
+def _experiment(x: Any) -> bool:
+    return isinstance(x, dict) and set(x) == {"stop", "step"} and all(map(_positive, x.values()))
 
 
 def _positive(x: Any) -> bool:

@@ -3,6 +3,7 @@
 import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ import numpy as np
 from motionfmu.binding import Struct, dtype, library
 from motionfmu.binding import text as text_of
 from motionfmu.errors import InputError
+from motionfmu.toml_lines import is_file
+from motionfmu.toml_lines import text_of as of_file
 
 AXES = 6
 ROOM = 4096
@@ -177,13 +180,13 @@ def defaults() -> dict[str, Any]:
     return {name: reader[name] for name in reader if name not in ("line", "ended")}
 
 
-def read(text: str, tools: str = "", **settings: Any) -> Program:
+def read(text: str | Path, tools: str = "", **settings: Any) -> Program:
     """Read a part program.
 
     Parameters
     ----------
-    text : str
-        All its lines.
+    text : str or Path
+        All its lines; or, as a `pathlib.Path`, the file that holds them.
     tools : str
         Lines of a tool table (``T1 P1 Z10 D6``: number, pocket, length, diameter [mm]); without
         one every tool exists and has length and diameter 0.
@@ -197,6 +200,11 @@ def read(text: str, tools: str = "", **settings: Any) -> Program:
     Raises
     ------
     InputError
-        There is no such setting, or it has another shape; a line of the tool table is wrong.
+        There is no such setting, or it has another shape; a line of the tool table is wrong; a file
+        cannot be read, or the text is the name of one.
     """
+    if isinstance(text, Path):
+        text = of_file(text)
+    elif isinstance(text, str) and "\n" not in text and is_file(Path(text)):
+        raise InputError(f"{text!r} is the name of a file; Path({text!r}) reads it")
     return Program(text, _reader(settings, tools))

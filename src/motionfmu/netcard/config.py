@@ -1,13 +1,14 @@
 """The card's configuration: one file for the plan, the headers, the FMU and the page."""
 
 import copy
+import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, get_args
 
 from pydantic import BaseModel, BeforeValidator, Field, ValidationError, model_validator
 
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, suggestion
 from motionfmu.netcard.fields import STRICT, Table, Wrong, choices, described, numbers
 from motionfmu.netcard.tables import (
     AXES,
@@ -156,18 +157,22 @@ def read(text: str, file: str | Path) -> CardConfig:
 def faults(tables: dict[str, Any]) -> list[tuple[str, Any, str]]:
     """Place (``axes.0.speed_max``), value (None: not given) and fault of all that is wrong."""
     found: dict[str, tuple[Any, str]] = {}
+    meant: set[str] = set()
     rest = copy.deepcopy(tables)
     while True:
         before = len(found)
         try:
             CardConfig.model_validate(rest)
         except ValidationError as error:
-            fresh = [
-                (places[0], why) for places, why in _places(error) if not found.keys() & set(places)
-            ]
-            for place, why in fresh:
-                found.setdefault(place, (_value(tables, place), why))
-                _without(rest, place)
+            told = list(_places(error))
+            for (place, *_), why in told:  # what a misspelt key stands for is not missing
+                if why.startswith("unknown key") and why.endswith("?"):
+                    meant.add(f"{place.rpartition('.')[0]}.{why.split(chr(39))[1]}".lstrip("."))
+            known = found.keys() | meant
+            for (place, *others), why in told:
+                if not known & {place, *others}:
+                    found.setdefault(place, (_value(tables, place), why))
+                    _without(rest, place)
         if len(found) == before:
             return [(place, *told) for place, told in found.items()]
 
@@ -181,9 +186,27 @@ def _places(error: ValidationError) -> Iterator[tuple[list[str], str]]:
             for keys, why in inner.found:
                 yield [f"{table}.{key}".lstrip(".") for key in keys], why
         elif one["type"] == "extra_forbidden":
-            yield [table], "unknown key"
+            yield [table], f"unknown key{_close(table)}"
+        elif one["type"] == "literal_error":
+            words = re.findall("'([^']*)'", one["ctx"]["expected"])
+            yield [table], f"{_words(one)}{suggestion(str(one['input']), words)}"
         else:
-            yield [table], str(inner) if inner else one["msg"][0].lower() + one["msg"][1:]
+            yield [table], str(inner) if inner else _words(one)
+
+
+def _words(found: Any) -> str:
+    """What pydantic tells, as the end of a message."""
+    return str(found["msg"][0].lower() + found["msg"][1:])
+
+
+def _close(place: str) -> str:
+    """What the last key of a place may be meant for, as the end of a message."""
+    table: Any = CardConfig
+    *around, key = place.split(".")
+    for part in around:
+        if field := table.model_fields.get(part):
+            table = (get_args(field.annotation) or (field.annotation,))[0]
+    return suggestion(key, getattr(table, "model_fields", ()))
 
 
 def _holder(tables: Any, place: str) -> Any:

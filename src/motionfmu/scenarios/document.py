@@ -11,13 +11,15 @@ from pydantic import BaseModel, ValidationError
 from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.scenarios import body as tables_
 from motionfmu.scenarios.body import Body
-from motionfmu.scenarios.sources import Source, Tables, chain, merged, of_file, ordered
-from motionfmu.toml_lines import is_file, shown
+from motionfmu.scenarios.sources import Source, Tables, chain, merged, of_file
+from motionfmu.toml_lines import is_file, ordered, shown
 
 # Tables of which each key is the user's own.
 OPEN = ("component", "connect", "set", "check")
 ARRAYS = ("drive", "figure", "waveform", "contrary")
 ABOUT = "the first line is a comment that says what the scenario shows"
+# What a list wants at least, by its key.
+EMPTY = {"signals": 'the name of an output, or a pattern such as "card.*", wanted'}
 # What takes the place of a table that cannot be read, so that the others are looked at.
 SOUND: Tables = {"stop": tables_.LONGEST, "step": 1e-4, "record": {"signals": ["*"]}}
 
@@ -55,7 +57,7 @@ class Document:
 
     def refuse(self, lines: list[str]) -> None:
         """Tell everything that is wrong, in the order of the lines; nothing if that is nothing."""
-        Faults(ordered(lines, self.sources)).tell()
+        Faults(ordered(lines, (s.name for s in self.sources))).tell()
 
 
 def _place(sources: tuple[Source, ...], table: str, key: str, item: Any = None) -> str:
@@ -117,7 +119,7 @@ def parsed(sources: list[Source], name: str = "") -> Document:
         try:
             body = Body.model_validate(_without(sound, error))
         except ValidationError:  # nothing is left to look at
-            Faults(ordered(wrong, sources)).tell()
+            Faults(ordered(wrong, (s.name for s in sources))).tell()
             raise
     if not damaged & {"stop", "limit", "settle"} and (told := _ending(body, places)):
         wrong += told
@@ -243,7 +245,10 @@ def _one(
         return place, f"{owner.place(top, dotted)}: {dotted}: {text}"
     value = "..." if isinstance(value, dict) and value else value
     value = list(value) if isinstance(value, tuple) else value
-    return place, f"{spot}: {'.'.join(name)} = {shown(value)}: {found['msg'].lower()}"
+    told = found["msg"].lower()
+    if found["type"] == "too_short" and not value:
+        told = EMPTY.get(place[-1], "it is empty")
+    return place, f"{spot}: {'.'.join(name)} = {shown(value)}: {told}"
 
 
 def _spot(sources: tuple[Source, ...], place: tuple[str, ...]) -> str:

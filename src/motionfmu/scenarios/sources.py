@@ -1,6 +1,5 @@
 """Where the tables of a scenario come from: files, one extending another, or a program."""
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,6 @@ Tables = dict[str, Any]
 DEPTH_MAX = 8  # scenarios that extend one another
 # Lists that grow; any other list takes the place of the one it extends.
 JOINED = (("", "leave"), ("record", "signals"))
-_PLACE = re.compile(r"^(.+?):(\d+): ")
 
 
 @dataclass(frozen=True)
@@ -64,6 +62,8 @@ class Source:
 
 def scenario_file(path: str | Path) -> Path:
     """The scenario.toml, absolute, that a user's path means: itself or the folder that holds it."""
+    if not isinstance(path, str | Path):
+        raise InputError(f"{shown(path)}: the path of a scenario wanted")
     file = Path(path)
     file = file / "scenario.toml" if is_file(file / "scenario.toml") else file
     if not is_file(file):
@@ -137,16 +137,3 @@ def _joined(table: str, key: str, before: Any, value: Any) -> Any:
     if (table, key) in JOINED and isinstance(before, list) and isinstance(value, list):
         return [*before, *(x for x in value if x not in before)]
     return value
-
-
-def ordered(lines: Iterable[str], sources: Iterable[Source]) -> list[str]:
-    """Messages in the order of files and their lines; what has no line comes first."""
-    names = [s.name for s in sources]
-
-    def order(line: str) -> tuple[int, int]:
-        place = _PLACE.match(line)
-        if place is None or place[1] not in names:
-            return -1, 0
-        return names.index(place[1]), int(place[2])
-
-    return sorted(lines, key=order)

@@ -110,10 +110,15 @@ def _elements(end: End) -> str:
 
 def unplaced(document: Document, error: InputError) -> InputError:
     """The error of a value that is not the scenario's: without a place in its file."""
+    return InputError(*(f"set {text}" for text in texts(document, error)))
+
+
+def texts(document: Document, error: InputError) -> list[str]:
+    """The lines of an error without their places in the scenario's files."""
     names = [s.name for s in document.sources]
-    ends = [max(len(n) for n in ["", *names] if line.startswith(n)) for line in error.args]
-    texts = (line[end:].partition(": ")[2] for line, end in zip(error.args, ends, strict=True))
-    return InputError(*(f"set {text}" for text in texts))
+    ends = [max((len(n) for n in names if line.startswith(n)), default=0) for line in error.args]
+    pairs = zip(error.args, ends, strict=True)
+    return [line[end:].partition(": ")[2] if end else line for line, end in pairs]
 
 
 def stimuli(resolver: Resolver, step_ns: int) -> list[Stimulus]:

@@ -84,7 +84,7 @@ class Axis:
         return (values - low) / (high - low)
 
     def check(self, sampling: str) -> None:
-        """Refuse values that this variable or this sampling cannot take."""
+        """Refuse values that this variable or this sampling, if one is given, cannot take."""
         # Values outside the range that the variable declares are no mistake of the study.
         source, kind = self.source, self.end.port.type
         if isinstance(source, Listed):
@@ -107,7 +107,7 @@ class Axis:
             raise ValueError(f"{shown}: a logarithm wants positive numbers")
         if sampling == "grid" and source.n is None:
             raise ValueError(f"{shown}: a grid wants n, the number of values")
-        if sampling != "grid" and source.n is not None:
+        if sampling not in ("grid", "") and source.n is not None:
             raise ValueError(f"{shown}: n = {source.n} belongs to a grid, not to {sampling}")
         if kind == "Int32":
             even = self._even(source)

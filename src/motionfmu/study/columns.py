@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.names import unit as unit_of
-from motionfmu.errors import NoNumber
+from motionfmu.errors import NoNumber, suggestion
 from motionfmu.iso9283.evaluation import unit as units_of
 from motionfmu.run import Scenario
-from motionfmu.run.checks import is_figure, wrong_figure
+from motionfmu.run.checks import TABLES, is_figure, wrong_figure
 from motionfmu.run.result import Result
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.body import Check
@@ -71,11 +71,14 @@ def column(scenario: Scenario, name: str) -> Column:
             raise ValueError(told)
         return Column(name)
     signal, _, statistic = name.rpartition(".")
+    component, ports = name.partition(".")[0], scenario.resolver.ports
+    if component not in ports and (close := suggestion(component, [*TABLES, *ports])):
+        raise ValueError(f"{name}: no component or analysis {component!r}{close}")
     if statistic not in STATISTICS or "." not in signal:
         known = ", ".join(STATISTICS)
-        raise ValueError(
-            f"{name}: SIGNAL.STATISTIC (one of {known}), contour.FIGURE or iso9283.FIGURE wanted"
-        )
+        text = f"SIGNAL.STATISTIC (one of {known}), contour.FIGURE or iso9283.FIGURE wanted"
+        hint = suggestion(statistic, STATISTICS) if "." in signal else ""
+        raise ValueError(f"{name}: {text}{hint}")
     whole, element = split(signal)
     end = recording.output(scenario.resolver, whole, "", "")
     if element is not None and not 0 <= element < end.port.count * bool(end.port.shape):

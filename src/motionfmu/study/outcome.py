@@ -1,12 +1,14 @@
 """How a study is run, and what it gave."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.errors import InputError, suggestion
 from motionfmu.study.axes import Normal, Value
 from motionfmu.study.study import Study
 from motionfmu.study.worker import OK, Row
@@ -35,6 +37,14 @@ class Ways:
     scheduler: str | None = None
     fresh: bool = False
     progress: Callable[[int, int], None] = lambda done, errors: None
+
+    def __new__(cls, *_: Any, **given: Any) -> Self:
+        """Refuse what is no way; the suggestion is one of these."""
+        known = [f.name for f in fields(cls)]
+        for name in given:
+            if name not in known:
+                raise InputError(f"Ways: no option {name!r}{suggestion(name, known)}")
+        return super().__new__(cls)
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from motionfmu.errors import InputError, suggestion
+from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.scenarios.body import Name, Names, Value
-from motionfmu.toml_lines import Lines, is_file, shown, tables_of, text_of
+from motionfmu.toml_lines import Lines, is_file, ordered, shown, tables_of, text_of
 
 FILE = "sweep.toml"
+ABOUT = "the first line is a comment that says what the study shows"
+VALUE = "a number, a text, true or false, or a list of one of these wanted"
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 # A path is part of messages.
 Place = Annotated[str, Field(max_length=1000)]
@@ -48,12 +50,27 @@ class Origin:
             return InputError(f"sweep: {text}")
         return InputError(f"{self.file}:{self.lines.of(table, key)}: {text}")
 
+    def refuse(self, faults: Faults) -> None:
+        """Tell all that is wrong, in the order of the lines; nothing if that is nothing."""
+        Faults(ordered(faults.lines, [str(self.file)])).tell()
 
-def read(path: Path, given: Mapping[str, Any]) -> tuple[Origin, Body, str, Path]:
+
+@dataclass(frozen=True)
+class StudyFile:
+    """A study as written, its keys and their types checked."""
+
+    origin: Origin
+    body: Body
+    about: str  # what the first line says; empty from the command line
+    folder: Path  # what it names lies here
+    damaged: frozenset[str]  # keys at which something is wrong, which body does not have
+
+
+def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
     """Read a study file, or a scenario's sweep.toml if there is one.
 
-    With what its first line says, and its folder; keys given count instead of those written there.
-    A wrong form is an InputError with file, line and value.
+    Keys given count instead of those written there. What is wrong with keys and their types goes to
+    the faults, with file, line and value; a file that cannot be read is an InputError.
     """
     if is_file(path / FILE):
         path = path / FILE
@@ -61,27 +78,42 @@ def read(path: Path, given: Mapping[str, Any]) -> tuple[Origin, Body, str, Path]
     if is_file(path / "scenario.toml") or path.name == "scenario.toml" or path.is_dir():
         keys["scenario"] = str(path)
         origin = Origin(None, Lines(""), frozenset(keys))
-        return origin, _body(origin, keys), "", Path()
+        body, damaged = _body(origin, keys, faults)
+        return StudyFile(origin, body, "", Path(), damaged)
     text = text_of(path)
     tables = tables_of(text, path)
-    first = text.split("\n", 1)[0]
+    file, first = path.resolve(), text.split("\n", 1)[0]
     if not first.startswith("#"):
-        raise InputError(f"{path}:1: the first line is a comment that says what the study shows")
-    origin = Origin(path.resolve(), Lines(text), frozenset(keys))
-    return origin, _body(origin, tables | keys), first.lstrip("# "), path.resolve().parent
+        faults.lines.append(f"{file}:1: {ABOUT}")
+    origin = Origin(file, Lines(text), frozenset(keys))
+    body, damaged = _body(origin, tables | keys, faults)
+    return StudyFile(origin, body, first.lstrip("# "), file.parent, damaged)
 
 
-def _body(origin: Origin, keys: dict[str, Any]) -> Body:
+def _body(origin: Origin, keys: dict[str, Any], faults: Faults) -> tuple[Body, frozenset[str]]:
+    """The body without what is wrong, and the keys at which something is."""
     try:
-        return Body.model_validate(keys)
+        return Body.model_validate(keys), frozenset()
     except ValidationError as error:
-        found = error.errors()[0]
-        key = str(found["loc"][0])
-        place = (key, str(found["loc"][1])) if key == "set" and found["loc"][1:] else ("", key)
-        if found["type"] == "extra_forbidden":
-            raise origin.error(
-                f"unknown key {key!r}{suggestion(key, Body.model_fields)}", "", key
-            ) from None
-        name = ".".join(str(x) for x in found["loc"][:2]) if key == "set" else key
-        text = f"{name} = {shown(found['input'])}: {found['msg'].lower()}"
-        raise origin.error(text, *place) from None
+        found = error.errors()
+    damaged = {str(one["loc"][0]) for one in found}
+    rest = {key: value for key, value in keys.items() if key not in damaged}
+    for one in found:
+        text, *place = _told(one)
+        faults.lines += origin.error(text, *place).args
+        if one["type"] == "extra_forbidden":  # what it is meant for is not missing
+            damaged |= {name for name in Body.model_fields if text.endswith(f"mean {name!r}?")}
+            damaged |= {"axis"} if isinstance(one["input"], dict) else set()
+    return Body.model_validate(rest), frozenset(damaged)
+
+
+def _told(found: Any) -> tuple[str, str, str]:
+    """What is wrong in words, table and key."""
+    key, value = str(found["loc"][0]), found["input"]
+    if found["type"] == "extra_forbidden":
+        what = f"table [{key}]" if isinstance(value, dict) else f"key {key!r}"
+        return f"unknown {what}{suggestion(key, Body.model_fields)}", "", key
+    if key == "set" and found["loc"][1:]:
+        name = str(found["loc"][1])
+        return f"set.{name} = {shown(value)}: {VALUE}", key, name
+    return f"{key} = {shown(value)}: {found['msg'].lower()}", "", key

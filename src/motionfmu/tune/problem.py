@@ -1,16 +1,21 @@
 """What a tuning is asked for: gains, cost, limits, family of plants."""
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from motionfmu.errors import InputError, suggestion
-from motionfmu.toml_lines import Lines, shown, tables_of, text_of
+from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.run import Scenario
+from motionfmu.scenarios.values import texts
+from motionfmu.toml_lines import Lines, ordered, shown, tables_of, text_of
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+# Each has pairs of a least and a largest value by name.
+TABLES = ("bounds", "family", "trial")
 # More ranges than this have more corners than a tuning can look at.
 RANGES_MAX = 4
 Cost = Literal["contour_rms", "contour_max", "error_rms", "error_max", "ise", "iae", "itae"]
@@ -124,41 +129,106 @@ def problem(values: Mapping[str, Any], lines: Lines | None = None, file: str = "
     Raises
     ------
     InputError
-        One message with file, line, key and value.
+        All that is wrong at once, each with file, line, key and value.
     """
+    place = _Place(lines, file)
+    faults = Faults()
+    given = _pairs(dict(values))
     try:
-        found = Problem.model_validate(_pairs(dict(values)))
+        found = Problem.model_validate(given)
     except ValidationError as error:
-        first = error.errors()[0]
-        keys = [str(k) for k in first["loc"]]
-        given = "" if isinstance(first["input"], dict) else f" = {shown(first['input'])}"
-        told = first["msg"].lower()
-        if first["type"] == "extra_forbidden":
-            holders: dict[str, type[BaseModel]] = {"limits": Limits, "margins": Margins}
-            holder = holders.get(keys[-2], Problem) if keys[1:] else Problem
-            told = "unknown key" + suggestion(keys[-1], holder.model_fields)
-        text = f"{'.'.join(keys)}{given}: {told}"
-        raise _located(text, keys, lines, file) from None
-    for table in ("bounds", "family", "trial"):
+        wrong = error.errors()
+        faults.lines += _told(wrong, place)
+        damaged = {one["loc"][0] for one in wrong}
+        found = Problem.model_validate({k: v for k, v in given.items() if k not in damaged})
+    for table in TABLES:
         for name, (low, high) in getattr(found, table).items():
             if not low < high:
                 text = f"{table}.{name} = [{low!r}, {high!r}]: the first must be less"
-                raise _located(text, [table, name], lines, file)
+                faults.lines.append(place.line(text, table, name))
     if len(found.trial) > 1:
         text = f"trial: {', '.join(found.trial)}: one parameter only"
-        raise _located(text, ["trial"], lines, file)
-    if (found.command is None) != (found.position is None):
-        key = "command" if found.position is None else "position"
-        raise _located(f"{key}: command and position go together", [key], lines, file)
+        faults.lines.append(place.line(text, "trial"))
+    if ("command" in given) != ("position" in given):
+        key = "command" if "command" in given else "position"
+        faults.lines.append(place.line(f"{key}: command and position go together", key))
     if len(found.family) > RANGES_MAX:
         text = f"family: {len(found.family)} ranges, not more than {RANGES_MAX}"
-        raise _located(text, ["family"], lines, file)
+        faults.lines.append(place.line(text, "family"))
+    place.refuse(faults)
     return found
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where a problem is written, for messages."""
+
+    lines: Lines | None
+    file: str
+
+    def line(self, text: str, *keys: str) -> str:
+        """A message about a key."""
+        if self.lines is None:
+            return f"{self.file}: {text}" if self.file else text
+        return f"{self.file}:{self.lines.of('.'.join(keys[:-1]), keys[-1])}: {text}"
+
+    def refuse(self, faults: Faults) -> None:
+        """Tell all that is wrong, in the order of the lines; nothing if that is nothing."""
+        Faults(ordered(faults.lines, [self.file])).tell()
+
+
+def _told(wrong: Sequence[Any], place: _Place) -> list[str]:
+    """A line for each key of which pydantic found something."""
+    found: dict[tuple[str, ...], str] = {}
+    for one in wrong:
+        keys = [str(k) for k in one["loc"]]
+        if keys[0] in TABLES:
+            keys = keys[:2]  # what follows is the place in the pair
+        text = ".".join(keys)
+        if one["type"] == "extra_forbidden":
+            # [limits.margins] and each of [limits.loop] have one kind of keys.
+            holders: list[type[BaseModel]] = [Problem, Limits, Margins]
+            known = holders[min(len(keys), 3) - 1].model_fields
+            what = "table" if isinstance(one["input"], dict) else "key"
+            told = f"unknown {what}{suggestion(keys[-1], known)}"
+        else:
+            told = one["msg"].lower()
+        if not isinstance(one["input"], dict):
+            text += f" = {shown(one['input'])}"
+        found.setdefault(tuple(keys), place.line(f"{text}: {told}", *keys))
+    return list(found.values())
+
+
+def check_names(
+    problem: Problem, scenario: Scenario, lines: Lines | None = None, file: str = ""
+) -> None:
+    """Refuse names of a problem that the scenario's FMUs do not have: all at once."""
+    place, faults = _Place(lines, file), Faults()
+    named = [((key,), name) for key in ("command", "position") if (name := getattr(problem, key))]
+    named += [(("gains",), name) for name in problem.gains or ()]
+    tables: list[tuple[str, ...]] = [(t,) for t in (*TABLES, "at")]
+    for keys in [*tables, ("limits", "peak"), ("limits", "loop")]:
+        table = problem if keys[:-1] == () else problem.limits
+        named += [((*keys, name), name) for name in getattr(table, keys[-1])]
+    for keys, name in named:
+        try:
+            scenario.resolver.end(name, "", "")
+        except InputError as error:
+            what = ".".join(k for k in keys if k != name)
+            told = (f"{what}: {text}" for text in texts(scenario.document, error))
+            faults.lines += (place.line(text, *keys) for text in told)
+    gains = problem.gains or [*problem.bounds]
+    for name in problem.bounds:
+        if name not in gains and not any(f"bounds: {name}:" in line for line in faults.lines):
+            text = f"bounds.{name}: it is not among the gains: {', '.join(gains)}"
+            text += suggestion(name, gains)
+            faults.lines.append(place.line(text, "bounds", name))
+    place.refuse(faults)
 
 
 def _pairs(values: dict[str, Any]) -> dict[str, Any]:
     """TOML has lists where tuples of two numbers are meant."""
-    for table in ("bounds", "family", "trial"):
+    for table in TABLES:
         if isinstance(values.get(table), dict):
             values[table] = {
                 k: tuple(v) if isinstance(v, list) else v for k, v in values[table].items()
@@ -166,19 +236,14 @@ def _pairs(values: dict[str, Any]) -> dict[str, Any]:
     return values
 
 
-def _located(text: str, keys: list[str], lines: Lines | None, file: str) -> InputError:
-    if lines is None:
-        return InputError(f"{file}: {text}" if file else text)
-    table = ".".join(keys[:-1])
-    return InputError(f"{file}:{lines.of(table, keys[-1])}: {text}")
-
-
-def read(file: str | Path) -> dict[str, Any]:
+def read(file: str | Path, scenario: Scenario | None = None) -> dict[str, Any]:
     """Read the tables of a tune.toml and check them.
 
     Parameters
     ----------
     file : str or Path
+    scenario : Scenario, optional
+        Whose variables the file names; they are looked up.
 
     Returns
     -------
@@ -188,9 +253,11 @@ def read(file: str | Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The file is missing or wrong.
+        The file is missing or wrong: all of it at once, with lines.
     """
     text = text_of(file)
     values = tables_of(text, file)
-    problem(values, Lines(text), str(file))
+    asked = problem(values, Lines(text), str(file))
+    if scenario is not None:
+        check_names(asked, scenario, Lines(text), str(file))
     return values

@@ -11,7 +11,7 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.run import Result, Scenario, load
 from motionfmu.tune.move import MoveCost
-from motionfmu.tune.problem import Problem, problem
+from motionfmu.tune.problem import Problem, check_names, problem
 from motionfmu.tune.result import Run, Tuned, settings
 from motionfmu.tune.solve import TOLERANCE, merit, solve
 from motionfmu.tune.steps import Array
@@ -84,8 +84,7 @@ def tune(
         )
     if asked.trial and asked.command is None:
         raise InputError("trial: only for a scenario that is judged by command and position")
-    for name in asked.trial:
-        loaded.resolver.end(name, "trial", name)
+    check_names(asked, loaded)
     given = dict(set or {})
     base = loaded.run(set=given, progress=lambda share: progress("path", share))
     study = Study(loaded, asked, base, given)

@@ -1,18 +1,18 @@
 """The description of an FMU made from a Modelica class."""
 
 import math
-import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import InputError
+from motionfmu.errors import Faults
 from motionfmu.fmu import describe
-from motionfmu.fmu.head import check_head, line_of
+from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
 from motionfmu.fmu.modelica import causal
 from motionfmu.fmu.modelica.flat import Declaration
 from motionfmu.fmu.modelica.ode import Ode
-from motionfmu.toml_lines import shown, tables_of, text_of
+from motionfmu.toml_lines import ordered, shown, tables_of, text_of
 
 _TYPES = {"Real": "f64", "Integer": "i32", "Boolean": "bool"}
 _KEYS = ("name", "description", "tick_ns", "experiment", "modelica", "instances", "micro_step")
@@ -38,37 +38,41 @@ class Packing:
 
 
 def read(toml: Path) -> Packing:
-    """Read an fmu.toml with a key ``modelica``; a ValueError is ``file:line: what``."""
+    """Read an fmu.toml with a key ``modelica``; what is wrong is ``file:line: what`` each."""
     text = text_of(toml)
-    doc = tables_of(text, toml)
+    doc, faults = tables_of(text, toml), Faults()
+    faults.lines += wrong_keys(doc, (_KEYS, _OPTIONAL), text, str(toml))
+    faults.lines += wrong_head(doc, text, str(toml))
 
-    def refuse(key: str, what: str) -> InputError:
-        return InputError(f"{toml}:{line_of(text, key)}: {what}")
+    def look(key: str, good: Callable[[Any], bool], what: str) -> bool:
+        if key in doc and not good(doc[key]):
+            told = f"{key} {shown(doc[key])} {what}"
+            faults.lines.append(f"{toml}:{line_of(text, key)}: {told}")
+        return key in doc and good(doc[key])
 
-    for key in sorted(set(doc) - {*_KEYS, *_OPTIONAL}):
-        raise refuse(key, f"unknown key {key!r}; the variables come from the Modelica class")
-    for key in _KEYS:
-        if key not in doc:
-            raise InputError(f"{toml}: {key!r} is missing")
-    check_head(doc, text, str(toml))
-    instances, step = doc["instances"], doc["micro_step"]
-    if type(instances) is not int or not 1 <= instances <= INSTANCES_MAX:
-        what = f"is not a positive integer, {INSTANCES_MAX} at most"
-        raise refuse("instances", f"instances {shown(instances)} {what}")
-    if type(step) not in (float, int) or not math.isfinite(step) or step <= 0:
-        raise refuse("micro_step", f"micro_step {shown(step)} is not a positive number")
-    tolerance = doc.get("tolerance", 1e-6)
-    if not isinstance(tolerance, float) or not 1e-12 <= tolerance <= 1e-2:
-        raise refuse(
-            "tolerance", f"tolerance {shown(tolerance)} is not a number from 1e-12 to 0.01"
-        )
-    if not isinstance(doc["modelica"], str) or not re.fullmatch(r"\w+(\.\w+)+", doc["modelica"]):
-        raise refuse("modelica", f"modelica {shown(doc['modelica'])} is not a class name")
-    top = doc["modelica"].split(".")[0]
-    for folder in toml.resolve().parents:
-        if (folder / "modelica" / top / "package.mo").is_file():
-            return Packing(**doc, package=folder / "modelica" / top)
-    raise refuse("modelica", f"there is no package modelica/{top} above this file")
+    whole = f"is not a positive integer, {INSTANCES_MAX} at most"
+    look("instances", lambda x: type(x) is int and 1 <= x <= INSTANCES_MAX, whole)
+    look("micro_step", _step, "is not a positive number")
+    look("tolerance", _tolerance, "is not a number from 1e-12 to 0.01")
+    if look("modelica", lambda x: matches(r"\w+(\.\w+)+", x), "is not a class name"):
+        top = doc["modelica"].split(".")[0]
+        places = [p / "modelica" / top for p in toml.resolve().parents]
+        package = next((p for p in places if (p / "package.mo").is_file()), None)
+        if package is not None and not faults.lines:
+            return Packing(**doc, package=package)
+        if package is None:
+            told = f"there is no package modelica/{top} above this file"
+            faults.lines.append(f"{toml}:{line_of(text, 'modelica')}: {told}")
+    Faults(ordered(faults.lines, [str(toml)])).tell()
+    raise AssertionError("a file without a class is refused")
+
+
+def _step(x: Any) -> bool:
+    return type(x) in (float, int) and math.isfinite(x) and x > 0
+
+
+def _tolerance(x: Any) -> bool:
+    return isinstance(x, float) and 1e-12 <= x <= 1e-2
 
 
 def from_modelica(toml: Path) -> describe.Description:

@@ -1,0 +1,212 @@
+"""What a study asks of its scenario: every name looked up, every value checked."""
+
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.run import Options, Scenario
+from motionfmu.scenarios import values
+from motionfmu.scenarios.system import End, split
+from motionfmu.study import axes as ax
+from motionfmu.study.columns import Column, column, usual
+from motionfmu.study.study_file import StudyFile
+from motionfmu.toml_lines import shown, tables_of, text_of
+
+USUAL_COST = "contour.error.max"  # where none is named
+_KINDS: dict[str, Any] = {"String": str, "Boolean": bool}
+
+
+class Asked:
+    """A study's file beside its scenario; what is wrong goes to the faults."""
+
+    def __init__(self, file: StudyFile, scenario: Scenario, faults: Faults) -> None:
+        self.file, self.scenario, self.faults = file, scenario, faults
+        self.body, self.origin = file.body, file.origin
+        self._wired = {w.target.name for w in scenario.resolved(Options()).wires}
+
+    def _sound(self, *keys: str) -> bool:
+        """Whether nothing was told of these keys."""
+        return not self.file.damaged & set(keys)
+
+    def axes(self) -> tuple[ax.Axis, ...]:
+        """What is varied; without an axis of which something is wrong."""
+        if not self.body.axis and self._sound("axis"):
+            with self.faults.each():
+                text = "nothing is varied: [axis] or --vary wanted"
+                raise self.origin.error(text, "", "axis")
+        sampling = self.body.sampling if self._sound("sampling") else ""
+        found = []
+        for name, spec in self.body.axis.items():
+            told: list[str] = []
+            try:
+                axis = ax.Axis(name, self._end(name), _source(name, spec))
+                axis.check(sampling)
+                found.append(axis)
+            except InputError as error:
+                told = values.texts(self.scenario.document, error)
+            except ValidationError as error:
+                told = _told(name, error)
+            except ValueError as error:
+                told = [str(error)]
+            for text in told:
+                self.faults.lines += self.origin.error(text, "axis", name).args
+        return tuple(found)
+
+    def _end(self, name: str) -> End:
+        whole, element = split(name)
+        end = self.scenario.resolver.end(whole, "", "")
+        if end.port.causality not in ("parameter", "input"):
+            raise ValueError(f"{name} is an {end.port.causality} and cannot be set")
+        if whole in self._wired:
+            raise ValueError(f"{name} is connected and cannot be set")
+        if element is not None and not 0 <= element < end.port.count * bool(end.port.shape):
+            raise ValueError(f"{name}: {whole} has no element {element + 1}")
+        return end
+
+    def columns(self) -> tuple[Column, ...]:
+        """The results; without a name that is none."""
+        if not self._sound("results"):
+            return ()
+        if not self.body.results:
+            checked = tuple(usual(self.scenario))
+            with self.faults.each():
+                if not checked:
+                    text = "no results: name some, the scenario checks nothing"
+                    raise self.origin.error(text, "", "results")
+            return checked
+        found = []
+        for name in dict.fromkeys(self.body.results):
+            try:
+                found.append(column(self.scenario, name))
+            except InputError as error:
+                for text in values.texts(self.scenario.document, error):
+                    self.faults.lines += self.origin.error(text, "", "results").args
+            except ValueError as error:
+                self.faults.lines += self.origin.error(str(error), "", "results").args
+        return tuple(found)
+
+    def options(self) -> None:
+        """Look at the values for all runs, and at the times."""
+        resolver, document = self.scenario.resolver, self.scenario.document
+        for name, value in self.body.set.items():
+            with self.faults.each():
+                try:
+                    values.setting(resolver, name, value, {})
+                except InputError as error:
+                    (text,) = values.unplaced(document, error).args
+                    raise self.origin.error(text, "set", name) from None
+        times = {k: getattr(self.body, k) for k in ("stop", "step")}
+        try:
+            self.scenario.resolved(Options(**times))
+        except InputError as error:
+            for text in values.texts(document, error):
+                key = "step" if text.startswith("step") or times["stop"] is None else "stop"
+                self.faults.lines += self.origin.error(text, "", key).args
+
+    def runs(self, chosen: tuple[ax.Axis, ...]) -> int:
+        """How many runs; 0 where something is wrong."""
+        body = self.body
+        with self.faults.each():
+            if not self._sound("sampling", "runs"):
+                return 0
+            if body.sampling != "grid":
+                if body.runs is None:
+                    text = f"sampling {body.sampling!r} wants runs, their number"
+                    raise self.origin.error(text, "", "runs")
+                return self._bounded(body.runs, "runs")
+            if body.runs is not None:
+                text = "runs: the number of runs of a grid follows from its axes"
+                raise self.origin.error(text, "", "runs")
+            if len(chosen) == len(body.axis):
+                return self._bounded(ax.count(chosen), "axis")
+        return 0
+
+    def _bounded(self, runs: int, key: str) -> int:
+        """Refuse more points than memory holds."""
+        axes = len(self.body.axis)
+        most = min(ax.RUNS_MAX, ax.VALUES_MAX // max(axes, 1))
+        if runs > most:
+            raise self.origin.error(f"{runs} runs of {axes} axes; {most} are the most", "", key)
+        return runs
+
+    def cost(self, columns: tuple[Column, ...]) -> str:
+        """The column that is to be small; empty if there is none."""
+        names, wanted = [c.name for c in columns], self.body.cost
+        if wanted is None:
+            return USUAL_COST if USUAL_COST in names else ""
+        with self.faults.each():
+            if wanted not in names and wanted not in self.body.results and self._sound("results"):
+                text = f"cost = {wanted!r} is none of the results ({', '.join(names)})"
+                raise self.origin.error(f"{text}{suggestion(wanted, names)}", "", "cost")
+        return wanted
+
+    def tuned(self, chosen: tuple[ax.Axis, ...]) -> dict[str, ax.Value]:
+        """Values of a gains file at the axes; an element takes that of its whole array."""
+        named, origin = self.body.tuned, self.origin
+        if named is None:
+            return {}
+        file = Path(named) if "tuned" in origin.given else self.file.folder / named
+        try:
+            given = tables_of(text_of(file), file)
+        except InputError as error:
+            told = str(error).removeprefix(f"{file}: ")
+            text = f"tuned = {shown(named)}: {told}"
+            self.faults.lines += origin.error(text, "", "tuned").args
+            return {}
+        found: dict[str, ax.Value] = {}
+        for axis in chosen:
+            whole, element = split(axis.name)
+            value = given.get(axis.name, given.get(whole))
+            if isinstance(value, list):
+                index = element if element is not None else 0
+                value = value[index] if index < len(value) else None
+            if isinstance(value, _KINDS.get(axis.end.port.type, float | int)):
+                found[axis.name] = value
+                continue
+            close = "" if whole in given else suggestion(axis.name, given)
+            text = f'{file}: no value "{axis.name}" = ... for the tuned point{close}'
+            self.faults.lines.append(text)
+        return found
+
+
+def _source(name: str, spec: Any) -> ax.Source:
+    """An axis from a list, from {from, to, n, log} or from {mean, deviation}."""
+    if isinstance(spec, list):
+        return ax.Listed(values=spec)
+    if isinstance(spec, dict):
+        normal = set(ax.Normal.model_fields) & set(spec)
+        return (ax.Normal if normal else ax.Span).model_validate(spec)
+    text = f"{name} = {shown(spec)}: a list, {{from, to, n}} or {{mean, deviation}} wanted"
+    raise ValueError(text)
+
+
+def _told(name: str, error: ValidationError) -> list[str]:
+    """What is wrong with an axis; a missing key is not told where another is meant for it."""
+    found: dict[str, str] = {}
+    known = [f.alias or key for key, f in _fields(error).items()]
+    meant = ""
+    for one in sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden"):
+        key = next((str(x) for x in one["loc"]), "")
+        if one["type"] == "extra_forbidden":
+            close = suggestion(key, known)
+            meant += close
+            found[key] = f"{name}: unknown key {key!r}{close}"
+        elif one["type"] != "missing":
+            found.setdefault(key, f"{name}: {key} = {shown(one['input'])}: {_words(one)}")
+        elif repr(key) not in meant:
+            found[key] = f"{name}: {key} is missing"
+    return list(found.values())
+
+
+def _fields(error: ValidationError) -> dict[str, Any]:
+    kinds = {kind.__name__: kind.model_fields for kind in (ax.Span, ax.Normal, ax.Listed)}
+    return dict(kinds[error.title])
+
+
+def _words(found: Any) -> str:
+    """What pydantic tells; of a list's items in words of its own."""
+    if found["loc"][0] == "values":
+        return "it is empty" if not found["input"] else "a number, a text, true or false wanted"
+    return str(found["msg"]).lower()
