@@ -9,6 +9,8 @@ from pathlib import Path
 
 # [bytes] what is kept of one kind; the longest unused goes first.
 ROOM = 500_000_000
+# Things that are kept of one kind.
+MOST = 1000
 
 
 def folder() -> Path:
@@ -87,7 +89,7 @@ def _prune(newest: Path) -> None:
         except OSError:
             continue
     room = ROOM
-    for _, size, place in sorted(found, reverse=True):
+    for count, (_, size, place) in enumerate(sorted(found, reverse=True), 1):
         room -= size
-        if room < 0 and place != newest:
+        if (room < 0 or count > MOST) and place != newest:
             shutil.rmtree(place, ignore_errors=True)

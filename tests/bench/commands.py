@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 
-COMMANDS = ("--help", "list", "info mcc")
+COMMANDS = ("--help", "list", "info mcc", "info scenarios/circle")
 
 
 class Command:

@@ -14,7 +14,7 @@ from motionfmu.freq.limit import Trial, simulated_gain, usual_kick
 from motionfmu.freq.response import fastest
 from motionfmu.freq.study import Asked, study
 from motionfmu.linear.loops import feedbacks, largest_gain
-from motionfmu.linear.margins import margins
+from motionfmu.linear.stability import margins
 
 SCENARIO = ROOT / "scenarios/hydraulic_positioning"
 SCALE = "controller.scale_phase"

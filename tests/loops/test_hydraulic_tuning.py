@@ -12,7 +12,7 @@ from conftest import ROOT
 import motionfmu
 from motionfmu.errors import InputError
 from motionfmu.linear.loops import largest_gain
-from motionfmu.linear.margins import margins
+from motionfmu.linear.stability import margins
 from motionfmu.tune import RanAway, Tuned, problem, read, tune
 from motionfmu.tune.move import MoveCost
 from motionfmu.tune.trial import tried

@@ -15,8 +15,8 @@ from motionfmu import freq, linear
 from motionfmu.errors import InputError
 from motionfmu.freq.shape import small
 from motionfmu.linear.loops import feedbacks
-from motionfmu.linear.margins import margins, response
 from motionfmu.linear.opened import linearised
+from motionfmu.linear.stability import margins, response
 
 LINE = Path(__file__).resolve().parents[2] / "scenarios" / "robot_line"
 POSE = [0.2, 0.5, -0.3, 0.4, 0.7, -0.2]

@@ -15,7 +15,7 @@ from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear import law
 from motionfmu.linear.block import Plant
 from motionfmu.linear.loops import feedbacks, largest_gain
-from motionfmu.linear.margins import margins
+from motionfmu.linear.stability import margins
 from motionfmu.linear.systems import System
 
 T = 1e-4  # [s] sampling period of card and drives

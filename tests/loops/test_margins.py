@@ -16,7 +16,7 @@ from motionfmu.freq import limit
 from motionfmu.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
 from motionfmu.freq.study import Asked, study
 from motionfmu.linear.loops import Limit, boundary, feedbacks, largest_gain
-from motionfmu.linear.margins import closed_poles, margins
+from motionfmu.linear.stability import closed_poles, margins
 
 ENC, PHASE = "card.enc_phase", "drives.phase"
 T = 1e-4  # [s]

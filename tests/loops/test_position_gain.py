@@ -1,12 +1,16 @@
 """Position gains in 1/s, of registers of any kind: closed formulas, following errors of runs."""
 
+import zipfile
+
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import FMUS, ROOT
 
 import motionfmu
 from motionfmu import linear
+from motionfmu.linear import gains, position_gain
 
+CIRCLE = ROOT / "scenarios/circle"
 CODE = 20.0 / 65536.0  # [V] of the DAC
 
 
@@ -68,3 +72,62 @@ def test_gain_of_a_hydraulic_axis_is_that_of_its_ramps() -> None:
     given |= {"p.law": 2, "p.i_gain": 64, "p.band": 0}
     for gain in linear.gain_of(scenario, set=given):
         assert gain.kp == pytest.approx(4948.0 * 0.01 * 1660 / 4096, rel=5e-3)
+
+
+def _kp(path=CIRCLE, **given):
+    return [g.kp for g in linear.gain_of(path, **given)]
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    """A folder without kept gains, and what is worked out from now on."""
+    monkeypatch.setenv("MOTIONFMU_CACHE", str(tmp_path / "kept"))
+    made, work = [], position_gain.found
+    monkeypatch.setattr(position_gain, "found", lambda *a: made.append(a) or work(*a))
+    return tmp_path, made, monkeypatch
+
+
+def test_gains_are_worked_out_again_when_anything_changes(place) -> None:
+    _, made, monkeypatch = place
+    once = _kp()
+    assert _kp() == once and len(made) == 1
+    twice = _kp(set={"mcc.p_gain": [400, 200, 0, 0, 0, 0]})
+    assert twice == pytest.approx([2.0 * once[0], once[1]], rel=1e-9)
+    assert _kp(axis=2) == once[1:]
+    assert _kp(at={"machine.motor_speed": 20.0}) == pytest.approx(once, rel=1e-6)
+    written = motionfmu.load(CIRCLE).changed(set={"mcc.p_gain": 100})
+    assert _kp(written) == pytest.approx([0.5 * kp for kp in once], rel=1e-9)
+    assert len(made) == 5
+    monkeypatch.setattr(gains, "_text", lambda: "another text of the package")
+    assert _kp() == once and len(made) == 6
+
+
+@pytest.mark.parametrize(
+    ("fmu", "law", "other", "factor"),
+    [
+        ("epcio", b"* host_p_gain /", b"* 3 * host_p_gain /", 3.0),
+        ("ball_screw_axes", b'"description": "', b'"description": "Another: ', 1.0),
+    ],
+)
+def test_another_fmu_has_gains_of_its_own(
+    place, fmu: str, law: bytes, other: bytes, factor: float
+) -> None:
+    folder, made, monkeypatch = place
+    once = _kp()
+    for built in FMUS.glob("*.fmi3.fmu"):
+        (folder / built.name).symlink_to(built)
+    changed = folder / f"{fmu}.fmi3.fmu"
+    changed.unlink()
+    with zipfile.ZipFile(FMUS / changed.name) as own, zipfile.ZipFile(changed, "w") as archive:
+        texts = {name: own.read(name) for name in own.namelist()}
+        assert any(law in text for name, text in texts.items() if "/motionfmu/" in name)
+        for name, text in texts.items():
+            mine = "/motionfmu/" in name
+            archive.writestr(name, text.replace(law, other, 1) if mine else text)
+    monkeypatch.setenv("MOTIONFMU_FMUS", str(folder))
+    position_gain.law.carried.cache_clear()
+    try:
+        assert _kp() == pytest.approx([factor * kp for kp in once], rel=1e-9)
+        assert len(made) == 2
+    finally:
+        position_gain.law.carried.cache_clear()

@@ -16,7 +16,7 @@ import motionfmu
 from motionfmu import linear
 from motionfmu.cli.common import settings
 from motionfmu.errors import InputError
-from motionfmu.linear.margins import margins
+from motionfmu.linear.stability import margins
 from motionfmu.run import Options
 from motionfmu.tune import RanAway, Tuned, problem, read, tune
 from motionfmu.tune.axis import AxisStudy, Signals

@@ -1,8 +1,6 @@
 """The console command and the library as a user meets them."""
 
 import json
-import subprocess
-import sys
 from html.parser import HTMLParser
 from importlib import metadata
 from pathlib import Path
@@ -161,17 +159,6 @@ def test_wrong_words_get_one_line_with_what_was_meant() -> None:
         0,
         f"motionfmu {metadata.version('motionfmu')}\n",
     )
-
-
-def test_small_commands_load_no_large_package() -> None:
-    program = "import sys; from motionfmu.cli import main; main(); print(*sys.modules)"
-    for line in (["list"], ["info", "mcc"]):
-        done = subprocess.run(
-            [sys.executable, "-c", program, *line], capture_output=True, text=True, cwd=ROOT
-        )
-        loaded = set(done.stdout.splitlines()[-1].split())
-        assert "typer" in loaded
-        assert not loaded & {"numpy", "scipy", "fmpy", "lxml", "rich", "asyncio", "matplotlib"}
 
 
 def test_help_lists_commands_whole() -> None:

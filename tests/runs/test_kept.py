@@ -54,6 +54,14 @@ def test_the_longest_unused_goes_first(place, monkeypatch):
     assert sorted(p.name for p in (place / "word").iterdir()) == ["new", "used"]
 
 
+def test_so_many_of_a_kind_are_kept(place, monkeypatch):
+    monkeypatch.setattr(kept, "MOST", 2)
+    for age, name in ((30, "old"), (20, "young")):
+        os.utime(kept.kept("word", name, _write("0")), (1e9 - age, 1e9 - age))
+    kept.kept("word", "new", _write("0"))
+    assert sorted(p.name for p in (place / "word").iterdir()) == ["new", "young"]
+
+
 def test_a_place_that_cannot_be_written_to_serves_the_process(place, monkeypatch):
     (place / "file").write_text("")
     monkeypatch.setenv("MOTIONFMU_CACHE", str(place / "file"))

@@ -44,8 +44,11 @@ def main() -> None:
 def _status() -> tuple[int, str]:
     """Run the command of the command line; status, and what is to be told on stderr."""
     import atexit
+    import os
     import signal
 
+    # To look for plugins in all installed packages takes longer than to read a scenario.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
     app = _commands()
     from typer.exceptions import TyperException
 

@@ -48,8 +48,8 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     """Margins and largest stable gains of a scenario's loops, and their report."""
     from motionfmu.freq.study import Asked
     from motionfmu.linear import gain_of, model
+    from motionfmu.linear.gains import in_lines
     from motionfmu.linear.opened import held
-    from motionfmu.linear.position_gain import in_lines
     from motionfmu.report import outcome
     from motionfmu.report.servo.margin_page import numbers, page_text
 

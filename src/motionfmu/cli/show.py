@@ -195,7 +195,7 @@ def _value(value: Any) -> str:
 
 def _scenario(scenario: "Scenario") -> None:
     from motionfmu.linear import gain_of
-    from motionfmu.linear.position_gain import in_lines
+    from motionfmu.linear.gains import in_lines
     from motionfmu.scenarios import fmus
 
     body = scenario.document.body

@@ -39,7 +39,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
 ) -> None:
     """Find servo gains for a scenario's own path; write gains.toml and a report."""
-    from motionfmu.linear.position_gain import in_lines
+    from motionfmu.linear.gains import in_lines
     from motionfmu.report import outcome
     from motionfmu.report.servo.tune_page import page_text
     from motionfmu.run import load

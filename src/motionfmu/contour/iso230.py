@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linprog
 
 from motionfmu.contour.geometry import Array
 
@@ -97,6 +96,8 @@ def _zone_about(points: Array, centre: Array) -> Zone:
 
 
 def _minimax_step(gap: Array, scale: float) -> Array:
+    from scipy.optimize import linprog  # takes longer to import than most commands
+
     radii = np.hypot(gap[:, 0], gap[:, 1])
     unit = gap / radii[:, None]
     middle = 0.5 * (float(radii.min()) + float(radii.max()))

@@ -16,7 +16,7 @@ from motionfmu.errors import InputError
 from motionfmu.linear import AxisModel
 from motionfmu.linear.given import element
 from motionfmu.linear.law import Law, carried
-from motionfmu.linear.margins import moving
+from motionfmu.linear.stability import moving
 from motionfmu.linear.wiring import Port
 from motionfmu.run import Options
 from motionfmu.run.engines.slave import Slave

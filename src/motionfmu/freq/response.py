@@ -13,8 +13,8 @@ from motionfmu.freq.bench import Bench, Setup
 from motionfmu.freq.excitation import Excitation, sine
 from motionfmu.linear import AxisModel
 from motionfmu.linear.block import Sampled
-from motionfmu.linear.margins import moving
 from motionfmu.linear.plant import Point
+from motionfmu.linear.stability import moving
 
 Array = NDArray[np.float64]
 # Share of the speed that an input follows with which it is moved.

@@ -11,9 +11,9 @@ from motionfmu.freq.excitation import Excitation, shaped
 from motionfmu.freq.response import room
 from motionfmu.linear import AxisModel
 from motionfmu.linear.block import Sampled
-from motionfmu.linear.margins import response
 from motionfmu.linear.opened import limit, matrices
 from motionfmu.linear.residual import Residual, with_residuals
+from motionfmu.linear.stability import response
 from motionfmu.linear.wiring import Port
 
 Array = NDArray[np.float64]

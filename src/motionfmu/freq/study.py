@@ -14,9 +14,9 @@ from motionfmu.freq.response import Response, measured_loop, room, settling, slo
 from motionfmu.freq.shape import WORTH, Loop, limits, small
 from motionfmu.linear import AxisModel
 from motionfmu.linear.loops import Limit, feedbacks, largest_gain
-from motionfmu.linear.margins import Margins, margins
-from motionfmu.linear.margins import response as gains
 from motionfmu.linear.opened import worst
+from motionfmu.linear.stability import Margins, margins
+from motionfmu.linear.stability import response as gains
 from motionfmu.linear.wiring import Port
 
 # Frequencies measured, samples of a period, periods until the start has died away, and measured.

@@ -1,9 +1,13 @@
 """Linear models of scenarios: the same equations, laws and delays as the running FMUs."""
 
-from motionfmu.linear.axis import AxisModel, model
-from motionfmu.linear.loops import Limit, feedbacks, largest_gain
-from motionfmu.linear.margins import Margins, margins
-from motionfmu.linear.position_gain import LoopGain, gain_of, kp_of
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from motionfmu.linear.axis import AxisModel, model
+    from motionfmu.linear.gains import LoopGain, gain_of
+    from motionfmu.linear.loops import Limit, feedbacks, largest_gain
+    from motionfmu.linear.position_gain import kp_of
+    from motionfmu.linear.stability import Margins, margins
 
 __all__ = [
     "AxisModel",
@@ -17,3 +21,22 @@ __all__ = [
     "margins",
     "model",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Import what makes models when it is first used: gains are mostly kept from before."""
+    if name not in __all__:
+        raise AttributeError(f"module 'motionfmu.linear' has no attribute {name!r}")
+    if name in ("LoopGain", "gain_of"):
+        from motionfmu.linear import gains
+
+        return getattr(gains, name)
+    from motionfmu.linear import axis, loops, position_gain, stability
+
+    places = (axis, loops, position_gain, stability)
+    return next(getattr(place, name) for place in places if hasattr(place, name))
+
+
+def __dir__() -> list[str]:
+    """Names of `__all__`, though they are not imported yet."""
+    return __all__

@@ -1,14 +1,13 @@
 """A plant that couples axes: the axis studied, and all others held by their own loops."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from motionfmu.fmu.modelica.ode import Ode
-from motionfmu.linear.block import Plant, Sampled
+from motionfmu.linear.block import Matrix, Plant, Sampled
 from motionfmu.linear.plant import Point
 from motionfmu.scenarios.fmus import Port
 from motionfmu.scenarios.system import Wire
@@ -61,7 +60,17 @@ def beside(own: Sampled, rest: Mapping[int, Sampled]) -> Sampled:
     for table in _TABLES:
         changed[table] = {n: v for b in every for n, v in getattr(b, table).items()}
     laws = tuple(_together(every, [b.laws[k % len(b.laws)] for b in every]) for k in range(count))
-    return replace(own, **changed, now=block_diag(*(b.now for b in every)), laws=laws)
+    return replace(own, **changed, now=_diagonal([b.now for b in every]), laws=laws)
+
+
+def _diagonal(blocks: Sequence[Matrix]) -> Matrix:
+    """Blocks one below and beside the other, zeros elsewhere."""
+    made = np.zeros(np.sum([b.shape for b in blocks], axis=0))
+    row = column = 0
+    for b in blocks:
+        made[row : row + b.shape[0], column : column + b.shape[1]] = b
+        row, column = row + b.shape[0], column + b.shape[1]
+    return made
 
 
 def _element(block: Sampled, axis: int) -> Sampled:

@@ -9,8 +9,8 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.linear.axis import AxisModel
 from motionfmu.linear.block import Plant
-from motionfmu.linear.margins import closed_poles, moving
 from motionfmu.linear.opened import matrices
+from motionfmu.linear.stability import closed_poles, moving
 from motionfmu.linear.wiring import Port
 
 # A gain is looked for within this factor of where the search begins.

@@ -1,10 +1,7 @@
 """The position gain Kp of a loop in 1/s, whatever units its parameter has."""
 
 import cmath
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
-from itertools import groupby
-from pathlib import Path
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,7 +12,7 @@ from motionfmu.linear import coupled, law
 from motionfmu.linear.axis import AxisModel, model
 from motionfmu.linear.loops import feedbacks
 from motionfmu.linear.opened import listed, matrices
-from motionfmu.run import Scenario, load
+from motionfmu.run import Scenario
 from motionfmu.scenarios import system
 
 # Frequency [rad/s] that is as good as none, for time constants up to a minute.
@@ -26,56 +23,6 @@ _STEADY = 1e-3
 _SAME = 1e-9
 # The motion for which a gain is told where nobody says one: slow, but no creeping, by unit.
 _MOTION = {"rad/s": 10.0, "m/s": 0.01}
-
-
-@dataclass(frozen=True)
-class LoopGain:
-    """A parameter that sets the position gain of a loop.
-
-    Attributes
-    ----------
-    name : str
-        Parameter, ``component.variable``.
-    axis : int
-        From 1; 0 for a parameter that is no array.
-    value : float or int
-        Of the parameter, in its own units.
-    kp : float
-        Position gain Kp: speed that the loop asks for over the position error [1/s].
-    loop : str
-        The input at which the loop can be opened, ``component.variable``.
-    """
-
-    name: str
-    axis: int
-    value: float
-    kp: float
-    loop: str
-
-    def at(self, value: float) -> "LoopGain":
-        """The same with another value of the parameter.
-
-        Parameters
-        ----------
-        value : float
-
-        Returns
-        -------
-        LoopGain
-        """
-        return replace(self, value=value, kp=self.kp * value / self.value)
-
-    def __str__(self) -> str:
-        return in_lines([self])[0]
-
-
-def _told(gain: LoopGain) -> str:
-    return f"{gain.value:.6g} (Kp {in_words(gain.kp)})"
-
-
-def in_words(kp: float) -> str:
-    """A position gain [1/s] with three digits and its unit."""
-    return f"{kp:.0f} 1/s" if kp >= 100.0 else f"{kp:#.3g} 1/s"
 
 
 def kp_of(axis: AxisModel, name: str) -> float | None:
@@ -151,46 +98,27 @@ def _rate(
     return (z - 1.0) / period * part / (1.0 + own - part)
 
 
-def gain_of(
-    scenario: Scenario | str | Path,
-    set: Mapping[str, Any] | None = None,
-    axis: int | None = None,
-    at: Mapping[str, float] | None = None,
-) -> tuple[LoopGain, ...]:
-    """Position gains of a scenario in 1/s, of any registers.
-
-    Parameters
-    ----------
-    scenario : Scenario, str or Path
-    set : mapping, optional
-        Values by ``component.variable``, stronger than the scenario's.
-    axis : int, optional
-        From 1; else all.
-    at : mapping, optional
-        Operating point as in `model`; else a slow motion, 10 rad/s of a motor or 10 mm/s.
-
-    Returns
-    -------
-    tuple of LoopGain
-        By parameter, then axis; empty if no loop of the scenario has such a gain.
-    """
-    loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
-    points = [dict(at)] if at else _motions(loaded)
+def found(
+    scenario: Scenario,
+    set_: Mapping[str, Any],
+    axis: int | None,
+    at: Mapping[str, float] | None,
+) -> Iterator[tuple[str, int, float, float, str]]:
+    """Parameter, axis, value, Kp [1/s] and loop, as `LoopGain` has them, of each position gain."""
+    points = [dict(at)] if at else _motions(scenario)
     models: dict[int, AxisModel | None] = {}
-    found = []
-    for component, fmu in loaded.document.body.component.items():
-        own, ports = law.carried(fmu), loaded.resolver.ports[component]
+    for component, fmu in scenario.document.body.component.items():
+        own, ports = law.carried(fmu), scenario.resolver.ports[component]
         kinds = own.gain if isinstance(own, law.Law) else {}
         for name in [n for n, k in kinds.items() if k == "position" and ports[n].unit != "1/s"]:
             count = ports[name].count if ports[name].shape else 0
             every = range(1, count + 1) if count else (axis or 1,)
             for k in [k for k in every if axis in (None, k)]:
                 if k not in models:
-                    models[k] = _first(loaded, k, points, set or {})
+                    models[k] = _first(scenario, k, points, set_)
                 whole, made = f"{component}.{name}", models[k]
                 if made is not None and (kp := _acting(made, whole)) is not None:
-                    found.append(LoopGain(whole, k if count else 0, made.value(whole), *kp))
-    return tuple(found)
+                    yield (whole, k if count else 0, made.value(whole), *kp)
 
 
 def _first(
@@ -220,12 +148,3 @@ def _motions(scenario: Scenario) -> list[dict[str, float]]:
                 found[f"{component}.{speeds[0]}"] = value
                 break
     return [{n: sign * v for n, v in found.items()} for sign in (1.0, -1.0)]
-
-
-def in_lines(gains: Iterable[LoopGain]) -> list[str]:
-    """Gains in words, a line each; alike ones of one parameter together."""
-    found = []
-    for (name, told), group in groupby(gains, key=lambda g: (g.name, _told(g))):
-        axes = ",".join(str(g.axis) for g in group if g.axis)
-        found.append(f"{name}[{axes}] = {told}" if axes else f"{name} = {told}")
-    return found

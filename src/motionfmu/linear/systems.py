@@ -7,7 +7,7 @@ import numpy as np
 from scipy import linalg
 
 from motionfmu.linear.block import Matrix
-from motionfmu.linear.margins import AT_ONE
+from motionfmu.linear.stability import AT_ONE
 
 # What a sum of terms leaves of them by rounding is below this share.
 _CANCELLED = 1e-12

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from motionfmu.contour import ContourResult
 from motionfmu.linear import LoopGain, gain_of
-from motionfmu.linear.position_gain import in_lines
+from motionfmu.linear.gains import in_lines
 from motionfmu.report.sheet import Sheet
 from motionfmu.report.shown_run import Result
 from motionfmu.report.tables import facts

@@ -44,13 +44,14 @@ def is_figure(name: str) -> bool:
 
 def wrong_figure(name: str, body: Body) -> str:
     """Why no run of a scenario can have this figure; empty if one can."""
-    from motionfmu.contour.names import wrong as of_contour  # which takes scipy with it
-    from motionfmu.iso9283.evaluation import wrong as of_iso9283
-
     table, _, figure = name.partition(".")
     if getattr(body, table) is None:
         return f"{name}: there is no [{table}] table"
-    return (of_contour if table == "contour" else of_iso9283)(figure)
+    if table == "contour":
+        from motionfmu.contour.names import wrong  # with the analysis; the other one, too
+    else:
+        from motionfmu.iso9283.evaluation import wrong
+    return wrong(figure)
 
 
 def _no_time(check: Check, stop: float) -> str:

@@ -9,7 +9,6 @@ from typing import Any
 from motionfmu.errors import Faults, InputError
 from motionfmu.run import contrary, figures, waveforms
 from motionfmu.run.checks import is_figure, misplaced
-from motionfmu.run.iso9283_of import written_path
 from motionfmu.scenarios import (
     contour_signals,
     iso9283_signals,
@@ -86,7 +85,10 @@ class Prepared:
         for wanted in (contour_signals, iso9283_signals, view_signals):
             with faults.each():
                 listed += recording.chosen(resolver, wanted.wanted(resolver))
-        faults.of(lambda: written_path(self.document))
+        if body.iso9283 is not None:
+            from motionfmu.run.iso9283_of import written_path
+
+            faults.of(lambda: written_path(self.document))
         drawn = faults.of(lambda: figures.wanted(resolver)) or []
         if not self._damaged("stop", "limit", "step"):
             drawn += faults.of(lambda: waveforms.wanted(resolver)) or []

@@ -12,12 +12,13 @@ import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 from xml.etree import ElementTree
 
 from motionfmu.errors import InputError, suggestion
 from motionfmu.toml_lines import is_file
 
+HEAD = 2000  # [bytes] of a description, in which its root stands
 PACKAGE = Path(__file__).resolve().parents[1]
 
 
@@ -130,8 +131,13 @@ def description_text(name: str, fmi: int = 3) -> str:
 def about(name: str) -> str:
     """What an FMU is, as it says itself."""
     with _description(name) as stream:
-        _, root = next(iter(ElementTree.iterparse(stream, events=("start",))))
-        return root.get("description", "")
+        parser: Any = ElementTree.XMLPullParser(("start",))
+        while text := stream.read(HEAD):
+            parser.feed(text)
+            for _, root in parser.read_events():
+                return str(root.get("description", ""))
+        parser.close()
+    return ""
 
 
 @functools.cache

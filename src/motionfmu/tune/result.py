@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.linear import LoopGain, gain_of
-from motionfmu.linear.position_gain import in_lines
+from motionfmu.linear.gains import in_lines
 from motionfmu.run import Result
 from motionfmu.tune.curve import margin
 from motionfmu.tune.path import Measured, PathError

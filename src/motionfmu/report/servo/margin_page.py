@@ -10,9 +10,9 @@ import numpy as np
 
 from motionfmu.freq.study import LoopStudy
 from motionfmu.linear import AxisModel, LoopGain, gain_of
+from motionfmu.linear.gains import in_lines, in_words
 from motionfmu.linear.loops import Limit
 from motionfmu.linear.opened import held, worst
-from motionfmu.linear.position_gain import in_lines, in_words
 from motionfmu.report.numbers import figure
 from motionfmu.report.servo.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.sheet import Frame, Sheet

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.linear import LoopGain
-from motionfmu.linear.position_gain import in_words
+from motionfmu.linear.gains import in_words
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.sheet import Frame, Sheet

@@ -1,12 +1,11 @@
 """Stability margins of a loop: gain, phase, delay, disk, sensitivity, bandwidth."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar
 
 from motionfmu.errors import InputError
 
@@ -171,6 +170,13 @@ def margins(loop: System) -> Margins:
     )
 
 
+def _root(of: Callable[[float], float], ends: Sequence[float] | Array, **options: float) -> float:
+    """Where a function is 0 between two ends."""
+    from scipy.optimize import brentq  # takes longer to import than most commands
+
+    return float(brentq(of, ends[0], ends[1], **options))
+
+
 def _closed(values: Complex) -> Array:
     found: Array = np.abs(values / (1.0 + values))
     return found
@@ -184,10 +190,10 @@ def _gain_crossings(
     for k in turns:
         if values[k].real >= 0.0 and values[k + 1].real >= 0.0:
             continue
-        w = brentq(lambda w: at(w).imag, omega[k], omega[k + 1], xtol=1e-12 * omega[k + 1])
+        w = _root(lambda w: at(w).imag, omega[k : k + 2], xtol=1e-12 * omega[k + 1])
         value = at(w)
         if value.real < 0.0 and abs(value.imag) < 1e-3 * abs(value):
-            found.append(Crossing(float(w), float(1.0 / abs(value))))
+            found.append(Crossing(w, float(1.0 / abs(value))))
     return found
 
 
@@ -197,10 +203,10 @@ def _phase_crossings(
     found = []
     size = np.log(np.abs(values))
     for k in np.flatnonzero(np.signbit(size[:-1]) != np.signbit(size[1:])):
-        w = brentq(lambda w: np.log(abs(at(w))), omega[k], omega[k + 1], xtol=1e-12 * omega[k + 1])
+        w = _root(lambda w: np.log(abs(at(w))), omega[k : k + 2], xtol=1e-12 * omega[k + 1])
         angle = float(np.degrees(np.angle(-at(w))))  # lag to -180 degrees, -180 .. 180
         lag = angle if angle > 0.0 else angle + 360.0
-        found.append(Crossing(float(w), angle, float(np.radians(lag) / w)))
+        found.append(Crossing(w, angle, float(np.radians(lag) / w)))
     return found
 
 
@@ -209,6 +215,8 @@ def _peak(omega: Array, size: Callable[[Array], Array]) -> tuple[float, float]:
     values = size(omega)
     k = int(np.argmax(values))
     low, high = omega[max(k - 1, 0)], omega[min(k + 1, len(omega) - 1)]
+    from scipy.optimize import minimize_scalar  # as in `_root`
+
     found = minimize_scalar(
         lambda w: -float(size(np.array([w]))[0]), bounds=(low, high), method="bounded"
     )
@@ -224,7 +232,7 @@ def _bandwidth(omega: Array, values: Complex, at: Callable[[float], complex]) ->
     k = int(last[-1])
     if k + 1 == len(omega):
         return float(omega[-1])
-    return float(brentq(lambda w: abs(at(w) / (1.0 + at(w))) - _BANDWIDTH, omega[k], omega[k + 1]))
+    return _root(lambda w: abs(at(w) / (1.0 + at(w))) - _BANDWIDTH, omega[k : k + 2])
 
 
 def closed_poles(loop: System, gain: float = 1.0) -> Complex:
