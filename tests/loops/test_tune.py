@@ -373,7 +373,7 @@ def test_all_names_that_the_scenario_lacks_are_told_at_once(tmp_path: Path) -> N
     file = tmp_path / "t.toml"
     file.write_text(
         'gains = ["mcc.p_gian"]\n[bounds]\n"mcc.p_gain" = [2, 5]\n[family]\n'
-        '"machin.tau" = [1, 2]\n[limits.peak]\n"drives.tork" = 1.0\n'
+        '"machin.tau" = [1, 2]\n[limits.peak]\n"drives.tork" = 1.0\n[at]\nx = true\n'
     )
     with pytest.raises(InputError) as caught:
         read(file, motionfmu.load(DEMO))
@@ -381,10 +381,10 @@ def test_all_names_that_the_scenario_lacks_are_told_at_once(tmp_path: Path) -> N
     words = ("1: gains: mcc.p_gian: mcc has no variable 'p_gian'; did you mean 'p_gain'?",
              "3: bounds.mcc.p_gain: it is not among the gains: mcc.p_gian; did you mean",
              "5: family: machin.tau: no component 'machin'; did you mean 'machine'?",
-             "7: limits.peak: drives.tork: ")  # fmt: skip
+             "7: limits.peak: drives.tork: ", "9: at.x = True: input should be")  # fmt: skip
     for line, start in zip(told, words, strict=True):
         assert line.startswith(start), line
-    assert "did you mean 'torque'?" in told[-1]
+    assert "did you mean 'torque'?" in told[-2]
 
 
 @pytest.mark.parametrize(

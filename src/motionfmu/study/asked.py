@@ -137,7 +137,9 @@ class Asked:
         if wanted is None:
             return USUAL_COST if USUAL_COST in names else ""
         with self.faults.each():
-            if wanted not in names and wanted not in self.body.results and self._sound("results"):
+            # Of a result that was told already the cost may be the right name.
+            told = len(columns) < len(set(self.body.results)) or not self._sound("results")
+            if wanted not in names and not told:
                 text = f"cost = {wanted!r} is none of the results ({', '.join(names)})"
                 raise self.origin.error(f"{text}{suggestion(wanted, names)}", "", "cost")
         return wanted

@@ -110,7 +110,12 @@ class Problem(BaseModel):
         return [{}, *(dict(corner) for corner in corners)] if self.family else [{}]
 
 
-def problem(values: Mapping[str, Any], lines: Lines | None = None, file: str = "") -> Problem:
+def problem(
+    values: Mapping[str, Any],
+    lines: Lines | None = None,
+    file: str = "",
+    scenario: Scenario | None = None,
+) -> Problem:
     """Make a problem of the tables of a tune.toml.
 
     Parameters
@@ -121,6 +126,8 @@ def problem(values: Mapping[str, Any], lines: Lines | None = None, file: str = "
         For messages.
     file : str
         For messages.
+    scenario : Scenario, optional
+        Whose variables are named; they are looked up.
 
     Returns
     -------
@@ -149,12 +156,14 @@ def problem(values: Mapping[str, Any], lines: Lines | None = None, file: str = "
     if len(found.trial) > 1:
         text = f"trial: {', '.join(found.trial)}: one parameter only"
         faults.lines.append(place.line(text, "trial"))
-    if ("command" in given) != ("position" in given):
-        key = "command" if "command" in given else "position"
+    if (given.get("command") is None) != (given.get("position") is None):
+        key = "command" if given.get("position") is None else "position"
         faults.lines.append(place.line(f"{key}: command and position go together", key))
     if len(found.family) > RANGES_MAX:
         text = f"family: {len(found.family)} ranges, not more than {RANGES_MAX}"
         faults.lines.append(place.line(text, "family"))
+    if scenario is not None:
+        faults.lines += wrong_names(found, scenario, place)
     place.refuse(faults)
     return found
 
@@ -199,11 +208,14 @@ def _told(wrong: Sequence[Any], place: _Place) -> list[str]:
     return list(found.values())
 
 
-def check_names(
-    problem: Problem, scenario: Scenario, lines: Lines | None = None, file: str = ""
-) -> None:
+def check_names(problem: Problem, scenario: Scenario) -> None:
     """Refuse names of a problem that the scenario's FMUs do not have: all at once."""
-    place, faults = _Place(lines, file), Faults()
+    Faults(wrong_names(problem, scenario, _Place(None, ""))).tell()
+
+
+def wrong_names(problem: Problem, scenario: Scenario, place: _Place) -> list[str]:
+    """A line for each name of a problem that the scenario's FMUs do not have."""
+    lines: list[str] = []
     named = [((key,), name) for key in ("command", "position") if (name := getattr(problem, key))]
     named += [(("gains",), name) for name in problem.gains or ()]
     tables: list[tuple[str, ...]] = [(t,) for t in (*TABLES, "at")]
@@ -216,14 +228,14 @@ def check_names(
         except InputError as error:
             what = ".".join(k for k in keys if k != name)
             told = (f"{what}: {text}" for text in texts(scenario.document, error))
-            faults.lines += (place.line(text, *keys) for text in told)
+            lines += (place.line(text, *keys) for text in told)
     gains = problem.gains or [*problem.bounds]
     for name in problem.bounds:
-        if name not in gains and not any(f"bounds: {name}:" in line for line in faults.lines):
+        if name not in gains and not any(f"bounds: {name}:" in line for line in lines):
             text = f"bounds.{name}: it is not among the gains: {', '.join(gains)}"
             text += suggestion(name, gains)
-            faults.lines.append(place.line(text, "bounds", name))
-    place.refuse(faults)
+            lines.append(place.line(text, "bounds", name))
+    return lines
 
 
 def _pairs(values: dict[str, Any]) -> dict[str, Any]:
@@ -257,7 +269,5 @@ def read(file: str | Path, scenario: Scenario | None = None) -> dict[str, Any]:
     """
     text = text_of(file)
     values = tables_of(text, file)
-    asked = problem(values, Lines(text), str(file))
-    if scenario is not None:
-        check_names(asked, scenario, Lines(text), str(file))
+    problem(values, Lines(text), str(file), scenario)
     return values
