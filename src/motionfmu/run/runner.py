@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.errors import Faults, InputError, NoNumber, suggestion
 from motionfmu.run import engines
 from motionfmu.run.engines.job import Ran
 from motionfmu.run.prepared import Options, Prepared
@@ -124,7 +124,9 @@ class Scenario(Prepared):
                     ran = ready.run(system, asked.progress)
                 return replace(ran, warnings=[*grids.warnings(system), *ran.warnings])
 
-            return wired.run(master, asked)
+            result = wired.run(master, asked)
+        result.warnings += _sparse(result, wired.system)
+        return result
 
     def changed(  # noqa: PLR0913  (each is a keyword)
         self,
@@ -236,6 +238,18 @@ def scenario(
     if not isinstance(given, Mapping):
         return load(given)
     return Scenario(made(given, name, Path(folder).resolve(), about))
+
+
+def _sparse(result: Result, system: System) -> tuple[str, ...]:
+    """Warnings about a contour of rows of every so many steps, if there is one."""
+    if system.every == 1 or result.scenario.document.body.contour is None:
+        return ()
+    from motionfmu.contour.sparse import sparse  # which takes scipy with it
+
+    try:
+        return tuple(sparse(result.contour(), system.step_ns * 1e-9))
+    except NoNumber:
+        return ()
 
 
 def _names(given: Iterable[str]) -> list[str]:
