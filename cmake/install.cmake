@@ -37,4 +37,6 @@ if(MOTIONFMU_FMUS)
 endif()
 # The wheel takes this component alone.
 install(FILES ${fmu_files} DESTINATION motionfmu/fmus COMPONENT wheel EXCLUDE_FROM_ALL)
+# What a system of FMUs is compiled with on the user's machine.
+install(FILES ${layer} DESTINATION motionfmu/layer COMPONENT wheel EXCLUDE_FROM_ALL)
 install(TARGETS motionfmu_stations LIBRARY DESTINATION motionfmu/lib COMPONENT wheel EXCLUDE_FROM_ALL)

@@ -1,6 +1,7 @@
 """C text generated from a Description: struct vars and the variable table."""
 
 import json
+from collections.abc import Iterable
 
 from motionfmu.fmu.describe import STRING_MAX, Description, Variable
 
@@ -23,7 +24,23 @@ def _member(v: Variable) -> str:
     if v.type == "string":
         dims += "[FMU_STRING_MAX]"
     unit = f" /* [{v.unit}] */" if v.unit else ""
-    return f"    {_CTYPE[v.type]} {v.name}{dims};{unit}"
+    return f"    {_CTYPE[v.type]} {v.name.rpartition('.')[2]}{dims};{unit}"
+
+
+def member(name: str) -> str:
+    """Where `struct vars` has a variable: one of a component is in a struct of its own."""
+    component, dot, own = name.rpartition(".")
+    return f"{component}_.{own}" if dot else own
+
+
+def _members(variables: Iterable[Variable]) -> list[str]:
+    groups: dict[str, list[str]] = {}
+    for v in variables:
+        groups.setdefault(v.name.rpartition(".")[0], []).append(_member(v))
+    lines = groups.pop("", [])
+    for component, inner in groups.items():
+        lines += ["    struct {", *(f"    {line}" for line in inner), f"    }} {component}_;"]
+    return lines
 
 
 def _nested(values: list[str], dims: tuple[int, ...]) -> str:
@@ -36,7 +53,7 @@ def _nested(values: list[str], dims: tuple[int, ...]) -> str:
 
 def header(d: Description) -> str:
     """Text of vars.h: the FMU_* constants and `struct vars`, one member per variable."""
-    members = "\n".join(_member(v) for v in d.variables)
+    members = "\n".join(_members(d.variables))
     grid = f"#define FMU_GRID {d.grid} /* [s] */\n" if d.grid else ""
     return (
         f"{_NOTE}#ifndef VARS_H\n#define VARS_H\n"
@@ -54,11 +71,11 @@ def table(d: Description) -> str:
     for row, (v, ref) in enumerate(zip(d.variables, d.references(), strict=True)):
         if v.start is not None:
             values = _nested([_literal(x) for x in v.start], v.dims)
-            starts.append(f"    .{v.name} = {values},")
+            starts.append(f"    .{member(v.name)} = {values},")
         low = "-DBL_MAX" if v.min is None else repr(float(v.min))
         high = "DBL_MAX" if v.max is None else repr(float(v.max))
         rows.append(
-            f'    {{"{v.name}", {ref}, {v.count}, offsetof(struct vars, {v.name}), '
+            f'    {{"{v.name}", {ref}, {v.count}, offsetof(struct vars, {member(v.name)}), '
             f"VAR_{v.type.upper()}, CAUSE_{v.causality.upper()}, {_VARY[v.variability]}, "
             f"{low}, {high}}},"
         )
@@ -79,4 +96,14 @@ def main_unit(model: str, fmi: int) -> str:
         "#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */\n"
         f'#include "{model}"\n#include "vars.c"\n'
         '#include "state_flags.h"\n#include "fmi.inc"\n'
+    )
+
+
+def part_unit(model: str, identifier: str) -> str:
+    """Text of fmu_part.c, which makes the model a part without FMI."""
+    return (
+        f"{_NOTE}#define FMU_PART motionfmu_part_{identifier}\n"
+        "#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */\n"
+        f'#include "{model}"\n#include "vars.c"\n'
+        '#include "state_flags.h"\n#include "fmi_part.inc"\n'
     )

@@ -1,6 +1,6 @@
 """modelDescription.xml for FMI 2.0 and 3.0 from one Description."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
 from motionfmu import units
@@ -37,7 +37,7 @@ def _units(root: ET.Element, d: Description) -> None:
             ET.SubElement(_add(parent, "Unit", name=name), "BaseUnit", unit.attributes())
 
 
-def _head(root: ET.Element, d: Description, fmi: int, sources: Iterable[str]) -> None:
+def _head(root: ET.Element, d: Description, fmi: int, sources: Sequence[str]) -> None:
     state = "state" if fmi == 2 else "State"
     cs = _add(
         root,
@@ -48,7 +48,7 @@ def _head(root: ET.Element, d: Description, fmi: int, sources: Iterable[str]) ->
     )
     if fmi == 2:
         cs.set("canNotUseMemoryManagementFunctions", "true")
-        files = _add(cs, "SourceFiles")
+        files = _add(cs, "SourceFiles") if sources else cs
         for name in sources:
             _add(files, "File", name=name)
     _units(root, d)
@@ -133,7 +133,7 @@ def _variables3(parent: ET.Element, d: Description) -> list[int]:
     return calculated
 
 
-def model_description(d: Description, fmi: int, sources: Iterable[str] = ()) -> bytes:
+def model_description(d: Description, fmi: int, sources: Sequence[str] = ()) -> bytes:
     """Make the text of modelDescription.xml, UTF-8; FMI 2's has the list of C files to compile.
 
     Outputs depend on no input at the same instant: every block samples.

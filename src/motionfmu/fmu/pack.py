@@ -2,7 +2,7 @@
 
 python src/pack.py generate fmus/epcio build/gen/epcio
 python src/pack.py flags    fmus/epcio build/gen/epcio
-python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.so epcio.fmi3.fmu
+python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.so epcio.o epcio.fmi3.fmu
 python src/pack.py headers  src build/include/motionfmu
 """
 
@@ -11,6 +11,7 @@ import platform
 import re
 import sys
 import zipfile
+from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -25,6 +26,9 @@ _DATE = (1980, 1, 1, 0, 0, 0)
 EXTRA = "extra/motionfmu"
 # Which parameter is the FMU's grid; carried in EXTRA.
 GRID = "grid.json"
+# The model without FMI: its C text, and where an FMU carries its object, by the machine.
+PART_UNIT = "fmu_part.c"
+PARTS = f"{EXTRA}/part"
 
 
 def _write(path: Path, data: str | bytes) -> None:
@@ -56,8 +60,9 @@ def generate(fmu: Path, out: Path) -> None:
     _write(out / "vars.c", ctables.table(d))
     _write(out / GRID, json.dumps({"grid": d.grid}) + "\n")
     compiled = [f.name for f in compiled_sources(fmu, out)]
+    model = "plant_model.c" if is_modelica(fmu) else "model.c"
+    _write(out / PART_UNIT, ctables.part_unit(model, d.name))
     for fmi in (2, 3):
-        model = "plant_model.c" if is_modelica(fmu) else "model.c"
         _write(out / f"fmi{fmi}/fmu_main.c", ctables.main_unit(model, fmi))
         xml = model_description(d, fmi, ["fmu_main.c", *compiled])
         _write(out / f"fmi{fmi}/modelDescription.xml", xml)
@@ -122,8 +127,17 @@ def platform_folder(fmi: int) -> str:
     return {"windows": "win64"}.get(system, f"{system}64")
 
 
-def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> None:
+@dataclass(frozen=True)
+class Compiled:
+    """What a compiler made of an FMU."""
+
+    library: Path
+    part: Path  # fmu_part.h
+
+
+def archive(folder: Path, out: Path, fmi: int, compiled: Compiled, target: Path) -> None:
     """Pack one .fmu of its folder, generated text and library; equal input gives equal bytes."""
+    library = compiled.library
     xml = (out / f"fmi{fmi}/modelDescription.xml").read_bytes()
     match = re.search(rb'modelIdentifier="(\w+)"', xml)
     assert match, "the generated description has a model identifier"
@@ -142,6 +156,7 @@ def archive(folder: Path, out: Path, fmi: int, library: Path, target: Path) -> N
             *out.glob("*.json"),
         ):
             files[f"{EXTRA}/{extra.name}"] = extra.read_bytes()
+        files[f"{PARTS}/{platform_folder(3)}.o"] = compiled.part.read_bytes()
     for source, data in _packed_sources(folder, out, fmi, identifier).items():
         files[f"sources/{source}"] = data
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -169,8 +184,9 @@ def main(arguments: list[str]) -> int:
         if arguments[0] in two:
             two[arguments[0]](Path(arguments[1]), Path(arguments[2]))
         else:
-            fmu, out, fmi, library, target = arguments[1:]
-            archive(Path(fmu), Path(out), int(fmi), Path(library), Path(target))
+            fmu, out, fmi, library, part, target = arguments[1:]
+            compiled = Compiled(Path(library), Path(part))
+            archive(Path(fmu), Path(out), int(fmi), compiled, Path(target))
     except ValueError as error:
         print(error, file=sys.stderr)
         return 2

@@ -37,6 +37,8 @@ class Port:
     start: str | None  # values as written in the description
     low: float  # limits, infinite if not declared
     high: float
+    continuous: bool = False  # it changes between communication points
+    nominal: float | None = None  # the usual size
 
     @property
     def count(self) -> int:
@@ -164,4 +166,6 @@ def _port(row: ElementTree.Element) -> Port:
         " ".join(texts) if texts else row.get("start"),
         float(row.get("min", -math.inf)),
         float(row.get("max", math.inf)),
+        row.get("variability") == "continuous",
+        float(row.attrib["nominal"]) if "nominal" in row.attrib else None,
     )

@@ -1,0 +1,66 @@
+/* What the generated text of a system of parts is made of: wires, limits, tables. */
+#ifndef FMU_SYSTEM_H
+#define FMU_SYSTEM_H
+
+#include <float.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fmu_part.h"
+
+struct vars;
+
+struct system_part {
+    const char *name;                                   /* of the component */
+    const struct fmu_part *part;
+    size_t at;                                          /* of its instance, in struct model */
+    void (*give)(void *part, const struct vars *v);     /* all values that are set before a run */
+};
+
+struct system_wire {
+    int    to;  /* part */
+    size_t at;  /* of the input, in the part's struct vars */
+};
+
+struct system_column {
+    const char *name;
+    size_t  at; /* in struct model */
+    char    kind;
+    int32_t count;
+};
+
+#define SYSTEM_COPY(to, from)                                                       \
+    do {                                                                            \
+        _Static_assert(sizeof(to) == sizeof(from), "one type, one size");           \
+        memcpy(&(to), &(from), sizeof(to));                                         \
+    } while (0)
+
+/* Are all elements within limits? Not a number is not. */
+#define SYSTEM_REALS(x, low, high) \
+    system_reals((const double *)&(x), sizeof(x) / sizeof(double), low, high)
+#define SYSTEM_WHOLES(x, low, high) \
+    system_wholes((const int32_t *)&(x), sizeof(x) / sizeof(int32_t), low, high)
+
+static inline bool system_reals(const double *x, size_t n, double low, double high)
+{
+    bool good = true;
+    for (size_t i = 0; i < n; i++) {
+        good &= (x[i] >= low) & (x[i] <= high);
+    }
+    return good;
+}
+
+static inline bool system_wholes(const int32_t *x, size_t n, int32_t low, int32_t high)
+{
+    bool good = true;
+    for (size_t i = 0; i < n; i++) {
+        good &= (x[i] >= low) & (x[i] <= high);
+    }
+    return good;
+}
+
+#endif

@@ -1,0 +1,115 @@
+"""What a system is as an FMU: its variables, by the names that a scenario gives them."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from motionfmu.fmu.describe import Description, Variable
+from motionfmu.fused.parts import NotFused
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.fmus import Port
+from motionfmu.scenarios.system import End, System, Values
+from motionfmu.scenarios.values import start_values
+
+TYPES = {"Float64": "f64", "Int32": "i32", "Boolean": "bool", "String": "string"}
+_STEPS_MAX = 2**31 - 1
+
+
+@dataclass(frozen=True)
+class Roles:
+    """Which variables of the components a system shows.
+
+    Attributes
+    ----------
+    given : tuple of End
+        What is set before a run: all parameters, and all inputs but those that only a wire feeds.
+    taken : tuple of End
+        What may change in a run: of these the tunable ones, and the inputs that no wire feeds.
+    shown : tuple of End
+        Outputs: what is recorded, and the signal that ends the run.
+    """
+
+    given: tuple[End, ...]
+    taken: tuple[End, ...]
+    shown: tuple[End, ...]
+
+
+def roles(system: System, recorded: Sequence[End]) -> Roles:
+    """Sort the variables of a system."""
+    wired = {w.target.name for w in system.wires}
+    asked = {s.end.name for s in system.settings}
+    given, taken = [], []
+    for component, fmu in system.components.items():
+        for port in fmus.ports(fmu).values():
+            end = End(component, port)
+            free = port.causality == "input" and end.name not in wired
+            if port.causality == "parameter" or free or end.name in asked:
+                given.append(end)
+            if free or port.tunable:
+                taken.append(end)
+    shown = {e.name: e for e in recorded}
+    if system.until is not None:
+        shown[system.until.end.name] = system.until.end
+    return Roles(tuple(given), tuple(taken), tuple(shown.values()))
+
+
+def _limit(kind: str, value: float) -> float | int | None:
+    if math.isinf(value):
+        return None
+    return int(value) if kind == "i32" else value
+
+
+def _variable(end: End, causality: str, values: Values | None) -> Variable:
+    port: Port = end.port
+    kind = TYPES[port.type]
+    return Variable(
+        end.name,
+        causality,
+        kind,
+        port.doc,
+        dims=port.shape,
+        unit=port.unit,
+        start=None if values is None else list(values),
+        min=_limit(kind, port.low),
+        max=_limit(kind, port.high),
+        nominal=port.nominal,
+        tunable=port.tunable,
+        continuous=port.continuous,
+    )
+
+
+def _own(system: System) -> Iterator[Variable]:
+    """The variables of the system itself."""
+    text = "Folder in which a file a signal is written (NumPy); nothing is recorded without it"
+    yield Variable("recorder.folder", "parameter", "string", text, start=[""])
+    text = "Of so many communication steps one is recorded"
+    yield Variable("recorder.every", "parameter", "i32", text, start=[1], min=1, max=_STEPS_MAX)
+    text = "Steps behind the signal that ends the run, then the system stands still; -1: it goes on"
+    yield Variable("until.settle", "parameter", "i32", text, start=[-1], min=-1, max=_STEPS_MAX)
+    if system.until is not None:
+        text = f"Communication step at which {system.until.name} came; -1: not yet"
+        yield Variable("until.step", "output", "i32", text)
+
+
+def described(
+    system: System, used: Roles, name: str, key: str, given: Mapping[str, Values]
+) -> Description:
+    """Describe a system as an FMU, with `given` start values instead of the components' own."""
+    wired = {w.target.name for w in system.wires}
+    variables = list(_own(system))
+    for end in used.given:
+        kind = "input" if end.port.causality == "input" and end.name not in wired else "parameter"
+        variables.append(_variable(end, kind, given.get(end.name, start_values(end.port))))
+    variables += [_variable(end, "output", None) for end in used.shown]
+    names = [v.name for v in variables]
+    if len(set(names)) != len(names):
+        raise NotFused(f"{next(n for n in names if names.count(n) > 1)} names two things")
+    step = system.step_ns * 1e-9
+    parts = ", ".join(f"{c} ({fmu})" for c, fmu in system.components.items())
+    return Description(
+        name=name,
+        description=f"{parts} as one program {key[:12]}",
+        tick_ns=system.step_ns,
+        experiment={"stop": system.steps * step if given else step, "step": step},
+        variables=tuple(variables),
+    )

@@ -1,0 +1,128 @@
+"""The part that an FMU carries: its model without FMI, as an object to link with (fmu_part.h)."""
+
+import functools
+import re
+import shutil
+import subprocess
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from motionfmu import kept
+from motionfmu.compiler import FLAGS, Compiler, compiler
+from motionfmu.errors import InputError
+from motionfmu.fmu.pack import PART_UNIT, PARTS, platform_folder
+from motionfmu.scenarios.fmus import fmu_path
+
+# Interface, instance and struct vars [bytes]: how the object of a part says them.
+_MARK = re.compile(rb"motionfmu part 1 (\d{9}) (\d{9})\n")
+_DEFINED = re.compile(r'^#define FMU_(\w+) "?([^"\n]*)"?$', re.MULTILINE)
+_STRUCT = re.compile(r"^struct vars \{\n(.*?)^\};", re.MULTILINE | re.DOTALL)
+
+
+class NotFused(Exception):
+    """Why a system cannot be one program."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """An FMU's model as an object.
+
+    Attributes
+    ----------
+    identifier : str
+        Model identifier; the object shows ``motionfmu_part_<identifier>``.
+    tick_ns : int
+        Communication steps are whole multiples of it [ns].
+    members : str
+        C text of the members of its `struct vars`.
+    size, room : int
+        Of that struct, and of an instance, which begins with it [bytes].
+    code : bytes
+        The object.
+    """
+
+    identifier: str
+    tick_ns: int
+    members: str
+    size: int
+    room: int
+    code: bytes
+
+
+@contextmanager
+def _opened(name: str) -> Iterator[zipfile.ZipFile]:
+    path = fmu_path(name)
+    try:
+        with zipfile.ZipFile(path) as archive:
+            yield archive
+    except (OSError, zipfile.BadZipFile) as error:
+        raise InputError(f"{path}: not a whole archive ({error})") from None
+
+
+def digest(name: str) -> str:
+    """Of all that the archive of an FMU holds, by its own check sums."""
+    path = fmu_path(name)
+    stat = path.stat()
+    return _digest(name, (str(path), stat.st_mtime_ns, stat.st_size))
+
+
+@functools.cache
+def _digest(name: str, state: tuple[str, int, int]) -> str:
+    with _opened(name) as archive:
+        rows = [f"{i.filename} {i.CRC:08x} {i.file_size}" for i in archive.infolist()]
+    return kept.key(*rows)
+
+
+def part(name: str) -> Part:
+    """Read the part of an FMU; NotFused if it has none, nor C text of one."""
+    with _opened(name) as archive:
+        names = archive.namelist()
+        if any(n.startswith("resources/") and n[-1] != "/" for n in names):
+            raise NotFused(f"{name} has resources")
+        if f"sources/{PART_UNIT}" not in names:
+            raise NotFused(f"{name} carries no part")
+        header = archive.read("sources/vars.h").decode()
+        made = f"{PARTS}/{platform_folder(3)}.o"
+        code = archive.read(made) if made in names else _compiled(name)
+    sizes, members = _MARK.search(code), _STRUCT.search(header)
+    if sizes is None or members is None:
+        raise NotFused(f"{name} carries a part of another version")
+    defined = dict(_DEFINED.findall(header))
+    text = members[1].replace("FMU_STRING_MAX", defined["STRING_MAX"])
+    return Part(
+        identifier=defined["NAME"],
+        tick_ns=int(defined["TICK_NS"]),
+        members=text,
+        size=int(sizes[2]),
+        room=int(sizes[1]),
+        code=code,
+    )
+
+
+def _compiled(name: str) -> bytes:
+    """The object of an FMU that carries none for this machine, from its C text."""
+    cc, objcopy = compiler(), shutil.which("objcopy")
+    if cc is None or objcopy is None:
+        raise NotFused(f"{name} carries no part for this machine, and no compiler makes one")
+    key = kept.key(digest(name), cc.version, *cc.command)
+    place = kept.kept("parts", key, lambda folder: _compile(name, cc, folder))
+    return (place / "part.o").read_bytes()
+
+
+def _compile(name: str, cc: Compiler, folder: Path) -> None:
+    with _opened(name) as archive, tempfile.TemporaryDirectory(prefix="motionfmu-") as place:
+        for entry in archive.namelist():
+            if entry.startswith("sources/"):
+                (Path(place) / Path(entry).name).write_bytes(archive.read(entry))
+        build = ElementTree.parse(Path(place) / "buildDescription.xml")
+        listed = [row.attrib["name"] for row in build.iter("SourceFile")]
+        files = [PART_UNIT, *(f for f in listed if f != "fmu_main.c")]
+        cc.run([*FLAGS, "-O2", "-r", "-nostdlib", *files, "-o", "part.o"], Path(place))
+        done = ["objcopy", "--localize-hidden", "part.o"]
+        subprocess.run(done, cwd=place, check=True, capture_output=True)
+        shutil.copy(Path(place) / "part.o", folder)

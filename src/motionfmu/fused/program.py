@@ -1,0 +1,161 @@
+"""A system compiled as one FMU, kept on the disk."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from motionfmu import kept
+from motionfmu.compiler import FLAGS, Compiler, compiler
+from motionfmu.fmu import ctables
+from motionfmu.fmu.modeldescription import model_description
+from motionfmu.fmu.pack import platform_folder
+from motionfmu.fused import layer, text
+from motionfmu.fused.description import TYPES, described, roles
+from motionfmu.fused.parts import NotFused, Part, digest, part
+from motionfmu.scenarios.system import End, System, Values
+
+_OPTIMIZED = "-O2"
+_FMI_TYPES = {ours: fmi for fmi, ours in TYPES.items()}
+
+
+@dataclass(frozen=True)
+class Program:
+    """A system as an FMU, unpacked.
+
+    Attributes
+    ----------
+    folder : Path
+        Where it is, with ``modelDescription.xml``, ``binaries/``, and ``program.json``: token,
+        library, and type, first value reference and number of elements of each variable.
+    fmi : int
+        2 or 3.
+    """
+
+    folder: Path
+    fmi: int
+
+
+def program(system: System, recorded: Sequence[End], fmi: int = 3, name: str = "System") -> Program:
+    """Make a system one program, or find the one that was made.
+
+    A program depends on what the system is made of, not on values: settings, stimuli, the number of
+    steps and what `every` says are given to it when it runs.
+
+    Parameters
+    ----------
+    system : System
+        Without scopes.
+    recorded : sequence of End
+        Outputs that it can record and shows.
+    fmi : int
+        2 or 3.
+    name : str
+        Model identifier.
+
+    Raises
+    ------
+    NotFused
+        It cannot be one program; the message says why.
+    """
+    return _made(system, recorded, fmi, name, {})
+
+
+def exported(
+    system: System, recorded: Sequence[End], fmi: int = 3, name: str = "System"
+) -> Program:
+    """Make a system one program whose start values are the system's settings.
+
+    Parameters and errors are those of `program`.
+    """
+    return _made(system, recorded, fmi, name, {s.end.name: s.values for s in system.settings})
+
+
+def _made(
+    system: System, recorded: Sequence[End], fmi: int, name: str, given: Mapping[str, Values]
+) -> Program:
+    cc = compiler()
+    if cc is None:
+        raise NotFused("there is no C compiler")
+    key = _key(system, recorded, fmi, cc, [name, repr(given), str(given and system.steps)])
+
+    def make(folder: Path) -> None:
+        _make(folder, _Job(system, recorded, fmi, name, key, given), cc)
+
+    return Program(kept.kept("fused", key, make), fmi)
+
+
+def _key(system: System, recorded: Sequence[End], fmi: int, cc: Compiler, more: list[str]) -> str:
+    """A hash of all that the program is made of."""
+    fmus = dict.fromkeys(system.components.values())
+    until = system.until
+    lists = [
+        [f"{c} {fmu}" for c, fmu in system.components.items()],
+        [digest(fmu) for fmu in fmus],
+        [f"{w.target.name} {w.source.name}" for w in system.wires],
+        sorted(s.end.name for s in system.settings if s.end.port.causality == "input"),
+        [e.name for e in recorded],
+        [str(fmi), str(system.step_ns), until.name if until else ""],
+        [layer.digest(), cc.version, *cc.command, *FLAGS, _OPTIMIZED],
+        more,
+    ]
+    return kept.key(*(json.dumps(one) for one in lists))
+
+
+@dataclass(frozen=True)
+class _Job:
+    system: System
+    recorded: Sequence[End]
+    fmi: int
+    name: str
+    key: str
+    given: Mapping[str, Values]
+
+
+def _parts(system: System) -> dict[str, Part]:
+    found = {fmu: part(fmu) for fmu in system.components.values()}
+    for fmu, one in found.items():
+        if system.step_ns % one.tick_ns:
+            raise NotFused(f"{system.step_ns} ns is no multiple of {fmu}'s {one.tick_ns} ns")
+    identifiers = {p.identifier for p in found.values()}
+    if len(identifiers) != len(found):
+        raise NotFused("two FMUs have one model identifier")
+    for wire in system.wires:
+        a, b = wire.source.port, wire.target.port
+        if (a.type, a.shape) != (b.type, b.shape):
+            raise NotFused(f"{wire.target.name} and {wire.source.name} are of two types")
+    return found
+
+
+def _make(folder: Path, job: _Job, cc: Compiler) -> None:
+    parts, used = _parts(job.system), roles(job.system, job.recorded)
+    d = described(job.system, used, job.name, job.key, job.given)
+    sources = folder / "sources"
+    sources.mkdir()
+    texts = {
+        "vars.h": ctables.header(d),
+        "vars.c": ctables.table(d),
+        "model.c": text.model(job.system, parts, used, job.recorded),
+        "state_flags.h": text.FLAGS,
+        "fmu_main.c": ctables.main_unit("model.c", job.fmi),
+    }
+    for file, content in texts.items():
+        (sources / file).write_text(content)
+    for one in parts.values():
+        (sources / f"{one.identifier}.o").write_bytes(one.code)
+    binaries = folder / "binaries" / platform_folder(job.fmi)
+    binaries.mkdir(parents=True)
+    included = [f"-I{place}" for place in layer.folders()]
+    objects = [f"{one.identifier}.o" for one in parts.values()]
+    library = cc.library(
+        ["fmu_main.c", *objects], str(binaries / f"{job.name}.so"), sources, _OPTIMIZED, *included
+    )
+    for file in objects:
+        (sources / file).unlink()
+    (folder / "modelDescription.xml").write_bytes(model_description(d, job.fmi))
+    rows = {
+        v.name: [_FMI_TYPES[v.type], reference, v.count]
+        for v, reference in zip(d.variables, d.references(), strict=True)
+    }
+    about = {"token": d.token, "library": str(library.relative_to(folder)), "variables": rows}
+    (folder / "program.json").write_text(json.dumps(about))

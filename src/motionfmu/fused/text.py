@@ -1,0 +1,175 @@
+"""The C text of a system: its parts' instances, wires, recorder and the order of a step."""
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping, Sequence
+
+from motionfmu.fmu.ctables import member
+from motionfmu.fused.description import Roles
+from motionfmu.fused.parts import Part
+from motionfmu.scenarios.system import End, System
+
+_KINDS = {"Float64": "d", "Int32": "i", "Boolean": "b"}
+_I32 = (-(2**31), 2**31 - 1)
+FLAGS = """/* Generated: a system keeps no flags beside those of its parts; do not edit. */
+static bool fmi_good_model(const struct model *m)
+{
+    (void)m;
+    return true;
+}
+"""
+
+
+def _in_part(end: End) -> str:
+    """The variable in the instance, from a `struct model *m`."""
+    return f"m->of_{end.component}.v.{end.port.name}"
+
+
+def _in_model(end: End) -> str:
+    return f"offsetof(struct model, of_{end.component}.v.{end.port.name})"
+
+
+def _here(end: End) -> str:
+    """The variable of the system, from a `struct vars *v`."""
+    return f"v->{member(end.name)}"
+
+
+def _function(head: str, lines: Iterable[str], unused: Iterable[str], end: str = "") -> str:
+    rows = [*(f"(void){name};" for name in unused), *lines, *([end] if end else [])]
+    return f"static {head}\n{{\n" + "".join(f"    {row}\n" for row in rows) + "}\n"
+
+
+def _limits(end: End) -> str:
+    """What must hold for a value that a wire has brought; empty if all is allowed."""
+    port, name = end.port, _in_part(end)
+    if port.type == "Float64":
+        low = "-DBL_MAX" if math.isinf(port.low) else repr(port.low)
+        high = "DBL_MAX" if math.isinf(port.high) else repr(port.high)
+        return f"SYSTEM_REALS({name}, {low}, {high})"
+    low_i, high_i = max(port.low, _I32[0]), min(port.high, _I32[1])
+    if port.type == "Int32" and (low_i, high_i) != _I32:
+        low = "INT32_MIN" if low_i == _I32[0] else str(int(low_i))
+        return f"SYSTEM_WHOLES({name}, {low}, {int(high_i)})"
+    return ""
+
+
+def _table(head: str, rows: Sequence[str]) -> str:
+    """An array; C has none without elements."""
+    listed = rows or ["{0}"]
+    return f"static const {head}[] = {{\n" + "".join(f"    {row},\n" for row in listed) + "};\n"
+
+
+def _structs(parts: Mapping[str, Part]) -> Iterable[str]:
+    for p in {p.identifier: p for p in parts.values()}.values():
+        name = f"struct {p.identifier}_vars"
+        yield f"{name} {{\n{p.members}}};\n"
+        yield f'_Static_assert(sizeof({name}) == {p.size}, "variables of {p.identifier}");\n'
+        yield f"extern const struct fmu_part motionfmu_part_{p.identifier};\n\n"
+
+
+def _model(system: System, parts: Mapping[str, Part]) -> str:
+    lines = []
+    for component, fmu in system.components.items():
+        p = parts[fmu]
+        both = f"struct {p.identifier}_vars v; unsigned char byte[{p.room}];"
+        lines.append(f"    _Alignas(FMU_PART_ALIGN) union {{ {both} }} of_{component};\n")
+    return (
+        "struct model {\n" + "".join(lines) + "    int64_t steps; /* made since the start */\n"
+        "    int32_t until; /* step at which the signal came; -1: not yet */\n};\n"
+    )
+
+
+def _gives(system: System, parts: Mapping[str, Part], used: Roles) -> Iterable[str]:
+    for component, fmu in system.components.items():
+        mine = [e for e in used.given if e.component == component]
+        lines = [f"struct {parts[fmu].identifier}_vars *to = part;"]
+        lines += [f"SYSTEM_COPY(to->{e.port.name}, {_here(e)});" for e in mine]
+        head = f"void give_{component}(void *part, const struct vars *v)"
+        yield _function(head, lines, [] if mine else ["v", "to"])
+
+
+def _order(unused: bool, names: Sequence[str]) -> list[str]:
+    return list(names) if unused else []
+
+
+def _carry(system: System) -> str:
+    """All wires, output to input, then the limits of the inputs."""
+    lines = [f"SYSTEM_COPY({_in_part(w.target)}, {_in_part(w.source)});" for w in system.wires]
+    checks = [check for w in system.wires if (check := _limits(w.target))]
+    ends = ["bool good = true;", *(f"good &= {check};" for check in checks), "return good;"]
+    return _function("bool system_carry(struct model *m)", [*lines, *ends], ["m"])
+
+
+def _until(system: System) -> str:
+    line = "return false;"
+    if system.until is not None:
+        end = system.until.end
+        kind = {"Boolean": "bool", "Int32": "int32_t"}[end.port.type]
+        line = f"return ((const {kind} *)&{_in_part(end)})[{system.until.element or 0}] != 0;"
+    return _function("bool system_until(const struct model *m)", [line], ["m"])
+
+
+def _step(system: System, parts: Mapping[str, Part]) -> str:
+    calls = [
+        f"motionfmu_part_{parts[fmu].identifier}.step(&m->of_{component}, t0, t1) != 0"
+        for component, fmu in system.components.items()
+    ]
+    joined = "\n        || ".join(calls)
+    head = "int system_step(struct model *m, int64_t t0, int64_t t1)"
+    return _function(head, [f"return {joined} ? -1 : 0;"], [])
+
+
+def _shows(system: System, used: Roles) -> Iterable[str]:
+    taken = [f"SYSTEM_COPY({_in_part(e)}, {_here(e)});" for e in used.taken]
+    yield _function("void system_take(struct model *m, const struct vars *v)", taken, ["m", "v"])
+    shown = [f"SYSTEM_COPY({_here(e)}, {_in_part(e)});" for e in used.shown]
+    if system.until is not None:
+        shown.append("v->until_.step = m->until;")
+    yield _function("void system_show(const struct model *m, struct vars *v)", shown, ["m", "v"])
+
+
+def _tables(system: System, parts: Mapping[str, Part], recorded: Sequence[End]) -> Iterable[str]:
+    yield f"enum {{ SYSTEM_PARTS = {len(system.components)}, SYSTEM_WIRES = {len(system.wires)}, "
+    yield f"SYSTEM_COLUMNS = {len(recorded)} }};\n"
+    yield f"#define SYSTEM_STEP_NS INT64_C({system.step_ns})\n\n"
+    yield _table(
+        "struct system_part system_parts",
+        [
+            f'{{"{c}", &motionfmu_part_{parts[fmu].identifier}, '
+            f"offsetof(struct model, of_{c}), give_{c}}}"
+            for c, fmu in system.components.items()
+        ],
+    )
+    number = dict(zip(system.components, itertools.count(), strict=False))
+    rows = []
+    for w in system.wires:
+        at, to = w.target, number[w.target.component]
+        struct = f"struct {parts[system.components[at.component]].identifier}_vars"
+        rows.append(f"{{{to}, offsetof({struct}, {at.port.name})}}")
+    yield _table("struct system_wire system_wires", rows)
+    yield _table(
+        "struct system_column system_columns",
+        [
+            f"{{\"{e.name}\", {_in_model(e)}, '{_KINDS[e.port.type]}', {e.port.count}}}"
+            for e in recorded
+        ],
+    )
+
+
+def model(system: System, parts: Mapping[str, Part], used: Roles, recorded: Sequence[End]) -> str:
+    """Text of model.c; `parts` by the names of the FMUs."""
+    pieces = [
+        "/* Generated from a scenario's components and wires; do not edit. */\n"
+        '#include "vars.h"\n#include "fmu_system.h"\n\n',
+        *_structs(parts),
+        _model(system, parts),
+        '\n#define MODEL_BLOB\n#include "fmi_model.h"\n#include "fmu_recorder.h"\n\n',
+        *_gives(system, parts, used),
+        *_tables(system, parts, recorded),
+        _carry(system),
+        _until(system),
+        _step(system, parts),
+        *_shows(system, used),
+        '\n#include "fmi_system.inc"\n',
+    ]
+    return "".join(pieces)
