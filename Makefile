@@ -39,9 +39,9 @@ check: needs .venv/installed          ## formatting, lint, types
 	$(BIN)/ruff check src tests scenarios
 	$(BIN)/mypy
 
-bench: build                    ## speed, as ratios measured in one run
-	@cmake --build build --target fused card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch
-	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py
+bench: build                    ## speed, as ratios measured in one run; BENCH=--renew keeps its figures
+	@cmake --build build --target fused_circle fused_six_axes card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch
+	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py $(BENCH)
 
 SECONDS ?= 120
 fuzz: needs .venv/installed           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each

@@ -1,8 +1,9 @@
 """Speed of the engines, as ratios measured in one run: `make bench`.
 
-Every quantity is the best of several rounds, and the rounds take turns, so that a busy machine
-slows all of them alike. README.md beside this file says what each line means and
-where the time goes.
+Every time is processor time, the best of several rounds, and the rounds take turns, so that a busy
+machine slows all of them alike; instructions are counted beside. README.md beside this file says
+what each line means and where the time goes. `--renew` keeps the figures as those to compare with,
+`--quick` takes one round.
 """
 
 import subprocess
@@ -15,6 +16,8 @@ from pathlib import Path
 from typing import Any
 
 import commands
+import counting
+import figures
 import kinematics
 import network
 import numpy as np
@@ -22,20 +25,22 @@ import plans
 import scurve_moves
 import segments
 import studies
+from figures import Figure
 from rich.console import Console
 from rich.progress import Progress
 
 import motionfmu
+from motionfmu.run.engines import ENGINES
 
 ROOT = Path(__file__).resolve().parents[2]
 DEMO = ROOT / "scenarios/circle"
 SIX_AXES = Path(__file__).parent / "six_axes"
 ROBOT = ROOT / "scenarios/robot_line"
 PULSE_AXES = Path(__file__).parent / "pulse_axes"
-FUSED = ROOT / "build/tests/bench/fused"
-CARD_COST = ROOT / "build/tests/bench/card_cost"
-INTERPRETER_COST = ROOT / "build/tests/bench/interpreter_cost"
-ROUNDS = 5
+BUILT = ROOT / "build/tests/bench"
+CARD_COST = BUILT / "card_cost"
+INTERPRETER_COST = BUILT / "interpreter_cost"
+ROUNDS = 1 if "--quick" in sys.argv else 5
 SLOW_STOP = 0.2  # [s] simulated by the engines that go through Python at every step
 
 
@@ -47,7 +52,7 @@ class Clock:
 
     def __call__(self, share: float) -> None:
         if share < 1.0:
-            self.marks.append((share, time.perf_counter()))
+            self.marks.append((share, time.process_time()))
 
     def seconds(self) -> float:
         """Time of the whole loop, from the part that was seen."""
@@ -65,9 +70,9 @@ class Timed:
 
     def __call__(self) -> None:
         clock = Clock()
-        start = time.perf_counter()
+        start = time.process_time()
         self.result = self.scenario.run(progress=clock, **self.options)
-        self.whole = min(self.whole, time.perf_counter() - start)
+        self.whole = min(self.whole, time.process_time() - start)
         self.loop = min(self.loop, clock.seconds())
 
     @property
@@ -87,11 +92,12 @@ class Timed:
 
 
 class Fused:
-    """The demo's loop without FMI, tests/bench/fused.c."""
+    """The loop of a scenario fused by hand, without FMI: tests/bench/fused.c."""
 
-    def __init__(self, steps: int) -> None:
+    def __init__(self, scenario: Path, part_program: str, steps: int) -> None:
         self.steps, self.loop = steps, float("inf")
-        layout = subprocess.check_output([FUSED, "--layout"], text=True).split("\n")
+        self.line = [BUILT / f"fused_{scenario.name}", scenario / part_program]
+        layout = subprocess.check_output([self.line[0], "--layout"], text=True).split("\n")
         *rows, size = [line.split() for line in layout if line]
         kinds = {"double": "f8", "int32_t": "i4", "bool": "?"}
         self.type = np.dtype(
@@ -107,8 +113,7 @@ class Fused:
     def __call__(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "rows"
-            program = str(DEMO / "circle.ngc")
-            told = subprocess.check_output([FUSED, program, str(self.steps), file], text=True)
+            told = subprocess.check_output([*self.line, str(self.steps), file], text=True)
             self.loop = min(self.loop, float(told))
             self.data = np.fromfile(file, self.type)
 
@@ -116,7 +121,7 @@ class Fused:
         """The same bits as the engine gave, or it is another loop."""
         for name, signal in result.signals.items():
             if not np.array_equal(self.data[name].reshape(signal.shape), signal):
-                sys.exit(f"bench: {name} differs between the fused loop and the native engine")
+                sys.exit(f"bench: {name} differs between the hand-fused loop and the engine")
 
 
 @dataclass
@@ -166,24 +171,42 @@ def rounds(runs: list[Callable[[], None]]) -> None:
                 progress.advance(task)
 
 
-def verdict(what: str, figure: float, most: float = np.inf, least: float = 0.0) -> None:
-    """Print a ratio beside what is asked of it."""
-    asked = f"at most {most:g}" if least == 0.0 else f"at least {least:g}"
-    print(f"{what:44}{figure:8.2f}   {'' if least <= figure <= most else 'MISSED, '}asked: {asked}")
+def system_figures(
+    name: str, hand: Fused, runs: dict[str, Timed], loops: dict[str, counting.Loop], most: float
+) -> list[Figure]:
+    """Engines over the loop fused by hand: by time and by instructions."""
+    found = []
+    base, counted = hand.loop / hand.steps, loops[f"{name}, hand-fused"].count
+    print(f"\n{f'{name}, one step':34}{'ns':>10}{'x hand':>10}{'instructions':>14}{'x hand':>10}")
+    print(f"{'fused by hand, no FMI':34}{base * 1e9:10.0f}{1.0:10.2f}{counted:14.0f}{1.0:10.2f}")
+    found.append(Figure(f"{name}, hand-fused, instructions a step", counted, counted=True))
+    for engine, run in runs.items():
+        step, count = run.loop / run.steps, loops[f"{name}, {engine}"].count
+        ratio = f"{step / base:10.2f}{count:14.0f}{count / counted:10.2f}"
+        print(f"{engine:34}{step * 1e9:10.0f}{ratio}")
+        if engine.startswith("fused"):
+            of = f"{name}, {engine} / hand-fused"
+            found.append(Figure(f"{of}, time", step / base, most))
+            found.append(Figure(f"{of}, instructions", count / counted, most, counted=True))
+        found.append(Figure(f"{name}, {engine}, instructions a step", count, counted=True))
+    return found
 
 
-def main() -> None:
-    native, six = Timed(DEMO), Timed(SIX_AXES)
-    engines = {
-        "native, FMI 3": native,
-        "native, FMI 2": Timed(DEMO, fmi=2),
-        "python, FMI 3": Timed(DEMO, engine="python", stop=SLOW_STOP),
-        "python, FMI 2": Timed(DEMO, engine="python", fmi=2, stop=SLOW_STOP),
-        "fmpy (container), FMI 2": Timed(DEMO, engine="fmpy", fmi=2, stop=SLOW_STOP),
+def main(renew: bool) -> None:
+    best = next(e for e in ("fused", "native") if e in ENGINES)
+    quick = [e for e in ("fused", "native") if e in ENGINES]
+    demos = {f"{e}, FMI {f}": Timed(DEMO, engine=e, fmi=f) for e in quick for f in (3, 2)}
+    demos |= {
+        f"{e}, FMI {f}": Timed(DEMO, engine=e, fmi=f, stop=SLOW_STOP)
+        for e, f in (("python", 3), ("python", 2), ("fmpy", 2))
     }
+    sixes = {f"{e}, FMI 3": Timed(SIX_AXES, engine=e) for e in quick}
+    native, six = demos[f"{best}, FMI 3"], sixes[f"{best}, FMI 3"]
     native()
-    assert native.result is not None
-    fused = Fused(native.steps)
+    six()
+    assert native.result is not None and six.result is not None
+    by_hand = Fused(DEMO, "circle.ngc", native.steps)
+    by_hand_six = Fused(SIX_AXES, "six_axes.ngc", six.steps)
     pulses = Timed(PULSE_AXES)
     cards = [Card(a, h, e) for a in (1, 3, 6) for h in (0, 10_000, 500_000) for e in (False, True)]
     interpreter = Interpreter()
@@ -194,12 +217,13 @@ def main() -> None:
     arm = kinematics.Kinematics()
     net = network.Network()
     robot = Timed(ROBOT, stop=20.0)
-    asked = commands.all_commands()
+    asked, session = commands.all_commands(), commands.Session()
     rounds(
         [
-            fused,
-            *engines.values(),
-            six,
+            by_hand,
+            *demos.values(),
+            by_hand_six,
+            *sixes.values(),
             pulses,
             *cards,
             interpreter,
@@ -207,69 +231,89 @@ def main() -> None:
             net,
             robot,
             *asked,
+            session,
             *curves,
             *segments.ALL,
             segments.LONG,
         ]
     )
-    fused.check(native.result)
+    by_hand.check(native.result)
+    by_hand_six.check(six.result)
+    study = studies.Study()
+    study()
+    loops = [
+        counting.Loop("demo, hand-fused", [*by_hand.line, "{}", "/dev/null"]),
+        counting.Loop("six axes, hand-fused", [*by_hand_six.line, "{}", "/dev/null"]),
+        *(
+            counting.Loop(
+                f"demo, {name}",
+                counting.of_run(DEMO, run.options["engine"], run.options["fmi"]),
+                (100, 300) if "stop" in run.options else counting.STEPS,
+            )
+            for name, run in demos.items()
+        ),
+        *(
+            counting.Loop(f"six axes, {name}", counting.of_run(SIX_AXES, run.options["engine"]))
+            for name, run in sixes.items()
+        ),
+        counting.Loop("robot", counting.of_run(ROBOT, best), (20_000, 30_000)),
+    ]
+    counts = counting.count(loops, studies.loops(study.cores))
 
-    base = fused.loop / fused.steps
-    print(f"{'demo, one step of all FMUs':28}{'ns':>10}{'ns/FMU':>10}{'x fused':>10}")
-    print(f"{'fused in C, no FMI':28}{base * 1e9:10.0f}{'':>10}{1.0:10.2f}")
-    for name, run in engines.items():
-        step = run.loop / run.steps
-        print(f"{name:28}{step * 1e9:10.0f}{step / run.fmus * 1e9:10.0f}{step / base:10.2f}")
-    print(f"\n{'simulated s per wall s':28}{'loop':>10}{'whole run':>10}")
+    found = system_figures("demo", by_hand, demos, counts, 1.1)
+    found += system_figures("six axes", by_hand_six, sixes, counts, 1.2)
+    print(f"\n{'simulated s per processor s':34}{'loop':>10}{'whole run':>10}")
     for name, run in (
         ("demo", native),
         ("six ball-screw axes", six),
         ("six pulse axes at 500 kHz", pulses),
         ("robot draws a line", robot),
     ):
-        print(f"{name:28}{run.simulated / run.loop:10.1f}{run.simulated / run.whole:10.1f}")
+        print(f"{name:34}{run.simulated / run.loop:10.1f}{run.simulated / run.whole:10.1f}")
     card_table(cards)
-    print(f"\n{'one line of a part program':28}{'ns':>10}{'x strtod':>20}")
+    print(f"\n{'one line of a part program':34}{'ns':>10}{'x strtod':>20}")
     ratio = interpreter.line / interpreter.strtod
-    print(f"{'read, checked, planned':28}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
+    print(f"{'read, checked, planned':34}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
     plans.table(curves)
     segments.table(curves[0].ruckig)
     net.table(curves[0].ruckig)
     arm.table()
-    study = studies.Study()
-    study()
     study.table()
-    print()
-    verdict("native engine / fused loop", native.loop / native.steps / base, most=2.0)
-    verdict("six axes, simulated s per wall s of the loop", six.simulated / six.loop, least=10.0)
-    verdict("robot draws a line, times real time", robot.simulated / robot.loop, least=8.0)
-    fastest = 1.0 / next(c.cost for c in cards if c.axes == 6 and c.hertz > 1e5 and not c.edges)
-    edges = 1.0 / next(c.cost for c in cards if c.axes == 6 and c.hertz > 1e5 and c.edges)
-    verdict("card with six axes at 500 kHz, times real time", fastest, least=20.0)
-    verdict("the same, every edge asked for", edges, least=20.0)
-    verdict(
-        "the same as FMUs with the library, whole loop", pulses.simulated / pulses.loop, least=20.0
-    )
-    verdict("interpreter, million lines/s", 1e-6 / interpreter.line, least=0.5)
-    for curve in curves:
-        verdict(f"ruckig / scurve, {curve.name}", curve.ruckig / curve.scurve, least=1.0)
+    fast = [c.cost for c in cards if c.axes == 6 and c.hertz > 1e5]
+    found += [
+        Figure("six axes, loop, times real time", six.simulated / six.loop, least=50.0),
+        Figure("six axes, whole run, times real time", six.simulated / six.whole, least=25.0),
+        Figure("robot draws a line, loop, times real time", robot.simulated / robot.loop, least=15),
+        Figure("robot, instructions a step", counts["robot"].count, counted=True),
+        Figure("card with six axes at 500 kHz, times real time", 1 / fast[0], least=20.0),
+        Figure("the same, every edge asked for", 1 / fast[1], least=20.0),
+        Figure("the same as FMUs, whole loop", pulses.simulated / pulses.loop, least=20.0),
+        Figure("interpreter, million lines/s", 1e-6 / interpreter.line, least=0.5),
+        *(Figure(f"ruckig / scurve, {c.name}", c.ruckig / c.scurve, least=1.0) for c in curves),
+    ]
     for s in segments.ALL:
         least = 1.0 if s is segments.LONG.walk else 0.1 if s.jerk else 0.2
-        verdict(f"{s.name}, million segments/s", 1e-6 / max(s.cost.values()), least=least)
-        verdict(f"{s.name}, 256 over 16 commands", s.growth, most=1.5)
-    verdict("the same, 100,000 over 1,000 segments", segments.LONG.growth, most=1.2)
-    verdict(
-        f"{network.SEGMENTS:,} lines of a drawing, s to plan", network.SEGMENTS * net.plan, most=2.0
-    )
-    verdict(
-        f"{network.CARDS} network cards, times real time", 1 / net.card / network.CARDS, least=1.0
-    )
-    verdict("arm, all eight branches, us", 1e6 * arm.inverse, most=1.0)
-    verdict("py-opw-kinematics / ours", arm.other / arm.inverse, least=1.0)
-    for command in asked:
-        verdict(f"motionfmu {command.line}, processor s", command.seconds, most=0.3)
-    verdict("sweep, efficiency of all cores", study.efficiency, least=0.9)
+        fastest = 1e-6 / max(s.cost.values())
+        found.append(Figure(f"{s.name}, million segments/s", fastest, least=least))
+        found.append(Figure(f"{s.name}, 256 over 16 commands", s.growth, most=1.5))
+    planned = network.SEGMENTS * net.plan
+    in_motion = 1 / net.card / network.CARDS
+    found += [
+        Figure("the same, 100,000 over 1,000 segments", segments.LONG.growth, most=1.2),
+        Figure(f"{network.SEGMENTS:,} lines of a drawing, s to plan", planned, most=2.0),
+        Figure(f"{network.CARDS} network cards, times real time", in_motion, least=1.0),
+        Figure("arm, all eight branches, us", 1e6 * arm.inverse, most=1.0),
+        Figure("py-opw-kinematics / ours", arm.other / arm.inverse, least=1.0),
+        *(Figure(f"motionfmu {c.line}, s", c.seconds, most=c.asked) for c in asked),
+        *(
+            Figure(f"motionfmu {c.line}, G instructions", count / 1e9, counted=True)
+            for c, count in counting.of_commands(asked)
+        ),
+        Figure("tune scenarios/circle in a session, s", session.seconds, most=1.0),
+        *study.figures(counts),
+    ]
+    figures.show(found, counting.method(), renew)
 
 
 if __name__ == "__main__":
-    main()
+    main(renew="--renew" in sys.argv[1:])

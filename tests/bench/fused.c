@@ -1,7 +1,8 @@
-/* The loop of scenarios/circle without FMI: the same models, one program, wires as assignments.
+/* The loop of scenarios/circle or of six_axes without FMI: the same models, one program, wires as
+ * assignments. SCENARIO is the header with the axes USED and what is RECORDED.
  *
  *     fused PROGRAM STEPS FILE    runs STEPS steps of 100 us, writes the recorded rows to FILE and
- *                                 prints the seconds that the loop took
+ *                                 prints the processor seconds that the loop took
  *     fused --layout              prints name, type, elements and offset of each recorded value
  *
  * Every step first carries all wires, then steps all models (Jacobi), as the native engine does.
@@ -15,22 +16,11 @@
 #include <string.h>
 #include <time.h>
 
+#include SCENARIO
 #include "link.h"
 #include "parts.h"
 
-enum { STEP_NS = 100000, AXES = 6, USED = 2 };
-
-/* What the scenario records: component, variable, C type, elements. */
-#define RECORDED(X)                                                                       \
-    X(machine, table_position, double, AXES) X(card, dac, double, AXES)                   \
-    X(drives, torque, double, AXES) X(drives, speed, double, AXES)                        \
-    X(mcc, path_feed, double, 1) X(card, pulse_count, int32_t, AXES)                      \
-    X(card, stock, int32_t, AXES) X(card, underflows, int32_t, AXES)                      \
-    X(card, err_count, int32_t, AXES) X(mcc, command, int32_t, 1)                         \
-    X(mcc, command_newest, int32_t, 1) X(mcc, line, int32_t, 1)                           \
-    X(mcc, status, int32_t, 1) X(mcc, error, int32_t, 1) X(mcc, queue, int32_t, 1)        \
-    X(mcc, starved, int32_t, 1) X(card, irq_seq, int32_t, 1) X(mcc, done, bool, 1)        \
-    X(mcc, card_dda_length, int32_t, 1) X(mcc, card_dda_divider, int32_t, 1)
+enum { STEP_NS = 100000, AXES = 6 };
 
 struct row {
 #define MEMBER(part, name, type, count) type part##_##name[count];
@@ -88,7 +78,7 @@ static void prepare(const char *program)
 static double seconds(void)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 

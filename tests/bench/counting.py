@@ -1,0 +1,101 @@
+"""Instructions of a process: they stand on a busy machine, too, where times do not."""
+
+import functools
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import commands
+
+RUN = Path(__file__).parent / "one_run.py"
+_PERF = ("perf", "stat", "-x,", "-e", "instructions:u", "-o")
+_VALGRIND = ("valgrind", "--trace-children=yes", "--tool=cachegrind", "--cache-sim=no")
+# A short and a long run of a loop; their difference is the loop's alone.
+STEPS = (1000, 5000)
+SLOW = 4.0  # [s]
+
+
+@functools.cache
+def method() -> str | None:
+    """What counts here: the processor itself, else valgrind, else nothing."""
+    for name, count in (("perf", _perf), ("valgrind", _valgrind)):
+        try:
+            count(["true"])
+        except (OSError, ValueError, subprocess.CalledProcessError):
+            continue
+        return name
+    return None
+
+
+def _run(line: Sequence[str | Path]) -> str:
+    done = subprocess.run(
+        line,
+        check=True,
+        env=commands.environment(),
+        stdout=subprocess.DEVNULL,
+        stderr=-1,
+        text=True,
+    )
+    return str(done.stderr)
+
+
+def _perf(line: Sequence[str | Path]) -> int:
+    with tempfile.NamedTemporaryFile("r") as told:
+        _run([*_PERF, told.name, *line])
+        return int(told.read().splitlines()[-1].partition(",")[0])
+
+
+def _valgrind(line: Sequence[str | Path]) -> int:
+    told = _run([*_VALGRIND, "--cachegrind-out-file=/dev/null", *line])
+    if not (found := re.findall(r"I +refs: +([\d,]+)", told)):
+        raise ValueError("valgrind tells no count")
+    return sum(int(n.replace(",", "")) for n in found)
+
+
+def instructions(line: Sequence[str | Path]) -> float:
+    """Instructions in user mode of a command; NaN if the machine counts none."""
+    which = method()
+    return float("nan") if which is None else (_perf if which == "perf" else _valgrind)(line)
+
+
+class Loop:
+    """Instructions of one step of a loop: a longer run less a shorter one.
+
+    `line` makes the command of a run from its number of steps.
+    """
+
+    def __init__(self, name: str, line: Sequence[str | Path], steps: Sequence[int] = STEPS) -> None:
+        self.name, self.line, self.steps = name, line, steps
+        self.count = float("nan")
+
+    def __call__(self) -> None:
+        if method() is None:
+            return
+        lines = [[str(a).format(n) for a in self.line] for n in self.steps]
+        _run(lines[0])  # what is made once is there
+        short, long = map(instructions, lines)
+        self.count = (long - short) / (self.steps[1] - self.steps[0])
+
+
+def of_run(scenario: Path, engine: str, fmi: int = 3) -> list[str | Path]:
+    """A command that runs a scenario of so many steps; nothing is written."""
+    return [sys.executable, RUN, scenario, engine, str(fmi), "{}"]
+
+
+def count(loops: Sequence[Loop], slow: Sequence[Loop]) -> dict[str, Loop]:
+    """Count all, as many at once as there are cores; valgrind none that are slow."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda loop: loop(), [*loops, *(slow if method() == "perf" else [])]))
+    return {loop.name: loop for loop in [*loops, *slow]}
+
+
+def of_commands(asked: Sequence[commands.Command]) -> list[tuple[commands.Command, float]]:
+    """Instructions of each command; valgrind is too slow for those that take long."""
+    few = [c for c in asked if method() == "perf" or c.seconds < SLOW]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(zip(few, pool.map(lambda c: instructions(c.whole), few), strict=True))
