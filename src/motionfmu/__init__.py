@@ -8,30 +8,37 @@ The library and the card without FMUs are in `motionfmu.mcc`, the robot in `moti
 programs in `motionfmu.gcode`, linear models in `motionfmu.linear`.
 """
 
-import importlib
-from typing import TYPE_CHECKING, Any
-
-from motionfmu.errors import InputError
-
+# Nothing is imported here: the console command stands behind this file, and what takes time before
+# it would end Ctrl-C in a traceback.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
+    from motionfmu.errors import InputError
     from motionfmu.run import Result, Scenario, load, scenario
 
 __all__ = ["InputError", "Result", "Scenario", "load", "scenario"]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     """Import the runner, or a folder, when it is first used; the build needs descriptions only."""
+    if name == "InputError":
+        from motionfmu.errors import InputError
+
+        return InputError
     if name in __all__:
         from motionfmu import run
 
         return getattr(run, name)
     if name in _folders():
+        import importlib
+
         return importlib.import_module(f"motionfmu.{name}")
     raise AttributeError(f"module 'motionfmu' has no attribute {name!r}")
 
 
 def _folders() -> list[str]:
-    import pkgutil  # not before an interrupt finds the console command
+    import pkgutil
 
     return [module.name for module in pkgutil.iter_modules(__path__) if module.ispkg]
 

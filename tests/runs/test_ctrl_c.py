@@ -59,6 +59,45 @@ def test_an_interrupt_while_modules_are_loaded(line: str, module: str, tmp_path:
     assert "run" not in line or list(tmp_path.iterdir()) == []
 
 
+EARLY = """
+import os, signal, sys
+
+class Interrupt:
+    def find_spec(self, name, path=None, target=None):
+        if name == module:
+            os.kill(os.getpid(), signal.SIGINT)
+
+module = sys.argv.pop(1)
+for name in ("typing", "contextlib", "importlib.machinery"):
+    sys.modules.pop(name, None)
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.meta_path.insert(0, Interrupt())
+from motionfmu.__main__ import main
+main()
+"""
+
+
+@pytest.mark.parametrize("module", ["motionfmu.cli", "typing", "motionfmu.cli.common", "typer"])
+def test_an_interrupt_before_the_commands_are_there(module: str, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", EARLY, module, "list"],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        env=environment(tmp_path),
+        timeout=60,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "motionfmu: stopped\n")
+
+
+def test_the_package_is_there_before_it_imports_anything() -> None:
+    """The handler stands behind it."""
+    line = [sys.executable, "-S", "-c", "import sys; a = set(sys.modules); import motionfmu;"
+            " print(*sorted(set(sys.modules) - a))"]  # fmt: skip
+    done = subprocess.run(line, capture_output=True, text=True, env=environment(Path()))
+    assert done.stdout == "motionfmu\n", done.stderr
+
+
 def children(process: int) -> list[str]:
     threads = Path(f"/proc/{process}/task").glob("*/children")
     return [child for file in threads for child in file.read_text().split()]

@@ -8,6 +8,8 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import typer
 
 
@@ -29,9 +31,10 @@ def _commands() -> "typer.Typer":
     return app
 
 
-def main() -> None:
-    """Entry point: one line and a status for wrong input and for Ctrl-C."""
+def main(begin: "Callable[[], None]" = lambda: None) -> None:
+    """One line and a status for wrong input and for Ctrl-C; `begin` is called first."""
     try:
+        begin()
         status, told = _status()
     except KeyboardInterrupt:
         status, told = 130, "stopped"
