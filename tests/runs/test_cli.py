@@ -29,11 +29,11 @@ def test_run_writes_a_whole_result_and_says_where(demo: tuple[Path, str]) -> Non
     assert "circle: all checks hold" in text
     names = {p.name for p in folder.iterdir()}
     assert names == {
-        "signals.npz",
+        "signals",
         "signals.csv",
         "result.json",
         "contour.json",
-        "contour.npz",
+        "contour",
         "report.html",
         "path.png",
         "path.svg",
@@ -48,9 +48,10 @@ def test_the_result_file_says_all_in_numbers(demo: tuple[Path, str]) -> None:
     assert found["options"]["engine"] == "native" and found["options"]["stop"] == 7.6
     assert {c["name"] for c in found["checks"]} >= {"mcc.done", "contour.error.max"}
     assert found["contour"] == json.loads((folder / "contour.json").read_text())
-    with np.load(folder / "signals.npz") as signals:
-        position = signals["machine.table_position"]
-        assert position.shape == (76000, 6) and len(signals["time"]) == 76000
+    position = np.load(folder / "signals/machine.table_position.npy", mmap_mode="r")
+    assert position.shape == (76000, 6)
+    time = np.load(folder / "signals/time.npy")
+    assert np.array_equal(time, np.arange(76000) * 1e-4)
     head = (folder / "signals.csv").open().readline().strip().split(",")
     table = np.loadtxt(folder / "signals.csv", delimiter=",", skiprows=1, max_rows=5)
     assert head[0] == "time" and table.shape == (5, len(head))
@@ -88,8 +89,7 @@ def test_values_of_a_file_are_told_with_its_name_and_every_thins(tmp_path: Path)
     done = within("run", *line, "--every", 10, "--out", tmp_path / "r")
     assert "not as written: gains.toml: mcc.p_gain = [150, 150, 0, 0, 0, 0]" in done.stdout
     assert "not as written: every = 10 (scenario: 1)" in done.stdout
-    with np.load(tmp_path / "r/signals.npz") as signals:
-        assert len(signals["time"]) == 200
+    assert len(np.load(tmp_path / "r/signals/time.npy")) == 200
 
 
 def test_an_older_result_is_replaced(tmp_path: Path) -> None:
@@ -187,7 +187,7 @@ def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch) -
         raise OSError(28, "No space left on device")
 
     result = motionfmu.load(ROOT / "scenarios/circle").run(stop=0.01)
-    monkeypatch.setattr("motionfmu.report.outcome.np.savez_compressed", full)
+    monkeypatch.setattr("motionfmu.report.outcome.write", full)
     with pytest.raises(motionfmu.InputError, match=r"cannot write .*No space left on device"):
         save(result, tmp_path / "a/b/result", {})
     assert list(tmp_path.iterdir()) == []

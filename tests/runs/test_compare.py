@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+import shutil
 import zlib
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from conftest import ROOT
 from console import within
 
 import motionfmu
+from motionfmu import columns
 from motionfmu.compare import Comparison, compare, overlay, plots
 from motionfmu.compare.figures import Number
 from motionfmu.compare.page import page_text
@@ -22,14 +24,16 @@ from motionfmu.errors import InputError
 from motionfmu.run import Result, stored
 
 THEORY = ROOT / "scenarios/circle_theory"
+PLACES = ("none", "half", "broken", "old", "torn", "short")
 POSITION, STOCK = "machine.table_position", "card.stock"
 
 
 def leave(result: Result, folder: Path) -> Path:
     """The folder of a run, without its report."""
     folder.mkdir()
-    np.savez(folder / stored.SIGNALS, time=result.time, **result.signals)
-    np.savez(folder / stored.TRACK, **stored.track(result.contour()))
+    columns.write(folder / stored.SIGNALS, result.signals, result.time)
+    way = stored.track(result.contour())
+    columns.write(folder / stored.TRACK, way, way.pop("time"))
     (folder / stored.NUMBERS).write_text(json.dumps(stored.numbers(result)))
     return folder
 
@@ -208,11 +212,10 @@ def test_values_between_samples_lie_on_lines_and_counts_hold() -> None:
 def test_what_only_one_run_has_is_said(folders: tuple[Path, Path], tmp_path: Path) -> None:
     less = tmp_path / "less"
     less.mkdir()
-    arrays = dict(np.load(folders[1] / stored.SIGNALS))
+    shutil.copytree(folders[1] / stored.SIGNALS, less / stored.SIGNALS)
     made = json.loads((folders[1] / stored.NUMBERS).read_text())
-    del arrays[STOCK]
+    (less / stored.SIGNALS / f"{STOCK}.npy").unlink()
     made["units"][POSITION] = "mm"
-    np.savez(less / stored.SIGNALS, **arrays)
     (less / stored.NUMBERS).write_text(json.dumps(made))
     found = compare(folders[0], less)
     assert found.left == {STOCK: "only in A", POSITION: "[m] in A, [mm] in B"}
@@ -248,7 +251,9 @@ def test_the_console_says_it_and_its_status_is_the_verdict(
     [
         (("{b}", "--signals", "card.stok"), "no signal 'card.stok'"),
         (("{none}",), "no such scenario"),
-        (("{half}",), "no signals.npz"),
+        (("{half}",), "no signals/; the folder of a run"),
+        (("{torn}",), f"signals/{STOCK}.npy: no array of numpy: mmap length"),
+        (("{short}",), f"{STOCK} has not as many samples as the time"),
         (("{broken}",), "no JSON"),
         (("{old}",), "written by another version"),
         (("{b}", "--set", "mcc.p_gain=3"), "only a scenario can be run with --set"),
@@ -257,11 +262,16 @@ def test_the_console_says_it_and_its_status_is_the_verdict(
 def test_wrong_input_is_one_message(
     line: tuple[str, ...], told: str, folders: tuple[Path, Path], tmp_path: Path
 ) -> None:
-    places = {n: tmp_path / n for n in ("none", "half", "broken", "old")} | {"b": folders[1]}
+    places = {n: tmp_path / n for n in PLACES} | {"b": folders[1]}
     for name, text in (("half", "{}"), ("broken", "{"), ("old", "{}")):
         places[name].mkdir()
         (places[name] / stored.NUMBERS).write_text(text)
-    np.savez(places["old"] / stored.SIGNALS, time=np.zeros(2))
+    (places["old"] / stored.SIGNALS).mkdir()
+    for name in ("torn", "short"):
+        shutil.copytree(folders[1], places[name])
+    torn = places["torn"] / stored.SIGNALS / f"{STOCK}.npy"
+    torn.write_bytes(torn.read_bytes()[:1000])
+    np.save(places["short"] / stored.SIGNALS / f"{STOCK}.npy", np.zeros((3, 6)))
     wrong = within(
         "compare", folders[0], *(x.format(**places) for x in line), "--out", tmp_path / "x"
     )

@@ -28,9 +28,9 @@ TORQUE = [1e-6] * 6  # [N.m] less than friction: the table stands still
 def written(folder: Path) -> dict:
     """The numbers of a whole result folder."""
     names = {p.name for p in folder.iterdir()}
-    assert names >= {"signals.npz", "result.json", "report.html"}
-    with np.load(folder / "signals.npz") as signals:
-        assert all(len(signals[n]) == len(signals["time"]) for n in signals.files)
+    assert names >= {"signals", "result.json", "report.html"}
+    signals = {f.stem: np.load(f) for f in (folder / "signals").iterdir()}
+    assert all(len(x) == len(signals["time"]) for x in signals.values())
     return json.loads((folder / "result.json").read_text())
 
 

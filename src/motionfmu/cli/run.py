@@ -77,6 +77,9 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     ] = None,
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
     csv: Annotated[bool, typer.Option("--csv", help="Also write signals.csv.")] = False,
+    signals: Annotated[
+        bool, typer.Option(help="Keep signals/, a file for each; they may be large.")
+    ] = True,
 ) -> None:
     """Run a scenario, judge it and write its report."""
     from motionfmu.report import outcome
@@ -92,8 +95,10 @@ def run(  # noqa: PLR0913  (each is an option of the command)
         "step": step,
         "every": every,
     }
-    result = run_shown(scenario, options | {"source": files_of(set_)})
-    shown = outcome.save(result, target, csv)
+    result = run_shown(
+        scenario, options | {"source": files_of(set_), "scratch": outcome.near(target)}
+    )
+    shown = outcome.save(result, target, csv, signals)
     verdicts(result.checks)
     warnings(result.warnings)
     for line in result.overrides:

@@ -1,8 +1,7 @@
 """One of two runs: from its folder of results, or as it has just been run."""
 
 import json
-import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.columns import TIME, Columns
 from motionfmu.errors import InputError
 from motionfmu.run import Result, Scenario, load
 from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, numbers, track
@@ -25,8 +25,8 @@ class Side:
     name: str  # of its folder or scenario
     numbers: dict[str, Any] = field(repr=False)  # as in result.json
     time: NDArray[np.float64] = field(repr=False)  # [s]
-    signals: dict[str, NDArray[Any]] = field(repr=False)
-    track: dict[str, NDArray[Any]] = field(repr=False)  # as in contour.npz; empty without a contour
+    signals: Mapping[str, NDArray[Any]] = field(repr=False)
+    track: Mapping[str, NDArray[Any]] = field(repr=False)  # as in contour/; empty without a contour
 
 
 def side(given: "str | Path | Scenario | Result", set: Mapping[str, Any] | None = None) -> Side:
@@ -55,26 +55,34 @@ def _read(folder: Path) -> Side:
         raise InputError(f"cannot read {file}: {error.strerror}") from None
     except ValueError as error:
         raise InputError(f"{file}: no JSON: {error}") from None
-    if not is_file(folder / SIGNALS):
-        raise InputError(f"{folder}: no {SIGNALS}; the folder of a run is wanted")
+    if not (folder / SIGNALS).is_dir():
+        raise InputError(
+            f"{folder}: no {SIGNALS}/; the folder of a run is wanted, with its signals"
+        )
     if missing := [k for k in WANTED if not isinstance(made, dict) or k not in made]:
         raise InputError(f"{file}: no {missing[0]!r}: written by another version; run it again")
-    signals = _arrays(folder / SIGNALS)
-    if "time" not in signals or (strange := sorted({*signals} - {"time", *made["units"]})):
-        told = f"signal {strange[0]!r} is not in {NUMBERS}" if "time" in signals else "no time"
-        raise InputError(f"{folder / SIGNALS}: {told}")
-    time = signals.pop("time")
+    signals, time = _columns(folder / SIGNALS, made["units"])
+    if strange := sorted({*signals} - {*made["units"]}):
+        raise InputError(f"{folder / SIGNALS}: signal {strange[0]!r} is not in {NUMBERS}")
     if short := next((n for n, x in signals.items() if len(x) != len(time)), ""):
         raise InputError(f"{folder / SIGNALS}: {short} has not as many samples as the time")
-    way = _arrays(folder / TRACK) if made.get("contour") and is_file(folder / TRACK) else {}
-    return Side(str(folder), made, time, signals, way)
+    wanted = made.get("contour") and (folder / TRACK).is_dir()
+    return Side(str(folder), made, time, signals, _columns(folder / TRACK, ())[0] if wanted else {})
 
 
-def _arrays(file: Path) -> dict[str, NDArray[Any]]:
+def _columns(folder: Path, order: Iterable[str]) -> tuple[Columns, NDArray[np.float64]]:
+    """What a folder holds, and its times; every file is looked at."""
+    file = f"{TIME}.npy"
     try:
-        with np.load(file) as stored:
-            return dict(stored)
+        found = Columns.of(folder, order)
+        time = found.time
+        if time is None:
+            raise InputError(f"{folder}: no {file}")
+        for name in found:
+            file = f"{name}.npy"
+            found[name]
     except OSError as error:
-        raise InputError(f"cannot read {file}: {error.strerror or error}") from None
-    except (ValueError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(f"{file}: no arrays of numpy: {error}") from None
+        raise InputError(f"cannot read {error.filename}: {error.strerror or error}") from None
+    except ValueError as error:
+        raise InputError(f"{folder / file}: no array of numpy: {error}") from None
+    return found, time

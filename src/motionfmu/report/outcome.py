@@ -6,10 +6,10 @@ import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from motionfmu.columns import in_blocks, write
 from motionfmu.errors import InputError
 from motionfmu.run.result import Result
 from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, numbers, track
@@ -24,8 +24,15 @@ def _write_csv(result: Result, file: Path) -> None:
         for i in range(wide.shape[1]):
             names.append(f"{name}[{i + 1}]" if data.ndim == 2 else name)
             columns.append(wide[:, i])
-    table = np.column_stack(columns)
-    np.savetxt(file, table, delimiter=",", header=",".join(names), comments="", fmt="%.17g")
+    with file.open("w", encoding="utf-8") as table:
+        table.write(",".join(names) + "\n")
+        for blocks in in_blocks(*columns):
+            np.savetxt(table, np.column_stack(blocks), delimiter=",", fmt="%.17g")
+
+
+def near(folder: Path) -> Path:
+    """The folder that is there in which, or in which of its folders, a result will be."""
+    return next(p for p in folder.resolve().parents if p.is_dir())
 
 
 def usable(folder: Path) -> Path:
@@ -39,12 +46,12 @@ def usable(folder: Path) -> Path:
     return folder
 
 
-def save(result: Result, folder: Path, csv: bool = False) -> Path:
+def save(result: Result, folder: Path, csv: bool = False, signals: bool = True) -> Path:
     """Write a run's folder, whole or not at all; give the report."""
     # An older result is replaced; anything else in the folder is an InputError.
     with whole(folder) as part:
-        arrays: dict[str, Any] = {"time": result.time, **result.signals}
-        np.savez_compressed(part / SIGNALS, **arrays)
+        if signals:
+            write(part / SIGNALS, result.signals, result.time)
         from motionfmu.report import write_report
         from motionfmu.report.ran import ran_of
 
@@ -57,7 +64,8 @@ def save(result: Result, folder: Path, csv: bool = False) -> Path:
         if csv:
             _write_csv(result, part / TABLE)
         if contour is not None:
-            np.savez_compressed(part / TRACK, **track(contour))
+            way = track(contour)
+            write(part / TRACK, way, way.pop("time"))
         shown = write_report(result, contour, part, ran).name
     return folder.resolve() / shown
 

@@ -1,7 +1,7 @@
 """A scenario read and checked against its FMUs."""
 
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -42,6 +42,8 @@ class Options:
         Inputs whose [[drive]] is left out.
     source : mapping
         Name of the file that a value of `set` is from, by ``component.variable``.
+    scratch : Path or None
+        Folder for what is recorded until it is saved or let go; else the system's temporary one.
     progress : callable
         Called with the share done, 0 to 1.
     """
@@ -54,6 +56,7 @@ class Options:
     every: int | None = None
     undriven: Collection[str] = ()
     source: Mapping[str, str] = field(default_factory=dict)
+    scratch: Path | None = None
     progress: Callable[[float], None] = lambda share: None
 
     def given(self) -> dict[str, Any]:
@@ -76,7 +79,7 @@ class Prepared:
         self._check_names(faults)
         self._check_whole(faults)
         self.document.refuse(faults.lines)
-        self.check_recording(self.resolved(Options()), self.ends, Options())
+        self.check_scopes(self.resolved(Options()), Options())
 
     def _check_names(self, faults: Faults) -> None:
         """Look up what is recorded, drawn and checked."""
@@ -206,19 +209,15 @@ class Prepared:
                     if text := rates.wrong(rate, made.sample_ns, body.stop_limit):
                         raise document.error(f"{name}: {text}", "check", name)
 
-    def check_recording(
-        self, plain: system.System, ends: Iterable[system.End], options: Options
-    ) -> None:
-        """Refuse a recording that no memory holds, or two of one file; names setting or option."""
-        name, told = recording.refused(recording.plan(plain, ends, Path())[0])
+    def check_scopes(self, plain: system.System, options: Options) -> None:
+        """Refuse scopes that no memory holds, or two of one file; names setting or option."""
+        name, told = recording.refused(plain)
         if not told:
             return
         body = self.document.body
         if name in body.set and name not in options.set:
             raise self.document.error(told, "set", name)
-        if name.partition(".")[0] in body.component or options.stop or options.step:
-            raise InputError(told if name not in options.set else f"set {name}: {told}")
-        raise self.document.error(told, "", "step")
+        raise InputError(told if name not in options.set else f"set {name}: {told}")
 
     def _time(self, key: str, given: float | None, written: float) -> int:
         """Whole nanoseconds of an option, or of the scenario's own key."""

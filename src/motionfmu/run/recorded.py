@@ -1,5 +1,6 @@
 """What figures and contour analysis read of a run."""
 
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -12,7 +13,7 @@ class Recorded(Protocol):
     """A run's signals and parameters; `Result` is one."""
 
     time: NDArray[np.float64]  # [s], shape (N,)
-    signals: dict[str, NDArray[Any]]
+    signals: Mapping[str, NDArray[Any]]
     geometry: str | None
 
     @property

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.columns import Columns
 from motionfmu.errors import InputError, NoNumber
 from motionfmu.run import figures, signals, waveforms
 from motionfmu.run.checks import TABLES, Verdict, is_figure, judge
@@ -49,8 +50,9 @@ class Result(Mapping[str, NDArray[Any]]):
     scenario : Scenario
     time : ndarray
         Times of the samples [s], shape (N,).
-    signals : dict
-        By name: (N, 6) for an array of axes, (N,) for a scalar.
+    signals : Mapping
+        By name: (N, 6) for an array of axes, (N,) for a scalar. They are read from the disk when
+        they are asked for; what is not saved goes with the result.
     parameters : dict
         Value of every parameter that was set, by name.
     geometry : str or None
@@ -77,7 +79,7 @@ class Result(Mapping[str, NDArray[Any]]):
 
     scenario: Prepared
     time: NDArray[np.float64]
-    signals: dict[str, NDArray[Any]]
+    signals: Mapping[str, NDArray[Any]]
     parameters: dict[str, Any]
     geometry: str | None = None
     warnings: tuple[str, ...] = ()
@@ -90,8 +92,9 @@ class Result(Mapping[str, NDArray[Any]]):
 
     def __post_init__(self) -> None:
         signals.locked(self.time)
-        for data in self.signals.values():
-            signals.locked(data)
+        if not isinstance(self.signals, Columns):
+            for data in self.signals.values():
+                signals.locked(data)
 
     __eq__ = object.__eq__
     __hash__ = object.__hash__
@@ -191,7 +194,7 @@ class Result(Mapping[str, NDArray[Any]]):
         figure: Figure = _report("notebook").plot(self, names, window)
         return figure
 
-    def save(self, folder: str | Path, csv: bool = False) -> Path:
+    def save(self, folder: str | Path, csv: bool = False, signals: bool = True) -> Path:
         """Write the folder that ``motionfmu run`` writes, with its report.
 
         Parameters
@@ -200,6 +203,8 @@ class Result(Mapping[str, NDArray[Any]]):
             New, empty, or with an older result, which is replaced.
         csv : bool
             Also ``signals.csv``.
+        signals : bool
+            Also ``signals/``, a NumPy file for each; without it two results cannot be compared.
 
         Returns
         -------
@@ -211,7 +216,7 @@ class Result(Mapping[str, NDArray[Any]]):
         InputError
             The folder holds something else, or cannot be written.
         """
-        shown: Path = _report("outcome").save(self, Path(folder), csv)
+        shown: Path = _report("outcome").save(self, Path(folder), csv, signals)
         return shown
 
     def parameter(self, name: str) -> Any:

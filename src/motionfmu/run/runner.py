@@ -1,12 +1,12 @@
 """Load a scenario and run it."""
 
-import tempfile
 from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import closing
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from motionfmu import columns
 from motionfmu.errors import Faults, InputError, NoNumber, suggestion
 from motionfmu.run import engines
 from motionfmu.run.engines.job import Ran
@@ -63,6 +63,7 @@ class Scenario(Prepared):
         every: int | None = None,
         undriven: Collection[str] = (),
         source: Mapping[str, str] | None = None,
+        scratch: str | Path | None = None,
         progress: Callable[[float], None] | None = None,
         **unknown: Any,
     ) -> Result:
@@ -87,6 +88,9 @@ class Scenario(Prepared):
             Inputs whose [[drive]] is left out.
         source : mapping, optional
             Name of the file that a value of `set` is from, for the report.
+        scratch : str or Path, optional
+            Folder in which what is recorded lies until the result is saved or gone; else the
+            system's temporary one, ``$TMPDIR``.
         progress : callable, optional
             Called with the share done, 0 to 1.
         **unknown
@@ -111,10 +115,11 @@ class Scenario(Prepared):
             every=every,
             undriven=undriven,
             source=source or {},
+            scratch=None if scratch is None else Path(scratch),
             progress=progress or (lambda share: None),
         )
         _check(asked, faults)
-        with tempfile.TemporaryDirectory(prefix="motionfmu-") as name:
+        with columns.temporary(asked.scratch) as name:
             folder = Path(name)
             given = replace(asked, set={**asked.set, **own_settings(self, folder)})
             wired = Wired.plan(self, given, self.ends, folder)

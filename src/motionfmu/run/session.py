@@ -1,11 +1,11 @@
 """One scenario run many times: its container is built once."""
 
-import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from motionfmu import columns
 from motionfmu.errors import InputError, suggestion
 from motionfmu.run import engines
 from motionfmu.run.engines.job import Engine, Ran
@@ -52,7 +52,7 @@ class Session:
         asked = Options(**options)
         self.scenario = scenario
         self._options = replace(asked, engine=engines.named(asked.engine))
-        self._temporary = tempfile.TemporaryDirectory(prefix="motionfmu-")
+        self._temporary = columns.temporary(self._options.scratch)
         try:
             self._folder = Path(self._temporary.name)
             self._engine = self._prepare(varied, signals)
@@ -99,7 +99,7 @@ class Session:
             self._wired, system=replace(self._wired.system, settings=tuple(self._values(given)))
         )
         options = replace(self._options, set=given)
-        self.scenario.check_recording(wired.system, wired.recorded, options)
+        self.scenario.check_scopes(wired.system, options)
 
         def engine(system: System) -> Ran:
             return replace(self._engine.run(system, self._options.progress), warnings=[])

@@ -15,7 +15,7 @@ from motionfmu.toml_lines import is_file
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult
 
-SIGNALS, NUMBERS, TRACK = "signals.npz", "result.json", "contour.npz"
+SIGNALS, NUMBERS, TRACK = "signals", "result.json", "contour"
 DIGITS = 16  # of a file's SHA-256: enough to tell two files apart
 
 

@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motionfmu.errors import InputError
 from motionfmu.run.engines.job import Job, Ran
 from motionfmu.run.overrides import overrides
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
+from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import End, System
 
 PLANNED = "path.csv"
@@ -38,7 +40,9 @@ class Wired:
     ) -> "Wired":
         """Say what is run and recorded, with files in a folder."""
         planned = cls(scenario, scenario.resolved(options), tuple(ends), folder)
-        scenario.check_recording(planned.system, planned.recorded, options)
+        scenario.check_scopes(planned.system, options)
+        if told := recording.no_room(planned.system, planned.recorded, folder):
+            raise InputError(told)
         return planned
 
     def job(self, fmi: int) -> Job:
@@ -60,9 +64,8 @@ class Wired:
             never = (f"{until.name} never came within {limit:.9g} s",)
         return Result(
             scenario=self.scenario,
-            time=np.arange(self.system.rows(ran.steps), dtype=np.float64)
-            * (self.system.sample_ns * 1e-9),
-            signals=dict(ran.signals),
+            time=ran.signals.time if ran.signals.time is not None else self._time(ran.steps),
+            signals=ran.signals,
             parameters={s.end.name: s.values for s in self.system.settings},
             geometry=planned.read_text(encoding="utf-8") if planned.is_file() else None,
             warnings=(*ran.warnings, *never),
@@ -81,6 +84,11 @@ class Wired:
             return f"limit {self._seconds(ran.steps):.9g} s, {until.name} never came", None
         at = self._seconds(ran.signal)
         return f"{until.name} at {at:.9g} s", at
+
+    def _time(self, steps: int) -> NDArray[np.float64]:
+        """Times of the rows of so many steps [s]."""
+        rows = np.arange(self.system.rows(steps), dtype=np.float64)
+        return rows * (self.system.sample_ns * 1e-9)
 
     def _seconds(self, steps: int) -> float:
         """How long so many steps are [s]."""

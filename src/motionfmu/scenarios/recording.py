@@ -2,14 +2,13 @@
 
 import math
 import os
+import shutil
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from motionfmu.columns import Columns, Part, kept
 from motionfmu.errors import Faults
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.fmus import Port
@@ -19,9 +18,11 @@ from motionfmu.scenarios.values import start_values, values_of
 AXES = 6
 # Channels of one scope FMU: groups of six and single ones, by the type they hold.
 SIZES = {"Float64": 8, "Int32": 4}  # [bytes]
-# A recording is held in memory, by the scope and then here.
+# A scope holds its rows in memory; signals that are written as they come need room on the disk.
 ROWS_MAX = STEPS_MAX
 BYTES_MAX = 2_000_000_000
+WIDTH = {"Float64": 8, "Int32": 4, "Boolean": 1}  # [bytes] of a value in a file
+FILES = {"Float64": "real", "Int32": "int"}  # of a scope, by what they hold
 # Inputs of a scope by type: name and how many there are, by width, in the order of the files.
 GROUPS = {
     "Float64": {
@@ -57,23 +58,20 @@ class Recording:
     folder: Path
     scopes: int
 
-    def load(self) -> dict[str, NDArray[Any]]:
-        """Read the files of an ended run, by signal: a row per sample, all elements of an array."""
-        files = {
-            (scope, kind): np.load(self.folder / f"scope{scope + 1}.{kind_name}.npy")
-            for scope in range(self.scopes)
-            for kind, kind_name in (("Float64", "real"), ("Int32", "int"))
-        }
-        found = {}
+    def load(self) -> Columns:
+        """The files of an ended run, by signal; they are moved away, for the next one."""
+        scopes = [f"scope{i + 1}.{kind}.npy" for i in range(self.scopes) for kind in FILES.values()]
+        own = kept(self.folder, scopes)
+        parts = {}
         for c in self.columns:
-            data = files[c.scope, c.kind]
+            file = own / f"scope{c.scope + 1}.{FILES[c.kind]}.npy"
             mine = [o for o in self.columns if (o.scope, o.kind) == (c.scope, c.kind)]
             widths = list(GROUPS[c.kind])
             before = widths[: widths.index(c.width)]
             first = sum(o.width for o in mine if o.width in before) + c.width * c.group
-            part = data[:, first : first + c.width] if c.end.port.shape else data[:, first]
-            found[c.end.name] = part.astype(bool) if c.end.port.type == "Boolean" else part
-        return found
+            columns = slice(first, first + c.width) if c.end.port.shape else first
+            parts[c.end.name] = Part(file, columns, c.end.port.type == "Boolean")
+        return Columns(parts, own)
 
 
 def _kind(end: End) -> str:
@@ -183,6 +181,21 @@ def refused(system: System) -> tuple[str, str]:
             text = f"{rows} rows of {name} make a recording of {size:.3g} GB; {most:g} are the most"
             return f"{name}.period", text
     return "", ""
+
+
+def size(system: System, ends: Iterable[End]) -> int:
+    """What signals and times of a run take on the disk, at most [bytes]."""
+    row = WIDTH["Float64"] + sum(WIDTH[e.port.type] * e.port.count for e in ends)
+    return row * system.rows(system.steps)
+
+
+def no_room(system: System, ends: Iterable[End], folder: Path) -> str:
+    """Why a folder has no room for a run's signals; empty if it has."""
+    wanted, free = size(system, ends), shutil.disk_usage(folder).free
+    if wanted <= free:
+        return ""
+    told = f"{system.rows(system.steps)} rows of all signals take {wanted * 1e-9:.3g} GB"
+    return f"{told}; {folder} has {free * 1e-9:.3g} GB left: record less, or every 10th step"
 
 
 def plan(system: System, ends: Iterable[End], folder: Path) -> tuple[System, Recording]:

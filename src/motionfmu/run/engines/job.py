@@ -1,12 +1,11 @@
 """What an engine is given to run, and what it tells of it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
-from numpy.typing import NDArray
-
+from motionfmu.columns import Columns
 from motionfmu.scenarios.system import End, System
 
 Progress = Callable[[float], None]
@@ -27,7 +26,7 @@ class Job:
 class Ran:
     """What an engine tells of a run."""
 
-    signals: Mapping[str, NDArray[Any]]  # a row a sample
+    signals: Columns  # a row a sample
     warnings: list[str]  # of the FMUs
     steps: int  # done
     signal: int | None = None  # communication point at which the signal that ends it came

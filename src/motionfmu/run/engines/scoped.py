@@ -1,11 +1,9 @@
 """Scopes that record what runs in an engine without a recorder of its own."""
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
-from numpy.typing import NDArray
-
+from motionfmu.columns import Columns
+from motionfmu.errors import InputError
 from motionfmu.run.engines.job import Job
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import System
@@ -16,6 +14,8 @@ class Scoped:
 
     def __init__(self, job: Job) -> None:
         self.system, self._traces = recording.plan(job.system, job.recorded, job.folder)
+        if told := recording.refused(self.system)[1]:
+            raise InputError(f"{told} in an engine that records in memory")
         self._own = self.system.settings[len(job.system.settings) :]
 
     def of(self, system: System) -> System:
@@ -27,6 +27,6 @@ class Scoped:
             settings=(*system.settings, *self._own),
         )
 
-    def signals(self) -> Mapping[str, NDArray[Any]]:
-        """What they have recorded, by name."""
+    def signals(self) -> Columns:
+        """What they have recorded, by name; their files are moved away."""
         return self._traces.load()
