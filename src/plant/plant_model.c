@@ -15,7 +15,8 @@
  * at the grid instant and on the step asked for there, which is part of the state: so it is still
  * the same for any split of an interval.
  *
- * Active axes are packed into blocks of PLANT_LANES that are integrated together.
+ * Active axes with the same sub-steps are packed into blocks that are integrated together, each as
+ * wide as its axes need: the next of PLANT_WIDTHS from their number on.
  */
 #include <float.h>
 #include <math.h>
@@ -23,6 +24,7 @@
 #include <string.h>
 
 #include "plant.h"
+#include "plant_stiffness.h"
 
 enum {
     PLANT_STATE_SIZE    = PLANT_STATES * PLANT_LANES,
@@ -41,7 +43,8 @@ struct plant_block {
     double u[PLANT_INPUT_SIZE];
     double c[PLANT_CONSTANT_SIZE];
     int    instance[PLANT_LANES]; /* the last axis fills the lanes that are left */
-    int    lanes;                 /* used */
+    int    lanes;                 /* one of PLANT_WIDTHS; it is the step from quantity to quantity */
+    int    used;                  /* lanes with an axis of their own */
     int    sub_steps;
     double fastest;            /* [1/s] bound of |lambda| at the start, of its stiffest axis */
     double size[PLANT_STATES]; /* what is large for each state */
@@ -59,117 +62,38 @@ struct model {
 
 static const double plant_h_lambda = 2.0;
 
-/* Bound of the largest |eigenvalue| of an n x n matrix, [i][j] at [i * n + j]: |lambda| <=
- * norm(a^m)^(1/m) for every m; with m = 2^squarings, of 2^10 at most some per cent too large. */
-enum { PLANT_ROUGH = 4, PLANT_FINE = 10 };
-static double plant_spectral_radius(const double *matrix, int squarings)
-{
-    enum { n = PLANT_STATES };
-    double a[n * n], square[n * n], logarithm = 0.0, share = 1.0;
-    memcpy(a, matrix, sizeof a);
-    for (int k = 0;; k++, share *= 0.5) {
-        double norm = 0.0;
-        for (int i = 0; i < n; i++) {
-            double sum = 0.0;
-            for (int j = 0; j < n; j++) {
-                sum += fabs(a[i * n + j]);
-            }
-            norm = sum > norm || isnan(sum) ? sum : norm;
-        }
-        if (norm == 0.0 || !isfinite(norm)) {
-            return norm;
-        }
-        logarithm += share * log(norm);
-        if (k == squarings) {
-            return exp(logarithm);
-        }
-        for (int i = 0; i < n * n; i++) {
-            a[i] /= norm;
-        }
-        memset(square, 0, sizeof square);
-        for (int i = 0; i < n; i++) {
-            for (int q = 0; q < n; q++) {
-                const double factor = a[i * n + q], *row = &a[q * n];
-                double *sum = &square[i * n];
-                for (int j = 0; j < n && factor != 0.0; j++) {
-                    sum[j] += factor * row[j];
-                }
-            }
-        }
-        memcpy(a, square, sizeof square);
-    }
-}
-
-/* [1/s] bound of |lambda| at a point with these branches; branches that exclude each other may give
- * 0/0 and NaN. */
-static double plant_radius(const double *x, const double *u, const double *p, unsigned branches,
-                           int squarings)
-{
-    double a[PLANT_STATES * PLANT_STATES];
-    plant_jacobian(x, u, p, branches, a);
-    return plant_spectral_radius(a, squarings);
-}
-
-/* Whether a value, no NaN, is larger than the largest so far, NaN before the first. */
-static bool plant_larger(double radius, double largest)
-{
-    return !isnan(radius) && !(largest >= radius);
-}
-
-/* [1/s] bound of |lambda| at a point, over all branches; NaN if none has one. Of many branches not
- * every combination is looked at: from none and from all of them each in turn is changed if that
- * makes the bound larger. */
-static double plant_stiffness(const double *x, const double *u, const double *p)
-{
-    const int every = 8;
-    unsigned all = 0u;
-    for (int bit = 0; bit < PLANT_BRANCHES; bit++) {
-        all |= 1u << bit;
-    }
-    double largest = NAN;
-    if (PLANT_BRANCHES <= every) {
-        for (unsigned branches = 0; branches <= all; branches++) {
-            const double radius = plant_radius(x, u, p, branches, PLANT_FINE);
-            largest = plant_larger(radius, largest) ? radius : largest;
-        }
-        return largest;
-    }
-    for (int begin = 0; begin < 2; begin++) {
-        unsigned branches = begin ? all : 0u;
-        double here = plant_radius(x, u, p, branches, PLANT_ROUGH);
-        for (int bit = 0; bit < PLANT_BRANCHES; bit++) {
-            const double radius = plant_radius(x, u, p, branches ^ 1u << bit, PLANT_ROUGH);
-            const bool better = plant_larger(radius, here);
-            branches ^= better ? 1u << bit : 0u;
-            here = better ? radius : here;
-        }
-        here = plant_radius(x, u, p, branches, PLANT_FINE);
-        largest = plant_larger(here, largest) ? here : largest;
-    }
-    return largest;
-}
+/* What is done with the lanes of a block as a constant. */
+#define PLANT_CASE(n, call) case n: call; break;
 
 /* One Runge-Kutta step of h [s]. */
-static void plant_step(struct plant_block *b, double h)
+static PLANT_INLINE void plant_step_of(int lanes, struct plant_block *b, double h)
 {
+    const int n = PLANT_STATES * lanes;
     double k1[PLANT_STATE_SIZE], k2[PLANT_STATE_SIZE], k3[PLANT_STATE_SIZE], k4[PLANT_STATE_SIZE];
     double at[PLANT_STATE_SIZE];
-    plant_rhs(b->x, b->u, b->c, k1);
-    for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+    plant_rhs(lanes, b->x, b->u, b->c, k1);
+    for (int i = 0; i < n; i++) {
         at[i] = b->x[i] + 0.5 * h * k1[i];
     }
-    plant_rhs(at, b->u, b->c, k2);
-    for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+    plant_rhs(lanes, at, b->u, b->c, k2);
+    for (int i = 0; i < n; i++) {
         at[i] = b->x[i] + 0.5 * h * k2[i];
     }
-    plant_rhs(at, b->u, b->c, k3);
-    for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+    plant_rhs(lanes, at, b->u, b->c, k3);
+    for (int i = 0; i < n; i++) {
         at[i] = b->x[i] + h * k3[i];
     }
-    plant_rhs(at, b->u, b->c, k4);
-    for (int i = 0; i < PLANT_STATE_SIZE; i++) {
+    plant_rhs(lanes, at, b->u, b->c, k4);
+    for (int i = 0; i < n; i++) {
         b->x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
     }
+}
+
+static void plant_step(struct plant_block *b, double h)
+{
+#define STEP(n) PLANT_CASE(n, plant_step_of(n, b, h))
+    switch (b->lanes) { PLANT_WIDTHS(STEP) }
+#undef STEP
 }
 
 /* One step of h [s] by Bogacki and Shampine (1989) to y; its error, 1 being allowed. */
@@ -188,7 +112,7 @@ static double plant_trial(const struct plant_block *b, double h, double *y)
             }
             y[i] = b->x[i] + h * sum;
         }
-        plant_rhs(y, b->u, b->c, k[s]);
+        plant_rhs(1, y, b->u, b->c, k[s]);
     }
     double worst = 0.0;
     for (int i = 0; i < PLANT_STATE_SIZE; i++) {
@@ -196,7 +120,7 @@ static double plant_trial(const struct plant_block *b, double h, double *y)
         for (int s = 0; s < STAGES; s++) {
             sum += e[s] * k[s][i];
         }
-        const double error = fabs(h * sum) / (PLANT_TOLERANCE * b->size[i / PLANT_LANES]);
+        const double error = fabs(h * sum) / (PLANT_TOLERANCE * b->size[i]);
         worst = error > worst || isnan(error) ? error : worst;
     }
     return worst;
@@ -253,37 +177,54 @@ static void plant_read(struct fmu *f)
 {
     for (int n = 0; n < f->s.m.blocks; n++) {
         struct plant_block *b = &f->s.m.block[n];
-        for (int lane = 0; lane < PLANT_LANES; lane++) {
-            plant_inputs(&f->s.v, b->instance[lane], &b->u[lane]);
+        for (int lane = 0; lane < b->lanes; lane++) {
+            plant_inputs(&f->s.v, b->instance[lane], b->lanes, &b->u[lane]);
         }
     }
 }
 
 /* Whether rows of lanes are all numbers: 0 times a number is 0, times infinity or NaN it is NaN. */
-static int plant_finite(const double *a, int rows)
+static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
 {
     double rest[PLANT_LANES] = {0.0}, sum = 0.0;
     for (int k = 0; k < rows; k++) {
-        for (int lane = 0; lane < PLANT_LANES; lane++) {
-            rest[lane] += 0.0 * a[k * PLANT_LANES + lane];
+        for (int lane = 0; lane < lanes; lane++) {
+            rest[lane] += 0.0 * a[k * lanes + lane];
         }
     }
-    for (int lane = 0; lane < PLANT_LANES; lane++) {
+    for (int lane = 0; lane < lanes; lane++) {
         sum += rest[lane];
     }
     return sum == 0.0;
 }
 
-/* Say which row is the first that is no number. */
-static int plant_refuse(struct fmu *f, const struct plant_block *b, const double *a,
-    const char *const *names, int64_t now)
+/* Whether state and outputs of a block are all numbers. */
+static bool plant_finite(const struct plant_block *b, const double *y)
 {
+    bool good = false;
+#define FINITE(n) PLANT_CASE(n, good = plant_finite_of(n, b->x, PLANT_STATES) \
+                                    && plant_finite_of(n, y, PLANT_OUTPUTS))
+    switch (b->lanes) { PLANT_WIDTHS(FINITE) }
+#undef FINITE
+    return good;
+}
+
+/* Say which row is the first that is no number; that of a state comes first. */
+static int plant_refuse(struct fmu *f, const struct plant_block *b, const double *y, int64_t now)
+{
+    const double *a = b->x;
+    const char *const *names = plant_state_names;
     int i = 0;
     while (fabs(a[i]) <= DBL_MAX) {
         i++;
+        if (a == b->x && i == PLANT_STATES * b->lanes) {
+            a = y;
+            names = plant_output_names;
+            i = 0;
+        }
     }
-    return fmu_fail(f, "axis %d: %s is %g at %.9f s", b->instance[i % PLANT_LANES] + 1,
-        names[i / PLANT_LANES], isnan(a[i]) ? NAN : a[i], 1e-9 * (double)now);
+    return fmu_fail(f, "axis %d: %s is %g at %.9f s", b->instance[i % b->lanes] + 1,
+        names[i / b->lanes], isnan(a[i]) ? NAN : a[i], 1e-9 * (double)now);
 }
 
 /* Show the state at the grid instant `now` [ns] on the outputs, if all are numbers. */
@@ -292,15 +233,12 @@ static int plant_publish(struct fmu *f, int64_t now)
     for (int n = 0; n < f->s.m.blocks; n++) {
         const struct plant_block *b = &f->s.m.block[n];
         double y[PLANT_OUTPUT_SIZE];
-        plant_outputs(b->x, b->u, b->c, y);
-        if (!plant_finite(b->x, PLANT_STATES)) {
-            return plant_refuse(f, b, b->x, plant_state_names, now);
+        plant_outputs(b->lanes, b->x, b->u, b->c, y);
+        if (!plant_finite(b, y)) {
+            return plant_refuse(f, b, y, now);
         }
-        if (!plant_finite(y, PLANT_OUTPUTS)) {
-            return plant_refuse(f, b, y, plant_output_names, now);
-        }
-        for (int lane = 0; lane < b->lanes; lane++) {
-            plant_show(&f->s.v, b->instance[lane], &y[lane]);
+        for (int lane = 0; lane < b->used; lane++) {
+            plant_show(&f->s.v, b->instance[lane], b->lanes, &y[lane]);
         }
     }
     return 0;
@@ -331,74 +269,97 @@ static void plant_watch(struct fmu *f, double seen)
     }
 }
 
-/* Give an axis its lane: in a block with room and the same sub-steps, else in a new one. */
-static void plant_place(struct fmu *f, int instance, int sub_steps, const double *p,
-    double fastest)
+/* What is known of an active axis before it has a lane. */
+struct plant_axis {
+    double p[PLANT_PARAMETER_SIZE];
+    double fastest;   /* [1/s] */
+    int    sub_steps; /* 0: not active, or placed */
+};
+
+/* Put an axis into the lanes of a block from `lane` on. */
+static void plant_fill(struct plant_block *b, int lane, int instance, const struct plant_axis *axis)
 {
-    struct model *m = &f->s.m;
-    int n = 0;
-    while (n < m->blocks
-           && (m->block[n].sub_steps != sub_steps || m->block[n].lanes == PLANT_LANES)) {
-        n++;
-    }
-    m->blocks += n == m->blocks;
-    struct plant_block *b = &m->block[n];
     double x[PLANT_STATES], c[PLANT_CONSTANT_SIZE];
-    plant_start(p, x);
-    plant_constants(p, c);
-    plant_sizes(p, b->size);
-    b->asked = 1e-9 * (double)m->step_ns;
-    b->sub_steps = sub_steps;
-    b->fastest = fmax(b->fastest, fastest);
-    for (int lane = b->lanes; lane < PLANT_LANES; lane++) {
+    plant_start(axis->p, x);
+    plant_constants(axis->p, c);
+    plant_sizes(axis->p, b->size);
+    b->fastest = fmax(b->fastest, axis->fastest);
+    for (; lane < b->lanes; lane++) {
         b->instance[lane] = instance;
         for (int k = 0; k < PLANT_STATES; k++) {
-            b->x[k * PLANT_LANES + lane] = x[k];
+            b->x[k * b->lanes + lane] = x[k];
         }
         for (int k = 0; k < PLANT_CONSTANTS; k++) {
-            b->c[k * PLANT_LANES + lane] = c[k];
+            b->c[k * b->lanes + lane] = c[k];
         }
     }
-    b->lanes++;
 }
 
-static int plant_start_axis(struct fmu *f, int instance)
+/* Lanes of a block of so many axes, at most PLANT_LANES. */
+static int plant_width(int axes)
 {
-    double p[PLANT_PARAMETER_SIZE], x[PLANT_STATES], u[PLANT_INPUT_SIZE], packed[PLANT_INPUT_SIZE];
+#define WIDE_ENOUGH(n) if (axes <= n) { return n; }
+    PLANT_WIDTHS(WIDE_ENOUGH)
+#undef WIDE_ENOUGH
+    return PLANT_LANES;
+}
+
+/* Make a block of the axis `first` and those after it with its sub-steps that are not placed. */
+static void plant_place(struct model *m, int first, struct plant_axis axes[PLANT_INSTANCES])
+{
+    struct plant_block *b = &m->block[m->blocks++];
+    int alike = 0;
+    b->sub_steps = axes[first].sub_steps;
+    b->asked = 1e-9 * (double)m->step_ns;
+    for (int i = first; i < PLANT_INSTANCES; i++) {
+        alike += axes[i].sub_steps == b->sub_steps;
+    }
+    b->lanes = plant_width(alike);
+    for (int i = first; i < PLANT_INSTANCES && b->used < b->lanes; i++) {
+        if (axes[i].sub_steps == b->sub_steps) {
+            plant_fill(b, b->used++, i, &axes[i]);
+            axes[i].sub_steps = 0;
+        }
+    }
+}
+
+/* Check an axis and find the sub-steps it needs. */
+static int plant_start_axis(struct fmu *f, int instance, struct plant_axis *axis)
+{
+    double x[PLANT_STATES], u[PLANT_INPUT_SIZE];
     const double h = 1e-9 * (double)f->s.m.step_ns;
-    plant_parameters(&f->s.v, instance, p);
-    const char *wrong = plant_check(p);
+    plant_parameters(&f->s.v, instance, axis->p);
+    const char *wrong = plant_check(axis->p);
     if (wrong) {
         return fmu_fail(f, "axis %d: %s", instance + 1, wrong);
     }
+    axis->sub_steps = 1;
     if (PLANT_CONTROLLED) {
-        plant_place(f, instance, 1, p, 0.0);
         return 0;
     }
-    plant_start(p, x);
-    plant_inputs(&f->s.v, instance, u);
-    for (int k = 0; k < PLANT_INPUTS; k++) {
-        packed[k] = u[k * PLANT_LANES];
-    }
-    const double fastest = plant_stiffness(x, packed, p);
-    const double steps = ceil(h * fastest / plant_h_lambda);
+    plant_start(axis->p, x);
+    plant_inputs(&f->s.v, instance, 1, u);
+    axis->fastest = plant_stiffness(x, u, axis->p);
+    const double steps = ceil(h * axis->fastest / plant_h_lambda);
     if (!(steps <= PLANT_SUB_STEPS_MAX)) {
         return fmu_fail(f, "axis %d: too stiff, %g s would need %g sub-steps, more than %d",
             instance + 1, h, steps, PLANT_SUB_STEPS_MAX);
     }
     if (steps > 1.0) {
         fmu_event(f, "axis %d: stiff, %g sub-steps per micro step of %g s", instance + 1, steps, h);
+        axis->sub_steps = (int)steps;
     }
-    plant_place(f, instance, steps > 1.0 ? (int)steps : 1, p, fastest);
     return 0;
 }
 
 static int model_start(struct fmu *f)
 {
-    const double y[PLANT_OUTPUT_SIZE] = {0.0};
+    const double y[PLANT_OUTPUTS] = {0.0};
+    struct plant_axis axes[PLANT_INSTANCES];
     const double step = 1e9 * f->s.v.micro_step;
     const double tolerance = 1e-3; /* [ns] no clock means less; 25 us is 25000.000000000004 ns */
     memset(&f->s.m, 0, sizeof f->s.m);
+    memset(axes, 0, sizeof axes);
     if (!(step >= FMU_TICK_NS && step <= 1e18) || fabs(step - round(step)) > tolerance
         || llround(step) % FMU_TICK_NS != 0) {
         return fmu_fail(f, "micro_step %.12g s is not a whole multiple of %d ns", f->s.v.micro_step,
@@ -406,9 +367,14 @@ static int model_start(struct fmu *f)
     }
     f->s.m.step_ns = llround(step);
     for (int i = 0; i < PLANT_INSTANCES; i++) {
-        plant_show(&f->s.v, i, y);
-        if (plant_active(&f->s.v, i) && plant_start_axis(f, i) != 0) {
+        plant_show(&f->s.v, i, 1, y);
+        if (plant_active(&f->s.v, i) && plant_start_axis(f, i, &axes[i]) != 0) {
             return -1;
+        }
+    }
+    for (int i = 0; i < PLANT_INSTANCES; i++) {
+        if (axes[i].sub_steps > 0) {
+            plant_place(&f->s.m, i, axes);
         }
     }
     plant_read(f);
@@ -423,11 +389,12 @@ static const char *model_check(const struct state *s)
     }
     for (int n = 0; n < m->blocks; n++) {
         const struct plant_block *b = &m->block[n];
-        if (b->lanes < 1 || b->lanes > PLANT_LANES || b->sub_steps < 1
+        if (b->lanes < 1 || b->lanes > PLANT_LANES || plant_width(b->lanes) != b->lanes
+            || b->used < 1 || b->used > b->lanes || b->sub_steps < 1
             || b->sub_steps > PLANT_SUB_STEPS_MAX) {
             return "the lanes or sub-steps of a block";
         }
-        for (int lane = 0; lane < PLANT_LANES; lane++) {
+        for (int lane = 0; lane < b->lanes; lane++) {
             if (b->instance[lane] < 0 || b->instance[lane] >= PLANT_INSTANCES) {
                 return "an axis of a block";
             }

@@ -25,11 +25,12 @@ def library(tmp_path_factory):
     return Library(BALL_SCREW, tmp_path_factory.mktemp("ball_screw"))
 
 
-def test_c_equals_casadi_in_every_lane(library, axis):
-    lanes, rng = codegen.LANES, np.random.default_rng(2)
+@pytest.mark.parametrize("lanes", codegen.WIDTHS)
+def test_c_equals_casadi_in_every_lane(library, axis, lanes):
+    rng = np.random.default_rng(2)
     f = axis.function()
     constants = int(re.search(r"PLANT_CONSTANTS = (\d+)", codegen.generate(axis, 6)[1])[1])
-    for _ in range(50):
+    for _ in range(120 // (2 + lanes)):
         p = np.array(axis.p0) * rng.uniform(0.5, 1.5, (lanes, len(axis.p0)))
         p[:, [d.name for d in axis.parameters].index("backlash")] = rng.choice([0.0, 1e-5], lanes)
         s = rng.uniform(-0.6, 0.6, lanes)
@@ -45,8 +46,8 @@ def test_c_equals_casadi_in_every_lane(library, axis):
             library.c.plant_constants(array(p[i]), one)
             c[:, i] = one
         dx, y = array(np.empty((5, lanes))), array(np.empty((12, lanes)))
-        library.c.plant_rhs(array(x), array(u), array(c), dx)
-        library.c.plant_outputs(array(x), array(u), array(c), y)
+        library.c.plant_rhs(lanes, array(x), array(u), array(c), dx)
+        library.c.plant_outputs(lanes, array(x), array(u), array(c), y)
         for i in range(lanes):
             expected = [np.array(r).ravel() for r in f(x[:, i], u[:, i], p[i])]
             # Divisions by parameters became multiplications: an ulp of 0.6 m is 1e-8 N at 1e8 N/m
@@ -267,12 +268,15 @@ def test_a_class_without_state_is_refused(small):
 
 
 def test_one_instance_has_scalars_and_lanes_of_its_own(small):
-    for instances, dims, lanes in ((1, (), 1), (2, (2,), 2), (6, (6,), codegen.LANES)):
+    for instances, dims, lanes in ((1, (), 1), (2, (2,), 2), (3, (3,), 4), (6, (6,), 6)):
         small.write_text(TOML.replace("instances = 2", f"instances = {instances}"))
         by_name = {v.name: v for v in fmu_toml.load(small).variables}
         assert {by_name[n].dims for n in ("active", "tau", "u", "x")} == {dims}
         codegen.write(small, small.parent)
-        assert f"PLANT_LANES = {lanes}," in (small.parent / "plant.h").read_text()
+        header = (small.parent / "plant.h").read_text()
+        assert f"PLANT_LANES = {lanes}," in header
+        widths = " ".join(f"X({n})" for n in codegen.WIDTHS if n <= lanes)
+        assert f"#define PLANT_WIDTHS(X) {widths}\n" in header
 
 
 SINE = CLASS.replace("tau*der(x) = u - x", "der(x) = v;\n  tau^2*der(v) = -x").replace(

@@ -131,6 +131,10 @@ def test_axes_do_not_influence_each_other(ball_screw):
         assert a[[0, 3]].tobytes() == b[[0, 3]].tobytes(), name
         assert b[[1, 4]].tolist() == [0.0, 0.0], f"{name} of an inactive axis"
         assert np.all(b[[2, 5]] != 0.0)
+    for n in range(1, 6):  # blocks of every width
+        few = run(active=np.arange(6) < n).get("screw_force")
+        assert few[:n].tobytes() == together.get("screw_force")[:n].tobytes(), f"{n} axes"
+        assert not few[n:].any()
 
 
 def test_sub_steps_follow_the_stiffest_mode(ball_screw):

@@ -3,8 +3,9 @@
 They are what plant_model.c integrates.
 
 CasADi's own C text serves one point per call, and its null checks keep compilers from doing
-two points at once. Here quantity k of lane i stands at [k * PLANT_LANES + i], each function is one
-loop over lanes, and what depends on parameters only is computed once (`plant_constants`).
+two points at once. Here quantity k of lane i stands at [k * lanes + i], each function is one loop
+over lanes, compiled for every number of them that can occur, and what depends on parameters only is
+computed once (`plant_constants`).
 """
 
 import json
@@ -21,9 +22,10 @@ from motionfmu.fmu.modelica.hoist import Split, split
 from motionfmu.fmu.modelica.nodes import STEPS, Node, Program, program
 from motionfmu.fmu.modelica.ode import Ode
 
-# Axes that are integrated together, at most. Measured on SSE2 (per axis and step of BallScrewAxis,
-# 2025-11): 1 lane 74 ns, 2 lanes 56 ns, 4 lanes 37 ns, 6 lanes 42 ns; the same bits.
-LANES = 4
+# Axes that are integrated together, at most, and the numbers of lanes that functions are compiled
+# for: a block has the next one from its axes on. Measured on SSE2 (per axis and step of
+# BallScrewAxis, 2025-11): 1 lane 74 ns, 2 lanes 56 ns, 4 lanes 37 ns, 6 lanes 42 ns; same bits.
+WIDTHS = (1, 2, 4, 6)
 # Branches are bits of an unsigned int. Up to 8 of them plant_model.c looks at every combination.
 MAX_BRANCHES = 31
 # A Jacobian of more operations is made column by column from the derivative along a direction: that
@@ -70,9 +72,10 @@ def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[
     bits = len({bit for bit, _ in branches.values()})
     if tolerance is None and bits > MAX_BRANCHES:
         raise ValueError(f"{ode.name}: {bits} branches in the Jacobian, at most {MAX_BRANCHES}")
+    used = (1,) if tolerance else widths(instances)
     sizes = {
         "INSTANCES": instances,
-        "LANES": 1 if tolerance else min(LANES, instances),
+        "LANES": used[-1],
         "STATES": len(ode.states),
         "INPUTS": len(ode.inputs),
         "OUTPUTS": len(ode.outputs),
@@ -89,12 +92,17 @@ def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[
             [
                 _ports(ode, "[instance]" if instances > 1 else ""),
                 _of_parameters(ode, equations),
-                *_loops(ode, equations),
+                *_loops(ode, equations, used),
             ]
         )
         + _jacobian(ode, jacobian, branches),
-        note + _header(sizes, tolerance),
+        note + _header(sizes, used, tolerance),
     )
+
+
+def widths(instances: int) -> tuple[int, ...]:
+    """Those of `WIDTHS` that blocks of so many axes can have."""
+    return tuple(w for k, w in enumerate(WIDTHS) if k == 0 or WIDTHS[k - 1] < instances)
 
 
 def _branches(jacobian: Program) -> dict[int, tuple[int, bool]]:
@@ -146,14 +154,14 @@ def _ports(ode: Ode, element: str) -> str:
         for kind, group in (("state", ode.states), ("output", ode.outputs))
     }
     shown = [
-        f"{_member(d, element)} = y[{k} * PLANT_LANES]{' != 0.0' if d.type == 'Boolean' else ''};"
+        f"{_member(d, element)} = y[{k} * lanes]{' != 0.0' if d.type == 'Boolean' else ''};"
         for k, d in enumerate(ode.outputs)
     ]
     parameters = [
         f"p[{k}] = {_cast(d, _member(d, element))};" for k, d in enumerate(ode.parameters)
     ]
     inputs = [
-        f"u[{k} * PLANT_LANES] = {_cast(d, _member(d, element))};" for k, d in enumerate(ode.inputs)
+        f"u[{k} * lanes] = {_cast(d, _member(d, element))};" for k, d in enumerate(ode.inputs)
     ]
     return "\n".join(
         [
@@ -166,8 +174,13 @@ def _ports(ode: Ode, element: str) -> str:
             _function(
                 "void plant_parameters(const struct vars *v, int instance, double *p)", parameters
             ),
-            _function("void plant_inputs(const struct vars *v, int instance, double *u)", inputs),
-            _function("void plant_show(struct vars *v, int instance, const double *y)", shown),
+            _function(
+                "void plant_inputs(const struct vars *v, int instance, int lanes, double *u)",
+                inputs,
+            ),
+            _function(
+                "void plant_show(struct vars *v, int instance, int lanes, const double *y)", shown
+            ),
         ]
     )
 
@@ -202,8 +215,8 @@ def _of_parameters(ode: Ode, equations: Split) -> str:
     return "\n".join([check, initial, large, constants])
 
 
-def _loops(ode: Ode, equations: Split) -> list[str]:
-    """plant_rhs and plant_outputs: one loop over lanes each."""
+def _loops(ode: Ode, equations: Split, used: tuple[int, ...]) -> list[str]:
+    """plant_rhs and plant_outputs: one loop over lanes each, for each number of them."""
     names = {_X: ode.states, _U: ode.inputs}
 
     def lane(_: int, node: Node) -> str | None:
@@ -211,20 +224,25 @@ def _loops(ode: Ode, equations: Split) -> list[str]:
             return None
         group, place = node.input
         name = f" /* {names[group][place].name} */" if group in names else ""
-        return f"{_ARGUMENTS[group]}[{place} * PLANT_LANES + i]{name}"
+        return f"{_ARGUMENTS[group]}[{place} * lanes + i]{name}"
 
     texts = []
     for name, to, result in zip(
         ("rhs", "outputs"), ("dx", "y"), equations.late.results, strict=True
     ):
         lines = statements(equations.late, result, lane)
-        lines += [f"{to}[{k} * PLANT_LANES + i] = a{node};" for k, node in enumerate(result)]
-        head = (
-            f"void plant_{name}(const double *restrict x, const double *restrict u,\n"
-            f"    const double *restrict c, double *restrict {to})"
+        lines += [f"{to}[{k} * lanes + i] = a{node};" for k, node in enumerate(result)]
+        arguments = (
+            "(int lanes, const double *restrict x,\n    const double *restrict u, "
+            f"const double *restrict c, double *restrict {to})"
         )
-        loop = "for (int i = 0; i < PLANT_LANES; i++) {"
-        texts.append(_function(head, [loop, *(f"    {line}" for line in lines), "}"]))
+        loop = "for (int i = 0; i < lanes; i++) {"
+        body = [loop, *(f"    {line}" for line in lines), "}"]
+        cases = [f"case {w}: {name}({w}, x, u, c, {to}); break;" for w in used]
+        texts += [
+            _function(f"static PLANT_INLINE void {name}{arguments}", body),
+            _function(f"void plant_{name}{arguments}", ["switch (lanes) {", *cases, "}"]),
+        ]
     return texts
 
 
@@ -264,8 +282,9 @@ for (int j = 0; j < PLANT_STATES; j++) {
 }""".splitlines()
 
 
-def _header(sizes: dict[str, int], tolerance: float | None) -> str:
+def _header(sizes: dict[str, int], used: tuple[int, ...], tolerance: float | None) -> str:
     members = "\n".join(f"    PLANT_{name} = {value}," for name, value in sizes.items())
+    widths = " ".join(f"X({w})" for w in used)
     return f"""#ifndef PLANT_H
 #define PLANT_H
 
@@ -275,17 +294,25 @@ enum {{
 {members}
 }};
 
+/* Numbers of lanes of a block. A function of `lanes` is compiled for each of them. */
+#define PLANT_WIDTHS(X) {widths}
+#if defined(__GNUC__)
+#define PLANT_INLINE inline __attribute__((always_inline))
+#else
+#define PLANT_INLINE inline
+#endif
+
 /* [1] Error of a controlled step as a share of a state's size. */
 #define PLANT_TOLERANCE {tolerance or 0.0!r}
 
 extern const char *const plant_state_names[PLANT_STATES];
 extern const char *const plant_output_names[PLANT_OUTPUTS];
 
-/* Between struct vars and plain numbers. u and y step by PLANT_LANES. */
+/* Between struct vars and plain numbers. u and y step by `lanes`. */
 int plant_active(const struct vars *v, int instance);
 void plant_parameters(const struct vars *v, int instance, double *p);
-void plant_inputs(const struct vars *v, int instance, double *u);
-void plant_show(struct vars *v, int instance, const double *y);
+void plant_inputs(const struct vars *v, int instance, int lanes, double *u);
+void plant_show(struct vars *v, int instance, int lanes, const double *y);
 
 /* Of the parameters alone: NULL or what is wrong with them, initial state, what is large for each
  * state, constants of a run. */
@@ -294,11 +321,11 @@ void plant_start(const double *p, double *x);
 void plant_sizes(const double *p, double *size);
 void plant_constants(const double *p, double *c);
 
-/* Quantity k of lane i at [k * PLANT_LANES + i]. */
-void plant_rhs(const double *restrict x, const double *restrict u, const double *restrict c,
-    double *restrict dx);
-void plant_outputs(const double *restrict x, const double *restrict u, const double *restrict c,
-    double *restrict y);
+/* Quantity k of lane i at [k * lanes + i]. */
+void plant_rhs(int lanes, const double *restrict x, const double *restrict u,
+    const double *restrict c, double *restrict dx);
+void plant_outputs(int lanes, const double *restrict x, const double *restrict u,
+    const double *restrict c, double *restrict y);
 
 /* d(rhs)/dx row by row, with each comparison decided by a bit of `branches`. */
 void plant_jacobian(const double *x, const double *u, const double *p, unsigned branches,
