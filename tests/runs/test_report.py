@@ -14,7 +14,7 @@ from page_curves import curve, page_data, unwoven
 
 import motionfmu
 from motionfmu.report import write_report
-from motionfmu.report.decimate import keep_peaks
+from motionfmu.run.decimate import keep_peaks
 from motionfmu.report.numbers import figure, length, magnification
 from motionfmu.report.packed import packed
 from motionfmu.report.samples import COARSE, bits

@@ -13,13 +13,13 @@ from motionfmu.compare.side import Side
 from motionfmu.compare.words import GONE
 from motionfmu.contour.circles import plane_axes
 from motionfmu.report.charts import CHARACTER, RIGHT, chart_figure
-from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import label, magnification, unit
 from motionfmu.report.packed import packed
 from motionfmu.report.path_plot import CAMERA, scene
 from motionfmu.report.polar_plot import polar_names, polar_rings
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, PATH, axis, layout, plotted
+from motionfmu.run.decimate import keep_peaks
 from motionfmu.run.figures import Chart, Curve, Panel
 from motionfmu.scenarios.rates import change, wrong
 

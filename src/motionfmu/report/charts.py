@@ -2,17 +2,18 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from html import escape
 from typing import Any
 
 import numpy as np
 
-from motionfmu.report.decimate import keep_peaks, keep_steps
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.sheet import RUN, Sheet
 from motionfmu.report.signal_words import titled
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout
 from motionfmu.report.tables import picture_links
+from motionfmu.run.decimate import keep_peaks, keep_steps
 from motionfmu.run.figures import Chart, Curve, Panel
 
 Figure = dict[str, Any]
@@ -37,7 +38,7 @@ def shown(curve: Curve) -> Curve:
     if not len(curve.values):
         return curve
     kept = (keep_steps if curve.steps else keep_peaks)(curve.values, BUCKETS)
-    return Curve(curve.name, curve.time[kept], curve.values[kept], curve.steps)
+    return replace(curve, time=curve.time[kept], values=curve.values[kept])
 
 
 def extent(panel: Panel) -> tuple[float, float]:
@@ -127,7 +128,7 @@ def _vertical(panel: Panel, domain: list[float]) -> Figure:
 
 def _series(curve: Curve, number: int, key: str) -> Figure:
     name, color = escape(curve.name, quote=False), AXES[number % len(AXES)]
-    samples = Samples(curve.time, curve.values, curve.steps)
+    samples = Samples(curve.time, curve.values, curve.steps, all=curve.all)
     drawn = sampled(samples, name, color, dash=DASHES[number // len(AXES) % len(DASHES)])
     return drawn | {"yaxis": "y" + key, "legend": "legend" + key}
 

@@ -10,8 +10,8 @@ from motionfmu.contour import ContourResult
 from motionfmu.contour.circles import plane_axes
 from motionfmu.contour.geometry import Array
 from motionfmu.contour.path import outline
-from motionfmu.report.decimate import Index, keep_peaks
 from motionfmu.report.numbers import magnification
+from motionfmu.run.decimate import Index, keep_peaks
 
 # Points of the drawn error, even along the magnified curve; peaks and joints come on top.
 POINTS = 2400

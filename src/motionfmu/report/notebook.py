@@ -10,6 +10,7 @@ import matplotlib
 import numpy as np
 from matplotlib.backends import BackendFilter, backend_registry
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from motionfmu.errors import InputError
 from motionfmu.report.chart_pictures import MARKS, chart_picture
@@ -18,7 +19,8 @@ from motionfmu.report.numbers import figure, label, length
 from motionfmu.report.pictures import PLAIN, STABLE, path_picture
 from motionfmu.run import Result
 from motionfmu.run.checks import Verdict
-from motionfmu.run.figures import Chart, Curve, Panel
+from motionfmu.run.decimate import Read, reader
+from motionfmu.run.figures import Chart, Panel, curve
 from motionfmu.run.signals import elements
 from motionfmu.units import spelled
 
@@ -95,8 +97,6 @@ def _chart(
     if not 0.0 <= start < end <= result.seconds:
         text = f"window = {window!r}: from and to within 0 .. {result.seconds:g} s wanted"
         raise InputError(text)
-    first = max(0, int(np.searchsorted(result.time, start, side="right")) - 1)
-    part = slice(first, int(np.searchsorted(result.time, end, side="left")) + 1)
     found = []
     for names in panels:
         together = (names,) if isinstance(names, str) else tuple(names)
@@ -106,13 +106,19 @@ def _chart(
         unit = named.pop() if len(named) == 1 else "1"
         words = together[0] if len(together) == 1 else ", ".join(sorted(whole_names))
         curves = tuple(
-            Curve(n, result.time[part], data[part].astype(np.float64), data.dtype.kind != "f")
+            curve(n, result.time, _plain(data), (start, end), data.dtype.kind != "f")
             for n, data in columns.items()
         )
         logic = all(data.dtype == bool for data in columns.values())
         text = label(words, unit if unit != "1" else None)
         found.append(Panel(text, curves, {}, len(curves) > 1, logic))
     return Chart(result.name, result.about, (start, end), window is None, tuple(found))
+
+
+def _plain(data: NDArray[Any]) -> Read:
+    """A signal as real numbers."""
+    read = reader(data)
+    return lambda first, last: read(first, last).astype(np.float64)
 
 
 def html(result: Result) -> str:

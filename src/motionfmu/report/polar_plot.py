@@ -7,10 +7,10 @@ import numpy as np
 
 from motionfmu.contour.circles import CircularTest, Way
 from motionfmu.contour.geometry import Array
-from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.numbers import MINUS, round_up
 from motionfmu.report.packed import packed
 from motionfmu.report.style import CCW, CW, GRID, INK, MUTED, layout
+from motionfmu.run.decimate import keep_peaks
 
 Figure = dict[str, Any]
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.columns import ROWS
 from motionfmu.contour import ContourResult
 from motionfmu.linear import LoopGain, gain_of
 from motionfmu.linear.gains import in_lines
@@ -16,8 +17,9 @@ from motionfmu.report.shown_run import Result
 from motionfmu.report.tables import facts
 from motionfmu.report.time_plots import Speeds, speed_figure
 from motionfmu.run import Scenario
+from motionfmu.run.decimate import Read, at, blocks, reader
 from motionfmu.run.figures import Chart
-from motionfmu.view.scene import STANDS, millimetres, tool_signal
+from motionfmu.view.scene import STANDS, position, tool_signal
 
 Array = NDArray[np.float64]
 # The speed of the tool is its mean over twice this time [s], or over two samples.
@@ -71,62 +73,90 @@ def ran_of(result: Result, contour: ContourResult | None) -> Ran:
         cut = sum(s.length for s in contour.run.path.segments if s.label.kind != "ptp")
         way = cut, float(contour.run.path.offsets[-1]) - cut
     elif tool is not None:
-        began = _first((np.abs(tool - tool[0]) > STANDS).any(axis=1), result.time)
+        began = _moves(result.time, tool)
     if tool is None or began is None:
         return Ran(began, result.done_at, None, way, None, gains)
     every = max(1, round(over / (result.time[1] - result.time[0])))
-    time, points = result.time[::every], tool[::every]
+    some = np.arange(0, len(result.time), every)
+    time, points = result.time[some], at(tool, some)
     distance = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     if len(time) < _LEAST:
         return Ran(began, result.done_at, distance, way, None, gains)
     speed = np.linalg.norm(np.gradient(points, time, axis=0), axis=1)
     planned, programmed = _planned(result), _programmed(result, contour)
     factor, unit = (1.0, "mm/s") if contour is None else (MINUTE, "mm/min")
-    rest = [None if v is None else factor * v[::every] for v in (planned, programmed)]
+    rest = [None if v is None else factor * at(v, some) for v in (planned, programmed)]
     speeds = Speeds(time, factor * speed, rest[0], rest[1], (unit, source), result.done_at)
     return Ran(began, result.done_at, distance, way, speeds, gains)
 
 
-def _tool(result: Result, contour: ContourResult | None) -> tuple[Array | None, str, float]:
+def _tool(result: Result, contour: ContourResult | None) -> tuple[Read | None, str, float]:
     """Positions of the tool (n, 3) [mm], what they are from, and a time for its speed [s]."""
     if contour is not None:
-        return contour.run.actual[:, :3], "positions", OVER
+        return reader(contour.run.actual[:, :3]), "positions", OVER
     name = tool_signal(result)
     if name is not None and name in result.signals:
-        tool = millimetres(result.resolver, name, result[name])
-        return tool if np.isfinite(tool).all() else None, "positions", OVER
+        tool = position(result, name)
+        finite = all(np.isfinite(b).all() for b in blocks(len(result.time), tool))
+        return tool if finite else None, "positions", OVER
     pulses = [x for n, x in result.signals.items() if n.endswith(".pulse_count") and x.ndim > 1]
     for component, ports in result.resolver.ports.items():
         if pulses and all(n in ports for n in AXIS) and not ports[PLANNED].shape:
             ppr, gear, lead = (np.array(result.parameter(f"{component}.{n}")) for n in AXIS[:3])
-            return (pulses[0] * lead / (ppr * gear))[:, :3], "pulses", OVER_PULSES
+            return _of_pulses(reader(pulses[0]), lead, ppr * gear), "pulses", OVER_PULSES
     return None, "", OVER
 
 
-def _programmed(result: Result, contour: ContourResult | None) -> Array | None:
+def _of_pulses(read: Read, lead: Array, turn: Array) -> Read:
+    """Positions of the first three axes [mm] by their pulses."""
+    return lambda first, last: (read(first, last) * lead / turn)[:, :3]
+
+
+def _moves(time: Array, tool: Read) -> float | None:
+    """When the tool leaves the place where it was at first [s]."""
+    rest = tool(0, 1)
+    for k, block in enumerate(blocks(len(time), tool)):
+        moved = (np.abs(block - rest) > STANDS).any(axis=1)
+        if moved.any():
+            return float(time[k * ROWS + int(np.argmax(moved))])
+    return None
+
+
+def _programmed(result: Result, contour: ContourResult | None) -> Read | None:
     """The speed that program or scenario asks for [mm/s], NaN where it asks for none."""
     if contour is not None:
         feeds = np.array([s.label.feed for s in contour.run.path.segments])
-        command = contour.run.command
-        on = (command > 0) & (result.time <= (result.done_at or np.inf))
-        return np.where(on, feeds[contour.run.path.segment_of(command)], np.nan)
+        path, commands, end = contour.run.path, contour.run.command, result.done_at or np.inf
+
+        def of_program(first: int, last: int) -> Array:
+            command = commands[first:last]
+            on = (command > 0) & (result.time[first:last] <= end)
+            return np.where(on, feeds[path.segment_of(command)], np.nan)
+
+        return of_program
     asked = result.resolver.document.body.iso9283
     if asked is None or asked.speed is None:
         return None
     cycles = asked.cycles or [[float(result.time[0]), float(result.time[-1])]]
-    on = np.any([(a <= result.time) & (result.time <= b) for a, b in cycles], axis=0)
-    return np.where(on, asked.speed, np.nan)
+    speed = asked.speed
+
+    def in_cycles(first: int, last: int) -> Array:
+        time = result.time[first:last]
+        on = np.any([(a <= time) & (time <= b) for a, b in cycles], axis=0)
+        return np.where(on, speed, np.nan)
+
+    return in_cycles
 
 
 def _first(there: NDArray[np.bool_], time: Array) -> float | None:
     return float(time[int(np.argmax(there))]) if there.any() else None
 
 
-def _planned(result: Result) -> Array | None:
+def _planned(result: Result) -> Read | None:
     """The speed along the path as the controller planned it [mm/s], if one recorded says so."""
     for name, values in result.signals.items():
         if name.endswith(f".{PLANNED}") and values.ndim == 1:
-            return np.asarray(values, dtype=np.float64)
+            return reader(values)
     return None
 
 

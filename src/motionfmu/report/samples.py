@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.report.decimate import keep_peaks, keep_steps
+from motionfmu.run.decimate import at, few, reader
 
-# So many samples of a curve go into a page; of more, the peaks.
-MOST = 120_000
 LEVEL = 3  # of zlib: half the time of its usual one, a few per cent larger
 # 32 bits do for a real number if they move it by less than this part of the curve's height.
 COARSE = 1e-6
@@ -27,15 +25,16 @@ class Samples:
     steps: bool = False  # a value holds until the next one
     dots: bool = False  # single events, no line between them
     lines: NDArray[Any] | None = None  # (n,) of the program, said beside the value
+    all: bool = True  # none of the recorded samples are left out
 
     def few(self) -> "Samples":
-        """The samples that a page holds: all up to `MOST`."""
-        if len(self.time) <= MOST:
+        """The samples that a page holds: of very many the peaks."""
+        read = reader(self.values)
+        kept = few(len(self.time), read, self.steps)
+        if kept is None:
             return self
-        plain = np.nan_to_num(np.asarray(self.values, dtype=np.float64))
-        kept = (keep_steps if self.steps else keep_peaks)(plain, MOST // 2)
         lines = None if self.lines is None else self.lines[kept]
-        return Samples(self.time[kept], self.values[kept], self.steps, self.dots, lines)
+        return Samples(self.time[kept], at(read, kept), self.steps, self.dots, lines, all=False)
 
 
 def sampled(samples: Samples, name: str, color: str, **line: Any) -> dict[str, Any]:

@@ -1,11 +1,15 @@
 """Verdicts: bounds of signals and contour figures."""
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.columns import ROWS
+from motionfmu.run.decimate import Read, reader
 from motionfmu.scenarios import rates
 from motionfmu.scenarios.body import Body, Check, Pair
 
@@ -93,23 +97,16 @@ def _each(name: str, words: str, found: NDArray[Any], wanted: bool | float | Pai
     return _range(name, words, value, (low, high))
 
 
-def _changes(x: NDArray[Any]) -> NDArray[Any]:
-    """How often each axis takes another value."""
-    found = np.asarray((np.diff(x, axis=0) != 0).sum(axis=0), dtype=float)
-    return np.where(np.isnan(x).any(axis=0), np.nan, found)
-
-
-def _order(name: str, x: NDArray[Any], wanted: tuple[float, ...]) -> Verdict:
+def _order(name: str, orders: list[list[float]], wanted: tuple[float, ...]) -> Verdict:
     """The values of every axis one after the other; the first one out of order is told."""
     text = "order " + ", ".join(f"{w:g}" for w in wanted)
-    for axis in x.reshape(len(x), -1).T:
-        found = axis[np.r_[True, np.diff(axis) != 0]]
+    for found in orders:
         for i in range(max(len(found), len(wanted))):
             if i >= len(found):
                 reason = f"nothing follows {found[-1]:g}"
                 return Verdict(name, text, float("nan"), False, reason)
             if i >= len(wanted) or found[i] != wanted[i]:
-                return Verdict(name, text, float(found[i]), False)
+                return Verdict(name, text, found[i], False)
     return Verdict(name, text, wanted[-1], True)
 
 
@@ -125,38 +122,38 @@ def _where(windows: tuple[tuple[float, float], ...]) -> str:
 
 def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> list[Verdict]:
     """Judge one signal, a row per sample, by every bound of its check; a NaN fails them all."""
-    x = np.asarray(data, dtype=float)
     end = float(time[-1]) + (float(time[-1] - time[-2]) if len(time) > 1 else 0.0)
     last = check.at if check.at is not None else max((b for _, b in check.windows or ()), default=0)
     reason = f"the run ends at {end:g} s, before {last:g} s" if last > end + 1e-12 else ""
+    read = reader(data)
     if check.rate is not None:
-        time, x = rates.change(time, x, check.rate)
-        reason = reason or ("" if len(x) else f"the run is shorter than {check.rate:g} s")
+        back = rates.steps(time, check.rate)
+        time, read = time[back:], rates.reader(data, back, check.rate)
+        reason = reason or ("" if len(time) else f"the run is shorter than {check.rate:g} s")
+    seen = Seen(check)
+    if not reason:
+        for block in _chosen(check, time, read):
+            seen.add(block)
+        reason = "" if seen.count else "no sample is in a window"  # they are between two
     if reason:
-        x = np.full((1, *x.shape[1:]), np.nan)
-    elif check.at is not None:
-        x = x[[int(np.searchsorted(time, check.at - 1e-12).clip(0, len(time) - 1))]]
-    elif check.windows is not None:
-        x = x[_inside(time, check.windows)]
-        if len(x) == 0:  # between two samples
-            reason, x = "no sample is in a window", np.full((1, *x.shape[1:]), np.nan)
+        seen.add(np.full((1, *data.shape[1:]), np.nan))
     found = []
     if check.min is not None:
-        found.append(_side(name, ">=", float(x.min()), check.min))
+        found.append(_side(name, ">=", seen.low, check.min))
     if check.max is not None:
-        found.append(_side(name, "<=", float(x.max()), check.max))
+        found.append(_side(name, "<=", seen.high, check.max))
     if check.absmax is not None:
-        found.append(_side(name, "|.| <=", float(np.abs(x).max()), check.absmax))
+        found.append(_side(name, "|.| <=", seen.size, check.absmax))
     if check.peak is not None:
-        found.append(_range(name, "peak", float(np.abs(x).max()), check.peak))
+        found.append(_range(name, "peak", seen.size, check.peak))
     if check.rms is not None:
-        found.append(_range(name, "rms", float(np.sqrt((x**2).mean())), check.rms))
+        found.append(_range(name, "rms", float(np.sqrt(seen.squares / seen.count)), check.rms))
     if check.final is not None:
-        found.append(_each(name, "final", x[-1], check.final))
+        found.append(_each(name, "final", seen.last, check.final))
     if check.changes is not None:
-        found.append(_each(name, "changes", _changes(x), check.changes))
+        found.append(_each(name, "changes", seen.changes, check.changes))
     if check.order is not None:
-        found.append(_order(name, x, check.order))
+        found.append(_order(name, seen.orders, check.order))
     where = _where(check.windows) if check.windows is not None else ""
     where = f", at {check.at:g} s" if check.at is not None else where
     what = f"rate over {check.rate:g} s " if check.rate is not None else ""
@@ -164,3 +161,59 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
     return [
         replace(v, bounds=b, reason=reason or v.reason) for v, b in zip(found, bounds, strict=True)
     ]
+
+
+def _chosen(check: Check, time: NDArray[Any], read: Read) -> Iterator[NDArray[np.float64]]:
+    """The samples that a check looks at, in blocks."""
+    if check.at is not None:
+        k = int(np.searchsorted(time, check.at - 1e-12).clip(0, len(time) - 1))
+        yield read(k, k + 1).astype(np.float64)
+        return
+    for first in range(0, len(time), ROWS):
+        block = read(first, min(first + ROWS, len(time)))
+        if check.windows is not None:
+            block = block[_inside(time[first : first + ROWS], check.windows)]
+        if len(block):
+            yield block.astype(np.float64)
+
+
+class Seen:
+    """What bounds ask of the samples of a signal, which come in blocks."""
+
+    def __init__(self, check: Check) -> None:
+        self.count = 0  # values
+        self.low, self.high = math.inf, -math.inf
+        self.squares = 0.0  # their sum
+        self.last: NDArray[Any] = np.empty(0)  # of each axis
+        self.changes: NDArray[Any] = np.zeros(1)  # of each axis; NaN with one among its values
+        self.orders: list[list[float]] = []  # of each axis: its values one after the other
+        self._check = check
+
+    @property
+    def size(self) -> float:
+        """The largest magnitude."""
+        return float(np.maximum(abs(self.low), abs(self.high)))
+
+    def add(self, x: NDArray[np.float64]) -> None:
+        """See some more samples."""
+        if self._check.changes is not None or self._check.order is not None:
+            self._follow(x if not self.count else np.concatenate([self.last[None], x]))
+        self.count += x.size
+        self.low = float(np.minimum(self.low, x.min()))
+        self.high = float(np.maximum(self.high, x.max()))
+        if self._check.rms is not None:
+            self.squares += float((x**2).sum())
+        self.last = x[-1]
+
+    def _follow(self, x: NDArray[np.float64]) -> None:
+        """See which values follow one another; the first sample is the last seen."""
+        other = np.diff(x, axis=0) != 0
+        self.changes = self.changes + np.where(np.isnan(x).any(axis=0), np.nan, other.sum(axis=0))
+        if self._check.order is None:
+            return
+        columns = x.reshape(len(x), -1).T
+        others = other.reshape(len(other), len(columns)).T
+        self.orders = self.orders or [[float(c[0])] for c in columns]
+        most = len(self._check.order) + 1
+        for found, column, changed in zip(self.orders, columns, others, strict=True):
+            found += map(float, column[1:][changed][: most - len(found)])

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.errors import Faults
+from motionfmu.run.decimate import Read, at, few, reader
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios import rates, recording
 from motionfmu.scenarios.body import Plot
@@ -27,6 +28,7 @@ class Curve:
     time: NDArray[np.float64]  # (n,) [s]
     values: NDArray[np.float64]  # (n,) as shown, in the unit of the panel's label
     steps: bool  # a value holds until the next one
+    all: bool = True  # none of its samples are left out
 
 
 @dataclass(frozen=True)
@@ -126,13 +128,31 @@ def _curve(
     run: Recorded, plot: Plot, name: str, data: NDArray[Any], span: tuple[float, float]
 ) -> Curve:
     """Samples of a signal in the span, and one on either side of it."""
-    time, values = run.time, data.astype(np.float64)
+    time, read = run.time, reader(data)
     if plot.rate is not None and len(time) > 1:
-        time, values = rates.change(time, values, plot.rate)
+        back = rates.steps(time, plot.rate)
+        time, read = time[back:], rates.reader(data, back, plot.rate)
+
+    def values(first: int, last: int) -> NDArray[np.float64]:
+        return np.asarray(plot.scale * read(first, last).astype(np.float64))
+
+    return curve(name, time, values, span, plot.steps or data.dtype == bool)
+
+
+def curve(
+    name: str, time: NDArray[np.float64], read: Read, span: tuple[float, float], steps: bool
+) -> Curve:
+    """What is read in a span, and one sample on either side of it; of very many the peaks."""
     first = max(0, int(np.searchsorted(time, span[0], side="right")) - 1)
-    last = int(np.searchsorted(time, span[1], side="left")) + 1
-    part = slice(first, last)
-    return Curve(name, time[part], plot.scale * values[part], plot.steps or data.dtype == bool)
+    last = min(len(time), int(np.searchsorted(time, span[1], side="left")) + 1)
+
+    def inside(low: int, high: int) -> NDArray[np.float64]:
+        return read(first + low, first + high)
+
+    kept = few(last - first, inside, steps)
+    if kept is None:
+        return Curve(name, time[first:last], read(first, last), steps)
+    return Curve(name, time[first:last][kept], at(inside, kept), steps, all=False)
 
 
 def overview(run: Recorded, ends: Sequence[End]) -> list[Chart]:

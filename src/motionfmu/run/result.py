@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.columns import Columns
+from motionfmu.columns import ROWS, Columns, forget
 from motionfmu.errors import InputError, NoNumber
 from motionfmu.run import figures, signals, waveforms
 from motionfmu.run.checks import TABLES, Verdict, is_figure, judge
@@ -29,8 +30,14 @@ if TYPE_CHECKING:
 
 def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
     """From when on a signal is not 0 to the end [s]; None if it never was 0 or is so at last."""
-    zero = np.flatnonzero(x == 0)
-    return float(time[zero[-1] + 1]) if len(zero) and zero[-1] + 1 < len(x) else None
+    for end in range(len(x), 0, -ROWS):
+        first = max(0, end - ROWS)
+        zero = np.flatnonzero(x[first:end] == 0)
+        forget(x)
+        if len(zero):
+            after = first + int(zero[-1]) + 1
+            return float(time[after]) if after < len(x) else None
+    return None
 
 
 def _report(module: str) -> Any:
@@ -366,7 +373,7 @@ class Result(Mapping[str, NDArray[Any]]):
         """What the scenario shows: its first line."""
         return self.scenario.document.about
 
-    @property
+    @cached_property
     def checks(self) -> list[Verdict]:
         """The verdict of every bound in the scenario's [check] table.
 

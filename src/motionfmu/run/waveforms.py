@@ -1,9 +1,12 @@
 """A drive's monitor: speeds, torque and position deviation of one axis, as a figure."""
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Callable
 
-from motionfmu.run.figures import Chart, Curve, Panel
+import numpy as np
+
+from motionfmu.contour.geometry import Array
+from motionfmu.run.decimate import reader
+from motionfmu.run.figures import Chart, Curve, Panel, curve
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios import rates, recording
 from motionfmu.scenarios.analyses import Waveform
@@ -50,27 +53,27 @@ def _chart(run: Recorded, asked: Waveform) -> Chart:
     k = asked.axis - 1
     whole = (float(run.time[0]), float(run.time[-1]))
     low, high = asked.window or whole
-    part = slice(
-        max(0, int(np.searchsorted(run.time, low, side="right")) - 1),
-        int(np.searchsorted(run.time, high)) + 1,
-    )
+    span = (low, high)
     turn = float(run.parameter(f"{asked.drives}.{PULSES}")[k])  # [pulses]
-    pulses = np.asarray(run[asked.pulses][:, k], dtype=float) / turn
+    pulses = run[asked.pulses][:, k]
+    back = rates.steps(run.time, asked.over)
+    speed = rates.reader(pulses, back, asked.over)
 
-    def curve(name: str, values: NDArray[np.float64], steps: bool = False) -> Curve:
-        return Curve(name, run.time[part], values[part], steps)
+    def rpm(first: int, last: int) -> Array:
+        return np.asarray(MINUTE / turn * speed(first, last))
 
-    def signal(name: str) -> NDArray[np.float64]:
-        return np.asarray(run[f"{asked.drives}.{name}"][:, k], dtype=float)
+    def signal(name: str, of: Callable[[Array], Array], signal: str, steps: bool = False) -> Curve:
+        read = reader(run[f"{asked.drives}.{signal}"][:, k])
+        return curve(name, run.time, lambda a, b: of(read(a, b).astype(float)), span, steps)
 
-    time, speed = rates.change(run.time, pulses, asked.over)
-    inside = (time >= run.time[part][0]) & (time <= run.time[part][-1])
-    command = Curve("command", time[inside], MINUTE * speed[inside], False)
-    units = np.round(signal("following_error") * turn)
+    command = curve("command", run.time[back:], rpm, span, False)
+    motor = signal("motor", lambda x: x, "speed")
+    torque = signal("torque", lambda x: 100.0 / asked.rated * x, "torque")
+    units = signal("deviation", lambda x: np.round(x * turn), "following_error", True)
     panels = (
-        Panel("speed [r/min]", (command, curve("motor", signal("speed"))), {}, True),
-        Panel("torque [%]", (curve("torque", 100.0 / asked.rated * signal("torque")),), {}, False),
-        Panel("deviation\n[command units]", (curve("deviation", units, True),), {}, False),
+        Panel("speed [r/min]", (command, motor), {}, True),
+        Panel("torque [%]", (torque,), {}, False),
+        Panel("deviation\n[command units]", (units,), {}, False),
     )
     title = asked.title or f"Drive of axis {asked.axis}"
     note = asked.note or f"100 % is {asked.rated:g} N·m; {turn:g} command units are a motor turn."

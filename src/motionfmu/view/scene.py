@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from motionfmu import units
 from motionfmu.iso9283.simplify import simplified
+from motionfmu.run.decimate import Read, at, ends, reader
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios.system import Resolver
 from motionfmu.scenarios.view_signals import JOINTS
@@ -54,25 +55,33 @@ def scene_of(run: Recorded, lines: Sequence[Line] = ()) -> Scene | None:
     name = tool_signal(run)
     if not view.show or name is None or len(run.time) < 2:
         return None
-    tool = millimetres(run.resolver, name, run[name])
+    count, tool = len(run.time), position(run, name)
     joints = joint_signal(run, name)
     arm = None if joints is None else arm_of(run, joints)
-    moved = np.ptp(tool, axis=0) > STANDS
-    if not np.isfinite(tool).all() or moved.sum() < (1 if arm else 2):
+    low, high = ends(count, tool)
+    moved = high - low > STANDS
+    if not np.isfinite(high - low).all() or moved.sum() < (1 if arm else 2):
         return None
-    frames = np.unique(np.linspace(0, len(run.time) - 1, FRAMES).round().astype(np.int64))
-    kept = _path(run.time, tool)
-    speed = np.linalg.norm(np.gradient(tool, run.time, axis=0), axis=1)
+    frames = np.unique(np.linspace(0, count - 1, FRAMES).round().astype(np.int64))
+    kept = _path(count, tool, float(np.linalg.norm(high - low)))
+    before, after = (kept - 1).clip(0), (kept + 1).clip(None, count - 1)
+    way = np.linalg.norm(at(tool, after) - at(tool, before), axis=1)
     return Scene(
         run.time[frames],
-        tool[frames],
-        run[joints][frames] if arm and joints else None,
+        at(tool, frames),
+        at(reader(run[joints]), frames) if arm and joints else None,
         arm,
         run.time[kept],
-        tool[kept],
-        speed[kept],
+        at(tool, kept),
+        way / (run.time[after] - run.time[before]),
         tuple(lines),
     )
+
+
+def position(run: Recorded, name: str) -> Read:
+    """A recorded position in mm, block by block."""
+    read = reader(run[name])
+    return lambda first, last: millimetres(run.resolver, name, read(first, last))
 
 
 def tool_signal(run: Recorded) -> str | None:
@@ -126,13 +135,12 @@ def millimetres(resolver: Resolver, name: str, values: Array) -> Array:
     return np.asarray(values[:, :3] * (unit.factor / units.parse("mm").factor))
 
 
-def _path(time: Array, tool: Array) -> NDArray[np.int64]:
+def _path(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
     """Samples that draw the path: where it bends, and some at even times for the colour."""
-    extent = float(np.linalg.norm(np.ptp(tool, axis=0)))
-    coarse = max(1, len(tool) // (20 * POINTS))
-    some = np.unique(np.append(np.arange(0, len(tool), coarse), len(tool) - 1))
-    bends = some[simplified(tool[some], COARSE * extent)]
-    even = np.linspace(0, len(tool) - 1, POINTS // 2).round().astype(np.int64)
+    coarse = max(1, count // (20 * POINTS))
+    some = np.unique(np.append(np.arange(0, count, coarse), count - 1))
+    bends = some[simplified(at(tool, some), COARSE * extent)]
+    even = np.linspace(0, count - 1, POINTS // 2).round().astype(np.int64)
     if len(bends) > POINTS // 2:
         bends = bends[np.linspace(0, len(bends) - 1, POINTS // 2).round().astype(np.int64)]
     return np.unique(np.concatenate([bends, even]))

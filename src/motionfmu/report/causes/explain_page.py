@@ -13,13 +13,13 @@ from motionfmu.explain import ballbar
 from motionfmu.explain.ballbar import Signature
 from motionfmu.explain.decompose import Effect, Explanation
 from motionfmu.report.causes.explain_picture import CAUSE, FORMULA, write_picture
-from motionfmu.report.decimate import keep_peaks
 from motionfmu.report.formula import readable
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
 from motionfmu.report.tables import RMS, cards, circle_table, overrides, table
+from motionfmu.run.decimate import keep_peaks
 
 PAGE, NUMBERS = "report.html", "result.json"
 # Points of a curve over the path: twice as many as a screen has columns.

@@ -1,0 +1,106 @@
+"""Fewer points with every peak kept, of as many as there are."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.columns import ROWS, forget
+from motionfmu.contour.geometry import Array
+
+Index = NDArray[np.int64]
+# Values from one sample to before another: a signal, or what is made of one, block by block.
+Read = Callable[[int, int], Array]
+
+# So many samples of a curve go into a figure; of more, the peaks.
+MOST = 120_000
+
+
+def reader(values: NDArray[np.generic]) -> Read:
+    """Read an array; its pages of a file are let go when others are read."""
+
+    def read(first: int, last: int) -> Array:
+        forget(values)
+        return np.asarray(values[first:last])
+
+    return read
+
+
+def few(count: int, read: Read, steps: bool) -> Index | None:
+    """Samples that a figure holds of so many; None if all."""
+
+    def plain(first: int, last: int) -> Array:
+        return np.nan_to_num(np.asarray(read(first, last), dtype=np.float64))
+
+    if count <= MOST:
+        return None
+    return (steps_of if steps else peaks_of)(count, plain, MOST // 2 - 1)
+
+
+def at(read: Read, samples: Index) -> Array:
+    """Values of some samples, in their order, which increases."""
+    parts = [read(0, 0)]
+    for first in range(0, int(samples[-1]) + 1 if len(samples) else 0, ROWS):
+        low, high = np.searchsorted(samples, [first, first + ROWS])
+        if high > low:
+            parts.append(read(first, int(samples[high - 1]) + 1)[samples[low:high] - first])
+    return np.concatenate(parts)
+
+
+def blocks(count: int, read: Read) -> Iterator[Array]:
+    """All values, block by block."""
+    for first in range(0, count, ROWS):
+        yield read(first, min(first + ROWS, count))
+
+
+def ends(count: int, read: Read) -> tuple[Array, Array]:
+    """The least and the largest value of each column; NaN where one is."""
+    low, high = read(0, 1)[0], read(0, 1)[0]
+    for block in blocks(count, read):
+        low = np.minimum(low, block.min(axis=0))
+        high = np.maximum(high, block.max(axis=0))
+    return low, high
+
+
+def keep_steps(values: Array, buckets: int) -> Index:
+    """Samples at which a staircase changes, or its peaks."""
+    return steps_of(len(values), reader(values), buckets)
+
+
+def keep_peaks(values: Array, buckets: int) -> Index:
+    """Samples with the least and the largest value of each bucket."""
+    # Of (n,) or (n, k): one or several signals with common samples; both ends are among them.
+    return peaks_of(len(values), reader(values), buckets)
+
+
+def steps_of(count: int, read: Read, buckets: int) -> Index:
+    """Samples at which a staircase changes, or its peaks."""
+    # Peaks where there are more than twice as many changes as buckets; both ends are among them.
+    parts, found = [np.array([0, count - 1])], 0
+    for first in range(1, count, ROWS):
+        block = read(first - 1, min(first + ROWS, count))
+        parts.append(np.flatnonzero(block[1:] != block[:-1]) + first)
+        found += len(parts[-1])
+        if found > 2 * buckets:
+            return peaks_of(count, read, buckets)
+    return np.unique(np.concatenate(parts))
+
+
+def peaks_of(count: int, read: Read, buckets: int) -> Index:
+    """Samples with the least and the largest value of each bucket."""
+    if count <= 2 * buckets:
+        return np.arange(count)
+    edges = np.linspace(0, count, buckets + 1).astype(np.int64)
+    width = int(np.diff(edges).max())
+    kept = [np.array([0, count - 1])]
+    several = max(1, ROWS // width)  # buckets at a time
+    for first in range(0, buckets, several):
+        ends = edges[first : first + several + 1]
+        # rows of equal length: the last samples of a shorter bucket are repeated
+        rows = np.minimum(ends[:-1, None] + np.arange(width), ends[1:, None] - 1)
+        block = read(int(ends[0]), int(ends[-1]))
+        for column in block.reshape(len(block), -1).T:
+            values = column[rows - ends[0]]
+            for best in (values.argmin(axis=1), values.argmax(axis=1)):
+                kept.append(rows[np.arange(len(rows)), best])
+    return np.unique(np.concatenate(kept))
