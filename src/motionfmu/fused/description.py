@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from motionfmu.fmu.describe import Description, Variable
+from motionfmu.fmu.head import TICK_MAX
 from motionfmu.fused.parts import NotFused
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.fmus import Port
@@ -13,24 +14,30 @@ from motionfmu.scenarios.values import start_values
 
 TYPES = {"Float64": "f64", "Int32": "i32", "Boolean": "bool", "String": "string"}
 _STEPS_MAX = 2**31 - 1
+_STEP_MAX = 1e6  # [s]
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is to be made."""
+
+    system: System
+    recorded: Sequence[End]
+    fmi: int
+    name: str
+    key: str
+    given: Mapping[str, Values]  # start values; without any those of the FMUs
 
 
 @dataclass(frozen=True)
 class Roles:
-    """Which variables of the components a system shows.
+    """Which variables of the components a system shows."""
 
-    Attributes
-    ----------
-    given : tuple of End
-        What is set before a run: all parameters, and all inputs but those that only a wire feeds.
-    taken : tuple of End
-        What may change in a run: of these the tunable ones, and the inputs that no wire feeds.
-    shown : tuple of End
-        Outputs: what is recorded, and the signal that ends the run.
-    """
-
+    # Set before a run: all parameters, and all inputs but those that only a wire feeds.
     given: tuple[End, ...]
+    # Read at every step: of these the tunable ones, and the inputs that no wire feeds.
     taken: tuple[End, ...]
+    # Outputs: what is recorded, and the signal that ends the run.
     shown: tuple[End, ...]
 
 
@@ -78,8 +85,13 @@ def _variable(end: End, causality: str, values: Values | None) -> Variable:
     )
 
 
-def _own(system: System) -> Iterator[Variable]:
-    """The variables of the system itself."""
+def _own(system: System, step: float, tick_ns: int) -> Iterator[Variable]:
+    """The variables of the system itself; `step` [s]."""
+    text = "Step of the components, of which a communication step is a whole number"
+    low = tick_ns * 1e-9
+    yield Variable(
+        "system.step", "parameter", "f64", text, unit="s", start=[step], min=low, max=_STEP_MAX
+    )
     text = "Folder in which a file a signal is written (NumPy); nothing is recorded without it"
     yield Variable("recorder.folder", "parameter", "string", text, start=[""])
     text = "Of so many communication steps one is recorded"
@@ -91,12 +103,14 @@ def _own(system: System) -> Iterator[Variable]:
         yield Variable("until.step", "output", "i32", text)
 
 
-def described(
-    system: System, used: Roles, name: str, key: str, given: Mapping[str, Values]
-) -> Description:
-    """Describe a system as an FMU, with `given` start values instead of the components' own."""
+def described(job: Job, used: Roles, tick_ns: int) -> Description:
+    """Describe a system as an FMU; `tick_ns`: of which its step must be a whole multiple."""
+    system, given = job.system, job.given
+    if tick_ns > TICK_MAX or system.step_ns % tick_ns:
+        raise NotFused(f"steps of {system.step_ns} ns are not of {tick_ns} ns, as the FMUs' are")
     wired = {w.target.name for w in system.wires}
-    variables = list(_own(system))
+    step = (system.step_ns if given else tick_ns) * 1e-9
+    variables = list(_own(system, step, tick_ns))
     for end in used.given:
         kind = "input" if end.port.causality == "input" and end.name not in wired else "parameter"
         variables.append(_variable(end, kind, given.get(end.name, start_values(end.port))))
@@ -104,12 +118,11 @@ def described(
     names = [v.name for v in variables]
     if len(set(names)) != len(names):
         raise NotFused(f"{next(n for n in names if names.count(n) > 1)} names two things")
-    step = system.step_ns * 1e-9
     parts = ", ".join(f"{c} ({fmu})" for c, fmu in system.components.items())
     return Description(
-        name=name,
-        description=f"{parts} as one program {key[:12]}",
-        tick_ns=system.step_ns,
-        experiment={"stop": system.steps * step if given else step, "step": step},
+        name=job.name,
+        description=f"{parts} as one program {job.key[:12]}",
+        tick_ns=tick_ns,
+        experiment={"stop": system.steps * step if given else 1.0, "step": step},
         variables=tuple(variables),
     )

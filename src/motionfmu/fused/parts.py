@@ -30,28 +30,14 @@ class NotFused(Exception):
 
 @dataclass(frozen=True)
 class Part:
-    """An FMU's model as an object.
+    """An FMU's model as an object."""
 
-    Attributes
-    ----------
-    identifier : str
-        Model identifier; the object shows ``motionfmu_part_<identifier>``.
-    tick_ns : int
-        Communication steps are whole multiples of it [ns].
-    members : str
-        C text of the members of its `struct vars`.
-    size, room : int
-        Of that struct, and of an instance, which begins with it [bytes].
-    code : bytes
-        The object.
-    """
-
-    identifier: str
-    tick_ns: int
-    members: str
-    size: int
-    room: int
-    code: bytes
+    identifier: str  # of the model; the object shows motionfmu_part_<identifier>
+    tick_ns: int  # communication steps are whole multiples of it [ns]
+    members: str  # C text of the members of its struct vars
+    size: int  # of that struct [bytes]
+    room: int  # of an instance, which begins with it [bytes]
+    code: bytes  # the object
 
 
 @contextmanager

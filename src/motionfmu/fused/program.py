@@ -1,6 +1,7 @@
 """A system compiled as one FMU, kept on the disk."""
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from motionfmu.fmu import ctables
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.pack import platform_folder
 from motionfmu.fused import layer, text
-from motionfmu.fused.description import TYPES, described, roles
+from motionfmu.fused.description import TYPES, Job, described, roles
 from motionfmu.fused.parts import NotFused, Part, digest, part
 from motionfmu.scenarios.system import End, System, Values
 
@@ -64,9 +65,19 @@ def program(system: System, recorded: Sequence[End], fmi: int = 3, name: str = "
 def exported(
     system: System, recorded: Sequence[End], fmi: int = 3, name: str = "System"
 ) -> Program:
-    """Make a system one program whose start values are the system's settings.
+    """As `program`, with the system's settings as start values.
 
-    Parameters and errors are those of `program`.
+    Parameters
+    ----------
+    system : System
+        Without scopes; the end of its run becomes that of the default experiment.
+    recorded, fmi, name :
+        As of `program`.
+
+    Raises
+    ------
+    NotFused
+        It cannot be one program; the message says why.
     """
     return _made(system, recorded, fmi, name, {s.end.name: s.values for s in system.settings})
 
@@ -77,10 +88,11 @@ def _made(
     cc = compiler()
     if cc is None:
         raise NotFused("there is no C compiler")
-    key = _key(system, recorded, fmi, cc, [name, repr(given), str(given and system.steps)])
+    more = [repr(given), str(system.step_ns), str(system.steps)] if given else []
+    key = _key(system, recorded, fmi, cc, [name, *more])
 
     def make(folder: Path) -> None:
-        _make(folder, _Job(system, recorded, fmi, name, key, given), cc)
+        _make(folder, Job(system, recorded, fmi, name, key, given), cc)
 
     return Program(kept.kept("fused", key, make), fmi)
 
@@ -95,28 +107,15 @@ def _key(system: System, recorded: Sequence[End], fmi: int, cc: Compiler, more: 
         [f"{w.target.name} {w.source.name}" for w in system.wires],
         sorted(s.end.name for s in system.settings if s.end.port.causality == "input"),
         [e.name for e in recorded],
-        [str(fmi), str(system.step_ns), until.name if until else ""],
+        [str(fmi), until.name if until else ""],
         [layer.digest(), cc.version, *cc.command, *FLAGS, _OPTIMIZED],
         more,
     ]
     return kept.key(*(json.dumps(one) for one in lists))
 
 
-@dataclass(frozen=True)
-class _Job:
-    system: System
-    recorded: Sequence[End]
-    fmi: int
-    name: str
-    key: str
-    given: Mapping[str, Values]
-
-
 def _parts(system: System) -> dict[str, Part]:
     found = {fmu: part(fmu) for fmu in system.components.values()}
-    for fmu, one in found.items():
-        if system.step_ns % one.tick_ns:
-            raise NotFused(f"{system.step_ns} ns is no multiple of {fmu}'s {one.tick_ns} ns")
     identifiers = {p.identifier for p in found.values()}
     if len(identifiers) != len(found):
         raise NotFused("two FMUs have one model identifier")
@@ -127,9 +126,10 @@ def _parts(system: System) -> dict[str, Part]:
     return found
 
 
-def _make(folder: Path, job: _Job, cc: Compiler) -> None:
+def _make(folder: Path, job: Job, cc: Compiler) -> None:
     parts, used = _parts(job.system), roles(job.system, job.recorded)
-    d = described(job.system, used, job.name, job.key, job.given)
+    tick = math.lcm(*(one.tick_ns for one in parts.values()))
+    d = described(job, used, tick)
     sources = folder / "sources"
     sources.mkdir()
     texts = {
@@ -137,7 +137,7 @@ def _make(folder: Path, job: _Job, cc: Compiler) -> None:
         "vars.c": ctables.table(d),
         "model.c": text.model(job.system, parts, used, job.recorded),
         "state_flags.h": text.FLAGS,
-        "fmu_main.c": ctables.main_unit("model.c", job.fmi),
+        "fmu_main.c": text.main_unit(job.fmi, quickly=not job.given),
     }
     for file, content in texts.items():
         (sources / file).write_text(content)

@@ -74,22 +74,25 @@ def _model(system: System, parts: Mapping[str, Part]) -> str:
         both = f"struct {p.identifier}_vars v; unsigned char byte[{p.room}];"
         lines.append(f"    _Alignas(FMU_PART_ALIGN) union {{ {both} }} of_{component};\n")
     return (
-        "struct model {\n" + "".join(lines) + "    int64_t steps; /* made since the start */\n"
+        "struct model {\n" + "".join(lines) + "    int64_t step; /* [ns] */\n"
+        "    int64_t steps; /* made since the start */\n"
         "    int32_t until; /* step at which the signal came; -1: not yet */\n};\n"
     )
+
+
+def _given(end: End) -> str:
+    to = f"to->{end.port.name}"
+    if end.port.type == "String":
+        return f"system_text({to}, sizeof {to}, {_here(end)}, resources);"
+    return f"SYSTEM_COPY({to}, {_here(end)});"
 
 
 def _gives(system: System, parts: Mapping[str, Part], used: Roles) -> Iterable[str]:
     for component, fmu in system.components.items():
         mine = [e for e in used.given if e.component == component]
-        lines = [f"struct {parts[fmu].identifier}_vars *to = part;"]
-        lines += [f"SYSTEM_COPY(to->{e.port.name}, {_here(e)});" for e in mine]
-        head = f"void give_{component}(void *part, const struct vars *v)"
-        yield _function(head, lines, [] if mine else ["v", "to"])
-
-
-def _order(unused: bool, names: Sequence[str]) -> list[str]:
-    return list(names) if unused else []
+        lines = [f"struct {parts[fmu].identifier}_vars *to = part;", *map(_given, mine)]
+        head = f"void give_{component}(void *part, const struct vars *v, const char *resources)"
+        yield _function(head, lines, ["v", "resources"] + ([] if mine else ["part"]))
 
 
 def _carry(system: System) -> str:
@@ -130,8 +133,7 @@ def _shows(system: System, used: Roles) -> Iterable[str]:
 
 def _tables(system: System, parts: Mapping[str, Part], recorded: Sequence[End]) -> Iterable[str]:
     yield f"enum {{ SYSTEM_PARTS = {len(system.components)}, SYSTEM_WIRES = {len(system.wires)}, "
-    yield f"SYSTEM_COLUMNS = {len(recorded)} }};\n"
-    yield f"#define SYSTEM_STEP_NS INT64_C({system.step_ns})\n\n"
+    yield f"SYSTEM_COLUMNS = {len(recorded)} }};\n\n"
     yield _table(
         "struct system_part system_parts",
         [
@@ -156,6 +158,18 @@ def _tables(system: System, parts: Mapping[str, Part], recorded: Sequence[End]) 
     )
 
 
+def main_unit(fmi: int, quickly: bool) -> str:
+    """Text of fmu_main.c; `quickly`: what runs once a call is compiled without optimization."""
+    return (
+        "/* Generated; do not edit. */\n"
+        + ("#define SYSTEM_QUICKLY\n" if quickly else "")
+        + f"#define FMI_VERSION {fmi}\n"
+        "#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */\n"
+        '#include "model.c"\n#include "vars.c"\n#include "state_flags.h"\n'
+        'SYSTEM_COLD_BEGIN\n#include "fmi.inc"\nSYSTEM_COLD_END\n'
+    )
+
+
 def model(system: System, parts: Mapping[str, Part], used: Roles, recorded: Sequence[End]) -> str:
     """Text of model.c; `parts` by the names of the FMUs."""
     pieces = [
@@ -163,8 +177,10 @@ def model(system: System, parts: Mapping[str, Part], used: Roles, recorded: Sequ
         '#include "vars.h"\n#include "fmu_system.h"\n\n',
         *_structs(parts),
         _model(system, parts),
-        '\n#define MODEL_BLOB\n#include "fmi_model.h"\n#include "fmu_recorder.h"\n\n',
+        '\n#define MODEL_BLOB\n#include "fmi_model.h"\n#include "system_recorder.h"\n\n',
+        "SYSTEM_COLD_BEGIN\n",
         *_gives(system, parts, used),
+        "SYSTEM_COLD_END\n\n",
         *_tables(system, parts, recorded),
         _carry(system),
         _until(system),
