@@ -21,6 +21,7 @@ from motionfmu.netcard import messages as m
 from motionfmu.netcard.job import Event, Job, encode
 from motionfmu.netcard.keys import OPEN_KEY
 from motionfmu.netcard.wire import PcEnd
+from motionfmu.units import spelled
 
 ROOT = Path(__file__).parents[2]
 RUNS = settings(
@@ -109,7 +110,8 @@ def test_the_parameters_are_the_settings_of_the_card() -> None:
         p = parameters[name]
         assert p["type"] == kinds[kind]
         assert p.get("dims", [""]) == ([int(elements)] if elements else [""])
-        assert p["doc"].removesuffix(f" [{unit}]") == words
+        said = re.sub(r"\[(.*)\]$", lambda m: f"[{spelled(m[1])}]", words)
+        assert p["doc"].removesuffix(f" [{spelled(unit)}]") == said
         if kind == "bool":
             assert p["start"] == (start == "true")
         else:

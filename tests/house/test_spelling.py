@@ -38,6 +38,14 @@ def texts_of(value: Any) -> Iterator[str]:
         yield value
 
 
+def docs_of(text: str) -> Iterator[str]:
+    """What an fmu.toml says of its variables; units beside it are for FMI."""
+    tables = tomllib.loads(text)
+    yield tables["description"]
+    for kind in ("parameter", "input", "output", "local"):
+        yield from (row["doc"] for row in tables.get(kind, {}).values())
+
+
 def shown(text: str) -> Iterator[str]:
     """String literals of a module that are no docstrings, but those of console commands."""
     tree = ast.parse(text)
@@ -59,6 +67,7 @@ def found() -> Iterator[tuple[str, list[str]]]:
     """Every file with its texts that are wrong."""
     kinds = {
         "toml": ("scenarios/**/*.toml", "examples/**/*.toml"),
+        "fmu.toml": ("fmus/*/fmu.toml",),
         "py": ("src/motionfmu/**/*.py", "scenarios/**/*.py", "examples/**/*.py"),
         "md": ("*.md", "src/**/*.md", "fmus/*/*.md", "scenarios/*/*.md", "examples/*/*.md"),
     }
@@ -68,6 +77,7 @@ def found() -> Iterator[tuple[str, list[str]]]:
                 continue
             texts = {
                 "toml": lambda t: texts_of(tomllib.loads(t)),
+                "fmu.toml": docs_of,
                 "py": shown,
                 "md": lambda t: iter(t.splitlines()),
             }[kind](text)

@@ -124,7 +124,7 @@ def cells(page: Any, plot: str) -> dict[str, list[float]]:
 
 def stands(page: Any) -> list[float]:
     return [
-        float(page.locator(f"#following .cursor-{n}").get_attribute("aria-valuenow")) for n in "AB"
+        float(page.locator(f"#following .cursor-C{n}").get_attribute("aria-valuenow")) for n in "12"
     ]
 
 
@@ -153,7 +153,7 @@ def test_cursors_read_the_samples_of_the_run(browser: Any, pages: Any) -> None:
         page.evaluate(FRAME)
         shared = page.locator(".readout:visible").count()
         assert shared == page.locator(".measure").count() > 3  # all plots over time have them
-        a, b = page.locator("#following .cursor-A"), page.locator("#following .cursor-B")
+        a, b = page.locator("#following .cursor-C1"), page.locator("#following .cursor-C2")
 
         def check() -> list[int]:
             page.evaluate(

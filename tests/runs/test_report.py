@@ -14,10 +14,11 @@ from page_curves import curve, page_data, unwoven
 
 import motionfmu
 from motionfmu.report import write_report
-from motionfmu.run.decimate import keep_peaks
-from motionfmu.report.numbers import figure, length, magnification
+from motionfmu.report.numbers import MINUS, figure, length, magnification
 from motionfmu.report.packed import packed
 from motionfmu.report.samples import COARSE, bits
+from motionfmu.report.tables import judged
+from motionfmu.run.decimate import keep_peaks
 
 FLOAT32 = 1e-6
 
@@ -119,6 +120,24 @@ def test_the_pictures_are_pictures(reported) -> None:
     picture = matplotlib.image.imread(folder / "path.png")
     assert min(picture.shape[:2]) > 500 and len(np.unique(picture.reshape(-1, 4), axis=0)) > 50
     assert (folder / "path.svg").read_text().lstrip().startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    ("value", "bounds", "unit", "shown"),
+    [
+        (0.0419, "in 0.0414 .. 0.0424", "mm", ("41.9 µm", "in 41.4 .. 42.4 µm")),
+        (0.15, "peak in 0.1 .. 0.2, at 0.5 s", "mm", ("150 µm", "peak in 100 .. 200 µm, at 0.5 s")),
+        (0.1, "|.| <= 5, 0.5 to 0.6 s", "mm", ("0.1 mm", "|.| <= 5 mm, 0.5 to 0.6 s")),
+        (-3e-6, ">= -1e-05", "mm", (f"{MINUS}0.003 µm", ">= -0.01 µm")),
+        (3.0, "changes = 3, in 2 windows", "mm", ("3", "changes = 3, in 2 windows")),
+        (4.0, "rate over 0.002 s <= 5", "mm", ("4", "rate over 0.002 s <= 5")),
+        (2.0, "order 1, 2", "", ("2", "order 1, 2")),
+    ],
+)
+def test_checks_are_told_in_the_unit_of_the_cards(
+    value: float, bounds: str, unit: str, shown: tuple[str, str]
+) -> None:
+    assert judged(value, bounds, unit) == shown
 
 
 def test_the_page_tells_a_failed_check(tmp_path: Path) -> None:

@@ -82,7 +82,7 @@ def test_the_circle_the_other_way_round_is_no_corner(circle) -> None:
     row = re.search(
         r'contour\.error\.max<div class="sub">(.*?)</div>.*?<td class="key">(.*?)<', page
     )
-    assert row and row[1] == "Contour error, largest" and row[2].endswith(" mm")
+    assert row and row[1] == "Contour error, largest" and row[2].endswith(" µm")
     assert "<h2>Torque command to the current loop (drives.torque)</h2>" in page
 
 

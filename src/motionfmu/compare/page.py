@@ -6,16 +6,16 @@ from html import escape
 from pathlib import Path
 
 from motionfmu.compare import plots
-from motionfmu.compare.differences import NOTHING, Checked, port_of
+from motionfmu.compare.differences import NOTHING, port_of
 from motionfmu.compare.figures import Number
 from motionfmu.compare.pairing import Apart, Pairing
 from motionfmu.compare.words import GONE, change_text, row_of, signed, text_of
 from motionfmu.iso9283.evaluation import unit as unit_of_iso9283
 from motionfmu.report import outcome
-from motionfmu.report.contour_words import CIRCLE, CONTOUR
-from motionfmu.report.numbers import MINUS, figure, length
+from motionfmu.report.contour_words import CIRCLE, CONTOUR, in_words
+from motionfmu.report.numbers import figure, length
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.tables import cards, table
+from motionfmu.report.tables import cards, judged, table
 from motionfmu.run.stored import NUMBERS
 from motionfmu.units import spelled
 
@@ -44,7 +44,7 @@ def page_text(found: Pairing) -> str:
     _add_different(page, found)
     if found.checks:
         note = "A check that held in A and fails in B stands first."
-        page.section("Verdicts", note, _checks(found.checks))
+        page.section("Verdicts", note, _checks(found))
     if found.a.track and found.b.track:
         _add_contour(page, found)
     elif found.table("contour"):
@@ -93,17 +93,27 @@ def _add_different(page: Sheet, found: Pairing) -> None:
     page.section("What was run differently", "", content)
 
 
-def _checks(checks: Iterable[Checked]) -> str:
+def _unit_of(found: Pairing, name: str) -> str:
+    """Unit of what is checked, as on all pages."""
+    if name.startswith("contour."):
+        return spelled(in_words(name.partition(".")[2])[1])
+    port = port_of(found.a, name.partition("[")[0]) or port_of(found.b, name.partition("[")[0])
+    return spelled(port.unit) if port else ""
+
+
+def _checks(found: Pairing) -> str:
     marks = {True: ("✓", "pass"), False: ("✗", "fail"), None: (NOTHING, "")}
     rows = []
-    for c in sorted(checks, key=lambda c: (not c.worse, c.ok[1] is not False)):
-        cells = []
-        for ok, value in zip(c.ok, c.values, strict=True):
+    for c in sorted(found.checks, key=lambda c: (not c.worse, c.ok[1] is not False)):
+        cells, unit = [], _unit_of(found, c.name)
+        bounds: dict[str, None] = {}
+        for ok, value, asked in zip(c.ok, c.values, c.bounds, strict=True):
             mark, kind = marks[ok]
-            text = NOTHING if value is None else f"{value:.6g}".replace("-", MINUS)
+            text, words = judged(value, asked or "", unit)
+            text = NOTHING if value is None else text
+            bounds |= {words: None} if asked is not None else {}
             cells.append(f'<span class="mark {kind}">{mark}</span> {text}')
         n = Number(c.name, *c.values)
-        bounds = dict.fromkeys(b for b in c.bounds if b is not None)
         told = "; ".join(dict.fromkeys(r for r in c.reasons if r))
         words = " → ".join(bounds) + (f"; {told}" if told else "")
         rows.append((escape(c.name), escape(words), *cells, change_text(n)))

@@ -13,6 +13,24 @@ _GUARD = re.compile(r"^#ifndef (\w+)\n#define \1\n", re.MULTILINE)
 _END = "\n#endif\n"
 _INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
+# Around what a header declares, in C++: functions of C; C11's structs without a name are no
+# mistake.
+_OPENED = """#ifdef __cplusplus
+#ifdef __GNUC__
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic"
+#endif
+extern "C" {
+#endif
+"""
+_CLOSED = """#ifdef __cplusplus
+}
+#ifdef __GNUC__
+#pragma GCC diagnostic pop
+#endif
+#endif
+"""
+
 
 def uses(core: Path) -> list[str]:
     """Names of the cores that a core may include."""
@@ -46,8 +64,7 @@ def cxx(header: Path) -> str:
     head, body = text[: last.end()], text[last.end() : -len(_END)]
     if re.search(r"^[^#\s]", _COMMENT.sub("", head), re.MULTILINE):
         raise ValueError(f"{header}: a declaration stands before the last #include")
-    opened = '#ifdef __cplusplus\nextern "C" {\n#endif\n'
-    return f"{head}\n{opened}{body}\n#ifdef __cplusplus\n}}\n#endif\n{_END}"
+    return f"{head}\n{_OPENED}{body}\n{_CLOSED}{_END}"
 
 
 def reached(

@@ -1,7 +1,7 @@
-// Two cursors, A and B, on plots over time: they snap to samples, all plots of a group share them.
+// Two cursors, C1 and C2, on plots over time: they snap to samples, all plots of a group share them.
 
-const NAMES = ["A", "B"];
-const COLUMNS = ["Curve", "A", "B", "B \u2212 A", "(B \u2212 A)/\u0394t", "Least", "Largest",
+const NAMES = ["C1", "C2"];
+const COLUMNS = ["Curve", "C1", "C2", "C2 \u2212 C1", "(C2 \u2212 C1)/\u0394t", "Least", "Largest",
   "Mean", "RMS"];
 const RECIPROCAL = { s: "Hz", ms: "kHz" };
 
@@ -138,7 +138,7 @@ class Measured {
       return input;
     });
     this.length = made(row, "span", { class: "number" });
-    const zoom = made(row, "button", { type: "button" }, "Zoom to A \u2026 B");
+    const zoom = made(row, "button", { type: "button" }, "Zoom to C1 \u2026 C2");
     zoom.addEventListener("click", () => {
       const [from, to] = this.cursors.at.toSorted((a, b) => a - b);
       if (to > from) Plotly.relayout(this.place, { "xaxis.range": [from, to] });
@@ -159,7 +159,7 @@ class Measured {
     });
     if (this.cursors.members.length) return; // said once
     made(this.readout, "p", { class: "note" }, "Least, largest, mean and RMS are those of the"
-      + " samples from A to B. Drag a cursor, or move it with \u2190 \u2192: a sample, with shift a"
+      + " samples from C1 to C2. Drag a cursor, or move it with \u2190 \u2192: a sample, with shift a"
       + " hundredth of what is in view; Home and End go to its ends.");
   }
 

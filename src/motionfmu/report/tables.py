@@ -9,6 +9,7 @@ from typing import Any, Protocol
 from motionfmu.contour import ContourResult
 from motionfmu.contour.circles import CircularTest, Way
 from motionfmu.report.numbers import MINUS, figure, length
+from motionfmu.report.numbers import unit as length_unit
 
 # What the RMS of a contour error is, on every page.
 RMS = "over time where the tool cuts"
@@ -18,6 +19,9 @@ LINES_SHOWN = 10
 LONG, SMALL = 13, ' style="font-size:17px"'
 # Letters from which on the text of a column may break into lines.
 WIDE = 26
+# A bound in words: what, its numbers, when.
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+_BOUNDS = re.compile(r"((?:.*? )?(?:>=|<=|in|=|order) )(.*?)((?:, (?:at|in) .*|, \S+ to \S+ s)?)$")
 _DASH = re.compile(r"(?<![\w.>-])-(?=\d)|^-(?=\d)")  # before a number a minus
 
 
@@ -111,24 +115,45 @@ def check_table(checks: Sequence[Check], words: Callable[[str], tuple[str, str]]
     rows = []
     for check in sorted(checks, key=lambda c: c.ok):
         mark, kind = ("✓ pass", "pass") if check.ok else ("✗ fail", "fail")
-        value = check.value
-        text = str(value)
-        if check.reason:
-            text = "none"
-        elif isinstance(value, float):
-            text = f"{value:.6g}".replace("-", MINUS)
         said, unit = words(check.name)
+        text, bounds = judged(check.value, check.bounds, unit)
+        text = "none" if check.reason else text
         below = (t for t in (said, check.reason) if t)
         sub = "".join(f'<div class="sub">{escape(t)}</div>' for t in below)
         rows.append(
             (
                 f'<span class="mark {kind}">{mark}</span>',
                 f"{escape(check.name)}{sub}",
-                escape(f"{text} {unit}" if unit and not check.reason else text),
-                escape(check.bounds),
+                escape(text),
+                escape(bounds),
             )
         )
     return table(("Verdict", "Check", "Value", "Bounds"), rows, numeric=4)
+
+
+def judged(value: Any, bounds: str, unit: str) -> tuple[str, str]:
+    """Value and bounds of a verdict with their unit; lengths below a mm in µm, as on the cards."""
+    words, asked, where = _parts(bounds)
+    plain = words.startswith(("changes", "order", "rate"))
+    limits = [float(n) for n in _NUMBER.findall(asked)]
+    factor = 1.0
+    if unit == "mm" and not plain:
+        sizes = [abs(x) for x in (*limits, value) if isinstance(x, float) and math.isfinite(x)]
+        factor, unit = length_unit(max(sizes, default=0.0))
+        asked = _NUMBER.sub(lambda m: f"{float(m[0]) * factor:.6g}", asked)
+    if unit and not plain and limits:
+        asked = f"{asked} {unit}"
+    bounds = f"{words}{asked}{where}"
+    if not isinstance(value, float):
+        return str(value), bounds
+    text = f"{value * factor:.6g}".replace("-", MINUS)
+    return f"{text} {unit}" if unit and not words.startswith(("changes", "rate")) else text, bounds
+
+
+def _parts(bounds: str) -> tuple[str, str, str]:
+    """Words of a bound, its numbers, and at which times it is asked."""
+    found = _BOUNDS.match(bounds)
+    return (found[1], found[2], found[3]) if found else (bounds, "", "")
 
 
 def error_table(contour: ContourResult) -> str:
