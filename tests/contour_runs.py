@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 
 from motionfmu.contour import ContourInput, Path
 from motionfmu.contour.geometry import Label, Line, Segment
-from motionfmu.contour.path import make_arc
+from motionfmu.contour.planned import make_arc
 
 Z = (0.0, 0.0, 1.0)
 

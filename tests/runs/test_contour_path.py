@@ -7,7 +7,8 @@ import pytest
 from contour_runs import Program
 
 from motionfmu.contour.geometry import Arc, Line
-from motionfmu.contour.path import COLUMNS, Path, outline, read_path
+from motionfmu.contour.path import Path, outline
+from motionfmu.contour.planned import COLUMNS, read_path
 
 HEAD = (
     ["command", "line", "type"]

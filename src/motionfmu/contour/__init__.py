@@ -1,7 +1,8 @@
 """Contour analysis: error against the exact path, circular tests, corners."""
 
 from motionfmu.contour.error import analyse
-from motionfmu.contour.path import Path, read_path
+from motionfmu.contour.path import Path
+from motionfmu.contour.planned import read_path
 from motionfmu.contour.result import ContourInput, ContourResult, Trace
 from motionfmu.errors import NoNumber
 

@@ -1,42 +1,194 @@
 """Which segment each sample belongs to: monotone along the path."""
 
-from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.contour.geometry import Array, Line, Lines, Segment
+from motionfmu.contour.arcs import Array
+from motionfmu.contour.geometry import norms
+from motionfmu.contour.path import Path
+from motionfmu.contour.segments import Index
 
-Index = NDArray[np.int64]
-# First sample of a segment's candidates; for each of them: sample of entry, segment before it.
-Row = tuple[int, NDArray[np.int32], NDArray[np.int32]]
-# Samples of short lines that are taken in one go: few calls, and little memory.
-TOGETHER = 20_000
+# Samples that are looked at together: enough for few calls, few enough for little memory.
+BLOCK = 1 << 16
+# Every so many samples are searched from nothing; those between begin where these ended.
+STRIDE = 32
+# Places of its candidates at which such a sample looks first.
+SPREAD = 8
+# Distances that differ by less are the same [mm]: a corner is as far from both its moves.
+SAME = 1e-9
+# The way along a path of kilometres is rounded to less than this [mm].
+ROUNDED = 1e-6
 
 
-def assign(points: Array, segments: tuple[Segment, ...], first: Index, last: Index) -> Index:
-    """Give each sample (n, 3) one segment of its candidates, first to last (n,), never going back.
+def assign(points: Any, path: Path, first: Index, last: Index) -> Index:
+    """Give each sample one segment of its candidates, first to last (n,), never going back.
+
+    `points` are an array (n, 3 or more) [mm], or what gives one for some rows of it.
 
     Of all assignments that stay within the candidates and never return to an earlier segment, the
-    one with the least sum of squared distances is found, exactly, by dynamic programming along the
-    segments. So a path that crosses itself, or touches itself, attracts no sample to the wrong
-    branch: jumping ahead would have to be paid for by all samples that follow. It is a ValueError
-    if candidates decrease or are missing.
+    one with the least sum of squared distances is found. So a path that crosses itself, or touches
+    itself, attracts no sample to the wrong branch: jumping ahead would have to be paid for by all
+    samples that follow. Of segments that are as near, as both moves are at a corner, the later one
+    is taken. It is a ValueError if candidates decrease or are missing.
+
+    No assignment is better than one where each sample has its nearest candidate. Where those do not
+    decrease, they are the result. Stretches where they do are solved by dynamic programming, each
+    by itself; if what is found there does not fit what is around it, both become one stretch.
+    """
+    if (first > last).any() or _falls(first) or _falls(last):
+        raise ValueError("candidates must not be empty nor decrease with time")
+    low, high = np.asarray(first).astype(np.int32), np.asarray(last).astype(np.int32)
+    for begin in range(0, len(low), BLOCK):
+        some = slice(begin, begin + BLOCK)
+        several = begin + np.flatnonzero(low[some] < high[some])
+        if len(several):
+            part = np.asarray(points[some])[several - begin, :3]
+            low[several], high[several] = nearest(part, path, (low[several], high[several]))
+    if not len(low):
+        return low
+    alone, solved = low.copy(), np.zeros(len(low), dtype=bool)
+    while True:
+        own = np.minimum.accumulate(high[::-1])[::-1]
+        bad = np.maximum.accumulate(low) > own
+        # a path that comes back may have farther segments between two that are as near
+        between = np.flatnonzero((low < own) & (own < high))
+        bad[between] = ~_as_near(points, path, between, (low, own))
+        if not bad.any():
+            return own
+        for a, b in _stretches(bad | solved):
+            if bad[a:b].any():
+                candidates = np.asarray(first[a:b]), np.asarray(last[a:b])
+                part = np.asarray(points[a:b])[:, :3]
+                low[a:b] = high[a:b] = _solved(part, path, candidates, alone[a:b])
+                solved[a:b] = True
+
+
+def _as_near(points: Any, path: Path, rows: Index, segments: tuple[Index, Index]) -> Any:
+    """Whether two segments of each of some samples are as near."""
+    good = np.empty(len(rows), dtype=bool)
+    for begin in range(0, len(rows), BLOCK):
+        own = rows[begin : begin + BLOCK]
+        part = np.asarray(points[own])[:, :3]
+        one, other = (path.segments.foot(part, s[own]).distance for s in segments)
+        good[begin : begin + BLOCK] = other <= one + 2.0 * SAME
+    return good
+
+
+def nearest(
+    points: Array, path: Path, candidates: tuple[Index, Index], room: Array | float = 0.0
+) -> tuple[Index, Index]:
+    """First and last of the segments that are nearest to points (n, 3), but for `room` [mm].
+
+    Candidates (n,) are the segments from a first one to a last one. Nothing is missed: where the
+    end of a segment is d farther from a point than the nearest place so far, no place within the
+    way d of that end is nearer, and the search goes on behind it.
+    """
+    few = np.arange(0, len(points), STRIDE)
+    own = (candidates[0][few], candidates[1][few])
+    room = np.broadcast_to(np.asarray(room) + SAME, len(points))
+    search = _Search.begin(points[few], path, own, room[few])
+    for k in range(SPREAD + 1):
+        search.look(np.arange(len(few)), own[0] + (own[1] - own[0]) * k // SPREAD)
+    search.spread()
+    if len(few) == len(points):
+        return search.low, search.high
+    guess = np.interp(np.arange(len(points)), few, search.nearest)
+    search = _Search.begin(points, path, candidates, room)
+    here = np.clip(np.round(guess), *candidates).astype(np.int32)
+    search.look(np.arange(len(points)), here)
+    search.spread()
+    return search.low, search.high
+
+
+@dataclass(eq=False)
+class _Search:
+    """What is known of the nearest segments of some points."""
+
+    points: Array
+    path: Path
+    candidates: tuple[Index, Index]
+    room: Array
+    best: Array  # distance of the nearest place so far [mm]
+    nearest: Index  # its segment
+    low: Index  # first and last segment that is as near
+    high: Index
+
+    @classmethod
+    def begin(
+        cls, points: Array, path: Path, candidates: tuple[Index, Index], room: Array
+    ) -> "_Search":
+        one = candidates[0].astype(np.int32)
+        none = np.full(len(points), np.inf)
+        return cls(points, path, candidates, room, none, one, one.copy(), one.copy())
+
+    def look(self, rows: Index, segment: Index) -> None:
+        """See how near a segment is to some of the points."""
+        distance = self.path.segments.foot(self.points[rows], segment).distance
+        best, room = self.best[rows], self.room[rows]
+        near = distance <= best + room
+        if not near.any():
+            return
+        fresh = distance < best - room
+        low, high = self.low[rows], self.high[rows]
+        self.low[rows] = np.where(fresh, segment, np.where(near, np.minimum(low, segment), low))
+        self.high[rows] = np.where(fresh, segment, np.where(near, np.maximum(high, segment), high))
+        self.nearest[rows] = np.where(distance < best, segment, self.nearest[rows])
+        self.best[rows] = np.minimum(distance, best)
+
+    def spread(self) -> None:
+        """Look at all candidates to either side that may be as near as the best so far."""
+        segments = self.path.segments
+        begin, end = segments.way
+        here = self.nearest.copy()
+        rows, s = np.flatnonzero(here < self.candidates[1]), here[here < self.candidates[1]]
+        while len(rows):
+            free = self._free(rows, segments.ends[s])
+            s = np.maximum(s + 1, np.searchsorted(end, end[s] + free))
+            on = s <= self.candidates[1][rows]
+            rows, s = rows[on], s[on]
+            self.look(rows, s)
+        rows, s = np.flatnonzero(here > self.candidates[0]), here[here > self.candidates[0]]
+        while len(rows):
+            free = self._free(rows, segments.columns.start[s])
+            s = np.minimum(s - 1, np.searchsorted(begin, begin[s] - free, side="right") - 1)
+            on = s >= self.candidates[0][rows]
+            rows, s = rows[on], s[on]
+            self.look(rows, s)
+
+    def _free(self, rows: Index, node: Array) -> Array:
+        """Way from an end of a segment on which nothing is as near as the best so far [mm]."""
+        return norms(self.points[rows] - node) - self.best[rows] - self.room[rows] - ROUNDED
+
+
+def _solved(points: Array, path: Path, candidates: tuple[Index, Index], alone: Index) -> Index:
+    """The best assignment of some samples, by dynamic programming along the segments.
+
+    Were each to go no farther back than the ones before it have to, that would be one of them; a
+    segment that costs a sample more than this costs all of them has no part in the best one.
 
     With C(s, t) the least cost when sample t is on segment s, and D the running sum of its squared
     distances, ``C(s, t) = D(t) + min over u <= t of (M(u - 1) - D(u - 1))``, where M is the least C
     of all earlier segments: one running minimum per segment.
     """
-    if (first > last).any() or (np.diff(first) < 0).any() or (np.diff(last) < 0).any():
-        raise ValueError("candidates must not be empty nor decrease with time")
+    foot = path.segments.foot
+    single = foot(points, alone).distance
+    trial = foot(points, np.maximum.accumulate(alone)).distance
+    slack = float(np.sum(np.maximum(trial**2 - single**2, 0.0)))
+    slack += 2.0 * SAME * float(np.sum(trial + SAME))
+    low, high = nearest(points, path, candidates, np.sqrt(single**2 + slack) - single + SAME)
+    low, high = np.minimum.accumulate(low[::-1])[::-1], np.maximum.accumulate(high)
     count = len(points)
     least = np.full(count, np.inf)  # M
     owner = np.full(count, -1)  # segment that attains M
-    table: dict[int, Row] = {}
-    begin = np.searchsorted(last, np.arange(len(segments)), side="left")
-    end = np.searchsorted(first, np.arange(len(segments)), side="right")
-    for s, square in _squares(points, segments, begin, end):
-        a, b = int(begin[s]), int(end[s])
+    table: dict[int, tuple[int, Index, Index]] = {}
+    for s in range(int(low[0]), int(high[-1]) + 1):
+        a, b = int(np.searchsorted(high, s)), int(np.searchsorted(low, s, side="right"))
+        if a >= b:
+            continue
+        square = foot(points[a:b], np.full(b - a, s)).distance ** 2
         total = np.cumsum(square)
         enter = np.concatenate([[0.0 if a == 0 else least[a - 1]], least[a : b - 1]])
         enter = enter - (total - square)
@@ -52,37 +204,8 @@ def assign(points: Array, segments: tuple[Segment, ...], first: Index, last: Ind
     return _trace_back(count, int(owner[-1]), table)
 
 
-def _squares(
-    points: Array, segments: tuple[Segment, ...], begin: Index, end: Index
-) -> Iterator[tuple[int, Array]]:
-    """Each segment that has candidates, and their squared distances."""
-    counts = np.maximum(end - begin, 0)
-    upto = np.concatenate([[0], np.cumsum(counts)])
-    s = 0
-    while s < len(segments):
-        stop = s
-        while (
-            stop < len(segments)
-            and isinstance(segments[stop], Line)
-            and upto[stop + 1] - upto[s] <= TOGETHER
-        ):
-            stop += 1
-        if stop <= s + 1:
-            if counts[s]:
-                yield s, segments[s].foot(points[begin[s] : end[s]]).distance ** 2
-            s += 1
-            continue
-        which = np.repeat(np.arange(stop - s), counts[s:stop])
-        row = np.arange(len(which)) + (begin[s:stop] - upto[s:stop] + upto[s])[which]
-        lines = Lines([x for x in segments[s:stop] if isinstance(x, Line)])
-        square = lines.foot(points[row], which).distance ** 2
-        for i in np.flatnonzero(counts[s:stop]).tolist():
-            yield s + i, square[upto[s + i] - upto[s] : upto[s + i + 1] - upto[s]]
-        s = stop
-
-
-def _trace_back(count: int, s: int, table: dict[int, Row]) -> Index:
-    chosen = np.empty(count, dtype=np.int64)
+def _trace_back(count: int, s: int, table: dict[int, tuple[int, Index, Index]]) -> Index:
+    chosen = np.empty(count, dtype=np.int32)
     stop = count
     while stop > 0:
         a, entry, before = table[s]
@@ -90,3 +213,12 @@ def _trace_back(count: int, s: int, table: dict[int, Row]) -> Index:
         chosen[a + start : stop] = s
         stop, s = a + start, int(before[start])
     return chosen
+
+
+def _falls(values: Index) -> bool:
+    return bool((values[1:] < values[:-1]).any())
+
+
+def _stretches(chosen: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]])))
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -5,13 +5,14 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from motionfmu.contour.assign import Index
-from motionfmu.contour.geometry import TURN, Arc, Array, Segment
+from motionfmu.contour.arcs import TURN, Array
+from motionfmu.contour.geometry import Arc, Segment
 from motionfmu.contour.iso230 import BothWays, Reading, both_ways, reading
 from motionfmu.contour.path import Path
-from motionfmu.contour.track import Track
+from motionfmu.contour.scaled import Scaled
+from motionfmu.contour.segments import ARC, Index
+from motionfmu.contour.track import Track, blocks
 
 # Arcs belong to one circle if centre, radius and normal agree to this [mm; 1]: the rounding of
 # a part program with four decimals.
@@ -75,7 +76,7 @@ class CircularTest:
 
 def circular_tests(
     path: Path,
-    samples: tuple[Array, Array],
+    samples: tuple[Array, Array | Scaled],
     tracks: tuple[Track, Track],
     settle: float,
     run_in: float | None,
@@ -90,7 +91,7 @@ def circular_tests(
     circles: list[CircularTest] = []
     run: list[set[str]] = []  # ways round each that the path has
     missing: dict[str, str] = {}
-    for ends in _full_circles(path.segments):
+    for ends in _full_circles(path):
         arc = path.segments[ends[0]]
         assert isinstance(arc, Arc)
         normal = arc.axis * np.sign(arc.axis[np.argmax(np.abs(arc.axis))])
@@ -117,7 +118,7 @@ def circular_tests(
 def _way(
     path: Path,
     ends: tuple[int, int],
-    samples: tuple[Array, Array],
+    samples: tuple[Array, Array | Scaled],
     tracks: tuple[Track, Track],
     left_out: tuple[float, float | None],
 ) -> Way | str:
@@ -125,23 +126,28 @@ def _way(
     arc, (settle, run_in) = path.segments[ends[0]], left_out
     assert isinstance(arc, Arc)
     normal = arc.axis * np.sign(arc.axis[np.argmax(np.abs(arc.axis))])
-    on = np.flatnonzero((tracks[0].segment >= ends[0]) & (tracks[0].segment <= ends[1]))
-    if len(on) < SAMPLES_MIN:
-        return f"{len(on)} samples on it, {SAMPLES_MIN} wanted"
-    span = max(SPEED_SPAN, SPEED_PART * float(samples[0][on[-1]] - samples[0][on[0]]))
-    speed = speed_along(samples[0], tracks[1].along, span)
+    time, along = samples[0], tracks[1].along
+    a, b = np.searchsorted(tracks[0].segment, [ends[0], ends[1] + 1]).tolist()
+    if b - a < SAMPLES_MIN:
+        return f"{b - a} samples on it, {SAMPLES_MIN} wanted"
+    span = max(SPEED_SPAN, SPEED_PART * float(time[b - 1] - time[a]))
+    speed = speed_along(time, along, span, slice(a, b))
     if run_in is None:
-        chosen = _steady(samples[0], speed, (tracks[1].segment, ends), settle)
+        inside = np.searchsorted(tracks[1].segment, [ends[0], ends[1] + 1]).tolist()
+        own = slice(*inside)
+        low, high = _steady(time[own], speed_along(time, along, span, own), settle)
+        chosen = (time[a:b] >= low) & (time[a:b] <= high)
     else:
         low, high = path.offsets[ends[0]], path.offsets[ends[1] + 1]
         skip = run_in * arc.radius
-        chosen = (tracks[0].along >= low + skip) & (tracks[0].along <= high - skip)
-    points = (samples[1] - arc.centre) @ plane_axes(normal).T
-    kept = _whole_turns(points, on[chosen[on]])
-    steady = _coverage(points, kept) >= COVERAGE_MIN
+        way = tracks[0].along[a:b]
+        chosen = (way >= low + skip) & (way <= high - skip)
+    points = (np.asarray(samples[1][a:b])[:, :3] - arc.centre) @ plane_axes(normal).T
+    kept, covered = _whole_turns(points, np.flatnonzero(chosen))
+    steady = covered >= COVERAGE_MIN
     if not steady:
-        kept = _whole_turns(points, on)
-    if (covered := _coverage(points, kept)) < COVERAGE_MIN:
+        kept, covered = _whole_turns(points, np.arange(b - a))
+    if covered < COVERAGE_MIN:
         wanted = math.degrees(COVERAGE_MIN)
         return f"the tool covers {math.degrees(covered):.0f} degrees of it, {wanted:.0f} wanted"
     try:
@@ -150,9 +156,9 @@ def _way(
         return str(error)
     return Way(
         *ends,
-        lines=(arc.label.line, path.segments[ends[1]].label.line),
+        lines=(arc.label.line, int(path.lines[ends[1]])),
         points=points[kept],
-        time=samples[0][kept],
+        time=np.asarray(time[a:b])[kept],
         coverage=covered,
         steady=steady,
         speed=float(np.median(speed[kept])),
@@ -169,71 +175,80 @@ def plane_axes(normal: Array) -> Array:
     return np.array([first, np.cross(normal, first)])
 
 
-def _full_circles(segments: tuple[Segment, ...]) -> list[tuple[int, int]]:
+def _full_circles(path: Path) -> list[tuple[int, int]]:
     """First and last segment of each run of arcs that makes a full turn or more."""
+    columns = path.segments.columns
+    rows = np.flatnonzero(columns.shape == ARC)
+    angle, rise = columns.turned[:, 0], columns.turned[:, 1]
+    # Arcs that are like a first one are like their neighbours, twice as roughly: runs of such arcs
+    # that turn far enough in all are few.
+    alike = (np.diff(rows) == 1) & (np.abs(np.diff(columns.centre, axis=0)).max(axis=1) <= 2 * SAME)
+    starts = np.flatnonzero(np.concatenate([[True], ~alike])[: len(rows)])
     found = []
-    i = 0
-    while i < len(segments):
-        j, turned = i, 0.0
-        head = segments[i]
-        while j < len(segments) and _continues(head, segments[j]):
-            turned += segments[j].angle  # type: ignore[union-attr]
-            j += 1
-        if turned >= TURN * (1.0 - 1e-9):
-            found.append((i, j - 1))
-        i = max(j, i + 1)
+    turned = np.add.reduceat(angle, starts) if len(rows) else angle
+    for k in np.flatnonzero(turned >= TURN * (1.0 - 1e-9)).tolist():
+        i, end = int(starts[k]), int(starts[k + 1]) if k + 1 < len(starts) else len(rows)
+        while i < end:
+            head, j, total = path.segments[int(rows[i])], i, 0.0
+            while j < end and not rise[j] and _continues(head, path.segments[int(rows[j])]):
+                total += float(angle[j])
+                j += 1
+            if total >= TURN * (1.0 - 1e-9):
+                found.append((int(rows[i]), int(rows[j - 1])))
+            i = max(j, i + 1)
     return found
 
 
 def _continues(head: Segment, other: Segment) -> bool:
-    if not isinstance(head, Arc) or not isinstance(other, Arc) or other.rise or head.rise:
+    if not isinstance(head, Arc) or not isinstance(other, Arc) or head.rise:
         return False
     near = np.abs(head.centre - other.centre).max() <= SAME
     alike = abs(head.radius - other.radius) <= SAME and head.axis @ other.axis >= 1.0 - SAME
     return bool(near and alike)
 
 
-def _steady(
-    time: Array, speed: Array, where: tuple[Index, tuple[int, int]], settle: float
-) -> NDArray[np.bool_]:
-    """Samples of the longest steady part of a circle, after it has settled."""
-    segment, ends = where
-    inside = (segment >= ends[0]) & (segment <= ends[1])
+def _steady(time: Array, speed: Array, settle: float) -> tuple[float, float]:
+    """Begin and end of the longest steady part of a circle, after it has settled [s]."""
     # The tool may rest at an end for long: the usual speed is that of the samples in motion.
-    moving = inside & (speed > 0.1 * float(speed[inside].max(initial=0.0)))
+    moving = speed > 0.1 * float(speed.max(initial=0.0))
     middle = float(np.median(speed[moving])) if moving.any() else 0.0
-    good = inside & (np.abs(speed - middle) <= STEADY * middle)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(int), [0]])))
+    good = np.abs(speed - middle) <= STEADY * middle
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]])))
     if not len(edges):
-        return good
+        return math.inf, -math.inf
     begins, stops = edges[::2], edges[1::2]
     longest = int(np.argmax(stops - begins))
-    begin, end = time[begins[longest]] + settle, time[stops[longest] - 1] - 0.5 * SPEED_SPAN
-    return (time >= begin) & (time <= end)
+    return float(time[begins[longest]]) + settle, float(time[stops[longest] - 1]) - 0.5 * SPEED_SPAN
 
 
-def speed_along(time: Array, along: Array, span: float) -> Array:
-    """Speed [mm/s] of a way along the path [mm], averaged over `span` [s]."""
-    low = np.maximum(time - 0.5 * span, time[0])
-    high = np.minimum(time + 0.5 * span, time[-1])
-    return (np.interp(high, time, along) - np.interp(low, time, along)) / (high - low)
+def speed_along(time: Array, along: Array, span: float, own: slice | None = None) -> Array:
+    """Speed [mm/s] of a way along the path [mm], averaged over `span` [s]; of some samples only."""
+    begin, end, _ = (own or slice(None)).indices(len(time))
+    found = np.empty(max(0, end - begin))
+    for part in blocks(len(found)):
+        now = np.asarray(time[begin + part.start : begin + part.stop])
+        low = np.maximum(now - 0.5 * span, time[0])
+        high = np.minimum(now + 0.5 * span, time[-1])
+        near = slice(
+            max(0, int(np.searchsorted(time, low[0], side="right")) - 1),
+            int(np.searchsorted(time, high[-1])) + 1,
+        )
+        place, way = time[near], along[near]
+        found[part] = np.interp(high, place, way) - np.interp(low, place, way)
+        found[part] /= high - low
+    return found
 
 
-def _turned(points: Array, chosen: Index) -> Array:
-    """Angle turned through since the first of some samples [rad]."""
-    angle = np.unwrap(np.arctan2(points[chosen, 1], points[chosen, 0]))
-    return np.abs(angle - angle[0]) if len(angle) else angle
-
-
-def _coverage(points: Array, chosen: Index) -> float:
-    return float(_turned(points, chosen)[-1]) if len(chosen) >= SAMPLES_MIN else 0.0
-
-
-def _whole_turns(points: Array, chosen: Index) -> Index:
-    """As many whole turns as there are; all samples if there is not one."""
-    way = _turned(points, chosen)
-    turns = math.floor(float(way[-1]) / TURN) if len(way) else 0
-    return chosen[: np.searchsorted(way, turns * TURN, side="right")] if turns else chosen
+def _whole_turns(points: Array, chosen: Index) -> tuple[Index, float]:
+    """As many whole turns of samples as there are, else all; the angle they cover [rad]."""
+    if not len(chosen):
+        return chosen, 0.0
+    own = points[chosen]
+    angle = np.unwrap(np.arctan2(own[:, 1], own[:, 0]))
+    way = np.abs(angle - angle[0])
+    turns = math.floor(float(way[-1]) / TURN)
+    count = int(np.searchsorted(way, turns * TURN, side="right")) if turns else len(way)
+    return chosen[:count], float(way[count - 1]) if count >= SAMPLES_MIN else 0.0
 
 
 def _same(one: CircularTest, other: CircularTest) -> bool:

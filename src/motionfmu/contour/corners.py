@@ -2,14 +2,15 @@
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.contour.arcs import Array
 from motionfmu.contour.circles import SPEED_SPAN, speed_along
-from motionfmu.contour.geometry import Arc, Array, Line, Segment
 from motionfmu.contour.path import Path
+from motionfmu.contour.ranges import largest, parts
+from motionfmu.contour.segments import ARC, CUBIC, Index, Segments
 from motionfmu.contour.track import Track
 
 # Smallest change of direction that is called a corner [rad].
@@ -44,66 +45,69 @@ def find_corners(
     position and of the pulses put out, `cutting` are the samples that count.
     """
     track, command = tracks
+    before, after, angle = _corners(path)
+    passed = np.searchsorted(track.segment, after)
+    reached = passed < len(time)  # else the run ends before
+    before, after, passed = before[reached], after[reached], passed[reached]
+    angle = angle[reached]
+    low = np.searchsorted(time, time[passed] - window)
+    high = np.searchsorted(time, time[passed] + window)
+    low = np.maximum(low, np.searchsorted(track.segment, before))
+    high = np.minimum(high, np.searchsorted(track.segment, after, side="right"))
+    upto = np.concatenate([[0], np.cumsum(cutting)])
+    own = np.flatnonzero(upto[high] > upto[low])
+    before, after, low, high = before[own], after[own], low[own], high[own]
+    angle = angle[own]
     speed = speed_along(time, command.along, SPEED_SPAN)
-    moves = [s for s, move in enumerate(path.segments) if move.length and cutting_move(path, s)]
     corners = []
-    for before, after in pairwise(moves):
-        if not _joined(path, before, after):
-            continue
-        first, second = path.segments[before], path.segments[after]
-        angle = _turn(_leaving(first), _entering(second))
-        curved = isinstance(first, Arc) or isinstance(second, Arc)
-        if angle < ANGLE_MIN or (curved and angle > ANGLE_BACK):
-            continue
-        passed = int(np.searchsorted(track.segment, after))
-        if passed == len(time):  # the run ends before
-            break
-        low = int(np.searchsorted(time, time[passed] - window))
-        high = int(np.searchsorted(time, time[passed] + window))
-        low = max(low, int(np.searchsorted(track.segment, before)))
-        high = min(high, int(np.searchsorted(track.segment, after, side="right")))
-        own = low + np.flatnonzero(cutting[low:high])
-        if not len(own):
-            continue
-        worst = int(own[np.argmax(track.distance[own])])
-        x, y, z = (float(c) for c in second.start)
-        corners.append(
-            Corner(
-                first.label.line,
-                second.label.line,
-                (x, y, z),
-                angle,
-                float(track.distance[worst]),
-                float(time[worst]),
-                float(speed[own].min()),
-            )
+    for some, rows, first in parts(low, high):
+        cut = cutting[rows]
+        error, worst = largest(np.where(cut, track.distance[rows], -1.0), first)
+        slowest = np.minimum.reduceat(np.where(cut, speed[rows], np.inf), first)
+        columns = (
+            path.lines[before[some]],
+            path.lines[after[some]],
+            path.segments.columns.start[after[some]],
+            angle[some],
+            error,
+            time[rows[worst]],
+            slowest,
         )
+        corners += [
+            Corner(line, then, tuple(point), *rest)
+            for line, then, point, *rest in zip(*(c.tolist() for c in columns), strict=True)
+        ]
     return tuple(corners)
 
 
-def cutting_move(path: Path, segment: int) -> bool:
-    """Whether a segment is cut: a line, arc or helix."""
-    return path.segments[segment].label.kind != "ptp"
+def _corners(path: Path) -> tuple[Index, Index, Array]:
+    """Moves before and after each corner of the cutting moves, and its angle [rad]."""
+    segments = path.segments
+    moves = np.flatnonzero(path.cut & (path.lengths > 0.0))
+    before, after = moves[:-1], moves[1:]
+    # nothing but moves without length lies between
+    still = np.concatenate([[0], np.cumsum(path.lengths > 0.0)])
+    joined = still[after] - still[before] == 1
+    before, after = before[joined], after[joined]
+    a, b = _tangents(segments, before, "leaving"), _tangents(segments, after, "entering")
+    (ax, ay, az), (bx, by, bz) = a.T, b.T
+    cross = np.hypot(np.hypot(ay * bz - az * by, az * bx - ax * bz), ax * by - ay * bx)
+    angle = np.arctan2(cross, ax * bx + ay * by + az * bz)
+    shape = segments.columns.shape
+    curved = (shape[before] == ARC) | (shape[after] == ARC)
+    found = (angle >= ANGLE_MIN) & ~(curved & (angle > ANGLE_BACK))
+    return before[found], after[found], angle[found]
 
 
-def _joined(path: Path, before: int, after: int) -> bool:
-    """Whether nothing but moves without length lies between two segments."""
-    return all(path.segments[s].length == 0.0 for s in range(before + 1, after))
-
-
-def _entering(segment: Segment) -> Array:
-    """Unit tangent (3,) at the start."""
-    return segment.direction if isinstance(segment, Line) else segment.tangent(np.zeros(1))[0]
-
-
-def _leaving(segment: Segment) -> Array:
-    """Unit tangent (3,) at the end."""
-    if isinstance(segment, Line):
-        return segment.direction
-    return segment.tangent(np.array([segment.length]))[0]
-
-
-def _turn(before: Array, after: Array) -> float:
-    (a, b, c), (x, y, z) = before.tolist(), after.tolist()  # np.cross takes 20 us
-    cross = math.hypot(b * z - c * y, c * x - a * z, a * y - b * x)
-    return math.atan2(cross, float(before @ after))
+def _tangents(segments: Segments, which: Index, end: str) -> Array:
+    """Unit tangents (n, 3) at the begin (entering) or the end (leaving) of segments."""
+    found = segments.directions[which]
+    shape = segments.columns.shape[which]
+    rows = np.flatnonzero(shape == ARC)
+    if len(rows):
+        arcs = segments.arcs[segments.place[which[rows]]]
+        found[rows] = arcs.tangents(arcs.angle if end == "leaving" else 0.0 * arcs.angle)
+    for i in np.flatnonzero(shape == CUBIC).tolist():
+        curve = segments[int(which[i])]
+        found[i] = curve.tangent(np.array([curve.length if end == "leaving" else 0.0]))[0]
+    return found

@@ -1,15 +1,20 @@
 """Contour error: every sample against the exact commanded geometry."""
 
+import math
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
-from motionfmu.contour.assign import Index, assign
+from motionfmu.contour.arcs import Array
+from motionfmu.contour.assign import assign
 from motionfmu.contour.circles import circular_tests
 from motionfmu.contour.corners import find_corners
-from motionfmu.contour.geometry import TURN, Arc, Array
 from motionfmu.contour.path import Path
 from motionfmu.contour.result import ContourInput, ContourResult
+from motionfmu.contour.segments import Index
 from motionfmu.contour.statistics import statistics
-from motionfmu.contour.track import Track
+from motionfmu.contour.track import blocks, follow
 
 # The tool is within exp(-5) = 0.7 % of a corner's following distance after five servo lags.
 LAGS = 5.0
@@ -24,7 +29,9 @@ FIFO_DEPTH = 63
 UNDER_WAY = 18
 
 
-def analyse(run: ContourInput) -> ContourResult:
+def analyse(
+    run: ContourInput, progress: Callable[[float], None] = lambda share: None
+) -> ContourResult:
     """Find the contour error of a run against the exact geometry.
 
     First the pulses put out are followed along the path: each sample may lie on the segments
@@ -36,7 +43,9 @@ def analyse(run: ContourInput) -> ContourResult:
     Parameters
     ----------
     run : ContourInput
-        Geometry and signals.
+        Geometry and signals, which may be memory maps: they are read in parts.
+    progress : callable
+        Told the share that is done, 0 to 1.
 
     Raises
     ------
@@ -44,92 +53,92 @@ def analyse(run: ContourInput) -> ContourResult:
         The run never moves on a line, arc or helix.
     """
     path, time = run.path, run.time
-    older = path.segment_of(np.maximum.accumulate(run.command))
-    newer = older if run.newest is None else path.segment_of(np.maximum.accumulate(run.newest))
-    newer = np.maximum(older, newer)
+    older = _segments(path, run.command)
+    newer = older if run.newest is None else np.maximum(older, _segments(path, run.newest))
     wait = run.dda_time * (UNDER_WAY + (FIFO_DEPTH if run.stock is None else np.max(run.stock)))
-    first, last = older[_at(time, -wait)], newer[_at(time, wait)]
-    owners = assign(run.commanded[:, :3], path.segments, first, last)
-    command_track = _follow(run.commanded, path, owners)
-    lag = servo_lag(time, run.commanded[:, :3], run.actual[:, :3])
+    owners = assign(run.commanded, path, shifted(older, time, -wait), shifted(newer, time, wait))
+    progress(0.25)
+    command_track = follow(run.commanded, path, owners)
+    progress(0.4)
+    lag = servo_lag(time, run.commanded, run.actual)
     window = max(LAGS * lag, WINDOW_MIN) if run.window is None else run.window
-    back, ahead = _at(time, -window), _at(time, AHEAD * window)
-    owners = assign(run.actual[:, :3], path.segments, owners[back], owners[ahead])
-    track = _follow(run.actual, path, owners)
+    back, ahead = shifted(owners, time, -window), shifted(owners, time, AHEAD * window)
+    owners = assign(run.actual, path, back, ahead)
+    progress(0.7)
+    track = follow(run.actual, path, owners)
+    progress(0.85)
     tracks = (track, command_track)
-    steps = np.any(np.diff(run.commanded[:, :3], axis=0) != 0.0, axis=1)
-    count = np.concatenate([[0], np.cumsum(steps)])
-    kinds = np.array([s.label.kind != "ptp" for s in path.segments])
-    cutting = (count > count[back]) & kinds[track.segment]
+    count = _steps(run.commanded)
+    cutting = (count > shifted(count, time, -window)) & path.cut[track.segment]
     if not cutting.any():
         raise ValueError("the run never moves on a line, arc or helix: it has no contour")
-    circles, missing = circular_tests(
-        path, (time, run.actual[:, :3]), tracks, SETTLE * window, run.run_in
-    )
+    circles, missing = circular_tests(path, (time, run.actual), tracks, SETTLE * window, run.run_in)
+    corners = find_corners(path, time, tracks, cutting, window)
+    both = cutting & path.cut[command_track.segment]
+    errors = statistics(path, time, track, cutting), statistics(path, time, command_track, both)
+    progress(1.0)
     return ContourResult(
-        run,
-        track,
-        command_track,
-        cutting,
-        lag,
-        window,
-        statistics(path, time, track, cutting),
-        statistics(path, time, command_track, cutting & kinds[command_track.segment]),
-        circles,
-        find_corners(path, time, tracks, cutting, window),
-        missing,
+        run, track, command_track, cutting, lag, window, *errors, circles, corners, missing
     )
 
 
-def servo_lag(time: Array, commanded: Array, actual: Array) -> float:
+def servo_lag(time: Array, commanded: Any, actual: Any) -> float:
     """Following distance over speed [s], by least squares; 0 if nothing moves or the tool leads."""
     span = min(max(1, round(0.002 / float(np.median(np.diff(time))))), len(time) - 1)
-    speed = (commanded[span:] - commanded[:-span]) / (time[span:] - time[:-span])[:, None]
-    gap = (commanded - actual)[span:]
-    power = float(np.sum(speed * speed))
-    return max(0.0, float(np.sum(speed * gap)) / power) if power > 0.0 else 0.0
+    power = product = 0.0
+    for own in blocks(len(time) - span):
+        later = slice(own.start + span, own.stop + span)
+        place = np.asarray(commanded[later])[:, :3]
+        duration = (time[later] - time[own])[:, None]
+        speed = (place - np.asarray(commanded[own])[:, :3]) / duration
+        power += float(np.vdot(speed, speed))
+        product += float(np.vdot(speed, place - np.asarray(actual[later])[:, :3]))
+    return max(0.0, product / power) if power > 0.0 else 0.0
 
 
-def _at(time: Array, shift: float) -> Index:
-    """Sample that holds at each time plus a shift."""
-    found = np.searchsorted(time, time + shift, side="right") - 1
-    return np.clip(found, 0, len(time) - 1)
+def shifted(values: Any, time: Array, shift: float) -> Any:
+    """Of values (n,) those that hold at each time plus a shift."""
+    found = np.empty_like(values)
+    for own in blocks(len(time)):
+        found[own] = values[_at(time, own, shift)]
+    return found
 
 
-def _follow(positions: Array, path: Path, owners: Index) -> Track:
-    """Nearest points on the segments the samples belong to."""
-    points = positions[:, :3]
-    foot, along = np.empty_like(points), np.empty(len(points))
-    distance, tangent = np.empty(len(points)), np.empty_like(points)
-    place = np.cumsum(path.straight) - 1  # of a line among the lines
-    flat = path.straight[owners]
-    if flat.any():
-        which = place[owners[flat]]
-        near = path.lines.foot(points[flat], which)
-        foot[flat], distance[flat] = near.point, near.distance
-        tangent[flat] = path.lines.direction[which]
-        along[flat] = path.offsets[owners[flat]] + near.along
-    cuts = np.searchsorted(owners, np.arange(len(path.segments) + 1))
-    for s in np.unique(owners[~flat]).tolist():
-        own = slice(int(cuts[s]), int(cuts[s + 1]))
-        segment = path.segments[s]
-        near = segment.foot(points[own])
-        foot[own], distance[own] = near.point, near.distance
-        tangent[own] = segment.tangent(near.along)
-        way = near.along
-        if isinstance(segment, Arc) and segment.rise == 0.0:
-            way = _unwrap(segment, way)
-        along[own] = path.offsets[s] + way
-    signed = None
-    if path.normal is not None:
-        left = np.cross(path.normal, tangent)
-        side = np.sum((points - foot) * left, axis=1)
-        signed = np.where(side < 0.0, -distance, distance)
-    return Track(owners, along, foot, distance, signed)
+def _at(time: Array, own: slice, shift: float) -> Index:
+    """Sample that holds at some times plus a shift."""
+    last = len(time) - 1
+    goal = np.asarray(time[own]) + shift
+    # Where the samples are even it is known, which is seen by looking there.
+    even = np.arange(own.start, own.stop) + math.floor(shift / _step(time))
+    found = np.clip(even, 0, last)
+    found += (found < last) & (time[np.minimum(found + 1, last)] <= goal)
+    wrong = (time[found] > goal) & (found > 0)
+    wrong |= (found < last) & (time[np.minimum(found + 1, last)] <= goal)
+    if wrong.any():
+        rest = np.searchsorted(time, goal[wrong], side="right") - 1
+        found[wrong] = np.clip(rest, 0, last)
+    return found
 
 
-def _unwrap(arc: Arc, along: Array) -> Array:
-    """Way along a circle that may be run through more than once."""
-    turn = TURN / arc.angle * arc.length
-    way = np.unwrap(along, period=turn)
-    return np.clip(way - turn * np.round(way[0] / turn), 0.0, arc.length)
+def _step(time: Array) -> float:
+    return float(time[-1] - time[0]) / (len(time) - 1)
+
+
+def _segments(path: Path, command: Index) -> Index:
+    """Segment of the newest command so far (n,)."""
+    found = np.empty(len(command), dtype=np.int32)
+    newest = command[0]
+    for own in blocks(len(command)):
+        upto = np.maximum.accumulate(np.maximum(command[own], newest))
+        newest = upto[-1]
+        found[own] = path.segment_of(upto)
+    return found
+
+
+def _steps(commanded: Any) -> Index:
+    """Number of samples so far at which the pulses moved the tool (n,)."""
+    found = np.zeros(len(commanded), dtype=np.int32)
+    for own in blocks(len(commanded) - 1):
+        places = np.asarray(commanded[own.start : own.stop + 1])[:, :3]
+        found[own.start + 1 : own.stop + 1] = (places[1:] != places[:-1]).any(axis=1)
+    return np.cumsum(found, out=found)

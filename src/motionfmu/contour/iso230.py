@@ -4,18 +4,24 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from motionfmu.contour.geometry import Array
+from motionfmu.contour.arcs import EPS, Array
+from motionfmu.contour.segments import Index
 
 # Gauss-Newton and its minimax kin square the error each round when the points lie near a circle;
 # six rounds go from 1 % to rounding. More are allowed for odd shapes.
 ROUNDS_MAX = 50
 # A centre is found when it moves by less than this part of the radius.
 MOVE_DONE = 1e-13
-# Constraints added per round of the minimax fit, at least.
-SECTORS = 64
-# HiGHS keeps constraints to 1e-7 of their scale; here scaled so that the zone's width is near 1.
-ZONE_DONE = 1e-6
+# Parts of the points of which the minimax fit takes the extreme ones.
+PARTS = 64
+# A point that leaves a zone by less than this part of its width is in it.
+ZONE_DONE = 1e-10
+# An exchange is one of at most so many points: far more than any shape needs.
+EXCHANGES_MAX = 1000
+# Corrections of a least squares solution: each squares what the normal equations lose.
+CORRECTIONS = 2
 
 
 @dataclass(frozen=True)
@@ -42,105 +48,157 @@ class Ellipse:
     orientation: float  # of the major axis from the plane's first axis, -pi/2 to pi/2 [rad]
 
 
+def least_squares(rows: Array, values: Array) -> Array:
+    """Solve rows (k, n) @ x = values (n,) for x (k,) with the least sum of squares.
+
+    By the normal equations, which take one pass over the samples; what their condition loses, the
+    residuals bring back.
+    """
+    normal = rows @ rows.T
+    found = np.linalg.solve(normal, rows @ values)
+    for _ in range(CORRECTIONS):
+        found = found + np.linalg.solve(normal, rows @ (values - found @ rows))
+    return np.asarray(found)
+
+
 def least_squares_circle(points: Array) -> tuple[Array, float]:
     """Centre (2,) and radius of the circle with the least sum of squared radial distances from
     points (n, 2), three at least and not on a straight line [mm].
     """
     origin = points.mean(axis=0)
-    shifted = points - origin
-    matrix = np.column_stack([2.0 * shifted, np.ones(len(points))])
-    solution = np.linalg.lstsq(matrix, np.sum(shifted**2, axis=1), rcond=None)[0]
-    centre = solution[:2]
+    x, y = np.ascontiguousarray((points - origin).T)
+    rows = np.stack([x, y, np.ones(len(points))])
+    # to unit size, so that all three weigh the same
+    size = float(np.sqrt((x @ x + y @ y) / len(points)))
+    scaled = rows / [[size], [size], [1.0]]
+    centre = 0.5 * size * least_squares(scaled, scaled[0] ** 2 + scaled[1] ** 2)[:2]
     for _ in range(ROUNDS_MAX):
-        gap = shifted - centre
-        radii = np.hypot(gap[:, 0], gap[:, 1])
-        matrix = np.column_stack([gap / radii[:, None], np.ones(len(points))])
-        step = np.linalg.lstsq(matrix, radii, rcond=None)[0]
+        u, v = x - centre[0], y - centre[1]
+        radii = np.sqrt(u * u + v * v)
+        np.divide(u, radii, out=rows[0])
+        np.divide(v, radii, out=rows[1])
+        mean = float(radii.mean())
+        step = least_squares(rows, radii - mean)
         centre = centre + step[:2]
-        if np.abs(step[:2]).max() <= MOVE_DONE * float(radii.mean()):
+        if np.abs(step[:2]).max() <= MOVE_DONE * mean:
             break
-    gap = shifted - centre
-    return centre + origin, float(np.hypot(gap[:, 0], gap[:, 1]).mean())
+    u, v = x - centre[0], y - centre[1]
+    return centre + origin, float(np.sqrt(u * u + v * v).mean())
 
 
-def minimum_zone(points: Array) -> Zone:
+def minimum_zone(points: Array, circle: tuple[Array, float] | None = None) -> Zone:
     """Two concentric circles of least radial separation, about points (n, 2) [mm].
 
-    They lie all round or at least over half a circle. Each round linearises the radii about the
-    present centre and finds the minimax step by linear programming: least h with
-    ``|r_i - u_i . dc - R| <= h`` over dc and R. Only the points that bind are given to the program;
-    those that its solution violates are added until there are none. For points near a circle, as
-    here, the problem is convex but for terms of the order of deviation over radius, and the rounds
-    converge quadratically to the one minimum.
+    They lie all round or at least over half a circle; `circle` is the least-squares one. The zone
+    of a few extreme points is found; those that it leaves out join them, until there are none: a
+    zone of some points that holds all of them is the least one of all.
     """
-    centre, radius = least_squares_circle(points)
+    centre, _ = circle or least_squares_circle(points)
+    radii = _radii(points, centre)
+    chosen = _extremes(radii, np.ones(len(points), dtype=bool))
+    floor = 4.0 * EPS * (float(radii.max()) + float(np.abs(points).max()))
+    while True:
+        few = _zone_of_few(points[chosen], centre, floor)
+        centre = np.array(few.centre)
+        radii = _radii(points, centre)
+        low, high = float(radii.min()), float(radii.max())
+        slack = ZONE_DONE * few.width + floor
+        out = (radii < few.inner - slack) | (radii > few.outer + slack)
+        out[chosen] = False
+        if not out.any():
+            return Zone(few.centre, low, high)
+        chosen = np.union1d(chosen, _extremes(radii, out))
+
+
+def _extremes(radii: Array, of: NDArray[np.bool_]) -> Index:
+    """Nearest and farthest of some points, of each of `PARTS` parts of them."""
+    rows = np.flatnonzero(of)
+    cuts = np.unique(np.linspace(0, len(rows), PARTS + 1).astype(int))
+    found = []
+    for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
+        own = radii[rows[a:b]]
+        found += [a + int(own.argmin()), a + int(own.argmax())]
+    return np.unique(rows[found])
+
+
+def _radii(points: Array, centre: Array) -> Array:
+    x, y = points[:, 0] - centre[0], points[:, 1] - centre[1]
+    return np.asarray(np.sqrt(x * x + y * y))
+
+
+def _zone_of_few(points: Array, centre: Array, floor: float) -> Zone:
+    """The least zone of few points.
+
+    Each round linearises the radii about the present centre and finds the minimax step: least h
+    with ``|r_i - u_i . dc - R| <= h`` over dc and R. For points near a circle, as here, the problem
+    is convex but for terms of the order of deviation over radius, and the rounds converge
+    quadratically to the one minimum.
+    """
     best = _zone_about(points, centre)
-    floor = 4.0 * float(np.finfo(float).eps) * (radius + float(np.abs(points).max()))
     for _ in range(ROUNDS_MAX):
         if best.width <= floor:
             break
-        step = _minimax_step(points - centre, best.width)
+        gap = points - centre
+        radii = _radii(points, centre)
+        middle = 0.5 * (best.inner + best.outer)
+        rows = np.column_stack([gap / radii[:, None], np.ones(len(points))])
+        step = best.width * minimax(rows, (radii - middle) / best.width)[:2]
         trial = _zone_about(points, centre + step)
         if not trial.width < best.width:
             break
         gain = best.width - trial.width
         centre, best = centre + step, trial
-        if gain <= ZONE_DONE**2 * best.width:
+        if gain <= ZONE_DONE * best.width:
             break
     return best
 
 
 def _zone_about(points: Array, centre: Array) -> Zone:
-    radii = np.hypot(points[:, 0] - centre[0], points[:, 1] - centre[1])
+    radii = _radii(points, centre)
     return Zone((float(centre[0]), float(centre[1])), float(radii.min()), float(radii.max()))
 
 
-def _minimax_step(gap: Array, scale: float) -> Array:
-    from scipy.optimize import linprog  # takes longer to import than most commands
+def minimax(rows: Array, values: Array) -> Array:
+    """The x (3,) with the least largest ``|values - rows @ x|``; rows are (n, 3): cos, sin, 1.
 
-    radii = np.hypot(gap[:, 0], gap[:, 1])
-    unit = gap / radii[:, None]
-    middle = 0.5 * (float(radii.min()) + float(radii.max()))
-    size = (radii - middle) / scale
-    sector = np.floor((np.arctan2(gap[:, 1], gap[:, 0]) / math.tau + 0.5) * SECTORS)
-    order = np.lexsort((size, sector))
-    ends = np.flatnonzero(np.diff(sector[order], prepend=-1.0, append=SECTORS + 1.0))
-    chosen = np.unique(np.concatenate([order[ends[:-1]], order[ends[1:] - 1]]))
-    while True:
-        u, s = unit[chosen], size[chosen]
-        one = np.ones(len(chosen))
-        # s - u.x - R <= h and -(s - u.x - R) <= h over x (2), R, h
-        rows = np.vstack([np.column_stack([-u, -one, -one]), np.column_stack([u, one, -one])])
-        free = (None, None)
-        answer = linprog(
-            [0.0, 0.0, 0.0, 1.0],
-            A_ub=rows,
-            b_ub=np.concatenate([-s, s]),
-            bounds=[free, free, free, (0.0, None)],
-        )
-        if not answer.success:
-            raise ArithmeticError(f"minimum zone: {answer.message}")
-        rest = np.abs(size - unit @ answer.x[:2] - answer.x[2])
-        over = rest > answer.x[3] + ZONE_DONE
-        over[chosen] = False
-        if not over.any():
-            return np.array(answer.x[:2] * scale)
-        worst = np.flatnonzero(over)
-        worst = worst[np.argsort(rest[worst])[-SECTORS:]]
-        chosen = np.union1d(chosen, worst)
+    Exchange after Stiefel, which is the dual simplex method: four points at a time, with signs such
+    that no x is better for all four. The point that the x of these four misses most takes the place
+    of the one that keeps this so; the largest miss of the four grows each time, up to that of all.
+    """
+    angle = np.arctan2(rows[:, 1], rows[:, 0])
+    order = np.argsort(angle)
+    # Four directions round the circle with signs that alternate have no better x.
+    ends = np.searchsorted(angle[order], np.quantile(np.unique(angle), [0.0, 0.34, 0.67, 1.0]))
+    four = order[ends]
+    sign = np.array([1.0, -1.0, 1.0, -1.0])
+    up = np.array([0.0, 0.0, 0.0, 1.0])
+    for _ in range(EXCHANGES_MAX):
+        table = np.column_stack([sign[:, None] * rows[four], np.ones(4)])
+        found = np.linalg.solve(table, sign * values[four])
+        rest = values - rows @ found[:3]
+        worst = int(np.argmax(np.abs(rest)))
+        if abs(rest[worst]) <= found[3] + 1e-13:
+            return np.asarray(found[:3])
+        side = math.copysign(1.0, rest[worst])
+        both = np.linalg.solve(table.T, np.column_stack([up, [*(side * rows[worst]), 1.0]]))
+        weight, part = both.T
+        ratio = np.divide(weight, part, out=np.full(4, np.inf), where=part > EPS)
+        leaves = int(np.argmin(ratio))
+        four[leaves], sign[leaves] = worst, side
+    raise ArithmeticError(f"minimum zone: not found in {EXCHANGES_MAX} exchanges")
 
 
-def fit_ellipse(points: Array) -> Ellipse:
+def fit_ellipse(points: Array, circle: tuple[Array, float] | None = None) -> Ellipse:
     """Ellipse by least squares through points (n, 2) [mm] near a circle, five at least, all round.
 
-    The general conic ``a x^2 + b xy + c y^2 + d x + e y = 1`` about the points' middle, scaled to
-    unit size: exact for points on an ellipse, and for small deviations the same as the second
-    harmonic of the radius.
+    The general conic ``a x^2 + b xy + c y^2 + d x + e y = 1`` about the least-squares circle,
+    scaled to unit size: exact for points on an ellipse, and for small deviations the same as the
+    second harmonic of the radius.
     """
-    origin, radius = least_squares_circle(points)
-    x, y = ((points - origin) / radius).T
-    matrix = np.column_stack([x * x, x * y, y * y, x, y])
-    a, b, c, d, e = np.linalg.lstsq(matrix, np.ones(len(points)), rcond=None)[0]
+    origin, radius = circle or least_squares_circle(points)
+    x, y = np.ascontiguousarray(((points - origin) / radius).T)
+    rows = np.stack([x * x, x * y, y * y, x, y])
+    a, b, c, d, e = least_squares(rows, np.ones(len(points)))
     form = np.array([[a, 0.5 * b], [0.5 * b, c]])
     middle = np.linalg.solve(form, -0.5 * np.array([d, e]))
     level = 1.0 + middle @ form @ middle
@@ -191,12 +249,13 @@ class BothWays:
 
 def reading(points: Array, radius: float) -> Reading:
     """Quantities of one directed path (n, 2) from the nominal centre, in the plane's axes [mm]."""
-    centre, mean = least_squares_circle(points)
-    about_nominal = np.hypot(points[:, 0], points[:, 1]) - radius
-    about_own = np.hypot(points[:, 0] - centre[0], points[:, 1] - centre[1]) - radius
-    ellipse = fit_ellipse(points)
+    circle = least_squares_circle(points)
+    centre, mean = circle
+    about_nominal = _radii(points, np.zeros(2)) - radius
+    about_own = _radii(points, centre) - radius
+    ellipse = fit_ellipse(points, circle)
     return Reading(
-        g=minimum_zone(points).width,
+        g=minimum_zone(points, circle).width,
         g_least_squares=float(np.ptp(about_own)),
         f_max=float(about_nominal.max()),
         f_min=float(about_nominal.min()),
@@ -214,14 +273,15 @@ def reading(points: Array, radius: float) -> Reading:
 def both_ways(first: Array, second: Array, radius: float) -> BothWays:
     """Quantities of two opposite paths (n, 2), (m, 2) from the nominal centre [mm]."""
     points = np.concatenate([first, second])
-    centre, _ = least_squares_circle(points)
+    circle = least_squares_circle(points)
+    centre, _ = circle
 
     def mean(path: Array, about: Array) -> float:
-        return float(np.hypot(path[:, 0] - about[0], path[:, 1] - about[1]).mean())
+        return float(_radii(path, about).mean())
 
     nominal = np.zeros(2)
     return BothWays(
-        g=minimum_zone(points).width,
+        g=minimum_zone(points, circle).width,
         d=0.5 * (mean(first, centre) + mean(second, centre)) - radius,
         d_nominal=0.5 * (mean(first, nominal) + mean(second, nominal)) - radius,
     )

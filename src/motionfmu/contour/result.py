@@ -1,5 +1,6 @@
 """What a contour analysis takes and gives."""
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Any
@@ -7,12 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.contour.arcs import Array
 from motionfmu.contour.circles import CircularTest
 from motionfmu.contour.corners import Corner
-from motionfmu.contour.geometry import Array
 from motionfmu.contour.path import Path
+from motionfmu.contour.ranges import largest, parts
+from motionfmu.contour.scaled import Scaled
+from motionfmu.contour.segments import KINDS
 from motionfmu.contour.statistics import Statistics
-from motionfmu.contour.track import Track
+from motionfmu.contour.track import Track, blocks
 from motionfmu.errors import NoNumber
 
 AXES = "xyzuvw"
@@ -45,8 +49,9 @@ class ContourInput:
         The planned geometry.
     time : ndarray, shape (n,)
         [s], increasing.
-    actual, commanded : ndarray, shape (n, 6)
-        Position of the tool, and pulses put out over pulses per mm [mm].
+    actual, commanded : ndarray or Scaled, shape (n, 6)
+        Position of the tool, and pulses put out over pulses per mm [mm]; memory maps are read in
+        parts.
     command : ndarray of int, shape (n,)
         Command whose points were written to the card last; of two that are mixed, the older.
     newest : ndarray of int, shape (n,), optional
@@ -72,8 +77,8 @@ class ContourInput:
 
     path: Path
     time: Array
-    actual: Array
-    commanded: Array
+    actual: Array | Scaled
+    commanded: Array | Scaled
     command: NDArray[np.int64]
     newest: NDArray[np.int64] | None = None
     stock: Array | None = None
@@ -87,7 +92,8 @@ class ContourInput:
 
     def __post_init__(self) -> None:
         count = len(self.time)
-        if count < 2 or not (np.diff(self.time) > 0.0).all():
+        steps = (np.diff(self.time[own.start : own.stop + 1]) for own in blocks(count))
+        if count < 2 or not all((step > 0.0).all() for step in steps):
             raise ValueError("time must have two samples or more and increase")
         shapes = {"actual": (count, 6), "commanded": (count, 6), "command": (count,)}
         if self.newest is not None:
@@ -96,9 +102,11 @@ class ContourInput:
             values = getattr(self, name)
             if values.shape != shape:
                 raise ValueError(f"{name} has the shape {values.shape} instead of {shape}")
-            if not np.isfinite(values).all():
-                bad = np.argwhere(~np.isfinite(values))[0]
-                raise ValueError(f"{name} is not finite at {self.time[bad[0]]:g} s")
+            for own in blocks(count):
+                good = np.isfinite(values[own])
+                if not good.all():
+                    bad = own.start + np.argwhere(~good)[0, 0]
+                    raise ValueError(f"{name} is not finite at {self.time[bad]:g} s")
 
 
 @dataclass(frozen=True, repr=False)
@@ -138,7 +146,7 @@ class ContourResult:
     @property
     def following(self) -> Array:
         """Commanded minus actual position, shape (n, 6) [mm]."""
-        return self.run.commanded - self.run.actual
+        return np.subtract(self.run.commanded, self.run.actual)
 
     def __repr__(self) -> str:
         error = self.error
@@ -147,43 +155,69 @@ class ContourResult:
 
     def numbers(self) -> dict[str, Any]:
         """Every number of the analysis, ready for JSON; mm, s, rad."""
-        signed = self.track.signed
-        following = self.following
-        moved = self.cutting
-        return {
-            "units": {"length": "mm", "time": "s", "angle": "rad", "speed": "mm/s"},
-            "samples": len(self.run.time),
-            "samples_cutting": int(moved.sum()),
-            "lag": self.lag,
-            "window": self.window,
-            "error": asdict(self.error)
-            | {
-                "signed_min": None if signed is None else float(signed[moved].min()),
-                "signed_max": None if signed is None else float(signed[moved].max()),
-            },
-            "command_error": asdict(self.command_error),
-            "following": {
-                AXES[i]: {
-                    "max": float(np.abs(following[moved, i]).max()),
-                    "rms": float(np.sqrt(np.mean(following[moved, i] ** 2))),
-                }
-                for i in self.run.axes
-            },
-            "circles": self._circles(),
-            "corners": [dict(vars(c)) for c in self.corners],  # flat: asdict copies deeply
-            "commands": self._per_command(),
-        }
+        return {name: self._group(name) for name in GROUPS}
 
     @cached_property
-    def _numbers(self) -> dict[str, Any]:
-        """`numbers`, made once: a scenario's checks ask for one after the other."""
-        return self.numbers()
+    def _known(self) -> dict[str, Any]:
+        """Groups of numbers by name that were asked for."""
+        return {}
+
+    def _group(self, name: str) -> Any:
+        """One of `GROUPS`, made once: a scenario's checks ask for one number after the other."""
+        if name not in self._known:
+            self._known[name] = GROUPS[name](self)
+        return self._known[name]
+
+    def _error(self) -> dict[str, Any]:
+        least = most = None
+        if (right := self.track.right) is not None:
+            rows = np.flatnonzero(self.cutting)
+            signed = self.track.distance[rows]
+            np.negative(signed, out=signed, where=right[rows])
+            least, most = float(signed.min()), float(signed.max())
+        return asdict(self.error) | {"signed_min": least, "signed_max": most}
+
+    def _following(self) -> dict[str, Any]:
+        axes, count = list(self.run.axes), int(self.cutting.sum())
+        top, square = np.zeros(len(axes)), np.zeros(len(axes))
+        for own in blocks(len(self.cutting)):
+            gap = np.subtract(self.run.commanded[own], self.run.actual[own])
+            gap = gap[self.cutting[own]][:, axes]
+            top = np.maximum(top, np.abs(gap).max(axis=0, initial=0.0))
+            square += np.einsum("ij,ij->j", gap, gap)
+        rms = np.sqrt(square / count)
+        rows = zip(axes, top.tolist(), rms.tolist(), strict=True)
+        return {AXES[i]: {"max": a, "rms": b} for i, a, b in rows}
 
     def _circles(self) -> list[dict[str, Any] | None]:
         """By their number in the path, so that a name means the same circle in every run."""
         found = {c.place: c.numbers() for c in self.circles}
         known = {*found, *(int(name.split(".")[1]) for name in self.missing)}
         return [found.get(i) for i in range(1 + max(known, default=-1))]
+
+    def _commands(self) -> list[dict[str, Any]]:
+        """A row for each segment on which the tool cuts."""
+        path, names = self.run.path, ("command", "line", "kind", "length", "max", "rms", "time")
+        found = np.flatnonzero(self.cutting)
+        owners = self.track.segment[found]
+        cuts = np.concatenate([[0], np.flatnonzero(np.diff(owners)) + 1, [len(owners)]])
+        rows: list[dict[str, Any]] = []
+        for some, samples, first in parts(cuts[:-1], cuts[1:]):
+            size = self.track.distance[found[samples]]
+            top, worst = largest(size, first)
+            square = np.add.reduceat(size * size, first) / np.diff(first, append=len(size))
+            own = owners[cuts[:-1][some]]
+            columns = (
+                path.commands[own].tolist(),
+                path.lines[own].tolist(),
+                [KINDS[k] for k in path.segments.columns.kind[own].tolist()],
+                path.lengths[own].tolist(),
+                top.tolist(),
+                np.sqrt(square).tolist(),
+                self.run.time[found[samples[worst]]].tolist(),
+            )
+            rows += [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
+        return rows
 
     def number(self, name: str) -> float:
         """One number by its dotted name.
@@ -198,10 +232,16 @@ class ContourResult:
         NoNumber
             There is no such number; the message gives the reason, or names what is there.
         """
-        value: Any = self._numbers
-        for part in name.split("."):
+        parts = name.split(".")
+        value: Any = self._group(parts[0]) if parts[0] in GROUPS else GROUPS
+        for part in parts[1:] if parts[0] in GROUPS else parts:
             if isinstance(value, list):
-                value = {str(i): item for i, item in enumerate(value)}
+                there = int(part) if part.isdecimal() else len(value)
+                if there >= len(value):
+                    value = {str(i): None for i in range(len(value))}
+                    raise NoNumber(f"contour number {name!r}: {self._why(name, part, value)}")
+                value = value[there]
+                continue
             if not isinstance(value, dict) or part not in value:
                 raise NoNumber(f"contour number {name!r}: {self._why(name, part, value)}")
             value = value[part]
@@ -217,27 +257,18 @@ class ContourResult:
         there = ", ".join(value) if isinstance(value, dict) else ""
         return f"no {part!r}, there is {there}" if there else "the run has none"
 
-    def _per_command(self) -> list[dict[str, Any]]:
-        rows = []
-        segments = self.run.path.segments
-        found = np.flatnonzero(self.cutting)
-        owners = self.track.segment[found]
-        cuts = np.searchsorted(owners, np.arange(len(segments) + 1))
-        for s, segment in enumerate(segments):
-            own = found[cuts[s] : cuts[s + 1]]
-            if not len(own):
-                continue
-            size = self.track.distance[own]
-            label = segment.label
-            rows.append(
-                {
-                    "command": label.command,
-                    "line": label.line,
-                    "kind": label.kind,
-                    "length": segment.length,
-                    "max": float(size.max()),
-                    "rms": float(np.sqrt(np.mean(size**2))),
-                    "time": float(self.run.time[own[np.argmax(size)]]),
-                }
-            )
-        return rows
+
+# Groups of the numbers, and how each is made.
+GROUPS: dict[str, Callable[[ContourResult], Any]] = {
+    "units": lambda r: {"length": "mm", "time": "s", "angle": "rad", "speed": "mm/s"},
+    "samples": lambda r: len(r.run.time),
+    "samples_cutting": lambda r: int(r.cutting.sum()),
+    "lag": lambda r: r.lag,
+    "window": lambda r: r.window,
+    "error": ContourResult._error,
+    "command_error": lambda r: asdict(r.command_error),
+    "following": ContourResult._following,
+    "circles": ContourResult._circles,
+    "corners": lambda r: [dict(vars(c)) for c in r.corners],  # flat: asdict copies deeply
+    "commands": ContourResult._commands,
+}

@@ -1,11 +1,12 @@
 """Size of an error and where it is largest."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.contour.geometry import Array
+from motionfmu.contour.arcs import Array
 from motionfmu.contour.path import Path
 from motionfmu.contour.track import Track
 
@@ -28,20 +29,23 @@ class Statistics:
 
 def statistics(path: Path, time: Array, track: Track, chosen: NDArray[np.bool_]) -> Statistics:
     """Statistics of the distance over chosen samples, one at least."""
-    size = track.distance[chosen]
-    worst = int(np.flatnonzero(chosen)[np.argmax(size)])
-    label = path.segments[int(track.segment[worst])].label
-    p50, p95, p99 = (float(p) for p in np.percentile(size, [50.0, 95.0, 99.0]))
-    x, y, z = (float(c) for c in track.foot[worst])
+    rows = np.flatnonzero(chosen)
+    size = track.distance[rows]
+    worst = int(rows[np.argmax(size)])
+    x, y, z = track.feet(np.array([worst]))[0].tolist()
+    mean, square = float(size.mean()), float(size @ size)
+    top = float(size.max())
+    own = int(track.segment[worst])
+    p50, p95, p99 = np.percentile(size, [50.0, 95.0, 99.0], overwrite_input=True).tolist()
     return Statistics(
-        max=float(size.max()),
-        rms=float(np.sqrt(np.mean(size**2))),
-        mean=float(size.mean()),
+        max=top,
+        rms=math.sqrt(square / len(size)),
+        mean=mean,
         p50=p50,
         p95=p95,
         p99=p99,
         time=float(time[worst]),
-        line=label.line,
-        command=label.command,
+        line=int(path.lines[own]),
+        command=int(path.commands[own]),
         point=(x, y, z),
     )

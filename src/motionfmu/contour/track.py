@@ -1,18 +1,79 @@
 """A position followed along the exact path."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
-from motionfmu.contour.assign import Index
-from motionfmu.contour.geometry import Array
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.contour.arcs import TURN, Array
+from motionfmu.contour.assign import BLOCK
+from motionfmu.contour.path import Path
+from motionfmu.contour.segments import ARC, Index
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Track:
     """Nearest points of some samples on the path."""
 
+    path: Path
     segment: Index  # (n,) index; never decreases
     along: Array  # (n,) way along the whole path [mm]
-    foot: Array  # (n, 3) nearest points [mm]
     distance: Array  # (n,) to them [mm]
-    # (n,) the same, negative to the right of the direction of travel; None for a path in space
-    signed: Array | None
+    right: NDArray[np.bool_] | None  # (n,) of the direction of travel; None for a path in space
+
+    @property
+    def signed(self) -> Array | None:
+        """The distance (n,), negative to the right of the direction of travel [mm]."""
+        return None if self.right is None else np.where(self.right, -self.distance, self.distance)
+
+    @property
+    def foot(self) -> Array:
+        """Nearest points (n, 3) [mm]."""
+        return self.feet(slice(None))
+
+    def feet(self, rows: Any) -> Array:
+        """Nearest points (m, 3) of some samples [mm]."""
+        which = self.segment[rows]
+        return self.path.segments.at(which, self.along[rows] - self.path.offsets[which])
+
+
+def blocks(count: int) -> Iterator[slice]:
+    """Samples in parts that need little memory."""
+    return (slice(a, min(a + BLOCK, count)) for a in range(0, count, BLOCK))
+
+
+def follow(positions: Any, path: Path, owners: Index) -> Track:
+    """Nearest points of positions (n, 3 or more) [mm] on the segments they belong to."""
+    count = len(owners)
+    along, distance = np.empty(count), np.empty(count)
+    right = None if path.normal is None else np.empty(count, dtype=bool)
+    for own in blocks(count):
+        points, which = np.asarray(positions[own])[:, :3], owners[own]
+        near = path.segments.foot(points, which)
+        along[own], distance[own] = near.along, near.distance
+        if right is not None and path.normal is not None:
+            x, y, z = path.normal
+            # (normal x tangent) . gap, as one matrix between tangent and gap
+            left = near.tangent @ np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+            right[own] = np.einsum("ij,ij->i", points - near.point, left) < 0.0
+    _unwrap(along, path, owners)
+    for own in blocks(count):
+        along[own] += path.offsets[owners[own]]
+    return Track(path, owners, along, distance, right)
+
+
+def _unwrap(along: Array, path: Path, owners: Index) -> None:
+    """Make of ways on circles [mm] such on arcs that may be run through more than once."""
+    columns, arcs = path.segments.columns, path.segments.arcs
+    # a shorter arc has no two places half a turn apart
+    wide = (columns.turned[:, 0] > 0.5 * TURN) & (columns.turned[:, 1] == 0.0)
+    for s in np.flatnonzero(columns.shape == ARC)[wide].tolist():
+        a, b = np.searchsorted(owners, [s, s + 1])
+        if a < b:
+            k = path.segments.place[s]
+            turn = TURN / arcs.angle[k] * arcs.length[k]
+            way = np.unwrap(along[a:b], period=turn)
+            way -= turn * np.round(way[0] / turn)
+            along[a:b] = np.clip(way, 0.0, arcs.length[k])

@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.contour.arcs import TURN, Array
 from motionfmu.contour.circles import CircularTest, Way
-from motionfmu.contour.geometry import TURN, Array
 
 # Left out of the fit, and searched for spikes: behind each quadrant in the direction of travel,
 # and just before it [rad].

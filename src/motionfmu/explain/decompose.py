@@ -265,7 +265,7 @@ def _effect(
     worst = int(np.argmax(np.where(counts, np.abs(change), -1.0)))
     place = float(path.offsets[-1]) * worst / (len(change) - 1)
     owner = int(np.searchsorted(path.offsets, place, side="right")) - 1
-    line = path.segments[min(owner, len(path.segments) - 1)].label.line if size else 0
+    line = int(path.lines[min(owner, len(path.segments) - 1)]) if size else 0
     usual = float(np.percentile(np.abs(change[counts]), 99.0))
     return Effect(*names, size, usual, _rms(change[counts]), line, *rest, change)
 
@@ -276,9 +276,8 @@ def _counted(run: "ContourResult", along: Array) -> NDArray[np.bool_]:
     Where the tool rests, and how it starts from there, depends by friction on all that was before.
     """
     time, path, way = run.run.time, run.run.path, run.command_track.along
-    kinds = np.array([s.label.kind != "ptp" for s in path.segments])
     owner = np.searchsorted(path.offsets, along, side="right") - 1
-    counts = kinds[np.clip(owner, 0, len(kinds) - 1)]
+    counts = path.cut[np.clip(owner, 0, len(path.segments) - 1)]
     span = RESTS * max(run.lag, WINDOW_MIN / LAGS)
     moves = np.flatnonzero(np.diff(way) > 0.0)
     for before, after in zip([0, *moves[:-1].tolist()], moves.tolist(), strict=True):
@@ -314,11 +313,9 @@ def _tool(run: "ContourResult", along: Array) -> Array:
 def _blended(run: "ContourResult") -> Array:
     """Error of the pulses; where they blend two moves the nearer one counts."""
     track, segments = run.command_track, run.run.path.segments
-    distance = track.distance.copy()
-    for s in range(len(segments) - 1):
-        own = np.flatnonzero(track.segment == s)
-        there = segments[s + 1].foot(run.run.commanded[own, :3]).distance
-        distance[own] = np.minimum(distance[own], there)
+    after = np.minimum(track.segment + 1, len(segments) - 1)
+    there = segments.foot(run.run.commanded[:, :3], after).distance
+    distance = np.minimum(track.distance, there)
     return distance if track.signed is None else np.copysign(distance, track.signed)
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour import ContourResult
+from motionfmu.contour.arcs import Array
 from motionfmu.contour.circles import plane_axes
-from motionfmu.contour.geometry import Array
 from motionfmu.contour.path import outline
 from motionfmu.report.numbers import magnification
 from motionfmu.run.decimate import Index, keep_peaks
@@ -57,9 +57,8 @@ def draw(contour: ContourResult) -> Drawing:
     reach = sum(s.length for s in cuts) / (len(contour.corners) + 1)
     magnify = magnification((contour.error.p95, contour.error.max), size, reach)
     kept, whole = _choose(contour, magnify)
-    foot = track.foot[kept] @ basis.T
+    foot = track.feet(kept) @ basis.T
     gap = np.where(whole[:, None], contour.run.actual[kept, :3] @ basis.T - foot, np.nan)
-    lines = np.array([s.label.line for s in path.segments])
     return Drawing(
         names=tuple(_name(b) for b in basis),
         path=cutting,
@@ -68,7 +67,7 @@ def draw(contour: ContourResult) -> Drawing:
         gap=gap,
         error=error[kept],
         time=contour.run.time[kept],
-        line=lines[track.segment[kept]],
+        line=path.lines[track.segment[kept]],
         hairs=_even(contour.track.along[kept], ~np.isnan(gap[:, 0])),
         magnify=magnify,
     )
@@ -81,7 +80,7 @@ def _choose(contour: ContourResult, magnify: float) -> tuple[Index, NDArray[np.b
     """
     track = contour.track
     moved = np.flatnonzero(contour.cutting)
-    foot, point = track.foot[moved], contour.run.actual[moved, :3]
+    foot, point = track.feet(moved), contour.run.actual[moved, :3]
     shown = foot + magnify * (point - foot)
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shown, axis=0), axis=1))])
     even = np.searchsorted(way, np.linspace(0.0, way[-1], POINTS))

@@ -70,8 +70,9 @@ def ran_of(result: Result, contour: ContourResult | None) -> Ran:
     way, began = None, None
     if contour is not None:
         began = _first(contour.run.command > 0, result.time)
-        cut = sum(s.length for s in contour.run.path.segments if s.label.kind != "ptp")
-        way = cut, float(contour.run.path.offsets[-1]) - cut
+        path = contour.run.path
+        cut = float(path.lengths[path.cut].sum())
+        way = cut, float(path.offsets[-1]) - cut
     elif tool is not None:
         began = _moves(result.time, tool)
     if tool is None or began is None:
@@ -125,13 +126,12 @@ def _moves(time: Array, tool: Read) -> float | None:
 def _programmed(result: Result, contour: ContourResult | None) -> Read | None:
     """The speed that program or scenario asks for [mm/s], NaN where it asks for none."""
     if contour is not None:
-        feeds = np.array([s.label.feed for s in contour.run.path.segments])
         path, commands, end = contour.run.path, contour.run.command, result.done_at or np.inf
 
         def of_program(first: int, last: int) -> Array:
             command = commands[first:last]
             on = (command > 0) & (result.time[first:last] <= end)
-            return np.where(on, feeds[path.segment_of(command)], np.nan)
+            return np.where(on, path.feeds[path.segment_of(command)], np.nan)
 
         return of_program
     asked = result.resolver.document.body.iso9283

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.contour import ContourResult
-from motionfmu.contour.geometry import Array
+from motionfmu.contour.arcs import Array
 from motionfmu.report.numbers import label, length, unit
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID, axis, layout
@@ -36,7 +36,7 @@ def error_figure(contour: ContourResult) -> Figure:
     value = track.distance if track.signed is None else track.signed
     factor, name = unit(contour.error.max)
     value = np.where(contour.cutting, value, np.nan) * factor
-    lines = np.array([s.label.line for s in contour.run.path.segments])[track.segment]
+    lines = contour.run.path.lines[track.segment]
     trace = sampled(Samples(time, value, lines=lines), "contour error", HEAT[2])
     trace["hovertemplate"] = "%{y:.4g} " + name + ", line %{customdata}<extra></extra>"
     worst = int(np.searchsorted(time, contour.error.time))

@@ -1,14 +1,14 @@
 """From a run to its contour analysis: which signal is what, in mm."""
 
-import pathlib
-import tempfile
 from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 
 from motionfmu import units
-from motionfmu.contour import ContourInput, ContourResult, Path, Trace, analyse, read_path
+from motionfmu.contour import ContourInput, ContourResult, Path, Trace, analyse
+from motionfmu.contour.planned import path_of_text
+from motionfmu.contour.scaled import Scaled
 from motionfmu.errors import InputError, NoNumber
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios.contour_signals import CARD, library_of
@@ -16,9 +16,9 @@ from motionfmu.scenarios.contour_signals import CARD, library_of
 CLOCK = 25e-9  # [s] of the card
 
 
-def _millimetres(run: Recorded, name: str) -> Any:
+def _millimetres(run: Recorded, name: str) -> Scaled:
     unit = units.parse(run.resolver.end(name, "contour", "position").port.unit or "1")
-    return run[name] * (unit.factor / units.parse("mm").factor)
+    return Scaled(run[name], units.parse("mm").factor / unit.factor)
 
 
 def contour_of(run: Recorded, only_drawn: Collection[str]) -> ContourResult:
@@ -47,9 +47,9 @@ def contour_of(run: Recorded, only_drawn: Collection[str]) -> ContourResult:
                 path=_path(run),
                 time=run.time,
                 actual=_millimetres(run, contour.position),
-                commanded=run[contour.pulses] / pulses_per_mm,
-                command=run[f"{library}.command"].astype(np.int64),
-                newest=run[f"{library}.command_newest"].astype(np.int64),
+                commanded=Scaled(run[contour.pulses], pulses_per_mm),
+                command=run[f"{library}.command"],
+                newest=run[f"{library}.command_newest"],
                 stock=optional["stock"],
                 interrupts=optional["irq_seq"],
                 feed=run[f"{library}.path_feed"],
@@ -65,13 +65,7 @@ def contour_of(run: Recorded, only_drawn: Collection[str]) -> ContourResult:
 def _path(run: Recorded) -> Path:
     if run.geometry is None:
         raise ValueError("the library wrote no path")
-    with tempfile.TemporaryDirectory(prefix="motionfmu-") as folder:
-        file = pathlib.Path(folder) / "path.csv"
-        file.write_text(run.geometry, encoding="utf-8")
-        try:
-            return read_path(file)
-        except ValueError as error:
-            raise ValueError(str(error).replace(str(file), "planned path")) from None
+    return path_of_text(run.geometry, "planned path")
 
 
 def _traces(run: Recorded, hidden: Collection[str]) -> tuple[Trace, ...]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.columns import ROWS, forget
-from motionfmu.contour.geometry import Array
+from motionfmu.contour.arcs import Array
 
 Index = NDArray[np.int64]
 # Values from one sample to before another: a signal, or what is made of one, block by block.

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from motionfmu.contour.geometry import Array
+from motionfmu.contour.arcs import Array
 from motionfmu.run.decimate import reader
 from motionfmu.run.figures import Chart, Curve, Panel, curve
 from motionfmu.run.recorded import Recorded

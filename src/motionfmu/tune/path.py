@@ -84,7 +84,7 @@ class PathCost:
         self._first = owners[_held(time, -window)][stride]
         self._last = owners[_held(time, AHEAD * window)][stride]
         self._cutting = contour.cutting[stride]
-        self._segments = run.path.segments
+        self._path = run.path
         self.axes = tuple(i + 1 for i in run.axes if i < 3)
         counts = base[document.body.contour.pulses]
         self.pulses = {i: counts[stride, i - 1] for i in self.axes}
@@ -101,15 +101,10 @@ class PathCost:
         points = self._rest.copy()
         for axis, values in positions.items():
             points[:, axis - 1] = self._start[axis] + values * self.factor
-        owners = assign(points, self._segments, self._first, self._last)
-        foot, distance = np.empty_like(points), np.empty(len(points))
-        cuts = np.searchsorted(owners, np.arange(len(self._segments) + 1))
-        for s in np.unique(owners).tolist():
-            own = slice(int(cuts[s]), int(cuts[s + 1]))
-            near = self._segments[s].foot(points[own])
-            foot[own], distance[own] = near.point, near.distance
+        owners = assign(points, self._path, self._first, self._last)
+        near = self._path.segments.foot(points, owners)
         cut = self._cutting
-        return PathError(distance[cut], (points - foot)[cut])
+        return PathError(near.distance[cut], (points - near.point)[cut])
 
     def chain(self, slope: Array, axis: int, changes: Array) -> Array:
         """Derivatives of a cost to an axis' gains, from its position's."""

@@ -10,7 +10,7 @@ from motionfmu.view.scene import Line
 def from_contour(contour: ContourResult) -> Line:
     """The tool beside the exact path, where it cuts."""
     cut = np.flatnonzero(contour.cutting)
-    foot = contour.track.foot[cut]
+    foot = contour.track.feet(cut)
     return Line(foot, contour.run.actual[cut, :3] - foot)
 
 

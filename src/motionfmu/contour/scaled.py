@@ -1,0 +1,37 @@
+"""A recorded signal in another unit, without a copy of it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from motionfmu.contour.arcs import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Scaled:
+    """Values (n, m) over a divisor, or one for each column: made for the part that is asked for."""
+
+    values: Array
+    divisor: Array | float
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Rows and columns."""
+        return self.values.shape
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, key: Any) -> Array:
+        divisor = self.divisor
+        if isinstance(key, tuple) and np.ndim(divisor):
+            divisor = np.asarray(divisor)[key[1]]
+        return np.asarray(self.values[key] / divisor)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
+        return np.asarray(self[:], dtype=dtype)
+
+    def copy(self) -> Array:
+        """All of it, to be changed."""
+        return self[:]
