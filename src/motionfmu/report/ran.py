@@ -94,7 +94,8 @@ def ran_of(result: Result, contour: ContourResult | None) -> Ran:
 def _tool(result: Result, contour: ContourResult | None) -> tuple[Read | None, str, float]:
     """Positions of the tool (n, 3) [mm], what they are from, and a time for its speed [s]."""
     if contour is not None:
-        return reader(contour.run.actual[:, :3]), "positions", OVER
+        actual = contour.run.actual
+        return lambda first, last: actual[first:last][:, :3], "positions", OVER
     name = tool_signal(result)
     if name is not None and name in result.signals:
         tool = position(result, name)
