@@ -39,6 +39,9 @@ LOOK = """async () => {
     const bar = plot.querySelector(".modebar");
     if (!bar || !box(bar).width) { wrong.push(`${name(plot)}: no tools`); continue; }
     bars++;
+    const drawn = plot.querySelector(".js-plotly-plot")._fullLayout;
+    if (drawn.yaxis?.scaleanchor && drawn.height > 200
+      && drawn._size.h - drawn.yaxis._length > 12) wrong.push(`${name(plot)}: room left over`);
     if (box(bar).left < 0 || box(bar).right > innerWidth) wrong.push(`${name(plot)}: tools cut`);
     const around = plot.closest("section").querySelectorAll("h2, h3, .note, .measure, select");
     const own = plot.querySelectorAll(

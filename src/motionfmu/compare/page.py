@@ -125,7 +125,7 @@ def _add_contour(page: Sheet, found: Pairing) -> None:
     note = f"Both errors are drawn <b>{factor:,.0f} times</b> as large as they are."
     left = page.place("path", drawn)
     right = f"<h3>Errors</h3>{_numbers(found, 'contour', CONTOUR)}"
-    content = f'<div class="wide"><div>{left}</div><div>{right}</div></div>'
+    content = f'<div class="wide" style="--beside: 500px"><div>{left}</div><div>{right}</div></div>'
     page.section("Path and contour error", note, content)
     if plots.same_path(found.a, found.b):
         drawn, largest = plots.error_figure(found.a, found.b)

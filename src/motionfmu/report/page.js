@@ -6,8 +6,10 @@ const options = {
 const QUIET = { bgcolor: "rgba(0,0,0,0)", color: "#8a98a5", activecolor: "#0b5cad" };
 // So much more than what is in view is drawn on either side, for those who shift it.
 const BESIDE = 1;
+const GAP = 8, LOWEST = 200; // [pixel] of a plot of axes of one scale: beside it, its height
 const LEGEND = 34; // [pixel] margin above a plot of `layout` in style.py
 
+const BAR = 62; // [pixel] of a scale below a plot
 const narrow = document.documentElement.clientWidth < 500;
 if (narrow) page.figures.forEach(fitted);
 
@@ -27,8 +29,11 @@ function fitted({ data, layout }) {
     }
     const bar = trace.colorbar ?? trace.marker?.colorbar;
     if (!bar) continue;
-    Object.assign(bar, { orientation: "h", x: 0.5, y: layout.scene ? -0.02 : -0.22, len: 0.9,
-      yanchor: "top", thickness: 10 });
+    Object.assign(bar, { orientation: "h", x: 0.5, y: -0.02, len: 0.9, yanchor: "top", thickness: 10 });
+    if (!layout.scene) { // below the title of the axis, however tall the plot is
+      Object.assign(bar, { yref: "container", y: 0, yanchor: "bottom" });
+      layout.margin.b = BAR + (layout.margin.b ?? 0);
+    }
     if (bar.title) bar.title.text = bar.title.text.replaceAll("<br>", " ");
     if (bar.tickvals?.length > 6) {
       const thin = (_, i) => i % Math.ceil(bar.tickvals.length / 6) === 0;
@@ -75,6 +80,7 @@ class Plot {
       this.layout.xaxis.range = [...this.span];
     }
     await Plotly.newPlot(this.place, this.data, this.layout, options);
+    await this.close();
     if (!this.traces.length) return;
     this.note = this.place.parentElement.appendChild(document.createElement("p"));
     this.note.className = "note band";
@@ -87,6 +93,16 @@ class Plot {
       if (change["xaxis.autorange"]) Plotly.relayout(this.place, { "xaxis.range": [...this.span] });
       else if (range) { this.refine(range); this.moved?.(range); }
     });
+  }
+
+  // Axes of one scale that leave room above and below them: the plot is made as low as they are.
+  async close() {
+    const { yaxis, _size } = this.place._fullLayout;
+    if (!this.layout.yaxis?.scaleanchor) return;
+    const height = this.layout.height - Math.round(_size.h - yaxis._length);
+    if (height > this.layout.height - GAP) return;
+    this.place.style.minHeight = `${Math.max(height, LOWEST)}px`;
+    await Plotly.relayout(this.place, { height: Math.max(height, LOWEST) });
   }
 
   get view() { return this.place._fullLayout.xaxis.range.map(Number); }
