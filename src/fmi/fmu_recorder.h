@@ -24,27 +24,37 @@ struct recorder_column {
 struct recorder_stream {
     const char *value;
     char       *block;
-    size_t      width; /* [byte] of a row */
     int         column;
     FILE       *file;
+};
+
+/* Columns whose rows have the same size: their blocks are full at the same time. */
+struct recorder_group {
+    struct recorder_stream *streams;
+    int     count;
+    size_t  width; /* [byte] of a row */
+    int64_t first; /* row at the begin of the blocks */
+    int64_t room;  /* rows in a block */
 };
 
 struct recorder {
     struct recorder_folder folder;
     const struct recorder_column *columns; /* the caller's, as long as it is open */
-    struct recorder_stream *streams;       /* time.npy among them, those of one width together */
+    struct recorder_stream *streams;       /* time.npy among them */
+    struct recorder_group  *groups;
     char    *blocks;
-    int      count;       /* streams */
+    int      count, group_count;
     double   time, period; /* [s] */
-    int64_t  row;         /* the next one */
-    int64_t  first;       /* row at the begin of the blocks */
-    int64_t  room;        /* rows in a block */
+    int64_t  row;          /* the next one */
     char     why[RECORDER_WHY];
 };
 
-/* All blocks together. With a quarter of it the kernel needs half as much again, with four times as
- * much no less. */
-enum { RECORDER_BYTES = 1 << 22 };
+enum {
+    RECORDER_PAGE  = 4096,
+    RECORDER_BLOCK = 64 * 1024, /* [byte] at most, if that are whole pages: a write of a quarter of it
+                                 * costs half as much again, of four times as much a fifth less */
+    RECORDER_LINE  = 64         /* of a cache; blocks a power of two apart would share few of them */
+};
 
 static inline size_t recorder_size(char kind)
 {
@@ -82,6 +92,7 @@ static inline void recorder_close(struct recorder *r)
     }
     recorder_folder_drop(&r->folder);
     free(r->streams);
+    free(r->groups);
     free(r->blocks);
     free(r);
 }
@@ -96,27 +107,47 @@ static inline bool recorder_head(const struct recorder *r, const struct recorder
     return recorder_seek(s->file, 0) == 0 && fwrite(head, 1, sizeof head, s->file) == sizeof head;
 }
 
+static inline size_t recorder_width(const struct recorder *r, const struct recorder_stream *s)
+{
+    const struct recorder_column c = recorder_column_of(r, s->column);
+    return recorder_size(c.kind) * (size_t)c.count;
+}
+
+/* Rows of so many bytes in a block: whole pages. */
+static inline int64_t recorder_room(size_t width)
+{
+    const size_t odd = width & (~width + 1); /* the largest power of two in it */
+    const size_t step = odd < RECORDER_PAGE ? RECORDER_PAGE / odd : 1;
+    const size_t steps = RECORDER_BLOCK / width / step;
+    return (int64_t)(steps ? steps * step : step);
+}
+
 /* Streams by width, blocks behind one another. */
 static inline bool recorder_layout(struct recorder *r)
 {
-    size_t bytes = 0, at = 0;
+    size_t bytes = 0;
     for (int k = 0; k < r->count; k++) {
-        const struct recorder_column c = recorder_column_of(r, k - 1);
-        struct recorder_stream s = {c.value, NULL, recorder_size(c.kind) * (size_t)c.count, k - 1,
-                                    NULL};
+        const struct recorder_stream s = {recorder_column_of(r, k - 1).value, NULL, k - 1, NULL};
+        const size_t width = recorder_width(r, &s);
         int place = k;
-        for (; place > 0 && r->streams[place - 1].width > s.width; place--) {
+        for (; place > 0 && recorder_width(r, &r->streams[place - 1]) > width; place--) {
             r->streams[place] = r->streams[place - 1];
         }
         r->streams[place] = s;
-        bytes += s.width;
+        bytes += (size_t)recorder_room(width) * width + RECORDER_LINE;
     }
-    /* An odd number: blocks whose sizes are powers of two would take the same lines of a cache. */
-    r->room = (int64_t)(RECORDER_BYTES / bytes) | 1;
-    r->blocks = malloc(bytes * (size_t)r->room);
-    for (int k = 0; k < r->count && r->blocks; k++) {
-        r->streams[k].block = r->blocks + at;
-        at += r->streams[k].width * (size_t)r->room;
+    char *at = r->blocks = malloc(bytes);
+    for (int k = 0; k < r->count && at; k++) {
+        struct recorder_stream *s = &r->streams[k];
+        const size_t width = recorder_width(r, s);
+        struct recorder_group *g = &r->groups[r->group_count - (r->group_count > 0)];
+        if (g->width != width) {
+            g = &r->groups[r->group_count++];
+            *g = (struct recorder_group){s, 0, width, 0, recorder_room(width)};
+        }
+        g->count++;
+        s->block = at;
+        at += (size_t)g->room * width + RECORDER_LINE;
     }
     return r->blocks;
 }
@@ -132,9 +163,10 @@ static inline struct recorder *recorder_open(const char *folder,
         r->columns = columns;
         r->period = period;
         r->streams = calloc((size_t)count + 1, sizeof *r->streams);
+        r->groups = calloc((size_t)count + 1, sizeof *r->groups);
         r->count = r->streams ? count + 1 : 0;
     }
-    if (!r || !r->streams || !recorder_layout(r)) {
+    if (!r || !r->streams || !r->groups || !recorder_layout(r)) {
         snprintf(why, room, "no memory to record %s", folder);
         recorder_close(r);
         return NULL;
@@ -163,41 +195,59 @@ static inline struct recorder *recorder_open(const char *folder,
     return r;
 }
 
-/* Write what waits. */
-static inline int recorder_flush(struct recorder *r)
+/* Nothing but 0? */
+static inline bool recorder_empty(const char *block, size_t size)
 {
-    const size_t rows = (size_t)(r->row - r->first);
-    for (int k = 0; k < r->count; k++) {
-        const struct recorder_stream *s = &r->streams[k];
+    return size == 0 || (block[0] == 0 && memcmp(block, block + 1, size - 1) == 0);
+}
+
+/* Write what waits of a group, before the next row. A block of 0 is left out: it reads as that. */
+static inline int recorder_flush(struct recorder *r, struct recorder_group *g)
+{
+    const size_t size = (size_t)(r->row - g->first) * g->width;
+    const int64_t next = NPY_HEAD + r->row * (int64_t)g->width;
+    for (int k = 0; k < g->count; k++) {
+        const struct recorder_stream *s = &g->streams[k];
         errno = 0;
-        if (fwrite(s->block, s->width, rows, s->file) != rows) {
+        const bool good = recorder_empty(s->block, size) ? recorder_seek(s->file, next) == 0
+                                                         : fwrite(s->block, 1, size, s->file) == size;
+        if (!good) {
             return recorder_fail(r, recorder_column_of(r, s->column).name,
                                  strerror(errno ? errno : EIO));
         }
     }
-    r->first = r->row;
+    g->first = r->row;
+    return 0;
+}
+
+static inline int recorder_flush_all(struct recorder *r)
+{
+    for (int i = 0; i < r->group_count; i++) {
+        if (recorder_flush(r, &r->groups[i]) != 0) {
+            return -1;
+        }
+    }
     return 0;
 }
 
 /* Record one row of all values, as they are now. */
 static inline int recorder_row(struct recorder *r)
 {
-    const struct recorder_stream *s = r->streams, *const end = s + r->count;
-    const size_t k = (size_t)(r->row - r->first);
     if (r->why[0]) {
         return -1;
     }
     r->time = (double)r->row * r->period;
-    while (s < end) {
-        const size_t width = s->width;
+    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
+        const struct recorder_stream *s = g->streams, *const end = s + g->count;
+        const size_t at = (size_t)(r->row - g->first) * g->width;
 /* A copy of a known size is a few instructions without a call. */
 #define RECORDER_COPY(size) \
     case size: \
-        for (; s < end && s->width == (size); s++) { \
-            memcpy(s->block + k * (size), s->value, (size)); \
+        for (; s < end; s++) { \
+            memcpy(s->block + at, s->value, (size)); \
         } \
         break
-        switch (width) {
+        switch (g->width) {
             RECORDER_COPY(1);  /* a Boolean */
             RECORDER_COPY(4);  /* an integer */
             RECORDER_COPY(6);  /* six Booleans */
@@ -206,13 +256,19 @@ static inline int recorder_row(struct recorder *r)
             RECORDER_COPY(32); /* four numbers */
             RECORDER_COPY(48); /* six numbers */
         default:
-            memcpy(s->block + k * width, s->value, width);
-            s++;
+            for (; s < end; s++) {
+                memcpy(s->block + at, s->value, g->width);
+            }
         }
 #undef RECORDER_COPY
     }
     r->row++;
-    return r->row - r->first < r->room ? 0 : recorder_flush(r);
+    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
+        if (r->row - g->first == g->room && recorder_flush(r, g) != 0) {
+            return -1;
+        }
+    }
+    return 0;
 }
 
 /* The next row is this one, as after a state was restored: later ones are forgotten, and rows that
@@ -222,30 +278,35 @@ static inline int recorder_at(struct recorder *r, int64_t row)
     if (row == r->row) {
         return 0;
     }
-    if (r->why[0] || recorder_flush(r) != 0) {
+    if (r->why[0] || recorder_flush_all(r) != 0) {
         return -1;
     }
-    for (int k = 0; k < r->count; k++) {
-        const struct recorder_stream *s = &r->streams[k];
-        const int64_t at = NPY_HEAD + row * (int64_t)s->width;
-        if (recorder_cut(s->file, at) != 0 || recorder_seek(s->file, at) != 0) {
-            return recorder_fail(r, recorder_column_of(r, s->column).name, strerror(errno));
+    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
+        const int64_t at = NPY_HEAD + row * (int64_t)g->width;
+        for (int k = 0; k < g->count; k++) {
+            const struct recorder_stream *s = &g->streams[k];
+            if (recorder_cut(s->file, at) != 0 || recorder_seek(s->file, at) != 0) {
+                return recorder_fail(r, recorder_column_of(r, s->column).name, strerror(errno));
+            }
         }
+        g->first = row;
     }
-    r->row = r->first = row;
+    r->row = row;
     return 0;
 }
 
 /* End well: the folder appears. Then, as after an error, only recorder_close is left. */
 static inline int recorder_end(struct recorder *r)
 {
-    if (r->why[0] || recorder_flush(r) != 0) {
+    if (r->why[0] || recorder_flush_all(r) != 0) {
         return -1;
     }
     for (int k = 0; k < r->count; k++) {
         struct recorder_stream *s = &r->streams[k];
+        const int64_t size = NPY_HEAD + r->row * (int64_t)recorder_width(r, s);
         errno = 0;
-        const bool headed = recorder_head(r, s), good = fclose(s->file) == 0 && headed;
+        const bool whole = recorder_head(r, s) && recorder_cut(s->file, size) == 0;
+        const bool good = fclose(s->file) == 0 && whole;
         s->file = NULL;
         if (!good) {
             return recorder_fail(r, recorder_column_of(r, s->column).name,

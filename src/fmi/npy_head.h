@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NPY_HEAD = 128 }; /* [byte], a multiple of 64: so data is aligned when it is mapped */
+enum { NPY_HEAD = 4096 }; /* [byte] a page: so pages of the file are whole ones of the data */
 
 /* `type`: f8, i4 or b1; `columns` -1: one value a row, its shape is (rows,). */
 static inline void npy_head(char head[NPY_HEAD], const char *type, int64_t rows, int64_t columns)
@@ -25,8 +25,8 @@ static inline void npy_head(char head[NPY_HEAD], const char *type, int64_t rows,
                                 order, type, rows, wide);
     memset(head + n, ' ', (size_t)(NPY_HEAD - n));
     memcpy(head, "\x93NUMPY\x01\x00", 8);
-    head[8] = (char)(NPY_HEAD - 10); /* size of the dictionary, two bytes, low one first */
-    head[9] = 0;
+    head[8] = (char)((NPY_HEAD - 10) & 0xFF); /* size of the dictionary, low byte first */
+    head[9] = (char)((NPY_HEAD - 10) >> 8);
     head[NPY_HEAD - 1] = '\n';
 }
 

@@ -173,7 +173,7 @@ def write(folder: Path, signals: Mapping[str, NDArray[Any]], time: NDArray[Any])
             opened[name] = stack.enter_context((folder / f"{name}{ENDING}").open("wb"))
             head = {"descr": data.dtype.str, "fortran_order": False, "shape": data.shape}
             np.lib.format.write_array_header_1_0(opened[name], head)
-        for first in range(0, max(map(len, rest.values())), ROWS):
+        for first in range(0, max(map(len, rest.values()), default=0), ROWS):
             for name, data in rest.items():
                 np.ascontiguousarray(data[first : first + ROWS]).tofile(opened[name])
                 forget(data)
