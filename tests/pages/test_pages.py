@@ -97,6 +97,14 @@ def step_has_cursors_of_its_own(page: Any, _: motionfmu.Result) -> None:
     assert "ms" in told and "kHz" in told
 
 
+def a_plot_is_saved(page: Any) -> None:
+    for format, begin in (("png", b"\x89PNG"), ("svg", b"<svg")):
+        with page.expect_download() as saved:
+            page.locator(f"[data-save='path.{format}']").click()
+        assert saved.value.suggested_filename == f"path.{format}"
+        assert Path(saved.value.path()).read_bytes().startswith(begin)
+
+
 ON_A_PHONE = {"contour": band_holds_every_sample, "margins": step_has_cursors_of_its_own}
 
 
@@ -111,6 +119,8 @@ def test_nothing_overlaps_overflows_or_breaks(browser: Any, pages: Any, kind: st
         page.set_viewport_size(DESK)
         page.wait_for_timeout(150)  # plots follow their size in 100 ms
         assert page.evaluate(LOOK) == []
+        if kind == "contour":
+            a_plot_is_saved(page)
 
 
 def cells(page: Any, plot: str) -> dict[str, list[float]]:

@@ -35,8 +35,6 @@ def test_run_writes_a_whole_result_and_says_where(demo: tuple[Path, str]) -> Non
         "contour.json",
         "contour",
         "report.html",
-        "path.png",
-        "path.svg",
     }
     assert not list(folder.parent.glob(".*"))
 

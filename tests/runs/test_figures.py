@@ -89,7 +89,7 @@ def scenario(folder: Path, text: str) -> Path:
 def drawn(tmp_path_factory: pytest.TempPathFactory):
     folder = tmp_path_factory.mktemp("figures")
     result = motionfmu.load(scenario(folder, PLAIN + FIGURES)).run()
-    return result, save(result, folder / "out", {}).parent
+    return result, save(result, folder / "out", pictures=True).parent
 
 
 def figures_on(folder: Path) -> list[dict]:

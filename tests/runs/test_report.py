@@ -33,7 +33,7 @@ def unpacked(value: object) -> np.ndarray:
 def reported(tmp_path_factory: pytest.TempPathFactory):
     folder = tmp_path_factory.mktemp("report")
     result = motionfmu.load(ROOT / "scenarios/circle").run()
-    page = write_report(result, result.contour(), folder)
+    page = write_report(result, result.contour(), folder, pictures=True)
     return result, folder, page.read_text(), page_data(page)
 
 

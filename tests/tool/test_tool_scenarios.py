@@ -71,7 +71,7 @@ def run(line: Path):
 
 def test_the_verdict_and_the_folder_have_the_figures(run, tmp_path: Path) -> None:
     assert {v.name for v in run.checks} == {"iso9283.AT_P", "iso9283.AV"} and run.ok
-    run.save(tmp_path / "out")
+    run.save(tmp_path / "out", pictures=True)
     numbers = json.loads((tmp_path / "out/result.json").read_text())["iso9283"]
     assert numbers["AT_P"] == run.figure("iso9283.AT_P") and len(numbers["cycles"]) == 2
     assert {"iso9283.png", "iso9283.svg"} <= {f.name for f in (tmp_path / "out").iterdir()}

@@ -80,6 +80,9 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     signals: Annotated[
         bool, typer.Option(help="Keep signals/, a file for each; they may be large.")
     ] = True,
+    pictures: Annotated[
+        bool, typer.Option("--pictures", help="Also write the report's pictures, PNG and SVG.")
+    ] = False,
 ) -> None:
     """Run a scenario, judge it and write its report."""
     from motionfmu.report import outcome
@@ -98,7 +101,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     result = run_shown(
         scenario, options | {"source": files_of(set_), "scratch": outcome.near(target)}
     )
-    shown = outcome.save(result, target, csv, signals)
+    shown = outcome.save(result, target, csv, signals, pictures)
     verdicts(result.checks)
     warnings(result.warnings)
     for line in result.overrides:

@@ -12,7 +12,7 @@ from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.sheet import RUN, Sheet
 from motionfmu.report.signal_words import titled
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout
-from motionfmu.report.tables import picture_links
+from motionfmu.report.tables import picture_buttons
 from motionfmu.run.decimate import keep_peaks, keep_steps
 from motionfmu.run.figures import Chart, Curve, Panel
 
@@ -69,13 +69,13 @@ def heights(chart: Chart, sizes: Sequence[float]) -> list[float]:
 
 
 def add_charts(page: Sheet, charts: Sequence[Chart], pictures: bool = True) -> None:
-    """A section for each figure; pictures may stand beside the page."""
+    """A section for each figure, which may be saved as a picture."""
     names = [name for c in charts for p in c.panels for name in p.levels]
     right = RIGHT + math.ceil(CHARACTER * max((len(n) for n in names), default=0))
     for number, chart in enumerate(charts, 1):
         content = page.place(f"figure{number}", chart_figure(chart, right), chart.whole, RUN)
         if pictures:
-            content += picture_links(f"figure{number}")
+            content += picture_buttons(f"figure{number}")
             page.section(escape(chart.title), escape(chart.note), content)
         else:
             page.section(escape(titled(chart.title, chart.note)), "", content)

@@ -11,7 +11,7 @@ from motionfmu.report.formula import readable
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.sheet import Sheet
 from motionfmu.report.style import AXES, INK, axis, layout, plotted
-from motionfmu.report.tables import picture_links, table
+from motionfmu.report.tables import picture_buttons, table
 
 PICTURE = "iso9283"
 BAND = "rgba(11, 92, 173, 0.13)"
@@ -36,7 +36,7 @@ def add_iso9283(page: Sheet, found: Evaluation) -> None:
         f" {_left_out(path, start, end)}."
     )
     content = _figures(found) + _cycles(found)
-    content += page.place("iso9283", deviation_figure(path)) + picture_links(PICTURE)
+    content += page.place("iso9283", deviation_figure(path)) + picture_buttons(PICTURE)
     if found.poses:
         content += f"<h3>Poses</h3>{_poses(found)}"
     page.section("Path performance", note, content)

@@ -46,7 +46,9 @@ def usable(folder: Path) -> Path:
     return folder
 
 
-def save(result: Result, folder: Path, csv: bool = False, signals: bool = True) -> Path:
+def save(
+    result: Result, folder: Path, csv: bool = False, signals: bool = True, pictures: bool = False
+) -> Path:
     """Write a run's folder, whole or not at all; give the report."""
     # An older result is replaced; anything else in the folder is an InputError.
     with whole(folder) as part:
@@ -66,7 +68,7 @@ def save(result: Result, folder: Path, csv: bool = False, signals: bool = True) 
         if contour is not None:
             way = track(contour)
             write(part / TRACK, way, way.pop("time"))
-        shown = write_report(result, contour, part, ran).name
+        shown = write_report(result, contour, part, ran, pictures).name
     return folder.resolve() / shown
 
 

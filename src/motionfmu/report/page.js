@@ -158,6 +158,16 @@ function printed(on) {
   }
 }
 
+// A plot as a picture, a file of its own.
+addEventListener("click", ({ target }) => {
+  const [name, format] = target.dataset?.save?.split(".") ?? [];
+  const place = name && document.getElementById(name);
+  if (place) {
+    Plotly.downloadImage(place, { format, filename: name, width: place.clientWidth,
+      height: place.clientHeight, scale: format === "png" ? 2 : 1 });
+  }
+});
+
 const clocks = page.times.map(timesOf);
 const plots = page.figures.map((figure) => new Plot(figure, clocks));
 // For tests: everything is drawn.

@@ -8,14 +8,11 @@ from pathlib import Path
 
 from motionfmu.contour import ContourResult
 from motionfmu.contour.circles import CircularTest
-from motionfmu.report.chart_pictures import write_charts
 from motionfmu.report.charts import add_charts
 from motionfmu.report.drawing import Drawing, draw
-from motionfmu.report.iso9283_picture import write_picture as write_lines
 from motionfmu.report.numbers import figure, length
 from motionfmu.report.packed import packed
 from motionfmu.report.path_plot import path_figure
-from motionfmu.report.pictures import write_pictures
 from motionfmu.report.plain import add_performance, deviations, plain_text
 from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.ran import Ran, add_ran, add_speed, as_written, ran_of
@@ -31,6 +28,7 @@ from motionfmu.report.tables import (
     corner_table,
     error_table,
     line_table,
+    picture_buttons,
     warning_list,
 )
 from motionfmu.report.time_plots import (
@@ -59,9 +57,13 @@ FOOTER = (
 
 
 def write_report(
-    result: Result, contour: ContourResult | None, folder: str | Path, ran: Ran | None = None
+    result: Result,
+    contour: ContourResult | None,
+    folder: str | Path,
+    ran: Ran | None = None,
+    pictures: bool = False,
 ) -> Path:
-    """Write the page, the pictures and the contour's numbers of a run.
+    """Write the page and the contour's numbers of a run.
 
     Parameters
     ----------
@@ -70,11 +72,12 @@ def write_report(
     contour : ContourResult or None
         The analysed run; None without a contour.
     folder : str or Path
-        Made if it is not there; gets report.html, figure1.png, figure1.svg and so on, and with a
-        contour path.svg, path.png and contour.json; with figures after ISO 9283 iso9283.svg and
-        iso9283.png.
+        Made if it is not there; gets report.html, and with a contour contour.json.
     ran : Ran, optional
         How the run went, if it was looked at before.
+    pictures : bool
+        Also as files what the page draws: figure1.png, figure1.svg and so on, with a contour
+        path.svg and path.png, with figures after ISO 9283 iso9283.svg and iso9283.png.
 
     Returns
     -------
@@ -97,11 +100,18 @@ def write_report(
         page = page_text((result, ran), contour, drawing, charts)
         numbers = json.dumps(contour.numbers(), indent=1, allow_nan=False)
         folder.mkdir(parents=True, exist_ok=True)
-        write_pictures(result.name, contour, drawing, folder)
+        if pictures:
+            from motionfmu.report.pictures import write_pictures  # with matplotlib
+
+            write_pictures(result.name, contour, drawing, folder)
         (folder / NUMBERS).write_text(numbers + "\n", encoding="utf-8")
-    write_charts(charts, folder)
-    if result.resolver.document.body.iso9283 is not None and not result.no_iso9283:
-        write_lines(result.name, result.iso9283(), folder)
+    if pictures:
+        from motionfmu.report.chart_pictures import write_charts
+        from motionfmu.report.iso9283_picture import write_picture as write_lines
+
+        write_charts(charts, folder)
+        if result.resolver.document.body.iso9283 is not None and not result.no_iso9283:
+            write_lines(result.name, result.iso9283(), folder)
     (folder / PAGE).write_text(page, encoding="utf-8")
     return folder / PAGE
 
@@ -175,7 +185,8 @@ def _add_path(page: Sheet, contour: ContourResult, drawing: Drawing) -> None:
         f"The contour error is drawn <b><span data-magnification>{factor:,.0f}</span> times</b> as"
         " large as it is; colour is its true size."
     )
-    left = f"<div>{control}{page.place('path', path_figure(drawing))}</div>"
+    plot = page.place("path", path_figure(drawing)) + picture_buttons("path")
+    left = f"<div>{control}{plot}</div>"
     right = f"<h3>Errors</h3>{error_table(contour)}<h3>Worst lines</h3>{line_table(contour)}"
     content = f'<div class="wide">{left}<div>{right}</div></div>'
     page.section("Path and contour error", note, content)

@@ -51,7 +51,7 @@ def path_figure(drawing: Drawing) -> Figure:
             "mode": "markers+lines",
             "marker": marker,
             "line": {"color": "rgba(217,83,59,0.35)", "width": 1},
-            "customdata": np.round(label, 5).tolist(),
+            "customdata": packed(label) | {"shape": f"{len(label)},3"},
             "hovertemplate": hover,
             "hoverinfo": None,
         },

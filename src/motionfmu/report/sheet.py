@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from hashlib import sha256
 from html import escape
 from importlib.resources import files
+from importlib.util import find_spec
+from pathlib import Path
 from string import Template
 from typing import Any
-
-import plotly.offline
 
 from motionfmu.report.samples import Samples, bits, clock
 from motionfmu.report.tables import Check
@@ -87,10 +87,18 @@ class Sheet:
             body="\n".join(self.sections),
             style=(here / "page.css").read_text(encoding="utf-8"),
             script="\n".join(run),
-            plotly=plotly.offline.get_plotlyjs(),
+            plotly=_plotly(),
             # "</" would end the script element
             data=json.dumps(everything, separators=(",", ":")).replace("</", "<\\/"),
         )
+
+
+def _plotly() -> str:
+    """The script that draws plots, as plotly's package has it; to import that is not needed."""
+    found = find_spec("plotly")
+    assert found is not None and found.submodule_search_locations
+    place = Path(found.submodule_search_locations[0])
+    return (place / "package_data/plotly.min.js").read_text(encoding="utf-8")
 
 
 def _verdict(checks: Sequence[Check]) -> str:

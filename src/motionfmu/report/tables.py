@@ -105,6 +105,14 @@ def picture_links(name: str) -> str:
     return f'<p class="files">{" ".join(links)}</p>'
 
 
+def picture_buttons(name: str) -> str:
+    """Buttons that save a plot of the page as a picture."""
+    made = (
+        f'<button type="button" data-save="{name}.{e}">{e.upper()}</button>' for e in ("png", "svg")
+    )
+    return f'<p class="files save">Save as {" ".join(made)}</p>'
+
+
 def warning_list(warnings: Sequence[str]) -> str:
     """What FMUs and runner warned of."""
     return f"<ul>{''.join(f'<li>{escape(told)}</li>' for told in warnings)}</ul>"

@@ -201,7 +201,9 @@ class Result(Mapping[str, NDArray[Any]]):
         figure: Figure = _report("notebook").plot(self, names, window)
         return figure
 
-    def save(self, folder: str | Path, csv: bool = False, signals: bool = True) -> Path:
+    def save(
+        self, folder: str | Path, csv: bool = False, signals: bool = True, pictures: bool = False
+    ) -> Path:
         """Write the folder that ``motionfmu run`` writes, with its report.
 
         Parameters
@@ -212,6 +214,8 @@ class Result(Mapping[str, NDArray[Any]]):
             Also ``signals.csv``.
         signals : bool
             Also ``signals/``, a NumPy file for each; without it two results cannot be compared.
+        pictures : bool
+            Also the page's pictures as files, PNG and SVG.
 
         Returns
         -------
@@ -223,7 +227,7 @@ class Result(Mapping[str, NDArray[Any]]):
         InputError
             The folder holds something else, or cannot be written.
         """
-        shown: Path = _report("outcome").save(self, Path(folder), csv, signals)
+        shown: Path = _report("outcome").save(self, Path(folder), csv, signals, pictures)
         return shown
 
     def parameter(self, name: str) -> Any:
