@@ -35,6 +35,13 @@ struct system_column {
     int32_t count;
 };
 
+/* A part that is linked in; its name is not one of the program's. */
+#if defined(__GNUC__)
+#define SYSTEM_PART(name) __attribute__((visibility("hidden"))) extern const struct fmu_part name
+#else
+#define SYSTEM_PART(name) extern const struct fmu_part name
+#endif
+
 #define SYSTEM_COPY(to, from)                                                       \
     do {                                                                            \
         _Static_assert(sizeof(to) == sizeof(from), "one type, one size");           \

@@ -26,7 +26,7 @@ class Job:
     fmi: int
     name: str
     key: str
-    given: Mapping[str, Values]  # start values; without any those of the FMUs
+    given: Mapping[str, Values] | None  # start values of an exported one
 
 
 @dataclass(frozen=True)
@@ -105,11 +105,14 @@ def _own(system: System, step: float, tick_ns: int) -> Iterator[Variable]:
 
 def described(job: Job, used: Roles, tick_ns: int) -> Description:
     """Describe a system as an FMU; `tick_ns`: of which its step must be a whole multiple."""
-    system, given = job.system, job.given
+    system, given = job.system, job.given or {}
     if tick_ns > TICK_MAX or system.step_ns % tick_ns:
         raise NotFused(f"steps of {system.step_ns} ns are not of {tick_ns} ns, as the FMUs' are")
     wired = {w.target.name for w in system.wires}
-    step = (system.step_ns if given else tick_ns) * 1e-9
+    step, stop = tick_ns * 1e-9, 1.0
+    if job.given is not None:
+        step = system.step_ns * 1e-9
+        stop = system.steps * step
     variables = list(_own(system, step, tick_ns))
     for end in used.given:
         kind = "input" if end.port.causality == "input" and end.name not in wired else "parameter"
@@ -123,6 +126,6 @@ def described(job: Job, used: Roles, tick_ns: int) -> Description:
         name=job.name,
         description=f"{parts} as one program {job.key[:12]}",
         tick_ns=tick_ns,
-        experiment={"stop": system.steps * step if given else 1.0, "step": step},
+        experiment={"stop": stop, "step": step},
         variables=tuple(variables),
     )

@@ -59,7 +59,7 @@ def program(system: System, recorded: Sequence[End], fmi: int = 3, name: str = "
     NotFused
         It cannot be one program; the message says why.
     """
-    return _made(system, recorded, fmi, name, {})
+    return _made(system, recorded, fmi, name, None)
 
 
 def exported(
@@ -83,35 +83,37 @@ def exported(
 
 
 def _made(
-    system: System, recorded: Sequence[End], fmi: int, name: str, given: Mapping[str, Values]
+    system: System,
+    recorded: Sequence[End],
+    fmi: int,
+    name: str,
+    given: Mapping[str, Values] | None,
 ) -> Program:
     cc = compiler()
     if cc is None:
         raise NotFused("there is no C compiler")
-    more = [repr(given), str(system.step_ns), str(system.steps)] if given else []
-    key = _key(system, recorded, fmi, cc, [name, *more])
-
-    def make(folder: Path) -> None:
-        _make(folder, Job(system, recorded, fmi, name, key, given), cc)
-
-    return Program(kept.kept("fused", key, make), fmi)
+    key = _key(system, recorded, name, given)
+    job = Job(system, recorded, fmi, name, key, given)
+    whole = kept.key(key, str(fmi), layer.digest(), cc.version, *cc.command, *FLAGS, _OPTIMIZED)
+    return Program(kept.kept("fused", whole, lambda folder: _make(folder, job, cc)), fmi)
 
 
-def _key(system: System, recorded: Sequence[End], fmi: int, cc: Compiler, more: list[str]) -> str:
-    """A hash of all that the program is made of."""
+def _key(
+    system: System, recorded: Sequence[End], name: str, given: Mapping[str, Values] | None
+) -> str:
+    """A hash of what the system is, the same in both versions of FMI: states are, too."""
     fmus = dict.fromkeys(system.components.values())
-    until = system.until
-    lists = [
+    until, wired = system.until, {w.target.name for w in system.wires}
+    lists: list[object] = [
         [f"{c} {fmu}" for c, fmu in system.components.items()],
         [digest(fmu) for fmu in fmus],
         [f"{w.target.name} {w.source.name}" for w in system.wires],
-        sorted(s.end.name for s in system.settings if s.end.port.causality == "input"),
+        sorted(wired & {s.end.name for s in system.settings}),
         [e.name for e in recorded],
-        [str(fmi), until.name if until else ""],
-        [layer.digest(), cc.version, *cc.command, *FLAGS, _OPTIMIZED],
-        more,
+        [name, until.name if until else ""],
+        None if given is None else [repr(given), system.step_ns, system.steps],
     ]
-    return kept.key(*(json.dumps(one) for one in lists))
+    return kept.key(json.dumps(lists))
 
 
 def _parts(system: System) -> dict[str, Part]:
@@ -137,7 +139,7 @@ def _make(folder: Path, job: Job, cc: Compiler) -> None:
         "vars.c": ctables.table(d),
         "model.c": text.model(job.system, parts, used, job.recorded),
         "state_flags.h": text.FLAGS,
-        "fmu_main.c": text.main_unit(job.fmi, quickly=not job.given),
+        "fmu_main.c": text.main_unit(job.fmi, quickly=job.given is None),
     }
     for file, content in texts.items():
         (sources / file).write_text(content)

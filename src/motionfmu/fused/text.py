@@ -64,7 +64,7 @@ def _structs(parts: Mapping[str, Part]) -> Iterable[str]:
         name = f"struct {p.identifier}_vars"
         yield f"{name} {{\n{p.members}}};\n"
         yield f'_Static_assert(sizeof({name}) == {p.size}, "variables of {p.identifier}");\n'
-        yield f"extern const struct fmu_part motionfmu_part_{p.identifier};\n\n"
+        yield f"SYSTEM_PART(motionfmu_part_{p.identifier});\n\n"
 
 
 def _model(system: System, parts: Mapping[str, Part]) -> str:

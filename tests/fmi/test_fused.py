@@ -1,0 +1,209 @@
+"""A system as one program: what every FMU must do, and what the components do one by one."""
+
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import test_fmi_descriptions as descriptions
+import test_fmi_runs as runs
+import test_fmi_states as states
+from fmi_tools import ERROR, OK, Instance, unpacked
+
+import motionfmu
+from motionfmu import fused
+from motionfmu.run.prepared import Options
+from motionfmu.scenarios.system import End, System
+
+NAME = "two_cards_and_a_scope"
+STEP = 1e-4  # [s]
+TABLES: dict[str, Any] = {
+    "stop": 0.05,
+    "step": STEP,
+    "leave": ["card1.*", "card2.*", "drives.*", "machine.force", "scope.*"],
+    "component": {
+        "card1": "epcio",
+        "card2": "epcio",
+        "drives": "servo_drives",
+        "machine": "ball_screw_axes",
+        "scope": "scope",
+    },
+    "connect": {
+        "card1.enc_phase": "machine.motor_phase",
+        "card2.reg_seq": "card1.irq_seq",
+        "drives.dac": "card1.dac",
+        "drives.phase": "machine.motor_phase",
+        "machine.torque_command": "drives.torque",
+        "scope.axes_real_1": "machine.motor_phase",
+        "scope.axes_int_1": "card2.pulse_count",
+    },
+    "set": {
+        "card1.active": True,
+        "drives.active": True,
+        "machine.active": True,
+        "card1.dac_offset": 0.5,
+        "scope.axes_real_used": 1,
+        "scope.axes_int_used": 1,
+    },
+    "record": {
+        "signals": [
+            "machine.motor_phase",
+            "drives.torque",
+            "card1.dac",
+            "card1.enc_count",
+            "card2.stock",
+        ]
+    },
+}
+
+
+def system_of(tables: dict[str, Any]) -> tuple[System, list[End]]:
+    scenario = motionfmu.scenario(tables)
+    return scenario.resolved(Options()), scenario.ends
+
+
+def packed(program: fused.Program, target: Path) -> None:
+    with zipfile.ZipFile(target, "w") as archive:
+        for file in sorted(f for f in program.folder.rglob("*") if f.is_file()):
+            archive.write(file, file.relative_to(program.folder))
+
+
+@pytest.fixture(scope="module")
+def system() -> tuple[System, list[End]]:
+    return system_of(TABLES)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def among_fmus(
+    system: tuple[System, list[End]], tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[None]:
+    """The system as two FMUs, which `Instance` finds by its name."""
+    folder = tmp_path_factory.mktemp("fmus")
+    for fmi in (2, 3):
+        packed(fused.exported(*system, fmi, "TwoCards"), folder / f"{NAME}.fmi{fmi}.fmu")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MOTIONFMU_FMUS", str(folder))
+        yield
+    unpacked.cache_clear()
+
+
+@pytest.mark.parametrize("fmi", (2, 3))
+def test_it_is_what_every_fmu_is(
+    fmi: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    descriptions.test_fmpy_finds_nothing_wrong(NAME, fmi)
+    descriptions.test_fmutool_finds_nothing_wrong(NAME, fmi, monkeypatch, capsys)
+    descriptions.test_the_library_exports_the_standard_and_nothing_else(NAME, fmi)
+    descriptions.test_both_versions_describe_the_same_variables(NAME)
+    descriptions.test_outputs_and_initial_unknowns_are_complete(NAME, fmi)
+    runs.test_reset_gives_a_fresh_instance(NAME, fmi, tmp_path)
+    runs.test_a_state_runs_on_anywhere(NAME, fmi, tmp_path)
+    runs.test_two_instances_do_not_know_each_other(NAME, fmi, tmp_path)
+    runs.test_fmpy_simulates_it(NAME, fmi, tmp_path)
+    states.test_a_damaged_state_is_refused_and_changes_nothing(NAME, fmi, tmp_path)
+
+
+def test_both_versions_give_the_same_bits(tmp_path: Path) -> None:
+    runs.test_both_versions_give_the_same_bits(NAME, tmp_path)
+
+
+def recorded(folder: Path) -> dict[str, Any]:
+    return {f.stem: np.load(f) for f in sorted(folder.iterdir())}
+
+
+def started(folder: Path, **values: Any) -> Instance:
+    given = {"recorder.folder": str(folder / "rows"), "scope.file": str(folder / "trace")}
+    return Instance(NAME, 3).initialize(given | values)
+
+
+def ended(instance: Instance) -> None:
+    assert instance.call("Terminate") == OK, instance.said
+    instance.free()
+
+
+@pytest.fixture(scope="module")
+def straight(tmp_path_factory: pytest.TempPathFactory, among_fmus: None) -> dict[str, Any]:
+    """The rows of 500 steps in one call, and the trace of the scope."""
+    folder = tmp_path_factory.mktemp("straight")
+    instance = started(folder)
+    assert instance.step(500 * STEP) == OK, instance.said
+    ended(instance)
+    rows = recorded(folder / "rows")
+    assert len(rows["time"]) == 500 and rows["machine.motor_phase"].shape == (500, 6)
+    assert np.ptp(rows["machine.motor_phase"]) > 1e-6  # the first axis is driven
+    np.testing.assert_array_equal(
+        np.load(folder / "trace.real.npy")[:500, :6], rows["machine.motor_phase"]
+    )
+    return rows
+
+
+def test_components_called_one_by_one_give_the_same_rows(straight: dict[str, Any]) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("MOTIONFMU_FMUS")
+        unpacked.cache_clear()
+        result = motionfmu.scenario(TABLES).run(engine="python")
+        unpacked.cache_clear()
+    for name, rows in result.signals.items():
+        np.testing.assert_array_equal(straight[name], rows, name)
+
+
+@pytest.mark.parametrize("calls", ([1, 499], [1] * 3 + [97, 400], [10] * 50))
+def test_any_split_of_a_run_records_the_same_rows(
+    calls: list[int], tmp_path: Path, straight: dict[str, Any]
+) -> None:
+    instance = started(tmp_path)
+    for steps in calls:
+        assert instance.step(steps * STEP) == OK, instance.said
+    ended(instance)
+    for name, rows in recorded(tmp_path / "rows").items():
+        np.testing.assert_array_equal(straight[name], rows, name)
+
+
+def test_the_recorder_goes_back_with_a_state(tmp_path: Path, straight: dict[str, Any]) -> None:
+    instance = started(tmp_path)
+    assert instance.step(200 * STEP) == OK
+    state, time = instance.save(), instance.time
+    instance.set("drives.enable", False)  # another way, to be forgotten
+    assert instance.step(100 * STEP) == OK
+    assert instance.restore(state, time) == OK
+    assert instance.step(300 * STEP) == OK
+    instance.free_state(state)
+    ended(instance)
+    for name, rows in recorded(tmp_path / "rows").items():
+        np.testing.assert_array_equal(straight[name], rows, name)
+
+
+def test_without_an_end_nothing_is_left(tmp_path: Path) -> None:
+    instance = started(tmp_path)
+    assert instance.step(10 * STEP) == OK
+    instance.free()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("fmi", (2, 3))
+def test_a_part_that_fails_ends_the_run_in_its_own_words(fmi: int, tmp_path: Path) -> None:
+    instance = Instance(NAME, fmi)
+    assert instance.set("machine.force", 1e308) == OK
+    assert (instance.enter(), instance.call("ExitInitializationMode")) == (OK, OK)
+    while instance.step(STEP) == OK:
+        assert instance.time < 1.0
+    text = instance.said.removeprefix("one: ")
+    assert text.startswith("card1: enc_phase[1] = ") and "beyond 2^50" in text, text
+    assert instance.step(STEP) == ERROR and instance.call("Terminate") == ERROR
+    instance.free()
+
+
+def test_steps_that_are_none_of_the_systems_are_refused() -> None:
+    instance = Instance(NAME, 3)
+    assert instance.set("system.step", 3.3e-8) == OK
+    assert (instance.enter(), instance.call("ExitInitializationMode")) == (OK, ERROR)
+    assert "system.step = 3.3e-08 s is not a whole number of 25 ns" in instance.said
+    instance.free()
+    instance = Instance(NAME, 3).initialize({})
+    assert instance.step(1.5 * STEP) == ERROR
+    assert "communicationStepSize 0.00015 s is not a whole number of steps of 0.0001 s" in (
+        instance.said
+    )
+    instance.free()
