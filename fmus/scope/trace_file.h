@@ -22,8 +22,8 @@ struct trace {
 /* Head of a .npy file. `type`: f8 or i4. */
 static bool trace_write_head(FILE *file, const char *type, int64_t rows, size_t columns)
 {
-    char head[NPY_HEAD];
-    npy_head(head, type, rows, (int64_t)columns);
+    char head[128];
+    npy_head(head, sizeof head, type, rows, (int64_t)columns);
     return fwrite(head, 1, sizeof head, file) == sizeof head;
 }
 

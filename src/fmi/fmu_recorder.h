@@ -51,9 +51,10 @@ struct recorder {
 
 enum {
     RECORDER_PAGE  = 4096,
-    RECORDER_BLOCK = 64 * 1024, /* [byte] at most, if that are whole pages: a write of a quarter of it
-                                 * costs half as much again, of four times as much a fifth less */
-    RECORDER_LINE  = 64         /* of a cache; blocks a power of two apart would share few of them */
+    RECORDER_HEAD  = RECORDER_PAGE, /* of a file, so that its other pages are whole ones of data */
+    RECORDER_BLOCK = 64 * 1024,     /* [byte] at most, in whole pages: half of it costs the kernel a
+                                     * half more, four times as much a tenth less, and the caches */
+    RECORDER_LINE  = 64             /* of a cache; blocks a power of two apart would share few of them */
 };
 
 static inline size_t recorder_size(char kind)
@@ -101,8 +102,8 @@ static inline void recorder_close(struct recorder *r)
 static inline bool recorder_head(const struct recorder *r, const struct recorder_stream *s)
 {
     const struct recorder_column c = recorder_column_of(r, s->column);
-    char head[NPY_HEAD];
-    npy_head(head, c.kind == 'd' ? "f8" : c.kind == 'i' ? "i4" : "b1", r->row,
+    char head[RECORDER_HEAD];
+    npy_head(head, sizeof head, c.kind == 'd' ? "f8" : c.kind == 'i' ? "i4" : "b1", r->row,
              c.count == 1 ? -1 : c.count);
     return recorder_seek(s->file, 0) == 0 && fwrite(head, 1, sizeof head, s->file) == sizeof head;
 }
@@ -205,7 +206,7 @@ static inline bool recorder_empty(const char *block, size_t size)
 static inline int recorder_flush(struct recorder *r, struct recorder_group *g)
 {
     const size_t size = (size_t)(r->row - g->first) * g->width;
-    const int64_t next = NPY_HEAD + r->row * (int64_t)g->width;
+    const int64_t next = RECORDER_HEAD + r->row * (int64_t)g->width;
     for (int k = 0; k < g->count; k++) {
         const struct recorder_stream *s = &g->streams[k];
         errno = 0;
@@ -282,7 +283,7 @@ static inline int recorder_at(struct recorder *r, int64_t row)
         return -1;
     }
     for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
-        const int64_t at = NPY_HEAD + row * (int64_t)g->width;
+        const int64_t at = RECORDER_HEAD + row * (int64_t)g->width;
         for (int k = 0; k < g->count; k++) {
             const struct recorder_stream *s = &g->streams[k];
             if (recorder_cut(s->file, at) != 0 || recorder_seek(s->file, at) != 0) {
@@ -303,7 +304,7 @@ static inline int recorder_end(struct recorder *r)
     }
     for (int k = 0; k < r->count; k++) {
         struct recorder_stream *s = &r->streams[k];
-        const int64_t size = NPY_HEAD + r->row * (int64_t)recorder_width(r, s);
+        const int64_t size = RECORDER_HEAD + r->row * (int64_t)recorder_width(r, s);
         errno = 0;
         const bool whole = recorder_head(r, s) && recorder_cut(s->file, size) == 0;
         const bool good = fclose(s->file) == 0 && whole;

@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NPY_HEAD = 4096 }; /* [byte] a page: so pages of the file are whole ones of the data */
-
-/* `type`: f8, i4 or b1; `columns` -1: one value a row, its shape is (rows,). */
-static inline void npy_head(char head[NPY_HEAD], const char *type, int64_t rows, int64_t columns)
+/* `size`: a multiple of 64, 128 at least, so that data is aligned when it is mapped. `type`: f8, i4
+ * or b1; `columns` -1: one value a row, its shape is (rows,). */
+static inline void npy_head(char *head, size_t size, const char *type, int64_t rows,
+                            int64_t columns)
 {
     const uint16_t one = 1;
     const char order = type[1] == '1' ? '|' : *(const char *)&one == 1 ? '<' : '>';
@@ -19,15 +19,15 @@ static inline void npy_head(char head[NPY_HEAD], const char *type, int64_t rows,
     if (columns >= 0) {
         snprintf(wide, sizeof wide, " %" PRId64, columns);
     }
-    const int n = 10 + snprintf(head + 10, NPY_HEAD - 10,
+    const int n = 10 + snprintf(head + 10, size - 10,
                                 "{'descr': '%c%s', 'fortran_order': False, 'shape': (%" PRId64
                                 ",%s), }",
                                 order, type, rows, wide);
-    memset(head + n, ' ', (size_t)(NPY_HEAD - n));
+    memset(head + n, ' ', size - (size_t)n);
     memcpy(head, "\x93NUMPY\x01\x00", 8);
-    head[8] = (char)((NPY_HEAD - 10) & 0xFF); /* size of the dictionary, low byte first */
-    head[9] = (char)((NPY_HEAD - 10) >> 8);
-    head[NPY_HEAD - 1] = '\n';
+    head[8] = (char)((size - 10) & 0xFF); /* size of the dictionary, low byte first */
+    head[9] = (char)((size - 10) >> 8);
+    head[size - 1] = '\n';
 }
 
 #endif

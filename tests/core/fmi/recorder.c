@@ -75,14 +75,14 @@ static void test_replaced(const char *part, const char *old)
         struct recorder *r = begin();
         CHECK(r && there(part));
         CHECK_EQ(rows(r, 0, round ? 50000 : 1), 0);
-        CHECK_EQ(size_of("a.six"), round ? NPY_HEAD + 48 : -1); /* the older one stands to the end */
+        CHECK_EQ(size_of("a.six"), round ? RECORDER_HEAD + 48 : -1); /* the older one stands to the end */
         CHECK_EQ(recorder_end(r), 0);
         recorder_close(r);
         CHECK(!there(part) && !there(old));
     }
-    CHECK_EQ(size_of("a.six"), NPY_HEAD + 50000 * 48);
-    CHECK_EQ(size_of("b.on"), NPY_HEAD + 50000);
-    CHECK_EQ(size_of("time"), NPY_HEAD + 50000 * 8);
+    CHECK_EQ(size_of("a.six"), RECORDER_HEAD + 50000 * 48);
+    CHECK_EQ(size_of("b.on"), RECORDER_HEAD + 50000);
+    CHECK_EQ(size_of("time"), RECORDER_HEAD + 50000 * 8);
 }
 
 /* Given up: the older recording is as it was. */
@@ -92,7 +92,7 @@ static void test_given_up(const char *part)
     CHECK_EQ(rows(r, 0, 60000), 0);
     recorder_close(r);
     CHECK(!there(part));
-    CHECK_EQ(size_of("a.six"), NPY_HEAD + 50000 * 48);
+    CHECK_EQ(size_of("a.six"), RECORDER_HEAD + 50000 * 48);
 }
 
 /* Rows after a restored state: those behind it are forgotten, those jumped over are 0. */
@@ -106,11 +106,11 @@ static void test_restored(void)
     CHECK_EQ(rows(r, 9005, 9010), 0);
     CHECK_EQ(recorder_end(r), 0);
     recorder_close(r);
-    CHECK_EQ(size_of("time"), NPY_HEAD + 9010 * 8);
+    CHECK_EQ(size_of("time"), RECORDER_HEAD + 9010 * 8);
     double time[9010];
     snprintf(inside, sizeof inside, "%s/time.npy", folder);
     FILE *f = fopen(inside, "rb");
-    CHECK(f && fseek(f, NPY_HEAD, SEEK_SET) == 0 && fread(time, 8, 9010, f) == 9010);
+    CHECK(f && fseek(f, RECORDER_HEAD, SEEK_SET) == 0 && fread(time, 8, 9010, f) == 9010);
     fclose(f);
     for (int k = 0; k < 9010; k++) {
         CHECK(time[k] == (k == 9003 || k == 9004 ? 0.0 : k * 1e-4));
@@ -136,7 +136,7 @@ static void test_full(const char *part)
     recorder_close(r);
     setrlimit(RLIMIT_FSIZE, &before);
     CHECK(!there(part));
-    CHECK_EQ(size_of("time"), NPY_HEAD + 9010 * 8);
+    CHECK_EQ(size_of("time"), RECORDER_HEAD + 9010 * 8);
 }
 
 /* What is somebody's is left alone, and told before the run. */
