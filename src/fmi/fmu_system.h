@@ -13,6 +13,19 @@
 
 #include "fmu_part.h"
 
+/* A program that is made for a run or two shall not wait for the optimization of what runs once a
+ * call, which takes longer than that of the loop. */
+#if defined(SYSTEM_QUICKLY) && defined(__clang__)
+#define SYSTEM_COLD_BEGIN _Pragma("clang optimize off")
+#define SYSTEM_COLD_END   _Pragma("clang optimize on")
+#elif defined(SYSTEM_QUICKLY) && defined(__GNUC__)
+#define SYSTEM_COLD_BEGIN _Pragma("GCC push_options") _Pragma("GCC optimize(\"O0\")")
+#define SYSTEM_COLD_END   _Pragma("GCC pop_options")
+#else
+#define SYSTEM_COLD_BEGIN
+#define SYSTEM_COLD_END
+#endif
+
 struct vars;
 
 struct system_part {
