@@ -54,7 +54,7 @@ enum {
     RECORDER_HEAD  = RECORDER_PAGE, /* of a file, so that its other pages are whole ones of data */
     RECORDER_BLOCK = 64 * 1024,     /* [byte] at most, in whole pages: half of it costs the kernel a
                                      * half more, four times as much a tenth less, and the caches */
-    RECORDER_LINE  = 64             /* of a cache; blocks a power of two apart would share few of them */
+    RECORDER_LINE  = 64             /* of a cache: blocks a power of two apart would share few */
 };
 
 static inline size_t recorder_size(char kind)
@@ -210,8 +210,9 @@ static inline int recorder_flush(struct recorder *r, struct recorder_group *g)
     for (int k = 0; k < g->count; k++) {
         const struct recorder_stream *s = &g->streams[k];
         errno = 0;
-        const bool good = recorder_empty(s->block, size) ? recorder_seek(s->file, next) == 0
-                                                         : fwrite(s->block, 1, size, s->file) == size;
+        const bool good = recorder_empty(s->block, size)
+                              ? recorder_seek(s->file, next) == 0
+                              : fwrite(s->block, 1, size, s->file) == size;
         if (!good) {
             return recorder_fail(r, recorder_column_of(r, s->column).name,
                                  strerror(errno ? errno : EIO));

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from motionfmu.columns import in_blocks
 from motionfmu.contour import ContourResult
 from motionfmu.contour.arcs import Array
 from motionfmu.report.numbers import label, length, unit
@@ -81,7 +82,10 @@ def fifo_figure(contour: ContourResult) -> Figure | None:
     traces: list[Figure] = []
     rows = []
     if run.stock is not None:
-        stock = run.stock if run.stock.ndim == 1 else run.stock[:, list(run.axes)].min(axis=1)
+        stock = run.stock
+        if stock.ndim > 1:
+            least = [b[:, list(run.axes)].min(axis=1) for (b,) in in_blocks(stock)]
+            stock = np.concatenate(least)
         traces.append(sampled(Samples(run.time, stock, steps=True), "FIFO stock", AXES[0]))
         rows.append("FIFO stock<br>[commands]")
     if run.interrupts is not None:
@@ -156,10 +160,11 @@ def speed_figure(speeds: Speeds) -> Figure:
 
 def _curves(time: Array, shown: list[tuple[str, Array, str]], title: str, height: int) -> Figure:
     """Curves of a name and a colour on one pair of axes."""
-    data = [sampled(Samples(time, values), name, color) for name, values, color in shown]
+    few = [(Samples(time, values).few(), name, color) for name, values, color in shown]
+    data = [sampled(*curve) for curve in few]
     for trace in data:
         trace["showlegend"] = len(data) > 1
-    ends = _range(np.concatenate([values for _, values, _ in shown]))
+    ends = _range(np.concatenate([samples.values for samples, _, _ in few]))
     return {"data": data, "layout": _over_time(height, time, yaxis=_axis(title, range=ends))}
 
 

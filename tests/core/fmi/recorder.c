@@ -75,7 +75,8 @@ static void test_replaced(const char *part, const char *old)
         struct recorder *r = begin();
         CHECK(r && there(part));
         CHECK_EQ(rows(r, 0, round ? 50000 : 1), 0);
-        CHECK_EQ(size_of("a.six"), round ? RECORDER_HEAD + 48 : -1); /* the older one stands to the end */
+        /* the older one stands to the end */
+        CHECK_EQ(size_of("a.six"), round ? RECORDER_HEAD + 48 : -1);
         CHECK_EQ(recorder_end(r), 0);
         recorder_close(r);
         CHECK(!there(part) && !there(old));
