@@ -10,7 +10,7 @@
 #include "fmu_recorder.h"
 
 static struct {
-    double  six[6], one, two[2];
+    double  six[6], one, two[2], late;
     int32_t count, counts[6];
     bool    on, many[6];
 } now;
@@ -18,7 +18,7 @@ static struct {
 static const struct recorder_column columns[] = {
     {"a.six", now.six, 'd', 6},      {"a.count", &now.count, 'i', 1}, {"a.many", now.many, 'b', 6},
     {"b.one", &now.one, 'd', 1},     {"b.two", now.two, 'd', 2},      {"b.on", &now.on, 'b', 1},
-    {"b.counts", now.counts, 'i', 6}};
+    {"b.counts", now.counts, 'i', 6}, {"c.late", &now.late, 'd', 1}};
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
 /* The values of row k: every element another. */
@@ -34,6 +34,7 @@ static void set(int64_t k)
     now.two[1] = 1.0 / (double)(k + 1);
     now.count = (int32_t)-k;
     now.on = k % 3 == 0;
+    now.late = k >= 10000 && k < 10100; /* blocks of 0 before and behind it */
 }
 
 static int rows(struct recorder *r, int64_t from, int64_t to)
@@ -83,6 +84,7 @@ static void test_replaced(const char *part, const char *old)
     }
     CHECK_EQ(size_of("a.six"), RECORDER_HEAD + 50000 * 48);
     CHECK_EQ(size_of("b.on"), RECORDER_HEAD + 50000);
+    CHECK_EQ(size_of("c.late"), RECORDER_HEAD + 50000 * 8);
     CHECK_EQ(size_of("time"), RECORDER_HEAD + 50000 * 8);
 }
 
