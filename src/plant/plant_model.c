@@ -43,7 +43,7 @@ struct plant_block {
     double u[PLANT_INPUT_SIZE];
     double c[PLANT_CONSTANT_SIZE];
     int    instance[PLANT_LANES]; /* the last axis fills the lanes that are left */
-    int    lanes;                 /* one of PLANT_WIDTHS; it is the step from quantity to quantity */
+    int    lanes;                 /* one of PLANT_WIDTHS; the step from quantity to quantity */
     int    used;                  /* lanes with an axis of their own */
     int    sub_steps;
     double fastest;            /* [1/s] bound of |lambda| at the start, of its stiffest axis */
