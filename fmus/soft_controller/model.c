@@ -223,7 +223,7 @@ static bool foreign(const struct soft_blob *b, const struct orders *o, const str
 {
     const bool known = memcmp(&b->known, &o->inform, sizeof b->known) == 0;
 
-    return known ? o->moves < 0 || interpreter_damaged(&o->gcode) : orders_damaged(o, t);
+    return known && !t->gcode ? o->moves < 0 : orders_damaged(o, t);
 }
 
 static void keep_known(struct soft_blob *b, const struct orders *o)

@@ -317,6 +317,6 @@ void orders_next(struct orders *o, const struct orders_config *c, const struct o
 
 bool orders_damaged(const struct orders *o, const struct orders_text *t)
 {
-    return o->moves < 0 || interpreter_damaged(&o->gcode) ||
+    return o->moves < 0 || (t->gcode && interpreter_damaged(&o->gcode)) ||
            (t->inform && o->on && inform_damaged(&o->inform, t->inform));
 }
