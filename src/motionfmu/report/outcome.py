@@ -1,7 +1,6 @@
 """What a run leaves on disk: signals, numbers, report."""
 
 import contextlib
-import json
 import os
 import shutil
 from collections.abc import Iterator
@@ -12,7 +11,7 @@ import numpy as np
 from motionfmu.columns import in_blocks, write
 from motionfmu.errors import InputError
 from motionfmu.run.result import Result
-from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, numbers, track
+from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, json_of, numbers, track
 
 TABLE = "signals.csv"
 
@@ -61,8 +60,7 @@ def save(
         contour = result.contour() if wanted else None
         ran = ran_of(result, contour)
         found = numbers(result) | ran.numbers()
-        text = json.dumps(found, indent=1, allow_nan=False)
-        (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
+        (part / NUMBERS).write_text(json_of(found) + "\n", encoding="utf-8")
         if csv:
             _write_csv(result, part / TABLE)
         if contour is not None:

@@ -1,6 +1,5 @@
 """The report as one HTML page that needs no network."""
 
-import json
 from collections.abc import Sequence
 from functools import partial
 from html import escape
@@ -40,6 +39,7 @@ from motionfmu.report.time_plots import (
 from motionfmu.report.view_section import SCRIPTS as VIEW
 from motionfmu.report.view_section import add_view
 from motionfmu.run.figures import Chart
+from motionfmu.run.stored import json_of
 from motionfmu.view.deviations import from_contour
 from motionfmu.view.scene import scene_of
 
@@ -98,7 +98,7 @@ def write_report(
     else:
         drawing = draw(contour)
         page = page_text((result, ran), contour, drawing, charts)
-        numbers = json.dumps(contour.numbers(), indent=1, allow_nan=False)
+        numbers = json_of(contour.numbers())
         folder.mkdir(parents=True, exist_ok=True)
         if pictures:
             from motionfmu.report.pictures import write_pictures  # with matplotlib

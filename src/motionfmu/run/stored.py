@@ -1,6 +1,7 @@
 """A run as it is stored: its numbers, how it was made, its way along the path."""
 
 import hashlib
+import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,21 @@ if TYPE_CHECKING:
     from motionfmu.contour import ContourResult
 
 SIGNALS, NUMBERS, TRACK = "signals", "result.json", "contour"
+DEPTH = 1  # tables in tables of result.json that have lines of their own
 DIGITS = 16  # of a file's SHA-256: enough to tell two files apart
+
+
+def json_of(found: Any, level: int = 0) -> str:
+    """Numbers as JSON, a row of a table in a line: there may be one for each line of a program."""
+    # Python's encoder that indents costs ten times as much as the one that does not.
+    pad = "\n" + " " * (level + 1)
+    if isinstance(found, dict) and found and level <= DEPTH:
+        rows = [f"{json.dumps(key)}: {json_of(value, level + 1)}" for key, value in found.items()]
+        return "{" + pad + f",{pad}".join(rows) + pad[:-1] + "}"
+    if isinstance(found, list) and found and isinstance(found[0], dict):
+        rows = [json.dumps(row, allow_nan=False) for row in found]
+        return "[" + pad + f",{pad}".join(rows) + pad[:-1] + "]"
+    return json.dumps(found, allow_nan=False)
 
 
 def numbers(result: Result) -> dict[str, Any]:
