@@ -1,6 +1,7 @@
 """The console command and the library as a user meets them."""
 
 import json
+import re
 from html.parser import HTMLParser
 from importlib import metadata
 from pathlib import Path
@@ -11,6 +12,7 @@ from conftest import ROOT
 from console import command, within
 
 import motionfmu
+from motionfmu.cli.common import results
 from motionfmu.report.outcome import save
 from motionfmu.scenarios import fmus
 
@@ -189,3 +191,15 @@ def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch) -
     with pytest.raises(motionfmu.InputError, match=r"cannot write .*No space left on device"):
         save(result, tmp_path / "a/b/result", {})
     assert list(tmp_path.iterdir()) == []
+
+
+def test_results_of_all_commands_are_named_alike() -> None:
+    """A run's folder has the scenario's name; any other ends with the command's after a dot."""
+    assert [str(results("a")), str(results("a", "tune"))] == ["results/a", "results/a.tune"]
+    kinds = {}
+    for name in ("run", "compare", "contour", "gcode", "margins", "sweep", "tune", "card_plan"):
+        text = (ROOT / f"src/motionfmu/cli/{name}.py").read_text()
+        calls = re.findall(r"[ (]results\((.*)\)", text)
+        kinds[name] = [k for call in calls for k in re.findall(r', "(\w+)"', call) or [""]]
+    own = {n: [n] for n in ("compare", "gcode", "margins", "sweep", "tune")}
+    assert kinds == own | {"run": [""], "contour": ["iso9283", "contour"], "card_plan": ["plan"]}
