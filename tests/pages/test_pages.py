@@ -32,8 +32,8 @@ LOOK = """async () => {
   const box = (e) => e.getBoundingClientRect();
   const hit = (a, b) => a.width && b.width && a.left < b.right - 1 && b.left < a.right - 1
     && a.top < b.bottom - 1 && b.top < a.bottom - 1;
-  const wide = document.documentElement.scrollWidth;
-  if (wide > document.documentElement.clientWidth) wrong.push(`${wide} pixels wide`);
+  const { scrollWidth: wide, clientWidth: room } = document.documentElement;
+  if (wide > room) wrong.push(`${wide} pixels wide`);
   let bars = 0;
   for (const plot of document.querySelectorAll(".plot")) {
     const bar = plot.querySelector(".modebar");
@@ -42,7 +42,7 @@ LOOK = """async () => {
     const drawn = plot.querySelector(".js-plotly-plot")._fullLayout;
     if (drawn.yaxis?.scaleanchor && drawn.height > 200
       && drawn._size.h - drawn.yaxis._length > 12) wrong.push(`${name(plot)}: room left over`);
-    if (box(bar).left < 0 || box(bar).right > document.documentElement.clientWidth) wrong.push(`${name(plot)}: tools cut`);
+    if (box(bar).left < 0 || box(bar).right > room) wrong.push(`${name(plot)}: tools cut`);
     const around = plot.closest("section").querySelectorAll("h2, h3, .note, .measure, select");
     const own = plot.querySelectorAll(
       ".legend, .nsewdrag, .polarlayer .plotbg, .polarlayer text, .gl-container canvas, .colorbar");

@@ -21,6 +21,7 @@ from motionfmu.compare.page import page_text
 from motionfmu.compare.side import Side
 from motionfmu.compare.words import GONE
 from motionfmu.errors import InputError
+from motionfmu.report.numbers import length
 from motionfmu.run import Result, stored
 
 THEORY = ROOT / "scenarios/circle_theory"
@@ -110,6 +111,11 @@ def test_the_page_shows_both_runs_and_b_minus_a(
     for name in runs[0].signals:
         assert name in page
     assert "mcc.p_gain" in page and GONE in page
+    row = re.search(r"Contour error, largest</td>(.*?)</tr>", page)
+    shown = [f">{length(r.contour().error.max)}<" for r in runs]
+    assert row and row[1].index(shown[0]) < row[1].index(shown[1])
+    verdict = re.search(r"radius_change</td>(.*?)</tr>", page)  # in the unit of the cards
+    assert verdict and verdict[1].count(" µm<") == 3
     assert " um" not in page.partition("<script>")[0]
 
 
