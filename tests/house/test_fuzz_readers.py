@@ -314,7 +314,7 @@ def test_a_compensation_file_is_read_if_it_is_well_formed(tmp_path: Path) -> Non
                     read = False
                 finally:
                     slave.renew()
-            assert read == well_formed(data), slave.messages
+            assert read == well_formed(data), slave.errors
 
         search(compensation(), body, 200)
     finally:

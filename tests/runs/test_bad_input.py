@@ -200,7 +200,7 @@ def test_two_sources_for_one_input(tmp_path: Path) -> None:
         (("--set", "mcc.program=none.ngc"), "set mcc.program = 'none.ngc'"),
         (("--set", "card.loop_period=1.2e-7"), "set card.loop_period = 1.2e-07"),
         (("--set", "mcc.p_gain[0]=3"), "mcc.p_gain has elements 1 to 6"),
-        (("--engine", "steam"), "no engine 'steam' (there are: native, python, fmpy)"),
+        (("--engine", "steam"), "no engine 'steam' (there are: fused, native, python, fmpy)"),
         (("--fmi", "4"), "FMI 4: 2 or 3"),
         (("--step", "3e-5"), "no whole number of steps"),
     ],

@@ -45,7 +45,7 @@ def test_the_result_file_says_all_in_numbers(demo: tuple[Path, str]) -> None:
     folder, _ = demo
     found = json.loads((folder / "result.json").read_text())
     assert found["scenario"] == "circle" and found["ok"] is True
-    assert found["options"]["engine"] == "native" and found["options"]["stop"] == 7.6
+    assert found["options"]["engine"] == "fused" and found["options"]["stop"] == 7.6
     assert {c["name"] for c in found["checks"]} >= {"mcc.done", "contour.error.max"}
     assert found["contour"] == json.loads((folder / "contour.json").read_text())
     position = np.load(folder / "signals/machine.table_position.npy", mmap_mode="r")

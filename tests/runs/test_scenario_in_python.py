@@ -126,7 +126,7 @@ def test_options_have_names(base: motionfmu.Scenario) -> None:
     assert names[:6] == ["engine", "fmi", "set", "stop", "step", "every"]
     assert refusal(base.run, stpo=1) == ["run: no option 'stpo'; did you mean 'stop'?"]
     assert refusal(base.run, engine="nativ", fmi=4, stop="1", every=0) == [
-        "no engine 'nativ' (there are: native, python, fmpy); did you mean 'native'?",
+        "no engine 'nativ' (there are: fused, native, python, fmpy); did you mean 'native'?",
         "FMI 4: 2 or 3",
         "stop = '1': seconds wanted",
         "every = 0: a whole number from 1 wanted",

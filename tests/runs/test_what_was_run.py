@@ -41,7 +41,7 @@ def speeds(data) -> list[tuple[np.ndarray, np.ndarray]]:
 def test_the_page_says_what_was_run(circle) -> None:
     result, page, _, numbers = circle
     assert words(page, "Overrides") == "mcc.p_gain = 300 (scenario: 200)"
-    assert words(page, "Engine") == "native, FMI 3, communication step 0.1 ms"
+    assert words(page, "Engine") == "fused, FMI 3, communication step 0.1 ms"
     assert words(page, "Ended by") == "stop = 8 s" == numbers["stopped"]
     assert words(page, "Position gains") == "mcc.p_gain[1,2] = 300 (Kp 71.5 1/s)"
     assert numbers["position_gains"][1]["kp"] == pytest.approx(300 / 200 * 47.683716)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from motionfmu.run.checks import Verdict
     from motionfmu.run.result import Result
 
-Engine = Annotated[str | None, typer.Option(help="native, python or fmpy.")]
+Engine = Annotated[str | None, typer.Option(help="fused, native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
 
 

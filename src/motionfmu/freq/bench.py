@@ -1,15 +1,12 @@
 """The FMUs of one loop on a test bench: anything can be added to what a wire brings."""
 
 import math
-import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fmpy import extract
 from numpy.typing import NDArray
 
 from motionfmu.errors import InputError
@@ -19,6 +16,7 @@ from motionfmu.linear.law import Law, carried
 from motionfmu.linear.stability import moving
 from motionfmu.linear.wiring import Port
 from motionfmu.run import Options
+from motionfmu.run.engines import lean
 from motionfmu.run.engines.slave import Slave
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import System, Wire
@@ -193,7 +191,7 @@ class Bench:
             messages: list[str] = []
             slaves = {}
             for name, fmu in self.system.components.items():
-                slaves[name] = Slave(name, _unpacked(fmu), 3, messages)
+                slaves[name] = Slave(name, lean.unpacked(fmu, 3), 3, messages)
                 stack.callback(slaves[name].free)
             for end, values in self.given:
                 slaves[end.component].assign(end.port.type, end.port.reference, values)
@@ -260,18 +258,6 @@ class Bench:
 
 def _target(wire: Wire) -> Port:
     return wire.target.component, wire.target.port.name
-
-
-_folders: dict[Path, tempfile.TemporaryDirectory[str]] = {}
-
-
-def _unpacked(fmu: str) -> Path:
-    """An FMU unpacked once for all runs."""
-    path = fmus.runnable(fmu, 3)
-    if path not in _folders:
-        _folders[path] = tempfile.TemporaryDirectory(prefix="motionfmu-")
-        extract(str(path), _folders[path].name)
-    return Path(_folders[path].name)
 
 
 class _Wire:

@@ -72,7 +72,9 @@ class Scenario(Prepared):
         Parameters
         ----------
         engine : str, optional
-            ``native``, ``python`` or ``fmpy``; all give the same bits.
+            ``fused``, ``native``, ``python`` or ``fmpy``; all give the same bits. If not given,
+            ``$MOTIONFMU_ENGINE``, else fused where there is a C compiler and every FMU is ours, and
+            native elsewhere.
         fmi : int, optional
             2 or 3; if not given 3, and 2 for the engine ``fmpy``.
         set : mapping, optional
@@ -105,7 +107,7 @@ class Scenario(Prepared):
         for name in unknown:
             raise InputError(f"run: no option {name!r}{suggestion(name, known)}")
         faults = Faults()
-        chosen = faults.of(lambda: engines.named(engine)) or ""
+        chosen = faults.of(lambda: engines.named(engine))
         asked = Options(
             engine=chosen,
             fmi=engines.version(chosen, fmi),
@@ -125,7 +127,7 @@ class Scenario(Prepared):
             wired = Wired.plan(self, given, self.ends, folder)
 
             def master(system: System) -> Ran:
-                with closing(engines.ENGINES[chosen](wired.job(asked.fmi))) as ready:
+                with closing(engines.opened(chosen, wired.job(asked.fmi))) as ready:
                     ran = ready.run(system, asked.progress)
                 return replace(ran, warnings=[*grids.warnings(system), *ran.warnings])
 

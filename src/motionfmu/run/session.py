@@ -73,7 +73,7 @@ class Session:
         base = replace(self._options, set={**self._unset, **self._given})
         used = scenario.ends if signals is None else list(signals)
         self._wired = Wired.plan(scenario, base, used, self._folder)
-        return engines.ENGINES[str(self._options.engine)](self._wired.job(self._options.fmi))
+        return engines.opened(self._options.engine, self._wired.job(self._options.fmi))
 
     def _values(self, given: Mapping[str, Any]) -> list[Setting]:
         """All settings of a run; a value for one element leaves the others as they are."""

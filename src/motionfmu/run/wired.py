@@ -69,7 +69,7 @@ class Wired:
             parameters={s.end.name: s.values for s in self.system.settings},
             geometry=planned.read_text(encoding="utf-8") if planned.is_file() else None,
             warnings=(*ran.warnings, *never),
-            options=options.given(),
+            options=options.given() | {"engine": ran.engine},
             overrides=overrides(self.scenario, options, self.system),
             stopped=stopped,
             signal_at=signal,

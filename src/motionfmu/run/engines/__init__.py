@@ -5,11 +5,19 @@ Each is a module with ``opened(job)``, which gives an `Engine`; it is imported w
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 
 from motionfmu.errors import InputError, suggestion
-from motionfmu.run.engines.job import Engine, Job
+from motionfmu.run.engines.job import Engine, Job, Progress, Ran
+from motionfmu.scenarios.system import System
 
 VARIABLE = "MOTIONFMU_ENGINE"
+
+
+def _fused(job: Job) -> Engine:
+    from motionfmu.run.engines import fused
+
+    return fused.opened(job)
 
 
 def _native(job: Job) -> Engine:
@@ -31,22 +39,50 @@ def _fmpy(job: Job) -> Engine:
 
 
 ENGINES: dict[str, Callable[[Job], Engine]] = {
+    "fused": _fused,
     "native": _native,
     "python": _python,
     "fmpy": _fmpy,
 }
 
 
-def named(engine: str | None) -> str:
-    """The engine of this name; for None that of ``$MOTIONFMU_ENGINE``, else the usual one."""
+def named(engine: str | None) -> str | None:
+    """The engine of this name; for None that of ``$MOTIONFMU_ENGINE``, if it is set."""
     given = os.environ.get(VARIABLE) if engine is None else engine
     if given and given not in ENGINES:
         place = f"{VARIABLE}: " if engine is None else ""
         known = f"(there are: {', '.join(ENGINES)}){suggestion(str(given), ENGINES)}"
         raise InputError(f"{place}no engine {given!r} {known}")
-    return given or "native"
+    return given or None
 
 
-def version(engine: str, fmi: int | None) -> int:
+def version(engine: str | None, fmi: int | None) -> int:
     """FMI version of the FMUs; FMPy's container runs those of FMI 2 only."""
     return fmi if fmi is not None else 2 if engine == "fmpy" else 3
+
+
+def opened(engine: str | None, job: Job) -> Engine:
+    """An engine ready to run a job; None is fused where that can be, else native."""
+    if engine is not None:
+        return ENGINES[engine](job)
+    from motionfmu.fused import NotFused
+
+    try:
+        return _fused(job)
+    except NotFused:
+        return _native(job)
+    except InputError as error:
+        return _Instead(_native(job), f"engine native instead of fused: {error}")
+
+
+class _Instead:
+    """The native engine in the place of one that should have been; each run tells why."""
+
+    def __init__(self, engine: Engine, told: str) -> None:
+        self._engine, self._told = engine, told
+        self.close = engine.close
+
+    def run(self, system: System, progress: Progress) -> Ran:
+        """Run from the start."""
+        ran = self._engine.run(system, progress)
+        return replace(ran, warnings=[self._told, *ran.warnings])

@@ -25,9 +25,9 @@ class Ending:
         self.steps = system.steps
         self.signal: int | None = None
 
-    def ran(self, scopes: Scoped, warnings: list[str]) -> Ran:
+    def ran(self, engine: str, scopes: Scoped, warnings: list[str]) -> Ran:
         """What is told at the end."""
-        return Ran(scopes.signals(), warnings, self.steps, self.signal)
+        return Ran(engine, scopes.signals(), warnings, self.steps, self.signal)
 
     def points(self, progress: Callable[[float], None]) -> Iterator[int]:
         """Communication points from which a step is to be made, one after the other."""

@@ -21,10 +21,10 @@ from fmpy.model_description import (
 )
 
 from motionfmu.errors import InputError
+from motionfmu.run.engines import lean
 from motionfmu.run.engines.job import Job, Progress, Ran
 from motionfmu.run.engines.scoped import Scoped
 from motionfmu.run.engines.slave import Slave, element_names, ending_of
-from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
 
 TOKEN = "{6d6f7469-6f6e-666d-7500-636f6e746169}"
@@ -56,7 +56,7 @@ def _configuration(system: System, folder: Path) -> Configuration:
     variables: dict[str, dict[str, ModelVariable]] = {}
     for name, fmu in system.components.items():
         link = folder / f"{name}.fmu"
-        link.symlink_to(fmus.runnable(fmu, 2).resolve())
+        link.symlink_to(lean.packed(fmu, 2))
         components[name] = Component(name, link, read_model_description(str(link)))
         variables[name] = {v.name: v for v in components[name].modelDescription.modelVariables}
         for v in variables[name].values():  # the container knows the type names of FMI 3 only
@@ -132,7 +132,9 @@ class Container:
             (folder / "unzipped").mkdir()
             configuration = _configuration(system, folder)
             create_container_fmu(configuration, folder / "unzipped", folder / "container.fmu")
-            slave = Slave("container_fmu", folder / "container.fmu", 3, [])
+            slave = Slave(
+                "container_fmu", folder / "unzipped", 3, [], logging=False
+            )  # of each call
             stack.callback(slave.free)
             for s in (s for s in system.settings if s.end.port.type != "String"):
                 _give(slave, s.end, s.values)
@@ -146,8 +148,7 @@ class Container:
                     _give(slave, now.end, now.values)
                 slave.step(k * system.step_ns * 1e-9, step)
             slave.end()
-            told = [w for w in slave.warnings if not w.startswith(f"{slave.name}: ")]
-            return ending.ran(self._scopes, told)
+            return ending.ran("fmpy", self._scopes, [])
 
     def close(self) -> None:
         """Nothing is held between runs."""

@@ -26,6 +26,7 @@ class Job:
 class Ran:
     """What an engine tells of a run."""
 
+    engine: str  # its name
     signals: Columns  # a row a sample
     warnings: list[str]  # of the FMUs
     steps: int  # done

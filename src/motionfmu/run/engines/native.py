@@ -7,17 +7,16 @@ by step if a signal ends the run.
 
 import logging
 import tempfile
-import zipfile
 from pathlib import Path
 from typing import Any
 
 from fmu_manipulation_toolbox.container import FMUContainer
 
+from motionfmu.run.engines import lean
 from motionfmu.run.engines.ending import SHARES
 from motionfmu.run.engines.job import Job, Progress, Ran
 from motionfmu.run.engines.scoped import Scoped
 from motionfmu.run.engines.slave import Slave, ending_of, exposed
-from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
 
 IDENTIFIER = "system"
@@ -28,17 +27,6 @@ class _Folder(FMUContainer):
 
     def make_fmu_package(self, base_directory: Path, fmu_filename: Path) -> None:
         """Do nothing; the base class compresses everything."""
-
-
-def _runnable(source: Path, folder: Path) -> Path:
-    """A copy of an FMU with only what runs: most of an FMU's files are its C sources."""
-    target = folder / source.name
-    if not target.exists():
-        with zipfile.ZipFile(source) as whole, zipfile.ZipFile(target, "w") as part:
-            for entry in whole.namelist():
-                if not entry.startswith(("sources/", "documentation/")):
-                    part.writestr(entry, whole.read(entry))
-    return target
 
 
 def build(system: System, fmi: int, folder: Path) -> Path:
@@ -53,7 +41,7 @@ def build(system: System, fmi: int, folder: Path) -> Path:
         container = _Folder(IDENTIFIER, folder, fmi_version=fmi)
         container.start_time, container.stop_time = 0.0, system.steps * system.step_ns * 1e-9
         for name, fmu in system.components.items():
-            container.get_fmu(str(_runnable(fmus.runnable(fmu, fmi), folder)), name=f"{name}.fmu")
+            container.get_fmu(str(lean.packed(fmu, fmi)), name=f"{name}.fmu")
         for wire in system.wires:
             container.add_link(
                 f"{wire.source.component}.fmu",
@@ -121,7 +109,7 @@ class Container:
                 advance(k * system.step_ns * 1e-9)
         slave.end()
         warnings = [w for w in slave.warnings if not w.startswith(f"{IDENTIFIER}: ")]
-        return ending.ran(self._scopes, warnings)
+        return ending.ran("native", self._scopes, warnings)
 
     def _in_parts(self, system: System, progress: Progress) -> None:
         """Run in few long steps."""

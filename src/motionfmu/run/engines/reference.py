@@ -6,11 +6,11 @@ At each communication point all outputs are read, then all inputs written, then 
 from collections.abc import Callable
 from contextlib import ExitStack
 
+from motionfmu.run.engines import lean
 from motionfmu.run.engines.ending import Ending
 from motionfmu.run.engines.job import Job, Progress, Ran
 from motionfmu.run.engines.scoped import Scoped
 from motionfmu.run.engines.slave import Slave
-from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import System, Wire
 
 
@@ -53,7 +53,7 @@ class Master:
         with ExitStack() as stack:
             slaves: dict[str, Slave] = {}
             for name, fmu in system.components.items():
-                slaves[name] = Slave(name, fmus.runnable(fmu, self._fmi), self._fmi, messages)
+                slaves[name] = Slave(name, lean.unpacked(fmu, self._fmi), self._fmi, messages)
                 stack.callback(slaves[name].free)
             for s in system.settings:
                 port = s.end.port
@@ -79,7 +79,7 @@ class Master:
             for slave in slaves.values():
                 slave.end()
             told = [told for slave in slaves.values() for told in slave.warnings]
-            return ending.ran(self._scopes, told)
+            return ending.ran("python", self._scopes, told)
 
     def close(self) -> None:
         """Nothing is held between runs."""

@@ -16,6 +16,7 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.logging import addLoggerProxy
 
 from motionfmu.errors import InputError
+from motionfmu.run.engines import messages
 from motionfmu.run.engines.ending import Ending
 from motionfmu.scenarios.system import End, System
 
@@ -23,11 +24,6 @@ _C = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_b
 _FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
 # fmucontainer puts "mcc.fmu: " before the message of a component, which may name itself again.
 _INNER = re.compile(r"^(\w+)\.fmu: (?:(?:\w+\.)*\w+\.fmu: |\1: )?")
-_NAMED = re.compile(r"^\w+: ")
-_WARNING = 1  # status of both FMI versions
-# A run is not told more than so many different warnings of its FMUs.
-_WARNINGS_MAX = 20
-_ERROR = 3  # status of both FMI versions from which on nothing is good
 
 
 def element_names(end: End) -> list[str]:
@@ -43,19 +39,18 @@ def exposed(end: End, fmi: int) -> list[str]:
     return [end.port.name] if fmi == 3 else element_names(end)
 
 
-def _unnamed(message: str) -> bool:
-    return _NAMED.match(message) is None
-
-
 class Slave:
     """A co-simulation FMU of either version, from an .fmu or a folder that holds an unpacked one.
 
-    `messages` receives what the FMU logs with a status of Error or worse; `warnings` holds what it
-    or the FMUs inside warned of, each once, as ``component: what``.
+    `errors` receives what the FMU logs with a status of Error or worse; `warnings` holds what it
+    or the FMUs inside warned of, each once, as ``component: what``; without `logging`
+    there are errors only.
     """
 
-    def __init__(self, name: str, source: Path, fmi: int, messages: list[str]) -> None:
-        self.name, self.fmi, self.messages = name, fmi, messages
+    def __init__(
+        self, name: str, source: Path, fmi: int, errors: list[str], logging: bool = True
+    ) -> None:
+        self.name, self.fmi, self.errors, self._logging = name, fmi, errors, logging
         self.warnings: list[str] = []
         self._own: str | None = None
         if source.is_dir():
@@ -78,37 +73,28 @@ class Slave:
 
     def _instantiate(self) -> None:
         if self.fmi == 3:
-            self._do("instantiate", logMessage=self._log3, loggingOn=True)
+            self._do("instantiate", logMessage=self._log3, loggingOn=self._logging)
             return
         callbacks = fmi2CallbackFunctions()
         self._log = fmi2CallbackLoggerTYPE(self._log2)
         callbacks.logger = self._log
         addLoggerProxy(byref(callbacks))  # formats the message; Python cannot
-        self._do("instantiate", callbacks=callbacks, loggingOn=True)
+        self._do("instantiate", callbacks=callbacks, loggingOn=self._logging)
 
     def _log3(self, environment: Any, status: int, category: bytes, message: bytes) -> None:
         self._keep(status, message)
 
     def _log2(self, environment: Any, name: Any, status: int, category: Any, text: Any) -> None:
         told = text if isinstance(text, bytes) else str(text).encode()
-        if _unnamed(told.decode(errors="replace")) and b".fmu: " not in told:
+        if messages.unnamed(told.decode(errors="replace")) and b".fmu: " not in told:
             told = name + b": " + told
         self._keep(status, told)
 
     def _keep(self, status: int, message: bytes) -> None:
         """Keep an error or a warning; one from inside a container gets its component's name."""
-        if status < _WARNING:
-            return
-        text = _INNER.sub(r"\1: ", message.decode(errors="replace").strip())
-        if status >= _ERROR:
-            self.messages.append(text)
-        elif (
-            status == _WARNING
-            and not _unnamed(text)
-            and text not in self.warnings
-            and len(self.warnings) < _WARNINGS_MAX
-        ):
-            self.warnings.append(text)
+        if status >= messages.WARNING:
+            text = _INNER.sub(r"\1: ", message.decode(errors="replace").strip())
+            messages.keep(status, text, self.errors, self.warnings)
 
     def _do(self, call: str, **arguments: Any) -> None:
         """Call a method of FMPy's slave; what it raises becomes the FMU's own message."""
@@ -119,12 +105,7 @@ class Slave:
 
     def failure(self, call: str) -> InputError:
         """The error for a call that failed: what the first component to tell one says."""
-        own = f"{self.name}: "
-        inner = [m for m in self.messages if not m.startswith(own)]
-        told = [*inner, *self.messages, f"{own}{call} failed without a message"]
-        first = sorted(told[: len(inner)] or told[:1], key=_unnamed)[0]
-        place = first.partition(": line ")[0] + ": "
-        return InputError(first, *(m for m in self.messages if m.startswith(place) and m != first))
+        return messages.failure(self.name, call, self.errors)
 
     def buffer(self, kind: str, count: int) -> Any:
         """Memory for values of Float64, Int32 or Boolean, as the FMU has them."""
@@ -150,7 +131,7 @@ class Slave:
             arguments = (self.slave.component, references, ctypes.c_size_t(count), buffer)
 
         def run() -> None:
-            if call(*arguments) >= _ERROR:
+            if call(*arguments) >= messages.ERROR:
                 raise self.failure(f"{verb}{kind}")
 
         return run
@@ -195,7 +176,7 @@ class Slave:
             rest = (ctypes.c_int(1),)
 
         def advance(time: float) -> None:
-            if call(instance, ctypes.c_double(time), length, *rest) >= _ERROR:
+            if call(instance, ctypes.c_double(time), length, *rest) >= messages.ERROR:
                 raise self.failure("doStep")
 
         return advance
@@ -209,7 +190,7 @@ class Slave:
         old, self.slave.component = self.slave.component, None
         if old:
             getattr(self.slave, f"fmi{self.fmi}FreeInstance")(old)
-        self.messages.clear()
+        self.errors.clear()
         self.warnings.clear()
         self._instantiate()
 
