@@ -7,6 +7,8 @@ from pathlib import Path
 from motionfmu import kept
 from motionfmu.scenarios.fmus import PACKAGE
 
+OPTIMIZED = "-O2"
+
 
 def folders() -> list[Path]:
     """Where the C text is: the installed package's or the checkout's, and FMPy's."""

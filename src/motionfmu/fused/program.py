@@ -1,23 +1,15 @@
 """A system compiled as one FMU, kept on the disk."""
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from motionfmu import kept
-from motionfmu.compiler import FLAGS, Compiler, compiler
-from motionfmu.fmu import ctables
-from motionfmu.fmu.modeldescription import model_description
-from motionfmu.fmu.pack import platform_folder
-from motionfmu.fused import layer, text
-from motionfmu.fused.description import TYPES, Job, described, roles
-from motionfmu.fused.parts import NotFused, Part, digest, part
+from motionfmu.compiler import FLAGS, compiler
+from motionfmu.fused import layer
+from motionfmu.fused.parts import NotFused, digest
 from motionfmu.scenarios.system import End, System, Values
-
-_OPTIMIZED = "-O2"
-_FMI_TYPES = {ours: fmi for fmi, ours in TYPES.items()}
 
 
 @dataclass(frozen=True)
@@ -93,9 +85,16 @@ def _made(
     if cc is None:
         raise NotFused("there is no C compiler")
     key = _key(system, recorded, name, given)
-    job = Job(system, recorded, fmi, name, key, given)
-    whole = kept.key(key, str(fmi), layer.digest(), cc.version, *cc.command, *FLAGS, _OPTIMIZED)
-    return Program(kept.kept("fused", whole, lambda folder: _make(folder, job, cc)), fmi)
+    whole = kept.key(
+        key, str(fmi), layer.digest(), cc.version, *cc.command, *FLAGS, layer.OPTIMIZED
+    )
+
+    def make(folder: Path) -> None:
+        from motionfmu.fused import making  # what generates C is needed here only
+
+        making.make(folder, making.Job(system, recorded, fmi, name, key, given), cc)
+
+    return Program(kept.kept("fused", whole, make), fmi)
 
 
 def _key(
@@ -114,50 +113,3 @@ def _key(
         None if given is None else [repr(given), system.step_ns, system.steps],
     ]
     return kept.key(json.dumps(lists))
-
-
-def _parts(system: System) -> dict[str, Part]:
-    found = {fmu: part(fmu) for fmu in system.components.values()}
-    identifiers = {p.identifier for p in found.values()}
-    if len(identifiers) != len(found):
-        raise NotFused("two FMUs have one model identifier")
-    for wire in system.wires:
-        a, b = wire.source.port, wire.target.port
-        if (a.type, a.shape) != (b.type, b.shape):
-            raise NotFused(f"{wire.target.name} and {wire.source.name} are of two types")
-    return found
-
-
-def _make(folder: Path, job: Job, cc: Compiler) -> None:
-    parts, used = _parts(job.system), roles(job.system, job.recorded)
-    tick = math.lcm(*(one.tick_ns for one in parts.values()))
-    d = described(job, used, tick)
-    sources = folder / "sources"
-    sources.mkdir()
-    texts = {
-        "vars.h": ctables.header(d),
-        "vars.c": ctables.table(d),
-        "model.c": text.model(job.system, parts, used, job.recorded),
-        "state_flags.h": text.FLAGS,
-        "fmu_main.c": text.main_unit(job.fmi, quickly=job.given is None),
-    }
-    for file, content in texts.items():
-        (sources / file).write_text(content)
-    for one in parts.values():
-        (sources / f"{one.identifier}.o").write_bytes(one.code)
-    binaries = folder / "binaries" / platform_folder(job.fmi)
-    binaries.mkdir(parents=True)
-    included = [f"-I{place}" for place in layer.folders()]
-    objects = [f"{one.identifier}.o" for one in parts.values()]
-    library = cc.library(
-        ["fmu_main.c", *objects], str(binaries / f"{job.name}.so"), sources, _OPTIMIZED, *included
-    )
-    for file in objects:
-        (sources / file).unlink()
-    (folder / "modelDescription.xml").write_bytes(model_description(d, job.fmi))
-    rows = {
-        v.name: [_FMI_TYPES[v.type], reference, v.count]
-        for v, reference in zip(d.variables, d.references(), strict=True)
-    }
-    about = {"token": d.token, "library": str(library.relative_to(folder)), "variables": rows}
-    (folder / "program.json").write_text(json.dumps(about))

@@ -1,0 +1,68 @@
+"""What a program is made of, and its folder."""
+
+import json
+import math
+from pathlib import Path
+
+from motionfmu.compiler import Compiler
+from motionfmu.fmu import ctables
+from motionfmu.fmu.modeldescription import model_description
+from motionfmu.fmu.pack import platform_folder
+from motionfmu.fused import layer, text
+from motionfmu.fused.description import TYPES, Job, described, roles
+from motionfmu.fused.parts import NotFused, Part, part
+from motionfmu.scenarios.system import System
+
+FMI_TYPES = {ours: fmi for fmi, ours in TYPES.items()}
+
+
+def _parts(system: System) -> dict[str, Part]:
+    found = {fmu: part(fmu) for fmu in system.components.values()}
+    identifiers = {p.identifier for p in found.values()}
+    if len(identifiers) != len(found):
+        raise NotFused("two FMUs have one model identifier")
+    for wire in system.wires:
+        a, b = wire.source.port, wire.target.port
+        if (a.type, a.shape) != (b.type, b.shape):
+            raise NotFused(f"{wire.target.name} and {wire.source.name} are of two types")
+    return found
+
+
+def make(folder: Path, job: Job, cc: Compiler) -> None:
+    """Fill a folder with an unpacked FMU."""
+    parts, used = _parts(job.system), roles(job.system, job.recorded)
+    tick = math.lcm(*(one.tick_ns for one in parts.values()))
+    d = described(job, used, tick)
+    sources = folder / "sources"
+    sources.mkdir()
+    texts = {
+        "vars.h": ctables.header(d),
+        "vars.c": ctables.table(d),
+        "model.c": text.model(job.system, parts, used, job.recorded),
+        "state_flags.h": text.FLAGS,
+        "fmu_main.c": text.main_unit(job.fmi, quickly=job.given is None),
+    }
+    for file, content in texts.items():
+        (sources / file).write_text(content)
+    for one in parts.values():
+        (sources / f"{one.identifier}.o").write_bytes(one.code)
+    binaries = folder / "binaries" / platform_folder(job.fmi)
+    binaries.mkdir(parents=True)
+    included = [f"-I{place}" for place in layer.folders()]
+    objects = [f"{one.identifier}.o" for one in parts.values()]
+    library = cc.library(
+        ["fmu_main.c", *objects],
+        str(binaries / f"{job.name}.so"),
+        sources,
+        layer.OPTIMIZED,
+        *included,
+    )
+    for file in objects:
+        (sources / file).unlink()
+    (folder / "modelDescription.xml").write_bytes(model_description(d, job.fmi))
+    rows = {
+        v.name: [FMI_TYPES[v.type], reference, v.count]
+        for v, reference in zip(d.variables, d.references(), strict=True)
+    }
+    about = {"token": d.token, "library": str(library.relative_to(folder)), "variables": rows}
+    (folder / "program.json").write_text(json.dumps(about))
