@@ -46,4 +46,4 @@ def test_a_run_with_its_report_loads_nothing_that_draws(tmp_path) -> None:
     line = ("run", "scenarios/circle", "--stop", "0.4", "--out", str(tmp_path / "run"))
     found = loaded(tmp_path / "kept", *line)
     assert (tmp_path / "run/report.html").is_file()
-    assert "motionfmu.report.page" in found and not found & {"matplotlib", "plotly"}
+    assert "motionfmu.report.page" in found and not found & {"matplotlib", "plotly", "rich"}

@@ -1,6 +1,7 @@
 """What the commands share: the application, its options, settings, a run with a progress bar."""
 
 import functools
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -149,6 +150,8 @@ def progress_bar(*columns: "ProgressColumn") -> "Progress":
 
 def run_shown(scenario: "Scenario", options: dict[str, Any]) -> "Result":
     """Run, options as of `Scenario.run`, with a progress bar, which shows on a terminal only."""
+    if not sys.stdout.isatty():
+        return scenario.run(**options)
     from rich.progress import BarColumn, TaskProgressColumn, TextColumn
     from rich.progress import TimeRemainingColumn as TimeLeft
 

@@ -5,14 +5,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.cli import plain
 from motionfmu.cli.common import (
     FAILED,
     ScenarioPath,
     Set,
     app,
-    bare_table,
     files_of,
-    out,
     results,
     run_shown,
     settings,
@@ -30,21 +29,19 @@ Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for en
 
 def verdicts(checks: "Sequence[Verdict]") -> None:
     """Each bound, and why there are numbers missing."""
-    table = bare_table("", "check", "found", "asked")
-    table.columns[1].no_wrap = True  # so that bounds break, not names
+    rows = []
     for v in checks:
-        mark = "[green]ok[/]" if v.ok else "[bold red]FAILED[/]"
-        found = "none" if v.reason else f"{v.value:.6g}"
-        table.add_row(mark, v.name.replace("[", r"\["), found, v.bounds.replace("[", r"\["))
-    out.print(table)
+        mark, style = ("ok", plain.GREEN) if v.ok else ("FAILED", plain.RED)
+        rows.append(((mark, v.name, "none" if v.reason else f"{v.value:.6g}", v.bounds), style))
+    print(plain.table(("", "check", "found", "asked"), rows))
     for reason, names in _reasons(checks).items():
-        out.print(f"{', '.join(names)}: {reason}", markup=False, soft_wrap=True)
+        print(f"{', '.join(names)}: {reason}")
 
 
 def warnings(texts: "Sequence[str]") -> None:
     """Warnings, one line each."""
     for told in texts:
-        out.print("[yellow]warning[/]", told.replace("[", r"\["), soft_wrap=True)
+        print(plain.styled("warning", plain.YELLOW), told)
 
 
 def _reasons(checks: "Sequence[Verdict]") -> dict[str, list[str]]:
@@ -105,10 +102,10 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     verdicts(result.checks)
     warnings(result.warnings)
     for line in result.overrides:
-        out.print(f"not as written: {line}", markup=False, soft_wrap=True)
+        print(f"not as written: {line}")
     for line in _ends(result):
-        out.print(line, markup=False, soft_wrap=True)
-    out.print(f"{scenario.name}: {'all checks hold' if result.ok else 'a check FAILED'}")
-    out.print(f"report: {shown}", soft_wrap=True)
+        print(line)
+    print(f"{scenario.name}: {'all checks hold' if result.ok else 'a check FAILED'}")
+    print(f"report: {shown}")
     if not result.ok:
         raise typer.Exit(FAILED)

@@ -2,7 +2,6 @@
 
 import fnmatch
 import math
-import shutil
 import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from motionfmu.cli.common import app
+from motionfmu.cli.plain import width
 from motionfmu.errors import InputError, suggestion
 from motionfmu.units import spelled
 
@@ -100,16 +100,11 @@ def _chosen(names: Iterable[str], patterns: Sequence[str] | None) -> list[str]:
     return [n for n in names if not patterns or any(fnmatch.fnmatch(n, p) for p in patterns)]
 
 
-def _width() -> int:
-    """Columns of the terminal, or of COLUMNS; a pipe has 80."""
-    return max(shutil.get_terminal_size().columns, 40)
-
-
 def _rows(rows: Sequence[tuple[Sequence[str], str]], indent: str = "  ") -> None:
     """Print cells in columns and a text beside them, or below them where there is no room."""
     widths = [max(map(len, column)) for column in zip(*(cells for cells, _ in rows), strict=True)]
     left = len(indent) + sum(w + 2 for w in widths)
-    beside = _width() - left >= BESIDE
+    beside = width() - left >= BESIDE
     hang = " " * left if beside else indent + "    "
     for cells, text in rows:
         row = "  ".join(c.ljust(w) for c, w in zip(cells, widths, strict=True))
@@ -127,7 +122,7 @@ def _wrapped(text: str, first: str, hang: str) -> str:
         return first.rstrip()
     return textwrap.fill(
         text,
-        _width(),
+        width(),
         initial_indent=first,
         subsequent_indent=hang,
         break_long_words=False,

@@ -6,7 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from motionfmu.toml_lines import KEY_MAX
 
-STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, defer_build=True)
 CYCLES_MAX, POINTS_MAX = 1000, 100_000
 PLANES_MAX = 10_000
 Name = Annotated[str, Field(max_length=KEY_MAX)]

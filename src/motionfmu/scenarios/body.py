@@ -9,7 +9,7 @@ from motionfmu.toml_lines import KEY_MAX
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 Pair = tuple[float, float]
-_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, defer_build=True)
 # Each is an FMU with a library and a folder of its own.
 COMPONENTS_MAX = 64
 # The name becomes that of an instance and of a file; the recorder's own begin with "_".
