@@ -148,7 +148,7 @@ def test_the_worst_gain_of_the_literal_integral_counts() -> None:
     [
         ({"position": None}, "command and position go together"),
         ({"command": "controller.counter"}, "it shows no command"),
-        ({"position": "axis.place"}, "position = 'axis.place': no output of the linear model"),
+        ({"position": "axis.place"}, "axis.place: hydraulic_axis has no variable 'place'"),
         ({"cost": "contour_rms"}, "cost = 'contour_rms': of .contour. tables"),
         ({"command": None, "position": None}, "needs the signals of"),
         ({"trial": {"controller.band": (10.0, 5.0)}}, "the first must be less"),

@@ -242,6 +242,26 @@ class AxisModel:
         component, _, variable = name.partition(".")
         return component, variable
 
+    def alike(self, other: "AxisModel") -> bool:
+        """Whether another axis has the same values, wires and point.
+
+        Parameters
+        ----------
+        other : AxisModel
+
+        Returns
+        -------
+        bool
+        """
+        if self.scenario is not other.scenario or self.others or other.others:
+            return self is other
+        mine, theirs = self._parts.values, other._parts.values
+        return (
+            (self.at, self.set, self.step_ns) == (other.at, other.set, other.step_ns)
+            and self.wires == other.wires
+            and all(v[n] == theirs[c][n] for c, v in mine.items() for n in tuple(v.asked))
+        )
+
     def values(self, component: str) -> Mapping[str, Any]:
         """Parameters and inputs that stay of a component.
 

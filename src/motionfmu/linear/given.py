@@ -34,6 +34,7 @@ class Values(Mapping[str, Any]):
         self.given = {s.end.port.name: s.values for s in system.settings if self._mine(s.end)}
         self.given |= {s.end.port.name: s.values for s in system.stimuli if self._mine(s.end)}
         self.wired: dict[str, Any] = {}  # functions that give the value at the other end
+        self.asked: set[str] = set()  # names on which a model made of it depends
 
     def _mine(self, end: Any) -> bool:
         return bool(end.component == self._component)
@@ -41,7 +42,9 @@ class Values(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         port, place = element(self._ports, name, self._axis)
         if port.name in self.wired:
-            return self.wired[port.name]()
+            value = self.wired[port.name]()
+            self.asked.add(name)
+            return value
         if port.name in self.given:
             found = self.given[port.name]
         elif port.type == "String":
@@ -51,6 +54,7 @@ class Values(Mapping[str, Any]):
             found = tuple(kind(x) for x in (port.start or "").split())
         if not found:
             raise KeyError(name)
+        self.asked.add(name)
         return found[place]
 
     def __iter__(self) -> Any:

@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear.block import Matrix, Plant
+from motionfmu.linear.pointwise import Quick
 from motionfmu.scenarios.system import nanoseconds
 
 # As src/plant/plant_model.c chooses its sub-steps: (h/n) |lambda| <= 2.
@@ -36,6 +38,9 @@ _GAPS, _CLOSED = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2), 1e3
 # Steps of an input that is followed: the first, the least, the one at which Newton takes over, and
 # the farthest input looked at, in its unit and as a share.
 _FIRST_INPUT, _LEAST_INPUT, _NEAR_INPUT, _LAST_INPUT = 1e-3, 1e-7, 1e-4, 1e4
+
+# Points that are remembered.
+_POINTS_MAX = 100
 
 
 def _norm(v: Matrix) -> float:
@@ -138,12 +143,13 @@ class Linearised:
         arguments = [ode.x, ode.u, ode.p]
         # In a uniform motion every slope is constant: d(xdot)/dt = A xdot = 0.
         change = ca.mtimes(a, ode.xdot)
-        self._matrices = ca.Function("abcd", arguments, [a, b, c, d])
-        self._values = ca.Function("values", arguments, [ode.xdot, ode.y, change])
+        self._matrices = Quick("abcd", arguments, [a, b, c, d])
+        self._values = Quick("values", arguments, [ode.xdot, ode.y, change])
         z = ca.vertcat(ode.x, ode.u)
         slopes = [ca.jacobian(change, z), ca.jacobian(ode.y, z)]
-        self._slopes = ca.Function("slopes", arguments, slopes)
-        self._start = ca.Function("start", [ode.p], [ode.start])
+        self._slopes = Quick("slopes", arguments, slopes)
+        self._start = Quick("start", [ode.p], [ode.start])
+        self._points: dict[Any, Point] = {}  # found before; axes are often alike
 
     def parameters(self, values: Mapping[str, float]) -> Matrix:
         """Parameter vector of values by name."""
@@ -159,13 +165,13 @@ class Linearised:
         for hair in (_HAIR, -_HAIR):
             # unequal, so that no difference of two states stays 0
             away = [v + hair * np.arange(1, v.size + 1) * (1.0 + np.abs(v)) for v in (x, u)]
-            sides.append([np.array(m.full()) for m in self._matrices(*away, p)])
+            sides.append(self._matrices(*away, p))
         a, b, c, d = (0.5 * (one + other) for one, other in zip(*sides, strict=True))
         return a, b, c, d
 
     def start(self, p: Matrix) -> Matrix:
         """State at the start."""
-        return np.array(self._start(p).full()).ravel()
+        return self._start(p)[0].ravel()
 
     def point(
         self, p: Matrix, stated: Mapping[str, float], left: Mapping[str, float] | None = None
@@ -176,6 +182,16 @@ class Linearised:
         the first input of the class with which that can be done; all others that are not stated
         have their start values, or those of `left`. A ValueError if there is no such motion.
         """
+        asked = p.tobytes(), *(tuple(sorted(d.items())) for d in (stated, left or {}))
+        if asked not in self._points:
+            if len(self._points) >= _POINTS_MAX:
+                self._points.clear()
+            self._points[asked] = self._point(p, stated, left)
+        return self._points[asked]
+
+    def _point(
+        self, p: Matrix, stated: Mapping[str, float], left: Mapping[str, float] | None
+    ) -> Point:
         ode = self.ode
         inputs, outputs = [d.name for d in ode.inputs], [d.name for d in ode.outputs]
         for name in stated:
@@ -190,7 +206,7 @@ class Linearised:
         lasts = math.inf
         if wanted:
             x, u, lasts = self._settle((x, u, p), wanted, {**left, **stated})
-        y = np.array(self._values(x, u, p)[1].full()).ravel()
+        y = self._values(x, u, p)[1].ravel()
         values = dict(zip((d.name for d in ode.states), x.tolist(), strict=True))
         values |= dict(zip(inputs, u.tolist(), strict=True))
         values |= dict(zip(outputs, y.tolist(), strict=True))
@@ -201,7 +217,7 @@ class Linearised:
 
     def _moving(self, x: Matrix, u: Matrix, p: Matrix) -> Matrix:
         """Rates of the states, without what rounding leaves of a sum of forces."""
-        xdot = np.array(self._values(x, u, p)[0].full()).ravel()
+        xdot = self._values(x, u, p)[0].ravel()
         a, b, _, _ = self.matrices(x, u, p)
         balance = np.abs(a) @ np.abs(x) + np.abs(b) @ np.abs(u)
         xdot[np.abs(xdot) <= _LASTING * balance] = 0.0
@@ -241,11 +257,11 @@ class Linearised:
         weights = 1.0 / np.concatenate([rates, np.maximum(np.abs(targets), 1.0)])
 
         def rest(z: Matrix) -> Matrix:
-            _, y, change = (np.array(v.full()).ravel() for v in self._values(z[:n], z[n:], p))
+            _, y, change = (v.ravel() for v in self._values(z[:n], z[n:], p))
             return weights * np.concatenate([change, y[places] - targets])
 
         def slope(z: Matrix) -> Matrix:
-            of_change, of_y = (np.array(m.full()) for m in self._slopes(z[:n], z[n:], p))
+            of_change, of_y = self._slopes(z[:n], z[n:], p)
             found: Matrix = weights[:, None] * np.vstack([of_change, of_y[places]])
             return found
 
@@ -307,10 +323,10 @@ class Linearised:
 
     def _lasts(self, x: Matrix, u: Matrix, p: Matrix, weights: Matrix) -> float:
         """How long the motion goes on so [s]: in a gap it ends where the sides meet."""
-        xdot = np.array(self._values(x, u, p)[0].full()).ravel()
+        xdot = self._values(x, u, p)[0].ravel()
 
         def goes_on(seconds: float) -> bool:
-            change = np.array(self._values(x + seconds * xdot, u, p)[2].full()).ravel()
+            change = self._values(x + seconds * xdot, u, p)[2].ravel()
             return _norm(weights * change) < _LASTING
 
         good = 0.0
@@ -340,13 +356,13 @@ class Linearised:
         x0, u0, n = self.start(p), np.array(ode.u0), len(ode.states)
         for name, value in {**left, **stated}.items():
             u0[inputs.index(name)] = value
-        targets = np.array(self._values(x0, u0, p)[1].full()).ravel()[held]
+        targets = self._values(x0, u0, p)[1].ravel()[held]
         weights = np.append(
             1.0 + np.abs(self.matrices(x0, u0, p)[0]).sum(axis=1), [1.0] * len(held)
         )
 
         def balance(z: Matrix) -> Matrix:
-            rates, y, _ = (np.array(v.full()).ravel() for v in self._values(z[:n], z[n:], p))
+            rates, y, _ = (v.ravel() for v in self._values(z[:n], z[n:], p))
             return np.append(rates, y[held] - targets) / weights
 
         def slope(z: Matrix) -> Matrix:
@@ -361,7 +377,7 @@ class Linearised:
             raise ValueError(f"{ode.name} does not come to rest where it starts")
         values = dict(zip((d.name for d in ode.states), z[:n].tolist(), strict=True))
         values |= dict(zip(inputs, z[n:].tolist(), strict=True))
-        y = np.array(self._values(z[:n], z[n:], p)[1].full()).ravel()
+        y = self._values(z[:n], z[n:], p)[1].ravel()
         values |= dict(zip(outputs, y.tolist(), strict=True))
         return Point(z[:n], z[n:], values, dict(stated), dict.fromkeys(outputs, 0.0), dict(left))
 

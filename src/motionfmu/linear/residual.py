@@ -9,6 +9,7 @@ from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear.axis import AxisModel
 from motionfmu.linear.block import Matrix, Plant
 from motionfmu.linear.opened import linearised
+from motionfmu.linear.pointwise import Pointwise
 
 
 @dataclass(frozen=True)
@@ -18,8 +19,9 @@ class Residual:
     component: str
     inputs: tuple[str, ...]  # of the model; they carry w(x) = f(x, u) - A x - B u
     states: tuple[str, ...]  # outputs of the model that are the plant's states
-    function: ca.Function  # x -> w, for one state vector
-    slopes: ca.Function  # x -> (w, dw/dx)
+    values: Pointwise  # x -> w
+    slopes: Pointwise  # x -> w, and the elements of dw/dx that are not always 0
+    places: tuple[tuple[int, int], ...]  # of these elements: row and column
 
 
 def with_residuals(axis: AxisModel) -> tuple[AxisModel, tuple[Residual, ...]]:
@@ -81,11 +83,15 @@ def _stepped(block: Plant, a: Matrix, b: Matrix) -> tuple[Matrix, Matrix]:
     return block.step[0], g
 
 
-def _functions(ode: Ode, rows: list[int], at: tuple[Matrix, Matrix]) -> list[ca.Function]:
+def _functions(
+    ode: Ode, rows: list[int], at: tuple[Matrix, Matrix]
+) -> tuple[Pointwise, Pointwise, tuple[tuple[int, int], ...]]:
     a, p = at
     x = ca.SX.sym("x", len(a))
     before, after = [ode.x, ode.u, ode.p], [x, ca.SX.zeros(ode.u.shape), ca.SX(ca.DM(p))]
     xdot = ca.substitute([ode.xdot], before, after)[0]
     rest = (xdot - ca.mtimes(ca.SX(ca.DM(a)), x))[rows]
-    both = [rest, ca.jacobian(rest, x)]
-    return [ca.Function("rest", [x], found, {"cse": True}) for found in (both[:1], both)]
+    slopes = ca.jacobian(rest, x)
+    places = tuple(zip(*slopes.sparsity().get_triplet(), strict=True))
+    elements = ca.vertcat(*(slopes[k] for k in places))
+    return Pointwise(x, [rest]), Pointwise(x, [rest, elements]), places

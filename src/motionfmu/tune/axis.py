@@ -1,8 +1,8 @@
 """One axis with one plant: its motion and its margins as functions of the gains."""
 
-import functools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -12,11 +12,13 @@ from motionfmu.linear.axis import AxisModel
 from motionfmu.linear.form import Gain
 from motionfmu.linear.loops import feedbacks
 from motionfmu.linear.opened import listed, matrices
+from motionfmu.linear.pointwise import Quick
 from motionfmu.linear.residual import Residual, with_residuals
 from motionfmu.linear.wiring import PeriodMap
 from motionfmu.tune.curve import Loop
-from motionfmu.tune.steps import Array, Lifted, lifted, scan
+from motionfmu.tune.steps import Array, Lifted, forgotten, lifted, scan
 
+T = TypeVar("T")
 # Between two samples the friction turns within a small part of the way: points that show it.
 _FINE = 64
 # A residual that changes by this share of its size between two samples is looked at finely.
@@ -29,14 +31,14 @@ class _Matrices:
     def __init__(self, found: PeriodMap, gains: ca.SX) -> None:
         parts = [_matrix(m) for m in (found.a, found.b, found.c, found.d)]
         self.shapes = [p.shape for p in parts]
-        every = ca.densify(ca.vertcat(*(ca.vec(p) for p in parts)))
-        slopes = ca.densify(ca.jacobian(every, gains))
-        self._function = ca.Function("m", [gains], [every, slopes], {"cse": True})
+        every = ca.vertcat(*(ca.vec(p) for p in parts))
+        slopes = ca.jacobian(every, gains)
+        self._function = Quick("m", [gains], [every, slopes])
         self.period = found.period_ns * 1e-9
 
     def at(self, gains: Array) -> tuple[list[Array], list[Array]]:
         """Matrices, and derivatives with the gain as the first axis."""
-        values, slopes = (np.asarray(v.full()) for v in self._function(gains))
+        values, slopes = self._function(gains)
         matrices, changes, place = [], [], 0
         for rows, columns in self.shapes:
             size = rows * columns
@@ -96,11 +98,20 @@ class AxisStudy:
         self._answer = _Matrices(alone, self._gains)
         self._motion = _Matrices(matrices(wide, inputs, [*shown, *states]), self._gains)
         self.period = self._motion.period
+        self._made: dict[str, tuple[bytes, Any]] = {}
 
     def _loop(self, name: str, cut: tuple[str, ...]) -> _Matrices:
         component, _, port = name.partition(".")
         source = ".".join(self.axis.wires[component, port])
         return _Matrices(matrices(self.opened, [name], [source], [name, *cut]), self._gains)
+
+    def _once(self, what: str, gains: Array, make: Callable[[], T]) -> T:
+        """What was made for the same gains just before: axes alike ask one after the other."""
+        place = gains.tobytes()
+        if self._made.get(what, (b"", None))[0] != place:
+            self._made[what] = place, make()
+        found: T = self._made[what][1]
+        return found
 
     def loop(self, name: str, gains: Array) -> Loop:
         """The open loop at a key of `loops`."""
@@ -123,6 +134,9 @@ class AxisStudy:
     def slowest(self, gains: Array) -> tuple[float, Array]:
         """Slowest time constant [s] of the closed loop, and its slopes."""
         # Infinite or negative for an unstable loop.
+        return self._once("slowest", gains, lambda: self._slowest(gains))
+
+    def _slowest(self, gains: Array) -> tuple[float, Array]:
         (a, *_), (da, *_) = self._motion.at(gains)
         poles, left, right = eig(a, left=True, right=True)
         k = int(np.argmax(np.abs(poles)))
@@ -156,8 +170,10 @@ class AxisStudy:
 
     def motion(self, gains: Array, pulses: Array, periods: int, slopes: bool = True) -> Motion:
         """Move along pulses put out so far, every so many periods."""
-        (a, b, c, d), (da, db, dc, dd) = self._motion.at(gains)
-        lift = lifted(a, b[:, :1], da, db[:, :, :1], periods)
+        (_, _, c, d), (_, _, dc, dd) = self._motion.at(gains)
+        both, to = self._once(f"{periods} periods", gains, lambda: self._turned(gains, periods))
+        c, dc = c @ to, dc @ to
+        lift, side = both.inputs(slice(1)), both.inputs(slice(1, None))
         u = pulses[None, :].astype(float)
         x = lift.states(u)
         dx = lift.slopes(x, u) if slopes else None
@@ -167,18 +183,24 @@ class AxisStudy:
             if dx is not None:
                 dseen = c[self._count :] @ dx + dc[:, self._count :] @ x
             w, dw = self._rest(seen, dseen)
-            side = lifted(a, b[:, 1:], da, db[:, :, 1:], periods)
             extra = _held(side, w)
             if dx is not None:
                 assert dw is not None
                 dx = dx + _held_slopes(side, (extra, w, dw))
             x = x + extra
         shown, direct = c[: self._count], d[: self._count, :1]
-        y = shown @ x + direct @ u
+        y = shown @ x + direct * u
         if dx is None:
             return Motion(y, None)
-        dy = shown @ dx + dc[:, : self._count] @ x + dd[:, : self._count, :1] @ u
+        dy = shown @ dx + dc[:, : self._count] @ x + dd[:, : self._count, :1] * u
         return Motion(y, dy)
+
+    def _turned(self, gains: Array, periods: int) -> tuple[Lifted, Array]:
+        """Several periods at once, in states of which some are forgotten; and those states."""
+        (a, b, _, _), (da, db, _, _) = self._motion.at(gains)
+        whole = lifted(a, b, da, db, periods)
+        to, back = forgotten(whole.a)
+        return whole.turned(to, back), to
 
     def _rest(self, x: Array, dx: Array | None) -> tuple[Array, Array | None]:
         """Mean residuals between samples, from the states there, and their derivatives."""
@@ -205,30 +227,10 @@ def _held_slopes(lift: Lifted, moved: tuple[Array, Array, Array]) -> Array:
     return scan(lift.a, v)
 
 
-@functools.lru_cache(maxsize=64)
-def _mapped(function: ca.Function, count: int) -> ca.Function:
-    return function.map(count)
-
-
-def _called(rest: Residual, x: Array, slopes: bool) -> tuple[Array, Array]:
-    """Residuals (m, k) and their Jacobians (k, m, n) at states (n, k)."""
-    n, count = x.shape
-    # Few sizes, for a map takes longer to make than to use: four to a doubling.
-    unit = 1 << max(count.bit_length() - 3, 0)
-    size = -(-count // unit) * unit
-    wide = np.zeros((n, size))
-    wide[:, :count] = x
-    if not slopes:
-        values = np.asarray(_mapped(rest.function, size)(wide).full())
-        return values[:, :count], np.empty(0)
-    values, jacobians = (np.asarray(v.full()) for v in _mapped(rest.slopes, size)(wide))
-    jacobians = jacobians.reshape(len(values), size, n).transpose(1, 0, 2)
-    return values[:, :count], jacobians[:count]
-
-
 def _mean(rest: Residual, x: Array, dx: Array | None) -> tuple[Array, Array | None]:
     """Mean over the way from each sample to the next, taken as straight."""
-    w, jacobian = _called(rest, x, dx is not None)
+    called = rest.values if dx is None else rest.slopes
+    w, *changes = called(x)
     after = np.roll(w, -1, axis=1)
     mean = 0.5 * (w + after)
     scale = np.abs(w).max(axis=1, keepdims=True)
@@ -237,15 +239,18 @@ def _mean(rest: Residual, x: Array, dx: Array | None) -> tuple[Array, Array | No
     share = (np.arange(_FINE) + 0.5) / _FINE
     begin, end = x[:, turning], x[:, turning + 1]
     between = begin[:, :, None] + (end - begin)[:, :, None] * share
-    fine, finer = _called(rest, between.reshape(len(x), -1), dx is not None)
+    fine, *finer = called(between.reshape(len(x), -1))
     mean[:, turning] = fine.reshape(len(w), len(turning), _FINE).mean(axis=2)
     if dx is None:
         return mean, None
-    at = np.einsum("kmn,gnk->gmk", jacobian, dx)
+    at = np.zeros((len(dx), *w.shape))
+    within = np.zeros((len(dx), len(w), len(turning)))
+    sides = dx[:, :, turning], dx[:, :, turning + 1]
+    for (row, column), slope, steep in zip(rest.places, changes[0], finer[0], strict=True):
+        at[:, row] += slope * dx[:, column]
+        steep = steep.reshape(len(turning), _FINE) / _FINE
+        first, last = steep @ (1.0 - share), steep @ share
+        within[:, row] += first * sides[0][:, column] + last * sides[1][:, column]
     dmean = 0.5 * (at + np.roll(at, -1, axis=2))
-    finer = finer.reshape(len(turning), _FINE, len(w), len(x))
-    first = np.einsum("kfmn,f->kmn", finer, 1.0 - share) / _FINE
-    last = np.einsum("kfmn,f->kmn", finer, share) / _FINE
-    dmean[:, :, turning] = np.einsum("kmn,gnk->gmk", first, dx[:, :, turning])
-    dmean[:, :, turning] += np.einsum("kmn,gnk->gmk", last, dx[:, :, turning + 1])
+    dmean[:, :, turning] = within
     return mean, dmean

@@ -38,13 +38,19 @@ class Family:
         self.signals, self.peaks = choice.signals(one, problem)
         self.plants = problem.plants()
         self._check_family()
-        self.parts = [
-            {
-                k: AxisStudy(_changed(m, plant), self.names, self.signals, on_contour)
-                for k, m in self.axes.items()
-            }
-            for plant in self.plants
-        ]
+        self.parts = [self._studies(plant, on_contour) for plant in self.plants]
+
+    def _studies(self, plant: Mapping[str, float], bent: bool) -> dict[int, AxisStudy]:
+        """Studies of all axes with one plant; axes that are alike share one."""
+        found: dict[int, AxisStudy] = {}
+        for k, axis in self.axes.items():
+            like = [j for j in found if self.axes[j].alike(axis)]
+            found[k] = (
+                found[like[0]]
+                if like
+                else AxisStudy(_changed(axis, plant), self.names, self.signals, bent)
+            )
+        return found
 
     def _check_family(self) -> None:
         one = next(iter(self.axes.values()))

@@ -14,6 +14,9 @@ from motionfmu.tune.steps import Array
 
 # Distance between two samples of the path [s]: about one command of the card.
 SAMPLE = 1e-3
+# The same where a search asks only where to look: costs are within 2 % where limits are kept, 5 %
+# for the largest error.
+ROUGH = 3e-3
 # Order of the mean that stands for the largest error.
 _ORDER = 24
 
@@ -69,25 +72,30 @@ class PathCost:
 
     what = "contour error"
 
-    def __init__(self, base: Result, period: float) -> None:
+    def __init__(self, base: Result, period: float, sample: float = SAMPLE) -> None:
         contour = base.contour()
         run, document = contour.run, base.scenario.document
         assert document.body.contour is not None
         rows = round(period / (run.time[1] - run.time[0]))
         # of the model, from one sample to the next
-        self.periods = max(1, round(SAMPLE / period))
+        self.periods = max(1, round(sample / period))
         stride = slice(None, None, rows * self.periods)
         window = contour.window
         owners = contour.command_track.segment
         time = run.time
         self.time = time[stride]
-        self._first = owners[_held(time, -window)][stride]
-        self._last = owners[_held(time, AHEAD * window)][stride]
+        first = owners[_held(time, -window)][stride]
+        last = owners[_held(time, AHEAD * window)][stride]
         self._cutting = contour.cutting[stride]
         self._path = run.path
+        self._lowest, self._owners = first, first.copy()
+        # Elsewhere there is one candidate only; what lies between two such samples is by itself.
+        self._open = np.flatnonzero(first < last)
+        self._candidates = first[self._open], last[self._open]
+        self._pairs = np.split(self._open, np.flatnonzero(np.diff(self._candidates[0])) + 1)
         self.axes = tuple(i + 1 for i in run.axes if i < 3)
         counts = base[document.body.contour.pulses]
-        self.pulses = {i: counts[stride, i - 1] for i in self.axes}
+        self.pulses = {i: counts[stride, i - 1].astype(float) for i in self.axes}
         self._rest = run.actual[stride, :3].copy()
         self._start = {i: float(run.actual[0, i - 1]) for i in self.axes}
         port = base.scenario.resolver.end(
@@ -101,10 +109,24 @@ class PathCost:
         points = self._rest.copy()
         for axis, values in positions.items():
             points[:, axis - 1] = self._start[axis] + values * self.factor
-        owners = assign(points, self._path, self._first, self._last)
-        near = self._path.segments.foot(points, owners)
-        cut = self._cutting
-        return PathError(near.distance[cut], (points - near.point)[cut])
+        self._assign(points)
+        points = points[self._cutting]
+        near = self._path.segments.foot(points, self._owners[self._cutting])
+        return PathError(near.distance, points - near.point)
+
+    def _assign(self, points: Array) -> None:
+        """Give samples with several candidates the one that `assign` gives them."""
+        first, last = self._candidates
+        if (last > first + 1).any():
+            self._owners[self._open] = assign(points[self._open], self._path, first, last)
+            return
+        for own in self._pairs:  # of two segments: the change after which the squares are least
+            if not len(own):
+                continue
+            k = int(self._lowest[own[0]])
+            one, two = (self._path.segments[j].foot(points[own]).distance ** 2 for j in (k, k + 1))
+            sums = np.concatenate([[0.0], np.cumsum(one - two)])
+            self._owners[own] = np.where(np.arange(len(own)) < np.argmin(sums), k, k + 1)
 
     def chain(self, slope: Array, axis: int, changes: Array) -> Array:
         """Derivatives of a cost to an axis' gains, from its position's."""

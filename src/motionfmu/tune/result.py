@@ -67,6 +67,9 @@ class Tuned:
     after: list[Run] = field(default_factory=list)
     seconds: float = 0.0
     trial: Trial | None = None
+    # Asked for by the gains file, the page and the numbers.
+    _margins: dict[bytes, list[LoopMargins]] = field(default_factory=dict, repr=False)
+    _position_gains: dict[bytes, list[LoopGain]] = field(default_factory=dict, repr=False)
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -120,7 +123,10 @@ class Tuned:
         list of LoopMargins
             One for each axis and loop.
         """
-        return least_margins(self.study, z)
+        place = z.tobytes()
+        if place not in self._margins:
+            self._margins[place] = least_margins(self.study, z)
+        return self._margins[place]
 
     def lags(self, z: Array) -> dict[int, float]:
         """Following error over speed of each axis, nominal plant.
@@ -149,10 +155,13 @@ class Tuned:
         -------
         list of LoopGain
         """
-        study = self.study
-        given = {**study.set, **settings(study, z)}
-        found = [gain_of(study.scenario, given, k, study.at) for k in study.axes]
-        return list(dict.fromkeys(sorted(sum(found, ()), key=lambda g: (g.name, g.axis))))
+        study, place = self.study, z.tobytes()
+        if place not in self._position_gains:
+            given = {**study.set, **settings(study, z)}
+            found = [gain_of(study.scenario, given, k, study.at) for k in study.axes]
+            each = sorted(sum(found, ()), key=lambda g: (g.name, g.axis))
+            self._position_gains[place] = list(dict.fromkeys(each))
+        return self._position_gains[place]
 
     def toml(self) -> str:
         """The gains file, for ``motionfmu run SCENARIO --set FILE``.

@@ -2,12 +2,11 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
-from scipy.optimize import direct
 
 from motionfmu.errors import InputError
 from motionfmu.tune.choice import Variable
@@ -23,6 +22,8 @@ _PENALTY = 10.0
 _BOX, _BOXES, _EDGE = 0.15, 8, 1e-4
 # A solution is begun anew in a smaller box while that lowers the cost by this share.
 _SMALLER, _SMALLEST, _GAIN, _AGAIN = 0.4, 0.01, 5e-4, 6
+# What each axis for itself could gain, of the cost, is no reason to look for it.
+_SETTLED = 1e-7
 _OPTIONS: Any = {
     "ipopt.hessian_approximation": "limited-memory",
     "ipopt.limited_memory_max_history": 12,
@@ -61,30 +62,14 @@ class Found:
     evaluations: tuple[int, int]  # of both
 
 
-@dataclass
-class _Memory:
-    """The latest points, so that a value and its slope cost one evaluation."""
-
-    study: Study
-    known: dict[bytes, Values] = field(default_factory=dict)
-
-    def at(self, z: Array) -> Values:
-        key = z.tobytes()
-        if key not in self.known:
-            if len(self.known) > 8:
-                self.known.clear()
-            self.known[key] = self.study.values(z)
-        return self.known[key]
-
-
 class _Function(ca.Callback):
     """Logarithms of the costs and the slacks, for CasADi."""
 
-    def __init__(self, memory: _Memory) -> None:
+    def __init__(self, study: Study) -> None:
         super().__init__()
-        self.memory = memory
-        self.n = len(memory.study.variables)
-        self.m = len(memory.study.plants) + len(memory.study.limits)
+        self.study = study
+        self.n = len(study.variables)
+        self.m = len(study.plants) + len(study.limits)
         self._slopes: Any = None
         self.construct("values", {})
 
@@ -106,7 +91,7 @@ class _Function(ca.Callback):
 
     def eval(self, arg: Sequence[ca.DM]) -> list[ca.DM]:
         """Values."""
-        found = self.memory.at(np.asarray(arg[0].full()).ravel())
+        found = self.study.values(np.asarray(arg[0].full()).ravel())
         return [ca.DM(np.concatenate([np.log(found.costs), found.slack]))]
 
     def has_jacobian(self) -> bool:
@@ -145,7 +130,7 @@ class _Slopes(ca.Callback):
 
     def eval(self, arg: Sequence[ca.DM]) -> list[ca.DM]:
         """Slopes."""
-        found = self.of.memory.at(np.asarray(arg[0].full()).ravel())
+        found = self.of.study.values(np.asarray(arg[0].full()).ravel())
         return [ca.DM(np.vstack([found.dcosts / found.costs[:, None], found.dslack]))]
 
 
@@ -162,7 +147,7 @@ def _shared(study: Study) -> Array:
 
 def _solver(study: Study, spread: Array) -> tuple[_Run, Any]:
     """min t over y and t, z = spread y, with log cost <= t for every plant and no slack < 0."""
-    function = _Function(_Memory(study))
+    function = _Function(study)
     n, plants = spread.shape[1], len(study.plants)
     inverse = np.linalg.pinv(spread)
     y, t = ca.MX.sym("y", n), ca.MX.sym("t")
@@ -185,7 +170,7 @@ def _solver(study: Study, spread: Array) -> tuple[_Run, Any]:
             )
             y = np.clip(np.asarray(answer["x"].full()).ravel()[:n], low, high)
             z = spread @ y
-            found = function.memory.at(z)
+            found = study.values(z)
             if not merit(found) < merit(best[1]):
                 box *= _SMALLER  # the slopes did not hold so far
                 if box < _SMALLEST:
@@ -230,9 +215,10 @@ def solve(study: Study, progress: Callable[[float], None] = lambda share: None) 
         costs.append(found[1].worst if found and found[1].feasible(TOLERANCE) else np.nan)
         candidates += [found] if found else []
     if len(study.variables) > len(study.names) and candidates:
-        alone = _solver(study, np.eye(len(study.variables)))
         best = min(candidates, key=lambda c: merit(c[1]))
-        candidates += [c for c in [_attempt(study, alone[0], best[0])] if c]
+        if not _settled(study.values(best[0])):
+            alone = _solver(study, np.eye(len(study.variables)))
+            candidates += [c for c in [_attempt(study, alone[0], best[0])] if c]
     seconds, count = time.perf_counter() - begun, study.evaluations - first
     progress(1.0)
     kept = [c for c in candidates if c[1].feasible(TOLERANCE)]
@@ -271,6 +257,21 @@ def _attempt(study: Study, run: _Run, start: Array) -> tuple[Array, Values] | No
     return best
 
 
+def _settled(values: Values) -> bool:
+    """Whether no direction in the box lowers the cost to first order: each axis for itself, too.
+
+    For multipliers m >= 0 of the limits with slack s and slopes G the linear problem gains at most
+    m s + box |g - G' m| (its dual), g being the slope of the logarithm of the cost.
+    """
+    if len(values.costs) > 1 or not values.feasible(TOLERANCE):
+        return False
+    near = values.slack < _REACHED
+    slope, limits = values.dcosts[0] / values.costs[0], values.dslack[near]
+    weights = np.linalg.lstsq(limits.T, slope, rcond=None)[0].clip(min=0.0)
+    left = float(np.abs(slope - limits.T @ weights).sum())
+    return abs(float(weights @ values.slack[near])) + _BOX * left < _SETTLED
+
+
 def _spread(study: Study) -> list[Array]:
     """Points spread over the range, drawn to the present gains until all loops are stable."""
     from scipy.stats import qmc  # a third of a second, and seldom needed
@@ -298,9 +299,11 @@ def _global(study: Study, progress: Callable[[float], None]) -> tuple[Array, Val
         z = spread @ y
         done += 1
         progress(min(1.0, done / study.problem.check))
-        value = merit(study.values(z, False))
+        value = merit(study.rough(z))
         best = min(best, (value, z), key=lambda pair: pair[0])
         return value
+
+    from scipy.optimize import direct  # whose import takes a third of a second
 
     direct(at, box, maxfun=study.problem.check, maxiter=10_000, locally_biased=True)
     return best[1], study.values(best[1], False)

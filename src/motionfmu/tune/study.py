@@ -14,7 +14,7 @@ from motionfmu.tune.axis import AxisStudy, Motion
 from motionfmu.tune.curve import margin
 from motionfmu.tune.family import Family
 from motionfmu.tune.move import MoveCost
-from motionfmu.tune.path import PathCost
+from motionfmu.tune.path import ROUGH, PathCost
 from motionfmu.tune.problem import ON_PATH, Margins, Problem
 from motionfmu.tune.steps import Array
 
@@ -22,6 +22,8 @@ from motionfmu.tune.steps import Array
 _LAGS, _SAMPLES = 20.0, 800
 # Products of matrices as small as these take five times as long on two threads as on one.
 _BLAS = ThreadpoolController()
+# Points that are remembered.
+_KNOWN_MAX = 1000
 # An overshoot limit of 0 means no more than rounding.
 _LEAST_OVERSHOOT = 1e-3
 
@@ -70,12 +72,16 @@ class Study(Family):
         super().__init__(scenario, problem, base, set or {})
         first = next(iter(self.axes))
         self.path, self.lag = self._path(first, self.parts[0][first])
+        self._rough = self.path  # what judges motions while it is asked only where to look
+        if isinstance(self.path, PathCost):
+            self._rough = PathCost(base, self.parts[0][first].period, ROUGH)
         period = self.parts[0][first].period
         seconds = _LAGS * max(self.lag, 50.0 * period)
         self._step = max(1, round(seconds / _SAMPLES / period)), _SAMPLES
         self._check_loops()
         self.limits = self._limits()  # in the order of `Values.slack`
         self.evaluations = 0
+        self._known: dict[tuple[bytes, bool], Values] = {}
 
     def _path(self, axis: int, part: AxisStudy) -> tuple[PathCost | MoveCost, float]:
         """What judges motions, and the lag [s] with the present gains."""
@@ -122,11 +128,25 @@ class Study(Family):
 
     def values(self, z: Array, slopes: bool = True) -> Values:
         """Cost and limits at shares (n,) of the variables' ranges, with slopes or zeros."""
+        place = z.tobytes()
+        known = self._known.get((place, True)) or self._known.get((place, slopes))
+        if known is None:
+            known = self._counted(z, slopes, self.path)
+            if len(self._known) >= _KNOWN_MAX:
+                self._known.clear()
+            self._known[place, slopes] = known
+        return known
+
+    def rough(self, z: Array) -> Values:
+        """The same without slopes; costs on the path from fewer samples of it."""
+        return self._counted(z, False, self._rough)
+
+    def _counted(self, z: Array, slopes: bool, path: PathCost | MoveCost) -> Values:
         self.evaluations += 1
         with _BLAS.limit(limits=1, user_api="blas"):
-            return self._values(z, slopes)
+            return self._values(z, slopes, path)
 
-    def _values(self, z: Array, slopes: bool) -> Values:
+    def _values(self, z: Array, slopes: bool, path: PathCost | MoveCost) -> Values:
         gains, rates = self.gains(z), self.rates(z)
         costs, dcosts, slack, dslack = [], [], [], []
         for parts in self.parts:
@@ -137,13 +157,17 @@ class Study(Family):
                 slack += [-1.0] * count
                 dslack += [np.zeros(len(z))] * count
                 continue
-            cost, dcost, motions = self._cost(parts, (gains, rates), slopes)
+            cost, dcost, motions = self._cost(parts, (gains, rates), (path, slopes))
             costs.append(cost)
             dcosts.append(dcost)
+            known: dict[Any, tuple[list[float], list[Array]]] = {}  # axes alike share them
             for k, part in parts.items():
-                found, changes = self._slack(part, gains[k], (motions.get(k), slopes))
-                slack += found
-                dslack += [c @ rates[k] for c in changes]
+                same = part, gains[k].tobytes()
+                if same not in known:
+                    known[same] = self._slack(part, gains[k], slopes)
+                peaks = self._peaks(motions.get(k), len(gains[k]))
+                slack += known[same][0] + peaks[0]
+                dslack += [c @ rates[k] for c in known[same][1] + peaks[1]]
         return Values(
             np.array(costs),
             np.array(slack),
@@ -165,22 +189,22 @@ class Study(Family):
         self,
         parts: Mapping[int, AxisStudy],
         where: tuple[dict[int, Array], dict[int, Array]],
-        slopes: bool,
+        how: tuple[PathCost | MoveCost, bool],
     ) -> tuple[float, Array, dict[int, Motion]]:
-        gains, rates = where
+        (gains, rates), (path, slopes) = where, how
         on_path = self.problem.cost in ON_PATH
         motions = {}
         if on_path or self.peaks:
             for k, part in parts.items():
-                pulses = self.path.pulses[k]
-                motions[k] = part.motion(gains[k], pulses, self.path.periods, slopes)
+                pulses = path.pulses[k]
+                motions[k] = part.motion(gains[k], pulses, path.periods, slopes)
         total = np.zeros(next(iter(rates.values())).shape[1])
         if on_path:
-            error = self.path.error({k: m.outputs[0] for k, m in motions.items()})
+            error = path.error({k: m.outputs[0] for k, m in motions.items()})
             cost, slope = error.cost(self.problem.cost)
             for k, m in motions.items():
                 if m.slopes is not None:
-                    total += self.path.chain(slope, k, m.slopes[:, 0]) @ rates[k]
+                    total += path.chain(slope, k, m.slopes[:, 0]) @ rates[k]
             return cost, total, motions
         cost = 0.0
         for k, part in parts.items():
@@ -202,9 +226,9 @@ class Study(Family):
         return float(weight @ np.abs(e)), de @ (weight * np.sign(e))
 
     def _slack(
-        self, part: AxisStudy, gains: Array, moved: tuple[Motion | None, bool]
+        self, part: AxisStudy, gains: Array, slopes: bool
     ) -> tuple[list[float], list[Array]]:
-        motion, slopes = moved
+        """Distances to the limits of loops and steps, with slopes."""
         found: list[float] = []
         changes: list[Array] = []
 
@@ -233,12 +257,18 @@ class Study(Family):
             slow, change = part.slowest(gains)
             most = self.problem.limits.recovery
             add(1.0 - slow / most, -change / most)
+        return found, changes
+
+    def _peaks(self, motion: Motion | None, count: int) -> tuple[list[float], list[Array]]:
+        """Distances to the limits of outputs on the path, with slopes to so many gains."""
+        found, changes = [], []
         for row, most in enumerate(self.peaks.values(), 1):
             assert motion is not None
             top = int(np.argmax(np.abs(motion.outputs[row])))
             value = motion.outputs[row, top]
-            slope = np.zeros(len(gains))
+            slope = np.zeros(count)
             if motion.slopes is not None:
                 slope = motion.slopes[:, row, top] * np.sign(value)
-            add(1.0 - abs(value) / most, -slope / most)
+            found.append(1.0 - abs(value) / most)
+            changes.append(-slope / most)
         return found, changes

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.errors import InputError
-from motionfmu.run import Scenario
+from motionfmu.run import Scenario, Session
 from motionfmu.tune.move import MoveCost
 from motionfmu.tune.solve import RanAway
 
@@ -69,20 +69,22 @@ def tried(
     whole = port.type == "Int32"
     found: dict[float, Look] = {}
 
-    def look(values: Any) -> None:
-        for value in values:
-            number = round(float(value)) if whole else float(f"{value:.4g}")
-            if number not in found:
-                ran = scenario.run(set={**set, name: number})
-                found[number] = Look(move.standing(ran), move.beyond(ran))
-                progress(len(found) / (_COARSE + _FINE * _ROUNDS))
+    with Session(scenario, [name], set={n: v for n, v in set.items() if n != name}) as session:
 
-    look(np.geomspace(low, high, _COARSE))
-    for _ in range(_ROUNDS):
-        values = sorted(found)
-        k = values.index(_least(found, limit))
-        around = values[max(k - 1, 0)], values[min(k + 1, len(values) - 1)]
-        look(np.geomspace(*around, _FINE + 2)[1:-1])
+        def look(values: Any) -> None:
+            for value in values:
+                number = round(float(value)) if whole else float(f"{value:.4g}")
+                if number not in found:
+                    ran = session.run({name: number})
+                    found[number] = Look(move.standing(ran), move.beyond(ran))
+                    progress(len(found) / (_COARSE + _FINE * _ROUNDS))
+
+        look(np.geomspace(low, high, _COARSE))
+        for _ in range(_ROUNDS):
+            values = sorted(found)
+            k = values.index(_least(found, limit))
+            around = values[max(k - 1, 0)], values[min(k + 1, len(values) - 1)]
+            look(np.geomspace(*around, _FINE + 2)[1:-1])
     values = sorted(found)
     value = _least(found, limit)
     if value in (values[0], values[-1]):
