@@ -4,13 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
+from scipy.optimize import linprog, minimize
 
 from motionfmu.contour.circles import plane_axes
 from motionfmu.contour.iso230 import (
     both_ways,
     fit_ellipse,
     least_squares_circle,
+    minimax,
     minimum_zone,
     reading,
 )
@@ -86,6 +87,42 @@ def test_minimum_zone_is_what_a_search_finds(seed: int) -> None:
     # the optimum has at least four points on the two circles
     on = (radii - zone.inner < 1e-7 * zone.width) | (zone.outer - radii < 1e-7 * zone.width)
     assert on.sum() >= 4
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_minimax_is_what_a_linear_program_of_all_points_finds(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(4, 400))
+    angle = rng.uniform(0.0, rng.uniform(3.3, 6.3), count)
+    if seed % 4 == 0:  # laps: several values in each direction, many of them alike
+        angle = np.repeat(angle[: count // 2 + 2], 2)
+    values = np.round(rng.normal(size=len(angle)), int(rng.integers(0, 12)))
+    rows = np.column_stack([np.cos(angle), np.sin(angle), np.ones(len(angle))])
+    one = np.ones((len(angle), 1))
+    program = linprog(
+        [0.0, 0.0, 0.0, 1.0],
+        A_ub=np.vstack([np.hstack([-rows, -one]), np.hstack([rows, -one])]),
+        b_ub=np.concatenate([-values, values]),
+        bounds=[(None, None)] * 3 + [(0.0, None)],
+    )
+    found = float(np.abs(values - rows @ minimax(rows, values)).max())
+    assert found == pytest.approx(program.fun, abs=1e-9)
+
+
+@pytest.mark.parametrize("spikes", [0, 3])
+def test_no_point_is_outside_the_zone_of_many(spikes: int) -> None:
+    # 200000 points, of which a few at random stick out by the width of a hair: their zone is the
+    # one of a search over those on the hull of each side.
+    rng = np.random.default_rng(7 + spikes)
+    angle = np.sort(rng.uniform(0.0, 2.0 * math.pi, 200_000))
+    radius = R + 0.01 * np.cos(2.0 * angle) + 1e-3 * rng.normal(size=len(angle))
+    radius[rng.integers(0, len(angle), spikes)] += 0.02
+    points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    zone = minimum_zone(points)
+    radii = np.hypot(*(points - zone.centre).T)
+    assert radii.min() >= zone.inner - 1e-13 and radii.max() <= zone.outer + 1e-13
+    bound = (radii < zone.inner + 2e-3) | (radii > zone.outer - 2e-3)
+    assert zone.width == pytest.approx(zone_by_search(points[bound]), abs=1e-9)
 
 
 def test_minimum_zone_of_few_points_by_hand() -> None:

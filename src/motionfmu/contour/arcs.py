@@ -107,19 +107,22 @@ class Arcs:
 
     def _frame(self, points: Array) -> tuple[Array, Array, Array]:
         """Points in the arc's own frame."""
-        gap = points - self.centre
-        if self.axes.ndim == 2:
-            x, y, z = self.axes @ gap.T
-        else:
-            x, y, z = np.einsum("ijk,ik->ji", self.axes, gap)
+        # Sums of three products, not matrices: a library with threads is slower at these.
+        u, v, w = np.moveaxis(points - self.centre, -1, 0)
+        x, y, z = (a * u + b * v + c * w for a, b, c in self._rows)
         return x, y, z
+
+    @cached_property
+    def _rows(self) -> Array:
+        """Elements of the axes, each a number or (n,)."""
+        return np.moveaxis(self.axes, (-2, -1), (0, 1))
 
     def _turned(self, x: Array, y: Array, z: Array) -> Array:
         """Vectors (n, 3) of the arc's own frame in space."""
-        own = np.stack(np.broadcast_arrays(x, y, z), axis=-1)
-        if self.axes.ndim == 2:
-            return np.asarray(own @ self.axes)
-        return np.asarray(np.einsum("ij,ijk->ik", own, self.axes))
+        found = np.empty((len(x), 3))
+        for i, (a, b, c) in enumerate(np.swapaxes(self._rows, 0, 1)):
+            found[:, i] = a * x + b * y + c * z
+        return found
 
     def _placed(self, x: Array, y: Array, z: Array) -> Array:
         return self.centre + self._turned(x, y, z)

@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 from motionfmu.contour.arcs import Array
 from motionfmu.contour.geometry import norms
 from motionfmu.contour.path import Path
+from motionfmu.contour.scaled import BLOCK, blocks
 from motionfmu.contour.segments import Index
 
-# Samples that are looked at together: enough for few calls, few enough for little memory.
-BLOCK = 1 << 16
-# Every so many samples are searched from nothing; those between begin where these ended.
+# Of so many samples in a row the middle one is searched first.
 STRIDE = 32
-# Places of its candidates at which such a sample looks first.
+# Parts of its candidates at whose ends such a sample looks first.
 SPREAD = 8
 # Distances that differ by less are the same [mm]: a corner is as far from both its moves.
 SAME = 1e-9
@@ -41,11 +40,10 @@ def assign(points: Any, path: Path, first: Index, last: Index) -> Index:
     if (first > last).any() or _falls(first) or _falls(last):
         raise ValueError("candidates must not be empty nor decrease with time")
     low, high = np.asarray(first).astype(np.int32), np.asarray(last).astype(np.int32)
-    for begin in range(0, len(low), BLOCK):
-        some = slice(begin, begin + BLOCK)
-        several = begin + np.flatnonzero(low[some] < high[some])
+    for some in blocks(len(low), points):
+        several = some.start + np.flatnonzero(low[some] < high[some])
         if len(several):
-            part = np.asarray(points[some])[several - begin, :3]
+            part = np.asarray(points[some])[several - some.start, :3]
             low[several], high[several] = nearest(part, path, (low[several], high[several]))
     if not len(low):
         return low
@@ -84,23 +82,37 @@ def nearest(
 
     Candidates (n,) are the segments from a first one to a last one. Nothing is missed: where the
     end of a segment is d farther from a point than the nearest place so far, no place within the
-    way d of that end is nearer, and the search goes on behind it.
+    way d of that end is nearer, and the search goes on behind it. Of points in a row, which lie
+    within r of the middle one, none has a nearest segment that is more than 2 r farther from that
+    one than its own: what is farther needs no look from the others.
     """
-    few = np.arange(0, len(points), STRIDE)
-    own = (candidates[0][few], candidates[1][few])
-    room = np.broadcast_to(np.asarray(room) + SAME, len(points))
-    search = _Search.begin(points[few], path, own, room[few])
+    count, (first, last) = len(points), candidates
+    room = np.broadcast_to(np.asarray(room) + SAME, count)
+    starts = np.arange(0, count, STRIDE)
+    stops = np.minimum(starts + STRIDE, count)
+    middle = (starts + stops) // 2
+    sizes = stops - starts
+    radius = np.maximum.reduceat(norms(points - np.repeat(points[middle], sizes, axis=0)), starts)
+    wide = (first[starts], last[stops - 1])  # what is a candidate of one of the row at least
+    own = 2.0 * radius + np.maximum.reduceat(room, starts)
+    search = _Search.begin(points[middle], path, wide, own)
     for k in range(SPREAD + 1):
-        search.look(np.arange(len(few)), own[0] + (own[1] - own[0]) * k // SPREAD)
+        search.look(np.arange(len(middle)), wide[0] + (wide[1] - wide[0]) * k // SPREAD)
     search.spread()
-    if len(few) == len(points):
-        return search.low, search.high
-    guess = np.interp(np.arange(len(points)), few, search.nearest)
-    search = _Search.begin(points, path, candidates, room)
-    here = np.clip(np.round(guess), *candidates).astype(np.int32)
-    search.look(np.arange(len(points)), here)
-    search.spread()
-    return search.low, search.high
+    found = search.nearest
+    every = (first[stops - 1] <= found) & (found <= last[starts])  # a candidate of all of the row
+    low = np.repeat(np.where(every, search.low, wide[0]), sizes)
+    high = np.repeat(np.where(every, search.high, wide[1]), sizes)
+    low, high = np.maximum(low, first), np.minimum(high, last)
+    rows = np.flatnonzero(low < high)
+    if len(rows):
+        some = (low[rows], high[rows])
+        guess = np.round(np.interp(rows, middle, found)).astype(np.int32)
+        search = _Search.begin(points[rows], path, some, room[rows])
+        search.look(np.arange(len(rows)), np.clip(guess, *some))
+        search.spread()
+        low[rows], high[rows] = search.low, search.high
+    return low, high
 
 
 @dataclass(eq=False)

@@ -10,9 +10,9 @@ from motionfmu.contour.arcs import TURN, Array
 from motionfmu.contour.geometry import Arc, Segment
 from motionfmu.contour.iso230 import BothWays, Reading, both_ways, reading
 from motionfmu.contour.path import Path
-from motionfmu.contour.scaled import Scaled
+from motionfmu.contour.scaled import Scaled, blocks
 from motionfmu.contour.segments import ARC, Index
-from motionfmu.contour.track import Track, blocks
+from motionfmu.contour.track import Track
 
 # Arcs belong to one circle if centre, radius and normal agree to this [mm; 1]: the rounding of
 # a part program with four decimals.
@@ -225,7 +225,7 @@ def speed_along(time: Array, along: Array, span: float, own: slice | None = None
     """Speed [mm/s] of a way along the path [mm], averaged over `span` [s]; of some samples only."""
     begin, end, _ = (own or slice(None)).indices(len(time))
     found = np.empty(max(0, end - begin))
-    for part in blocks(len(found)):
+    for part in blocks(len(found), time):
         now = np.asarray(time[begin + part.start : begin + part.stop])
         low = np.maximum(now - 0.5 * span, time[0])
         high = np.minimum(now + 0.5 * span, time[-1])

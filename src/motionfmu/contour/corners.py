@@ -46,6 +46,8 @@ def find_corners(
     """
     track, command = tracks
     before, after, angle = _corners(path)
+    if not len(before):
+        return ()
     passed = np.searchsorted(track.segment, after)
     reached = passed < len(time)  # else the run ends before
     before, after, passed = before[reached], after[reached], passed[reached]
@@ -54,7 +56,7 @@ def find_corners(
     high = np.searchsorted(time, time[passed] + window)
     low = np.maximum(low, np.searchsorted(track.segment, before))
     high = np.minimum(high, np.searchsorted(track.segment, after, side="right"))
-    upto = np.concatenate([[0], np.cumsum(cutting)])
+    upto = np.concatenate([[0], np.cumsum(cutting, dtype=np.int32)])
     own = np.flatnonzero(upto[high] > upto[low])
     before, after, low, high = before[own], after[own], low[own], high[own]
     angle = angle[own]

@@ -136,18 +136,22 @@ class Cubic:
         edges = np.linspace(0.0, 1.0, PARTS + 1)
         return np.concatenate([[0.0], np.cumsum(self._between(edges[:-1], edges[1:]))])
 
+    @cached_property
+    def _powers(self) -> Array:
+        """Factors (4, 3) of 1, t, t^2 and t^3 [mm]."""
+        a, b, c, d = self.control
+        return np.array([a, 3.0 * (b - a), 3.0 * (a - 2.0 * b + c), d - a + 3.0 * (b - c)])
+
     def _points(self, t: Array) -> Array:
-        u = 1.0 - t
-        weights = np.stack([u**3, 3.0 * u * u * t, 3.0 * u * t * t, t**3], axis=-1)
-        return weights @ self.control
+        a, b, c, d = self._powers
+        t = t[..., None]
+        return np.asarray(a + t * (b + t * (c + t * d)))
 
     def _slopes(self, t: Array) -> tuple[Array, Array]:
         """First and second derivative of the point by t [mm]."""
-        first = 3.0 * np.diff(self.control, axis=0)
-        second = 2.0 * np.diff(first, axis=0)
-        u = 1.0 - t
-        weights = np.stack([u * u, 2.0 * u * t, t * t], axis=-1)
-        return weights @ first, np.stack([u, t], axis=-1) @ second
+        _, b, c, d = self._powers
+        t = t[..., None]
+        return b + t * (2.0 * c + 3.0 * t * d), 2.0 * c + 6.0 * t * d
 
     def _between(self, low: Array, high: Array) -> Array:
         """Lengths (n,) between values (n,) of t [mm]."""

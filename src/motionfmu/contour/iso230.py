@@ -54,10 +54,12 @@ def least_squares(rows: Array, values: Array) -> Array:
     By the normal equations, which take one pass over the samples; what their condition loses, the
     residuals bring back.
     """
-    normal = rows @ rows.T
-    found = np.linalg.solve(normal, rows @ values)
+    # no matrix products: a library with threads is slower at so few rows
+    normal = np.einsum("in,jn->ij", rows, rows)
+    found = np.linalg.solve(normal, np.einsum("in,n->i", rows, values))
     for _ in range(CORRECTIONS):
-        found = found + np.linalg.solve(normal, rows @ (values - found @ rows))
+        rest = values - sum(x * row for x, row in zip(found, rows, strict=True))
+        found = found + np.linalg.solve(normal, np.einsum("in,n->i", rows, rest))
     return np.asarray(found)
 
 
@@ -69,7 +71,7 @@ def least_squares_circle(points: Array) -> tuple[Array, float]:
     x, y = np.ascontiguousarray((points - origin).T)
     rows = np.stack([x, y, np.ones(len(points))])
     # to unit size, so that all three weigh the same
-    size = float(np.sqrt((x @ x + y @ y) / len(points)))
+    size = float(np.sqrt((x * x + y * y).mean()))
     scaled = rows / [[size], [size], [1.0]]
     centre = 0.5 * size * least_squares(scaled, scaled[0] ** 2 + scaled[1] ** 2)[:2]
     for _ in range(ROUNDS_MAX):

@@ -114,7 +114,7 @@ def _columns(table: Array, names: list[str]) -> Columns:
         return table[:, [names.index(f"{what}_{axis}") for axis in AXES]]
 
     def column(what: str) -> Array:
-        return table[:, names.index(what)]
+        return table[:, names.index(what)].copy()  # not the whole table for one column
 
     types = column("type").astype(np.int64)
     known = np.isin(types, list(TYPES))

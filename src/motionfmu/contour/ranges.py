@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from motionfmu.contour.arcs import Array
-from motionfmu.contour.assign import BLOCK
+from motionfmu.contour.scaled import BLOCK
 from motionfmu.contour.segments import Index
 
 

@@ -13,10 +13,10 @@ from motionfmu.contour.circles import CircularTest
 from motionfmu.contour.corners import Corner
 from motionfmu.contour.path import Path
 from motionfmu.contour.ranges import largest, parts
-from motionfmu.contour.scaled import Scaled
+from motionfmu.contour.scaled import Scaled, blocks
 from motionfmu.contour.segments import KINDS
 from motionfmu.contour.statistics import Statistics
-from motionfmu.contour.track import Track, blocks
+from motionfmu.contour.track import Track
 from motionfmu.errors import NoNumber
 
 AXES = "xyzuvw"
@@ -92,7 +92,7 @@ class ContourInput:
 
     def __post_init__(self) -> None:
         count = len(self.time)
-        steps = (np.diff(self.time[own.start : own.stop + 1]) for own in blocks(count))
+        steps = (np.diff(self.time[own.start : own.stop + 1]) for own in blocks(count, self.time))
         if count < 2 or not all((step > 0.0).all() for step in steps):
             raise ValueError("time must have two samples or more and increase")
         shapes = {"actual": (count, 6), "commanded": (count, 6), "command": (count,)}
@@ -102,7 +102,7 @@ class ContourInput:
             values = getattr(self, name)
             if values.shape != shape:
                 raise ValueError(f"{name} has the shape {values.shape} instead of {shape}")
-            for own in blocks(count):
+            for own in blocks(count, values):
                 good = np.isfinite(values[own])
                 if not good.all():
                     bad = own.start + np.argwhere(~good)[0, 0]
@@ -180,7 +180,7 @@ class ContourResult:
     def _following(self) -> dict[str, Any]:
         axes, count = list(self.run.axes), int(self.cutting.sum())
         top, square = np.zeros(len(axes)), np.zeros(len(axes))
-        for own in blocks(len(self.cutting)):
+        for own in blocks(len(self.cutting), self.run.commanded, self.run.actual):
             gap = np.subtract(self.run.commanded[own], self.run.actual[own])
             gap = gap[self.cutting[own]][:, axes]
             top = np.maximum(top, np.abs(gap).max(axis=0, initial=0.0))

@@ -1,11 +1,16 @@
-"""A recorded signal in another unit, without a copy of it."""
+"""Recorded signals in other units and in parts, without a copy of them."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from motionfmu.columns import forget
 from motionfmu.contour.arcs import Array
+
+# Samples that are looked at together: enough for few calls, few enough for little memory.
+BLOCK = 1 << 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,3 +40,11 @@ class Scaled:
     def copy(self) -> Array:
         """All of it, to be changed."""
         return self[:]
+
+
+def blocks(count: int, *passed: Any) -> Iterator[slice]:
+    """Samples in parts; of arrays that are passed with them, a file's pages are let go."""
+    for first in range(0, count, BLOCK):
+        yield slice(first, min(first + BLOCK, count))
+        for array in passed:
+            forget(array.values if isinstance(array, Scaled) else array)

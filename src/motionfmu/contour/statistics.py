@@ -33,7 +33,7 @@ def statistics(path: Path, time: Array, track: Track, chosen: NDArray[np.bool_])
     size = track.distance[rows]
     worst = int(rows[np.argmax(size)])
     x, y, z = track.feet(np.array([worst]))[0].tolist()
-    mean, square = float(size.mean()), float(size @ size)
+    mean, square = float(size.mean()), float(np.einsum("i,i->", size, size))
     top = float(size.max())
     own = int(track.segment[worst])
     p50, p95, p99 = np.percentile(size, [50.0, 95.0, 99.0], overwrite_input=True).tolist()

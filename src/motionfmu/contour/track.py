@@ -1,6 +1,5 @@
 """A position followed along the exact path."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import TURN, Array
-from motionfmu.contour.assign import BLOCK
 from motionfmu.contour.path import Path
+from motionfmu.contour.scaled import blocks
 from motionfmu.contour.segments import ARC, Index
 
 
@@ -39,25 +38,19 @@ class Track:
         return self.path.segments.at(which, self.along[rows] - self.path.offsets[which])
 
 
-def blocks(count: int) -> Iterator[slice]:
-    """Samples in parts that need little memory."""
-    return (slice(a, min(a + BLOCK, count)) for a in range(0, count, BLOCK))
-
-
 def follow(positions: Any, path: Path, owners: Index) -> Track:
     """Nearest points of positions (n, 3 or more) [mm] on the segments they belong to."""
     count = len(owners)
     along, distance = np.empty(count), np.empty(count)
     right = None if path.normal is None else np.empty(count, dtype=bool)
-    for own in blocks(count):
+    for own in blocks(count, positions):
         points, which = np.asarray(positions[own])[:, :3], owners[own]
         near = path.segments.foot(points, which)
         along[own], distance[own] = near.along, near.distance
         if right is not None and path.normal is not None:
-            x, y, z = path.normal
-            # (normal x tangent) . gap, as one matrix between tangent and gap
-            left = near.tangent @ np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
-            right[own] = np.einsum("ij,ij->i", points - near.point, left) < 0.0
+            (u, v, w), (x, y, z) = (points - near.point).T, near.tangent.T
+            left = (v * z - w * y, w * x - u * z, u * y - v * x)  # tangent x gap
+            right[own] = sum(n * c for n, c in zip(path.normal, left, strict=True)) > 0.0
     _unwrap(along, path, owners)
     for own in blocks(count):
         along[own] += path.offsets[owners[own]]

@@ -1,6 +1,6 @@
 """From a run to its contour analysis: which signal is what, in mm."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,11 @@ def _millimetres(run: Recorded, name: str) -> Scaled:
     return Scaled(run[name], units.parse("mm").factor / unit.factor)
 
 
-def contour_of(run: Recorded, only_drawn: Collection[str]) -> ContourResult:
+def contour_of(
+    run: Recorded,
+    only_drawn: Collection[str],
+    progress: Callable[[float], None] = lambda share: None,
+) -> ContourResult:
     """Analyse the contour of a run; signals that only figures ask for are no traces.
 
     It is an InputError if there is no [contour] table, NoNumber if the run has no contour.
@@ -56,7 +60,8 @@ def contour_of(run: Recorded, only_drawn: Collection[str]) -> ContourResult:
                 axes=used,
                 dda_time=2**length * divider * CLOCK,
                 traces=traces,
-            )
+            ),
+            progress,
         )
     except (ValueError, ArithmeticError) as error:
         raise NoNumber(f"no contour: {error}") from None
