@@ -171,6 +171,43 @@ def test_the_recorder_goes_back_with_a_state(tmp_path: Path, straight: dict[str,
         np.testing.assert_array_equal(straight[name], rows, name)
 
 
+def test_of_some_steps_one_is_recorded(tmp_path: Path, straight: dict[str, Any]) -> None:
+    instance = started(tmp_path, **{"recorder.every": 7})
+    for steps in (3, 4, 10, 483):
+        assert instance.step(steps * STEP) == OK, instance.said
+    ended(instance)
+    found = recorded(tmp_path / "rows")
+    np.testing.assert_array_equal(found.pop("time"), np.arange(72) * (7 * 100_000 * 1e-9))
+    for name, rows in found.items():
+        np.testing.assert_array_equal(straight[name][::7], rows, name)
+
+
+def test_equal_states_have_equal_bytes(tmp_path: Path) -> None:
+    pair = [Instance(NAME, 3).initialize({}) for _ in range(2)]
+    for instance in pair:
+        assert instance.step(20 * STEP) == OK
+    one, other = (instance.serialize(instance.save()) for instance in pair)
+    assert one == other
+    for instance in pair:
+        instance.free()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("scope.period", 3.3e-8, "scope: period = 3.3e-08 s is not a whole number of 25 ns"),
+        ("scope.file", "/nowhere/trace", "scope: cannot write /nowhere/trace.real.npy: "),
+        ("recorder.folder", "/nowhere/rows", "recorder: cannot write /nowhere/rows"),
+    ],
+)
+def test_what_cannot_start_says_why(name: str, value: Any, told: str) -> None:
+    instance = Instance(NAME, 3)
+    assert (instance.set(name, value), instance.enter()) == (OK, OK)
+    assert instance.call("ExitInitializationMode") == ERROR
+    assert instance.said.startswith(f"one: {told}"), instance.said
+    instance.free()
+
+
 def test_without_an_end_nothing_is_left(tmp_path: Path) -> None:
     instance = started(tmp_path)
     assert instance.step(10 * STEP) == OK
