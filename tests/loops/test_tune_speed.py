@@ -121,15 +121,15 @@ def test_axes_alike_share_what_they_need_not_compute_twice(
 
 
 def test_the_global_search_sees_what_there_is(study: Study) -> None:
-    """Where limits are kept, a cost of fewer samples is the same within 2 %; they are fewer."""
+    """Where limits are kept, a cost of fewer samples is the same within 5 %; they are fewer."""
     draw, kept = np.random.default_rng(6), 0
-    for z in study.present + draw.uniform(-0.1, 0.1, (12, len(study.present))):
+    for z in np.repeat(draw.uniform(0.3, 0.8, (40, 3)), 2, axis=1):
         fine, rough = study.values(z, False), study.rough(z)
         if fine.feasible():
             kept += 1
-            assert rough.worst == pytest.approx(fine.worst, rel=0.02) and rough.worst != fine.worst
+            assert rough.worst == pytest.approx(fine.worst, rel=0.05) and rough.worst != fine.worst
     assert kept > 3
-    assert isinstance(study._rough, PathCost) and len(study._rough.time) < len(study.path.time) / 2
+    assert isinstance(study._rough, PathCost) and len(study._rough.time) == len(study.path.time) / 2
 
 
 def test_what_is_called_settled_cannot_be_bettered() -> None:

@@ -14,9 +14,8 @@ from motionfmu.tune.steps import Array
 
 # Distance between two samples of the path [s]: about one command of the card.
 SAMPLE = 1e-3
-# The same where a search asks only where to look: costs are within 2 % where limits are kept, 5 %
-# for the largest error.
-ROUGH = 3e-3
+# The same where a search asks only where to look: costs within 5 % where limits are kept.
+ROUGH = 2e-3
 # Order of the mean that stands for the largest error.
 _ORDER = 24
 
