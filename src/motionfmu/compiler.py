@@ -16,6 +16,12 @@ from motionfmu.errors import InputError
 # As CMakeLists.txt has them: the same bits as the FMUs.
 FLAGS = ("-std=c11", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-fno-math-errno")
 
+LINES = 3  # of a compiler's errors that are told
+
+
+class NotCompiled(InputError):
+    """What a compiler said when it failed."""
+
 
 @dataclass(frozen=True)
 class Compiler:
@@ -25,11 +31,15 @@ class Compiler:
     version: str  # first line of what it says of itself
 
     def run(self, arguments: Sequence[str | Path], folder: Path) -> None:
-        """Run it in a folder; what it says when it fails becomes an InputError."""
+        """Run it in a folder; what it says when it fails becomes a `NotCompiled`."""
         whole = [*self.command, *map(str, arguments)]
         done = subprocess.run(whole, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
-            raise InputError(f"{shlex.join(whole)}: {done.stderr.strip() or done.returncode}")
+            said = done.stderr.strip().splitlines()
+            first = [line for line in said if "error" in line] or said
+            told = "; ".join(first[:LINES]) or f"status {done.returncode}"
+            command = shlex.join(self.command)
+            raise NotCompiled(f"{command} failed: {told} (CC names another compiler)")
 
     def library(
         self, files: Iterable[str | Path], target: str, folder: Path, *options: str

@@ -196,6 +196,7 @@ def _scenario(scenario: "Scenario") -> None:
     body = scenario.document.body
     print(_wrapped(scenario.document.about, f"{scenario.name}: ", "  "))
     print(_until(body))
+    print(_engine(scenario))
     print("components")
     _rows([((name, fmu), fmus.about(fmu)) for name, fmu in body.component.items()])
     _section("values", [(_set(name, scenario), _value(v)) for name, v in body.set.items()])
@@ -213,6 +214,15 @@ def _scenario(scenario: "Scenario") -> None:
     ]
     _section("checks", checks)
     _section("what fails them", [(case.off, _bounds(case.set)) for case in body.contrary])
+
+
+def _engine(scenario: "Scenario") -> str:
+    """Which engine runs it, and why if that is not the usual one."""
+    from motionfmu.run import Options
+    from motionfmu.run.engines import usual
+
+    name, why = usual(scenario.resolved(Options()))
+    return f"engine: {name}" + (f" ({why})" if why else "")
 
 
 def _until(body: Any) -> str:

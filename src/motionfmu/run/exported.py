@@ -20,6 +20,7 @@ RESOURCES = "resources"
 # Zip cannot date earlier; a fixed date makes equal systems equal files.
 _DATE = (1980, 1, 1, 0, 0, 0)
 PROGRAM = "program.json"  # what a run here reads instead of the description
+_LEFT = (PROGRAM, "sources/")  # C text without the parts that it needs
 _LICENCE = "documentation/LICENSE"
 
 
@@ -83,7 +84,7 @@ def _write(target: Path, files: Mapping[str, Path], texts: Mapping[str, bytes]) 
     part = target.with_name(f".{target.name}.part{os.getpid()}")
     try:
         with zipfile.ZipFile(part, "w") as archive:
-            for name in sorted({*files, *texts} - {PROGRAM}):
+            for name in sorted(n for n in (*files, *texts) if not n.startswith(_LEFT)):
                 info = zipfile.ZipInfo(name, _DATE)
                 info.compress_type = zipfile.ZIP_DEFLATED
                 info.external_attr = 0o644 << 16

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable
 from dataclasses import replace
 
+from motionfmu.compiler import NotCompiled, compiler
 from motionfmu.errors import InputError, suggestion
 from motionfmu.run.engines.job import Engine, Job, Progress, Ran
 from motionfmu.scenarios.system import System
@@ -15,9 +16,13 @@ VARIABLE = "MOTIONFMU_ENGINE"
 
 
 def _fused(job: Job) -> Engine:
+    from motionfmu.fused import NotFused
     from motionfmu.run.engines import fused
 
-    return fused.opened(job)
+    try:
+        return fused.opened(job)
+    except NotFused as why:
+        raise InputError(f"engine fused: {why}; --engine native runs it") from None
 
 
 def _native(job: Job) -> Engine:
@@ -66,13 +71,30 @@ def opened(engine: str | None, job: Job) -> Engine:
     if engine is not None:
         return ENGINES[engine](job)
     from motionfmu.fused import NotFused
+    from motionfmu.run.engines import fused
 
     try:
-        return _fused(job)
+        return fused.opened(job)
     except NotFused:
         return _native(job)
-    except InputError as error:
+    except NotCompiled as error:
         return _Instead(_native(job), f"engine native instead of fused: {error}")
+
+
+def usual(system: System) -> tuple[str, str]:
+    """The engine that runs a system if none is named, and why it is that one; empty for fused."""
+    if given := named(None):
+        return given, VARIABLE
+    from motionfmu.fused.parts import NotFused, part
+
+    if compiler() is None:
+        return "native", "there is no C compiler"
+    try:
+        for fmu in system.components.values():
+            part(fmu)
+    except NotFused as why:
+        return "native", str(why)
+    return "fused", ""
 
 
 class _Instead:
