@@ -189,7 +189,7 @@ def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch) -
     result = motionfmu.load(ROOT / "scenarios/circle").run(stop=0.01)
     monkeypatch.setattr("motionfmu.report.outcome.write", full)
     with pytest.raises(motionfmu.InputError, match=r"cannot write .*No space left on device"):
-        save(result, tmp_path / "a/b/result", {})
+        save(result, tmp_path / "a/b/result")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -210,7 +210,7 @@ def test_without_figures_the_report_shows_the_signals(tmp_path: Path) -> None:
     more = 'signals = ["machine.*", "card.s*", "card.o*", "card.e*"]'
     text = PLAIN.replace('signals = ["machine.table_position"]', more)
     result = motionfmu.load(scenario(tmp_path, text)).run()
-    folder = save(result, tmp_path / "out", {}).parent
+    folder = save(result, tmp_path / "out").parent
     figures = [f for f in figures_on(folder) if f["id"] != "speed"]
     assert len(result.signals) > len(figures) == OVERVIEW
     page = (folder / "report.html").read_text()
@@ -225,7 +225,7 @@ def test_without_figures_the_report_shows_the_signals(tmp_path: Path) -> None:
 
 def test_a_shorter_run_leaves_a_later_window_empty(tmp_path: Path) -> None:
     result = motionfmu.load(scenario(tmp_path, PLAIN + FIGURES)).run(stop=1e-3)
-    folder = save(result, tmp_path / "out", {}).parent
+    folder = save(result, tmp_path / "out").parent
     rate, stopped = on_page(folder, 0)[2], on_page(folder, 1)[0]
     assert len(rate[0]) == 0 and len(stopped[0]) <= 1
 

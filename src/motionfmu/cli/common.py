@@ -148,6 +148,12 @@ def progress_bar(*columns: "ProgressColumn") -> "Progress":
     return Progress(*columns, console=console, disable=not console.is_terminal, transient=True)
 
 
+def under_way(what: str) -> None:
+    """Tell on a terminal what is being made, in place of what was told before."""
+    if sys.stdout.isatty():
+        print("\r\x1b[2K" + (f"{what} ..." if what else ""), end="", flush=True)
+
+
 def run_shown(scenario: "Scenario", options: dict[str, Any]) -> "Result":
     """Run, options as of `Scenario.run`, with a progress bar, which shows on a terminal only."""
     if not sys.stdout.isatty():

@@ -15,6 +15,7 @@ from motionfmu.cli.common import (
     results,
     run_shown,
     settings,
+    under_way,
 )
 
 if TYPE_CHECKING:
@@ -98,7 +99,10 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     result = run_shown(
         scenario, options | {"source": files_of(set_), "scratch": outcome.near(target)}
     )
-    shown = outcome.save(result, target, csv, signals, pictures)
+    shown = outcome.save(
+        result, target, csv=csv, signals=signals, pictures=pictures, told=under_way
+    )
+    under_way("")
     verdicts(result.checks)
     warnings(result.warnings)
     for line in result.overrides:

@@ -3,7 +3,7 @@
 import contextlib
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -45,27 +45,39 @@ def usable(folder: Path) -> Path:
     return folder
 
 
-def save(
-    result: Result, folder: Path, csv: bool = False, signals: bool = True, pictures: bool = False
+def save(  # noqa: PLR0913  (what is kept are keywords)
+    result: Result,
+    folder: Path,
+    *,
+    csv: bool = False,
+    signals: bool = True,
+    pictures: bool = False,
+    told: Callable[[str], None] = lambda what: None,
 ) -> Path:
     """Write a run's folder, whole or not at all; give the report."""
     # An older result is replaced; anything else in the folder is an InputError.
+    # Each part, which takes long after a long run, is `told` before it is done.
     with whole(folder) as part:
         if signals:
+            told("signals")
             write(part / SIGNALS, result.signals, result.time)
         from motionfmu.report import write_report
         from motionfmu.report.ran import ran_of
 
+        told("analyses")
         wanted = result.scenario.document.body.contour is not None and not result.no_contour
         contour = result.contour() if wanted else None
         ran = ran_of(result, contour)
+        told("verdict")
         found = numbers(result) | ran.numbers()
         (part / NUMBERS).write_text(json_of(found) + "\n", encoding="utf-8")
         if csv:
+            told(TABLE)
             _write_csv(result, part / TABLE)
         if contour is not None:
             way = track(contour)
             write(part / TRACK, way, way.pop("time"))
+        told("report")
         shown = write_report(result, contour, part, ran, pictures).name
     return folder.resolve() / shown
 

@@ -62,6 +62,12 @@ def ends(count: int, read: Read) -> tuple[Array, Array]:
     return low, high
 
 
+def distinct(parts: list[Index]) -> Index:
+    """Each sample once, in order; np.unique takes masked arrays with it."""
+    every = np.sort(np.concatenate(parts))
+    return every[np.diff(every, prepend=-1) > 0]
+
+
 def keep_steps(values: Array, buckets: int) -> Index:
     """Samples at which a staircase changes, or its peaks."""
     return steps_of(len(values), reader(values), buckets)
@@ -83,7 +89,7 @@ def steps_of(count: int, read: Read, buckets: int) -> Index:
         found += len(parts[-1])
         if found > 2 * buckets:
             return peaks_of(count, read, buckets)
-    return np.unique(np.concatenate(parts))
+    return distinct(parts)
 
 
 def peaks_of(count: int, read: Read, buckets: int) -> Index:
@@ -103,4 +109,4 @@ def peaks_of(count: int, read: Read, buckets: int) -> Index:
             values = column[rows - ends[0]]
             for best in (values.argmin(axis=1), values.argmax(axis=1)):
                 kept.append(rows[np.arange(len(rows)), best])
-    return np.unique(np.concatenate(kept))
+    return distinct(kept)

@@ -227,7 +227,9 @@ class Result(Mapping[str, NDArray[Any]]):
         InputError
             The folder holds something else, or cannot be written.
         """
-        shown: Path = _report("outcome").save(self, Path(folder), csv, signals, pictures)
+        shown: Path = _report("outcome").save(
+            self, Path(folder), csv=csv, signals=signals, pictures=pictures
+        )
         return shown
 
     def parameter(self, name: str) -> Any:
