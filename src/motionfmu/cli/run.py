@@ -99,9 +99,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     result = run_shown(
         scenario, options | {"source": files_of(set_), "scratch": outcome.near(target)}
     )
-    shown = outcome.save(
-        result, target, csv=csv, signals=signals, pictures=pictures, told=under_way
-    )
+    shown = outcome.save(result, target, outcome.Kept(csv, signals, pictures), under_way)
     under_way("")
     verdicts(result.checks)
     warnings(result.warnings)

@@ -4,6 +4,7 @@ import contextlib
 import os
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -45,20 +46,26 @@ def usable(folder: Path) -> Path:
     return folder
 
 
-def save(  # noqa: PLR0913  (what is kept are keywords)
+@dataclass(frozen=True)
+class Kept:
+    """What of a result is kept beside its report."""
+
+    csv: bool = False
+    signals: bool = True
+    pictures: bool = False
+
+
+def save(
     result: Result,
     folder: Path,
-    *,
-    csv: bool = False,
-    signals: bool = True,
-    pictures: bool = False,
+    kept: Kept = Kept(),
     told: Callable[[str], None] = lambda what: None,
 ) -> Path:
     """Write a run's folder, whole or not at all; give the report."""
     # An older result is replaced; anything else in the folder is an InputError.
     # Each part, which takes long after a long run, is `told` before it is done.
     with whole(folder) as part:
-        if signals:
+        if kept.signals:
             told("signals")
             write(part / SIGNALS, result.signals, result.time)
         from motionfmu.report import write_report
@@ -71,14 +78,14 @@ def save(  # noqa: PLR0913  (what is kept are keywords)
         told("verdict")
         found = numbers(result) | ran.numbers()
         (part / NUMBERS).write_text(json_of(found) + "\n", encoding="utf-8")
-        if csv:
+        if kept.csv:
             told(TABLE)
             _write_csv(result, part / TABLE)
         if contour is not None:
             way = track(contour)
             write(part / TRACK, way, way.pop("time"))
         told("report")
-        shown = write_report(result, contour, part, ran, pictures).name
+        shown = write_report(result, contour, part, ran, kept.pictures).name
     return folder.resolve() / shown
 
 

@@ -227,9 +227,8 @@ class Result(Mapping[str, NDArray[Any]]):
         InputError
             The folder holds something else, or cannot be written.
         """
-        shown: Path = _report("outcome").save(
-            self, Path(folder), csv=csv, signals=signals, pictures=pictures
-        )
+        outcome = _report("outcome")
+        shown: Path = outcome.save(self, Path(folder), outcome.Kept(csv, signals, pictures))
         return shown
 
     def parameter(self, name: str) -> Any:
