@@ -71,7 +71,7 @@ def test_a_table_that_stands_still_has_no_circle_and_says_so(tmp_path: Path) -> 
     assert result.ok is False
     reasons = {v.name: v.reason for v in result.checks}
     assert "degrees of it" in reasons["contour.circles.0.ccw.radius_change"]
-    save(result, tmp_path / "r", {})
+    save(result, tmp_path / "r")
     assert written(tmp_path / "r")["ok"] is False
 
 
@@ -83,7 +83,7 @@ def test_every_scenario_cut_short_gives_verdicts(name: str, tmp_path: Path) -> N
     assert result.ok in (True, False)
     assert all(v.reason for v in result.checks if not math.isfinite(v.value))
     if body.contour is not None:
-        save(result, tmp_path / "r", {})
+        save(result, tmp_path / "r")
         written(tmp_path / "r")
 
 
