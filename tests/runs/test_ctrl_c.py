@@ -39,7 +39,8 @@ def environment(folder: Path) -> dict[str, str]:
         ("list", "typer"),
         ("--help", "motionfmu.cli.show"),
         (RUN, "numpy"),
-        (RUN, "matplotlib.figure"),  # for the report, whose folder is there by then
+        (RUN, "motionfmu.run.engines.fused"),  # the run has a folder by then
+        (RUN, "motionfmu.run.contour_of"),  # so has its result
         ("card serve --page 0 --port 0 --folder", "motionfmu.netcard.control"),
     ],
 )
