@@ -29,6 +29,7 @@ void fpga_reset(struct fpga *f, const struct fpga_config *config)
     f->playing = -1;
     f->timer = config->irq_every;
     f->inputs.first = INT64_MAX;
+    f->pending = true; /* the first exchange looks at the pins as they were found */
 }
 
 static void exchange_inputs(struct fpga *f)

@@ -1,5 +1,6 @@
 """An FMU that is broken gives one message with file and cause, in every engine."""
 
+import re
 import shutil
 import zipfile
 from collections.abc import Callable
@@ -106,17 +107,26 @@ def test_a_broken_archive_is_named_with_the_cause(broken, change, raw, what) -> 
     assert what in text and "\n" not in text
 
 
-def test_a_library_that_is_torn_inside_the_archive(broken) -> None:
+@pytest.mark.parametrize(("engine", "which"), [("native", 0), ("fused", 1)])
+def test_code_that_is_torn_inside_the_archive(
+    broken, engine, which, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The library, and the model without FMI, of which no program is kept yet."""
+
     def torn(data: bytes) -> bytes:
-        at = data.index(b"\x7fELF") + 2000
+        at = [m.start() for m in re.finditer(b"\x7fELF", data)][-which] + 2000
         return data[:at] + bytes(b ^ 0xFF for b in data[at : at + 50]) + data[at + 50 :]
 
     broken(None, torn)
+    monkeypatch.setenv("MOTIONFMU_CACHE", str(tmp_path / "cache"))
     with pytest.raises(motionfmu.InputError, match=r"fmi3.fmu: not a whole archive \(Bad CRC-32"):
-        motionfmu.load(ROOT / "scenarios/circle_theory").run(stop=0.001)
+        motionfmu.load(ROOT / "scenarios/circle_theory").run(stop=0.001, engine=engine)
 
 
-def test_a_study_with_a_broken_library_does_not_begin(broken, tmp_path: Path) -> None:
+def test_a_study_with_a_broken_library_does_not_begin(
+    broken, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MOTIONFMU_ENGINE", "native")
     broken(filled(b""), same)
     given = {"axis": {"mcc.p_gain": [100]}, "results": ["mcc.error.absmax"], "stop": 0.001}
     study = sweep.study(ROOT / "scenarios/circle_theory/scenario.toml", given)

@@ -11,7 +11,7 @@ from page_curves import curve, page_data, unwoven
 import motionfmu
 from motionfmu.report.chart_pictures import chart_picture
 from motionfmu.report.charts import BUCKETS, chart_figure, shown
-from motionfmu.report.outcome import save
+from motionfmu.report.outcome import Kept, save
 from motionfmu.report.samples import COARSE
 from motionfmu.run.figures import OVERVIEW, Chart, Curve, Panel
 from motionfmu.toml_lines import Lines
@@ -89,7 +89,7 @@ def scenario(folder: Path, text: str) -> Path:
 def drawn(tmp_path_factory: pytest.TempPathFactory):
     folder = tmp_path_factory.mktemp("figures")
     result = motionfmu.load(scenario(folder, PLAIN + FIGURES)).run()
-    return result, save(result, folder / "out", pictures=True).parent
+    return result, save(result, folder / "out", Kept(pictures=True)).parent
 
 
 def figures_on(folder: Path) -> list[dict]:

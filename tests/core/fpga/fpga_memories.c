@@ -158,6 +158,20 @@ static void refusals(void)
     CHECK_EQ(pulses[2], -49);
 }
 
+/* A limit switch that opens to stop, and was open before the card was switched on. */
+static void open_switch(void)
+{
+    struct fpga card = rig_card();
+    card.config.stop_mask = card.config.stop_low = 4;
+    const struct fpga_config config = card.config;
+    fpga_reset(&card, &config);
+    fpga_advance(&card, SLOT - 1);
+    CHECK(!card.stopped);
+    fpga_advance(&card, SLOT);
+    CHECK(card.stopped);
+    CHECK_EQ(card.stopped_clock, SLOT);
+}
+
 /* A stop by any cause: pulses off at the next exchange, counted; it lasts until a reset. */
 static void stop(int cause)
 {
@@ -234,6 +248,7 @@ int main(void)
     deadlines();
     late_marks();
     refusals();
+    open_switch();
     for (int cause = 0; cause < 4; cause++)
         stop(cause);
     stop_at_every_clock();
