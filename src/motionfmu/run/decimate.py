@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.columns import ROWS, forget
-from motionfmu.contour.arcs import Array
 
+Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 # Values from one sample to before another: a signal, or what is made of one, block by block.
 Read = Callable[[int, int], Array]

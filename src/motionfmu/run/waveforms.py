@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from motionfmu.contour.arcs import Array
-from motionfmu.run.decimate import reader
+from motionfmu.run.decimate import Array, reader
 from motionfmu.run.figures import Chart, Curve, Panel, curve
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios import rates, recording
