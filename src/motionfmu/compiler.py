@@ -58,6 +58,11 @@ def _candidates() -> list[tuple[str, ...]]:
     return found
 
 
+def there() -> bool:
+    """Whether the machine has what looks like a compiler; it is not started."""
+    return any(command and shutil.which(command[0]) for command in _candidates())
+
+
 @functools.cache
 def compiler() -> Compiler | None:
     """``$CC``, else cc, gcc, clang or zig's; None if the machine has none."""

@@ -117,7 +117,7 @@ def test_info_says_which_engine_runs(
     monkeypatch.setattr(sys, "argv", ["motionfmu", "info", str(ROOT / "scenarios/mismatch_line")])
     cli.main()
     assert "\nengine: fused\n" in capsys.readouterr().out
-    monkeypatch.setattr("motionfmu.run.engines.compiler", lambda: None)
+    monkeypatch.setattr("motionfmu.run.engines.there", lambda: False)
     cli.main()
     assert "\nengine: native (there is no C compiler)\n" in capsys.readouterr().out
     monkeypatch.setenv("MOTIONFMU_ENGINE", "python")

@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable
 from dataclasses import replace
 
-from motionfmu.compiler import NotCompiled, compiler
+from motionfmu.compiler import NotCompiled, there
 from motionfmu.errors import InputError, suggestion
 from motionfmu.run.engines.job import Engine, Job, Progress, Ran
 from motionfmu.scenarios.system import System
@@ -87,7 +87,7 @@ def usual(system: System) -> tuple[str, str]:
         return given, VARIABLE
     from motionfmu.fused.parts import NotFused, part
 
-    if compiler() is None:
+    if not there():
         return "native", "there is no C compiler"
     try:
         for fmu in system.components.values():
