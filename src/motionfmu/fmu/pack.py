@@ -11,6 +11,7 @@ import platform
 import re
 import sys
 import zipfile
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -160,6 +161,11 @@ def archive(folder: Path, out: Path, fmi: int, compiled: Compiled, target: Path)
     for source, data in _packed_sources(folder, out, fmi, identifier).items():
         files[f"sources/{source}"] = data
     target.parent.mkdir(parents=True, exist_ok=True)
+    write_archive(target, files)
+
+
+def write_archive(target: Path, files: Mapping[str, bytes]) -> None:
+    """Write files by their names in the archive; equal input gives equal bytes."""
     with zipfile.ZipFile(target, "w") as archive_file:
         for path, data in sorted(files.items()):
             info = zipfile.ZipInfo(path, _DATE)

@@ -11,14 +11,13 @@ from typing import Any
 
 from motionfmu import fused
 from motionfmu.errors import InputError
+from motionfmu.fmu.pack import write_archive
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.scenarios.fmus import fmu_path
 from motionfmu.scenarios.system import Setting
 from motionfmu.toml_lines import is_file
 
 RESOURCES = "resources"
-# Zip cannot date earlier; a fixed date makes equal systems equal files.
-_DATE = (1980, 1, 1, 0, 0, 0)
 PROGRAM = "program.json"  # what a run here reads instead of the description
 _LEFT = (PROGRAM, "sources/")  # C text without the parts that it needs
 _LICENCE = "documentation/LICENSE"
@@ -41,14 +40,16 @@ def export(scenario: Prepared, target: Path, fmi: int, given: Mapping[str, Any])
     except fused.NotFused as why:
         raise InputError(f"{scenario.name} cannot be one FMU: {why}") from None
     packed = {
-        str(f.relative_to(program.folder)): f for f in program.folder.rglob("*") if f.is_file()
+        name: f
+        for f in program.folder.rglob("*")
+        if f.is_file() and not (name := str(f.relative_to(program.folder))).startswith(_LEFT)
     }
     packed |= {f"{RESOURCES}/{name}": file for name, file in files.items()}
     readme = scenario.document.file.parent / "README.md"
     if is_file(readme):
         packed["documentation/README.md"] = readme
-    texts = {_LICENCE: _licence(next(iter(system.components.values())))}
-    _write(target, packed, texts)
+    licence = _licence(next(iter(system.components.values())))
+    _write(target, packed, {_LICENCE: licence})
     return len(json.loads((program.folder / PROGRAM).read_bytes())["variables"])
 
 
@@ -83,13 +84,7 @@ def _write(target: Path, files: Mapping[str, Path], texts: Mapping[str, bytes]) 
     """Write an archive, whole or not at all."""
     part = target.with_name(f".{target.name}.part{os.getpid()}")
     try:
-        with zipfile.ZipFile(part, "w") as archive:
-            for name in sorted(n for n in (*files, *texts) if not n.startswith(_LEFT)):
-                info = zipfile.ZipInfo(name, _DATE)
-                info.compress_type = zipfile.ZIP_DEFLATED
-                info.external_attr = 0o644 << 16
-                data = texts[name] if name in texts else files[name].read_bytes()
-                archive.writestr(info, data)
+        write_archive(part, {n: f.read_bytes() for n, f in files.items()} | dict(texts))
         part.rename(target)
     except OSError as error:
         raise InputError(f"cannot write {target}: {error.strerror or error}") from None
