@@ -1,22 +1,17 @@
 """The part that an FMU carries: its model without FMI, as an object to link with (fmu_part.h)."""
 
-import functools
 import re
 import shutil
 import subprocess
 import tempfile
-import zipfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
 from motionfmu import kept
 from motionfmu.compiler import FLAGS, Compiler, compiler
-from motionfmu.errors import InputError
 from motionfmu.fmu.pack import PART_UNIT, PARTS, platform_folder
-from motionfmu.scenarios.fmus import fmu_path
+from motionfmu.scenarios.fmus import digest, opened
 
 # Interface, instance and struct vars [bytes]: how the object of a part says them.
 _MARK = re.compile(rb"motionfmu part 1 (\d{9}) (\d{9})\n")
@@ -40,33 +35,9 @@ class Part:
     code: bytes  # the object
 
 
-@contextmanager
-def _opened(name: str) -> Iterator[zipfile.ZipFile]:
-    path = fmu_path(name)
-    try:
-        with zipfile.ZipFile(path) as archive:
-            yield archive
-    except (OSError, zipfile.BadZipFile) as error:
-        raise InputError(f"{path}: not a whole archive ({error})") from None
-
-
-def digest(name: str) -> str:
-    """Of all that the archive of an FMU holds, by its own check sums."""
-    path = fmu_path(name)
-    stat = path.stat()
-    return _digest(name, (str(path), stat.st_mtime_ns, stat.st_size))
-
-
-@functools.cache
-def _digest(name: str, state: tuple[str, int, int]) -> str:
-    with _opened(name) as archive:
-        rows = [f"{i.filename} {i.CRC:08x} {i.file_size}" for i in archive.infolist()]
-    return kept.key(*rows)
-
-
 def part(name: str) -> Part:
     """Read the part of an FMU; NotFused if it has none, nor C text of one."""
-    with _opened(name) as archive:
+    with opened(name) as archive:
         names = archive.namelist()
         if any(n.startswith("resources/") and n[-1] != "/" for n in names):
             raise NotFused(f"{name} has resources")
@@ -101,7 +72,7 @@ def _compiled(name: str) -> bytes:
 
 
 def _compile(name: str, cc: Compiler, folder: Path) -> None:
-    with _opened(name) as archive, tempfile.TemporaryDirectory(prefix="motionfmu-") as place:
+    with opened(name) as archive, tempfile.TemporaryDirectory(prefix="motionfmu-") as place:
         for entry in archive.namelist():
             if entry.startswith("sources/"):
                 (Path(place) / Path(entry).name).write_bytes(archive.read(entry))

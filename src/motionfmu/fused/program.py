@@ -8,7 +8,8 @@ from pathlib import Path
 from motionfmu import kept
 from motionfmu.compiler import FLAGS, compiler
 from motionfmu.fused import layer
-from motionfmu.fused.parts import NotFused, digest
+from motionfmu.fused.parts import NotFused
+from motionfmu.scenarios.fmus import digest
 from motionfmu.scenarios.system import End, System, Values
 
 

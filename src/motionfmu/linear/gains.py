@@ -110,8 +110,8 @@ def _key(
     """A name for the gains: what is written, what is given, the FMUs, and what works it out."""
     # All of the scenario's tables: a law may ask for any value.
     told = repr((scenario.document.tables, plain(set_), axis, plain(at)))
-    archives = (fmus.fmu_path(name) for name in scenario.document.body.component.values())
-    return kept.key(_text(), told, *(file.read_bytes() for file in archives))
+    archives = map(fmus.digest, scenario.document.body.component.values())
+    return kept.key(_text(), told, *archives)
 
 
 @cache

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import IO, Any
 from xml.etree import ElementTree
 
+from motionfmu import kept
 from motionfmu.errors import InputError, suggestion
 from motionfmu.toml_lines import is_file
 
@@ -68,6 +69,31 @@ def fmu_path(name: str, fmi: int = 3) -> Path:
         text = f"no FMU {name!r} for FMI {fmi} in {folder()} (there are: {known})"
         raise InputError(text + suggestion(name, names))
     return path
+
+
+@contextlib.contextmanager
+def opened(name: str) -> Iterator[zipfile.ZipFile]:
+    """The archive of a built FMU, of FMI 3; what is wrong with it is an InputError."""
+    path = fmu_path(name)
+    try:
+        with zipfile.ZipFile(path) as archive:
+            yield archive
+    except (OSError, zipfile.BadZipFile) as error:
+        raise InputError(f"{path}: not a whole archive ({error})") from None
+
+
+def digest(name: str) -> str:
+    """Of all that the archive of a built FMU holds, by its own check sums."""
+    path = fmu_path(name)
+    stat = path.stat()
+    return _digest(name, (str(path), stat.st_mtime_ns, stat.st_size))
+
+
+@functools.cache
+def _digest(name: str, state: tuple[str, int, int]) -> str:
+    with opened(name) as archive:
+        rows = [f"{i.filename} {i.CRC:08x} {i.file_size}" for i in archive.infolist()]
+    return kept.key(*rows)
 
 
 def runnable(name: str, fmi: int) -> Path:
