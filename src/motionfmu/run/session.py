@@ -1,4 +1,4 @@
-"""One scenario run many times: its container is built once."""
+"""One scenario run many times: what runs it is made ready once."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
@@ -19,8 +19,8 @@ from motionfmu.scenarios.values import settings, start_values
 class Session:
     """A scenario loaded once, to be run with many values.
 
-    FMUs are unpacked, wired and loaded once. A run gives the same bits as `Scenario.run`.
-    Use it as a context manager, or call `close`.
+    It is wired and loaded once, as a program or in another engine's way. A run gives the same bits
+    as `Scenario.run`. Use it as a context manager, or call `close`.
 
     Parameters
     ----------

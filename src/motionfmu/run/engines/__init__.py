@@ -90,7 +90,7 @@ def usual(system: System) -> tuple[str, str]:
     if not there():
         return "native", "there is no C compiler"
     try:
-        for fmu in system.components.values():
+        for fmu in dict.fromkeys(system.components.values()):
             part(fmu)
     except NotFused as why:
         return "native", str(why)

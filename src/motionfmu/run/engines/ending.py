@@ -1,6 +1,7 @@
-"""Where a run ends: at its last step, or behind a signal."""
+"""Where a run is divided, and where it ends: at its last step, or behind a signal."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import pairwise
 from typing import Any
 
 from motionfmu.run.engines.job import Ran
@@ -9,6 +10,13 @@ from motionfmu.scenarios.system import System
 
 # Calls of the progress in a run.
 SHARES = 100
+
+
+def shares(system: System, due: Iterable[int], most: int) -> Iterator[tuple[int, int]]:
+    """Points from which to which a run goes in one call: to inputs that are due, few steps else."""
+    part = min(max(1, system.steps // SHARES), most)
+    cuts = {*range(0, system.steps, part), *(k for k in due if k < system.steps)}
+    return pairwise([*sorted(cuts), system.steps])
 
 
 class Ending:

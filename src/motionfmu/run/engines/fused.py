@@ -5,13 +5,12 @@ A run is an instance of it: values in a call for each type, few long steps, driv
 
 import json
 import re
-from itertools import pairwise
 from typing import Any
 
 from motionfmu import fused
 from motionfmu.columns import Columns
 from motionfmu.run.engines import messages
-from motionfmu.run.engines.ending import SHARES
+from motionfmu.run.engines.ending import shares
 from motionfmu.run.engines.job import Job, Progress, Ran
 from motionfmu.run.engines.library import Library, Refused, Variable
 from motionfmu.scenarios.system import System
@@ -70,10 +69,8 @@ class Fused:
     def _advance(self, system: System, progress: Progress) -> tuple[int, int | None]:
         """Steps that were done, and the communication point at which the signal came."""
         due, step, steps = system.due(), system.step_ns * 1e-9, system.steps
-        part = min(max(1, steps // SHARES), STEPS_MAX)
-        cuts = sorted({*range(0, steps, part), *(k for k in due if k < steps)})
         signal = None
-        for k, following in pairwise([*cuts, steps]):
+        for k, following in shares(system, due, STEPS_MAX):
             self._library.set((self._variables[s.end.name], s.values) for s in due.get(k, ()))
             self._library.step(k * system.step_ns * 1e-9, (following - k) * step)
             progress(following / system.steps)

@@ -13,7 +13,7 @@ from typing import Any
 from fmu_manipulation_toolbox.container import FMUContainer
 
 from motionfmu.run.engines import lean
-from motionfmu.run.engines.ending import SHARES
+from motionfmu.run.engines.ending import shares
 from motionfmu.run.engines.job import Job, Progress, Ran
 from motionfmu.run.engines.scoped import Scoped
 from motionfmu.run.engines.slave import Slave, ending_of, exposed
@@ -114,9 +114,7 @@ class Container:
     def _in_parts(self, system: System, progress: Progress) -> None:
         """Run in few long steps."""
         slave, due = self._slave, system.due()
-        part = max(1, system.steps // SHARES)
-        cuts = sorted({0, *range(0, system.steps, part), *(k for k in due if k < system.steps)})
-        for k, following in zip(cuts, [*cuts[1:], system.steps], strict=True):
+        for k, following in shares(system, due, system.steps):
             for now in due.get(k, ()):
                 _give(slave, now.end, now.values)
             slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
