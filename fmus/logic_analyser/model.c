@@ -34,7 +34,8 @@ static int cannot_write(struct fmu *f, const char *why)
 static int model_open(struct fmu *f)
 {
     const char *name = f->s.v.record_file;
-    const char *why = name[0] ? output_try(name, NULL, 0) : NULL;
+    const struct fmu_path path = fmu_path(f, name, FMU_WRITTEN);
+    const char *why = !path.good ? path.text : name[0] ? output_try(path.text, NULL, 0) : NULL;
     if (why)
         return cannot_write(f, why);
     f->blob = calloc(1, sizeof(struct events));
@@ -208,13 +209,13 @@ static void put_events(FILE *file, const struct events *e, int64_t events)
 
 static int model_end(struct fmu *f)
 {
-    const char *name = f->s.v.record_file;
+    const struct fmu_path path = fmu_path(f, f->s.v.record_file, FMU_WRITTEN);
     struct output o;
     int bad;
-    if (!name[0])
+    if (!path.text[0])
         return 0;
-    const char *why = output_check(name, NULL, 0);
-    why = why ? why : output_begin(&o, name);
+    const char *why = output_check(path.text, NULL, 0);
+    why = why ? why : output_begin(&o, path.text);
     if (why)
         return cannot_write(f, why);
     errno = 0;

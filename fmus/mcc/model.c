@@ -25,11 +25,14 @@ struct model {
 enum { INPUTS = 3 };
 struct inputs { struct output_input of[INPUTS]; };
 
-static struct inputs inputs_of(const struct vars *v)
+static struct inputs inputs_of(const struct fmu *f)
 {
-    return (struct inputs){ { { v->program, "it is program" },
-                              { v->comp_file, "it is comp_file" },
-                              { v->tool_table, "it is tool_table" } } };
+    const struct vars *v = &f->s.v;
+    return (struct inputs){ {
+        { fmu_path(f, v->program, FMU_READ), "it is program" },
+        { fmu_path(f, v->comp_file, FMU_READ), "it is comp_file" },
+        { fmu_path(f, v->tool_table, FMU_READ), "it is tool_table" },
+    } };
 }
 
 static int cannot_write(struct fmu *f, const char *why)
@@ -42,10 +45,13 @@ static int model_open(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
 
-    const struct inputs in = inputs_of(v);
-    const char *why = v->path_file[0] ? output_try(v->path_file, in.of, INPUTS) : NULL;
-    if (why) {
-        return cannot_write(f, why);
+    if (v->path_file[0]) {
+        const struct inputs in = inputs_of(f);
+        const struct fmu_path path = fmu_path(f, v->path_file, FMU_WRITTEN);
+        const char *why = path.good ? output_try(path.text, in.of, INPUTS) : path.text;
+        if (why) {
+            return cannot_write(f, why);
+        }
     }
     struct program_file *program;
     const int code = open_program(f, "program", v->program, &program);
@@ -143,10 +149,11 @@ static void publish(struct fmu *f)
 static int set_compensation(struct fmu *f)
 {
     const char *name = f->s.v.comp_file;
+    const struct fmu_path path = fmu_path(f, name, FMU_READ);
     struct comp_file file;
 
-    if (comp_read(&file, name)) {
-        return fmu_fail(f, "comp_file: %s: %s", name, file.said);
+    if (!path.good || comp_read(&file, path.text)) {
+        return fmu_fail(f, "comp_file: %s: %s", name, path.good ? file.said : path.text);
     }
     for (int i = 0; i < AXES; i++) {
         if (file.table[i].interval && MCC_set_comp(&f->s.m.pc.mcc, i, &file.table[i])) {
@@ -168,8 +175,10 @@ static int set_tools(struct fmu *f)
     if (!stops && strcmp(v->tool_change, "immediate")) {
         return fmu_fail(f, "tool_change = \"%s\" is neither stop nor immediate", v->tool_change);
     }
-    if (v->tool_table[0] && tool_read(&file, v->tool_table, v->rotary_names)) {
-        return fmu_fail(f, "tool_table: %s: %s", v->tool_table, file.said);
+    const struct fmu_path path = fmu_path(f, v->tool_table, FMU_READ);
+    if (v->tool_table[0] && (!path.good || tool_read(&file, path.text, v->rotary_names))) {
+        return fmu_fail(f, "tool_table: %s: %s", v->tool_table,
+                        path.good ? file.said : path.text);
     }
     task_set_tools(mcc, &file.table, stops);
     task_set_dialect(mcc, &dialect);
@@ -319,8 +328,9 @@ static int model_end(struct fmu *f)
     const double zero[AXES] = { 0.0 };
     interpreter_start(&in, zero, mcc->machine.feed, mcc->offset);
     in.tools.table = mcc->tools;
-    const struct inputs inputs = inputs_of(v);
-    const char *why = path_write(v->path_file, inputs.of, INPUTS, &in, &program,
+    const struct inputs inputs = inputs_of(f);
+    const struct fmu_path path = fmu_path(f, v->path_file, FMU_WRITTEN);
+    const char *why = path_write(path.text, inputs.of, INPUTS, &in, &program,
                                  mcc->mover.started);
     return why ? cannot_write(f, why) : 0;
 }

@@ -67,13 +67,14 @@ static bool recording(const struct vars *v)
     return v->file[0] != '\0';
 }
 
-/* Name of a trace file. */
-struct path { char text[FMU_STRING_MAX + 16]; };
-
-static struct path path_of(const struct vars *v, int file)
+/* Where a trace file is. */
+static struct fmu_path path_of(const struct fmu *f, int file)
 {
-    struct path p;
-    snprintf(p.text, sizeof p.text, "%s%s", v->file, files[file].ending);
+    struct fmu_path p = fmu_path(f, f->s.v.file, FMU_WRITTEN);
+    if (p.good) {
+        const size_t n = strlen(p.text);
+        snprintf(p.text + n, sizeof p.text - n, "%s", files[file].ending);
+    }
     return p;
 }
 
@@ -85,7 +86,7 @@ static int files_of(const struct vars *v)
 
 static int cannot_write(struct fmu *f, int file, const char *why)
 {
-    return fmu_fail(f, "cannot write %s: %s", path_of(&f->s.v, file).text, why);
+    return fmu_fail(f, "cannot write %s%s: %s", f->s.v.file, files[file].ending, why);
 }
 
 /* A path that cannot be written is told before the run, not after it. */
@@ -95,7 +96,8 @@ static int model_open(struct fmu *f)
         return 0;
     }
     for (int k = 0; k < files_of(&f->s.v); k++) {
-        const char *why = output_try(path_of(&f->s.v, k).text, NULL, 0);
+        const struct fmu_path path = path_of(f, k);
+        const char *why = path.good ? output_try(path.text, NULL, 0) : path.text;
         if (why) {
             return cannot_write(f, k, why);
         }
@@ -218,7 +220,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 /* Write one file in full under its temporary name. */
 static const char *write_part(struct fmu *f, int k, const struct trace *t, struct output *o)
 {
-    const struct path path = path_of(&f->s.v, k);
+    const struct fmu_path path = path_of(f, k);
     const char *why = output_check(path.text, NULL, 0);
     why = why ? why : output_begin(o, path.text);
     if (why) {

@@ -26,12 +26,13 @@ static int cannot_write(struct fmu *f, const char *why)
 
 static int model_open(struct fmu *f)
 {
-    const struct vars *v = &f->s.v;
-    const struct soft_inputs in = inputs_of(v);
-    const char *why = v->teach_file[0] ? output_try(v->teach_file, in.of, SOFT_INPUTS) : NULL;
-
-    if (why) {
-        return cannot_write(f, why);
+    if (f->s.v.teach_file[0]) {
+        const struct soft_inputs in = inputs_of(f);
+        const struct fmu_path path = fmu_path(f, f->s.v.teach_file, FMU_WRITTEN);
+        const char *why = path.good ? output_try(path.text, in.of, SOFT_INPUTS) : path.text;
+        if (why) {
+            return cannot_write(f, why);
+        }
     }
     struct soft_blob *b = calloc(1, sizeof *b);
     if (!b) {
@@ -266,7 +267,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 static int model_end(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
-    const char *why = v->teach_file[0] ? write_points(v, &f->s.m.soft) : NULL;
+    const char *why = v->teach_file[0] ? write_points(f, &f->s.m.soft) : NULL;
 
     return why ? cannot_write(f, why) : 0;
 }

@@ -28,7 +28,8 @@ static struct orders_text text_of(const struct soft_blob *b)
 static char *read_text(struct fmu *f, const char *parameter, const char *name, int64_t *length)
 {
     FILE *file;
-    const char *why = file_open(name, &file);
+    const struct fmu_path path = fmu_path(f, name, FMU_READ);
+    const char *why = path.good ? file_open(path.text, &file) : path.text;
 
     if (why) {
         fmu_fail(f, "%s: cannot read %s: %s", parameter, name, why);
@@ -133,10 +134,10 @@ enum { SOFT_INPUTS = 2 };
 struct soft_inputs { struct output_input of[SOFT_INPUTS]; };
 
 /* What teach_file must not replace. */
-static struct soft_inputs inputs_of(const struct vars *v)
+static struct soft_inputs inputs_of(const struct fmu *f)
 {
-    return (struct soft_inputs){ { { v->program, "it is program" },
-                                   { v->points, "it is points" } } };
+    return (struct soft_inputs){ { { fmu_path(f, f->s.v.program, FMU_READ), "it is program" },
+                                   { fmu_path(f, f->s.v.points, FMU_READ), "it is points" } } };
 }
 
 /* As joints: they say the same whatever the tool, and where axes 4 and 6 are in line, too. */
@@ -151,14 +152,15 @@ static void put_points(FILE *file, const struct soft *s)
 }
 
 /* NULL, or why it cannot be written. */
-static const char *write_points(const struct vars *v, const struct soft *s)
+static const char *write_points(const struct fmu *f, const struct soft *s)
 {
-    const struct soft_inputs in = inputs_of(v);
+    const struct soft_inputs in = inputs_of(f);
+    const struct fmu_path path = fmu_path(f, f->s.v.teach_file, FMU_WRITTEN);
     struct output o;
     int bad;
 
-    const char *why = output_check(v->teach_file, in.of, SOFT_INPUTS);
-    why = why ? why : output_begin(&o, v->teach_file);
+    const char *why = output_check(path.text, in.of, SOFT_INPUTS);
+    why = why ? why : output_begin(&o, path.text);
     if (why) {
         return why;
     }

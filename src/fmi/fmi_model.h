@@ -84,4 +84,21 @@ __attribute__((unused))
 #endif
 static const char *fmu_resources(const struct fmu *f);
 
+/* Where a file is, or in words why it is nowhere. */
+enum { FMU_PATH_MAX = 4096 };
+struct fmu_path {
+    bool good;
+    char text[FMU_PATH_MAX];
+};
+
+enum fmu_use { FMU_READ, FMU_WRITTEN };
+
+/* The file that a parameter names: by a path, a file:// URI with percent-encoded UTF-8, or as
+ * resource:NAME, which is NAME in the resources and is only read. A resource that is missing is
+ * told with what there is; any other name leads to a path, whether there is a file or not. */
+#if defined(__GNUC__)
+__attribute__((unused))
+#endif
+static struct fmu_path fmu_path(const struct fmu *f, const char *given, enum fmu_use use);
+
 #endif

@@ -21,7 +21,10 @@ static bool file_same(const char *a, const char *b)
 }
 
 /* A file that the same instance reads, "" if none, and what to say if it would be replaced. */
-struct output_input { const char *name, *words; };
+struct output_input {
+    struct fmu_path path;
+    const char     *words;
+};
 
 /* A file on its way: it is written under the name `part`. */
 struct output {
@@ -41,7 +44,7 @@ static const char *output_check(const char *name, const struct output_input *inp
     }
     const char *why = file_regular(&s);
     for (int i = 0; i < inputs && !why; i++) {
-        why = input[i].name[0] && file_same(name, input[i].name) ? input[i].words : NULL;
+        why = file_same(name, input[i].path.text) ? input[i].words : NULL;
     }
     return why;
 }

@@ -32,8 +32,7 @@ struct system_part {
     const char *name;                                   /* of the component */
     const struct fmu_part *part;
     size_t at;                                          /* of its instance, in struct model */
-    /* All values that are set before a run; `resources`: folder of the system's. */
-    void (*give)(void *part, const struct vars *v, const char *resources);
+    void (*give)(void *part, const struct vars *v);     /* all values that are set before a run */
 };
 
 struct system_wire {
@@ -60,17 +59,6 @@ struct system_column {
         _Static_assert(sizeof(to) == sizeof(from), "one type, one size");           \
         memcpy(&(to), &(from), sizeof(to));                                         \
     } while (0)
-
-/* A text that begins so names a file that the system carries. */
-#define SYSTEM_RESOURCES "resources/"
-
-static inline void system_text(char *to, size_t size, const char *from, const char *resources)
-{
-    const size_t head = sizeof SYSTEM_RESOURCES - 1;
-    const bool carried = strncmp(from, SYSTEM_RESOURCES, head) == 0;
-    memset(to, 0, size);
-    snprintf(to, size, "%s%s", carried ? resources : "", from + (carried ? head : 0));
-}
 
 /* Are all elements within limits? Not a number is not. */
 #define SYSTEM_REALS(x, low, high) \

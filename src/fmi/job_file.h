@@ -26,7 +26,8 @@ static int model_open(struct fmu *f)
     if (!name[0]) {
         return 0;
     }
-    const char *why = file_open(name, &file);
+    const struct fmu_path path = fmu_path(f, name, FMU_READ);
+    const char *why = path.good ? file_open(path.text, &file) : path.text;
     if (why) {
         return fmu_fail(f, "job: cannot read %s: %s", name, why);
     }

@@ -74,7 +74,8 @@ static int open_program(struct fmu *f, const char *parameter, const char *name,
     if (!name[0]) {
         return 0;
     }
-    const char *why = program_open(name, program);
+    const struct fmu_path path = fmu_path(f, name, FMU_READ);
+    const char *why = path.good ? program_open(path.text, program) : path.text;
     if (why) {
         return fmu_fail(f, "%s: cannot read %s: %s", parameter, name, why);
     }

@@ -42,6 +42,8 @@ static const char *fmu_resources(const struct fmu *f)
     return "";
 }
 
+#include "fmi_path.inc"
+
 static struct fmu part;
 
 void *JOIN(PART, open)(void);

@@ -108,7 +108,7 @@ def test_it_has_values_files_units_and_what_is_open(made: tuple[int, Path]) -> N
     assert str(gain.start).split()[0] == "150" and gain.causality == "parameter"
     assert variables["mcc.path_feed"].unit == "mm/s"
     assert variables["mcc.hold"].causality == "input"
-    assert variables["mcc.program"].start == "resources/circle.ngc"
+    assert variables["mcc.program"].start == "resource:circle.ngc"
     with zipfile.ZipFile(file) as archive:
         program = archive.read("resources/circle.ngc")
         assert program == (ROOT / "scenarios/circle/circle.ngc").read_bytes()

@@ -7,16 +7,20 @@ python src/pack.py headers  src build/include/motionfmu
 """
 
 import json
+import os
 import platform
+import posixpath
 import re
 import sys
 import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from motionfmu.fmu import cores, cstructs, ctables, fmu_toml
+from motionfmu.errors import InputError
+from motionfmu.fmu import cores, cstructs, ctables, fmu_toml, start_values
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.toml_lines import text_of
 
@@ -25,6 +29,8 @@ SOURCE = Path(__file__).resolve().parents[2]
 _DATE = (1980, 1, 1, 0, 0, 0)
 # What the linear models are made of goes into the FMU beside what the standard asks for.
 EXTRA = "extra/motionfmu"
+# Files that travel with an FMU, resource:NAME in a parameter.
+RESOURCES = "resources"
 # Which parameter is the FMU's grid; carried in EXTRA.
 GRID = "grid.json"
 # The model without FMI: its C text, and where an FMU carries its object, by the machine.
@@ -172,6 +178,47 @@ def write_archive(target: Path, files: Mapping[str, bytes]) -> None:
             info.compress_type = zipfile.ZIP_DEFLATED
             info.external_attr = 0o644 << 16
             archive_file.writestr(info, data)
+
+
+def write_whole(target: Path, files: Mapping[str, bytes]) -> None:
+    """Write an archive as a file of the user's: whole, or not at all and an InputError."""
+    part = target.with_name(f".{target.name}.part{os.getpid()}")
+    try:
+        write_archive(part, files)
+        part.replace(target)
+    except OSError as error:
+        raise InputError(f"cannot write {target}: {error.strerror or error}") from None
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def repacked(
+    source: Path, target: Path, resources: Mapping[str, Path], starts: Mapping[str, str]
+) -> None:
+    """Copy an FMU with files added to its resources, by name, and with other start values.
+
+    What instances begin with changes, not only the description, so it must be an FMU made here:
+    ``{"program": "resource:part.ngc", "p_gain": "200 198 0 0 0 0"}``, one value or one for each
+    element. Equal input gives equal bytes; `target` may be `source`.
+    """
+    try:
+        with zipfile.ZipFile(source) as archive_file:
+            files = {n: archive_file.read(n) for n in archive_file.namelist() if n[-1] != "/"}
+    except (OSError, zipfile.BadZipFile, zlib.error) as error:
+        raise InputError(f"{source}: not a readable FMU ({error})") from None
+    own = f"{RESOURCES}/{start_values.FILE}"
+    for name, file in resources.items():
+        path = f"{RESOURCES}/{name}"
+        if path == own or "\\" in name or posixpath.normpath(path) != path or not name.strip("/."):
+            raise InputError(f"{name}: no name for a file inside the resources of an FMU")
+        try:
+            files[path] = file.read_bytes()
+        except OSError as error:
+            raise InputError(f"{file}: {error.strerror or error}") from None
+    if starts:
+        xml, listed = files["modelDescription.xml"], files.get(own, b"")
+        files["modelDescription.xml"], files[own] = start_values.changed(xml, listed, starts)
+    write_whole(target, files)
 
 
 def headers(source: Path, out: Path) -> None:

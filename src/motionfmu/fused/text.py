@@ -80,19 +80,13 @@ def _model(system: System, parts: Mapping[str, Part]) -> str:
     )
 
 
-def _given(end: End) -> str:
-    to = f"to->{end.port.name}"
-    if end.port.type == "String":
-        return f"system_text({to}, sizeof {to}, {_here(end)}, resources);"
-    return f"SYSTEM_COPY({to}, {_here(end)});"
-
-
 def _gives(system: System, parts: Mapping[str, Part], used: Roles) -> Iterable[str]:
     for component, fmu in system.components.items():
         mine = [e for e in used.given if e.component == component]
-        lines = [f"struct {parts[fmu].identifier}_vars *to = part;", *map(_given, mine)]
-        head = f"void give_{component}(void *part, const struct vars *v, const char *resources)"
-        yield _function(head, lines, ["v", "resources"] + ([] if mine else ["part"]))
+        lines = [f"struct {parts[fmu].identifier}_vars *to = part;"]
+        lines += [f"SYSTEM_COPY(to->{e.port.name}, {_here(e)});" for e in mine]
+        head = f"void give_{component}(void *part, const struct vars *v)"
+        yield _function(head, lines, ["v"] + ([] if mine else ["part"]))
 
 
 def _carry(system: System) -> str:

@@ -11,13 +11,12 @@ from typing import Any
 
 from motionfmu import fused
 from motionfmu.errors import InputError
-from motionfmu.fmu.pack import write_archive
+from motionfmu.fmu.pack import RESOURCES, write_whole
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.scenarios.fmus import fmu_path
 from motionfmu.scenarios.system import Setting
 from motionfmu.toml_lines import is_file
 
-RESOURCES = "resources"
 PROGRAM = "program.json"  # what a run here reads instead of the description
 _LEFT = (PROGRAM, "sources/")  # C text without the parts that it needs
 _LICENCE = "documentation/LICENSE"
@@ -49,7 +48,7 @@ def export(scenario: Prepared, target: Path, fmi: int, given: Mapping[str, Any])
     if is_file(readme):
         packed["documentation/README.md"] = readme
     licence = _licence(next(iter(system.components.values())))
-    _write(target, packed, {_LICENCE: licence})
+    write_whole(target, {n: f.read_bytes() for n, f in packed.items()} | {_LICENCE: licence})
     return len(json.loads((program.folder / PROGRAM).read_bytes())["variables"])
 
 
@@ -70,7 +69,7 @@ def _inside(setting: Setting, files: dict[str, Path]) -> Setting:
         if files.get(name, file) != file:
             name = f"{setting.end.component}.{name}"
         files[name] = file
-        values[k] = f"{RESOURCES}/{name}"
+        values[k] = f"resource:{name}"
     return replace(setting, values=tuple(values))
 
 
@@ -78,15 +77,3 @@ def _licence(fmu: str) -> bytes:
     """That of the parts, as an FMU carries it."""
     with zipfile.ZipFile(fmu_path(fmu)) as archive:
         return archive.read(_LICENCE)
-
-
-def _write(target: Path, files: Mapping[str, Path], texts: Mapping[str, bytes]) -> None:
-    """Write an archive, whole or not at all."""
-    part = target.with_name(f".{target.name}.part{os.getpid()}")
-    try:
-        write_archive(part, {n: f.read_bytes() for n, f in files.items()} | dict(texts))
-        part.rename(target)
-    except OSError as error:
-        raise InputError(f"cannot write {target}: {error.strerror or error}") from None
-    finally:
-        part.unlink(missing_ok=True)

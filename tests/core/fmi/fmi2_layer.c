@@ -1,5 +1,6 @@
 /* The FMI layer as FMI 2.0. */
 #define FMI_VERSION 2
+#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */
 #include "fmi_dummy.h"
 #include "fmi.inc"
 

@@ -1,5 +1,6 @@
 /* The FMI layer as FMI 3.0. */
 #define FMI_VERSION 3
+#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */
 #include "fmi_dummy.h"
 #include "fmi.inc"
 
