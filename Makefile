@@ -40,7 +40,7 @@ check: needs .venv/installed          ## formatting, lint, types
 	$(BIN)/mypy
 
 bench: build                    ## speed, as ratios measured in one run; BENCH=--renew keeps its figures
-	@cmake --build build --target fused_circle fused_six_axes card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch
+	@cmake --build build --target fused_circle fused_six_axes count_here card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch
 	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py $(BENCH)
 
 SECONDS ?= 120

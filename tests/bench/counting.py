@@ -13,8 +13,10 @@ from pathlib import Path
 import commands
 
 RUN = Path(__file__).parent / "one_run.py"
+MARKS = Path(__file__).resolve().parents[2] / "build/tests/bench/count_here.so"
 _PERF = ("perf", "stat", "-x,", "-e", "instructions:u", "-o")
 _VALGRIND = ("valgrind", "--trace-children=yes", "--tool=cachegrind", "--cache-sim=no")
+_HERE = ("valgrind", "--tool=callgrind", "--instr-atstart=no", "--callgrind-out-file=/dev/null")
 # A short and a long run of a loop; their difference is the loop's alone.
 STEPS = (1000, 5000)
 SLOW = 4.0  # [s]
@@ -32,11 +34,11 @@ def method() -> str | None:
     return None
 
 
-def _run(line: Sequence[str | Path]) -> str:
+def _run(line: Sequence[str | Path], **more: str) -> str:
     done = subprocess.run(
         line,
         check=True,
-        env=commands.environment(),
+        env=commands.environment() | more,
         stdout=subprocess.DEVNULL,
         stderr=-1,
         text=True,
@@ -63,6 +65,18 @@ def instructions(line: Sequence[str | Path]) -> float:
     return float("nan") if which is None else (_perf if which == "perf" else _valgrind)(line)
 
 
+def _inside(line: Sequence[str | Path]) -> float:
+    """Instructions of the loop of one_run.py alone: what is around it differs by millions."""
+    if method() != "valgrind":
+        return instructions(line)
+    told = _run([*_HERE, *line], COUNT_HERE=str(MARKS))
+    share = re.search(r"^counted share ([\d.]+)$", told, re.MULTILINE)
+    count = re.search(r"Collected : (\d+)", told)
+    if not share or not count:
+        raise ValueError("valgrind tells no count")
+    return int(count[1]) / float(share[1])
+
+
 class Loop:
     """Instructions of one step of a loop: a longer run less a shorter one.
 
@@ -78,7 +92,7 @@ class Loop:
             return
         lines = [[str(a).format(n) for a in self.line] for n in self.steps]
         _run(lines[0])  # what is made once is there
-        short, long = map(instructions, lines)
+        short, long = map(_inside if RUN in self.line else instructions, lines)
         self.count = (long - short) / (self.steps[1] - self.steps[0])
 
 
