@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "modelica" / "MotionControl"
 _FLAGS = (
     "-std=c11 -O2 -Wall -Wextra -Wpedantic -Wno-unused-function -Werror "
-    "-ffp-contract=off -fno-math-errno -fPIC"
+    "-ffp-contract=off -fno-math-errno -fno-trapping-math -fPIC"
 )
 _DRIVER = """
 #include <stdarg.h>

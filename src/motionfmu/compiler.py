@@ -14,7 +14,14 @@ from pathlib import Path
 from motionfmu.errors import InputError
 
 # As CMakeLists.txt has them: the same bits as the FMUs.
-FLAGS = ("-std=c11", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-fno-math-errno")
+FLAGS = (
+    "-std=c11",
+    "-fPIC",
+    "-fvisibility=hidden",
+    "-ffp-contract=off",
+    "-fno-math-errno",
+    "-fno-trapping-math",
+)
 
 LINES = 3  # of a compiler's errors that are told
 

@@ -237,7 +237,7 @@ def _loops(ode: Ode, equations: Split, used: tuple[int, ...]) -> list[str]:
             f"const double *restrict c, double *restrict {to})"
         )
         loop = "for (int i = 0; i < lanes; i++) {"
-        body = [loop, *(f"    {line}" for line in lines), "}"]
+        body = ["PLANT_ROLLED", loop, *(f"    {line}" for line in lines), "}"]
         cases = [f"case {w}: {name}({w}, x, u, c, {to}); break;" for w in used]
         texts += [
             _function(f"static PLANT_INLINE void {name}{arguments}", body),
@@ -300,6 +300,12 @@ enum {{
 #define PLANT_INLINE inline __attribute__((always_inline))
 #else
 #define PLANT_INLINE inline
+#endif
+/* A loop over two lanes becomes vectors only if it is not unrolled before. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define PLANT_ROLLED _Pragma("GCC unroll 1")
+#else
+#define PLANT_ROLLED
 #endif
 
 /* [1] Error of a controlled step as a share of a state's size. */
