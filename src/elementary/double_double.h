@@ -1,0 +1,141 @@
+/* Numbers of twice 53 bits, as the sum of two doubles, from + - * / and sqrt alone; and what a
+ * function needs to know of the form of a double. All of it inline, for elementary's own files. */
+#ifndef DOUBLE_DOUBLE_H
+#define DOUBLE_DOUBLE_H
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+/* The results' proof needs each operation rounded to 53 bits, once. */
+#if defined(__FAST_MATH__)
+#error "elementary: not with -ffast-math"
+#endif
+#if FLT_EVAL_METHOD != 0
+#error "elementary: here a sum has more bits than a double (x87): use -msse2 -mfpmath=sse"
+#endif
+
+/* h + l; h is the double nearest to the sum. */
+struct dd {
+    double h, l;
+};
+
+static inline struct dd dd_of(double h, double l)
+{
+    const struct dd x = { h, l };
+    return x;
+}
+
+static inline uint64_t dd_bits(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static inline double dd_of_bits(uint64_t bits)
+{
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* 2^k, k in -1022 to 1023. */
+static inline double dd_power(int k)
+{
+    return dd_of_bits((uint64_t)(k + 1023) << 52);
+}
+
+/* a + b, where a is 0 or |a| >= |b|. */
+static inline struct dd dd_fast(double a, double b)
+{
+    const double h = a + b;
+    return dd_of(h, b - (h - a));
+}
+
+static inline struct dd dd_sum(double a, double b)
+{
+    const double h = a + b, c = h - a;
+    return dd_of(h, (a - (h - c)) + (b - c));
+}
+
+/* a b, |a| and |b| below 2^500: their halves of 26 bits have products without rounding. */
+static inline struct dd dd_product(double a, double b)
+{
+    const double c = 134217729.0 * a, d = 134217729.0 * b;      /* 2^27 + 1 */
+    const double ah = c - (c - a), al = a - ah, bh = d - (d - b), bl = b - bh, h = a * b;
+    return dd_of(h, ((ah * bh - h) + ah * bl + al * bh) + al * bl);
+}
+
+static inline struct dd dd_add(struct dd a, struct dd b)
+{
+    const struct dd s = dd_sum(a.h, b.h), t = dd_sum(a.l, b.l);
+    const struct dd u = dd_fast(s.h, s.l + t.h);
+    return dd_fast(u.h, u.l + t.l);
+}
+
+static inline struct dd dd_minus(struct dd a)
+{
+    return dd_of(-a.h, -a.l);
+}
+
+static inline struct dd dd_add_to(double a, struct dd b)
+{
+    return dd_add(dd_of(a, 0.0), b);
+}
+
+static inline struct dd dd_mul(struct dd a, struct dd b)
+{
+    const struct dd p = dd_product(a.h, b.h);
+    return dd_fast(p.h, p.l + (a.h * b.l + a.l * b.h));
+}
+
+/* Exact for a power of two. */
+static inline struct dd dd_times(struct dd a, double b)
+{
+    return dd_of(a.h * b, a.l * b);
+}
+
+static inline struct dd dd_div(struct dd a, struct dd b)
+{
+    const double q = a.h / b.h;
+    const struct dd p = dd_product(q, b.h);
+    return dd_fast(q, (((a.h - p.h) - p.l) + a.l - q * b.l) / b.h);
+}
+
+static inline struct dd dd_sqrt(struct dd a)
+{
+    const double h = sqrt(a.h);
+    const struct dd p = dd_product(h, h);
+    return h == 0.0 ? a : dd_fast(h, (((a.h - p.h) - p.l) + a.l) / (2.0 * h));
+}
+
+/* h + l rounded, if every number from h + l - error to h + l + error rounds to the same.
+ * Tests of what comes after define DD_NEVER_SETTLED. */
+static inline bool dd_settled(double h, double l, double error, double *y)
+{
+#ifdef DD_NEVER_SETTLED
+    error = NAN;
+#endif
+    *y = h + (l - error);
+    return *y == h + (l + error);
+}
+
+/* a 2^k rounded once, 2^-100 < |a| < 2^100, |k| < 1200. What is nearer to the middle between two
+ * doubles than the 2^-94th part of itself is taken for that middle, which powers do meet. */
+static inline double dd_rounded(struct dd a, int k)
+{
+    a = dd_fast(a.h, a.l);
+    const int exponent = (int)(dd_bits(a.h) >> 52 & 2047) - 1023;
+    if (exponent + k < -1022) {     /* the result has fewer bits: those of a sum with a large one */
+        const double large = copysign(ldexp(1.0, -1022 - k), a.h);
+        const struct dd s = dd_fast(large, a.h);
+        return copysign(ldexp((s.h + (s.l + a.l)) - large, k), a.h);
+    }
+    const double grid = a.h * 0x1.8p-43;
+    return ldexp(a.h + ((a.l + grid) - grid), k);
+}
+
+#endif

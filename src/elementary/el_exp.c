@@ -1,0 +1,135 @@
+/* The exponential function and what is made of it. With k the nearest step of ln 2 / 128 and r what
+ * is left of x: e^x = 2^(k / 128) (1 + (e^r - 1)). */
+#include "elementary.h"
+#include "el_exp.h"
+#include "el_exp_tables.h"
+#include "el_series_tables.h"
+
+/* Exponents of the quick way: below 2^-54 e^x = 1; from 512 on the result may not be normal. */
+enum { LEAST = 1023 - 54, MOST = 1023 + 9 };
+/* What the quick way may be off by, of the value. */
+#define PART 0x1p-60
+
+static inline double steps_of(double x, uint64_t *k)
+{
+    const double turned = x * OCTAVE_STEPS[0] + 0x1.8p52;
+    *k = dd_bits(turned);
+    return turned - 0x1.8p52;
+}
+
+/* e^r - 1 = r (1 + r/2! + ... ), x = k ln 2 / 128 + r: |r|^12 / 12! = 2^-131. */
+static struct dd rest_dd(struct dd x, uint64_t *k)
+{
+    const double n = steps_of(x.h, k);
+    const struct dd first = dd_sum(x.h - n * OCTAVE_STEP[0], -n * OCTAVE_STEP[1]);
+    const struct dd r = dd_add(first, dd_sum(-n * OCTAVE_STEP[2], x.l));
+    double tail = 0.0;
+    for (int i = 11; i >= 6; i--) {
+        tail = FACTORIALS[i][0] + r.h * tail;
+    }
+    struct dd sum = { tail, 0.0 };
+    for (int i = 5; i >= 1; i--) {
+        sum = dd_add(dd_of(FACTORIALS[i][0], FACTORIALS[i][1]), dd_mul(sum, r));
+    }
+    return dd_mul(sum, r);
+}
+
+struct dd el_exp_dd(struct dd x, int *k)
+{
+    uint64_t n;
+    const struct dd p = rest_dd(x, &n);
+    const struct dd power = { POWERS[n % 128][0], POWERS[n % 128][1] };
+    *k = (int32_t)(uint32_t)(n - n % 128) / 128;
+    return dd_add(power, dd_mul(power, p));
+}
+
+/* e^x - 1, |x| < 600. */
+static struct dd expm1_dd(struct dd x)
+{
+    uint64_t n;
+    int k;
+    const struct dd p = rest_dd(x, &n);
+    if ((uint32_t)n == 0) {
+        return p;
+    }
+    const struct dd e = el_exp_dd(x, &k);
+    return dd_add_to(-1.0, dd_times(e, dd_power(k)));
+}
+
+double el_exp(double x)
+{
+    const unsigned exponent = (unsigned)(dd_bits(x) >> 52 & 2047);
+    if (exponent - LEAST < MOST - LEAST) {
+        uint64_t k;
+        const double n = steps_of(x, &k), r = (x - n * OCTAVE_STEP[0]) - n * OCTAVE_STEP[1];
+        const double *power = POWERS[k % 128];
+        const double p = r + r * r * ((EXP_REST[0] + r * EXP_REST[1]) +
+                                      r * r * (EXP_REST[2] + r * EXP_REST[3]));
+        double y;
+        if (dd_settled(power[0], power[1] + power[0] * p, 2.0 * PART, &y)) {
+            return y * dd_of_bits((k / 128 + 1023) << 52);
+        }
+    }
+    if (exponent < LEAST) {
+        return 1.0;
+    }
+    if (!(fabs(x) < 800.0)) {
+        return isnan(x) ? x : x > 0.0 ? INFINITY : 0.0;
+    }
+    int k;
+    const struct dd e = el_exp_dd(dd_of(x, 0.0), &k);
+    return dd_rounded(e, k);
+}
+
+double el_expm1(double x)
+{
+    if (!(fabs(x) >= 0x1p-54)) {
+        return x;
+    }
+    if (!(fabs(x) < 100.0)) {
+        return x > 0.0 ? el_exp(x) : -1.0;
+    }
+    return dd_rounded(expm1_dd(dd_of(x, 0.0)), 0);
+}
+
+double el_sinh(double x)
+{
+    const double a = fabs(x);
+    int k;
+    if (!(a >= 0x1p-26) || isinf(x)) {
+        return x;
+    }
+    if (a >= 40.0) {        /* the other half is less than 2^-115 of it */
+        const struct dd e = el_exp_dd(dd_of(fmin(a, 800.0), 0.0), &k);
+        return copysign(dd_rounded(e, k - 1), x);
+    }
+    const struct dd m = expm1_dd(dd_of(a, 0.0));
+    const struct dd both = dd_add(m, dd_div(m, dd_add_to(1.0, m)));
+    return copysign(dd_rounded(both, -1), x);
+}
+
+double el_cosh(double x)
+{
+    const double a = fabs(x);
+    int k;
+    if (!(a < 800.0)) {
+        return a;
+    }
+    struct dd e = el_exp_dd(dd_of(a, 0.0), &k);
+    if (a < 40.0) {
+        e = dd_times(e, dd_power(k));
+        e = dd_add(e, dd_div(dd_of(1.0, 0.0), e));
+        k = 0;
+    }
+    return dd_rounded(e, k - 1);
+}
+
+double el_tanh(double x)
+{
+    const double a = fabs(x);
+    if (!(a >= 0x1p-27) || a >= 22.0) {
+        return a >= 22.0 ? copysign(1.0, x) : x;
+    }
+    const struct dd m = expm1_dd(dd_of(2.0 * a, 0.0));
+    return copysign(dd_rounded(dd_div(m, dd_add_to(2.0, m)), 0), x);
+}

@@ -1,0 +1,10 @@
+/* The exponential function to 100 bits, for elementary's own files. */
+#ifndef EL_EXP_H
+#define EL_EXP_H
+
+#include "double_double.h"
+
+/* e^x = 2^k times what it returns, 1 to 2; |x| < 1200. */
+struct dd el_exp_dd(struct dd x, int *k);
+
+#endif

@@ -1,0 +1,72 @@
+/* The logarithm: x = 2^k m, with m from 0.707 to 1.414 and c near 1/m: log x = k ln 2 - log c +
+ * log(1 + r), r = m c - 1. Around 1, c = 1 and k = 0, so that r alone is left. */
+#include "elementary.h"
+#include "el_log.h"
+#include "el_log_tables.h"
+
+/* Bits of the least m, 181 / 256. */
+#define LOWEST 0x3fe6a00000000000
+/* What the quick way may be off by, of the value. */
+#define PART 0x1.8p-61
+
+/* x = 2^k m. */
+struct split {
+    double k;
+    const double *row;
+    double high, low;       /* r, exact: c has 10 bits, so that c times the halves of m are */
+};
+
+static inline struct split split_of(double x)
+{
+    const uint64_t bits = dd_bits(x), above = bits - LOWEST;
+    const int64_t k = (int64_t)above >> 52;
+    const double m = dd_of_bits(bits - ((uint64_t)k << 52)), half = (double)(float)m;
+    const double *row = LOGARITHMS[above >> 45 & 127];
+    return (struct split){ (double)k, row, row[0] * half - 1.0, row[0] * (m - half) };
+}
+
+static inline double normal(double x, double *k)
+{
+    *k = x < 0x1p-1022 ? -54.0 : 0.0;
+    return x < 0x1p-1022 ? x * 0x1p54 : x;
+}
+
+/* log(1 + r) = r - r^2/2 + ...: to r^15, |r| <= 2^-7. */
+struct dd el_log_dd(double x)
+{
+    double k;
+    const struct split s = split_of(normal(x, &k));
+    const struct dd r = dd_sum(s.high, s.low);
+    k += s.k;
+    double tail = 0.0;
+    for (int i = 15; i >= 9; i--) {
+        tail = INVERSES[i][0] - r.h * tail;
+    }
+    struct dd sum = { tail, 0.0 };
+    for (int i = 8; i >= 1; i--) {
+        sum = dd_add(dd_of(INVERSES[i][0], INVERSES[i][1]), dd_minus(dd_mul(sum, r)));
+    }
+    sum = dd_mul(sum, r);
+    const struct dd low = dd_add(dd_sum(s.row[2], s.row[3]),
+                                 dd_add(dd_product(k, LN2[1]), dd_of(k * LN2[2], 0.0)));
+    return dd_add_to(k * LN2[0] + s.row[1], dd_add(low, sum));
+}
+
+double el_log(double x)
+{
+    if (!(x >= 0x1p-1022 && x < INFINITY)) {
+        return x == 0.0 ? -INFINITY : x < 0.0 ? NAN : x < 1.0 ? dd_rounded(el_log_dd(x), 0) : x;
+    }
+    const struct split s = split_of(x);
+    const struct dd r = dd_fast(s.high, s.low), sum = dd_fast(s.k * LN2[0] + s.row[1], r.h);
+    const double u = r.h * r.h;
+    const double rest = r.h * u * ((LOG_REST[0] + r.h * LOG_REST[1]) +
+                                   u * ((LOG_REST[2] + r.h * LOG_REST[3]) +
+                                        u * (LOG_REST[4] + r.h * LOG_REST[5])));
+    double y;
+    const double low = sum.l + ((s.row[2] + s.k * LN2[1] + r.l) + (rest - 0.5 * u));
+    if (dd_settled(sum.h, low, fabs(sum.h) * PART, &y)) {
+        return y;
+    }
+    return dd_rounded(el_log_dd(x), 0);
+}

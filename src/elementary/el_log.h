@@ -1,0 +1,10 @@
+/* The logarithm to 100 bits, for elementary's own files. */
+#ifndef EL_LOG_H
+#define EL_LOG_H
+
+#include "double_double.h"
+
+/* log x; 0 < x < infinity. */
+struct dd el_log_dd(double x);
+
+#endif

@@ -1,0 +1,196 @@
+/* Sine, cosine, tangent. With k the nearest step of 2 pi / 256 and r what is left of x,
+ *
+ *     sin x = S + C r + (S (cos r - 1) + C (sin r - r)),  S = sin(2 pi k / 256),  C its cosine,
+ *
+ * where S and C have 26 bits and r 27, so that S + C r is exact as a sum of two doubles; what these
+ * lack goes into the bracket, which is 2^-13 of the result. */
+#include "elementary.h"
+#include "double_double.h"
+#include "el_series_tables.h"
+#include "el_sine_tables.h"
+
+/* Exponents of the quick way: below 2^-27 sin x = x and cos x = 1; from 2^17 on k is too long. */
+enum { LEAST = 1023 - 27, MOST = 1023 + 17 };
+/* What the quick way may be off by: a share of the value, and what l <= 2^-34 is rounded by. */
+#define PART 0x1.2p-64
+#define REST 0x1p-87
+
+/* x = k 2 pi / 256 + h + l; and of r = h + l: sin r - h, cos r - 1. */
+struct rest {
+    unsigned k;
+    double h, sine, cosine;
+};
+
+static inline bool is_quick(double x)
+{
+    return (unsigned)(dd_bits(x) >> 52 & 2047) - LEAST < MOST - LEAST;
+}
+
+static inline struct rest rest_of(double x)
+{
+    const double turned = x * TURN_STEPS[0] + 0x1.8p52, k = turned - 0x1.8p52;
+    const double first = x - k * TURN_STEP[0], second = k * TURN_STEP[1];     /* exact, both */
+    const double h = (first - second + 0x1.8p19) - 0x1.8p19;        /* a multiple of 2^-33 */
+    const double l = (first - h - second) - k * TURN_STEP[2], r = h + l, u = r * r;
+    return (struct rest){
+        .k = (unsigned)dd_bits(turned),
+        .h = h,
+        .sine = l + r * u * (SINE_REST[0] + u * (SINE_REST[1] + u * SINE_REST[2])),
+        .cosine = u * (COSINE_REST[0] + u * (COSINE_REST[1] + u * COSINE_REST[2])),
+    };
+}
+
+/* sin(2 pi k / 256 + r). */
+static inline struct dd sine_at(const struct rest *r, unsigned k)
+{
+    const double *s = SINES[k % 256], *c = SINES[(k + 64) % 256];
+    const struct dd sum = dd_fast(s[0], c[0] * r->h);
+    return dd_of(sum.h, sum.l + (s[1] + c[1] * r->h + c[2] * r->sine + s[2] * r->cosine));
+}
+
+static inline bool settled(struct dd a, double *y)
+{
+    return dd_settled(a.h, a.l, fabs(a.h) * PART + REST, y);
+}
+
+/* x = quarter pi / 2 + r, |r| <= pi / 4, for any finite x: of x 2 / pi with x = m 2^e only words
+ * that do not make whole turns, and of these nine: 288 bits, of which x takes 53, the quarter 34,
+ * and a zero of sine or cosine next to a double 62 at most. */
+static struct dd turned(double x, unsigned *quarter)
+{
+    enum { TAKEN = 9, LIMBS = TAKEN + 2 };
+    const uint64_t m = (dd_bits(x) & 0xfffffffffffff) | 0x10000000000000;
+    const int e = (int)(dd_bits(x) >> 52 & 2047) - 1075, first = e < 2 ? 0 : (e - 2) / 32;
+    if (fabs(x) < 0.78) {
+        *quarter = 0;
+        return dd_of(x, 0.0);
+    }
+    uint32_t limb[LIMBS + 1] = { 0 };      /* of the product, the last ones first */
+    for (int part = 0; part < 2; part++) {
+        uint64_t carry = 0;
+        const uint64_t factor = part ? m >> 32 : m & 0xffffffff;
+        for (int i = 0; i < TAKEN; i++) {
+            const int word = first + TAKEN - 1 - i;
+            carry += factor * WORDS[word] + limb[i + part];
+            limb[i + part] = (uint32_t)carry;
+            carry >>= 32;
+        }
+        limb[TAKEN + part] = (uint32_t)carry;
+    }
+    const int behind = 32 * (first + TAKEN) - e;        /* bits behind the point, 223 to 341 */
+    uint32_t part[8];                                   /* of these the first 256 */
+    for (int i = 0; i < 8; i++) {
+        const int bit = behind - 32 * (i + 1);
+        uint64_t two = 0;
+        if (bit >= 0) {
+            two = limb[bit / 32] | (uint64_t)limb[bit / 32 + 1] << 32;
+            two >>= bit % 32;
+        } else if (bit > -32) {
+            two = (uint64_t)limb[0] << -bit;
+        }
+        part[i] = (uint32_t)two;
+    }
+    const int point = behind / 32;
+    const uint64_t whole = limb[point] | (uint64_t)limb[point + 1] << 32;
+    unsigned turns = (unsigned)(whole >> behind % 32);
+    const bool over = part[0] >> 31;
+    struct dd f = { 0.0, 0.0 };
+    double scale = 0x1p-256;
+    for (int i = 7; i >= 0; i--, scale *= 0x1p32) {
+        f = dd_add_to((double)(over ? ~part[i] : part[i]) * scale, f);
+    }
+    turns += over;
+    f = over ? dd_minus(f) : f;
+    const bool back = x < 0.0;
+    *quarter = back ? 0u - turns : turns;
+    const struct dd r = dd_mul(f, dd_of(QUARTER[0], QUARTER[1]));
+    return back ? dd_minus(r) : r;
+}
+
+/* sin r, first = 1, or cos r, first = 0: the sum of +-r^n / n! from n = first on in steps of 2, to
+ * n = 29 (pi / 4)^29 / 29! = 2^-113. */
+static struct dd series(struct dd r, int first)
+{
+    const struct dd u = dd_minus(dd_mul(r, r));
+    struct dd sum = { 0.0, 0.0 };
+    for (int n = 28 + first; n >= first; n -= 2) {
+        sum = dd_add(dd_of(FACTORIALS[n][0], FACTORIALS[n][1]), dd_mul(sum, u));
+    }
+    return first ? dd_mul(sum, r) : sum;
+}
+
+/* sin(x + more pi / 2), 2^-27 <= |x|. */
+static struct dd exact(double x, unsigned more)
+{
+    unsigned quarter;
+    const struct dd r = turned(x, &quarter);
+    quarter += more;
+    const struct dd s = series(r, quarter % 2 ? 0 : 1);
+    return quarter / 2 % 2 ? dd_minus(s) : s;
+}
+
+static double slow(double x, unsigned more)
+{
+    if (!isfinite(x)) {
+        return x - x;
+    }
+    if (fabs(x) < 0x1p-27) {
+        return more ? 1.0 : x;
+    }
+    return dd_rounded(exact(x, more), 0);
+}
+
+double el_sin(double x)
+{
+    double y;
+    if (is_quick(x)) {
+        const struct rest r = rest_of(x);
+        if (settled(sine_at(&r, r.k), &y)) {
+            return y;
+        }
+    }
+    return slow(x, 0);
+}
+
+double el_cos(double x)
+{
+    double y;
+    if (is_quick(x)) {
+        const struct rest r = rest_of(x);
+        if (settled(sine_at(&r, r.k + 64), &y)) {
+            return y;
+        }
+    }
+    return slow(x, 1);
+}
+
+void el_sincos(double x, double *sine, double *cosine)
+{
+    if (is_quick(x)) {
+        const struct rest r = rest_of(x);
+        const bool first = settled(sine_at(&r, r.k), sine);
+        if (settled(sine_at(&r, r.k + 64), cosine) && first) {
+            return;
+        }
+    }
+    *sine = slow(x, 0);
+    *cosine = slow(x, 1);
+}
+
+double el_tan(double x)
+{
+    double y;
+    if (is_quick(x)) {
+        const struct rest r = rest_of(x);
+        const struct dd s = sine_at(&r, r.k), c = sine_at(&r, r.k + 64);
+        const struct dd t = dd_div(dd_fast(s.h, s.l), dd_fast(c.h, c.l));
+        const double part = 4.0 * PART + REST / fabs(s.h) + REST / fabs(c.h);
+        if (dd_settled(t.h, t.l, fabs(t.h) * part, &y)) {
+            return y;
+        }
+    }
+    if (!isfinite(x) || fabs(x) < 0x1p-27) {
+        return isfinite(x) ? x : x - x;
+    }
+    return dd_rounded(dd_div(exact(x, 0), exact(x, 1)), 0);
+}

@@ -1,0 +1,88 @@
+"""The elementary functions: nearest to mpmath's values, and the same bits whoever compiles them."""
+
+import ctypes
+import itertools
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import nearest
+import pytest
+from mpmath import mp
+
+sys.path.insert(0, str(nearest.CORE))
+import tables
+
+mp.prec = 200
+ARM = "aarch64-linux-gnu-gcc"
+# 2^-40: a value so near to the middle between two doubles may be taken for the middle.
+NEAREST = 0.5 + 2.0**-40
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
+    return nearest.built(tmp_path_factory.mktemp("quick"))
+
+
+@pytest.fixture(scope="module")
+def slow(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
+    return nearest.built(tmp_path_factory.mktemp("slow"), "-DDD_NEVER_SETTLED")
+
+
+@pytest.mark.parametrize("name", nearest.DRAWN)
+def test_results_are_the_nearest_doubles(quick: ctypes.CDLL, name: str) -> None:
+    nearest.rnd.seed(name)
+    all_at = itertools.chain(nearest.drawn(name, 4000), nearest.hard(name, 1000))
+    assert nearest.worst(nearest.function(quick, name), name, all_at)[:2] < (NEAREST, ())
+
+
+@pytest.mark.parametrize("name", "sin cos tan asin acos atan atan2 exp log".split())
+def test_so_are_those_the_quick_way_leaves(slow: ctypes.CDLL, name: str) -> None:
+    nearest.rnd.seed(name)
+    all_at = itertools.chain(nearest.drawn(name, 400), nearest.hard(name, 400))
+    assert nearest.worst(nearest.function(slow, name), name, all_at)[:2] < (NEAREST, ())
+
+
+def test_the_tables_are_what_mpmath_gives() -> None:
+    with mp.workprec(1400):
+        made = tables.texts()
+    assert made == {f.name: f.read_text() for f in nearest.CORE.glob("el_*_tables.h")}
+
+
+def bits(folder: Path, *command: str, run: tuple[str, ...] = ()) -> str:
+    """What tests/elementary/bits.c prints, compiled so."""
+    program = folder / "_".join(command).replace("/", "_")
+    sources = [Path(__file__).with_name("bits.c"), *sorted(nearest.CORE.glob("*.c"))]
+    compiler, *flags = command
+    subprocess.run(
+        [compiler, "-std=c11", *flags, "-I", nearest.CORE, "-o", program, *sources, "-lm"],
+        check=True,
+    )
+    return subprocess.run([*run, program], check=True, capture_output=True, text=True).stdout
+
+
+def test_every_compiler_gives_the_same_bits(tmp_path: Path) -> None:
+    wanted = bits(tmp_path, "gcc", "-O2", "-ffp-contract=off")
+    assert len(set(wanted.split())) == 32
+    ways = [("gcc", "-O0"), ("gcc", "-O3", "-flto", "-march=haswell", "-ffp-contract=off")]
+    ways += [("clang", "-O2", "-ffp-contract=off")] if shutil.which("clang") else []
+    for way in ways:
+        assert bits(tmp_path, *way) == wanted, way
+
+
+def test_an_arm_processor_gives_the_same_bits(tmp_path: Path) -> None:
+    if not (shutil.which(ARM) and shutil.which("qemu-aarch64")):
+        pytest.skip(f"needs {ARM} and qemu-aarch64 (Debian: gcc-aarch64-linux-gnu, qemu-user)")
+    there = bits(tmp_path, ARM, "-O2", "-static", "-ffp-contract=off", run=("qemu-aarch64",))
+    assert there == bits(tmp_path, "gcc", "-O2", "-ffp-contract=off")
+
+
+@pytest.mark.parametrize("flag", ["-mfpmath=387", "-ffast-math"])
+def test_other_arithmetic_is_refused(flag: str) -> None:
+    made = subprocess.run(
+        ["gcc", "-std=c11", flag, "-fsyntax-only", nearest.CORE / "el_root.c"],
+        capture_output=True,
+        text=True,
+    )
+    assert "#error" in made.stderr and "elementary:" in made.stderr
