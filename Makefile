@@ -11,7 +11,7 @@ NEEDS := import sys; v = sys.version_info; \
   sys.exit(None if v >= (3, 11) else "%s is Python %d.%d, 3.11 or newer is needed: make PYTHON=..." % ((sys.executable,) + tuple(v[:2])))
 VENV := import ensurepip, venv
 
-.PHONY: needs demo test check bench fuzz build clean
+.PHONY: needs demo test check bench fuzz build export clean
 
 demo: build                     ## build all and run the demo scenario
 	$(BIN)/motionfmu run scenarios/circle
@@ -26,6 +26,10 @@ needs:
 build: needs .venv/installed
 	@test -f build/build.ninja || cmake --preset default -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
 	@cmake --build build
+
+export: needs .venv/exporting    ## FMUs for Linux, Windows and macOS in build/export/fmus
+	@test -f build/export/build.ninja || cmake --preset export -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
+	@cmake --build build/export --target fmus
 
 test: build check               ## everything: style, C tests (also sanitized), Python tests
 	@ctest --test-dir build -j 2 --output-on-failure
@@ -59,4 +63,12 @@ clean:
 	@$(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check -r .venv/requirements.txt
 	@$(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check --no-deps --no-build-isolation \
 	  -C wheel.cmake=false -C editable.mode=inplace -e .
+	@touch $@
+
+# What cross-compiles takes 400 MB, and only exports need it.
+.venv/exporting: .venv/installed
+	@echo "Installing the compiler for other platforms into .venv (once) ..."
+	@$(BIN)/python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; \
+	  print(*p['optional-dependencies']['export'], sep='\n')" > .venv/exporting.txt
+	@$(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check -r .venv/exporting.txt
 	@touch $@

@@ -17,6 +17,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+
+/* Formats that a compiler checks: Windows has two families of them. */
+#ifdef __MINGW_PRINTF_FORMAT
+#define FMU_PRINTF __MINGW_PRINTF_FORMAT
+#else
+#define FMU_PRINTF __printf__
+#endif
 
 /* Everything getFMUState keeps: one memcpy. */
 struct state {
@@ -64,17 +72,17 @@ static void model_close(struct fmu *f);
 
 /* Report a status of Error to the importer; printf format; returns -1. */
 #if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
+__attribute__((format(FMU_PRINTF, 2, 3)))
 #endif
 static int fmu_fail(struct fmu *f, const char *format, ...);
 
 /* Tell the importer something worth knowing (category logEvents, or logStatusWarning). */
 #if defined(__GNUC__)
-__attribute__((format(printf, 2, 3), unused))
+__attribute__((format(FMU_PRINTF, 2, 3), unused))
 #endif
 static void fmu_event(struct fmu *f, const char *format, ...);
 #if defined(__GNUC__)
-__attribute__((format(printf, 2, 3), unused))
+__attribute__((format(FMU_PRINTF, 2, 3), unused))
 #endif
 static void fmu_warn(struct fmu *f, const char *format, ...);
 

@@ -1,25 +1,258 @@
-/* Kinds of files, for what an FMU reads (fmu_input.h) and writes (fmu_output.h). */
+/* Files and folders by names in UTF-8, for what an FMU reads (fmu_input.h) and writes
+ * (fmu_output.h, fmu_recorder_folder.h). Windows takes such a name for one in the code page of its
+ * user, so there it becomes UTF-16. Functions return as the C library's do, and set errno. */
 #ifndef FMU_FILE_H
 #define FMU_FILE_H
 
 #include <errno.h>
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #ifdef _WIN32
-#define FILE_STAT   _stat64
-#define FILE_LSTAT  _stat64 /* links are followed */
-#define S_ISREG(m)  (((m) & _S_IFMT) == _S_IFREG)
-#define S_ISDIR(m)  (((m) & _S_IFMT) == _S_IFDIR)
-typedef struct __stat64 file_stat;
-#else
-#define FILE_STAT   stat
-#define FILE_LSTAT  lstat
-typedef struct stat file_stat;
+#include <direct.h>
+#include <fcntl.h>
+#include <io.h>
+#include <wchar.h>
+
+#ifndef S_ISREG
+#define S_ISREG(mode) (((mode) & _S_IFMT) == _S_IFREG)
+#define S_ISDIR(mode) (((mode) & _S_IFMT) == _S_IFDIR)
 #endif
 
+typedef struct _stat64 file_stat;
+
+/* A name in UTF-16, as it is and with one more character for a pattern. */
+struct file_wide { wchar_t text[_MAX_PATH + 1]; };
+
+/* The character at p, which moves behind it; 0 at the end, UINT32_MAX if there is none. */
+static inline uint32_t file_character(const char **p)
+{
+    const unsigned char *at = (const unsigned char *)*p;
+    const uint32_t head = at[0];
+    const int more = head < 0x80 ? 0 : head < 0xc2 ? -1 : head < 0xe0 ? 1 : head < 0xf0 ? 2
+                   : head < 0xf5 ? 3 : -1;
+    uint32_t c = more <= 0 ? head : head & (0x3fu >> more);
+    for (int i = 1; i <= more; i++) {
+        if ((at[i] & 0xc0) != 0x80) {
+            return UINT32_MAX;
+        }
+        c = c << 6 | (at[i] & 0x3fu);
+    }
+    const uint32_t least = more == 3 ? 0x10000 : more == 2 ? 0x800 : 0;
+    if (more < 0 || c < least || c > 0x10ffff || (c >= 0xd800 && c < 0xe000)) {
+        return UINT32_MAX;
+    }
+    *p += head ? more + 1 : 0;
+    return c;
+}
+
+/* False, and errno says why: no UTF-8, or too long. */
+static inline bool file_widen(struct file_wide *w, const char *name)
+{
+    size_t n = 0;
+    for (uint32_t c; (c = file_character(&name)) != 0;) {
+        if (c == UINT32_MAX || n + 2 >= sizeof w->text / sizeof w->text[0]) {
+            errno = c == UINT32_MAX ? EILSEQ : ENAMETOOLONG;
+            return false;
+        }
+        if (c >= 0x10000) {
+            w->text[n++] = (wchar_t)(0xd800 + ((c - 0x10000) >> 10));
+            c = 0xdc00 + (c & 0x3ff);
+        }
+        w->text[n++] = (wchar_t)c;
+    }
+    w->text[n] = L'\0';
+    return true;
+}
+
+/* What has this name; links are followed. */
+static inline int file_look(const char *name, file_stat *s)
+{
+    struct file_wide w;
+    return file_widen(&w, name) ? _wstat64(w.text, s) : -1;
+}
+
+static inline int file_look_at_link(const char *name, file_stat *s)
+{
+    return file_look(name, s);
+}
+
+static inline FILE *file_read(const char *name)
+{
+    struct file_wide w;
+    return file_widen(&w, name) ? _wfopen(w.text, L"rb") : NULL;
+}
+
+/* Make a file that is not there, to write. */
+static inline FILE *file_create(const char *name)
+{
+    struct file_wide w;
+    const int fd = file_widen(&w, name) ? _wopen(w.text, _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY,
+                                                 _S_IREAD | _S_IWRITE) : -1;
+    FILE *file = fd >= 0 ? _fdopen(fd, "wb") : NULL;
+    if (fd >= 0 && !file) {
+        _close(fd);
+    }
+    return file;
+}
+
+static inline int file_remove(const char *name)
+{
+    struct file_wide w;
+    return file_widen(&w, name) ? _wremove(w.text) : -1;
+}
+
+static inline int file_rename(const char *from, const char *to)
+{
+    struct file_wide a, b;
+    return file_widen(&a, from) && file_widen(&b, to) ? _wrename(a.text, b.text) : -1;
+}
+
+static inline int file_make_folder(const char *name)
+{
+    struct file_wide w;
+    return file_widen(&w, name) ? _wmkdir(w.text) : -1;
+}
+
+static inline int file_remove_folder(const char *name)
+{
+    struct file_wide w;
+    return file_widen(&w, name) ? _wrmdir(w.text) : -1;
+}
+
+/* Do both names, one of which may be missing, stand for one file? */
+static inline bool file_same(const char *a, const char *b)
+{
+    struct file_wide name[2], whole[2];
+    return file_widen(&name[0], a) && file_widen(&name[1], b)
+           && _wfullpath(whole[0].text, name[0].text, _MAX_PATH)
+           && _wfullpath(whole[1].text, name[1].text, _MAX_PATH)
+           && _wcsicmp(whole[0].text, whole[1].text) == 0;
+}
+
+/* The entries of a folder, one after the other. */
+struct file_folder {
+    intptr_t handle;
+    bool     first;
+    struct _wfinddata64_t found;
+    char     name[4 * _MAX_PATH]; /* in UTF-8 */
+};
+
+static inline bool file_folder_open(struct file_folder *f, const char *name)
+{
+    struct file_wide w;
+    f->first = true;
+    f->handle = -1;
+    if (file_widen(&w, name)) {
+        const size_t n = wcslen(w.text);
+        if (n + 3 > _MAX_PATH) {
+            errno = ENAMETOOLONG;
+            return false;
+        }
+        memcpy(w.text + n, L"/*", sizeof L"/*");
+        f->handle = _wfindfirst64(w.text, &f->found);
+    }
+    return f->handle != -1;
+}
+
+/* The next name, or NULL. */
+static inline const char *file_folder_next(struct file_folder *f)
+{
+    if (!f->first && _wfindnext64(f->handle, &f->found) != 0) {
+        return NULL;
+    }
+    f->first = false;
+    char *out = f->name;
+    for (const wchar_t *p = f->found.name; *p; p++) {
+        const bool pair = (*p & 0xfc00) == 0xd800 && (p[1] & 0xfc00) == 0xdc00;
+        const uint32_t c = pair ? 0x10000u + ((*p & 0x3ffu) << 10) + (p[1] & 0x3ffu) : *p;
+        const int more = c < 0x80 ? 0 : c < 0x800 ? 1 : c < 0x10000 ? 2 : 3;
+        *out++ = (char)(more == 0 ? c : (0xf0u << (3 - more) & 0xffu) | c >> 6 * more);
+        for (int i = more - 1; i >= 0; i--) {
+            *out++ = (char)(0x80 | (c >> 6 * i & 0x3f));
+        }
+        p += pair;
+    }
+    *out = '\0';
+    return f->name;
+}
+
+static inline void file_folder_close(struct file_folder *f)
+{
+    _findclose(f->handle);
+}
+#else
+#include <dirent.h>
+#include <unistd.h>
+
+typedef struct stat file_stat;
+
+static inline int file_look(const char *name, file_stat *s)
+{
+    return stat(name, s);
+}
+
+static inline int file_look_at_link(const char *name, file_stat *s)
+{
+    return lstat(name, s);
+}
+
+static inline FILE *file_create(const char *name)
+{
+    return fopen(name, "wbx");
+}
+
+static inline int file_remove(const char *name)
+{
+    return remove(name);
+}
+
+static inline int file_rename(const char *from, const char *to)
+{
+    return rename(from, to);
+}
+
+static inline int file_make_folder(const char *name)
+{
+    return mkdir(name, 0777);
+}
+
+static inline int file_remove_folder(const char *name)
+{
+    return rmdir(name);
+}
+
+static inline bool file_same(const char *a, const char *b)
+{
+    file_stat s, t;
+    return stat(a, &s) == 0 && stat(b, &t) == 0 && s.st_dev == t.st_dev && s.st_ino == t.st_ino;
+}
+
+struct file_folder { DIR *handle; };
+
+static inline bool file_folder_open(struct file_folder *f, const char *name)
+{
+    f->handle = opendir(name);
+    return f->handle;
+}
+
+static inline const char *file_folder_next(struct file_folder *f)
+{
+    const struct dirent *e = readdir(f->handle);
+    return e ? e->d_name : NULL;
+}
+
+static inline void file_folder_close(struct file_folder *f)
+{
+    closedir(f->handle);
+}
+#endif
+
+/* NULL, or what it is instead of a regular file. */
 static inline const char *file_regular(const file_stat *s)
 {
     return S_ISREG(s->st_mode) ? NULL

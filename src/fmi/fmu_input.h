@@ -16,8 +16,8 @@ static const char *file_open(const char *name, FILE **file)
     file_stat s;
     *file = NULL;
 #ifdef _WIN32
-    const char *why = FILE_STAT(name, &s) ? strerror(errno) : file_regular(&s);
-    *file = why ? NULL : fopen(name, "rb");
+    const char *why = file_look(name, &s) ? strerror(errno) : file_regular(&s);
+    *file = why ? NULL : file_read(name);
     return why || *file ? why : strerror(errno);
 #else
     const int fd = open(name, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);

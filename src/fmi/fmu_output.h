@@ -7,19 +7,6 @@
 
 #include "fmu_file.h"
 
-/* Do both names, one of which may be missing, stand for one file? */
-static bool file_same(const char *a, const char *b)
-{
-#ifdef _WIN32
-    char whole[2][_MAX_PATH];
-    return _fullpath(whole[0], a, _MAX_PATH) && _fullpath(whole[1], b, _MAX_PATH)
-           && _stricmp(whole[0], whole[1]) == 0;
-#else
-    file_stat s, t;
-    return stat(a, &s) == 0 && stat(b, &t) == 0 && s.st_dev == t.st_dev && s.st_ino == t.st_ino;
-#endif
-}
-
 /* A file that the same instance reads, "" if none, and what to say if it would be replaced. */
 struct output_input {
     struct fmu_path path;
@@ -39,7 +26,7 @@ struct output {
 static const char *output_check(const char *name, const struct output_input *input, int inputs)
 {
     file_stat s;
-    if (FILE_LSTAT(name, &s) != 0) {
+    if (file_look_at_link(name, &s) != 0) {
         return errno == ENOENT ? NULL : strerror(errno);
     }
     const char *why = file_regular(&s);
@@ -57,7 +44,7 @@ static const char *output_begin(struct output *o, const char *name)
     snprintf(o->name, sizeof o->name, "%s", name);
     for (int i = 1; i <= TRIES; i++) {
         snprintf(o->part, sizeof o->part, i == 1 ? "%s.part" : "%s.part%d", name, i);
-        o->file = fopen(o->part, "wbx");
+        o->file = file_create(o->part);
         if (o->file || errno != EEXIST) {
             break;
         }
@@ -87,9 +74,9 @@ static void output_drop(struct output *o, int n)
         if (o[k].file) {
             fclose(o[k].file);
         }
-        remove(o[k].shown ? o[k].name : o[k].part);
+        file_remove(o[k].shown ? o[k].name : o[k].part);
         if (o[k].old[0]) {
-            rename(o[k].old, o[k].name);
+            file_rename(o[k].old, o[k].name);
         }
     }
 }
@@ -98,16 +85,16 @@ static void output_drop(struct output *o, int n)
 static const char *output_set_aside(struct output *o)
 {
     file_stat s;
-    if (FILE_LSTAT(o->name, &s) != 0) {
+    if (file_look_at_link(o->name, &s) != 0) {
         return NULL;
     }
     for (int i = 1;; i++) {
         snprintf(o->old, sizeof o->old, "%.*s.old%d", (int)sizeof o->name - 1, o->name, i);
-        if (FILE_LSTAT(o->old, &s) != 0) {
+        if (file_look_at_link(o->old, &s) != 0) {
             break;
         }
     }
-    if (rename(o->name, o->old) == 0) {
+    if (file_rename(o->name, o->old) == 0) {
         return NULL;
     }
     o->old[0] = '\0';
@@ -125,7 +112,7 @@ static const char *output_show(struct output *o, int n, int *bad)
     for (int k = 0; k < n; k++) {
         *bad = k;
         const char *why = k < aside ? output_set_aside(&o[k]) : NULL;
-        if (!why && rename(o[k].part, o[k].name) != 0) {
+        if (!why && file_rename(o[k].part, o[k].name) != 0) {
             why = strerror(errno);
         }
         if (why) {
@@ -135,7 +122,7 @@ static const char *output_show(struct output *o, int n, int *bad)
     }
     for (int k = 0; k < n; k++) {
         if (o[k].old[0]) {
-            remove(o[k].old);
+            file_remove(o[k].old);
         }
     }
     return NULL;

@@ -87,8 +87,8 @@ static inline void recorder_close(struct recorder *r)
         }
         if (r->folder.part[0]) {
             char name[RECORDER_FILE];
-            remove(recorder_file(name, &r->folder,
-                                 recorder_column_of(r, r->streams[k].column).name));
+            file_remove(recorder_file(name, &r->folder,
+                                      recorder_column_of(r, r->streams[k].column).name));
         }
     }
     recorder_folder_drop(&r->folder);
@@ -182,7 +182,7 @@ static inline struct recorder *recorder_open(const char *folder,
         struct recorder_stream *s = &r->streams[k];
         char name[RECORDER_FILE];
         const char *own = recorder_column_of(r, s->column).name;
-        s->file = fopen(recorder_file(name, &r->folder, own), "wbx");
+        s->file = file_create(recorder_file(name, &r->folder, own));
         if (s->file) {
             setvbuf(s->file, NULL, _IONBF, 0); /* what is written are blocks already */
         }

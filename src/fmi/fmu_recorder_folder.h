@@ -3,18 +3,10 @@
 #ifndef FMU_RECORDER_FOLDER_H
 #define FMU_RECORDER_FOLDER_H
 
-#include <dirent.h>
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "fmu_file.h"
-
-#ifdef _WIN32
-#include <direct.h>
-#include <io.h>
-#else
-#include <unistd.h>
-#endif
 
 enum {
     RECORDER_PATH = 1100,                /* [byte] of a folder's name */
@@ -26,24 +18,6 @@ struct recorder_folder {
     char name[RECORDER_PATH];
     char part[RECORDER_PATH]; /* where it is written; "" if there is none */
 };
-
-static inline int recorder_make(const char *folder)
-{
-#ifdef _WIN32
-    return _mkdir(folder);
-#else
-    return mkdir(folder, 0777);
-#endif
-}
-
-static inline int recorder_unmake(const char *folder)
-{
-#ifdef _WIN32
-    return _rmdir(folder);
-#else
-    return rmdir(folder);
-#endif
-}
 
 static inline int recorder_seek(FILE *file, int64_t at)
 {
@@ -78,7 +52,7 @@ static inline const char *recorder_beside(char made[RECORDER_PATH], const char *
     enum { TRIES = 100 }; /* folders that killed runs have left, at most */
     for (int i = 1; i <= TRIES; i++) {
         snprintf(made, RECORDER_PATH, i == 1 ? "%s.%s" : "%s.%s%d", name, ending, i);
-        if (recorder_make(made) == 0) {
+        if (file_make_folder(made) == 0) {
             return NULL;
         }
         if (errno != EEXIST) {
@@ -99,40 +73,43 @@ static inline bool recorder_is_file(const char *entry)
 /* Delete a recording. */
 static inline void recorder_remove(const char *folder)
 {
-    DIR *d = opendir(folder);
-    for (const struct dirent *e; d && (e = readdir(d));) {
-        char file[RECORDER_FILE];
-        if (recorder_is_file(e->d_name)) {
-            snprintf(file, sizeof file, "%s/%s", folder, e->d_name);
-            remove(file);
+    struct file_folder f;
+    if (file_folder_open(&f, folder)) {
+        for (const char *entry; (entry = file_folder_next(&f)) != NULL;) {
+            char file[RECORDER_FILE];
+            if (recorder_is_file(entry)) {
+                snprintf(file, sizeof file, "%s/%s", folder, entry);
+                file_remove(file);
+            }
         }
+        file_folder_close(&f);
     }
-    if (d) {
-        closedir(d);
-    }
-    recorder_unmake(folder);
+    file_remove_folder(folder);
 }
 
 /* May a recording take this name? A link is not replaced: it may be somebody's way elsewhere. */
 static inline const char *recorder_folder_check(const char *folder)
 {
     file_stat s;
-    if (FILE_LSTAT(folder, &s) != 0) {
+    if (file_look_at_link(folder, &s) != 0) {
         return errno == ENOENT ? NULL : strerror(errno);
     }
-    DIR *d = S_ISDIR(s.st_mode) ? opendir(folder) : NULL;
-    if (!d) {
-        return S_ISDIR(s.st_mode) ? strerror(errno) : "not a folder";
+    struct file_folder f;
+    if (!S_ISDIR(s.st_mode)) {
+        return "not a folder";
+    }
+    if (!file_folder_open(&f, folder)) {
+        return strerror(errno);
     }
     bool other = false, some = false, time = false;
-    for (const struct dirent *e; (e = readdir(d));) {
-        if (strcmp(e->d_name, ".") != 0 && strcmp(e->d_name, "..") != 0) {
+    for (const char *entry; (entry = file_folder_next(&f)) != NULL;) {
+        if (strcmp(entry, ".") != 0 && strcmp(entry, "..") != 0) {
             some = true;
-            other = other || !recorder_is_file(e->d_name);
-            time = time || strcmp(e->d_name, "time.npy") == 0;
+            other = other || !recorder_is_file(entry);
+            time = time || strcmp(entry, "time.npy") == 0;
         }
     }
-    closedir(d);
+    file_folder_close(&f);
     return other || (some && !time) ? "it holds something else than an older recording" : NULL;
 }
 
@@ -156,18 +133,18 @@ static inline const char *recorder_folder_show(struct recorder_folder *f)
     file_stat s;
     char old[RECORDER_PATH] = "";
     const char *why = recorder_folder_check(f->name);
-    if (!why && FILE_LSTAT(f->name, &s) == 0) {
+    if (!why && file_look_at_link(f->name, &s) == 0) {
         why = recorder_beside(old, f->name, "old");
-        recorder_unmake(old);
-        why = why || rename(f->name, old) == 0 ? why : strerror(errno);
+        file_remove_folder(old);
+        why = why || file_rename(f->name, old) == 0 ? why : strerror(errno);
     }
     if (why) {
         return why;
     }
-    if (rename(f->part, f->name) != 0) {
+    if (file_rename(f->part, f->name) != 0) {
         why = strerror(errno);
         if (old[0]) {
-            rename(old, f->name);
+            file_rename(old, f->name);
         }
         return why;
     }
@@ -182,7 +159,7 @@ static inline const char *recorder_folder_show(struct recorder_folder *f)
 static inline void recorder_folder_drop(struct recorder_folder *f)
 {
     if (f->part[0]) {
-        recorder_unmake(f->part);
+        file_remove_folder(f->part);
     }
 }
 

@@ -61,7 +61,7 @@ enum wait_kind { WAIT_DIGITAL, WAIT_ANALOG, WAIT_FREE, WAIT_PROBE };
 enum wait_mode { WAIT_NOW, WAIT_RISE, WAIT_FALL, WAIT_HIGH, WAIT_LOW };
 
 /* What reading waits for. */
-struct wait {
+struct waiting {
     enum wait_kind kind;
     enum wait_mode mode;
     int32_t index;          /* of the input */
@@ -103,7 +103,7 @@ struct interpreter {
     struct cycle cycle;
     struct cutter cutter;
     struct tools tools;
-    struct wait wait;       /* where `waits` */
+    struct waiting wait;       /* where `waits` */
     double  input;          /* the latest answer to M66 */
     double  contact[AXES];  /* [mm], [deg] of the latest probing, program coordinates */
     bool    touched;        /* it has touched */

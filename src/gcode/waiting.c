@@ -104,7 +104,7 @@ void waiting_pass(struct interpreter *in)
     }
 }
 
-bool waiting_done(const struct wait *w, double is, double was)
+bool waiting_done(const struct waiting *w, double is, double was)
 {
     switch (w->mode) {
     case WAIT_RISE:

@@ -41,6 +41,6 @@ void waiting_pass(struct interpreter *in);
 bool waiting_parameter(const struct interpreter *in, bool angles, int number, double *value);
 
 /* Whether the input has done what is waited for; *was is its value at the look before. */
-bool waiting_done(const struct wait *w, double is, double was);
+bool waiting_done(const struct waiting *w, double is, double was);
 
 #endif

@@ -22,7 +22,7 @@ static bool ended(const struct mcc *m)
            !m->mover.confirming && !m->mover.untold && m->queue.count == 0;
 }
 
-static double value_of(const struct signals *s, const struct wait *w)
+static double value_of(const struct signals *s, const struct waiting *w)
 {
     return w->kind == WAIT_ANALOG ? s->analog[w->index] : s->digital >> w->index & 1;
 }
@@ -30,7 +30,7 @@ static double value_of(const struct signals *s, const struct wait *w)
 static void input(struct mcc *m, int64_t clocks)
 {
     struct inquiry *q = &m->inquiry;
-    const struct wait *w = &m->program.wait;
+    const struct waiting *w = &m->program.wait;
     const double is = value_of(&m->signals, w);
 
     if (!q->waits) {

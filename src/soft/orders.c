@@ -105,7 +105,7 @@ static void switch_outputs(struct orders *o, struct order *order, const struct c
 /* M66: motion ends first. False: not answered yet. */
 static bool answered(struct orders *o, const struct inform_inputs *in)
 {
-    const struct wait *w = &o->gcode.wait;
+    const struct waiting *w = &o->gcode.wait;
 
     if (o->passes) {
         waiting_pass(&o->gcode);

@@ -21,7 +21,7 @@ for file; do :; done
 kept={kept}/${{file##*/}}
 for word; do
     [ "$last" = -o ] && object=$word
-    case $word in -[DOfs]*) kept=$kept$word ;; esac
+    case $word in -DFMI*) ;; -[DOfs]*) kept=$kept$word ;; esac
     last=$word
 done
 if [ "${{file##*/}}" = fmu_main.c ]; then exec "$@"; fi

@@ -13,6 +13,7 @@ from fmpy import read_model_description
 from motionfmu import units
 from motionfmu.fmu import ctables, fmu_toml, pack
 from motionfmu.fmu.modeldescription import model_description
+from motionfmu.fmu.platforms import here
 
 NAMES = sorted(p.parent.name for p in ROOT.glob("fmus/*/fmu.toml"))
 HEAD = 'name="A"\ndescription="a"\ntick_ns=25\nexperiment={stop=1.0,step=1e-3}\ncores=[]\n'
@@ -164,7 +165,7 @@ def test_equal_input_packs_equal_bytes(fmi: int, tmp_path: Path) -> None:
     with zipfile.ZipFile(source) as z:
         library = next(n for n in z.namelist() if n.startswith("binaries/"))
         (tmp_path / "scope.so").write_bytes(z.read(library))
-    compiled = pack.Compiled(tmp_path / "scope.so", ROOT / "build/parts/scope.o")
+    compiled = pack.Compiled({here(): tmp_path / "scope.so"}, ROOT / "build/parts/scope.o")
     pack.generate(ROOT / "fmus/scope", tmp_path / "gen")
     pack.flags(ROOT / "fmus/scope", tmp_path / "gen")
     target = tmp_path / "again.fmu"

@@ -14,6 +14,7 @@ from console import within
 
 from motionfmu.cli.new import TEMPLATES, rendered
 from motionfmu.fmu import pack
+from motionfmu.fmu.platforms import here
 from motionfmu.run import suite
 
 NAME = "lag_filter"
@@ -48,7 +49,9 @@ def test_a_new_fmu_builds_and_passes_what_every_fmu_must(project: Path) -> None:
         places = [f"-I{p}" for p in (gen, source, ROOT / "src/fmi", headers)]
         unit = gen / f"fmi{fmi}/fmu_main.c"
         subprocess.run([*line.split(), *places, unit, "-o", library, "-lm"], check=True)
-        pack.archive(source, gen, fmi, pack.Compiled(library, part), built / f"{NAME}.fmi{fmi}.fmu")
+        pack.archive(
+            source, gen, fmi, pack.Compiled({here(): library}, part), built / f"{NAME}.fmi{fmi}.fmu"
+        )
     for fmu in FMUS.glob("scope.*"):
         shutil.copy(fmu, built)
     test = ROOT / "tests/fmi" / f"test_{NAME}.py"

@@ -2,13 +2,13 @@
 
 python src/pack.py generate fmus/epcio build/gen/epcio
 python src/pack.py flags    fmus/epcio build/gen/epcio
-python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.so epcio.o epcio.fmi3.fmu
+python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.o epcio.fmi3.fmu here=epcio.so
 python src/pack.py headers  src build/include/motionfmu
+python src/pack.py platforms
 """
 
 import json
 import os
-import platform
 import posixpath
 import re
 import sys
@@ -17,11 +17,19 @@ import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree as ET
 
 from motionfmu.errors import InputError
-from motionfmu.fmu import cores, cstructs, ctables, fmu_toml, start_values
+from motionfmu.fmu import (
+    cores,
+    cstructs,
+    ctables,
+    fmu_toml,
+    platforms,
+    sources,
+    start_values,
+)
 from motionfmu.fmu.modeldescription import model_description
+from motionfmu.fmu.platforms import Platform
 from motionfmu.toml_lines import text_of
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -35,6 +43,7 @@ RESOURCES = "resources"
 GRID = "grid.json"
 # The model without FMI: its C text, and where an FMU carries its object, by the machine.
 PART_UNIT = "fmu_part.c"
+MAIN_UNIT = "fmu_main.c"
 PARTS = f"{EXTRA}/part"
 
 
@@ -70,8 +79,8 @@ def generate(fmu: Path, out: Path) -> None:
     model = "plant_model.c" if is_modelica(fmu) else "model.c"
     _write(out / PART_UNIT, ctables.part_unit(model, d.name))
     for fmi in (2, 3):
-        _write(out / f"fmi{fmi}/fmu_main.c", ctables.main_unit(model, fmi))
-        xml = model_description(d, fmi, ["fmu_main.c", *compiled])
+        _write(out / f"fmi{fmi}/{MAIN_UNIT}", ctables.main_unit(model, fmi))
+        xml = model_description(d, fmi, [MAIN_UNIT, *compiled])
         _write(out / f"fmi{fmi}/modelDescription.xml", xml)
 
 
@@ -102,56 +111,39 @@ def _packed_sources(fmu: Path, out: Path, fmi: int, identifier: str) -> dict[str
 
     folders = [fmu, SOURCE / "plant"] if is_modelica(fmu) else [fmu]
     files = [f for folder in folders for f in sorted(folder.glob("*.[ch]"))]
-    files += [*sorted(out.glob("*.[ch]")), out / f"fmi{fmi}/fmu_main.c"]
+    files += [*sorted(out.glob("*.[ch]")), out / f"fmi{fmi}/{MAIN_UNIT}"]
     files += [*cores.reached((SOURCE / "fmi").iterdir(), files), *_core_files(fmu)]
     headers = Path(fmpy.__file__).parent / "c-code"
     files += sorted(headers.glob(f"fmi{fmi}*.h"))
-    packed = {f.name: f.read_bytes() for f in files}
+    compiled = [f.name for f in compiled_sources(fmu, out)]
+    packed = sources.renamed(
+        identifier, [MAIN_UNIT, PART_UNIT], compiled, {f.name: f.read_bytes() for f in files}
+    )
     if fmi == 3:
-        names = ["fmu_main.c", *[f.name for f in compiled_sources(fmu, out)]]
-        packed["buildDescription.xml"] = _build_description(identifier, names)
+        packed["buildDescription.xml"] = sources.build_description(
+            identifier, [MAIN_UNIT, *compiled]
+        )
     return packed
-
-
-def _build_description(identifier: str, names: list[str]) -> bytes:
-    root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
-    configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=identifier)
-    file_set = ET.SubElement(configuration, "SourceFileSet", language="C11")
-    for name in names:
-        ET.SubElement(file_set, "SourceFile", name=name)
-    if sys.platform.startswith("linux"):
-        ET.SubElement(configuration, "Library", name="m")
-    ET.indent(root)
-    return ET.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
-
-
-def platform_folder(fmi: int) -> str:
-    """Folder of this machine's binaries in an FMU: ``linux64`` or ``x86_64-linux``, for example."""
-    system = {"linux": "linux", "darwin": "darwin", "win32": "windows"}[sys.platform]
-    machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
-    if fmi == 3:
-        return f"{machine}-{system}"
-    return {"windows": "win64"}.get(system, f"{system}64")
 
 
 @dataclass(frozen=True)
 class Compiled:
-    """What a compiler made of an FMU."""
+    """What compilers made of an FMU."""
 
-    library: Path
-    part: Path  # fmu_part.h
+    libraries: Mapping[Platform, Path]
+    part: Path  # fmu_part.h, for this machine
 
 
 def archive(folder: Path, out: Path, fmi: int, compiled: Compiled, target: Path) -> None:
     """Pack one .fmu of its folder, generated text and library; equal input gives equal bytes."""
-    library = compiled.library
     xml = (out / f"fmi{fmi}/modelDescription.xml").read_bytes()
     match = re.search(rb'modelIdentifier="(\w+)"', xml)
     assert match, "the generated description has a model identifier"
     identifier = match[1].decode()
+    made = {one: file.read_bytes() for one, file in compiled.libraries.items()}
     files = {
         "modelDescription.xml": xml,
-        f"binaries/{platform_folder(fmi)}/{identifier}{library.suffix}": library.read_bytes(),
+        **platforms.libraries(fmi, identifier, made),
         "documentation/LICENSE": (SOURCE.parent / "LICENSE").read_bytes(),
     }
     for readme in folder.glob("README.md"):
@@ -163,9 +155,9 @@ def archive(folder: Path, out: Path, fmi: int, compiled: Compiled, target: Path)
             *out.glob("*.json"),
         ):
             files[f"{EXTRA}/{extra.name}"] = extra.read_bytes()
-        files[f"{PARTS}/{platform_folder(3)}.o"] = compiled.part.read_bytes()
-    for source, data in _packed_sources(folder, out, fmi, identifier).items():
-        files[f"sources/{source}"] = data
+        files[f"{PARTS}/{platforms.here().name}.o"] = compiled.part.read_bytes()
+    for name, data in _packed_sources(folder, out, fmi, identifier).items():
+        files[f"sources/{name}"] = data
     target.parent.mkdir(parents=True, exist_ok=True)
     write_archive(target, files)
 
@@ -231,14 +223,21 @@ def headers(source: Path, out: Path) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """Run one of the four as in the module's first lines; 0, or 2 after one message on stderr."""
+    """Run one of the five as in the module's first lines; 0, or 2 after one message on stderr."""
     try:
         two = {"generate": generate, "flags": flags, "headers": headers}
-        if arguments[0] in two:
+        if arguments == ["platforms"]:
+            print(*(f"{p.name} {p.target} {p.suffix}" for p in platforms.PLATFORMS), sep="\n")
+        elif arguments[0] in two:
             two[arguments[0]](Path(arguments[1]), Path(arguments[2]))
         else:
-            fmu, out, fmi, library, part, target = arguments[1:]
-            compiled = Compiled(Path(library), Path(part))
+            fmu, out, fmi, part, target, *made = arguments[1:]
+            named = dict(row.split("=", 1) for row in made)
+            libraries = {
+                platforms.here() if name == "here" else Platform(name): Path(file)
+                for name, file in named.items()
+            }
+            compiled = Compiled(libraries, Path(part))
             archive(Path(fmu), Path(out), int(fmi), compiled, Path(target))
     except ValueError as error:
         print(error, file=sys.stderr)

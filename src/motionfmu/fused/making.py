@@ -7,7 +7,7 @@ from pathlib import Path
 from motionfmu.compiler import Compiler
 from motionfmu.fmu import ctables
 from motionfmu.fmu.modeldescription import model_description
-from motionfmu.fmu.pack import platform_folder
+from motionfmu.fmu.platforms import here
 from motionfmu.fused import layer, text
 from motionfmu.fused.description import TYPES, Job, described, roles
 from motionfmu.fused.parts import NotFused, Part, part
@@ -46,7 +46,7 @@ def make(folder: Path, job: Job, cc: Compiler) -> None:
         (sources / file).write_text(content)
     for one in parts.values():
         (sources / f"{one.identifier}.o").write_bytes(one.code)
-    binaries = folder / "binaries" / platform_folder(job.fmi)
+    binaries = folder / "binaries" / here().folder(job.fmi)
     binaries.mkdir(parents=True)
     included = [f"-I{place}" for place in layer.folders()]
     objects = [f"{one.identifier}.o" for one in parts.values()]

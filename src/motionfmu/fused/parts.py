@@ -10,7 +10,8 @@ from xml.etree import ElementTree
 
 from motionfmu import kept
 from motionfmu.compiler import FLAGS, Compiler, compiler
-from motionfmu.fmu.pack import PART_UNIT, PARTS, platform_folder
+from motionfmu.fmu.pack import MAIN_UNIT, PART_UNIT, PARTS
+from motionfmu.fmu.platforms import here
 from motionfmu.scenarios.fmus import digest, opened
 
 # Interface, instance and struct vars [bytes]: how the object of a part says them.
@@ -44,7 +45,7 @@ def part(name: str) -> Part:
         if f"sources/{PART_UNIT}" not in names:
             raise NotFused(f"{name} carries no part")
         header = archive.read("sources/vars.h").decode()
-        made = f"{PARTS}/{platform_folder(3)}.o"
+        made = f"{PARTS}/{here().name}.o"
         code = archive.read(made) if made in names else _compiled(name)
     sizes, members = _MARK.search(code), _STRUCT.search(header)
     if sizes is None or members is None:
@@ -77,8 +78,10 @@ def _compile(name: str, cc: Compiler, folder: Path) -> None:
             if entry.startswith("sources/"):
                 (Path(place) / Path(entry).name).write_bytes(archive.read(entry))
         build = ElementTree.parse(Path(place) / "buildDescription.xml")
-        listed = [row.attrib["name"] for row in build.iter("SourceFile")]
-        files = [PART_UNIT, *(f for f in listed if f != "fmu_main.c")]
+        listed = build.find("BuildConfiguration/SourceFileSet")
+        assert listed is not None, "a part has C files"
+        names = [row.attrib["name"] for row in listed.iter("SourceFile")]
+        files = [PART_UNIT, *(f for f in names if f != MAIN_UNIT)]
         cc.run([*FLAGS, "-O2", "-r", "-nostdlib", *files, "-o", "part.o"], Path(place))
         done = ["objcopy", "--localize-hidden", "part.o"]
         subprocess.run(done, cwd=place, check=True, capture_output=True)

@@ -17,6 +17,7 @@ from xml.etree import ElementTree
 
 from motionfmu import kept
 from motionfmu.errors import InputError, suggestion
+from motionfmu.fmu.platforms import here
 from motionfmu.toml_lines import is_file
 
 HEAD = 2000  # [bytes] of a description, in which its root stands
@@ -114,9 +115,7 @@ def runnable(name: str, fmi: int) -> Path:
 @functools.cache
 def _refused(path: Path, fmi: int, state: tuple[int, int]) -> str:
     """Why the library in this state of a file does not load; empty if it does."""
-    from motionfmu.fmu.pack import platform_folder  # with all that makes FMUs
-
-    folder = f"binaries/{platform_folder(fmi)}/"
+    folder = f"binaries/{here().folder(fmi)}/"
     try:
         with zipfile.ZipFile(path) as archive:
             inside = [n for n in archive.namelist() if n.startswith(folder) and n[-1] != "/"]

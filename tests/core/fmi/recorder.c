@@ -51,7 +51,7 @@ static int rows(struct recorder *r, int64_t from, int64_t to)
 static bool there(const char *name)
 {
     file_stat s;
-    return FILE_LSTAT(name, &s) == 0;
+    return file_look_at_link(name, &s) == 0;
 }
 
 static char folder[200], inside[240], why[RECORDER_WHY];
@@ -66,7 +66,7 @@ static int64_t size_of(const char *signal)
 {
     file_stat s = {0};
     snprintf(inside, sizeof inside, "%s/%s.npy", folder, signal);
-    return FILE_LSTAT(inside, &s) == 0 ? (int64_t)s.st_size : -1;
+    return file_look_at_link(inside, &s) == 0 ? (int64_t)s.st_size : -1;
 }
 
 /* A long recording takes the place of an older one, and nothing is left beside it. */

@@ -317,7 +317,7 @@ static void waits(void)
     }
     static const double rises[] = { 0, 0, 1 }, falls[] = { 1, 1, 0 };
     for (int mode = WAIT_NOW; mode <= WAIT_LOW; mode++) {
-        const struct wait w = { .mode = (enum wait_mode)mode };
+        const struct waiting w = { .mode = (enum wait_mode)mode };
         for (int i = 1; i < 3; i++) {
             CHECK_EQ(waiting_done(&w, rises[i], rises[i - 1]),
                      mode == WAIT_NOW || mode == WAIT_LOW ? mode == WAIT_NOW || i == 1

@@ -1,0 +1,119 @@
+"""Runs the library of an FMU for any platform by itself (fmu_bits.c), under wine or qemu."""
+
+import functools
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import util
+from pathlib import Path
+
+import fmpy
+
+from motionfmu.fmu.platforms import Platform, here
+
+SOURCE = Path(__file__).with_name("fmu_bits.c")
+HEADERS = Path(fmpy.__file__).parent / "c-code"
+# What starts a program of another platform here; the libraries of Debian's libc6-arm64-cross.
+RUNNERS = {
+    "x86_64-windows": ("wine",),
+    "aarch64-linux": ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"),
+}
+PACKAGES = {"wine": "wine wine64", "qemu-aarch64": "qemu-user libc6-arm64-cross"}
+_FOLDERS: list["tempfile.TemporaryDirectory[str]"] = []
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is run: `steps` communication steps of `size` [s] after some start values."""
+
+    steps: int
+    size: float
+    strings: Mapping[str, str] = field(default_factory=dict)
+    reals: Mapping[str, float] = field(default_factory=dict)
+    values: bool = False  # print them, too
+
+
+def missing(platform: Platform) -> str:
+    """Why a platform's libraries cannot be run here; empty if they can."""
+    if platform == here():
+        return ""
+    if platform.name not in RUNNERS:
+        return f"nothing here runs {platform.name}"
+    if not util.find_spec("ziglang"):
+        return "there is no zig: make export installs it"
+    program = RUNNERS[platform.name][0]
+    return "" if shutil.which(program) else f"apt-get install {PACKAGES[program]}"
+
+
+@functools.cache
+def program(platform: Platform) -> Path:
+    """fmu_bits for a platform."""
+    _FOLDERS.append(tempfile.TemporaryDirectory(prefix="motionfmu-"))
+    target = Path(_FOLDERS[-1].name) / ("fmu_bits.exe" if platform.system == "windows" else "bits")
+    zig = (sys.executable, "-m", "ziglang", "cc", "-target", platform.target)
+    compiler = ("cc",) if platform == here() else zig
+    options = ["-std=c11", "-D_DEFAULT_SOURCE", "-O1", "-Wall", "-Wextra", "-Werror"]
+    libraries = [] if platform.system == "windows" else ["-ldl"]
+    whole = [*compiler, *options, f"-I{HEADERS}", str(SOURCE), "-o", str(target), *libraries]
+    subprocess.run(whole, check=True, capture_output=True)
+    return target
+
+
+def hashes(fmu: Path, platform: Platform, job: Job, folder: Path) -> list[str]:
+    """A line for each communication point: its number and a hash of all outputs.
+
+    Files that the job names stand in `folder`, where the run leaves what it writes. An error of the
+    library is a CalledProcessError, whose stderr has its message.
+    """
+    place = folder / f".{fmu.name}.{platform.name}"
+    with zipfile.ZipFile(fmu) as archive:
+        archive.extractall(place)
+    rows, fmi, identifier = _rows(place, job)
+    library = next((place / "binaries" / platform.folder(fmi)).glob(f"{identifier}.*"))
+    (place / "job.txt").write_text(rows, encoding="utf-8")
+    names = [str(f.relative_to(folder)) for f in (library, place / "job.txt")]
+    runner = () if platform == here() else RUNNERS[platform.name]
+    whole = [*runner, str(program(platform)), names[0], str(fmi), names[1]]
+    done = subprocess.run(whole, cwd=folder, capture_output=True, check=False)
+    if done.returncode:
+        raise subprocess.CalledProcessError(
+            done.returncode, whole, done.stdout, done.stderr.decode(errors="replace")
+        )
+    return done.stdout.decode().splitlines()
+
+
+def _rows(place: Path, job: Job) -> tuple[str, int, str]:
+    """The job file, the version of FMI and the model's identifier."""
+    d = fmpy.read_model_description(str(place), validate=False)
+    fmi = int(d.fmiVersion[0])
+    resources = (place / "resources").as_uri() if fmi == 2 else f"{place / 'resources'}/"
+    rows = [f"token {d.guid}", f"resources {resources}"]
+    rows += ["values"] if job.values else []
+    variables = {v.name: v for v in d.modelVariables}
+    rows.append(f"steps {job.steps} {job.size!r}")
+    rows += [f"string {variables[n].valueReference} {text}" for n, text in job.strings.items()]
+    rows += [f"real {variables[n].valueReference} {x!r}" for n, x in job.reals.items()]
+    for v in d.modelVariables:
+        kind = _kind(v.type)
+        if v.causality == "output" and kind:
+            count = 1
+            for size in v.dimensions or []:
+                count *= int(size.start)
+            rows.append(f"show {kind} {v.valueReference} {count}")
+    return "\n".join(rows) + "\n", fmi, str(d.coSimulation.modelIdentifier)
+
+
+def _kind(name: str) -> str:
+    kinds = {"Real": "d", "Float64": "d", "Integer": "i", "Int32": "i", "Enumeration": "i"}
+    return kinds.get(name, "b" if name == "Boolean" else "")
+
+
+def different(one: Sequence[str], other: Sequence[str]) -> str:
+    """The first communication point at which two runs differ; empty if they do not."""
+    pairs = zip(one, other, strict=False)
+    first = next((a.split()[0] for a, b in pairs if a != b), "")
+    return first or ("" if len(one) == len(other) else f"{len(one)} and {len(other)} lines")
