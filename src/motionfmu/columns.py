@@ -6,7 +6,7 @@ import os
 import shutil
 import tempfile
 import weakref
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,24 @@ class Part:
     file: Path
     columns: slice | int | None = None  # None: the whole file
     boolean: bool = False  # it is Boolean, the file has whole numbers
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """An array of which parts are made when they are asked for."""
+
+    shape: tuple[int, ...]
+    dtype: np.dtype[Any]
+    make: Callable[[slice], NDArray[Any]]
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, rows: slice) -> NDArray[Any]:
+        return self.make(rows).astype(self.dtype, copy=False)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        return np.asarray(self[:], dtype=dtype)
 
 
 class Columns(Mapping[str, NDArray[Any]]):
@@ -171,7 +189,8 @@ def write(folder: Path, signals: Mapping[str, NDArray[Any]], time: NDArray[Any])
         opened = {}
         for name, data in rest.items():
             opened[name] = stack.enter_context((folder / f"{name}{ENDING}").open("wb"))
-            head = {"descr": data.dtype.str, "fortran_order": False, "shape": data.shape}
+            descr = np.lib.format.dtype_to_descr(data.dtype)
+            head = {"descr": descr, "fortran_order": False, "shape": data.shape}
             np.lib.format.write_array_header_1_0(opened[name], head)
         for first in range(0, max(map(len, rest.values()), default=0), ROWS):
             for name, data in rest.items():

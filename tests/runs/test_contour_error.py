@@ -10,6 +10,7 @@ from contour_runs import Machine, Program, lag_error, run_along
 
 from motionfmu.contour import ContourInput, Trace, analyse
 from motionfmu.contour.error import servo_lag
+from motionfmu.contour.instants import Instants
 from motionfmu.errors import NoNumber
 
 FEED = 100.0  # [mm/s]
@@ -268,5 +269,5 @@ def test_the_lag_of_a_fast_circle_is_that_of_theory() -> None:
         commanded = 10.0 * np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
         actual = commanded - np.column_stack([lag_error(c, gain, step) for c in commanded.T])
         settled = time > 0.5
-        found = servo_lag(time[settled], commanded[settled], actual[settled])
+        found = servo_lag(Instants(time[settled]), commanded[settled], actual[settled])
         assert found == pytest.approx(1.0 / gain / (1.0 + (w / gain) ** 2), rel=0.03)

@@ -62,7 +62,7 @@ def test_a_curve_has_its_inner_control_points(tmp_path) -> None:
     assert curve.label.kind == "curve"
     assert curve.at(np.array([0.5 * curve.length])) == pytest.approx(np.array([[3.0, 1.5, 0.0]]))
     assert path.normal == pytest.approx([0.0, 0.0, 1.0])
-    assert outline(path.segments).shape == (91, 3)
+    assert outline(path.segments)[0].shape == (91, 3)
 
 
 def test_an_end_off_the_circle_is_kept_as_growth(tmp_path) -> None:
@@ -138,7 +138,8 @@ def test_a_line_in_space_has_a_plane_that_holds_it() -> None:
 
 def test_outline_runs_through_all_joints() -> None:
     path = Program(9, 0).arc((0, 0), -3.0).line(20, 20).path()
-    points = outline(path.segments)
+    points, starts = outline(path.segments)
+    assert starts.tolist() == [0, len(points) - 2]
     assert points[0] == pytest.approx(path.segments[0].start)
     assert points[-1] == pytest.approx([20, 20, 0])
     assert (path.segments[0].foot(points[:-2]).distance < 1e-12).all()

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-LEFT_OUT = ("units", "commands", "corners")  # tables of their own
+LEFT_OUT = ("units", "commands", "corners", "left_out")  # tables of their own
 
 
 @dataclass(frozen=True)

@@ -44,6 +44,7 @@ def side(given: "str | Path | Scenario | Result", set: Mapping[str, Any] | None 
         place = str(given)
     made = json.loads(json.dumps(numbers(found), default=str, allow_nan=False))
     way = track(found.contour()) if made.get("contour") else {}
+    way = {name: np.asarray(x) for name, x in way.items()}
     return Side(place, made, found.time, found.signals, way)
 
 

@@ -108,7 +108,7 @@ class Arcs:
     def _frame(self, points: Array) -> tuple[Array, Array, Array]:
         """Points in the arc's own frame."""
         # Sums of three products, not matrices: a library with threads is slower at these.
-        u, v, w = np.moveaxis(points - self.centre, -1, 0)
+        u, v, w = (points[:, i] - c for i, c in enumerate(np.moveaxis(self.centre, -1, 0)))
         x, y, z = (a * u + b * v + c * w for a, b, c in self._rows)
         return x, y, z
 
@@ -119,10 +119,10 @@ class Arcs:
 
     def _turned(self, x: Array, y: Array, z: Array) -> Array:
         """Vectors (n, 3) of the arc's own frame in space."""
-        found = np.empty((len(x), 3))
-        for i, (a, b, c) in enumerate(np.swapaxes(self._rows, 0, 1)):
-            found[:, i] = a * x + b * y + c * z
-        return found
+        found = np.empty((3, len(x)))  # each column of the result in a piece
+        for out, (a, b, c) in zip(found, np.swapaxes(self._rows, 0, 1), strict=True):
+            np.add(a * x + b * y, c * z, out=out)
+        return found.T
 
     def _placed(self, x: Array, y: Array, z: Array) -> Array:
         return self.centre + self._turned(x, y, z)
@@ -237,6 +237,16 @@ class Arcs:
             if done.all():
                 break
         return angle
+
+
+def unwrapped(values: Array, period: float) -> Array:
+    """Values (n,) less the jumps of whole periods between one and the next."""
+    jumps = np.rint(np.diff(values) / period)
+    if not jumps.any():
+        return values
+    found = values.copy()
+    found[1:] -= period * np.cumsum(jumps)
+    return found
 
 
 def kepler_root(pull: Array, stiff: Numbers, way: Array, reach: Array) -> Array:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from motionfmu.contour.arcs import Array
 from motionfmu.contour.geometry import norms
 from motionfmu.contour.path import Path
-from motionfmu.contour.scaled import BLOCK, blocks
+from motionfmu.contour.scaled import BLOCK, blocks, places
 from motionfmu.contour.segments import Index
 
 # Of so many samples in a row the middle one is searched first.
@@ -43,7 +43,7 @@ def assign(points: Any, path: Path, first: Index, last: Index) -> Index:
     for some in blocks(len(low), points):
         several = some.start + np.flatnonzero(low[some] < high[some])
         if len(several):
-            part = np.asarray(points[some])[several - some.start, :3]
+            part = places(points, several)
             low[several], high[several] = nearest(part, path, (low[several], high[several]))
     if not len(low):
         return low
@@ -59,7 +59,7 @@ def assign(points: Any, path: Path, first: Index, last: Index) -> Index:
         for a, b in _stretches(bad | solved):
             if bad[a:b].any():
                 candidates = np.asarray(first[a:b]), np.asarray(last[a:b])
-                part = np.asarray(points[a:b])[:, :3]
+                part = places(points, slice(a, b))
                 low[a:b] = high[a:b] = _solved(part, path, candidates, alone[a:b])
                 solved[a:b] = True
 
@@ -69,7 +69,7 @@ def _as_near(points: Any, path: Path, rows: Index, segments: tuple[Index, Index]
     good = np.empty(len(rows), dtype=bool)
     for begin in range(0, len(rows), BLOCK):
         own = rows[begin : begin + BLOCK]
-        part = np.asarray(points[own])[:, :3]
+        part = places(points, own)
         one, other = (path.segments.foot(part, s[own]).distance for s in segments)
         good[begin : begin + BLOCK] = other <= one + 2.0 * SAME
     return good

@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.contour.arcs import TURN, Array
+from motionfmu.contour.arcs import TURN, Array, unwrapped
 from motionfmu.contour.geometry import Arc, Segment
+from motionfmu.contour.instants import Instants
 from motionfmu.contour.iso230 import BothWays, Reading, both_ways, reading
+from motionfmu.contour.order import median
 from motionfmu.contour.path import Path
-from motionfmu.contour.scaled import Scaled, blocks
+from motionfmu.contour.scaled import Scaled, places
 from motionfmu.contour.segments import ARC, Index
 from motionfmu.contour.track import Track
 
@@ -76,14 +78,14 @@ class CircularTest:
 
 def circular_tests(
     path: Path,
-    samples: tuple[Array, Array | Scaled],
+    samples: tuple[Instants, Array | Scaled],
     tracks: tuple[Track, Track],
     settle: float,
     run_in: float | None,
 ) -> tuple[tuple[CircularTest, ...], dict[str, str]]:
     """Circular tests of all full circles of a path; a circle run both ways is one.
 
-    `samples` are time (n,) [s] and actual position (n, 3) [mm], `tracks` those of the actual
+    `samples` are times and actual position (n, 3) [mm], `tracks` those of the actual
     position and of the pulses put out. Left out are `settle` [s] after the speed or the curvature
     has changed and `run_in` [rad] at both ends; None leaves out what is not steady. The second
     result is the reason by ``circles.<place>.<way>`` of each that has no test.
@@ -118,7 +120,7 @@ def circular_tests(
 def _way(
     path: Path,
     ends: tuple[int, int],
-    samples: tuple[Array, Array | Scaled],
+    samples: tuple[Instants, Array | Scaled],
     tracks: tuple[Track, Track],
     left_out: tuple[float, float | None],
 ) -> Way | str:
@@ -126,44 +128,60 @@ def _way(
     arc, (settle, run_in) = path.segments[ends[0]], left_out
     assert isinstance(arc, Arc)
     normal = arc.axis * np.sign(arc.axis[np.argmax(np.abs(arc.axis))])
-    time, along = samples[0], tracks[1].along
+    time, along = samples[0].time, tracks[1].along
     a, b = np.searchsorted(tracks[0].segment, [ends[0], ends[1] + 1]).tolist()
     if b - a < SAMPLES_MIN:
         return f"{b - a} samples on it, {SAMPLES_MIN} wanted"
     span = max(SPEED_SPAN, SPEED_PART * float(time[b - 1] - time[a]))
-    speed = speed_along(time, along, span, slice(a, b))
     if run_in is None:
-        inside = np.searchsorted(tracks[1].segment, [ends[0], ends[1] + 1]).tolist()
-        own = slice(*inside)
-        low, high = _steady(time[own], speed_along(time, along, span, own), settle)
-        chosen = (time[a:b] >= low) & (time[a:b] <= high)
+        first, last = np.searchsorted(tracks[1].segment, [ends[0], ends[1] + 1]).tolist()
+        begin, end = min(a, first), max(b, last)
+        speed = samples[0].speed(along, span, slice(begin, end))
+        low, high = _steady(time[first:last], speed[first - begin : last - begin], settle)
+        speed = speed[a - begin : b - begin]
+        chosen = np.arange(*np.searchsorted(time[a:b], [low, np.nextafter(high, np.inf)]))
     else:
+        speed = samples[0].speed(along, span, slice(a, b))
         low, high = path.offsets[ends[0]], path.offsets[ends[1] + 1]
         skip = run_in * arc.radius
         way = tracks[0].along[a:b]
-        chosen = (way >= low + skip) & (way <= high - skip)
-    points = (np.asarray(samples[1][a:b])[:, :3] - arc.centre) @ plane_axes(normal).T
-    kept, covered = _whole_turns(points, np.flatnonzero(chosen))
+        chosen = np.flatnonzero((way >= low + skip) & (way <= high - skip))
+    points = _in_plane(places(samples[1], slice(a, b)) - arc.centre, plane_axes(normal))
+    kept, covered = _whole_turns(points, chosen)
     steady = covered >= COVERAGE_MIN
     if not steady:
         kept, covered = _whole_turns(points, np.arange(b - a))
     if covered < COVERAGE_MIN:
         wanted = math.degrees(COVERAGE_MIN)
         return f"the tool covers {math.degrees(covered):.0f} degrees of it, {wanted:.0f} wanted"
+    own = _taken(points, kept)
     try:
-        quantities = reading(points[kept], arc.radius)
+        quantities = reading(own, arc.radius)
     except ArithmeticError as error:
         return str(error)
     return Way(
         *ends,
         lines=(arc.label.line, int(path.lines[ends[1]])),
-        points=points[kept],
+        points=own,
         time=np.asarray(time[a:b])[kept],
         coverage=covered,
         steady=steady,
-        speed=float(np.median(speed[kept])),
+        speed=median(speed[kept]),
         reading=quantities,
     )
+
+
+def _in_plane(gaps: Array, axes: Array) -> Array:
+    """Vectors (n, 3) along two axes (2, 3): (n, 2)."""
+    found = np.empty((2, len(gaps)))
+    for out, (x, y, z) in zip(found, axes.tolist(), strict=True):
+        np.add(x * gaps[:, 0] + y * gaps[:, 1], z * gaps[:, 2], out=out)
+    return found.T
+
+
+def _taken(points: Array, rows: Index) -> Array:
+    """Some points (n, 2), each column in a piece."""
+    return np.stack([points[rows, 0], points[rows, 1]]).T
 
 
 def plane_axes(normal: Array) -> Array:
@@ -211,7 +229,7 @@ def _steady(time: Array, speed: Array, settle: float) -> tuple[float, float]:
     """Begin and end of the longest steady part of a circle, after it has settled [s]."""
     # The tool may rest at an end for long: the usual speed is that of the samples in motion.
     moving = speed > 0.1 * float(speed.max(initial=0.0))
-    middle = float(np.median(speed[moving])) if moving.any() else 0.0
+    middle = median(speed[moving]) if moving.any() else 0.0
     good = np.abs(speed - middle) <= STEADY * middle
     edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]])))
     if not len(edges):
@@ -221,30 +239,11 @@ def _steady(time: Array, speed: Array, settle: float) -> tuple[float, float]:
     return float(time[begins[longest]]) + settle, float(time[stops[longest] - 1]) - 0.5 * SPEED_SPAN
 
 
-def speed_along(time: Array, along: Array, span: float, own: slice | None = None) -> Array:
-    """Speed [mm/s] of a way along the path [mm], averaged over `span` [s]; of some samples only."""
-    begin, end, _ = (own or slice(None)).indices(len(time))
-    found = np.empty(max(0, end - begin))
-    for part in blocks(len(found), time):
-        now = np.asarray(time[begin + part.start : begin + part.stop])
-        low = np.maximum(now - 0.5 * span, time[0])
-        high = np.minimum(now + 0.5 * span, time[-1])
-        near = slice(
-            max(0, int(np.searchsorted(time, low[0], side="right")) - 1),
-            int(np.searchsorted(time, high[-1])) + 1,
-        )
-        place, way = time[near], along[near]
-        found[part] = np.interp(high, place, way) - np.interp(low, place, way)
-        found[part] /= high - low
-    return found
-
-
 def _whole_turns(points: Array, chosen: Index) -> tuple[Index, float]:
     """As many whole turns of samples as there are, else all; the angle they cover [rad]."""
     if not len(chosen):
         return chosen, 0.0
-    own = points[chosen]
-    angle = np.unwrap(np.arctan2(own[:, 1], own[:, 0]))
+    angle = unwrapped(np.arctan2(points[chosen, 1], points[chosen, 0]), TURN)
     way = np.abs(angle - angle[0])
     turns = math.floor(float(way[-1]) / TURN)
     count = int(np.searchsorted(way, turns * TURN, side="right")) if turns else len(way)

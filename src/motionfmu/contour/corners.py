@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import Array
-from motionfmu.contour.circles import SPEED_SPAN, speed_along
+from motionfmu.contour.circles import SPEED_SPAN
+from motionfmu.contour.instants import Instants
 from motionfmu.contour.path import Path
 from motionfmu.contour.ranges import largest, parts
 from motionfmu.contour.segments import ARC, CUBIC, Index, Segments
@@ -34,7 +35,7 @@ class Corner:
 
 def find_corners(
     path: Path,
-    time: Array,
+    instants: Instants,
     tracks: tuple[Track, Track],
     cutting: NDArray[np.bool_],
     window: float,
@@ -45,6 +46,7 @@ def find_corners(
     position and of the pulses put out, `cutting` are the samples that count.
     """
     track, command = tracks
+    time = instants.time
     before, after, angle = _corners(path)
     if not len(before):
         return ()
@@ -60,7 +62,7 @@ def find_corners(
     own = np.flatnonzero(upto[high] > upto[low])
     before, after, low, high = before[own], after[own], low[own], high[own]
     angle = angle[own]
-    speed = speed_along(time, command.along, SPEED_SPAN)
+    speed = instants.speed(command.along, SPEED_SPAN)
     corners = []
     for some, rows, first in parts(low, high):
         cut = cutting[rows]

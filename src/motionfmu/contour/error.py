@@ -1,20 +1,17 @@
 """Contour error: every sample against the exact commanded geometry."""
 
-import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from motionfmu.contour.arcs import Array
 from motionfmu.contour.assign import assign
 from motionfmu.contour.circles import circular_tests
+from motionfmu.contour.commanded import Known
 from motionfmu.contour.corners import find_corners
-from motionfmu.contour.path import Path
+from motionfmu.contour.instants import Instants
 from motionfmu.contour.result import ContourInput, ContourResult
-from motionfmu.contour.scaled import blocks
-from motionfmu.contour.segments import Index
+from motionfmu.contour.scaled import blocks, places
 from motionfmu.contour.statistics import statistics
 from motionfmu.contour.track import follow
 
@@ -26,13 +23,12 @@ WINDOW_MIN = 0.05
 AHEAD = 0.2
 # A circle counts when this many windows have passed since its start: exp(-10) of a transient.
 SETTLE = 2.0
-FIFO_DEPTH = 63
-# Commands under way beside the FIFO stock: one in the DDA, one transaction of 16, one spare.
-UNDER_WAY = 18
 
 
 def analyse(
-    run: ContourInput, progress: Callable[[float], None] = lambda share: None
+    run: ContourInput,
+    progress: Callable[[float], None] = lambda share: None,
+    known: Known | None = None,
 ) -> ContourResult:
     """Find the contour error of a run against the exact geometry.
 
@@ -48,108 +44,64 @@ def analyse(
         Geometry and signals, which may be memory maps: they are read in parts.
     progress : callable
         Told the share that is done, 0 to 1.
+    known : Known, optional
+        What earlier runs have in common with this one; what is found is added to it.
 
     Raises
     ------
     ValueError
         The run never moves on a line, arc or helix.
     """
-    path, time = run.path, run.time
-    owners = assign(run.commanded, path, *_written(run))
-    progress(0.25)
-    command_track = follow(run.commanded, path, owners)
+    path, instants = run.path, run.instants
+    known = Known() if known is None else known
+    command = known.commanded(run, lambda share: progress(0.4 * share))
     progress(0.4)
-    lag = servo_lag(time, run.commanded, run.actual)
+    lag = servo_lag(instants, run.commanded, run.actual)
     window = max(LAGS * lag, WINDOW_MIN) if run.window is None else run.window
-    candidates = shifted(owners, time, -window), shifted(owners, time, AHEAD * window)
+    owners = command.track.segment
+    candidates = instants.shifted(owners, -window), instants.shifted(owners, AHEAD * window)
     owners = assign(run.actual, path, *candidates)
     del candidates
     progress(0.7)
     track = follow(run.actual, path, owners)
     progress(0.85)
-    tracks = (track, command_track)
+    tracks = (track, command.track)
     cutting = path.cut[track.segment]
-    cutting &= _moved(run.commanded, time, window)
+    cutting &= command.moved > instants.shifted(command.moved, -window)
     if not cutting.any():
         raise ValueError("the run never moves on a line, arc or helix: it has no contour")
-    circles, missing = circular_tests(path, (time, run.actual), tracks, SETTLE * window, run.run_in)
-    corners = find_corners(path, time, tracks, cutting, window)
-    both = cutting & path.cut[command_track.segment]
-    errors = statistics(path, time, track, cutting), statistics(path, time, command_track, both)
+    settle = SETTLE * window
+    circles, missing = circular_tests(path, (instants, run.actual), tracks, settle, run.run_in)
+    corners = find_corners(path, instants, tracks, cutting, window)
+    both = cutting & path.cut[command.track.segment]
+    error = statistics(path, run.time, track, cutting)
+    command_error = statistics(path, run.time, command.track, both)
     progress(1.0)
     return ContourResult(
-        run, track, command_track, cutting, lag, window, *errors, circles, corners, missing
+        run=run,
+        track=track,
+        command_track=command.track,
+        cutting=cutting,
+        lag=lag,
+        window=window,
+        error=error,
+        command_error=command_error,
+        circles=circles,
+        corners=corners,
+        missing=missing,
     )
 
 
-def servo_lag(time: Array, commanded: Any, actual: Any) -> float:
+def servo_lag(instants: Instants, commanded: Any, actual: Any) -> float:
     """Following distance over speed [s], by least squares; 0 if nothing moves or the tool leads."""
-    span = min(max(1, round(0.002 / float(np.median(np.diff(time))))), len(time) - 1)
+    time = instants.time
+    span = min(max(1, round(0.002 / instants.middle)), len(time) - 1)
     power = product = 0.0
     for own in blocks(len(time) - span, time, commanded, actual):
-        later = slice(own.start + span, own.stop + span)
-        place = np.asarray(commanded[later])[:, :3]
-        duration = (time[later] - time[own])[:, None]
-        speed = (place - np.asarray(commanded[own])[:, :3]) / duration
-        power += float(np.einsum("ij,ij->", speed, speed))
-        gap = place - np.asarray(actual[later])[:, :3]
-        product += float(np.einsum("ij,ij->", speed, gap))
+        place = places(commanded, slice(own.start, own.stop + span))
+        gap = place[span:] - places(actual, slice(own.start + span, own.stop + span))
+        speed = place[span:] - place[: own.stop - own.start]
+        speed /= (time[own.start + span : own.stop + span] - time[own])[:, None]
+        power += float(sum(np.einsum("i,i->", v, v) for v in speed.T))
+        product += float(sum(np.einsum("i,i->", v, d) for v, d in zip(speed.T, gap.T, strict=True)))
     return max(0.0, product / power) if power > 0.0 else 0.0
-
-
-def shifted(values: Any, time: Array, shift: float) -> Any:
-    """Of values (n,) those that hold at each time plus a shift."""
-    found = np.empty_like(values)
-    for own in blocks(len(time), time):
-        found[own] = values[_at(time, own, shift)]
-    return found
-
-
-def _at(time: Array, own: slice, shift: float) -> Index:
-    """Sample that holds at some times plus a shift."""
-    last = len(time) - 1
-    goal = np.asarray(time[own]) + shift
-    # Where the samples are even it is known, which is seen by looking there.
-    even = np.arange(own.start, own.stop) + math.floor(shift / _step(time))
-    found = np.clip(even, 0, last)
-    found += (found < last) & (time[np.minimum(found + 1, last)] <= goal)
-    wrong = (time[found] > goal) & (found > 0)
-    wrong |= (found < last) & (time[np.minimum(found + 1, last)] <= goal)
-    if wrong.any():
-        rest = np.searchsorted(time, goal[wrong], side="right") - 1
-        found[wrong] = np.clip(rest, 0, last)
-    return found
-
-
-def _step(time: Array) -> float:
-    return float(time[-1] - time[0]) / (len(time) - 1)
-
-
-def _written(run: ContourInput) -> tuple[Index, Index]:
-    """First and last segment on which the pulses may be, by what was written to the card (n,)."""
-    path, time = run.path, run.time
-    older = _segments(path, run.command)
-    newer = older if run.newest is None else np.maximum(older, _segments(path, run.newest))
-    wait = run.dda_time * (UNDER_WAY + (FIFO_DEPTH if run.stock is None else np.max(run.stock)))
-    return shifted(older, time, -wait), shifted(newer, time, wait)
-
-
-def _segments(path: Path, command: Index) -> Index:
-    """Segment of the newest command so far (n,)."""
-    found = np.empty(len(command), dtype=np.int32)
-    newest = command[0]
-    for own in blocks(len(command), command):
-        upto = np.maximum.accumulate(np.maximum(command[own], newest))
-        newest = upto[-1]
-        found[own] = path.segment_of(upto)
-    return found
-
-
-def _moved(commanded: Any, time: Array, window: float) -> NDArray[np.bool_]:
-    """Whether the pulses moved the tool within the window (n,)."""
-    found = np.zeros(len(commanded), dtype=np.int32)
-    for own in blocks(len(commanded) - 1, commanded):
-        places = np.asarray(commanded[own.start : own.stop + 1])[:, :3]
-        found[own.start + 1 : own.stop + 1] = (places[1:] != places[:-1]).any(axis=1)
-    count = np.cumsum(found, out=found)
-    return np.asarray(count > shifted(count, time, -window))

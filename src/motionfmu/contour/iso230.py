@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import EPS, Array
+from motionfmu.contour.order import distinct, quantiles
 from motionfmu.contour.segments import Index
 
 # Gauss-Newton and its minimax kin square the error each round when the points lie near a circle;
@@ -48,44 +49,62 @@ class Ellipse:
     orientation: float  # of the major axis from the plane's first axis, -pi/2 to pi/2 [rad]
 
 
+def _normal(rows: Array) -> Array:
+    """Sums (k, k) of products of rows (k, n)."""
+    # no matrix products: a library with threads is slower at so few rows
+    found = np.empty((len(rows), len(rows)))
+    for i, row in enumerate(rows):
+        for j in range(i, len(rows)):
+            found[i, j] = found[j, i] = np.einsum("n,n->", row, rows[j])
+    return found
+
+
+def _sums(rows: Array, values: Array) -> Array:
+    """Sums (k,) of rows (k, n) times values (n,)."""
+    return np.array([np.einsum("n,n->", row, values) for row in rows])
+
+
 def least_squares(rows: Array, values: Array) -> Array:
     """Solve rows (k, n) @ x = values (n,) for x (k,) with the least sum of squares.
 
     By the normal equations, which take one pass over the samples; what their condition loses, the
     residuals bring back.
     """
-    # no matrix products: a library with threads is slower at so few rows
-    normal = np.einsum("in,jn->ij", rows, rows)
-    found = np.linalg.solve(normal, np.einsum("in,n->i", rows, values))
+    normal = _normal(rows)
+    found = np.linalg.solve(normal, _sums(rows, values))
     for _ in range(CORRECTIONS):
         rest = values - sum(x * row for x, row in zip(found, rows, strict=True))
-        found = found + np.linalg.solve(normal, np.einsum("in,n->i", rows, rest))
+        found = found + np.linalg.solve(normal, _sums(rows, rest))
     return np.asarray(found)
 
 
 def least_squares_circle(points: Array) -> tuple[Array, float]:
     """Centre (2,) and radius of the circle with the least sum of squared radial distances from
     points (n, 2), three at least and not on a straight line [mm].
+
+    Gauss and Newton's steps end where the residuals are orthogonal to the slopes, whatever solves
+    for them: the normal equations of the first round serve all, and are not corrected.
     """
     origin = points.mean(axis=0)
     x, y = np.ascontiguousarray((points - origin).T)
-    rows = np.stack([x, y, np.ones(len(points))])
     # to unit size, so that all three weigh the same
-    size = float(np.sqrt((x * x + y * y).mean()))
-    scaled = rows / [[size], [size], [1.0]]
-    centre = 0.5 * size * least_squares(scaled, scaled[0] ** 2 + scaled[1] ** 2)[:2]
+    square = x * x + y * y
+    size = float(np.sqrt(square.mean()))
+    rows = np.stack([x / size, y / size, np.ones(len(points))])
+    centre = 0.5 * np.linalg.solve(_normal(rows), _sums(rows, square / size))[:2]
+    normal = None
     for _ in range(ROUNDS_MAX):
-        u, v = x - centre[0], y - centre[1]
-        radii = np.sqrt(u * u + v * v)
-        np.divide(u, radii, out=rows[0])
-        np.divide(v, radii, out=rows[1])
+        np.subtract(x, centre[0], out=rows[0])
+        np.subtract(y, centre[1], out=rows[1])
+        radii = np.sqrt(rows[0] ** 2 + rows[1] ** 2)
+        rows[:2] /= radii
         mean = float(radii.mean())
-        step = least_squares(rows, radii - mean)
+        normal = _normal(rows) if normal is None else normal
+        step = np.linalg.solve(normal, _sums(rows, radii - mean))
         centre = centre + step[:2]
         if np.abs(step[:2]).max() <= MOVE_DONE * mean:
             break
-    u, v = x - centre[0], y - centre[1]
-    return centre + origin, float(np.sqrt(u * u + v * v).mean())
+    return centre + origin, float(_radii(points, centre + origin).mean())
 
 
 def minimum_zone(points: Array, circle: tuple[Array, float] | None = None) -> Zone:
@@ -109,18 +128,18 @@ def minimum_zone(points: Array, circle: tuple[Array, float] | None = None) -> Zo
         out[chosen] = False
         if not out.any():
             return Zone(few.centre, low, high)
-        chosen = np.union1d(chosen, _extremes(radii, out))
+        chosen = distinct(np.concatenate([chosen, _extremes(radii, out)]))
 
 
 def _extremes(radii: Array, of: NDArray[np.bool_]) -> Index:
     """Nearest and farthest of some points, of each of `PARTS` parts of them."""
     rows = np.flatnonzero(of)
-    cuts = np.unique(np.linspace(0, len(rows), PARTS + 1).astype(int))
+    cuts = distinct(np.linspace(0, len(rows), PARTS + 1).astype(int))
     found = []
     for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
         own = radii[rows[a:b]]
         found += [a + int(own.argmin()), a + int(own.argmax())]
-    return np.unique(rows[found])
+    return distinct(rows[found])
 
 
 def _radii(points: Array, centre: Array) -> Array:
@@ -170,7 +189,7 @@ def minimax(rows: Array, values: Array) -> Array:
     angle = np.arctan2(rows[:, 1], rows[:, 0])
     order = np.argsort(angle)
     # Four directions round the circle with signs that alternate have no better x.
-    ends = np.searchsorted(angle[order], np.quantile(np.unique(angle), [0.0, 0.34, 0.67, 1.0]))
+    ends = np.searchsorted(angle[order], quantiles(distinct(angle), (0.0, 0.34, 0.67, 1.0)))
     four = order[ends]
     sign = np.array([1.0, -1.0, 1.0, -1.0])
     up = np.array([0.0, 0.0, 0.0, 1.0])

@@ -1,18 +1,19 @@
 """The planned path: exact segments in the order of the program."""
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import TURN, Array
-from motionfmu.contour.geometry import Arc, Cubic, Segment
-from motionfmu.contour.segments import ARC, KINDS, LINE, Index, Segments
+from motionfmu.contour.geometry import Segment
+from motionfmu.contour.segments import ARC, CUBIC, KINDS, LINE, Index, Segments
 
 # A move lies in a plane if it leaves it by less than this [mm]; a tenth of the finest pulse.
 FLAT = 1e-5
+# Points of a turn or a curve that is drawn.
+STEPS = 90
 
 
 class Path:
@@ -124,14 +125,14 @@ class Path:
         return np.clip(found, 0, len(self.segments) - 1)
 
 
-def outline(segments: Sequence[Segment], steps: int = 90) -> Array:
-    """Points (n, 3) [mm] to draw a path: `steps` per turn or curve."""
-    parts = []
-    for segment in segments:
-        count = 2
-        if isinstance(segment, Arc):
-            count = max(2, math.ceil(segment.angle / TURN * steps) + 1)
-        if isinstance(segment, Cubic):
-            count = steps + 1
-        parts.append(segment.at(np.linspace(0.0, segment.length, count)))
-    return np.concatenate(parts)
+def outline(segments: Segments, chosen: Index | None = None) -> tuple[Array, Index]:
+    """Points (n, 3) [mm] to draw segments by, all or some, and where each begins among them."""
+    c = segments.columns
+    counts = np.full(len(c.shape), 2)
+    counts[c.shape == ARC] = np.maximum(2, np.ceil(segments.arcs.angle / TURN * STEPS) + 1)
+    counts[c.shape == CUBIC] = STEPS + 1
+    chosen = np.arange(len(counts)) if chosen is None else chosen
+    count = counts[chosen]
+    which, starts = np.repeat(chosen, count), np.cumsum(count) - count
+    share = (np.arange(len(which)) - np.repeat(starts, count)) / np.repeat(count - 1, count)
+    return segments.at(which, share * segments.lengths[which]), starts

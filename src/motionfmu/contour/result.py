@@ -1,6 +1,6 @@
 """What a contour analysis takes and gives."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Any
@@ -11,15 +11,21 @@ from numpy.typing import NDArray
 from motionfmu.contour.arcs import Array
 from motionfmu.contour.circles import CircularTest
 from motionfmu.contour.corners import Corner
+from motionfmu.contour.instants import Instants
 from motionfmu.contour.path import Path
 from motionfmu.contour.ranges import largest, parts
-from motionfmu.contour.scaled import Scaled, blocks
+from motionfmu.contour.scaled import Scaled, blocks, finite
 from motionfmu.contour.segments import KINDS
 from motionfmu.contour.statistics import Statistics
 from motionfmu.contour.track import Track
 from motionfmu.errors import NoNumber
 
 AXES = "xyzuvw"
+# Commands and corners that `ContourResult.numbers` has at most, of each.
+LISTED = 10_000
+# What is known of the error on a command: lengths [mm], time of the largest error [s].
+COMMANDS = [("command", "i8"), ("line", "i8"), ("kind", "U5")]
+COMMANDS += [(name, "f8") for name in ("length", "max", "rms", "time")]
 
 
 @dataclass(frozen=True)
@@ -90,6 +96,11 @@ class ContourInput:
     run_in: float | None = None
     traces: tuple[Trace, ...] = field(default=())
 
+    @cached_property
+    def instants(self) -> Instants:
+        """The times of the samples."""
+        return Instants(self.time)
+
     def __post_init__(self) -> None:
         count = len(self.time)
         steps = (np.diff(self.time[own.start : own.stop + 1]) for own in blocks(count, self.time))
@@ -103,9 +114,9 @@ class ContourInput:
             if values.shape != shape:
                 raise ValueError(f"{name} has the shape {values.shape} instead of {shape}")
             for own in blocks(count, values):
-                good = np.isfinite(values[own])
+                good = finite(values, own)
                 if not good.all():
-                    bad = own.start + np.argwhere(~good)[0, 0]
+                    bad = own.start + np.argwhere(~good)[0, 0] * (good.ndim > 1)
                     raise ValueError(f"{name} is not finite at {self.time[bad]:g} s")
 
 
@@ -154,8 +165,23 @@ class ContourResult:
         return f"<ContourResult: max {error.max:.4g} mm, RMS {error.rms:.4g} mm, {parts}>"
 
     def numbers(self) -> dict[str, Any]:
-        """Every number of the analysis, ready for JSON; mm, s, rad."""
-        return {name: self._group(name) for name in GROUPS}
+        """Every number of the analysis, ready for JSON; mm, s, rad.
+
+        Of more than `LISTED` commands or corners those with the largest errors are there, in their
+        order, and how many are not: ``left_out``.
+        """
+        found = {name: self._group(name) for name in GROUPS}
+        left_out = {}
+        for name, errors in (
+            ("commands", self.commands["max"]),
+            ("corners", np.array([c.error for c in self.corners])),
+        ):
+            if len(errors) > LISTED:
+                worst = np.sort(np.argsort(-errors, kind="stable")[:LISTED]).tolist()
+                found[name] = [found[name][i] for i in worst]
+                left_out[name] = len(errors) - LISTED
+            found[name] = list(found[name])
+        return found | ({"left_out": left_out} if left_out else {})
 
     @cached_property
     def _known(self) -> dict[str, Any]:
@@ -195,28 +221,28 @@ class ContourResult:
         known = {*found, *(int(name.split(".")[1]) for name in self.missing)}
         return [found.get(i) for i in range(1 + max(known, default=-1))]
 
-    def _commands(self) -> list[dict[str, Any]]:
-        """A row for each segment on which the tool cuts."""
-        path, names = self.run.path, ("command", "line", "kind", "length", "max", "rms", "time")
+    @cached_property
+    def commands(self) -> NDArray[Any]:
+        """A row for each segment on which the tool cuts, in order.
+
+        A structured array with the fields of `COMMANDS`: command, line of the program, kind,
+        length, largest and RMS error [mm], time of the largest [s].
+        """
+        path = self.run.path
         found = np.flatnonzero(self.cutting)
         owners = self.track.segment[found]
         cuts = np.concatenate([[0], np.flatnonzero(np.diff(owners)) + 1, [len(owners)]])
-        rows: list[dict[str, Any]] = []
+        rows = np.empty(len(cuts) - 1, dtype=COMMANDS)
+        own = owners[cuts[:-1]]
+        rows["command"], rows["line"] = path.commands[own], path.lines[own]
+        rows["kind"] = np.array(KINDS)[path.segments.columns.kind[own]]
+        rows["length"] = path.lengths[own]
         for some, samples, first in parts(cuts[:-1], cuts[1:]):
             size = self.track.distance[found[samples]]
-            top, worst = largest(size, first)
+            rows["max"][some], worst = largest(size, first)
             square = np.add.reduceat(size * size, first) / np.diff(first, append=len(size))
-            own = owners[cuts[:-1][some]]
-            columns = (
-                path.commands[own].tolist(),
-                path.lines[own].tolist(),
-                [KINDS[k] for k in path.segments.columns.kind[own].tolist()],
-                path.lengths[own].tolist(),
-                top.tolist(),
-                np.sqrt(square).tolist(),
-                self.run.time[found[samples[worst]]].tolist(),
-            )
-            rows += [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
+            rows["rms"][some] = np.sqrt(square)
+            rows["time"][some] = self.run.time[found[samples[worst]]]
         return rows
 
     def number(self, name: str) -> float:
@@ -235,7 +261,7 @@ class ContourResult:
         parts = name.split(".")
         value: Any = self._group(parts[0]) if parts[0] in GROUPS else GROUPS
         for part in parts[1:] if parts[0] in GROUPS else parts:
-            if isinstance(value, list):
+            if isinstance(value, Sequence):
                 there = int(part) if part.isdecimal() else len(value)
                 if there >= len(value):
                     value = {str(i): None for i in range(len(value))}
@@ -258,6 +284,24 @@ class ContourResult:
         return f"no {part!r}, there is {there}" if there else "the run has none"
 
 
+@dataclass(frozen=True, eq=False)
+class _Rows(Sequence[dict[str, Any]]):
+    """Rows of many, each made when it is asked for."""
+
+    size: int
+    make: Callable[[int], dict[str, Any]]
+
+    def __len__(self) -> int:
+        return self.size
+
+    def __getitem__(self, i: Any) -> Any:
+        return self.make(range(self.size)[i])
+
+
+def _row(row: Any) -> dict[str, Any]:
+    return dict(zip(row.dtype.names, row.item(), strict=True))
+
+
 # Groups of the numbers, and how each is made.
 GROUPS: dict[str, Callable[[ContourResult], Any]] = {
     "units": lambda r: {"length": "mm", "time": "s", "angle": "rad", "speed": "mm/s"},
@@ -269,6 +313,6 @@ GROUPS: dict[str, Callable[[ContourResult], Any]] = {
     "command_error": lambda r: asdict(r.command_error),
     "following": ContourResult._following,
     "circles": ContourResult._circles,
-    "corners": lambda r: [dict(vars(c)) for c in r.corners],  # flat: asdict copies deeply
-    "commands": ContourResult._commands,
+    "corners": lambda r: _Rows(len(r.corners), lambda i: dict(vars(r.corners[i]))),
+    "commands": lambda r: _Rows(len(r.commands), lambda i: _row(r.commands[i])),
 }

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import Arcs, Array, Foot
 from motionfmu.contour.geometry import Arc, Cubic, Label, Line, Segment, norms
+from motionfmu.contour.order import distinct
 
 Index = NDArray[Any]  # of integers
 KINDS = ("ptp", "line", "arc", "helix", "curve")
@@ -184,7 +185,7 @@ class Segments(Sequence[Segment]):
         if len(rows):
             arcs = self.arcs[self.place[which[rows]]]
             found[rows] = arcs.points(along[rows] / arcs.length * arcs.angle)
-        for i in np.unique(which[shapes == CUBIC]).tolist():
+        for i in distinct(which[shapes == CUBIC]).tolist():
             rows = np.flatnonzero(which == i)
             found[rows] = c.curves[i].at(along[rows])
         return found

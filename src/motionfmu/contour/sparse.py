@@ -1,7 +1,5 @@
 """What rows of every so many steps hide of a contour."""
 
-import numpy as np
-
 from motionfmu.contour.error import LAGS
 from motionfmu.contour.result import ContourResult
 
@@ -13,7 +11,7 @@ PER_LAG = 4
 
 def sparse(found: ContourResult, step: float) -> list[str]:
     """Warnings about a contour whose rows are farther apart than a step [s]."""
-    apart = float(np.median(np.diff(found.run.time)))
+    apart = found.run.instants.middle
     every, lag = round(apart / step), found.window / LAGS
     if every < 2 or apart <= lag / PER_LAG * (1.0 + 1e-9):
         return []

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import Array
+from motionfmu.contour.order import quantiles
 from motionfmu.contour.path import Path
 from motionfmu.contour.track import Track
 
@@ -36,7 +37,7 @@ def statistics(path: Path, time: Array, track: Track, chosen: NDArray[np.bool_])
     mean, square = float(size.mean()), float(np.einsum("i,i->", size, size))
     top = float(size.max())
     own = int(track.segment[worst])
-    p50, p95, p99 = np.percentile(size, [50.0, 95.0, 99.0], overwrite_input=True).tolist()
+    p50, p95, p99 = quantiles(size, (0.5, 0.95, 0.99))
     return Statistics(
         max=top,
         rms=math.sqrt(square / len(size)),

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.contour.arcs import TURN, Array
+from motionfmu.contour.arcs import TURN, Array, unwrapped
 from motionfmu.contour.path import Path
-from motionfmu.contour.scaled import blocks
+from motionfmu.contour.scaled import blocks, places
 from motionfmu.contour.segments import ARC, Index
 
 
@@ -44,7 +44,7 @@ def follow(positions: Any, path: Path, owners: Index) -> Track:
     along, distance = np.empty(count), np.empty(count)
     right = None if path.normal is None else np.empty(count, dtype=bool)
     for own in blocks(count, positions):
-        points, which = np.asarray(positions[own])[:, :3], owners[own]
+        points, which = places(positions, own), owners[own]
         near = path.segments.foot(points, which)
         along[own], distance[own] = near.along, near.distance
         if right is not None and path.normal is not None:
@@ -67,6 +67,6 @@ def _unwrap(along: Array, path: Path, owners: Index) -> None:
         if a < b:
             k = path.segments.place[s]
             turn = TURN / arcs.angle[k] * arcs.length[k]
-            way = np.unwrap(along[a:b], period=turn)
-            way -= turn * np.round(way[0] / turn)
+            way = unwrapped(along[a:b], turn)
+            way = way - turn * np.round(way[0] / turn)
             along[a:b] = np.clip(way, 0.0, arcs.length[k])

@@ -9,9 +9,14 @@ from numpy.typing import NDArray
 from motionfmu.contour import ContourResult
 from motionfmu.contour.arcs import Array
 from motionfmu.contour.circles import plane_axes
-from motionfmu.contour.path import outline
+from motionfmu.contour.geometry import norms
+from motionfmu.contour.order import distinct
+from motionfmu.contour.path import Path, outline
+from motionfmu.contour.scaled import blocks, places
+from motionfmu.contour.segments import Index
+from motionfmu.iso9283.simplify import simplified
 from motionfmu.report.numbers import magnification
-from motionfmu.run.decimate import Index, keep_peaks
+from motionfmu.run.decimate import peaks_of
 
 # Points of the drawn error, even along the magnified curve; peaks and joints come on top.
 POINTS = 2400
@@ -19,6 +24,12 @@ BUCKETS = 300
 JOINTS_MAX = 2000
 # A joint at which the error turns by more than this part of itself is a corner: no line across.
 JUMP = 0.25
+# The magnified error's length is known at so many samples: far more than are drawn.
+WAYS = 1 << 20
+# A path of more segments is drawn to this part of its size.
+SEGMENTS_MAX, FINE = 10_000, 4000
+PART = 1 << 14  # segments that are looked at together
+JOINED = 1e-9  # [mm]
 # Hairs from the path to the magnified error.
 HAIRS = 320
 AXES = "XYZ"
@@ -48,27 +59,24 @@ def draw(contour: ContourResult) -> Drawing:
     """Make the drawing of a run."""
     path, track = contour.run.path, contour.track
     basis = np.eye(3) if path.normal is None else plane_axes(path.normal)
-    error = track.distance if track.signed is None else track.signed
-    cuts = [s for s in path.segments if s.label.kind != "ptp"]
-    rest = [s for s in path.segments if s.label.kind == "ptp"]
-    cutting = _pieces([outline([s]) @ basis.T for s in cuts], len(basis))
-    rapids = _pieces([outline([s]) @ basis.T for s in rest], len(basis))
+    cutting = _outlined(path, np.flatnonzero(path.cut), basis)
     size = float(np.max(np.nanmax(cutting, axis=0) - np.nanmin(cutting, axis=0)))
-    reach = sum(s.length for s in cuts) / (len(contour.corners) + 1)
+    reach = float(path.lengths[path.cut].sum()) / (len(contour.corners) + 1)
     magnify = magnification((contour.error.p95, contour.error.max), size, reach)
     kept, whole = _choose(contour, magnify)
     foot = track.feet(kept) @ basis.T
-    gap = np.where(whole[:, None], contour.run.actual[kept, :3] @ basis.T - foot, np.nan)
+    gap = np.where(whole[:, None], places(contour.run.actual, kept) @ basis.T - foot, np.nan)
+    error = track.distance[kept]
     return Drawing(
         names=tuple(_name(b) for b in basis),
         path=cutting,
-        rapids=rapids,
+        rapids=_outlined(path, np.flatnonzero(~path.cut), basis),
         foot=foot,
         gap=gap,
-        error=error[kept],
+        error=error if track.right is None else np.where(track.right[kept], -error, error),
         time=contour.run.time[kept],
         line=path.lines[track.segment[kept]],
-        hairs=_even(contour.track.along[kept], ~np.isnan(gap[:, 0])),
+        hairs=_even(track.along[kept], ~np.isnan(gap[:, 0])),
         magnify=magnify,
     )
 
@@ -78,26 +86,70 @@ def _choose(contour: ContourResult, magnify: float) -> tuple[Index, NDArray[np.b
 
     Where the curve has to be interrupted, the next sample is there but not drawn.
     """
-    track = contour.track
-    moved = np.flatnonzero(contour.cutting)
-    foot, point = track.feet(moved), contour.run.actual[moved, :3]
-    shown = foot + magnify * (point - foot)
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shown, axis=0), axis=1))])
-    even = np.searchsorted(way, np.linspace(0.0, way[-1], POINTS))
-    joints = np.flatnonzero(np.diff(track.segment[moved]) > 0) + 1
-    if len(joints) > JOINTS_MAX:
-        joints = joints[:0]
-    parts = [np.clip(even, 0, len(moved) - 1), keep_peaks(track.distance[moved], BUCKETS)]
-    chosen = np.unique(np.concatenate([*parts, joints, joints - 1]))
-    gap = point[chosen] - foot[chosen]
-    size = np.linalg.norm(gap, axis=1)
-    turned = np.linalg.norm(np.diff(gap, axis=0), axis=1) > JUMP * np.maximum(size[1:], size[:-1])
-    corner = turned & (np.diff(track.segment[moved[chosen]]) > 0) & (np.diff(chosen) == 1)
-    pause = np.diff(np.cumsum(~contour.cutting)[moved[chosen]]) > 0
+    track, actual = contour.track, contour.run.actual
+    moved = np.empty(int(contour.cutting.sum()), dtype=np.int32)
+    count, joined, length, last = 0, 0, 0.0, None
+    ways, joints = [np.zeros(1)], [np.zeros(0, dtype=np.int64)]
+    stride = 1 + len(moved) // WAYS
+    for own in blocks(len(contour.cutting), actual):
+        rows = own.start + np.flatnonzero(contour.cutting[own])
+        if not len(rows):
+            continue
+        moved[count : count + len(rows)] = rows
+        foot = track.feet(rows)
+        shown = foot + magnify * (places(actual, rows) - foot)
+        segment = track.segment[rows]
+        if last is not None:
+            shown = np.concatenate([last[0], shown])
+            segment = np.concatenate([last[1], segment])
+        turns = np.flatnonzero(segment[1:] > segment[:-1]) + count + (last is None)
+        joined += len(turns)
+        if joined <= JOINTS_MAX:
+            joints.append(turns)
+        way = length + np.cumsum(norms(shown[1:] - shown[:-1]))
+        length = float(way[-1]) if len(way) else length
+        place = np.arange(count + (last is None), count + len(rows))
+        ways.append(way[place % stride == 0])
+        count, last = count + len(rows), (shown[-1:], segment[-1:])
+    even = stride * np.searchsorted(np.concatenate(ways), np.linspace(0.0, length, POINTS))
+    parts = [np.minimum(even, len(moved) - 1)]
+    parts.append(peaks_of(len(moved), lambda a, b: track.distance[moved[a:b]][:, None], BUCKETS))
+    if joined <= JOINTS_MAX:
+        parts += [*joints, *(j - 1 for j in joints)]
+    chosen = distinct(np.concatenate(parts))
+    rows = moved[chosen]
+    gap = places(actual, rows) - track.feet(rows)
+    size = norms(gap)
+    turned = norms(gap[1:] - gap[:-1]) > JUMP * np.maximum(size[1:], size[:-1])
+    corner = turned & (np.diff(track.segment[rows]) > 0) & (np.diff(chosen) == 1)
+    pause = np.diff(rows - chosen) > 0  # samples between that do not cut
     breaks = np.flatnonzero(corner | pause) + 1
-    kept = np.insert(moved[chosen], breaks, moved[chosen][breaks])
+    kept = np.insert(rows, breaks, rows[breaks])
     whole = np.insert(np.ones(len(chosen), dtype=bool), breaks, False)
     return kept, whole
+
+
+def _outlined(path: Path, chosen: Index, basis: Array) -> Array:
+    """Points to draw some segments by, a row of NaN where one does not start at the last one's end.
+
+    Of a path of very many points those are left out that a picture cannot show.
+    """
+    found: list[Array] = []
+    end = np.full((1, len(basis)), np.nan)
+    size = float(np.ptp(path.segments.columns.start[chosen], axis=0).max()) if len(chosen) else 0.0
+    thin = size / FINE if len(chosen) > SEGMENTS_MAX else 0.0
+    for first in range(0, len(chosen), PART):
+        points, starts = outline(path.segments, chosen[first : first + PART])
+        points = points @ basis.T
+        before = np.concatenate([end, points[starts[1:] - 1]])
+        apart = starts[~(np.abs(points[starts] - before).max(axis=1) <= JOINED)]
+        for a, b in pairwise([0, *apart[apart > 0].tolist(), len(points)]):
+            if a in apart and found:
+                found.append(np.full((1, len(basis)), np.nan))
+            piece = points[a:b]
+            found.append(piece[simplified(piece, thin)] if thin else piece)
+        end = points[-1:]
+    return np.concatenate(found) if found else np.empty((0, len(basis)))
 
 
 def _name(direction: Array) -> str:
@@ -105,20 +157,8 @@ def _name(direction: Array) -> str:
     return AXES[main] if abs(direction[main]) > 1.0 - 1e-9 else AXES[main] + "\N{PRIME}"
 
 
-def _pieces(parts: list[Array], width: int) -> Array:
-    """Join polylines; a row of NaN where one does not start at the end of the last."""
-    if not parts:
-        return np.empty((0, width))
-    rows: list[Array] = [parts[0]]
-    for before, after in pairwise(parts):
-        if np.abs(before[-1] - after[0]).max() > 1e-9:
-            rows.append(np.full((1, before.shape[1]), np.nan))
-        rows.append(after)
-    return np.concatenate(rows)
-
-
 def _even(along: Array, usable: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Points at even distances along the path."""
     found = np.flatnonzero(usable)
     wanted = np.linspace(along[found[0]], along[found[-1]], HAIRS)
-    return np.unique(found[np.clip(np.searchsorted(along[found], wanted), 0, len(found) - 1)])
+    return distinct(found[np.clip(np.searchsorted(along[found], wanted), 0, len(found) - 1)])

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from typing import Any, Protocol
 
+import numpy as np
+
 from motionfmu.contour import ContourResult
 from motionfmu.contour.circles import CircularTest, Way
 from motionfmu.report.numbers import MINUS, figure, length
@@ -241,7 +243,8 @@ def corner_table(contour: ContourResult) -> str:
 
 def line_table(contour: ContourResult) -> str:
     """Program lines with the largest errors."""
-    worst = sorted(contour.numbers()["commands"], key=lambda row: -row["max"])[:LINES_SHOWN]
+    commands = contour.commands
+    worst = commands[np.argsort(-commands["max"], kind="stable")[:LINES_SHOWN]]
     rows = [
         (
             str(row["line"]),

@@ -7,6 +7,7 @@ import numpy as np
 
 from motionfmu import units
 from motionfmu.contour import ContourInput, ContourResult, Path, Trace, analyse
+from motionfmu.contour.commanded import Known
 from motionfmu.contour.planned import path_of_text
 from motionfmu.contour.scaled import Scaled
 from motionfmu.errors import InputError, NoNumber
@@ -25,15 +26,18 @@ def contour_of(
     run: Recorded,
     only_drawn: Collection[str],
     progress: Callable[[float], None] = lambda share: None,
+    known: Known | None = None,
 ) -> ContourResult:
     """Analyse the contour of a run; signals that only figures ask for are no traces.
 
-    It is an InputError if there is no [contour] table, NoNumber if the run has no contour.
+    `known` is what it has in common with other runs. It is an InputError if there is no [contour]
+    table, NoNumber if the run has no contour.
     """
     document = run.resolver.document
     contour = document.body.contour
     if contour is None:
         raise InputError(f"{document.file}: the scenario has no [contour] table")
+    known = Known() if known is None else known
     library, card = library_of(run.resolver), contour.pulses.partition(".")[0]
 
     def axes(name: str) -> Any:
@@ -48,7 +52,7 @@ def contour_of(
     try:
         return analyse(
             ContourInput(
-                path=_path(run),
+                path=_path(run, known),
                 time=run.time,
                 actual=_millimetres(run, contour.position),
                 commanded=Scaled(run[contour.pulses], pulses_per_mm),
@@ -62,15 +66,16 @@ def contour_of(
                 traces=traces,
             ),
             progress,
+            known,
         )
     except (ValueError, ArithmeticError) as error:
         raise NoNumber(f"no contour: {error}") from None
 
 
-def _path(run: Recorded) -> Path:
+def _path(run: Recorded, known: Known) -> Path:
     if run.geometry is None:
         raise ValueError("the library wrote no path")
-    return path_of_text(run.geometry, "planned path")
+    return known.path(run.geometry, lambda text: path_of_text(text, "planned path"))
 
 
 def _traces(run: Recorded, hidden: Collection[str]) -> tuple[Trace, ...]:

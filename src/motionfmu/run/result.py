@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from motionfmu.contour import ContourResult
+    from motionfmu.contour.commanded import Known
     from motionfmu.iso9283 import Evaluation
 
 
@@ -74,6 +75,8 @@ class Result(Mapping[str, NDArray[Any]]):
         Why it ended: ``stop = 4 s``, ``mcc.done at 16.213 s``.
     signal_at : float or None
         When the signal that ends the run came [s]; None if it did not, or a time ends it.
+    known : Known or None
+        What its contour has in common with those of other runs of a session.
 
     Examples
     --------
@@ -94,6 +97,7 @@ class Result(Mapping[str, NDArray[Any]]):
     overrides: list[str] = field(default_factory=list)
     stopped: str = ""
     signal_at: float | None = None
+    known: "Known | None" = None
     _contour: "ContourResult | NoNumber | None" = None
     _iso9283: "Evaluation | NoNumber | None" = None
 
@@ -262,7 +266,7 @@ class Result(Mapping[str, NDArray[Any]]):
             from motionfmu.run.contour_of import contour_of
 
             try:
-                self._contour = contour_of(self, self.scenario.only_drawn)
+                self._contour = contour_of(self, self.scenario.only_drawn, known=self.known)
             except NoNumber as reason:
                 self._contour = reason
         if isinstance(self._contour, NoNumber):

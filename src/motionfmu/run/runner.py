@@ -251,7 +251,7 @@ def _sparse(result: Result, system: System) -> tuple[str, ...]:
     """Warnings about a contour of rows of every so many steps, if there is one."""
     if system.every == 1 or result.scenario.document.body.contour is None:
         return ()
-    from motionfmu.contour.sparse import sparse  # which takes scipy with it
+    from motionfmu.contour.sparse import sparse
 
     try:
         return tuple(sparse(result.contour(), system.step_ns * 1e-9))

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from motionfmu import columns
 from motionfmu.errors import InputError, suggestion
@@ -14,6 +14,9 @@ from motionfmu.run.result import Result
 from motionfmu.run.wired import Wired, own_settings
 from motionfmu.scenarios.system import End, Setting, System, split
 from motionfmu.scenarios.values import settings, start_values
+
+if TYPE_CHECKING:
+    from motionfmu.contour.commanded import Known
 
 
 class Session:
@@ -71,6 +74,7 @@ class Session:
         there = {split(n)[0] for n in (*written, *self._given)}
         self._unset = {n: v for n, v in usual.items() if n not in there}
         base = replace(self._options, set={**self._unset, **self._given})
+        self._known = _known(scenario)
         used = scenario.ends if signals is None else list(signals)
         self._wired = Wired.plan(scenario, base, used, self._folder)
         return engines.opened(self._options.engine, self._wired.job(self._options.fmi))
@@ -104,7 +108,9 @@ class Session:
         def engine(system: System) -> Ran:
             return replace(self._engine.run(system, self._options.progress), warnings=[])
 
-        return wired.run(engine, replace(self._options, set={**self._options.set, **given}))
+        result = wired.run(engine, replace(self._options, set={**self._options.set, **given}))
+        result.known = self._known
+        return result
 
     def __repr__(self) -> str:
         return f"<Session {self.scenario.name}: varies {', '.join(sorted(self._varied))}>"
@@ -121,3 +127,12 @@ class Session:
 
     def __exit__(self, *error: object) -> None:
         self.close()
+
+
+def _known(scenario: Prepared) -> "Known | None":
+    """What the contours of runs have in common; None if the scenario does not look at it."""
+    if scenario.document.body.contour is None:
+        return None
+    from motionfmu.contour.commanded import Known
+
+    return Known()

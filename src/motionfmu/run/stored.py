@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from motionfmu.columns import Made
+from motionfmu.contour.scaled import places
 from motionfmu.run.result import Result
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import wires
@@ -102,17 +104,27 @@ def _beside(value: Any, folder: Path) -> Any:
 
 def track(contour: "ContourResult") -> dict[str, Any]:
     """The contour error along the path, and the ways round its circles, as arrays."""
-    # time [s]; along the path, error, nearest point and gap to it [mm], NaN where nothing is cut;
-    # of circle i and each way round it the angle [rad] and the radial deviation [mm].
-    way, cut = contour.track, contour.cutting
-    size = way.distance if way.signed is None else way.signed
-    gap = np.where(cut[:, None], contour.run.actual[:, :3] - way.foot, np.nan)
+    # time [s]; along the path, error, nearest point and gap to it [mm], NaN where nothing is cut; a
+    # row for each command; of circle i and each way round it the angle [rad] and the radial
+    # deviation [mm]. What has a row a sample is made in parts.
+    way, cut, actual = contour.track, contour.cutting, contour.run.actual
+    count = len(cut)
+
+    def error(rows: slice) -> Any:
+        size = way.distance[rows]
+        size = size if way.right is None else np.where(way.right[rows], -size, size)
+        return np.where(cut[rows], size, np.nan)
+
+    def gap(rows: slice) -> Any:
+        return np.where(cut[rows, None], places(actual, rows) - way.feet(rows), np.nan)
+
     found: dict[str, Any] = {
         "time": contour.run.time,
         "along": way.along,
-        "error": np.where(cut, size, np.nan),
-        "foot": way.foot.astype(np.float32),
-        "gap": gap.astype(np.float32),
+        "error": Made((count,), np.dtype("f8"), error),
+        "foot": Made((count, 3), np.dtype("f4"), way.feet),
+        "gap": Made((count, 3), np.dtype("f4"), gap),
+        "commands": contour.commands,
     }
     for test in contour.circles:
         for name, one in (("ccw", test.ccw), ("cw", test.cw)):
