@@ -63,7 +63,7 @@ def limits_of(study: Study) -> dict[str, object]:
                 worst["sensitivity"] = max(worst["sensitivity"], 1.0 / has[0])
                 worst["gain"] = min(worst["gain"], math.exp(min(has[1], has[2])))
                 worst["phase"] = min(worst["phase"], math.degrees(has[3]))
-            answer = part.step(gains[k], 2, 2000, False).outputs[0]
+            answer = part.step(gains[k], 2, 2000, False).value[0]
             over = max(over, float(answer.max()) - 1.0)
             slow = max(slow, part.slowest(gains[k])[0])
     return {

@@ -23,7 +23,7 @@ from motionfmu.tune.axis import AxisStudy, Signals
 from motionfmu.tune.choice import Variable
 from motionfmu.tune.curve import Loop, margin
 from motionfmu.tune.solve import solve
-from motionfmu.tune.steps import lifted, scan
+from motionfmu.tune.steps import Sloped, lifted, system
 from motionfmu.tune.study import Study, Values
 from motionfmu.tune.words import assumptions
 
@@ -72,20 +72,60 @@ def agree(slopes: np.ndarray, expected: np.ndarray, share: float) -> None:
     assert np.abs(slopes - expected).max() <= share * scale, (slopes, expected)
 
 
-def test_scan_and_lift_are_the_plain_recursion() -> None:
-    draw = np.random.default_rng(1)
-    a, b = draw.normal(size=(5, 5)) * 0.3, draw.normal(size=(5, 2))
-    u = np.cumsum(draw.normal(size=(2, 41)), axis=1)
-    fine = np.stack([np.interp(np.arange(201) / 5.0, np.arange(41), row) for row in u])
-    x, states = np.zeros(5), []
-    for k in range(201):
-        states.append(x)
-        x = a @ x + b @ fine[:, k]
-    found = scan(a, b @ fine)
-    np.testing.assert_allclose(found, np.array(states).T, atol=1e-12)
-    none = np.zeros((0, 5, 5)), np.zeros((0, 5, 2))
-    every = lifted(a, b, *none, 5).states(u)
-    np.testing.assert_allclose(every, np.array(states).T[:, ::5], atol=1e-12)
+def random_system(at: float, rate: bool) -> tuple[Sloped, ...]:
+    """A, B, C, D of five states, two inputs, three outputs, along a line of one gain."""
+    draw, found = np.random.default_rng(1), []
+    for shape, size in (((5, 5), 0.3), ((5, 2), 1.0), ((3, 5), 1.0), ((3, 2), 1.0)):
+        first, then = size * draw.normal(size=shape), 0.1 * draw.normal(size=(1, *shape))
+        found.append(Sloped(first + at * then[0], then if rate else then[:0]))
+    return tuple(found)
+
+
+@pytest.mark.parametrize("count", [31, 201])
+def test_chunks_are_the_plain_recursion(count: int) -> None:
+    """All outputs, at one step too; slopes are differences, of inputs that move with the gain."""
+    u, du = np.random.default_rng(2).normal(size=(2, 2, count))
+
+    def plain(at: float) -> np.ndarray:
+        (a, b, c, d), x, found = (m.value for m in random_system(at, False)), np.zeros(5), []
+        for now in (u + at * du).T:
+            found.append(c @ x + d @ now)
+            x = a @ x + b @ now
+        return np.array(found).T
+
+    driven = system(*random_system(0.0, True)).driven(u, du[None])
+    found = driven.outputs(slice(1, None))
+    np.testing.assert_allclose(found.value, plain(0.0)[1:], atol=1e-12)
+    slopes = (plain(1e-5) - plain(-1e-5)) / 2e-5
+    np.testing.assert_allclose(found.slopes[0], slopes[1:], atol=1e-7)
+    for k in (0, count // 2, count - 1):
+        one = driven.at(1, k)
+        np.testing.assert_allclose(one.value, found.value[0, k], atol=1e-12)
+        np.testing.assert_allclose(one.slopes, found.slopes[:, 0, k], atol=1e-12)
+    alone = system(*random_system(0.0, False)).driven(u).outputs(slice(1, None))
+    assert (alone.value == found.value).all() and alone.slopes.shape == (0, 2, count)
+
+
+@pytest.mark.parametrize("periods", [1, 5, 8])
+def test_periods_together_are_the_plain_recursion(periods: int) -> None:
+    """Their input goes straight from sample to sample; slopes are differences."""
+    u, count = np.cumsum(np.random.default_rng(3).normal(size=(2, 41)), axis=1), 41
+
+    def along(at: float, rate: bool) -> tuple[Sloped, ...]:
+        return lifted(*random_system(at, rate)[:2], periods)
+
+    a, b = (m.value for m in random_system(0.0, False)[:2])
+    whole, begin, end = (m.value for m in along(0.0, True))
+    x = np.zeros(5)
+    for k in range(count - 1):
+        known = whole @ x + begin @ u[:, k] + end @ u[:, k + 1]
+        for j in range(periods):
+            x = a @ x + b @ (u[:, k] + j / periods * (u[:, k + 1] - u[:, k]))
+        np.testing.assert_allclose(known, x, rtol=1e-12, atol=1e-12)
+    sides = zip(along(1e-5, False), along(-1e-5, False), along(0.0, True), strict=True)
+    for up, down, found in sides:
+        slope = (up.value - down.value) / 2e-5
+        np.testing.assert_allclose(found.slopes[0], slope, atol=1e-7)
 
 
 @pytest.mark.parametrize("gains", POINTS, ids=str)
@@ -93,12 +133,18 @@ def test_slopes_are_differences(axis: AxisStudy, gains: np.ndarray) -> None:
     t = 1e-3 * np.arange(700)
     pulses = np.round(20_000 * (1.0 - np.cos(9.0 * t)))  # two reversals
     found = axis.motion(gains, pulses, 10)
-    expected = differences(lambda g: axis.motion(g, pulses, 10, False).outputs, gains)
+
+    def numbers(g: np.ndarray) -> np.ndarray:
+        motion = axis.motion(g, pulses, 10, False)
+        return np.append(motion.position.value, [peak.value for peak in motion.peaks])
+
+    expected = differences(numbers, gains)
     for k in range(3):
-        for row in range(3):
-            agree(found.slopes[k, row], expected[k, row], 2e-3)
+        agree(found.position.slopes[k], expected[k, :700], 2e-3)
+        for peak, slope in zip(found.peaks, expected[k, 700:], strict=True):
+            assert peak.slopes[k] == pytest.approx(slope, rel=2e-3, abs=2e-3 * abs(peak.value))
     step = axis.step(gains, 5, 400)
-    agree(step.slopes, differences(lambda g: axis.step(g, 5, 400, False).outputs, gains), 1e-5)
+    agree(step.slopes, differences(lambda g: axis.step(g, 5, 400, False).value, gains), 1e-5)
     agree(axis.slowest(gains)[1], differences(lambda g: np.array(axis.slowest(g)[0]), gains), 1e-4)
     for name in axis.loops:
         slopes = margin(axis.loop(name, gains)).slopes.T
@@ -144,7 +190,7 @@ def test_a_circle_has_the_radius_of_theory() -> None:
     gains, period = np.array([float(model.value("mcc.p_gain"))]), study.period
     kp, w = kp_of(model), 8.0
     t = 10 * period * np.arange(4000)
-    y = study.motion(gains, np.cos(w * t) * 1e6, 10).outputs[0]
+    y = study.motion(gains, np.cos(w * t) * 1e6, 10).position.value
     settled = t > 1.0
     waves = np.stack([np.cos(w * t), np.sin(w * t)])[:, settled]
     radius = np.linalg.norm(np.linalg.lstsq(waves.T, y[settled], rcond=None)[0])
@@ -329,7 +375,7 @@ def test_feed_forward_shortens_the_lag_and_leaves_the_step(tmp_path: Path) -> No
     study = AxisStudy(model, ["drives.position_gain", "drives.feed_forward"], SIGNALS)
     without, full = np.array([60.0, 0.0]), np.array([60.0, 1.0])
     assert study.lag(without) - study.lag(full) == pytest.approx(1.0 / 60.0, rel=1e-6)
-    answers = [study.step(g, 10, 300, False).outputs for g in (without, full)]
+    answers = [study.step(g, 10, 300, False).value for g in (without, full)]
     np.testing.assert_array_equal(*answers)
 
 

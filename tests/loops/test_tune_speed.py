@@ -14,7 +14,6 @@ from motionfmu.linear.pointwise import Pointwise, Quick
 from motionfmu.tune import problem, solve
 from motionfmu.tune.curve import Loop
 from motionfmu.tune.path import PathCost
-from motionfmu.tune.steps import forgotten, lifted, scan
 from motionfmu.tune.study import Study, Values
 
 PLANTS = [
@@ -71,23 +70,6 @@ def test_a_quick_call_has_the_bits_of_a_plain_one() -> None:
     quick(*(2.0 * v for v in at))
     for found, plain in zip(first, ca.Function("f", arguments, free)(*at), strict=True):
         assert found.shape == plain.shape and (found == plain.full()).all()
-
-
-def test_states_that_are_forgotten_cost_no_rounds() -> None:
-    """A delay of three periods before two poles, five periods together: rank 2 of 5 is left."""
-    draw = np.random.default_rng(5)
-    a = np.diag([0.9, 0.5, 0.0, 0.0, 0.0]) + np.diag([0.3, 2e5, 1.0, 1.0], 1)
-    b, none = np.array([[0.0], [0.0], [0.0], [0.0], [1.0]]), np.zeros((0, 5, 5))
-    u = draw.normal(size=(1, 500))
-    whole = lifted(a, b, none, np.zeros((0, 5, 1)), 5)
-    to, back = forgotten(whole.a)
-    turned = whole.turned(to, back)
-    assert (turned.a[:, :3] == 0.0).all() and np.linalg.matrix_rank(turned.a[:, 3:]) == 2
-    np.testing.assert_allclose(to @ turned.states(u), whole.states(u), rtol=1e-9, atol=1e-6)
-    x, v = np.zeros(5), draw.normal(size=(2, 5, 40))
-    for k in range(39):
-        x = turned.a @ x + v[1, :, k]
-    np.testing.assert_allclose(scan(turned.a, v)[1, :, -1], x, rtol=1e-12)
 
 
 def test_a_loop_at_many_frequencies_is_that_at_one(study: Study) -> None:

@@ -4,7 +4,6 @@ import itertools
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.linear.block import Matrix, Plant
 from motionfmu.linear.pointwise import Quick
+from motionfmu.memo import Memo
 from motionfmu.scenarios.system import nanoseconds
 
 # As src/plant/plant_model.c chooses its sub-steps: (h/n) |lambda| <= 2.
@@ -149,7 +149,7 @@ class Linearised:
         slopes = [ca.jacobian(change, z), ca.jacobian(ode.y, z)]
         self._slopes = Quick("slopes", arguments, slopes)
         self._start = Quick("start", [ode.p], [ode.start])
-        self._points: dict[Any, Point] = {}  # found before; axes are often alike
+        self._points: Memo[Point] = Memo(_POINTS_MAX)  # axes are often alike
 
     def parameters(self, values: Mapping[str, float]) -> Matrix:
         """Parameter vector of values by name."""
@@ -183,11 +183,7 @@ class Linearised:
         have their start values, or those of `left`. A ValueError if there is no such motion.
         """
         asked = p.tobytes(), *(tuple(sorted(d.items())) for d in (stated, left or {}))
-        if asked not in self._points:
-            if len(self._points) >= _POINTS_MAX:
-                self._points.clear()
-            self._points[asked] = self._point(p, stated, left)
-        return self._points[asked]
+        return self._points(asked, lambda: self._point(p, stated, left))
 
     def _point(
         self, p: Matrix, stated: Mapping[str, float], left: Mapping[str, float] | None

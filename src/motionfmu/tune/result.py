@@ -7,6 +7,7 @@ import numpy as np
 
 from motionfmu.linear import LoopGain, gain_of
 from motionfmu.linear.gains import in_lines
+from motionfmu.memo import Memo
 from motionfmu.run import Result
 from motionfmu.tune.curve import margin
 from motionfmu.tune.path import Measured, PathError
@@ -15,6 +16,9 @@ from motionfmu.tune.steps import Array
 from motionfmu.tune.study import Study, Values
 from motionfmu.tune.trial import Trial
 from motionfmu.tune.words import assumptions, plant_text
+
+# Gains whose margins are remembered: those of before and of after.
+_KEPT = 2
 
 
 @dataclass(frozen=True)
@@ -68,8 +72,8 @@ class Tuned:
     seconds: float = 0.0
     trial: Trial | None = None
     # Asked for by the gains file, the page and the numbers.
-    _margins: dict[bytes, list[LoopMargins]] = field(default_factory=dict, repr=False)
-    _position_gains: dict[bytes, list[LoopGain]] = field(default_factory=dict, repr=False)
+    _margins: Memo[list[LoopMargins]] = field(default_factory=lambda: Memo(_KEPT), repr=False)
+    _position_gains: Memo[list[LoopGain]] = field(default_factory=lambda: Memo(_KEPT), repr=False)
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -123,10 +127,7 @@ class Tuned:
         list of LoopMargins
             One for each axis and loop.
         """
-        place = z.tobytes()
-        if place not in self._margins:
-            self._margins[place] = least_margins(self.study, z)
-        return self._margins[place]
+        return self._margins(z.tobytes(), lambda: least_margins(self.study, z))
 
     def lags(self, z: Array) -> dict[int, float]:
         """Following error over speed of each axis, nominal plant.
@@ -155,13 +156,7 @@ class Tuned:
         -------
         list of LoopGain
         """
-        study, place = self.study, z.tobytes()
-        if place not in self._position_gains:
-            given = {**study.set, **settings(study, z)}
-            found = [gain_of(study.scenario, given, k, study.at) for k in study.axes]
-            each = sorted(sum(found, ()), key=lambda g: (g.name, g.axis))
-            self._position_gains[place] = list(dict.fromkeys(each))
-        return self._position_gains[place]
+        return self._position_gains(z.tobytes(), lambda: _position_gains(self.study, z))
 
     def toml(self) -> str:
         """The gains file, for ``motionfmu run SCENARIO --set FILE``.
@@ -272,6 +267,12 @@ def least_margins(study: Study, z: Array) -> list[LoopMargins]:
                 )
             )
     return rows
+
+
+def _position_gains(study: Study, z: Array) -> list[LoopGain]:
+    given = {**study.set, **settings(study, z)}
+    found = [gain_of(study.scenario, given, k, study.at) for k in study.axes]
+    return list(dict.fromkeys(sorted(sum(found, ()), key=lambda g: (g.name, g.axis))))
 
 
 def settings(study: Study, z: Array) -> dict[str, Any]:

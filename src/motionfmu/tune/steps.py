@@ -1,108 +1,203 @@
 """Linear difference equations over many steps, with their derivatives."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import matrix_balance, svd
 
 Array = NDArray[np.float64]
+# Steps of a chunk.
+_CHUNK = 32
+# How much later than an input of a chunk its outputs are; that many steps for those before it.
+_LATE = np.subtract.outer(np.arange(_CHUNK), np.arange(_CHUNK))
+_LATE[_LATE < 0] = _CHUNK
 # A transient below this share of its start is over.
 _FORGOTTEN = 1e-12
-_ROUNDS_MAX = 40
-# Share of a matrix that is rounding.
-_NOTHING = 1e-13
+
+
+@dataclass(frozen=True)
+class Sloped:
+    """An array and its derivatives to the gains, which are the first axis; there may be none."""
+
+    value: Any
+    slopes: Any
+
+    def __matmul__(self, other: "Sloped") -> "Sloped":
+        slopes = self.slopes @ other.value + self.value @ other.slopes
+        return Sloped(self.value @ other.value, slopes)
+
+    def __add__(self, other: "Sloped") -> "Sloped":
+        return Sloped(self.value + other.value, self.slopes + other.slopes)
+
+    def __sub__(self, other: "Sloped") -> "Sloped":
+        return Sloped(self.value - other.value, self.slopes - other.slopes)
+
+    def __getitem__(self, rows: slice) -> "Sloped":
+        return Sloped(self.value[rows], self.slopes[:, rows])
+
+    @property
+    def alone(self) -> "Sloped":
+        """Without derivatives."""
+        return Sloped(self.value, self.slopes[:0])
+
+    def beside(self, other: "Sloped") -> "Sloped":
+        """Both along the last axis."""
+        pairs = (self.value, other.value), (self.slopes, other.slopes)
+        return Sloped(*(np.concatenate(pair, axis=-1) for pair in pairs))
+
+    def above(self, other: "Sloped") -> "Sloped":
+        """Both along the first axis."""
+        value = np.concatenate([self.value, other.value])
+        return Sloped(value, np.concatenate([self.slopes, other.slopes], axis=1))
+
+    def columns(self, part: slice) -> "Sloped":
+        """Some places of the last axis."""
+        return Sloped(self.value[..., part], self.slopes[..., part])
+
+
+def blocks(rows: list[list[Any]], gains: int) -> Sloped:
+    """A matrix of blocks: of such with derivatives to so many gains, and plain ones."""
+    values = [[b.value if isinstance(b, Sloped) else b for b in row] for row in rows]
+    change = [
+        [b.slopes if isinstance(b, Sloped) else np.zeros((gains, *b.shape)) for b in row]
+        for row in rows
+    ]
+    return Sloped(np.block(values), np.block(change))
+
+
+def power(a: Sloped, count: int) -> Sloped:
+    """A^count, count > 0, by squares."""
+    found = None
+    while True:
+        if count % 2:
+            found = a if found is None else found @ a
+        count //= 2
+        if not count:
+            assert found is not None
+            return found
+        a = a @ a
+
+
+def lifted(a: Sloped, b: Sloped, count: int) -> tuple[Sloped, Sloped, Sloped]:
+    """So many periods as one, whose input goes straight from the value at its beginning to another.
+
+    The state matrix, and the input matrices of the values at the beginning and at the end.
+    """
+    # The states, the input, and what it grows by over all periods.
+    (n, m), gains = b.value.shape, len(b.slopes)
+    one, none = np.eye(m), np.zeros((m, m))
+    rows: list[list[Any]] = [
+        [a, b, np.zeros((n, m))],
+        [np.zeros((m, n)), one, one / count],
+        [np.zeros((m, n)), none, one],
+    ]
+    whole = power(blocks(rows, gains), count)[:n]
+    end = whole.columns(slice(n + m, None))
+    return whole.columns(slice(n)), whole.columns(slice(n, n + m)) - end, end
 
 
 def scan(a: Array, v: Array) -> Array:
     """States (..., n, count) of x[k + 1] = A x[k] + v[k], x[0] = 0.
 
     The sum over past inputs is doubled round by round, A^1, A^2, A^4 ..., until what is older
-    is forgotten. States at the beginning on which nothing depends are left to the end.
+    is forgotten.
     """
-    first = int(np.argmax(a.any(axis=0))) if a.any() else len(a)
     x = np.zeros_like(v)
     x[..., 1:] = v[..., :-1]
-    power, reach, rest = a[first:, first:], 1, x[..., first:, :]
-    for _ in range(_ROUNDS_MAX):
-        if reach >= x.shape[-1] or not np.abs(power).max(initial=0.0) > _FORGOTTEN:
-            break
-        rest[..., reach:] += power @ rest[..., :-reach]
+    power, reach = a, 1
+    while reach < x.shape[-1] and np.abs(power).max(initial=0.0) > _FORGOTTEN:
+        x[..., reach:] += power @ x[..., :-reach]
         power, reach = power @ power, 2 * reach
-    if first:
-        x[..., :first, 1:] += a[:first, first:] @ rest[..., :-1]
     return x
 
 
 @dataclass(frozen=True)
-class Lifted:
-    """Several periods at once, and the derivatives to the gains.
+class System:
+    """x[k + 1] = A x[k] + B u[k], y[k] = C x[k] + D u[k], in chunks of c steps.
 
-    The input goes straight from its value at the beginning to that at the end.
+    The outputs of a chunk are one product of matrices with its inputs and the state before it.
     """
 
-    a: Array  # (n, n) state matrix
-    begin: Array  # (n, m) input matrix of the value at the beginning
-    end: Array  # (n, m) of that at the end
-    da: Array  # (g, n, n) derivatives to the gains, and so on
-    dbegin: Array
-    dend: Array
+    step: Sloped  # (n, n) the state matrix of a chunk
+    feed: Sloped  # (n, c m) from the inputs of a chunk to the state after it
+    show: Sloped  # (p, c, c m + n) from its inputs and the state before it to its outputs
 
-    def turned(self, to: Array, back: Array) -> "Lifted":
-        """The same in the states of `forgotten`, x = `to` times them."""
-        a = back @ self.a @ to
-        small = np.abs(a).max(axis=0) < _NOTHING * np.abs(a).max()
-        a[:, small] = 0.0
-        begin, end, dbegin, dend = (
-            back @ m for m in (self.begin, self.end, self.dbegin, self.dend)
-        )
-        return Lifted(a, begin, end, back @ self.da @ to, dbegin, dend)
-
-    def inputs(self, which: slice) -> "Lifted":
-        """The same with some of its inputs."""
-        moved = self.begin, self.end, self.dbegin, self.dend
-        begin, end, dbegin, dend = (m[..., which] for m in moved)
-        return Lifted(self.a, begin, end, self.da, dbegin, dend)
-
-    def states(self, u: Array) -> Array:
-        """States (n, count) driven by an input (m, count)."""
-        return scan(self.a, _driven(self.begin, self.end, u))
-
-    def slopes(self, x: Array, u: Array) -> Array:
-        """Derivatives (g, n, count) of states to gains."""
-        return scan(self.a, self.da @ x + _driven(self.dbegin, self.dend, u))
+    def driven(self, u: Array, du: Array | None = None) -> "Driven":
+        """Inputs (m, count), and derivatives (g, m, count) if they have some, from rest."""
+        inputs = _chunks(u)
+        x = scan(self.step.value, self.feed.value @ inputs.T)
+        change = self.step.slopes @ x + self.feed.slopes @ inputs.T
+        if du is None:
+            moved = scan(self.step.value, change).swapaxes(-1, -2)
+        else:
+            dinputs = _chunks(du)
+            change += self.feed.value @ dinputs.swapaxes(-1, -2)
+            dx = scan(self.step.value, change).swapaxes(-1, -2)
+            moved = np.concatenate([dinputs, dx], axis=-1)
+        return Driven(self.show, np.hstack([inputs, x.T]), moved, u.shape[-1])
 
 
-def _driven(begin: Array, end: Array, u: Array) -> Array:
-    """What an input adds, as one product of matrices: those of one column are slow."""
-    both = np.concatenate([u, np.roll(u, -1, axis=-1)], axis=-2)
-    found: Array = np.concatenate([begin, end], axis=-1) @ both
-    return found
+@dataclass(frozen=True)
+class Driven:
+    """A system with its inputs, whose outputs can be asked for."""
+
+    show: Sloped
+    known: Array  # (chunks, c m + n) inputs of each chunk and the state before it
+    moved: Array  # (g, chunks, w) derivatives of the last of these
+    count: int
+
+    def outputs(self, rows: slice, slopes: bool = True) -> Sloped:
+        """Some outputs (p, count)."""
+        show = self.show[rows] if slopes else self.show[rows].alone
+        moved = self.moved[: len(show.slopes)]
+        p, c, w = show.value.shape
+        value = self.known @ show.value.reshape(p * c, w).T
+        change = self.known @ show.slopes.reshape(len(moved), p * c, w).swapaxes(-1, -2)
+        last = moved.shape[-1]
+        change += moved @ show.value[..., w - last :].reshape(p * c, last).T
+        return Sloped(*(self._along(v, p, c) for v in (value, change)))
+
+    def _along(self, found: Array, p: int, c: int) -> Array:
+        """Outputs (..., p, count) of those of chunks (..., chunks, p c)."""
+        *g, chunks, _ = found.shape
+        rows = found.reshape(*g, chunks, p, c).swapaxes(-2, -3).reshape(*g, p, chunks * c)
+        return rows[..., : self.count]
+
+    def at(self, row: int, k: int) -> Sloped:
+        """One output at one step."""
+        chunk, place = divmod(k, self.show.value.shape[1])
+        known, moved = self.known[chunk], self.moved[:, chunk]
+        value, change = self.show.value[row, place], self.show.slopes[:, row, place]
+        return Sloped(value @ known, change @ known + moved @ value[len(value) - moved.shape[-1] :])
 
 
-def forgotten(a: Array) -> tuple[Array, Array]:
-    """T and its inverse: T^-1 A T has first what is forgotten after one step: columns of 0.
+def _chunks(u: Array) -> Array:
+    """Inputs (..., chunks, c m) of inputs (..., m, count); zeros fill the last."""
+    *g, m, count = u.shape
+    chunks = -(-count // _CHUNK)
+    wide = np.zeros((*g, m, chunks * _CHUNK))
+    wide[..., :count] = u
+    split = wide.reshape(*g, m, chunks, _CHUNK)
+    return np.moveaxis(split, -3, -1).reshape(*g, chunks, _CHUNK * m)
 
-    Several periods together leave nothing of what was delayed by some. T is orthogonal in balanced
-    states, so no digits are lost.
-    """
-    balanced, (scale, _) = matrix_balance(a, permute=False, separate=True)
-    turn = svd(balanced)[2][::-1].T
-    return scale[:, None] * turn, turn.T / scale
 
-
-def lifted(a: Array, b: Array, da: Array, db: Array, count: int) -> Lifted:
-    """Put several periods together, with derivatives (g, ...)."""
-    n = len(a)
-    power, dpower = np.eye(n), np.zeros_like(da)
-    begin, end = np.zeros_like(b), np.zeros_like(b)
-    dbegin, dend = np.zeros_like(db), np.zeros_like(db)
-    for k in range(count - 1, -1, -1):  # A^(count - 1 - k) B u[k]
-        part, dpart = power @ b, dpower @ b + power @ db
-        share = k / count
-        begin += (1.0 - share) * part
-        end += share * part
-        dbegin += (1.0 - share) * dpart
-        dend += share * dpart
-        power, dpower = a @ power, da @ power + a @ dpower
-    return Lifted(power, begin, end, dpower, dbegin, dend)
+def system(a: Sloped, b: Sloped, c: Sloped, d: Sloped) -> System:
+    """Put a system in chunks."""
+    (n, m), p = b.value.shape, len(c.value)
+    x, y, step = b, c, a  # A^k B side by side and C A^k one above the other: twice as many a round
+    for _ in range(_CHUNK.bit_length() - 1):
+        x, y, step = x.beside(step @ x), y.above(y @ step), step @ step
+    answers = c @ x
+    feed, show = [], []
+    parts = ((v.value, v.slopes) for v in (x, y, answers, d))
+    for of_x, of_y, answer, direct in zip(*parts, strict=True):
+        *g, _, _ = of_x.shape
+        feed.append(of_x.reshape(*g, n, _CHUNK, m)[..., ::-1, :].reshape(*g, n, _CHUNK * m))
+        each = np.zeros((*g, p, _CHUNK + 1, m))  # the last one is none
+        each[..., 0, :] = direct
+        each[..., 1:-1, :] = answer.reshape(*g, p, _CHUNK, m)[..., :-1, :]
+        from_inputs = each[..., _LATE, :].reshape(*g, p, _CHUNK, _CHUNK * m)
+        from_state = of_y.reshape(*g, _CHUNK, p, n).swapaxes(-2, -3)
+        show.append(np.concatenate([from_inputs, from_state], axis=-1))
+    return System(step, Sloped(*feed), Sloped(*show))

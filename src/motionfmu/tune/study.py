@@ -8,6 +8,7 @@ import numpy as np
 from threadpoolctl import ThreadpoolController
 
 from motionfmu.errors import InputError
+from motionfmu.memo import Memo
 from motionfmu.run import Result, Scenario
 from motionfmu.tune import choice
 from motionfmu.tune.axis import AxisStudy, Motion
@@ -81,7 +82,7 @@ class Study(Family):
         self._check_loops()
         self.limits = self._limits()  # in the order of `Values.slack`
         self.evaluations = 0
-        self._known: dict[tuple[bytes, bool], Values] = {}
+        self._known: Memo[Values] = Memo(_KNOWN_MAX)
 
     def _path(self, axis: int, part: AxisStudy) -> tuple[PathCost | MoveCost, float]:
         """What judges motions, and the lag [s] with the present gains."""
@@ -129,13 +130,8 @@ class Study(Family):
     def values(self, z: Array, slopes: bool = True) -> Values:
         """Cost and limits at shares (n,) of the variables' ranges, with slopes or zeros."""
         place = z.tobytes()
-        known = self._known.get((place, True)) or self._known.get((place, slopes))
-        if known is None:
-            known = self._counted(z, slopes, self.path)
-            if len(self._known) >= _KNOWN_MAX:
-                self._known.clear()
-            self._known[place, slopes] = known
-        return known
+        slopes = slopes or (place, True) in self._known
+        return self._known((place, slopes), lambda: self._counted(z, slopes, self.path))
 
     def rough(self, z: Array) -> Values:
         """The same without slopes; costs on the path from fewer samples of it."""
@@ -182,7 +178,7 @@ class Study(Family):
         found = {}
         for k, part in self.parts[plant].items():
             pulses = self.path.pulses[k]
-            found[k] = part.motion(gains[k], pulses, self.path.periods, False).outputs[0]
+            found[k] = part.motion(gains[k], pulses, self.path.periods, False).position.value
         return found
 
     def _cost(
@@ -200,11 +196,11 @@ class Study(Family):
                 motions[k] = part.motion(gains[k], pulses, path.periods, slopes)
         total = np.zeros(next(iter(rates.values())).shape[1])
         if on_path:
-            error = path.error({k: m.outputs[0] for k, m in motions.items()})
+            error = path.error({k: m.position.value for k, m in motions.items()})
             cost, slope = error.cost(self.problem.cost)
             for k, m in motions.items():
-                if m.slopes is not None:
-                    total += path.chain(slope, k, m.slopes[:, 0]) @ rates[k]
+                if slopes:
+                    total += path.chain(slope, k, m.position.slopes) @ rates[k]
             return cost, total, motions
         cost = 0.0
         for k, part in parts.items():
@@ -215,8 +211,7 @@ class Study(Family):
 
     def _after_step(self, part: AxisStudy, gains: Array) -> tuple[float, Array]:
         answer = part.step(gains, *self._step)
-        assert answer.slopes is not None
-        e, de = 1.0 - answer.outputs[0], -answer.slopes[:, 0]
+        e, de = 1.0 - answer.value[0], -answer.slopes[:, 0]
         weight = np.full(len(e), part.period * self._step[0])  # trapezoids, to rest
         weight[0] *= 0.5
         if self.problem.cost == "ise":
@@ -250,9 +245,9 @@ class Study(Family):
         if self.problem.limits.overshoot is not None:
             most = max(self.problem.limits.overshoot, _LEAST_OVERSHOOT)
             answer = part.step(gains, *self._step, slopes)
-            top = int(np.argmax(answer.outputs[0]))
-            rate = np.zeros(len(gains)) if answer.slopes is None else answer.slopes[:, 0, top]
-            add(1.0 - (answer.outputs[0, top] - 1.0) / most, -rate / most)
+            top = int(np.argmax(answer.value[0]))
+            rate = answer.slopes[:, 0, top] if slopes else np.zeros(len(gains))
+            add(1.0 - (answer.value[0, top] - 1.0) / most, -rate / most)
         if self.problem.limits.recovery is not None:
             slow, change = part.slowest(gains)
             most = self.problem.limits.recovery
@@ -262,13 +257,10 @@ class Study(Family):
     def _peaks(self, motion: Motion | None, count: int) -> tuple[list[float], list[Array]]:
         """Distances to the limits of outputs on the path, with slopes to so many gains."""
         found, changes = [], []
-        for row, most in enumerate(self.peaks.values(), 1):
+        for row, most in enumerate(self.peaks.values()):
             assert motion is not None
-            top = int(np.argmax(np.abs(motion.outputs[row])))
-            value = motion.outputs[row, top]
-            slope = np.zeros(count)
-            if motion.slopes is not None:
-                slope = motion.slopes[:, row, top] * np.sign(value)
-            found.append(1.0 - abs(value) / most)
-            changes.append(-slope / most)
+            peak = motion.peaks[row]
+            slopes = peak.slopes * np.sign(peak.value)
+            found.append(1.0 - abs(float(peak.value)) / most)
+            changes.append(-slopes / most if len(slopes) else np.zeros(count))
         return found, changes

@@ -157,7 +157,7 @@ def _step(tuned: Tuned) -> dict[str, Any]:
         gains = study.gains(z)
         for k, part in part_of.items():
             periods = max(1, round(8.0 * max(lag, 1e-3) / _STEPS / part.period))
-            answer = part.step(gains[k], periods, _STEPS, False).outputs[0]
+            answer = part.step(gains[k], periods, _STEPS, False).value[0]
             time = part.period * periods * 1e3 * np.arange(_STEPS, dtype=np.float64)
             color = AXES[(k - 1) % len(AXES)]
             samples = Samples(time, answer, steps=periods == 1)
