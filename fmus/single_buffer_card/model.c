@@ -44,6 +44,8 @@ static int read_host(struct fmu *f)
     struct mailbox *taken = &f->s.m.taken;
     struct link_host link;
     LINK_DDA(WIRES_READ)
+    if (link_silent(&link))
+        return 0;
     const uint32_t *mask = mailbox_pages(link.irq_mask);
     if (link_new(&taken->ack_seq, link.ack_seq))
         single_buffer_acknowledge(card, mailbox_pages(link.ack_flags), mask);

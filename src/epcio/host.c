@@ -34,6 +34,8 @@ static enum epcio_status take_loops(struct epcio *card, const struct link_host *
 enum epcio_status host_take_levels(struct mailbox *taken, struct epcio *card,
                                    const struct link_host *link)
 {
+    if (link_silent(link))
+        return EPCIO_OK;
     take_interrupts(taken, card, link);
     if (link_new(&taken->clear_seq, link->clear_seq))
         epcio_clear(card);

@@ -6,7 +6,8 @@
 #include "mailbox.h"
 
 /* Take all but the frames. The first value out of range is refused with its status and ends it; but
- * EPCIO_STOCK_TOO_LARGE only says that the DDA length waits. */
+ * EPCIO_STOCK_TOO_LARGE only says that the DDA length waits. Of a silent host nothing is taken: the
+ * card stays as it is, at power on with the DDA running. */
 enum epcio_status host_take_levels(struct mailbox *taken, struct epcio *card,
                                    const struct link_host *link);
 

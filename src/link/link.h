@@ -95,6 +95,13 @@ inline int32_t link_wrap(int64_t count)
     return (int32_t)(uint32_t)(uint64_t)count;
 }
 
+/* Whether the host has published nothing yet: no card takes this DDA time. An importer there is
+ * that begins its wires with 0. */
+inline bool link_silent(const struct link_host *host)
+{
+    return host->dda_length == 0 && host->dda_divider == 0;
+}
+
 /* Has a mailbox a number that was not taken yet? It is now. */
 inline bool link_new(int32_t *taken, int32_t number)
 {

@@ -246,9 +246,9 @@ SMALL: dict[str, Any] = {
     "stop": 0.01,
     "step": STEP,
     "leave": ["one.*", "two.*"],
-    "component": {"one": "epcio", "two": "epcio"},
-    "connect": {"two.host_dda_length": "one.overflows"},
-    "record": {"signals": ["two.stock"]},
+    "component": {"one": "epcio", "two": "network_card"},
+    "connect": {"two.command": "one.irq_seq"},
+    "record": {"signals": ["one.stock"]},
 }
 
 
@@ -261,7 +261,7 @@ def test_what_a_wire_brings_is_within_limits_or_ends_the_run(tmp_path: Path) -> 
         patch.setenv("MOTIONFMU_FMUS", str(tmp_path))
         instance = Instance("small", 3).initialize({"system.step": STEP})
     assert instance.step(STEP) == ERROR
-    assert instance.said == "one: two: host_dda_length = 0 is below its minimum 10"
+    assert instance.said == "one: two: command = 0 is below its minimum 32"
     instance.free()
 
 

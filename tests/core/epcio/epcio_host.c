@@ -93,6 +93,21 @@ static void refused(void)
     CHECK_EQ(card.minimum, 9);
 }
 
+/* A host that has said nothing changes nothing: the DDA that runs since power on goes on. */
+static void silent(void)
+{
+    struct link_host link = start();
+    CHECK_EQ(take(&link), EPCIO_OK);
+    const struct link_host nothing = {.clear_seq = 3, .irq_mask = {1}, .p_gain = {7}};
+    CHECK_EQ(take(&nothing), EPCIO_OK);
+    CHECK(card.run);
+    CHECK_EQ(card.minimum, 3);
+    CHECK_EQ(taken.clear_seq, 0);
+    CHECK_EQ(card.irq.mask[0], 0);
+    link.dda_length = 0;
+    CHECK_EQ(take(&link), EPCIO_BAD_LENGTH);    /* it speaks, and is wrong */
+}
+
 /* The card shows its counters as 32 bits, and 0 for an axis it does not use. */
 static void shown(void)
 {
@@ -116,6 +131,7 @@ int main(void)
 {
     mailboxes();
     refused();
+    silent();
     shown();
     return check_result();
 }
