@@ -246,16 +246,21 @@ SMALL: dict[str, Any] = {
     "stop": 0.01,
     "step": STEP,
     "leave": ["one.*", "two.*"],
-    "component": {"one": "epcio", "two": "network_card"},
-    "connect": {"two.command": "one.irq_seq"},
-    "record": {"signals": ["one.stock"]},
+    "component": {"one": "epcio", "two": "epcio"},
+    "connect": {"two.host_dda_length": "one.overflows"},
+    "record": {"signals": ["two.stock"]},
 }
 
 
 def test_what_a_wire_brings_is_within_limits_or_ends_the_run(tmp_path: Path) -> None:
+    wired = {
+        "component": {"one": "epcio", "two": "network_card"},
+        "connect": {"two.command": "one.irq_seq"},
+        "record": {"signals": ["one.stock"]},
+    }
     with pytest.MonkeyPatch.context() as patch:
         patch.delenv("MOTIONFMU_FMUS")
-        made = fused.program(*system_of(SMALL))
+        made = fused.program(*system_of(SMALL | wired))
     packed(made, tmp_path / "small.fmi3.fmu")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MOTIONFMU_FMUS", str(tmp_path))

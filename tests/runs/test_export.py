@@ -13,8 +13,9 @@ from fmu_manipulation_toolbox.container import FMUContainer
 
 import motionfmu
 from motionfmu import cli
+from motionfmu.export.system_fmu import as_fmu as export
+from motionfmu.export.system_fmu import identifier
 from motionfmu.run.engines.slave import Slave
-from motionfmu.run.exported import export, identifier
 
 STOP, STEP = 0.3, 1e-4  # [s]
 SHOWN = "card.pulse_count", "machine.table_position", "mcc.irq_latency"

@@ -1,4 +1,4 @@
-"""The command that makes one FMU of a scenario."""
+"""The command that makes files for other tools of a scenario."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,27 +6,50 @@ from typing import Annotated
 import typer
 
 from motionfmu.cli.common import ScenarioPath, Set, app, settings
+from motionfmu.cli.run import warnings
 
 
 @app.command()
-def export(
+def export(  # noqa: PLR0913  (each is an option)
     path: ScenarioPath,
     target: Annotated[
-        Path | None, typer.Option("--out", "-o", help="The file; NAME.fmu if not given.")
+        Path | None, typer.Option("--out", "-o", help="The file; NAME.fmu, NAME.ssp if not given.")
     ] = None,
-    fmi: Annotated[int, typer.Option(help="FMI version: 2 or 3.")] = 3,
+    fmi: Annotated[
+        int | None, typer.Option(help="FMI version: 2 or 3; 3, of an SSP 2 if not given.")
+    ] = None,
     set_: Set = [],  # noqa: B006  (typer makes a new list)
+    ssp: Annotated[
+        bool, typer.Option("--ssp/--fmu", help="SSP of its FMUs, or one FMU of all.")
+    ] = False,
+    inner: Annotated[
+        list[str],
+        typer.Option(metavar="PATTERN", help="Signals shown beside the recorded: 'card.err_*'."),
+    ] = [],  # noqa: B006
 ) -> None:
-    """Make a scenario's system one FMU, for any importer.
+    """Make a scenario's system one FMU, or an SSP of its FMUs, for other tools.
 
-    Parameters and open inputs of all components are its variables, by the names of the scenario and
-    with its values; its outputs are what the scenario records. Files that it reads are inside.
+    FMU: parameters and open inputs of all components are its variables, by the names of the
+    scenario and with its values; its outputs are what the scenario records. SSP: components, wires,
+    values, time; 1.0 with FMI 2, 2.0 with FMI 3. Files that it reads are inside.
     """
     from motionfmu.run import load
-    from motionfmu.run.exported import export as write
 
     scenario = load(path)
-    file = target or Path(f"{scenario.name}.fmu")
-    made = write(scenario, file, fmi, settings(set_))
     step = scenario.document.body.step
-    print(f"{file}: FMI {fmi}, {made} variables; steps are whole multiples of {step:g} s")
+    if not ssp:
+        from motionfmu.export import as_fmu
+
+        fmi = 3 if fmi is None else fmi
+        file = target or Path(f"{scenario.name}.fmu")
+        made = as_fmu(scenario, file, fmi, settings(set_), inner)
+        print(f"{file}: FMI {fmi}, {made} variables; steps are whole multiples of {step:g} s")
+        return
+    from motionfmu.export import as_ssp
+
+    fmi = 2 if fmi is None else fmi
+    file = target or Path(f"{scenario.name}.ssp")
+    written = as_ssp(scenario, file, fmi, settings(set_), inner)
+    size = f"{written.components} components, {written.connections} connections"
+    print(f"{file}: SSP {fmi - 1}.0, FMI {fmi}, {size}; steps of {step:g} s")
+    warnings(written.left_out)

@@ -23,6 +23,14 @@ _KEYS = {"type", "dims", "unit", "start", "min", "max", "nominal", "tunable", "d
 Scalar = float | int | bool | str
 
 
+def element_names(name: str, dims: tuple[int, ...]) -> list[str]:
+    """Structured names of a variable's elements: ``x[1]``, ``x[1,2]``; of a scalar its own."""
+    if not dims:
+        return [name]
+    ranges = [range(1, d + 1) for d in dims]
+    return [f"{name}[{','.join(map(str, index))}]" for index in itertools.product(*ranges)]
+
+
 @dataclass(frozen=True)
 class Variable:
     """One variable of an FMU."""
@@ -61,11 +69,8 @@ class Variable:
         )
 
     def element_names(self) -> list[str]:
-        """Structured names of the elements: ``x[1]``, ``x[1,2]``."""
-        if not self.dims:
-            return [self.name]
-        ranges = [range(1, d + 1) for d in self.dims]
-        return [f"{self.name}[{','.join(map(str, index))}]" for index in itertools.product(*ranges)]
+        """Structured names of the elements."""
+        return element_names(self.name, self.dims)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,6 @@
 """One FMU opened with FMPy, with fast access to its variables."""
 
 import ctypes
-import itertools
 import re
 import shutil
 import tempfile
@@ -16,6 +15,7 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.logging import addLoggerProxy
 
 from motionfmu.errors import InputError
+from motionfmu.fmu import describe
 from motionfmu.run.engines import messages
 from motionfmu.run.engines.ending import Ending
 from motionfmu.scenarios.system import End, System
@@ -27,11 +27,8 @@ _INNER = re.compile(r"^(\w+)\.fmu: (?:(?:\w+\.)*\w+\.fmu: |\1: )?")
 
 
 def element_names(end: End) -> list[str]:
-    """FMI 2 names of the elements of a port, in order: ``name`` or ``name[1]``, ``name[1,2]``."""
-    if not end.port.shape:
-        return [end.port.name]
-    indices = itertools.product(*(range(1, n + 1) for n in end.port.shape))
-    return [f"{end.port.name}[{','.join(map(str, index))}]" for index in indices]
+    """FMI 2 names of the elements of a port, in order."""
+    return describe.element_names(end.port.name, end.port.shape)
 
 
 def exposed(end: End, fmi: int) -> list[str]:

@@ -1,20 +1,20 @@
 """A scenario's system as one FMU file, for any importer of FMI 2 or 3."""
 
 import json
-import os
 import re
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from motionfmu import fused
 from motionfmu.errors import InputError
+from motionfmu.export.chosen import also_shown
+from motionfmu.export.resources import Resources
 from motionfmu.fmu.pack import RESOURCES, write_whole
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.scenarios.fmus import fmu_path
-from motionfmu.scenarios.system import Setting
 from motionfmu.toml_lines import is_file
 
 PROGRAM = "program.json"  # what a run here reads instead of the description
@@ -22,19 +22,48 @@ _LEFT = (PROGRAM, "sources/")  # C text without the parts that it needs
 _LICENCE = "documentation/LICENSE"
 
 
-def export(scenario: Prepared, target: Path, fmi: int, given: Mapping[str, Any]) -> int:
-    """Write the system as an FMU; values of the scenario, and those given, are its start values.
+def as_fmu(
+    scenario: Prepared,
+    target: Path,
+    fmi: int,
+    given: Mapping[str, Any],
+    inner: Collection[str] = (),
+) -> int:
+    """Write the system as an FMU, compiled for this machine.
 
-    Files that they name become resources. Returns the number of its variables.
+    Parameters
+    ----------
+    scenario : Prepared
+        Its parameters, open inputs and recorded outputs become variables, by its names; its values
+        are their start values, and the files that they name resources.
+    target : Path
+        The .fmu.
+    fmi : int
+        2 or 3.
+    given : mapping
+        Value by ``component.variable``, stronger than the scenario's.
+    inner : collection of str
+        Patterns of outputs that are shown beside the recorded ones.
+
+    Returns
+    -------
+    int
+        Number of its variables.
+
+    Raises
+    ------
+    InputError
+        Of a system that cannot be one FMU, a pattern that matches nothing, a file that cannot be
+        written.
     """
     if fmi not in (2, 3):
         raise InputError(f"FMI {fmi!r}: 2 or 3")
-    system = scenario.resolved(Options(set=given))
-    files: dict[str, Path] = {}
-    settings = tuple(_inside(s, files) for s in system.settings)
+    system, resources = scenario.resolved(Options(set=given)), Resources()
+    settings = tuple(resources.inside(s) for s in system.settings)
+    shown = also_shown(scenario, inner, ("output",))
     try:
         program = fused.exported(
-            replace(system, settings=settings), scenario.ends, fmi, identifier(scenario.name)
+            replace(system, settings=settings), shown, fmi, identifier(scenario.name)
         )
     except fused.NotFused as why:
         raise InputError(f"{scenario.name} cannot be one FMU: {why}") from None
@@ -43,7 +72,7 @@ def export(scenario: Prepared, target: Path, fmi: int, given: Mapping[str, Any])
         for f in program.folder.rglob("*")
         if f.is_file() and not (name := str(f.relative_to(program.folder))).startswith(_LEFT)
     }
-    packed |= {f"{RESOURCES}/{name}": file for name, file in files.items()}
+    packed |= {f"{RESOURCES}/{name}": file for name, file in resources.files.items()}
     readme = scenario.document.file.parent / "README.md"
     if is_file(readme):
         packed["documentation/README.md"] = readme
@@ -57,20 +86,6 @@ def identifier(name: str) -> str:
     words = re.findall(r"[A-Za-z0-9]+", name)
     joined = "".join(word[:1].upper() + word[1:] for word in words)
     return joined if joined[:1].isalpha() else f"System{joined}"
-
-
-def _inside(setting: Setting, files: dict[str, Path]) -> Setting:
-    """The setting with files as resources, which are added to those there are."""
-    values = list(setting.values)
-    for k, value in enumerate(values):
-        if not (isinstance(value, str) and os.path.isabs(value) and is_file(Path(value))):
-            continue
-        file, name = Path(value), Path(value).name
-        if files.get(name, file) != file:
-            name = f"{setting.end.component}.{name}"
-        files[name] = file
-        values[k] = f"resource:{name}"
-    return replace(setting, values=tuple(values))
 
 
 def _licence(fmu: str) -> bytes:

@@ -1,0 +1,24 @@
+"""Which variables an exported system shows."""
+
+from collections.abc import Collection
+
+from motionfmu.errors import InputError, suggestion
+from motionfmu.run.prepared import Prepared
+from motionfmu.scenarios.system import End
+
+_SHOWN = ("Float64", "Int32", "Boolean")
+
+
+def also_shown(
+    scenario: Prepared, patterns: Collection[str], causalities: Collection[str]
+) -> list[End]:
+    """What a scenario records, and what patterns name beside it; numbers and Booleans."""
+    found = {e.name: e for e in scenario.ends}
+    for pattern in patterns:
+        ends = [e for kind in causalities for e in scenario.resolver.matching(pattern, kind)]
+        if not ends:
+            known = (e.name for kind in causalities for e in scenario.resolver.matching("*", kind))
+            what = " or ".join(causalities)
+            raise InputError(f"--inner {pattern}: matches no {what}{suggestion(pattern, known)}")
+        found |= {e.name: e for e in ends if e.port.type in _SHOWN}
+    return list(found.values())

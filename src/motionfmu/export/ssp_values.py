@@ -1,0 +1,29 @@
+"""Settings as an SSP has them."""
+
+from collections.abc import Iterator
+
+from motionfmu import ssp
+from motionfmu.fmu.describe import element_names
+from motionfmu.scenarios.system import Setting
+
+_TYPES = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
+
+
+def kind(name: str, fmi: int) -> str:
+    """A type of FMI 3 in the SSP of a version of FMI."""
+    return _TYPES[name] if fmi == 2 else name
+
+
+def texts(setting: Setting) -> tuple[str, ...]:
+    """Values as XML has them."""
+    return tuple(str(v).lower() if isinstance(v, bool) else str(v) for v in setting.values)
+
+
+def values(setting: Setting, fmi: int) -> Iterator[ssp.Value]:
+    """A setting as parameters: one, in FMI 2 one for each element."""
+    port, listed = setting.end.port, texts(setting)
+    if fmi == 3:
+        yield ssp.Value(port.name, kind(port.type, fmi), listed, port.unit)
+        return
+    for name, text in zip(element_names(port.name, port.shape), listed, strict=True):
+        yield ssp.Value(name, kind(port.type, fmi), (text,), port.unit)

@@ -1,0 +1,175 @@
+"""A scenario's system as a System Structure and Parameterization file."""
+
+import tempfile
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from motionfmu import ssp
+from motionfmu.errors import InputError
+from motionfmu.export.chosen import also_shown
+from motionfmu.export.resources import Resources
+from motionfmu.export.ssp_values import kind, texts, values
+from motionfmu.export.stimuli import FMU, Stimuli, stimuli
+from motionfmu.fmu.describe import element_names
+from motionfmu.fmu.pack import repacked, write_whole
+from motionfmu.run.prepared import Options, Prepared
+from motionfmu.scenarios.fmus import fmu_path
+from motionfmu.scenarios.system import End, Setting, System, Wire
+from motionfmu.toml_lines import is_file
+
+# Version of SSP by the version of FMI.
+VERSIONS = {2: "1.0", 3: "2.0"}
+SET = "scenario"  # name of the parameter sets
+RESOURCES = "resources"
+
+
+@dataclass(frozen=True)
+class Written:
+    """What a scenario has become as an SSP.
+
+    Attributes
+    ----------
+    components, connections : int
+        How many.
+    left_out : list of str
+        What of the scenario it does not say.
+    """
+
+    components: int
+    connections: int
+    left_out: list[str]
+
+
+def as_ssp(
+    scenario: Prepared,
+    target: Path,
+    fmi: int,
+    given: Mapping[str, Any],
+    inner: Collection[str] = (),
+) -> Written:
+    """Write the system as an SSP.
+
+    With FMI 2 it is an SSP 1.0, with FMI 3 an SSP 2.0.
+
+    Parameters
+    ----------
+    scenario : Prepared
+        With its FMUs.
+    target : Path
+        The .ssp.
+    fmi : int
+        2 or 3.
+    given : mapping
+        Value by ``component.variable``, stronger than the scenario's.
+    inner : collection of str
+        Patterns of inputs and outputs that are connectors beside those that are wired or recorded.
+
+    Raises
+    ------
+    InputError
+        Of a version, a pattern that matches nothing, or a file that cannot be written.
+    """
+    if fmi not in VERSIONS:
+        raise InputError(f"FMI {fmi!r}: 2 or 3")
+    system = scenario.resolved(Options(set=given))
+    shown = also_shown(scenario, inner, ("output", "input"))
+    driving, left_out = stimuli(system)
+    structure = _structure(scenario, system, shown, driving, fmi)
+    if system.until is not None:
+        left_out.append(f"stop = {system.until.name}: an SSP ends by time, here by limit")
+    parts = {name: (fmu, _own(system, name)) for name, fmu in system.components.items()}
+    parts |= {one.name: (FMU, (one.settings(), {})) for one in driving}
+    files: dict[str, bytes] = {}
+    sets: dict[str, str] = {}
+    with tempfile.TemporaryDirectory(prefix="motionfmu-") as folder:
+        for c in structure.components:
+            fmu = Path(folder) / f"{c.name}.fmu"
+            _pack(parts[c.name], fmi, fmu)
+            files[c.source] = fmu.read_bytes()
+            if c.values:
+                sets[c.name] = f"{RESOURCES}/{c.name}.ssv"
+                files[sets[c.name]] = ssp.parameter_values(SET, c.values, structure.version)
+    files[ssp.SSD] = ssp.description(structure, sets)
+    readme = scenario.document.file.parent / "README.md"
+    if is_file(readme):
+        files["documentation/README.md"] = readme.read_bytes()
+    write_whole(target, files)
+    return Written(len(structure.components), len(structure.connections), left_out)
+
+
+def _structure(
+    scenario: Prepared, system: System, shown: Collection[End], driving: list[Stimuli], fmi: int
+) -> ssp.Structure:
+    """What the file says."""
+    components = []
+    for name in system.components:
+        given = [v for s in _own(system, name)[0] for v in values(s, fmi)]
+        connectors = list(_connectors(system, name, shown, driving, fmi))
+        components.append(ssp.Component(name, _source(name), connectors, given))
+    components += [one.component(fmi, _source(one.name)) for one in driving]
+    connections = [c for wire in system.wires for c in _connections(wire, fmi)]
+    connections += [c for one in driving for c in one.connections(fmi)]
+    return ssp.Structure(
+        scenario.name,
+        scenario.document.about,
+        VERSIONS[fmi],
+        components,
+        connections,
+        stop=system.steps * system.step_ns / 1e9,
+        step=system.step_ns / 1e9,
+    )
+
+
+def _source(component: str) -> str:
+    return f"{RESOURCES}/{component}.fmu"
+
+
+def _own(system: System, component: str) -> tuple[list[Setting], dict[str, Path]]:
+    """The settings of a component, and the files that they name, which are inside."""
+    resources = Resources()
+    mine = [resources.inside(s) for s in system.settings if s.end.component == component]
+    return mine, resources.files
+
+
+def _pack(part: tuple[str, tuple[list[Setting], dict[str, Path]]], fmi: int, target: Path) -> None:
+    """Write an FMU, with the files and values inside.
+
+    It begins with the values, too: tools there are that pass over parameter sets.
+    """
+    fmu, (settings, files) = part
+    starts = {s.end.port.name: " ".join(texts(s)) for s in settings}
+    repacked(fmu_path(fmu, fmi), target, files, starts)
+
+
+def _connectors(
+    system: System, component: str, shown: Collection[End], driving: list[Stimuli], fmi: int
+) -> Iterator[ssp.Connector]:
+    """What is wired or shown of a component.
+
+    An input without a connection is no connector: tools there are that wire or clear it.
+    """
+    ends = [*(w.target for w in system.wires), *(w.source for w in system.wires)]
+    ends += [*(e for one in driving for e in one.driven()), *shown]
+    for end in {e.name: e for e in ends if e.component == component}.values():
+        port, named = end.port, kind(end.port.type, fmi)
+        if fmi == 3:
+            yield ssp.Connector(port.name, port.causality, named, port.unit, port.shape)
+            continue
+        for name in element_names(port.name, port.shape):
+            yield ssp.Connector(name, port.causality, named, port.unit)
+
+
+def _connections(wire: Wire, fmi: int) -> Iterator[ssp.Connection]:
+    a, b = wire.source, wire.target
+    if fmi == 3:
+        yield ssp.Connection((a.component, a.port.name), (b.component, b.port.name))
+        return
+    pairs = zip(
+        element_names(a.port.name, a.port.shape),
+        element_names(b.port.name, b.port.shape),
+        strict=True,
+    )
+    for source, target in pairs:
+        yield ssp.Connection((a.component, source), (b.component, target))
