@@ -159,7 +159,8 @@ def test_values_in_other_units_and_of_all_types(tmp_path: Path) -> None:
 
 
 def test_values_of_the_system_are_stronger_and_find_nested_parts(tmp_path: Path) -> None:
-    inner = system(part("p", value("n", "Integer", "1") + value("on", "Boolean", "true")), "", "in")
+    own = value("n", "Integer", "1") + value("on", "Boolean", "true")
+    inner = system(part("p", own), "", "in", bound(value("p.n", "Integer", "4")))
     own = bound(value("in.p.n", "Integer", "2") + value("in.q.n", "Integer", "3"))
     found = taken(tmp_path, system(inner, own=own))
     assert found["set"] == {"in_p.n": 2, "in_p.on": True}
