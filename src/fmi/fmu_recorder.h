@@ -26,6 +26,7 @@ struct recorder_stream {
     char       *block;
     int         column;
     FILE       *file;
+    int64_t     ahead; /* [byte] of the file to which there is room on the disk */
 };
 
 /* Columns whose rows have the same size: their blocks are full at the same time. */
@@ -54,6 +55,7 @@ enum {
     RECORDER_HEAD  = RECORDER_PAGE, /* of a file, so that its other pages are whole ones of data */
     RECORDER_BLOCK = 64 * 1024,     /* [byte] at most, in whole pages: half of it costs the kernel a
                                      * half more, four times as much a tenth less, and the caches */
+    RECORDER_AHEAD = 1024 * 1024,   /* [byte] of room that is taken at once, at most */
     RECORDER_LINE  = 64             /* of a cache: blocks a power of two apart would share few */
 };
 
@@ -128,7 +130,7 @@ static inline bool recorder_layout(struct recorder *r)
 {
     size_t bytes = 0;
     for (int k = 0; k < r->count; k++) {
-        const struct recorder_stream s = {recorder_column_of(r, k - 1).value, NULL, k - 1, NULL};
+        const struct recorder_stream s = {recorder_column_of(r, k - 1).value, NULL, k - 1, NULL, 0};
         const size_t width = recorder_width(r, &s);
         int place = k;
         for (; place > 0 && recorder_width(r, &r->streams[place - 1]) > width; place--) {
@@ -202,17 +204,35 @@ static inline bool recorder_empty(const char *block, size_t size)
     return size == 0 || (block[0] == 0 && memcmp(block, block + 1, size - 1) == 0);
 }
 
+/* Before a block from `at` [byte] on: room on the disk for as much again as there is; before a hole
+ * none. */
+static inline void recorder_make_room(struct recorder_stream *s, int64_t at, size_t size,
+                                      bool empty)
+{
+    const int64_t next = at + (int64_t)size, more = next < RECORDER_AHEAD ? next : RECORDER_AHEAD;
+    if (empty && s->ahead > at) {
+        recorder_cut(s->file, at);
+        s->ahead = at;
+    } else if (!empty && next > s->ahead) {
+        recorder_ahead(s->file, at, (int64_t)size + more);
+        s->ahead = next + more;
+    }
+}
+
 /* Write what waits of a group, before the next row. A block of 0 is left out: it reads as that. */
 static inline int recorder_flush(struct recorder *r, struct recorder_group *g)
 {
     const size_t size = (size_t)(r->row - g->first) * g->width;
     const int64_t next = RECORDER_HEAD + r->row * (int64_t)g->width;
     for (int k = 0; k < g->count; k++) {
-        const struct recorder_stream *s = &g->streams[k];
+        struct recorder_stream *s = &g->streams[k];
+        const bool empty = recorder_empty(s->block, size);
+        if (r->row - g->first == g->room) {
+            recorder_make_room(s, next - (int64_t)size, size, empty);
+        }
         errno = 0;
-        const bool good = recorder_empty(s->block, size)
-                              ? recorder_seek(s->file, next) == 0
-                              : fwrite(s->block, 1, size, s->file) == size;
+        const bool good = empty ? recorder_seek(s->file, next) == 0
+                                : fwrite(s->block, 1, size, s->file) == size;
         if (!good) {
             return recorder_fail(r, recorder_column_of(r, s->column).name,
                                  strerror(errno ? errno : EIO));
@@ -286,7 +306,8 @@ static inline int recorder_at(struct recorder *r, int64_t row)
     for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
         const int64_t at = RECORDER_HEAD + row * (int64_t)g->width;
         for (int k = 0; k < g->count; k++) {
-            const struct recorder_stream *s = &g->streams[k];
+            struct recorder_stream *s = &g->streams[k];
+            s->ahead = at;
             if (recorder_cut(s->file, at) != 0 || recorder_seek(s->file, at) != 0) {
                 return recorder_fail(r, recorder_column_of(r, s->column).name, strerror(errno));
             }

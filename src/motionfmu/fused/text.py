@@ -158,7 +158,7 @@ def main_unit(fmi: int, quickly: bool) -> str:
         "/* Generated; do not edit. */\n"
         + ("#define SYSTEM_QUICKLY\n" if quickly else "")
         + f"#define FMI_VERSION {fmi}\n"
-        "#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */\n"
+        "#define _GNU_SOURCE /* kinds of files, fmu_file.h; room for them on the disk */\n"
         '#include "model.c"\n#include "vars.c"\n#include "state_flags.h"\n'
         'SYSTEM_COLD_BEGIN\n#include "fmi.inc"\nSYSTEM_COLD_END\n'
     )

@@ -1,7 +1,6 @@
 /* Recorder: rows to .npy files, whole or not at all. A folder as argument: a recording for
  * tests/fmi/test_recorder.py to read by numpy. */
-#define _POSIX_C_SOURCE 200809L
-#define _XOPEN_SOURCE   700 /* RLIMIT_FSIZE */
+#define _GNU_SOURCE /* RLIMIT_FSIZE, room ahead of a file's end */
 
 #include <signal.h>
 #include <sys/resource.h>
