@@ -65,14 +65,16 @@ double run_radius(double *a) { return plant_spectral_radius(a, PLANT_FINE); }
 class Library:
     """The compiled plant of one fmu.toml."""
 
-    def __init__(self, toml: Path, folder: Path):
+    def __init__(self, toml: Path, folder: Path, *flags: str):
+        """Make it; with flags of the compiler, again from what is in the folder."""
         self.description = fmu_toml.load(toml)
-        codegen.write(toml, folder)
+        if not flags:
+            codegen.write(toml, folder)
         (folder / "vars.h").write_text(ctables.header(self.description))
         (folder / "driver.c").write_text(_DRIVER)
-        target = folder / "plant.so"
+        target = folder / f"plant{''.join(flags)}.so"
         include = [folder, ROOT / "src/plant", ROOT / "src/fmi"]
-        self.compile([folder / "driver.c", folder / "plant.c"], target, include)
+        self.compile([folder / "driver.c", folder / "plant.c"], target, include, *flags)
         self.c = ctypes.CDLL(str(target))
         self.c.run_new.restype = ctypes.c_void_p
         self.c.run_radius.restype = ctypes.c_double
@@ -87,11 +89,12 @@ class Library:
         self.vars = type("Vars", (ctypes.Structure,), {"_fields_": fields})
 
     @staticmethod
-    def compile(files: list[Path], target: Path, include: list[Path]) -> None:
+    def compile(files: list[Path], target: Path, include: list[Path], *flags: str) -> None:
         """Make a shared library."""
         compiler = os.environ.get("CC") or shutil.which("cc") or shutil.which("gcc")
         assert compiler, "a C compiler is needed"
-        command = [*compiler.split(), *_FLAGS.split(), "-shared", *(f"-I{i}" for i in include)]
+        command = [*compiler.split(), *_FLAGS.split(), *flags, "-shared"]
+        command += [f"-I{i}" for i in include]
         subprocess.run([*command, *map(str, files), "-o", str(target), "-lm"], check=True)
 
 

@@ -65,35 +65,53 @@ static const double plant_h_lambda = 2.0;
 /* What is done with the lanes of a block as a constant. */
 #define PLANT_CASE(n, call) case n: call; break;
 
+typedef void plant_rates(int lanes, const double *restrict x, const double *restrict u,
+    const double *restrict c, double *restrict dx);
+
 /* One Runge-Kutta step of h [s]. */
-static PLANT_INLINE void plant_step_of(int lanes, struct plant_block *b, double h)
+static PLANT_INLINE void plant_step_of(int lanes, plant_rates *rhs, struct plant_block *b, double h)
 {
     const int n = PLANT_STATES * lanes;
     double k1[PLANT_STATE_SIZE], k2[PLANT_STATE_SIZE], k3[PLANT_STATE_SIZE], k4[PLANT_STATE_SIZE];
     double at[PLANT_STATE_SIZE];
-    plant_rhs(lanes, b->x, b->u, b->c, k1);
+    rhs(lanes, b->x, b->u, b->c, k1);
     for (int i = 0; i < n; i++) {
         at[i] = b->x[i] + 0.5 * h * k1[i];
     }
-    plant_rhs(lanes, at, b->u, b->c, k2);
+    rhs(lanes, at, b->u, b->c, k2);
     for (int i = 0; i < n; i++) {
         at[i] = b->x[i] + 0.5 * h * k2[i];
     }
-    plant_rhs(lanes, at, b->u, b->c, k3);
+    rhs(lanes, at, b->u, b->c, k3);
     for (int i = 0; i < n; i++) {
         at[i] = b->x[i] + h * k3[i];
     }
-    plant_rhs(lanes, at, b->u, b->c, k4);
+    rhs(lanes, at, b->u, b->c, k4);
     for (int i = 0; i < n; i++) {
         b->x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
     }
 }
 
-static void plant_step(struct plant_block *b, double h)
+static void plant_step_plain(struct plant_block *b, double h)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, b, h))
+#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs, b, h))
     switch (b->lanes) { PLANT_WIDTHS(STEP) }
 #undef STEP
+}
+
+/* Also what is between the rates is of wide vectors: a wide load waits for two narrow stores. */
+PLANT_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
+{
+#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_avx2, b, h))
+    switch (b->lanes) { PLANT_WIDTHS(STEP) }
+#undef STEP
+}
+
+static void plant_step(struct plant_block *b, double h)
+{
+    /* One axis of several, or two, have not enough to do at once for wide vectors. */
+    const bool wide = b->lanes > 2 || PLANT_LANES == 1;
+    (wide && plant_has_avx2() ? plant_step_avx2 : plant_step_plain)(b, h);
 }
 
 /* One step of h [s] by Bogacki and Shampine (1989) to y; its error, 1 being allowed. */

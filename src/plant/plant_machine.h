@@ -1,0 +1,47 @@
+/* What the processor has beyond what every one of its kind has, asked of itself. */
+#ifndef PLANT_MACHINE_H
+#define PLANT_MACHINE_H
+
+#include <stdbool.h>
+
+/* PLANT_PLAIN: for what every processor has. Windows: gcc aligns no vectors on its stack. */
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(_WIN32) && !defined(PLANT_PLAIN)
+#include <cpuid.h>
+#include <stdatomic.h>
+
+/* A function for processors with AVX2. */
+#define PLANT_AVX2 __attribute__((target("avx2")))
+
+/* Do the processor and the system that runs on it have AVX2? (Intel SDM 1, 14.7.1) */
+static inline bool plant_ask_avx2(void)
+{
+    enum { OSXSAVE_AVX = 1 << 27 | 1 << 28, AVX2 = 1 << 5, XMM_YMM = 6 };
+    unsigned a, b, c, d, kept, rest;
+    if (!__get_cpuid(1, &a, &b, &c, &d) || (c & OSXSAVE_AVX) != OSXSAVE_AVX) {
+        return false;
+    }
+    __asm__("xgetbv" : "=a"(kept), "=d"(rest) : "c"(0));
+    return (kept & XMM_YMM) == XMM_YMM && __get_cpuid_count(7, 0, &a, &b, &c, &d) && (b & AVX2);
+}
+
+/* The same, asked once: where machines are simulated the question takes as long as a step. */
+static inline bool plant_has_avx2(void)
+{
+    static _Atomic signed char known; /* 0: not yet, else 1 or -1; all threads find the same */
+    signed char found = atomic_load_explicit(&known, memory_order_relaxed);
+    if (found == 0) {
+        found = plant_ask_avx2() ? 1 : -1;
+        atomic_store_explicit(&known, found, memory_order_relaxed);
+    }
+    return found > 0;
+}
+#else
+#define PLANT_AVX2
+
+static inline bool plant_has_avx2(void)
+{
+    return false;
+}
+#endif
+
+#endif
