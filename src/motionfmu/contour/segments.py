@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from motionfmu.contour.arcs import Arcs, Array, Foot
 from motionfmu.contour.geometry import Arc, Cubic, Label, Line, Segment, norms
 from motionfmu.contour.order import distinct
+from motionfmu.memo import Memo
 
 Index = NDArray[Any]  # of integers
 KINDS = ("ptp", "line", "arc", "helix", "curve")
@@ -19,6 +20,8 @@ LINE, ARC, CUBIC = 0, 1, 2
 # Points that follow each other on one segment are taken by themselves from so many on: what they
 # share is then not copied for each.
 RUN = 256
+# Segments that are kept as they were made, with what has been worked out about them.
+KEPT = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +46,7 @@ class Segments(Sequence[Segment]):
 
     def __init__(self, columns: Columns) -> None:
         self.columns = columns
+        self._made: Memo[Segment] = Memo(KEPT)
 
     @classmethod
     def of(cls, segments: Iterable[Segment]) -> "Segments":
@@ -79,7 +83,10 @@ class Segments(Sequence[Segment]):
     def __getitem__(self, i: int | slice) -> Segment | list[Segment]:
         if isinstance(i, slice):
             return [self[k] for k in range(*i.indices(len(self)))]
-        i = range(len(self))[i]
+        k = range(len(self))[i]
+        return self._made(k, lambda: self._one(k))
+
+    def _one(self, i: int) -> Segment:
         c = self.columns
         if c.shape[i] == CUBIC:
             return c.curves[i]
