@@ -20,7 +20,6 @@ import motionfmu
 from motionfmu.tune import Tuned, problem, tune
 from motionfmu.tune.curve import margin
 from motionfmu.tune.result import settings
-from motionfmu.tune.solve import merit
 from motionfmu.tune.study import Study
 
 HERE = Path(__file__).parent
@@ -147,18 +146,17 @@ def brute() -> None:
 def _grid(study: Study, points: int, rounds: int) -> tuple[float, float, int]:
     begun, n = time.perf_counter(), len(study.variables)
     low, high = np.zeros(n), np.ones(n)
-    best, cost = study.present, math.inf
-    done = 0
+    cost, done = math.inf, 0
     for _ in track(range(rounds), "brute force", disable=not sys.stdout.isatty()):
         sides = [np.linspace(a, b, points) for a, b in zip(low, high, strict=True)]
-        tried = []
-        for z in itertools.product(*sides):
-            values = study.values(np.array(z), False)
-            tried.append((merit(values), values, np.array(z)))
-            done += 1
-        _, values, best = min(tried, key=lambda t: t[0])
-        kept = [v.worst for _, v, _ in tried if v.feasible()]
-        cost = min([cost, *kept])
+        tried = [(study.values(np.array(z), False), np.array(z)) for z in itertools.product(*sides)]
+        done += len(tried)
+        kept = [t for t in tried if t[0].feasible()]
+        if kept:
+            values, best = min(kept, key=lambda t: t[0].worst)
+            cost = min(cost, values.worst)
+        else:  # nearest to the limits where the loops are stable at all
+            _, best = max(tried, key=lambda t: np.nan_to_num(t[0].slack.min(), nan=-math.inf))
         width = 1.5 * (high - low) / (points - 1)
         low, high = np.maximum(best - width, 0.0), np.minimum(best + width, 1.0)
     return cost, time.perf_counter() - begun, done
