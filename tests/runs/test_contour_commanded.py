@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from contour_runs import Machine, Program, run_along
 
-from motionfmu.contour import analyse, commanded
+from motionfmu.contour import analyse, commanded, scaled
 from motionfmu.contour.commanded import Known
 from motionfmu.contour.instants import Instants
 from motionfmu.contour.order import distinct, median, quantiles
@@ -114,3 +114,11 @@ def test_order_is_that_of_numpy(count: int) -> None:
     assert median(values) == pytest.approx(np.median(values), abs=1e-15)
     assert distinct(values).tolist() == np.unique(values).tolist()
     assert distinct(values[:0]).tolist() == []
+
+
+def test_the_share_that_is_done_grows_to_the_whole(monkeypatch) -> None:
+    monkeypatch.setattr(scaled, "BLOCK", 400)
+    shares: list[float] = []
+    analyse(RUN, shares.append)
+    assert len(shares) > 2 * len(RUN.time) // 400
+    assert shares == sorted(shares) and shares[0] < 0.1 and shares[-1] == 1.0

@@ -1,5 +1,6 @@
 """Which segment each sample belongs to: monotone along the path."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,7 +23,13 @@ SAME = 1e-9
 ROUNDED = 1e-6
 
 
-def assign(points: Any, path: Path, first: Index, last: Index) -> Index:
+def assign(
+    points: Any,
+    path: Path,
+    first: Index,
+    last: Index,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Index:
     """Give each sample one segment of its candidates, first to last (n,), never going back.
 
     `points` are an array (n, 3 or more) [mm], or what gives one for some rows of it.
@@ -45,6 +52,7 @@ def assign(points: Any, path: Path, first: Index, last: Index) -> Index:
         if len(several):
             part = places(points, several)
             low[several], high[several] = nearest(part, path, (low[several], high[several]))
+        progress(some.stop / len(low))
     if not len(low):
         return low
     alone, solved = low.copy(), np.zeros(len(low), dtype=bool)

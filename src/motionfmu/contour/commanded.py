@@ -32,8 +32,7 @@ class Commanded:
 
 def commanded(run: ContourInput, progress: Callable[[float], None]) -> Commanded:
     """Follow the pulses along the path."""
-    owners = assign(run.commanded, run.path, *_written(run))
-    progress(0.6)
+    owners = assign(run.commanded, run.path, *_written(run), lambda share: progress(0.6 * share))
     return Commanded(follow(run.commanded, run.path, owners), _moved(run.commanded))
 
 

@@ -60,9 +60,8 @@ def analyse(
     window = max(LAGS * lag, WINDOW_MIN) if run.window is None else run.window
     owners = command.track.segment
     candidates = instants.shifted(owners, -window), instants.shifted(owners, AHEAD * window)
-    owners = assign(run.actual, path, *candidates)
+    owners = assign(run.actual, path, *candidates, lambda share: progress(0.4 + 0.3 * share))
     del candidates
-    progress(0.7)
     track = follow(run.actual, path, owners)
     progress(0.85)
     tracks = (track, command.track)

@@ -194,4 +194,5 @@ def _turned(
 
 def path_of_text(text: str, name: str) -> Path:
     """The planned geometry of a text."""
-    return path_of(io.StringIO(text), name)
+    # StringIO has four bytes for each character.
+    return path_of(io.TextIOWrapper(io.BytesIO(text.encode()), "utf-8", newline=""), name)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from motionfmu.columns import in_blocks, write
-from motionfmu.errors import InputError
+from motionfmu.errors import InputError, NoNumber
 from motionfmu.run.result import Result
 from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, json_of, numbers, track
 
@@ -72,8 +72,10 @@ def save(
         from motionfmu.report.ran import ran_of
 
         told("analyses")
-        wanted = result.scenario.document.body.contour is not None and not result.no_contour
-        contour = result.contour() if wanted else None
+        contour = None
+        if result.scenario.document.body.contour is not None:
+            with contextlib.suppress(NoNumber):
+                contour = result.contour(lambda share: told(f"contour {share:.0%}"))
         ran = ran_of(result, contour)
         told("verdict")
         found = numbers(result) | ran.numbers()

@@ -1,7 +1,7 @@
 """What a run gave: signals, contour, verdicts."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import import_module
@@ -252,8 +252,13 @@ class Result(Mapping[str, NDArray[Any]]):
             return self.parameters[name]
         return values.start_values(self.resolver.end(name, "set", name).port)
 
-    def contour(self) -> "ContourResult":
+    def contour(self, progress: Callable[[float], None] = lambda share: None) -> "ContourResult":
         """The contour error of this run against the planned geometry.
+
+        Parameters
+        ----------
+        progress : callable
+            Called with the share done, 0 to 1, while it is found for the first time.
 
         Raises
         ------
@@ -266,7 +271,8 @@ class Result(Mapping[str, NDArray[Any]]):
             from motionfmu.run.contour_of import contour_of
 
             try:
-                self._contour = contour_of(self, self.scenario.only_drawn, known=self.known)
+                drawn = self.scenario.only_drawn
+                self._contour = contour_of(self, drawn, progress, self.known)
             except NoNumber as reason:
                 self._contour = reason
         if isinstance(self._contour, NoNumber):
