@@ -36,7 +36,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 # Zip cannot date earlier; a fixed date makes equal FMUs equal files.
 _DATE = (1980, 1, 1, 0, 0, 0)
 # What the linear models are made of goes into the FMU beside what the standard asks for.
-EXTRA = "extra/motionfmu"
+EXTRA = "extra/org.motionfmu"
 # Files that travel with an FMU, resource:NAME in a parameter.
 RESOURCES = "resources"
 # Which parameter is the FMU's grid; carried in EXTRA.
