@@ -23,6 +23,7 @@ FLAGS = (
     "-fno-trapping-math",
 )
 
+HINT = 'pip install "motionfmu[export]", or make export'  # what brings zig
 LINES = 3  # of a compiler's errors that are told
 
 
@@ -63,6 +64,13 @@ def _candidates() -> list[tuple[str, ...]]:
     if util.find_spec("ziglang"):
         found.append((sys.executable, "-m", "ziglang", "cc"))
     return found
+
+
+def cross() -> Compiler | None:
+    """zig's, which compiles for any platform; None without the extra `export`."""
+    if not util.find_spec("ziglang"):
+        return None
+    return Compiler((sys.executable, "-m", "ziglang", "cc"), "zig")
 
 
 def there() -> bool:

@@ -18,6 +18,13 @@ def export(  # noqa: PLR0913  (each is an option)
     fmi: Annotated[
         int | None, typer.Option(help="FMI version: 2 or 3; 3, of an SSP 2 if not given.")
     ] = None,
+    platforms: Annotated[
+        str,
+        typer.Option(
+            help="Of an FMU: here, or all, or names with commas (x86_64-windows): compiled by zig "
+            "from the C text of its FMUs, which goes with it."
+        ),
+    ] = "here",
     set_: Set = [],  # noqa: B006  (typer makes a new list)
     ssp: Annotated[
         bool, typer.Option("--ssp/--fmu", help="SSP of its FMUs, or one FMU of all.")
@@ -33,6 +40,7 @@ def export(  # noqa: PLR0913  (each is an option)
     scenario and with its values; its outputs are what the scenario records. SSP: components, wires,
     values, time; 1.0 with FMI 2, 2.0 with FMI 3. Files that it reads are inside.
     """
+    from motionfmu.fmu.platforms import named
     from motionfmu.run import load
 
     scenario = load(path)
@@ -42,7 +50,7 @@ def export(  # noqa: PLR0913  (each is an option)
 
         fmi = 3 if fmi is None else fmi
         file = target or Path(f"{scenario.name}.fmu")
-        made = as_fmu(scenario, file, fmi, settings(set_), inner)
+        made = as_fmu(scenario, file, fmi, settings(set_), inner, named(platforms))
         print(f"{file}: FMI {fmi}, {made} variables; steps are whole multiples of {step:g} s")
         return
     from motionfmu.export import as_ssp

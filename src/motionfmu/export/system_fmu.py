@@ -3,7 +3,7 @@
 import json
 import re
 import zipfile
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from motionfmu.errors import InputError
 from motionfmu.export.chosen import also_shown
 from motionfmu.export.resources import Resources
 from motionfmu.fmu.pack import RESOURCES, write_whole
+from motionfmu.fmu.platforms import Platform
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.scenarios.fmus import fmu_path
 from motionfmu.toml_lines import is_file
@@ -22,14 +23,15 @@ _LEFT = (PROGRAM, "sources/")  # C text without the parts that it needs
 _LICENCE = "documentation/LICENSE"
 
 
-def as_fmu(
+def as_fmu(  # noqa: PLR0913  (what is shown, and for whom, are rarely said)
     scenario: Prepared,
     target: Path,
     fmi: int,
     given: Mapping[str, Any],
     inner: Collection[str] = (),
+    platforms: Sequence[Platform] = (),
 ) -> int:
-    """Write the system as an FMU, compiled for this machine.
+    """Write the system as an FMU.
 
     Parameters
     ----------
@@ -44,6 +46,8 @@ def as_fmu(
         Value by ``component.variable``, stronger than the scenario's.
     inner : collection of str
         Patterns of outputs that are shown beside the recorded ones.
+    platforms : sequence of Platform
+        For which it is compiled, from C text that it carries; without any for this machine alone.
 
     Returns
     -------
@@ -63,14 +67,15 @@ def as_fmu(
     shown = also_shown(scenario, inner, ("output",))
     try:
         program = fused.exported(
-            replace(system, settings=settings), shown, fmi, identifier(scenario.name)
+            replace(system, settings=settings), shown, fmi, identifier(scenario.name), platforms
         )
     except fused.NotFused as why:
         raise InputError(f"{scenario.name} cannot be one FMU: {why}") from None
+    left = PROGRAM if platforms else _LEFT
     packed = {
         name: f
         for f in program.folder.rglob("*")
-        if f.is_file() and not (name := str(f.relative_to(program.folder))).startswith(_LEFT)
+        if f.is_file() and not (name := str(f.relative_to(program.folder))).startswith(left)
     }
     packed |= {f"{RESOURCES}/{name}": file for name, file in resources.files.items()}
     readme = scenario.document.file.parent / "README.md"

@@ -6,6 +6,8 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from motionfmu.errors import InputError
+
 # glibc of RHEL 7 and the first macOS for ARM: what is newer loads them, too.
 _TARGETS = {
     "x86_64-linux": "x86_64-linux-gnu.2.17",
@@ -63,6 +65,17 @@ def here() -> Platform:
     system = {"win32": "windows"}.get(sys.platform, sys.platform)
     machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
     return Platform(f"{machine}-{system}")
+
+
+def named(text: str) -> tuple[Platform, ...]:
+    """Those of a list with commas, or all; none for ``here``."""
+    if text in ("here", "all"):
+        return PLATFORMS if text == "all" else ()
+    names = text.split(",")
+    if wrong := [name for name in names if name not in _TARGETS]:
+        known = ", ".join(("here", "all", *_TARGETS))
+        raise InputError(f"no platform {wrong[0]!r} (there are: {known})")
+    return tuple(Platform(name) for name in dict.fromkeys(names))
 
 
 def libraries(fmi: int, identifier: str, made: Mapping[Platform, bytes]) -> dict[str, bytes]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from motionfmu.fmu.describe import Description, Variable
 from motionfmu.fmu.head import TICK_MAX
+from motionfmu.fmu.platforms import Platform
 from motionfmu.fused.parts import NotFused
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.fmus import Port
@@ -27,6 +28,7 @@ class Job:
     name: str
     key: str
     given: Mapping[str, Values] | None  # start values of an exported one
+    platforms: Sequence[Platform] = ()  # for which it is made with its C text; none: here, without
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,10 @@ from pathlib import Path
 
 from motionfmu.compiler import Compiler
 from motionfmu.fmu import ctables
+from motionfmu.fmu.describe import Description
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.platforms import here
-from motionfmu.fused import layer, text
+from motionfmu.fused import everywhere, layer, text
 from motionfmu.fused.description import TYPES, Job, described, roles
 from motionfmu.fused.parts import NotFused, Part, part
 from motionfmu.scenarios.system import System
@@ -44,6 +45,11 @@ def make(folder: Path, job: Job, cc: Compiler) -> None:
     }
     for file, content in texts.items():
         (sources / file).write_text(content)
+    if job.platforms:
+        files = everywhere.compile_all(folder, job)
+        (folder / "modelDescription.xml").write_bytes(model_description(d, job.fmi, files))
+        _tell(folder, d, "")
+        return
     for one in parts.values():
         (sources / f"{one.identifier}.o").write_bytes(one.code)
     binaries = folder / "binaries" / here().folder(job.fmi)
@@ -60,9 +66,14 @@ def make(folder: Path, job: Job, cc: Compiler) -> None:
     for file in objects:
         (sources / file).unlink()
     (folder / "modelDescription.xml").write_bytes(model_description(d, job.fmi))
+    _tell(folder, d, str(library.relative_to(folder)))
+
+
+def _tell(folder: Path, d: Description, library: str) -> None:
+    """What a run reads instead of the description."""
     rows = {
         v.name: [FMI_TYPES[v.type], reference, v.count]
         for v, reference in zip(d.variables, d.references(), strict=True)
     }
-    about = {"token": d.token, "library": str(library.relative_to(folder)), "variables": rows}
+    about = {"token": d.token, "library": library, "variables": rows}
     (folder / "program.json").write_text(json.dumps(about))

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from motionfmu import kept
-from motionfmu.compiler import FLAGS, compiler
+from motionfmu.compiler import FLAGS, HINT, compiler, cross
+from motionfmu.fmu.platforms import Platform
 from motionfmu.fused import layer
 from motionfmu.fused.parts import NotFused
 from motionfmu.scenarios.fmus import digest
@@ -56,7 +57,11 @@ def program(system: System, recorded: Sequence[End], fmi: int = 3, name: str = "
 
 
 def exported(
-    system: System, recorded: Sequence[End], fmi: int = 3, name: str = "System"
+    system: System,
+    recorded: Sequence[End],
+    fmi: int = 3,
+    name: str = "System",
+    platforms: Sequence[Platform] = (),
 ) -> Program:
     """As `program`, with the system's settings as start values.
 
@@ -66,13 +71,23 @@ def exported(
         Without scopes; the end of its run becomes that of the default experiment.
     recorded, fmi, name :
         As of `program`.
+    platforms : sequence of Platform
+        For which it is made, from the C text of its FMUs, which it carries. Without any it is made
+        of their objects, for this machine, and carries no text.
 
     Raises
     ------
     NotFused
         It cannot be one program; the message says why.
     """
-    return _made(system, recorded, fmi, name, {s.end.name: s.values for s in system.settings})
+    given = {s.end.name: s.values for s in system.settings}
+    return _made(system, recorded, fmi, name, _Exported(given, platforms))
+
+
+@dataclass(frozen=True)
+class _Exported:
+    given: Mapping[str, Values]  # start values
+    platforms: Sequence[Platform]
 
 
 def _made(
@@ -80,20 +95,29 @@ def _made(
     recorded: Sequence[End],
     fmi: int,
     name: str,
-    given: Mapping[str, Values] | None,
+    to_export: "_Exported | None",
 ) -> Program:
-    cc = compiler()
+    given = to_export.given if to_export else None
+    platforms = to_export.platforms if to_export else ()
+    cc = cross() if platforms else compiler()
     if cc is None:
-        raise NotFused("there is no C compiler")
+        raise NotFused(f"there is no zig: {HINT}" if platforms else "there is no C compiler")
     key = _key(system, recorded, name, given)
     whole = kept.key(
-        key, str(fmi), layer.digest(), cc.version, *cc.command, *FLAGS, layer.OPTIMIZED
+        key,
+        str(fmi),
+        layer.digest(),
+        cc.version,
+        *cc.command,
+        *FLAGS,
+        layer.OPTIMIZED,
+        *(p.target for p in platforms),
     )
 
     def make(folder: Path) -> None:
         from motionfmu.fused import making  # what generates C is needed here only
 
-        making.make(folder, making.Job(system, recorded, fmi, name, key, given), cc)
+        making.make(folder, making.Job(system, recorded, fmi, name, key, given, platforms), cc)
 
     return Program(kept.kept("fused", whole, make), fmi)
 

@@ -1,0 +1,71 @@
+"""A system compiled for any platform from the C text that its FMUs carry, which it carries, too."""
+
+import tempfile
+from pathlib import Path
+from xml.etree import ElementTree
+
+from motionfmu.compiler import FLAGS, cross
+from motionfmu.fmu import cores, platforms
+from motionfmu.fmu.pack import MAIN_UNIT, PART_UNIT
+from motionfmu.fmu.sources import NAMES, build_description, renamed
+from motionfmu.fused import layer
+from motionfmu.fused.description import Job
+from motionfmu.fused.parts import NotFused
+from motionfmu.scenarios.fmus import opened
+
+_FLAGS = (*FLAGS, layer.OPTIMIZED, "-shared", "-s", "-DFMU_PART_INSIDE")
+
+
+def compile_all(folder: Path, job: Job) -> list[str]:
+    """Fill ``sources`` and ``binaries`` of a folder; returns names of the C files to compile."""
+    sources = folder / "sources"
+    files = [MAIN_UNIT]
+    for fmu in dict.fromkeys(job.system.components.values()):
+        files += _part(fmu, sources)
+    own, headers = layer.folders()
+    texts = [f for f in sources.iterdir() if f.is_file()]
+    standard = sorted(headers.glob(f"fmi{job.fmi}*.h"))
+    for file in (*cores.reached(own.iterdir(), texts), *standard):
+        (sources / file.name).write_bytes(file.read_bytes())
+    made = {platform: _compile(platform, job.name, files, folder) for platform in job.platforms}
+    for name, code in platforms.libraries(job.fmi, job.name, made).items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(code)
+    main = sources / MAIN_UNIT
+    packed = renamed(job.name, [MAIN_UNIT], [], {MAIN_UNIT: main.read_bytes()})
+    if job.fmi == 3:
+        packed["buildDescription.xml"] = build_description(job.name, files)
+    for name, data in packed.items():
+        (sources / name).write_bytes(data)
+    return files
+
+
+def _part(fmu: str, sources: Path) -> list[str]:
+    """Unpack the C text of an FMU into a folder of its own; names of what is compiled of it."""
+    with opened(fmu) as archive:
+        names = [n for n in archive.namelist() if n.startswith("sources/")]
+        if f"sources/{NAMES}" not in names:
+            raise NotFused(f"{fmu} carries no C text that can be linked with others")
+        for name in names:
+            place = sources / fmu / Path(name).name
+            place.parent.mkdir(exist_ok=True)
+            if not place.name.startswith(("fmi3", MAIN_UNIT)):
+                place.write_bytes(archive.read(name))
+        build = ElementTree.fromstring(archive.read("sources/buildDescription.xml"))
+    listed = build.find("BuildConfiguration/SourceFileSet")
+    assert listed is not None, "an FMU has C files"
+    found = [row.attrib["name"] for row in listed.iter("SourceFile")]
+    (sources / fmu / "buildDescription.xml").unlink()
+    return [f"{fmu}/{name}" for name in (PART_UNIT, *(n for n in found if n != MAIN_UNIT))]
+
+
+def _compile(platform: platforms.Platform, name: str, files: list[str], folder: Path) -> bytes:
+    cc, library = cross(), f"{name}{platform.suffix}"
+    assert cc is not None, "whoever asks for platforms has looked for it"
+    options = ["-target", platform.target, *_FLAGS, "-ffile-prefix-map=" + str(folder) + "=."]
+    if platform.system == "darwin":
+        options.append(f"-Wl,-install_name,@rpath/{library}")
+    with tempfile.TemporaryDirectory(prefix="motionfmu-") as place:  # zig leaves more than it
+        target = Path(place) / library
+        cc.run([*options, *files, "-o", target, "-lm"], folder / "sources")
+        return target.read_bytes()

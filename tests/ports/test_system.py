@@ -1,0 +1,48 @@
+"""A system exported for other platforms, from the C text of its FMUs."""
+
+import re
+import subprocess
+import zipfile
+from importlib import util
+from pathlib import Path
+
+import bits
+import pytest
+from conftest import ROOT
+from console import command
+
+from motionfmu.errors import InputError
+from motionfmu.fmu.platforms import PLATFORMS, Platform, here, named
+
+SCENARIO = ROOT / "scenarios/mismatch_line"
+zig = pytest.mark.skipif(not util.find_spec("ziglang"), reason="no zig: make export installs it")
+
+
+def test_platforms_are_named() -> None:
+    assert named("here") == ()
+    assert named("all") == PLATFORMS
+    assert named("x86_64-windows,x86_64-windows") == (Platform("x86_64-windows"),)
+    with pytest.raises(InputError, match=r"no platform 'win64' \(there are: here, all, x86_64-l"):
+        named("x86_64-linux,win64")
+
+
+@zig
+def test_a_system_from_the_text_of_its_fmus_gives_the_same_bits(tmp_path: Path) -> None:
+    others = [p for p in PLATFORMS if p.name in bits.RUNNERS and not bits.missing(p)]
+    for name, platforms in (("one", "here"), ("text", ",".join(p.name for p in (here(), *others)))):
+        target = str(tmp_path / f"{name}.fmu")
+        done = command("export", SCENARIO, "-o", target, "--platforms", platforms)
+        assert done.returncode == 0, done.stderr
+    job = bits.Job(400, 1e-4)
+    wanted = bits.hashes(tmp_path / "one.fmu", here(), job, tmp_path)
+    assert len({row.split()[1] for row in wanted}) > 300
+    for platform in (here(), *others):
+        found = bits.hashes(tmp_path / "text.fmu", platform, job, tmp_path)
+        assert bits.different(wanted, found) == "", platform
+    with zipfile.ZipFile(tmp_path / "text.fmu") as archive:
+        names = archive.namelist()
+        library = next(n for n in names if re.fullmatch(rf"binaries/{here().name}/.*", n))
+        shown = archive.extract(library, tmp_path)
+    assert {"sources/mcc/fmu_part.c", "sources/epcio/fmu_names.h"} <= set(names)
+    told = subprocess.run(["nm", "-D", "--defined-only", shown], capture_output=True, text=True)
+    assert {line.split()[-1][:4] for line in told.stdout.splitlines()} == {"fmi3"}
