@@ -164,17 +164,19 @@ double el_cos(double x)
     return slow(x, 1);
 }
 
-void el_sincos(double x, double *sine, double *cosine)
+struct el_turn el_sincos(double x)
 {
+    struct el_turn t;
     if (is_quick(x)) {
         const struct rest r = rest_of(x);
-        const bool first = settled(sine_at(&r, r.k), sine);
-        if (settled(sine_at(&r, r.k + 64), cosine) && first) {
-            return;
+        const bool first = settled(sine_at(&r, r.k), &t.sine);
+        if (settled(sine_at(&r, r.k + 64), &t.cosine) && first) {
+            return t;
         }
     }
-    *sine = slow(x, 0);
-    *cosine = slow(x, 1);
+    t.sine = slow(x, 0);
+    t.cosine = slow(x, 1);
+    return t;
 }
 
 double el_tan(double x)

@@ -12,7 +12,10 @@ double el_sin(double x);
 double el_cos(double x);
 double el_tan(double x);
 /* Both at once, the same bits. */
-void el_sincos(double x, double *sine, double *cosine);
+struct el_turn {
+    double sine, cosine;
+};
+struct el_turn el_sincos(double x);
 
 /* [rad] */
 double el_asin(double x);

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 static const double EQUAL = 1e-6;       /* closer values are equal, as LinuxCNC documents it */
 static const double DEGREE = 0.017453292519943295;
 enum { DEEPEST = 30 };                  /* brackets and signs within one another */
@@ -45,7 +47,7 @@ static double modulo(double a, double b)
 static double apply(enum operation o, double a, double b)
 {
     switch (o) {
-    case POWER:     return pow(a, b);
+    case POWER:     return el_pow(a, b);
     case TIMES:     return a * b;
     case DIVIDED:   return a / b;
     case MODULO:    return modulo(a, b);
@@ -141,17 +143,17 @@ static double of(enum function f, double x)
 {
     switch (f) {
     case ABS:   return fabs(x);
-    case ACOS:  return acos(x) / DEGREE;
-    case ASIN:  return asin(x) / DEGREE;
-    case COS:   return cos(x * DEGREE);
-    case EXP:   return exp(x);
+    case ACOS:  return el_acos(x) / DEGREE;
+    case ASIN:  return el_asin(x) / DEGREE;
+    case COS:   return el_cos(x * DEGREE);
+    case EXP:   return el_exp(x);
     case FIX:   return floor(x) + 0.0;      /* a zero without a sign, that ATAN would see */
     case FUP:   return ceil(x) + 0.0;
-    case LN:    return log(x);
+    case LN:    return el_log(x);
     case ROUND: return round(x) + 0.0;
-    case SIN:   return sin(x * DEGREE);
+    case SIN:   return el_sin(x * DEGREE);
     case SQRT:  return sqrt(x);
-    case TAN:   return tan(x * DEGREE);
+    case TAN:   return el_tan(x * DEGREE);
     case ATAN:
     case EXISTS:
     case NO_FUNCTION: break;
@@ -204,7 +206,7 @@ static enum fault call(struct reading *s, int32_t from, double *value)
         (g == LN && x <= 0.0)) {
         return reading_fault(s, FAULT_ARGUMENT, at);
     }
-    *value = g == ATAN ? atan2(x, y) / DEGREE : of(g, x);
+    *value = g == ATAN ? el_atan2(x, y) / DEGREE : of(g, x);
     return isfinite(*value) ? FAULT_NONE : reading_fault(s, FAULT_LARGE, at);
 }
 

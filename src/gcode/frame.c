@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "offsets.h"
 
 static const double DEGREE = 0.017453292519943295;
@@ -18,8 +19,8 @@ static void turn(double degrees, double *x, double *y)
     const double rest = fmod(degrees, 360.0), quarter = rest / 90.0;
     const bool whole = quarter == round(quarter);
     const int k = whole ? ((int)quarter + 4) % 4 : 0;
-    const double c = whole ? COSINE[k] : cos(rest * DEGREE);
-    const double s = whole ? COSINE[(k + 3) % 4] : sin(rest * DEGREE);
+    const double c = whole ? COSINE[k] : el_cos(rest * DEGREE);
+    const double s = whole ? COSINE[(k + 3) % 4] : el_sin(rest * DEGREE);
     const double turned = c * *x - s * *y;
 
     *y = s * *x + c * *y;
@@ -158,8 +159,8 @@ static enum fault polar_words(const struct interpreter *in, const struct block *
     if (xy) {
         return tokens_at_words(r, FAULT_SHARED, first, xy);
     }
-    double length = hypot(program[0], program[1]);
-    double azimuth = atan2(program[1], program[0]) / DEGREE;
+    double length = el_hypot(program[0], program[1]);
+    double azimuth = el_atan2(program[1], program[0]) / DEGREE;
     if (length == 0.0 && (in->incremental || !angle)) {
         return tokens_at_word(r, FAULT_POLE, first);
     }
@@ -328,8 +329,8 @@ static void begin_polar(struct interpreter *in)
     const double x = here[path_first(in->plane)], y = here[path_second(in->plane)];
     w->polar = true;
     w->pole[0] = w->pole[1] = 0.0;
-    w->radius = hypot(x, y);
-    w->azimuth = atan2(y, x) / DEGREE;
+    w->radius = el_hypot(x, y);
+    w->azimuth = el_atan2(y, x) / DEGREE;
 }
 
 bool frame_takes_axes(const struct block *b)

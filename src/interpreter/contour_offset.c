@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 static const double TAU = 6.283185307179586;
 
 /* What is shorter is no motion, and no room for one: far below a pulse, far above rounding. [mm] */
@@ -27,7 +29,7 @@ static double cross(const double a[2], const double b[2])
 
 static double distance(const double a[2], const double b[2])
 {
-    return hypot(a[0] - b[0], a[1] - b[1]);
+    return el_hypot(a[0] - b[0], a[1] - b[1]);
 }
 
 static void in_plane(const double place[AXES], enum path_plane plane, double flat[2])
@@ -76,8 +78,8 @@ static double angle_along(const struct contour *s, const double a[2], const doub
 {
     const double u[2] = { a[0] - s->centre[0], a[1] - s->centre[1] };
     const double v[2] = { b[0] - s->centre[0], b[1] - s->centre[1] };
-    const double angle = s->turn * atan2(cross(u, v), dot(u, v));
-    return angle * hypot(u[0], u[1]) < -10.0 * SMOOTH ? angle + TAU : angle;
+    const double angle = s->turn * el_atan2(cross(u, v), dot(u, v));
+    return angle * el_hypot(u[0], u[1]) < -10.0 * SMOOTH ? angle + TAU : angle;
 }
 
 /* The two places where the ways of the centre beside two motions cross; false: nowhere. Two lines
@@ -158,7 +160,7 @@ static bool crossing(const struct contour *a, const struct contour *b, double ed
 enum contour_corner contour_corner(const struct contour *a, const struct contour *b, double edge,
                                    double from[2], double to[2])
 {
-    const double angle = atan2(cross(a->last, b->first), dot(a->last, b->first));
+    const double angle = el_atan2(cross(a->last, b->first), dot(a->last, b->first));
 
     if (fabs(angle) > TAU / 2.0 - BACK) {
         return CONTOUR_BACK;
@@ -166,7 +168,7 @@ enum contour_corner contour_corner(const struct contour *a, const struct contour
     if (fabs(angle * edge) < SMOOTH) {
         const double sum[2] = { a->last[0] + b->first[0], a->last[1] + b->first[1] };
         for (int i = 0; i < 2; i++) {
-            from[i] = to[i] = a->end[i] + edge * sum[i] / hypot(sum[0], sum[1]);
+            from[i] = to[i] = a->end[i] + edge * sum[i] / el_hypot(sum[0], sum[1]);
         }
         return CONTOUR_JOINED;
     }

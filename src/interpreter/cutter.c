@@ -6,6 +6,7 @@
 
 #include "block.h"
 #include "contour_offset.h"
+#include "elementary.h"
 #include "frame.h"
 #include "tools.h"
 
@@ -142,7 +143,7 @@ static enum fault corner(struct interpreter *in, const struct program *p, const 
     }
     if (entry_arc && kind == CONTOUR_JOINED) {
         contour_beside(&a, true, k->edge, from);    /* smooth, or there is no such arc */
-        if (hypot(from[0] - to[0], from[1] - to[1]) > 1e-5) {
+        if (el_hypot(from[0] - to[0], from[1] - to[1]) > 1e-5) {
             return FAULT_CUTTER_ENTRY;
         }
         memcpy(to, from, sizeof to);
@@ -181,7 +182,7 @@ static enum fault follow(struct interpreter *in, const struct program *p, const 
     } else {
         memcpy(k->from, s.start, sizeof k->from);
         k->enters = true;
-        r->value = hypot(s.end[0] - s.start[0], s.end[1] - s.start[1]);
+        r->value = el_hypot(s.end[0] - s.start[0], s.end[1] - s.start[1]);
         r->limit = fabs(k->edge);
         f = r->value > r->limit ? FAULT_NONE : FAULT_CUTTER_ENTRY;
     }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 /* What is left of the pre-filter's lag at rest is nothing from here on. [pulses], [pulses/s] */
 static const double NOTHING = 1e-6;
 
@@ -28,7 +30,7 @@ static void prefilter(const struct law_config *c, struct law *s, const struct la
             s->speed[i] = look->speed[i];
             continue;
         }
-        const double q = exp(-c->period / lag);
+        const double q = el_exp(-c->period / lag);
         const double moved = (int32_t)((uint32_t)look->pulses[i] - (uint32_t)s->pulses[i]);
         s->behind[i] = q * s->behind[i] + lag * (1.0 - q) * moved / c->period;
         s->speed[i] = q * s->speed[i] + (1.0 - q) * look->speed[i];

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 /* New commands are planned once they are so many of the planned ones (a fourth), so that a plan,
  * which goes through all, costs each command the same whatever their number. */
 enum { PLAN_SHARE = 4 };
@@ -18,7 +20,7 @@ static double bend_speed(const struct command *c, double bend, double twist)
         v = fmin(v, sqrt(fmin(r->acc, r->dec) / bend));
     }
     if (c->smooth > 0.0 && twist > 0.0) {
-        v = fmin(v, cbrt((r->acc + r->dec) / (c->smooth * twist)));
+        v = fmin(v, el_cbrt((r->acc + r->dec) / (c->smooth * twist)));
     }
     return v;
 }

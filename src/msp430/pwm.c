@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "elementary.h"
+
 static double amplify(const struct pwm_config *c, double filtered)
 {
     return fmin(fmax(c->gain * (filtered - c->offset), -c->limit), c->limit);
@@ -38,14 +40,14 @@ static double crossing(double tau, double end, double x, double there, double ti
     const double share = (end - there) / (end - x);
     if (!(share > 0.0 && share < 1.0))
         return share >= 1.0 ? 0.0 : time;
-    return fmin(-tau * log(share), time);
+    return fmin(-tau * el_log(share), time);
 }
 
 /* Vc runs towards `end` for `time`; the voltage's integral, cut off at the limit. */
 static void charge(struct pwm *p, const struct pwm_config *c, double end, double time)
 {
     const double from = p->filtered;
-    const double to = end + (from - end) * exp(-time / c->tau);
+    const double to = end + (from - end) * el_exp(-time / c->tau);
     p->filtered = to;
     note(p, c);
     if (from == to) {

@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "elementary.h"
+
 /* Shorter ways are none. [mm] */
 static const double NONE = 1e-9;
 
@@ -138,7 +140,7 @@ static bool choose(struct net_plan *p, int32_t *event)
     }
     if (p->moving) {
         p->moving = false;
-        if (hypot(p->target[0] - p->place[0], p->target[1] - p->place[1]) > NONE) {
+        if (el_hypot(p->target[0] - p->place[0], p->target[1] - p->place[1]) > NONE) {
             const double to[JOB_AXES] = { p->target[0], p->target[1], p->place[2], p->place[3] };
             slide(p, to);
         }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 static const double TAU = 6.283185307179586;
 
 /* What an arc may miss its end by if nothing else is said: rounding at 3 decimals of a mm. */
@@ -78,7 +80,7 @@ enum path_status path_arc_within(struct path *p, enum path_plane plane, const do
     const int a = path_first(plane), b = path_second(plane), n = (int)plane;
     const double sa = start[a] - centre[0], sb = start[b] - centre[1];
     const double ea = end[a] - centre[0], eb = end[b] - centre[1];
-    const double r0 = hypot(sa, sb), r1 = hypot(ea, eb);
+    const double r0 = el_hypot(sa, sb), r1 = el_hypot(ea, eb);
 
     *miss = fabs(r1 - r0);
     if (r0 == 0.0 || r1 == 0.0) {
@@ -94,8 +96,8 @@ enum path_status path_arc_within(struct path *p, enum path_plane plane, const do
     p->centre[1] = centre[1];
     p->radius = r0;
     p->growth = r1 - r0;
-    p->angle = atan2(sb, sa);
-    double turn = atan2(sa * eb - sb * ea, sa * ea + sb * eb);  /* -pi..pi, ccw positive */
+    p->angle = el_atan2(sb, sa);
+    double turn = el_atan2(sa * eb - sb * ea, sa * ea + sb * eb);  /* -pi..pi, ccw positive */
     if (!ccw) {
         turn = -turn;
     }
@@ -128,8 +130,9 @@ enum path_status path_tilted(struct path *p, const double start[AXES], const dou
     if (!(p->length > 0.0)) {
         return PATH_NO_RADIUS;
     }
+    const struct el_turn t = el_sincos(sweep);
     for (int i = 0; i < 3; i++) {
-        p->end[i] = p->middle[i] + (cos(sweep) * a[i] + sin(sweep) * b[i]);
+        p->end[i] = p->middle[i] + (t.cosine * a[i] + t.sine * b[i]);
     }
     return PATH_OK;
 }
@@ -159,7 +162,7 @@ enum path_status path_tilted_by_point(const double start[3], const double via[3]
         x[i] = end[i] - middle[i];
     }
     cross(normal, a, b);
-    *sweep = atan2(dot(x, b), dot(x, a));
+    *sweep = el_atan2(dot(x, b), dot(x, a));
     *sweep += *sweep <= 0.0 ? TAU : 0.0;
     return PATH_OK;
 }
@@ -170,7 +173,7 @@ enum path_status path_centre_by_radius(enum path_plane plane, const double start
 {
     const int a = path_first(plane), b = path_second(plane);
     const double da = end[a] - start[a], db = end[b] - start[b];
-    const double chord = hypot(da, db);
+    const double chord = el_hypot(da, db);
 
     *half = 0.5 * chord;
     if (chord == 0.0) {
@@ -247,7 +250,8 @@ enum path_status path_cubic(struct path *p, const double start[AXES], const doub
 
 static void tilted_at(const struct path *p, double part, double point[AXES], double slope[AXES])
 {
-    const double c = cos(p->sweep * part), d = sin(p->sweep * part), per = p->sweep / p->length;
+    const struct el_turn t = el_sincos(p->sweep * part);
+    const double c = t.cosine, d = t.sine, per = p->sweep / p->length;
     double a[3], b[3];
 
     tilted_axes(p, a, b);
@@ -277,8 +281,8 @@ void path_at(const struct path *p, double s, double point[AXES], double slope[AX
         tilted_at(p, part, point, slope);
     } else if (p->arc) {
         const int a = path_first(p->plane), b = path_second(p->plane);
-        const double angle = p->angle + p->sweep * part;
-        const double c = cos(angle), d = sin(angle), r = p->radius + p->growth * part;
+        const struct el_turn t = el_sincos(p->angle + p->sweep * part);
+        const double c = t.cosine, d = t.sine, r = p->radius + p->growth * part;
         if (part < 1.0) {
             point[a] = p->centre[0] + r * c;
             point[b] = p->centre[1] + r * d;
@@ -299,7 +303,7 @@ double path_share(const struct path *p, int axis)
     if (p->arc && p->plane == PATH_TILTED && axis < 3) {
         double a[3], b[3];
         tilted_axes(p, a, b);
-        return hypot(a[axis], b[axis]) * fabs(p->sweep) / p->length;
+        return el_hypot(a[axis], b[axis]) * fabs(p->sweep) / p->length;
     }
     if (p->arc && axis < 3 && axis != (int)p->plane) {
         const double r = p->radius + 0.5 * p->growth;
@@ -332,9 +336,9 @@ static double turning(const struct path *p, int axis, int k, double t0, double t
     const double angle = p->angle - (second ? TAU / 4.0 : 0.0);
     double t = (k * TAU / 2.0 - angle) / p->sweep;
 
-    t += atan(p->growth / ((p->radius + p->growth * t) * p->sweep)) / p->sweep;
+    t += el_atan(p->growth / ((p->radius + p->growth * t) * p->sweep)) / p->sweep;
     t = fmax(t0, fmin(t1, t));
-    return p->centre[second] + (p->radius + p->growth * t) * cos(angle + p->sweep * t);
+    return p->centre[second] + (p->radius + p->growth * t) * el_cos(angle + p->sweep * t);
 }
 
 /* Half turns between two angles, the first and last ones, for between them nothing is further. */
@@ -360,7 +364,7 @@ static void tilted_turnings(const struct path *p, int axis, double t0, double t1
     double a[3], b[3];
 
     tilted_axes(p, a, b);
-    const double top = atan2(b[axis], a[axis]), r = hypot(a[axis], b[axis]);
+    const double top = el_atan2(b[axis], a[axis]), r = el_hypot(a[axis], b[axis]);
     const double from = fmin(p->sweep * t0, p->sweep * t1);
     const double to = fmax(p->sweep * t0, p->sweep * t1);
     if (top + TAU * ceil((from - top) / TAU) <= to) {

@@ -3,6 +3,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "elementary.h"
+
 /* How the times are found.
  *
  * For a total time T the points that can be reached with speed v1 form an interval: controls and
@@ -94,7 +96,7 @@ static struct shape triangles(const struct pulses *p, struct range range)
 {
     const double d = p->v1 - p->base;
     const double c[4] = { -d * d, -4.0 * p->way, 4.0 * (p->base + p->v1), 0.0 };
-    const double rest = cbrt(4.0 * p->way);     /* the root if base = v1 = 0 */
+    const double rest = el_cbrt(4.0 * p->way);     /* the root if base = v1 = 0 */
     const double u = root(c, range.low, rest, range.high);
     const double skew = u > 0.0 ? d / u : 0.0;
     return (struct shape){ .x = (u + skew) / 2.0, .y = (u - skew) / 2.0 };

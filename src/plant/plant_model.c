@@ -23,6 +23,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "plant.h"
 #include "plant_stiffness.h"
 
@@ -158,7 +159,7 @@ static int plant_controlled(struct plant_block *b, double h)
             step = 0.5 * left; /* not a whole one and then a scrap */
         }
         const double error = plant_trial(b, step, y);
-        double factor = error > 0.0 ? safety * pow(error, -1.0 / 3.0) : grow;
+        double factor = error > 0.0 ? safety / el_cbrt(error) : grow;
         factor = factor < grow ? factor > shrink ? factor : shrink : isnan(factor) ? shrink : grow;
         if (error <= 1.0) {
             memcpy(b->x, y, sizeof y);

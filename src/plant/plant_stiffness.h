@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "plant.h"
 
 /* Bound of the largest |eigenvalue| of an n x n matrix, [i][j] at [i * n + j]: |lambda| <=
@@ -29,9 +30,9 @@ static double plant_spectral_radius(const double *matrix, int squarings)
         if (norm == 0.0 || !isfinite(norm)) {
             return norm;
         }
-        logarithm += share * log(norm);
+        logarithm += share * el_log(norm);
         if (k == squarings) {
-            return exp(logarithm);
+            return el_exp(logarithm);
         }
         for (int i = 0; i < n * n; i++) {
             a[i] /= norm;

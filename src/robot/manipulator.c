@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 static const double MM = 1e-3;              /* [m] */
 
 static const double TURN = 6.283185307179586;
@@ -163,9 +165,11 @@ void manipulator_jacobian(const struct manipulator *m, const double joint[OPW_JO
     for (int i = 0; i < OPW_JOINTS; i++) {
         th[i] = o->sign[i] * joint[i] - o->offset[i];
     }
-    const double c = cos(th[0]), s = sin(th[0]), p = th[1] + th[2];
-    const double cp = cos(p), sp = sin(p), c4 = cos(th[3]), s4 = sin(th[3]);
-    const double x2 = o->a1 + o->c2 * sin(th[1]), z2 = o->c1 + o->c2 * cos(th[1]);
+    const struct el_turn base = el_sincos(th[0]), lower = el_sincos(th[1]);
+    const struct el_turn fore = el_sincos(th[1] + th[2]), roll = el_sincos(th[3]);
+    const double c = base.cosine, s = base.sine, cp = fore.cosine, sp = fore.sine;
+    const double c4 = roll.cosine, s4 = roll.sine;
+    const double x2 = o->a1 + o->c2 * lower.sine, z2 = o->c1 + o->c2 * lower.cosine;
     double hand[3];
     quaternion_turn(flange.turn, (const double[]){ 0.0, 0.0, 1.0 }, hand);
     for (int k = 0; k < 3; k++) {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 static const double TURN = 6.283185307179586;
 
 /* A cosine may exceed 1 by rounding at the edge of reach. */
@@ -21,7 +23,8 @@ static void inner(const struct opw *o, const double joint[OPW_JOINTS], double th
 /* Rz(a) Ry(p): columns are the axes of the forearm's frame. */
 static void forearm(double a, double p, double m[3][3])
 {
-    const double ca = cos(a), sa = sin(a), cp = cos(p), sp = sin(p);
+    const struct el_turn ta = el_sincos(a), tp = el_sincos(p);
+    const double ca = ta.cosine, sa = ta.sine, cp = tp.cosine, sp = tp.sine;
     const double turn[3][3] = { { ca * cp, -sa, ca * sp }, { sa * cp, ca, sa * sp },
                                 { -sp, 0.0, cp } };
     memcpy(m, turn, sizeof turn);
@@ -39,8 +42,9 @@ static void product(const double a[3][3], const double b[3][3], double c[3][3])
 /* Rz(th4) Ry(th5) Rz(th6). */
 static void wrist(const double th[OPW_JOINTS], double m[3][3])
 {
-    const double c = cos(th[5]), s = sin(th[5]);
-    const double last[3][3] = { { c, -s, 0.0 }, { s, c, 0.0 }, { 0.0, 0.0, 1.0 } };
+    const struct el_turn t = el_sincos(th[5]);
+    const double last[3][3] = { { t.cosine, -t.sine, 0.0 }, { t.sine, t.cosine, 0.0 },
+                                { 0.0, 0.0, 1.0 } };
     double first[3][3];
     forearm(th[3], th[4], first);
     product((const double (*)[3])first, last, m);
@@ -49,9 +53,10 @@ static void wrist(const double th[OPW_JOINTS], double m[3][3])
 /* Wrist centre in the plane of the arm: from axis 1, from axis 2 up. */
 static void centre(const struct opw *o, const double th[OPW_JOINTS], double *x, double *z)
 {
-    const double k = hypot(o->a2, o->c3), p = th[1] + th[2] + atan2(o->a2, o->c3);
-    *x = o->c2 * sin(th[1]) + k * sin(p) + o->a1;
-    *z = o->c2 * cos(th[1]) + k * cos(p);
+    const double k = el_hypot(o->a2, o->c3), p = th[1] + th[2] + el_atan2(o->a2, o->c3);
+    const struct el_turn lower = el_sincos(th[1]), upper = el_sincos(p);
+    *x = o->c2 * lower.sine + k * upper.sine + o->a1;
+    *z = o->c2 * lower.cosine + k * upper.cosine;
 }
 
 void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw_pose *pose)
@@ -63,7 +68,8 @@ void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw
     wrist(th, hand);
     product((const double (*)[3])arm, (const double (*)[3])hand, pose->turn);
     centre(o, th, &x, &z);
-    const double c = cos(th[0]), s = sin(th[0]);
+    const struct el_turn base = el_sincos(th[0]);
+    const double c = base.cosine, s = base.sine;
     pose->at[0] = x * c - o->b * s + o->c4 * pose->turn[0][2];
     pose->at[1] = x * s + o->b * c + o->c4 * pose->turn[1][2];
     pose->at[2] = z + o->c1 + o->c4 * pose->turn[2][2];
@@ -72,7 +78,7 @@ void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw
 /* acos of what may be out by rounding; false beyond that, and for what is no number. */
 static bool angle(double cosine, double *a)
 {
-    *a = acos(fmax(-1.0, fmin(1.0, cosine)));
+    *a = el_acos(fmax(-1.0, fmin(1.0, cosine)));
     return fabs(cosine) <= 1.0 + EDGE;
 }
 
@@ -80,15 +86,15 @@ static bool angle(double cosine, double *a)
 static void solve_wrist(const double w[3][3], double near, double th[2][OPW_JOINTS])
 {
     const double sine = sqrt(w[0][2] * w[0][2] + w[1][2] * w[1][2]);
-    double first = atan2(w[1][2], w[0][2]), last = atan2(w[2][1], -w[2][0]);
+    double first = el_atan2(w[1][2], w[0][2]), last = el_atan2(w[2][1], -w[2][0]);
 
     if (sine < IN_LINE) {
         first = near;
-        last = w[2][2] > 0.0 ? atan2(w[1][0], w[0][0]) - near
-                             : near - atan2(-w[0][1], -w[0][0]);
+        last = w[2][2] > 0.0 ? el_atan2(w[1][0], w[0][0]) - near
+                             : near - el_atan2(-w[0][1], -w[0][0]);
     }
     th[0][3] = first;
-    th[0][4] = atan2(sine, w[2][2]);
+    th[0][4] = el_atan2(sine, w[2][2]);
     th[0][5] = last;
     th[1][3] = sine < IN_LINE ? first : first + 0.5 * TURN;
     th[1][4] = sine < IN_LINE ? th[0][4] : -th[0][4];
@@ -115,7 +121,7 @@ uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
     const double y = pose->at[1] - o->c4 * pose->turn[1][2];
     const double z = pose->at[2] - o->c4 * pose->turn[2][2] - o->c1;
     const double reach = x * x + y * y - o->b * o->b;
-    const double k2 = o->a2 * o->a2 + o->c3 * o->c3, k = sqrt(k2), psi = atan2(o->a2, o->c3);
+    const double k2 = o->a2 * o->a2 + o->c3 * o->c3, k = sqrt(k2), psi = el_atan2(o->a2, o->c3);
     double known[OPW_JOINTS];
     uint32_t there = 0;
 
@@ -123,7 +129,7 @@ uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
         return 0;       /* within the lateral offset of axis 1 */
     }
     inner(o, near, known);
-    const double out = sqrt(reach), aside = atan2(o->b, out), way = atan2(y, x);
+    const double out = sqrt(reach), aside = el_atan2(o->b, out), way = el_atan2(y, x);
     for (int shoulder = 0; shoulder <= OPW_BACK; shoulder += OPW_BACK) {
         const double n = (shoulder ? -out : out) - o->a1;   /* wrist centre from axis 2, along x */
         const double s2 = n * n + z * z, s = sqrt(s2);
@@ -133,7 +139,8 @@ uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
             continue;
         }
         const double first = shoulder ? way + aside - 0.5 * TURN : way - aside;
-        const double c = cos(first), d = sin(first), up = atan2(n, z);
+        const struct el_turn base = el_sincos(first);
+        const double c = base.cosine, d = base.sine, up = el_atan2(n, z);
         for (int i = 0; i < 3; i++) {   /* the attitude seen from the arm's plane */
             seen[0][i] = c * pose->turn[0][i] + d * pose->turn[1][i];
             seen[1][i] = c * pose->turn[1][i] - d * pose->turn[0][i];
@@ -148,7 +155,8 @@ uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
             th[0][0] = th[1][0] = first;
             th[0][1] = th[1][1] = up + (elbow ? at2 : -at2);
             th[0][2] = th[1][2] = (elbow ? -at3 : at3) - psi;
-            const double p = th[0][1] + th[0][2], cp = cos(p), sp = sin(p);
+            const struct el_turn fore = el_sincos(th[0][1] + th[0][2]);
+            const double cp = fore.cosine, sp = fore.sine;
             for (int i = 0; i < 3; i++) {
                 w[0][i] = cp * seen[0][i] - sp * seen[2][i];
                 w[1][i] = seen[1][i];
@@ -199,7 +207,7 @@ int opw_nearest(uint32_t branches, const double all[OPW_BRANCHES][OPW_JOINTS],
 
 double opw_elbow(const struct opw *o, const double joint[OPW_JOINTS])
 {
-    return sin(o->sign[2] * joint[2] - o->offset[2] + atan2(o->a2, o->c3));
+    return el_sin(o->sign[2] * joint[2] - o->offset[2] + el_atan2(o->a2, o->c3));
 }
 
 void opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double factor[3])
@@ -209,7 +217,7 @@ void opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double fac
     inner(o, joint, th);
     centre(o, th, &factor[0], &z);
     factor[1] = opw_elbow(o, joint);
-    factor[2] = sin(th[4]);
+    factor[2] = el_sin(th[4]);
 }
 
 int opw_branch(const struct opw *o, const double joint[OPW_JOINTS])

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 static const double DEGREE = 0.017453292519943295;
 
 /* Sine of half the angle between two attitudes that count as nearly equal: its square is lost in
@@ -49,9 +51,10 @@ void quaternion_turn(const double a[4], const double v[3], double turned[3])
 void quaternion_by_vector(const double v[3], double a[4])
 {
     const double angle = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    const double per = angle > 0.0 ? sin(0.5 * angle) / angle : 0.5;
+    const struct el_turn half = el_sincos(0.5 * angle);
+    const double per = angle > 0.0 ? half.sine / angle : 0.5;
 
-    a[0] = cos(0.5 * angle);
+    a[0] = half.cosine;
     for (int i = 0; i < 3; i++) {
         a[i + 1] = per * v[i];
     }
@@ -61,7 +64,7 @@ void quaternion_vector(const double a[4], double v[3])
 {
     const double sine = sqrt(a[1] * a[1] + a[2] * a[2] + a[3] * a[3]);
     const double side = a[0] < 0.0 ? -1.0 : 1.0;
-    const double per = sine > 0.0 ? 2.0 * atan2(sine, side * a[0]) / sine : 2.0;
+    const double per = sine > 0.0 ? 2.0 * el_atan2(sine, side * a[0]) / sine : 2.0;
 
     for (int i = 0; i < 3; i++) {
         v[i] = side * per * a[i + 1];
@@ -79,9 +82,9 @@ void quaternion_slerp(const double a[4], const double b[4], double part, double 
         sine += across[i] * across[i];
     }
     sine = sqrt(sine);
-    const double half = atan2(sine, fabs(dot));
-    const double first = sine < NEARLY ? 1.0 - part : sin((1.0 - part) * half) / sin(half);
-    const double last = sine < NEARLY ? part : sin(part * half) / sin(half);
+    const double half = el_atan2(sine, fabs(dot));
+    const double first = sine < NEARLY ? 1.0 - part : el_sin((1.0 - part) * half) / el_sin(half);
+    const double last = sine < NEARLY ? part : el_sin(part * half) / el_sin(half);
     for (int i = 0; i < 4; i++) {
         c[i] = first * a[i] + last * side * b[i];
     }
@@ -127,8 +130,9 @@ void quaternion_by_angles(const double angle[3], double a[4])
     double half[3][4] = { { 0 }, { 0 }, { 0 } };
 
     for (int i = 0; i < 3; i++) {
-        half[i][0] = cos(0.5 * DEGREE * angle[i]);
-        half[i][i + 1] = sin(0.5 * DEGREE * angle[i]);
+        const struct el_turn t = el_sincos(0.5 * DEGREE * angle[i]);
+        half[i][0] = t.cosine;
+        half[i][i + 1] = t.sine;
     }
     quaternion_product(half[2], half[1], a);
     quaternion_product(a, half[0], a);
@@ -139,13 +143,13 @@ void quaternion_angles(const double a[4], double angle[3])
     double m[3][3];
 
     quaternion_matrix(a, m);
-    const double cosine = hypot(m[0][0], m[1][0]);
-    angle[1] = atan2(-m[2][0], cosine) / DEGREE;
+    const double cosine = el_hypot(m[0][0], m[1][0]);
+    angle[1] = el_atan2(-m[2][0], cosine) / DEGREE;
     if (cosine > UPRIGHT) {
-        angle[0] = atan2(m[2][1], m[2][2]) / DEGREE;
-        angle[2] = atan2(m[1][0], m[0][0]) / DEGREE;
+        angle[0] = el_atan2(m[2][1], m[2][2]) / DEGREE;
+        angle[2] = el_atan2(m[1][0], m[0][0]) / DEGREE;
     } else {
-        angle[0] = atan2(-m[1][2], m[1][1]) / DEGREE;
+        angle[0] = el_atan2(-m[1][2], m[1][1]) / DEGREE;
         angle[2] = 0.0;
     }
 }

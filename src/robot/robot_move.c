@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 static const double TURN = 6.283185307179586;
 
 /* Corners between pieces of one path are none, whatever the tolerance. [mm] */
@@ -147,9 +149,9 @@ static void wind(struct path *p, int axis, double rise)
     p->plane = plane;
     p->centre[0] = p->middle[a];
     p->centre[1] = p->middle[b];
-    p->angle = atan2(p->start[b] - p->centre[1], p->start[a] - p->centre[0]);
+    p->angle = el_atan2(p->start[b] - p->centre[1], p->start[a] - p->centre[0]);
     p->sweep *= p->normal[axis];
-    p->length = hypot(p->length, rise);
+    p->length = el_hypot(p->length, rise);
 }
 
 /* Path of the tip; U V W go on to where those of the latest move of the course end. */

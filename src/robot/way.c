@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 enum { STEPS = 8 };     /* of a piece that is looked at */
 
 /* Share of a joint's acceleration that the bend of its way may take where it limits the speed; the
@@ -178,8 +180,8 @@ static void allow(const struct survey *s, double from, double size, struct look 
         most = fmax(most, cap);
         most_acc = fmax(most_acc, acc);
     }
-    k->even = most <= pow(UNEVEN_SPEED, s->wide) * k->cap &&
-              most_acc <= pow(UNEVEN_ACC, s->wide) * k->acc;
+    k->even = most <= el_pow(UNEVEN_SPEED, s->wide) * k->cap &&
+              most_acc <= el_pow(UNEVEN_ACC, s->wide) * k->acc;
 }
 
 /* Pieces from start to end, each as long as its place among the halves of halves and its evenness

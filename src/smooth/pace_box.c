@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "pace_pull.h"
 
 /* Shares of an axis' acceleration and jerk that turning may take; the rest is to change speed. */
@@ -97,7 +98,7 @@ static double turn_speed(const struct pace_box *g, double acc, double jerk)
     for (int32_t i = 0; i < g->rows; i++) {
         const double a = extent(g->row[i].acc[1]), j = extent(g->row[i].jerk[2]);
         v = a > 0.0 ? fmin(v, sqrt(acc / a)) : v;
-        v = j > 0.0 ? fmin(v, cbrt(jerk / j)) : v;
+        v = j > 0.0 ? fmin(v, el_cbrt(jerk / j)) : v;
     }
     return v;
 }

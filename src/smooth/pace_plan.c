@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "elementary.h"
+
 /* Most steps of a look ahead, tries at a ramp of constant jerk and their times' shares of the time
  * in which the jerk reaches the acceleration, and bisections of b. */
 enum { STEPS = 200, RAMPS = 12, HALVES = 5 };
@@ -221,7 +223,7 @@ struct pace_step pace_road_hop(const struct pace_road *r, double at, int32_t box
             break;
         }
         jerk = k == 0 ? most : fmax(most, 0.5 * jerk);
-        const double part = cbrt(0.5 * way / jerk);
+        const double part = el_cbrt(0.5 * way / jerk);
         v = jerk * part * part;
         a = jerk * part;
     }
@@ -243,7 +245,7 @@ static struct pace_state fit(const struct pace_road *r, const struct pace_box *g
     double share = fmin(1.0, pace_road_top(r, g) / s.x);
 
     share = acc > 1.0 ? fmin(share, 1.0 / acc) : share;
-    share = jerk > 1.0 ? fmin(share, cbrt(1.0 / (jerk * jerk))) : share;
+    share = jerk > 1.0 ? fmin(share, el_cbrt(1.0 / (jerk * jerk))) : share;
     return (struct pace_state){ share * (1.0 - SAME) * s.x, share * (1.0 - SAME) * s.b };
 }
 

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "elementary.h"
+
 /* Time of a step that turns by less than this [rad] is that of a constant acceleration. */
 static const double STRAIGHT = 1e-5;
 
@@ -15,11 +17,11 @@ static double time_of(double v0, double a0, double v1, double a1, double c, doub
         return straight;
     }
     if (c < 0.0) {
-        return atan2(w * (a0 * v1 - a1 * v0), a0 * a1 + w * w * v0 * v1) / w;
+        return el_atan2(w * (a0 * v1 - a1 * v0), a0 * a1 + w * w * v0 * v1) / w;
     }
     const double dv = w * way * (a0 + a1) / (v0 + v1), da = 0.5 * c * way;
-    return a0 + a1 >= 0.0 ? log(1.0 + (da + dv) / (a0 + w * v0)) / w
-                          : log(1.0 + (dv - da) / (a1 - w * v1)) / w;
+    return a0 + a1 >= 0.0 ? el_log(1.0 + (da + dv) / (a0 + w * v0)) / w
+                          : el_log(1.0 + (dv - da) / (a1 - w * v1)) / w;
 }
 
 struct pace_step pace_step_bent(struct pace_state from, double c, double s)
@@ -50,7 +52,8 @@ struct pace_step pace_step_land(struct pace_state from)
 
 struct pace_step pace_step_hop(double jerk, double way)
 {
-    return (struct pace_step){ .kind = PACE_HOP, .way = way, .time = 4.0 * cbrt(0.5 * way / jerk),
+    return (struct pace_step){ .kind = PACE_HOP, .way = way,
+                               .time = 4.0 * el_cbrt(0.5 * way / jerk),
                                .c = jerk };
 }
 
@@ -89,9 +92,9 @@ struct pace_motion pace_step_at(const struct pace_step *s, double t)
     if (s->kind != PACE_BENT || w * t < STRAIGHT) {
         return steady(s->speed, s->acc, s->kind == PACE_BENT ? 0.5 * s->c * s->speed : s->c, t);
     }
-    const double x = 0.5 * w * t, half = s->c < 0.0 ? sin(x) : 0.5 * (exp(x) - exp(-x));
+    const double x = 0.5 * w * t, half = s->c < 0.0 ? el_sin(x) : 0.5 * (el_exp(x) - el_exp(-x));
     const double cosine = 1.0 + sign * 2.0 * half * half, turn = 2.0 * half * half / (w * w);
-    const double sine = (s->c < 0.0 ? sin(w * t) : 2.0 * half * sqrt(1.0 + half * half)) / w;
+    const double sine = (s->c < 0.0 ? el_sin(w * t) : 2.0 * half * sqrt(1.0 + half * half)) / w;
     const double v = fmax(0.0, s->speed * cosine + s->acc * sine);
     return (struct pace_motion){ s->speed * sine + s->acc * turn, v,
                                  s->acc + 0.5 * s->c * (s->speed * sine + s->acc * turn),

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 static const double TURN = 6.283185307179586;
 
 void piece_arc_at(const struct piece *p, double u, struct piece_state *s)
@@ -131,8 +133,9 @@ void piece_arc_bounds(const struct piece *p, double from, double to, struct piec
     for (int i = 0; i < 2; i++) {
         const double angle = (tilted ? 0.0 : a->angle) + t.per * u[i];
         t.radius[i] = tilted ? 1.0 : a->radius + t.growth * u[i];
-        t.cos[i] = cos(angle);
-        t.sin[i] = sin(angle);
+        const struct el_turn turn = el_sincos(angle);
+        t.cos[i] = turn.cosine;
+        t.sin[i] = turn.sine;
     }
     even_bounds(a, b);
     double most = fmax(fabs(t.radius[0]), fabs(t.radius[1]));

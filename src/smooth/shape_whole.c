@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 /* Part of a long command that a run may take: of its length, and in tolerances. */
 static const double SHARE = 1.0 / 3.0, GRAB = 60.0;
 
@@ -48,7 +50,7 @@ struct path shape_whole_path(const struct piece *p)
 static double arc_bend(const struct path *p)
 {
     const double per = p->sweep / p->length, r = fabs(p->radius) + fabs(p->growth);
-    return fabs(per) * hypot(per * r, 2.0 * p->growth / p->length);
+    return fabs(per) * el_hypot(per * r, 2.0 * p->growth / p->length);
 }
 
 int32_t shape_chords(const struct path *p, double length, double tolerance)

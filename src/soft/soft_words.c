@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "elementary.h"
 #include "inform_decimal.h"
 
 static const double DEGREE = 0.017453292519943295;
@@ -25,7 +26,8 @@ static const char *name_of(enum robot_status status)
 /* Words, and a number with six digits. */
 static void add(struct inform_text *t, const char *words, double value)
 {
-    const double scale = value != 0.0 ? pow(10.0, 5.0 - floor(log(fabs(value)) / log(10.0))) : 1.0;
+    const double decades = value != 0.0 ? floor(el_log(fabs(value)) / el_log(10.0)) : 5.0;
+    const double scale = el_pow(10.0, 5.0 - decades);
 
     inform_text_add(t, words);
     inform_text_number(t, round(value * scale) / scale);

@@ -95,9 +95,10 @@ def flags(fmu: Path, out: Path) -> None:
 
 
 def _core_files(fmu: Path) -> list[Path]:
-    # A Modelica class uses no cores; to translate it only to learn that would take seconds.
-    used = () if is_modelica(fmu) else fmu_toml.load(fmu / "fmu.toml").cores
-    return cores.needed(SOURCE, used, fmu.glob("*.[ch]"))
+    # What all Modelica classes use; to translate one only to learn that would take seconds.
+    if is_modelica(fmu):
+        return cores.needed(SOURCE, ["elementary"], (SOURCE / "plant").glob("*.[ch]"))
+    return cores.needed(SOURCE, fmu_toml.load(fmu / "fmu.toml").cores, fmu.glob("*.[ch]"))
 
 
 def compiled_sources(fmu: Path, out: Path) -> list[Path]:

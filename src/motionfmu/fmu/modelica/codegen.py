@@ -87,7 +87,8 @@ def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[
     note = _NOTE.format(ode.name)
     return (
         note
-        + '#include <math.h>\n#include <stddef.h>\n\n#include "plant.h"\n\n'
+        + "#include <math.h>\n#include <stddef.h>\n\n"
+        + '#include "elementary.h"\n#include "plant.h"\n\n'
         + "\n".join(
             [
                 _ports(ode, "[instance]" if instances > 1 else ""),

@@ -30,12 +30,15 @@ _TEMPLATES = {
     ca.OP_IF_ELSE_ZERO: "{0} != 0.0 ? {1} : 0.0",
     ca.OP_SIGN: "{0} > 0.0 ? 1.0 : {0} < 0.0 ? -1.0 : 0.0",
     ca.OP_FABS: "fabs({0})",
-    ca.OP_POW: "pow({0}, {1})",
-    ca.OP_CONSTPOW: "pow({0}, {1})",
-    ca.OP_ATAN2: "atan2({0}, {1})",
+    ca.OP_POW: "el_pow({0}, {1})",
+    ca.OP_CONSTPOW: "el_pow({0}, {1})",
+    ca.OP_ATAN2: "el_atan2({0}, {1})",
 }
-_LIBRARY = "sqrt floor ceil sin cos tan asin acos atan sinh cosh tanh exp log"
-_TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f + "({0})" for f in _LIBRARY.split()})
+_EXACT = "sqrt floor ceil"
+_ELEMENTARY = "sin cos tan asin acos atan sinh cosh tanh exp log"
+_TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f + "({0})" for f in _EXACT.split()})
+_TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f"el_{f}({{0}})" for f in _ELEMENTARY.split()})
+_TURN = {ca.OP_SIN: "sine", ca.OP_COS: "cosine"}
 
 
 def literal(value: float) -> str:
@@ -44,6 +47,15 @@ def literal(value: float) -> str:
         return "NAN"
     text = "INFINITY" if math.isinf(value) else repr(abs(value))
     return f"(-{text})" if value < 0 else text
+
+
+def _sine_and_cosine(program: Program, nodes: Iterable[int]) -> dict[tuple[int, ...], int]:
+    """The first node of each argument of which both are needed."""
+    found: dict[tuple[int, ...], list[int]] = {}
+    for k in sorted(nodes):
+        if program.nodes[k].op in _TURN:
+            found.setdefault(program.nodes[k].args, []).append(k)
+    return {a: ks[0] for a, ks in found.items() if len({program.nodes[k].op for k in ks}) == 2}
 
 
 def statements(
@@ -61,10 +73,16 @@ def statements(
         fresh = [] if known[k] is not None else set(program.nodes[k].args) - needed
         needed.update(fresh)
         stack.extend(fresh)
-    lines = []
+    lines: list[str] = []
+    both = _sine_and_cosine(program, (k for k in needed if known[k] is None))
     for k in sorted(needed):
         node = program.nodes[k]
         text = known[k]
+        if text is None and node.args[:1] in both and node.op in _TURN:
+            a = node.args[0]
+            if both[node.args[:1]] == k:
+                lines.append(f"const struct el_turn t{a} = el_sincos(a{a});")
+            text = f"t{a}.{_TURN[node.op]}"
         if text is None and node.op == ca.OP_CONST:
             text = literal(node.value)
         if text is None:

@@ -1,5 +1,6 @@
 /* First-order filter, time_constant dy/dt = u - y: exact for an input that is held from one sample
  * to the next. */
+#include "elementary.h"
 #include "vars.h"
 
 struct model {
@@ -20,7 +21,7 @@ static int model_start(struct fmu *f)
         return fmu_fail(f, "period = %.17g s: not a whole number of 25 ns", v->period);
     m->period = llround(ticks) * FMU_TICK_NS;
     m->instant = m->period;
-    m->share = -expm1(-v->period / v->time_constant);
+    m->share = -el_expm1(-v->period / v->time_constant);
     return 0;
 }
 
