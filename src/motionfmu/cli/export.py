@@ -46,11 +46,11 @@ def export(  # noqa: PLR0913  (each is an option)
     scenario = load(path)
     step = scenario.document.body.step
     if not ssp:
-        from motionfmu.export import as_fmu
+        from motionfmu.export import Choice, as_fmu
 
         fmi = 3 if fmi is None else fmi
         file = target or Path(f"{scenario.name}.fmu")
-        made = as_fmu(scenario, file, fmi, settings(set_), inner, named(platforms))
+        made = as_fmu(scenario, file, fmi, settings(set_), Choice(inner, named(platforms)))
         print(f"{file}: FMI {fmi}, {made} variables; steps are whole multiples of {step:g} s")
         return
     from motionfmu.export import as_ssp

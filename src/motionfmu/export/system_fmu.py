@@ -4,7 +4,7 @@ import json
 import re
 import zipfile
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,13 +23,28 @@ _LEFT = (PROGRAM, "sources/")  # C text without the parts that it needs
 _LICENCE = "documentation/LICENSE"
 
 
-def as_fmu(  # noqa: PLR0913  (what is shown, and for whom, are rarely said)
+@dataclass(frozen=True)
+class Choice:
+    """What an exported system shows, and for whom it is compiled.
+
+    Attributes
+    ----------
+    inner : collection of str
+        Patterns of outputs that are shown beside the recorded ones.
+    platforms : sequence of Platform
+        For which it is compiled, from C text that it carries; without any for this machine alone.
+    """
+
+    inner: Collection[str] = ()
+    platforms: Sequence[Platform] = ()
+
+
+def as_fmu(
     scenario: Prepared,
     target: Path,
     fmi: int,
     given: Mapping[str, Any],
-    inner: Collection[str] = (),
-    platforms: Sequence[Platform] = (),
+    choice: Choice = Choice(),
 ) -> int:
     """Write the system as an FMU.
 
@@ -44,10 +59,8 @@ def as_fmu(  # noqa: PLR0913  (what is shown, and for whom, are rarely said)
         2 or 3.
     given : mapping
         Value by ``component.variable``, stronger than the scenario's.
-    inner : collection of str
-        Patterns of outputs that are shown beside the recorded ones.
-    platforms : sequence of Platform
-        For which it is compiled, from C text that it carries; without any for this machine alone.
+    choice : Choice
+        What it shows beside what is recorded, and its platforms.
 
     Returns
     -------
@@ -64,14 +77,18 @@ def as_fmu(  # noqa: PLR0913  (what is shown, and for whom, are rarely said)
         raise InputError(f"FMI {fmi!r}: 2 or 3")
     system, resources = scenario.resolved(Options(set=given)), Resources()
     settings = tuple(resources.inside(s) for s in system.settings)
-    shown = also_shown(scenario, inner, ("output",))
+    shown = also_shown(scenario, choice.inner, ("output",))
     try:
         program = fused.exported(
-            replace(system, settings=settings), shown, fmi, identifier(scenario.name), platforms
+            replace(system, settings=settings),
+            shown,
+            fmi,
+            identifier(scenario.name),
+            choice.platforms,
         )
     except fused.NotFused as why:
         raise InputError(f"{scenario.name} cannot be one FMU: {why}") from None
-    left = PROGRAM if platforms else _LEFT
+    left = PROGRAM if choice.platforms else _LEFT
     packed = {
         name: f
         for f in program.folder.rglob("*")
