@@ -92,6 +92,7 @@ class Pe:
     """A library of Windows."""
 
     machine: int
+    made: int  # [s] since 1970
     shown: frozenset[str]
     loaded: frozenset[str]
 
@@ -100,7 +101,7 @@ def pe(data: bytes) -> Pe:
     """Read a DLL."""
     head = struct.unpack_from("<I", data, 0x3C)[0]
     assert data[head : head + 4] == b"PE\0\0"
-    machine, count = struct.unpack_from("<2H", data, head + 4)
+    machine, count, made = struct.unpack_from("<2HI", data, head + 4)
     size = struct.unpack_from("<H", data, head + 20)[0]
     tables = head + 24 + 112
     rows = [struct.unpack_from("<8x4I", data, head + 24 + size + 40 * k) for k in range(count)]
@@ -123,4 +124,4 @@ def pe(data: bytes) -> Pe:
     while name := struct.unpack_from("<I", data, at + 12)[0]:
         loaded.add(_text(data, place(name)))
         at += 20
-    return Pe(machine, frozenset(shown), frozenset(loaded))
+    return Pe(machine, made, frozenset(shown), frozenset(loaded))

@@ -21,6 +21,7 @@ _FMI2 = {"linux": "linux", "windows": "win", "darwin": "darwin"}
 
 # A universal binary: head, a row for each library, libraries on pages of the widest machine.
 _MAGIC, _PAGE = 0xCAFEBABE, 14  # power of two
+_PE_AT = 0x3C  # where the head of a Windows library is said to be
 _ROW = struct.Struct(">5I")  # processor, its kind, offset, size, alignment
 
 
@@ -83,10 +84,18 @@ def libraries(fmi: int, identifier: str, made: Mapping[Platform, bytes]) -> dict
     found: dict[str, list[bytes]] = {}
     for one, code in made.items():
         name = f"binaries/{one.folder(fmi)}/{identifier}{one.suffix}"
-        found.setdefault(name, []).append(code)
+        found.setdefault(name, []).append(undated(code) if one.system == "windows" else code)
     return {
         name: codes[0] if len(codes) == 1 else universal(codes) for name, codes in found.items()
     }
+
+
+def undated(code: bytes) -> bytes:
+    """A library of Windows without the time of its making, which stands in its head alone."""
+    head = int.from_bytes(code[_PE_AT : _PE_AT + 4], "little")
+    if code[head : head + 4] != b"PE\0\0":
+        raise ValueError("no library of Windows")
+    return code[: head + 8] + bytes(4) + code[head + 12 :]
 
 
 def universal(codes: list[bytes]) -> bytes:
