@@ -244,7 +244,9 @@ class Prepared:
         component, _, rest = text.partition(": ")
         for s in plain.settings:
             end = s.end
-            if end.component != component or not re.search(rf"\b{end.port.name}\b", rest):
+            if end.component != component or not re.search(
+                rf"\b{re.escape(end.port.name)}(?!\w)", rest
+            ):
                 continue
             value = s.values[0] if len(set(s.values)) == 1 else list(s.values)
             if end.name in given:

@@ -80,8 +80,11 @@ def _made(result: Result) -> dict[str, Any]:
     given = {n: list(v) for n, v in sorted(result.parameters.items()) if n != own}
     named = [x for v in given.values() for x in v if isinstance(x, str) and x and is_file(Path(x))]
     return {
-        "components": dict(body.component),
-        "fmus": {name: _digest(fmus.fmu_path(name)) for name in sorted({*body.component.values()})},
+        "components": {c: _beside(name, folder) for c, name in body.component.items()},
+        "fmus": {
+            _beside(name, folder): _digest(fmus.fmu_path(name))
+            for name in sorted({*body.component.values()})
+        },
         "wires": {w.target.name: w.source.name for w in wires(result.resolver)},
         "settings": {n: [_beside(x, folder) for x in v] for n, v in given.items()},
         "files": {_beside(x, folder): _digest(Path(x)) for x in named},

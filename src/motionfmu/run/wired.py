@@ -46,8 +46,9 @@ class Wired:
         return planned
 
     def job(self, fmi: int) -> Job:
-        """What an engine is to make ready."""
-        return Job(self.system, self.recorded, self.folder, fmi)
+        """What an engine is to make ready; elements are variables of their own in FMI 2 only."""
+        given = 2 if self.system.elementwise else fmi
+        return Job(self.system, self.recorded, self.folder, given)
 
     def run(self, engine: Callable[[System], Ran], options: Options) -> Result:
         """Run it; an FMU's message says where its value stands."""

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.scenarios import body as tables_
 from motionfmu.scenarios.body import Body
+from motionfmu.scenarios.foreign import is_foreign
 from motionfmu.scenarios.sources import Source, Tables, chain, merged, of_file
 from motionfmu.toml_lines import is_file, ordered, shown
 
@@ -126,7 +127,16 @@ def parsed(sources: list[Source], name: str = "") -> Document:
         damaged.add("stop")
     about = next((s.about for s in sources if s.about), name)
     name = name or sources[0].folder.name
+    for component, fmu in body.component.items():
+        if is_foreign(fmu):
+            body.component[component] = _file(places, component, fmu)
     return Document(name, about, body, tables, places, tuple(wrong), frozenset(damaged))
+
+
+def _file(sources: tuple[Source, ...], component: str, fmu: str) -> str:
+    """The path of a foreign FMU, absolute; it is beside the source that names it."""
+    owner = next((s for s in sources if component in s.tables.get("component", {})), sources[0])
+    return str((owner.folder / fmu).resolve())
 
 
 def _ending(body: Body, sources: tuple[Source, ...]) -> list[str]:

@@ -9,8 +9,7 @@ import os
 import tempfile
 import zipfile
 import zlib
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any
 from xml.etree import ElementTree
@@ -18,34 +17,13 @@ from xml.etree import ElementTree
 from motionfmu import kept
 from motionfmu.errors import InputError, suggestion
 from motionfmu.fmu.platforms import here
+from motionfmu.scenarios import foreign
+from motionfmu.scenarios.foreign import is_foreign
+from motionfmu.scenarios.port import Port
 from motionfmu.toml_lines import is_file
 
 HEAD = 2000  # [bytes] of a description, in which its root stands
 PACKAGE = Path(__file__).resolve().parents[1]
-
-
-@dataclass(frozen=True)
-class Port:
-    """One variable of an FMU as its description declares it."""
-
-    name: str
-    type: str  # Float64, Int32, Boolean or String
-    causality: str  # as FMI says
-    tunable: bool  # a parameter that may change during a run
-    doc: str
-    shape: tuple[int, ...]  # empty for a scalar
-    unit: str | None
-    reference: int  # the first value reference; elements take successive ones
-    start: str | None  # values as written in the description
-    low: float  # limits, infinite if not declared
-    high: float
-    continuous: bool = False  # it changes between communication points
-    nominal: float | None = None  # the usual size
-
-    @property
-    def count(self) -> int:
-        """Number of elements."""
-        return math.prod(self.shape)
 
 
 def folder() -> Path:
@@ -62,7 +40,13 @@ def fmu_names() -> list[str]:
 
 
 def fmu_path(name: str, fmi: int = 3) -> Path:
-    """Find a built FMU by its folder's name under fmus/; else the message lists what there is."""
+    """Find a built FMU by its folder's name under fmus/, or a foreign one by its path.
+
+    A foreign one has the version that it has. Of ours the message lists what there is.
+    """
+    if is_foreign(name):
+        foreign.read(name)
+        return Path(name)
     path = folder() / f"{name}.fmi{fmi}.fmu"
     if "/" in name or not is_file(path):
         names = fmu_names()
@@ -70,6 +54,11 @@ def fmu_path(name: str, fmi: int = 3) -> Path:
         text = f"no FMU {name!r} for FMI {fmi} in {folder()} (there are: {known})"
         raise InputError(text + suggestion(name, names))
     return path
+
+
+def version(name: str, fmi: int) -> int:
+    """FMI version in which an FMU runs: a foreign one has one only."""
+    return foreign.read(name).fmi if is_foreign(name) else fmi
 
 
 @contextlib.contextmanager
@@ -105,7 +94,8 @@ def runnable(name: str, fmi: int) -> Path:
     path = fmu_path(name, fmi)
     try:
         stat = path.stat()
-        if told := _refused(path, fmi, (stat.st_mtime_ns, stat.st_size)):
+        library = foreign.read(name).identifier if is_foreign(name) else ""
+        if told := _refused(path, version(name, fmi), library, (stat.st_mtime_ns, stat.st_size)):
             raise InputError(f"{path}: {told}")
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}") from None
@@ -113,28 +103,53 @@ def runnable(name: str, fmi: int) -> Path:
 
 
 @functools.cache
-def _refused(path: Path, fmi: int, state: tuple[int, int]) -> str:
-    """Why the library in this state of a file does not load; empty if it does."""
-    folder = f"binaries/{here().folder(fmi)}/"
-    try:
-        with zipfile.ZipFile(path) as archive:
-            inside = [n for n in archive.namelist() if n.startswith(folder) and n[-1] != "/"]
-            code = archive.read(inside[0]) if inside else b""
-    except (zipfile.BadZipFile, zlib.error) as error:
-        return f"not a whole archive ({error})"
-    if not inside:
-        return f"no library for this machine ({folder} is empty)"
+def _refused(path: Path, fmi: int, identifier: str, state: tuple[int, int]) -> str:
+    """Why the library in this state of a file does not load; empty if it does.
+
+    It has a name of its own; without one it is the only file of its folder.
+    """
     with tempfile.TemporaryDirectory(prefix="motionfmu-") as place:
-        library = Path(place) / Path(inside[0]).name
-        library.write_bytes(code)
+        try:
+            with zipfile.ZipFile(path) as archive:
+                there = [
+                    n for n in archive.namelist() if n.startswith("binaries/") and n[-1] != "/"
+                ]
+                name, told = _library(there, here().folder(fmi), identifier)
+                if told:
+                    return told
+                folder = name.rpartition("/")[0] + "/"
+                archive.extractall(place, [n for n in there if n.startswith(folder)])
+        except (zipfile.BadZipFile, zlib.error) as error:
+            return f"not a whole archive ({error})"
+        library = Path(place) / name
         try:
             loaded = ctypes.CDLL(str(library))
         except OSError as error:
-            return f"{inside[0]} does not load: {str(error).removeprefix(f'{library}: ')}"
+            return f"{name} does not load: {str(error).removeprefix(f'{library}: ')}"
     wanted = "fmi2Instantiate" if fmi == 2 else "fmi3InstantiateCoSimulation"
-    there = hasattr(loaded, wanted)
+    has = hasattr(loaded, wanted)
     _ctypes.dlclose(loaded._handle)
-    return "" if there else f"{inside[0]} does not load: it has no {wanted}"
+    return "" if has else f"{name} does not load: it has no {wanted}"
+
+
+def library(name: str) -> str:
+    """Place of a foreign FMU's library in its archive."""
+    found = foreign.read(name)
+    with zipfile.ZipFile(name) as archive:
+        return _library(archive.namelist(), here().folder(found.fmi), found.identifier)[0]
+
+
+def _library(there: list[str], folder: str, identifier: str) -> tuple[str, str]:
+    """The library among the files under binaries/, or why there is none."""
+    inside = [n for n in there if n.startswith(f"binaries/{folder}/")]
+    if not inside:
+        others = sorted({n.split("/")[1] for n in there if n.count("/") > 1})
+        has = f"; it has {', '.join(others)}" if others else ""
+        return "", f"no library for this machine (binaries/{folder}/ is empty{has})"
+    found = [n for n in inside if not identifier or Path(n).stem == identifier]
+    if not found:
+        return "", f"no library {identifier} in binaries/{folder}/"
+    return found[0], ""
 
 
 @contextlib.contextmanager
@@ -157,6 +172,8 @@ def description_text(name: str, fmi: int = 3) -> str:
 
 def about(name: str) -> str:
     """What an FMU is, as it says itself."""
+    if is_foreign(name):
+        return foreign.read(name).about
     with _description(name) as stream:
         parser: Any = ElementTree.XMLPullParser(("start",))
         while text := stream.read(HEAD):
@@ -167,9 +184,13 @@ def about(name: str) -> str:
     return ""
 
 
+def ports(name: str) -> Mapping[str, Port]:
+    """Variables of an FMU by name, without the independent variable; of ours those of FMI 3."""
+    return foreign.read(name).ports if is_foreign(name) else _ports(name)
+
+
 @functools.cache
-def ports(name: str) -> dict[str, Port]:
-    """Variables of an FMU by name, from the FMI 3 description, without the independent variable."""
+def _ports(name: str) -> dict[str, Port]:
     # Not FMPy's reader: to import it and to look at the schema takes longer than most commands.
     with _description(name) as stream:
         rows = ElementTree.parse(stream).find("ModelVariables")

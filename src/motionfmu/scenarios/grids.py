@@ -14,6 +14,8 @@ from motionfmu.scenarios.values import start_values
 @functools.cache
 def grid(fmu: str) -> str:
     """The parameter that is an FMU's grid; empty if it says none."""
+    if fmus.is_foreign(fmu):
+        return ""
     with zipfile.ZipFile(fmus.fmu_path(fmu)) as archive:
         return str(json.loads(archive.read(f"{EXTRA}/{GRID}"))["grid"])
 

@@ -3,7 +3,7 @@
 import math
 import os
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -101,6 +101,8 @@ def output(resolver: Resolver, name: str, table: str, key: str) -> End:
 def elements(resolver: Resolver, name: str, table: str, key: str) -> tuple[End, tuple[int, ...]]:
     """The output of which a name is, or an element, and which elements these are, from 1."""
     whole, bracket, rest = name.partition("[")
+    if resolver.split(name) == (name, None):
+        whole, bracket, rest = name, "", ""
     end = output(resolver, whole, table, key)
     shape = end.port.shape
     if not bracket:
@@ -158,7 +160,7 @@ def refused(system: System) -> tuple[str, str]:
     for name in (n for n, fmu in system.components.items() if fmu == "scope"):
         ports = fmus.ports("scope")
 
-        def value(key: str, name: str = name, ports: dict[str, Port] = ports) -> Any:
+        def value(key: str, name: str = name, ports: Mapping[str, Port] = ports) -> Any:
             return given.get(f"{name}.{key}", start_values(ports[key])[0])
 
         if not value("file"):

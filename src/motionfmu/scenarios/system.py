@@ -2,6 +2,7 @@
 
 import fnmatch
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from motionfmu import units
@@ -95,6 +96,15 @@ class System:
         """Rows of the recording of so many steps."""
         return -(-steps // self.every)
 
+    @property
+    def elementwise(self) -> bool:
+        """Whether a wire joins an element of an array, which FMI 2 alone has by itself."""
+        return any(e.port.whole for w in self.wires for e in (w.source, w.target))
+
+    def version(self, component: str, fmi: int) -> int:
+        """FMI version in which a component runs where ours are of this one."""
+        return fmus.version(self.components[component], fmi)
+
     def due(self) -> dict[int, list[Stimulus]]:
         """Stimuli by the step before which they act."""
         found: dict[int, list[Stimulus]] = {}
@@ -122,12 +132,17 @@ def split(name: str) -> tuple[str, int | None]:
     return name, None
 
 
+def matches(name: str, pattern: str) -> bool:
+    """Whether a name is a pattern's, with ``*`` and ``?``; brackets mean themselves."""
+    return fnmatch.fnmatchcase(name, pattern.replace("[", "[[]"))
+
+
 class Resolver:
     """Looks names up in the FMUs a scenario uses."""
 
     def __init__(self, document: Document, faults: Faults | None = None) -> None:
         self.document = document
-        self.ports: dict[str, dict[str, Port]] = {}
+        self.ports: dict[str, Mapping[str, Port]] = {}
         kept = Faults() if faults is None else faults
         for name, fmu in document.body.component.items():
             with kept.each():
@@ -160,14 +175,31 @@ class Resolver:
             raise self.document.error(text, table, key, name)
         return End(component, self.ports[component][variable])
 
+    def split(self, name: str) -> tuple[str, int | None]:
+        """As `split`, but the names of foreign FMUs may end with brackets of their own."""
+        component, _, variable = name.partition(".")
+        return (name, None) if variable in self.ports.get(component, {}) else split(name)
+
+    def wired(self, name: str, key: str) -> End:
+        """Find what a line of [connect] names: a variable, or an element of one."""
+        component, _, variable = name.partition(".")
+        found = self.ports.get(component, {})
+        whole, bracket, rest = variable.rpartition("[")
+        if variable not in found and bracket and rest.endswith("]") and whole in found:
+            one = found[whole].element(rest.removesuffix("]"))
+            if one is None:
+                text = f"{name}: {component}.{whole} is {_kind(found[whole])}"
+                raise self.document.error(text, "connect", key)
+            return End(component, one)
+        return self.end(name, "connect", key)
+
     def matching(self, pattern: str, causality: str) -> list[End]:
         """All variables of one causality whose name matches a pattern with ``*`` and ``?``."""
         return [
             End(component, port)
             for component, ports in self.ports.items()
             for port in ports.values()
-            if port.causality == causality
-            and fnmatch.fnmatchcase(f"{component}.{port.name}", pattern)
+            if port.causality == causality and matches(f"{component}.{port.name}", pattern)
         ]
 
 
@@ -181,12 +213,24 @@ def _check_wire(document: Document, wire: Wire, key: str) -> None:
         raise document.error(
             f"{b.name} is {_kind(b.port)}, {a.name} is {_kind(a.port)}", "connect", key
         )
-    if not units.convertible(a.port.unit, b.port.unit):
+    if not _same_quantity(document, a, b):
         raise document.error(
             f"{b.name} [{b.port.unit or '1'}] = {a.name} [{a.port.unit or '1'}]: units differ",
             "connect",
             key,
         )
+
+
+def _same_quantity(document: Document, a: End, b: End) -> bool:
+    """Whether units fit; a foreign FMU may say none, or one that only it knows."""
+    found = [e.port.unit for e in (a, b)]
+    foreign = [fmus.is_foreign(document.body.component[e.component]) for e in (a, b)]
+    if any(said and unit is None for said, unit in zip(foreign, found, strict=True)):
+        return True
+    try:
+        return units.convertible(*found)
+    except ValueError:
+        return found[0] == found[1]
 
 
 def _kind(port: Port) -> str:
@@ -201,9 +245,12 @@ def wires(resolver: Resolver) -> list[Wire]:
         with faults.each():
             for wire in _joined(resolver, left, right):
                 _check_wire(document, wire, left)
-                if wire.target.name in found:
-                    raise document.error(f"{wire.target.name} has two sources", "connect", left)
-                found[wire.target.name] = wire
+                target = wire.target
+                whole = f"{target.component}.{target.port.whole}"
+                parts = {f"{w.target.component}.{w.target.port.whole}" for w in found.values()}
+                if target.name in found or whole in found or target.name in parts:
+                    raise document.error(f"{target.name} has two sources", "connect", left)
+                found[target.name] = wire
     faults.tell()
     return list(found.values())
 
@@ -215,8 +262,8 @@ def _joined(resolver: Resolver, left: str, right: str) -> list[Wire]:
         raise document.error(f"{left} = {right}: a group needs * on both sides", "connect", left)
     if not left.endswith("*"):
         faults = Faults()
-        source = faults.of(lambda: resolver.end(right, "connect", left))
-        target = faults.of(lambda: resolver.end(left, "connect", left))
+        source = faults.of(lambda: resolver.wired(right, left))
+        target = faults.of(lambda: resolver.wired(left, left))
         if source is None or target is None:
             raise InputError(*faults.lines)
         return [Wire(source, target)]
@@ -238,10 +285,20 @@ def _joined(resolver: Resolver, left: str, right: str) -> list[Wire]:
 NAMED_MAX = 8
 
 
+def _whole(resolver: Resolver, system: System) -> set[str]:
+    """Arrays of which each element has a wire."""
+    counts: dict[tuple[str, str], int] = {}
+    for target in (w.target for w in system.wires if w.target.port.whole):
+        key = target.component, target.port.whole
+        counts[key] = counts.get(key, 0) + 1
+    full = [k for k, n in counts.items() if n == resolver.ports[k[0]][k[1]].count]
+    return {f"{component}.{whole}" for component, whole in full}
+
+
 def check_inputs(resolver: Resolver, system: System) -> None:
     """Refuse inputs that nothing or two things feed; the message names them."""
     document, faults = resolver.document, Faults()
-    wired = {w.target.name for w in system.wires}
+    wired = {w.target.name for w in system.wires} | _whole(resolver, system)
     driven = {s.end.name for s in system.stimuli}
     for name in sorted(wired & driven):
         with faults.each():
@@ -276,7 +333,7 @@ def until(resolver: Resolver, step_ns: int) -> Until | None:
     name = body.stop
     if "." not in name:
         name = _only(resolver, name)
-    whole, element = split(name)
+    whole, element = resolver.split(name)
     end = resolver.end(whole, "", "stop")
     text, kind = f"stop = {body.stop!r}", end.port.type
     if end.port.causality != "output":

@@ -16,9 +16,16 @@ from motionfmu.scenarios.system import (
     Setting,
     Stimulus,
     Values,
-    split,
 )
 from motionfmu.toml_lines import shown
+
+# What a value of each type is in a scenario.
+KINDS: dict[str, Any] = {
+    "Float64": (int, float),
+    "Float32": (int, float),
+    "Boolean": bool,
+    "String": str,
+} | {f"{sign}Int{bits}": int for sign in ("", "U") for bits in (8, 16, 32, 64)}
 
 
 def values_of(end: End, value: Any) -> Values:
@@ -26,17 +33,14 @@ def values_of(end: End, value: Any) -> Values:
     listed = list(value) if isinstance(value, list | tuple) else [value] * end.port.count
     if len(listed) != end.port.count:
         raise ValueError(f"{end.name} has {end.port.count} elements, not {len(listed)}")
-    kinds: dict[str, Any] = {
-        "Float64": (int, float),
-        "Int32": int,
-        "Boolean": bool,
-        "String": str,
-    }
+    kind = KINDS.get(end.port.type)
+    if kind is None:
+        raise ValueError(f"{end.name} is {end.port.type}, of which nothing is set here")
     out: list[float | int | bool | str] = []
     for given in listed:
         x: Any = given.item() if hasattr(given, "item") else given
         wrong = isinstance(x, bool) and end.port.type != "Boolean"
-        if wrong or not isinstance(x, kinds[end.port.type]):
+        if wrong or not isinstance(x, kind):
             raise ValueError(f"{end.name} = {shown(x)}: {end.port.type} wanted")
         if isinstance(x, str) and ("\0" in x or len(x.encode(errors="replace")) >= STRING_MAX):
             text = f"no NUL and less than {STRING_MAX} bytes wanted"
@@ -48,13 +52,16 @@ def values_of(end: End, value: Any) -> Values:
                 raise ValueError(
                     f"{end.name} = {x!r}: outside {end.port.low:g} .. {end.port.high:g}"
                 )
-        out.append(float(x) if end.port.type == "Float64" else x)
+        out.append(float(x) if end.port.type.startswith("Float") else x)
     return tuple(out)
 
 
 def start_values(port: Port) -> Values:
     """The values a variable has if nothing sets it, one per element."""
-    kind: Any = {"Float64": float, "Int32": int, "Boolean": "true".__eq__}.get(port.type, str)
+    kind: Any = KINDS.get(port.type, str)
+    kind = {bool: lambda x: x in ("true", "1")}.get(
+        kind, float if isinstance(kind, tuple) else kind
+    )
     listed = (port.start or "").split() if port.type != "String" else [port.start or ""]
     return tuple(kind(x) for x in listed)
 
@@ -72,7 +79,7 @@ def settings(resolver: Resolver, *stronger: Mapping[str, Any]) -> list[Setting]:
     document, faults = resolver.document, Faults()
     found: dict[str, Setting] = {}
     for layer, pairs in enumerate((document.body.set, *stronger)):
-        for name in sorted(pairs, key=lambda n: split(n)[1] is not None):
+        for name in sorted(pairs, key=lambda n: resolver.split(n)[1] is not None):
             with faults.each():
                 try:
                     given = setting(resolver, name, pairs[name], found)
@@ -86,7 +93,7 @@ def settings(resolver: Resolver, *stronger: Mapping[str, Any]) -> list[Setting]:
 def setting(resolver: Resolver, name: str, value: Any, found: Mapping[str, Setting]) -> Setting:
     """A value for a variable, or for an element of what it has so far."""
     document = resolver.document
-    whole, element = split(name)
+    whole, element = resolver.split(name)
     end = resolver.end(whole, "set", name)
     if end.port.causality not in ("parameter", "input"):
         text = f"{name} is an {end.port.causality} and cannot be set"

@@ -6,13 +6,23 @@ Each is a module with ``opened(job)``, which gives an `Engine`; it is imported w
 import os
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 from motionfmu.compiler import NotCompiled, there
 from motionfmu.errors import InputError, suggestion
 from motionfmu.run.engines.job import Engine, Job, Progress, Ran
+from motionfmu.scenarios.fmus import is_foreign
 from motionfmu.scenarios.system import System
 
 VARIABLE = "MOTIONFMU_ENGINE"
+
+
+def unfused(system: System) -> str:
+    """Why a system cannot be one program, as far as its FMUs and wires tell; else empty."""
+    foreign = next((fmu for fmu in system.components.values() if is_foreign(fmu)), None)
+    if foreign is not None:
+        return f"{Path(foreign).name} has no C text of ours"
+    return "a wire joins an element of an array" if system.elementwise else ""
 
 
 def _fused(job: Job) -> Engine:
@@ -20,9 +30,11 @@ def _fused(job: Job) -> Engine:
     from motionfmu.run.engines import fused
 
     try:
+        if why := unfused(job.system):
+            raise NotFused(why)
         return fused.opened(job)
-    except NotFused as why:
-        raise InputError(f"engine fused: {why}; --engine native runs it") from None
+    except NotFused as told:
+        raise InputError(f"engine fused: {told}; --engine native runs it") from None
 
 
 def _native(job: Job) -> Engine:
@@ -70,6 +82,8 @@ def opened(engine: str | None, job: Job) -> Engine:
     """An engine ready to run a job; None is fused where that can be, else native."""
     if engine is not None:
         return ENGINES[engine](job)
+    if unfused(job.system):
+        return _native(job)
     from motionfmu.fused import NotFused
     from motionfmu.run.engines import fused
 
@@ -87,6 +101,8 @@ def usual(system: System) -> tuple[str, str]:
         return given, VARIABLE
     from motionfmu.fused.parts import NotFused, part
 
+    if why := unfused(system):
+        return "native", why
     if not there():
         return "native", "there is no C compiler"
     try:

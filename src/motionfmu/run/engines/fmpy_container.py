@@ -119,8 +119,9 @@ class Container:
     """A container of its own for each run."""
 
     def __init__(self, job: Job) -> None:
-        if job.fmi != 2:
-            raise InputError(f"engine fmpy runs FMI 2 components only, not FMI {job.fmi}")
+        for version in sorted({job.system.version(c, job.fmi) for c in job.system.components}):
+            if version != 2:
+                raise InputError(f"engine fmpy runs FMI 2 components only, not FMI {version}")
         self._scopes = Scoped(job)
 
     def run(self, system: System, progress: Progress) -> Ran:
@@ -142,7 +143,7 @@ class Container:
             slave.start()
             due = system.due()
             step = system.step_ns * 1e-9
-            ending = ending_of(slave, system)
+            ending = ending_of(slave, system, 2)
             for k in ending.points(progress):
                 for now in due.get(k, ()):
                     _give(slave, now.end, now.values)

@@ -17,7 +17,7 @@ from motionfmu.run.engines.ending import shares
 from motionfmu.run.engines.job import Job, Progress, Ran
 from motionfmu.run.engines.scoped import Scoped
 from motionfmu.run.engines.slave import Slave, ending_of, exposed
-from motionfmu.scenarios.system import End, System
+from motionfmu.scenarios.system import End, Setting, Stimulus, System
 
 IDENTIFIER = "system"
 
@@ -38,7 +38,7 @@ def build(system: System, fmi: int, folder: Path) -> Path:
     log = logging.getLogger("fmu_manipulation_toolbox")
     before, log.disabled = log.disabled, True  # it warns of every output that nothing reads
     try:
-        container = _Folder(IDENTIFIER, folder, fmi_version=fmi)
+        container = _Folder(IDENTIFIER, folder, fmi_version=outer(system, fmi))
         container.start_time, container.stop_time = 0.0, system.steps * system.step_ns * 1e-9
         for name, fmu in system.components.items():
             container.get_fmu(str(lean.packed(fmu, fmi)), name=f"{name}.fmu")
@@ -49,13 +49,15 @@ def build(system: System, fmi: int, folder: Path) -> Path:
                 f"{wire.target.component}.fmu",
                 wire.target.port.name,
             )
+        wired = {w.target.name for w in system.wires if w.target.port.whole}
         ends = [*(s.end for s in system.settings), *(s.end for s in system.stimuli)]
         for end in {e.name: e for e in ends}.values():
-            for name in exposed(end, fmi):
-                container.add_input(f"{end.component}.{name}", f"{end.component}.fmu", name)
+            for name in exposed(end, system.version(end.component, fmi)):
+                if f"{end.component}.{name}" not in wired:
+                    container.add_input(f"{end.component}.{name}", f"{end.component}.fmu", name)
         if system.until is not None:
             end = system.until.end
-            for name in exposed(end, fmi):
+            for name in exposed(end, system.version(end.component, fmi)):
                 container.add_output(f"{end.component}.fmu", name, f"{end.component}.{name}")
         container.make_fmu(f"{IDENTIFIER}.fmu", step_size=system.step_ns * 1e-9, debug=True)
     finally:
@@ -63,11 +65,18 @@ def build(system: System, fmi: int, folder: Path) -> Path:
     return folder / IDENTIFIER
 
 
-def _give(slave: Slave, end: End, values: tuple[Any, ...]) -> None:
-    names = exposed(end, slave.fmi)
+def outer(system: System, fmi: int) -> int:
+    """FMI version of a container: 2 has no place for all types of 3."""
+    return max(system.version(component, fmi) for component in system.components)
+
+
+def _give(slave: Slave, end: End, values: tuple[Any, ...], fmi: int) -> None:
+    names = exposed(end, fmi)
     parts = [values] if len(names) == 1 else [(v,) for v in values]
     for name, part in zip(names, parts, strict=True):
-        slave.assign(end.port.type, slave.references[f"{end.component}.{name}"], part)
+        reference = slave.references.get(f"{end.component}.{name}")
+        if reference is not None:  # else a wire feeds this element
+            slave.assign(end.port.type, reference, part)
 
 
 class Container:
@@ -77,11 +86,11 @@ class Container:
     """
 
     def __init__(self, job: Job) -> None:
-        self._scopes = Scoped(job)
+        self._scopes, self._fmi = Scoped(job), job.fmi
         self._folder = tempfile.TemporaryDirectory(prefix="motionfmu-")
         try:
             built = build(self._scopes.system, job.fmi, Path(self._folder.name))
-            self._slave = Slave(IDENTIFIER, built, job.fmi, [])
+            self._slave = Slave(IDENTIFIER, built, outer(self._scopes.system, job.fmi), [])
         except BaseException:
             self._folder.cleanup()
             raise
@@ -94,10 +103,10 @@ class Container:
             slave.renew()
         self._used = True
         for s in system.settings:
-            _give(slave, s.end, s.values)
+            self._give(system, s)
         slave.initialize()
         slave.start()
-        ending = ending_of(slave, system)
+        ending = ending_of(slave, system, self._fmi)
         if system.until is None:
             self._in_parts(system, progress)
         else:
@@ -105,18 +114,22 @@ class Container:
             advance = slave.stepper(step)
             for k in ending.points(progress):
                 for now in due.get(k, ()):
-                    _give(slave, now.end, now.values)
+                    self._give(system, now)
                 advance(k * system.step_ns * 1e-9)
         slave.end()
         warnings = [w for w in slave.warnings if not w.startswith(f"{IDENTIFIER}: ")]
         return ending.ran("native", self._scopes, warnings)
+
+    def _give(self, system: System, given: Setting | Stimulus) -> None:
+        end = given.end
+        _give(self._slave, end, given.values, system.version(end.component, self._fmi))
 
     def _in_parts(self, system: System, progress: Progress) -> None:
         """Run in few long steps."""
         slave, due = self._slave, system.due()
         for k, following in shares(system, due, system.steps):
             for now in due.get(k, ()):
-                _give(slave, now.end, now.values)
+                self._give(system, now)
             slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
             progress(following / system.steps)
 

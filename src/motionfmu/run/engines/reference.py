@@ -20,7 +20,8 @@ def _wire(slaves: dict[str, Slave], wire: Wire) -> tuple[Callable[[], None], Cal
     a, b = wire.source.port, wire.target.port
     buffer = source.buffer(a.type, a.count)
     get = source.access("Get", a.type, a.reference, buffer)
-    if a.type == b.type:
+    same = a.type == b.type and (source.fmi == target.fmi or a.type != "Boolean")
+    if same:
         return get, target.access("Set", b.type, b.reference, buffer)
     converted = target.buffer(b.type, b.count)  # a Boolean recorded as 0 and 1
     put = target.access("Set", b.type, b.reference, converted)
@@ -30,6 +31,14 @@ def _wire(slaves: dict[str, Slave], wire: Wire) -> tuple[Callable[[], None], Cal
         put()
 
     return get, convert
+
+
+def _exchange(wires: list[tuple[Callable[[], None], Callable[[], None]]]) -> None:
+    """Read all outputs, then write all inputs."""
+    for get, _ in wires:
+        get()
+    for _, put in wires:
+        put()
 
 
 def _ending(slaves: dict[str, Slave], system: System) -> Ending:
@@ -53,16 +62,18 @@ class Master:
         with ExitStack() as stack:
             slaves: dict[str, Slave] = {}
             for name, fmu in system.components.items():
-                slaves[name] = Slave(name, lean.unpacked(fmu, self._fmi), self._fmi, messages)
+                fmi = system.version(name, self._fmi)
+                slaves[name] = Slave(name, lean.unpacked(fmu, fmi), fmi, messages)
                 stack.callback(slaves[name].free)
             for s in system.settings:
                 port = s.end.port
                 slaves[s.end.component].assign(port.type, port.reference, s.values)
             for slave in slaves.values():
                 slave.initialize()
+            wires = [_wire(slaves, w) for w in system.wires]
+            _exchange(wires)  # a foreign FMU may show at once what it is given
             for slave in slaves.values():
                 slave.start()
-            wires = [_wire(slaves, w) for w in system.wires]
             due = system.due()
             step = system.step_ns * 1e-9
             ending = _ending(slaves, system)
@@ -70,10 +81,7 @@ class Master:
                 for now in due.get(k, ()):
                     port = now.end.port
                     slaves[now.end.component].assign(port.type, port.reference, now.values)
-                for get, _ in wires:
-                    get()
-                for _, put in wires:
-                    put()
+                _exchange(wires)
                 for slave in slaves.values():
                     slave.step(k * system.step_ns * 1e-9, step)
             for slave in slaves.values():

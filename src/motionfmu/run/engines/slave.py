@@ -20,7 +20,11 @@ from motionfmu.run.engines import messages
 from motionfmu.run.engines.ending import Ending
 from motionfmu.scenarios.system import End, System
 
-_C = {"Float64": ctypes.c_double, "Int32": ctypes.c_int32, "Boolean": ctypes.c_bool}
+_C = {"Float64": ctypes.c_double, "Float32": ctypes.c_float, "Boolean": ctypes.c_bool} | {
+    f"{sign}Int{bits}": getattr(ctypes, f"c_{sign.lower()}int{bits}")
+    for sign in ("", "U")
+    for bits in (8, 16, 32, 64)
+}
 _FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
 # fmucontainer puts "mcc.fmu: " before the message of a component, which may name itself again.
 _INNER = re.compile(r"^(\w+)\.fmu: (?:(?:\w+\.)*\w+\.fmu: |\1: )?")
@@ -203,12 +207,13 @@ class Slave:
                 shutil.rmtree(self._own, ignore_errors=True)
 
 
-def ending_of(container: Slave, system: System) -> Ending:
-    """Where a container's run ends; the signal is one of its outputs."""
+def ending_of(container: Slave, system: System, fmi: int) -> Ending:
+    """Where a container's run ends; the signal is one of its outputs. `fmi` is that of our FMUs."""
     if system.until is None:
         return Ending(system)
     end = system.until.end
-    names = (f"{end.component}.{n}" for n in exposed(end, container.fmi))
+    inner = exposed(end, system.version(end.component, fmi))
+    names = (f"{end.component}.{n}" for n in inner)
     first, *further = (container.references[n] for n in names)
     values = container.buffer(end.port.type, end.port.count)
     return Ending(system, container.access("Get", end.port.type, first, values, *further), values)
