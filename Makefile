@@ -11,7 +11,7 @@ NEEDS := import sys; v = sys.version_info; \
   sys.exit(None if v >= (3, 11) else "%s is Python %d.%d, 3.11 or newer is needed: make PYTHON=..." % ((sys.executable,) + tuple(v[:2])))
 VENV := import ensurepip, venv
 
-.PHONY: needs demo test check bench fuzz build export clean
+.PHONY: needs demo test check bench importers fuzz build export clean
 
 demo: build                     ## build all and run the demo scenario
 	$(BIN)/motionfmu run scenarios/circle
@@ -46,6 +46,9 @@ check: needs .venv/installed          ## formatting, lint, types
 bench: build                    ## speed, as ratios measured in one run; BENCH=--renew keeps its figures
 	@cmake --build build --target fused_circle fused_six_axes count_here card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch
 	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py $(BENCH)
+
+importers: build                ## FMUs in other people's importers, which it installs; writes docs/importers.md
+	PYTHONPATH=tests/importers $(BIN)/python tests/importers/matrix.py
 
 SECONDS ?= 120
 fuzz: needs .venv/installed           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each

@@ -1,0 +1,52 @@
+"""FMUs by libcosim, through its Python package."""
+
+import array
+import math
+
+from jobs import Task, main, packages
+
+packages()
+
+from libcosimpy.CosimEnums import CosimExecutionState  # noqa: E402
+from libcosimpy.CosimExecution import CosimExecution  # noqa: E402
+from libcosimpy.CosimLogging import CosimLogLevel, log_output_level  # noqa: E402
+from libcosimpy.CosimObserver import CosimObserver  # noqa: E402
+from libcosimpy.CosimSlave import CosimLocalSlave  # noqa: E402
+
+NS = 1e9
+
+
+def run(task: Task) -> str | None:
+    """Run one job; libcosim shows values after its first step only."""
+    execution = CosimExecution.from_step_size(round(task.step * NS))
+    one = execution.add_local_slave(CosimLocalSlave(task.fmu, "one"))
+    if one < 0:
+        return "the slave was refused"
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    get = {
+        "Real": observer.last_real_values,
+        "Integer": observer.last_integer_values,
+        "Boolean": observer.last_boolean_values,
+    }
+    groups: dict[str, tuple[list[int], list[int]]] = {}
+    for place, value in enumerate(task.values):
+        references, places = groups.setdefault(value.type, ([], []))
+        references.append(value.reference)
+        places.append(place)
+    row = array.array("d", [math.nan] * len(task.values))
+    with task.out.open("wb") as out:
+        row.tofile(out)
+        for k in range(task.steps):
+            execution.step()
+            if execution.status().state == CosimExecutionState.ERROR:
+                return f"step {k + 1} failed"
+            for kind, (references, places) in groups.items():
+                for place, x in zip(places, get[kind](one, references), strict=True):
+                    row[place] = x
+            row.tofile(out)
+    return None
+
+
+log_output_level(CosimLogLevel.ERROR)
+main(run)
