@@ -218,3 +218,10 @@ def test_wires_of_elements_are_checked(folder: Path) -> None:
     tables = {**LOOP, "set": {}}
     with pytest.raises(InputError, match=r"input axes\.voltage is open"):
         _made(folder, tables)
+
+
+def test_an_array_is_fed_when_each_element_is(folder: Path) -> None:
+    each = {f"axes.voltage[{k}]": "through.out[1]" for k in range(1, 7)}
+    tables = {**LOOP, "set": {}, "leave": ["through.*", "ball.*"], "stop": 0.1}
+    ran = _made(folder, {**tables, "connect": {**LOOP["connect"], **each}}).run()
+    assert not ran["axes.motor_angle"].any()  # nothing starts the loop
