@@ -12,6 +12,7 @@ SYMBOLS: dict[str, tuple[float, dict[str, int]]] = {
     "kg": (1.0, {"kg": 1}),
     "m": (1.0, {"m": 1}),
     "mm": (1e-3, {"m": 1}),
+    "L": (1e-3, {"m": 3}),
     "um": (1e-6, {"m": 1}),
     "s": (1.0, {"s": 1}),
     "ms": (1e-3, {"s": 1}),
@@ -30,6 +31,30 @@ SYMBOLS: dict[str, tuple[float, dict[str, int]]] = {
     "V": (1.0, {"kg": 1, "m": 2, "s": -3, "A": -1}),
     "Ohm": (1.0, {"kg": 1, "m": 2, "s": -3, "A": -2}),
     "H": (1.0, {"kg": 1, "m": 2, "s": -2, "A": -2}),
+}
+
+
+# What a tool shows instead of a unit, and how large such a value usually is.
+SHOWN: dict[str, tuple[str | None, float | None]] = {
+    "m": ("mm", 0.1),
+    "m/s": ("mm/s", 0.1),
+    "mm": (None, 100.0),
+    "mm/s": (None, 100.0),
+    "mm/s2": (None, 1e3),
+    "mm/min": (None, 1e3),
+    "m3/s": ("L/min", 1e-4),
+    "rad": ("deg", None),
+    "rad/s": ("rpm", 100.0),
+    "deg": (None, 100.0),
+    "deg/s": (None, 100.0),
+    "rpm": (None, 1e3),
+    "s": ("ms", 1e-3),
+    "N": (None, 1e3),
+    "N/m": (None, 1e8),
+    "N.s/m": (None, 1e3),
+    "N.m/rad": (None, 1e5),
+    "kg.m2": (None, 1e-3),
+    "Pa": ("bar", 1e6),
 }
 
 
@@ -78,6 +103,16 @@ def parse(name: str) -> Unit:
     if not 0.0 < factor < math.inf:
         raise ValueError(f'unit "{name}": beyond all numbers')
     return Unit(name, factor, tuple(total[b] for b in BASE))
+
+
+def shown_as(name: str | None) -> str | None:
+    """The unit in which a tool shows a value in this one; None: in this one."""
+    return SHOWN.get(name or "", (None, None))[0]
+
+
+def usual(name: str | None) -> float | None:
+    """How large a value in this unit usually is, if that is far from 1."""
+    return SHOWN.get(name or "", (None, None))[1]
 
 
 def spelled(name: str | None) -> str:

@@ -17,6 +17,8 @@ from motionfmu.fmu.platforms import here
 
 NAMES = sorted(p.parent.name for p in ROOT.glob("fmus/*/fmu.toml"))
 HEAD = 'name="A"\ndescription="a"\ntick_ns=25\nexperiment={stop=1.0,step=1e-3}\ncores=[]\n'
+WIRE = '[input]\nx={type="f64",start=0.0,doc="d"}\n'
+JOIN = f'{WIRE}[terminal.a]\nkind="k"\ndoc="d"\n'
 
 
 def wrong(rows: str) -> str:
@@ -45,6 +47,22 @@ def wrong(rows: str) -> str:
         ('[output]\nx={type="f64", start=0.0, doc="d"}', "it is calculated and has no start"),
         ('[output]\nx={type="f64", dox="d"}', "unknown key 'dox'"),
         ('[input]\nx={type="f64",start=0.0,doc="d"}\n[output]\nx={type="f64",doc="d"}', "twice"),
+        ('[input]\nx={type="i32",start=0,values=["a"],max=1,doc="d"}', "in place of min and max"),
+        ('[input]\nx={type="f64",start=0.0,values=["a"],doc="d"}', "values are those of an i32"),
+        (
+            '[input]\nx={type="i32",start=0,values={a="b"},doc="d"}',
+            "a list from 0 on or by numbers",
+        ),
+        ('[input]\nx={type="i32",start=0,values=[""],doc="d"}', "a list from 0 on or by numbers"),
+        ('[input]\nx={type="i32",start=2,values=["a","b"],doc="d"}', "start 2 is outside 0 .. 1"),
+        ('[input]\nx={type="i32",start=0,file="read",doc="d"}', "a string is read or written"),
+        ('[parameter]\nx={type="string",start="",file="r",doc="d"}', "file 'r' on type string"),
+        (f'{WIRE}[terminal.a]\nkind="k"\nmembers={{x="x"}}', "a/fmu.toml:8: terminal a: a table"),
+        (f'{JOIN}members={{x="y"}}', "terminal a: x = 'y': no such input or output"),
+        (f'{JOIN}members={{"*"="x"}}', "terminal a: * = 'x': one * on both sides"),
+        (f"{JOIN}members={{}}", "members {}: variables by names wanted"),
+        (f'{JOIN}member={{x="x"}}', "unknown key 'member'; did you mean 'members'?"),
+        ("terminal=1", "terminal 1 is no table"),
         ("colour=1", "a/fmu.toml:6: unknown key 'colour'"),
         ("x ==", "a/fmu.toml:6: "),
     ],

@@ -113,7 +113,9 @@ def test_it_has_values_files_units_and_what_is_open(made: tuple[int, Path]) -> N
     with zipfile.ZipFile(file) as archive:
         program = archive.read("resources/circle.ngc")
         assert program == (ROOT / "scenarios/circle/circle.ngc").read_bytes()
-        assert {"documentation/LICENSE", "documentation/README.md"} <= set(archive.namelist())
+        assert {"documentation/licenses/license.txt", "documentation/README.md"} <= set(
+            archive.namelist()
+        )
         assert not [n for n in archive.namelist() if n.startswith("sources/")]
 
 

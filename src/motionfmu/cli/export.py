@@ -5,13 +5,16 @@ from typing import Annotated
 
 import typer
 
-from motionfmu.cli.common import ScenarioPath, Set, app, settings
+from motionfmu.cli.common import Set, app, settings
 from motionfmu.cli.run import warnings
+from motionfmu.errors import InputError
 
 
 @app.command()
 def export(  # noqa: PLR0913  (each is an option)
-    path: ScenarioPath,
+    path: Annotated[
+        Path, typer.Argument(help="Folder of a scenario, its scenario.toml, or an FMU's name.")
+    ],
     target: Annotated[
         Path | None, typer.Option("--out", "-o", help="The file; NAME.fmu, NAME.ssp if not given.")
     ] = None,
@@ -25,6 +28,9 @@ def export(  # noqa: PLR0913  (each is an option)
             "from the C text of its FMUs, which goes with it."
         ),
     ] = "here",
+    program: Annotated[
+        Path | None, typer.Option(help="Of an FMU alone: the part program that is packed with it.")
+    ] = None,
     set_: Set = [],  # noqa: B006  (typer makes a new list)
     ssp: Annotated[
         bool, typer.Option("--ssp/--fmu", help="SSP of its FMUs, or one FMU of all.")
@@ -34,12 +40,21 @@ def export(  # noqa: PLR0913  (each is an option)
         typer.Option(metavar="PATTERN", help="Signals shown beside the recorded: 'card.err_*'."),
     ] = [],  # noqa: B006
 ) -> None:
-    """Make a scenario's system one FMU, or an SSP of its FMUs, for other tools.
+    """Make a scenario's system one FMU, or an SSP of its FMUs; or pack an FMU with its files.
 
     FMU: parameters and open inputs of all components are its variables, by the names of the
     scenario and with its values; its outputs are what the scenario records. SSP: components, wires,
     values, time; 1.0 with FMI 2, 2.0 with FMI 3. Files that it reads are inside.
     """
+    from motionfmu.cli import packing
+
+    if packing.is_fmu(path):
+        packing.pack(path.name, target, fmi or 3, program, settings(set_))
+        return
+    if program is not None:
+        raise InputError(
+            "--program is for an FMU alone; of a scenario --set COMPONENT.program=FILE"
+        )
     from motionfmu.fmu.platforms import named
     from motionfmu.run import load
 

@@ -1,9 +1,9 @@
 """Files that settings name, which travel inside an archive."""
 
-import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from motionfmu.fmu import places
 from motionfmu.scenarios.system import Setting
 from motionfmu.toml_lines import is_file
 
@@ -19,10 +19,12 @@ class Resources:
         return replace(setting, values=tuple(self._value(setting, v) for v in setting.values))
 
     def _value(self, setting: Setting, value: float | int | bool | str) -> float | int | bool | str:
-        if not (isinstance(value, str) and os.path.isabs(value) and is_file(Path(value))):
+        port = setting.end.port
+        # Somebody else's FMU does not say which of its texts are files.
+        may = port.file == "read" or (port.type == "String" and port.declared is None)
+        file = places.local(str(value)) if may else None
+        if file is None or not file.is_absolute() or not is_file(file):
             return value
-        file, name = Path(value), Path(value).name
-        if self.files.get(name, file) != file:
-            name = f"{setting.end.component}.{name}"
+        name = places.free_name(file, setting.end.component, self.files)
         self.files[name] = file
-        return f"resource:{name}"
+        return places.RESOURCE + name

@@ -2,7 +2,6 @@
 
 import json
 import re
-import zipfile
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,15 +11,15 @@ from motionfmu import fused
 from motionfmu.errors import InputError
 from motionfmu.export.chosen import also_shown
 from motionfmu.export.resources import Resources
+from motionfmu.fmu import shown
 from motionfmu.fmu.pack import RESOURCES, write_whole
 from motionfmu.fmu.platforms import Platform
 from motionfmu.run.prepared import Options, Prepared
-from motionfmu.scenarios.fmus import fmu_path
+from motionfmu.scenarios import fmus
 from motionfmu.toml_lines import is_file
 
 PROGRAM = "program.json"  # what a run here reads instead of the description
-_LEFT = (PROGRAM, "sources/")  # C text without the parts that it needs
-_LICENCE = "documentation/LICENSE"
+_LEFT = (PROGRAM, shown.VARIABLES, shown.TERMINALS)  # the latter two are in the documentation
 
 
 @dataclass(frozen=True)
@@ -77,18 +76,19 @@ def as_fmu(
         raise InputError(f"FMI {fmi!r}: 2 or 3")
     system, resources = scenario.resolved(Options(set=given)), Resources()
     settings = tuple(resources.inside(s) for s in system.settings)
-    shown = also_shown(scenario, choice.inner, ("output",))
+    ends = also_shown(scenario, choice.inner, ("output",))
     try:
         program = fused.exported(
             replace(system, settings=settings),
-            shown,
+            ends,
             fmi,
             identifier(scenario.name),
             choice.platforms,
         )
     except fused.NotFused as why:
         raise InputError(f"{scenario.name} cannot be one FMU: {why}") from None
-    left = PROGRAM if choice.platforms else _LEFT
+    # C text without the parts that it needs is of no use.
+    left = _LEFT if choice.platforms else (*_LEFT, "sources/")
     packed = {
         name: f
         for f in program.folder.rglob("*")
@@ -96,10 +96,14 @@ def as_fmu(
     }
     packed |= {f"{RESOURCES}/{name}": file for name, file in resources.files.items()}
     readme = scenario.document.file.parent / "README.md"
+    text = ""
     if is_file(readme):
         packed["documentation/README.md"] = readme
-    licence = _licence(next(iter(system.components.values())))
-    write_whole(target, {n: f.read_bytes() for n, f in packed.items()} | {_LICENCE: licence})
+        text = readme.read_text()
+    icon = shown.joined([x for fmu in system.components.values() if (x := fmus.icon_of(fmu))])
+    about = (scenario.name, f"The system of {scenario.name}: {', '.join(system.components)}")
+    made = shown.files(fmi, program.folder, about, text, icon)
+    write_whole(target, {n: f.read_bytes() for n, f in packed.items()} | made)
     return len(json.loads((program.folder / PROGRAM).read_bytes())["variables"])
 
 
@@ -108,9 +112,3 @@ def identifier(name: str) -> str:
     words = re.findall(r"[A-Za-z0-9]+", name)
     joined = "".join(word[:1].upper() + word[1:] for word in words)
     return joined if joined[:1].isalpha() else f"System{joined}"
-
-
-def _licence(fmu: str) -> bytes:
-    """That of the parts, as an FMU carries it."""
-    with zipfile.ZipFile(fmu_path(fmu)) as archive:
-        return archive.read(_LICENCE)

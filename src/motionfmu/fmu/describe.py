@@ -19,6 +19,21 @@ STRING_MAX = 1024  # bytes of a string variable with its end mark; the state is 
 COUNT_MAX = 65536  # elements of a variable; all of them are in that struct
 I32 = 2**31
 _KEYS = {"type", "dims", "unit", "start", "min", "max", "nominal", "tunable", "doc"}
+_KEYS |= {"values", "file"}
+# Reverse domain name of what no standard names: kinds of terminals, folders.
+DOMAIN = "org.motionfmu"
+# Types of text that names a file, by the key `file`: name and meaning.
+FILES = {
+    "read": (
+        "InputFile",
+        "File that is read: a path, file:///PATH with percent-encoded UTF-8, or resource:NAME, "
+        "which is NAME in the FMU's resources",
+    ),
+    "written": (
+        "OutputFile",
+        "File that is written: a path, or file:///PATH with percent-encoded UTF-8",
+    ),
+}
 
 Scalar = float | int | bool | str
 
@@ -48,6 +63,7 @@ class Variable:
     tunable: bool = False  # a parameter that may change while running
     # an f64 that changes between communication points (plants); else discrete
     continuous: bool = False
+    declared: tuple[str, str] | None = None  # its type: name and meaning, of files and of numbers
 
     @property
     def count(self) -> int:
@@ -74,6 +90,17 @@ class Variable:
 
 
 @dataclass(frozen=True)
+class Terminal:
+    """Variables that are connected together; those of two FMUs whose names are the same."""
+
+    name: str  # snake_case
+    kind: str  # what it connects to, one word for both sides
+    doc: str
+    members: tuple[tuple[str, str], ...]  # name of the member, variable
+    every: bool = True  # both sides have the same members; else some have fewer
+
+
+@dataclass(frozen=True)
 class Description:
     """All that an importing tool may know about an FMU."""
 
@@ -85,6 +112,13 @@ class Description:
     # name of the parameter that is the grid on which it reads inputs and shows outputs; or empty
     grid: str = ""
     variables: tuple[Variable, ...] = field(default=())
+    terminals: tuple[Terminal, ...] = field(default=())
+
+    @property
+    def step(self) -> float:
+        """On which grid it reads inputs and shows outputs, if its parameter is left alone [s]."""
+        periods = [v.start[0] for v in self.variables if v.name == self.grid and v.start]
+        return float(periods[0]) if periods else self.tick_ns * 1e-9
 
     @property
     def token(self) -> str:
@@ -166,7 +200,8 @@ def _wrong(causality: str, name: str, row: dict[str, Any]) -> Iterator[str]:
         close = suggestion(kind, TYPES) if isinstance(kind, str) else ""
         yield f"type {shown(kind)} is not one of {', '.join(TYPES)}{close}"
         return
-    for check in (_check_unit, _check_limits, _check_nominal, lambda r: _dims(r.get("dims") or ())):
+    checks = (_check_unit, _check_limits, _check_nominal, _check_values, _check_file)
+    for check in (*checks, lambda r: _dims(r.get("dims") or ())):
         try:
             check(row)
         except ValueError as error:
@@ -198,6 +233,44 @@ def _check_nominal(row: dict[str, Any]) -> None:
             raise ValueError(f"nominal {shown(nominal)} is not a positive size of an f64")
 
 
+def _meanings(row: dict[str, Any]) -> dict[int, str]:
+    """What each number means: a list from 0 on, or a table."""
+    given = row.get("values")
+    rows = enumerate(given) if isinstance(given, list) else (given or {}).items()
+    return {int(number): text for number, text in rows}
+
+
+def _check_values(row: dict[str, Any]) -> None:
+    """Meanings are texts of whole numbers, of an i32 without other limits."""
+    if (given := row.get("values")) is None:
+        return
+    if row["type"] != "i32" or {"min", "max"} & set(row):
+        raise ValueError("values are those of an i32, in place of min and max")
+    table = isinstance(given, dict) and all(re.fullmatch(r"-?\d{1,9}", key) for key in given)
+    texts = given if isinstance(given, list) else given.values() if table else []
+    if not texts or not all(isinstance(x, str) and x and x.isprintable() for x in texts):
+        raise ValueError(f"values {shown(given)}: texts wanted, a list from 0 on or by numbers")
+
+
+def _check_file(row: dict[str, Any]) -> None:
+    if (given := row.get("file")) is not None and (row["type"], given in FILES) != ("string", True):
+        raise ValueError(f"file {shown(given)} on type {row['type']}: a string is read or written")
+
+
+def _typed(name: str, causality: str, row: dict[str, Any]) -> dict[str, Any]:
+    """A row with the type that its `values` or `file` declare, in place of them."""
+    plain = {k: v for k, v in row.items() if k not in ("values", "file")}
+    if "file" in row:
+        plain["declared"] = FILES[row["file"]]
+    if meanings := _meanings(row):
+        text = ", ".join(f"{number} {word}" for number, word in sorted(meanings.items()))
+        plain["declared"] = "".join(part.capitalize() for part in name.split("_")), text
+        plain["doc"] = f"{row['doc']}: {text}"
+        if causality in ("parameter", "input"):
+            plain |= {"min": min(meanings), "max": max(meanings)}
+    return plain
+
+
 def variable(name: str, causality: str, row: dict[str, Any]) -> Variable:
     """Make a Variable from a row as in fmu.toml.
 
@@ -208,8 +281,9 @@ def variable(name: str, causality: str, row: dict[str, Any]) -> Variable:
     told = list(_wrong(causality, name, row))
     found: Variable | None = None
     if not told:
+        own = _typed(name, causality, row)
         bare = Variable(
-            name, causality, **{**row, "dims": tuple(row.get("dims") or ()), "start": None}
+            name, causality, **{**own, "dims": tuple(row.get("dims") or ()), "start": None}
         )
         try:
             found = bare if causality in ("output", "local") else _started(bare, row.get("start"))

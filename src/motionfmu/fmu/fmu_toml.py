@@ -5,12 +5,13 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.fmu import terminals
 from motionfmu.fmu.describe import CAUSALITIES, Description, variable
 from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
 from motionfmu.toml_lines import ordered, shown, tables_of, text_of
 
 HEAD = {"name", "description", "tick_ns", "experiment", "cores"}
-MAY = {"grid"}
+MAY = {"grid", "terminal"}
 _CORE = r"[a-z][a-z0-9_]{0,63}"
 
 
@@ -45,8 +46,17 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
         told = f"grid {shown(doc['grid'])}: the name of a parameter of type f64 wanted"
         told += suggestion(str(doc["grid"]), periods)
         faults.lines.append(f"{file}:{line_of(text, 'grid')}: {told}")
+    joined = []
+    try:
+        joined = terminals.read(doc.pop("terminal", {}), variables)
+    except InputError as error:
+        for told in error.args:
+            key = ".".join(told.partition(":")[0].split(" ")[:2])
+            faults.lines.append(f"{file}:{line_of(text, key)}: {told}")
     Faults(ordered(faults.lines, [file])).tell()
-    return Description(**{**doc, "cores": tuple(cores)}, variables=tuple(variables))
+    return Description(
+        **{**doc, "cores": tuple(cores)}, variables=tuple(variables), terminals=tuple(joined)
+    )
 
 
 def _real(row: Any) -> bool:

@@ -1,10 +1,13 @@
 """modelDescription.xml for FMI 2.0 and 3.0 from one Description."""
 
+import os
+import time
 from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
 from motionfmu import units
-from motionfmu.fmu.describe import Description, Variable
+from motionfmu.fmu import licence
+from motionfmu.fmu.describe import DOMAIN, Description, Variable
 
 _TYPE = {
     2: {"f64": "Real", "i32": "Integer", "bool": "Boolean", "string": "String"},
@@ -34,7 +37,27 @@ def _units(root: ET.Element, d: Description) -> None:
         parent = _add(root, "UnitDefinitions")
         for name in names:
             unit = units.parse(name)
-            ET.SubElement(_add(parent, "Unit", name=name), "BaseUnit", unit.attributes())
+            element = _add(parent, "Unit", name=name)
+            ET.SubElement(element, "BaseUnit", unit.attributes())
+            if other := units.shown_as(name):
+                factor = unit.factor / units.parse(other).factor
+                _add(element, "DisplayUnit", name=other, factor=factor)
+
+
+def _types(root: ET.Element, d: Description, fmi: int) -> None:
+    """Types that variables declare: of numbers with a meaning, and of names of files."""
+    declared = {v.declared: v for v in d.variables if v.declared}
+    if not declared:
+        return
+    parent = _add(root, "TypeDefinitions")
+    for (name, text), v in declared.items():
+        limits = {k: x for k, x in _limits(v).items() if k in ("min", "max")}
+        if fmi == 2:
+            _add(
+                _add(parent, "SimpleType", name=name, description=text), _TYPE[2][v.type], **limits
+            )
+        else:
+            _add(parent, f"{_TYPE[3][v.type]}Type", name=name, description=text, **limits)
 
 
 def _head(root: ET.Element, d: Description, fmi: int, sources: Sequence[str]) -> None:
@@ -51,7 +74,10 @@ def _head(root: ET.Element, d: Description, fmi: int, sources: Sequence[str]) ->
         files = _add(cs, "SourceFiles") if sources else cs
         for name in sources:
             _add(files, "File", name=name)
+    else:
+        cs.set("fixedInternalStepSize", _text(d.step))
     _units(root, d)
+    _types(root, d, fmi)
     categories = _add(root, "LogCategories")
     for name, text in _CATEGORIES.items():
         _add(categories, "Category", name=name, description=text)
@@ -62,6 +88,9 @@ def _head(root: ET.Element, d: Description, fmi: int, sources: Sequence[str]) ->
         stopTime=float(d.experiment["stop"]),
         stepSize=float(d.experiment["step"]),
     )
+    if fmi == 2:
+        tool = _add(_add(root, "VendorAnnotations"), "Tool", name=DOMAIN)
+        _add(tool, "FixedInternalStepSize", seconds=d.step)
 
 
 def _about(v: Variable, name: str, reference: int) -> dict[str, object]:
@@ -77,11 +106,12 @@ def _about(v: Variable, name: str, reference: int) -> dict[str, object]:
 
 def _limits(v: Variable) -> dict[str, object]:
     kind = float if v.type == "f64" else int
-    found: dict[str, object] = {"unit": v.unit}
+    found: dict[str, object] = {"unit": v.unit, "displayUnit": units.shown_as(v.unit)}
+    found["declaredType"] = v.declared[0] if v.declared else None
     for key in ("min", "max"):
         limit = getattr(v, key)
         found[key] = None if limit is None else kind(limit)
-    found["nominal"] = v.nominal
+    found["nominal"] = v.nominal or units.usual(v.unit)
     return found
 
 
@@ -141,7 +171,12 @@ def model_description(d: Description, fmi: int, sources: Sequence[str] = ()) -> 
     root = ET.Element("fmiModelDescription", fmiVersion=f"{fmi}.0", modelName=d.name)
     root.set("guid" if fmi == 2 else "instantiationToken", d.token)
     root.set("description", d.description)
+    for key, text in licence.attributes().items():
+        root.set(key, text)
     root.set("generationTool", "motionfmu")
+    if moment := os.environ.get("SOURCE_DATE_EPOCH"):
+        date = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(int(moment)))
+        root.set("generationDateAndTime", date)
     root.set("variableNamingConvention", "structured")
     _head(root, d, fmi, sources)
     variables = _add(root, "ModelVariables")

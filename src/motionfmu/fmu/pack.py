@@ -7,6 +7,7 @@ python src/pack.py headers  src build/include/motionfmu
 python src/pack.py platforms
 """
 
+import html
 import json
 import os
 import posixpath
@@ -25,9 +26,12 @@ from motionfmu.fmu import (
     ctables,
     fmu_toml,
     platforms,
+    shown,
     sources,
     start_values,
+    terminals,
 )
+from motionfmu.fmu.describe import DOMAIN
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.platforms import Platform
 from motionfmu.toml_lines import text_of
@@ -36,7 +40,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 # Zip cannot date earlier; a fixed date makes equal FMUs equal files.
 _DATE = (1980, 1, 1, 0, 0, 0)
 # What the linear models are made of goes into the FMU beside what the standard asks for.
-EXTRA = "extra/org.motionfmu"
+EXTRA = f"extra/{DOMAIN}"
 # Files that travel with an FMU, resource:NAME in a parameter.
 RESOURCES = "resources"
 # Which parameter is the FMU's grid; carried in EXTRA.
@@ -74,6 +78,8 @@ def generate(fmu: Path, out: Path) -> None:
         d = fmu_toml.load(fmu / "fmu.toml")
     _write(out / "vars.h", ctables.header(d))
     _write(out / "vars.c", ctables.table(d))
+    _write(out / shown.VARIABLES, shown.variables(d))
+    _write(out / shown.TERMINALS, terminals.described(d.terminals))
     _write(out / GRID, json.dumps({"grid": d.grid}) + "\n")
     compiled = [f.name for f in compiled_sources(fmu, out)]
     model = "plant_model.c" if is_modelica(fmu) else "model.c"
@@ -145,10 +151,13 @@ def archive(folder: Path, out: Path, fmi: int, compiled: Compiled, target: Path)
     files = {
         "modelDescription.xml": xml,
         **platforms.libraries(fmi, identifier, made),
-        "documentation/LICENSE": (SOURCE.parent / "LICENSE").read_bytes(),
     }
-    for readme in folder.glob("README.md"):
-        files["documentation/README.md"] = readme.read_bytes()
+    readme = "".join(file.read_text() for file in folder.glob("README.md"))
+    about = re.search(rb'description="([^"]*)"', xml)
+    words = html.unescape(about[1].decode()) if about else ""
+    files |= shown.files(fmi, out, (identifier, words), readme, shown.icon_of(folder))
+    if readme:
+        files["documentation/README.md"] = readme.encode()
     if fmi == 3:
         for extra in (
             *folder.glob("linear.toml"),

@@ -4,7 +4,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from motionfmu.fmu.describe import Description, Variable
+from motionfmu.fmu import terminals
+from motionfmu.fmu.describe import Description, Terminal, Variable
 from motionfmu.fmu.head import TICK_MAX
 from motionfmu.fmu.platforms import Platform
 from motionfmu.fused.parts import NotFused
@@ -68,6 +69,21 @@ def _limit(kind: str, value: float) -> float | int | None:
     return int(value) if kind == "i32" else value
 
 
+def _declared(end: End) -> tuple[str, str] | None:
+    """The type of a component's variable: files are alike in all of them."""
+    declared = end.port.declared
+    if declared is None or end.port.file:
+        return declared
+    return f"{end.component}.{declared[0]}", declared[1]
+
+
+def _terminals(system: System, variables: Sequence[Variable]) -> Iterator[Terminal]:
+    """Those of the components, as far as the system shows them as inputs and outputs."""
+    there = {v.name for v in variables if v.causality in ("input", "output")}
+    for component, fmu in system.components.items():
+        yield from terminals.within(component, fmus.terminals_of(fmu), there)
+
+
 def _variable(end: End, causality: str, values: Values | None) -> Variable:
     port: Port = end.port
     kind = TYPES[port.type]
@@ -82,6 +98,7 @@ def _variable(end: End, causality: str, values: Values | None) -> Variable:
         min=_limit(kind, port.low),
         max=_limit(kind, port.high),
         nominal=port.nominal,
+        declared=_declared(end),
         tunable=port.tunable,
         continuous=port.continuous,
     )
@@ -130,4 +147,5 @@ def described(job: Job, used: Roles, tick_ns: int) -> Description:
         tick_ns=tick_ns,
         experiment={"stop": stop, "step": step},
         variables=tuple(variables),
+        terminals=() if job.given is None else tuple(_terminals(system, variables)),
     )

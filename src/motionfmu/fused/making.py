@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 
 from motionfmu.compiler import Compiler
-from motionfmu.fmu import ctables
+from motionfmu.fmu import ctables, shown, terminals
 from motionfmu.fmu.describe import Description
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.platforms import here
@@ -48,6 +48,7 @@ def make(folder: Path, job: Job, cc: Compiler) -> None:
     if job.platforms:
         files = everywhere.compile_all(folder, job)
         (folder / "modelDescription.xml").write_bytes(model_description(d, job.fmi, files))
+        _show(folder, d)
         _tell(folder, d, "")
         return
     for one in parts.values():
@@ -66,7 +67,15 @@ def make(folder: Path, job: Job, cc: Compiler) -> None:
     for file in objects:
         (sources / file).unlink()
     (folder / "modelDescription.xml").write_bytes(model_description(d, job.fmi))
+    if job.given is not None:
+        _show(folder, d)
     _tell(folder, d, str(library.relative_to(folder)))
+
+
+def _show(folder: Path, d: Description) -> None:
+    """What the documentation of an exported system is made of."""
+    (folder / shown.VARIABLES).write_text(shown.variables(d))
+    (folder / shown.TERMINALS).write_bytes(terminals.described(d.terminals))
 
 
 def _tell(folder: Path, d: Description, library: str) -> None:

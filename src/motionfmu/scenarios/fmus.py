@@ -16,12 +16,15 @@ from xml.etree import ElementTree
 
 from motionfmu import kept
 from motionfmu.errors import InputError, suggestion
+from motionfmu.fmu import terminals
+from motionfmu.fmu.describe import Terminal
 from motionfmu.fmu.platforms import here
 from motionfmu.scenarios import foreign
 from motionfmu.scenarios.foreign import is_foreign
 from motionfmu.scenarios.port import Port
 from motionfmu.toml_lines import is_file
 
+_TYPES = "TypeDefinitions/*"
 HEAD = 2000  # [bytes] of a description, in which its root stands
 PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -32,6 +35,20 @@ def folder() -> Path:
         return Path(named)
     installed = PACKAGE / "fmus"
     return installed if installed.is_dir() else PACKAGE.parent.parent / "build" / "fmus"
+
+
+def terminals_of(name: str) -> list[Terminal]:
+    """What of a built FMU is connected together."""
+    with opened(name) as archive:
+        there = terminals.XML in archive.namelist()
+        return terminals.of(archive.read(terminals.XML)) if there else []
+
+
+def icon_of(name: str) -> str:
+    """The drawing of a built FMU; empty if it has none."""
+    file = f"{terminals.ICON}.svg"
+    with opened(name) as archive:
+        return archive.read(file).decode() if file in archive.namelist() else ""
 
 
 def fmu_names() -> list[str]:
@@ -193,12 +210,14 @@ def ports(name: str) -> Mapping[str, Port]:
 def _ports(name: str) -> dict[str, Port]:
     # Not FMPy's reader: to import it and to look at the schema takes longer than most commands.
     with _description(name) as stream:
-        rows = ElementTree.parse(stream).find("ModelVariables")
-        found = [_port(row) for row in ([] if rows is None else rows)]
+        tree = ElementTree.parse(stream)
+        types = {row.get("name"): row.get("description", "") for row in tree.iterfind(_TYPES)}
+        found = [_port(row, types) for row in tree.iterfind("ModelVariables/*")]
     return {port.name: port for port in found if port.causality != "independent"}
 
 
-def _port(row: ElementTree.Element) -> Port:
+def _port(row: ElementTree.Element, types: Mapping[str | None, str]) -> Port:
+    name = row.get("declaredType")
     texts = [start.get("value", "") for start in row.findall("Start")]
     return Port(
         row.attrib["name"],
@@ -214,4 +233,5 @@ def _port(row: ElementTree.Element) -> Port:
         float(row.get("max", math.inf)),
         row.get("variability") == "continuous",
         float(row.attrib["nominal"]) if "nominal" in row.attrib else None,
+        (name, types.get(name, "")) if name else None,
     )

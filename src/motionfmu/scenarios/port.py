@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass, replace
 
+from motionfmu.fmu.describe import FILES
+
 
 @dataclass(frozen=True)
 class Port:
@@ -21,7 +23,15 @@ class Port:
     high: float
     continuous: bool = False  # it changes between communication points
     nominal: float | None = None  # the usual size
+    declared: tuple[str, str] | None = None  # its type: name and meaning
+
     whole: str = ""  # the array of which it is an element
+
+    @property
+    def file(self) -> str:
+        """Whether it names a file that is ``read`` or ``written``; empty if it names none."""
+        name = self.declared[0] if self.declared else ""
+        return {kind[0]: key for key, kind in FILES.items()}.get(name, "")
 
     @property
     def count(self) -> int:

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import Faults
-from motionfmu.fmu import describe
+from motionfmu.fmu import describe, terminals
 from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
 from motionfmu.fmu.modelica import causal
 from motionfmu.fmu.modelica.flat import Declaration
@@ -16,7 +16,7 @@ from motionfmu.toml_lines import ordered, shown, tables_of, text_of
 
 _TYPES = {"Real": "f64", "Integer": "i32", "Boolean": "bool"}
 _KEYS = ("name", "description", "tick_ns", "experiment", "modelica", "instances", "micro_step")
-_OPTIONAL = ("tolerance",)
+_OPTIONAL = ("tolerance", "terminal")
 INSTANCES_MAX = 64
 
 
@@ -35,6 +35,7 @@ class Packing:
     # error of one integrator step, as a share of what is large for a state: the steps follow it.
     # None: equal steps
     tolerance: float | None = None
+    terminal: dict[str, Any] = field(default_factory=dict)  # as in every fmu.toml
 
 
 def read(toml: Path) -> Packing:
@@ -104,6 +105,7 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
             if names.count(name) > 1:
                 raise ValueError(f"the name {name} is taken: every plant has it")
         variables = tuple(describe.variable(*row) for row in own)
+        joined = terminals.read(packing.terminal, variables)
     except ValueError as error:
         raise ValueError(f"{toml}: {packing.modelica}: {error}") from None
     return describe.Description(
@@ -113,6 +115,7 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
         packing.experiment,
         grid="micro_step",
         variables=variables,
+        terminals=tuple(joined),
     )
 
 

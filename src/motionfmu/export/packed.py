@@ -1,0 +1,52 @@
+"""An FMU by itself, with its files inside and other values to begin with."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from motionfmu.errors import InputError, suggestion
+from motionfmu.fmu import places
+from motionfmu.fmu.pack import repacked
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.system import End
+from motionfmu.scenarios.values import values_of
+from motionfmu.toml_lines import is_file
+
+
+def packed(name: str, target: Path, fmi: int, given: Mapping[str, Any]) -> list[str]:
+    """Write a built FMU that begins with values given; files that it reads become resources.
+
+    Returns the names of these. Paths are from the working directory.
+    """
+    if fmi not in (2, 3):
+        raise InputError(f"FMI {fmi!r}: 2 or 3")
+    ports = fmus.ports(name)
+    files: dict[str, Path] = {}
+    starts = {}
+    for variable, value in given.items():
+        if variable not in ports:
+            told = f"{name} has no variable {variable!r}"
+            raise InputError(told + suggestion(variable, ports))
+        try:
+            values = values_of(End(name, ports[variable]), value)
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        texts = [str(x).lower() if isinstance(x, bool) else str(x) for x in values]
+        if ports[variable].file == "read" and (file := places.local(texts[0])) is not None:
+            if not is_file(file):
+                raise InputError(f"{variable}: there is no file {file}")
+            own = places.free_name(file, variable, files)
+            files[own] = file
+            texts = [places.RESOURCE + own]
+        starts[variable] = " ".join(texts)
+    repacked(fmus.fmu_path(name, fmi), target, files, starts)
+    return sorted(files)
+
+
+def program_of(name: str) -> str:
+    """The one parameter that names a part program; else an InputError tells which there are."""
+    reads = [port.name for port in fmus.ports(name).values() if port.file == "read"]
+    if "program" in reads:
+        return "program"
+    which = ", ".join(f"--set {n}=FILE" for n in reads) or "it reads no file"
+    raise InputError(f"--program: {name} has no parameter program: {which}")

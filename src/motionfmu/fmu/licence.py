@@ -1,0 +1,54 @@
+"""Whose an FMU is, and under which licence: said once, in the project's files."""
+
+import functools
+import re
+import tomllib
+from importlib import metadata
+from pathlib import Path
+
+FOLDER = "documentation/licenses"
+ENTRY = f"{FOLDER}/license.txt"
+SPDX = "MIT"
+# The standard's headers are packed with the sources.
+_HEADERS = """
+
+The files fmi2*.h and fmi3*.h in sources/ are those of the FMI standard, (c) MODELISAR consortium
+and Modelica Association Project "FMI", under the 2-Clause BSD License, whose text they carry.
+"""
+_ROOT = Path(__file__).resolve().parents[3]
+
+
+def version() -> str:
+    """Of the project: where this is its tree, what its pyproject.toml says."""
+    file = _ROOT / "pyproject.toml"
+    if file.is_file():
+        return str(tomllib.loads(file.read_text())["project"]["version"])
+    return metadata.version("motionfmu")
+
+
+@functools.cache
+def text() -> str:
+    """The licence, and what is packed under another one."""
+    file = _ROOT / "LICENSE"
+    own = file.read_text() if file.is_file() else _installed()
+    return own.rstrip("\n") + _HEADERS
+
+
+def _installed() -> str:
+    """The licence as the installed package carries it."""
+    for file in metadata.files("motionfmu") or ():
+        if file.name == "LICENSE":
+            return file.read_text()
+    raise FileNotFoundError("the installed motionfmu has no LICENSE")
+
+
+def attributes() -> dict[str, str]:
+    """What the root of a description says."""
+    holder = re.search(r"Copyright \(c\) (\d+) (.+)", text())
+    assert holder, "the licence names its holder"
+    return {
+        "author": holder[2],
+        "version": version(),
+        "copyright": f"© {holder[1]} {holder[2]}",
+        "license": SPDX,
+    }

@@ -1,0 +1,119 @@
+"""motionfmu export of an FMU with its program inside, and of systems by the same words."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from console import within
+from fmpy import read_model_description, simulate_fmu
+
+import motionfmu
+from motionfmu.errors import InputError
+from motionfmu.export.packed import packed
+from motionfmu.export.system_fmu import as_fmu as export
+
+both = pytest.mark.parametrize("fmi", (2, 3))
+TEXT = "G91 G0 X0 Y0\nG1 X5 Y3 F3000\nM2\n"
+
+
+@both
+def test_a_program_with_any_name_is_packed_and_run(fmi: int, tmp_path: Path) -> None:
+    (tmp_path / "pärt.ngc").write_text(TEXT)
+    done = within(
+        *("export", "mcc", "--program", "pärt.ngc", "-o", "m.fmu", "--fmi", fmi),
+        *("--set", "p_gain=70", "--set", "mcc.dry_run=true"),
+        folder=tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    told = f"m.fmu: FMI {fmi}, mcc with pärt.ngc in its resources, 3 values set\n"
+    assert done.stdout.replace("\n", "") == told.strip()
+    (tmp_path / "pärt.ngc").unlink()
+    starts = {
+        v.name: str(v.start) for v in read_model_description(str(tmp_path / "m.fmu")).modelVariables
+    }
+    assert starts["program"] == "resource:pärt.ngc" and starts["dry_run"] == "true"
+    assert starts["p_gain[6]" if fmi == 2 else "p_gain"].split() == ["70"] * (1 if fmi == 2 else 6)
+    found = simulate_fmu(str(tmp_path / "m.fmu"), stop_time=0.05, step_size=1e-3, output=["queue"])
+    assert found["queue"].max() > 10
+
+
+def test_any_fmu_with_files_is_packed(tmp_path: Path) -> None:
+    for name in ("a.ngc", "b/a.ngc"):
+        file = tmp_path / name
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(TEXT)
+    given = {
+        "group1_program": str(tmp_path / "a.ngc"),
+        "group2_program": (tmp_path / "b/a.ngc").as_uri(),
+        "group2_card": 2,
+        "group3_program": "resource:there already",
+    }
+    target = tmp_path / "g.fmu"
+    assert packed("mcc_groups", target, 3, given) == ["a.ngc", "group2_program.a.ngc"]
+    with zipfile.ZipFile(target) as archive:
+        xml = archive.read("modelDescription.xml").decode()
+        assert archive.read("resources/group2_program.a.ngc").decode() == TEXT
+    assert '"resource:group2_program.a.ngc"' in xml and '"resource:there already"' in xml
+
+
+WRONG = {
+    ("mcc", "--program", "gone.ngc"): "program: there is no file gone.ngc",
+    ("mcc_groups", "--program", "x"): "no parameter program: --set group1_program=FILE",
+    ("epcio", "--program", "x"): "no parameter program: it reads no file",
+    ("mcc", "--set", "progam=x"): "mcc has no variable 'progam'; did you mean 'program'?",
+    ("mcc", "--set", "p_gain=-1"): "mcc.p_gain = -1: outside 0 .. 65535",
+    ("mcc", "--set", "status=1"): "status: cannot be set",
+    ("mcc", "--fmi", "4"): "FMI 4: 2 or 3",
+    ("scenarios/circle", "--program", "x"): "--program is for an FMU alone",
+}
+
+
+@pytest.mark.parametrize("line", WRONG)
+def test_what_cannot_be_packed_is_told(line: tuple[str, ...], tmp_path: Path) -> None:
+    name = str(ROOT / line[0]) if "/" in line[0] else line[0]
+    done = within("export", name, *line[1:], "-o", "x.fmu", folder=tmp_path)
+    assert done.returncode == 2
+    assert WRONG[line] in done.stderr.replace("\n", " ")
+    assert not list(tmp_path.iterdir())
+
+
+@both
+def test_a_system_takes_its_program_by_uri_and_from_its_resources(fmi: int, tmp_path: Path) -> None:
+    """The same bits as a run here; and as with a program by path, set in the importer."""
+    program = tmp_path / "eïn.ngc"
+    program.write_text((ROOT / "scenarios/circle/circle.ngc").read_text())
+    demo = motionfmu.load(ROOT / "scenarios/circle")
+    shown = {"stop_time": 0.2, "step_size": 1e-4, "output_interval": 1e-4}
+    name = "machine.table_position[1]" if fmi == 2 else "machine.table_position"
+    found = []
+    file = tmp_path / "c.fmu"
+    for given, start in (
+        ({"mcc.program": program.as_uri()}, {}),
+        ({}, {"mcc.program": str(program)}),
+        ({}, {"mcc.program": program.as_uri()}),
+    ):
+        export(demo, file, fmi, given)
+        with zipfile.ZipFile(file) as archive:
+            inside = [n for n in archive.namelist() if n.startswith("resources/")]
+        assert inside == [f"resources/{program.name if given else 'circle.ngc'}"]
+        found.append(simulate_fmu(str(file), output=[name], start_values=start, **shown)[name])
+    run = demo.run(stop=0.2)["machine.table_position"]
+    wanted = run[:, 0] if fmi == 2 else run
+    assert np.ptp(wanted) > 1e-4
+    for x in found:
+        assert x[:-1].tobytes() == np.ascontiguousarray(wanted).tobytes()
+    with pytest.raises(Exception, match=r"initial|Initialization"):
+        simulate_fmu(str(file), output=[name], start_values={"mcc.program": "resource:no"}, **shown)
+
+
+def test_an_engine_takes_a_uri_and_tells_of_a_missing_resource() -> None:
+    demo = motionfmu.load(ROOT / "scenarios/circle")
+    plain = demo.run(stop=0.05)["card.pulse_count"]
+    uri = (ROOT / "scenarios/circle/circle.ngc").as_uri()
+    for engine in ("fused", "native"):
+        other = demo.run(stop=0.05, set={"mcc.program": uri}, engine=engine)["card.pulse_count"]
+        assert other.tobytes() == plain.tobytes()
+        with pytest.raises(InputError, match=r"no such file in the FMU's resources|has named no"):
+            demo.run(stop=0.05, set={"mcc.program": "resource:no.ngc"}, engine=engine)
