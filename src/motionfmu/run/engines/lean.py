@@ -13,7 +13,7 @@ from motionfmu.errors import InputError
 from motionfmu.run.engines.messages import ERROR
 from motionfmu.scenarios import fmus
 
-_UNUSED = ("sources/", "documentation/", "extra/")
+_UNUSED = ("sources/", "documentation/", "extra/", "terminalsAndIcons/", "model.png")
 
 
 def unpacked(name: str, fmi: int) -> Path:
