@@ -40,23 +40,29 @@ def test_a_new_fmu_builds_and_passes_what_every_fmu_must(project: Path) -> None:
     pack.flags(source, gen)
     headers = Path(fmpy.__file__).parent / "c-code"
     part = built / "part.o"  # compiled as the build does
-    line = "gcc -std=c11 -Wall -Wextra -Wpedantic -Werror -fPIC -fvisibility=hidden -r -nostdlib"
-    places = [f"-I{p}" for p in (gen, source, ROOT / "src/fmi")]
-    subprocess.run([*line.split(), *places, gen / pack.PART_UNIT, "-o", part], check=True)
+    line = "gcc -std=c11 -Wall -Wextra -Wpedantic -Werror -fPIC -fvisibility=hidden"
+    line += " -ffp-contract=off -r -nostdlib"
+    cores = pack.compiled_sources(source, gen)
+    folders = (gen, source, ROOT / "src/fmi", ROOT / "src/elementary")
+    places = [f"-I{p}" for p in folders]
+    subprocess.run([*line.split(), *places, gen / pack.PART_UNIT, *cores, "-o", part], check=True)
+    subprocess.run(["objcopy", "--localize-hidden", part], check=True)
     for fmi in (2, 3):
         library = built / f"{NAME}{fmi}.so"
-        line = "gcc -std=c11 -Wall -Wextra -Wpedantic -Werror -fPIC -shared -ffp-contract=off"
-        places = [f"-I{p}" for p in (gen, source, ROOT / "src/fmi", headers)]
-        unit = gen / f"fmi{fmi}/fmu_main.c"
-        subprocess.run([*line.split(), *places, unit, "-o", library, "-lm"], check=True)
+        line = "gcc -std=c11 -Wall -Wextra -Wpedantic -Werror -fPIC -fvisibility=hidden -shared"
+        places = [f"-I{p}" for p in (*folders, headers)]
+        units = [gen / f"fmi{fmi}/fmu_main.c", *cores]
+        subprocess.run(
+            [*line.split(), *places, *units, "-ffp-contract=off", "-o", library, "-lm"], check=True
+        )
         pack.archive(
             source, gen, fmi, pack.Compiled({here(): library}, part), built / f"{NAME}.fmi{fmi}.fmu"
         )
     for fmu in FMUS.glob("scope.*"):
         shutil.copy(fmu, built)
     test = ROOT / "tests/fmi" / f"test_{NAME}.py"
-    # Not those that compile it again from the sources within.
-    chosen = ["-k", f"{NAME} and not sources and not fmutool"]
+    # Not those that compile it again from the sources within, nor what reads the build's library.
+    chosen = ["-k", f"{NAME} and not sources and not fmutool and not carries_little"]
     line = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *chosen]
     kinds = ("errors", "extremes", "runs", "states", "descriptions")
     files = [ROOT / f"tests/fmi/test_fmi_{kind}.py" for kind in kinds]
@@ -68,7 +74,7 @@ def test_a_new_fmu_builds_and_passes_what_every_fmu_must(project: Path) -> None:
     )  # fmt: skip
     assert done.returncode == 0, done.stdout[-3000:]
     passed = re.search(r"(\d+) passed", done.stdout)
-    assert passed and int(passed[1]) >= 36 and "failed" not in done.stdout
+    assert passed and int(passed[1]) >= 35 and "failed" not in done.stdout
 
 
 def test_a_new_scenario_holds_and_fails_where_it_must(project: Path) -> None:
