@@ -1,4 +1,4 @@
-/* Made by tables.py, which computes every number. */
+/* Made by tests/elementary/tables.py, which computes every number. */
 #ifndef EL_EXP_TABLES_H
 #define EL_EXP_TABLES_H
 

@@ -1,4 +1,4 @@
-/* Made by tables.py, which computes every number. */
+/* Made by tests/elementary/tables.py, which computes every number. */
 #ifndef EL_SERIES_TABLES_H
 #define EL_SERIES_TABLES_H
 

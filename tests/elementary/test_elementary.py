@@ -4,15 +4,12 @@ import ctypes
 import itertools
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import nearest
 import pytest
-from mpmath import mp
-
-sys.path.insert(0, str(nearest.CORE))
 import tables
+from mpmath import mp
 
 mp.prec = 200
 ARM = "aarch64-linux-gnu-gcc"

@@ -1,6 +1,6 @@
-"""Make el_*_tables.h: every constant of the elementary functions, from mpmath alone.
+"""Make src/elementary/el_*_tables.h: every constant of the functions, from mpmath alone.
 
-`python src/elementary/tables.py`; tests/house/test_elementary.py holds the files against this.
+`python tests/elementary/tables.py`; test_elementary.py holds the files against this.
 """
 
 import textwrap
@@ -11,6 +11,7 @@ import mpmath
 from mpmath import mp, mpf
 
 mp.prec = 1400
+CORE = Path(__file__).resolve().parents[2] / "src/elementary"
 Number = float | mpf
 
 SINES = 256  # steps of a turn
@@ -217,7 +218,7 @@ def texts() -> dict[str, str]:
     for make in (sine_tables, exp_tables, log_tables, arc_tables, series_tables, cbrt_tables):
         name = f"el_{make.__name__}.h"
         guard = name.upper().replace(".", "_")
-        head = "/* Made by tables.py, which computes every number. */"
+        head = "/* Made by tests/elementary/tables.py, which computes every number. */"
         include = "#include <stdint.h>\n\n" if make is sine_tables else ""
         body = "\n".join(make())
         found[name] = f"{head}\n#ifndef {guard}\n#define {guard}\n\n{include}{body}\n#endif\n"
@@ -226,4 +227,4 @@ def texts() -> dict[str, str]:
 
 if __name__ == "__main__":
     for name, text in texts().items():
-        Path(__file__).with_name(name).write_text(text)
+        (CORE / name).write_text(text)
