@@ -35,6 +35,27 @@ def built(folder: Path, *options: str, compiler: str = "gcc") -> ctypes.CDLL:
     return ctypes.CDLL(str(file))
 
 
+def telling(folder: Path, *options: str) -> ctypes.CDLL:
+    """The functions and, in `told`, what they round and the bound of what that may be off by."""
+    (folder / "told.c").write_text("double told[3];\n")
+    before = ["-include", Path(__file__).with_name("told.h"), "-I", CORE]
+    return built(folder, *map(str, before), *options, str(folder / "told.c"))
+
+
+def share_of_bound(library: ctypes.CDLL, name: str, at: Arguments) -> float:
+    """Error of what is rounded, of its bound; 0 if the function rounded nothing of the kind."""
+    told = (ctypes.c_double * 3).in_dll(library, "told")
+    told[0] = told[1] = told[2] = 0.0
+    function(library, name)(*at)
+    high, low, bound = map(mpf, told)
+    value = abs(true_value(name, at))
+    if not bound or not value:
+        return 0.0
+    # Signs and powers of 2 come later.
+    scale = mpf(2) ** int(mpmath.nint(mpmath.log(value / abs(high + low), 2)))
+    return float(abs(abs(high + low) - value / scale) / bound)
+
+
 def function(library: ctypes.CDLL, name: str) -> Callable[..., float]:
     """One function, of one argument or two."""
     found = getattr(library, f"el_{name}")
@@ -67,8 +88,16 @@ def near_steps() -> float:
 
 
 def near_zeros() -> float:
-    """The doubles next to multiples of pi / 2."""
-    return float(mp.pi / 2 * rnd.randint(1, 2 ** rnd.randint(1, 60)))
+    """A double p 2^e next to a multiple q of pi/2: p/q is a convergent of pi/2 / 2^e."""
+    e, p, before = rnd.randint(-52, 970), 1, 0
+    with mp.workprec(1300):
+        rest = mp.pi / 2 / mpf(2) ** e
+        while True:
+            whole = int(mpmath.floor(rest))
+            if whole * p + before >= 2**53:
+                return math.ldexp(p, e)
+            p, before = whole * p + before, p
+            rest = 1 / (rest - whole)
 
 
 def long_sides() -> Arguments:
