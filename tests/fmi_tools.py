@@ -224,6 +224,10 @@ class Instance:
         return {name: self.get(name) for name in calculated}
 
 
+# A host that has published nothing has a DDA length of 0; one of 1 to 9 is refused with a message.
+REFUSED_BELOW = {"host_dda_length": 10, "host_dda_divider": 1}
+
+
 def random_inputs(instance: Instance, seed: int, count: int) -> list[dict[str, list[Any]]]:
     """Values for every input at `count` instants, within the limits of the description."""
     random = np.random.default_rng(seed)
@@ -232,7 +236,7 @@ def random_inputs(instance: Instance, seed: int, count: int) -> list[dict[str, l
         row: dict[str, list[Any]] = {}
         for name in instance.names(lambda v: v.causality == "input" and v.type != "String"):
             v = instance.variables[name]
-            low = -10.0 if v.min is None else v.min
+            low = REFUSED_BELOW.get(name, -10.0 if v.min is None else v.min)
             high = max(low, 10.0) if v.max is None else v.max
             if v.type == "f64":
                 row[name] = random.uniform(low, high, v.count).tolist()

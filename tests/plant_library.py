@@ -14,6 +14,7 @@ from motionfmu.fmu.modelica import codegen
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "modelica" / "MotionControl"
+_ELEMENTARY = ROOT / "src/elementary"
 _FLAGS = (
     "-std=c11 -O2 -Wall -Wextra -Wpedantic -Wno-unused-function -Werror "
     "-ffp-contract=off -fno-math-errno -fno-trapping-math -fPIC"
@@ -94,7 +95,8 @@ class Library:
         compiler = os.environ.get("CC") or shutil.which("cc") or shutil.which("gcc")
         assert compiler, "a C compiler is needed"
         command = [*compiler.split(), *_FLAGS.split(), *flags, "-shared"]
-        command += [f"-I{i}" for i in include]
+        command += [f"-I{i}" for i in [*include, _ELEMENTARY]]
+        files = [*files, *_ELEMENTARY.glob("*.c")]
         subprocess.run([*command, *map(str, files), "-o", str(target), "-lm"], check=True)
 
 

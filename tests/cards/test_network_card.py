@@ -111,7 +111,12 @@ def test_the_parameters_are_the_settings_of_the_card() -> None:
         assert p["type"] == kinds[kind]
         assert p.get("dims", [""]) == ([int(elements)] if elements else [""])
         said = re.sub(r"\[(.*)\]$", lambda m: f"[{spelled(m[1])}]", words)
-        assert p["doc"].removesuffix(f" [{spelled(unit)}]") == said
+        if values := p.get("values"):
+            numbers = sorted(map(int, values)) if isinstance(values, dict) else range(len(values))
+            assert {int(n) for n in re.findall(r"\b\d+\b", words)} == set(numbers)
+            p = {"min": numbers[0], "max": numbers[-1], **p}
+        else:
+            assert p["doc"].removesuffix(f" [{spelled(unit)}]") == said
         if kind == "bool":
             assert p["start"] == (start == "true")
         else:

@@ -57,12 +57,12 @@ def broken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
                     archive.writestr(name, data)
             file.write_bytes(raw(file.read_bytes()))
         monkeypatch.setenv("MOTIONFMU_FMUS", str(folder))
-        fmus.ports.cache_clear()
+        fmus._ports.cache_clear()
         return folder
 
     yield make
     monkeypatch.undo()
-    fmus.ports.cache_clear()
+    fmus._ports.cache_clear()
 
 
 def same(data: bytes) -> bytes:

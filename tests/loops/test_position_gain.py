@@ -120,9 +120,9 @@ def test_another_fmu_has_gains_of_its_own(
     changed.unlink()
     with zipfile.ZipFile(FMUS / changed.name) as own, zipfile.ZipFile(changed, "w") as archive:
         texts = {name: own.read(name) for name in own.namelist()}
-        assert any(law in text for name, text in texts.items() if "/motionfmu/" in name)
+        assert any(law in text for name, text in texts.items() if "/org.motionfmu/" in name)
         for name, text in texts.items():
-            mine = "/motionfmu/" in name
+            mine = "/org.motionfmu/" in name
             archive.writestr(name, text.replace(law, other, 1) if mine else text)
     monkeypatch.setenv("MOTIONFMU_FMUS", str(folder))
     position_gain.law.carried.cache_clear()

@@ -82,7 +82,7 @@ def test_a_wrong_part_program(tmp_path: Path, line: int, program: str, what: str
         ('"mcc.p_gain"     = 200', '"mcc.p_gain[7]" = 2', '"mcc.p_gain[7]"', "elements 1 to 6"),
         ('"card.dac"', '"card.dca"', '"machine.voltage"', "did you mean 'dac'?"),
         ('"card.dac"', '"cart.dac"', '"machine.voltage"', "did you mean 'card'?"),
-        ('"card.dac"', '"card.dac[1]"', '"machine.voltage"', "whole arrays: card.dac"),
+        ('"card.dac"', '"card.dac[1]"', '"machine.voltage"', "Float64[6], card.dac[1] is Float64"),
         ('"card.dac"', '"machine.table_position"', '"machine.voltage"', "units differ"),
         ('"card.dac"', '"card.stock"', '"machine.voltage"', "Int32[6]"),
         ('"card.dac"', '"mcc.p_gain"', '"machine.voltage"', "mcc.p_gain is no output"),

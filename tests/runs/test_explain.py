@@ -388,7 +388,7 @@ def test_an_fmu_brings_its_causes_with_it(text, message, tmp_path, monkeypatch) 
             new.writestr(item, text if item == causes.RESOURCE else old.read(item))
     monkeypatch.setenv("MOTIONFMU_FMUS", str(tmp_path))
     causes.of_fmu.cache_clear()
-    fmus.ports.cache_clear()
+    fmus._ports.cache_clear()
     try:
         if message is not None:
             with pytest.raises(InputError, match=message):
@@ -401,7 +401,7 @@ def test_an_fmu_brings_its_causes_with_it(text, message, tmp_path, monkeypatch) 
         assert listed[-1].name == "heat" and listed[-1].title == "Heat"
     finally:
         causes.of_fmu.cache_clear()
-        fmus.ports.cache_clear()
+        fmus._ports.cache_clear()
 
 
 def test_a_cause_that_cannot_be_switched_off_says_why() -> None:

@@ -194,7 +194,9 @@ class Arcs:
         if np.any(helix):
             rise = np.where(helix, self.rise, self.angle)
             near = self._helix_candidates(rise, (np.hypot(x, y), phase, z))
-            found += [np.where(helix, angle, found[0]) for angle in near]
+            # Not the angle of the foot itself: as near to rounding, it would be no less exact.
+            found += [np.where(helix, angle, found[0]) for angle in near[1:]]
+            found[0] = np.where(helix, near[0], found[0])
         return found
 
     def _helix_candidates(self, rise: Numbers, own: tuple[Array, ...]) -> list[Array]:

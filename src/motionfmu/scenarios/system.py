@@ -167,7 +167,7 @@ class Resolver:
             fmu = self.document.body.component[component]
             whole = variable.partition("[")[0]
             hint = (
-                f"; wires and values take whole arrays: {component}.{whole}"
+                f"; {whole!r} is {_extent(self.ports[component][whole])}"
                 if whole in self.ports[component]
                 else suggestion(variable, self.ports[component])
             )
@@ -231,6 +231,11 @@ def _same_quantity(document: Document, a: End, b: End) -> bool:
         return units.convertible(*found)
     except ValueError:
         return found[0] == found[1]
+
+
+def _extent(port: Port) -> str:
+    size = " x ".join(map(str, port.shape))
+    return f"an array of {size}" if size else "a single value"
 
 
 def _kind(port: Port) -> str:
