@@ -129,7 +129,9 @@ def test_every_operation_in_c_equals_casadi(tmp_path):
     lines = cprint.statements(p, p.results[0], leaf)
     lines += [f"out[{k}] = a{n};" for k, n in enumerate(p.results[0])]
     text = (
-        "#include <math.h>\n#include \"elementary.h\"\nvoid f(double x, double y, double *out)\n{" + "\n".join(lines) + "}\n"
+        '#include <math.h>\n#include "elementary.h"\nvoid f(double x, double y, double *out)\n{'
+        + "\n".join(lines)
+        + "}\n"
     )
     (tmp_path / "f.c").write_text(text)
     Library.compile([tmp_path / "f.c"], tmp_path / "f.so", [])

@@ -2,6 +2,7 @@
 
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -85,7 +86,7 @@ def test_a_system_takes_its_program_by_uri_and_from_its_resources(fmi: int, tmp_
     program = tmp_path / "eïn.ngc"
     program.write_text((ROOT / "scenarios/circle/circle.ngc").read_text())
     demo = motionfmu.load(ROOT / "scenarios/circle")
-    shown = {"stop_time": 0.2, "step_size": 1e-4, "output_interval": 1e-4}
+    shown: dict[str, Any] = {"stop_time": 0.2, "step_size": 1e-4, "output_interval": 1e-4}
     name = "machine.table_position[1]" if fmi == 2 else "machine.table_position"
     found = []
     file = tmp_path / "c.fmu"
@@ -104,8 +105,12 @@ def test_a_system_takes_its_program_by_uri_and_from_its_resources(fmi: int, tmp_
     assert np.ptp(wanted) > 1e-4
     for x in found:
         assert x[:-1].tobytes() == np.ascontiguousarray(wanted).tobytes()
+    told: list[Any] = []
+    # FMPy's own logger is one for the process, and whoever gave another before has taken it along.
+    shown |= {"logger": lambda *told_of: told.append(told_of[-1])}
     with pytest.raises(Exception, match=r"initial|Initialization"):
         simulate_fmu(str(file), output=[name], start_values={"mcc.program": "resource:no"}, **shown)
+    assert "no such file in the FMU's resources" in str(told)
 
 
 def test_an_engine_takes_a_uri_and_tells_of_a_missing_resource() -> None:
