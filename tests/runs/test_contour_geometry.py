@@ -61,11 +61,13 @@ def test_no_sampled_point_is_nearer(segment, points) -> None:
 
 # A rise so small that the circle's foot is as near as the helix', to the last digit.
 FLAT = Arc(LABEL, np.array([0.0, 0.0, -1.0]), np.zeros(3), np.array([0.0, 1.0, 0.0]), 4.0, 7.5e-10)
+ROUND = Arc(LABEL, np.array([0.0, 0.0, -1.0]), np.zeros(3), np.array([0.0, 1.0, 0.0]), 4.0, 0.0)
 
 
 @settings(max_examples=200, deadline=None)
 @given(segments(), point)
 @example(FLAT, np.array([0.0, 1.0, 1.0]))
+@example(ROUND, np.array([1e-303, 0.0, 1e-303]))
 def test_foot_is_square_to_the_path_or_an_end(segment, query) -> None:
     foot = segment.foot(query[None, :])
     along = foot.along[0]

@@ -144,10 +144,10 @@ class Arcs:
         """On a part of a circle: radially, or at the nearer end."""
         x, y, z = self._frame(points)
         size = np.sqrt(x * x + y * y)
-        angle = np.arctan2(y, x)
+        middle = size == 0.0  # as far from all: the start
+        angle = np.where(middle, 0.0, np.arctan2(y, x))  # of coordinates whose squares vanish, too
         angle = np.where(angle < 0.0, angle + TURN, angle)
         inside = angle <= self.angle
-        middle = size == 0.0  # as far from all: the start
         scale = 1.0 / np.where(middle, 1.0, size)
         u, v = np.where(middle, 1.0, x * scale), y * scale
         off = size - self.radius
