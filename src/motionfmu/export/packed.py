@@ -7,6 +7,7 @@ from typing import Any
 from motionfmu.errors import InputError, suggestion
 from motionfmu.fmu import places
 from motionfmu.fmu.pack import repacked
+from motionfmu.fmu.start_values import texts
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End
 from motionfmu.scenarios.values import values_of
@@ -31,14 +32,14 @@ def packed(name: str, target: Path, fmi: int, given: Mapping[str, Any]) -> list[
             values = values_of(End(name, ports[variable]), value)
         except ValueError as error:
             raise InputError(str(error)) from None
-        texts = [str(x).lower() if isinstance(x, bool) else str(x) for x in values]
-        if ports[variable].file == "read" and (file := places.local(texts[0])) is not None:
+        said = texts(values)
+        if ports[variable].file == "read" and (file := places.local(said[0])) is not None:
             if not is_file(file):
                 raise InputError(f"{variable}: there is no file {file}")
             own = places.free_name(file, variable, files)
             files[own] = file
-            texts = [places.RESOURCE + own]
-        starts[variable] = " ".join(texts)
+            said = (places.RESOURCE + own,)
+        starts[variable] = " ".join(said)
     repacked(fmus.fmu_path(name, fmi), target, files, starts)
     return sorted(files)
 

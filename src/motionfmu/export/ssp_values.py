@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from motionfmu import ssp
 from motionfmu.fmu.describe import element_names
+from motionfmu.fmu.start_values import texts
 from motionfmu.scenarios.system import Setting
 
 _TYPES = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
@@ -14,14 +15,9 @@ def kind(name: str, fmi: int) -> str:
     return _TYPES[name] if fmi == 2 else name
 
 
-def texts(setting: Setting) -> tuple[str, ...]:
-    """Values as XML has them."""
-    return tuple(str(v).lower() if isinstance(v, bool) else str(v) for v in setting.values)
-
-
 def values(setting: Setting, fmi: int) -> Iterator[ssp.Value]:
     """A setting as parameters: one, in FMI 2 one for each element."""
-    port, listed = setting.end.port, texts(setting)
+    port, listed = setting.end.port, texts(setting.values)
     if fmi == 3:
         yield ssp.Value(port.name, kind(port.type, fmi), listed, port.unit)
         return

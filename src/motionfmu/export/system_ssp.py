@@ -10,10 +10,11 @@ from motionfmu import ssp
 from motionfmu.errors import InputError
 from motionfmu.export.chosen import also_shown
 from motionfmu.export.resources import Resources
-from motionfmu.export.ssp_values import kind, texts, values
+from motionfmu.export.ssp_values import kind, values
 from motionfmu.export.stimuli import FMU, Stimuli, stimuli
 from motionfmu.fmu.describe import element_names
 from motionfmu.fmu.pack import repacked, write_whole
+from motionfmu.fmu.start_values import texts
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.scenarios.fmus import fmu_path
 from motionfmu.scenarios.system import End, Setting, System, Wire
@@ -139,7 +140,7 @@ def _pack(part: tuple[str, tuple[list[Setting], dict[str, Path]]], fmi: int, tar
     It begins with the values, too: tools there are that pass over parameter sets.
     """
     fmu, (settings, files) = part
-    starts = {s.end.port.name: " ".join(texts(s)) for s in settings}
+    starts = {s.end.port.name: " ".join(texts(s.values)) for s in settings}
     repacked(fmu_path(fmu, fmi), target, files, starts)
 
 

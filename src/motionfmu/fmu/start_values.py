@@ -7,7 +7,7 @@ the library reads (src/fmi/fmi_start.inc). A token of their own holds the two to
 import hashlib
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from xml.etree import ElementTree as ET
 
 from motionfmu.errors import InputError, suggestion
@@ -18,6 +18,11 @@ LINE_MAX = 1 << 15  # [bytes] that the library reads
 _TYPES = {"Real": "Float64", "Integer": "Int32"}
 _TOOL = "motionfmu"
 _SETTABLE = ("parameter", "input")
+
+
+def texts(values: Iterable[float | int | bool | str]) -> tuple[str, ...]:
+    """Values as XML has them."""
+    return tuple(str(v).lower() if isinstance(v, bool) else str(v) for v in values)
 
 
 class _Variable:
