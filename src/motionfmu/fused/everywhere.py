@@ -2,15 +2,14 @@
 
 import tempfile
 from pathlib import Path
-from xml.etree import ElementTree
 
 from motionfmu.compiler import FLAGS, cross
 from motionfmu.fmu import cores, platforms
-from motionfmu.fmu.pack import MAIN_UNIT, PART_UNIT
+from motionfmu.fmu.pack import MAIN_UNIT
 from motionfmu.fmu.sources import NAMES, build_description, renamed
 from motionfmu.fused import layer
 from motionfmu.fused.description import Job
-from motionfmu.fused.parts import NotFused
+from motionfmu.fused.parts import NotFused, c_files
 from motionfmu.scenarios.fmus import opened
 
 _FLAGS = (*FLAGS, layer.OPTIMIZED, "-shared", "-s", "-DFMU_PART_INSIDE")
@@ -51,12 +50,9 @@ def _part(fmu: str, sources: Path) -> list[str]:
             place.parent.mkdir(exist_ok=True)
             if not place.name.startswith(("fmi3", MAIN_UNIT)):
                 place.write_bytes(archive.read(name))
-        build = ElementTree.fromstring(archive.read("sources/buildDescription.xml"))
-    listed = build.find("BuildConfiguration/SourceFileSet")
-    assert listed is not None, "an FMU has C files"
-    found = [row.attrib["name"] for row in listed.iter("SourceFile")]
+        found = c_files(archive.read("sources/buildDescription.xml"))
     (sources / fmu / "buildDescription.xml").unlink()
-    return [f"{fmu}/{name}" for name in (PART_UNIT, *(n for n in found if n != MAIN_UNIT))]
+    return [f"{fmu}/{name}" for name in found]
 
 
 def _compile(platform: platforms.Platform, name: str, files: list[str], folder: Path) -> bytes:

@@ -36,6 +36,14 @@ class Part:
     code: bytes  # the object
 
 
+def c_files(build: bytes) -> list[str]:
+    """What is compiled of an FMU's C text without FMI, from its buildDescription.xml."""
+    listed = ElementTree.fromstring(build).find("BuildConfiguration/SourceFileSet")
+    assert listed is not None, "an FMU has C files"
+    names = [row.attrib["name"] for row in listed.iter("SourceFile")]
+    return [PART_UNIT, *(name for name in names if name != MAIN_UNIT)]
+
+
 def part(name: str) -> Part:
     """Read the part of an FMU; NotFused if it has none, nor C text of one."""
     with opened(name) as archive:
@@ -77,11 +85,7 @@ def _compile(name: str, cc: Compiler, folder: Path) -> None:
         for entry in archive.namelist():
             if entry.startswith("sources/"):
                 (Path(place) / Path(entry).name).write_bytes(archive.read(entry))
-        build = ElementTree.parse(Path(place) / "buildDescription.xml")
-        listed = build.find("BuildConfiguration/SourceFileSet")
-        assert listed is not None, "a part has C files"
-        names = [row.attrib["name"] for row in listed.iter("SourceFile")]
-        files = [PART_UNIT, *(f for f in names if f != MAIN_UNIT)]
+        files = c_files((Path(place) / "buildDescription.xml").read_bytes())
         cc.run([*FLAGS, "-O2", "-r", "-nostdlib", *files, "-o", "part.o"], Path(place))
         done = ["objcopy", "--localize-hidden", "part.o"]
         subprocess.run(done, cwd=place, check=True, capture_output=True)
