@@ -108,7 +108,9 @@ def test_list_tells_all_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setenv("MOTIONFMU_FMUS", str(tmp_path))
     told = f"none is built in {tmp_path}; "
     assert within("list").stdout.startswith(f"FMUs: {told}make build builds them\n")
-    assert within("info", "mcc").stderr.endswith(f"nor a scenario (FMUs: {told}run make build)\n")
+    assert within("info", "mcc").stderr.endswith(
+        f"nor a scenario (FMUs: {told}run make build; scenarios: motionfmu list)\n"
+    )
 
 
 @pytest.mark.parametrize("columns", [80, 160])

@@ -40,7 +40,7 @@ def check(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.run import suite
 
     if not paths and not Path("scenarios").is_dir():
-        raise InputError("no scenario here: name one, or run from the project's folder")
+        raise InputError("no scenario here: name one of `motionfmu list`, or a folder of some")
     if junit and (junit.is_dir() or not junit.absolute().parent.is_dir()):
         raise InputError(f"--junit {junit}: a file in a folder that exists wanted")
     chosen = suite.found(paths or [Path("scenarios")])

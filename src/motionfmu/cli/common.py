@@ -81,7 +81,9 @@ def _all(
     pass
 
 
-ScenarioPath = Annotated[Path, typer.Argument(help="Folder of a scenario, or its scenario.toml.")]
+ScenarioPath = Annotated[
+    Path, typer.Argument(help="A scenario: its folder or file, or a name of `motionfmu list`.")
+]
 Set = Annotated[
     list[str],
     typer.Option(

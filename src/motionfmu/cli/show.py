@@ -30,24 +30,31 @@ START_MAX = 16  # columns of a start value
 
 @app.command("list")
 def list_all() -> None:
-    """List the FMUs that are built and the scenarios of this project."""
-    from motionfmu.scenarios import fmus
+    """List the FMUs, and the scenarios of ./scenarios, else those that come with the package."""
+    from motionfmu.scenarios import fmus, shipped
 
     if names := fmus.fmu_names():
         print("FMUs")
-        _rows([((name,), fmus.about(name)) for name in names])
+        print_rows([((name,), fmus.about(name)) for name in names])
     else:
         print(f"FMUs: none is built in {fmus.folder()}; make build builds them")
-    if files := sorted(Path("scenarios").glob("*/scenario.toml")):
+    here = Path("scenarios").glob(f"*/{shipped.SCENARIO}")
+    found = {str(file.parent): file.parent for file in sorted(here)} or shipped.scenarios()
+    if found:
         print("Scenarios")
-        _rows([((str(file.parent),), _first_line(file)) for file in files])
+        print_rows([((name,), first_line(folder)) for name, folder in found.items()])
     else:
         print("Scenarios: none in ./scenarios; motionfmu new scenario NAME makes one")
 
 
-def _first_line(file: Path) -> str:
-    """What a scenario shows, be it right or wrong."""
-    with file.open(encoding="utf-8", errors="replace") as stream:
+def first_line(folder: Path) -> str:
+    """What a scenario shows, be it right or wrong; of another project its title."""
+    from motionfmu.scenarios.shipped import SCENARIO
+
+    file = folder / SCENARIO
+    with (file if file.is_file() else folder / "README.md").open(
+        encoding="utf-8", errors="replace"
+    ) as stream:
         return stream.readline(1000).strip().lstrip("# ")
 
 
@@ -65,7 +72,7 @@ def info(
     Of a scenario's FMUs, patterns choose variables by component, as 'mcc.home_*', and each is
     shown with its value in the scenario.
     """
-    from motionfmu.scenarios import fmus
+    from motionfmu.scenarios import fmus, shipped
 
     known = fmus.fmu_names()
     if what in known or (xml and not Path(what).exists()):
@@ -78,10 +85,11 @@ def info(
         return
     if xml:
         raise InputError(f"--xml: {what} is no FMU")
-    if not Path(what).exists():
+    if not Path(what).exists() and not shipped.scenario(what):
         names = ", ".join(known) or f"none is built in {fmus.folder()}; run make build"
-        hint = suggestion(what, known)
-        raise InputError(f"{what}: neither an FMU nor a scenario{hint} (FMUs: {names})")
+        hint = suggestion(what, [*known, *shipped.scenarios()])
+        known_ones = f"FMUs: {names}; scenarios: motionfmu list"
+        raise InputError(f"{what}: neither an FMU nor a scenario{hint} ({known_ones})")
     from motionfmu.run import load
 
     scenario = load(what)
@@ -100,7 +108,7 @@ def _chosen(names: Iterable[str], patterns: Sequence[str] | None) -> list[str]:
     return [n for n in names if not patterns or any(fnmatch.fnmatch(n, p) for p in patterns)]
 
 
-def _rows(rows: Sequence[tuple[Sequence[str], str]], indent: str = "  ") -> None:
+def print_rows(rows: Sequence[tuple[Sequence[str], str]], indent: str = "  ") -> None:
     """Print cells in columns and a text beside them, or below them where there is no room."""
     widths = [max(map(len, column)) for column in zip(*(cells for cells, _ in rows), strict=True)]
     left = len(indent) + sum(w + 2 for w in widths)
@@ -135,7 +143,7 @@ def _variables(ports: Sequence["Port"]) -> None:
     for causality, heading in HEADINGS.items():
         if found := [p for p in ports if p.causality == causality]:
             head = (heading.upper(), "type", "unit", "start", "range")
-            _rows([(head, ""), *map(_row, found)])
+            print_rows([(head, ""), *map(_row, found)])
 
 
 def _row(port: "Port") -> tuple[tuple[str, ...], str]:
@@ -176,7 +184,7 @@ def _variables_of(scenario: "Scenario", patterns: Sequence[str]) -> None:
         elif name in sources:
             text = f"from {sources[name]}; {text}"
         rows.append(((name, *cells), text))
-    _rows(rows)
+    print_rows(rows)
 
 
 def _value(value: Any) -> str:
@@ -198,7 +206,7 @@ def _scenario(scenario: "Scenario") -> None:
     print(_until(body))
     print(_engine(scenario))
     print("components")
-    _rows([((name, fmu), fmus.about(fmu)) for name, fmu in body.component.items()])
+    print_rows([((name, fmu), fmus.about(fmu)) for name, fmu in body.component.items()])
     _section("values", [(_set(name, scenario), _value(v)) for name, v in body.set.items()])
     for line in in_lines(gain_of(scenario)):
         print(_wrapped(line, "  gain ", "    "))
@@ -250,4 +258,4 @@ def _section(heading: str, rows: Sequence[tuple[str, str]]) -> None:
     if rows:
         print(heading)
         named = all(name for name, _ in rows)
-        _rows([((name,), text) if named else ((), text) for name, text in rows])
+        print_rows([((name,), text) if named else ((), text) for name, text in rows])

@@ -55,7 +55,7 @@ def _sweep(study: "Study", folder: Path, ways: "Ways") -> "Outcome":
 
 @app.command()
 def sweep(  # noqa: PLR0913  (each is an option of the command)
-    path: Annotated[Path, typer.Argument(help="A study's TOML file, or a scenario (folder).")],
+    path: Annotated[Path, typer.Argument(help="A study's TOML file, or a scenario.")],
     vary: Annotated[
         list[str],
         typer.Option(metavar="COMP.VAR=LO:HI:N", help="Or LO:HI, LO:HI:N:log, a list a,b,c."),

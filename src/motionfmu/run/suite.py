@@ -19,6 +19,7 @@ from motionfmu.errors import InputError
 from motionfmu.run import contrary
 from motionfmu.run.checks import Verdict
 from motionfmu.run.runner import load
+from motionfmu.scenarios import shipped
 from motionfmu.toml_lines import is_file
 
 FILE = "scenario.toml"
@@ -47,13 +48,15 @@ class Case:
 
 
 def found(paths: Sequence[Path]) -> list[Path]:
-    """Scenarios that paths mean: themselves, or those in the folders of a folder."""
+    """Scenarios that paths or names mean: themselves, or those in the folders of a folder."""
     chosen: list[Path] = []
-    for path in paths:
+    for given in paths:
+        path = shipped.scenario(given) or given
         if is_file(path) or is_file(path / FILE):
             chosen.append(path)
         elif not path.is_dir():
-            raise InputError(f"{path}: no such scenario, nor a folder of scenarios")
+            hint = shipped.unknown(str(path), shipped.scenarios) if shipped.is_name(path) else ""
+            raise InputError(f"{path}: no such scenario, nor a folder of scenarios{hint}")
         elif inside := sorted(file.parent for file in path.glob(f"*/{FILE}")):
             chosen += inside
         else:

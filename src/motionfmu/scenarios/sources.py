@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import InputError, suggestion
+from motionfmu.scenarios import shipped
 from motionfmu.toml_lines import Lines, is_file, shown, tables_of, text_of
 
 Tables = dict[str, Any]
@@ -61,15 +62,22 @@ class Source:
 
 
 def scenario_file(path: str | Path) -> Path:
-    """The scenario.toml, absolute, that a user's path means: itself or the folder that holds it."""
+    """The scenario.toml, absolute, that a user's path or name of a scenario means.
+
+    A path is the file's or its folder's; a name, where there is no such path, that of a folder in
+    ./scenarios or of a scenario that comes with the package.
+    """
     if not isinstance(path, str | Path):
         raise InputError(f"{shown(path)}: the path of a scenario wanted")
-    file = Path(path)
+    file = shipped.scenario(path) or Path(path)
     file = file / "scenario.toml" if is_file(file / "scenario.toml") else file
     if not is_file(file):
         beside = file.parent.iterdir() if file.parent.is_dir() else ()
         near = [p.name for p in beside if is_file(p / "scenario.toml")]
-        raise InputError(f"{file}: no such scenario{suggestion(file.name, near)}")
+        hint = suggestion(file.name, near)
+        if not hint and shipped.is_name(path):
+            hint = shipped.unknown(str(path), shipped.scenarios)
+        raise InputError(f"{file}: no such scenario{hint}")
     return file.resolve()
 
 

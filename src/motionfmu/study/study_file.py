@@ -8,7 +8,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.scenarios import shipped
 from motionfmu.scenarios.body import Name, Names, Value
+from motionfmu.scenarios.sources import scenario_file
 from motionfmu.toml_lines import Lines, is_file, ordered, shown, tables_of, text_of
 
 FILE = "sweep.toml"
@@ -72,6 +74,8 @@ def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
     Keys given count instead of those written there. What is wrong with keys and their types goes to
     the faults, with file, line and value; a file that cannot be read is an InputError.
     """
+    if shipped.is_name(path) and not path.suffix:
+        path = scenario_file(path).parent
     if is_file(path / FILE):
         path = path / FILE
     keys = dict(given)
