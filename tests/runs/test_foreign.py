@@ -13,6 +13,9 @@ from scipy.integrate import solve_ivp
 import motionfmu
 from motionfmu.errors import InputError
 from motionfmu.fmu.platforms import here
+from motionfmu.report import outcome
+from motionfmu.run.session import Session
+from motionfmu.study import columns
 
 ENGINES = ("python", "native")
 KINDS = {"ball": 2, "van_der_pol": 3, "feedthrough": 2}
@@ -129,6 +132,21 @@ def test_nothing_named_runs_natively(folder: Path) -> None:
     assert scenario.run(stop=0.01).options["engine"] == "native"
     with pytest.raises(InputError, match=r"engine fused: feedthrough\.fmu has no C text of ours"):
         scenario.run(engine="fused", stop=0.01)
+
+
+def test_names_with_dots_and_brackets_go_everywhere(folder: Path, tmp_path: Path) -> None:
+    """Into sessions, columns of a study, what was run, and the report, which looks for a tool."""
+    left = ["through.in[1]", *LOOP["leave"]]
+    connect = {k: v for k, v in LOOP["connect"].items() if k != "through.in[1]"}
+    tables = {**LOOP, "connect": connect, "leave": left, "stop": 0.02}
+    scenario = _made(folder, tables)
+    with Session(scenario, ["through.in[1]"]) as session:
+        ran = session.run({"through.in[1]": 0.25})
+    assert (ran["through.out[1]"][1:] == 0.25).all()
+    assert columns.column(scenario, "through.out[1].max").end.name == "through.out[1]"
+    ran = scenario.run(set={"through.in[1]": 0.5})
+    assert ran.overrides == ["through.in[1] = 0.5 (default: 0)"]
+    assert outcome.save(ran, tmp_path / "r").name == "report.html"
 
 
 def _refused(folder: Path, fmu: str) -> str:

@@ -40,7 +40,7 @@ def _check_value(
     resolver: system.Resolver, wired: set[str], table: str, name: str, value: Any
 ) -> None:
     document = resolver.document
-    if system.split(name)[0] in wired:
+    if resolver.split(name)[0] in wired:
         text = f"{name} is connected: a value has no effect"
         raise document.error(text, f"{table}.set", name)
     try:
@@ -54,7 +54,8 @@ def _check_value(
 def options(document: Document, case: Contrary) -> dict[str, Any]:
     """Options of `Scenario.run` for a case; a value of a driven input stands for the whole run."""
     driven = {d.input for d in document.body.drive}
-    return {"set": case.set, "undriven": driven & {system.split(name)[0] for name in case.set}}
+    undriven = {n for n in driven if n in case.set or any(s.startswith(f"{n}[") for s in case.set)}
+    return {"set": case.set, "undriven": undriven}
 
 
 def survivors(case: Contrary, verdicts: list[Verdict]) -> list[str]:

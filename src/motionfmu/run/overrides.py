@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from motionfmu.scenarios.system import System, split
+from motionfmu.scenarios.system import System
 from motionfmu.scenarios.values import settings, start_values
 from motionfmu.toml_lines import shown
 from motionfmu.units import spelled
@@ -25,7 +25,7 @@ def overrides(scenario: "Prepared", options: "Options", system: System) -> list[
     """One line for each value that is not the scenario's own; none if it runs as written."""
     body = scenario.document.body
     written = {s.end.name: s for s in settings(scenario.resolver, {})}
-    given = {split(name)[0] for name in options.set}
+    given = {scenario.resolver.split(name)[0] for name in options.set}
     found = []
     for end, values in ((s.end, s.values) for s in system.settings if s.end.name in given):
         before = written[end.name].values if end.name in written else start_values(end.port)

@@ -12,7 +12,7 @@ from motionfmu.run.engines.job import Engine, Ran
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
 from motionfmu.run.wired import Wired, own_settings
-from motionfmu.scenarios.system import End, Setting, System, split
+from motionfmu.scenarios.system import End, Setting, System
 from motionfmu.scenarios.values import settings, start_values
 
 if TYPE_CHECKING:
@@ -64,14 +64,14 @@ class Session:
             raise
 
     def _prepare(self, varied: Iterable[str], signals: Iterable[End] | None) -> Engine:
-        scenario = self.scenario
+        scenario, resolver = self.scenario, self.scenario.resolver
         varied = [varied] if isinstance(varied, str) else list(varied)
-        self._varied = {split(n)[0] for n in varied}
+        self._varied = {resolver.split(n)[0] for n in varied}
         self._given = {**self._options.set, **own_settings(scenario, self._folder)}
-        ends = [scenario.resolver.end(split(n)[0], "set", n) for n in varied]
+        ends = [resolver.end(resolver.split(n)[0], "set", n) for n in varied]
         usual = {e.name: start_values(e.port) for e in ends}
         written = scenario.document.body.set
-        there = {split(n)[0] for n in (*written, *self._given)}
+        there = {resolver.split(n)[0] for n in (*written, *self._given)}
         self._unset = {n: v for n, v in usual.items() if n not in there}
         base = replace(self._options, set={**self._unset, **self._given})
         self._known = _known(scenario)
@@ -96,7 +96,7 @@ class Session:
         InputError
             A value is wrong, or an FMU refused something; one message.
         """
-        if unknown := [n for n in given if split(n)[0] not in self._varied]:
+        if unknown := [n for n in given if self.scenario.resolver.split(n)[0] not in self._varied]:
             hint = suggestion(unknown[0], self._varied)
             raise InputError(f"{unknown[0]} is not varied by this session{hint}")
         wired = replace(

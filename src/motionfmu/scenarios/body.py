@@ -16,6 +16,7 @@ COMPONENTS_MAX = 64
 Component = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
 # Names and patterns are looked up in all variables of all components.
 LISTED_MAX = 1000
+NAMED_MAX = 10_000  # exact names: elements of arrays, where an SSP has FMUs of FMI 2
 FIGURES_MAX = 100  # a picture each
 LONGEST = 1e5  # [s] run: more than a day of machine time
 Name = Annotated[str, Field(max_length=KEY_MAX)]
@@ -70,7 +71,7 @@ class Record(BaseModel):
 
     model_config = _STRICT
     every: int = Field(default=1, ge=1, le=1_000_000)  # [steps]
-    signals: Names = Field(min_length=1)
+    signals: list[Name] = Field(min_length=1, max_length=NAMED_MAX)
 
 
 class Plot(BaseModel):
@@ -115,7 +116,7 @@ class Body(BaseModel):
     settle: float | None = Field(default=None, ge=0)
     step: float = Field(gt=0)
     component: dict[Component, Name] = Field(min_length=1, max_length=COMPONENTS_MAX)
-    connect: dict[str, Name] = Field(default_factory=dict, max_length=LISTED_MAX)
+    connect: dict[str, Name] = Field(default_factory=dict, max_length=NAMED_MAX)
     set: dict[str, Value] = Field(default_factory=dict)
     drive: list[Drive] = Field(default_factory=list, max_length=LISTED_MAX)
     leave: Names = Field(default_factory=list)

@@ -123,15 +123,6 @@ def nanoseconds(key: str, seconds: float) -> int:
     return round(ns)
 
 
-def split(name: str) -> tuple[str, int | None]:
-    """Part ``component.variable[i]``, i from 1, into variable and element, from 0 or None."""
-    whole, bracket, rest = name.partition("[")
-    index = rest.removesuffix("]")
-    if bracket and rest.endswith("]") and index.isdecimal():
-        return whole, int(index) - 1
-    return name, None
-
-
 def matches(name: str, pattern: str) -> bool:
     """Whether a name is a pattern's, with ``*`` and ``?``; brackets mean themselves."""
     return fnmatch.fnmatchcase(name, pattern.replace("[", "[[]"))
@@ -176,9 +167,17 @@ class Resolver:
         return End(component, self.ports[component][variable])
 
     def split(self, name: str) -> tuple[str, int | None]:
-        """As `split`, but the names of foreign FMUs may end with brackets of their own."""
+        """Part ``component.variable[i]``, i from 1, into variable and element, from 0 or None.
+
+        The names of foreign FMUs may end with brackets of their own.
+        """
         component, _, variable = name.partition(".")
-        return (name, None) if variable in self.ports.get(component, {}) else split(name)
+        whole, bracket, rest = name.rpartition("[")
+        index = rest.removesuffix("]")
+        single = variable in self.ports.get(component, {})
+        if not single and bracket and rest.endswith("]") and index.isdecimal():
+            return whole, int(index) - 1
+        return name, None
 
     def wired(self, name: str, key: str) -> End:
         """Find what a line of [connect] names: a variable, or an element of one."""
@@ -246,16 +245,17 @@ def wires(resolver: Resolver) -> list[Wire]:
     """All wires of the scenario, wildcards expanded; types, shapes, units, directions checked."""
     document, faults = resolver.document, Faults()
     found: dict[str, Wire] = {}
+    parts: set[str] = set()  # arrays of which an element is a target
     for left, right in document.body.connect.items():
         with faults.each():
             for wire in _joined(resolver, left, right):
                 _check_wire(document, wire, left)
                 target = wire.target
                 whole = f"{target.component}.{target.port.whole}"
-                parts = {f"{w.target.component}.{w.target.port.whole}" for w in found.values()}
                 if target.name in found or whole in found or target.name in parts:
                     raise document.error(f"{target.name} has two sources", "connect", left)
                 found[target.name] = wire
+                parts.add(whole)
     faults.tell()
     return list(found.values())
 

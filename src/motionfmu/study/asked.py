@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.run import Options, Scenario
 from motionfmu.scenarios import values
-from motionfmu.scenarios.system import End, split
+from motionfmu.scenarios.system import End
 from motionfmu.study import axes as ax
 from motionfmu.study.columns import Column, column, usual
 from motionfmu.study.study_file import StudyFile
@@ -55,7 +55,7 @@ class Asked:
         return tuple(found)
 
     def _end(self, name: str) -> End:
-        whole, element = split(name)
+        whole, element = self.scenario.resolver.split(name)
         end = self.scenario.resolver.end(whole, "", "")
         if end.port.causality not in ("parameter", "input"):
             raise ValueError(f"{name} is an {end.port.causality} and cannot be set")
@@ -159,7 +159,7 @@ class Asked:
             return {}
         found: dict[str, ax.Value] = {}
         for axis in chosen:
-            whole, element = split(axis.name)
+            whole, element = self.scenario.resolver.split(axis.name)
             value = given.get(axis.name, given.get(whole))
             if isinstance(value, list):
                 index = element if element is not None else 0

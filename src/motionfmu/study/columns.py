@@ -18,7 +18,7 @@ from motionfmu.scenarios import recording
 from motionfmu.scenarios.body import Check
 from motionfmu.scenarios.contour_signals import wanted as of_contour
 from motionfmu.scenarios.iso9283_signals import wanted as of_iso9283
-from motionfmu.scenarios.system import End, split
+from motionfmu.scenarios.system import End
 
 Array = NDArray[Any]
 
@@ -79,7 +79,7 @@ def column(scenario: Scenario, name: str) -> Column:
         text = f"SIGNAL.STATISTIC (one of {known}), contour.FIGURE or iso9283.FIGURE wanted"
         hint = suggestion(statistic, STATISTICS) if "." in signal else ""
         raise ValueError(f"{name}: {text}{hint}")
-    whole, element = split(signal)
+    whole, element = scenario.resolver.split(signal)
     end = recording.output(scenario.resolver, whole, "", "")
     if element is not None and not 0 <= element < end.port.count * bool(end.port.shape):
         raise ValueError(f"{name}: {whole} has no element {element + 1}")
@@ -101,7 +101,7 @@ def usual(scenario: Scenario) -> list[Column]:
 def _checked(scenario: Scenario, name: str, check: Check) -> Iterable[str]:
     if check.at is not None or check.windows is not None or check.rate is not None:
         return
-    whole, element = split(name)
+    whole, element = scenario.resolver.split(name)
     port = scenario.resolver.end(whole, "check", name).port
     for bound in ("min", "max", "absmax", "rms", "final"):
         if getattr(check, bound) is None:
@@ -117,7 +117,7 @@ def signals(scenario: Scenario, columns: Iterable[Column]) -> list[End]:
     """What a run records, once: for columns, checks and contour."""
     checked = [n for n in scenario.document.body.check if not is_figure(n)]
     analysed = [*of_contour(scenario.resolver), *of_iso9283(scenario.resolver)]
-    names = [*analysed, *(split(n)[0] for n in checked)]
+    names = [*analysed, *(scenario.resolver.split(n)[0] for n in checked)]
     ends = [recording.output(scenario.resolver, n, "check", n) for n in names]
     ends += [c.end for c in columns if c.end]
     return list({e.name: e for e in ends}.values())

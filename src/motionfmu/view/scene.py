@@ -93,7 +93,7 @@ def tool_signal(run: Recorded) -> str | None:
         return body.iso9283.position
     for ending in TOOLS:
         for name in run.signals:
-            component, _, variable = name.rpartition(".")
+            component, _, variable = name.partition(".")
             port = run.resolver.ports[component][variable]
             if variable == ending and port.shape in ((3,), (6,)):
                 return name
