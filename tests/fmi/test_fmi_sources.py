@@ -71,6 +71,21 @@ def test_every_name_that_a_core_shows_is_found_in_its_text(core: str) -> None:
     assert there <= shown(texts)
 
 
+@pytest.mark.parametrize(("option", "there"), [("-DOTHER", True), ("-DPLANT_PLAIN", False)])
+def test_a_header_of_one_kind_of_machine_is_included_there_alone(
+    option: str, there: bool, tmp_path: Path
+) -> None:
+    sources = extracted("ball_screw_axes", 3, tmp_path)
+    told = subprocess.run(
+        [*plain_compiler().command, "-M", "-DFMU_CORE", option, NAMES],
+        cwd=sources,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    assert ("/cpuid.h" in told) == there and "stddef.h" in told
+
+
 @every_fmu
 def test_names_have_the_prefix_of_the_model(name: str) -> None:
     with zipfile.ZipFile(fmu_path(name)) as archive:

@@ -1,7 +1,7 @@
 """The C text that an FMU carries, as importers compile it or link it into a program."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from xml.etree import ElementTree as ET
 
 NAMES = "fmu_names.h"
@@ -17,7 +17,8 @@ _DATA = re.compile(
 )
 _STEM = re.compile(r"\bvoid (\w+)##name\(")
 _LISTED = re.compile(r"\bX\((\w+),")
-_SYSTEMS = re.compile(r"^#include <([^>]+)>", re.MULTILINE)
+_DIRECTIVE = re.compile(r"^#(?:if|el|endif|include <).*", re.MULTILINE)
+_GUARD = re.compile(r"#ifndef [A-Z0-9_]+_H\n")
 _OWN = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 # glibc has the mathematics in a library of its own.
 _LIBM = ("x86_64-linux", "aarch64-linux")
@@ -34,12 +35,27 @@ def shown(texts: Iterable[str]) -> set[str]:
     return found
 
 
+def _systems(text: str) -> Iterator[str]:
+    """The lines that include the system's headers, each within the conditions that it stands in."""
+    conditions: list[str] = []
+    for line in _DIRECTIVE.findall(text):
+        if line.startswith("#if"):
+            conditions.append(f"{line}\n")
+        elif line.startswith("#el"):
+            conditions[-1] += f"{line}\n"
+        elif line.startswith("#endif"):
+            conditions.pop()
+        else:
+            within = [c for c in conditions if not _GUARD.fullmatch(c)]
+            yield "".join(within) + f"{line}\n" + "#endif\n" * len(within)
+
+
 def _names(identifier: str, texts: Iterable[str]) -> str:
     """Text of the header that gives every name of an FMU its model's prefix."""
     whole = list(texts)
     rows = "".join(f"#define {name} {identifier}_{name}\n" for name in sorted(shown(whole)))
-    included = {name for text in whole for name in _SYSTEMS.findall(text)}
-    headers = "".join(f"#include <{name}>\n" for name in sorted(included))
+    included = {rows for text in whole for rows in _systems(text)}
+    headers = "".join(sorted(included, key=lambda rows: (rows.count("\n"), rows)))
     switched = "".join(
         f"#if !defined(FMI{v}_FUNCTION_PREFIX) && !defined(FMI{v}_OVERRIDE_FUNCTION_PREFIX) \\\n"
         f"    && !defined({identifier}_EXPORTS)\n"
