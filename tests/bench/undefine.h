@@ -5,6 +5,8 @@
 #undef FMU_TOKEN
 #undef FMU_TICK_NS
 #undef FMU_GRID
+#undef FMU_GRID_NAME
+#undef FMU_STRICT
 #undef FMU_STRING_MAX
 #undef FMU_NVARS
 #undef FMU_NREFS

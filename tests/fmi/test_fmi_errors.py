@@ -23,6 +23,8 @@ def go(instance: Instance, *calls: str) -> None:
             status = instance.enter()
         elif call == "step":
             status = instance.step(STEP)
+        elif call == "strict":
+            status = instance.set("strict_step", True)
         else:
             status = instance.call(call)
         assert status == OK, (call, instance.said)
@@ -56,6 +58,7 @@ def set_input(instance: Instance) -> int:
 
 INIT, RUN = ("enter",), ("enter", "ExitInitializationMode")
 END = (*RUN, "step", "Terminate")
+STRICT = ("strict", *RUN)
 # What went before; the call that is out of order; words of the one message.
 OUT_OF_ORDER: list[tuple[tuple[str, ...], Act, str]] = [
     ((), lambda i: i.step(1e-3), "DoStep is not allowed in Instantiated, only in Step Mode"),
@@ -75,9 +78,15 @@ OUT_OF_ORDER: list[tuple[tuple[str, ...], Act, str]] = [
     (END, lambda i: i.call("Terminate"), "Terminate is not allowed in Terminated"),
     (END, lambda i: i.enter(), "is not allowed in Terminated, only in Instantiated"),
     (END, set_input, "is an input and cannot be set in Terminated"),
-    (RUN, lambda i: i.step(0.0), "communicationStepSize 0 s is not a positive whole multiple"),
-    (RUN, lambda i: i.step(-1e-3), "communicationStepSize -0.001 s is not a positive whole"),
-    (RUN, lambda i: i.step(1e-3 + 1e-9), "communicationStepSize 0.001000001 s is not a positive"),
+    (RUN, lambda i: i.step(0.0), "communicationStepSize 0 s is not a positive time"),
+    (RUN, lambda i: i.step(-1e-3), "communicationStepSize -0.001 s is not a positive time"),
+    (STRICT, lambda i: i.step(0.0), "communicationStepSize 0 s is not a positive whole multiple"),
+    (
+        STRICT,
+        lambda i: i.step(1e-3 + 1e-9),
+        "communicationStepSize 0.001000001 s is not a positive",
+    ),
+    (STRICT, lambda i: i.step(math.nan), "which strict_step asks for"),
     (RUN, lambda i: i.step(math.nan), "communicationStepSize nan s"),
     (RUN, lambda i: i.step(math.inf), "communicationStepSize inf s"),
     (RUN, lambda i: i.step(1e-3, time=0.5), "0.5 s is not where the previous step ended, 0 s"),
@@ -102,7 +111,12 @@ def test_a_call_out_of_order_is_one_clear_error(name: str, fmi: int, tmp_path: P
         assert (status, category) == (ERROR, "logStatusError")
         assert words in text
         assert f"fmi{fmi}" in text
-        left = {(): (*RUN, "step"), INIT: ("ExitInitializationMode", "step"), RUN: ("step",)}
+        left = {
+            (): (*RUN, "step"),
+            INIT: ("ExitInitializationMode", "step"),
+            RUN: ("step",),
+            STRICT: ("step",),
+        }
         go(instance, *left.get(before, ("Reset",)))  # the refused call changed nothing
         instance.free()
 

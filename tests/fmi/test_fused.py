@@ -234,12 +234,35 @@ def test_steps_that_are_none_of_the_systems_are_refused() -> None:
     assert (instance.enter(), instance.call("ExitInitializationMode")) == (OK, ERROR)
     assert "system.step = 3.3e-08 s is not a whole number of 25 ns" in instance.said
     instance.free()
-    instance = Instance(NAME, 3).initialize({})
+    instance = Instance(NAME, 3).initialize({"system.strict_step": True})
     assert instance.step(1.5 * STEP) == ERROR
     assert "communicationStepSize 0.00015 s is not a whole number of steps of 0.0001 s" in (
         instance.said
     )
     instance.free()
+
+
+@pytest.mark.parametrize("fmi", (2, 3))
+def test_a_step_between_two_of_the_systems_shows_the_latest_that_is_over(fmi: int) -> None:
+    """Inputs are read where one begins, whatever step of the importer that falls into."""
+    inputs = runs.random_inputs(Instance(NAME, fmi), 3, 120)
+    whole, other = Instance(NAME, fmi).initialize({}), Instance(NAME, fmi).initialize({})
+    shown, k = [repr(whole.outputs())], 0
+    for n, row in enumerate(inputs):
+        for name, values in row.items():
+            assert other.set(name, values) == OK
+        state, time = other.save(), other.time
+        for _ in range(2):
+            assert other.restore(state, time) == OK
+            assert other.step(STEP / 3, n * STEP / 3) == OK, other.said
+        other.free_state(state)
+        while k * STEP < (n + 1) * STEP / 3 * (1 - 1e-9):  # begins within this step
+            assert runs.run(whole, [row], STEP)
+            shown.append(repr(whole.outputs()))
+            k += 1
+        assert repr(other.outputs()) == shown[(n + 1) // 3]
+    assert len(set(shown)) > 30 and "do not divide each other" not in str(other.messages)
+    whole.free(), other.free()
 
 
 SMALL: dict[str, Any] = {

@@ -66,7 +66,7 @@ def export(  # noqa: PLR0913  (each is an option)
         fmi = 3 if fmi is None else fmi
         file = target or Path(f"{scenario.name}.fmu")
         made = as_fmu(scenario, file, fmi, settings(set_), Choice(inner, named(platforms)))
-        print(f"{file}: FMI {fmi}, {made} variables; steps are whole multiples of {step:g} s")
+        print(f"{file}: FMI {fmi}, {made} variables; inside it steps by {step:g} s")
         return
     from motionfmu.export import as_ssp
 

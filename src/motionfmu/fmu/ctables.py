@@ -54,13 +54,15 @@ def _nested(values: list[str], dims: tuple[int, ...]) -> str:
 def header(d: Description) -> str:
     """Text of vars.h: the FMU_* constants and `struct vars`, one member per variable."""
     members = "\n".join(_members(d.variables))
-    grid = f"#define FMU_GRID {d.grid} /* [s] */\n" if d.grid else ""
+    known = f"#define FMU_STRICT {member(d.strict)}\n"
+    if d.grid:
+        known += f'#define FMU_GRID {member(d.grid)} /* [s] */\n#define FMU_GRID_NAME "{d.grid}"\n'
     return (
         f"{_NOTE}#ifndef VARS_H\n#define VARS_H\n"
         "#include <stdbool.h>\n#include <stdint.h>\n\n"
         f'#define FMU_NAME "{d.name}"\n#define FMU_TOKEN "{d.token}"\n'
         f"#define FMU_TICK_NS {d.tick_ns}\n#define FMU_STRING_MAX {STRING_MAX}\n"
-        f"{grid}#define FMU_NVARS {len(d.variables)}\n#define FMU_NREFS {d.reference_count}\n\n"
+        f"{known}#define FMU_NVARS {len(d.variables)}\n#define FMU_NREFS {d.reference_count}\n\n"
         f"struct vars {{\n{members}\n}};\n#endif\n"
     )
 

@@ -36,6 +36,7 @@ FILES = {
 }
 
 Scalar = float | int | bool | str
+STRICT = "strict_step"
 
 
 def element_names(name: str, dims: tuple[int, ...]) -> list[str]:
@@ -106,7 +107,7 @@ class Description:
 
     name: str  # CamelCase, also the model identifier
     description: str
-    tick_ns: int  # every communication step is a whole multiple of it [ns]
+    tick_ns: int  # it steps by whole multiples of it [ns]
     experiment: dict[str, float]  # default `stop` and `step` [s]
     cores: tuple[str, ...] = ()  # folders under src/ whose C files the model needs
     # name of the parameter that is the grid on which it reads inputs and shows outputs; or empty
@@ -119,6 +120,11 @@ class Description:
         """On which grid it reads inputs and shows outputs, if its parameter is left alone [s]."""
         periods = [v.start[0] for v in self.variables if v.name == self.grid and v.start]
         return float(periods[0]) if periods else self.tick_ns * 1e-9
+
+    @property
+    def strict(self) -> str:
+        """The parameter that `strict_step` made."""
+        return next(v.name for v in self.variables if v.name.rpartition(".")[2] == STRICT)
 
     @property
     def token(self) -> str:
@@ -135,6 +141,17 @@ class Description:
     def reference_count(self) -> int:
         """Number of value references, that is of elements."""
         return sum(v.count for v in self.variables)
+
+
+def strict_step(unit: str, otherwise: str, name: str = STRICT) -> Variable:
+    """The parameter of every FMU, and of a system, about steps that are no multiples of a unit."""
+    doc = f"Refuse communication steps that are no whole multiple of {unit}; else {otherwise}"
+    return Variable(name, "parameter", "bool", doc, start=[False])
+
+
+def strict_tick(tick_ns: int) -> Variable:
+    """`strict_step` of an FMU, behind the variables of its own."""
+    return strict_step(f"{tick_ns} ns", "each runs to the nearest, and the next ones catch up")
 
 
 _KINDS: dict[str, tuple[type, ...]] = {

@@ -6,7 +6,7 @@ from typing import Any
 
 from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.fmu import terminals
-from motionfmu.fmu.describe import CAUSALITIES, Description, variable
+from motionfmu.fmu.describe import CAUSALITIES, STRICT, Description, strict_tick, variable
 from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
 from motionfmu.toml_lines import ordered, shown, tables_of, text_of
 
@@ -38,6 +38,9 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
             variables.append(variable(name, causality, row))
         except InputError as error:
             faults.lines += (f"{file}:{line_of(text, name)}: {told}" for told in error.args)
+        if name == STRICT:
+            told = f"the name {name} is taken: every FMU has it"
+            faults.lines.append(f"{file}:{line_of(text, name)}: {told}")
         if name in names:
             faults.lines.append(f"{file}:{line_of(text, name)}: {name} is described twice")
         names.add(name)
@@ -55,7 +58,9 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
             faults.lines.append(f"{file}:{line_of(text, key)}: {told}")
     Faults(ordered(faults.lines, [file])).tell()
     return Description(
-        **{**doc, "cores": tuple(cores)}, variables=tuple(variables), terminals=tuple(joined)
+        **{**doc, "cores": tuple(cores)},
+        variables=(*variables, strict_tick(doc["tick_ns"])),
+        terminals=tuple(joined),
     )
 
 

@@ -77,7 +77,7 @@ def _kind(v: Variable) -> str:
 
 def _sections(d: Description) -> Iterator[str]:
     ms = f"{d.step * 1e3:.10g} ms"
-    step = f"Communication steps are whole multiples of {d.tick_ns} ns. "
+    step = f"Communication steps may be of any size: see <code>{d.strict}</code>. "
     if d.grid:
         step += f"Inside it steps by <code>{d.grid}</code>, {ms} if that is left alone."
     else:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from motionfmu.fmu import terminals
-from motionfmu.fmu.describe import Description, Terminal, Variable
+from motionfmu.fmu.describe import STRICT, Description, Terminal, Variable, strict_step
 from motionfmu.fmu.head import TICK_MAX
 from motionfmu.fmu.platforms import Platform
 from motionfmu.fused.parts import NotFused
@@ -36,7 +36,8 @@ class Job:
 class Roles:
     """Which variables of the components a system shows."""
 
-    # Set before a run: all parameters, and all inputs but those that only a wire feeds.
+    # Set before a run: all parameters but `strict_step`, and all inputs but those that only a wire
+    # feeds.
     given: tuple[End, ...]
     # Read at every step: of these the tunable ones, and the inputs that no wire feeds.
     taken: tuple[End, ...]
@@ -51,6 +52,8 @@ def roles(system: System, recorded: Sequence[End]) -> Roles:
     given, taken = [], []
     for component, fmu in system.components.items():
         for port in fmus.ports(fmu).values():
+            if port.name == STRICT:  # the system has its own
+                continue
             end = End(component, port)
             free = port.causality == "input" and end.name not in wired
             if port.causality == "parameter" or free or end.name in asked:
@@ -106,11 +109,13 @@ def _variable(end: End, causality: str, values: Values | None) -> Variable:
 
 def _own(system: System, step: float, tick_ns: int) -> Iterator[Variable]:
     """The variables of the system itself; `step` [s]."""
-    text = "Step of the components, of which a communication step is a whole number"
+    text = "Step of the components"
     low = tick_ns * 1e-9
     yield Variable(
         "system.step", "parameter", "f64", text, unit="s", start=[step], min=low, max=_STEP_MAX
     )
+    otherwise = "outputs are those of the latest step that is over"
+    yield strict_step("system.step", otherwise, f"system.{STRICT}")
     text = "Folder in which a file a signal is written (NumPy); nothing is recorded without it"
     yield Variable("recorder.folder", "parameter", "string", text, start=[""])
     text = "Of so many communication steps one is recorded"
@@ -146,6 +151,7 @@ def described(job: Job, used: Roles, tick_ns: int) -> Description:
         description=f"{parts} as one program {job.key[:12]}",
         tick_ns=tick_ns,
         experiment={"stop": stop, "step": step},
+        grid="system.step",
         variables=tuple(variables),
         terminals=() if job.given is None else tuple(_terminals(system, variables)),
     )

@@ -29,7 +29,7 @@ class Part:
     """An FMU's model as an object."""
 
     identifier: str  # of the model; the object shows motionfmu_part_<identifier>
-    tick_ns: int  # communication steps are whole multiples of it [ns]
+    tick_ns: int  # it steps by whole multiples of it [ns]
     members: str  # C text of the members of its struct vars
     size: int  # of that struct [bytes]
     room: int  # of an instance, which begins with it [bytes]

@@ -83,6 +83,12 @@ static int call_deserialize(void *c, const char *bytes, size_t size, void **stat
     return fmi2DeSerializeFMUstate(c, bytes, size, state);
 }
 
+static double call_last(void *c)
+{
+    double time = NAN;
+    return fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &time) == fmi2OK ? time : NAN;
+}
+
 static void test_own(void);
 
 #include "fmi_cases.h"

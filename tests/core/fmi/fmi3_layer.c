@@ -20,9 +20,13 @@ static int call_enter(void *c, double start, double stop)
 static int call_step(void *c, double t, double h)
 {
     bool event = true, terminate = true, early = true;
-    double last = NAN;
+    double last = NAN, time = NAN;
     int status = fmi3DoStep(c, t, h, true, &event, &terminate, &early, &last);
-    return status == fmi3OK && (event || terminate || early || fabs(last - t - h) > 1e-5)
+    if (status == fmi3OK) {
+        fmi3GetFloat64(c, &(unsigned){FMU_NREFS}, 1, &time, 1);
+    }
+    return status == fmi3OK && (event || terminate || early || last != time
+                                || fabs(last - t - h) > 1e-5)
                ? (int)fmi3Fatal
                : status;
 }
@@ -87,6 +91,12 @@ static int call_deserialize(void *c, const char *bytes, size_t size, void **stat
     return fmi3DeserializeFMUState(c, (const fmi3Byte *)bytes, size, state);
 }
 
+static double call_last(void *c)
+{
+    double time = NAN;
+    return fmi3GetFloat64(c, &(unsigned){FMU_NREFS}, 1, &time, 1) == fmi3OK ? time : NAN;
+}
+
 static void test_own(void);
 
 #include "fmi_cases.h"
@@ -107,7 +117,7 @@ static void test_arrays_and_time(void)
     CHECK_REFUSED(fmi3GetFloat64(c, &(unsigned){REF_U}, 1, u, 2), "have 3");
     CHECK_REFUSED(fmi3GetFloat64(c, &inside, 1, u, 1), "inside the array u, whose own is 3");
     CHECK_REFUSED(fmi3GetFloat64(c, &clock, 1, &time, 1), "time has no value before");
-    CHECK_REFUSED(fmi3SetFloat64(c, &clock, 1, &time, 1), "unknown value reference 12");
+    CHECK_REFUSED(fmi3SetFloat64(c, &clock, 1, &time, 1), "unknown value reference 13");
     bool on[2] = {true, false}, back[2] = {false, true};
     CHECK(fmi3SetBoolean(c, &(unsigned){REF_ON}, 1, on, 2) == fmi3OK);
     CHECK(fmi3GetBoolean(c, &(unsigned){REF_ON}, 1, back, 2) == fmi3OK && back[0] && !back[1]);

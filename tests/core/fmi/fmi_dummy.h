@@ -14,8 +14,9 @@
 #define FMU_TOKEN      "{dummy}"
 #define FMU_TICK_NS    25
 #define FMU_STRING_MAX 64
-#define FMU_NVARS      8
-#define FMU_NREFS      12
+#define FMU_STRICT     strict_step
+#define FMU_NVARS      9
+#define FMU_NREFS      13
 
 struct vars {
     char    name[FMU_STRING_MAX];
@@ -26,9 +27,12 @@ struct vars {
     bool    on[2];
     double  y[2];
     int32_t steps;
+    bool    strict_step;
 };
 
-enum { REF_NAME, REF_GAIN, REF_TRIM, REF_U, REF_N = 6, REF_ON, REF_Y = 9, REF_STEPS = 11 };
+enum {
+    REF_NAME, REF_GAIN, REF_TRIM, REF_U, REF_N = 6, REF_ON, REF_Y = 9, REF_STEPS = 11, REF_STRICT
+};
 
 static const struct vars vars_start = {.name = "good", .gain = 2.0, .u = {1.0, 2.0, 3.0}};
 
@@ -47,9 +51,11 @@ static const struct var_info var_table[FMU_NVARS] = {
      DBL_MAX},
     {"steps", 11, 1, offsetof(struct vars, steps), VAR_I32, CAUSE_LOCAL, VARY_DISCRETE, -DBL_MAX,
      DBL_MAX},
+    {"strict_step", 12, 1, offsetof(struct vars, strict_step), VAR_BOOL, CAUSE_PARAMETER,
+     VARY_FIXED, -DBL_MAX, DBL_MAX},
 };
 
-static const uint16_t var_of_ref[FMU_NREFS] = {0, 1, 2, 3, 3, 3, 4, 5, 5, 6, 6, 7};
+static const uint16_t var_of_ref[FMU_NREFS] = {0, 1, 2, 3, 3, 3, 4, 5, 5, 6, 6, 7, 8};
 
 struct model {
     double  sum[2];

@@ -127,7 +127,7 @@ static void step(struct pair *p, struct bytes *b)
     bool good = p->stand == RUNNING;
     if (kind == 6) {
         h = (n & 8) ? wrong[n >> 4 & 7] : h + 0.3 * tick;
-        good = false;
+        good = good && h > 0.0 && h < 1.0 && !inside_strict(p->c[1]);
     } else if (kind == 7) {
         t = (n & 8) ? wrong[n >> 4 & 7] + t + 1.0 : t + 1e-3;
         good = false;

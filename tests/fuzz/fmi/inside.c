@@ -61,6 +61,11 @@ int inside_string_max(void)
     return FMU_STRING_MAX;
 }
 
+bool inside_strict(const void *c)
+{
+    return ((const struct fmi_instance *)c)->f.s.v.FMU_STRICT;
+}
+
 size_t inside_size(void)
 {
     return sizeof(struct fmi_snapshot);
@@ -85,7 +90,7 @@ size_t inside_place(size_t n)
         const size_t from = offsetof(struct fmi_snapshot, s.v) + var_table[i].offset;
         const size_t size = var_table[i].count * FMU_STRING_MAX;
         if (var_table[i].type == VAR_STRING && at >= from && at < from + size) {
-            at = head + (at - from) % 24; /* mode, stale and times instead */
+            at = head + (at - from) % 32; /* mode, stale and times instead */
         }
     }
     return at;

@@ -22,6 +22,7 @@ union side_value inside_start(size_t i, size_t k); /* start value of element k *
 const char *inside_token(void);
 int  inside_tick(void);         /* [ns] */
 int  inside_string_max(void);   /* [byte] */
+bool inside_strict(const void *c);  /* does an FMI 3.0 instance refuse steps between ticks? */
 
 size_t inside_size(void);       /* [byte] of a serialized state */
 

@@ -26,7 +26,7 @@ class Packing:
 
     name: str  # of the FMU
     description: str
-    tick_ns: int  # every communication step is a whole multiple of it [ns]
+    tick_ns: int  # it steps by whole multiples of it [ns]
     experiment: dict[str, float]  # default `stop` and `step` [s]
     modelica: str  # full class name
     instances: int  # copies of the class, one per axis; a single one has scalars instead of arrays
@@ -101,8 +101,8 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
             own.append((name, elements[0][0].kind, _row(ode, elements, packing.instances)))
     names = [name for name, _, _ in own]
     try:
-        for name in ("active", "micro_step"):
-            if names.count(name) > 1:
+        for name, most in (("active", 1), ("micro_step", 1), (describe.STRICT, 0)):
+            if names.count(name) > most:
                 raise ValueError(f"the name {name} is taken: every plant has it")
         variables = tuple(describe.variable(*row) for row in own)
         joined = terminals.read(packing.terminal, variables)
@@ -114,7 +114,7 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
         packing.tick_ns,
         packing.experiment,
         grid="micro_step",
-        variables=variables,
+        variables=(*variables, describe.strict_tick(packing.tick_ns)),
         terminals=tuple(joined),
     )
 

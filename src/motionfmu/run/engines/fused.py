@@ -9,6 +9,7 @@ from typing import Any
 
 from motionfmu import fused
 from motionfmu.columns import Columns
+from motionfmu.fmu.describe import STRICT
 from motionfmu.run.engines import messages
 from motionfmu.run.engines.ending import shares
 from motionfmu.run.engines.job import Job, Progress, Ran
@@ -58,7 +59,9 @@ class Fused:
         return Ran("fused", signals, [*self._warnings], steps, signal)
 
     def _set(self, system: System) -> None:
-        given: dict[str, tuple[Any, ...]] = {s.end.name: s.values for s in system.settings}
+        given: dict[str, tuple[Any, ...]] = {
+            s.end.name: s.values for s in system.settings if s.end.port.name != STRICT
+        }
         given[STEP] = (system.step_ns * 1e-9,)
         given[FOLDER] = (str(self._signals) if self._job.recorded else "",)
         given[EVERY] = (system.every,)
