@@ -21,7 +21,8 @@ def compile_all(folder: Path, job: Job) -> list[str]:
     files = [MAIN_UNIT]
     for fmu in dict.fromkeys(job.system.components.values()):
         files += _part(fmu, sources)
-    own, headers = layer.folders()
+    places = layer.folders()
+    own, headers = places[0], places[-1]
     texts = [f for f in sources.iterdir() if f.is_file()]
     standard = sorted(headers.glob(f"fmi{job.fmi}*.h"))
     for file in (*cores.reached(own.iterdir(), texts), *standard):

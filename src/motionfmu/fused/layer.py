@@ -11,12 +11,13 @@ OPTIMIZED = "-O2"
 
 
 def folders() -> list[Path]:
-    """Where the C text is: the installed package's or the checkout's, and FMPy's."""
+    """Where the C text is: the installed package's, or the checkout's and FMPy's."""
     installed = PACKAGE / "layer"
+    if installed.is_dir():
+        return [installed]
     fmpy = util.find_spec("fmpy")
-    assert fmpy and fmpy.origin, "FMPy is installed with this package"
-    own = installed if installed.is_dir() else PACKAGE.parent / "fmi"
-    return [own, Path(fmpy.origin).parent / "c-code"]
+    assert fmpy and fmpy.origin, "FMPy is there where FMUs are built"
+    return [PACKAGE.parent / "fmi", Path(fmpy.origin).parent / "c-code"]
 
 
 @functools.cache

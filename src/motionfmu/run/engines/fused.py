@@ -45,8 +45,10 @@ class Fused:
         self._warnings.clear()
         try:
             library.instantiate(NAME, self._token, self._folder / "resources", self._tell)
+            library.warn()
             self._set(system)
-            library.initialize()
+            library.enter()
+            library.leave()
             steps, signal = self._advance(system, progress)
             library.terminate()
         except Refused as refused:

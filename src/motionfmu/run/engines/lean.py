@@ -3,6 +3,7 @@
 import _ctypes
 import ctypes
 import functools
+import re
 import shutil
 import tempfile
 import zipfile
@@ -10,9 +11,13 @@ from pathlib import Path
 
 from motionfmu.compiler import compiler
 from motionfmu.errors import InputError
+from motionfmu.fused import layer
 from motionfmu.run.engines.messages import ERROR
 from motionfmu.scenarios import fmus
 
+_FUNCTION = re.compile(r"^#define (fmi[23]\w+) +fmi[23]FullName", re.MULTILINE)
+# Functions that an FMU of FMI 2 for co-simulation does not have.
+_OTHERS = re.compile(r"for FMI2 for Model Exchange.*?for FMI2 for Co-Simulation", re.DOTALL)
 _UNUSED = ("sources/", "documentation/", "extra/", "terminalsAndIcons/", "model.png")
 
 
@@ -55,11 +60,9 @@ def _complete(source: Path, library: Path, fmi: int) -> None:
 
     It depends on the one that was there; what that lacks answers with an error.
     """
-    from fmpy.fmi2 import FMU2Slave
-    from fmpy.fmi3 import FMU3Slave
-
     loaded = ctypes.CDLL(str(library))
-    wanted = [n for n in dir(FMU2Slave if fmi == 2 else FMU3Slave) if n.startswith(f"fmi{fmi}")]
+    header = (layer.folders()[-1] / f"fmi{fmi}Functions.h").read_text(encoding="utf-8")
+    wanted = sorted(set(_FUNCTION.findall(_OTHERS.sub("", header))))
     lacking = [n for n in wanted if not hasattr(loaded, n)]
     _ctypes.dlclose(loaded._handle)
     if not lacking:

@@ -1,14 +1,14 @@
-"""The library of an FMU of ours, called without FMPy, whose import takes longer than a run."""
+"""The library of an FMU, called by ctypes."""
 
 import _ctypes
 import ctypes
 from collections.abc import Callable, Iterable, Sequence
-from ctypes import byref, c_bool, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint32, c_void_p
+from ctypes import byref, c_bool, c_char_p, c_double, c_int, c_size_t, c_uint32, c_void_p
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from motionfmu.run.engines.messages import ERROR
+from motionfmu.run.engines.messages import WARNING
 
 Log = Callable[[int, str], None]  # status and message
 
@@ -16,26 +16,37 @@ Log = Callable[[int, str], None]  # status and message
 _NAMES = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
 _VALUES: dict[str, Any] = {
     "Float64": c_double,
-    "Int32": c_int32,
+    "Float32": ctypes.c_float,
     "Boolean": c_bool,
     "String": c_char_p,
+    **{f"Int{bits}": getattr(ctypes, f"c_int{bits}") for bits in (8, 16, 32, 64)},
+    **{f"UInt{bits}": getattr(ctypes, f"c_uint{bits}") for bits in (8, 16, 32, 64)},
 }
-_LOG = {
-    2: ctypes.CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p),
-    3: ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p),
-}
+_LOG3 = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p)
+
+
+class _Told(ctypes.Structure):
+    """struct binding_log, the environment of an instance of FMI 2."""
+
+    TOLD = ctypes.CFUNCTYPE(None, c_int, c_char_p)
+    _fields_ = (("told", TOLD),)
 
 
 class _Callbacks(ctypes.Structure):
-    """fmi2CallbackFunctions; memory is the FMU's own."""
+    """fmi2CallbackFunctions."""
 
-    _fields_ = (
-        ("logger", _LOG[2]),
-        ("allocate", c_void_p),
-        ("free", c_void_p),
-        ("finished", c_void_p),
-        ("environment", c_void_p),
+    _fields_ = tuple(
+        (name, c_void_p) for name in ("logger", "allocate", "free", "finished", "environment")
     )
+
+
+def _callbacks(told: _Told) -> _Callbacks:
+    from motionfmu.binding import library
+
+    system = ctypes.CDLL(None)
+    functions = (library().binding_log, system.calloc, system.free)
+    addresses = (ctypes.cast(function, c_void_p) for function in functions)
+    return _Callbacks(*addresses, None, ctypes.cast(byref(told), c_void_p))
 
 
 @dataclass(frozen=True)
@@ -55,39 +66,44 @@ class Library:
     """A loaded library, and one instance at a time."""
 
     def __init__(self, file: Path, fmi: int) -> None:
-        self.fmi, self._instance = fmi, c_void_p()
+        self.fmi, self.instance = fmi, c_void_p()
         self._dll: ctypes.CDLL | None = ctypes.CDLL(str(file))
 
-    def _function(self, name: str) -> Any:
+    def function(self, name: str) -> Any:
+        """A function of the standard, by its name without the version."""
         return getattr(self._dll, f"fmi{self.fmi}{name}")
 
     def call(self, name: str, *arguments: Any) -> None:
         """Call a function of the instance."""
-        if self._function(name)(self._instance, *arguments) >= ERROR:
+        if self.function(name)(self.instance, *arguments) > WARNING:
             raise Refused(name)
 
-    def instantiate(self, name: str, token: str, resources: Path, log: Log) -> None:
-        """Make the instance, in the place of one before; it tells warnings and errors."""
+    def instantiate(
+        self, name: str, token: str, resources: Path, log: Log, everything: bool = False
+    ) -> None:
+        """Make the instance, in the place of one before; it tells errors, or everything."""
         self.release()
         texts: list[Any] = [text.encode() for text in (name, token)]
         rest: tuple[Any, ...]
+        off, nothing = c_bool(False), c_void_p()
         if self.fmi == 3:
-            self._log = _LOG[3](lambda _, status, __, text: log(status, _read(text)))
-            make, given = self._function("InstantiateCoSimulation"), f"{resources}/".encode()
-            off, nothing = c_bool(False), c_void_p()
-            rest = (off, off, off, off, nothing, c_size_t(0), nothing, self._log, nothing)
+            self._log: Any = _LOG3(lambda _, status, __, text: log(status, _read(text)))
+            make, given = self.function("InstantiateCoSimulation"), f"{resources}/".encode()
+            told = (off, c_bool(everything), off, off)
+            rest = (*told, nothing, c_size_t(0), nothing, self._log, nothing)
         else:
-            self._log = _LOG[2](
-                lambda _, __, status, ___, text: log(status, _read(text).replace("%%", "%"))
-            )
-            self._callbacks = _Callbacks(self._log)
-            make, given = self._function("Instantiate"), resources.as_uri().encode()
+            self._log = _Told(_Told.TOLD(lambda status, text: log(status, _read(text))))
+            self._callbacks = _callbacks(self._log)
+            make, given = self.function("Instantiate"), resources.as_uri().encode()
             texts.insert(1, c_int(1))  # for co-simulation
-            rest = (byref(self._callbacks), c_int(0), c_int(0))
+            rest = (byref(self._callbacks), c_int(0), c_int(everything))
         make.restype = c_void_p
-        self._instance = c_void_p(make(*texts, given, *rest))
-        if not self._instance:
+        self.instance = c_void_p(make(*texts, given, *rest))
+        if not self.instance:
             raise Refused("instantiate")
+
+    def warn(self) -> None:
+        """Let an FMU of ours tell its warnings, too."""
         categories = (c_char_p * 1)(b"logStatusWarning")
         self.call("SetDebugLogging", c_bool(True), c_size_t(1), categories)
 
@@ -97,17 +113,6 @@ class Library:
         found = [v.reference + i for v in variables for i in range(elements or v.count)]
         return (c_uint32 * len(found))(*found)
 
-    def _values(self, kind: str, values: Sequence[Any]) -> tuple[Any, ...]:
-        """An array of values, and in FMI 3 its length."""
-        c = c_int if (self.fmi, kind) == (2, "Boolean") else _VALUES[kind]
-        array = (c * len(values))(*values)
-        return (array, c_size_t(len(values))) if self.fmi == 3 else (array,)
-
-    def _access(self, verb: str, kind: str, variables: Sequence[Variable], values: Any) -> None:
-        references = self._several(variables)
-        name = kind if self.fmi == 3 else _NAMES[kind]
-        self.call(f"{verb}{name}", references, c_size_t(len(references)), *values)
-
     def set(self, values: Iterable[tuple[Variable, Sequence[Any]]]) -> None:
         """Set variables: a call for each type."""
         by_kind: dict[str, list[tuple[Variable, Sequence[Any]]]] = {}
@@ -115,29 +120,63 @@ class Library:
             by_kind.setdefault(variable.type, []).append((variable, given))
         for kind, several in by_kind.items():
             flat = [x.encode() if kind == "String" else x for _, given in several for x in given]
-            self._access("Set", kind, [v for v, _ in several], self._values(kind, flat))
+            buffer = self.buffer(kind, len(flat))
+            buffer[:] = flat
+            self.access("Set", [v for v, _ in several], buffer)()
+
+    def buffer(self, kind: str, count: int) -> Any:
+        """Memory for values of a type, as the FMU has them."""
+        c = c_int if (self.fmi, kind) == (2, "Boolean") else _VALUES[kind]
+        return (c * count)()
+
+    def access(self, verb: str, variables: Sequence[Variable], buffer: Any) -> Callable[[], None]:
+        """A quick function that gets or sets variables of a type through their buffer."""
+        kind, references = variables[0].type, self._several(variables)
+        name = f"{verb}{kind if self.fmi == 3 else _NAMES[kind]}"
+        call, size = self.function(name), c_size_t(len(references))
+        more = (c_size_t(len(buffer)),) if self.fmi == 3 else ()
+        arguments = (self.instance, references, size, buffer, *more)
+
+        def run() -> None:
+            if call(*arguments) > WARNING:
+                raise Refused(name)
+
+        return run
 
     def get(self, variable: Variable) -> list[Any]:
         """Elements of a number."""
-        values = self._values(variable.type, [0] * variable.count)
-        self._access("Get", variable.type, [variable], values)
-        return list(values[0])
+        values = self.buffer(variable.type, variable.count)
+        self.access("Get", [variable], values)()
+        return list(values)
 
-    def initialize(self) -> None:
-        """Go through Initialization Mode, at time 0."""
+    def enter(self) -> None:
+        """Enter Initialization Mode, at time 0."""
         none, zero = c_int(0), c_double(0.0)
         if self.fmi == 2:
             self.call("SetupExperiment", none, zero, zero, none, zero)
             self.call("EnterInitializationMode")
         else:
             self.call("EnterInitializationMode", c_bool(False), zero, zero, c_bool(False), zero)
+
+    def leave(self) -> None:
+        """Leave Initialization Mode."""
         self.call("ExitInitializationMode")
 
     def step(self, time: float, size: float) -> None:
         """Advance from a communication point by one step [s]."""
+        self.stepper(size)(time)
+
+    def stepper(self, size: float) -> Callable[[float], None]:
+        """A quick `step` of one size [s]: a function of the communication point [s]."""
+        step, instance, length = self.function("DoStep"), self.instance, c_double(size)
         flags = [byref(c_bool()) for _ in range(3)]
         rest = (c_bool(True), *flags, byref(c_double())) if self.fmi == 3 else (c_int(1),)
-        self.call("DoStep", c_double(time), c_double(size), *rest)
+
+        def advance(time: float) -> None:
+            if step(instance, c_double(time), length, *rest) > WARNING:
+                raise Refused("doStep")
+
+        return advance
 
     def terminate(self) -> None:
         """End the run: files are written."""
@@ -145,9 +184,9 @@ class Library:
 
     def release(self) -> None:
         """Free the instance, if there is one."""
-        if self._instance:
-            self._function("FreeInstance")(self._instance)
-            self._instance = c_void_p()
+        if self.instance:
+            self.function("FreeInstance")(self.instance)
+            self.instance = c_void_p()
 
     def close(self) -> None:
         """Free the instance and the library."""

@@ -75,15 +75,15 @@ class Master:
             for slave in slaves.values():
                 slave.start()
             due = system.due()
-            step = system.step_ns * 1e-9
+            steps = [slave.stepper(system.step_ns * 1e-9) for slave in slaves.values()]
             ending = _ending(slaves, system)
             for k in ending.points(progress):
                 for now in due.get(k, ()):
                     port = now.end.port
                     slaves[now.end.component].assign(port.type, port.reference, now.values)
                 _exchange(wires)
-                for slave in slaves.values():
-                    slave.step(k * system.step_ns * 1e-9, step)
+                for step in steps:
+                    step(k * system.step_ns * 1e-9)
             for slave in slaves.values():
                 slave.end()
             told = [told for slave in slaves.values() for told in slave.warnings]

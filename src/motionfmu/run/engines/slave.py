@@ -1,31 +1,23 @@
-"""One FMU opened with FMPy, with fast access to its variables."""
+"""One FMU, from its archive or unpacked, with fast access to its variables."""
 
-import ctypes
+import contextlib
 import re
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable
-from ctypes import byref
+import zipfile
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
-
-from fmpy import extract, read_model_description
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-from fmpy.fmi3 import FMU3Slave
-from fmpy.logging import addLoggerProxy
+from xml.etree import ElementTree
 
 from motionfmu.errors import InputError
 from motionfmu.fmu import describe
+from motionfmu.fmu.platforms import here
 from motionfmu.run.engines import messages
 from motionfmu.run.engines.ending import Ending
+from motionfmu.run.engines.library import Library, Refused, Variable
 from motionfmu.scenarios.system import End, System
 
-_C = {"Float64": ctypes.c_double, "Float32": ctypes.c_float, "Boolean": ctypes.c_bool} | {
-    f"{sign}Int{bits}": getattr(ctypes, f"c_{sign.lower()}int{bits}")
-    for sign in ("", "U")
-    for bits in (8, 16, 32, 64)
-}
-_FMI2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
 # fmucontainer puts "mcc.fmu: " before the message of a component, which may name itself again.
 _INNER = re.compile(r"^(\w+)\.fmu: (?:(?:\w+\.)*\w+\.fmu: |\1: )?")
 
@@ -53,65 +45,65 @@ class Slave:
     ) -> None:
         self.name, self.fmi, self.errors, self._logging = name, fmi, errors, logging
         self.warnings: list[str] = []
-        self._own: str | None = None
-        if source.is_dir():
-            folder = str(source)
-        else:
-            folder = self._own = tempfile.mkdtemp(prefix="motionfmu-")
-            extract(str(source), folder)
-        self.description = read_model_description(folder, validate=False)
-        cosimulation = self.description.coSimulation
-        assert cosimulation, "every FMU here is made for co-simulation"
-        self.references = {v.name: v.valueReference for v in self.description.modelVariables}
-        keys = {
-            "guid": self.description.guid or self.description.instantiationToken,
-            "unzipDirectory": folder,
-            "modelIdentifier": cosimulation.modelIdentifier,
-            "instanceName": name,
-        }
-        self.slave: Any = FMU3Slave(**keys) if fmi == 3 else FMU2Slave(**keys)
+        self._own: Path | None = None
+        if not source.is_dir():
+            self._own = Path(tempfile.mkdtemp(prefix="motionfmu-"))
+            with zipfile.ZipFile(source) as archive:
+                archive.extractall(self._own)
+        self._folder = self._own or source
+        root = ElementTree.parse(self._folder / "modelDescription.xml").getroot()
+        kind = root.find("CoSimulation")
+        assert kind is not None, "every FMU here is made for co-simulation"
+        self._token = root.get("guid") or root.get("instantiationToken") or ""
+        rows = root.iterfind("ModelVariables/*")
+        self.references = {row.attrib["name"]: int(row.attrib["valueReference"]) for row in rows}
+        machine = here()
+        file = f"binaries/{machine.folder(fmi)}/{kind.attrib['modelIdentifier']}{machine.suffix}"
+        self._library = Library(self._folder.absolute() / file, fmi)
         self._instantiate()
 
     def _instantiate(self) -> None:
-        if self.fmi == 3:
-            self._do("instantiate", logMessage=self._log3, loggingOn=self._logging)
-            return
-        callbacks = fmi2CallbackFunctions()
-        self._log = fmi2CallbackLoggerTYPE(self._log2)
-        callbacks.logger = self._log
-        addLoggerProxy(byref(callbacks))  # formats the message; Python cannot
-        self._do("instantiate", callbacks=callbacks, loggingOn=self._logging)
+        place = self._folder.absolute() / "resources"
+        with self._told():
+            self._library.instantiate(self.name, self._token, place, self._log, self._logging)
 
-    def _log3(self, environment: Any, status: int, category: bytes, message: bytes) -> None:
-        self._keep(status, message)
-
-    def _log2(self, environment: Any, name: Any, status: int, category: Any, text: Any) -> None:
-        told = text if isinstance(text, bytes) else str(text).encode()
-        if messages.unnamed(told.decode(errors="replace")) and b".fmu: " not in told:
-            told = name + b": " + told
+    def _log(self, status: int, told: str) -> None:
+        if self.fmi == 2 and messages.unnamed(told) and ".fmu: " not in told:
+            told = f"{self.name}: {told}"
         self._keep(status, told)
 
-    def _keep(self, status: int, message: bytes) -> None:
+    def _keep(self, status: int, message: str) -> None:
         """Keep an error or a warning; one from inside a container gets its component's name."""
         if status >= messages.WARNING:
-            text = _INNER.sub(r"\1: ", message.decode(errors="replace").strip())
+            text = _INNER.sub(r"\1: ", message.strip())
             messages.keep(status, text, self.errors, self.warnings)
 
-    def _do(self, call: str, **arguments: Any) -> None:
-        """Call a method of FMPy's slave; what it raises becomes the FMU's own message."""
+    @contextlib.contextmanager
+    def _told(self) -> Iterator[None]:
+        """What the library refuses becomes the FMU's own message."""
         try:
-            getattr(self.slave, call)(**arguments)
-        except Exception as error:
-            raise self.failure(call) from error
+            yield
+        except Refused as refused:
+            raise self._failure(str(refused)) from None
 
-    def failure(self, call: str) -> InputError:
+    def _failure(self, call: str) -> InputError:
         """The error for a call that failed: what the first component to tell one says."""
         return messages.failure(self.name, call, self.errors)
 
+    def _telling(self, call: Callable[..., None]) -> Callable[..., None]:
+        """The same function, with `_told`; a context would take longer than the call."""
+
+        def run(*arguments: Any) -> None:
+            try:
+                call(*arguments)
+            except Refused as refused:
+                raise self._failure(str(refused)) from None
+
+        return run
+
     def buffer(self, kind: str, count: int) -> Any:
-        """Memory for values of Float64, Int32 or Boolean, as the FMU has them."""
-        c: Any = ctypes.c_int32 if self.fmi == 2 and kind == "Boolean" else _C[kind]
-        return (c * count)()
+        """Memory for values of a number, as the FMU has them."""
+        return self._library.buffer(kind, count)
 
     def access(self, verb: str, kind: str, reference: int, buffer: Any, *further: int) -> Any:
         """A function without arguments that gets or sets one variable through its buffer.
@@ -119,78 +111,42 @@ class Slave:
         The verb is ``Get`` or ``Set``; the function raises InputError when the FMU refuses. The
         buffer may hold the values of further variables, one after the other.
         """
-        count = len(buffer)
-        if self.fmi == 3:
-            call = getattr(self.slave.dll, f"fmi3{verb}{kind}")
-            all_of = (ctypes.c_uint32 * (1 + len(further)))(reference, *further)
-            sizes = ctypes.c_size_t(len(all_of)), ctypes.c_size_t(count)
-            arguments: tuple[Any, ...] = (self.slave.component, all_of, sizes[0], buffer, sizes[1])
-        else:
-            call = getattr(self.slave.dll, f"fmi2{verb}{_FMI2[kind]}")
-            listed = (reference, *further) if further else range(reference, reference + count)
-            references = (ctypes.c_uint32 * count)(*listed)
-            arguments = (self.slave.component, references, ctypes.c_size_t(count), buffer)
-
-        def run() -> None:
-            if call(*arguments) >= messages.ERROR:
-                raise self.failure(f"{verb}{kind}")
-
-        return run
+        count = 1 if further else len(buffer)
+        several = [Variable(kind, r, count) for r in (reference, *further)]
+        return self._telling(self._library.access(verb, several, buffer))
 
     def assign(self, kind: str, reference: int, values: Iterable[Any]) -> None:
         """Set a variable of any kind, by its first reference, once."""
         listed = list(values)
-        if kind == "String":
-            references = (
-                [reference] if self.fmi == 3 else [*range(reference, reference + len(listed))]
-            )
-            self._do("setString", vr=references, **{"values" if self.fmi == 3 else "value": listed})
-            return
-        buffer = self.buffer(kind, len(listed))
-        buffer[:] = listed
-        self.access("Set", kind, reference, buffer)()
+        with self._told():
+            self._library.set([(Variable(kind, reference, len(listed)), listed)])
 
     def initialize(self) -> None:
         """Enter Initialization Mode at time 0."""
-        if self.fmi == 2:
-            self._do("setupExperiment", startTime=0.0)
-            self._do("enterInitializationMode")
-        else:
-            self._do("enterInitializationMode", startTime=0.0)
+        with self._told():
+            self._library.enter()
 
     def start(self) -> None:
         """Leave Initialization Mode."""
-        self._do("exitInitializationMode")
+        with self._told():
+            self._library.leave()
 
     def step(self, time: float, size: float) -> None:
         """Advance from a communication point by one step [s]."""
-        self._do("doStep", currentCommunicationPoint=time, communicationStepSize=size)
+        self.stepper(size)(time)
 
     def stepper(self, size: float) -> Callable[[float], None]:
         """A quick `step` of one size [s]: a function of the communication point [s]."""
-        call = getattr(self.slave.dll, f"fmi{self.fmi}DoStep")
-        instance, length = self.slave.component, ctypes.c_double(size)
-        if self.fmi == 3:
-            flags = [byref(ctypes.c_bool()) for _ in range(3)]
-            rest: tuple[Any, ...] = (ctypes.c_bool(True), *flags, byref(ctypes.c_double()))
-        else:
-            rest = (ctypes.c_int(1),)
-
-        def advance(time: float) -> None:
-            if call(instance, ctypes.c_double(time), length, *rest) >= messages.ERROR:
-                raise self.failure("doStep")
-
-        return advance
+        return self._telling(self._library.stepper(size))
 
     def end(self) -> None:
         """Terminate: the FMU writes its files."""
-        self._do("terminate")
+        with self._told():
+            self._library.terminate()
 
     def renew(self) -> None:
         """Take a new instance; the library stays loaded."""
-        old, self.slave.component = self.slave.component, None
-        if old:
-            getattr(self.slave, f"fmi{self.fmi}FreeInstance")(old)
+        self._library.release()
         self.errors.clear()
         self.warnings.clear()
         self._instantiate()
@@ -198,10 +154,7 @@ class Slave:
     def free(self) -> None:
         """Free the instance, the library and the unpacked files."""
         try:
-            if self.slave.component:
-                self.slave.freeInstance()
-            else:
-                self.slave.freeLibrary()
+            self._library.close()
         finally:
             if self._own:
                 shutil.rmtree(self._own, ignore_errors=True)
