@@ -11,7 +11,7 @@ NEEDS := import sys; v = sys.version_info; \
   sys.exit(None if v >= (3, 11) else "%s is Python %d.%d, 3.11 or newer is needed: make PYTHON=..." % ((sys.executable,) + tuple(v[:2])))
 VENV := import ensurepip, venv
 
-.PHONY: needs demo test check bench importers fuzz build export clean
+.PHONY: needs demo test check bench importers fuzz build export wheel clean
 
 demo: build                     ## build all and run the demo scenario
 	$(BIN)/motionfmu run scenarios/circle
@@ -29,7 +29,10 @@ build: needs .venv/installed
 
 export: needs .venv/exporting    ## FMUs for Linux, Windows and macOS in build/export/fmus
 	@test -f build/export/build.ninja || cmake --preset export -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
-	@cmake --build build/export --target fmus
+	@cmake --build build/export --target fmus stations
+
+wheel: build export             ## the wheel for pip in build/wheel, tried in a new environment
+	$(BIN)/python tests/wheel/wheel.py build/export build/wheel
 
 test: build check               ## everything: style, C tests (also sanitized), Python tests
 	@ctest --test-dir build -j 2 --output-on-failure
@@ -61,8 +64,8 @@ clean:
 .venv/installed: pyproject.toml Makefile | needs
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	@echo "Installing the Python packages into .venv (once, about a minute) ..."
-	@$(BIN)/python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; \
-	  print(*p['dependencies'], *p['optional-dependencies']['dev'], sep='\n')" > .venv/requirements.txt
+	@$(BIN)/python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; more = p['optional-dependencies']; \
+	  print(*p['dependencies'], *(r for name in more if name != 'export' for r in more[name]), sep='\n')" > .venv/requirements.txt
 	@$(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check -r .venv/requirements.txt
 	@$(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check --no-deps --no-build-isolation \
 	  -C wheel.cmake=false -C editable.mode=inplace -e .

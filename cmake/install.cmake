@@ -35,8 +35,3 @@ endforeach()
 if(MOTIONFMU_FMUS)
   install(FILES ${fmu_files} DESTINATION ${CMAKE_INSTALL_DATADIR}/motionfmu/fmus COMPONENT fmus)
 endif()
-# The wheel takes this component alone.
-install(FILES ${fmu_files} DESTINATION motionfmu/fmus COMPONENT wheel EXCLUDE_FROM_ALL)
-# What a system of FMUs is compiled with on the user's machine.
-install(FILES ${layer} DESTINATION motionfmu/layer COMPONENT wheel EXCLUDE_FROM_ALL)
-install(TARGETS motionfmu_stations LIBRARY DESTINATION motionfmu/lib COMPONENT wheel EXCLUDE_FROM_ALL)

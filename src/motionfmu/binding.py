@@ -9,6 +9,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from motionfmu.errors import InputError, suggestion
+from motionfmu.fmu.platforms import here
 
 PACKAGE = Path(__file__).resolve().parent
 # Clocks of the cards in a second.
@@ -36,11 +37,15 @@ class _Field(ctypes.Structure):
 
 def library_path() -> Path:
     """Where the shared library is: in the installed package, or the source tree's ``build/lib``."""
-    name = Path("lib") / "motionfmu_stations.so"
-    for folder in (PACKAGE, PACKAGE.parent.parent / "build"):
+    name = "motionfmu_stations.so"
+    own = PACKAGE / "lib"
+    for folder in (own / here().name, own, PACKAGE.parent.parent / "build/lib"):
         if (folder / name).is_file():
             return folder / name
-    raise InputError(f"{name.name} is not built; run make build")
+    if own.is_dir():
+        there = ", ".join(sorted(p.name for p in own.iterdir() if p.is_dir()))
+        raise InputError(f"{name}: none for {here().name} in {own} (there are: {there})")
+    raise InputError(f"{name} is not built; run make build")
 
 
 @functools.cache

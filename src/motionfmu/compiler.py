@@ -23,7 +23,9 @@ FLAGS = (
     "-fno-trapping-math",
 )
 
-HINT = 'pip install "motionfmu[export]", or make export'  # what brings zig
+HINT = 'pip install "motionfmu[export]"'  # what brings zig
+# Without one.
+NONE = f"there is no C compiler (gcc, clang; or {HINT})"
 LINES = 3  # of a compiler's errors that are told
 
 

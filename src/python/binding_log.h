@@ -1,4 +1,7 @@
-/* binding_log - the logger that an FMU of FMI 2 is given: Python cannot take a format and its values. */
+/* binding_log - the logger that an FMU of FMI 2 is given.
+ *
+ * It gets a format and values for it, which Python cannot take.
+ */
 #ifndef BINDING_LOG_H
 #define BINDING_LOG_H
 

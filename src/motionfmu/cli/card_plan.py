@@ -9,6 +9,7 @@ import typer
 from motionfmu.cli.card import card
 from motionfmu.cli.common import FAILED, bare_table, out, results
 from motionfmu.errors import InputError
+from motionfmu.extras import needed
 
 if TYPE_CHECKING:
     from motionfmu.netcard.figures import Figures
@@ -38,6 +39,7 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Plan a drawing: a job for the card, and what it comes to."""
+    needed("card")
     from motionfmu.netcard import load, plt
     from motionfmu.netcard.contours import clean, way_between
     from motionfmu.netcard.figures import figures
@@ -123,6 +125,8 @@ def show(
 
     if picture and picture.suffix not in (".png", ".svg"):
         raise InputError(f"--picture {picture}: .png or .svg wanted")
+    if picture:
+        needed("report")
     if file.suffix == ".mcj":
         _show_job(file, job.read(file), picture)
     else:

@@ -17,6 +17,7 @@ from motionfmu.cli.common import (
     run_shown,
     settings,
 )
+from motionfmu.extras import needed
 
 T = TypeVar("T")
 
@@ -51,6 +52,7 @@ def contour(
             table.add_row(name, value)
         out.print(table)
         return
+    needed("report")
     (_explain_path if of_path else _explain)(path, given, folder)
 
 

@@ -8,6 +8,7 @@ import typer
 
 from motionfmu.cli.common import FAILED, app, bare_table, out, results
 from motionfmu.errors import InputError
+from motionfmu.extras import missing
 
 if TYPE_CHECKING:
     from motionfmu.gcode import Program
@@ -108,7 +109,6 @@ def _show(file: Path, program: "Program", target: Path) -> None:
         fault_lines,
         metres,
         page_text,
-        write_picture,
     )
 
     for text in fault_lines(str(file), program):
@@ -134,9 +134,14 @@ def _show(file: Path, program: "Program", target: Path) -> None:
     drawn = list(strokes(program))
     outcome.usable(target)
     with outcome.whole(target) as part:
-        write_picture(file.stem, drawn, part)
+        if not (without := missing("report")):
+            from motionfmu.report.jobs.gcode_picture import write_picture
+
+            write_picture(file.stem, drawn, part)
         page = page_text(file.stem, program, s, drawn)
         (part / "report.html").write_text(page, encoding="utf-8")
         numbers = json.dumps(_numbers(program), indent=1, allow_nan=False)
         (part / outcome.NUMBERS).write_text(numbers + "\n", encoding="utf-8")
+    if without:
+        out.print('no picture: pip install "motionfmu[report]"', markup=False)
     out.print(f"report: {target / 'report.html'}", soft_wrap=True)

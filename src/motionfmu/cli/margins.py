@@ -20,6 +20,7 @@ from motionfmu.cli.common import (
     settings,
 )
 from motionfmu.errors import InputError
+from motionfmu.extras import needed
 
 if TYPE_CHECKING:
     from motionfmu.freq.study import Asked, LoopStudy
@@ -46,6 +47,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
 ) -> None:
     """Margins and largest stable gains of a scenario's loops, and their report."""
+    needed("tune")
     from motionfmu.freq.study import Asked
     from motionfmu.linear import gain_of, model
     from motionfmu.linear.gains import in_lines

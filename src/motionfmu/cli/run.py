@@ -17,6 +17,7 @@ from motionfmu.cli.common import (
     settings,
     under_way,
 )
+from motionfmu.extras import needed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,6 +87,8 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.report import outcome
     from motionfmu.run import load
 
+    if pictures:
+        needed("report")
     scenario = load(path)
     target = outcome.usable(folder or results(scenario.name))
     options: dict[str, Any] = {

@@ -12,6 +12,7 @@ import typer
 from motionfmu.cli.common import app
 from motionfmu.cli.plain import width
 from motionfmu.errors import InputError, suggestion
+from motionfmu.extras import Missing
 from motionfmu.units import spelled
 
 if TYPE_CHECKING:
@@ -208,7 +209,11 @@ def _scenario(scenario: "Scenario") -> None:
     print("components")
     print_rows([((name, fmu), fmus.about(fmu)) for name, fmu in body.component.items()])
     _section("values", [(_set(name, scenario), _value(v)) for name, v in body.set.items()])
-    for line in in_lines(gain_of(scenario)):
+    try:
+        gains = in_lines(gain_of(scenario))
+    except Missing as told:
+        gains = [f"in 1/s: {told}"]
+    for line in gains:
         print(_wrapped(line, "  gain ", "    "))
     steps = [(d.input, f"{_value(d.value)} at {_value(d.at)} s") for d in body.drive]
     _section("steps of inputs", steps)

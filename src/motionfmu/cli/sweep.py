@@ -16,6 +16,7 @@ from motionfmu.cli.common import (
     results,
     settings,
 )
+from motionfmu.extras import needed
 
 if TYPE_CHECKING:
     from motionfmu.sweep import Outcome, Study, Ways
@@ -78,6 +79,7 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
     new: Annotated[bool, typer.Option("--new", help="Begin again, do not resume.")] = False,
 ) -> None:
     """Run a scenario at many points; resumes where an earlier call was ended."""
+    needed("study")
     from motionfmu import sweep as sweeps
     from motionfmu.report.numbers import length
     from motionfmu.study.axes import option

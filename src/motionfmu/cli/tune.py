@@ -16,6 +16,7 @@ from motionfmu.cli.common import (
     results,
     settings,
 )
+from motionfmu.extras import needed
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
@@ -39,6 +40,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
 ) -> None:
     """Find servo gains for a scenario's own path; write gains.toml and a report."""
+    needed("tune")
     from motionfmu.linear.gains import in_lines
     from motionfmu.report import outcome
     from motionfmu.report.servo.tune_page import page_text

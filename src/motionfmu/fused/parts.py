@@ -24,6 +24,10 @@ class NotFused(Exception):
     """Why a system cannot be one program."""
 
 
+class NoCompiler(NotFused):
+    """The machine has none."""
+
+
 @dataclass(frozen=True)
 class Part:
     """An FMU's model as an object."""

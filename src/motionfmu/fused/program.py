@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from motionfmu import kept
-from motionfmu.compiler import FLAGS, HINT, compiler, cross
+from motionfmu.compiler import FLAGS, HINT, NONE, compiler, cross
 from motionfmu.fmu.platforms import Platform
 from motionfmu.fused import layer
-from motionfmu.fused.parts import NotFused
+from motionfmu.fused.parts import NoCompiler, NotFused
 from motionfmu.scenarios.fmus import digest
 from motionfmu.scenarios.system import End, System, Values
 
@@ -101,7 +101,7 @@ def _made(
     platforms = to_export.platforms if to_export else ()
     cc = cross() if platforms else compiler()
     if cc is None:
-        raise NotFused(f"there is no zig: {HINT}" if platforms else "there is no C compiler")
+        raise NotFused(f"there is no zig: {HINT}") if platforms else NoCompiler(NONE)
     key = _key(system, recorded, name, given)
     whole = kept.key(
         key,

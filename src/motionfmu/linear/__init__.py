@@ -31,6 +31,9 @@ def __getattr__(name: str) -> Any:
         from motionfmu.linear import gains
 
         return getattr(gains, name)
+    from motionfmu.extras import needed
+
+    needed("tune")
     from motionfmu.linear import axis, loops, position_gain, stability
 
     places = (axis, loops, position_gain, stability)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu import kept
+from motionfmu.extras import needed
 from motionfmu.run import Scenario, load
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.document import plain
@@ -95,6 +96,7 @@ def gain_of(
     loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
 
     def make(folder: Path) -> None:
+        needed("tune")
         from motionfmu.linear.position_gain import found  # with all that makes linear models
 
         listed = list(found(loaded, set or {}, axis, at))

@@ -1,5 +1,6 @@
 """What was run: overrides, times, ways, gains, and the speed of the tool beside the programmed."""
 
+import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from motionfmu.columns import ROWS
 from motionfmu.contour import ContourResult
+from motionfmu.extras import Missing
 from motionfmu.linear import LoopGain, gain_of
 from motionfmu.linear.gains import in_lines
 from motionfmu.report.sheet import Sheet
@@ -65,7 +67,9 @@ class Ran:
 def ran_of(result: Result, contour: ContourResult | None) -> Ran:
     """Look at how a run went."""
     scenario, given = result.scenario, result.options.get("set", {})
-    gains = gain_of(scenario, given) if isinstance(scenario, Scenario) else ()
+    gains: tuple[LoopGain, ...] = ()
+    with contextlib.suppress(Missing):
+        gains = gain_of(scenario, given) if isinstance(scenario, Scenario) else ()
     tool, source, over = _tool(result, contour)
     way, began = None, None
     if contour is not None:

@@ -94,11 +94,13 @@ class Sheet:
 
 
 def _plotly() -> str:
-    """The script that draws plots, as plotly's package has it; to import that is not needed."""
-    found = find_spec("plotly")
-    assert found is not None and found.submodule_search_locations
-    place = Path(found.submodule_search_locations[0])
-    return (place / "package_data/plotly.min.js").read_text(encoding="utf-8")
+    """The script that draws plots: the wheel's, else that of plotly's package."""
+    own = Path(__file__).parent / "plotly"
+    if not own.is_dir():
+        found = find_spec("plotly")
+        assert found is not None and found.submodule_search_locations
+        own = Path(found.submodule_search_locations[0]) / "package_data"
+    return (own / "plotly.min.js").read_text(encoding="utf-8")
 
 
 def _verdict(checks: Sequence[Check]) -> str:

@@ -66,3 +66,15 @@ def layout(height: int, **more: Any) -> dict[str, Any]:
         },
     }
     return plain | more
+
+
+def heat(share: float) -> str:
+    """The colour of `HEAT` at a share of the way through it, of 256 there are."""
+    at = min(int(share * 256), 255) / 255 * (len(HEAT) - 1)
+    first = min(int(at), len(HEAT) - 2)
+    pairs = (
+        (int(a[k : k + 2], 16), int(b[k : k + 2], 16))
+        for a, b in [HEAT[first : first + 2]]
+        for k in (1, 3, 5)
+    )
+    return "#" + "".join(f"{round(a + (at - first) * (b - a)):02x}" for a, b in pairs)

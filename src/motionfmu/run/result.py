@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from motionfmu.columns import ROWS, Columns, forget
 from motionfmu.errors import InputError, NoNumber
+from motionfmu.extras import needed
 from motionfmu.run import figures, signals, waveforms
 from motionfmu.run.checks import TABLES, Verdict, is_figure, judge
 from motionfmu.run.figures import Chart
@@ -43,6 +44,8 @@ def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
 
 def _report(module: str) -> Any:
     """A module of the report: what a result shows of itself is made there, where it is asked."""
+    if module == "notebook":
+        needed("report")
     return import_module(f"motionfmu.report.{module}")
 
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.errors import InputError, UnknownSignal, suggestion
+from motionfmu.errors import UnknownSignal, suggestion
+from motionfmu.extras import needed
 
 if TYPE_CHECKING:
     import pandas
@@ -72,10 +73,9 @@ def table(
     time: NDArray[np.float64], signals: Signals, names: str | Iterable[str] | None
 ) -> "pandas.DataFrame":
     """A column an element over time, in memory of its own."""
-    try:
-        import pandas
-    except ImportError:
-        raise InputError('a table needs pandas: pip install "motionfmu[pandas]"') from None
+    needed("pandas")
+    import pandas
+
     columns: dict[str, NDArray[Any]] = {}
     for name in signals if names is None else matching(signals, names):
         columns |= elements(signals, name)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from motionfmu.errors import InputError
+from motionfmu.extras import needed
 from motionfmu.study.processes import Task
 from motionfmu.study.study import Job
 from motionfmu.study.worker import CRASH, Row, chunk
@@ -29,11 +30,9 @@ def rows(job: Job, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]:
     The workers import motionfmu and read the scenario and the FMUs from their own disk, at the
     same path; a worker whose files differ ends the study, as does a missing dask.distributed.
     """
-    try:
-        import distributed
-    except ImportError:
-        text = '--scheduler: dask.distributed is missing; pip install "motionfmu[dask]"'
-        raise InputError(text) from None
+    needed("dask")
+    import distributed
+
     try:
         client: Any = distributed.Client(scheduler, timeout=TIMEOUT, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:

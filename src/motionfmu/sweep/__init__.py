@@ -1,5 +1,10 @@
 """Studies: one scenario run at many points, on all cores or a cluster."""
 
+# ruff: noqa: E402
+from motionfmu.extras import needed
+
+needed("study")
+
 from motionfmu.study.outcome import Outcome, Ways
 from motionfmu.study.study import Study, study
 from motionfmu.sweep.conduct import conduct

@@ -1,5 +1,10 @@
 """Servo gains for a scenario's own path: NLP, global check, FMU verification."""
 
+# ruff: noqa: E402
+from motionfmu.extras import needed
+
+needed("tune")
+
 from motionfmu.tune.problem import Problem, problem, read
 from motionfmu.tune.result import Tuned
 from motionfmu.tune.solve import RanAway

@@ -3,27 +3,21 @@
 from collections.abc import Sequence
 from html import escape
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
-from matplotlib.colors import LinearSegmentedColormap, to_hex
-from matplotlib.figure import Figure
 
 from motionfmu.gcode import Program, Stroke, Summary
 from motionfmu.report.packed import packed
 from motionfmu.report.path_plot import CAMERA, scene
-from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, GRID, HEAT, MUTED, RAPID, axis, layout
+from motionfmu.report.style import AXES, RAPID, axis, heat, layout
 from motionfmu.report.tables import cards, table
 
-PICTURES = ("path.png", "path.svg")
 NAMES = "XYZUVW"
 SHORT = 24  # [characters] a text that is told again behind what is wrong with it
-# Colours of the feed, and how many spans of it are told apart.
-HEATS, LEVELS = LinearSegmentedColormap.from_list("feed", HEAT), 8
+# Spans of the feed that are told apart by their colours.
+LEVELS = 8
 FOOTER = (
     "Times are those of the trajectory planner with the limits given; stops, tool changes and waits"
     " for inputs take none. Coordinates are the machine's. Every number is in"
@@ -97,7 +91,7 @@ def _tools(summary: Summary) -> str:
     return table(("tool", "time", "way with feed", "deepest Z [mm]"), rows)
 
 
-def _space(drawn: Sequence[Stroke]) -> bool:
+def is_space(drawn: Sequence[Stroke]) -> bool:
     """Whether the path leaves a plane along X and Y."""
     feeds = [s.points[:, 2] for s in drawn if not s.rapid] or [s.points[:, 2] for s in drawn]
     every = np.concatenate(feeds)
@@ -144,7 +138,7 @@ def _by_feed(feeds: Sequence[Stroke]) -> list[Group]:
     level = np.clip(np.searchsorted(edges, values, "right") - 1, 0, LEVELS - 1)
     if len(single) <= LEVELS:
         names, level = [f"F{v:.4g}" for v in single], np.searchsorted(single, values)
-    shades = [to_hex(HEATS(k / max(1, len(names) - 1))) for k in range(len(names))]
+    shades = [heat(k / max(1, len(names) - 1)) for k in range(len(names))]
     return [
         (name, [p for p, at in zip(pieces, level, strict=True) if at == k], shades[k])
         for k, name in enumerate(names)
@@ -154,7 +148,7 @@ def _by_feed(feeds: Sequence[Stroke]) -> list[Group]:
 
 def figure(drawn: Sequence[Stroke], by_feed: bool) -> dict[str, Any]:
     """The path for plotly, by tool or by feed."""
-    space = _space(drawn)
+    space = is_space(drawn)
     kind = "scatter3d" if space else "scatter"
     plain = {"type": kind, "mode": "lines"}
     traces: list[dict[str, Any]] = []
@@ -193,44 +187,6 @@ def figure(drawn: Sequence[Stroke], by_feed: bool) -> dict[str, Any]:
 
 def _ends(points: Any, space: bool) -> dict[str, Any]:
     return {a: packed(points[:, i]) for i, a in enumerate("xyz"[: 3 if space else 2])}
-
-
-def write_picture(name: str, drawn: Sequence[Stroke], folder: Path) -> None:
-    """Draw the path by tool, as `PICTURES`."""
-    space = bool(drawn) and _space(drawn)
-    with matplotlib.rc_context(PLAIN | STABLE):
-        shown = Figure(figsize=(9.0, 7.5), layout="constrained")
-        axes: Any = shown.add_subplot(projection="3d" if space else None)
-        width = 3 if space else 2
-        told: set[str] = set()
-        shades = colors(drawn)
-        for s in drawn:
-            label = "rapid" if s.rapid else f"T{s.tool}" if s.tool else "feed"
-            look: dict[str, Any] = (
-                {"color": RAPID, "lw": 0.9, "ls": (0, (3, 3)), "zorder": 1}
-                if s.rapid
-                else {"color": shades[s.tool], "lw": 1.4, "zorder": 3}
-            )
-            axes.plot(*s.points.T[:width], label="" if label in told else label, **look)
-            told.add(label)
-        for letter, title in zip("xyz", NAMES[:width], strict=False):
-            getattr(axes, f"set_{letter}label")(f"{title} [mm]")
-        if space:
-            axes.computed_zorder = False
-            axes.set_aspect("equal")
-        else:
-            axes.set_aspect("equal", adjustable="datalim")
-            axes.grid(color=GRID, lw=0.8)
-            axes.set_axisbelow(True)
-            for side in axes.spines.values():
-                side.set_visible(False)
-            axes.tick_params(length=0)
-        axes.set_title(name, loc="left", fontsize=14, fontweight="bold")
-        if told:
-            axes.legend(loc="upper right", frameon=False, fontsize=10, labelcolor=MUTED)
-        for file in PICTURES:
-            plain = {"Date": None} if file.endswith("svg") else None
-            shown.savefig(folder / file, dpi=160, metadata=plain)
 
 
 def fault_lines(name: str, program: Program) -> list[str]:

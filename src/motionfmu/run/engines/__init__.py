@@ -10,6 +10,7 @@ from pathlib import Path
 
 from motionfmu.compiler import NotCompiled, there
 from motionfmu.errors import InputError, suggestion
+from motionfmu.extras import needed
 from motionfmu.run.engines.job import Engine, Job, Progress, Ran
 from motionfmu.scenarios.fmus import is_foreign
 from motionfmu.scenarios.system import System
@@ -50,6 +51,7 @@ def _python(job: Job) -> Engine:
 
 
 def _fmpy(job: Job) -> Engine:
+    needed("fmpy")
     from motionfmu.run.engines import fmpy_container
 
     return fmpy_container.opened(job)
@@ -84,15 +86,15 @@ def opened(engine: str | None, job: Job) -> Engine:
         return ENGINES[engine](job)
     if unfused(job.system):
         return _native(job)
-    from motionfmu.fused import NotFused
+    from motionfmu.fused import NoCompiler, NotFused
     from motionfmu.run.engines import fused
 
     try:
         return fused.opened(job)
+    except (NoCompiler, NotCompiled) as error:
+        return _Instead(_native(job), f"engine native instead of fused: {error}")
     except NotFused:
         return _native(job)
-    except NotCompiled as error:
-        return _Instead(_native(job), f"engine native instead of fused: {error}")
 
 
 def usual(system: System) -> tuple[str, str]:

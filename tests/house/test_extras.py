@@ -1,0 +1,71 @@
+"""What is not in the base of the package is told by the extra that brings it, at once."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+from console import within
+
+import motionfmu
+from motionfmu import extras
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+LARGE = "distributed|pandas|scipy|matplotlib|casadi|control|pyarrow|starlette|fmpy|ziglang"
+
+
+def names(requirements: list[str]) -> set[str]:
+    return {re.split(r"[<>=~]", r)[0].lower() for r in requirements}
+
+
+def test_extras_are_those_of_the_project() -> None:
+    listed = {k: v for k, v in PROJECT["optional-dependencies"].items() if k != "dev"}
+    assert set(listed) == set(extras.EXTRAS)
+    for name, requirements in listed.items():
+        assert names(requirements) == set(extras.EXTRAS[name].packages)
+    large = {p for extra in extras.EXTRAS.values() for p in extra.packages}
+    assert not names(PROJECT["dependencies"]) & large and large >= set(LARGE.split("|"))
+
+
+@pytest.fixture
+def base(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without what extras bring, as far as is looked."""
+    large = {p for extra in extras.EXTRAS.values() for p in extra.packages}
+    found = extras.find_spec
+    monkeypatch.setattr(extras, "find_spec", lambda name: None if name in large else found(name))
+
+
+@pytest.mark.parametrize(
+    ("line", "extra"),
+    [
+        ("tune circle", "tune"),
+        ("margins circle", "tune"),
+        ("contour mismatch_line", "report"),
+        ("sweep circle", "study"),
+        ("run circle --pictures", "report"),
+        ("run schedule --engine fmpy", "fmpy"),
+        ("card plan none.plt -c none.toml", "card"),
+        ("card show none.plt --picture a.png", "report"),
+    ],
+)
+def test_a_missing_extra_is_one_message(base, tmp_path: Path, line: str, extra: str) -> None:
+    done = within(*line.split(), folder=tmp_path)
+    assert done.returncode == 2 and done.stdout == ""
+    told = f'{", ".join(extras.EXTRAS[extra].packages)}: pip install "motionfmu[{extra}]"\n'
+    assert done.stderr.count("\n") == 1 and done.stderr.endswith(f" needs {told}")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_result_says_what_its_pictures_and_tables_need(base) -> None:
+    result = motionfmu.load("schedule").run(stop=0.1)
+    for ask, extra in ((result.plot, "report"), (result.to_pandas, "pandas")):
+        with pytest.raises(extras.Missing, match=rf"motionfmu\[{extra}\]"):
+            ask()
+
+
+def test_gains_that_are_not_kept_are_left_out(base, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setenv("MOTIONFMU_CACHE", str(tmp_path / "cache"))
+    told = " ".join(within("info", "circle").stdout.split())
+    assert " gain in 1/s: a linear model needs casadi, control, " in told
+    assert 'pip install "motionfmu[tune]" ' in told

@@ -1,0 +1,123 @@
+"""The wheel in an environment outside the tree that has the packages of the base and no others."""
+
+import os
+import re
+import subprocess
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+import pytest
+import wheel
+from conftest import ROOT
+
+import motionfmu
+
+PLAIN = {"PATH": os.environ["PATH"], "COLUMNS": "160"}
+
+
+def base() -> set[str]:
+    """Distributions that the base asks for, and those that they do."""
+    found: set[str] = set()
+    text = (ROOT / "pyproject.toml").read_text()
+    waiting = re.findall(r'"([\w.-]+)', text.split("\ndependencies = [", 1)[1].split("]", 1)[0])
+    while waiting:
+        name = re.sub(r"[-_.]+", "-", waiting.pop()).lower()
+        if name not in found:
+            found.add(name)
+            rows = metadata.requires(name) or []
+            asked = [row for row in rows if "extra ==" not in row and "system ==" not in row]
+            waiting += [re.split(r"[^\w.-]", row)[0] for row in asked]
+    return found
+
+
+class Installed:
+    """An environment with the wheel."""
+
+    def __init__(self, folder: Path) -> None:
+        # from the source distribution: so that has all that a wheel needs
+        made = wheel.build(wheel.source(folder), ROOT / "build", folder / "made")
+        self.file, self.home, self.empty = made, folder / "home", folder / "empty"
+        python = wheel.environment(folder / "env")
+        self.site = wheel.site(python)
+        for name in base():
+            for file in metadata.files(name) or ():
+                top, place = file.parts[0], Path(str(file.locate())).resolve()
+                target = self.site / top
+                if top != ".." and not target.exists():
+                    target.symlink_to(
+                        place.parents[len(file.parts) - 2] if file.parts[1:] else place
+                    )
+        self.others = wheel.sizes(self.site)
+        wheel.output(*wheel.PIP, "--python", python, "install", "--no-deps", "--no-index", made)
+        self.own = wheel.sizes(self.site)["motionfmu"]
+        self.bin = python.parent
+        for place in (self.home, self.empty):
+            place.mkdir()
+
+    def run(self, *line: str, **more: str) -> subprocess.CompletedProcess[str]:
+        """A command of the environment, in the empty folder."""
+        whole = [self.bin / line[0], *line[1:]]
+        env = PLAIN | {"HOME": str(self.home)} | more
+        return subprocess.run(whole, cwd=self.empty, env=env, capture_output=True, text=True)
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Installed:
+    return Installed(tmp_path_factory.mktemp("wheel"))
+
+
+pytestmark = pytest.mark.xdist_group("wheel")
+
+
+def test_the_base_is_small(installed: Installed) -> None:
+    # Compiled text is another 30 % of a package's own; that of all platforms' FMUs 12 MB more.
+    assert 40.0 < sum(installed.others.values()) < 110.0
+    assert 10.0 < installed.own < 30.0
+    assert installed.others.keys() >= {"numpy", "pydantic"}
+    assert not installed.others.keys() & {"fmpy", "scipy", "matplotlib", "casadi", "plotly"}
+
+
+def test_the_demo_runs_from_an_empty_folder(installed: Installed) -> None:
+    before = {p: p.stat().st_mtime_ns for p in installed.site.glob("motionfmu/**/*")}
+    done = installed.run("motionfmu", "run", "circle")
+    assert done.returncode == 0, done.stderr
+    assert "circle: all checks hold\n" in done.stdout and "warning" not in done.stdout
+    assert [p.name for p in installed.empty.iterdir()] == ["results"]
+    folder = installed.empty / "results/circle"
+    assert "Plotly" in (folder / "report.html").read_text()
+    assert '"engine": "fused"' in (folder / "result.json").read_text()
+    here = motionfmu.load("circle").run()
+    for name, values in here.signals.items():
+        assert np.load(folder / f"signals/{name}.npy").tobytes() == values.tobytes()
+    after = {p: p.stat().st_mtime_ns for p in installed.site.glob("motionfmu/**/*")}
+    new = {p for p in after.keys() - before.keys() if "__pycache__" not in p.parts}
+    assert not new and {p.name for p in before if before[p] != after[p]} <= {"__pycache__"} | {
+        p.parent.name for p in after.keys() - before.keys()
+    }
+
+
+def test_without_a_compiler_the_container_runs_and_says_so_once(installed: Installed) -> None:
+    line = ("motionfmu", "run", "circle", "--stop", "0.1", "--out", "slow")
+    done = installed.run(*line, PATH="/nowhere", CC="")
+    assert done.returncode in (0, 1), done.stderr
+    assert done.stdout.count("there is no C compiler") == 1
+    assert (installed.empty / "slow/report.html").is_file()
+
+
+def test_what_else_the_base_does(installed: Installed) -> None:
+    known = installed.run("motionfmu", "examples").stdout
+    assert "circle " in known and "student_backlash" in known
+    done = installed.run("motionfmu", "examples", "--copy", "schedule", "copies")
+    assert done.returncode == 0 and (installed.empty / "copies/schedule/wave.ngc").is_file()
+    code = (
+        "import motionfmu.mcc as m; c = m.VirtualCard(feed=1200, p_gain=200); "
+        "c.mcc.line([1, 0, 0, 0, 0, 0]); print(c.run_until_stop().pulses[0])"
+    )
+    assert installed.run("python", "-c", code).stdout == "1000\n"
+    told = installed.run("motionfmu", "tune", "circle")
+    assert told.returncode == 2 and told.stderr.endswith('pip install "motionfmu[tune]"\n')
+    code = "import motionfmu.tune"
+    assert 'motionfmu[tune]"' in installed.run("python", "-c", code).stderr.splitlines()[-1]
+    made = installed.run("motionfmu", "export", "circle", "--ssp")
+    assert made.returncode == 0 and (installed.empty / "circle.ssp").is_file()
