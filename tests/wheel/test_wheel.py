@@ -41,13 +41,10 @@ class Installed:
         python = wheel.environment(folder / "env")
         self.site = wheel.site(python)
         for name in base():
-            for file in metadata.files(name) or ():
-                top, place = file.parts[0], Path(str(file.locate())).resolve()
-                target = self.site / top
-                if top != ".." and not target.exists():
-                    target.symlink_to(
-                        place.parents[len(file.parts) - 2] if file.parts[1:] else place
-                    )
+            there = metadata.distribution(name)
+            tops = {file.parts[0] for file in there.files or ()} - {".."}
+            for top in tops - {p.name for p in self.site.iterdir()}:
+                (self.site / top).symlink_to(Path(str(there.locate_file(top))).resolve())
         self.others = wheel.sizes(self.site)
         wheel.output(*wheel.PIP, "--python", python, "install", "--no-deps", "--no-index", made)
         self.own = wheel.sizes(self.site)["motionfmu"]
