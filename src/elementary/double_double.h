@@ -48,6 +48,12 @@ static inline double dd_power(int k)
     return dd_of_bits((uint64_t)(k + 1023) << 52);
 }
 
+/* The nearest number of 24 bits, of which products of two are exact; 2^-126 < |x| < 2^127. */
+static inline double dd_half(double x)
+{
+    return (double)(float)x;
+}
+
 /* a + b, where a is 0 or |a| >= |b|. */
 static inline struct dd dd_fast(double a, double b)
 {

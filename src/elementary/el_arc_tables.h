@@ -63,9 +63,11 @@ static const double ODD_INVERSES[9][2] = {
     }
 };
 
-/* pi / 2 */
-static const double ARC_QUARTER[2] = {
-    0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54
+/* 0 and pi/2 less, pi/2 and pi less: in pairs, and a sign */
+static const double ARC_STARTS[4][3] = {
+    { 0.0, 0.0, 0x1p+0 }, { 0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, -0x1p+0 }, {
+    0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53, -0x1p+0 }, { 0x1.921fb54442d18p+0,
+    0x1.1a62633145c07p-54, 0x1p+0 }
 };
 
 #endif

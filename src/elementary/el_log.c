@@ -20,7 +20,7 @@ static inline struct split split_of(double x)
 {
     const uint64_t bits = dd_bits(x), above = bits - LOWEST;
     const int64_t k = (int64_t)above >> 52;
-    const double m = dd_of_bits(bits - ((uint64_t)k << 52)), half = (double)(float)m;
+    const double m = dd_of_bits(bits - ((uint64_t)k << 52)), half = dd_half(m);
     const double *row = LOGARITHMS[above >> 45 & 127];
     return (struct split){ (double)k, row, row[0] * half - 1.0, row[0] * (m - half) };
 }

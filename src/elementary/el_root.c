@@ -5,17 +5,12 @@
 #include "double_double.h"
 #include "el_cbrt_tables.h"
 
-static inline double half_of(double x)
-{
-    return (double)(float)x;
-}
-
 /* x >= y >= 0, 2^-100 < x < 2^100. With h the rounded root and d = h - x, which is exact, it lacks
  * y^2 - 2 x d - d^2 over 2 h. */
 static inline double long_side(double x, double y)
 {
     const double h = sqrt(x * x + y * y), d = h - x;
-    const double xh = half_of(x), yh = half_of(y), dh = half_of(d), dl = d - dh;
+    const double xh = dd_half(x), yh = dd_half(y), dh = dd_half(d), dl = d - dh;
     const double low = (y - yh) * (y + yh) - dl * (d + dh) - 2.0 * (xh * dl + (x - xh) * d);
     return h + ((yh * yh - 2.0 * xh * dh - dh * dh) + low) / (2.0 * h);
 }
@@ -55,8 +50,8 @@ double el_cbrt(double x)
     const double *c = CBRT_START, v = m * dd_power((int)(e % 3));       /* m 2^0..2 */
     double t = CBRTS[e % 3] * (c[0] + m * (c[1] + m * (c[2] + m * (c[3] + m * c[4]))));
     const double cube = t * t * t;
-    t = half_of(t * (cube + 2.0 * v) / (2.0 * cube + v));   /* Halley: 10 bits become 30 */
-    const double square = t * t, first = half_of(square), second = square - first;  /* exact */
+    t = dd_half(t * (cube + 2.0 * v) / (2.0 * cube + v));   /* Halley: 10 bits become 30 */
+    const double square = t * t, first = dd_half(square), second = square - first;  /* exact */
     const double share = ((v - first * t) - second * t) / (3.0 * square * t);
     /* (t + t s)^3 = v: s + s^2 + s^3 / 3 is the share */
     const double y = t + t * share * (1.0 - share * (1.0 - 5.0 / 3.0 * share));

@@ -196,7 +196,9 @@ def arc_tables() -> Iterable[str]:
     yield numbers("(atan z - z) / z^3 in z^2", "ATAN_REST", rest)
     yield table("atan(i / 64)", "ANGLES", [pair(mpmath.atan(mpf(i) / 64)) for i in range(65)])
     yield table("1 / (2 n + 1)", "ODD_INVERSES", inverses)
-    yield numbers("pi / 2", "ARC_QUARTER", pair(mp.pi / 2))
+    turns = ((0, 1), (1, -1), (2, -1), (1, 1))
+    starts = [[*pair(mp.pi / 2 * quarters), float(sign)] for quarters, sign in turns]
+    yield table("0 and pi/2 less, pi/2 and pi less: in pairs, and a sign", "ARC_STARTS", starts)
 
 
 def series_tables() -> Iterable[str]:
