@@ -118,13 +118,9 @@ static inline struct dd dd_sqrt(struct dd a)
     return h == 0.0 ? a : dd_fast(h, (((a.h - p.h) - p.l) + a.l) / (2.0 * h));
 }
 
-/* h + l rounded, if every number from h + l - error to h + l + error rounds to the same.
- * Tests of what comes after define DD_NEVER_SETTLED. */
+/* h + l rounded, if every number from h + l - error to h + l + error rounds to the same. */
 static inline bool dd_settled(double h, double l, double error, double *y)
 {
-#ifdef DD_NEVER_SETTLED
-    error = NAN;
-#endif
     *y = h + (l - error);
     return *y == h + (l + error);
 }

@@ -6,6 +6,7 @@
  * lack goes into the bracket, which is 2^-13 of the result. */
 #include "elementary.h"
 #include "double_double.h"
+#include "el_lanes.h"
 #include "el_series_tables.h"
 #include "el_sine_tables.h"
 
@@ -178,6 +179,77 @@ struct el_turn el_sincos(double x)
     t.cosine = slow(x, 1);
     return t;
 }
+
+void el_turns_each(int n, const double *restrict angle, double *restrict sine,
+                   double *restrict cosine)
+{
+    for (int i = 0; i < n; i++) {
+        const struct el_turn t = el_sincos(angle[i]);
+        sine[i] = t.sine;
+        cosine[i] = t.cosine;
+    }
+}
+
+#ifdef EL_WIDE
+typedef double four __attribute__((vector_size(32)));
+typedef int64_t four_bits __attribute__((vector_size(32)));
+
+EL_AVX2 static inline four column(const int64_t row[4], int j)
+{
+    return (four){ SINES[row[0]][j], SINES[row[1]][j], SINES[row[2]][j], SINES[row[3]][j] };
+}
+
+EL_AVX2 static inline four size_of(four x)
+{
+    return (four)((four_bits)x & INT64_MAX);
+}
+
+/* What el_sincos does in its quick way; the lanes in which that is not enough. */
+EL_AVX2 static inline four_bits quick_four(four x, four *sine, four *cosine)
+{
+    const four_bits size = (four_bits)size_of(x), tiny = size < (int64_t)LEAST << 52;
+    const four turned = x * TURN_STEPS[0] + 0x1.8p52, k = turned - 0x1.8p52;
+    const four first = x - k * TURN_STEP[0], second = k * TURN_STEP[1];
+    const four h = (first - second + 0x1.8p19) - 0x1.8p19;
+    const four l = (first - h - second) - k * TURN_STEP[2], r = h + l, u = r * r;
+    const four s = l + r * u * (SINE_REST[0] + u * (SINE_REST[1] + u * SINE_REST[2]));
+    const four c = u * (COSINE_REST[0] + u * (COSINE_REST[1] + u * COSINE_REST[2]));
+    const four_bits k0 = (four_bits)turned & 255, k1 = (k0 + 64) & 255;
+    const int64_t at[4] = { k0[0], k0[1], k0[2], k0[3] }, on[4] = { k1[0], k1[1], k1[2], k1[3] };
+    const four sh = column(at, 0), sl = column(at, 1), sd = column(at, 2);
+    const four ch = column(on, 0), cl = column(on, 1), cd = column(on, 2);
+    const four p = ch * h, ph = sh + p, pl = (p - (ph - sh)) + (sl + cl * h + cd * s + sd * c);
+    const four q = sh * h, qh = ch - q, ql = ((ch - qh) - q) + (cl - sl * h - sd * s + cd * c);
+    const four pe = size_of(ph) * PART + REST, qe = size_of(qh) * PART + REST;
+    const four y = ph + (pl - pe), z = qh + (ql - qe);
+    *sine = (four)((tiny & (four_bits)x) | (~tiny & (four_bits)y));
+    *cosine = z;
+    return ((y != ph + (pl + pe)) & ~tiny) | (z != qh + (ql + qe)) | (size >= (int64_t)MOST << 52);
+}
+
+EL_AVX2 void el_turns_avx2(int n, const double *restrict angle, double *restrict sine,
+                           double *restrict cosine)
+{
+    int i = 0;
+    for (; i + 4 <= n; i += 4) {
+        four x, s, c;
+        memcpy(&x, angle + i, sizeof x);
+        const four_bits open = quick_four(x, &s, &c);
+        memcpy(sine + i, &s, sizeof s);
+        memcpy(cosine + i, &c, sizeof c);
+        if (open[0] | open[1] | open[2] | open[3]) {
+            el_turns_each(4, angle + i, sine + i, cosine + i);
+        }
+    }
+    el_turns_each(n - i, angle + i, sine + i, cosine + i);
+}
+#else
+void el_turns_avx2(int n, const double *restrict angle, double *restrict sine,
+                   double *restrict cosine)
+{
+    el_turns_each(n, angle, sine, cosine);
+}
+#endif
 
 double el_tan(double x)
 {

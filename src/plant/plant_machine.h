@@ -4,13 +4,11 @@
 
 #include <stdbool.h>
 
-/* PLANT_PLAIN: for what every processor has. Windows: gcc aligns no vectors on its stack. */
-#if defined(__GNUC__) && defined(__x86_64__) && !defined(_WIN32) && !defined(PLANT_PLAIN)
+#include "el_lanes.h"
+
+#ifdef EL_WIDE
 #include <cpuid.h>
 #include <stdatomic.h>
-
-/* A function for processors with AVX2. */
-#define PLANT_AVX2 __attribute__((target("avx2")))
 
 /* Do the processor and the system that runs on it have AVX2? (Intel SDM 1, 14.7.1) */
 static inline bool plant_ask_avx2(void)
@@ -36,8 +34,6 @@ static inline bool plant_has_avx2(void)
     return found > 0;
 }
 #else
-#define PLANT_AVX2
-
 static inline bool plant_has_avx2(void)
 {
     return false;

@@ -101,18 +101,22 @@ static void plant_step_plain(struct plant_block *b, double h)
 }
 
 /* Also what is between the rates is of wide vectors: a wide load waits for two narrow stores. */
-PLANT_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
+EL_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
 {
 #define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_avx2, b, h))
     switch (b->lanes) { PLANT_WIDTHS(STEP) }
 #undef STEP
 }
 
+/* One axis of several, or two, have not enough to do at once for wide vectors. */
+static bool plant_wide(const struct plant_block *b)
+{
+    return (b->lanes > 2 || PLANT_LANES == 1) && plant_has_avx2();
+}
+
 static void plant_step(struct plant_block *b, double h)
 {
-    /* One axis of several, or two, have not enough to do at once for wide vectors. */
-    const bool wide = b->lanes > 2 || PLANT_LANES == 1;
-    (wide && plant_has_avx2() ? plant_step_avx2 : plant_step_plain)(b, h);
+    (plant_wide(b) ? plant_step_avx2 : plant_step_plain)(b, h);
 }
 
 /* One step of h [s] by Bogacki and Shampine (1989) to y; its error, 1 being allowed. */
@@ -252,7 +256,7 @@ static int plant_publish(struct fmu *f, int64_t now)
     for (int n = 0; n < f->s.m.blocks; n++) {
         const struct plant_block *b = &f->s.m.block[n];
         double y[PLANT_OUTPUT_SIZE];
-        plant_outputs(b->lanes, b->x, b->u, b->c, y);
+        (plant_wide(b) ? plant_outputs_avx2 : plant_outputs)(b->lanes, b->x, b->u, b->c, y);
         if (!plant_finite(b, y)) {
             return plant_refuse(f, b, y, now);
         }

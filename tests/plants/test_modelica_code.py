@@ -74,7 +74,7 @@ def test_every_processor_gives_the_same_bits(tmp_path, fmu, axes, moves):
     variables = fmu_toml.load(toml).variables
     outputs = [v.name for v in variables if v.causality == "output"]
     shutil.copytree(ROOT / "build/gen" / fmu, tmp_path, dirs_exist_ok=True)
-    libraries = [Library(toml, tmp_path, f"-DPLANT_{name}") for name in ("HERE", "PLAIN")]
+    libraries = [Library(toml, tmp_path, f"-DEL_{name}") for name in ("HERE", "PLAIN")]
     for used in axes:
         active = {"active": np.arange(6) < used} if used else {}
         runs = [Run(library, **active).set(**moves) for library in libraries]

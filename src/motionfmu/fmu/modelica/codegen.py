@@ -16,7 +16,7 @@ import casadi as ca
 
 from motionfmu.fmu.describe import Description
 from motionfmu.fmu.modelica import causal, description, stored
-from motionfmu.fmu.modelica.cprint import statements
+from motionfmu.fmu.modelica.cprint import TURNS, statements, turned
 from motionfmu.fmu.modelica.flat import Declaration
 from motionfmu.fmu.modelica.hoist import Split, split
 from motionfmu.fmu.modelica.nodes import STEPS, Node, Program, program
@@ -217,8 +217,13 @@ def _of_parameters(ode: Ode, equations: Split) -> str:
 
 
 def _loops(ode: Ode, equations: Split, used: tuple[int, ...]) -> list[str]:
-    """plant_rhs and plant_outputs: one loop over lanes each, for each number of them."""
+    """plant_rhs and plant_outputs for each number of lanes, each also for processors with AVX2.
+
+    Angles are one loop over lanes, all that needs their sines and cosines is another: between them
+    the angles of all lanes are turned at once.
+    """
     names = {_X: ode.states, _U: ode.inputs}
+    late = equations.late
 
     def lane(_: int, node: Node) -> str | None:
         if node.op != ca.OP_INPUT:
@@ -227,24 +232,40 @@ def _loops(ode: Ode, equations: Split, used: tuple[int, ...]) -> list[str]:
         name = f" /* {names[group][place].name} */" if group in names else ""
         return f"{_ARGUMENTS[group]}[{place} * lanes + i]{name}"
 
+    def loop(lines: list[str]) -> list[str]:
+        body = (f"    {line}" for line in lines)
+        return ["PLANT_ROLLED", "for (int i = 0; i < lanes; i++) {", *body, "}"]
+
     texts = []
-    for name, to, result in zip(
-        ("rhs", "outputs"), ("dx", "y"), equations.late.results, strict=True
-    ):
-        lines = statements(equations.late, result, lane)
-        lines += [f"{to}[{k} * lanes + i] = a{node};" for k, node in enumerate(result)]
+    for name, to, result in zip(("rhs", "outputs"), ("dx", "y"), late.results, strict=True):
+        angles = turned(late, result)
+        place = {a: k for k, a in enumerate(angles)}
+
+        def turn(k: int, node: Node, place: dict[int, int] = place) -> str | None:
+            if node.op in TURNS and node.args[0] in place:
+                return f"{TURNS[node.op]}[{place[node.args[0]]} * lanes + i]"
+            return lane(k, node)
+
+        body = []
+        if angles:
+            size = f"[{len(angles)} * PLANT_LANES]"
+            body = [f"double angle{size}, sine{size}, cosine{size};"]
+            lines = statements(late, angles, lane)
+            body += loop(lines + [f"angle[{place[a]} * lanes + i] = a{a};" for a in angles])
+            body.append(f"turns({len(angles)} * lanes, angle, sine, cosine);")
+        lines = statements(late, result, turn)
+        body += loop(lines + [f"{to}[{k} * lanes + i] = a{node};" for k, node in enumerate(result)])
         arguments = (
-            "(int lanes, const double *restrict x,\n    const double *restrict u, "
-            f"const double *restrict c, double *restrict {to})"
+            "const double *restrict x, const double *restrict u,\n"
+            f"    const double *restrict c, double *restrict {to})"
         )
-        loop = "for (int i = 0; i < lanes; i++) {"
-        body = ["PLANT_ROLLED", loop, *(f"    {line}" for line in lines), "}"]
-        cases = [f"case {w}: {name}({w}, x, u, c, {to}); break;" for w in used]
-        every = ["switch (lanes) {", *cases, "}"]
-        texts.append(_function(f"static PLANT_INLINE void {name}{arguments}", body))
-        texts.append(_function(f"void plant_{name}{arguments}", every))
-        if name == "rhs":
-            texts.append(_function(f"PLANT_AVX2 void plant_rhs_avx2{arguments}", every))
+        head = f"static PLANT_INLINE void {name}(int lanes, el_turns *turns,\n    {arguments}"
+        texts.append(_function(head, body))
+        for before, after, turns in (("", "", "each"), ("EL_AVX2 ", "_avx2", "avx2")):
+            call = f"{{0}}, el_turns_{turns}, x, u, c, {to}"
+            cases = [f"case {w}: {name}({call.format(w)}); break;" for w in used]
+            head = f"{before}void plant_{name}{after}(int lanes, {arguments}"
+            texts.append(_function(head, ["switch (lanes) {", *cases, "}"]))
     return texts
 
 
@@ -333,9 +354,11 @@ void plant_constants(const double *p, double *c);
 /* Quantity k of lane i at [k * lanes + i]. */
 void plant_rhs(int lanes, const double *restrict x, const double *restrict u,
     const double *restrict c, double *restrict dx);
-PLANT_AVX2 void plant_rhs_avx2(int lanes, const double *restrict x, const double *restrict u,
+EL_AVX2 void plant_rhs_avx2(int lanes, const double *restrict x, const double *restrict u,
     const double *restrict c, double *restrict dx);
 void plant_outputs(int lanes, const double *restrict x, const double *restrict u,
+    const double *restrict c, double *restrict y);
+EL_AVX2 void plant_outputs_avx2(int lanes, const double *restrict x, const double *restrict u,
     const double *restrict c, double *restrict y);
 
 /* d(rhs)/dx row by row, with each comparison decided by a bit of `branches`. */

@@ -38,7 +38,8 @@ _EXACT = "sqrt floor ceil"
 _ELEMENTARY = "sin cos tan asin acos atan sinh cosh tanh exp log"
 _TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f + "({0})" for f in _EXACT.split()})
 _TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f"el_{f}({{0}})" for f in _ELEMENTARY.split()})
-_TURN = {ca.OP_SIN: "sine", ca.OP_COS: "cosine"}
+# Of an angle, and what each is called in C.
+TURNS = {ca.OP_SIN: "sine", ca.OP_COS: "cosine"}
 
 
 def literal(value: float) -> str:
@@ -49,11 +50,41 @@ def literal(value: float) -> str:
     return f"(-{text})" if value < 0 else text
 
 
+def turned(program: Program, roots: Iterable[int]) -> list[int]:
+    """Nodes whose sine or cosine the nodes `roots` need and that need none themselves."""
+    needed = _needed(program, roots)
+    deep: set[int] = set()  # nodes that need a sine or cosine
+    angles: dict[int, None] = {}
+    for k in sorted(needed):
+        node = program.nodes[k]
+        if node.op in TURNS and node.args[0] not in deep:
+            angles[node.args[0]] = None
+        if node.op in TURNS or deep.intersection(node.args):
+            deep.add(k)
+    return list(angles)
+
+
+def _needed(
+    program: Program, roots: Iterable[int], leaf: Callable[[int, Node], str | None] | None = None
+) -> dict[int, str | None]:
+    """Nodes that the nodes `roots` need, each with the text of a leaf."""
+    stack = list(roots)
+    found: dict[int, str | None] = {}
+    while stack:
+        k = stack.pop()
+        if k in found:
+            continue
+        found[k] = leaf(k, program.nodes[k]) if leaf else None
+        if found[k] is None:
+            stack.extend(program.nodes[k].args)
+    return found
+
+
 def _sine_and_cosine(program: Program, nodes: Iterable[int]) -> dict[tuple[int, ...], int]:
     """The first node of each argument of which both are needed."""
     found: dict[tuple[int, ...], list[int]] = {}
     for k in sorted(nodes):
-        if program.nodes[k].op in _TURN:
+        if program.nodes[k].op in TURNS:
             found.setdefault(program.nodes[k].args, []).append(k)
     return {a: ks[0] for a, ks in found.items() if len({program.nodes[k].op for k in ks}) == 2}
 
@@ -66,23 +97,17 @@ def statements(
     `leaf` gives the C text of a node that stands for something already known, else None; it must
     know all inputs. An operation without a form in C is a ValueError.
     """
-    needed, stack, known = set(roots), list(roots), {}
-    while stack:
-        k = stack.pop()
-        known[k] = leaf(k, program.nodes[k])
-        fresh = [] if known[k] is not None else set(program.nodes[k].args) - needed
-        needed.update(fresh)
-        stack.extend(fresh)
+    known = _needed(program, roots, leaf)
     lines: list[str] = []
-    both = _sine_and_cosine(program, (k for k in needed if known[k] is None))
-    for k in sorted(needed):
+    both = _sine_and_cosine(program, (k for k, text in known.items() if text is None))
+    for k in sorted(known):
         node = program.nodes[k]
         text = known[k]
-        if text is None and node.args[:1] in both and node.op in _TURN:
+        if text is None and node.args[:1] in both and node.op in TURNS:
             a = node.args[0]
             if both[node.args[:1]] == k:
                 lines.append(f"const struct el_turn t{a} = el_sincos(a{a});")
-            text = f"t{a}.{_TURN[node.op]}"
+            text = f"t{a}.{TURNS[node.op]}"
         if text is None and node.op == ca.OP_CONST:
             text = literal(node.value)
         if text is None:
