@@ -39,7 +39,7 @@ test: build check               ## everything: style, C tests (also sanitized), 
 	@test -f build/asan/build.ninja || cmake --preset asan -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
 	@cmake --build build/asan
 	@ctest --test-dir build/asan -j 2 --output-on-failure
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25 --durations-min=5
 
 check: needs .venv/installed          ## formatting, lint, types
 	$(BIN)/ruff format --check src tests scenarios

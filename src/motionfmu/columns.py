@@ -162,11 +162,11 @@ def in_blocks(*arrays: NDArray[Any], back: int = 0) -> Iterator[tuple[NDArray[An
             forget(x)
 
 
-def forget(array: NDArray[Any]) -> None:
+def forget(array: Any) -> None:
     """Let go the pages of an array that a file has; they are read again when needed."""
-    base: Any = array
-    while isinstance(base, np.ndarray):
-        base = base.base
+    base = array
+    while (inner := getattr(base, "base", None)) is not None:
+        base = inner
     if isinstance(base, mmap.mmap) and hasattr(base, "madvise"):
         base.madvise(mmap.MADV_DONTNEED)
 

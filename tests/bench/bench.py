@@ -3,7 +3,7 @@
 Every time is processor time, the best of several rounds, and the rounds take turns, so that a busy
 machine slows all of them alike; instructions are counted beside. README.md beside this file says
 what each line means and where the time goes. `--renew` keeps the figures as those to compare with,
-`--quick` takes one round.
+`--quick` takes one round, `--long` long work alone.
 """
 
 import subprocess
@@ -19,6 +19,7 @@ import commands
 import counting
 import figures
 import kinematics
+import long_run
 import network
 import numpy as np
 import plans
@@ -316,4 +317,7 @@ def main(renew: bool) -> None:
 
 
 if __name__ == "__main__":
-    main(renew="--renew" in sys.argv[1:])
+    if "--long" in sys.argv:
+        figures.show(long_run.figures_of_long_work(), None, renew=False)
+    else:
+        main(renew="--renew" in sys.argv[1:])

@@ -214,7 +214,8 @@ class Arcs:
         middle = height / k - phase
         low, high = np.round(-phase / TURN), np.round((self.angle - phase) / TURN)
         nearest = np.clip(np.round(middle / TURN), low, high)
-        ratio = np.divide(stiff, pull, out=np.full_like(pull, np.inf), where=pull > 0.0)
+        with np.errstate(over="ignore"):  # what is too large is inf, as where nothing pulls
+            ratio = np.divide(stiff, pull, out=np.full_like(pull, np.inf), where=pull > 0.0)
         bend = np.arccos(np.maximum(-ratio, -1.0))  # where the slope is steepest
         limit = np.where(ratio < 1.0, bend, np.inf)
         found = []

@@ -121,8 +121,11 @@ def _size(found: Commanded) -> int:
 
 def _wait(run: ContourInput) -> float:
     """How long a command may be under way [s]."""
-    stock = FIFO_DEPTH if run.stock is None else float(np.max(run.stock))
-    return run.dda_time * (UNDER_WAY + stock)
+    stock = run.stock
+    if stock is None:
+        return run.dda_time * (UNDER_WAY + FIFO_DEPTH)
+    most = max(float(stock[own].max()) for own in blocks(len(stock), stock))
+    return run.dda_time * (UNDER_WAY + most)
 
 
 def _written(run: ContourInput) -> tuple[Index, Index]:

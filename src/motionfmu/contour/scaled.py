@@ -25,6 +25,11 @@ class Scaled:
         """Rows and columns."""
         return self.values.shape
 
+    @property
+    def base(self) -> Array:
+        """What it is made of, as of a view of an array."""
+        return self.values
+
     def __len__(self) -> int:
         return len(self.values)
 
@@ -69,4 +74,4 @@ def blocks(count: int, *passed: Any) -> Iterator[slice]:
     for first in range(0, count, BLOCK):
         yield slice(first, min(first + BLOCK, count))
         for array in passed:
-            forget(array.values if isinstance(array, Scaled) else array)
+            forget(array)

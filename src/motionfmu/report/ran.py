@@ -98,8 +98,8 @@ def ran_of(result: Result, contour: ContourResult | None) -> Ran:
 def _tool(result: Result, contour: ContourResult | None) -> tuple[Read | None, str, float]:
     """Positions of the tool (n, 3) [mm], what they are from, and a time for its speed [s]."""
     if contour is not None:
-        actual = contour.run.actual
-        return lambda first, last: actual[first:last][:, :3], "positions", OVER
+        actual = reader(contour.run.actual)
+        return lambda first, last: actual(first, last)[:, :3], "positions", OVER
     name = tool_signal(result)
     if name is not None and name in result.signals:
         tool = position(result, name)

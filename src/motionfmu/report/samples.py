@@ -2,13 +2,13 @@
 
 import base64
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.run.decimate import at, few, reader
+from motionfmu.run.decimate import MOST, Read, at, few, reader
 
 LEVEL = 1  # of zlib: a quarter of the time of its usual one, a tenth larger
 # 32 bits do for a real number if they move it by less than this part of the curve's height.
@@ -27,14 +27,25 @@ class Samples:
     lines: NDArray[Any] | None = None  # (n,) of the program, said beside the value
     all: bool = True  # none of the recorded samples are left out
 
+    @classmethod
+    def made(
+        cls, time: NDArray[Any], read: Read, steps: bool = False, lines: Read | None = None
+    ) -> "Samples":
+        """The samples that a page holds of a curve that is made block by block."""
+        kept = few(len(time), read, steps)
+        if kept is None:
+            every = 0, len(time)
+            return cls(time, read(*every), steps, lines=None if lines is None else lines(*every))
+        said = None if lines is None else at(lines, kept)
+        return cls(time[kept], at(read, kept), steps, lines=said, all=False)
+
     def few(self) -> "Samples":
         """The samples that a page holds: of very many the peaks."""
-        read = reader(self.values)
-        kept = few(len(self.time), read, self.steps)
-        if kept is None:
+        if len(self.time) <= MOST:
             return self
-        lines = None if self.lines is None else self.lines[kept]
-        return Samples(self.time[kept], at(read, kept), self.steps, self.dots, lines, all=False)
+        lines = None if self.lines is None else reader(self.lines)
+        made = Samples.made(self.time, reader(self.values), self.steps, lines)
+        return replace(made, dots=self.dots)
 
 
 def sampled(samples: Samples, name: str, color: str, **line: Any) -> dict[str, Any]:

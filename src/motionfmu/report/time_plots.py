@@ -11,6 +11,7 @@ from motionfmu.contour.arcs import Array
 from motionfmu.report.numbers import label, length, unit
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID, axis, layout
+from motionfmu.run.decimate import Read, ends, reader
 
 Figure = dict[str, Any]
 
@@ -34,20 +35,28 @@ class Speeds:
 def error_figure(contour: ContourResult) -> Figure:
     """Contour error against time."""
     track, time = contour.track, contour.run.time
-    value = track.distance if track.signed is None else track.signed
     factor, name = unit(contour.error.max)
-    value = np.where(contour.cutting, value, np.nan) * factor
-    lines = contour.run.path.lines[track.segment]
-    trace = sampled(Samples(time, value, lines=lines), "contour error", HEAT[2])
+
+    def error(first: int, last: int) -> Array:
+        own = slice(first, last)
+        value = np.where(contour.cutting[own], track.distance[own], np.nan) * factor
+        return value if track.right is None else np.where(track.right[own], -value, value)
+
+    def lines(first: int, last: int) -> Array:
+        return contour.run.path.lines[track.segment[first:last]]
+
+    samples = Samples.made(time, error, lines=lines)
+    trace = sampled(samples, "contour error", HEAT[2])
     trace["hovertemplate"] = "%{y:.4g} " + name + ", line %{customdata}<extra></extra>"
     worst = int(np.searchsorted(time, contour.error.time))
+    highest = float(error(worst, worst + 1)[0])
     peak = {
         "type": "scatter",
         "mode": "markers+text",
         "x": [contour.error.time],
-        "y": [float(value[worst])],
+        "y": [highest],
         "text": [f"{length(contour.error.max)}, line {contour.error.line}"],
-        "textposition": _text_side(contour.error.time, time, float(value[worst])),
+        "textposition": _text_side(contour.error.time, time, highest),
         "textfont": {"size": 12, "color": INK},
         "marker": {"size": 9, "color": "rgba(0,0,0,0)", "line": {"color": INK, "width": 1.5}},
         "hoverinfo": "skip",
@@ -55,7 +64,7 @@ def error_figure(contour: ContourResult) -> Figure:
         "cliponaxis": False,
     }
     trace["showlegend"] = False
-    low, high = float(np.nanmin(value)), float(np.nanmax(value))
+    low, high = float(np.nanmin(samples.values)), float(np.nanmax(samples.values))
     room = ROOM * max(high - low, 1e-6)
     low, high = min(low, 0.0), max(high, 0.0)
     more = _axis(f"Contour error [{name}]", range=[low - room, high + room])
@@ -70,10 +79,19 @@ def _text_side(at: float, time: Array, value: float) -> str:
 
 def following_figure(contour: ContourResult) -> Figure:
     """Following error of each axis against time."""
-    time, value = contour.run.time, contour.following
-    factor, name = unit(float(np.abs(value).max()))
-    shown = [(NAMES[i], value[:, i] * factor, AXES[i]) for i in contour.run.axes]
-    return _curves(time, shown, f"Following error [{name}]", 270)
+    run = contour.run
+    commanded, actual = reader(run.commanded), reader(run.actual)
+
+    def following(first: int, last: int) -> Array:
+        return commanded(first, last) - actual(first, last)
+
+    def of_axis(i: int) -> Read:
+        return lambda first, last: following(first, last)[:, i] * factor
+
+    top = max(float(np.abs(end).max()) for end in ends(len(run.time), following))
+    factor, name = unit(top)
+    shown = [(NAMES[i], of_axis(i), AXES[i]) for i in run.axes]
+    return _curves(run.time, shown, f"Following error [{name}]", 270)
 
 
 def fifo_figure(contour: ContourResult) -> Figure | None:
@@ -82,14 +100,17 @@ def fifo_figure(contour: ContourResult) -> Figure | None:
     traces: list[Figure] = []
     rows = []
     if run.stock is not None:
-        stock = run.stock
-        if stock.ndim > 1:
-            least = [b[:, list(run.axes)].min(axis=1) for (b,) in in_blocks(stock)]
-            stock = np.concatenate(least)
-        traces.append(sampled(Samples(run.time, stock, steps=True), "FIFO stock", AXES[0]))
+        stock = reader(run.stock)
+
+        def least(first: int, last: int) -> Array:
+            several = stock(first, last)
+            return several[:, list(run.axes)].min(axis=1) if several.ndim > 1 else several
+
+        traces.append(sampled(Samples.made(run.time, least, True), "FIFO stock", AXES[0]))
         rows.append("FIFO stock<br>[commands]")
     if run.interrupts is not None:
-        at = run.time[1:][np.diff(run.interrupts) > 0]
+        parts = in_blocks(run.interrupts, run.time, back=1)
+        at = np.concatenate([time[1:][np.diff(number) > 0] for number, time in parts])
         between = Samples(at[1:], np.diff(at) * 1e3, dots=True)
         trace = sampled(between, "since last interrupt", AXES[1])
         traces.append(trace | {"marker": {"size": 3, "color": AXES[1]}})
@@ -102,8 +123,8 @@ def fifo_figure(contour: ContourResult) -> Figure | None:
         high = 1.0 if i == 0 else 0.46
         key = "" if i == 0 else "2"
         trace |= {"yaxis": "y" + key, "showlegend": False}
-        ends = _range(trace["samples"].values, zero=i == 0)
-        more["yaxis" + key] = _axis(title, domain=[low, high], range=ends, nticks=5)
+        shown = _range(trace["samples"].values, zero=i == 0)
+        more["yaxis" + key] = _axis(title, domain=[low, high], range=shown, nticks=5)
     figure = _over_time(300 if len(rows) == 2 else 230, run.time, **more)
     figure["xaxis"]["anchor"] = "y2" if len(rows) == 2 else "y"
     return {"data": traces, "layout": figure}
@@ -116,7 +137,7 @@ def trace_figures(contour: ContourResult) -> list[tuple[str, Figure]]:
         columns = trace.values.reshape(len(contour.run.time), -1)
         several = columns.shape[1] > 1
         shown = [
-            (NAMES[i] if several else trace.name, columns[:, i], AXES[i])
+            (NAMES[i] if several else trace.name, reader(columns[:, i]), AXES[i])
             for i in (contour.run.axes if several else (0,))
         ]
         title = label(trace.name.rpartition(".")[2], trace.unit)
@@ -158,14 +179,14 @@ def speed_figure(speeds: Speeds) -> Figure:
     return {"data": data, "layout": _over_time(270, speeds.time, **more)}
 
 
-def _curves(time: Array, shown: list[tuple[str, Array, str]], title: str, height: int) -> Figure:
+def _curves(time: Array, shown: list[tuple[str, Read, str]], title: str, height: int) -> Figure:
     """Curves of a name and a colour on one pair of axes."""
-    few = [(Samples(time, values).few(), name, color) for name, values, color in shown]
+    few = [(Samples.made(time, read), name, color) for name, read, color in shown]
     data = [sampled(*curve) for curve in few]
     for trace in data:
         trace["showlegend"] = len(data) > 1
-    ends = _range(np.concatenate([samples.values for samples, _, _ in few]))
-    return {"data": data, "layout": _over_time(height, time, yaxis=_axis(title, range=ends))}
+    bounds = _range(np.concatenate([samples.values for samples, _, _ in few]))
+    return {"data": data, "layout": _over_time(height, time, yaxis=_axis(title, range=bounds))}
 
 
 def _range(values: Array, zero: bool = False) -> list[float]:

@@ -1,6 +1,7 @@
 """Fewer points with every peak kept, of as many as there are."""
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +17,8 @@ Read = Callable[[int, int], Array]
 MOST = 120_000
 
 
-def reader(values: NDArray[np.generic]) -> Read:
-    """Read an array; its pages of a file are let go when others are read."""
+def reader(values: Any) -> Read:
+    """Read an array, or what is one in parts; its pages of a file are let go with the next."""
 
     def read(first: int, last: int) -> Array:
         forget(values)

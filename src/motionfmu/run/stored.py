@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionfmu.columns import Made
+from motionfmu.columns import Made, forget
 from motionfmu.contour.scaled import places
 from motionfmu.run.result import Result
 from motionfmu.scenarios import fmus
@@ -119,6 +119,7 @@ def track(contour: "ContourResult") -> dict[str, Any]:
         return np.where(cut[rows], size, np.nan)
 
     def gap(rows: slice) -> Any:
+        forget(actual)
         return np.where(cut[rows, None], places(actual, rows) - way.feet(rows), np.nan)
 
     found: dict[str, Any] = {

@@ -4,14 +4,17 @@ import numpy as np
 
 from motionfmu.contour import ContourResult
 from motionfmu.iso9283 import Performance
+from motionfmu.run.decimate import MOST, at, reader
 from motionfmu.view.scene import Line
 
 
 def from_contour(contour: ContourResult) -> Line:
-    """The tool beside the exact path, where it cuts."""
+    """The tool beside the exact path, where it cuts; of very many samples some, evenly."""
     cut = np.flatnonzero(contour.cutting)
+    if len(cut) > MOST:
+        cut = cut[np.linspace(0, len(cut) - 1, MOST).round().astype(np.int64)]
     foot = contour.track.feet(cut)
-    return Line(foot, contour.run.actual[cut, :3] - foot)
+    return Line(foot, at(reader(contour.run.actual), cut)[:, :3] - foot)
 
 
 def from_cycles(path: Performance) -> list[Line]:
