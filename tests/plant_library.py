@@ -13,6 +13,7 @@ from motionfmu.fmu import ctables, fmu_toml
 from motionfmu.fmu.modelica import codegen
 
 ROOT = Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build"
 PACKAGE = ROOT / "modelica" / "MotionControl"
 _ELEMENTARY = ROOT / "src/elementary"
 _FLAGS = (
@@ -23,6 +24,10 @@ _DRIVER = """
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include "plant_machine.h"
+bool run_wide;
+bool run_may_be_wide(void) { return plant_has_avx2(); }
+#define plant_has_avx2() run_wide
 #include "plant_model.c"
 char said[1024];
 static void say(const char *format, va_list args)
@@ -66,19 +71,28 @@ double run_radius(double *a) { return plant_spectral_radius(a, PLANT_FINE); }
 class Library:
     """The compiled plant of one fmu.toml."""
 
-    def __init__(self, toml: Path, folder: Path, *flags: str):
-        """Make it; with flags of the compiler, again from what is in the folder."""
+    def __init__(self, toml: Path, folder: Path, built: bool = False):
+        """Make it anew, with all its functions to call, or of what the build has compiled."""
         self.description = fmu_toml.load(toml)
-        if not flags:
+        made, files = folder, [folder / "plant.c", *_ELEMENTARY.glob("*.c")]
+        if built:
+            made = BUILD / "gen" / toml.parent.name
+            objects = BUILD / f"CMakeFiles/{made.name}_fmi3.dir"
+            files = [objects / "gen" / made.name / "plant.c.o", BUILD / "libelementary.a"]
+        else:
             codegen.write(toml, folder)
-        (folder / "vars.h").write_text(ctables.header(self.description))
+            (folder / "vars.h").write_text(ctables.header(self.description))
         (folder / "driver.c").write_text(_DRIVER)
-        target = folder / f"plant{''.join(flags)}.so"
-        include = [folder, ROOT / "src/plant", ROOT / "src/fmi"]
-        self.compile([folder / "driver.c", folder / "plant.c"], target, include, *flags)
+        target = folder / "plant.so"
+        include = [made, ROOT / "src/plant", ROOT / "src/fmi"]
+        self.compile([folder / "driver.c", *files], target, include)
         self.c = ctypes.CDLL(str(target))
         self.c.run_new.restype = ctypes.c_void_p
         self.c.run_radius.restype = ctypes.c_double
+        self.c.run_may_be_wide.restype = ctypes.c_bool
+        # Vectors of AVX2, as where the processor has it, or those that all have.
+        self.wide = ctypes.c_bool.in_dll(self.c, "run_wide")
+        self.wide.value = self.c.run_may_be_wide()
         for name in ("run_start", "run_free", "run_step"):
             getattr(self.c, name).argtypes = [ctypes.c_void_p]
         self.c.run_step.argtypes += [ctypes.c_int64] * 2
@@ -90,13 +104,12 @@ class Library:
         self.vars = type("Vars", (ctypes.Structure,), {"_fields_": fields})
 
     @staticmethod
-    def compile(files: list[Path], target: Path, include: list[Path], *flags: str) -> None:
-        """Make a shared library."""
+    def compile(files: list[Path], target: Path, include: list[Path]) -> None:
+        """Make a shared library that may use elementary's headers."""
         compiler = os.environ.get("CC") or shutil.which("cc") or shutil.which("gcc")
         assert compiler, "a C compiler is needed"
-        command = [*compiler.split(), *_FLAGS.split(), *flags, "-shared"]
+        command = [*compiler.split(), *_FLAGS.split(), "-shared"]
         command += [f"-I{i}" for i in [*include, _ELEMENTARY]]
-        files = [*files, *_ELEMENTARY.glob("*.c")]
         subprocess.run([*command, *map(str, files), "-o", str(target), "-lm"], check=True)
 
 

@@ -52,6 +52,7 @@ def build(case):
     (folder / "vars.h").write_text(ctables.header(fmu_toml.load(toml)))
     (folder / "slope.c").write_text(slope(case.ode))
     files = [HERE / "integrators.c", folder / "plant.c", folder / "slope.c"]
+    files.append(ROOT / "build/libelementary.a")
     Library.compile(files, folder / "bench.so", [folder, ROOT / "src/plant"])
     c = ctypes.CDLL(str(folder / "bench.so"))
     i, d, n, v = ctypes.c_int, ctypes.c_double, ctypes.c_long, ctypes.c_void_p

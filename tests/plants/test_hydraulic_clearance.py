@@ -15,7 +15,9 @@ SMOOTH = {"table_coulomb": 0.0, "table_static": 0.0, "table_viscous": 0.0}
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> Library:
-    return Library(ROOT / "fmus/hydraulic_axis/fmu.toml", tmp_path_factory.mktemp("clearance"))
+    return Library(
+        ROOT / "fmus/hydraulic_axis/fmu.toml", tmp_path_factory.mktemp("clearance"), built=True
+    )
 
 
 def test_without_clearance_rod_and_table_are_one_to_the_bit(library: Library) -> None:

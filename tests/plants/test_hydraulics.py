@@ -17,7 +17,9 @@ AGREED = 1e-6  # [1] of the largest value of an output
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
-    return Library(ROOT / "fmus/hydraulic_axis/fmu.toml", tmp_path_factory.mktemp("hydraulic"))
+    return Library(
+        ROOT / "fmus/hydraulic_axis/fmu.toml", tmp_path_factory.mktemp("hydraulic"), built=True
+    )
 
 
 @pytest.fixture(scope="module")

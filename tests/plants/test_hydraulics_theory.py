@@ -21,7 +21,9 @@ TIGHT = {"valve_leakage": 0.0, "cylinder_leakage": 0.0, "valve_rounding": 1e-7}
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
-    return Library(ROOT / "fmus/hydraulic_axis/fmu.toml", tmp_path_factory.mktemp("hydraulic"))
+    return Library(
+        ROOT / "fmus/hydraulic_axis/fmu.toml", tmp_path_factory.mktemp("hydraulic"), built=True
+    )
 
 
 def resonance(a, places=(3, 4, 6)):

@@ -19,7 +19,9 @@ SHOWN = ("motor_torque", "motor_angle", "motor_speed", "table_position", "table_
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
-    return Library(ROOT / "fmus/ball_screw_axes/fmu.toml", tmp_path_factory.mktemp("ball_screw"))
+    return Library(
+        ROOT / "fmus/ball_screw_axes/fmu.toml", tmp_path_factory.mktemp("ball_screw"), built=True
+    )
 
 
 @pytest.fixture(scope="module")

@@ -18,12 +18,16 @@ ON_GRID = st.integers(1, HORIZON // 25_000 - 1).map(lambda k: 1000 * k)
 
 @pytest.fixture(scope="module")
 def ball_screw(tmp_path_factory):
-    return Library(ROOT / "fmus/ball_screw_axes/fmu.toml", tmp_path_factory.mktemp("ball_screw"))
+    return Library(
+        ROOT / "fmus/ball_screw_axes/fmu.toml", tmp_path_factory.mktemp("ball_screw"), built=True
+    )
 
 
 @pytest.fixture(scope="module")
 def velocity(tmp_path_factory):
-    return Library(ROOT / "fmus/velocity_axes/fmu.toml", tmp_path_factory.mktemp("velocity"))
+    return Library(
+        ROOT / "fmus/velocity_axes/fmu.toml", tmp_path_factory.mktemp("velocity"), built=True
+    )
 
 
 def outputs(run):

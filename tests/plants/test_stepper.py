@@ -24,7 +24,9 @@ STEP = 1e-4  # [s]
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
-    return Library(ROOT / "fmus/stepper_axes/fmu.toml", tmp_path_factory.mktemp("stepper"))
+    return Library(
+        ROOT / "fmus/stepper_axes/fmu.toml", tmp_path_factory.mktemp("stepper"), built=True
+    )
 
 
 def started(library, **values):

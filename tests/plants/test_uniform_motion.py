@@ -22,7 +22,9 @@ VISCOUS = esposito() | {"table_viscous": 1000.0}
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
-    return Library(ROOT / "fmus/hydraulic_axis/fmu.toml", tmp_path_factory.mktemp("hydraulic"))
+    return Library(
+        ROOT / "fmus/hydraulic_axis/fmu.toml", tmp_path_factory.mktemp("hydraulic"), built=True
+    )
 
 
 def found(parameters: dict[str, float], **stated: float) -> Point:
