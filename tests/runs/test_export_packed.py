@@ -122,3 +122,37 @@ def test_an_engine_takes_a_uri_and_tells_of_a_missing_resource() -> None:
         assert other.tobytes() == plain.tobytes()
         with pytest.raises(InputError, match=r"no such file in the FMU's resources|has named no"):
             demo.run(stop=0.05, set={"mcc.program": "resource:no.ngc"}, engine=engine)
+
+
+@both
+def test_packed_fmus_are_one_program_with_their_files(fmi: int, tmp_path: Path) -> None:
+    """Two of one model, with files of one name: as a system here, and as an exported one."""
+    for owner, way in (("one", "X5 Y3"), ("two", "X0.01 Y0")):
+        (tmp_path / owner).mkdir()
+        program = tmp_path / owner / "pärt.ngc"
+        program.write_text(TEXT.replace("X5 Y3", way))
+        given = {"program": str(program), "dry_run": True}
+        packed("mcc", tmp_path / owner / "m.fmu", 3, given)
+        program.unlink()
+    tables = {
+        "stop": 0.1,
+        "step": 1e-3,
+        "component": {"one": "one/m.fmu", "two": "two/m.fmu"},
+        "leave": ["*"],
+        "record": {"signals": ["*.queue", "*.card_cmd_seq"]},
+    }
+    scenario = motionfmu.scenario(tables, folder=tmp_path)
+    runs = [scenario.run(engine=engine, fmi=fmi) for engine in ("fused", "native")]
+    assert scenario.run().options["engine"] == "fused"
+    for name in runs[0].signals:
+        assert runs[0][name].tobytes() == runs[1][name].tobytes(), name
+    assert runs[0]["one.queue"][-1] == 64 > runs[0]["two.queue"][-1] > 5
+    export(scenario, tmp_path / "s.fmu", fmi, {})
+    with zipfile.ZipFile(tmp_path / "s.fmu") as archive:
+        inside = [n for n in archive.namelist() if n.startswith("resources/")]
+        xml = archive.read("modelDescription.xml").decode()
+    assert inside == ["resources/one/pärt.ngc", "resources/two/pärt.ngc"]
+    assert '"resource:two/pärt.ngc"' in xml and str(tmp_path) not in xml
+    shown: dict[str, Any] = {"stop_time": 0.1, "step_size": 1e-3, "output_interval": 1e-3}
+    found = simulate_fmu(str(tmp_path / "s.fmu"), output=["two.queue"], **shown)["two.queue"][:-1]
+    assert found.tolist() == runs[0]["two.queue"].tolist()

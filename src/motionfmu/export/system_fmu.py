@@ -75,6 +75,7 @@ def as_fmu(
     if fmi not in (2, 3):
         raise InputError(f"FMI {fmi!r}: 2 or 3")
     system, resources = scenario.resolved(Options(set=given)), Resources()
+    system = fused.placed(system, fused.carrying(system))
     settings = tuple(resources.inside(s) for s in system.settings)
     ends = also_shown(scenario, choice.inner, ("output",))
     try:

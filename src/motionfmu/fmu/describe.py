@@ -20,6 +20,8 @@ COUNT_MAX = 65536  # elements of a variable; all of them are in that struct
 I32 = 2**31
 _KEYS = {"type", "dims", "unit", "start", "min", "max", "nominal", "tunable", "doc"}
 _KEYS |= {"values", "file"}
+# Who makes the descriptions, by which FMUs and SSPs of ours are known.
+TOOL = "motionfmu"
 # Reverse domain name of what no standard names: kinds of terminals, folders.
 DOMAIN = "org.motionfmu"
 # Types of text that names a file, by the key `file`: name and meaning.

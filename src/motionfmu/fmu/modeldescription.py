@@ -7,7 +7,7 @@ from xml.etree import ElementTree as ET
 
 from motionfmu import units
 from motionfmu.fmu import licence
-from motionfmu.fmu.describe import DOMAIN, Description, Variable
+from motionfmu.fmu.describe import DOMAIN, TOOL, Description, Variable
 
 _TYPE = {
     2: {"f64": "Real", "i32": "Integer", "bool": "Boolean", "string": "String"},
@@ -173,7 +173,7 @@ def model_description(d: Description, fmi: int, sources: Sequence[str] = ()) -> 
     root.set("description", d.description)
     for key, text in licence.attributes().items():
         root.set(key, text)
-    root.set("generationTool", "motionfmu")
+    root.set("generationTool", TOOL)
     if moment := os.environ.get("SOURCE_DATE_EPOCH"):
         date = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(int(moment)))
         root.set("generationDateAndTime", date)

@@ -11,12 +11,11 @@ from collections.abc import Iterable, Mapping
 from xml.etree import ElementTree as ET
 
 from motionfmu.errors import InputError, suggestion
-from motionfmu.fmu.describe import I32, STRING_MAX
+from motionfmu.fmu.describe import I32, STRING_MAX, TOOL
 
 FILE = "start_values.txt"
 LINE_MAX = 1 << 15  # [bytes] that the library reads
 _TYPES = {"Real": "Float64", "Integer": "Int32"}
-_TOOL = "motionfmu"
 _SETTABLE = ("parameter", "input")
 
 
@@ -108,9 +107,9 @@ def changed(xml: bytes, before: bytes, starts: Mapping[str, str]) -> tuple[bytes
     Values are text: of an array as many as elements, between spaces, or one for all.
     """
     root = ET.fromstring(xml)
-    if root.get("generationTool") != _TOOL:
+    if root.get("generationTool") != TOOL:
         name = root.get("modelName")
-        raise InputError(f"{name}: not an FMU of {_TOOL}; its start values are in its library")
+        raise InputError(f"{name}: not an FMU of {TOOL}; its start values are in its library")
     variables = _variables(root)
     settable = {n for n, v in variables.items() if v.causality in _SETTABLE}
     rows = dict(row.partition(" ")[::2] for row in before.decode().splitlines()[1:])

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from motionfmu.fmu import terminals
 from motionfmu.fmu.describe import STRICT, Description, Terminal, Variable, strict_step
@@ -145,7 +146,7 @@ def described(job: Job, used: Roles, tick_ns: int) -> Description:
     names = [v.name for v in variables]
     if len(set(names)) != len(names):
         raise NotFused(f"{next(n for n in names if names.count(n) > 1)} names two things")
-    parts = ", ".join(f"{c} ({fmu})" for c, fmu in system.components.items())
+    parts = ", ".join(f"{c} ({Path(fmu).name})" for c, fmu in system.components.items())
     return Description(
         name=job.name,
         description=f"{parts} as one program {job.key[:12]}",

@@ -1,6 +1,7 @@
 """A system compiled for any platform from the C text that its FMUs carry, which it carries, too."""
 
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from motionfmu.compiler import FLAGS, cross
@@ -10,17 +11,20 @@ from motionfmu.fmu.sources import NAMES, build_description, renamed
 from motionfmu.fused import layer
 from motionfmu.fused.description import Job
 from motionfmu.fused.parts import NotFused, c_files
-from motionfmu.scenarios.fmus import opened
+from motionfmu.scenarios.fmus import is_foreign, opened
 
 _FLAGS = (*FLAGS, layer.OPTIMIZED, "-shared", "-s", "-DFMU_PART_INSIDE")
 
 
-def compile_all(folder: Path, job: Job) -> list[str]:
-    """Fill ``sources`` and ``binaries`` of a folder; returns names of the C files to compile."""
+def compile_all(folder: Path, job: Job, models: Mapping[str, str]) -> list[str]:
+    """Fill ``sources`` and ``binaries`` of a folder; returns names of the C files to compile.
+
+    `models` are the FMUs by their model identifiers.
+    """
     sources = folder / "sources"
     files = [MAIN_UNIT]
-    for fmu in dict.fromkeys(job.system.components.values()):
-        files += _part(fmu, sources)
+    for identifier, fmu in models.items():
+        files += _part(fmu, identifier if is_foreign(fmu) else fmu, sources)
     places = layer.folders()
     own, headers = places[0], places[-1]
     texts = [f for f in sources.iterdir() if f.is_file()]
@@ -40,20 +44,20 @@ def compile_all(folder: Path, job: Job) -> list[str]:
     return files
 
 
-def _part(fmu: str, sources: Path) -> list[str]:
-    """Unpack the C text of an FMU into a folder of its own; names of what is compiled of it."""
+def _part(fmu: str, own: str, sources: Path) -> list[str]:
+    """Unpack the C text of an FMU into its own folder; names of what is compiled of it."""
     with opened(fmu) as archive:
         names = [n for n in archive.namelist() if n.startswith("sources/")]
         if f"sources/{NAMES}" not in names:
             raise NotFused(f"{fmu} carries no C text that can be linked with others")
         for name in names:
-            place = sources / fmu / Path(name).name
+            place = sources / own / Path(name).name
             place.parent.mkdir(exist_ok=True)
             if not place.name.startswith(("fmi3", MAIN_UNIT)):
                 place.write_bytes(archive.read(name))
         found = c_files(archive.read("sources/buildDescription.xml"))
-    (sources / fmu / "buildDescription.xml").unlink()
-    return [f"{fmu}/{name}" for name in found]
+    (sources / own / "buildDescription.xml").unlink()
+    return [f"{own}/{name}" for name in found]
 
 
 def _compile(platform: platforms.Platform, name: str, files: list[str], folder: Path) -> bytes:

@@ -9,7 +9,9 @@ from motionfmu.fmu import ctables, shown, terminals
 from motionfmu.fmu.describe import Description
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.platforms import here
+from motionfmu.fmu.pack import RESOURCES
 from motionfmu.fused import everywhere, layer, text
+from motionfmu.fused.carried import carrying
 from motionfmu.fused.description import TYPES, Job, described, roles
 from motionfmu.fused.parts import NotFused, Part, part
 from motionfmu.scenarios.system import System
@@ -19,9 +21,10 @@ FMI_TYPES = {ours: fmi for fmi, ours in TYPES.items()}
 
 def _parts(system: System) -> dict[str, Part]:
     found = {fmu: part(fmu) for fmu in system.components.values()}
-    identifiers = {p.identifier for p in found.values()}
-    if len(identifiers) != len(found):
-        raise NotFused("two FMUs have one model identifier")
+    models: dict[str, Part] = {}
+    for one in found.values():  # a model may come in several files, with other start values
+        if models.setdefault(one.identifier, one) != one:
+            raise NotFused(f"two FMUs with the model identifier {one.identifier} differ")
     for wire in system.wires:
         a, b = wire.source.port, wire.target.port
         if (a.type, a.shape) != (b.type, b.shape):
@@ -34,6 +37,11 @@ def make(folder: Path, job: Job, cc: Compiler) -> None:
     parts, used = _parts(job.system), roles(job.system, job.recorded)
     tick = math.lcm(*(one.tick_ns for one in parts.values()))
     d = described(job, used, tick)
+    for component, files in carrying(job.system).items():
+        for name, data in files.items():
+            place = folder / RESOURCES / component / name
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(data)
     sources = folder / "sources"
     sources.mkdir()
     texts = {
@@ -46,17 +54,18 @@ def make(folder: Path, job: Job, cc: Compiler) -> None:
     for file, content in texts.items():
         (sources / file).write_text(content)
     if job.platforms:
-        files = everywhere.compile_all(folder, job)
+        files = everywhere.compile_all(folder, job, {p.identifier: f for f, p in parts.items()})
         (folder / "modelDescription.xml").write_bytes(model_description(d, job.fmi, files))
         _show(folder, d)
         _tell(folder, d, "")
         return
-    for one in parts.values():
+    models = {one.identifier: one for one in parts.values()}
+    for one in models.values():
         (sources / f"{one.identifier}.o").write_bytes(one.code)
     binaries = folder / "binaries" / here().folder(job.fmi)
     binaries.mkdir(parents=True)
     included = [f"-I{place}" for place in layer.folders()]
-    objects = [f"{one.identifier}.o" for one in parts.values()]
+    objects = [f"{name}.o" for name in models]
     library = cc.library(
         ["fmu_main.c", *objects],
         str(binaries / f"{job.name}.so"),

@@ -52,9 +52,7 @@ def part(name: str) -> Part:
     """Read the part of an FMU; NotFused if it has none, nor C text of one."""
     with opened(name) as archive:
         names = archive.namelist()
-        if any(n.startswith("resources/") and n[-1] != "/" for n in names):
-            raise NotFused(f"{name} has resources")
-        if f"sources/{PART_UNIT}" not in names:
+        if f"sources/{PART_UNIT}" not in names or "sources/buildDescription.xml" not in names:
             raise NotFused(f"{name} carries no part")
         header = archive.read("sources/vars.h").decode()
         made = f"{PARTS}/{here().name}.o"

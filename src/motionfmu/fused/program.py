@@ -129,7 +129,7 @@ def _key(
     fmus = dict.fromkeys(system.components.values())
     until, wired = system.until, {w.target.name for w in system.wires}
     lists: list[object] = [
-        [f"{c} {fmu}" for c, fmu in system.components.items()],
+        [f"{c} {Path(fmu).name} {digest(fmu)}" for c, fmu in system.components.items()],
         [digest(fmu) for fmu in fmus],
         [f"{w.target.name} {w.source.name}" for w in system.wires],
         sorted(wired & {s.end.name for s in system.settings}),

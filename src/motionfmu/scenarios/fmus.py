@@ -73,6 +73,11 @@ def fmu_path(name: str, fmi: int = 3) -> Path:
     return path
 
 
+def is_ours(name: str) -> bool:
+    """Whether an FMU is of this package: by its name, or a file of FMI 3 with the same inside."""
+    return not is_foreign(name) or foreign.read(name).ours
+
+
 def version(name: str, fmi: int) -> int:
     """FMI version in which an FMU runs: a foreign one has one only."""
     return foreign.read(name).fmi if is_foreign(name) else fmi

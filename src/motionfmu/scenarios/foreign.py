@@ -5,11 +5,12 @@ import math
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 from motionfmu.errors import InputError
+from motionfmu.fmu.describe import TOOL
 from motionfmu.scenarios.port import Port
 from motionfmu.toml_lines import is_file
 
@@ -35,6 +36,7 @@ class Foreign:
     ports: Mapping[str, Port]
     once: bool  # one instance in a process
     tool: bool  # it needs its tool on this machine
+    ours: bool  # of this package, with the text of a part
 
 
 def read(name: str) -> Foreign:
@@ -79,14 +81,28 @@ def _described(path: Path, root: ElementTree.Element) -> Foreign:
     listed = list(() if rows is None else rows)
     types = {row.attrib["name"]: _base(row) for row in root.iterfind("TypeDefinitions/*")}
     found = _ports2(listed, types) if fmi == 2 else _ports3(listed, types)
+    ours = root.get("generationTool") == TOOL and fmi == 3
+    own = _with_meanings(root, listed, found) if ours else found
     return Foreign(
         fmi,
         kind.attrib["modelIdentifier"],
         root.get("description", ""),
-        {port.name: port for port in found if port.causality != "independent"},
+        {port.name: port for port in own if port.causality != "independent"},
         kind.get("canBeInstantiatedOnlyOncePerProcess") == "true",
         kind.get("needsExecutionTool") == "true",
+        ours,
     )
+
+
+def _with_meanings(
+    root: ElementTree.Element, rows: list[ElementTree.Element], ports: Iterator[Port]
+) -> Iterator[Port]:
+    """Variables of an FMU of ours, with the types that say what they mean."""
+    types = {t.attrib["name"]: t.get("description", "") for t in root.iterfind("TypeDefinitions/*")}
+    declared = {row.attrib["name"]: row.get("declaredType") for row in rows}
+    for port in ports:
+        name = declared[port.name]
+        yield replace(port, declared=(name, types[name])) if name else port
 
 
 def _base(row: ElementTree.Element) -> Mapping[str, str]:

@@ -2,7 +2,6 @@
 
 import functools
 import json
-import zipfile
 from collections.abc import Mapping
 
 from motionfmu.fmu.pack import EXTRA, GRID
@@ -14,10 +13,10 @@ from motionfmu.scenarios.values import start_values
 @functools.cache
 def grid(fmu: str) -> str:
     """The parameter that is an FMU's grid; empty if it says none."""
-    if fmus.is_foreign(fmu):
-        return ""
-    with zipfile.ZipFile(fmus.fmu_path(fmu)) as archive:
-        return str(json.loads(archive.read(f"{EXTRA}/{GRID}"))["grid"])
+    with fmus.opened(fmu) as archive:
+        file = f"{EXTRA}/{GRID}"
+        there = fmus.is_ours(fmu) and file in archive.namelist()
+        return str(json.loads(archive.read(file))["grid"]) if there else ""
 
 
 def warnings(system: System) -> list[str]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from motionfmu.ssp.flat import Way
 from motionfmu.ssp.structure import Value
 
-MODEL, TOOL = "Stimulus", "motionfmu"
+MODEL = "Stimulus"
 _OUTPUTS, _EACH = ("real", "whole", "on"), 32
 _COLUMNS = ("at", "signal", "value")
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from motionfmu.errors import Faults, InputError
+from motionfmu.fmu.describe import TOOL
 from motionfmu.ssp import drives, inside
 from motionfmu.ssp.flat import SSC, SSD, Nodes, Way, shown
 from motionfmu.ssp.flat import Path as Inner
@@ -81,7 +82,7 @@ class _Import:
 
     def _table(self, path: Inner, fmu: Inside) -> list[tuple[float, int, float]]:
         """The rows of a Stimulus; none of any other FMU."""
-        if (fmu.name, fmu.tool) != (drives.MODEL, drives.TOOL):
+        if (fmu.name, fmu.tool) != (drives.MODEL, TOOL):
             return []
         try:
             return drives.table(g.value for g in self.given if g.component == path)

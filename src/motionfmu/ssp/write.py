@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from xml.etree import ElementTree as ET
 
 from motionfmu import units
+from motionfmu.fmu.describe import TOOL
 from motionfmu.ssp.structure import (
     COMMON,
     DESCRIPTION,
@@ -19,7 +20,6 @@ from motionfmu.ssp.structure import (
 
 # Readers there are that look for these prefixes and not for the namespaces.
 _PREFIXES = {"ssc": COMMON, "ssd": DESCRIPTION, "ssv": VALUES, "osp": OSP}
-_TOOL = "motionfmu"
 
 
 def _root(tag: str, uses: Sequence[str], **attributes: str) -> ET.Element:
@@ -103,7 +103,7 @@ def description(s: Structure, files: dict[str, str]) -> bytes:
     root.set("version", s.version)
     root.set("name", s.name)
     root.set("description", s.about)
-    root.set("generationTool", _TOOL)
+    root.set("generationTool", TOOL)
     system = ET.SubElement(root, "ssd:System", name=s.name, description=s.about)
     elements = ET.SubElement(system, "ssd:Elements")
     for component in s.components:

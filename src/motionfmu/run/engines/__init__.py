@@ -12,7 +12,7 @@ from motionfmu.compiler import NotCompiled, there
 from motionfmu.errors import InputError, suggestion
 from motionfmu.extras import needed
 from motionfmu.run.engines.job import Engine, Job, Progress, Ran
-from motionfmu.scenarios.fmus import is_foreign
+from motionfmu.scenarios.fmus import is_ours
 from motionfmu.scenarios.system import System
 
 VARIABLE = "MOTIONFMU_ENGINE"
@@ -20,7 +20,7 @@ VARIABLE = "MOTIONFMU_ENGINE"
 
 def unfused(system: System) -> str:
     """Why a system cannot be one program, as far as its FMUs and wires tell; else empty."""
-    foreign = next((fmu for fmu in system.components.values() if is_foreign(fmu)), None)
+    foreign = next((fmu for fmu in system.components.values() if not is_ours(fmu)), None)
     if foreign is not None:
         return f"{Path(foreign).name} has no C text of ours"
     return "a wire joins an element of an array" if system.elementwise else ""

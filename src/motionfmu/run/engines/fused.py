@@ -30,6 +30,7 @@ class Fused:
 
     def __init__(self, job: Job) -> None:
         self._job, self._signals = job, job.folder / "signals"
+        self._carrying = fused.carrying(job.system)
         self._folder = fused.program(job.system, job.recorded, job.fmi).folder
         about = json.loads((self._folder / "program.json").read_bytes())
         self._token: str = about["token"]
@@ -61,8 +62,9 @@ class Fused:
         return Ran("fused", signals, [*self._warnings], steps, signal)
 
     def _set(self, system: System) -> None:
+        settings = fused.placed(system, self._carrying).settings
         given: dict[str, tuple[Any, ...]] = {
-            s.end.name: s.values for s in system.settings if s.end.port.name != STRICT
+            s.end.name: s.values for s in settings if s.end.port.name != STRICT
         }
         given[STEP] = (system.step_ns * 1e-9,)
         given[FOLDER] = (str(self._signals) if self._job.recorded else "",)
