@@ -14,6 +14,7 @@ from motionfmu.export.resources import Resources
 from motionfmu.fmu import shown
 from motionfmu.fmu.pack import RESOURCES, write_whole
 from motionfmu.fmu.platforms import Platform
+from motionfmu.fused.carried import carrying, placed
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.scenarios import fmus
 from motionfmu.toml_lines import is_file
@@ -75,7 +76,7 @@ def as_fmu(
     if fmi not in (2, 3):
         raise InputError(f"FMI {fmi!r}: 2 or 3")
     system, resources = scenario.resolved(Options(set=given)), Resources()
-    system = fused.placed(system, fused.carrying(system))
+    system = placed(system, carrying(system))
     settings = tuple(resources.inside(s) for s in system.settings)
     ends = also_shown(scenario, choice.inner, ("output",))
     try:

@@ -1,7 +1,6 @@
 """A system as one program: the parts of its FMUs, wires and recorder compiled into one FMU."""
 
-from motionfmu.fused.carried import carrying, placed
 from motionfmu.fused.parts import NoCompiler, NotFused
 from motionfmu.fused.program import Program, exported, program
 
-__all__ = ["NoCompiler", "NotFused", "Program", "carrying", "exported", "placed", "program"]
+__all__ = ["NoCompiler", "NotFused", "Program", "exported", "program"]

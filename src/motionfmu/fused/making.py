@@ -8,8 +8,8 @@ from motionfmu.compiler import Compiler
 from motionfmu.fmu import ctables, shown, terminals
 from motionfmu.fmu.describe import Description
 from motionfmu.fmu.modeldescription import model_description
-from motionfmu.fmu.platforms import here
 from motionfmu.fmu.pack import RESOURCES
+from motionfmu.fmu.platforms import here
 from motionfmu.fused import everywhere, layer, text
 from motionfmu.fused.carried import carrying
 from motionfmu.fused.description import TYPES, Job, described, roles
@@ -32,16 +32,20 @@ def _parts(system: System) -> dict[str, Part]:
     return found
 
 
+def _unpack_resources(folder: Path, system: System) -> None:
+    for component, files in carrying(system).items():
+        for name, data in files.items():
+            place = folder / RESOURCES / component / name
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(data)
+
+
 def make(folder: Path, job: Job, cc: Compiler) -> None:
     """Fill a folder with an unpacked FMU."""
     parts, used = _parts(job.system), roles(job.system, job.recorded)
     tick = math.lcm(*(one.tick_ns for one in parts.values()))
     d = described(job, used, tick)
-    for component, files in carrying(job.system).items():
-        for name, data in files.items():
-            place = folder / RESOURCES / component / name
-            place.parent.mkdir(parents=True, exist_ok=True)
-            place.write_bytes(data)
+    _unpack_resources(folder, job.system)
     sources = folder / "sources"
     sources.mkdir()
     texts = {

@@ -10,6 +10,7 @@ from typing import Any
 from motionfmu import fused
 from motionfmu.columns import Columns
 from motionfmu.fmu.describe import STRICT
+from motionfmu.fused.carried import carrying, placed
 from motionfmu.run.engines import messages
 from motionfmu.run.engines.ending import shares
 from motionfmu.run.engines.job import Job, Progress, Ran
@@ -30,7 +31,7 @@ class Fused:
 
     def __init__(self, job: Job) -> None:
         self._job, self._signals = job, job.folder / "signals"
-        self._carrying = fused.carrying(job.system)
+        self._carrying = carrying(job.system)
         self._folder = fused.program(job.system, job.recorded, job.fmi).folder
         about = json.loads((self._folder / "program.json").read_bytes())
         self._token: str = about["token"]
@@ -62,7 +63,7 @@ class Fused:
         return Ran("fused", signals, [*self._warnings], steps, signal)
 
     def _set(self, system: System) -> None:
-        settings = fused.placed(system, self._carrying).settings
+        settings = placed(system, self._carrying).settings
         given: dict[str, tuple[Any, ...]] = {
             s.end.name: s.values for s in settings if s.end.port.name != STRICT
         }
