@@ -20,11 +20,11 @@ endforeach()
 set(cross_flags -std=c11 -O2 -Wall -Wextra -Wpedantic -Werror ${exact} -fPIC -fvisibility=hidden
   -ffile-prefix-map=${PROJECT_SOURCE_DIR}=. -ffile-prefix-map=${CMAKE_BINARY_DIR}=.)
 
-# Compile one C file for a platform; it sees the headers that a target of this machine does.
+# Compile one C file for a platform, with `cross_more` options; it sees the headers that a target of this machine does.
 function(cross_object platform like file object)
   set(seen "$<TARGET_PROPERTY:${like},INCLUDE_DIRECTORIES>")
   add_custom_command(OUTPUT ${object} DEPENDS ${file} ${ARGN} DEPFILE ${object}.d
-    COMMAND ${zig_program} cc -target ${target_${platform}} ${cross_flags} "-I$<JOIN:${seen},;-I>"
+    COMMAND ${zig_program} cc -target ${target_${platform}} ${cross_flags} ${cross_more} "-I$<JOIN:${seen},;-I>"
       -MD -MT ${object} -MF ${object}.d -c ${file} -o ${object}
     VERBATIM COMMAND_EXPAND_LISTS)
 endfunction()
@@ -85,6 +85,7 @@ endfunction()
 # The bindings' library for the platforms on which the Python package runs.
 function(cross_stations)
   set(made)
+  set(cross_more -fvisibility=default)
   foreach(platform ${platforms})
     if(NOT platform MATCHES "linux")
       continue()

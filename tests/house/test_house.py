@@ -100,7 +100,7 @@ def test_only_what_a_result_shows_of_itself_is_imported_by_name() -> None:
     found = {name: told for name, f in modules().items() if (told := by_name(f.read_text()))}
     assert found == {
         "motionfmu": ["f'motionfmu.{name}'"],
-        "motionfmu.cli": ["module.name"],
+        "motionfmu.cli": ["f'{__name__}.{name}'"],
         "motionfmu.run.result": ["f'motionfmu.report.{module}'"],
     }
 

@@ -43,6 +43,16 @@ def test_gains_of_a_scenario_are_kept_for_the_next_command(tmp_path) -> None:
     assert "casadi" in first and not first & {"scipy", "fmpy", "matplotlib"}
     second = loaded(tmp_path, "info", "scenarios/circle")
     assert second & LARGE == {"numpy"}
+    # what checks and the engine are named by comes without what they are made by
+    unused = {"motionfmu.contour.arcs", "motionfmu.fmu.pack", "motionfmu.linear.position_gain"}
+    assert "motionfmu.contour.names" in second and not second & unused
+
+
+def test_a_command_loads_no_other(tmp_path) -> None:
+    for line, own in (("info mcc", {"info"}), ("card plan --help", {"card", "card_plan"})):
+        found = loaded(tmp_path, *line.split())
+        assert {f"motionfmu.cli.{name}" for name in own} <= found
+        assert ("motionfmu.cli.tune" in found) == (own != {"info"})
 
 
 def test_a_run_with_its_report_loads_nothing_that_draws(tmp_path) -> None:

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
 
     import typer
 
+# Modules whose commands stand in others, too, and those that have no command.
+SEVERAL = {"card", "common", "packing", "plain"}
+
 
 def __getattr__(name: str) -> Any:
     """Import the commands when they are first used: an interrupt is to find `main` before that."""
@@ -20,14 +23,17 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module 'motionfmu.cli' has no attribute {name!r}")
 
 
-def _commands() -> "typer.Typer":
+def _commands(asked: str = "") -> "typer.Typer":
+    """All commands, or the one that is asked for, if a module has its name."""
     import importlib
     import pkgutil
 
     from motionfmu.cli.common import app
 
-    for module in pkgutil.iter_modules(__path__, f"{__name__}."):
-        importlib.import_module(module.name)
+    known = [module.name for module in pkgutil.iter_modules(__path__)]
+    alone = asked in known and asked not in SEVERAL
+    for name in [asked] if alone else known:
+        importlib.import_module(f"{__name__}.{name}")
     return app
 
 
@@ -52,7 +58,7 @@ def _status() -> tuple[int, str]:
 
     # To look for plugins in all installed packages takes longer than to read a scenario.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
-    app = _commands()
+    app = _commands(*sys.argv[1:2])
     from typer.exceptions import TyperException
 
     from motionfmu.cli.common import STOPPED, WRONG, Stopped

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from motionfmu.cli.common import app
-from motionfmu.cli.show import first_line, print_rows
+from motionfmu.cli.info import first_line, print_rows
 from motionfmu.errors import InputError
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from motionfmu.contour.arcs import TURN, Array, unwrapped
 from motionfmu.contour.geometry import Arc, Segment
 from motionfmu.contour.instants import Instants
-from motionfmu.contour.iso230 import BothWays, Reading, both_ways, reading
+from motionfmu.contour.iso230 import both_ways, reading
+from motionfmu.contour.kinds import BothWays, Reading
 from motionfmu.contour.order import median
 from motionfmu.contour.path import Path
 from motionfmu.contour.scaled import Scaled, places

@@ -1,7 +1,6 @@
 """Corners of a path and the contour error there."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 from motionfmu.contour.arcs import Array
 from motionfmu.contour.circles import SPEED_SPAN
 from motionfmu.contour.instants import Instants
+from motionfmu.contour.kinds import Corner
 from motionfmu.contour.path import Path
 from motionfmu.contour.ranges import largest, parts
 from motionfmu.contour.segments import ARC, CUBIC, Index, Segments
@@ -18,19 +18,6 @@ from motionfmu.contour.track import Track
 ANGLE_MIN = math.radians(10.0)
 # A path that turns back by so much along an arc is run the other way: no corner [rad].
 ANGLE_BACK = math.pi - ANGLE_MIN
-
-
-@dataclass(frozen=True)
-class Corner:
-    """A corner between two cutting moves."""
-
-    line_before: int  # of the program
-    line_after: int
-    point: tuple[float, float, float]  # [mm]
-    angle: float  # change of direction; pi for a line that turns back [rad]
-    error: float  # largest contour error on the two moves within the servo window [mm]
-    time: float  # when it is largest [s]
-    speed: float  # least commanded speed within the servo window [mm/s]
 
 
 def find_corners(

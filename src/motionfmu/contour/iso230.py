@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import EPS, Array
+from motionfmu.contour.kinds import BothWays, Reading
 from motionfmu.contour.order import distinct, quantiles
 from motionfmu.contour.segments import Index
 
@@ -232,40 +233,6 @@ def fit_ellipse(points: Array, circle: tuple[Array, float] | None = None) -> Ell
     orientation -= math.pi * round(orientation / math.pi)
     centre = origin + radius * middle
     return Ellipse((float(centre[0]), float(centre[1])), float(major), float(minor), orientation)
-
-
-@dataclass(frozen=True)
-class Reading:
-    """Circular test of one directed path [mm]."""
-
-    # circular deviation G: minimum radial separation of two concentric circles (minimum zone, own
-    # centre) that envelop the path
-    g: float
-    g_least_squares: float  # range of the radii about the least-squares centre
-    # radial deviation F: largest distance from the nominal centre, minus the nominal radius
-    f_max: float
-    f_min: float  # with the smallest distance
-    f_max_centred: float  # the same about the least-squares centre, set-up errors removed
-    f_min_centred: float
-    radius_change: float  # mean radius about the least-squares centre, minus the nominal radius
-    radius_change_nominal: float  # about the nominal centre
-    offset: tuple[float, float]  # least-squares centre minus nominal centre, in the plane's axes
-    major_change: float  # semi-axes of the fitted ellipse minus the nominal radius
-    minor_change: float
-    orientation: float  # of the major axis from the plane's first axis [rad]
-
-
-@dataclass(frozen=True)
-class BothWays:
-    """Circular test of both directions together [mm]."""
-
-    # bi-directional circular deviation G(b): minimum radial separation of two concentric circles
-    # (minimum zone) that envelop both paths
-    g: float
-    # mean bi-directional radial deviation D: mean of both directions' mean radii about their common
-    # least-squares centre, minus the nominal radius
-    d: float
-    d_nominal: float  # the same about the nominal centre
 
 
 def reading(points: Array, radius: float) -> Reading:

@@ -3,10 +3,7 @@
 from dataclasses import fields
 from typing import Any, get_type_hints
 
-from motionfmu.contour.corners import Corner
-from motionfmu.contour.iso230 import BothWays, Reading
-from motionfmu.contour.result import AXES
-from motionfmu.contour.statistics import Statistics
+from motionfmu.contour.kinds import AXES, BothWays, Corner, Reading, Statistics
 from motionfmu.errors import suggestion
 
 NUMBER = (int, float)

@@ -10,17 +10,15 @@ from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import Array
 from motionfmu.contour.circles import CircularTest
-from motionfmu.contour.corners import Corner
 from motionfmu.contour.instants import Instants
+from motionfmu.contour.kinds import AXES, Corner, Statistics
 from motionfmu.contour.path import Path
 from motionfmu.contour.ranges import largest, parts
 from motionfmu.contour.scaled import Scaled, blocks, finite
 from motionfmu.contour.segments import KINDS
-from motionfmu.contour.statistics import Statistics
 from motionfmu.contour.track import Track
 from motionfmu.errors import NoNumber
 
-AXES = "xyzuvw"
 # Commands and corners that `ContourResult.numbers` has at most, of each.
 LISTED = 10_000
 # What is known of the error on a command: lengths [mm], time of the largest error [s].

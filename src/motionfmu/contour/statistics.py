@@ -1,31 +1,15 @@
 """Size of an error and where it is largest."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import Array
+from motionfmu.contour.kinds import Statistics
 from motionfmu.contour.order import quantiles
 from motionfmu.contour.path import Path
 from motionfmu.contour.track import Track
-
-
-@dataclass(frozen=True)
-class Statistics:
-    """Size of an error over many samples: its magnitude [mm], and where it is largest."""
-
-    max: float
-    rms: float
-    mean: float
-    p50: float
-    p95: float
-    p99: float
-    time: float  # when it is largest [s]
-    line: int  # of the program, and command, where it is largest
-    command: int
-    point: tuple[float, float, float]  # of the path where it is largest [mm]
 
 
 def statistics(path: Path, time: Array, track: Track, chosen: NDArray[np.bool_]) -> Statistics:

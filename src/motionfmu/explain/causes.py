@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from motionfmu.errors import InputError
 from motionfmu.explain.expression import evaluate
-from motionfmu.fmu.pack import EXTRA
+from motionfmu.fmu.inside import EXTRA
 from motionfmu.scenarios import fmus
 from motionfmu.toml_lines import tables_of
 

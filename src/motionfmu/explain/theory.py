@@ -14,7 +14,7 @@ from motionfmu.explain.servo import Array, Axis
 
 if TYPE_CHECKING:
     from motionfmu.contour import ContourResult
-    from motionfmu.contour.corners import Corner
+    from motionfmu.contour.kinds import Corner
     from motionfmu.run import Result
 
 # Places per segment at which an error of the geometry is looked at.

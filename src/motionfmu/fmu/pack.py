@@ -31,7 +31,7 @@ from motionfmu.fmu import (
     start_values,
     terminals,
 )
-from motionfmu.fmu.describe import DOMAIN
+from motionfmu.fmu.inside import EXTRA, GRID, MAIN_UNIT, PART_UNIT, PARTS, RESOURCES
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.platforms import Platform
 from motionfmu.toml_lines import text_of
@@ -39,16 +39,6 @@ from motionfmu.toml_lines import text_of
 SOURCE = Path(__file__).resolve().parents[2]
 # Zip cannot date earlier; a fixed date makes equal FMUs equal files.
 _DATE = (1980, 1, 1, 0, 0, 0)
-# What the linear models are made of goes into the FMU beside what the standard asks for.
-EXTRA = f"extra/{DOMAIN}"
-# Files that travel with an FMU, resource:NAME in a parameter.
-RESOURCES = "resources"
-# Which parameter is the FMU's grid; carried in EXTRA.
-GRID = "grid.json"
-# The model without FMI: its C text, and where an FMU carries its object, by the machine.
-PART_UNIT = "fmu_part.c"
-MAIN_UNIT = "fmu_main.c"
-PARTS = f"{EXTRA}/part"
 
 
 def _write(path: Path, data: str | bytes) -> None:

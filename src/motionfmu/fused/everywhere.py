@@ -6,7 +6,7 @@ from pathlib import Path
 
 from motionfmu.compiler import FLAGS, cross
 from motionfmu.fmu import cores, platforms
-from motionfmu.fmu.pack import MAIN_UNIT
+from motionfmu.fmu.inside import MAIN_UNIT
 from motionfmu.fmu.sources import NAMES, build_description, renamed
 from motionfmu.fused import layer
 from motionfmu.fused.description import Job

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from motionfmu import kept
 from motionfmu.compiler import FLAGS, Compiler, compiler
-from motionfmu.fmu.pack import MAIN_UNIT, PART_UNIT, PARTS
+from motionfmu.fmu.inside import MAIN_UNIT, PART_UNIT, PARTS
 from motionfmu.fmu.platforms import here
 from motionfmu.scenarios.fmus import digest, opened
 
@@ -48,15 +48,24 @@ def c_files(build: bytes) -> list[str]:
     return [PART_UNIT, *(name for name in names if name != MAIN_UNIT)]
 
 
-def part(name: str) -> Part:
-    """Read the part of an FMU; NotFused if it has none, nor C text of one."""
+def carried(name: str) -> bool:
+    """Whether an FMU carries an object for this machine, not only C text; NotFused if neither."""
     with opened(name) as archive:
         names = archive.namelist()
-        if f"sources/{PART_UNIT}" not in names or "sources/buildDescription.xml" not in names:
-            raise NotFused(f"{name} carries no part")
+    if f"sources/{PART_UNIT}" not in names or "sources/buildDescription.xml" not in names:
+        raise NotFused(f"{name} carries no part")
+    there = f"{PARTS}/{here().name}.o" in names
+    if not there and (compiler() is None or shutil.which("objcopy") is None):
+        raise NotFused(f"{name} carries no part for this machine, and no compiler makes one")
+    return there
+
+
+def part(name: str) -> Part:
+    """Read the part of an FMU; NotFused if it has none, nor C text of one."""
+    there = carried(name)
+    with opened(name) as archive:
         header = archive.read("sources/vars.h").decode()
-        made = f"{PARTS}/{here().name}.o"
-        code = archive.read(made) if made in names else _compiled(name)
+        code = archive.read(f"{PARTS}/{here().name}.o") if there else _compiled(name)
     sizes, members = _MARK.search(code), _STRUCT.search(header)
     if sizes is None or members is None:
         raise NotFused(f"{name} carries a part of another version")
@@ -74,9 +83,8 @@ def part(name: str) -> Part:
 
 def _compiled(name: str) -> bytes:
     """The object of an FMU that carries none for this machine, from its C text."""
-    cc, objcopy = compiler(), shutil.which("objcopy")
-    if cc is None or objcopy is None:
-        raise NotFused(f"{name} carries no part for this machine, and no compiler makes one")
+    cc = compiler()
+    assert cc is not None, "`carried` has looked for it"
     key = kept.key(digest(name), cc.version, *cc.command)
     place = kept.kept("parts", key, lambda folder: _compile(name, cc, folder))
     return (place / "part.o").read_bytes()

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from motionfmu.fmu.inside import EXTRA
 from motionfmu.fmu.modelica import stored
 from motionfmu.fmu.modelica.ode import Ode
-from motionfmu.fmu.pack import EXTRA
 from motionfmu.linear.block import Sampled
 from motionfmu.linear.form import Form, Gain, Quantity, evaluate
 from motionfmu.scenarios import fmus

@@ -101,7 +101,7 @@ def usual(system: System) -> tuple[str, str]:
     """The engine that runs a system if none is named, and why it is that one; empty for fused."""
     if given := named(None):
         return given, VARIABLE
-    from motionfmu.fused.parts import NotFused, part
+    from motionfmu.fused.parts import NotFused, carried
 
     if why := unfused(system):
         return "native", why
@@ -109,7 +109,7 @@ def usual(system: System) -> tuple[str, str]:
         return "native", "there is no C compiler"
     try:
         for fmu in dict.fromkeys(system.components.values()):
-            part(fmu)
+            carried(fmu)
     except NotFused as why:
         return "native", str(why)
     return "fused", ""
