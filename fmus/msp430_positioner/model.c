@@ -173,7 +173,7 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static void tell(struct fmu *f, enum sequence_code before)
+static void tell_stage(struct fmu *f, enum sequence_code before)
 {
     static const char *const TEXT[] = {
         "cleared", "PB2 before homing", "target outside the stroke", "following error",
@@ -228,7 +228,7 @@ static int sample(struct fmu *f)
         return fmu_fail(f, "scale_phase = %.17g: more edges than a number can hold exactly",
                         v->scale_phase);
     m->voltage = pwm_mean(&m->chip.pwm, &m->chip.config.pwm);
-    tell(f, code);
+    tell_stage(f, code);
     return 0;
 }
 

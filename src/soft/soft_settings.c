@@ -83,7 +83,8 @@ static int64_t clocks_of(double seconds)
 static void set_robot(const struct soft_settings *s, struct robot_config *r)
 {
     *r = (struct robot_config){
-        .arm = { .opw = { s->a1, s->a2, s->b, s->c1, s->c2, s->c3, s->c4 },
+        .arm = { .opw = { .a1 = s->a1, .a2 = s->a2, .b = s->b, .c1 = s->c1, .c2 = s->c2,
+                          .c3 = s->c3, .c4 = s->c4 },
                  .tool = pose_of(s->tool, s->tool + 3) },
         .feed = s->max_feed / 60.0, .acc = s->acceleration, .spin = s->max_spin * DEGREE,
         .smooth = s->smooth_time, .cycle = (double)s->slots * s->slot_clocks / FPGA_CLOCK_HZ,
