@@ -1,6 +1,7 @@
 /* Files and folders by names in UTF-8, for what an FMU reads (fmu_input.h) and writes
  * (fmu_output.h, fmu_recorder_folder.h). Windows takes such a name for one in the code page of its
- * user, so there it becomes UTF-16. Functions return as the C library's do, and set errno. */
+ * user, and one of 260 characters for too long, so there it becomes UTF-16, and a long one whole,
+ * behind \\?\. Functions return as the C library's do, and set errno. */
 #ifndef FMU_FILE_H
 #define FMU_FILE_H
 
@@ -25,8 +26,9 @@
 
 typedef struct _stat64 file_stat;
 
-/* A name in UTF-16, as it is and with one more character for a pattern. */
-struct file_wide { wchar_t text[_MAX_PATH + 1]; };
+/* A name in UTF-16. */
+enum { FILE_WIDE = 4096, FILE_SHORT = 248 }; /* a folder of that length is too long already */
+struct file_wide { wchar_t text[FILE_WIDE + 10]; }; /* with a head, and a pattern behind it */
 
 /* The character at p, which moves behind it; 0 at the end, UINT32_MAX if there is none. */
 static inline uint32_t file_character(const char **p)
@@ -51,11 +53,11 @@ static inline uint32_t file_character(const char **p)
 }
 
 /* False, and errno says why: no UTF-8, or too long. */
-static inline bool file_widen(struct file_wide *w, const char *name)
+static inline bool file_utf16(struct file_wide *w, const char *name)
 {
     size_t n = 0;
     for (uint32_t c; (c = file_character(&name)) != 0;) {
-        if (c == UINT32_MAX || n + 2 >= sizeof w->text / sizeof w->text[0]) {
+        if (c == UINT32_MAX || n + 2 >= FILE_WIDE) {
             errno = c == UINT32_MAX ? EILSEQ : ENAMETOOLONG;
             return false;
         }
@@ -66,6 +68,23 @@ static inline bool file_widen(struct file_wide *w, const char *name)
         w->text[n++] = (wchar_t)c;
     }
     w->text[n] = L'\0';
+    return true;
+}
+
+/* The name as Windows takes it. */
+static inline bool file_widen(struct file_wide *w, const char *name)
+{
+    struct file_wide whole; /* from the root on */
+    if (!file_utf16(w, name)) {
+        return false;
+    }
+    const bool known = _wfullpath(whole.text, w->text, FILE_WIDE) != NULL;
+    if (!known || wcslen(whole.text) < FILE_SHORT || wcsncmp(whole.text, L"\\\\?\\", 4) == 0) {
+        return true;
+    }
+    const bool share = wcsncmp(whole.text, L"\\\\", 2) == 0; /* \\?\UNC\server\share */
+    wcscpy(w->text, share ? L"\\\\?\\UNC" : L"\\\\?\\");
+    wcscat(w->text, whole.text + share);
     return true;
 }
 
@@ -124,14 +143,27 @@ static inline int file_remove_folder(const char *name)
     return file_widen(&w, name) ? _wrmdir(w.text) : -1;
 }
 
+/* Of windows.h, whose macros would meet the names of the cores: BY_HANDLE_FILE_INFORMATION. */
+struct file_identity { unsigned long before[7], volume, between[3], number[2]; };
+__declspec(dllimport) int __stdcall GetFileInformationByHandle(void *, struct file_identity *);
+
+static inline bool file_identify(const char *name, struct file_identity *i)
+{
+    struct file_wide w;
+    const int fd = file_widen(&w, name) ? _wopen(w.text, _O_RDONLY | _O_BINARY) : -1;
+    const bool good = fd >= 0 && GetFileInformationByHandle((void *)_get_osfhandle(fd), i);
+    if (fd >= 0) {
+        _close(fd);
+    }
+    return good;
+}
+
 /* Do both names, one of which may be missing, stand for one file? */
 static inline bool file_same(const char *a, const char *b)
 {
-    struct file_wide name[2], whole[2];
-    return file_widen(&name[0], a) && file_widen(&name[1], b)
-           && _wfullpath(whole[0].text, name[0].text, _MAX_PATH)
-           && _wfullpath(whole[1].text, name[1].text, _MAX_PATH)
-           && _wcsicmp(whole[0].text, whole[1].text) == 0;
+    struct file_identity i, j;
+    return file_identify(a, &i) && file_identify(b, &j) && i.volume == j.volume
+           && memcmp(i.number, j.number, sizeof i.number) == 0;
 }
 
 /* The entries of a folder, one after the other. */
@@ -148,12 +180,7 @@ static inline bool file_folder_open(struct file_folder *f, const char *name)
     f->first = true;
     f->handle = -1;
     if (file_widen(&w, name)) {
-        const size_t n = wcslen(w.text);
-        if (n + 3 > _MAX_PATH) {
-            errno = ENAMETOOLONG;
-            return false;
-        }
-        memcpy(w.text + n, L"/*", sizeof L"/*");
+        wcscat(w.text, L"\\*");
         f->handle = _wfindfirst64(w.text, &f->found);
     }
     return f->handle != -1;
