@@ -11,7 +11,7 @@ NEEDS := import sys; v = sys.version_info; \
   sys.exit(None if v >= (3, 11) else "%s is Python %d.%d, 3.11 or newer is needed: make PYTHON=..." % ((sys.executable,) + tuple(v[:2])))
 VENV := import ensurepip, venv
 
-.PHONY: needs demo test check bench importers fuzz build export wheel clean
+.PHONY: needs demo test check bench importers warnings fuzz build export wheel clean
 
 demo: build                     ## build all and run the demo scenario
 	$(BIN)/motionfmu run scenarios/circle
@@ -28,8 +28,8 @@ build: needs .venv/installed
 	@cmake --build build
 
 export: needs .venv/exporting    ## FMUs for Linux, Windows and macOS in build/export/fmus
-	@test -f build/export/build.ninja || cmake --preset export -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
-	@cmake --build build/export --target fmus stations
+	@grep -qs MOTIONFMU_EXPORT:BOOL=ON build/CMakeCache.txt || cmake --preset export -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
+	@cmake --build build --target export
 
 wheel: build export             ## the wheel for pip in build/wheel, tried in a new environment
 	$(BIN)/python tests/wheel/wheel.py build/export build/wheel
@@ -50,8 +50,11 @@ bench: build                    ## speed, as ratios measured in one run; BENCH=-
 	@cmake --build build --target fused_circle fused_six_axes count_here card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch
 	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py $(BENCH)
 
-importers: build                ## FMUs in other people's importers, which it installs; writes docs/importers.md
+importers: build export         ## FMUs in other people's importers, which it installs; writes docs/importers.md
 	PYTHONPATH=tests/importers $(BIN)/python tests/importers/matrix.py
+
+warnings: build                 ## every C file by other compilers, whose warnings are errors
+	$(BIN)/python tests/ports/warnings.py build
 
 SECONDS ?= 120
 fuzz: needs .venv/installed           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each
