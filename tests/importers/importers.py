@@ -1,6 +1,7 @@
 """Importers of other people run FMUs; what they read is compared bit for bit. See README.md."""
 
 import fnmatch
+import io
 import json
 import os
 import shutil
@@ -8,9 +9,11 @@ import subprocess
 import sys
 import tempfile
 import tomllib
-from collections.abc import Iterator, Sequence
+import zipfile
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from fmpy import read_model_description
@@ -18,7 +21,7 @@ from fmpy import read_model_description
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 BUILT = ROOT / "build" / "importers"
-EQUAL, PASSED = "equal bits", "no complaint"
+EQUAL, PASSED, READ = "equal bits", "no complaint", "read"
 STEPS = 200
 _TIME_MAX = 600  # [s] for all jobs of a tool together
 _NO_NUMBER = ("String", "Binary", "Clock")
@@ -37,12 +40,21 @@ class Tool:
     needs: list[str] = field(default_factory=list)  # programs that must be there
     platform: str = "x86_64-linux"  # of the FMUs' libraries
     checks: bool = False  # it looks at archives and runs nothing
-    known: list[str] = field(default_factory=list)  # its own faults: verdicts, or patterns
+    passed: str = PASSED  # what it says of a good one then
+    ssp: bool = False  # it runs an SSP of FMI 2, too
+    known: dict[str, str] = field(default_factory=dict)  # its own faults: verdict or pattern, why
     quick: bool = True  # it is in make test, where it is installed
 
-    def knows(self, verdict: str) -> bool:
-        """Whether a verdict is a fault of its own."""
-        return any(fnmatch.fnmatchcase(verdict, pattern) for pattern in self.known)
+    def why(self, verdict: str) -> str:
+        """What is known of a verdict that is a fault of its own; empty if it is none."""
+        found = (why for k, why in self.known.items() if fnmatch.fnmatchcase(verdict, k))
+        return next(found, "")
+
+    def can(self, case: "Case") -> bool:
+        """Whether a case is one for it."""
+        if case.file.suffix == ".ssp":
+            return self.ssp
+        return case.fmi in self.fmi and (case.size is None or not self.checks)
 
     def _words(self, command: Sequence[str]) -> list[str]:
         places = {
@@ -78,7 +90,10 @@ class Tool:
         (folder / "installed").write_text(self._made_of())
 
     def told(self, jobs: Sequence["Job"]) -> dict[Path, str]:
-        """Run jobs: for each "ok" or why not; a job that ends the process has the next ones run."""
+        """Run jobs: for each "ok", and a remark, or why not.
+
+        A job that ends the process has the next ones run.
+        """
         found: dict[Path, str] = {}
         waiting = [j.file for j in jobs]
         while waiting:
@@ -118,12 +133,22 @@ def tool(folder: str) -> Tool:
 
 
 @dataclass(frozen=True)
+class Case:
+    """What all tools run: a row of the page."""
+
+    title: str
+    fmi: int
+    file: Path  # an FMU, or an SSP of FMI 2
+    size: float | None = None  # communication step [s]; that of the default experiment
+    names: tuple[str, ...] = ()  # of the values that an SSP is asked for: component.variable
+
+
+@dataclass(frozen=True)
 class Job:
-    """One FMU to be run with its start values, and where the rows go."""
+    """One case to be run with its start values, and where the rows go."""
 
     file: Path
-    fmu: Path
-    fmi: int
+    case: Case
     out: Path
     names: list[str]  # of the elements of a row
     steps: int
@@ -133,32 +158,51 @@ class Job:
         return np.fromfile(self.out).reshape(self.steps + 1, len(self.names))
 
 
-def job(fmu: Path, folder: Path, steps: int = STEPS) -> Job:
-    """A job for an FMU: all its outputs that are numbers, after each of so many steps.
+def _value(v: Any, name: str, fmi: int) -> tuple[str, list[str]]:
+    """A line for a variable that is read, and the names of its elements.
 
-    The files of a job are in the folder. FMI 2 names types Real, Integer, Boolean; FMI 3 those of
-    the functions that get them.
+    FMI 2 names types Real, Integer, Boolean; FMI 3 those of the functions that get them.
     """
-    model = read_model_description(str(fmu), validate=False)
-    fmi = int(model.fmiVersion[0])
-    name = fmu.name.removesuffix(".fmu")
-    out = folder / f"{name}.bin"
-    size = model.defaultExperiment.stepSize
-    lines = [f"fmu\t{fmu}", f"fmi\t{fmi}", f"step\t{float(size)!r}", f"steps\t{steps}"]
-    names: list[str] = []
-    for v in model.modelVariables:
-        if v.causality != "output" or v.type in _NO_NUMBER:
-            continue
-        count = int(np.prod([d.start for d in v.dimensions], dtype=int)) if fmi == 3 else 1
-        kind = {"Enumeration": "Integer" if fmi == 2 else "Int64"}.get(v.type, v.type)
-        lines.append(f"value\t{kind}\t{v.valueReference}\t{count}\t{v.name}")
-        names += (
-            [f"{v.name}[{i + 1}]" for i in range(count)] if fmi == 3 and count > 1 else [v.name]
+    count = int(np.prod([d.start for d in v.dimensions], dtype=int)) if fmi == 3 else 1
+    kind = {"Enumeration": "Integer" if fmi == 2 else "Int64"}.get(v.type, v.type)
+    elements = [f"{name}[{i + 1}]" for i in range(count)] if count > 1 else [name]
+    return f"value\t{kind}\t{v.valueReference}\t{count}\t{name}", elements
+
+
+def _inside(ssp: Path, component: str) -> Any:
+    """Description of a component's FMU."""
+    with zipfile.ZipFile(ssp) as archive:
+        return read_model_description(
+            io.BytesIO(archive.read(f"resources/{component}.fmu")), validate=False
         )
-    lines.append(f"out\t{out}")
-    file = folder / f"{name}.job"
-    file.write_text("\n".join(lines) + "\n")
-    return Job(file, fmu, fmi, out, names, steps)
+
+
+def job(case: Case, folder: Path, steps: int = STEPS) -> Job:
+    """A job for a case: all outputs of an FMU that are numbers, or what is named of an SSP.
+
+    The files of a job are in the folder.
+    """
+    found: list[tuple[str, list[str]]] = []
+    if case.file.suffix == ".ssp":
+        parts = {name.partition(".")[0] for name in case.names}
+        models = {part: _inside(case.file, part) for part in parts}
+        by = {f"{p}.{v.name}": v for p, m in models.items() for v in m.modelVariables}
+        found = [_value(by[name], name, case.fmi) for name in case.names]
+        size = case.size
+    else:
+        model = read_model_description(str(case.file), validate=False)
+        size = case.size or float(model.defaultExperiment.stepSize)
+        found = [
+            _value(v, v.name, case.fmi)
+            for v in model.modelVariables
+            if v.causality == "output" and v.type not in _NO_NUMBER
+        ]
+    stem = f"{case.title}.fmi{case.fmi}".replace(" ", "_").replace("/", "_")
+    out = folder / f"{stem}.bin"
+    head = [f"fmu\t{case.file}", f"fmi\t{case.fmi}", f"step\t{size!r}", f"steps\t{steps}"]
+    file = folder / f"{stem}.job"
+    file.write_text("\n".join([*head, *(line for line, _ in found), f"out\t{out}"]) + "\n")
+    return Job(file, case, out, [name for _, names in found for name in names], steps)
 
 
 @dataclass(frozen=True)
@@ -176,56 +220,72 @@ class Verdict:
     @property
     def good(self) -> bool:
         """Whether there is nothing to tell."""
-        return self.verdict in (EQUAL, PASSED)
+        return self.verdict in (EQUAL, PASSED, READ)
 
     def line(self) -> str:
         """As JSON."""
         return json.dumps(asdict(self), ensure_ascii=False)
 
 
-def compared(rows: np.ndarray, expected: np.ndarray, names: Sequence[str]) -> str:
-    """EQUAL, or where rows differ most; a first row without numbers was not to be had."""
+def compared(rows: np.ndarray, expected: np.ndarray, names: Sequence[str], remark: str = "") -> str:
+    """EQUAL, or where rows differ most; a first row without numbers was not to be had.
+
+    Behind a remark columns without numbers were not, either.
+    """
     if rows.shape != expected.shape:
         return f"{rows.shape} values for {expected.shape}"
     begin = 1 if len(rows) > 1 and np.isnan(rows[0]).all() else 0
+    blank = np.isnan(rows).all(axis=0)
+    if remark and blank.any() and not blank.all():
+        rows, expected = (np.ascontiguousarray(x[:, ~blank]) for x in (rows, expected))
+        names = [name for name, left in zip(names, blank, strict=True) if not left]
     a, b = rows[begin:].view(np.uint64), expected[begin:].view(np.uint64)
     if np.array_equal(a, b):
-        return EQUAL
+        return f"{EQUAL} {remark}".strip()
     columns = np.flatnonzero((a != b).any(axis=0))
     k = int(np.flatnonzero((a != b).any(axis=1))[0])
-    gap = np.nanmax(np.abs(rows[begin:, columns] - expected[begin:, columns]))
+    gap = np.abs(rows[begin:, columns] - expected[begin:, columns])
+    gap = np.inf if np.isnan(gap).any() else gap.max()
     some = ", ".join(names[i] for i in columns[:3])
     return f"{len(columns)} outputs differ by up to {gap:.3g} from row {k + begin} on: {some}"
 
 
-def verdicts(
-    tool: Tool, fmus: Sequence[Path], expected: dict[Path, np.ndarray]
-) -> Iterator[Verdict]:
-    """Run FMUs, whose rows are expected to be these, in a tool."""
+def verdicts(tool: Tool, expected: Mapping[Case, np.ndarray]) -> Iterator[Verdict]:
+    """Run the cases that are for a tool; rows are expected to be these."""
     with tempfile.TemporaryDirectory(prefix="importers-") as name:
-        can = [f for f in fmus if version(f) in tool.fmi]
-        jobs = [job(f, Path(name), len(expected[f]) - 1) for f in can]
+        jobs = [job(c, Path(name), len(x) - 1) for c, x in expected.items() if tool.can(c)]
         told = tool.told(jobs)
         for one in jobs:
-            text = told[one.file]
+            text, _, remark = told[one.file].partition("\t")
             if text == "ok":
-                text = PASSED if tool.checks else compared(one.rows(), expected[one.fmu], one.names)
-            title = one.fmu.name.removesuffix(".fmu").removesuffix(f".fmi{one.fmi}")
-            yield Verdict(title, one.fmi, tool.name, tool.version, tool.platform, text, tool.folder)
+                rows = expected[one.case]
+                text = tool.passed
+                if not tool.checks:
+                    text = compared(one.rows(), rows, one.names, remark)
+            case = one.case
+            yield Verdict(
+                case.title, case.fmi, tool.name, tool.version, tool.platform, text, tool.folder
+            )
 
 
-def version(fmu: Path) -> int:
-    """FMI version of an archive, as its name says."""
-    return 2 if ".fmi2." in fmu.name else 3
+def fmus(folder: Path) -> list[Case]:
+    """The FMUs of a folder."""
+    found = []
+    for fmi in (2, 3):
+        found += [
+            Case(file.name.removesuffix(f".fmi{fmi}.fmu"), fmi, file)
+            for file in sorted(folder.glob(f"*.fmi{fmi}.fmu"))
+        ]
+    return found
 
 
-def reference(fmus: Sequence[Path], steps: int = STEPS) -> dict[Path, np.ndarray]:
+def reference(cases: Sequence[Case], steps: int = STEPS) -> list[np.ndarray]:
     """Rows of FMUs as FMPy reads them."""
     fmpy = tool("fmpy")
     with tempfile.TemporaryDirectory(prefix="importers-") as name:
-        jobs = [job(f, Path(name), steps) for f in fmus]
+        jobs = [job(case, Path(name), steps) for case in cases]
         told = fmpy.told(jobs)
         for one in jobs:
             if told[one.file] != "ok":
-                raise AssertionError(f"FMPy, {one.fmu.name}: {told[one.file]}")
-        return {one.fmu: one.rows() for one in jobs}
+                raise AssertionError(f"FMPy, {one.case}: {told[one.file]}")
+        return [one.rows() for one in jobs]

@@ -28,6 +28,11 @@ class Task:
     out: Path
     values: list[Value]
 
+    @property
+    def ssp(self) -> bool:
+        """Whether it is a system, whose values are named COMPONENT.VARIABLE."""
+        return self.fmu.endswith(".ssp")
+
 
 def read(file: str) -> Task:
     """Read the file of a job."""
@@ -51,10 +56,15 @@ def packages() -> Path:
 
 
 def main(run: Callable[[Task], str | None]) -> None:
-    """Run every job of the command line; a function returns what is wrong, or raises it."""
+    """Run every job of the command line; a function returns what is wrong, or raises it.
+
+    "ok", a tab and a remark is what it returns if all is right but for something.
+    """
     for file in sys.argv[1:]:
         try:
             told = run(read(file)) or "ok"
         except Exception as error:
             told = f"{type(error).__name__}: {error}"
-        print(file, " ".join(told.split()), sep="\t", flush=True)
+        if not told.startswith("ok\t"):
+            told = " ".join(told.split())
+        print(file, told, sep="\t", flush=True)

@@ -1,7 +1,18 @@
 """What a shared library says of itself: PE, Mach-O and universal files, read from their bytes."""
 
+import re
 import struct
+import zipfile
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import fmpy
+
+from motionfmu.fmu.platforms import PLATFORMS, Platform
+
+HEADERS = Path(fmpy.__file__).parent / "c-code"
 
 MACHINES = {0x01000007: "x86_64", 0x0100000C: "aarch64"}
 _UNIVERSAL, _MACH = 0xCAFEBABE, 0xFEEDFACF
@@ -125,3 +136,52 @@ def pe(data: bytes) -> Pe:
         loaded.add(_text(data, place(name)))
         at += 20
     return Pe(machine, made, frozenset(shown), frozenset(loaded))
+
+
+def library(fmu: Path, fmi: int, platform: Platform) -> bytes:
+    """A platform's library of an FMU."""
+    with zipfile.ZipFile(fmu) as archive:
+        places = [
+            n for n in archive.namelist() if n.startswith(f"binaries/{platform.folder(fmi)}/")
+        ]
+        assert len(places) == 1, places
+        assert places[0].endswith(platform.suffix)
+        return archive.read(places[0])
+
+
+@cache
+def standard(fmi: int) -> frozenset[str]:
+    """Functions of the standard; in FMI 2 those of co-simulation alone."""
+    text = (HEADERS / f"fmi{fmi}Functions.h").read_text()
+    names = re.findall(rf"^\s*FMI{fmi}_Export\s+\w+TYPE\s+(\w+);", text, re.MULTILINE)
+    only = re.compile(
+        "fmi2(EnterEvent|NewDiscrete|EnterContinuous|CompletedIntegrator|SetTime|SetContinuous"
+        "|GetDerivatives|GetEventInd|GetContinuous|GetNominals)"
+    )
+    return frozenset(n for n in names if not only.match(n))
+
+
+def mac_faults(fmu: Path, fmi: int) -> list[str]:
+    """What is wrong with an FMU's libraries for a Mac, read from their bytes."""
+    return list(_mac_faults(fmu, fmi))
+
+
+def _mac_faults(fmu: Path, fmi: int) -> Iterator[str]:
+    with zipfile.ZipFile(fmu) as archive:
+        text = archive.read("modelDescription.xml").decode()
+    identifier = re.findall(r'modelIdentifier="(\w+)"', text)[0]
+    files = {library(fmu, fmi, p) for p in PLATFORMS if p.system == "darwin"}
+    found = {one.machine: one for data in files for one in machs(data)}
+    if (len(files), sorted(found)) != (1 if fmi == 2 else 2, ["aarch64", "x86_64"]):
+        yield f"{len(files)} files for {sorted(found)}"
+    for machine, one in found.items():
+        if one.name != f"@rpath/{identifier}.dylib":
+            yield f"{machine}: its name is {one.name}"
+        if one.system != "11.0":
+            yield f"{machine}: for macOS {one.system}"
+        if one.loaded != ("/usr/lib/libSystem.B.dylib",):
+            yield f"{machine}: it loads {one.loaded}"
+        if one.shown != standard(fmi):
+            yield f"{machine}: it shows {sorted(one.shown ^ standard(fmi))}"
+        if machine == "aarch64" and not (one.signed and one.ad_hoc):
+            yield f"{machine}: not signed"

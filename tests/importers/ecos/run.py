@@ -2,6 +2,8 @@
 
 import array
 import ctypes
+import math
+from typing import Any
 
 from jobs import Task, main, packages
 
@@ -24,24 +26,33 @@ def run(task: Task) -> str | None:
     """Run one job."""
     if unknown := {v.type for v in task.values} - set(KINDS):
         return f"it does not read {', '.join(sorted(unknown))}"
-    if any(v.count > 1 for v in task.values):
-        return "it reads no arrays of FMI 3"
+    if task.ssp:
+        with EcosSimulation(ssp_path=task.fmu, step_size=task.step) as simulation:
+            return through(task, simulation, [v.name.replace(".", "::", 1) for v in task.values])
     with EcosSimulationStructure() as structure:
         structure.add_model("one", task.fmu)
-        with (
-            EcosSimulation(structure=structure, step_size=task.step) as simulation,
-            task.out.open("wb") as out,
-        ):
-            simulation.init()
-            read = [
-                (getattr(simulation, f"get_{KINDS[v.type]}"), f"one::{v.name}") for v in task.values
-            ]
-            for k in range(task.steps + 1):
-                if k:
-                    simulation.step(1)
-                array.array("d", [float(get(name)) for get, name in read]).tofile(out)
-            simulation.terminate()
-    return None
+        with EcosSimulation(structure=structure, step_size=task.step) as simulation:
+            return through(task, simulation, [f"one::{v.name}" for v in task.values])
+
+
+def through(task: Task, simulation: Any, names: list[str]) -> str | None:
+    """Step through a job; an array of FMI 3 is asked for as one number, so it stays blank."""
+    simulation.init()
+    read = [
+        (getattr(simulation, f"get_{KINDS[v.type]}"), v, name)
+        for v, name in zip(task.values, names, strict=True)
+    ]
+    with task.out.open("wb") as out:
+        for k in range(task.steps + 1):
+            if k:
+                simulation.step(1)
+            row = array.array("d")
+            for get, v, name in read:
+                row.extend([float(get(name))] if v.count == 1 else [math.nan] * v.count)
+            row.tofile(out)
+    simulation.terminate()
+    arrays = any(v.count > 1 for v in task.values)
+    return "ok\tof what is no array" if arrays else None
 
 
 EcosLib.set_log_level("off")

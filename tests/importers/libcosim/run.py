@@ -18,10 +18,16 @@ NS = 1e9
 
 def run(task: Task) -> str | None:
     """Run one job; libcosim shows values after its first step only."""
-    execution = CosimExecution.from_step_size(round(task.step * NS))
-    one = execution.add_local_slave(CosimLocalSlave(task.fmu, "one"))
-    if one < 0:
-        return "the slave was refused"
+    if task.ssp:
+        execution = CosimExecution.from_ssp_file(task.fmu, round(task.step * NS))
+        slaves = [
+            execution.slave_index_from_instance_name(v.name.partition(".")[0]) for v in task.values
+        ]
+    else:
+        execution = CosimExecution.from_step_size(round(task.step * NS))
+        slaves = [execution.add_local_slave(CosimLocalSlave(task.fmu, "one"))] * len(task.values)
+    if any(slave is None or slave < 0 for slave in slaves):
+        return "a slave was refused"
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer)
     get = {
@@ -29,9 +35,9 @@ def run(task: Task) -> str | None:
         "Integer": observer.last_integer_values,
         "Boolean": observer.last_boolean_values,
     }
-    groups: dict[str, tuple[list[int], list[int]]] = {}
-    for place, value in enumerate(task.values):
-        references, places = groups.setdefault(value.type, ([], []))
+    groups: dict[tuple[str, int], tuple[list[int], list[int]]] = {}
+    for place, (slave, value) in enumerate(zip(slaves, task.values, strict=True)):
+        references, places = groups.setdefault((value.type, slave), ([], []))
         references.append(value.reference)
         places.append(place)
     row = array.array("d", [math.nan] * len(task.values))
@@ -41,8 +47,8 @@ def run(task: Task) -> str | None:
             execution.step()
             if execution.status().state == CosimExecutionState.ERROR:
                 return f"step {k + 1} failed"
-            for kind, (references, places) in groups.items():
-                for place, x in zip(places, get[kind](one, references), strict=True):
+            for (kind, slave), (references, places) in groups.items():
+                for place, x in zip(places, get[kind](slave, references), strict=True):
                     row[place] = x
             row.tofile(out)
     return None
