@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import util
 from pathlib import Path
@@ -35,6 +35,7 @@ class Job:
     strings: Mapping[str, str] = field(default_factory=dict)
     reals: Mapping[str, float] = field(default_factory=dict)
     values: bool = False  # print them, too
+    shown: Collection[str] = ()  # outputs; all if none are named
 
 
 def missing(platform: Platform) -> str:
@@ -50,15 +51,15 @@ def missing(platform: Platform) -> str:
 
 
 @functools.cache
-def program(platform: Platform) -> Path:
-    """fmu_bits for a platform."""
+def program(platform: Platform, source: Path = SOURCE) -> Path:
+    """fmu_bits, or another driver, for a platform."""
     _FOLDERS.append(tempfile.TemporaryDirectory(prefix="motionfmu-"))
     target = Path(_FOLDERS[-1].name) / ("fmu_bits.exe" if platform.system == "windows" else "bits")
     zig = (sys.executable, "-m", "ziglang", "cc", "-target", platform.target)
     compiler = ("cc",) if platform == here() else zig
     options = ["-std=c11", "-D_DEFAULT_SOURCE", "-O1", "-Wall", "-Wextra", "-Werror"]
     libraries = [] if platform.system == "windows" else ["-ldl"]
-    whole = [*compiler, *options, f"-I{HEADERS}", str(SOURCE), "-o", str(target), *libraries]
+    whole = [*compiler, *options, f"-I{HEADERS}", str(source), "-o", str(target), *libraries]
     subprocess.run(whole, check=True, capture_output=True)
     return target
 
@@ -72,12 +73,17 @@ def hashes(fmu: Path, platform: Platform, job: Job, folder: Path) -> list[str]:
     place = folder / f".{fmu.name}.{platform.name}"
     with zipfile.ZipFile(fmu) as archive:
         archive.extractall(place)
-    rows, fmi, identifier = _rows(place, job)
+    rows, fmi, identifier = job_rows(place, job)
     library = next((place / "binaries" / platform.folder(fmi)).glob(f"{identifier}.*"))
     (place / "job.txt").write_text(rows, encoding="utf-8")
     names = [str(f.relative_to(folder)) for f in (library, place / "job.txt")]
+    return ran(program(platform), platform, [names[0], str(fmi), names[1]], folder)
+
+
+def ran(made: Path, platform: Platform, arguments: Sequence[str], folder: Path) -> list[str]:
+    """The lines that a program for a platform prints."""
     runner = () if platform == here() else RUNNERS[platform.name]
-    whole = [*runner, str(program(platform)), names[0], str(fmi), names[1]]
+    whole = [*runner, str(made), *arguments]
     done = subprocess.run(whole, cwd=folder, capture_output=True, check=False)
     if done.returncode:
         raise subprocess.CalledProcessError(
@@ -86,7 +92,15 @@ def hashes(fmu: Path, platform: Platform, job: Job, folder: Path) -> list[str]:
     return done.stdout.decode().splitlines()
 
 
-def _rows(place: Path, job: Job) -> tuple[str, int, str]:
+def hash_of(data: bytes) -> str:
+    """FNV-1a, as the programs print it."""
+    found = 0xCBF29CE484222325
+    for byte in data:
+        found = (found ^ byte) * 0x100000001B3 % 2**64
+    return f"{found:016x}"
+
+
+def job_rows(place: Path, job: Job) -> tuple[str, int, str]:
     """The job file, the version of FMI and the model's identifier."""
     d = fmpy.read_model_description(str(place), validate=False)
     fmi = int(d.fmiVersion[0])
@@ -99,7 +113,7 @@ def _rows(place: Path, job: Job) -> tuple[str, int, str]:
     rows += [f"real {variables[n].valueReference} {x!r}" for n, x in job.reals.items()]
     for v in d.modelVariables:
         kind = _kind(v.type)
-        if v.causality == "output" and kind:
+        if v.causality == "output" and kind and (not job.shown or v.name in job.shown):
             count = 1
             for size in v.dimensions or []:
                 count *= int(size.start)

@@ -11,10 +11,12 @@ import pytest
 from conftest import ROOT
 from console import command
 
+import motionfmu
 from motionfmu.errors import InputError
 from motionfmu.fmu.platforms import PLATFORMS, Platform, here, named
 
-SCENARIO = ROOT / "scenarios/mismatch_line"
+SCENARIO = ROOT / "scenarios/circle"
+STEPS, STEP = 400, 1e-4
 zig = pytest.mark.skipif(not util.find_spec("ziglang"), reason="no zig: make export installs it")
 
 
@@ -33,12 +35,17 @@ def test_a_system_from_the_text_of_its_fmus_gives_the_same_bits(tmp_path: Path) 
         target = str(tmp_path / f"{name}.fmu")
         done = command("export", SCENARIO, "-o", target, "--platforms", platforms)
         assert done.returncode == 0, done.stderr
-    job = bits.Job(400, 1e-4)
+    job = bits.Job(STEPS, STEP)
+    run = motionfmu.load(SCENARIO).run(stop=STEPS * STEP)
+    positions = [bits.hash_of(row.tobytes()) for row in run["machine.table_position"]]
     wanted = bits.hashes(tmp_path / "one.fmu", here(), job, tmp_path)
-    assert len({row.split()[1] for row in wanted}) > 300
+    assert len({row.split()[1] for row in wanted}) > 300 and len(set(positions)) > 200
     for platform in (here(), *others):
         found = bits.hashes(tmp_path / "text.fmu", platform, job, tmp_path)
         assert bits.different(wanted, found) == "", platform
+        table = bits.Job(STEPS, STEP, shown=["machine.table_position"])
+        rows = bits.hashes(tmp_path / "text.fmu", platform, table, tmp_path)
+        assert [row.split()[1] for row in rows[:-1]] == positions, platform
     with zipfile.ZipFile(tmp_path / "text.fmu") as archive:
         names = archive.namelist()
         library = next(n for n in names if re.fullmatch(rf"binaries/{here().name}/.*", n))
