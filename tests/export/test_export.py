@@ -13,6 +13,7 @@ from fmu_manipulation_toolbox.container import FMUContainer
 
 import motionfmu
 from motionfmu import cli
+from motionfmu.export import as_ssp
 from motionfmu.export.system_fmu import as_fmu as export
 from motionfmu.export.system_fmu import identifier
 from motionfmu.run.engines.slave import Slave
@@ -138,3 +139,14 @@ def test_the_command_writes_a_whole_file(
 def test_a_scenarios_name_is_an_identifier() -> None:
     names = {"two_cards": "TwoCards", "a b-c": "ABC", "3d": "System3d", "ä": "System"}
     assert {name: identifier(name) for name in names} == names
+
+
+def test_without_a_compiler_the_way_that_needs_none_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.modules["motionfmu.fused.program"], "compiler", lambda: None)
+    demo = motionfmu.load(ROOT / "scenarios/circle")
+    with pytest.raises(motionfmu.InputError, match=r"be one FMU: .* an SSP needs none"):
+        export(demo, tmp_path / "x.fmu", 3, {})
+    as_ssp(demo, tmp_path / "x.ssp", 3, {})
+    assert [f.name for f in tmp_path.iterdir()] == ["x.ssp"]

@@ -265,7 +265,7 @@ def test_a_label_is_text_and_nothing_else() -> None:
         ('["card.enc_count"]', '["card.enc_count[1"]', "signals", "is an array of 6"),
         ('["card.enc_count"]', '["card.stopped[1]"]', "signals", "is a single value"),
         ('["card.enc_count"]', '["card.io_volts"]', "signals", "is no output (input)"),
-        ('["card.enc_count"]', '["card.irq_flags[1]"]', "signals", "only numbers, single or in"),
+        ('["card.enc_count"]', '["card.irq_flags[1]"]', "signals", "Boolean, single or in"),
         ('["card.enc_count"]', "[]", "signals", "the name of an output"),
         ("rate = 2e-3", "rate = 2.5e-5", "rate", "2.5e-05 s is no whole number of steps of 0.0001"),
         ("rate = 2e-3", "rate = 0.0", "rate", "rate = 0.0 s is no whole number"),

@@ -129,7 +129,10 @@ def test_both_engines_give_the_same_bits(folder: Path) -> None:
 
 def test_nothing_named_runs_natively(folder: Path) -> None:
     scenario = _made(folder, LOOP)
-    assert scenario.run(stop=0.01).options["engine"] == "native"
+    ran = scenario.run(stop=0.01)
+    assert ran.options["engine"] == "native" and ran.warnings == ()
+    (told,) = scenario.run(stop=0.01, fmi=3).warnings
+    assert told == "fmi = 3: wires join elements of arrays, so FMUs that have both run as FMI 2"
     with pytest.raises(InputError, match=r"engine fused: feedthrough\.fmu has no C text of ours"):
         scenario.run(engine="fused", stop=0.01)
 
@@ -147,6 +150,70 @@ def test_names_with_dots_and_brackets_go_everywhere(folder: Path, tmp_path: Path
     ran = scenario.run(set={"through.in[1]": 0.5})
     assert ran.overrides == ["through.in[1] = 0.5 (default: 0)"]
     assert outcome.save(ran, tmp_path / "r").name == "report.html"
+
+
+# A value of each type, at the ends of those that are exact in a sum of doubles; its weight there.
+TYPES: dict[str, tuple[Any, int]] = {
+    "Float32.in": (0.5, 1),
+    "Float64.in": (-1.25, 2),
+    "Int8.in": (-128, 3),
+    "UInt8.in": (255, 4),
+    "Int16.in": (-32768, 5),
+    "UInt16.in": (65535, 6),
+    "Int32.in": (-(2**31), 7),
+    "UInt32.in": (2**32 - 1, 8),
+    "Int64.in": (-(2**45), 9),
+    "UInt64.in": (2**44 + 1, 10),
+    "Boolean.in": (True, 11),
+    "choice.in": (1, 13),
+}
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_all_types_of_fmi_3_go_over_wires(folder: Path, engine: str) -> None:
+    foreign_fmus.built("feedthrough", 3, folder, "all")
+    names = [*TYPES, "text.in", "Int16.row.in", "Float64.row.in"]
+    given = {f"a.{name}": value for name, (value, _) in TYPES.items()}
+    given |= {
+        "a.text.in": "four",
+        "a.Int16.row.in": [1, 2, -3],
+        "a.Float64.row.in": [1.0, 2.0, 3.0],
+    }
+    tables = {
+        "stop": 4e-3,
+        "component": {"a": "all.fmu", "b": "all.fmu"},
+        "connect": {f"b.{n}": f"a.{n[:-2]}out" for n in names},
+        "set": given,
+        "leave": ["*.bytes.in"],
+        "record": {"signals": ["*"]},
+    }
+    ran = _made(folder, tables).run(engine=engine)
+    theory = sum(float(value) * weight for value, weight in TYPES.values()) + 12 * 4 + 14 * -3
+    assert ran["b.sum"][0] == 0.0 and (ran["b.sum"][1:] == theory).all()
+    assert ran["b.Float64.row.out"].tolist() == [[1.0, 2.0, 3.0]] * 4
+    assert "b.Int64.out" not in ran.signals  # no channel records it
+
+
+WRONG = {
+    ("set", "a.Int8.in", 128): "a.Int8.in = 128: outside -128 .. 127",
+    ("set", "a.UInt64.in", -1): "a.UInt64.in = -1: outside 0 .. 18446744073709551615",
+    ("set", "a.bytes.in", "00"): "a.bytes.in is Binary, of which nothing is set here",
+    ("set", "a.size", 4): "a.size is an structuralParameter and cannot be set",
+    ("connect", "a.bytes.in", "a.bytes.out"): "a.bytes.in is Binary, which no wire here carries",
+    ("record", "signals", ("a.Int64.out",)): "a.Int64.out is Int64: only Float64, Int32, Boolean",
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG, ids=lambda w: w[1])
+def test_what_no_run_has_of_fmi_3_is_told(folder: Path, wrong: tuple[str, str, Any]) -> None:
+    foreign_fmus.built("feedthrough", 3, folder, "all")
+    table, key, value = wrong
+    tables = {"stop": 4e-3, "component": {"a": "all.fmu"}, "leave": ["*"], "set": {}, "connect": {}}
+    tables["record"] = {"signals": ["*"]}
+    given = list(value) if isinstance(value, tuple) else value
+    with pytest.raises(InputError) as told:
+        _made(folder, tables | {table: {**tables[table], key: given}})
+    assert WRONG[wrong] in str(told.value)
 
 
 def _refused(folder: Path, fmu: str) -> str:

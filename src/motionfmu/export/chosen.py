@@ -1,4 +1,4 @@
-"""Which variables an exported system shows."""
+"""What an exported system is: its version, and which variables it shows."""
 
 from collections.abc import Collection
 
@@ -6,7 +6,15 @@ from motionfmu.errors import InputError, suggestion
 from motionfmu.run.prepared import Prepared
 from motionfmu.scenarios.system import End
 
+# Version of SSP by the version of FMI of its FMUs.
+VERSIONS = {2: "1.0", 3: "2.0"}
 _SHOWN = ("Float64", "Int32", "Boolean")
+
+
+def check_version(fmi: int) -> None:
+    """Refuse what is no version of FMI that is written."""
+    if fmi not in VERSIONS:
+        raise InputError(f"FMI {fmi!r}: {' or '.join(map(str, VERSIONS))}")
 
 
 def also_shown(

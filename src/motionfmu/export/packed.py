@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import InputError, suggestion
+from motionfmu.export.chosen import check_version
+from motionfmu.export.resources import Resources
 from motionfmu.fmu import places
 from motionfmu.fmu.pack import repacked
 from motionfmu.fmu.start_values import texts
@@ -19,10 +21,9 @@ def packed(name: str, target: Path, fmi: int, given: Mapping[str, Any]) -> list[
 
     Returns the names of these. Paths are from the working directory.
     """
-    if fmi not in (2, 3):
-        raise InputError(f"FMI {fmi!r}: 2 or 3")
+    check_version(fmi)
     ports = fmus.ports(name)
-    files: dict[str, Path] = {}
+    resources = Resources()
     starts = {}
     for variable, value in given.items():
         if variable not in ports:
@@ -36,12 +37,10 @@ def packed(name: str, target: Path, fmi: int, given: Mapping[str, Any]) -> list[
         if ports[variable].file == "read" and (file := places.local(said[0])) is not None:
             if not is_file(file):
                 raise InputError(f"{variable}: there is no file {file}")
-            own = places.free_name(file, variable, files)
-            files[own] = file
-            said = (places.RESOURCE + own,)
+            said = (resources.added(file, variable),)
         starts[variable] = " ".join(said)
-    repacked(fmus.fmu_path(name, fmi), target, files, starts)
-    return sorted(files)
+    repacked(fmus.fmu_path(name, fmi), target, resources.files, starts)
+    return sorted(resources.files)
 
 
 def program_of(name: str) -> str:

@@ -14,6 +14,12 @@ class Resources:
 
     files: dict[str, Path] = field(default_factory=dict)
 
+    def added(self, file: Path, owner: str) -> str:
+        """Take a file in; what a parameter says to name it. `owner` tells two of one name apart."""
+        name = places.free_name(file, owner, self.files)
+        self.files[name] = file
+        return places.RESOURCE + name
+
     def inside(self, setting: Setting) -> Setting:
         """The setting with files as ``resource:NAME``; they are added to those there are."""
         return replace(setting, values=tuple(self._value(setting, v) for v in setting.values))
@@ -25,6 +31,4 @@ class Resources:
         file = places.local(str(value)) if may else None
         if file is None or not file.is_absolute() or not is_file(file):
             return value
-        name = places.free_name(file, setting.end.component, self.files)
-        self.files[name] = file
-        return places.RESOURCE + name
+        return self.added(file, setting.end.component)

@@ -9,7 +9,7 @@ from typing import Any
 
 from motionfmu import fused
 from motionfmu.errors import InputError
-from motionfmu.export.chosen import also_shown
+from motionfmu.export.chosen import also_shown, check_version
 from motionfmu.export.resources import Resources
 from motionfmu.fmu import shown
 from motionfmu.fmu.pack import RESOURCES, write_whole
@@ -73,8 +73,7 @@ def as_fmu(
         Of a system that cannot be one FMU, a pattern that matches nothing, a file that cannot be
         written.
     """
-    if fmi not in (2, 3):
-        raise InputError(f"FMI {fmi!r}: 2 or 3")
+    check_version(fmi)
     system, resources = scenario.resolved(Options(set=given)), Resources()
     system = placed(system, carrying(system))
     settings = tuple(resources.inside(s) for s in system.settings)
@@ -88,7 +87,8 @@ def as_fmu(
             choice.platforms,
         )
     except fused.NotFused as why:
-        raise InputError(f"{scenario.name} cannot be one FMU: {why}") from None
+        instead = "; an SSP needs none" if isinstance(why, fused.NoCompiler) else ""
+        raise InputError(f"{scenario.name} cannot be one FMU: {why}{instead}") from None
     # C text without the parts that it needs is of no use.
     left = _LEFT if choice.platforms else (*_LEFT, "sources/")
     packed = {

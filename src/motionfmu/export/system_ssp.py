@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu import ssp
-from motionfmu.errors import InputError
-from motionfmu.export.chosen import also_shown
+from motionfmu.export.chosen import VERSIONS, also_shown, check_version
 from motionfmu.export.resources import Resources
 from motionfmu.export.ssp_values import kind, values
 from motionfmu.export.stimuli import FMU, Stimuli, stimuli
@@ -20,8 +19,6 @@ from motionfmu.scenarios.fmus import fmu_path
 from motionfmu.scenarios.system import End, Setting, System, Wire
 from motionfmu.toml_lines import is_file
 
-# Version of SSP by the version of FMI.
-VERSIONS = {2: "1.0", 3: "2.0"}
 SET = "scenario"  # name of the parameter sets
 RESOURCES = "resources"
 
@@ -72,8 +69,7 @@ def as_ssp(
     InputError
         Of a version, a pattern that matches nothing, or a file that cannot be written.
     """
-    if fmi not in VERSIONS:
-        raise InputError(f"FMI {fmi!r}: 2 or 3")
+    check_version(fmi)
     system = scenario.resolved(Options(set=given))
     shown = also_shown(scenario, inner, ("output", "input"))
     driving, left_out = stimuli(system)

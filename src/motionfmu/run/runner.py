@@ -133,6 +133,9 @@ class Scenario(Prepared):
 
             result = wired.run(master, asked)
         result.warnings += _sparse(result, wired.system)
+        if fmi == 3 and wired.system.elementwise:  # asked for
+            told = "fmi = 3: wires join elements of arrays, so FMUs that have both run as FMI 2"
+            result.warnings += (told,)
         return result
 
     def changed(  # noqa: PLR0913  (each is a keyword)

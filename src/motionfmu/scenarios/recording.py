@@ -92,8 +92,8 @@ def output(resolver: Resolver, name: str, table: str, key: str) -> End:
         text = f"{name} is no output ({end.port.causality})"
         raise resolver.document.error(text, table, key, name)
     if not recordable(end):
-        text = f"{name}: only numbers, single or in groups of six"
-        text += " (real ones also of three and four), can be recorded"
+        text = f"{name} is {end.port.type}: only {', '.join(WIDTH)}, single or in groups of six"
+        text += " (Float64 also of three and four), can be recorded"
         raise resolver.document.error(text, table, key, name)
     return end
 

@@ -20,6 +20,8 @@ TIME_MAX = LONGEST  # [s]
 STEPS_MAX = 100_000_000
 # Clock of card and recorder; no FMU here steps by a part of it.
 CLOCK_NS = 25
+# Types of FMI 3 whose values have a length of their own.
+_NO_WIRE = ("Binary",)
 
 
 @dataclass(frozen=True)
@@ -212,6 +214,9 @@ def _check_wire(document: Document, wire: Wire, key: str) -> None:
         raise document.error(
             f"{b.name} is {_kind(b.port)}, {a.name} is {_kind(a.port)}", "connect", key
         )
+    if a.port.type in _NO_WIRE:
+        text = f"{b.name} is {a.port.type}, which no wire here carries"
+        raise document.error(text, "connect", key)
     if not _same_quantity(document, a, b):
         raise document.error(
             f"{b.name} [{b.port.unit or '1'}] = {a.name} [{a.port.unit or '1'}]: units differ",

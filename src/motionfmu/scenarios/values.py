@@ -19,13 +19,16 @@ from motionfmu.scenarios.system import (
 )
 from motionfmu.toml_lines import shown
 
+# Limits of the types that are whole numbers.
+WHOLE = {f"Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)}
+WHOLE |= {f"UInt{n}": (0, 2**n - 1) for n in (8, 16, 32, 64)}
 # What a value of each type is in a scenario.
 KINDS: dict[str, Any] = {
     "Float64": (int, float),
     "Float32": (int, float),
     "Boolean": bool,
     "String": str,
-} | {f"{sign}Int{bits}": int for sign in ("", "U") for bits in (8, 16, 32, 64)}
+} | dict.fromkeys(WHOLE, int)
 
 
 def values_of(end: End, value: Any) -> Values:
@@ -48,12 +51,17 @@ def values_of(end: End, value: Any) -> Values:
         if isinstance(x, int | float) and not isinstance(x, bool):
             if not math.isfinite(x):
                 raise ValueError(f"{end.name} = {x!r}: not a finite number")
-            if not end.port.low <= x <= end.port.high:
-                raise ValueError(
-                    f"{end.name} = {x!r}: outside {end.port.low:g} .. {end.port.high:g}"
-                )
+            least, most = WHOLE.get(end.port.type, (-math.inf, math.inf))
+            low, high = max(end.port.low, least), min(end.port.high, most)
+            if not low <= x <= high:
+                raise ValueError(f"{end.name} = {x!r}: outside {_bound(low)} .. {_bound(high)}")
         out.append(float(x) if end.port.type.startswith("Float") else x)
     return tuple(out)
+
+
+def _bound(limit: float) -> str:
+    """A limit with all its digits where it is that of a type."""
+    return str(limit) if isinstance(limit, int) else f"{limit:g}"
 
 
 def start_values(port: Port) -> Values:

@@ -1,9 +1,8 @@
 /* A bouncing ball, FMI 2.0, from the standard's headers alone: no reset, no states, one step
  * size. */
 #include <math.h>
-#include <stdlib.h>
 
-#include "fmi2Functions.h"
+#include "fmi2_rest.h"
 
 enum { HEIGHT = 901, SPEED = 17, GRAVITY = 5, RESTITUTION = 400, LIFT = 6 };
 enum { BOUNCES = 3, PHASE = 88 };
@@ -16,9 +15,6 @@ struct ball {
     int bounces, resting;
 };
 
-const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
-const char *fmi2GetVersion(void) { return "2.0"; }
-
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String place,
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible,
                               fmi2Boolean logging)
@@ -29,25 +25,6 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         *b = (struct ball){ .h = 1.0, .g = -9.81, .e = 0.7 };
     return b;
 }
-
-void fmi2FreeInstance(fmi2Component c) { free(c); }
-
-fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String some[])
-{
-    (void)c, (void)on, (void)n, (void)some;
-    return fmi2OK;
-}
-
-fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean defined, fmi2Real tolerance,
-                               fmi2Real start, fmi2Boolean ends, fmi2Real stop)
-{
-    (void)c, (void)defined, (void)tolerance, (void)start, (void)ends, (void)stop;
-    return fmi2OK;
-}
-
-fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
-fmi2Status fmi2Terminate(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
 
 static double *real(struct ball *b, fmi2ValueReference which)
 {

@@ -1,8 +1,7 @@
 /* Outputs follow inputs, FMI 2.0: the types of the standard, from its headers alone. */
-#include <stdlib.h>
 #include <string.h>
 
-#include "fmi2Functions.h"
+#include "fmi2_rest.h"
 
 /* References: inputs and outputs of a type share an index; an output is OUT further. */
 enum { OUT = 1000, REALS = 2, ROOM = 256 };
@@ -12,9 +11,6 @@ struct feed {
     int whole, choice, flag;
     char text[ROOM];
 };
-
-const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
-const char *fmi2GetVersion(void) { return "2.0"; }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String place,
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible,
@@ -26,25 +22,6 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         f->choice = 2;
     return f;
 }
-
-void fmi2FreeInstance(fmi2Component c) { free(c); }
-
-fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String some[])
-{
-    (void)c, (void)on, (void)n, (void)some;
-    return fmi2OK;
-}
-
-fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean defined, fmi2Real tolerance,
-                               fmi2Real start, fmi2Boolean ends, fmi2Real stop)
-{
-    (void)c, (void)defined, (void)tolerance, (void)start, (void)ends, (void)stop;
-    return fmi2OK;
-}
-
-fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
-fmi2Status fmi2Terminate(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real now, fmi2Real step, fmi2Boolean no_set)
 {

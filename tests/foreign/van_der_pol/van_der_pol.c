@@ -1,8 +1,7 @@
 /* Van der Pol's oscillator, FMI 3.0, from the standard's headers alone: no reset, no states. */
 #include <math.h>
-#include <stdlib.h>
 
-#include "fmi3Functions.h"
+#include "fmi3_rest.h"
 
 enum { TIME, X0 = 12, X1 = 4, MU = 77, X0_SHORT = 8 };
 static const double LONGEST = 1e-4;     /* [s] of a Runge-Kutta step */
@@ -10,8 +9,6 @@ static const double LONGEST = 1e-4;     /* [s] of a Runge-Kutta step */
 struct oscillator {
     double t, x[2], mu;
 };
-
-const char *fmi3GetVersion(void) { return "3.0"; }
 
 fmi3Instance fmi3InstantiateCoSimulation(
     fmi3String name, fmi3String token, fmi3String place, fmi3Boolean visible, fmi3Boolean logging,
@@ -27,14 +24,6 @@ fmi3Instance fmi3InstantiateCoSimulation(
     return o;
 }
 
-void fmi3FreeInstance(fmi3Instance c) { free(c); }
-
-fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t n, const fmi3String some[])
-{
-    (void)c, (void)on, (void)n, (void)some;
-    return fmi3OK;
-}
-
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean defined, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean ends, fmi3Float64 stop)
 {
@@ -43,9 +32,6 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean defined, fmi3
     o->t = start;
     return fmi3OK;
 }
-
-fmi3Status fmi3ExitInitializationMode(fmi3Instance c) { return c ? fmi3OK : fmi3Error; }
-fmi3Status fmi3Terminate(fmi3Instance c) { return c ? fmi3OK : fmi3Error; }
 
 static double *at(struct oscillator *o, fmi3ValueReference which)
 {

@@ -8,6 +8,7 @@ import shutil
 import tempfile
 import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 from motionfmu.compiler import compiler
 from motionfmu.errors import InputError
@@ -18,6 +19,7 @@ from motionfmu.scenarios import fmus
 _FUNCTION = re.compile(r"^#define (fmi[23]\w+) +fmi[23]FullName", re.MULTILINE)
 # Functions that an FMU of FMI 2 for co-simulation does not have.
 _OTHERS = re.compile(r"for FMI2 for Model Exchange.*?for FMI2 for Co-Simulation", re.DOTALL)
+DESCRIPTION = "modelDescription.xml"
 _UNUSED = ("sources/", "documentation/", "extra/", "terminalsAndIcons/", "model.png")
 
 
@@ -48,11 +50,29 @@ def _made(source: Path, foreign: str, fmi: int, *state: int) -> tuple[Path, Path
     with zipfile.ZipFile(source) as whole:
         whole.extractall(folder, [n for n in whole.namelist() if not n.startswith(_UNUSED)])
     if foreign:
+        _simplify(folder / DESCRIPTION)
         _complete(source, folder / foreign, fmi)
     with zipfile.ZipFile(target, "w") as part:
         for file in sorted(f for f in folder.rglob("*") if f.is_file()):
             part.write(file, file.relative_to(folder))
     return folder, target
+
+
+def _simplify(description: Path) -> None:
+    """Take out what the container would use and no run here has, or what it refuses.
+
+    It enters event mode where an FMU has one; arrays get the sizes that structural parameters say.
+    """
+    tree = ElementTree.parse(description)
+    starts = {
+        v.get("valueReference"): v.get("start", "") for v in tree.iterfind("ModelVariables/*")
+    }
+    sizes = [d for d in tree.iter("Dimension") if "valueReference" in d.attrib]
+    for size in sizes:
+        size.set("start", starts[size.attrib.pop("valueReference")])
+    modes = [e for e in tree.iterfind("CoSimulation") if e.attrib.pop("hasEventMode", "")]
+    if sizes or modes:
+        tree.write(description, encoding="UTF-8", xml_declaration=True)
 
 
 def _complete(source: Path, library: Path, fmi: int) -> None:
