@@ -137,6 +137,13 @@ def test_parts_wires_and_what_is_open(tmp_path: Path) -> None:
     assert (tmp_path / "out/scenario.toml").read_text().startswith("# Two parts\n")
 
 
+def test_a_wire_that_is_to_convert_no_units_is_taken(tmp_path: Path) -> None:
+    plain = wire("a.y", "b.v").replace(
+        "<ssd:Connection ", '<ssd:Connection suppressUnitConversion="true" '
+    )
+    assert taken(tmp_path, system(part("a") + part("b"), plain))["connect"] == {"b.v": "a.y"}
+
+
 def test_nested_systems_become_one(tmp_path: Path) -> None:
     ports = f"<ssd:Connectors>{INPUT.format('in')}{OUTPUT.format('out')}</ssd:Connectors>"
     inner = system(part("p"), wire("in", "p.u") + wire("p.y", "out"), "inner", ports)

@@ -26,6 +26,7 @@ class Way:
     target_index: tuple[int, ...] = ()
     factor: float = 1.0
     offset: float = 0.0
+    as_it_is: bool = False  # a number in another unit is not converted
 
 
 class Nodes:
@@ -85,7 +86,8 @@ class Nodes:
         if not inside[0]:
             nodes.reverse()
             indices.reverse()
-        way = Way(nodes[0], nodes[1], indices[0], indices[1])
+        as_it_is = connection.get("suppressUnitConversion") in ("true", "1")
+        way = Way(nodes[0], nodes[1], indices[0], indices[1], as_it_is=as_it_is)
         for child in connection:
             if plain(child) == "LinearTransformation":
                 factor = number(self.archive, child, "factor", 1.0)
@@ -121,6 +123,7 @@ class Nodes:
             then.target_index,
             first.factor * then.factor,
             first.offset * then.factor + then.offset,
+            first.as_it_is or then.as_it_is,
         )
 
     def fed(self, node: Node) -> Iterator[Node]:

@@ -156,7 +156,7 @@ class _Import:
                 raise self.archive.error(f"{what}: {self.sources[path]} has no {name}")
             unit = fmu.variables[name].unit
             ends.append(fmu.units.get(unit or ""))
-        if not inside.alike(*ends):
+        if not way.as_it_is and not inside.alike(*ends):
             units = " and ".join(
                 str(self.fmus[p].variables[n].unit) for p, n in (way.source, way.target)
             )
