@@ -12,9 +12,11 @@ from scipy.integrate import solve_ivp
 
 import motionfmu
 from motionfmu.errors import InputError
+from motionfmu.export import as_ssp
 from motionfmu.fmu.platforms import here
 from motionfmu.report import outcome
 from motionfmu.run.session import Session
+from motionfmu.ssp.imported import take
 from motionfmu.study import columns
 
 ENGINES = ("python", "native")
@@ -214,6 +216,25 @@ def test_what_no_run_has_of_fmi_3_is_told(folder: Path, wrong: tuple[str, str, A
     with pytest.raises(InputError) as told:
         _made(folder, tables | {table: {**tables[table], key: given}})
     assert WRONG[wrong] in str(told.value)
+
+
+def test_an_ssp_of_foreign_fmus_comes_back_with_the_same_bits(folder: Path, tmp_path: Path) -> None:
+    """FMUs as they are, wires of elements, values in parameter sets alone, which is told."""
+    scenario = _made(folder, {**LOOP, "stop": 0.2})
+    told = as_ssp(scenario, tmp_path / "it.ssp", 2, {}).left_out
+    assert [line.partition(":")[0] for line in told] == ["ball"]
+    take(tmp_path / "it.ssp", tmp_path / "back")
+    assert (tmp_path / "back/resources/ball.fmu").read_bytes() == (folder / "ball.fmu").read_bytes()
+    wanted, found = scenario.run(), motionfmu.load(tmp_path / "back").run()
+    for name in ("ball.ball.pos[2]", "through.out[1]", "through.choice.out"):
+        assert wanted[name].tobytes() == found[name].tobytes() and np.ptp(wanted[name]) > 0
+    with pytest.raises(InputError, match="wires join elements of arrays"):
+        as_ssp(scenario, tmp_path / "x.ssp", 3, {})
+    tables = {"stop": 0.1, "component": {"osc": "van_der_pol.fmu"}}
+    pol = _made(folder, {**tables, "record": {"signals": ["osc.*"]}})
+    with pytest.raises(InputError, match=r"osc is FMI 3, which no SSP 1\.0 has: --fmi 3"):
+        as_ssp(pol, tmp_path / "x.ssp", 2, {})
+    assert as_ssp(pol, tmp_path / "x.ssp", 3, {}).left_out == []
 
 
 def _refused(folder: Path, fmu: str) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu import ssp
+from motionfmu.errors import InputError
 from motionfmu.export.chosen import VERSIONS, also_shown, check_version
 from motionfmu.export.resources import Resources
 from motionfmu.export.ssp_values import kind, values
@@ -15,7 +16,7 @@ from motionfmu.fmu.describe import element_names
 from motionfmu.fmu.pack import repacked, write_whole
 from motionfmu.fmu.start_values import texts
 from motionfmu.run.prepared import Options, Prepared
-from motionfmu.scenarios.fmus import fmu_path
+from motionfmu.scenarios.fmus import fmu_path, is_ours
 from motionfmu.scenarios.system import End, Setting, System, Wire
 from motionfmu.toml_lines import is_file
 
@@ -71,11 +72,19 @@ def as_ssp(
     """
     check_version(fmi)
     system = scenario.resolved(Options(set=given))
+    _check_parts(scenario.name, system, fmi)
     shown = also_shown(scenario, inner, ("output", "input"))
     driving, left_out = stimuli(system)
     structure = _structure(scenario, system, shown, driving, fmi)
     if system.until is not None:
         left_out.append(f"stop = {system.until.name}: an SSP ends by time, here by limit")
+    theirs = [c for c, fmu in system.components.items() if not is_ours(fmu)]
+    given_to = {s.end.component for s in system.settings}
+    left_out += [
+        f"{c}: values stand in its parameter set alone, which some tools pass over: it is not ours"
+        for c in theirs
+        if c in given_to
+    ]
     parts = {name: (fmu, _own(system, name)) for name, fmu in system.components.items()}
     parts |= {one.name: (FMU, (one.settings(), {})) for one in driving}
     files: dict[str, bytes] = {}
@@ -94,6 +103,16 @@ def as_ssp(
         files["documentation/README.md"] = readme.read_bytes()
     write_whole(target, files)
     return Written(len(structure.components), len(structure.connections), left_out)
+
+
+def _check_parts(name: str, system: System, fmi: int) -> None:
+    """Refuse FMUs and wires that an SSP of this version has not."""
+    for component in system.components:
+        if system.version(component, fmi) > fmi:
+            told = f"{component} is FMI 3, which no SSP {VERSIONS[fmi]} has: --fmi 3"
+            raise InputError(f"{name}: {told}")
+    if fmi == 3 and system.elementwise:
+        raise InputError(f"{name}: wires join elements of arrays, which FMI 2 has: --fmi 2")
 
 
 def _structure(
@@ -126,16 +145,22 @@ def _source(component: str) -> str:
 def _own(system: System, component: str) -> tuple[list[Setting], dict[str, Path]]:
     """The settings of a component, and the files that they name, which are inside."""
     resources = Resources()
-    mine = [resources.inside(s) for s in system.settings if s.end.component == component]
+    mine = [s for s in system.settings if s.end.component == component]
+    if is_ours(system.components[component]):
+        mine = [resources.inside(s) for s in mine]
     return mine, resources.files
 
 
 def _pack(part: tuple[str, tuple[list[Setting], dict[str, Path]]], fmi: int, target: Path) -> None:
     """Write an FMU, with the files and values inside.
 
-    It begins with the values, too: tools there are that pass over parameter sets.
+    It begins with the values, too: tools there are that pass over parameter sets. One that is not
+    of this package stays as it is.
     """
     fmu, (settings, files) = part
+    if not is_ours(fmu):
+        target.write_bytes(fmu_path(fmu, fmi).read_bytes())
+        return
     starts = {s.end.port.name: " ".join(texts(s.values)) for s in settings}
     repacked(fmu_path(fmu, fmi), target, files, starts)
 

@@ -253,20 +253,24 @@ class _Import:
         every, few = [], []
         for path, fmu in self.fmus.items():
             for name, about in fmu.variables.items():
-                if about.causality == "output" and _recordable(about):
+                if about.causality == "output" and _recordable(about, fmu.fmi):
                     every.append(f"{self.names[path]}.{name}")
                     if self.nodes.kinds.get((path, name)) == "output":
                         few.append(every[-1])
         if not every:
-            raise self.archive.error("no FMU of it has an output")
+            raise self.archive.error("no FMU of it has an output that is recorded here")
         return few or every
 
 
-def _recordable(about: Variable) -> bool:
-    """Whether any engine records it: single numbers, groups of six, real ones of 3 and 4."""
-    whole = about.type in _WHOLE or about.type == "Boolean"
-    sizes = [(), (6,)] if whole else [(), (3,), (4,), (6,)]
-    return (whole or about.type in _REAL) and about.shape in sizes
+def _recordable(about: Variable, fmi: str) -> bool:
+    """Whether any engine records it: single numbers, groups of six, real ones of 3 and 4.
+
+    Of FMI 3's whole numbers those of 32 bits; its enumerations have 64.
+    """
+    if about.type in ("Real", "Float64"):
+        return about.shape in [(), (3,), (4,), (6,)]
+    whole = about.type in ("Integer", "Int32", "Boolean")
+    return (whole or (about.type, fmi[0]) == ("Enumeration", "2")) and about.shape in [(), (6,)]
 
 
 def _names(paths: Iterable[Inner]) -> Iterator[str]:
