@@ -9,6 +9,12 @@ from conftest import ROOT
 from console import within
 
 import motionfmu
+
+# Loaded already, as in a session: what they ask for when they are loaded is not asked again.
+import motionfmu.explain
+import motionfmu.freq
+import motionfmu.sweep
+import motionfmu.tune
 from motionfmu import extras
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]

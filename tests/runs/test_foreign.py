@@ -1,5 +1,6 @@
 """FMUs of other people in scenarios: both engines, theory, and why some cannot run."""
 
+import ctypes
 import subprocess
 import zipfile
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import motionfmu
+from motionfmu import binding
 from motionfmu.errors import InputError
 from motionfmu.export import as_ssp
 from motionfmu.fmu.platforms import here
@@ -331,3 +333,15 @@ def test_an_array_is_fed_when_each_element_is(folder: Path) -> None:
     tables = {**LOOP, "set": {}, "leave": ["through.*", "ball.*"], "stop": 0.1}
     ran = _made(folder, {**tables, "connect": {**LOOP["connect"], **each}}).run()
     assert not ran["axes.motor_angle"].any()  # nothing starts the loop
+
+
+def test_the_logger_of_fmi_2_makes_text_of_a_format_and_its_values() -> None:
+    told: list[tuple[int, bytes]] = []
+    log = binding.library().binding_log
+    back = ctypes.CFUNCTYPE(None, ctypes.c_int, ctypes.c_char_p)(lambda *row: told.append(row))
+    rest = (b"ball", 1, b"logStatusWarning", b"%s %d of %d at %g s: 100 %%", b"bounce", 2, 3)
+    log(ctypes.byref(back), *rest, ctypes.c_double(0.5))
+    log(None, *rest, ctypes.c_double(0.5))  # an FMU that lost its environment
+    log(ctypes.byref(back), b"ball", 3, b"", b"%5000d", 1)
+    assert told[0] == (1, b"bounce 2 of 3 at 0.5 s: 100 %")
+    assert len(told) == 2 and told[1][0] == 3 and len(told[1][1]) == 4095

@@ -84,3 +84,11 @@ def test_a_copy_has_all_files_that_it_names(name: str) -> None:
     for file in (file for place in places for file in place.glob("*.toml")):
         for other in re.findall(r"\.\./(\w+)", file.read_text()):
             assert ROOT / "scenarios" / other in places
+
+
+def test_what_the_others_name_is_copied_too(tmp_path: Path, monkeypatch) -> None:
+    for name, text in (("a", '"../b/x.ngc"'), ("b", "'../c'"), ("c", '"../a/y"'), ("d", "")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "scenario.toml").write_text(f"x = {text}\n")
+    monkeypatch.setattr(shipped, "folder", lambda kind: tmp_path)
+    assert [place.name for place in shipped.needed("a")] == ["a", "b", "c"]
