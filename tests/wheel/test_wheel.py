@@ -13,6 +13,7 @@ from conftest import ROOT
 
 import motionfmu
 
+EXPORTED = sorted(ROOT.glob("build/export/lib/*/motionfmu_stations.so"))
 PLAIN = {"PATH": os.environ["PATH"], "COLUMNS": "160"}
 
 
@@ -118,3 +119,22 @@ def test_what_else_the_base_does(installed: Installed) -> None:
     assert 'motionfmu[tune]"' in installed.run("python", "-c", code).stderr.splitlines()[-1]
     made = installed.run("motionfmu", "export", "circle", "--ssp")
     assert made.returncode == 0 and (installed.empty / "circle.ssp").is_file()
+
+
+def shown(library: Path) -> tuple[set[str], set[str]]:
+    """Names that a library shows, but what a processor chooses; versions of glibc it asks for."""
+    line = ["readelf", "-W", "--dyn-syms", "-V", library]
+    told = subprocess.run(line, capture_output=True, text=True, check=True).stdout
+    rows = [row.split() for row in told.splitlines()]
+    names = {r[7] for r in rows if len(r) == 8 and r[4] == "GLOBAL" and r[6].isdecimal()}
+    names = {name for name in names if not name.endswith(("_avx2", "_each"))}
+    return names, set(re.findall(r"GLIBC_([\d.]+)", told))
+
+
+@pytest.mark.skipif(not EXPORTED, reason="make export has not run")
+@pytest.mark.parametrize("library", EXPORTED, ids=lambda p: p.parent.name)
+def test_the_library_of_each_platform_is_that_of_the_build(library: Path) -> None:
+    names, versions = shown(library)
+    assert names == shown(ROOT / "build/lib/motionfmu_stations.so")[0]
+    assert len(names) > 1000 and {"binding_log", "binding_fields"} <= names
+    assert max(tuple(map(int, v.split("."))) for v in versions) <= (2, 17)
