@@ -129,7 +129,9 @@ def test_equal_input_gives_equal_bytes(demo: motionfmu.Scenario, tmp_path: Path)
 
 def test_fmpy_finds_the_bits_of_a_run(demo: motionfmu.Scenario, tmp_path: Path) -> None:
     """Its master has no parameter sets, begins all wires with 0 and shows what follows a step."""
-    given = {"mcc.p_gain": 150}
+    program = tmp_path / "pärt_加工.ngc"
+    program.write_bytes((ROOT / "scenarios/circle/circle.ngc").read_bytes())
+    given = {"mcc.p_gain": 150, "mcc.program": str(program)}
     as_ssp(demo, tmp_path / "circle.ssp", 2, given)
     found = simulate_ssp(str(tmp_path / "circle.ssp"), stop_time=STOP - 1.5 * STEP, step_size=STEP)
     run = demo.run(stop=STOP, set=given)
