@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "fmu_period.h"
 
 static double clocks(double seconds)
@@ -199,7 +200,7 @@ static struct law_config law_of(const struct vars *v)
 /* A cycle that is not 0 has a clock at least. */
 static int64_t cycle_of(double seconds)
 {
-    return seconds > 0.0 ? (int64_t)llround(fmax(1.0, clocks(seconds))) : 0;
+    return seconds > 0.0 ? (int64_t)llround(el_max(1.0, clocks(seconds))) : 0;
 }
 
 static struct pc_config config_of(const struct vars *v)

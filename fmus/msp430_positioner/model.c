@@ -1,6 +1,7 @@
 /* The MSP430 positioner on the wires of a co-simulation: pin grid and parameters. */
 #include <math.h>
 
+#include "el_extremes.h"
 #include "fixed.h"
 #include "msp430_damage.h"
 #include "vars.h"
@@ -102,7 +103,7 @@ static int set_motion(struct fmu *f, struct sequence_config *c)
     if (!(ticks <= INT32_MAX))
         return fmu_fail(f, "scale_time = %.17g s: too long", v->scale_time);
     c->scale_ticks = (int32_t)ticks;
-    c->debounce = (int32_t)fmin(ceil(v->debounce / t - WHOLE_TOLERANCE), INT32_MAX);
+    c->debounce = (int32_t)el_min(ceil(v->debounce / t - WHOLE_TOLERANCE), INT32_MAX);
     return 0;
 }
 
@@ -166,7 +167,7 @@ static int model_start(struct fmu *f)
     if (set_times(f, &c) || set_motion(f, &c.sequence))
         return -1;
     const double span = v->amplifier_gain * v->pwm_high;    /* [V] of the whole duty */
-    c.sequence.scale_open = (int32_t)fmin(ceil(v->scale_open / span * v->pwm_counts), INT32_MAX);
+    c.sequence.scale_open = (int32_t)el_min(ceil(v->scale_open / span * v->pwm_counts), INT32_MAX);
     msp430_reset(&m->chip, &c);
     m->voltage = pwm_voltage(&m->chip.pwm, &c.pwm);
     publish(v, m);

@@ -3,6 +3,7 @@
 #include "elementary.h"
 #include "el_exp.h"
 #include "el_exp_tables.h"
+#include "el_extremes.h"
 #include "el_series_tables.h"
 
 /* Exponents of the quick way: below 2^-54 e^x = 1; from 512 on the result may not be normal. */
@@ -100,7 +101,7 @@ double el_sinh(double x)
         return x;
     }
     if (a >= 40.0) {        /* the other half is less than 2^-115 of it */
-        const struct dd e = el_exp_dd(dd_of(fmin(a, 800.0), 0.0), &k);
+        const struct dd e = el_exp_dd(dd_of(el_min(a, 800.0), 0.0), &k);
         return copysign(dd_rounded(e, k - 1), x);
     }
     const struct dd m = expm1_dd(dd_of(a, 0.0));

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 bool analog_trim_ok(const struct analog_trim *t)
 {
     return fabs(t->gain - 1.0) <= 0.5 && fabs(t->offset) <= 1.0;
@@ -13,7 +15,7 @@ int32_t analog_code(double volts)
     if (isnan(volts))
         return 0;
     double code = round(volts / ANALOG_LSB);
-    return (int32_t)fmax(INT16_MIN, fmin(INT16_MAX, code));
+    return (int32_t)el_max(INT16_MIN, el_min(INT16_MAX, code));
 }
 
 double analog_volts(int32_t code)
@@ -24,7 +26,7 @@ double analog_volts(int32_t code)
 double analog_output(const struct analog_trim *t, int32_t code)
 {
     double volts = analog_volts(code) * t->gain + t->offset;
-    return fmax(-ANALOG_RANGE, fmin(ANALOG_RANGE, volts));
+    return el_max(-ANALOG_RANGE, el_min(ANALOG_RANGE, volts));
 }
 
 bool analog_set_trigger(struct analog *a, int channel, const struct analog_trigger *t)

@@ -2,12 +2,14 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
+
 /* 16 bit of +-10 V: -32768 .. 32767 steps of 10 V / 2^15. What lies beyond is at the end. */
 static double quantised(double volts)
 {
     const double steps = 32768.0, range = 10.0; /* [V] */
     const double code = rint(volts / range * steps);
-    return fmax(-steps, fmin(code, steps - 1.0)) * range / steps;
+    return el_max(-steps, el_min(code, steps - 1.0)) * range / steps;
 }
 
 /* Was an exchange meant that has happened already? */

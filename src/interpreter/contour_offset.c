@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 static const double TAU = 6.283185307179586;
@@ -69,7 +70,7 @@ void contour_beside(const struct contour *s, bool end, double edge, double place
 bool contour_fits(const struct contour *s, double edge)
 {
     return s->turn == 0.0 ||
-           fmin(s->radius[0], s->radius[1]) - s->turn * edge > SHORT;
+           el_min(s->radius[0], s->radius[1]) - s->turn * edge > SHORT;
 }
 
 /* Angle about the centre of an arc from one place on to another, along the arc; negative if
@@ -90,7 +91,7 @@ static bool line_circle(const double corner[2], const double left[2],
     const double along[2] = { left[1], -left[0] };
     const double to[2] = { centre[0] - corner[0], centre[1] - corner[1] };
     const double off = dot(to, left) - edge, u = dot(to, along);
-    const double rest = radius * radius - off * off, half = sqrt(fmax(rest, 0.0));
+    const double rest = radius * radius - off * off, half = sqrt(el_max(rest, 0.0));
 
     for (int i = 0; i < 2; i++) {
         place[0][i] = corner[i] + edge * left[i] + (u - half) * along[i];
@@ -102,11 +103,11 @@ static bool line_circle(const double corner[2], const double left[2],
 static bool circles(const double a[2], double ra, const double b[2], double rb,
                     double place[2][2])
 {
-    const double d = fmax(distance(a, b), SHORT);
+    const double d = el_max(distance(a, b), SHORT);
     const double along[2] = { (b[0] - a[0]) / d, (b[1] - a[1]) / d };
     const double across[2] = { -along[1], along[0] };
     const double u = 0.5 * (d + (ra - rb) * (ra + rb) / d);
-    const double rest = (ra - u) * (ra + u), half = sqrt(fmax(rest, 0.0));
+    const double rest = (ra - u) * (ra + u), half = sqrt(el_max(rest, 0.0));
 
     for (int i = 0; i < 2; i++) {
         place[0][i] = a[i] + u * along[i] - half * across[i];

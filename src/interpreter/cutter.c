@@ -6,6 +6,7 @@
 
 #include "block.h"
 #include "contour_offset.h"
+#include "el_extremes.h"
 #include "elementary.h"
 #include "frame.h"
 #include "tools.h"
@@ -172,7 +173,7 @@ static enum fault follow(struct interpreter *in, const struct program *p, const 
     }
     contour_of(&s, &c->path, in->plane);
     if (!contour_fits(&s, k->edge)) {
-        r->value = fmin(s.radius[0], s.radius[1]);
+        r->value = el_min(s.radius[0], s.radius[1]);
         r->limit = fabs(k->edge);
         return FAULT_CUTTER_ARC;
     }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "block.h"
+#include "el_extremes.h"
 #include "feed.h"
 #include "frame.h"
 #include "switching.h"
@@ -190,7 +191,7 @@ static enum fault set_places(struct interpreter *in, const struct program *p,
     k->initial = series ? k->initial : now;
     k->top = in->incremental ? now + k->r : k->r;
     k->bottom = in->incremental ? k->top + k->depth : k->depth;
-    k->clear = k->to_r ? k->top : fmax(k->top, k->initial);
+    k->clear = k->to_r ? k->top : el_max(k->top, k->initial);
     if (k->top < k->bottom) {
         r->value = k->top;
         r->limit = k->bottom;
@@ -303,14 +304,14 @@ static enum fault step(struct interpreter *in, const struct program *p, const ch
     case 'k':
         return go(in, p, k->hole, k->bored, false, r);
     case 'g':
-        k->pecked = fmax(k->pecked - k->peck, k->bottom);
+        k->pecked = el_max(k->pecked - k->peck, k->bottom);
         if (k->pecked - k->bottom < SAME) {     /* the rest of the rounding is no peck */
             k->pecked = k->bottom;
             k->step = STEP_FIRST + (int32_t)(strchr(steps, '<') - steps) + 1;
         }
         return go(in, p, k->hole, k->pecked, false, r);
     case 'c':
-        return go(in, p, k->hole, fmin(k->pecked + RELIEF, k->top), true, r);
+        return go(in, p, k->hole, el_min(k->pecked + RELIEF, k->top), true, r);
     case '<':
         k->step = STEP_FIRST;
         return FAULT_NONE;

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
+
 /* The correction of a DDA time changes the speed by no more than the axis gains in a DDA time when
  * it takes acc_time to its safe speed; one pulse always fits. */
 static struct comp_limits limits(const struct machine *m, const struct machine_axis *a)
@@ -12,7 +14,7 @@ static struct comp_limits limits(const struct machine *m, const struct machine_a
 
     return (struct comp_limits){
         .command = a->max_dda,
-        .change = (int32_t)fmax(1.0, fmin(gain, COMP_LARGEST))
+        .change = (int32_t)el_max(1.0, el_min(gain, COMP_LARGEST))
     };
 }
 

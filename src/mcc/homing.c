@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "mcc.h"
 
 static double scale(const struct mcc *m, int i)
@@ -19,7 +20,7 @@ int homing_set(struct mcc *m, int axis, const struct home_config *config, bool i
         return MCC_COMMAND_NOTFINISHED;
     }
     if (axis < 0 || axis >= AXES || !home_valid(config) ||
-        fmax(config->high_speed, config->low_speed) >
+        el_max(config->high_speed, config->low_speed) >
         machine_axis_speed(&m->machine.axis[axis])) {
         return MCC_PARAMETER;
     }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 /* What is left of the pre-filter's lag at rest is nothing from here on. [pulses], [pulses/s] */
@@ -110,7 +111,7 @@ void law_tick(const struct law_config *c, struct law *s, const struct law_look *
         if (i < 3) {
             v += a->volts * c->pulses_per_mm[i] * speed[i];
         }
-        volts[i] = fmax(-limit, fmin(limit, v));
+        volts[i] = el_max(-limit, el_min(limit, v));
         limited = limited || (i < 3 && volts[i] != v);
     }
     if (limited) {

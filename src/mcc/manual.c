@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "mcc.h"
 
 /* Settings of asynchronous point-to-point. */
@@ -298,7 +299,7 @@ static void follow(struct mcc *m, int axis)
     w->turned += (int32_t)((uint32_t)now - (uint32_t)w->count);
     w->count = now;
     const double want = round(w->base + w->ratio * (double)w->turned);
-    const double target = fmax(-COMMAND_PULSES_MAX, fmin(COMMAND_PULSES_MAX, want)) / scale;
+    const double target = el_max(-COMMAND_PULSES_MAX, el_min(COMMAND_PULSES_MAX, want)) / scale;
     if (target != place_of(m, axis) && on_limit(m, axis, target - place_of(m, axis))) {
         axes_stand(&m->mover.axes, axis);
         rebase(m, axis);

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 MCC_MACH_PARAM mcc_param_of(const struct machine_axis *a)
 {
     return (MCC_MACH_PARAM){
@@ -53,14 +55,14 @@ static int wanted(const struct mcc *m, struct machine *w)
         }
         set_axis(&w->axis[i], &m->epcio_axis_param[i]);
         const struct home_config *h = &m->homing.axis[i].config;
-        if (fmax(h->high_speed, h->low_speed) > machine_axis_speed(&w->axis[i])) {
+        if (el_max(h->high_speed, h->low_speed) > machine_axis_speed(&w->axis[i])) {
             return MCC_PARAMETER;
         }
     }
     if (m->feed > w->max_feed) {
         return MCC_FEED_RATE;
     }
-    w->feed = fmin(w->feed, w->max_feed);
+    w->feed = el_min(w->feed, w->max_feed);
     return machine_valid(w) ? MCC_NO_ERR : MCC_PARAMETER;
 }
 

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* A circle that bends by less than this over a frame is a line: it leaves the chord by L/8 of it,
  * far below rounding of places in mm. [rad] */
 static const double STRAIGHT = 1e-9;
@@ -103,7 +105,7 @@ static struct trail_piece chord_of(const struct trail *t, int64_t i, const doubl
     for (int k = 0; k < 3; k++) {
         p.along[k] = p.size > 0.0 ? p.chord[k] / p.size : 0.0;
         p.tangent[k] = p.along[k];
-        p.foot[k] = p.from[k] + fmax(0.0, fmin(p.size, way)) * p.along[k];
+        p.foot[k] = p.from[k] + el_max(0.0, el_min(p.size, way)) * p.along[k];
         p.square += (place[k] - p.foot[k]) * (place[k] - p.foot[k]);
     }
     return p;

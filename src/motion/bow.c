@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "el_extremes.h"
+
 /* In halves until nothing in a part leaves the places known by more than BOW_NEAR. */
 static void widen(const struct bow *w, double s0, const double p0[AXES], double s1,
                   const double p1[AXES], double low[AXES], double high[AXES])
@@ -11,10 +13,10 @@ static void widen(const struct bow *w, double s0, const double p0[AXES], double 
     bool inside = true;
 
     for (int k = 0; k < AXES; k++) {
-        low[k] = fmin(low[k], fmin(p0[k], p1[k]));
-        high[k] = fmax(high[k], fmax(p0[k], p1[k]));
-        inside = inside && fmin(p0[k], p1[k]) - strays >= low[k] - BOW_NEAR &&
-                 fmax(p0[k], p1[k]) + strays <= high[k] + BOW_NEAR;
+        low[k] = el_min(low[k], el_min(p0[k], p1[k]));
+        high[k] = el_max(high[k], el_max(p0[k], p1[k]));
+        inside = inside && el_min(p0[k], p1[k]) - strays >= low[k] - BOW_NEAR &&
+                 el_max(p0[k], p1[k]) + strays <= high[k] + BOW_NEAR;
     }
     if (!inside && s1 - s0 > BOW_NEAR) {
         const double s = 0.5 * (s0 + s1);

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
+
 void brake_rest(struct brake *b)
 {
     b->count = 1;
@@ -58,7 +60,7 @@ void brake_back(struct brake *b, double way, double dec)
     int32_t n = 0, from = 0;
 
     for (; from < b->count && b->step[from].even <= way; from++) {
-        least = fmin(least, braked(&b->step[from], way, dec));
+        least = el_min(least, braked(&b->step[from], way, dec));
     }
     if (from == b->count || least < b->step[from].speed) {
         b->step[n++] = (struct brake_step){ least, 0.0 };
@@ -75,14 +77,14 @@ struct brake_piece brake_next(const struct brake *b, double s, double place, dou
 
     for (int32_t i = 0; i < b->count; i++) {
         if (place - b->step[i].even > s) {
-            p.end = fmin(p.end, place - b->step[i].even);
+            p.end = el_min(p.end, place - b->step[i].even);
         } else {
-            p.top = fmin(p.top, b->step[i].speed);
+            p.top = el_min(p.top, b->step[i].speed);
         }
     }
     for (int32_t i = 0; i < b->count; i++) {
-        p.leave = fmin(p.leave, braked(&b->step[i], place - p.end, dec));
+        p.leave = el_min(p.leave, braked(&b->step[i], place - p.end, dec));
     }
-    p.leave = fmin(p.leave, p.top);
+    p.leave = el_min(p.leave, p.top);
     return p;
 }

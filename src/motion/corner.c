@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
+
 /* Directions that differ by less are the same. */
 static const double STRAIGHT = 1e-9;
 
@@ -33,7 +35,7 @@ static double turn(const struct path *a, const struct path *b)
     for (int i = 0; i < AXES; i++) {
         out[i] -= in[i];
     }
-    return fmax(norm3(out), norm3(out + 3));
+    return el_max(norm3(out), norm3(out + 3));
 }
 
 bool corner_make(struct corner *k, const struct path *a, const struct path *b, double tolerance,
@@ -44,21 +46,21 @@ bool corner_make(struct corner *k, const struct path *a, const struct path *b, d
 
     *k = (struct corner){ 0.0, 0.0, 0.0 };
     if (straight && (!round || ka == kb)) {
-        k->bend = fmax(ka, kb);
+        k->bend = el_max(ka, kb);
         return true;
     }
     /* CUT d half + CUT_CURVED (ka + kb) half^2 = tolerance */
     const double p = CUT * d, q = CUT_CURVED * sum;
     double half = 2.0 * tolerance / (p + sqrt(p * p + 4.0 * q * tolerance));
-    half = fmin(half, room);
-    half = sum > 0.0 ? fmin(half, 0.5 / fmax(ka, kb)) : half;
+    half = el_min(half, room);
+    half = sum > 0.0 ? el_min(half, 0.5 / el_max(ka, kb)) : half;
     if (!(half >= LEAST)) {
         return straight;
     }
     k->half = half;
-    k->bend = 0.75 * d / half + BEND_CURVED * fmax(ka, kb);
-    k->twist = 1.5 * d / (half * half) + 4.0 * fmax(ka, kb) / half +
-               fmax(path_twist(a), path_twist(b));
+    k->bend = 0.75 * d / half + BEND_CURVED * el_max(ka, kb);
+    k->twist = 1.5 * d / (half * half) + 4.0 * el_max(ka, kb) / half +
+               el_max(path_twist(a), path_twist(b));
     return true;
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bow.h"
+#include "el_extremes.h"
 #include "pace_smooth.h"
 
 /* A motion that will not get this much further [s] before it has to brake waits no longer for
@@ -40,7 +41,7 @@ static bool join_one(const struct curve *c, struct curve_plan *m)
 {
     const struct piece *whole = shape_piece(&m->shape, m->joined);
     const double goal = c->goal - m->joined_way;
-    const double to = goal > whole->length - NEAR ? whole->length : fmax(goal, m->part);
+    const double to = goal > whole->length - NEAR ? whole->length : el_max(goal, m->part);
     struct piece part;
 
     if (m->part <= 0.0 && to >= whole->length) {
@@ -228,7 +229,7 @@ static double halt_quick(struct curve *c, struct curve_plan *m)
         if (way + stop <= goal) {
             break;
         }
-        stop = fmax(stop, goal - way) * (1.0 + MARGIN);
+        stop = el_max(stop, goal - way) * (1.0 + MARGIN);
     }
     return goal;
 }
@@ -304,7 +305,7 @@ void curve_sample(struct curve *c, struct curve_plan *m)
     }
     const double way = way_of(c);
     const struct piece *p = find(c, m, way);
-    piece_at(p, fmin(fmax(way - c->base, 0.0), p->length), &s);
+    piece_at(p, el_min(el_max(way - c->base, 0.0), p->length), &s);
     for (int i = 0; i < AXES; i++) {
         c->point[i] = s.point[i];
         c->velocity[i] = c->place.rate * s.slope[i];
@@ -361,7 +362,7 @@ void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[A
     const double stop = at.start + pace_stop_way(&m->pace);
     for (double from = way_of(&at); pieces_known(m) > 0 && from < stop; ) {
         const struct piece *p = find(&at, m, from);
-        const double end = fmin(stop, at.base + p->length);
+        const double end = el_min(stop, at.base + p->length);
         struct piece_bounds b;
         if (!(end > from)) {
             break;
@@ -369,7 +370,7 @@ void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[A
         piece_bounds(p, from - at.base, end - at.base, &b);
         struct bow bow = { place_on_piece, p, 0.0 };
         for (int k = 0; k < AXES; k++) {
-            bow.bend = fmax(bow.bend, fmax(-b.low[1][k], b.high[1][k]));
+            bow.bend = el_max(bow.bend, el_max(-b.low[1][k], b.high[1][k]));
         }
         bow_widen(&bow, from - at.base, end - at.base, low, high);
         from = end;

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 void mix_begin(struct mix *x, const struct command *c, double override)
 {
     struct mix_move *m = &x->move[x->count++];
@@ -87,7 +89,7 @@ double mix_left(const struct mix *x)
 {
     double left = 0.0;
     for (int i = 0; i < x->count; i++) {
-        left = fmax(left, profile_left(&x->move[i].profile));
+        left = el_max(left, profile_left(&x->move[i].profile));
     }
     return left;
 }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 void mover_start(struct mover *p)
 {
     memset(p, 0, sizeof *p);
@@ -199,7 +201,7 @@ void mover_shift(struct mover *ramp, double dt)
 
 double mover_left(const struct mover *ramp)
 {
-    return fmax(mix_left(&ramp->mix), ramp->motion == MOVER_AXES ? axes_left(&ramp->axes) : 0.0);
+    return el_max(mix_left(&ramp->mix), ramp->motion == MOVER_AXES ? axes_left(&ramp->axes) : 0.0);
 }
 
 void mover_continue(struct mover *p)

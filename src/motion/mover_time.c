@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* The older command has ended. */
 static void retire(struct mover *p)
 {
@@ -175,7 +177,7 @@ static double advance_commands(struct mover *p, bool startable, double dt)
 {
     struct profile *old = &p->mix.move[0].profile;
     const double event = startable ? old->tail : old->total;
-    const double step = fmin(dt, event - old->t);
+    const double step = el_min(dt, event - old->t);
 
     mix_shift(&p->mix, step);
     if (step < dt) {

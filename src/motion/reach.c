@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bow.h"
+#include "el_extremes.h"
 
 /* The ramp at a time after now. */
 struct instant {
@@ -53,8 +54,8 @@ static struct instant instant_at(struct ramp_view *v, double t, const double nea
 static double move_strays(const struct path *way, const struct scurve_start *a,
                           const struct scurve_start *b, double dt, int axis)
 {
-    const double top = fmax(a->v, b->v) + fmax(0.0, a->a) * dt, ds = b->s - a->s;
-    const double uneven = 0.25 * (top - fmin(a->v, b->v)) * dt;
+    const double top = el_max(a->v, b->v) + el_max(0.0, a->a) * dt, ds = b->s - a->s;
+    const double uneven = 0.25 * (top - el_min(a->v, b->v)) * dt;
     return uneven * path_share(way, axis) + 0.125 * path_bend(way) * ds * ds;
 }
 
@@ -73,11 +74,11 @@ static bool between(const struct ramp_view *v, const struct instant *a, const st
                                   k);
         }
         if (v->machine->kinematics && paths) {
-            strays = 0.5 * fmax(0.0, v->machine->joint[k].speed * dt -
-                                     fabs(b->joint[k] - a->joint[k]));
+            strays = 0.5 * el_max(0.0, v->machine->joint[k].speed * dt -
+                                       fabs(b->joint[k] - a->joint[k]));
         }
-        low[k] = fmin(a->joint[k], b->joint[k]) - strays;
-        high[k] = fmax(a->joint[k], b->joint[k]) + strays;
+        low[k] = el_min(a->joint[k], b->joint[k]) - strays;
+        high[k] = el_max(a->joint[k], b->joint[k]) + strays;
     }
     return beyond(v, low, high) < 0;
 }
@@ -104,7 +105,7 @@ static int search(struct ramp_view *v, int64_t i, const struct instant *a, int64
 static int beyond_in_time(struct ramp_view *v)
 {
     const double time = mover_left(&v->ramp);
-    const int64_t last = (int64_t)fmin(ceil(time / v->dt), 1e15) + 1;
+    const int64_t last = (int64_t)el_min(ceil(time / v->dt), 1e15) + 1;
     const struct instant first = instant_at(v, 0.0, v->near);
     const struct instant end = instant_at(v, (double)last * v->dt, first.joint);
 
@@ -119,8 +120,8 @@ static void widen(const struct path *p, double from, double to, double margin, d
 
     for (int k = 0; k < AXES && from <= to; k++) {
         path_extent(p, k, from, to, &a, &b);
-        low[k] = fmin(low[k], a - margin);
-        high[k] = fmax(high[k], b + margin);
+        low[k] = el_min(low[k], a - margin);
+        high[k] = el_max(high[k], b + margin);
     }
 }
 
@@ -155,7 +156,7 @@ static void box_of_chain(const struct way *w, double low[AXES], double high[AXES
         const bool bent = path_bend(p) > 0.0 ||
                           (half > 0.0 && path_bend(path_of(w, i - 1)) > 0.0) ||
                           (next > 0.0 && path_bend(path_of(w, i + 1)) > 0.0);
-        widen(p, fmax(0.0, w->from - base - next), fmin(p->length, w->to - base + half),
+        widen(p, el_max(0.0, w->from - base - next), el_min(p->length, w->to - base + half),
               bent ? ring_peek(w->ring, i)->command.tolerance : 0.0, low, high);
         base += p->length;
     }
@@ -192,9 +193,9 @@ static void extent_of_chain(const struct way *w, double low[AXES], double high[A
         const struct path *p = path_of(w, i);
         const double half = track_half(w->t, w->ring, i), from = w->from - base, to = w->to - base;
         if (half > 0.0 && from < half && to > -half) {
-            widen_by_corner(w, i, fmax(-half, from), fmin(half, to), low, high);
+            widen_by_corner(w, i, el_max(-half, from), el_min(half, to), low, high);
         }
-        widen(p, fmax(half, from), fmin(p->length - track_half(w->t, w->ring, i + 1), to), 0.0,
+        widen(p, el_max(half, from), el_min(p->length - track_half(w->t, w->ring, i + 1), to), 0.0,
               low, high);
         base += p->length;
     }
@@ -211,11 +212,11 @@ static int beyond_on_way(const struct way *w, const struct ramp_view *v)
     double joint[AXES], place[AXES], velocity[AXES], step = INFINITY;
 
     for (int32_t i = w->t->out; i < w->t->joined; i++) {
-        step = fmin(step, ring_peek(w->ring, i)->command.cap * v->dt);
+        step = el_min(step, ring_peek(w->ring, i)->command.cap * v->dt);
     }
     memcpy(joint, v->near, sizeof joint);
     for (double at = w->from; at < w->to; ) {
-        at = fmin(at + step, w->to);
+        at = el_min(at + step, w->to);
         track_go(&tool, w->ring, at);
         track_place(&tool, w->ring, place, velocity);
         const bool reached = mechanism_joints(v->machine, place, joint);

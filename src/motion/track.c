@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 /* New commands are planned once they are so many of the planned ones (a fourth), so that a plan,
@@ -17,10 +18,10 @@ static double bend_speed(const struct command *c, double bend, double twist)
     double v = c->cap;
 
     if (bend > 0.0) {
-        v = fmin(v, sqrt(fmin(r->acc, r->dec) / bend));
+        v = el_min(v, sqrt(el_min(r->acc, r->dec) / bend));
     }
     if (c->smooth > 0.0 && twist > 0.0) {
-        v = fmin(v, el_cbrt((r->acc + r->dec) / (c->smooth * twist)));
+        v = el_min(v, el_cbrt((r->acc + r->dec) / (c->smooth * twist)));
     }
     return v;
 }
@@ -47,18 +48,18 @@ static void add(struct track *t, struct ring *r, const struct corner *k)
     n->turn = n->command.cap;
     if (t->joined > 0) {
         const struct command *before = &ring_peek(r, t->joined - 1)->command;
-        n->turn = fmin(bend_speed(&n->command, k->bend, k->twist),
-                       bend_speed(before, k->bend, k->twist));
+        n->turn = el_min(bend_speed(&n->command, k->bend, k->twist),
+                         bend_speed(before, k->bend, k->twist));
     }
     t->end += n->command.path.length;
-    t->dec = t->joined ? fmin(t->dec, n->command.ramp.dec) : n->command.ramp.dec;
+    t->dec = t->joined ? el_min(t->dec, n->command.ramp.dec) : n->command.ramp.dec;
     t->joined++;
 }
 
 /* Whether the motion, on its way to rest at the end, can still be as slow `way` before that. */
 static bool slow_at(const struct track *t, double speed, double way)
 {
-    const double brake = fmax(0.0, way - speed * t->smooth);
+    const double brake = el_max(0.0, way - speed * t->smooth);
     return way >= 0.0 && t->v * t->v <= speed * speed + 2.0 * t->dec * brake;
 }
 
@@ -69,11 +70,11 @@ static bool in_time(const struct track *t, const struct ring *r, const struct co
     const struct command *last = &ring_peek(r, t->joined - 1)->command;
     const struct command *next = &ring_peek(r, t->joined)->command;
     const double way = t->end - (t->base + t->s), bend = path_bend(&next->path);
-    const double body = fmin(bend_speed(next, bend, path_twist(&next->path)),
-                             command_speed(next, override));
-    double turn = fmin(bend_speed(next, k->bend, k->twist), bend_speed(last, k->bend, k->twist));
+    const double body = el_min(bend_speed(next, bend, path_twist(&next->path)),
+                               command_speed(next, override));
+    double turn = el_min(bend_speed(next, k->bend, k->twist), bend_speed(last, k->bend, k->twist));
 
-    turn = fmin(turn, fmin(command_speed(next, override), command_speed(last, override)));
+    turn = el_min(turn, el_min(command_speed(next, override), command_speed(last, override)));
     return slow_at(t, body, way + k->half) && (k->half <= 0.0 || slow_at(t, turn, way - k->half));
 }
 
@@ -88,8 +89,8 @@ static void join(struct track *t, struct ring *r, double override)
         if (!(b->tolerance > 0.0) || !command_blends(b) || b->smooth != t->smooth) {
             return;
         }
-        const double room = 0.5 * fmin(a->path.length, b->path.length);
-        if (!corner_make(&k, &a->path, &b->path, fmin(a->tolerance, b->tolerance), room,
+        const double room = 0.5 * el_min(a->path.length, b->path.length);
+        if (!corner_make(&k, &a->path, &b->path, el_min(a->tolerance, b->tolerance), room,
                          t->smooth > 0.0) ||
             !in_time(t, r, &k, override)) {
             return;
@@ -111,7 +112,7 @@ void track_start(struct track *t, struct ring *r)
 
 static double body_limit(const struct ring_entry *n, double override)
 {
-    return fmin(n->body, command_speed(&n->command, override));
+    return el_min(n->body, command_speed(&n->command, override));
 }
 
 /* The corner is driven at the feed of neither more than the command's that follows it nor that of
@@ -119,8 +120,8 @@ static double body_limit(const struct ring_entry *n, double override)
 static double turn_limit(const struct ring *r, int32_t i, double override)
 {
     const struct ring_entry *n = ring_peek(r, i);
-    const double v = fmin(n->turn, command_speed(&n->command, override));
-    return i > 0 ? fmin(v, command_speed(&ring_peek(r, i - 1)->command, override)) : v;
+    const double v = el_min(n->turn, command_speed(&n->command, override));
+    return i > 0 ? el_min(v, command_speed(&ring_peek(r, i - 1)->command, override)) : v;
 }
 
 /* From the end backwards. */
@@ -143,7 +144,7 @@ static void plan(struct track *t, struct ring *r, double override)
             brake_back(&b, 2.0 * half, dec);
             brake_limit(&b, turn, turn * t->smooth);
         }
-        t->dec = fmin(t->dec, dec);
+        t->dec = el_min(t->dec, dec);
     }
     t->planned = t->joined;
     t->override = override;
@@ -169,18 +170,18 @@ static struct piece next_piece(const struct track *t, const struct ring *r, doub
     const double most = t->turning ? turn_limit(r, t->at, override) : body_limit(n, override);
     const struct brake_piece b = brake_next(t->turning ? &n->enter : &n->leave, t->s,
                                             border(t, r), n->command.ramp.dec);
-    struct piece p = { b.end, fmin(most, b.top), b.leave,
+    struct piece p = { b.end, el_min(most, b.top), b.leave,
                        n->command.ramp.acc, n->command.ramp.dec };
 
     for (int32_t i = 0; i < t->caps; i++) {
         const double until = t->cap[i].until - t->base;
         if (t->s < until) {
-            p.top = fmin(p.top, t->cap[i].speed);
-            p.end = fmin(p.end, until);
+            p.top = el_min(p.top, t->cap[i].speed);
+            p.end = el_min(p.end, until);
         }
     }
     /* What can be braked from there on. */
-    p.leave = fmin(p.top, sqrt(p.leave * p.leave + 2.0 * p.dec * (b.end - p.end)));
+    p.leave = el_min(p.top, sqrt(p.leave * p.leave + 2.0 * p.dec * (b.end - p.end)));
     return p;
 }
 
@@ -188,9 +189,9 @@ static struct piece next_piece(const struct track *t, const struct ring *r, doub
 static double glide(struct track *t, double acc, double to, double way, double dt, double *done)
 {
     double time = acc != 0.0 ? (to - t->v) / acc : (t->v > 0.0 ? way / t->v : dt);
-    time = fmax(0.0, fmin(time, dt));
+    time = el_max(0.0, el_min(time, dt));
     *done = time * (t->v + 0.5 * acc * time);
-    t->v = time < dt && acc != 0.0 ? to : fmax(0.0, t->v + acc * time);
+    t->v = time < dt && acc != 0.0 ? to : el_max(0.0, t->v + acc * time);
     t->s += *done;
     return time;
 }
@@ -203,11 +204,11 @@ static const double ROUNDING = 1e-7;
 static double slow_down(struct track *t, const struct piece *p, double leave, bool fits, double dt)
 {
     const double way = p->end - t->s, v = t->v;
-    const double to = v > p->top && fits ? p->top : fmin(p->top, leave);
+    const double to = v > p->top && fits ? p->top : el_min(p->top, leave);
     double dec = p->dec, done;
 
     if (!fits && way > 0.0) {   /* rounding has taken some of the way */
-        dec = fmin(fmax(dec, (v * v - leave * leave) / (2.0 * way)), (1.0 + ROUNDING) * dec);
+        dec = el_min(el_max(dec, (v * v - leave * leave) / (2.0 * way)), (1.0 + ROUNDING) * dec);
     }
     if (to >= v) {      /* no way but rounding */
         t->s = p->end;
@@ -227,14 +228,14 @@ static double slow_down(struct track *t, const struct piece *p, double leave, bo
 static double drive(struct track *t, const struct piece *p, double dt)
 {
     const double way = p->end - t->s, v = t->v;
-    double done, leave = fmin(p->leave, sqrt(v * v + 2.0 * p->acc * way));
-    const double peak = sqrt(fmax(0.0, (2.0 * p->acc * p->dec * way + p->dec * v * v +
-                                        p->acc * leave * leave) / (p->acc + p->dec)));
+    double done, leave = el_min(p->leave, sqrt(v * v + 2.0 * p->acc * way));
+    const double peak = sqrt(el_max(0.0, (2.0 * p->acc * p->dec * way + p->dec * v * v +
+                                          p->acc * leave * leave) / (p->acc + p->dec)));
 
     if (v > p->top || peak < v) {
         return slow_down(t, p, leave, peak >= v, dt);
     }
-    const double top = fmin(p->top, peak);
+    const double top = el_min(p->top, peak);
     const double up = (top * top - v * v) / (2.0 * p->acc);
     const double down = (top * top - leave * leave) / (2.0 * p->dec);
     double left = dt;
@@ -269,8 +270,8 @@ static void keep_limit(struct track *t, double speed)
     }
     if (n == TRACK_CAPS) {      /* two become one that holds for both */
         n--;
-        t->cap[n - 1].speed = fmin(t->cap[n - 1].speed, t->cap[n].speed);
-        t->cap[n - 1].until = fmax(t->cap[n - 1].until, t->cap[n].until);
+        t->cap[n - 1].speed = el_min(t->cap[n - 1].speed, t->cap[n].speed);
+        t->cap[n - 1].until = el_max(t->cap[n - 1].until, t->cap[n].until);
     }
     t->cap[n] = (struct track_cap){ speed, until };
     t->caps = n + 1;
@@ -333,7 +334,7 @@ void track_close(struct track *t, const struct ring *r)
     for (int32_t i = t->at; i < t->joined; i++) {
         const struct command *c = &ring_peek(r, i)->command;
         end += c->path.length;
-        dec = fmin(dec, c->ramp.dec);
+        dec = el_min(dec, c->ramp.dec);
         if (t->v * t->v <= 2.0 * dec * (end - (t->base + t->s))) {
             t->joined = i + 1;
             t->end = end;

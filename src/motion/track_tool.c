@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 static void begin_mean(struct track *t, struct track_mean *m, double dt)
 {
     const double taps = round(t->smooth / dt);
@@ -29,7 +31,7 @@ static double mean_of(struct track *t, struct track_mean *m, double way)
             t->sum += m->sample[TRACK_MEAN - 1 - i] - t->zero;
         }
     }
-    return t->still >= t->taps ? way : fmin(t->zero + t->sum / t->taps, way);
+    return t->still >= t->taps ? way : el_min(t->zero + t->sum / t->taps, way);
 }
 
 void track_go(struct track *t, const struct ring *r, double way)
@@ -54,7 +56,7 @@ void track_sample(struct track *t, struct track_mean *m, struct ring *r, double 
     }
     t->out_v = t->v;
     if (t->taps > 1) {
-        way = fmax(out, mean_of(t, m, way));
+        way = el_max(out, mean_of(t, m, way));
         t->out_v = (way - out) / dt;
     }
     track_go(t, r, way);
@@ -95,7 +97,7 @@ void track_place(const struct track *t, const struct ring *r, double point[AXES]
                  double velocity[AXES])
 {
     const struct ring_entry *n = ring_peek(r, t->out);
-    const double left = fmax(0.0, n->command.path.length - t->out_s);
+    const double left = el_max(0.0, n->command.path.length - t->out_s);
     double slope[AXES];
 
     if (t->out_s < track_half(t, r, t->out)) {

@@ -1,5 +1,6 @@
 #include "adc12.h"
 
+#include "el_extremes.h"
 #include "fixed.h"
 
 #include <math.h>
@@ -7,7 +8,7 @@
 int16_t adc12_code(double volts, double reference)
 {
     const double code = floor(ADC12_MAX * volts / reference + 0.5);
-    return (int16_t)fmin(fmax(code, 0.0), ADC12_MAX);
+    return (int16_t)el_min(el_max(code, 0.0), ADC12_MAX);
 }
 
 int32_t adc12_share(int32_t speed, int16_t code)

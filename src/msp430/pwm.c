@@ -2,11 +2,12 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 static double amplify(const struct pwm_config *c, double filtered)
 {
-    return fmin(fmax(c->gain * (filtered - c->offset), -c->limit), c->limit);
+    return el_min(el_max(c->gain * (filtered - c->offset), -c->limit), c->limit);
 }
 
 double pwm_voltage(const struct pwm *p, const struct pwm_config *c)
@@ -17,8 +18,8 @@ double pwm_voltage(const struct pwm *p, const struct pwm_config *c)
 static void note(struct pwm *p, const struct pwm_config *c)
 {
     const double v = pwm_voltage(p, c);
-    p->least = fmin(p->least, v);
-    p->most = fmax(p->most, v);
+    p->least = el_min(p->least, v);
+    p->most = el_max(p->most, v);
 }
 
 void pwm_reset(struct pwm *p, const struct pwm_config *c, double filtered, int32_t duty)
@@ -40,7 +41,7 @@ static double crossing(double tau, double end, double x, double there, double ti
     const double share = (end - there) / (end - x);
     if (!(share > 0.0 && share < 1.0))
         return share >= 1.0 ? 0.0 : time;
-    return fmin(-tau * el_log(share), time);
+    return el_min(-tau * el_log(share), time);
 }
 
 /* Vc runs towards `end` for `time`; the voltage's integral, cut off at the limit. */
@@ -55,14 +56,14 @@ static void charge(struct pwm *p, const struct pwm_config *c, double end, double
         return;
     }
     const double low = c->offset - c->limit / c->gain, high = c->offset + c->limit / c->gain;
-    if (fmin(from, to) >= low && fmax(from, to) <= high) {
+    if (el_min(from, to) >= low && el_max(from, to) <= high) {
         p->area += piece(c, end, from, to, time);
         return;
     }
     /* Rising it is below first, then between, then above; falling the other way round. */
     const double first = to > from ? low : high, last = to > from ? high : low;
     const double enter = crossing(c->tau, end, from, first, time);
-    const double leave = fmax(crossing(c->tau, end, from, last, time), enter);
+    const double leave = el_max(crossing(c->tau, end, from, last, time), enter);
     const double sign = to > from ? 1.0 : -1.0;
     const double x = enter > 0.0 ? first : from, y = leave < time ? last : to;
     p->area += sign * c->limit * (time - leave - enter);

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 /* Shorter ways are none. [mm] */
@@ -102,9 +103,9 @@ static void slide(struct net_plan *p, const double to[JOB_AXES])
         p->slope[i] = (to[i] - p->place[i]) / way;
         const double share = fabs(p->slope[i]);
         if (share > 0.0) {
-            l.speed = fmin(l.speed, p->config.axis[i].speed / share);
-            l.acc = fmin(l.acc, planned(p, p->config.axis[i].acc) / share);
-            l.jerk = fmin(l.jerk, planned(p, p->config.axis[i].jerk) / share);
+            l.speed = el_min(l.speed, p->config.axis[i].speed / share);
+            l.acc = el_min(l.acc, planned(p, p->config.axis[i].acc) / share);
+            l.jerk = el_min(l.jerk, planned(p, p->config.axis[i].jerk) / share);
         }
     }
     l.dec = l.acc;
@@ -120,7 +121,7 @@ static void move_pen(struct net_plan *p, bool down, int32_t *event)
     if (p->config.pen == NET_PLAN_OUTPUT) {
         *event = down ? NET_PLAN_LOWER : NET_PLAN_RAISE;
         p->step = NET_PLAN_RESTS;
-        p->rest = (int32_t)fmax(1.0, ceil(p->config.dwell / period(p) * (1.0 - 1e-9)));
+        p->rest = (int32_t)el_max(1.0, ceil(p->config.dwell / period(p) * (1.0 - 1e-9)));
         return;
     }
     double to[JOB_AXES];
@@ -196,7 +197,7 @@ enum net_plan_result net_plan_next(struct net_plan *p, struct net_plan_frame *f)
         const double pulses = floor(p->place[i] * p->config.axis[i].pulses_per_mm + 0.5);
         const double command = pulses - (double)p->pulses[i];
         f->place[i] = p->place[i];
-        f->job.command[i] = (int32_t)fmin(fmax(command, -2147483647.0), 2147483647.0);
+        f->job.command[i] = (int32_t)el_min(el_max(command, -2147483647.0), 2147483647.0);
         p->pulses[i] = (int64_t)pulses;
     }
     return NET_PLAN_FRAME;

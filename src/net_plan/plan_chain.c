@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* Ramps by which pieces would be driven if axes had no limits; they have. [mm/s^2] */
 static const double ANY = 1.0;
 
@@ -81,7 +83,7 @@ static void look(struct plan_chain *c)
         passed++;
     }
     const struct piece *p = shape_piece(&c->shape, passed);
-    piece_at(p, fmin(fmax(way - c->base, 0.0), p->length), &s);
+    piece_at(p, el_min(el_max(way - c->base, 0.0), p->length), &s);
     memcpy(c->place, s.point, sizeof s.point);
     c->joined -= passed;
     shape_drop(&c->shape, passed);

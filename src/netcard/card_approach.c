@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* Axes that go together, in turn. */
 static const uint32_t TURNS[] = { 0xC, 0x3 };
 enum { TURN_COUNT = sizeof TURNS / sizeof TURNS[0] };
@@ -24,7 +26,7 @@ static double fastest(const struct netcard *c, int axis)
     const struct card_settings *s = &c->settings;
     const int32_t most = player_largest(&c->player, s->period_ns / PLAYER_CLOCK_NS);
 
-    return fmin(s->speed_max[axis] * (s->period_ns * 1e-9), most - 1.0);
+    return el_min(s->speed_max[axis] * (s->period_ns * 1e-9), most - 1.0);
 }
 
 bool card_approach_begin(struct netcard *c)
@@ -75,8 +77,8 @@ struct frame card_approach_next(struct netcard *c)
     for (int i = 0; i < CARD_AXES; i++) {
         if (TURNS[turn] >> i & 1) {
             const double speed = fastest(c, i), acc = s->acc_max[i] * (1.0 - s->reserve);
-            const struct home_limits limits = { fmin(acc * period * period, speed),
-                                                fmin(s->speed_min[i] * period, speed) };
+            const struct home_limits limits = { el_min(acc * period * period, speed),
+                                                el_min(s->speed_min[i] * period, speed) };
             f.command[i] = (int16_t)home_motion_to(&c->way[i], &limits, 0, speed);
         }
     }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "el_extremes.h"
+
 /* Of sums of speeds: the last step may miss the target by so much [pulses]. */
 static const double ROUNDING = 1e-6;
 
@@ -16,15 +18,15 @@ static int32_t put_out(struct home_motion *m, int64_t pulses)
 /* The nearest to the wanted speed that may follow the present one. */
 static double next_speed(const struct home_motion *m, const struct home_limits *l, double want)
 {
-    const double free = fmax(l->acc, l->start);
+    const double free = el_max(l->acc, l->start);
     double low = m->speed - l->acc, high = m->speed + l->acc;
 
     if (m->speed == 0.0) {
         low = -free, high = free;
     } else if (fabs(m->speed) <= free) {
-        low = fmin(low, 0.0), high = fmax(high, 0.0);
+        low = el_min(low, 0.0), high = el_max(high, 0.0);
     }
-    return fmin(fmax(want, low), high);
+    return el_min(el_max(want, low), high);
 }
 
 int32_t home_motion_run(struct home_motion *m, const struct home_limits *l, double speed)
@@ -43,7 +45,7 @@ int32_t home_motion_to(struct home_motion *m, const struct home_limits *l, int64
     const double left = (double)(target - m->commanded) - m->rest, size = fabs(left),
                  k = floor(0.5 * (sqrt(1.0 + 8.0 * size / l->acc) - 1.0)),
                  brake = 0.5 * k * l->acc + size / (k + 1.0),
-                 most = size <= fmax(l->acc, l->start) ? size : fmin(speed, brake),
+                 most = size <= el_max(l->acc, l->start) ? size : el_min(speed, brake),
                  next = next_speed(m, l, copysign(most, left));
 
     if (fabs(next - left) < ROUNDING) {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* A ramp without limit of jerk is one whose acceleration takes 1 ns to rise and to fall. It takes
  * 1 ns longer, and ends half the speed times 1 ns (0.25 nm at 500 mm/s) from where the trapezium's
  * would. [s] */
@@ -14,7 +16,7 @@ struct axes_limits axes_limits_of(const struct ramp_rule *up, const struct ramp_
     struct ramp_limits l = ramp_both(up, down, speed);
     l.acc_jerk = l.acc_jerk > 0.0 ? l.acc_jerk : l.acc / AT_ONCE;
     l.dec_jerk = l.dec_jerk > 0.0 ? l.dec_jerk : l.dec / AT_ONCE;
-    return (struct axes_limits){ speed, cap, l.acc, l.dec, fmin(l.acc_jerk, l.dec_jerk) };
+    return (struct axes_limits){ speed, cap, l.acc, l.dec, el_min(l.acc_jerk, l.dec_jerk) };
 }
 
 void axes_start(struct axes *a, const double place[AXES], double ratio)
@@ -34,14 +36,14 @@ static struct scurve_start state(const struct axes_axis *x)
     double jerk;
 
     scurve_state(&x->plan, x->t, &at.s, &at.v, &at.a, &jerk);
-    at.s += x->plan.v1 * fmax(0.0, x->t - x->plan.total);
+    at.s += x->plan.v1 * el_max(0.0, x->t - x->plan.total);
     return (struct scurve_start){ x->side * at.s, x->side * at.v, x->side * at.a };
 }
 
 static double speed_of(const struct axes *a, const struct axes_axis *x)
 {
     const double full = x->order == AXES_RUN ? fabs(x->goal) : x->limits.speed;
-    return x->order == AXES_STAND ? 0.0 : fmin(full * a->ratio, x->limits.cap);
+    return x->order == AXES_STAND ? 0.0 : el_min(full * a->ratio, x->limits.cap);
 }
 
 /* Plan in the coordinates of x->side. */
@@ -81,7 +83,7 @@ static void replan(const struct axes *a, struct axes_axis *x)
     x->t = 0.0;
     make(x, &at, speed, &l);
     if (l.acc != l.dec && scurve_slowest(&x->plan) < 0.0) {
-        l.acc = l.dec = fmin(l.acc, l.dec);     /* it turns round */
+        l.acc = l.dec = el_min(l.acc, l.dec);     /* it turns round */
         make(x, &at, speed, &l);
     }
 }
@@ -102,9 +104,9 @@ static void set_limits(struct axes *a, int axis, const struct axes_limits *l)
 
     *now = *l;
     if (!axes_rests(a, axis)) {
-        now->acc = fmax(now->acc, old.acc);
-        now->dec = fmax(now->dec, old.dec);
-        now->jerk = fmax(now->jerk, old.jerk);
+        now->acc = el_max(now->acc, old.acc);
+        now->dec = el_max(now->dec, old.dec);
+        now->jerk = el_max(now->jerk, old.jerk);
     }
 }
 
@@ -159,12 +161,13 @@ void axes_reach(const struct axes *a, int axis, double *low, double *high, doubl
     *acc = 0.0;
     for (int i = 0; i < x->plan.count; i++) {
         const struct scurve_phase *h = &x->plan.phase[i];   /* may pass a peak of speed: a = 0 */
-        fastest = fmax(fastest, fabs(h->v) + (h->j != 0.0 ? h->a * h->a / fabs(2.0 * h->j) : 0.0));
-        *acc = fmax(*acc, fmax(fabs(h->a + h->j * (begin - h->t)),
-                               fabs(h->a + h->j * (h->end - h->t))));
+        fastest = el_max(fastest,
+                         fabs(h->v) + (h->j != 0.0 ? h->a * h->a / fabs(2.0 * h->j) : 0.0));
+        *acc = el_max(*acc, el_max(fabs(h->a + h->j * (begin - h->t)),
+                                   fabs(h->a + h->j * (h->end - h->t))));
         begin = h->end;
     }
-    const double left = fmax(0.0, x->plan.total - x->t);
+    const double left = el_max(0.0, x->plan.total - x->t);
     const double way = x->plan.v1 != 0.0 ? INFINITY : fastest * left;
     *low = at.s - way;
     *high = at.s + way;
@@ -197,7 +200,7 @@ double axes_left(const struct axes *a)
 {
     double left = 0.0;
     for (int i = 0; i < AXES; i++) {
-        left = fmax(left, a->axis[i].plan.total - a->axis[i].t);
+        left = el_max(left, a->axis[i].plan.total - a->axis[i].t);
     }
     return left;
 }

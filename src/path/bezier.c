@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 static const double AGREE = 1e-14;      /* of a length, between an integral and its two halves */
 static const double NEWTON = 1e-15;     /* of a length, a step that ends the search of its t */
 static const double SLACK = 1e-3;       /* of a bound above what is reached */
@@ -115,7 +117,7 @@ static double parameter(const struct bezier *b, const struct hodograph *h, doubl
     double low = (double)k / BEZIER_PARTS, high = (k + 1.0) / BEZIER_PARTS;
     const double from = k > 0 ? b->upto[k - 1] : 0.0;
     const double to = k < BEZIER_PARTS - 1 ? b->upto[k] : length;
-    double t = low + (high - low) * fmax(0.0, fmin(1.0, (s - from) / (to - from)));
+    double t = low + (high - low) * el_max(0.0, el_min(1.0, (s - from) / (to - from)));
     double left = s - from - between(h, low, t, length);
 
     for (int i = 0; i < STEPS && fabs(left) > NEWTON * length; i++) {
@@ -173,8 +175,8 @@ static double bound(const struct hodograph *h, int what)
     }
     const double size = sqrt(dot(along, along));
     for (int k = 0; k < 3; k++) {
-        least = size > 0.0 ? fmin(least, dot(h->d[k], along) / size) : 0.0;
-        most = what < 0 ? most : fmax(most, fabs(h->d[k][what]));
+        least = size > 0.0 ? el_min(least, dot(h->d[k], along) / size) : 0.0;
+        most = what < 0 ? most : el_max(most, fabs(h->d[k][what]));
     }
     if (!(least > 0.0)) {
         return INFINITY;
@@ -194,11 +196,11 @@ static double bound(const struct hodograph *h, int what)
         for (int i = 0; i < 3; i++) {
             sum[i] = ((3 - n) * c[0][i] + n * c[1][i]) / 3.0;
         }
-        most = fmax(most, sqrt(dot(sum, sum)));
+        most = el_max(most, sqrt(dot(sum, sum)));
     }
     const double k = most / (least * least * least);
     return what == CURVATURE ? k
-         : twist(h, k, sqrt(fmax(dot(h->e[0], h->e[0]), dot(h->e[1], h->e[1]))), least);
+         : twist(h, k, sqrt(el_max(dot(h->e[0], h->e[0]), dot(h->e[1], h->e[1]))), least);
 }
 
 /* Raise *top to a bound of the part from t0 to t1; *reached is the most that was seen so far. */
@@ -208,7 +210,7 @@ static void search(const struct hodograph *h, int what, double t0, double t1, in
     struct hodograph part;
 
     part_of(h, t0, t1, &part);
-    *reached = fmax(*reached, value(&part, what));
+    *reached = el_max(*reached, value(&part, what));
     const double here = bound(&part, what);
     if (here <= *top || (what < 0 && *reached > TOO_MUCH)) {
         return;
@@ -230,7 +232,7 @@ static double highest(const struct hodograph *h, int what)
     part_of(h, 1.0, 1.0, &end);
     double reached = value(&end, what);
     search(h, what, 0.0, 1.0, HALVINGS, &reached, &top);
-    return fmax(top, reached);
+    return el_max(top, reached);
 }
 
 bool bezier_make(struct bezier *b, const double start[3], const double end[3], double *length)
@@ -307,8 +309,8 @@ void bezier_most(const struct bezier *b, const double start[3], const double end
 
     derivatives(b, start, end, &h);
     part_of(&h, within(b, &h, length, from), within(b, &h, length, to), &part);
-    *bend = fmin(b->bend, bound(&part, CURVATURE));
-    *twist = fmin(b->twist, bound(&part, TWIST));
+    *bend = el_min(b->bend, bound(&part, CURVATURE));
+    *twist = el_min(b->twist, bound(&part, TWIST));
 }
 
 double bezier_share(const struct bezier *b, const double start[3], const double end[3], int axis)
@@ -316,7 +318,7 @@ double bezier_share(const struct bezier *b, const double start[3], const double 
     struct hodograph h;
 
     derivatives(b, start, end, &h);
-    return fmin(1.0, highest(&h, axis));
+    return el_min(1.0, highest(&h, axis));
 }
 
 void bezier_extent(const struct bezier *b, const double start[3], const double end[3],
@@ -325,19 +327,19 @@ void bezier_extent(const struct bezier *b, const double start[3], const double e
     struct hodograph h;
 
     derivatives(b, start, end, &h);
-    const double t0 = from <= 0.0 ? 0.0 : parameter(b, &h, length, fmin(from, length));
-    const double t1 = to >= length ? 1.0 : parameter(b, &h, length, fmax(to, 0.0));
+    const double t0 = from <= 0.0 ? 0.0 : parameter(b, &h, length, el_min(from, length));
+    const double t1 = to >= length ? 1.0 : parameter(b, &h, length, el_max(to, 0.0));
     /* B' = p t^2 + q t + r */
     const double r = h.d[0][axis], q = 2.0 * (h.d[1][axis] - r);
     const double p = h.d[2][axis] - 2.0 * h.d[1][axis] + r;
     const double under = q * q - 4.0 * p * r;
-    const double half = -0.5 * (q + copysign(sqrt(fmax(0.0, under)), q));
+    const double half = -0.5 * (q + copysign(sqrt(el_max(0.0, under)), q));
     const double root[2] = { half / p, r / half };      /* none of both loses digits */
     for (int k = 0; k < 2 && under >= 0.0; k++) {
         if (root[k] > t0 && root[k] < t1) {
             const double x = place(b, start, end, axis, root[k]);
-            *low = fmin(*low, x);
-            *high = fmax(*high, x);
+            *low = el_min(*low, x);
+            *high = el_max(*high, x);
         }
     }
 }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* Whether the joints can take a way. */
 static enum command_status check_range(const struct path *p, const struct mechanism *m,
                                        const struct mechanism_way *w, struct command_refusal *r)
@@ -12,7 +14,7 @@ static enum command_status check_range(const struct path *p, const struct mechan
 
     for (int i = 0; i < AXES; i++) {
         const struct joint *j = &m->joint[i];
-        const double most = fmax(fabs(w->low[i]), fabs(w->high[i]));
+        const double most = el_max(fabs(w->low[i]), fabs(w->high[i]));
         if (j->used && !(most * j->scale < COMMAND_PULSES_MAX)) {
             return COMMAND_FAR;
         }
@@ -73,7 +75,7 @@ enum command_status command_move(struct command *c, const struct mechanism *m,
         *r = (struct command_refusal){ joint, feed / safe, 1.0, safe };
         return COMMAND_FAST;
     }
-    set_speed(c, l, feed, fmin(safe, l->feed));
+    set_speed(c, l, feed, el_min(safe, l->feed));
     return check_range(&c->path, m, &w, r);
 }
 
@@ -139,7 +141,7 @@ bool command_blends(const struct command *c)
 
 double command_speed(const struct command *c, double override)
 {
-    return fmin(c->feed * override, c->cap);
+    return el_min(c->feed * override, c->cap);
 }
 
 void command_start(const struct command *c, double override, struct profile *p)

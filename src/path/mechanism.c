@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* More than was found between the places looked at. */
 static const double MARGIN = 1e-3;
 
@@ -72,8 +74,8 @@ struct trio {
 
 static void include(double low[AXES], double high[AXES], int i, double x)
 {
-    low[i] = fmin(low[i], x);
-    high[i] = fmax(high[i], x);
+    low[i] = el_min(low[i], x);
+    high[i] = el_max(high[i], x);
 }
 
 /* Top or bottom of the parabola through a, b, c, if it lies among them; else b. */
@@ -86,7 +88,7 @@ static double vertex(double a, double b, double c)
 static void kinematic_way(const struct mechanism *m, const struct path *p,
                           struct mechanism_way *w)
 {
-    const double turn = p->arc ? fmax(1.0, fabs(p->sweep)) : p->cubic ? TAU : 1.0;
+    const double turn = p->arc ? el_max(1.0, fabs(p->sweep)) : p->cubic ? TAU : 1.0;
     const int64_t places = (int64_t)ceil(MECHANISM_PLACES * turn);
     double low[AXES], high[AXES], place[AXES], slope[AXES];     /* of the rates */
     struct trio t = { 0 };
@@ -114,7 +116,7 @@ static void kinematic_way(const struct mechanism *m, const struct path *p,
         }
     }
     for (int i = 0; i < AXES && w->reached; i++) {
-        w->share[i] = (1.0 + MARGIN) * fmax(fabs(low[i]), fabs(high[i]));
+        w->share[i] = (1.0 + MARGIN) * el_max(fabs(low[i]), fabs(high[i]));
     }
 }
 
@@ -135,8 +137,8 @@ static bool bounded(const struct joint *j)
 /* Whether motion from a place to these extremes leads too far: 1 up, -1 down, 0 no. [pulses] */
 static int beyond(const struct joint *j, double from, double low, double high)
 {
-    return high > fmax(round(j->high * j->scale), from) ? 1
-         : low < fmin(round(j->low * j->scale), from) ? -1 : 0;
+    return high > el_max(round(j->high * j->scale), from) ? 1
+         : low < el_min(round(j->low * j->scale), from) ? -1 : 0;
 }
 
 int mechanism_beyond(const struct mechanism *m, const double from[AXES], const double low[AXES],

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 static const double TAU = 6.283185307179586;
@@ -86,7 +87,7 @@ enum path_status path_arc_within(struct path *p, enum path_plane plane, const do
     if (r0 == 0.0 || r1 == 0.0) {
         return PATH_NO_RADIUS;
     }
-    if (*miss > MISS_MAX * t->least || (*miss > t->least && *miss > t->share * fmax(r0, r1))) {
+    if (*miss > MISS_MAX * t->least || (*miss > t->least && *miss > t->share * el_max(r0, r1))) {
         return PATH_MISSES_END;
     }
     path_line(p, start, end);
@@ -187,7 +188,7 @@ enum path_status path_centre_by_radius(enum path_plane plane, const double start
     }
     /* The centre lies on the perpendicular bisector: left of the way for a ccw arc of less than
      * half a turn. A radius short of half the chord by the rounding of the program: half turn. */
-    const double rise = sqrt(fmax(0.0, r * r - *half * *half));
+    const double rise = sqrt(el_max(0.0, r * r - *half * *half));
     const double side = (ccw == (r > 0.0) ? rise : -rise) / chord;
     centre[0] = start[a] + 0.5 * da - side * db;
     centre[1] = start[b] + 0.5 * db + side * da;
@@ -307,7 +308,7 @@ double path_share(const struct path *p, int axis)
     }
     if (p->arc && axis < 3 && axis != (int)p->plane) {
         const double r = p->radius + 0.5 * p->growth;
-        return fmin(1.0, (fabs(r * p->sweep) + fabs(p->growth)) / p->length);
+        return el_min(1.0, (fabs(r * p->sweep) + fabs(p->growth)) / p->length);
     }
     return fabs(p->end[axis] - p->start[axis]) / p->length;
 }
@@ -318,7 +319,7 @@ double path_bend(const struct path *p)
         return p->cubic ? p->bezier.bend : 0.0;
     }
     const double per = p->sweep / p->length;    /* [rad/mm] */
-    return fmax(p->radius, p->radius + p->growth) * per * per;
+    return el_max(p->radius, p->radius + p->growth) * per * per;
 }
 
 double path_twist(const struct path *p)
@@ -337,7 +338,7 @@ static double turning(const struct path *p, int axis, int k, double t0, double t
     double t = (k * TAU / 2.0 - angle) / p->sweep;
 
     t += el_atan(p->growth / ((p->radius + p->growth * t) * p->sweep)) / p->sweep;
-    t = fmax(t0, fmin(t1, t));
+    t = el_max(t0, el_min(t1, t));
     return p->centre[second] + (p->radius + p->growth * t) * el_cos(angle + p->sweep * t);
 }
 
@@ -348,12 +349,12 @@ static void turnings(const struct path *p, int axis, double t0, double t1, doubl
     const double angle = p->angle - (axis == path_first(p->plane) ? 0.0 : TAU / 4.0);
     const double a = (angle + p->sweep * t0) / (TAU / 2.0);
     const double b = (angle + p->sweep * t1) / (TAU / 2.0);
-    const int first = (int)floor(fmin(a, b)), last = (int)ceil(fmax(a, b));
+    const int first = (int)floor(el_min(a, b)), last = (int)ceil(el_max(a, b));
 
     for (int k = first; k <= last; k = k == first + 2 && last - 2 > k ? last - 2 : k + 1) {
         const double x = turning(p, axis, k, t0, t1);
-        *low = fmin(*low, x);
-        *high = fmax(*high, x);
+        *low = el_min(*low, x);
+        *high = el_max(*high, x);
     }
 }
 
@@ -365,13 +366,13 @@ static void tilted_turnings(const struct path *p, int axis, double t0, double t1
 
     tilted_axes(p, a, b);
     const double top = el_atan2(b[axis], a[axis]), r = el_hypot(a[axis], b[axis]);
-    const double from = fmin(p->sweep * t0, p->sweep * t1);
-    const double to = fmax(p->sweep * t0, p->sweep * t1);
+    const double from = el_min(p->sweep * t0, p->sweep * t1);
+    const double to = el_max(p->sweep * t0, p->sweep * t1);
     if (top + TAU * ceil((from - top) / TAU) <= to) {
-        *high = fmax(*high, p->middle[axis] + r);
+        *high = el_max(*high, p->middle[axis] + r);
     }
     if (top + TAU * (ceil((from - top) / TAU - 0.5) + 0.5) <= to) {
-        *low = fmin(*low, p->middle[axis] - r);
+        *low = el_min(*low, p->middle[axis] - r);
     }
 }
 
@@ -392,14 +393,14 @@ void path_extent(const struct path *p, int axis, double from, double to, double 
     if (!p->arc && !p->cubic) {
         a[0] = straight_at(p, axis, from);
         b[0] = straight_at(p, axis, to);
-        *low = fmin(a[0], b[0]);
-        *high = fmax(a[0], b[0]);
+        *low = el_min(a[0], b[0]);
+        *high = el_max(a[0], b[0]);
         return;
     }
     path_at(p, from, a, slope);
     path_at(p, to, b, slope);
-    *low = fmin(a[axis], b[axis]);
-    *high = fmax(a[axis], b[axis]);
+    *low = el_min(a[axis], b[axis]);
+    *high = el_max(a[axis], b[axis]);
     if (p->cubic && axis < 3) {
         bezier_extent(&p->bezier, p->start, p->end, p->length, axis, from, to, low, high);
     } else if (p->arc && p->plane == PATH_TILTED && axis < 3) {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 void profile_wait(struct profile *p, double seconds)
 {
     p->s0 = p->v0 = p->length = p->t = 0.0;
@@ -27,7 +29,7 @@ static void stop_at_end(struct profile *p, double way)
 static void plan_trapezoid(struct profile *p, const struct profile_limits *l)
 {
     const double v = p->v0, acc = l->ramp.acc, dec = l->ramp.dec;
-    const double way = fmax(0.0, p->length - p->s0);
+    const double way = el_max(0.0, p->length - p->s0);
     const double brake = v * v / (2.0 * dec);   /* way to rest from now */
 
     memset(p->time, 0, sizeof p->time);
@@ -47,12 +49,12 @@ static void plan_trapezoid(struct profile *p, const struct profile_limits *l)
     } else {
         /* Peak speed of the triangle: (vp^2 - v^2)/(2 acc) + vp^2/(2 dec) = way. */
         const double peak = sqrt(dec * (2.0 * acc * way + v * v) / (acc + dec));
-        const double top = fmax(v, fmin(l->speed, peak));
+        const double top = el_max(v, el_min(l->speed, peak));
         const double ramps = (top * top - v * v) / (2.0 * acc) + top * top / (2.0 * dec);
         p->ends = true;
         p->time[0] = (top - v) / acc;
         p->acc[0] = acc;
-        p->time[1] = top < peak ? fmax(0.0, (way - ramps) / top) : 0.0;
+        p->time[1] = top < peak ? el_max(0.0, (way - ramps) / top) : 0.0;
         p->time[2] = top / dec;
         p->acc[2] = -dec;
     }
@@ -98,8 +100,8 @@ static void plan_smooth(struct profile *p, const struct scurve_start *from,
                         const struct profile_limits *l)
 {
     const struct ramp_limits *r = &l->ramp;
-    const double way = fmax(0.0, p->length - p->s0);
-    const double eased = fmax(0.0, from->a >= 0.0 ? ramp_eased(from, r) : 0.0);
+    const double way = el_max(0.0, p->length - p->s0);
+    const double eased = el_max(0.0, from->a >= 0.0 ? ramp_eased(from, r) : 0.0);
     double top = l->speed;
 
     p->time[1] = 0.0;
@@ -117,7 +119,7 @@ static void plan_smooth(struct profile *p, const struct scurve_start *from,
             top = peak_speed(from, eased < top ? eased : 0.0, top, way, r);
         }
         const struct scurve_start cruise = { 0.0, top, 0.0 };
-        p->time[1] = top > 0.0 ? fmax(0.0, (way - ways(from, top, r)) / top) : 0.0;
+        p->time[1] = top > 0.0 ? el_max(0.0, (way - ways(from, top, r)) / top) : 0.0;
         ramp_plan(&p->rise, *from, top, r);
         ramp_plan(&p->fall, cruise, 0.0, r);
     }
@@ -147,11 +149,11 @@ static struct scurve_start smooth_state(const struct profile *p)
 
     if (p->ends && p->t >= p->tail) {
         /* Seen from the end, so that it is met exactly. */
-        x = ramp_state(&p->fall, fmin(p->t, p->total) - p->tail);
+        x = ramp_state(&p->fall, el_min(p->t, p->total) - p->tail);
         x.s = p->t >= p->total ? p->length : p->length - (p->fall.s1 - x.s);
     } else {
-        x = ramp_state(&p->rise, fmax(0.0, fmin(p->t, p->rise.total)));
-        x.s += x.v * fmax(0.0, fmin(p->t, p->tail) - p->rise.total);
+        x = ramp_state(&p->rise, el_max(0.0, el_min(p->t, p->rise.total)));
+        x.s += x.v * el_max(0.0, el_min(p->t, p->tail) - p->rise.total);
     }
     return x;
 }
@@ -159,17 +161,17 @@ static struct scurve_start smooth_state(const struct profile *p)
 static struct scurve_start trapezoid_state(const struct profile *p)
 {
     struct scurve_start x = { p->s0, p->v0, 0.0 };
-    double left = fmax(0.0, p->t);
+    double left = el_max(0.0, p->t);
 
     if (p->ends && p->t >= p->tail) {
         /* Seen from the end: s = length - |a| left^2 / 2. */
-        left = fmax(0.0, p->total - p->t);
+        left = el_max(0.0, p->total - p->t);
         x.v = -p->acc[2] * left;
         x.s = p->length - 0.5 * x.v * left;
         return x;
     }
     for (int i = 0; i < PROFILE_PHASES; i++) {
-        const double dt = fmin(left, p->time[i]);
+        const double dt = el_min(left, p->time[i]);
         x.s += (x.v + 0.5 * p->acc[i] * dt) * dt;
         x.v += p->acc[i] * dt;
         left -= dt;
@@ -184,8 +186,8 @@ struct scurve_start profile_state(const struct profile *p)
     if (p->t >= p->total) {
         x.v = x.a = 0.0;
     }
-    x.v = fmax(0.0, x.v);
-    x.s = fmin(x.s, p->length);
+    x.v = el_max(0.0, x.v);
+    x.s = el_min(x.s, p->length);
     return x;
 }
 

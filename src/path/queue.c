@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
+
 static const double TURN = 6.283185307179586;
 
 double outputs_spindle(const struct outputs_surface *s, double most, double x)
@@ -10,7 +12,7 @@ double outputs_spindle(const struct outputs_surface *s, double most, double x)
         return most;
     }
     const double speed = s->speed / (TURN * fabs(x - s->centre)) * 60.0;    /* at X0 no bound */
-    return copysign(fmin(speed, fabs(most)), most);
+    return copysign(el_min(speed, fabs(most)), most);
 }
 
 void queue_clear(struct queue *q)

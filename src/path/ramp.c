@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "el_extremes.h"
+
 /* An unlimited jerk is one that is done with the acceleration in this time. [s] */
 static const double AT_ONCE = 1e-9;
 
@@ -37,7 +39,7 @@ static bool turns(const struct scurve_start *from, double speed, const struct ra
 static struct scurve_limits limits(const struct scurve_start *from, double speed, double jerk,
                                    const struct ramp_limits *l)
 {
-    return (struct scurve_limits){ fmax(fabs(from->v), speed) + 1.0, l->acc, l->dec, jerk };
+    return (struct scurve_limits){ el_max(fabs(from->v), speed) + 1.0, l->acc, l->dec, jerk };
 }
 
 void ramp_plan(struct ramp *r, struct scurve_start from, double speed,

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "scurve_reach.h"
 
 enum { BRAKES = SCURVE_LEG_BRAKES, PHASES = SCURVE_PHASES };
@@ -196,7 +197,7 @@ double scurve_way(const struct scurve_start *from, double v1, const struct scurv
 
 void scurve_state(const struct scurve *p, double t, double *s, double *v, double *a, double *j)
 {
-    t = fmax(0.0, t);
+    t = el_max(0.0, t);
     if (!(t < p->total)) {
         *s = p->s1;
         *v = p->v1;
@@ -223,10 +224,10 @@ double scurve_slowest(const struct scurve *p)
         const struct scurve_phase *f = &p->phase[i];
         const double turn = f->j != 0.0 ? f->t - f->a / f->j : begin;   /* where a = 0 */
         follow(f, begin - f->t, &s, &v, &a);
-        least = fmin(least, v);
+        least = el_min(least, v);
         if (turn > begin && turn < f->end) {
             follow(f, turn - f->t, &s, &v, &a);
-            least = fmin(least, v);
+            least = el_min(least, v);
         }
         begin = f->end;
     }

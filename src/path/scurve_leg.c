@@ -3,6 +3,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "el_extremes.h"
+
 const double SCURVE_LEG_JERK[SCURVE_LEG_PHASES] = { 1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0 };
 
 /* A state on the edge of the speed limit is inside: rounding of a sum of a few terms. */
@@ -33,12 +35,12 @@ static void slow_down(const struct scurve_leg *l, double t[SCURVE_LEG_BRAKES])
     const double back = l->a + sqrt(l->a * l->a + 2.0 * (l->v - l->top));
     const double low = l->a + sqrt(l->a * l->a / 2.0 + l->v + l->top);
     const double level = l->a + l->dec;
-    if (level < fmin(back, low)) {
+    if (level < el_min(back, low)) {
         const double v = l->v + level * (l->a - level / 2.0);
         t[0] = level;
-        t[1] = fmax(0.0, fmin(v - l->top, v + l->top - l->dec * l->dec / 2.0) / l->dec);
+        t[1] = el_max(0.0, el_min(v - l->top, v + l->top - l->dec * l->dec / 2.0) / l->dec);
     } else {
-        t[0] = fmax(0.0, fmin(back, low));
+        t[0] = el_max(0.0, el_min(back, low));
         t[1] = 0.0;
     }
 }
@@ -96,7 +98,7 @@ double scurve_leg_peak(double d, double most, double *hold)
 {
     if (d <= most * most) {
         *hold = 0.0;
-        return sqrt(fmax(0.0, d));
+        return sqrt(el_max(0.0, d));
     }
     *hold = d / most - most;
     return most;
@@ -112,7 +114,7 @@ double scurve_leg_speed(const struct scurve_leg *l, double t[SCURVE_LEG_PHASES],
         t[1] = noise = 0.0;
     }
     const double half = x + t[1] / 2.0;
-    t[0] = fmax(0.0, x - a);
+    t[0] = el_max(0.0, x - a);
     t[2] = x;
     t[3] = t[4] = t[5] = t[6] = 0.0;
     *rounding = ROUNDING * (fabs(l->v * a) + fabs(start) + sum * half)

@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 /* How the times are found.
@@ -43,7 +44,7 @@ static double root(const double c[4], double low, double guess, double high)
         const double h = (12.0 * z + 6.0 * c[3]) * z + 2.0 * c[2];
         /* Laguerre's step, n = 4: n f/(f' +- sqrt((n - 1)^2 f'^2 - n (n - 1) f f'')). It triples
          * the correct digits, and from far away it still goes at once to where the root may be. */
-        const double r = sqrt(fmax(0.0, 9.0 * d * d - 12.0 * f * h));
+        const double r = sqrt(el_max(0.0, 9.0 * d * d - 12.0 * f * h));
         double next = z - 4.0 * f / (d + (d < 0.0 ? -r : r));
         if (f > 0.0) {
             high = z;
@@ -86,7 +87,7 @@ static struct shape shape_of(const struct pulses *p, double w)
 static double way_of(const struct pulses *p, double w, int sag)
 {
     const struct shape s = shape_of(p, w);
-    const double first = sag ? -sqrt(fmax(0.0, w - p->base)) : s.x + s.hold_acc / 2.0;
+    const double first = sag ? -sqrt(el_max(0.0, w - p->base)) : s.x + s.hold_acc / 2.0;
     return (p->base + w) * first + (w + p->v1) * (s.y + s.hold_dec / 2.0);
 }
 
@@ -110,7 +111,7 @@ static double held(double flat, double free, double m, double way, struct range 
     const double c[4] = { (flat + free) * (free - flat + m * m) - 2.0 * m * way,
                           4.0 * m * free, 2.0 * free + m * m, 2.0 * m };
     /* The root if flat = free = 0: z^2 + m z = sqrt(2 m way). */
-    const double q = sqrt(fmax(0.0, -c[0])), rest = q / (m / 2.0 + sqrt(m * m / 4.0 + q));
+    const double q = sqrt(el_max(0.0, -c[0])), rest = q / (m / 2.0 + sqrt(m * m / 4.0 + q));
     return root(c, z.low, rest, z.high);
 }
 
@@ -135,7 +136,7 @@ static struct shape both_held(const struct pulses *p)
     const double q = (2.0 * p->way + p->base * (p->base / a - a) + p->v1 * (p->v1 / d - d))
                    / (1.0 / a + 1.0 / d);
     const double half = a * d / 2.0;
-    const double w = q / (half + sqrt(fmax(0.0, half * half + q)));
+    const double w = q / (half + sqrt(el_max(0.0, half * half + q)));
     return (struct shape){ .x = a, .hold_acc = (w - p->base) / a - a,
                            .y = d, .hold_dec = (w - p->v1) / d - d };
 }
@@ -144,7 +145,7 @@ static struct shape both_held(const struct pulses *p)
 static struct shape rising(const struct pulses *p, double low, double top)
 {
     const double corner_acc = p->base + p->acc * p->acc, corner_dec = p->v1 + p->dec * p->dec;
-    const double corner[2] = { fmin(corner_acc, corner_dec), fmax(corner_acc, corner_dec) };
+    const double corner[2] = { el_min(corner_acc, corner_dec), el_max(corner_acc, corner_dec) };
     const double to_top = way_of(p, top, 0);
     double high = top;
 
@@ -175,7 +176,7 @@ static int sag_held(const struct pulses *p, struct range x, struct shape *s)
 {
     /* d way/dT = x^2 + dec x/2 + base: its smaller zero is a local maximum. */
     const double root = p->dec * p->dec - 16.0 * p->base;
-    const double top = -(p->dec + sqrt(fmax(0.0, root))) / 4.0;
+    const double top = -(p->dec + sqrt(el_max(0.0, root))) / 4.0;
     if (root > 0.0 && top > x.low && top < x.high
         && way_of(p, p->base + top * top, 1) >= p->way) {
         x.high = top;
@@ -192,7 +193,8 @@ static int sag_free(const struct pulses *p, struct range u, struct shape *s)
     /* 2 d way/dT = 3 u^2/4 + sum + d^2/(4 u^2): its smaller zero is a local maximum. */
     const double sum = p->base + p->v1, d = p->v1 - p->base;
     const double root = 4.0 * sum * sum - 3.0 * d * d;
-    const double top = sqrt(d * d / (sqrt(fmax(0.0, root)) - 2.0 * sum)), x = (top + d / top) / 2.0;
+    const double top = sqrt(d * d / (sqrt(el_max(0.0, root)) - 2.0 * sum));
+    const double x = (top + d / top) / 2.0;
     if (sum < 0.0 && root > 0.0 && top > u.low && top < u.high
         && way_of(p, p->base + x * x, 1) >= p->way) {
         u.high = top;
@@ -226,13 +228,13 @@ void scurve_reach(const struct scurve_leg *l, double t[SCURVE_LEG_PHASES])
     struct shape s;
 
     if (!(a < 0.0 && l->v1 <= base && sagging(&p, a, &s))) {
-        s = rising(&p, fmin(l->top, fmax(l->v1, a > 0.0 ? base + a * a : base)), l->top);
+        s = rising(&p, el_min(l->top, el_max(l->v1, a > 0.0 ? base + a * a : base)), l->top);
     }
-    t[0] = fmax(0.0, s.x - a);
-    t[1] = fmax(0.0, s.hold_acc);
-    t[2] = fmax(0.0, s.cruise > 0.0 ? s.x : s.x + s.y);
+    t[0] = el_max(0.0, s.x - a);
+    t[1] = el_max(0.0, s.hold_acc);
+    t[2] = el_max(0.0, s.cruise > 0.0 ? s.x : s.x + s.y);
     t[3] = s.cruise;
     t[4] = s.cruise > 0.0 ? s.y : 0.0;
-    t[5] = fmax(0.0, s.hold_dec);
-    t[6] = fmax(0.0, s.y);
+    t[5] = el_max(0.0, s.hold_dec);
+    t[6] = el_max(0.0, s.y);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "reaction.h"
 
 static const double VOLTS_MAX = VOLTAGE_RANGE;  /* [V] */
@@ -80,7 +81,7 @@ static void control(struct pc *pc, int64_t now, const struct pcl_card *card,
         axis[i].gain = fixed > 0.0 ? fixed : panel->software_gain[i];
         if (axis[i].on && !pc->voltage.special) {
             const double v = axis[i].gain * panel->signals.err[i];
-            pc->volts[i] = fmax(-VOLTS_MAX, fmin(VOLTS_MAX, v));
+            pc->volts[i] = el_max(-VOLTS_MAX, el_min(VOLTS_MAX, v));
         }
     }
     if (pc->voltage.special) {

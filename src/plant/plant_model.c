@@ -23,6 +23,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 #include "plant.h"
 #include "plant_stiffness.h"
@@ -278,7 +279,7 @@ static void plant_watch(struct fmu *f, double seen)
     double most = coarse;
     for (int n = 0; n < f->s.m.blocks && !PLANT_CONTROLLED; n++) {
         const struct plant_block *b = &f->s.m.block[n];
-        const double z = h / b->sub_steps * fmin(b->fastest, 1.0 / seen);
+        const double z = h / b->sub_steps * el_min(b->fastest, 1.0 / seen);
         if (z > most) {
             most = z;
             worst = b;
@@ -287,7 +288,7 @@ static void plant_watch(struct fmu *f, double seen)
     if (worst) {
         fmu_warn(f, "axis %d: micro_step %.9g s (%d sub-steps) is coarse against its shortest time "
             "constant, %.3g s: lags of %.3g s are off by up to %.2g %%", worst->instance[0] + 1, h,
-            worst->sub_steps, 1.0 / worst->fastest, fmax(1.0 / worst->fastest, seen),
+            worst->sub_steps, 1.0 / worst->fastest, el_max(1.0 / worst->fastest, seen),
             100.0 * most * most * most * most / 120.0);
     }
 }
@@ -306,7 +307,7 @@ static void plant_fill(struct plant_block *b, int lane, int instance, const stru
     plant_start(axis->p, x);
     plant_constants(axis->p, c);
     plant_sizes(axis->p, b->size);
-    b->fastest = fmax(b->fastest, axis->fastest);
+    b->fastest = el_max(b->fastest, axis->fastest);
     for (; lane < b->lanes; lane++) {
         b->instance[lane] = instance;
         for (int k = 0; k < PLANT_STATES; k++) {

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "el_extremes.h"
 #include "player_parts.h"
 
 static const double CLOCK = 1e-9 * PLAYER_CLOCK_NS;     /* [s] */
@@ -23,7 +24,7 @@ static void look_ahead(struct player *p)
         }
         double speed = (largest[i] + 1) / period + (1.0 - p->job.reserve) * p->job.acc[i] * period;
         if (p->job.speed[i] > 0.0) {
-            speed = fmin(speed, p->job.speed[i]);
+            speed = el_min(speed, p->job.speed[i]);
         }
         p->bounds.speed[i] = p->job.acc[i] > 0.0 ? speed : 0.0;
         p->bounds.acc[i] = p->job.acc[i];
@@ -57,7 +58,7 @@ static double ramp_time(const struct player *p, int64_t clock)
 
 static int32_t rounded(double rate)
 {
-    return (int32_t)(fmin(fmax(rate, 0.0), 1.0) * PLAYER_FULL_RATE + 0.5);
+    return (int32_t)(el_min(el_max(rate, 0.0), 1.0) * PLAYER_FULL_RATE + 0.5);
 }
 
 void player_step_rate(struct player *p)

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 double rate_ramp_slope_most(const struct rate_bounds *b, double rate)
 {
     const double p = 1.0 - b->reserve, square = 1.0 - p * rate * rate,
@@ -11,9 +13,9 @@ double rate_ramp_slope_most(const struct rate_bounds *b, double rate)
 
     for (int i = 0; i < RATE_RAMP_AXES; i++) {
         if (b->speed[i] > 0.0) {
-            most = fmin(most, square * b->acc[i] / b->speed[i]);
+            most = el_min(most, square * b->acc[i] / b->speed[i]);
             if (b->jerk[i] > 0.0 && p * rate > 0.0) {
-                most = fmin(most, cube * b->jerk[i] / (6.0 * rate * p * b->acc[i]));
+                most = el_min(most, cube * b->jerk[i] / (6.0 * rate * p * b->acc[i]));
             }
         }
     }
@@ -27,7 +29,7 @@ double rate_ramp_bend_most(const struct rate_bounds *b, double rate)
 
     for (int i = 0; i < RATE_RAMP_AXES; i++) {
         if (b->speed[i] > 0.0 && b->jerk[i] > 0.0) {
-            most = fmin(most, cube * b->jerk[i] / (2.0 * b->speed[i]));
+            most = el_min(most, cube * b->jerk[i] / (2.0 * b->speed[i]));
         }
     }
     return most;
@@ -36,7 +38,7 @@ double rate_ramp_bend_most(const struct rate_bounds *b, double rate)
 /* Largest change of r'^2 over the piece behind node k, whose nodes have their rates. */
 static double change(const struct rate_ramp *r, const struct rate_bounds *b, int k)
 {
-    return 2.0 * rate_ramp_bend_most(b, fmax(r->rate[k], r->rate[k + 1])) *
+    return 2.0 * rate_ramp_bend_most(b, el_max(r->rate[k], r->rate[k + 1])) *
            fabs(r->rate[k + 1] - r->rate[k]);
 }
 
@@ -74,13 +76,13 @@ void rate_ramp_make(struct rate_ramp *r, const struct rate_bounds *b, double fro
     }
     square[0] = 0.0;
     for (int k = 0; k < N; k++) {
-        most = rate_ramp_slope_most(b, fmax(r->rate[k], r->rate[k + 1]));
-        square[k] = fmin(square[k], most * most);
-        square[k + 1] = fmin(square[k] + change(r, b, k), most * most);
+        most = rate_ramp_slope_most(b, el_max(r->rate[k], r->rate[k + 1]));
+        square[k] = el_min(square[k], most * most);
+        square[k + 1] = el_min(square[k] + change(r, b, k), most * most);
     }
     square[N] = 0.0;
     for (int k = N - 1; k >= 0; k--) {
-        square[k] = fmin(square[k], square[k + 1] + change(r, b, k));
+        square[k] = el_min(square[k], square[k + 1] + change(r, b, k));
     }
     for (int k = 0; k <= N; k++) {
         r->slope[k] = sqrt(square[k]);
@@ -123,7 +125,7 @@ void rate_ramp_brake(struct rate_ramp *r, const struct rate_bounds *b, double ti
     r->slope[0] = fabs(slope);
     for (int k = node(&old, time); k < old.pieces && r->slope[r->pieces] > 0.0; k++) {
         const int n = r->pieces;
-        const double bend = rate_ramp_bend_most(b, fmax(old.rate[k], old.rate[k + 1])),
+        const double bend = rate_ramp_bend_most(b, el_max(old.rate[k], old.rate[k + 1])),
                      square = r->slope[n] * r->slope[n],
                      left = square - 2.0 * bend * fabs(old.rate[k + 1] - r->rate[n]);
 

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 static const double MM = 1e-3;              /* [m] */
@@ -90,8 +91,8 @@ enum manipulator_status manipulator_solve(const struct manipulator *m, const str
     for (int i = 0; i < OPW_JOINTS; i++) {
         const bool told = turn && turn[i] != MANIPULATOR_ANY_TURN;
         near[i] = told ? TURN * turn[i] : joint[i];
-        low[i] = fmin(m->joint[i].low, joint[i]);
-        high[i] = fmax(m->joint[i].high, joint[i]);
+        low[i] = el_min(m->joint[i].low, joint[i]);
+        high[i] = el_max(m->joint[i].high, joint[i]);
         for (int n = 0; n < OPW_BRANCHES && told; n++) {    /* within half a turn of them */
             all[n][i] += TURN * round((near[i] - all[n][i]) / TURN);
             there &= all[n][i] > high[i] + ROUNDING || all[n][i] < low[i] - ROUNDING
@@ -244,8 +245,8 @@ int manipulator_outside(const struct manipulator *m, const double from[OPW_JOINT
 {
     for (int i = 0; i < OPW_JOINTS; i++) {
         const struct manipulator_joint *j = &m->joint[i];
-        if (joint[i] > fmax(j->high, from[i]) + ROUNDING ||
-            joint[i] < fmin(j->low, from[i]) - ROUNDING) {
+        if (joint[i] > el_max(j->high, from[i]) + ROUNDING ||
+            joint[i] < el_min(j->low, from[i]) - ROUNDING) {
             return i;
         }
     }

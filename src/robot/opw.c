@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 static const double TURN = 6.283185307179586;
@@ -78,7 +79,7 @@ void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw
 /* acos of what may be out by rounding; false beyond that, and for what is no number. */
 static bool angle(double cosine, double *a)
 {
-    *a = el_acos(fmax(-1.0, fmin(1.0, cosine)));
+    *a = el_acos(el_max(-1.0, el_min(1.0, cosine)));
     return fabs(cosine) <= 1.0 + EDGE;
 }
 
@@ -192,9 +193,9 @@ int opw_nearest(uint32_t branches, const double all[OPW_BRANCHES][OPW_JOINTS],
             const double up = ceil((low[i] - all[n][i]) / TURN);
             const double down = floor((high[i] - all[n][i]) / TURN);
             within = up <= down;
-            turns = fmax(up, fmin(down, turns));
+            turns = el_max(up, el_min(down, turns));
             q[i] = all[n][i] + TURN * turns;
-            most = fmax(most, fabs(q[i] - near[i]));
+            most = el_max(most, fabs(q[i] - near[i]));
         }
         if (within && most < least) {
             least = most;

@@ -1,5 +1,6 @@
 #include "robot.h"
 
+#include "el_extremes.h"
 #include "robot_plan.h"
 
 #include <math.h>
@@ -129,7 +130,7 @@ static void predict(const struct robot *r, const struct robot_config *c,
                     const double place[AXES], double joint[OPW_JOINTS])
 {
     const double before = r->speed * c->cycle, now = apart(place, r->pose.at);
-    const double ratio = before > 0.0 ? fmin(1.0, now / before) : 0.0;
+    const double ratio = before > 0.0 ? el_min(1.0, now / before) : 0.0;
 
     for (int i = 0; i < OPW_JOINTS; i++) {
         joint[i] = r->joint[i] + ratio * r->rate[i] * c->cycle;
@@ -192,7 +193,7 @@ void robot_stop(struct robot *r)
 
 void robot_override(struct robot *r, double share)
 {
-    const double s = fmax(0.0, fmin(1.0, share));
+    const double s = el_max(0.0, el_min(1.0, share));
     mover_override(&r->mover, s, s);
 }
 

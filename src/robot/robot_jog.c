@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "robot_plan.h"
 
 /* A jog that turns only goes so far. [rad] */
@@ -28,13 +29,13 @@ static enum robot_status jog_joints(struct robot *r, const struct robot_config *
     double most = 0.0, room = way > 0.0 ? way : INFINITY;
 
     for (int i = 0; i < OPW_JOINTS; i++) {
-        most = fmax(most, fabs(direction[i]));
+        most = el_max(most, fabs(direction[i]));
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
         const double d = direction[i] / most;
         const struct manipulator_joint *j = &c->arm.joint[i];
         const double limit = d > 0.0 ? j->high : j->low;
-        const double left = d != 0.0 ? fmax(0.0, (limit - r->joint[i]) / d) : INFINITY;
+        const double left = d != 0.0 ? el_max(0.0, (limit - r->joint[i]) / d) : INFINITY;
         if (left < room) {
             room = left;
             why->which = i;
@@ -78,7 +79,7 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
         if (status == ROBOT_OK) {
             break;
         }
-        length = fmax(0.0, length * why->part - SHORT);
+        length = el_max(0.0, length * why->part - SHORT);
     }
     return status;
 }
@@ -101,7 +102,7 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
 
     memset(why, 0, sizeof *why);
     for (int i = 0; i < 6; i++) {
-        most = fmax(most, fabs(direction[i]));
+        most = el_max(most, fabs(direction[i]));
     }
     if (!(most > 0.0 && most < INFINITY && share > 0.0 && share <= 1.0 && way >= 0.0 &&
           way < INFINITY)) {

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 static const double TURN = 6.283185307179586;
@@ -63,7 +64,7 @@ static bool sound(const struct robot_move *m)
 static double joint_speed(const struct robot_config *c, int joint)
 {
     /* Both ends of a slot are rounded. */
-    return fmin(c->arm.joint[joint].speed, (c->slot_pulses - 1.0) / (c->scale[joint] * c->slot));
+    return el_min(c->arm.joint[joint].speed, (c->slot_pulses - 1.0) / (c->scale[joint] * c->slot));
 }
 
 /* A move of joints is the latest of the course; its command. */
@@ -78,10 +79,10 @@ static void plan_joints(struct robot *r, const struct robot_config *c,
     for (int i = 0; i < OPW_JOINTS; i++) {
         m.joint[i] = r->rear_joint[i];
         m.step[i] = target[i] - r->rear_joint[i];
-        way = fmax(way, UNIT * fabs(m.step[i]) / joint_speed(c, i));
+        way = el_max(way, UNIT * fabs(m.step[i]) / joint_speed(c, i));
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
-        acc = fmin(acc, c->arm.joint[i].acc * way / fabs(m.step[i]));
+        acc = el_min(acc, c->arm.joint[i].acc * way / fabs(m.step[i]));
     }
     const struct pose pose = manipulator_pose(&arm, target);
     memcpy(m.turn, pose.turn, sizeof m.turn);
@@ -216,7 +217,7 @@ static enum robot_status enter(struct robot *r, const struct manipulator *arm,
         for (int i = 0; i < OPW_JOINTS; i++) {
             m.joint[i] = r->rear_joint[i];
             m.step[i] = end[i] - r->rear_joint[i];
-            way = i > 2 ? fmax(way, COURSE_LEVER * fabs(m.step[i])) : way;
+            way = i > 2 ? el_max(way, COURSE_LEVER * fabs(m.step[i])) : way;
         }
     } else if (way > COURSE_LEVER * SAME) {
         memcpy(m.by, by, sizeof m.by);
@@ -313,15 +314,15 @@ static double feed_of(const struct robot *r, const struct robot_config *c,
                       const struct robot_move *move, const double by[3])
 {
     const double angle = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
-    const double feed = move->feed > 0.0 ? fmin(move->feed, c->feed) : c->feed;
-    const double spin = move->spin > 0.0 ? fmin(move->spin, c->spin) : c->spin;
+    const double feed = move->feed > 0.0 ? el_min(move->feed, c->feed) : c->feed;
+    const double spin = move->spin > 0.0 ? el_min(move->spin, c->spin) : c->spin;
     const double length = r->way.path.length;
 
     if (!(angle > SAME) || move->singular == ROBOT_WRIST) {
         return feed;
     }
     const double turning = spin * length / angle;
-    return length == COURSE_LEVER * angle ? turning : fmin(feed, turning);  /* it turns only */
+    return length == COURSE_LEVER * angle ? turning : el_min(feed, turning);  /* it turns only */
 }
 
 static enum robot_status along(struct robot *r, const struct robot_config *c,

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 enum { STEPS = 8 };     /* of a piece that is looked at */
@@ -166,19 +167,20 @@ static void allow(const struct survey *s, double from, double size, struct look 
         double cap = s->l->feed, acc = s->l->acc, slope[OPW_JOINTS], bend[OPW_JOINTS];
         for (int i = 0; i < OPW_JOINTS; i++) {
             derivatives(k, n, i, h, &slope[i], &bend[i]);
-            cap = fmin(cap, s->l->speed[i] / fabs(slope[i]));
-            cap = fmin(cap, sqrt(BENT * MARGIN * s->l->turn[i] / fabs(bend[i])));
+            cap = el_min(cap, s->l->speed[i] / fabs(slope[i]));
+            cap = el_min(cap, sqrt(BENT * MARGIN * s->l->turn[i] / fabs(bend[i])));
         }
         for (int i = 0; i < OPW_JOINTS; i++) {
-            acc = fmin(acc, (MARGIN * s->l->turn[i] - fabs(bend[i]) * cap * cap) / fabs(slope[i]));
+            acc = el_min(acc,
+                         (MARGIN * s->l->turn[i] - fabs(bend[i]) * cap * cap) / fabs(slope[i]));
         }
         if (cap < k->cap) {
             k->cap = cap;
             fault(s, WAY_SINGULAR, from + size * n / STEPS, k->q[n], 0);
         }
-        k->acc = fmin(k->acc, acc);
-        most = fmax(most, cap);
-        most_acc = fmax(most_acc, acc);
+        k->acc = el_min(k->acc, acc);
+        most = el_max(most, cap);
+        most_acc = el_max(most_acc, acc);
     }
     k->even = most <= el_pow(UNEVEN_SPEED, s->wide) * k->cap &&
               most_acc <= el_pow(UNEVEN_ACC, s->wide) * k->acc;
@@ -235,11 +237,11 @@ static void spread(struct way *w, double smooth)
     for (int n = 0; n < w->count; n++) {
         const double reach = w->piece[n].cap * smooth / w->path.length;
         for (int k = n - 1; k >= 0 && w->piece[n - 1].until - w->piece[k].until < reach; k--) {
-            w->piece[k].acc = fmin(w->piece[k].acc, acc[n]);
+            w->piece[k].acc = el_min(w->piece[k].acc, acc[n]);
         }
         for (int k = n + 1; k < w->count && w->piece[k - 1].until - w->piece[n].until < reach;
              k++) {
-            w->piece[k].acc = fmin(w->piece[k].acc, acc[n]);
+            w->piece[k].acc = el_min(w->piece[k].acc, acc[n]);
         }
     }
 }
@@ -262,7 +264,7 @@ static double any_direction(const struct survey *s, const double joint[OPW_JOINT
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
         const double both = sqrt(way[i]) + (m->to > m->from ? sqrt(turn[i]) : 0.0);
-        acc = fmin(acc, CORNER * s->l->turn[i] / both);
+        acc = el_min(acc, CORNER * s->l->turn[i] / both);
     }
     return acc;
 }
@@ -298,7 +300,7 @@ enum way_status way_plan(struct way *w, const struct course_geometry *g,
     }
     double least = l->feed;
     for (int n = 0; n < w->count; n++) {
-        least = fmin(least, w->piece[n].cap);
+        least = el_min(least, w->piece[n].cap);
     }
     w->smooth = least < SLOW * l->feed ? 0.0 : l->smooth;
     spread(w, w->smooth);

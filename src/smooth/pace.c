@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
+
 /* New cells are planned once they are so many of the planned ones (a fourth), so that a plan costs
  * each cell the same whatever their number. */
 enum { PLAN_SHARE = 4 };
@@ -71,7 +73,7 @@ bool pace_join(struct pace *p, const struct piece *piece)
 /* x of a cell at the feed under an override. */
 static double feed_limit(const struct pace_cell *c, double override)
 {
-    const double v = fmin(c->feed * override, c->cap);
+    const double v = el_min(c->feed * override, c->cap);
     return v * v;
 }
 
@@ -79,7 +81,7 @@ static double feed_limit(const struct pace_cell *c, double override)
 static double end_limit(const struct pace *p, int32_t i, int32_t known, double override)
 {
     return i + 1 < known
-        ? fmin(feed_limit(cell_peek(p, i), override), cell_peek(p, i + 1)->most) : 0.0;
+        ? el_min(feed_limit(cell_peek(p, i), override), cell_peek(p, i + 1)->most) : 0.0;
 }
 
 /* From the end backwards; what is not new and comes out the same needs no further look. */
@@ -93,7 +95,7 @@ static void plan(struct pace *p, double override)
         double top, most;
         if (feed <= c->flat) {
             top = pace_top(c, x1, feed);
-            most = fmin(top, feed);
+            most = el_min(top, feed);
         } else {
             most = pace_back(c, x1, feed, &top);
         }
@@ -117,7 +119,7 @@ struct stretch {
 /* To x1 at the end of the cell. */
 static struct stretch across(double acc, double left, double x, double x1)
 {
-    return (struct stretch){ acc, left, fmin(x1, fmax(0.0, x + 2.0 * acc * left)) };
+    return (struct stretch){ acc, left, el_min(x1, el_max(0.0, x + 2.0 * acc * left)) };
 }
 
 /* As slow as the limits allow: to rest, or to the end of the cell, or until they allow more. */
@@ -125,7 +127,7 @@ static struct stretch halt(const struct pace_cell *c, double left, double x)
 {
     const struct pace_span span = pace_span(c, left, x);
     const double fall = pace_fall(c, x);
-    const double acc = fall > 0.0 ? fmin(span.low, -fall) : span.low;
+    const double acc = fall > 0.0 ? el_min(span.low, -fall) : span.low;
 
     const double to = c->bend * x > SLIGHT ? 0.5 * x : 0.0;
 
@@ -145,16 +147,16 @@ static struct stretch hurry(const struct pace_cell *c, double left, double x, do
                             double until, struct line safe, double x1)
 {
     const struct pace_span span = pace_span(c, left, x);
-    double acc = fmin(span.high, want);
+    double acc = el_min(span.high, want);
 
     if (x < safe.x * (1.0 - SAME)) {
-        double stop = fmax(safe.x, safe.x - safe.fall * left);
+        double stop = el_max(safe.x, safe.x - safe.fall * left);
         const double rise = pace_rise(c, x, &stop);
         if (rise > acc) {
             acc = rise;
             until = stop;
             if (2.0 * acc + safe.fall > 0.0) {
-                until = fmin(stop, x + 2.0 * acc * (safe.x - x) / (2.0 * acc + safe.fall));
+                until = el_min(stop, x + 2.0 * acc * (safe.x - x) / (2.0 * acc + safe.fall));
             }
         }
     }
@@ -169,23 +171,23 @@ static struct stretch next_feed(const struct pace_cell *c, double left, double x
                                 double x1)
 {
     const double slope = (c->top - x1) / c->length, line = x1 + slope * left;
-    const double goal = fmin(most, line);
+    const double goal = el_min(most, line);
 
     if (x > goal * (1.0 + SAME)) {
         const struct stretch s = halt(c, left, x);
         const double steeper = -2.0 * s.acc - slope;
         double way = x > most && s.acc < 0.0 ? (most - x) / (2.0 * s.acc) : 0.0;
         if (x > line) {
-            way = steeper > 0.0 ? fmax(way, (x - line) / steeper) : left;
+            way = steeper > 0.0 ? el_max(way, (x - line) / steeper) : left;
         }
         return way < s.way
-            ? (struct stretch){ s.acc, way, fmin(most, x1 + slope * (left - way)) } : s;
+            ? (struct stretch){ s.acc, way, el_min(most, x1 + slope * (left - way)) } : s;
     }
     if (x >= goal * (1.0 - SAME)) {
         if (line <= most * (1.0 + SAME)) {
             return (struct stretch){ -0.5 * slope, left, x1 };
         }
-        return (struct stretch){ 0.0, slope > 0.0 ? fmin(left, (line - most) / slope) : left, x };
+        return (struct stretch){ 0.0, slope > 0.0 ? el_min(left, (line - most) / slope) : left, x };
     }
     const struct stretch s = hurry(c, left, x, INFINITY, most, (struct line){ most, 0.0 }, x1);
     const double way = (line - x) / (2.0 * s.acc + slope);
@@ -235,8 +237,8 @@ static double drive(struct pace *p, const struct stretch *s, double dt)
         p->at.rate = to;
         return time;
     }
-    p->at.rate = fmax(0.0, v + s->acc * dt);
-    p->at.left = fmax(0.0, p->at.left - 0.5 * dt * (v + p->at.rate));
+    p->at.rate = el_max(0.0, v + s->acc * dt);
+    p->at.left = el_max(0.0, p->at.left - 0.5 * dt * (v + p->at.rate));
     return dt;
 }
 
@@ -287,7 +289,7 @@ double pace_advance(struct pace *p, double override, double dt)
 
     if (p->count > 0) {
         const double way = p->at.base + (length_at(p, 0) - p->at.left);
-        p->at.way = fmin(p->end, fmax(p->at.way, way));
+        p->at.way = el_min(p->end, el_max(p->at.way, way));
     }
     if (pace_at_end(p)) {
         p->at.way = p->end;
@@ -323,7 +325,7 @@ double pace_stop_way(const struct pace *p)
         return pace_smooth_stop_way(p);
     }
     const double way = rest_way(p);
-    return fmin(p->end, way + SLOWER * (way - p->at.way));
+    return el_min(p->end, way + SLOWER * (way - p->at.way));
 }
 
 bool pace_nears_end(const struct pace *p, double further)

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 #include "pace_pull.h"
 
@@ -55,7 +56,7 @@ static struct range wide(struct pace_bound b)
 
 static struct pace_bound narrow(struct range r)
 {
-    const double stray = OUTWARDS * fmax(fabs(r.low), fabs(r.high));
+    const double stray = OUTWARDS * el_max(fabs(r.low), fabs(r.high));
     return (struct pace_bound){ (float)(r.low - stray), (float)(r.high + stray) };
 }
 
@@ -97,8 +98,8 @@ static double turn_speed(const struct pace_box *g, double acc, double jerk)
 
     for (int32_t i = 0; i < g->rows; i++) {
         const double a = extent(g->row[i].acc[1]), j = extent(g->row[i].jerk[2]);
-        v = a > 0.0 ? fmin(v, sqrt(acc / a)) : v;
-        v = j > 0.0 ? fmin(v, el_cbrt(jerk / j)) : v;
+        v = a > 0.0 ? el_min(v, sqrt(acc / a)) : v;
+        v = j > 0.0 ? el_min(v, el_cbrt(jerk / j)) : v;
     }
     return v;
 }
@@ -124,9 +125,9 @@ static void add_row(struct pace_box *g, const struct range r[3], double acc, dou
 /* Along the path and across it; the jerk of all of r'' and r''' counts as one across. */
 static void path_rule(struct pace_box *g, const struct piece *p, const struct piece_bounds *b)
 {
-    const double acc = 1.0 / fmin(p->ramp.acc, p->ramp.dec);
-    const double jerk = fmax(inverse(p->ramp.acc_jerk, p->ramp.acc),
-                             inverse(p->ramp.dec_jerk, p->ramp.dec));
+    const double acc = 1.0 / el_min(p->ramp.acc, p->ramp.dec);
+    const double jerk = el_max(inverse(p->ramp.acc_jerk, p->ramp.acc),
+                               inverse(p->ramp.dec_jerk, p->ramp.dec));
     struct pace_pull way;
     const double across = pace_pull_path(&way, p, g->length, b);
     struct range along[3], all[3] = { { 0.0, 0.0 } };
@@ -154,7 +155,7 @@ void pace_box_make(struct pace_box *g, const struct piece *p, const struct pace_
         for (int n = 0; n < 3; n++) {
             r[n] = (struct range){ b->low[n][k], b->high[n][k] };
         }
-        g->cap = l->speed[k] > 0.0 ? fmin(g->cap, l->speed[k] / size(r[0])) : g->cap;
+        g->cap = l->speed[k] > 0.0 ? el_min(g->cap, l->speed[k] / size(r[0])) : g->cap;
         if (l->acc[k] > 0.0) {
             add_row(g, r, 1.0 / l->acc[k], inverse(l->jerk[k], l->acc[k]));
         }
@@ -163,7 +164,7 @@ void pace_box_make(struct pace_box *g, const struct piece *p, const struct pace_
         path_rule(g, p, b);
     }
     finish(g);
-    g->ideal = g->length / fmin(g->brisk, g->feed);
+    g->ideal = g->length / el_min(g->brisk, g->feed);
 }
 
 double pace_box_rise(const struct pace_box *g)
@@ -172,7 +173,8 @@ double pace_box_rise(const struct pace_box *g)
 
     for (int32_t i = 0; i < g->rows; i++) {
         const struct pace_row *r = &g->row[i];
-        time = extent(r->acc[0]) > 0.0 ? fmin(time, extent(r->jerk[0]) / extent(r->acc[0])) : time;
+        const double acc = extent(r->acc[0]);
+        time = acc > 0.0 ? el_min(time, extent(r->jerk[0]) / acc) : time;
     }
     return time < INFINITY ? time : 0.0;
 }
@@ -194,12 +196,12 @@ bool pace_box_join(struct pace_box *g, const struct pace_box *next)
         }
     }
     one.length += next->length;
-    one.feed = fmin(one.feed, next->feed);
-    one.cap = fmin(one.cap, next->cap);
+    one.feed = el_min(one.feed, next->feed);
+    one.cap = el_min(one.cap, next->cap);
     one.ideal += next->ideal;
     finish(&one);
-    const double slower = one.length / fmin(one.brisk, one.feed) - one.ideal;
-    if (slower > JOIN * pace_box_rise(&one) && fmin(g->length, next->length) > SPECK) {
+    const double slower = one.length / el_min(one.brisk, one.feed) - one.ideal;
+    if (slower > JOIN * pace_box_rise(&one) && el_min(g->length, next->length) > SPECK) {
         return false;
     }
     *g = one;
@@ -212,10 +214,10 @@ double pace_box_steepest(const struct pace_box *g, double x, double sign)
 
     for (int32_t i = 0; i < g->rows; i++) {
         const struct range p = scaled(g->row[i].acc[0], sign), q = scaled(g->row[i].acc[1], x);
-        b = p.high > 0.0 ? fmin(b, 2.0 * (1.0 - q.high) / p.high) : b;
-        b = p.low < 0.0 ? fmin(b, 2.0 * (1.0 + q.low) / -p.low) : b;
+        b = p.high > 0.0 ? el_min(b, 2.0 * (1.0 - q.high) / p.high) : b;
+        b = p.low < 0.0 ? el_min(b, 2.0 * (1.0 + q.low) / -p.low) : b;
     }
-    return fmax(0.0, b);
+    return el_max(0.0, b);
 }
 
 static struct range acc_of(const struct pace_row *r, struct pace_state s)
@@ -236,8 +238,8 @@ static double bend(const struct pace_box *g, struct pace_state s, double sign)
 
     for (int32_t i = 0; i < g->rows; i++) {
         const struct range p = scaled(g->row[i].jerk[0], sign), q = twist_of(&g->row[i], s);
-        c = p.high > 0.0 ? fmin(c, 2.0 * (all - q.high) / p.high) : c;
-        c = p.low < 0.0 ? fmin(c, 2.0 * (all + q.low) / -p.low) : c;
+        c = p.high > 0.0 ? el_min(c, 2.0 * (all - q.high) / p.high) : c;
+        c = p.low < 0.0 ? el_min(c, 2.0 * (all + q.low) / -p.low) : c;
     }
     return sign * c;
 }
@@ -247,7 +249,7 @@ double pace_box_acc(const struct pace_box *g, struct pace_state s)
     double most = 0.0;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        most = fmax(most, size(acc_of(&g->row[i], s)));
+        most = el_max(most, size(acc_of(&g->row[i], s)));
     }
     return most;
 }
@@ -257,7 +259,7 @@ double pace_box_twist(const struct pace_box *g, struct pace_state s)
     double most = 0.0;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        most = fmax(most, size(twist_of(&g->row[i], s)));
+        most = el_max(most, size(twist_of(&g->row[i], s)));
     }
     return most * sqrt(s.x);
 }
@@ -376,11 +378,11 @@ bool pace_box_turn_to(const struct pace_box *g, struct pace_state to, double s, 
 double pace_box_stride(const struct pace_box *g, struct pace_state from, double rest)
 {
     const double up = pace_box_steepest(g, from.x, 1.0), down = pace_box_steepest(g, from.x, -1.0);
-    const double steep = fmax(fmax(up, down), 1e-9);
-    const double c = fmax(1e-9, fmax(bend(g, from, 1.0), -bend(g, from, -1.0)));
-    double s = fmax(STEEPER * steep / c, FINEST * from.x / steep);
+    const double steep = el_max(el_max(up, down), 1e-9);
+    const double c = el_max(1e-9, el_max(bend(g, from, 1.0), -bend(g, from, -1.0)));
+    double s = el_max(STEEPER * steep / c, FINEST * from.x / steep);
 
-    s = fmin(s, FASTER * from.x / fmax(fabs(from.b), 1e-300));
+    s = el_min(s, FASTER * from.x / el_max(fabs(from.b), 1e-300));
     return rest <= s ? rest : rest / ceil(rest / s);
 }
 
@@ -396,8 +398,8 @@ double pace_box_jerk(const struct pace_box *g, double v, double a)
         }
         if (p > 0.0) {
             const double turns = 3.0 * extent(r->jerk[1]) * a + extent(r->jerk[2]) * v * v;
-            j = fmin(j, (1.0 - turns * v) / p);
+            j = el_min(j, (1.0 - turns * v) / p);
         }
     }
-    return fmax(0.0, j);
+    return el_max(0.0, j);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "pace_box.h"
 #include "pace_pull.h"
 
@@ -100,7 +101,7 @@ static void limit_rows(struct pace_cell *c, struct row row[AXES], int count)
 
     for (int i = 0; i < count; i++) {
         struct row *r = &row[i];
-        const double bend = r->pull.most[1] / fmin(r->acc[0], r->acc[1]);
+        const double bend = r->pull.most[1] / el_min(r->acc[0], r->acc[1]);
         const double takes = bend > 0.0 ? bend * c->cap * c->cap : 0.0;
         r->bends = takes > SLIGHT;
         r->rest = r->bends ? 1.0 : 1.0 - takes;
@@ -132,7 +133,7 @@ static void limit(struct pace_cell *c, const struct piece *p, const struct pace_
     for (int32_t i = 0; i < b->axes; i++) {
         const int k = b->axis[i];
         if (l->speed[k] > 0.0) {
-            c->cap = fmin(c->cap, l->speed[k] / larger(b->low[0][k], b->high[0][k]));
+            c->cap = el_min(c->cap, l->speed[k] / larger(b->low[0][k], b->high[0][k]));
         }
         if (l->acc[k] > 0.0) {
             row[count].acc[0] = row[count].acc[1] = l->acc[k];
@@ -141,7 +142,7 @@ static void limit(struct pace_cell *c, const struct piece *p, const struct pace_
     }
     if (!pace_by_axes(l)) {
         const double across = pace_pull_path(&row[0].pull, p, c->length, b);
-        c->cap = fmin(c->cap, sqrt(fmin(p->ramp.acc, p->ramp.dec) / across));
+        c->cap = el_min(c->cap, sqrt(el_min(p->ramp.acc, p->ramp.dec) / across));
         row[0].acc[0] = p->ramp.dec;
         row[0].acc[1] = p->ramp.acc;
         count = 1;
@@ -214,17 +215,17 @@ static struct ends along(const struct pace_cell *c, int32_t n, const double most
             room[0] = most[i + 2] - foot[i + 2];
             room[1] = -foot[i + 2];
             if (rise != 0.0) {
-                low = fmax(low, room[rise > 0.0] / rise);
-                high = fmin(high, room[rise < 0.0] / rise);
+                low = el_max(low, room[rise > 0.0] / rise);
+                high = el_min(high, room[rise < 0.0] / rise);
             }
             continue;
         }
         rise = c->plane[i][0] * to[0] + c->plane[i][1] * to[1];
         room[0] = 1.0 - c->plane[i][0] * foot[0] - c->plane[i][1] * foot[1];
         if (rise > 0.0) {
-            high = fmin(high, room[0] / rise);
+            high = el_min(high, room[0] / rise);
         } else if (rise < 0.0) {
-            low = fmax(low, room[0] / rise);
+            low = el_max(low, room[0] / rise);
         }
     }
     return (struct ends){ { foot[0] + to[0] * high, foot[1] + to[1] * high } };
@@ -240,8 +241,8 @@ double pace_back(const struct pace_cell *c, double x1, double most, double *end)
             best = along(c, i, bound);
         }
     }
-    *end = fmin(x1, fmax(0.0, best.x[1]));
-    return fmin(most, fmax(0.0, best.x[0]));
+    *end = el_min(x1, el_max(0.0, best.x[1]));
+    return el_min(most, el_max(0.0, best.x[0]));
 }
 
 double pace_top(const struct pace_cell *c, double x1, double most)
@@ -250,11 +251,11 @@ double pace_top(const struct pace_cell *c, double x1, double most)
 
     for (int32_t i = 0; i < c->planes; i++) {
         if (c->plane[i][0] > 0.0) {
-            top = fmin(top, (1.0 - c->plane[i][1] * x1) / c->plane[i][0]);
+            top = el_min(top, (1.0 - c->plane[i][1] * x1) / c->plane[i][0]);
         }
     }
-    const double box = x1 + 2.0 * c->length * fmax(0.0, 1.0 - c->bend * most) / c->down;
-    return c->planes > 0 ? fmax(box, top) : box;
+    const double box = x1 + 2.0 * c->length * el_max(0.0, 1.0 - c->bend * most) / c->down;
+    return c->planes > 0 ? el_max(box, top) : box;
 }
 
 struct pace_span pace_span(const struct pace_cell *c, double left, double x)
@@ -269,9 +270,9 @@ struct pace_span pace_span(const struct pace_cell *c, double left, double x)
         const double *g = c->plane[i], lever = 2.0 * (g[1] * left - g[0] * gone);
         const double room = 1.0 - (g[0] + g[1]) * x;
         if (lever > 0.0) {
-            s.high = fmin(s.high, room / lever);
+            s.high = el_min(s.high, room / lever);
         } else if (lever < 0.0) {
-            s.low = fmax(s.low, room / lever);
+            s.low = el_max(s.low, room / lever);
         }
     }
     return s;
@@ -293,5 +294,5 @@ double pace_rise(const struct pace_cell *c, double x, double *until)
 
 double pace_fall(const struct pace_cell *c, double x)
 {
-    return fmax(0.0, 1.0 - c->bend * x) / c->down;
+    return el_max(0.0, 1.0 - c->bend * x) / c->down;
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 /* Most steps of a look ahead, tries at a ramp of constant jerk and their times' shares of the time
@@ -46,7 +47,7 @@ double pace_road_end(const struct pace_road *r, int32_t i)
 
 double pace_road_top(const struct pace_road *r, const struct pace_box *g)
 {
-    const double v = r->override < 0.0 ? g->cap : fmin(g->feed * r->override, g->brisk);
+    const double v = r->override < 0.0 ? g->cap : el_min(g->feed * r->override, g->brisk);
     return v * v;
 }
 
@@ -80,7 +81,7 @@ double pace_plan_rest(const struct pace_plan *p, const struct pace_road *r,
                       const struct pace_spot *spot)
 {
     const double end = pace_road_end(r, spot->box);
-    return (spot->node < PACE_NODES ? fmin(end, p->node[spot->node].at) : end) - spot->at;
+    return (spot->node < PACE_NODES ? el_min(end, p->node[spot->node].at) : end) - spot->at;
 }
 
 bool pace_plan_steer(const struct pace_plan *p, const struct pace_road *r,
@@ -115,7 +116,7 @@ bool pace_plan_steer(const struct pace_plan *p, const struct pace_road *r,
     if (!pace_box_turn(g, from, *s, to < 0.0 ? -1.0 : 1.0, c)) {
         return false;
     }
-    *c = to < 0.0 ? fmax(*c, to) : fmin(*c, to);
+    *c = to < 0.0 ? el_max(*c, to) : el_min(*c, to);
     return pace_box_keeps(g, from, *c, *s);
 }
 
@@ -124,7 +125,7 @@ void pace_plan_pass(const struct pace_plan *p, const struct pace_road *r, struct
 {
     const double end = pace_road_end(r, spot->box);
     const double node = spot->node < PACE_NODES ? p->node[spot->node].at : INFINITY;
-    const double next = fmin(end, node);
+    const double next = el_min(end, node);
 
     spot->at = spot->at + s < next - SAME * s ? spot->at + s : next;
     spot->state = to;
@@ -171,7 +172,7 @@ bool pace_road_start(const struct pace_road *r, double at, int32_t box, double s
             int32_t at_box = box;
             do {
                 const struct pace_box *g = pace_road_box(r, at_box);
-                jerk = fmin(jerk, pace_box_jerk(g, v, a));
+                jerk = el_min(jerk, pace_box_jerk(g, v, a));
                 if (v * v > pace_road_top(r, g)) {
                     jerk = 0.0;
                 }
@@ -217,12 +218,12 @@ struct pace_step pace_road_hop(const struct pace_road *r, double at, int32_t box
         for (int32_t i = box; i < r->count && pace_road_box(r, i)->from < at + way; i++) {
             const struct pace_box *g = pace_road_box(r, i);
             const double here = pace_box_jerk(g, v, a);
-            most = fmin(most, v * v > pace_road_top(r, g) ? 0.0 : here);
+            most = el_min(most, v * v > pace_road_top(r, g) ? 0.0 : here);
         }
         if (k > 0 && most >= jerk) {
             break;
         }
-        jerk = k == 0 ? most : fmax(most, 0.5 * jerk);
+        jerk = k == 0 ? most : el_max(most, 0.5 * jerk);
         const double part = el_cbrt(0.5 * way / jerk);
         v = jerk * part * part;
         a = jerk * part;
@@ -242,10 +243,10 @@ static struct pace_state fit(const struct pace_road *r, const struct pace_box *g
                              struct pace_state s)
 {
     const double acc = pace_box_acc(g, s), jerk = pace_box_twist(g, s) / ROOM;
-    double share = fmin(1.0, pace_road_top(r, g) / s.x);
+    double share = el_min(1.0, pace_road_top(r, g) / s.x);
 
-    share = acc > 1.0 ? fmin(share, 1.0 / acc) : share;
-    share = jerk > 1.0 ? fmin(share, el_cbrt(1.0 / (jerk * jerk))) : share;
+    share = acc > 1.0 ? el_min(share, 1.0 / acc) : share;
+    share = jerk > 1.0 ? el_min(share, el_cbrt(1.0 / (jerk * jerk))) : share;
     return (struct pace_state){ share * (1.0 - SAME) * s.x, share * (1.0 - SAME) * s.b };
 }
 
@@ -254,12 +255,12 @@ static struct pace_state lower(const struct pace_plan *p, const struct pace_road
                                int32_t box, const struct pace_box *g, struct pace_state s)
 {
     struct pace_state kept = fit(r, g, s);
-    double fails = fmin(s.x, pace_road_top(r, g));
+    double fails = el_min(s.x, pace_road_top(r, g));
 
     for (int i = 0; i < HALVES; i++) {
         const double x = i == 0 ? fails : 0.5 * (kept.x + fails);
         const double steep = (1.0 - SAME) * pace_box_steepest(g, x, -1.0);
-        const struct pace_spot spot = { at, box, p->first, { x, fmax(s.b, -steep) } };
+        const struct pace_spot spot = { at, box, p->first, { x, el_max(s.b, -steep) } };
         if (takes(r, g, spot.state) && pace_plan_safe(p, r, spot)) {
             kept = spot.state;
         } else {
@@ -277,7 +278,7 @@ static struct pace_state ease(const struct pace_plan *p, const struct pace_road 
     double steep = s.b, flat = 0.0;
 
     if (s.b >= 0.0 || pace_plan_safe(p, r, spot)) {
-        return (struct pace_state){ s.x, fmax(s.b, 0.0) };
+        return (struct pace_state){ s.x, el_max(s.b, 0.0) };
     }
     for (int i = 0; i < HALVES; i++) {
         spot.state.b = 0.5 * (steep + flat);
@@ -324,7 +325,7 @@ static bool step_back(struct pace_plan *p, const struct pace_road *r, int32_t bo
             found = found.b < STEEP * last.b ? ease(p, r, at, box, found) : found;
         }
     }
-    found.b = fmin(found.b, 0.0);
+    found.b = el_min(found.b, 0.0);
     put(p, at, found);
     return true;
 }
@@ -353,7 +354,7 @@ bool pace_plan_make(struct pace_plan *p, const struct pace_road *r, double back_
                 ? lower(p, r, node.at, behind, g, node.state) : fit(r, g, node.state);
             put(p, node.at, p->first < PACE_NODES ? ease(p, r, node.at, behind, less) : less);
         }
-        if (!step_back(p, r, box, fmax(back_to, g->from))) {
+        if (!step_back(p, r, box, el_max(back_to, g->from))) {
             p->node[p->first].state.x *= SHARE;     /* a share can be driven, too */
             p->node[p->first].state.b *= SHARE;
         }

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
+
 /* Of the most |r'| at least such a share is taken as the least: less is where a path turns back. */
 static const double LEAST = 1e-9;
 
@@ -17,13 +19,13 @@ static struct range of(const struct piece_bounds *b, int n, int axis)
 static struct range times(struct range a, struct range b)
 {
     const double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
-    return (struct range){ fmin(fmin(p, q), fmin(r, s)), fmax(fmax(p, q), fmax(r, s)) };
+    return (struct range){ el_min(el_min(p, q), el_min(r, s)), el_max(el_max(p, q), el_max(r, s)) };
 }
 
 static struct range square(struct range a)
 {
     const double p = a.low * a.low, q = a.high * a.high;
-    return (struct range){ a.low <= 0.0 && a.high >= 0.0 ? 0.0 : fmin(p, q), fmax(p, q) };
+    return (struct range){ a.low <= 0.0 && a.high >= 0.0 ? 0.0 : el_min(p, q), el_max(p, q) };
 }
 
 static void add(struct range *sum, struct range a)
@@ -39,7 +41,7 @@ static double spread(struct range a)
 
 static double size(struct range a)
 {
-    return fmax(fabs(a.low), fabs(a.high));
+    return el_max(fabs(a.low), fabs(a.high));
 }
 
 static double dot(const double a[3], const double b[3])
@@ -72,9 +74,9 @@ static struct range twist(const struct piece_bounds *b, int first)
         add(&turn, times(of(b, 1, i), of(b, 3, i)));
     }
     const struct range per = { 1.0 / b->most[0],
-                               1.0 / fmax(sqrt(slope.low), LEAST * b->most[0]) };
+                               1.0 / el_max(sqrt(slope.low), LEAST * b->most[0]) };
     const struct range along = square(times(both, per));
-    add(&turn, (struct range){ -fmin(along.high, b->most[1] * b->most[1]), -along.low });
+    add(&turn, (struct range){ -el_min(along.high, b->most[1] * b->most[1]), -along.low });
     return times(turn, per);
 }
 
@@ -86,20 +88,20 @@ static void look_along(struct pace_pull *l, const struct piece *p, double length
 
     for (int e = 0; e < 2; e++) {
         const double *r1 = b->slope[e] + first;
-        l->p[e] = fmax(sqrt(dot(r1, r1)), LEAST * b->most[0]);
+        l->p[e] = el_max(sqrt(dot(r1, r1)), LEAST * b->most[0]);
         l->q[e] = dot(r1, b->bend[e] + first) / l->p[e];
     }
     if (p->kind == PIECE_CURVE) {
         s = twist(b, first);
     } else if (p->kind == PIECE_ARC && p->path.plane != PATH_TILTED) {     /* of a spiral */
         const double turns = p->path.growth * p->path.sweep / (p->path.length * p->path.length);
-        s.high = turns * turns / fmin(l->p[0], l->p[1]);
+        s.high = turns * turns / el_min(l->p[0], l->p[1]);
         s.low = -s.high;
     }
-    l->sag = fmin(0.125 * length * length * size(s), b->most[0]);
-    l->stray = fmin(0.25 * length * spread(s), 2.0 * b->most[1]);
+    l->sag = el_min(0.125 * length * length * size(s), b->most[0]);
+    l->stray = el_min(0.25 * length * spread(s), 2.0 * b->most[1]);
     l->most[0] = b->most[0];
-    l->most[1] = fmin(b->most[1], fmax(fabs(l->q[0]), fabs(l->q[1])) + l->stray);
+    l->most[1] = el_min(b->most[1], el_max(fabs(l->q[0]), fabs(l->q[1])) + l->stray);
     l->most[2] = size(s);
 }
 
@@ -109,7 +111,7 @@ static double most_across(const struct pace_pull *along, double length,
                           const struct piece_bounds *b, int first)
 {
     const double k[2] = { along->q[0] / along->p[0], along->q[1] / along->p[1] };
-    const double grows = fabs(k[1] - k[0]), most = fmax(fabs(k[0]), fabs(k[1]));
+    const double grows = fabs(k[1] - k[0]), most = el_max(fabs(k[0]), fabs(k[1]));
     double end[2][3], strays[3];
 
     for (int i = 0; i < 3; i++) {
@@ -120,8 +122,8 @@ static double most_across(const struct pace_pull *along, double length,
         strays[i] = 0.25 * (length * (spread(of(b, 3, first + i)) + most * spread(r2)) +
                             grows * (length * size(r2) + spread(of(b, 1, first + i))));
     }
-    return fmin(b->most[1], sqrt(fmax(dot(end[0], end[0]), dot(end[1], end[1]))) +
-                            sqrt(dot(strays, strays)));
+    return el_min(b->most[1], sqrt(el_max(dot(end[0], end[0]), dot(end[1], end[1]))) +
+                              sqrt(dot(strays, strays)));
 }
 
 double pace_pull_path(struct pace_pull *along, const struct piece *p, double length,

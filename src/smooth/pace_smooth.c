@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "el_extremes.h"
+
 /* A plan is made once so many of the boxes it would know (a fourth) are new. */
 enum { PLAN_SHARE = 4 };
 
@@ -167,7 +169,7 @@ static void brake(struct ride *r)
         go(r, &hard, spot, 0.0, stride);
         return;
     }
-    s = fmin(s, stride);
+    s = el_min(s, stride);
     go(r, &hard, spot, turns ? halve(r, &hard, &spot, steer, c, s, true) : steer, s);
 }
 
@@ -202,7 +204,7 @@ static void hurry(struct ride *r, double override)
         go(r, &soft, spot, steer, s);
         return;
     }
-    s = fmin(s, stride);
+    s = el_min(s, stride);
     if (!good(r, &soft, spot, steer, s, false)) {
         brake(r);
         return;
@@ -227,7 +229,7 @@ static void place(struct pace_place *at)
 {
     const struct pace_motion m = pace_step_at(&at->step, at->spent);
 
-    at->here = fmin(at->goal, at->origin + m.way);
+    at->here = el_min(at->goal, at->origin + m.way);
     at->rate = m.rate;
     at->gain = m.gain;
     at->twitch = m.jerk;
@@ -353,7 +355,7 @@ double pace_smooth_advance(struct pace *p, double override, double dt)
             dt = 0.0;
             place(&r.at);
         } else {
-            dt -= fmax(0.0, rest);
+            dt -= el_max(0.0, rest);
             arrive(&r.at);
             if (override > 0.0) {
                 adopt(p, &r);

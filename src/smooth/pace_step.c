@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 /* Time of a step that turns by less than this [rad] is that of a constant acceleration. */
@@ -30,7 +31,7 @@ struct pace_step pace_step_bent(struct pace_state from, double c, double s)
     struct pace_step step = { .kind = PACE_BENT, .way = s, .speed = sqrt(from.x),
                               .acc = 0.5 * from.b, .c = c, .to = to };
 
-    step.time = time_of(step.speed, step.acc, sqrt(fmax(0.0, to.x)), 0.5 * to.b, c, s);
+    step.time = time_of(step.speed, step.acc, sqrt(el_max(0.0, to.x)), 0.5 * to.b, c, s);
     return step;
 }
 
@@ -60,7 +61,7 @@ struct pace_step pace_step_hop(double jerk, double way)
 static struct pace_motion steady(double v, double a, double j, double t)
 {
     return (struct pace_motion){ t * (v + t * (0.5 * a + t * j / 6.0)),
-                                 fmax(0.0, v + t * (a + 0.5 * t * j)), a + t * j, j };
+                                 el_max(0.0, v + t * (a + 0.5 * t * j)), a + t * j, j };
 }
 
 /* A fourth of the time up to half of the most speed, and on to it; the rest is that backwards. */
@@ -95,7 +96,7 @@ struct pace_motion pace_step_at(const struct pace_step *s, double t)
     const double x = 0.5 * w * t, half = s->c < 0.0 ? el_sin(x) : 0.5 * (el_exp(x) - el_exp(-x));
     const double cosine = 1.0 + sign * 2.0 * half * half, turn = 2.0 * half * half / (w * w);
     const double sine = (s->c < 0.0 ? el_sin(w * t) : 2.0 * half * sqrt(1.0 + half * half)) / w;
-    const double v = fmax(0.0, s->speed * cosine + s->acc * sine);
+    const double v = el_max(0.0, s->speed * cosine + s->acc * sine);
     return (struct pace_motion){ s->speed * sine + s->acc * turn, v,
                                  s->acc + 0.5 * s->c * (s->speed * sine + s->acc * turn),
                                  0.5 * s->c * v };

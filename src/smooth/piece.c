@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bernstein.h"
+#include "el_extremes.h"
 
 enum { DEGREE = PIECE_POINTS - 1 };
 
@@ -82,8 +83,8 @@ static void cubic_bounds(const struct piece *p, double from, double to, struct p
         const double twist = i < 3 ? b->most[2] : 0.0;
         b->low[0][i] = middle.slope[i] - turn;
         b->high[0][i] = middle.slope[i] + turn;
-        b->low[1][i] = fmax(-bend, middle.bend[i] - half * twist);
-        b->high[1][i] = fmin(bend, middle.bend[i] + half * twist);
+        b->low[1][i] = el_max(-bend, middle.bend[i] - half * twist);
+        b->high[1][i] = el_min(bend, middle.bend[i] + half * twist);
         b->low[2][i] = -twist;
         b->high[2][i] = twist;
         for (int k = 0; k < 2; k++) {

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 static const double TURN = 6.283185307179586;
@@ -138,7 +139,7 @@ void piece_arc_bounds(const struct piece *p, double from, double to, struct piec
         t.sin[i] = turn.sine;
     }
     even_bounds(a, b);
-    double most = fmax(fabs(t.radius[0]), fabs(t.radius[1]));
+    double most = el_max(fabs(t.radius[0]), fabs(t.radius[1]));
     if (tilted) {
         double x[3], y[3];
         for (int i = 0; i < 3; i++) {

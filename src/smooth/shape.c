@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "shape_corner.h"
 #include "shape_turn.h"
 #include "shape_whole.h"
@@ -238,7 +239,7 @@ static void begin_again(struct shape *s)
         way += (v[1].point[i] - v[0].point[i]) * (v[1].point[i] - v[0].point[i]);
         along += (v[1].point[i] - v[0].point[i]) * (at.point[i] - v[0].point[i]);
     }
-    const double t = way > 0.0 ? fmin(1.0, fmax(0.0, along / way)) : 0.0;
+    const double t = way > 0.0 ? el_min(1.0, el_max(0.0, along / way)) : 0.0;
     for (int i = 0; i < AXES; i++) {
         const double d = at.point[i] - v[0].point[i] - t * (v[1].point[i] - v[0].point[i]);
         off += d * d;

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* Farthest of the quintic from two lines whose directions differ by 1, of its half length; and from
  * paths of a curvature of 1 that touch, of its square. Where the search begins. */
 static const double CUT = 0.1875, CUT_CURVED = 0.035;
@@ -87,7 +89,7 @@ static int32_t chords(const struct piece *p, double half, double tolerance, doub
     }
     piece_bounds(p, 0.0, p->length, &b);
     const double most = sqrt(8.0 * SAGITTA * tolerance / b.most[1]);
-    const int32_t n = (int32_t)fmin(20.0, ceil(half / most));
+    const int32_t n = (int32_t)el_min(20.0, ceil(half / most));
     *step = half / n;
     *left = tolerance - b.most[1] * *step * *step / 8.0;    /* chords: |r''| h^2 / 8 off at most */
     return *left > 0.0 ? n + (p->length >= half + *step) : 0;
@@ -114,7 +116,7 @@ static bool way_before(struct shape *s, double half, struct shape_way *w)
     }
     const int32_t n = chords(p, half, s->corner_tolerance, &step, &left);
     for (int32_t k = n; k >= 0; k--) {
-        piece_at(p, fmax(0.0, p->length - k * step), &at);
+        piece_at(p, el_max(0.0, p->length - k * step), &at);
         add(w, at.point, half - k * step, left);
     }
     return n > 0;
@@ -139,7 +141,7 @@ static bool way_behind(struct shape *s, double before, double half, double toler
     }
     const int32_t n = chords(p, half, tolerance, &step, &left);
     for (int32_t k = 1; k <= n && w->points < SHAPE_WAY; k++) {
-        piece_at(p, fmin(p->length, k * step), &at);
+        piece_at(p, el_min(p->length, k * step), &at);
         add(w, at.point, before + k * step, left);
     }
     return n > 0;
@@ -195,9 +197,9 @@ static int32_t attempt(struct shape *s, double half, double part, double toleran
         c->piece[1]++;
     }
     const struct piece *x = shape_made(s, c->piece[0]), *y = shape_made(s, c->piece[1]);
-    const double more = x->kind == PIECE_CURVE ? fmax(0.0, SLIVER * x->length - c->at[0]) : 0.0;
+    const double more = x->kind == PIECE_CURVE ? el_max(0.0, SLIVER * x->length - c->at[0]) : 0.0;
     const double less = y->kind == PIECE_CURVE
-        ? fmax(0.0, c->at[1] - (1.0 - SLIVER) * y->length) : 0.0;
+        ? el_max(0.0, c->at[1] - (1.0 - SLIVER) * y->length) : 0.0;
     c->at[0] += more;
     c->at[1] -= less;
     const double before = half - more, behind = half - less;
@@ -312,25 +314,25 @@ void shape_corner_round(struct shape *s, double tolerance)
     const double of_a = a->kind == PIECE_CURVE && s->tail_points > 0
         ? s->tail_tolerance[s->tail_points - 1] : s->corner_tolerance;
     const double of_b = b->kind == PIECE_CURVE ? s->run.vertex[1].tolerance : tolerance;
-    const double p = CUT * turn, q = CUT_CURVED * (kin + kout), most = fmin(of_a, of_b);
+    const double p = CUT * turn, q = CUT_CURVED * (kin + kout), most = el_min(of_a, of_b);
     const double plain = 2.0 * most / (p + sqrt(p * p + 4.0 * q * most));
-    double room = fmin(before * (1.0 - 1e-9), behind);
+    double room = el_min(before * (1.0 - 1e-9), behind);
     const bool arcs[2] = { is_arc(a), is_arc(b) };
-    room = arcs[0] ? fmin(room, ARC / kin) : room;
-    room = arcs[1] ? fmin(room, ARC / kout) : room;
+    room = arcs[0] ? el_min(room, ARC / kin) : room;
+    room = arcs[1] ? el_min(room, ARC / kout) : room;
     if (turn >= BACK) {
         a->rest = true;
         return;
     }
     const double off = FIRST * most * (arcs[0] || arcs[1] ? 1.0 - SAGITTA : 1.0) / (0.5 * turn);
-    double half = fmin(room, off / (SWING * sqrt(1.0 - 0.25 * turn * turn)));
-    for (int k = 0; k < SWINGS && half > fmax(plain, 0.5 * off / CUT) && half > LEAST;
+    double half = el_min(room, off / (SWING * sqrt(1.0 - 0.25 * turn * turn)));
+    for (int k = 0; k < SWINGS && half > el_max(plain, 0.5 * off / CUT) && half > LEAST;
          k++, half *= SWING_SHORTER) {
         if (rounded(s, half, off / half, tolerance)) {
             return;
         }
     }
-    half = fmin(FIRST * plain, room);
+    half = el_min(FIRST * plain, room);
     for (int k = 0; k < ATTEMPTS && half > LEAST; k++, half *= SHORTER) {
         if (rounded(s, half, 0.0, tolerance)) {
             return;

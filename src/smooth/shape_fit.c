@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* Boehm: the blossom at each knot four times. */
 void shape_extract(const double t[7], double m[4][4])
 {
@@ -38,7 +40,7 @@ static void put_bend(struct shape_fit *f)
         shape_solve_add(f->bend, k, row, h);
     }
     for (int32_t k = 0; k < f->spans; k++) {
-        most = fmax(most, f->bend[k][0]);
+        most = el_max(most, f->bend[k][0]);
     }
     const int32_t n = f->spans;
     if (!f->run->begun && !f->run->bound) {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 /* Closest spacings of a span at first; vertices of one, for each of them. */
 enum { COARSE = 5 };
 
@@ -37,7 +39,7 @@ bool shape_knots_put(struct shape_fit *f)
             crowd += v[i].u > r->knot[k];
             i++;
         }
-        h = crowd >= COARSE * SHAPE_CROWD ? fmax(LEAST * h, fmin(h, v[i].u - r->knot[k])) : h;
+        h = crowd >= COARSE * SHAPE_CROWD ? el_max(LEAST * h, el_min(h, v[i].u - r->knot[k])) : h;
         crowd = 0;
         r->knot[k + 1] = r->knot[k] + h;
         k++;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "shape_fit.h"
 
 /* Of the tolerance: closest spacing of knots; way over which the direction of a raster is taken. */
@@ -54,7 +55,7 @@ static void place(struct shape_run *r, int32_t end)
             b++;
         }
         const double way = v[b].s - v[a].s, chord = shape_distance(v[a].point, v[b].point);
-        const double ratio = way > 0.0 ? fmax(0.5, chord / way) : 1.0;
+        const double ratio = way > 0.0 ? el_max(0.5, chord / way) : 1.0;
         v[i].u = v[i - 1].u + (v[i].s - v[i - 1].s) * ratio;
     }
     r->placed = end + 1 > r->placed ? end + 1 : r->placed;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "elementary.h"
 
 /* Part of a long command that a run may take: of its length, and in tolerances. */
@@ -62,15 +63,15 @@ int32_t shape_chords(const struct path *p, double length, double tolerance)
 
     if (p->arc || p->cubic) {
         const double bend = p->arc ? arc_bend(p) : p->bezier.bend;
-        n = fmax(n, ceil(length / sqrt(8.0 * SHAPE_SAGITTA * tolerance / bend)));
+        n = el_max(n, ceil(length / sqrt(8.0 * SHAPE_SAGITTA * tolerance / bend)));
     }
-    return n <= SHAPE_CHORDS ? (int32_t)fmax(1.0, n) : 0;
+    return n <= SHAPE_CHORDS ? (int32_t)el_max(1.0, n) : 0;
 }
 
 double shape_grab(const struct piece *p, double tolerance)
 {
     const struct path path = shape_whole_path(p);
-    double way = fmin(SHARE * p->length, GRAB * tolerance);
+    double way = el_min(SHARE * p->length, GRAB * tolerance);
 
     for (int k = 0; k < HALVINGS && shape_chords(&path, way, tolerance) == 0; k++) {
         way *= 0.5;

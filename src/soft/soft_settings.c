@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
+
 static const double DEGREE = 0.017453292519943295;
 
 /* A period is as near to whole clocks. [clocks] */
@@ -119,7 +121,7 @@ static void set_layers(const struct soft_settings *s, struct layers_config *l)
 {
     l->interrupt = (struct latency){
         s->irq_latency * FPGA_CLOCK_HZ, s->irq_mean * FPGA_CLOCK_HZ,
-        fmax(s->irq_longest, s->irq_latency) * FPGA_CLOCK_HZ, s->irq_rare
+        el_max(s->irq_longest, s->irq_latency) * FPGA_CLOCK_HZ, s->irq_rare
     };
     l->access = clocks_of(s->access_time);
     l->tick = clocks_of(s->timer_period);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_extremes.h"
 #include "registers.h"
 
 struct station_config station_defaults(void)
@@ -34,7 +35,7 @@ struct station_config station_defaults(void)
 /* As pc_start will find. */
 static bool can_home(const struct machine_axis *a, const struct home_config *h)
 {
-    return home_valid(h) && fmax(h->high_speed, h->low_speed) <= machine_axis_speed(a);
+    return home_valid(h) && el_max(h->high_speed, h->low_speed) <= machine_axis_speed(a);
 }
 
 /* A number of clocks, of which sums and products with what a run makes stay numbers: 289 days. */

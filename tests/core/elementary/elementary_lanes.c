@@ -1,4 +1,4 @@
-/* Sines and cosines of several angles at once: the bits of each by itself, whoever stands beside. */
+/* Sines and cosines of several angles at once: the bits of each by itself, whoever is beside it. */
 #include <stdbool.h>
 #include <string.h>
 

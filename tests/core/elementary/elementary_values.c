@@ -1,5 +1,6 @@
 /* Special values of C11, Annex F; symmetry; order of neighbours; and sums that must be 1. */
 #include "check.h"
+#include "el_extremes.h"
 #include "elementary.h"
 
 typedef double (*of_one)(double);
@@ -111,6 +112,21 @@ static void special_angles(void)
     }
     IS(el_atan2(NAN, 1.0), NAN);
     IS(el_atan2(1.0, NAN), NAN);
+}
+
+/* Of equals the second, whatever sign a zero has; what is a number beside one that is none. */
+static void special_extremes(void)
+{
+    for (int i = 0; i < 2; i++) {
+        double (*const f)(double, double) = i ? el_max : el_min;
+        IS(f(0.0, -0.0), -0.0);
+        IS(f(-0.0, 0.0), 0.0);
+        IS(f(NAN, -0.0), -0.0);
+        IS(f(-0.0, NAN), -0.0);
+        IS(f(NAN, NAN), NAN);
+        IS(f(-INFINITY, 1.0), i ? 1.0 : -INFINITY);
+        IS(f(1.0, -INFINITY), i ? 1.0 : -INFINITY);
+    }
 }
 
 /* All of C11, F.10.4.4. */
@@ -248,6 +264,7 @@ int main(void)
 {
     special_values();
     special_angles();
+    special_extremes();
     special_powers();
     symmetry();
     order();
