@@ -8,8 +8,10 @@
 
 /* Exponents of the quick way: below 2^-54 e^x = 1; from 512 on the result may not be normal. */
 enum { LEAST = 1023 - 54, MOST = 1023 + 9 };
-/* What the quick way may be off by, of the value. */
+/* What the quick way of e^x may be off by, of the value. */
 #define PART 0x1p-60
+/* That of e^x - 1, of 2^k T r. */
+#define REST_PART 0x1.5p-60
 
 static inline double steps_of(double x, uint64_t *k)
 {
@@ -57,19 +59,30 @@ static struct dd expm1_dd(struct dd x)
     return dd_add_to(-1.0, dd_times(e, dd_power(k)));
 }
 
+/* e^(x + more); error is a share of it. */
+static inline bool quick(double x, double more, double error, double *y)
+{
+    uint64_t k;
+    const double n = steps_of(x, &k), r = ((x - n * OCTAVE_STEP[0]) - n * OCTAVE_STEP[1]) + more;
+    const double *power = POWERS[k % 128];
+    const double p = r + r * r * ((EXP_REST[0] + r * EXP_REST[1]) +
+                                  r * r * (EXP_REST[2] + r * EXP_REST[3]));
+    const bool good = dd_settled(power[0], power[1] + power[0] * p, 2.0 * error, y);
+    *y *= dd_of_bits((k / 128 + 1023) << 52);
+    return good;
+}
+
+bool el_exp_quick(struct dd x, double error, double *y)
+{
+    return quick(x.h, x.l, 1.25 * PART + 1.0000001 * error, y);     /* one more rounding of r */
+}
+
 double el_exp(double x)
 {
     const unsigned exponent = (unsigned)(dd_bits(x) >> 52 & 2047);
-    if (exponent - LEAST < MOST - LEAST) {
-        uint64_t k;
-        const double n = steps_of(x, &k), r = (x - n * OCTAVE_STEP[0]) - n * OCTAVE_STEP[1];
-        const double *power = POWERS[k % 128];
-        const double p = r + r * r * ((EXP_REST[0] + r * EXP_REST[1]) +
-                                      r * r * (EXP_REST[2] + r * EXP_REST[3]));
-        double y;
-        if (dd_settled(power[0], power[1] + power[0] * p, 2.0 * PART, &y)) {
-            return y * dd_of_bits((k / 128 + 1023) << 52);
-        }
+    double y;
+    if (exponent - LEAST < MOST - LEAST && quick(x, -0.0, PART, &y)) {
+        return y;
     }
     if (exponent < LEAST) {
         return 1.0;
@@ -82,6 +95,32 @@ double el_exp(double x)
     return dd_rounded(e, k);
 }
 
+/* A value and the bound of what it is off by. */
+struct about {
+    struct dd m;
+    double error;
+};
+
+/* e^x - 1 = 2^k T - 1 + 2^k T (e^r - 1), |x| < 100. r has two parts; T r is a product of 24 bits by
+ * 24, exact, and what is 2^-24 of it. What is left of T (e^r - 1) is T r^2 / 2 and less: 2^-9.53 of
+ * T r, in seven roundings: 2^-59.72; the polynomial 2^-66; r is off by 2^-97 k. All of T r. */
+static inline struct about quick_less_one(double x)
+{
+    uint64_t k;
+    const double n = steps_of(x, &k), *power = POWERS[k % 128];
+    const double scale = dd_of_bits((k / 128 + 1023) << 52);
+    const struct dd r = dd_fast(x - n * OCTAVE_STEP[0], -n * OCTAVE_STEP[1]);
+    const double u = r.h * r.h, cubic = u * r.h * (LESS_REST[0] + r.h * LESS_REST[1] +
+                                                   u * (LESS_REST[2] + r.h * LESS_REST[3]));
+    const double rest = 0.5 * u + (cubic + (r.l - n * OCTAVE_STEP[2]));
+    const double a = dd_half(r.h), b = dd_half(power[0]), product = scale * (a * b);
+    const double low = b * (r.h - a) + (power[0] - b) * r.h;
+    const struct dd first = dd_sum(scale * power[0], -1.0), sum = dd_fast(first.h, product);
+    const double more = scale * (low + (power[1] + power[1] * r.h + power[0] * rest));
+    return (struct about){ dd_fast(sum.h, first.l + sum.l + more),
+                           fabs(product) * REST_PART + fabs(sum.h) * 0x1p-90 };
+}
+
 double el_expm1(double x)
 {
     if (!(fabs(x) >= 0x1p-54)) {
@@ -90,9 +129,12 @@ double el_expm1(double x)
     if (!(fabs(x) < 100.0)) {
         return x > 0.0 ? el_exp(x) : -1.0;
     }
-    return dd_rounded(expm1_dd(dd_of(x, 0.0)), 0);
+    const struct about e = quick_less_one(x);
+    double y;
+    return dd_settled(e.m.h, e.m.l, e.error, &y) ? y : dd_rounded(expm1_dd(dd_of(x, 0.0)), 0);
 }
 
+/* (m + m / (1 + m)) / 2, m = e^x - 1; off by no larger share than m. */
 double el_sinh(double x)
 {
     const double a = fabs(x);
@@ -104,17 +146,32 @@ double el_sinh(double x)
         const struct dd e = el_exp_dd(dd_of(el_min(a, 800.0), 0.0), &k);
         return copysign(dd_rounded(e, k - 1), x);
     }
+    const struct about e = quick_less_one(a);
+    struct dd both = dd_add(e.m, dd_div(e.m, dd_add_to(1.0, e.m)));
+    double y;
+    if (dd_settled(both.h, both.l, both.h * (e.error / e.m.h), &y)) {
+        return copysign(0.5 * y, x);
+    }
     const struct dd m = expm1_dd(dd_of(a, 0.0));
-    const struct dd both = dd_add(m, dd_div(m, dd_add_to(1.0, m)));
+    both = dd_add(m, dd_div(m, dd_add_to(1.0, m)));
     return copysign(dd_rounded(both, -1), x);
 }
 
+/* (e + 1 / e) / 2, e = e^x; off by less than e. */
 double el_cosh(double x)
 {
     const double a = fabs(x);
     int k;
     if (!(a < 800.0)) {
         return a;
+    }
+    if (a < 40.0) {
+        const struct about m = quick_less_one(a);
+        const struct dd e = dd_add_to(1.0, m.m), both = dd_add(e, dd_div(dd_of(1.0, 0.0), e));
+        double y;
+        if (dd_settled(both.h, both.l, m.error + both.h * 0x1p-90, &y)) {
+            return 0.5 * y;
+        }
     }
     struct dd e = el_exp_dd(dd_of(a, 0.0), &k);
     if (a < 40.0) {
@@ -125,11 +182,18 @@ double el_cosh(double x)
     return dd_rounded(e, k - 1);
 }
 
+/* m / (2 + m), m = e^2x - 1; off by no larger share than m. */
 double el_tanh(double x)
 {
     const double a = fabs(x);
     if (!(a >= 0x1p-27) || a >= 22.0) {
         return a >= 22.0 ? copysign(1.0, x) : x;
+    }
+    const struct about e = quick_less_one(2.0 * a);
+    const struct dd share = dd_div(e.m, dd_add_to(2.0, e.m));
+    double y;
+    if (dd_settled(share.h, share.l, share.h * (e.error / e.m.h), &y)) {
+        return copysign(y, x);
     }
     const struct dd m = expm1_dd(dd_of(2.0 * a, 0.0));
     return copysign(dd_rounded(dd_div(m, dd_add_to(2.0, m)), 0), x);

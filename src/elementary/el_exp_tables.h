@@ -17,6 +17,11 @@ static const double EXP_REST[4] = {
     0x1.fffffffffff58p-2, 0x1.5555555555525p-3, 0x1.55555accc11b8p-5, 0x1.11111430bc5c6p-7
 };
 
+/* (exp r - 1 - r - r^2 / 2) / r^3 in r */
+static const double LESS_REST[4] = {
+    0x1.5555555555525p-3, 0x1.555555555553dp-5, 0x1.11111430bc5c6p-7, 0x1.6c16c48bc20bdp-10
+};
+
 /* 2^(k / 128) */
 static const double POWERS[128][2] = {
     { 0x1p+0, 0.0 }, { 0x1.0163da9fb3335p+0, 0x1.b61299ab8cdb7p-54 }, { 0x1.02c9a3e778061p+0,

@@ -6,5 +6,7 @@
 
 /* log x; 0 < x < infinity. */
 struct dd el_log_dd(double x);
+/* log x and the bound of what it is off by, 2^-61 of it or less; 2^-1022 <= x < infinity. */
+struct dd el_log_quick(double x, double *error);
 
 #endif

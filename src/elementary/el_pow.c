@@ -1,4 +1,4 @@
-/* x^y = e^(y log x), to 90 bits or more. */
+/* x^y = e^(y log x): quick, or to 90 bits or more. */
 #include "elementary.h"
 #include "el_exp.h"
 #include "el_log.h"
@@ -13,8 +13,25 @@ static double limit(double x, double y, bool odd)
     return copysign((a == 0.0) == (y > 0.0) ? 0.0 : INFINITY, odd ? x : 1.0);
 }
 
+/* y log x from 2^-50 to 700. */
+static inline bool quick(double x, double y, double *result)
+{
+    double error;
+    const struct dd l = el_log_quick(x, &error);
+    const double size = fabs(l.h * y);
+    if (!(size > 0x1p-50 && size < 700.0 && fabs(y) < 0x1p60)) {
+        return false;
+    }
+    const struct dd z = dd_product(l.h, y);
+    return el_exp_quick(dd_fast(z.h, z.l + l.l * y), error * fabs(y) + size * 0x1p-100, result);
+}
+
 double el_pow(double x, double y)
 {
+    double result;
+    if (x >= 0x1p-1022 && x < INFINITY && quick(x, y, &result)) {
+        return result;
+    }
     if (y == 0.0 || x == 1.0) {
         return 1.0;
     }

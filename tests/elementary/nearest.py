@@ -159,6 +159,7 @@ DRAWN: dict[str, list[Callable[[], Any]]] = {
         pairs(flat(0, 10), flat(-10, 10)),
         pairs(lambda: abs(wide(-20, 20)), spread(-5, 5)),
         pairs(lambda: 1 + wide(-30, -3), spread(0, 20)),
+        pairs(lambda: 1 + wide(-8, -7), spread(13, 15)),
         powers,
     ],
     "hypot": [

@@ -169,12 +169,14 @@ def exp_tables() -> Iterable[str]:
     ln2 = mpmath.log(2)
     half = ln2 / POWERS / 2
     rest = polynomial(lambda r: (mpmath.expm1(r) - r) / r**2, -half, half, 4)
+    less = polynomial(lambda r: (mpmath.expm1(r) - r - r * r / 2) / r**3, -half, half, 4)
     powers = [pair(mpf(2) ** (mpf(k) / POWERS)) for k in range(POWERS)]
     yield numbers("128 / ln 2", "OCTAVE_STEPS", [float(POWERS / ln2)])
     yield numbers(
         "ln 2 / 128: 35 bits, 35 bits, the rest", "OCTAVE_STEP", reduced(ln2 / POWERS, 35)
     )
     yield numbers("(exp r - 1 - r) / r^2 in r", "EXP_REST", rest)
+    yield numbers("(exp r - 1 - r - r^2 / 2) / r^3 in r", "LESS_REST", less)
     yield table("2^(k / 128)", "POWERS", powers)
 
 

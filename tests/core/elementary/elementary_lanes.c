@@ -10,7 +10,7 @@ enum { MOST = 13 };
 
 static uint64_t seed = 7;
 
-/* Those that lanes are good for; one in eight is any other number, and of these some are special. */
+/* Those that lanes are good for; one in eight is any other number, half of these are special. */
 static double some(void)
 {
     static const double special[] = { 0.0, -0.0, 0x1p-1074, -0x1p-27, 0x1.fffffffffffffp-28,
