@@ -1,6 +1,7 @@
 """Runs the library of an FMU for any platform by itself (fmu_bits.c), under wine or qemu."""
 
 import functools
+import math
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from importlib import util
 from pathlib import Path
 
 import fmpy
+from fmpy.model_description import ModelVariable
 
 from motionfmu.fmu.platforms import Platform, here
 
@@ -33,7 +35,7 @@ class Job:
     steps: int
     size: float
     strings: Mapping[str, str] = field(default_factory=dict)
-    reals: Mapping[str, float] = field(default_factory=dict)
+    reals: Mapping[str, Sequence[float]] = field(default_factory=dict)  # elements in FMI 3
     values: bool = False  # print them, too
     shown: Collection[str] = ()  # outputs; all if none are named
 
@@ -110,15 +112,18 @@ def job_rows(place: Path, job: Job) -> tuple[str, int, str]:
     variables = {v.name: v for v in d.modelVariables}
     rows.append(f"steps {job.steps} {job.size!r}")
     rows += [f"string {variables[n].valueReference} {text}" for n, text in job.strings.items()]
-    rows += [f"real {variables[n].valueReference} {x!r}" for n, x in job.reals.items()]
+    for name, x in job.reals.items():
+        rows.append(f"real {variables[name].valueReference} {' '.join(map(repr, x))}")
     for v in d.modelVariables:
         kind = _kind(v.type)
         if v.causality == "output" and kind and (not job.shown or v.name in job.shown):
-            count = 1
-            for size in v.dimensions or []:
-                count *= int(size.start)
-            rows.append(f"show {kind} {v.valueReference} {count}")
+            rows.append(f"show {kind} {v.valueReference} {elements(v)}")
     return "\n".join(rows) + "\n", fmi, str(d.coSimulation.modelIdentifier)
+
+
+def elements(v: ModelVariable) -> int:
+    """Number of elements of a variable."""
+    return math.prod(int(size.start) for size in v.dimensions or [])
 
 
 def _kind(name: str) -> str:

@@ -6,7 +6,7 @@
  * JOB is a text file, a row each:
  *     token TEXT, resources TEXT       as the description says; where resources/ is
  *     steps N SIZE                     communication steps [s]
- *     real REF VALUE, int REF VALUE, bool REF VALUE, string REF TEXT    set before initialisation
+ *     real REF VALUE.., int REF VALUE, bool REF VALUE, string REF TEXT  set before initialisation
  *     show REAL|INT|BOOL REF COUNT     d, i or b: an output; elements have successive references
  *                                      in FMI 2, one in FMI 3
  *     values                           print the values, too
@@ -111,18 +111,22 @@ static void instantiate(void)
 
 static void set(const char *kind, uint32_t ref, const char *text)
 {
-    const double x = strtod(text, NULL);
+    static double x[WIDEST];
+    size_t count = 0; /* of the elements of an array of FMI 3 */
+    for (char *end = (char *)(uintptr_t)text; *end && count < WIDEST && kind[0] == 'r'; count++) {
+        x[count] = strtod(end, &end);
+    }
     const int n = (int)strtol(text, NULL, 10);
     const bool b = n != 0;
     void *c = run.instance;
     int status;
     if (run.fmi == 2) {
-        status = kind[0] == 'r'   ? CALL(2, SetReal)(c, &ref, 1, &x)
+        status = kind[0] == 'r'   ? CALL(2, SetReal)(c, &ref, 1, x)
                  : kind[0] == 'i' ? CALL(2, SetInteger)(c, &ref, 1, &n)
                  : kind[0] == 'b' ? CALL(2, SetBoolean)(c, &ref, 1, &n)
                                   : CALL(2, SetString)(c, &ref, 1, &text);
     } else {
-        status = (int)(kind[0] == 'r'   ? CALL(3, SetFloat64)(c, &ref, 1, &x, 1)
+        status = (int)(kind[0] == 'r'   ? CALL(3, SetFloat64)(c, &ref, 1, x, count)
                        : kind[0] == 'i' ? CALL(3, SetInt32)(c, &ref, 1, &n, 1)
                        : kind[0] == 'b' ? CALL(3, SetBoolean)(c, &ref, 1, &b, 1)
                                         : CALL(3, SetString)(c, &ref, 1, &text, 1));
