@@ -51,8 +51,10 @@ def through(task: Task, simulation: Any, names: list[str]) -> str | None:
                 row.extend([float(get(name))] if v.count == 1 else [math.nan] * v.count)
             row.tofile(out)
     simulation.terminate()
-    arrays = any(v.count > 1 for v in task.values)
-    return "ok\tof what is no array" if arrays else None
+    arrays = [v.count > 1 for v in task.values]
+    if all(arrays):
+        return "it ran, but reads no array, and all outputs are arrays"
+    return "ok\tof what is no array" if any(arrays) else None
 
 
 EcosLib.set_log_level("off")
