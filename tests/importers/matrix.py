@@ -115,7 +115,8 @@ def page(rows: Sequence[Verdict]) -> str:
         "Made by `make importers` ([tests/importers](../tests/importers)). The FMUs are those of "
         f"`make export`; each runs {importers.STEPS} steps with its start values. So does the "
         f"demo, `scenarios/{DEMO}`, exported as one FMU and as an SSP; tests compare more of its "
-        "steps with the project's own run. A step of 1/3 ms (333333 ns) is no multiple of a tick.",
+        "steps with the project's own run. Alone, most FMUs stand still; "
+        "[tests/ports](../tests/ports) drives their inputs. A step of 1/3 ms (333333 ns) is no multiple of a tick.",
         "",
         "- **equal**: every output at every step has the bits that FMPy reads of the library that "
         "gcc made for this machine.",
