@@ -116,7 +116,8 @@ def page(rows: Sequence[Verdict]) -> str:
         f"`make export`; each runs {importers.STEPS} steps with its start values. So does the "
         f"demo, `scenarios/{DEMO}`, exported as one FMU and as an SSP; tests compare more of its "
         "steps with the project's own run. Alone, most FMUs stand still; "
-        "[tests/ports](../tests/ports) drives their inputs. A step of 1/3 ms (333333 ns) is no multiple of a tick.",
+        "[tests/ports](../tests/ports) drives their inputs. A step of 1/3 ms (333333 ns) is no "
+        "multiple of a tick.",
         "",
         "- **equal**: every output at every step has the bits that FMPy reads of the library that "
         "gcc made for this machine.",
