@@ -130,7 +130,7 @@ def page(rows: Sequence[Verdict]) -> str:
         "[tests/ports](../tests/ports) runs under wine and qemu.",
         "",
         f"{len(rows)} cells: {good} equal, good or read, {some} equal with a remark, "
-        f"{len(rows) - good - some} others.",
+        f"{len(rows) - good - some} a reason alone.",
         "",
     ]
     return "\n".join([*head, *table(rows, 2), *table(rows, 3)]).rstrip("\n") + "\n"
