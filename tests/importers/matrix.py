@@ -70,7 +70,7 @@ def table(rows: Sequence[Verdict], fmi: int) -> list[str]:
     """One version's part of the page."""
     found = {(r.fmu, r.folder): r for r in rows if r.fmi == fmi}
     heads = {r.folder: r for r in found.values()}
-    order = sorted(heads, key=lambda f: (importers.tool(f).checks, heads[f].platform[::-1], f))
+    order = sorted(heads, key=lambda f: (importers.tool(f).checks, heads[f].platform != HERE, f))
     reasons: list[str] = []
 
     def cell(fmu: str, folder: str) -> str:
@@ -84,7 +84,7 @@ def table(rows: Sequence[Verdict], fmi: int) -> list[str]:
         if text not in reasons:
             reasons.append(text)
         said = SHORT[EQUAL] if told.startswith(EQUAL) else ""
-        return f"{said} [{reasons.index(text) + 1}]".strip()
+        return f"{said}&nbsp;[{reasons.index(text) + 1}]".removeprefix("&nbsp;")
 
     lines = [
         f"## FMI {fmi}.0",
