@@ -1,6 +1,7 @@
 /* The motion library on its PC, on the wires of a co-simulation: bus grid, registers, mailboxes. */
 #include <string.h>
 
+#include "fmu_spans.h"
 #include "pc.h"
 #include "vars.h"
 
@@ -14,6 +15,7 @@ struct model {
 };
 
 #define MODEL_BLOB
+#define MODEL_UNUSED
 #include "fmi_model.h"
 #include "comp_file.h"
 #include "mcc_parameters.h"
@@ -246,6 +248,14 @@ static const char *model_check(const struct state *s)
         return "its bus period or whether it has a program";
     }
     return pc_damage(&m->pc);
+}
+
+static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
+{
+    struct spans unused;
+    unused.count = 0;
+    pc_unused(&s->m.pc, &unused);
+    return fmu_spans(&unused, s, span);
 }
 
 /* Read the wires at an instant of the bus grid and let the PC work. */

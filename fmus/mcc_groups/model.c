@@ -2,7 +2,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "fmu_spans.h"
 #include "groups_damage.h"
+#include "groups_unused.h"
 #include "vars.h"
 
 struct model {
@@ -16,6 +18,7 @@ struct model {
 };
 
 #define MODEL_BLOB
+#define MODEL_UNUSED
 #include "fmi_model.h"
 #include "fmu_period.h"
 #include "program_fault.h"
@@ -332,6 +335,14 @@ static int refused_by_card(struct fmu *f, int card)
 {
     return fmu_fail(f, "card %d has refused every frame of %d transactions in a row: is every "
                     "channel of a group active on it?", card + 1, PCL_REFUSALS);
+}
+
+static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
+{
+    struct spans unused;
+    unused.count = 0;
+    groups_unused(&s->m.groups, &unused);
+    return fmu_spans(&unused, s, span);
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)

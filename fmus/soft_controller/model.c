@@ -1,6 +1,7 @@
 /* The software of the controller on the wires of a co-simulation: bus grid, mailboxes, files. */
 #include <string.h>
 
+#include "fmu_spans.h"
 #include "soft_calls.h"
 #include "soft_settings.h"
 #include "soft_words.h"
@@ -14,6 +15,7 @@ struct model {
 };
 
 #define MODEL_BLOB
+#define MODEL_UNUSED
 #include "fmi_model.h"
 #include "fmu_period.h"
 #include "soft_parameters.h"
@@ -230,6 +232,14 @@ static bool foreign(const struct soft_blob *b, const struct orders *o, const str
 static void keep_known(struct soft_blob *b, const struct orders *o)
 {
     memcpy(&b->known, &o->inform, sizeof b->known);
+}
+
+static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
+{
+    struct spans unused;
+    unused.count = 0;
+    soft_unused(&s->m.soft, &unused);
+    return fmu_spans(&unused, s, span);
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)

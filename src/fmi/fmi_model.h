@@ -4,6 +4,7 @@
  *     #include "vars.h"           generated from the description: struct vars, FMU_* constants
  *     struct model { ... };       all other state; plain data, no pointers
  *     #define MODEL_BLOB          only if it keeps something beside the state (files, buffers)
+ *     #define MODEL_UNUSED        only if much of its state may be not in use
  *     #include "fmi_model.h"
  * and then defines the functions declared below. The layer is compiled into the same unit; its own
  * names start with fmi, FMI, var_, VAR_, CAUSE_ and VARY_.
@@ -26,7 +27,9 @@
 #define FMU_PRINTF __printf__
 #endif
 
-/* Everything getFMUState keeps: one memcpy. */
+#include "fmu_span.h"
+
+/* Everything getFMUState keeps, but for what model_unused names. */
 struct state {
     struct vars  v;     /* every variable of the description, by its name */
     struct model m;
@@ -54,6 +57,13 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1);
  * find every index and count that leads beyond its array, and every number that would make a loop
  * endless. Values that are only wrong it need not see. */
 static const char *model_check(const struct state *s);
+
+#ifdef MODEL_UNUSED
+/* Name parts of s->m in a state that has been started and is not damaged which a saved state need
+ * not have, from counts and places alone: up to FMU_SPANS, none twice. Returns their number. A
+ * restored state has there what the instance had before, so nothing may read it. */
+static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS]);
+#endif
 
 #ifdef MODEL_BLOB
 /* Make f->blob from the fixed parameters in f->s.v, nothing else; before model_start. When an FMU

@@ -16,6 +16,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "fmu_span.h"
+
 enum fmu_message { FMU_ERROR, FMU_WARNING, FMU_EVENT };
 
 /* Who runs a part, as one component of a system. */
@@ -28,7 +30,7 @@ struct fmu_host {
 };
 
 /* Sizes stand in the object as digits, so that who generates C text can read them there. */
-#define FMU_PART_MARK "motionfmu part 1 "
+#define FMU_PART_MARK "motionfmu part 2 "
 enum { FMU_PART_DIGITS = 9, FMU_PART_ALIGN = 16 };
 
 struct fmu_part {
@@ -63,6 +65,9 @@ struct fmu_part {
 
     /* What is wrong with bytes that came back as an instance, or NULL. Time [ns] of all parts. */
     const char *(*damage)(const void *part, int64_t now);
+
+    /* As model_unused, behind n that are listed; places count from `base`. */
+    size_t (*unused)(const void *part, const void *base, struct fmu_span *span, size_t n);
 };
 
 #endif

@@ -8,6 +8,8 @@
 #include "tools.h"
 #include "waiting.h"
 
+_Static_assert(PARAMETERS_NUMBERED <= 2 * 64 * PARAMETERS_PAGE, "a bit for each page");
+
 /* A coordinate of the nine X Y Z A B C U V W, from 0, in the units in force. */
 static double coordinate(const struct interpreter *in, const struct program *p, int32_t letter,
                          const double of[AXES])
@@ -170,7 +172,9 @@ enum fault parameters_set(struct interpreter *in, const struct program *p,
     double now;
 
     if (which->number >= 1 && which->number <= PARAMETERS_NUMBERED) {
+        const uint32_t page = (uint32_t)(which->number - 1) / PARAMETERS_PAGE;
         all->value[which->number - 1] = value;
+        all->set[page / 64] |= UINT64_C(1) << page % 64;
         return FAULT_NONE;
     }
     if (which->number) {

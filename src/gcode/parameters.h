@@ -14,6 +14,7 @@
 enum {
     PARAMETERS_LOCAL = 30,      /* #1 .. of a call */
     PARAMETERS_NUMBERED = 5000, /* #1 .. that hold any value */
+    PARAMETERS_PAGE = 64,       /* numbers of which one is set or none, for saved states */
     PARAMETERS_NAMED = 100,     /* names in force at a time */
     PARAMETERS_NAME = 32        /* [byte] of a name: 31 characters at most */
 };
@@ -32,6 +33,8 @@ struct parameter_named {
 
 struct parameters {
     double value[PARAMETERS_NUMBERED];      /* of #1 on */
+    uint64_t set[2];            /* bits: pages with a number that has been set; the first with #1
+                                 * to #30 is one always */
     struct parameter_named named[PARAMETERS_NAMED];
     int32_t names;
 };

@@ -14,7 +14,7 @@ static const char *card_damage(const struct group_card *c)
     return what ? what : pcl_damage(&c->pcl);
 }
 
-static const char *group_damage(const struct groups *g, const struct group *group)
+static const char *group_damage(const struct group *group)
 {
     const int32_t channels = group->voltage ? GROUP_DACS : AXES;
 
@@ -29,8 +29,7 @@ static const char *group_damage(const struct groups *g, const struct group *grou
     const char *what = mcc_damage(&group->mcc);
     what = what ? what : voltage_damage(&group->servo.voltage);
     what = what || !group->voltage ? what : servo_damage(&group->servo);
-    return what ? what
-                : pcl_part_damage(&group->part, &g->card[group->card].pcl, &group->mcc.queue);
+    return what ? what : pcl_part_damage(&group->part);
 }
 
 const char *groups_damage(const struct groups *g)
@@ -41,7 +40,7 @@ const char *groups_damage(const struct groups *g)
         what = card_damage(&g->card[k]);
     }
     for (int n = 0; n < GROUP_MAX && !what; n++) {
-        what = g->group[n].used ? group_damage(g, &g->group[n]) : NULL;
+        what = g->group[n].used ? group_damage(&g->group[n]) : NULL;
     }
     if (!what && (g->config.ipo < 1 || g->config.bus < 1 || g->next_ipo < 0)) {
         what = "a period";

@@ -7,6 +7,7 @@
 #define INTERPRETER_H
 
 #include "modes.h"
+#include "spans.h"
 
 /* WAIT: the next line needs something that only the machine can tell behind all commands so far (an
  * input, a probe); who has it clears `waits`. */
@@ -40,5 +41,8 @@ enum interpreter_result interpreter_read(struct interpreter *in, const struct pr
 
 /* Whether places and numbers of a state are none that it can have. */
 bool interpreter_damaged(const struct interpreter *in);
+
+/* Parts of a state that is not damaged which need no copy. */
+void interpreter_unused(const struct interpreter *in, struct spans *s);
 
 #endif

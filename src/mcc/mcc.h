@@ -15,6 +15,7 @@
 #include "manual.h"
 #include "mover.h"
 #include "signals.h"
+#include "spans.h"
 
 /* Return codes of the library that occur here. */
 enum mcc_return {
@@ -291,5 +292,8 @@ void control_settle(struct mcc *m);
  * count lies within its array. Booleans and enumerations must have been looked at; values that are
  * only wrong are not seen. */
 const char *mcc_damage(const struct mcc *m);
+
+/* Parts of a state that is not damaged which need no copy. */
+void mcc_unused(const struct mcc *m, struct spans *s);
 
 #endif

@@ -49,11 +49,9 @@ const char *pcl_damage(const struct pcl *p)
     return good ? NULL : "a count of the position control or its page";
 }
 
-const char *pcl_part_damage(const struct pcl_part *part, const struct pcl *p,
-                            const struct queue *q)
+const char *pcl_part_damage(const struct pcl_part *part)
 {
-    const int32_t most = p->count < q->count ? p->count : q->count;
-    return within(part->points, 0, most) ? NULL : "the frames under way";
+    return within(part->points, 0, PCL_FRAMES) ? NULL : "the frames under way";
 }
 
 const char *voltage_damage(const struct voltage *v)
@@ -61,4 +59,28 @@ const char *voltage_damage(const struct voltage *v)
     const struct trail *t = &v->trail;
     return t->first >= 0 && t->frames >= t->first && t->frames - t->first < TRAIL_SIZE &&
            within(t->foot, t->first, t->frames) ? NULL : "a place on the path behind";
+}
+
+void mcc_unused(const struct mcc *m, struct spans *s)
+{
+    const struct mover_beside beside = mcc_beside((struct mcc *)(uintptr_t)m);
+
+    spans_leave(s, &m->tools.tool[m->tools.count], m->tools.tool + TOOL_TABLE_MAX);
+    interpreter_unused(&m->program, s);
+    mover_unused(&m->mover, &beside, s);
+    queue_unused(&m->queue, s);
+    for (int i = 0; i < AXES; i++) {
+        const struct comp_table *t = &m->comp_table[i];
+        if (t->interval == 0) {
+            spans_leave(s, t->forward, t + 1);
+        }
+    }
+}
+
+void voltage_unused(const struct voltage *v, struct spans *s)
+{
+    const struct trail *t = &v->trail;
+
+    spans_ring(s, t->point, sizeof t->point[0], TRAIL_SIZE, (int32_t)(t->first % TRAIL_SIZE),
+               (int32_t)(t->frames - t->first + 1));
 }

@@ -50,7 +50,8 @@ int32_t pcl_acknowledged(struct pcl *p, const struct pcl_card *card)
 
 int32_t pcl_release(struct mcc *m, const struct pcl_part *part, int32_t taken)
 {
-    const int32_t points = taken < part->points ? taken : part->points;
+    const int32_t due = taken < part->points ? taken : part->points;
+    const int32_t points = due < m->queue.count ? due : m->queue.count;
 
     if (points > 0) {
         m->written = *queue_peek(&m->queue, points - 1);

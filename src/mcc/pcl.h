@@ -112,7 +112,6 @@ void pcl_write(struct pcl *p, int64_t clock);
 /* What is wrong with a state from outside, in words, or NULL; of what a library has in the
  * transaction too. */
 const char *pcl_damage(const struct pcl *p);
-const char *pcl_part_damage(const struct pcl_part *part, const struct pcl *p,
-                            const struct queue *q);
+const char *pcl_part_damage(const struct pcl_part *part);
 
 #endif

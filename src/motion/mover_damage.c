@@ -16,16 +16,19 @@ static bool ramp_good(const struct ramp *r)
     return scurve_good(&r->ease) && scurve_good(&r->change);
 }
 
-static bool ring_good(const struct ring *r)
+/* Only commands in the chain have speeds before their ends. */
+static bool ring_good(const struct ring *r, int32_t joined)
 {
-    for (int i = 0; i < RING_SIZE; i++) {
-        const struct ring_entry *e = &r->entry[i];
-        if (e->command.type != COMMAND_PTP_ASYN &&
-            !(within(e->enter.count, 0, BRAKE_STEPS) && within(e->leave.count, 0, BRAKE_STEPS))) {
+    if (!within(r->head, 0, RING_SIZE - 1) || !within(r->count, 0, RING_SIZE)) {
+        return false;
+    }
+    for (int32_t i = 0; i < joined && i < r->count; i++) {
+        const struct ring_entry *e = ring_peek(r, i);
+        if (!(within(e->enter.count, 0, BRAKE_STEPS) && within(e->leave.count, 0, BRAKE_STEPS))) {
             return false;
         }
     }
-    return within(r->head, 0, RING_SIZE - 1) && within(r->count, 0, RING_SIZE);
+    return true;
 }
 
 /* The chain under way is the head of the ring; the tool is not ahead of the planned motion. */
@@ -41,7 +44,8 @@ static bool track_good(const struct track *t, const struct ring *r, bool active)
 
 bool mover_damaged(const struct mover *p, const struct ring *r)
 {
-    bool good = ring_good(r) && within(p->mix.count, 0, p->motion == MOVER_AXES ? 1 : 2) &&
+    const int32_t joined = p->motion == MOVER_CHAIN ? p->track.joined : 0;
+    bool good = ring_good(r, joined) && within(p->mix.count, 0, p->motion == MOVER_AXES ? 1 : 2) &&
                 track_good(&p->track, r, p->motion == MOVER_CHAIN);
 
     for (int i = 0; i < 2; i++) {

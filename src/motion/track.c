@@ -46,6 +46,7 @@ static void add(struct track *t, struct ring *r, const struct corner *k)
     n->body = bend_speed(&n->command, bend, path_twist(&n->command.path));
     n->corner = *k;
     n->turn = n->command.cap;
+    n->enter.count = n->leave.count = 0;    /* until it is planned */
     if (t->joined > 0) {
         const struct command *before = &ring_peek(r, t->joined - 1)->command;
         n->turn = el_min(bend_speed(&n->command, k->bend, k->twist),

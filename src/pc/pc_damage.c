@@ -26,7 +26,7 @@ const char *pc_damage(const struct pc *pc)
 {
     const char *what = mcc_damage(&pc->mcc);
     what = what ? what : pcl_damage(&pc->pcl);
-    what = what ? what : pcl_part_damage(&pc->pcl.part, &pc->pcl, &pc->mcc.queue);
+    what = what ? what : pcl_part_damage(&pc->pcl.part);
     if (what) {
         return what;
     }

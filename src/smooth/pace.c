@@ -358,3 +358,22 @@ bool pace_damaged(const struct pace *p)
     }
     return !good || (p->smooth && pace_smooth_damaged(p));
 }
+
+/* An earlier place may be put back: the cells up to it stay. */
+void pace_unused(const struct pace *p, bool on, struct spans *u)
+{
+    const char *end = (const char *)(p + 1);
+    const int32_t first = (p->at.head + PACE_CELLS - PACE_KEPT) % PACE_CELLS;
+    const int32_t used = on ? p->count + PACE_KEPT : 0;
+
+    if (!p->smooth) {
+        spans_ring(u, p->cell, sizeof p->cell[0], PACE_CELLS, first, used);
+        spans_leave(u, p->cell + PACE_CELLS, end);
+        return;
+    }
+    spans_ring(u, p->box, sizeof p->box[0], PACE_CELLS, first, used);
+    for (int i = 0; i < 2; i++) {
+        const struct pace_plan *plan = &p->plan[i];
+        spans_leave(u, plan->node, plan->node + (on ? plan->first : PACE_NODES));
+    }
+}

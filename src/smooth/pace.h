@@ -14,6 +14,7 @@
 #define PACE_H
 
 #include "pace_plan.h"
+#include "spans.h"
 
 enum { PACE_CELLS = 1024, PACE_KEPT = 256 };
 
@@ -59,6 +60,10 @@ void pace_put(struct pace *p, const struct pace_place *place);
 
 /* Whether counts of a state, which came from outside, lead out of its arrays. */
 bool pace_damaged(const struct pace *p);
+
+/* Parts of one that is not damaged which a saved state can do without; `on`: a chain is under way,
+ * else the next one begins with pace_start. */
+void pace_unused(const struct pace *p, bool on, struct spans *u);
 
 /* A chain begins at rest, without pieces. Its jerk is limited if one of an axis is given, or,
  * without limits of the axes, by the ramp of its first piece. */

@@ -19,6 +19,7 @@
 
 #include "shape_join.h"
 #include "shape_run.h"
+#include "spans.h"
 
 enum {
     SHAPE_PIECES = 640,
@@ -97,5 +98,9 @@ void shape_drop_marks(struct shape *s, int32_t n);
 
 /* Whether one that may have been written to from outside leaves its arrays, or never ends. */
 bool shape_damaged(const struct shape *s);
+
+/* Parts of one that is not damaged which a saved state can do without; `on`: a chain is under way,
+ * else the next one begins with shape_start. */
+void shape_unused(const struct shape *s, bool on, struct spans *u);
 
 #endif

@@ -14,6 +14,7 @@
 
 #include "layers.h"
 #include "orders.h"
+#include "spans.h"
 
 enum { SOFT_QUEUE = 64, SOFT_OUTPUTS = 32, SOFT_TAUGHT = 64, SOFT_MOVES = 1024 };
 
@@ -163,5 +164,8 @@ void soft_rehearse(struct soft *s, const struct soft_config *c, const struct ord
 /* What is wrong with a state that comes back from outside, at a clock, in words, or NULL. Its
  * program is for orders_damaged. */
 const char *soft_damage(const struct soft *s, int64_t clock);
+
+/* Parts of a state that is not damaged which need no copy. */
+void soft_unused(const struct soft *f, struct spans *s);
 
 #endif

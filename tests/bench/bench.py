@@ -25,6 +25,7 @@ import numpy as np
 import plans
 import scurve_moves
 import segments
+import states
 import studies
 from figures import Figure
 from rich.console import Console
@@ -219,6 +220,7 @@ def main(renew: bool) -> None:
     net = network.Network()
     robot = Timed(ROBOT, stop=20.0)
     asked, session = commands.all_commands(), commands.Session()
+    library = states.States("mcc")
     rounds(
         [
             by_hand,
@@ -233,6 +235,7 @@ def main(renew: bool) -> None:
             robot,
             *asked,
             session,
+            library,
             *curves,
             *segments.ALL,
             segments.LONG,
@@ -311,6 +314,9 @@ def main(renew: bool) -> None:
             for c, count in counting.of_commands(asked)
         ),
         Figure("tune scenarios/circle in a session, s", session.seconds, most=1.0),
+        Figure("state of mcc at rest, kB", library.size / 1e3, most=40.0, counted=True),
+        Figure("state of mcc at rest, us to save", 1e6 * library.save, most=5.0),
+        Figure("state of mcc at rest, us to restore", 1e6 * library.restore, most=5.0),
         *study.figures(counts),
     ]
     figures.show(found, counting.method(), renew)

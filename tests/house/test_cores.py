@@ -18,7 +18,17 @@ SOURCE = ROOT / "src"
 CORES = sorted(f.parent.name for f in SOURCE.glob("*/core.toml"))
 USES = {core: set(cores.uses(SOURCE / core)) for core in CORES}
 # Those that know no controller, and what they may not even mention.
-SHARED = ("elementary", "path", "smooth", "motion", "gcode", "interpreter", "pulse", "tasks")
+SHARED = (
+    "elementary",
+    "path",
+    "smooth",
+    "motion",
+    "gcode",
+    "interpreter",
+    "pulse",
+    "spans",
+    "tasks",
+)
 WORDS = re.compile(r"(?<![a-z])(mcc|mccl|epcio|msp430|fmi|fmu)(?![a-z])", re.IGNORECASE)
 Graph = dict[str, set[str]]
 

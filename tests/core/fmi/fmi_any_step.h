@@ -35,7 +35,8 @@ static double clock_step(struct clock *m, enum master kind)
 static void clock_go(struct clock *m, enum master kind)
 {
     m->k++;
-    m->t = kind == ADDS || kind == ADDS_AND_SUBTRACTS ? m->t + m->size : m->start + (double)m->k * m->size;
+    const bool adds = kind == ADDS || kind == ADDS_AND_SUBTRACTS;
+    m->t = adds ? m->t + m->size : m->start + (double)m->k * m->size;
 }
 
 /* At every point the time inside is the nearest tick, and the model has been given just that. */

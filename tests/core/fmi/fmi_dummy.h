@@ -57,13 +57,19 @@ static const struct var_info var_table[FMU_NVARS] = {
 
 static const uint16_t var_of_ref[FMU_NREFS] = {0, 1, 2, 3, 3, 3, 4, 5, 5, 6, 6, 7, 8};
 
+enum { KEPT = 100 };
+
 struct model {
     double  sum[2];
     int32_t at;
     bool    odd;
+    int32_t first, used;    /* of `kept`, a ring: what is not in use holds nothing that is read */
+    double  kept[KEPT];
+    double  zeros[20];      /* none of them is set */
 };
 
 #define MODEL_BLOB
+#define MODEL_UNUSED
 #include "fmi_model.h"
 
 static int blobs_open; /* those of the whole test: 0 at its end */
@@ -103,7 +109,26 @@ static int model_start(struct fmu *f)
 
 static const char *model_check(const struct state *s)
 {
-    return s->m.at >= 0 && s->m.at < 2 ? NULL : "at is no index of sum";
+    const struct model *m = &s->m;
+    return m->at < 0 || m->at > 1                         ? "at is no index of sum"
+           : m->first < 0 || m->first >= KEPT             ? "first is no index of kept"
+           : m->used < 0 || m->used > KEPT                ? "used is no count of kept"
+                                                          : NULL;
+}
+
+/* Told out of order, as models may. */
+static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
+{
+    const struct model *m = &s->m;
+    const size_t kept = offsetof(struct state, m.kept), each = sizeof m->kept[0];
+    const size_t zeros = offsetof(struct state, m.zeros);
+    const size_t first = (size_t)m->first, end = (size_t)(m->first + m->used);
+    size_t n = fmu_span_add(span, 0, zeros, zeros + sizeof m->zeros, 1);
+    if (end > KEPT) {
+        return fmu_span_add(span, n, kept + (end - KEPT) * each, kept + first * each, 0);
+    }
+    n = fmu_span_add(span, n, kept + end * each, kept + KEPT * each, 0);
+    return fmu_span_add(span, n, kept, kept + first * each, 0);
 }
 
 static bool fmi_good_model(const struct model *p)

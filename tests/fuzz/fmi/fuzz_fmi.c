@@ -206,7 +206,8 @@ static void to_bytes(struct pair *p, struct slot *s)
 static void from_bytes(struct pair *p, struct slot *s)
 {
     if (in_bytes) {
-        HOLDS(BOTH(deserialize(p->c[v_], bytes[1 - v_], inside_size(), &s->state[v_])) == 0);
+        HOLDS(BOTH(deserialize(p->c[v_], bytes[1 - v_], inside_size(bytes[1 - v_]),
+                               &s->state[v_])) == 0);
         s->stand = bytes_stand;
         s->point = bytes_point;
     }
@@ -219,14 +220,15 @@ static void from_damaged(struct pair *p, struct bytes *b)
     if (!in_bytes) {
         return;
     }
-    memcpy(other, bytes[0], inside_size());
+    const size_t size = inside_size(bytes[0]);
+    memcpy(other, bytes[0], size);
     for (uint32_t n = 1 + take(b, 1) % 4; n > 0; n--) {
         const uint32_t at = take(b, 3);
-        other[at % inside_size()] = (char)(other[at % inside_size()] + 1 + (int)take(b, 1) % 255);
+        other[at % size] = (char)(other[at % size] + 1 + (int)take(b, 1) % 255);
     }
-    if (memcmp(other, bytes[0], inside_size()) != 0) {
-        REFUSED(p, deserialize(p->c[v_], other, inside_size(), &state[v_]));
-        const size_t less = inside_size() - 1 - take(b, 1) % 64;
+    if (memcmp(other, bytes[0], size) != 0) {
+        REFUSED(p, deserialize(p->c[v_], other, size, &state[v_]));
+        const size_t less = size - 1 - take(b, 1) % 64;
         REFUSED(p, deserialize(p->c[v_], bytes[0], less, &state[v_]));
         HOLDS(!state[0] && !state[1]);
     }
@@ -240,14 +242,15 @@ static void from_forged(struct pair *p, struct bytes *b)
     if (!in_bytes || p->stand == FAILED) {
         return;
     }
-    memcpy(other, bytes[0], inside_size());
+    const size_t size = inside_size(bytes[0]);
+    memcpy(other, bytes[0], size);
     for (uint32_t n = 1 + take(b, 1) % 3; n > 0; n--) {
         const uint32_t at = take(b, 3);
-        other[inside_place(at)] = (char)take(b, 1);
+        other[inside_place(bytes[0], at)] = (char)take(b, 1);
     }
     inside_forge(other);
     pair_look(p);
-    if (BOTH(deserialize(p->c[v_], other, inside_size(), &forged.state[v_])) == 0) {
+    if (BOTH(deserialize(p->c[v_], other, size, &forged.state[v_])) == 0) {
         if (BOTH(set_state(p->c[v_], forged.state[v_])) == 0) {
             static union side_value x[SIDE_ELEMENTS];
             const struct inside_variable v = inside_variable(pick_variable(b));
@@ -334,8 +337,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length)
         renew(&pairs[i]);
     }
     if (!other) {
-        bytes[0] = malloc(inside_size()), bytes[1] = malloc(inside_size());
-        other = malloc(inside_size());
+        bytes[0] = malloc(inside_most()), bytes[1] = malloc(inside_most());
+        other = malloc(inside_most());
         HOLDS(bytes[0] && bytes[1] && other);
     }
     for (int i = 0; i < CALLS && b.at < b.end; i++) {

@@ -66,26 +66,29 @@ bool inside_strict(const void *c)
     return ((const struct fmi_instance *)c)->f.s.v.FMU_STRICT;
 }
 
-size_t inside_size(void)
+size_t inside_most(void)
 {
-    return sizeof(struct fmi_snapshot);
+    return sizeof(struct fmi_snapshot) + FMU_SPANS * sizeof(struct fmu_span);
+}
+
+size_t inside_size(const char *state)
+{
+    uint64_t size;
+    memcpy(&size, state + offsetof(struct fmi_snapshot, size), sizeof size);
+    return size;
 }
 
 bool inside_alike(const char *a, const char *b)
 {
-    static struct fmi_snapshot p, q;
-    memcpy(&p, a, sizeof p);
-    memcpy(&q, b, sizeof q);
-    p.hash = q.hash = 0;
-    memset(&p.s.m, 0, sizeof p.s.m);
-    memset(&q.s.m, 0, sizeof q.s.m);
-    return memcmp(&p, &q, sizeof p) == 0;
+    const size_t hash = offsetof(struct fmi_snapshot, hash), behind = hash + sizeof(uint64_t);
+    const size_t model = offsetof(struct fmi_snapshot, s.m);
+    return memcmp(a, b, hash) == 0 && memcmp(a + behind, b + behind, model - behind) == 0;
 }
 
-size_t inside_place(size_t n)
+size_t inside_place(const char *bytes, size_t n)
 {
     const size_t head = offsetof(struct fmi_snapshot, mode);
-    size_t at = head + n % (sizeof(struct fmi_snapshot) - head);
+    size_t at = head + n % (inside_size(bytes) - head);
     for (size_t i = 0; i < FMU_NVARS; i++) {
         const size_t from = offsetof(struct fmi_snapshot, s.v) + var_table[i].offset;
         const size_t size = var_table[i].count * FMU_STRING_MAX;
@@ -98,8 +101,11 @@ size_t inside_place(size_t n)
 
 void inside_forge(char *bytes)
 {
-    static struct fmi_snapshot p;
-    memcpy(&p, bytes, sizeof p);
-    p.hash = fmi_hash(&p);
-    memcpy(bytes, &p, sizeof p);
+    static _Alignas(struct fmi_snapshot) char copy[sizeof(struct fmi_snapshot)
+                                                   + FMU_SPANS * sizeof(struct fmu_span)];
+    struct fmi_snapshot *p = (void *)copy;
+    const size_t size = inside_size(bytes);
+    memcpy(copy, bytes, size);
+    p->hash = fmi_hash(p);
+    memcpy(bytes, copy, size);
 }

@@ -24,13 +24,14 @@ int  inside_tick(void);         /* [ns] */
 int  inside_string_max(void);   /* [byte] */
 bool inside_strict(const void *c);  /* does an FMI 3.0 instance refuse steps between ticks? */
 
-size_t inside_size(void);       /* [byte] of a serialized state */
+size_t inside_most(void);       /* [byte] of a serialized state, at most, */
+size_t inside_size(const char *state);  /* and of this one */
 
 /* Are serialized states of two instances alike? Padding in the model's structs may differ. */
 bool inside_alike(const char *a, const char *b);
 
 /* Serialized bytes: a place outside the strings, and the hash that belongs to what stands there. */
-size_t inside_place(size_t n);
+size_t inside_place(const char *bytes, size_t n);
 void   inside_forge(char *bytes);
 
 #endif
