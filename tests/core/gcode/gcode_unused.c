@@ -1,0 +1,56 @@
+/* What a saved state of the interpreter leaves out: nonsense there changes no command. */
+#include "gcode_reader.h"
+
+static const char text[] =
+    "O100 SUB\n#<deep>=[#1+1]\nG1 X[#<deep>] Y#64 F600\nO101 IF [#1 GT 1]\nO100 CALL [#1-1]\n"
+    "O101 ENDIF\nO100 ENDSUB\n"
+    "#64=2 #65=3\n#128=4\n#129=5 #4161=6\n#5000=7 #<_far>=8\n"
+    "O100 CALL [3]\nG1 X#64 Y#65\nX#128 Y#129\nX#4161 Y#5000\nZ#<_far>\n"
+    "G41.1 D4 X20 Y0\nX40\nY20\nX20\nG40 X0 Y0\nG81 X1 Y1 Z-1 R1\nX2\nG80\n"
+    "O102 REPEAT [2]\nG91 G1 X1\nO102 ENDREPEAT\nG90 X0\n";
+
+/* The same interpreter with nonsense where no copy is needed; a part of zeros has to be one. */
+static struct interpreter without(const struct interpreter *in)
+{
+    struct interpreter other = *in;
+    struct spans s = { 0 };
+    interpreter_unused(&other, &s);
+    CHECK(s.count > 0 && s.count < SPANS_MAX);
+    for (int32_t i = 0; i < s.count; i++) {
+        char *from = (char *)&other + (s.span[i].from - (uintptr_t)&other);
+        const size_t size = s.span[i].to - s.span[i].from;
+        CHECK(from >= (char *)&other && from + size <= (char *)(&other + 1));
+        for (size_t k = 0; k < size && s.span[i].zero; k++) {
+            CHECK_EQ(from[k], 0);
+        }
+        if (!s.span[i].zero) {
+            memset(from, 0xa5, size);
+        }
+    }
+    return other;
+}
+
+int main(void)
+{
+    struct reader whole, part;
+    int32_t commands = 0;
+
+    begin(&whole, text);
+    begin(&part, text);
+    for (;;) {
+        part.in = without(&part.in);
+        const int type = next(&whole);
+        CHECK_EQ(next(&part), type);
+        if (type < 0) {
+            CHECK_EQ(type, -1);
+            break;
+        }
+        commands++;
+        for (int32_t a = 0; a < AXES; a++) {
+            CHECK_NEAR(part.c.path.end[a], whole.c.path.end[a], 0.0);
+        }
+        CHECK_EQ(part.c.line, whole.c.line);
+    }
+    CHECK_EQ(commands, 23);
+    return check_result();
+}
