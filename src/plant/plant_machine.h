@@ -6,9 +6,13 @@
 
 #include "el_lanes.h"
 
-#ifdef EL_WIDE
+/* That of EL_WIDE: packed sources include the system's headers before any of ours. */
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(_WIN32) && !defined(EL_PLAIN)
 #include <cpuid.h>
 #include <stdatomic.h>
+#endif
+
+#ifdef EL_WIDE
 
 /* Do the processor and the system that runs on it have AVX2? (Intel SDM 1, 14.7.1) */
 static inline bool plant_ask_avx2(void)

@@ -71,7 +71,7 @@ def test_every_name_that_a_core_shows_is_found_in_its_text(core: str) -> None:
     assert there <= shown(texts)
 
 
-@pytest.mark.parametrize(("option", "there"), [("-DOTHER", True), ("-DPLANT_PLAIN", False)])
+@pytest.mark.parametrize(("option", "there"), [("-DOTHER", True), ("-DEL_PLAIN", False)])
 def test_a_header_of_one_kind_of_machine_is_included_there_alone(
     option: str, there: bool, tmp_path: Path
 ) -> None:

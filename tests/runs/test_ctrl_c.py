@@ -37,7 +37,7 @@ def environment(folder: Path) -> dict[str, str]:
     ("line", "module"),
     [
         ("list", "typer"),
-        ("--help", "motionfmu.cli.show"),
+        ("--help", "motionfmu.cli.info"),
         (RUN, "numpy"),
         (RUN, "motionfmu.run.engines.fused"),  # the run has a folder by then
         (RUN, "motionfmu.run.contour_of"),  # so has its result
