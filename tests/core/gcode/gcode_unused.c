@@ -5,7 +5,7 @@ static const char text[] =
     "O100 SUB\n#<deep>=[#1+1]\nG1 X[#<deep>] Y#64 F600\nO101 IF [#1 GT 1]\nO100 CALL [#1-1]\n"
     "O101 ENDIF\nO100 ENDSUB\n"
     "#64=2 #65=3\n#128=4\n#129=5 #4161=6\n#5000=7 #<_far>=8\n"
-    "O100 CALL [3]\nG1 X#64 Y#65\nX#128 Y#129\nX#4161 Y#5000\nZ#<_far>\n"
+    "O100 CALL [3]\n#<near>=9\nG1 X#64 Y#65\nX#128 Y#129\nX#4161 Y#5000\nZ#<_far> Y#<near>\n"
     "G41.1 D4 X20 Y0\nX40\nY20\nX20\nG40 X0 Y0\nG81 X1 Y1 Z-1 R1\nX2\nG80\n"
     "O102 REPEAT [2]\nG91 G1 X1\nO102 ENDREPEAT\nG90 X0\n";
 
