@@ -16,12 +16,15 @@ class States:
         self._slave = Slave(fmu, lean.unpacked(fmu, 3), 3, [], logging=False)
         self._slave.initialize()
         self._slave.start()
-        dll, component = self._slave.slave.dll, self._slave.slave.component
+        library = self._slave._library
+        component = library.instance
+        get, put = library.function("GetFMUState"), library.function("SetFMUState")
         self._state, size = ctypes.c_void_p(), ctypes.c_size_t()
-        self._save = lambda: dll.fmi3GetFMUState(component, ctypes.byref(self._state))
-        self._restore = lambda: dll.fmi3SetFMUState(component, self._state)
-        self._save()
-        dll.fmi3SerializedFMUStateSize(component, self._state, ctypes.byref(size))
+        self._save = lambda: get(component, ctypes.byref(self._state))
+        self._restore = lambda: put(component, self._state)
+        if self._save() or self._restore():
+            raise RuntimeError(f"{fmu}: its state is not saved and restored")
+        library.call("SerializedFMUStateSize", self._state, ctypes.byref(size))
         self.size, self.save, self.restore = size.value, float("inf"), float("inf")
 
     def __call__(self) -> None:
