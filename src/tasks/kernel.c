@@ -7,6 +7,17 @@ enum {
     LEVEL_MAX = 255, INTERRUPT_BASE = 2000
 };
 
+static bool queue_valid(const struct kernel_queue_config *q)
+{
+    const int32_t most = q->kind == KERNEL_COUNTING ? INT32_MAX
+                       : q->kind == KERNEL_QUEUE ? KERNEL_ITEMS : 0;
+    const int32_t count = q->kind == KERNEL_COUNTING ? q->length : q->kind == KERNEL_BINARY;
+
+    return q->kind >= KERNEL_BINARY && q->kind < KERNEL_KINDS &&
+           (most == 0 || (q->length >= 1 && q->length <= most)) &&
+           q->count >= 0 && q->count <= count;
+}
+
 static bool valid(const struct kernel_config *c)
 {
     bool ok = c->tasks >= 0 && c->tasks <= KERNEL_TASKS && c->tick >= 0 && c->tick_time >= 0 &&
@@ -18,7 +29,53 @@ static bool valid(const struct kernel_config *c)
     for (int i = 0; i < KERNEL_INTERRUPTS; i++) {
         ok = ok && c->level[i] >= 0 && c->level[i] <= LEVEL_MAX;
     }
+    for (int i = 0; i < KERNEL_QUEUES; i++) {
+        ok = ok && queue_valid(&c->queue[i]);
+    }
     return ok;
+}
+
+/* The kernel needs so much time before anything goes on. */
+static void spend(struct kernel *k, int64_t time)
+{
+    if (time > 0) {
+        processor_wake(&k->processor, SELF, 0);
+        processor_compute(&k->processor, SELF, time);
+    }
+}
+
+/* Another task than before gets the processor. */
+static void switch_to(struct kernel *k, int task)
+{
+    if (k->current >= 0) {
+        processor_block(&k->processor, k->current);
+    }
+    k->current = task == KERNEL_IDLE ? -1 : task;
+    if (task != KERNEL_IDLE) {
+        k->processor.task[task].ready = true;
+        kernel_note(k, KERNEL_RUNS, task, 0);
+        spend(k, k->config.switch_time);
+    }
+}
+
+/* All tasks are ready, the idle one behind them; the last of the most urgent ones is the first. */
+static void start_tasks(struct kernel *k)
+{
+    int first = KERNEL_IDLE;
+
+    for (int i = 0; i <= KERNEL_IDLE; i++) {
+        struct kernel_task *t = &k->task[i];
+        if (i < KERNEL_IDLE) {
+            t->priority = t->base = t->rank = k->config.priority[i];
+        }
+        t->wake = INT64_MAX;
+        if (i < k->config.tasks || i == KERNEL_IDLE) {
+            kernel_ready(k, i);
+            first = t->priority >= k->task[first].priority ? i : first;
+        }
+    }
+    k->current = -1;
+    k->first = first == KERNEL_IDLE ? -1 : first;
 }
 
 enum kernel_status kernel_start(struct kernel *k, const struct kernel_config *config)
@@ -28,21 +85,21 @@ enum kernel_status kernel_start(struct kernel *k, const struct kernel_config *co
     }
     memset(k, 0, sizeof *k);
     k->config = *config;
-    k->current = k->asked = -1;
+    k->asked = -1;
     k->next_tick = config->tick > 0 ? config->tick : INT64_MAX;
     processor_start(&k->processor, PROCESSOR_TASKS);
-    for (int i = 0; i < KERNEL_TASKS; i++) {
-        k->processor.task[i].priority = config->priority[i];
-        k->task[i].wait = i < config->tasks ? KERNEL_READY : KERNEL_ABSENT;
-        if (i < config->tasks) {
-            processor_wake(&k->processor, i, ++k->turns);
-        }
-    }
     for (int i = 0; i < KERNEL_INTERRUPTS; i++) {
         k->processor.task[KERNEL_TASKS + i].priority = INTERRUPT_BASE - config->level[i];
         k->pending[i] = INT64_MAX;
     }
     k->processor.task[SELF].priority = INT32_MAX;
+    for (int i = 0; i < KERNEL_QUEUES; i++) {
+        const struct kernel_queue_config *q = &config->queue[i];
+        const bool counts = q->kind == KERNEL_COUNTING || q->kind == KERNEL_QUEUE;
+        k->queue[i] = (struct kernel_queue){ .length = counts ? q->length : 1, .holder = -1,
+                                             .count = q->kind == KERNEL_MUTEX ? 1 : q->count };
+    }
+    start_tasks(k);
     return KERNEL_OK;
 }
 
@@ -68,43 +125,18 @@ enum kernel_status kernel_pend(struct kernel *k, int interrupt, int64_t clock)
     return KERNEL_OK;
 }
 
-/* The kernel needs so much time before anything goes on. */
-static void spend(struct kernel *k, int64_t time)
-{
-    if (time > 0) {
-        processor_wake(&k->processor, SELF, 0);
-        processor_compute(&k->processor, SELF, time);
-    }
-}
-
-void kernel_choose(struct kernel *k)
+void kernel_yield(struct kernel *k)
 {
     k->chooses = true;
     k->processor.running = -1;
 }
 
-/* Tasks that an interrupt has woken can be seen. */
-static void reveal(struct kernel *k)
+bool kernel_pay(struct kernel *k)
 {
-    for (int i = 0; i < k->config.tasks; i++) {
-        if (k->task[i].hidden) {
-            k->task[i].hidden = false;
-            processor_wake(&k->processor, i, k->task[i].turn);
-        }
+    if (k->owed) {
+        kernel_yield(k);
     }
-    k->chooses = false;
-}
-
-void kernel_wake(struct kernel *k, int task, bool hidden)
-{
-    struct kernel_task *t = &k->task[task];
-
-    t->wait = KERNEL_READY;
-    t->hidden = hidden;
-    t->turn = ++k->turns;
-    if (!hidden) {
-        processor_wake(&k->processor, task, t->turn);
-    }
+    return k->owed;
 }
 
 static bool in_interrupt(const struct kernel *k)
@@ -117,8 +149,7 @@ static bool in_interrupt(const struct kernel *k)
 static int due_interrupt(const struct kernel *k)
 {
     const int served = processor_first(&k->processor);
-    const int32_t floor = served >= KERNEL_TASKS ? k->processor.task[served].priority
-                                                 : KERNEL_PRIORITY_MAX;
+    const int32_t floor = served >= KERNEL_TASKS ? k->processor.task[served].priority : 0;
     int best = -1;
 
     for (int i = 0; i < KERNEL_INTERRUPTS; i++) {
@@ -134,34 +165,48 @@ static int due_interrupt(const struct kernel *k)
 static void begin_interrupt(struct kernel *k, int interrupt)
 {
     k->pending[interrupt] = INT64_MAX;
+    k->woken[interrupt] = false;
     processor_wake(&k->processor, KERNEL_TASKS + interrupt, 0);
     kernel_note(k, KERNEL_INTERRUPT, interrupt, 0);
     spend(k, k->config.entry_time);
 }
 
-static void tick(struct kernel *k)
+/* The delayed task to be woken next; -1 none. */
+static int due_task(const struct kernel *k)
 {
-    k->ticks++;
-    k->next_tick = (k->processor.clock / k->config.tick + 1) * k->config.tick;
+    int first = -1;
+
     for (int i = 0; i < k->config.tasks; i++) {
-        if (k->task[i].wait == KERNEL_DELAYED && k->task[i].ticks <= k->ticks) {
-            kernel_wake(k, i, false);
+        const struct kernel_task *t = &k->task[i], *f = &k->task[first < 0 ? i : first];
+        if (t->wake <= k->ticks &&
+            (first < 0 || t->wake < f->wake || (t->wake == f->wake && t->order < f->order))) {
+            first = i;
         }
     }
-    if (k->current >= 0 && k->processor.task[k->current].ready) {   /* its equals have their turn */
-        k->processor.task[k->current].turn = ++k->turns;
+    return first;
+}
+
+static void tick(struct kernel *k)
+{
+    bool chooses = k->owed;
+
+    k->ticks++;
+    k->next_tick = (k->processor.clock / k->config.tick + 1) * k->config.tick;
+    for (int i; (i = due_task(k)) >= 0;) {
+        chooses = kernel_wake(k, i) || chooses;
     }
-    kernel_choose(k);
+    if (chooses || kernel_equals(k, k->task[kernel_current(k)].priority) > 1) {
+        kernel_yield(k);
+    }
     spend(k, k->config.tick_time);
 }
 
-/* Another task than before gets the processor. */
-static void switch_to(struct kernel *k, int task)
+static void choose(struct kernel *k)
 {
-    k->current = task;
-    if (task >= 0) {
-        kernel_note(k, KERNEL_RUNS, task, 0);
-        spend(k, k->config.switch_time);
+    k->chooses = k->owed = false;
+    const int task = kernel_choose(k);
+    if (task != kernel_current(k)) {
+        switch_to(k, task);
     }
 }
 
@@ -171,6 +216,11 @@ static bool begin(struct kernel *k)
     if (k->processor.task[SELF].ready) {
         return false;
     }
+    if (k->first >= 0) {        /* interrupts are masked until then */
+        switch_to(k, k->first);
+        k->first = -1;
+        return true;
+    }
     const int interrupt = due_interrupt(k);
     if (interrupt >= 0) {
         begin_interrupt(k, interrupt);
@@ -179,16 +229,16 @@ static bool begin(struct kernel *k)
     if (in_interrupt(k)) {
         return false;
     }
+    if (k->chooses) {
+        choose(k);
+        return true;
+    }
     if (k->next_tick <= k->processor.clock) {
         tick(k);
         return true;
     }
-    if (k->chooses) {
-        reveal(k);
-    }
-    const int first = processor_first(&k->processor);
-    if (first != k->current) {
-        switch_to(k, first);
+    if (k->current < 0 && kernel_equals(k, 0) > 1) {
+        kernel_yield(k);
         return true;
     }
     return false;
@@ -221,11 +271,18 @@ int kernel_next(struct kernel *k, int64_t until)
         if (over == SELF) {
             processor_block(p, SELF);
             p->running = -1;
+        } else if (over >= 0 && over < KERNEL_TASKS && k->task[over].call != KERNEL_NO_CALL) {
+            kernel_go_on(k, over);
         } else if (over >= 0) {
             return k->asked = over;
         }
     }
     return -1;
+}
+
+int32_t kernel_priority(const struct kernel *k, int task)
+{
+    return k->task[task].priority;
 }
 
 int64_t kernel_busy(const struct kernel *k, int context)
