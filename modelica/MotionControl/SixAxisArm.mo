@@ -10,7 +10,7 @@ model SixAxisArm
   parameter Real c4(unit = "m") = 0.085 "Centre of the wrist to the flange";
   parameter Integer joint_sign[6](each min = -1, each max = 1) = {1, 1, 1, 1, 1, 1}
     "Inner angle = sign * joint angle - offset: 1 or -1";
-  parameter Real joint_offset[6](each unit = "rad") = {0, 0, -pi/2, 0, 0, 0}
+  parameter Real joint_offset[6](each unit = "deg") = {0, 0, -90, 0, 0, 0}
     "Inner angle = sign * joint angle - offset; at inner 0 the arm points up";
   parameter Real mass[6](each unit = "kg", each min = 0) = {40, 22, 26, 9, 3, 0.6}
     "Masses of the links";
@@ -82,7 +82,8 @@ model SixAxisArm
   parameter Real pen_stiffness(unit = "N/m", min = 0) = 1e3 "Of the pen's spring";
   parameter Real paper_height(unit = "m") = -10
     "Height of the sheet of paper over the base; by default below all reach";
-  parameter Real start_angle[6](each unit = "rad") = {0, 0, 0, 0, 0, 0} "Joint angles at the start";
+  parameter Real start_joint[6](each unit = "deg") = {0, 0, 0, 0, 90, 0}
+    "Joint angles at the start";
   input Real torque[6](each unit = "N.m", each start = 0) "Torque asked of the current loops";
   input Real force[3](each unit = "N", each start = 0) "Force on the tip of the tool, in base axes";
   output Real motor_phase[6](each unit = "1") "Motor encoders [line periods]";
@@ -95,10 +96,11 @@ model SixAxisArm
   output Real tool_quaternion[4](each unit = "1") "Orientation of the tool: w, x, y, z";
   output Real pen_force(unit = "N") "Force of the paper on the pen";
 protected
+  final parameter Real offset[6](each unit = "rad") = joint_offset*pi/180 "Offsets of the joints";
   final parameter Real inner_start[6](each unit = "rad") =
-    {joint_sign[1]*start_angle[1], joint_sign[2]*start_angle[2], joint_sign[3]*start_angle[3],
-    joint_sign[4]*start_angle[4], joint_sign[5]*start_angle[5], joint_sign[6]*start_angle[6]}
-    - joint_offset "Start as inner angles";
+    {joint_sign[1]*start_joint[1], joint_sign[2]*start_joint[2], joint_sign[3]*start_joint[3],
+    joint_sign[4]*start_joint[4], joint_sign[5]*start_joint[5], joint_sign[6]*start_joint[6]}*pi/180
+    - offset "Start as inner angles";
   final parameter Real motor_start[6](each unit = "rad") =
     {gear_ratio[1]*inner_start[1], gear_ratio[2]*inner_start[2], gear_ratio[3]*inner_start[3],
     gear_ratio[4]*inner_start[4], gear_ratio[5]*inner_start[5], gear_ratio[6]*inner_start[6]}
@@ -179,10 +181,10 @@ equation
     connect(gear[i].link, link[i].drive);
     current_loop[i].u = joint_sign[i]*torque[i];
     rotor[i].drive = current_loop[i].y;
-    motor_angle[i] = joint_sign[i]*(rotor[i].angle + gear_ratio[i]*joint_offset[i]);
+    motor_angle[i] = joint_sign[i]*(rotor[i].angle + gear_ratio[i]*offset[i]);
     motor_phase[i] = encoder_lines[i]/(2*pi)*motor_angle[i];
     motor_speed[i] = joint_sign[i]*rotor[i].speed;
-    link_angle[i] = joint_sign[i]*(link[i].angle + joint_offset[i]);
+    link_angle[i] = joint_sign[i]*(link[i].angle + offset[i]);
     link_speed[i] = joint_sign[i]*link[i].speed;
     gear_torque[i] = joint_sign[i]*gear[i].torque;
     half[i] = if i == 2 then (link[2].angle + link[3].angle)/2 else link[i].angle/2;

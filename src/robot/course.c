@@ -45,8 +45,9 @@ static double part_of(const struct course *c, int32_t n, const double place[AXES
     return u >= m->to ? 1.0 : u <= m->from ? 0.0 : (u - m->from) / (m->to - m->from);
 }
 
-/* A coordinate may seem to have begun by rounding. [mm] */
-static const double ROUNDING = 1e-9;
+/* Coordinates end within an ulp of where they should, and so may seem to have begun; this is four.
+ * More of it would be a leap: joint 4 sees what the tip goes meanwhile over the sine of joint 5. */
+static const double ROUNDING = 1e-15;
 
 /* The latest move that has begun to turn, or the oldest known. */
 static int32_t active(const struct course *c, const double place[AXES])
@@ -54,7 +55,7 @@ static int32_t active(const struct course *c, const double place[AXES])
     const int32_t oldest = c->count > COURSE_SIZE ? c->count - COURSE_SIZE : 0;
     int32_t n = c->count - 1;
 
-    while (n > oldest && !(place[3 + n % 3] > move_of(c, n)->from + ROUNDING)) {
+    while (n > oldest && !(place[3 + n % 3] > (1.0 + ROUNDING) * move_of(c, n)->from)) {
         n--;
     }
     return n;
@@ -125,6 +126,11 @@ void course_pose(const struct course_geometry *g, const double place[AXES],
     }
     memcpy(pose->at, place, sizeof pose->at);
     attitude(g->course, n, place, pose->turn);
+}
+
+bool course_by_joints(const struct course *c, const double place[AXES])
+{
+    return move_of(c, active(c, place))->kind == COURSE_JOINTS;
 }
 
 /* U V W turn about the axes of the moves under way. */

@@ -63,6 +63,9 @@ int course_axis(const struct course *c);
 void course_pose(const struct course_geometry *g, const double place[AXES],
                  const double joint[AXES], struct pose *pose);
 
+/* Whether a place belongs to a move by joints, which takes no inverse kinematics. */
+bool course_by_joints(const struct course *c, const double place[AXES]);
+
 /* Tells the motion core the joints [rad] of a place. */
 struct kinematics course_kinematics(void);
 

@@ -144,7 +144,7 @@ bool manipulator_arm(const struct manipulator *m, const double at[3], double joi
     o.c3 += v[2];
     o.c4 = 0.0;
     memcpy(tip.turn, upright, sizeof upright);
-    const uint32_t there = opw_inverse(&o, &tip, joint, all) & same_elbow(&o, joint);
+    const uint32_t there = opw_inverse_of(&o, &tip, joint, same_elbow(&o, joint), all);
     for (int n = 0; n < OPW_BRANCHES; n++) {
         memcpy(&all[n][3], &joint[3], 3 * sizeof joint[0]);
     }

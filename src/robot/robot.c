@@ -170,6 +170,7 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     }
     course_pose(&g, point.place, joint, &pose);
     show(r, c, joint, &pose);
+    r->solved += course_by_joints(&r->course, point.place) ? 0.0 : r->speed * c->cycle;
     r->line = point.line;
     mover_accept(&r->mover, &beside, &point);
 }

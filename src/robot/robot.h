@@ -15,6 +15,10 @@
 /* Beside opw_flag: a target says nothing of its branch; of a joint's whole turns. */
 enum { ROBOT_ANY_BRANCH = -1, ROBOT_ANY_TURN = MANIPULATOR_ANY_TURN };
 
+/* No place, angle or direction of a move is larger, in its unit: squares stay numbers and a way is
+ * halved a hundred times at most. */
+#define ROBOT_MOST 1e9
+
 struct robot_config {
     struct manipulator arm;     /* with the tool it starts with */
     double scale[OPW_JOINTS];   /* [pulses/rad] */
@@ -69,13 +73,15 @@ struct robot_move {
 enum robot_status {
     ROBOT_OK,
     ROBOT_BUSY,         /* not now: the move before is not all in the ring, or the arm moves */
-    ROBOT_PARAMETER,    /* a number is not finite or of the wrong sign */
+    ROBOT_PARAMETER,    /* beyond ROBOT_MOST, no number, or of the wrong sign */
     ROBOT_FAR,          /* out of reach, at a part of the path */
     ROBOT_OUTSIDE,      /* a joint would leave its limits */
     ROBOT_SINGULAR,     /* a factor is too small */
     ROBOT_OTHER_BRANCH, /* a path that keeps the branch does not lead to that of the target */
     ROBOT_OTHER_TURN,   /* nor to its whole turns of a joint */
-    ROBOT_NO_CIRCLE     /* start, via and end are on one line, or the start is on the axis */
+    ROBOT_NO_CIRCLE,    /* start, via and end are on one line, or the start is on the axis */
+    ROBOT_OFF_PLANE,    /* an arc's start is not in the plane of its centre across its normal */
+    ROBOT_NO_UNIT       /* an arc's normal is no unit vector */
 };
 
 /* Why a move is refused. */
@@ -83,8 +89,8 @@ struct robot_refusal {
     double part;        /* 0..1 of the path */
     double place[3];    /* [mm] of the tip there */
     int    which;       /* joint, 0 .. 5; factor 0 shoulder 1 elbow 2 wrist; flag (opw_flag) */
-    double value;       /* joint [rad]; factor: [m], 1, 1 */
-    double limit;       /* [rad]; of OTHER_TURN: what it should be within half a turn of */
+    double value;       /* joint [rad]; factor: [m], 1, 1; start off the plane [mm]; length */
+    double limit;       /* [rad] [mm]; of OTHER_TURN: what it should be within half a turn of */
 };
 
 enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL };
@@ -112,7 +118,8 @@ struct robot {
     double rate[OPW_JOINTS];    /* [rad/s] mean of that cycle */
     struct pose pose;           /* of the tip there */
     double speed;               /* [mm/s] of the tip along its path */
-    double length;              /* [mm] of its path so far */
+    double length;              /* [mm] of its path so far, */
+    double solved;              /* and of what of it took inverse kinematics, no move of joints */
     int32_t line;               /* of the program */
     bool   lost;                /* the path led out of reach: stopped on the spot; until the next */
 };

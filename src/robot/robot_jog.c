@@ -104,8 +104,8 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
     for (int i = 0; i < 6; i++) {
         most = el_max(most, fabs(direction[i]));
     }
-    if (!(most > 0.0 && most < INFINITY && share > 0.0 && share <= 1.0 && way >= 0.0 &&
-          way < INFINITY)) {
+    if (!(most > 0.0 && most <= ROBOT_MOST && share > 0.0 && share <= 1.0 && way >= 0.0 &&
+          way <= ROBOT_MOST)) {
         return ROBOT_PARAMETER;
     }
     if (same(r, frame, direction)) {

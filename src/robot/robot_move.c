@@ -26,14 +26,15 @@ static const double NOWHERE = 1e-9;
 /* Sine of joint 5 from which on its direction is certain; how far joint 4 may jump. [rad] */
 static const double BENT = 1e-7, JUMP = 1e-8;
 
-/* Time of a joints' move at full speed is its way. [mm/s] */
-static const double UNIT = 1000.0;
+/* The start of an arc is in its plane, its normal of length 1, but for what programs round: no arm
+ * shows as much. [mm], 1 */
+static const double PLANE = 1e-6, UNIT_LENGTH = 1e-9;
 
-static bool all_finite(const double *x, int n)
+static bool all_sound(const double *x, int n)
 {
     bool good = true;
     for (int i = 0; i < n; i++) {
-        good = good && isfinite(x[i]);
+        good = good && fabs(x[i]) <= ROBOT_MOST;
     }
     return good;
 }
@@ -52,93 +53,13 @@ static int axis_of(const double v[3])
 static bool sound(const struct robot_move *m)
 {
     const struct robot_target *t = &m->target;
-    return all_finite(t->joint, OPW_JOINTS) && all_finite(t->pose.at, 3) &&
-           all_finite(t->pose.turn, 4) && all_finite(m->via, 3) && all_finite(m->centre, 3) &&
-           all_finite(m->normal, 3) && isfinite(m->sweep) && isfinite(m->rise) &&
+    return all_sound(t->joint, OPW_JOINTS) && all_sound(t->pose.at, 3) &&
+           all_sound(t->pose.turn, 4) && all_sound(m->via, 3) && all_sound(m->centre, 3) &&
+           all_sound(m->normal, 3) && all_sound(&m->sweep, 1) && all_sound(&m->rise, 1) &&
            (m->rise == 0.0 || axis_of(m->normal) >= 0) && m->feed >= 0.0 && isfinite(m->feed) &&
            m->spin >= 0.0 && isfinite(m->spin) && m->zone >= 0.0 && isfinite(m->zone) &&
            (m->kind != ROBOT_JOINTS || (m->share > 0.0 && m->share <= 1.0)) &&
            t->branch >= ROBOT_ANY_BRANCH && t->branch < OPW_BRANCHES;
-}
-
-static double joint_speed(const struct robot_config *c, int joint)
-{
-    /* Both ends of a slot are rounded. */
-    return el_min(c->arm.joint[joint].speed, (c->slot_pulses - 1.0) / (c->scale[joint] * c->slot));
-}
-
-/* A move of joints is the latest of the course; its command. */
-static void plan_joints(struct robot *r, const struct robot_config *c,
-                        const double target[OPW_JOINTS], double share)
-{
-    struct course_move m = { .kind = COURSE_JOINTS };
-    struct manipulator arm = c->arm;
-    double end[AXES], way = 0.0, acc = INFINITY;
-
-    arm.tool = r->tool;
-    for (int i = 0; i < OPW_JOINTS; i++) {
-        m.joint[i] = r->rear_joint[i];
-        m.step[i] = target[i] - r->rear_joint[i];
-        way = el_max(way, UNIT * fabs(m.step[i]) / joint_speed(c, i));
-    }
-    for (int i = 0; i < OPW_JOINTS; i++) {
-        acc = el_min(acc, c->arm.joint[i].acc * way / fabs(m.step[i]));
-    }
-    const struct pose pose = manipulator_pose(&arm, target);
-    memcpy(m.turn, pose.turn, sizeof m.turn);
-    course_add(&r->course, &m, way);
-    memcpy(end, r->rear, sizeof end);
-    memcpy(end, pose.at, sizeof pose.at);
-    end[course_axis(&r->course)] += way;
-    struct way *w = &r->way;
-    path_line(&w->path, r->rear, end);
-    w->path.length = way;
-    w->piece[0] = (struct way_piece){ 1.0, UNIT * share, acc };
-    w->count = way > 0.0;
-    w->next = 0;
-    const double jerk = c->smooth > 0.0 ? acc / c->smooth : 0.0;
-    memset(&r->command, 0, sizeof r->command);
-    r->command.type = COMMAND_LINE;
-    r->command.ramp = (struct ramp_limits){ acc, acc, jerk, jerk };
-    r->stop = false;
-    memcpy(r->rear, end, sizeof end);
-    memcpy(r->rear_joint, target, sizeof r->rear_joint);
-    r->rear_kind = COURSE_JOINTS;
-    r->rear_zone = 0.0;
-}
-
-static enum robot_status to_joints(struct robot *r, const struct robot_config *c,
-                                  const struct robot_move *move, struct robot_refusal *why)
-{
-    const struct robot_target *t = &move->target;
-    struct manipulator arm = c->arm;
-    double target[OPW_JOINTS];
-    enum manipulator_status status = MANIPULATOR_OK;
-
-    arm.tool = r->tool;
-    memcpy(target, t->by_joints ? t->joint : r->rear_joint, sizeof target);
-    if (t->by_joints) {
-        why->which = manipulator_outside(&arm, r->rear_joint, target);
-        status = why->which < 0 ? MANIPULATOR_OK : MANIPULATOR_OUTSIDE;
-    } else {
-        status = manipulator_solve(&arm, &t->pose, robot_branches(t), t->turned ? t->turn : NULL,
-                                   target, &why->which);
-    }
-    why->part = 1.0;
-    if (status == MANIPULATOR_FAR) {
-        memcpy(why->place, t->pose.at, sizeof why->place);
-        return ROBOT_FAR;
-    }
-    if (status == MANIPULATOR_OUTSIDE) {
-        const struct manipulator_joint *j = &arm.joint[why->which];
-        const struct pose at = manipulator_pose(&arm, target);
-        memcpy(why->place, at.at, sizeof why->place);
-        why->value = target[why->which];
-        why->limit = why->value > j->high ? j->high : j->low;
-        return ROBOT_OUTSIDE;
-    }
-    plan_joints(r, c, target, move->share);
-    return ROBOT_OK;
 }
 
 /* An arc about an axis becomes a helix. */
@@ -346,7 +267,7 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     if (status == ROBOT_OK && r->way.path.length >= NOWHERE && move->singular != ROBOT_WRIST &&
         turns_first(r, &arm, &rear, joint)) {
         course_drop(&r->course);
-        plan_joints(r, c, joint, 1.0);
+        robot_plan_joints(r, c, joint, 1.0);
         first = r->command;
         way_piece_path(&r->way, &first.path);
         first.feed = first.cap = r->way.piece[0].cap;
@@ -367,7 +288,7 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     l.corner[0] = chained;
     l.corner[1] = move->zone > 0.0;
     for (int i = 0; i < OPW_JOINTS; i++) {
-        l.speed[i] = joint_speed(c, i);
+        l.speed[i] = robot_joint_speed(c, i);
         l.turn[i] = c->arm.joint[i].acc;
     }
     memcpy(joint, r->rear_joint, sizeof joint);
@@ -399,9 +320,30 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     return ROBOT_OK;
 }
 
+/* Whether an arc's numbers are those of a circle through the rear. */
+static enum robot_status round_arc(const struct robot *r, const struct robot_move *move,
+                                   struct robot_refusal *why)
+{
+    double height = 0.0, square = 0.0;
+
+    for (int i = 0; i < 3; i++) {
+        height += (r->rear[i] - move->centre[i]) * move->normal[i];
+        square += move->normal[i] * move->normal[i];
+    }
+    why->value = sqrt(square);
+    why->limit = 1.0;
+    if (!(fabs(why->value - 1.0) <= UNIT_LENGTH)) {
+        return ROBOT_NO_UNIT;
+    }
+    why->value = height;
+    why->limit = PLANE;
+    return fabs(height) <= PLANE ? ROBOT_OK : ROBOT_OFF_PLANE;
+}
+
 /* Pose at the end of a path. */
 static enum robot_status aim(const struct robot *r, const struct manipulator *arm,
-                             const struct robot_move *move, struct pose *pose)
+                             const struct robot_move *move, struct pose *pose,
+                             struct robot_refusal *why)
 {
     struct path p;
 
@@ -409,6 +351,12 @@ static enum robot_status aim(const struct robot *r, const struct manipulator *ar
                                    : move->target.pose;
     quaternion_normalise(pose->turn);
     if (move->kind == ROBOT_ARC) {
+        const enum robot_status status = round_arc(r, move, why);
+        if (status != ROBOT_OK) {
+            memcpy(why->place, r->rear, sizeof why->place);
+            return status;
+        }
+        memset(why, 0, sizeof *why);
         if (path_tilted(&p, r->rear, r->rear, move->centre, move->normal, move->sweep) !=
             PATH_OK) {
             return ROBOT_NO_CIRCLE;
@@ -428,7 +376,7 @@ static enum robot_status along_path(struct robot *r, const struct robot_config *
     double turn[4], by[3];
 
     arm.tool = r->tool;
-    const enum robot_status status = aim(r, &arm, move, &pose);
+    const enum robot_status status = aim(r, &arm, move, &pose, why);
     if (status != ROBOT_OK) {
         return status;
     }
@@ -471,7 +419,7 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
                              const double by[3], struct robot_refusal *why)
 {
     const struct rear before = keep(r);
-    const enum robot_status status = move->kind == ROBOT_JOINTS ? to_joints(r, c, move, why)
+    const enum robot_status status = move->kind == ROBOT_JOINTS ? robot_to_joints(r, c, move, why)
                                    : pose ? along(r, c, move, pose, by, why)
                                    : along_path(r, c, move, why);
 

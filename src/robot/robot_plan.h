@@ -18,6 +18,18 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
                              const struct robot_move *move, const struct pose *pose,
                              const double by[3], struct robot_refusal *why);
 
+/* Speed that a joint may have: its own, or what a slot's pulses are. [rad/s] */
+double robot_joint_speed(const struct robot_config *c, int joint);
+
+/* A move of the joints to target angles [rad], at a share 0..1 of their limits, becomes the latest
+ * of the course, and its command. */
+void robot_plan_joints(struct robot *r, const struct robot_config *c,
+                       const double target[OPW_JOINTS], double share);
+
+/* Plan a move of the joints to its target: angles, or a pose. */
+enum robot_status robot_to_joints(struct robot *r, const struct robot_config *c,
+                                  const struct robot_move *move, struct robot_refusal *why);
+
 /* Branches that a target allows, a bit each. */
 uint32_t robot_branches(const struct robot_target *t);
 

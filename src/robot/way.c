@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "bounds.h"
 #include "el_extremes.h"
 #include "elementary.h"
 
@@ -34,6 +35,23 @@ static const double LEAST = 1e-7;
 /* Share of a joint's acceleration for what a corner asks across the path. */
 static const double CORNER = 0.6;
 
+/* A piece is halved in thought so often before limits that do not hold are lowered; before bounds
+ * are given up beside a singular place that is met; to come near to the limit of a joint. */
+enum { FINE = 6, CORE = 10, DEEP = 40 };
+
+/* Farthest that a joint may go while it is known by where it was: no branch and no turn is nearer.
+ * [rad] */
+static const double KNOWN = 1.0;
+
+/* Least share of an acceleration that is lowered by bounds instead of halving its piece. */
+static const double LOWERED = 0.5;
+
+/* What rounding makes of a joint beside a singular place. [rad] */
+static const double LEAP = 1e-4;
+
+/* A factor below this is 0 but for rounding. */
+static const double MET = 1e-9;
+
 struct survey {
     struct mechanism arm;
     const struct course_geometry *g;
@@ -49,6 +67,7 @@ struct look {
     double q[STEPS + 1][OPW_JOINTS];
     double cap, acc;
     bool   even;
+    bool   met;                     /* a singular place is met: no bounds hold beside it */
 };
 
 static bool joints_at(const struct survey *s, double part, double joint[OPW_JOINTS])
@@ -144,15 +163,9 @@ static enum way_status walk(const struct survey *s, double from, double size, st
 static void derivatives(const struct look *k, int n, int i, double h, double *slope, double *bend)
 {
     const int m = n == 0 ? 1 : n == STEPS ? STEPS - 1 : n, side = n - m;
-    const int next = m - side;      /* one further in */
-    const double b = (k->q[m + 1][i] - 2.0 * k->q[m][i] + k->q[m - 1][i]) / (h * h);
 
-    *slope = (k->q[m + 1][i] - k->q[m - 1][i]) / (2.0 * h) + side * h * b;
-    *bend = b;
-    if (side != 0) {
-        const double c = (k->q[next + 1][i] - 2.0 * k->q[next][i] + k->q[next - 1][i]) / (h * h);
-        *bend = fabs(b) > fabs(2.0 * b - c) ? b : 2.0 * b - c;
-    }
+    *bend = (k->q[m + 1][i] - 2.0 * k->q[m][i] + k->q[m - 1][i]) / (h * h);
+    *slope = (k->q[m + 1][i] - k->q[m - 1][i]) / (2.0 * h) + side * h * *bend;
 }
 
 /* What the joints allow on a piece: the least of its steps. A fault is where they are slowest. */
@@ -186,6 +199,154 @@ static void allow(const struct survey *s, double from, double size, struct look 
               most_acc <= el_pow(UNEVEN_ACC, s->wide) * k->acc;
 }
 
+/* Whether the limits of a piece hold for such derivatives; asked to, they are lowered to that. */
+static bool keeps(const struct survey *s, const struct bounds_pair *d, bool lower, struct look *k)
+{
+    double cap = k->cap, acc = k->acc;
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        cap = el_min(cap, s->l->speed[i] / d->slope[i]);
+    }
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        acc = el_min(acc, (s->l->turn[i] - d->bend[i] * cap * cap) / d->slope[i]);
+    }
+    if (lower && acc >= LOWERED * k->acc) {
+        k->cap = cap;
+        k->acc = acc;
+    }
+    return cap >= k->cap && acc >= k->acc;
+}
+
+/* Whether all places within a reach of joints are within their limits. */
+static bool within(const struct survey *s, const double joint[OPW_JOINTS],
+                   const struct bounds *b, double half)
+{
+    double up[OPW_JOINTS], down[OPW_JOINTS];
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        up[i] = joint[i] + b->most.slope[i] * half;
+        down[i] = joint[i] - b->most.slope[i] * half;
+    }
+    return manipulator_outside(s->g->arm, s->origin, up) < 0 &&
+           manipulator_outside(s->g->arm, s->origin, down) < 0;
+}
+
+/* Whether bounds tell the joints all over a part, half [mm] long to either side, by those in its
+ * middle and at its start. */
+static bool followed(const struct survey *s, const double start[OPW_JOINTS],
+                     const double middle[OPW_JOINTS], const struct bounds *b, double half)
+{
+    bool good = !flips(s, start, middle) && within(s, middle, b, half);
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        good = good && 2.0 * half * b->most.slope[i] <= KNOWN;
+    }
+    return good;
+}
+
+/* Whether joints leap by the end of a part further than its bounds let them: another elbow. */
+static bool leaps(const double middle[OPW_JOINTS], const double end[OPW_JOINTS],
+                  const struct bounds *b, double half)
+{
+    bool found = false;
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        found = found || fabs(end[i] - middle[i]) > b->most.slope[i] * half + LEAP;
+    }
+    return found;
+}
+
+/* Whether a wrist or shoulder is singular at joints, but for rounding. */
+static bool singular(const struct survey *s, const double joint[OPW_JOINTS])
+{
+    double factor[3];
+
+    opw_factors(&s->g->arm->opw, joint, factor);
+    return fabs(factor[0]) < MET || fabs(factor[2]) < MET;
+}
+
+/* Angle that the whole path turns by, tool and arc. [rad] */
+static double turning(const struct survey *s)
+{
+    const struct course *c = s->g->course;
+    const double *by = c->move[(c->count - 1) % COURSE_SIZE].by;
+    const double tool = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+    return tool + (s->path->arc ? fabs(s->path->sweep) : 0.0);
+}
+
+/* Whether limits hold everywhere between two parts of the path, not at the steps only: bounds say
+ * it of the whole, or of its halves. Where there are none a singular place is met, which the
+ * joints pass smoothly, as the steps see it. joint[] goes on from the start to the end. */
+static bool proved(const struct survey *s, double from, double to, int depth,
+                   double joint[OPW_JOINTS], struct look *k)
+{
+    const double mid = 0.5 * (from + to), half = 0.5 * (to - from) * s->path->length;
+    double middle[OPW_JOINTS], end[OPW_JOINTS];
+    struct bounds b;
+
+    memcpy(middle, joint, sizeof middle);
+    if (!joints_at(s, mid, middle) || manipulator_outside(s->g->arm, s->origin, middle) >= 0) {
+        return false;
+    }
+    memcpy(end, middle, sizeof end);
+    if (bounds_of(s->g, s->path, from, to, middle, &b)) {
+        if (followed(s, joint, middle, &b, half)) {
+            const bool here = keeps(s, &b.middle, false, k);
+            const bool lower = depth >= FINE && (!here || (depth >= CORE && !k->met));
+            if (keeps(s, &b.most, lower, k) || (here && k->met && depth >= CORE)) {
+                memcpy(joint, end, sizeof end);
+                return joints_at(s, to, joint) && !leaps(middle, joint, &b, half);
+            }
+            if (lower) {
+                return false;
+            }
+        }
+    } else if (turning(s) * (to - from) <= KNOWN) {
+        if (!joints_at(s, to, end)) {
+            return false;
+        }
+        const bool first = singular(s, joint), last = singular(s, end);
+        if (depth >= CORE || (first && last && singular(s, middle))) {
+            const bool met = flips(s, joint, end) ? meets(s, from, joint, to, end) : first || last;
+            memcpy(joint, end, sizeof end);
+            return met;
+        }
+    }
+    return depth < DEEP && proved(s, from, mid, depth + 1, joint, k) &&
+           proved(s, mid, to, depth + 1, joint, k);
+}
+
+/* Whether the limits of a piece that was looked at hold all over it, lowered if need be. */
+static bool certain(const struct survey *s, double from, double size, struct look *k)
+{
+    const double cap = k->cap;
+    double joint[OPW_JOINTS];
+
+    memcpy(joint, k->q[0], sizeof joint);
+    k->met = singular(s, joint);
+    for (int n = 1; n <= STEPS; n++) {
+        k->met = k->met || singular(s, k->q[n]) || flips(s, k->q[n - 1], k->q[n]);
+    }
+    bool good = proved(s, from, from + size, 0, joint, k);
+    for (int i = 0; i < OPW_JOINTS; i++) {      /* the steps have not missed a turn */
+        good = good && fabs(joint[i] - k->q[STEPS][i]) <= STEP;
+    }
+    if (good && k->cap < cap) {
+        fault(s, WAY_SINGULAR, from + 0.5 * size, k->q[STEPS / 2], 0);
+    }
+    return good;
+}
+
+/* Whether joints leap in a piece that cannot be shorter. */
+static bool torn(const struct survey *s, double from, double size, const struct look *k)
+{
+    const double half = 0.5 * size * s->path->length, *middle = k->q[STEPS / 2];
+    struct bounds b;
+
+    return bounds_of(s->g, s->path, from, from + size, middle, &b) &&
+           (leaps(middle, k->q[0], &b, half) || leaps(middle, k->q[STEPS], &b, half));
+}
+
 /* Pieces from start to end, each as long as its place among the halves of halves and its evenness
  * allow. WAY_PIECES + 1: too many. */
 static enum way_status cut(struct way *w, const struct survey *s, double joint[OPW_JOINTS])
@@ -200,6 +361,10 @@ static enum way_status cut(struct way *w, const struct survey *s, double joint[O
         const bool least = size * w->path.length <= LEAST;
         if (status == WAY_OK) {
             allow(s, at, size, &k);
+            k.even = k.even && certain(s, at, size, &k);
+            if (least && torn(s, at, size, &k)) {
+                return fault(s, WAY_SINGULAR, at, k.q[0], 0);
+            }
             if (s->l->refuse && (k.even || least) && k.cap < s->l->feed) {
                 return WAY_SINGULAR;
             }

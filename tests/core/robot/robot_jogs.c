@@ -31,7 +31,7 @@ static void run(const struct robot_config *c, enum robot_frame frame, const doub
     CHECK(robot_idle(&robot) && !robot.lost && off < 1e-4);     /* [mm^2] */
 }
 
-/* As far as the arm goes, and back, from a pose. */
+/* As far as the arm goes, and some of the way back, from a pose. */
 static void there_and_back(const struct robot_config *c, const double from[OPW_JOINTS],
                            double noise)
 {
@@ -58,7 +58,9 @@ static void there_and_back(const struct robot_config *c, const double from[OPW_J
             CHECK(s == ROBOT_OUTSIDE || s == ROBOT_FAR || s == ROBOT_SINGULAR);
         }
         way[n % 12 / 2] *= -1.0;
-        CHECK_EQ(robot_jog(&robot, c, frame, way, 0.5, 0.0, &why), ROBOT_OK);
+        const bool along = frame != ROBOT_IN_JOINTS && n % 12 < 6;
+        const double back = along ? 100.0 : 0.5;    /* [mm] or [rad] */
+        CHECK_EQ(robot_jog(&robot, c, frame, way, 0.5, back, &why), ROBOT_OK);
         run(c, frame, way, &w);
         rig_kept(&w);
     }
@@ -136,6 +138,29 @@ static void stretched(const struct robot_config *c)
     CHECK(w.time < 2.0 && w.speed <= 1.0 && w.acc > 1.0 && w.acc < 5.0);
 }
 
+/* An increment of eight whole turns along with a way: samples at eight places see no turn. It goes
+ * as far as joint 6 does, and no further. */
+static void whole_turns(const struct robot_config *c)
+{
+    const double from[OPW_JOINTS] = { [4] = 1.5707963267948966 };
+    const double turning[6] = { 1, [5] = 1 };
+
+    for (int turns = 1; turns <= 16; turns++) {
+        struct robot_refusal why;
+        struct rig_watch w = { 0 };
+        robot_start(&robot, c, from);
+        CHECK_EQ(robot_jog(&robot, c, ROBOT_IN_BASE, turning, 0.3, 6.283185307179586 * turns, &why),
+                 ROBOT_OK);
+        rig_run(c, &w);
+        rig_kept(&w);
+        double most = 0.0;
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            most = fmax(most, fabs(robot.joint[i]) / c->arm.joint[i].high);
+        }
+        CHECK(most <= 1.0 + 1e-9 && (turns == 1 || most > 0.999));
+    }
+}
+
 int main(void)
 {
     const struct robot_config c = rig_config();
@@ -143,6 +168,7 @@ int main(void)
     there_and_back(&c, HOME, NOISE);
     there_and_back(&c, BENT, 0.0);
     keys(&c);
+    whole_turns(&c);
     stretched(&c);
     return check_result();
 }

@@ -30,9 +30,10 @@ static void polyline(const struct robot_config *c, int k)
     memcpy(at[0], robot.pose.at, sizeof at[0]);
     quaternion_angles(robot.pose.turn, abc[0]);
     for (int n = 1; n <= LINES; n++) {
+        const int turns = k % 3 == 1 || (k % 3 == 2 && n % 2);    /* all lines, or each other one */
         for (int i = 0; i < 3; i++) {
             at[n][i] = at[0][i] + check_real(&seed, -150, 150);
-            abc[n][i] = abc[0][i] + check_real(&seed, -20, 20) * (k % 3 > 0);
+            abc[n][i] = abc[0][i] + check_real(&seed, -20, 20) * turns;
         }
         struct robot_move m = rig_line(at[n], abc[n], feed);
         m.zone = zone;
@@ -135,6 +136,38 @@ static void circles(const struct robot_config *c)
     CHECK_EQ(robot_move(&robot, c, &m, &why), ROBOT_NO_CIRCLE);
 }
 
+/* An arc whose centre is not in the plane through its start would be no circle. */
+static void no_arcs(const struct robot_config *c)
+{
+    static const double heights[] = { 5e-7, 2e-6, -0.1, 50.0, -1e8 };
+    struct robot_refusal why;
+
+    for (int n = 0; n < 5; n++) {
+        for (int k = 0; k < 3; k++) {
+            struct robot_move m = { .kind = ROBOT_ARC, .feed = 100.0, .sweep = 1.0 };
+            robot_start(&robot, c, BENT);
+            const struct robot before = robot;
+            m.target.pose = robot.pose;
+            m.target.branch = ROBOT_ANY_BRANCH;
+            m.normal[k] = 1.0;
+            memcpy(m.centre, robot.pose.at, sizeof m.centre);
+            m.centre[k] -= heights[n];
+            m.centre[(k + 1) % 3] += 40.0;
+            CHECK_EQ(robot_move(&robot, c, &m, &why), n == 0 ? ROBOT_OK : ROBOT_OFF_PLANE);
+            if (n > 0) {
+                CHECK_NEAR(why.value, heights[n], 1e-9 + 1e-12 * fabs(heights[n]));
+                CHECK(why.limit > 0.0 && why.limit < fabs(why.value));
+                CHECK(memcmp(&before, &robot, sizeof robot) == 0);
+            }
+            m.centre[k] = robot.pose.at[k];
+            m.normal[k] = 1.01;
+            robot_start(&robot, c, BENT);
+            CHECK_EQ(robot_move(&robot, c, &m, &why), ROBOT_NO_UNIT);
+            CHECK(why.value == 1.01 && why.limit == 1.0);
+        }
+    }
+}
+
 /* Joints, a line, a circle, wrist, joints in a row, given as they fit: each ends where it should */
 static void mixed(const struct robot_config *c)
 {
@@ -215,6 +248,7 @@ int main(void)
         polyline(&weak, k);
     }
     circles(&c);
+    no_arcs(&c);
     mixed(&c);
     many(&c);
     return check_result();

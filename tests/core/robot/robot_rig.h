@@ -64,7 +64,7 @@ static inline double rig_off(const double at[3], const double a[3], const double
     return sqrt(off);
 }
 
-/* One cycle; the tip is looked at through its joints. */
+/* One cycle; the tip is looked at through its joints, if it is to be on a line. */
 static inline void rig_cycle(const struct robot_config *c, struct rig_watch *w)
 {
     struct manipulator arm = c->arm;
@@ -81,10 +81,10 @@ static inline void rig_cycle(const struct robot_config *c, struct rig_watch *w)
         w->acc = fmax(w->acc, acc);
         w->before[i] = robot.rate[i];
     }
-    arm.tool = robot.tool;
-    const struct pose p = manipulator_pose(&arm, robot.joint);
-    const double off = rig_off(p.at, w->a, w->b, &part);
     if (w->b[0] != w->a[0] || w->b[1] != w->a[1] || w->b[2] != w->a[2]) {
+        arm.tool = robot.tool;
+        const struct pose p = manipulator_pose(&arm, robot.joint);
+        const double off = rig_off(p.at, w->a, w->b, &part);
         w->path = fmax(w->path, off);
         w->slowest = part > 0.1 && part < 0.9 ? fmin(w->slowest, robot.speed) : w->slowest;
     }

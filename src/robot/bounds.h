@@ -1,0 +1,27 @@
+/* bounds - how quickly the joints can turn anywhere on a part of a path.
+ *
+ * The inverse kinematics of opw is gone through with jets instead of numbers: every length and
+ * every direction with its derivatives and the ranges that these have all over the part.
+ */
+#ifndef BOUNDS_H
+#define BOUNDS_H
+
+#include "course.h"
+
+/* Absolute values of the joints' derivatives by the way. */
+struct bounds_pair {
+    double slope[OPW_JOINTS];       /* [rad/mm] |dq/ds| */
+    double bend[OPW_JOINTS];        /* [rad/mm^2] |d2q/ds2| */
+};
+
+struct bounds {
+    struct bounds_pair most;        /* nowhere on the part more than this */
+    struct bounds_pair middle;      /* in its middle */
+};
+
+/* Bounds on a path of the latest move of the course from part `from` to `to`, 0 .. 1; joint[] holds
+ * the joints in the middle of them. False: a place may be singular there, so nothing is known. */
+bool bounds_of(const struct course_geometry *g, const struct path *path, double from, double to,
+               const double joint[OPW_JOINTS], struct bounds *b);
+
+#endif
