@@ -4,9 +4,11 @@
 #include <string.h>
 
 #include "elementary.h"
+#include "modes.h"
 
 static const double EQUAL = 1e-6;       /* closer values are equal, as LinuxCNC documents it */
 static const double DEGREE = 0.017453292519943295;
+static const double BITS_MOST = 2147483647.5;   /* rounded they have 32 bits */
 enum { DEEPEST = 30 };                  /* brackets and signs within one another */
 
 enum operation {
@@ -14,10 +16,16 @@ enum operation {
     AND, OR, XOR, NO_OPERATION
 };
 
-/* How firmly an operation binds. */
-static int rank(enum operation o)
+static bool of_fanuc(const struct reading *s)
 {
-    return o == POWER ? 5 : o <= MODULO ? 4 : o <= MINUS ? 3 : o <= AT_MOST ? 2 : 1;
+    return s->program && s->program->fanuc;
+}
+
+/* How firmly an operation binds. */
+static int rank(enum operation o, bool fanuc)
+{
+    const int logic = !fanuc ? 1 : o == AND ? 4 : 3;
+    return o == POWER ? 5 : o <= MODULO ? 4 : o <= MINUS ? 3 : o <= AT_MOST ? 2 : logic;
 }
 
 /* The next operation; it is taken. */
@@ -67,42 +75,77 @@ static double apply(enum operation o, double a, double b)
     return 0.0;
 }
 
-/* Value, operation, value, ... as far as the operations bind at least as firmly as `least`. */
-static enum fault chain(struct reading *s, int least, double *value)
+/* AND, OR, XOR of the bits of two whole numbers, to the nearest; false: one is too large. */
+static bool apply_bits(enum operation o, double a, double b, double *value)
+{
+    if (!(fabs(a) < BITS_MOST && fabs(b) < BITS_MOST)) {
+        return false;
+    }
+    const int32_t i = (int32_t)round(a), k = (int32_t)round(b);
+    *value = o == AND ? i & k : o == OR ? i | k : i ^ k;
+    return true;
+}
+
+/* Apply an operation to what stands left and right of it, into *value. */
+static enum fault join(struct reading *s, enum operation o, int32_t from, double right,
+                       double *value)
+{
+    const bool vacant = parameters_vacant(*value), other = parameters_vacant(right);
+
+    if ((o == EQUALS || o == DIFFERS) && (vacant || other)) {
+        *value = (vacant && other) == (o == EQUALS);
+        return FAULT_NONE;
+    }
+    const double left = parameters_number(*value);
+    right = parameters_number(right);
+    if ((o == DIVIDED || o == MODULO) && right == 0.0) {
+        return reading_fault(s, FAULT_DIVISION, from);
+    }
+    if (o == POWER && left < 0.0 && right != floor(right)) {
+        return reading_fault(s, FAULT_ARGUMENT, from);
+    }
+    if (o >= AND && of_fanuc(s)) {
+        return apply_bits(o, left, right, value) ? FAULT_NONE
+                                                 : reading_fault(s, FAULT_ARGUMENT, from);
+    }
+    *value = apply(o, left, right);
+    return isfinite(*value) ? FAULT_NONE : reading_fault(s, FAULT_LARGE, from);
+}
+
+static enum fault value_of(struct reading *s, int32_t from, double *value, bool *whole);
+
+/* Value, operation, value, ... as far as the operations bind at least as firmly as `least`; without
+ * brackets around it (`bare`) it ends where no operation follows. */
+static enum fault chain(struct reading *s, int least, bool bare, double *value)
 {
     const int32_t from = s->at;
     bool whole;
-    enum fault f = expression_value(s, from - 1, value, &whole);    /* behind [ or an operation */
+    enum fault f = value_of(s, from - 1, value, &whole);    /* behind [ or an operation */
 
     while (f == FAULT_NONE && reading_peek(s) != ']' && s->at < s->end) {
         const int32_t at = s->at;
         const enum operation o = operation(s);
         double right;
+        if (o == NO_OPERATION && bare) {
+            s->at = at;
+            return FAULT_NONE;
+        }
         if (o == NO_OPERATION) {
             s->at += s->at < s->end;
             return reading_fault(s, FAULT_OPERATOR, at);
         }
-        if (rank(o) < least) {
+        if (rank(o, of_fanuc(s)) < least) {
             s->at = at;
             return FAULT_NONE;
         }
-        f = chain(s, rank(o) + 1, &right);
-        if (f != FAULT_NONE) {
-            return f;
-        }
-        if ((o == DIVIDED || o == MODULO) && right == 0.0) {
-            return reading_fault(s, FAULT_DIVISION, from);
-        }
-        if (o == POWER && *value < 0.0 && right != floor(right)) {
-            return reading_fault(s, FAULT_ARGUMENT, from);
-        }
-        *value = apply(o, *value, right);
-        f = isfinite(*value) ? FAULT_NONE : reading_fault(s, FAULT_LARGE, from);
+        f = chain(s, rank(o, of_fanuc(s)) + 1, bare, &right);
+        f = f == FAULT_NONE ? join(s, o, from, right, value) : f;
     }
     return f;
 }
 
-enum fault expression_brackets(struct reading *s, double *value)
+/* Read an expression in brackets; its value may be vacant. */
+static enum fault brackets(struct reading *s, double *value)
 {
     const int32_t from = s->at;
 
@@ -114,12 +157,24 @@ enum fault expression_brackets(struct reading *s, double *value)
         return reading_fault(s, FAULT_DEEP, from);
     }
     s->depth++;
-    enum fault f = chain(s, 1, value);
+    enum fault f = chain(s, 1, false, value);
     if (f == FAULT_NONE && !reading_take(s, ']')) {
         f = reading_fault(s, FAULT_BRACKET, from);
     }
     s->depth--;
     return f;
+}
+
+enum fault expression_brackets(struct reading *s, double *value)
+{
+    const enum fault f = brackets(s, value);
+    *value = f == FAULT_NONE ? parameters_number(*value) : *value;
+    return f;
+}
+
+enum fault expression_bare(struct reading *s, double *value)
+{
+    return chain(s, 1, true, value);
 }
 
 enum function {
@@ -139,7 +194,8 @@ static enum function function(struct reading *s)
     return (enum function)i;
 }
 
-static double of(enum function f, double x)
+/* FIX and FUP of Fanuc's controls go towards 0 and away from it. */
+static double of(enum function f, double x, bool fanuc)
 {
     switch (f) {
     case ABS:   return fabs(x);
@@ -147,8 +203,9 @@ static double of(enum function f, double x)
     case ASIN:  return el_asin(x) / DEGREE;
     case COS:   return el_cos(x * DEGREE);
     case EXP:   return el_exp(x);
-    case FIX:   return floor(x) + 0.0;      /* a zero without a sign, that ATAN would see */
-    case FUP:   return ceil(x) + 0.0;
+    case FIX:                               /* a zero without a sign, that ATAN would see */
+        return (fanuc && x < 0.0 ? ceil(x) : floor(x)) + 0.0;
+    case FUP:   return (fanuc && x < 0.0 ? floor(x) : ceil(x)) + 0.0;
     case LN:    return el_log(x);
     case ROUND: return round(x) + 0.0;
     case SIN:   return el_sin(x * DEGREE);
@@ -206,7 +263,7 @@ static enum fault call(struct reading *s, int32_t from, double *value)
         (g == LN && x <= 0.0)) {
         return reading_fault(s, FAULT_ARGUMENT, at);
     }
-    *value = g == ATAN ? el_atan2(x, y) / DEGREE : of(g, x);
+    *value = g == ATAN ? el_atan2(x, y) / DEGREE : of(g, x, of_fanuc(s));
     return isfinite(*value) ? FAULT_NONE : reading_fault(s, FAULT_LARGE, at);
 }
 
@@ -227,8 +284,12 @@ enum fault expression_parameter(struct reading *s, struct parameter *which)
     if (f != FAULT_NONE) {
         return f;
     }
-    return reading_integer(number, &which->number) && which->number > 0
-               ? FAULT_NONE : reading_fault(s, FAULT_PARAMETER, from);
+    const bool good = reading_integer(number, &which->number);
+    if (good && which->number == 0 && of_fanuc(s)) {
+        which->number = PARAMETERS_ZERO;
+        return FAULT_NONE;
+    }
+    return good && which->number > 0 ? FAULT_NONE : reading_fault(s, FAULT_PARAMETER, from);
 }
 
 /* A sign in front of anything but a number. */
@@ -241,9 +302,9 @@ static enum fault signed_value(struct reading *s, int32_t from, double *value, b
     }
     s->at++;
     s->depth++;
-    const enum fault f = expression_value(s, from, value, whole);
+    const enum fault f = value_of(s, from, value, whole);
     s->depth--;
-    *value = f == FAULT_NONE && minus ? -*value : *value;
+    *value = f == FAULT_NONE && minus ? -parameters_number(*value) : *value;
     return f;
 }
 
@@ -259,7 +320,8 @@ static bool sign_of_value(const struct reading *s)
                           s->text[i] == '+' || reading_letter(s->text[i]));
 }
 
-enum fault expression_value(struct reading *s, int32_t from, double *value, bool *whole)
+/* Read a value, which may be vacant. */
+static enum fault value_of(struct reading *s, int32_t from, double *value, bool *whole)
 {
     const char c = reading_peek(s);
     const int32_t at = s->at;
@@ -276,7 +338,7 @@ enum fault expression_value(struct reading *s, int32_t from, double *value, bool
         return signed_value(s, from, value, whole);
     }
     if (c == '[') {
-        return expression_brackets(s, value);
+        return brackets(s, value);
     }
     if (c == '#') {
         struct parameter which;
@@ -294,4 +356,16 @@ enum fault expression_value(struct reading *s, int32_t from, double *value, bool
         return f;
     }
     return reading_letter(c) ? call(s, from, value) : reading_number(s, from, value, whole);
+}
+
+enum fault expression_or_vacant(struct reading *s, int32_t from, double *value, bool *whole)
+{
+    return value_of(s, from, value, whole);
+}
+
+enum fault expression_value(struct reading *s, int32_t from, double *value, bool *whole)
+{
+    const enum fault f = value_of(s, from, value, whole);
+    *value = f == FAULT_NONE ? parameters_number(*value) : *value;
+    return f;
 }

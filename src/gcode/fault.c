@@ -1,5 +1,7 @@
 #include "fault.h"
 
+#include <string.h>
+
 enum fault fault_at(struct fault_report *r, enum fault f, int32_t at, int32_t length)
 {
     r->at = at;
@@ -16,7 +18,8 @@ void fault_note(struct fault_report *r, enum fault what, int32_t at, int32_t len
         i++;
     }
     if (i == r->notes) {
-        r->note[r->notes++] = (struct fault_note){ what, r->line, at, length, r->offset };
+        r->note[r->notes] = (struct fault_note){ what, r->line, at, length, r->offset, "" };
+        memcpy(r->note[r->notes++].file, r->file, FAULT_FILE);
     }
 }
 
@@ -26,7 +29,7 @@ const char *fault_text(enum fault f)
     case FAULT_NONE:         return "no fault";
     case FAULT_CHARACTER:    return "unexpected character";
     case FAULT_NUMBER:       return "number expected after";
-    case FAULT_DIGITS:       return "number with too many digits";
+    case FAULT_DIGITS:       return "number of more than 120 digits";
     case FAULT_ZERO:         return "byte 0, which no text has, behind";
     case FAULT_LINE_LENGTH:  return "line longer than 256 characters";
     case FAULT_WORD_COUNT:   return "too many words in the line";
@@ -55,10 +58,20 @@ const char *fault_text(enum fault f)
     case FAULT_O_END:        return "O word without its end";
     case FAULT_O_NUMBER:     return "second O number without M2, M30 or M99 in front of it";
     case FAULT_O_DEEP:       return "more than 64 loops and conditions within one another";
+    case FAULT_SEQUENCE:     return "no line of this program has this N";
+    case FAULT_LOOP_END:     return "DO without the END of its number";
+    case FAULT_THEN:         return "IF [ ] goes on with GOTO or THEN, WHILE [ ] with DO";
+    case FAULT_ALARM:        return "alarm of the program";
+    case FAULT_MODAL:        return "not while G66 is in force (G67 ends it)";
     case FAULT_NO_SUB:       return "no such subprogram";
+    case FAULT_USER:         return "no subprogram of its name (o<m100> sub) says what it does:";
+    case FAULT_FILES:        return "more than 32 files are called";
     case FAULT_CALLS:        return "more than 10 calls within one another";
     case FAULT_M99:          return "M99 in a subprogram that ends with endsub";
     case FAULT_ENDLESS:      return "1,000,000 lines read again without anything that takes time";
+    case FAULT_ANGLE:
+        return "this machine has no rotary axes (--angles: A B C in place of U V W)";
+    case FAULT_SIDE:         return "this machine has A B C in place of the axes U V W";
     case FAULT_WORD:         return "unknown word";
     case FAULT_TWICE:        return "word given twice";
     case FAULT_GROUP:        return "second word of one modal group";
@@ -80,7 +93,12 @@ const char *fault_text(enum fault f)
     case FAULT_ARC_CHORD:    return "arc radius is smaller than half the distance to the end";
     case FAULT_ARC_CLOSED:   return "arc is not determined by its points";
     case FAULT_TURNING:      return "for turning; this is no lathe";
-    case FAULT_NURBS:        return "NURBS are not in the language, G5 and G5.1 are";
+    case FAULT_NURBS:        return "G5.2 is not ended by G5.3 before";
+    case FAULT_NURBS_END:    return "G5.2 is not ended by G5.3 behind";
+    case FAULT_NURBS_NONE:   return "no G5.2 before";
+    case FAULT_NURBS_FEW:    return "fewer points since G5.2 than its order L, or 3, before";
+    case FAULT_NURBS_POINT:  return "point of a NURBS without both axes of the plane";
+    case FAULT_NURBS_FEED:   return "NURBS with G93, in which a feed is that of one motion";
     case FAULT_SPLINE:       return "spline without control points (G5 I J P Q, G5.1 I J)";
     case FAULT_SPLINE_PLANE: return "splines are in the plane of G17";
     case FAULT_CUSP:         return "spline turns on the spot";
@@ -102,6 +120,9 @@ const char *fault_text(enum fault f)
     case FAULT_NO_INPUTS:    return "this machine has no inputs for";
     case FAULT_NO_PROBE:     return "this machine has no probe for";
     case FAULT_PROBE_POINT:  return "probing leads nowhere";
+    case FAULT_NO_MODES:     return "no M70 or M73 in this call before";
+    case FAULT_RESTORE:
+        return "cutter compensation, G51 or G68 allow no change that this restores";
     case FAULT_NO_TOOL:      return "no T since the tool change before";
     case FAULT_PLANE:        return "plane of U V W, in which this machine has no arcs or cycles";
     case FAULT_CYCLE_R:      return "canned cycle without R";
@@ -109,10 +130,14 @@ const char *fault_text(enum fault f)
     case FAULT_CYCLE_Q:      return "canned cycle without Q";
     case FAULT_CYCLE_P:      return "canned cycle without P";
     case FAULT_CYCLE_ASIDE:  return "G87 without I, J and K";
+    case FAULT_TAP_K:        return "G33.1 without K, the way of a turn";
     case FAULT_CYCLE_LOW:    return "R is below the bottom of the hole";
     case FAULT_CYCLE_PECKS:  return "more than 10,000 pecks in one hole";
     case FAULT_CYCLE_FEED:   return "canned cycle with G93, in which a feed is that of one motion";
     case FAULT_CYCLE_SPINDLE:return "the spindle does not turn as this cycle needs";
+    case FAULT_ROUND_NEXT:
+        return ",C and ,R are between two lines or arcs in the plane that follow each other";
+    case FAULT_ROUND_SHORT:  return "no room for ,C or ,R between the motions";
     case FAULT_CUTTER_ON:    return "cutter compensation is on already";
     case FAULT_CUTTER_PLANE: return "cutter compensation does not work in this plane";
     case FAULT_CUTTER_WORD:  return "not while cutter compensation is on";
@@ -130,6 +155,11 @@ const char *fault_text(enum fault f)
     case FAULT_NOTE_SPINDLE: return "this machine has no spindle for";
     case FAULT_NOTE_COOLANT: return "this machine has no coolant for";
     case FAULT_NOTE_OVERRIDE:return "overrides act here whatever a program says";
+    case FAULT_NOTE_FEED:    return "feed above the highest one of the machine, which it gets";
+    case FAULT_NOTE_ANGLE:
+        return "this machine has no rotary axes (--angles: A B C in place of U V W) for";
+    case FAULT_NOTE_SIDE:
+        return "this machine has A B C in place of the axes U V W, so it has none for";
     case FAULT_NOTE_MERGE:   return "runs of short lines stay lines here";
     case FAULT_NOTE_CHECKED: return "lines that repeat are checked up to here";
     case FAULT_COUNT:        break;

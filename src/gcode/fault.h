@@ -9,7 +9,7 @@ enum fault {
     FAULT_NONE,
     FAULT_CHARACTER,        /* neither letter, comment nor end of line */
     FAULT_NUMBER,           /* a letter without a number */
-    FAULT_DIGITS,           /* a number with too many digits */
+    FAULT_DIGITS,           /* a number of more digits than EL_DECIMAL_DIGITS */
     FAULT_ZERO,             /* a byte 0: no text */
     FAULT_LINE_LENGTH,      /* more than 256 characters */
     FAULT_WORD_COUNT,       /* more words than any line can need */
@@ -38,10 +38,19 @@ enum fault {
     FAULT_O_END,            /* what begins has no end */
     FAULT_O_NUMBER,         /* an O number that is not the program's */
     FAULT_O_DEEP,           /* too many loops and ifs within one another */
+    FAULT_SEQUENCE,         /* no line has the N of a GOTO */
+    FAULT_LOOP_END,         /* DO without END of its number */
+    FAULT_THEN,             /* behind the condition of IF or WHILE stands something else */
+    FAULT_ALARM,            /* #3000 = n (message) */
+    FAULT_MODAL,            /* G66 or a canned cycle while G66 is in force */
     FAULT_NO_SUB,           /* the text does not have what is called */
+    FAULT_USER,             /* M100 .. M199 without the subprogram that says what it does */
+    FAULT_FILES,            /* too many files are called */
     FAULT_CALLS,            /* too many calls within calls */
     FAULT_M99,              /* M99 in an o sub */
     FAULT_ENDLESS,          /* too many lines read again without a command that takes time */
+    FAULT_ANGLE,            /* A B C where the tool does not turn */
+    FAULT_SIDE,             /* U V W where it does */
     FAULT_WORD,             /* letter or G, M number not in the language */
     FAULT_TWICE,            /* a letter other than G and M twice */
     FAULT_GROUP,            /* two codes of one modal group */
@@ -63,7 +72,12 @@ enum fault {
     FAULT_ARC_CHORD,        /* radius smaller than half the distance start - end */
     FAULT_ARC_CLOSED,       /* R form with end = start, or three points on one line */
     FAULT_TURNING,          /* a code that only a lathe has */
-    FAULT_NURBS,            /* G5.2, G5.3 */
+    FAULT_NURBS,            /* another motion, plane or the end before G5.3 */
+    FAULT_NURBS_END,        /* no G5.3 behind the points */
+    FAULT_NURBS_NONE,       /* G5.3 without G5.2 */
+    FAULT_NURBS_FEW,        /* fewer points than the order */
+    FAULT_NURBS_POINT,      /* a point without one of its coordinates */
+    FAULT_NURBS_FEED,       /* G5.2 with G93 */
     FAULT_SPLINE,           /* a spline without what its control points need */
     FAULT_SPLINE_PLANE,     /* not in the plane XY */
     FAULT_CUSP,             /* it turns on the spot */
@@ -85,6 +99,8 @@ enum fault {
     FAULT_NO_INPUTS,        /* M66 where no inputs can be asked */
     FAULT_NO_PROBE,         /* G38 without a probe */
     FAULT_PROBE_POINT,      /* G38 to where the tool stands */
+    FAULT_NO_MODES,         /* M72 without M70 or M73 in this call */
+    FAULT_RESTORE,          /* M72 or the end of a call with M73 beside a contour or G51, G68 */
     FAULT_NO_TOOL,          /* M6 with no T since the one before */
     FAULT_PLANE,            /* G17.1, G18.1, G19.1 */
     FAULT_CYCLE_R,          /* a cycle without R */
@@ -92,10 +108,13 @@ enum fault {
     FAULT_CYCLE_Q,          /* G73 or G83 without Q */
     FAULT_CYCLE_P,          /* G82, G86, G88 or G89 without P */
     FAULT_CYCLE_ASIDE,      /* G87 without the letters of I J K that it needs */
+    FAULT_TAP_K,            /* G33.1 without K */
     FAULT_CYCLE_LOW,        /* R below the bottom of the hole */
     FAULT_CYCLE_PECKS,      /* more than 10,000 pecks */
     FAULT_CYCLE_FEED,       /* a cycle with G93 */
     FAULT_CYCLE_SPINDLE,    /* the spindle is off, or turns the wrong way round */
+    FAULT_ROUND_NEXT,       /* behind ,C or ,R comes something else than a motion in the plane */
+    FAULT_ROUND_SHORT,      /* ,C or ,R has no room between the motions */
     FAULT_CUTTER_ON,        /* G41 or G42 while one of them is in force */
     FAULT_CUTTER_PLANE,     /* G19, or another plane while compensation is on */
     FAULT_CUTTER_WORD,      /* what moves or measures the tool beside its contour */
@@ -112,10 +131,15 @@ enum fault {
     FAULT_NOTE_SPINDLE,     /* a note: there is none */
     FAULT_NOTE_COOLANT,     /* a note: there is none */
     FAULT_NOTE_OVERRIDE,    /* a note: M48 to M53 change nothing */
+    FAULT_NOTE_FEED,        /* a note: F above the highest feed, or that of an axis */
+    FAULT_NOTE_ANGLE,       /* a note: A0, B0 or C0 */
+    FAULT_NOTE_SIDE,        /* a note: U0, V0 or W0 */
     FAULT_NOTE_MERGE,       /* a note: Q of G64, runs of lines stay lines */
     FAULT_NOTE_CHECKED,     /* a note: what comes behind has not been checked */
     FAULT_COUNT
 };
+
+enum { FAULT_FILE = 32 };      /* [byte] of the name of a file that is called */
 
 enum { FAULT_LIST = 20, FAULT_NOTES = FAULT_COUNT - FAULT_NOTE_COMMENT };
 
@@ -124,6 +148,7 @@ struct fault_note {
     enum fault what;
     int32_t    line, at, length;
     int64_t    offset;
+    char       file[FAULT_FILE];
 };
 
 /* Something wrong with a part program, or a note. */
@@ -132,7 +157,8 @@ struct fault_report {
     int32_t    notes;       /* of what has been read, each kind once */
     struct fault_note note[FAULT_NOTES];
     int32_t    line;        /* source line, from 1 */
-    int64_t    offset;      /* [byte] where that line begins in the program */
+    int64_t    offset;      /* [byte] where that line begins in the program, */
+    char       file[FAULT_FILE];    /* or in a file that it calls, by its name; empty: none */
     int32_t    at, length;  /* offending text in the line */
     int32_t    other_at, other_length;  /* of GROUP, SHARED: the word it does not agree with */
     int32_t    axis;            /* of TRAVEL, SPEED: the joint */

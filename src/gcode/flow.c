@@ -15,12 +15,30 @@ void flow_go(struct interpreter *in, struct oword_place to)
 {
     in->offset = to.offset;
     in->line = to.line;
+    in->file = to.file;
+}
+
+const char *flow_file(const struct interpreter *in, int32_t file)
+{
+    static const char PROGRAM[OWORD_LABEL] = "";
+    return file > 0 ? in->flow.file[file - 1] : PROGRAM;
+}
+
+int32_t flow_line_shown(const struct interpreter *in)
+{
+    int32_t line = in->line;
+
+    for (int32_t i = in->flow.level - 1, file = in->file; i >= 0 && file > 0; i--) {
+        file = in->flow.call[i].here.file;
+        line = in->flow.call[i].here.line + 1;
+    }
+    return line;
 }
 
 enum fault flow_again(struct interpreter *in, struct oword_place to, struct fault_report *r)
 {
     struct flow *f = &in->flow;
-    const int32_t lines = in->line - to.line;
+    const int32_t lines = in->file == to.file ? in->line - to.line : 1;
 
     f->again += lines > 0 ? lines : 1;
     flow_go(in, to);
@@ -30,7 +48,7 @@ enum fault flow_again(struct interpreter *in, struct oword_place to, struct faul
 
 struct oword_place flow_behind(const struct interpreter *in)
 {
-    return (struct oword_place){ in->offset, in->line };
+    return (struct oword_place){ in->offset, in->line, in->file };
 }
 
 /* The end of what this line begins or is in: one of some words with a label. With `past` the place
@@ -45,25 +63,28 @@ static enum fault seek_end(const struct flow_step *l, const char *label, int32_t
     int32_t is;
 
     for (int i = 0; i < FLOW_KNOWN; i++) {
-        if (f->end[i].from == from && f->end[i].words == kind) {
+        const struct flow_known_end *e = &f->end[i];
+        if (e->from == from && e->file == l->in->file && e->words == kind) {
             *place = f->end[i].place;
             return FAULT_NONE;
         }
     }
     *place = flow_behind(l->in);
     flow_refuse(l, FAULT_O_END);        /* of this line, whose text goes when others are read */
-    enum fault g = oword_seek(l->s->program, label, words, stop, place, &is);
+    const char *const file = flow_file(l->in, place->file);
+    enum fault g = oword_seek(l->s->program, file, label, words, stop, place, &is);
     if (g == FAULT_NONE && !is) {
         g = FAULT_O_END;
     }
     if (g == FAULT_NONE && past) {
         struct source_line line;
         struct fault_report r;
-        g = source_read(l->s->program->source, &place->offset, &line, &r);
+        g = source_read(l->s->program->source, file, &place->offset, &line, &r);
         place->line++;
     }
     if (g == FAULT_NONE) {
         f->end[f->ends].from = from;
+        f->end[f->ends].file = place->file;
         f->end[f->ends].words = kind;
         f->end[f->ends].place = *place;
         f->ends = (f->ends + 1) % FLOW_KNOWN;
@@ -105,7 +126,7 @@ static struct flow_open *innermost(const struct flow_step *l, enum flow_kind kin
     return o && o == &f->open[f->opens - 1] && o->kind == kind ? o : NULL;
 }
 
-static enum fault open(const struct flow_step *l, enum flow_kind kind, int32_t left)
+enum fault flow_open(const struct flow_step *l, enum flow_kind kind, int32_t left)
 {
     struct flow *f = &l->in->flow;
 
@@ -150,7 +171,7 @@ static enum fault if_line(const struct flow_step *l)
     }
     enum fault f = l->o.is == OWORD_ELSE ? oword_alone(l->s) : flow_condition(l, &value);
     if (f == FAULT_NONE && !o) {
-        f = open(l, FLOW_IF, 0);
+        f = flow_open(l, FLOW_IF, 0);
         o = &l->in->flow.open[l->in->flow.opens - 1];
     }
     if (f != FAULT_NONE) {
@@ -173,6 +194,12 @@ static enum fault loop_end(const struct flow_step *l, enum flow_kind kind, bool 
                  : flow_again(l->in, kind == FLOW_WHILE ? o->here : o->behind, l->s->r);
 }
 
+enum fault flow_loop_end(const struct flow_step *l)
+{
+    return innermost(l, FLOW_WHILE) ? loop_end(l, FLOW_WHILE, true)
+                                    : flow_refuse(l, FAULT_O_PLACE);
+}
+
 /* while begins a loop, or ends one that began with do. */
 static enum fault while_line(const struct flow_step *l)
 {
@@ -186,7 +213,7 @@ static enum fault while_line(const struct flow_step *l)
     if (ends) {
         return loop_end(l, FLOW_DO, value != 0.0);
     }
-    return value != 0.0 ? open(l, FLOW_WHILE, 0)
+    return value != 0.0 ? flow_open(l, FLOW_WHILE, 0)
                         : skip_to(l, l->o.label, OWORD_ENDWHILE, true);
 }
 
@@ -203,7 +230,7 @@ static enum fault repeat_line(const struct flow_step *l)
     if (f != FAULT_NONE) {
         return f;
     }
-    return runs > 0 ? open(l, FLOW_REPEAT, runs)
+    return runs > 0 ? flow_open(l, FLOW_REPEAT, runs)
                     : skip_to(l, l->o.label, OWORD_ENDREPEAT, true);
 }
 
@@ -260,7 +287,7 @@ enum fault flow_line(struct interpreter *in, struct reading *s, struct oword_pla
         return while_line(&l);
     case OWORD_DO:
         f = oword_alone(s);
-        return f == FAULT_NONE ? open(&l, FLOW_DO, 0) : f;
+        return f == FAULT_NONE ? flow_open(&l, FLOW_DO, 0) : f;
     case OWORD_REPEAT:
         return repeat_line(&l);
     case OWORD_ENDWHILE:
@@ -288,31 +315,37 @@ enum fault flow_end(const struct interpreter *in, const struct program *p, struc
         return FAULT_NONE;
     }
     r->line = at.line + 1;
-    const enum fault g = source_read(p->source, &at.offset, &line, r);
+    const enum fault g = source_read(p->source, flow_file(in, at.file), &at.offset, &line, r);
     return g != FAULT_NONE ? g : fault_at(r, FAULT_O_END, 0, line.length);
 }
 
-static bool place_damaged(struct oword_place p)
+static bool place_damaged(const struct flow *f, struct oword_place p)
 {
-    return p.offset < 0 || p.line < 0;
+    return p.offset < 0 || p.line < 0 || p.file < 0 || p.file > f->files;
 }
 
 bool flow_damaged(const struct flow *f)
 {
     bool bad = f->opens < 0 || f->opens > FLOW_OPEN || f->level < 0 || f->level > FLOW_CALLS ||
-               f->subs < 0 || f->subs >= FLOW_KNOWN || f->ends < 0 || f->ends >= FLOW_KNOWN;
+               f->subs < 0 || f->subs >= FLOW_KNOWN || f->ends < 0 || f->ends >= FLOW_KNOWN ||
+               f->files < 0 || f->files > FLOW_FILES ||
+               f->left < 0 || f->left > FLOW_CALLS || place_damaged(f, f->modal.body);
 
+    for (int i = 0; !bad && i < f->files; i++) {
+        bad = f->file[i][OWORD_LABEL - 1] != '\0' || !source_name(f->file[i]);
+    }
     for (int i = 0; !bad && i < f->opens; i++) {
-        bad = place_damaged(f->open[i].here) || place_damaged(f->open[i].behind) ||
+        bad = place_damaged(f, f->open[i].here) || place_damaged(f, f->open[i].behind) ||
               f->open[i].kind > FLOW_REPEAT;
     }
     for (int i = 0; !bad && i < f->level; i++) {
         const struct flow_call *c = &f->call[i];
-        bad = place_damaged(c->body) || place_damaged(c->here) || place_damaged(c->back) ||
-              c->caller > FLOW_G65 || c->opens < 0 || c->opens > f->opens;
+        bad = place_damaged(f, c->body) || place_damaged(f, c->here) || place_damaged(f, c->back) ||
+              c->caller > FLOW_G65 || c->opens < 0 || c->opens > f->opens ||
+              c->locals < 0 || c->locals > PARAMETERS_LOCAL_FANUC;
     }
     for (int i = 0; !bad && i < FLOW_KNOWN; i++) {
-        bad = place_damaged(f->sub[i].place) || place_damaged(f->end[i].place);
+        bad = place_damaged(f, f->sub[i].place) || place_damaged(f, f->end[i].place);
     }
     return bad;
 }

@@ -29,7 +29,7 @@ static void turn(double degrees, double *x, double *y)
 
 static double system_turn(const struct interpreter *in)
 {
-    return in->words.turn[in->system];
+    return in->system < INTERPRETER_SYSTEMS ? in->words.turn[in->system] : 0.0;
 }
 
 static double scaled(const struct words *w, int axis, double x)
@@ -149,6 +149,14 @@ static int coupled(const struct interpreter *in)
     return mask;
 }
 
+/* X and Y by radius and angle [deg]. */
+static void turn_to(double program[AXES], double radius, double azimuth)
+{
+    program[0] = radius;
+    program[1] = 0.0;
+    turn(azimuth, &program[0], &program[1]);
+}
+
 /* @ and ^: radius and angle about the zero of X and Y; what is not named stays, G91 adds. */
 static enum fault polar_words(const struct interpreter *in, const struct block *b,
                               double program[AXES], struct fault_report *r)
@@ -166,10 +174,22 @@ static enum fault polar_words(const struct interpreter *in, const struct block *
     }
     length = radius ? radius->value * b->scale + (in->incremental ? length : 0.0) : length;
     azimuth = angle ? angle->value + (in->incremental ? azimuth : 0.0) : azimuth;
-    program[0] = length;
-    program[1] = 0.0;
-    turn(azimuth, &program[0], &program[1]);
+    turn_to(program, length, azimuth);
     return FAULT_NONE;
+}
+
+/* The place of G16 in the plane, about its pole. */
+static void polar_place(const struct interpreter *in, double program[AXES])
+{
+    const int axis[2] = { path_first(in->plane), path_second(in->plane) };
+    const struct words *w = &in->words;
+
+    program[axis[0]] = w->radius;
+    program[axis[1]] = 0.0;
+    turn(w->azimuth, &program[axis[0]], &program[axis[1]]);
+    for (int i = 0; i < 2; i++) {
+        program[axis[i]] += w->pole[i];
+    }
 }
 
 /* G16: the plane's first word is a radius, its second an angle. With G91 a radius counts from where
@@ -189,11 +209,80 @@ static bool polar_mode(struct interpreter *in, const struct block *b, double pro
     }
     w->radius = radius ? radius->value * b->scale : w->radius;
     w->azimuth = angle ? angle->value + (in->incremental ? w->azimuth : 0.0) : w->azimuth;
-    program[axis[0]] = w->radius;
-    program[axis[1]] = 0.0;
-    turn(w->azimuth, &program[axis[0]], &program[axis[1]]);
-    for (int i = 0; i < 2; i++) {
-        program[axis[i]] += w->pole[i];
+    polar_place(in, program);
+    return true;
+}
+
+void frame_here(const struct interpreter *in, double here[AXES])
+{
+    const struct cutter *k = &in->cutter;
+    const int first = path_first(k->plane), second = path_second(k->plane);
+
+    memcpy(here, in->point, AXES * sizeof *here);
+    if (k->aside && here[first] == k->from[0] && here[second] == k->from[1]) {
+        here[first] = k->left[0];
+        here[second] = k->left[1];
+    }
+}
+
+void frame_from(const struct interpreter *in, const struct block *b, double from[AXES])
+{
+    const struct cutter *k = &in->cutter;
+    const int first = path_first(k->plane), second = path_second(k->plane);
+
+    memcpy(from, in->point, AXES * sizeof *from);
+    if (k->aside && (gcode_word(&b->g, BLOCK_AXES[first]) ||
+                     gcode_word(&b->g, BLOCK_AXES[second]) || gcode_first(&b->g, "@^"))) {
+        frame_here(in, from);
+    }
+}
+
+void frame_cycle_way(const struct interpreter *in, const struct block *b,
+                     const double before[AXES], struct cycle_way *way)
+{
+    const int axis[2] = { path_first(in->plane), path_second(in->plane) };
+    const struct token *word[2] = { gcode_word(&b->g, BLOCK_AXES[axis[0]]),
+                                    gcode_word(&b->g, BLOCK_AXES[axis[1]]) };
+    const struct token *radius = gcode_word(&b->g, '@'), *angle = gcode_word(&b->g, '^');
+
+    *way = (struct cycle_way){ .polar = CYCLE_STRAIGHT };
+    if (!in->incremental) {
+        return;
+    }
+    if (radius || angle) {
+        way->polar = CYCLE_POLE;
+        way->plane[0] = radius ? radius->value * b->scale : 0.0;
+        way->plane[1] = angle ? angle->value : 0.0;
+    } else if (in->words.polar && (word[0] || word[1])) {
+        way->polar = CYCLE_POLAR;
+        way->about = word[0] != NULL;
+        way->plane[1] = word[1] ? word[1]->value : 0.0;
+    } else {
+        way->plane[0] = in->cycle.hole[axis[0]] - before[axis[0]];
+        way->plane[1] = in->cycle.hole[axis[1]] - before[axis[1]];
+    }
+}
+
+bool frame_go_on(struct interpreter *in, const struct cycle_way *way, double place[AXES])
+{
+    double *const a = &place[path_first(in->plane)], *const b = &place[path_second(in->plane)];
+    struct words *w = &in->words;
+
+    if (way->polar == CYCLE_STRAIGHT) {
+        *a += way->plane[0];
+        *b += way->plane[1];
+    } else if (way->polar == CYCLE_POLE) {
+        const double length = el_hypot(place[0], place[1]);
+        if (length == 0.0) {
+            return false;
+        }
+        turn_to(place, length + way->plane[0],
+                el_atan2(place[1], place[0]) / DEGREE + way->plane[1]);
+    } else {
+        w->pole[0] = way->about ? *a : w->pole[0];
+        w->pole[1] = way->about ? *b : w->pole[1];
+        w->azimuth += way->plane[1];
+        polar_place(in, place);
     }
     return true;
 }
@@ -202,7 +291,8 @@ enum fault frame_end(struct interpreter *in, const struct program *p, const stru
                      double end[AXES], struct fault_report *r)
 {
     const struct words *w = &in->words;
-    const bool machine = b->g.code[GCODE_NONMODAL] == 530;
+    const int other = b->g.code[GCODE_NONMODAL];
+    const bool machine = other == 530;
     const int axis[2] = { path_first(in->plane), path_second(in->plane) };
     const int together = coupled(in);
     const bool at_pole = b->g.letters & (GCODE_BIT('@') | GCODE_BIT('^'));
@@ -210,9 +300,9 @@ enum fault frame_end(struct interpreter *in, const struct program *p, const stru
     double program[AXES], place[AXES];
     int moved = 0, polar = 0;
 
-    memcpy(end, in->point, AXES * sizeof *end);
+    frame_from(in, b, end);
     if (framed) {
-        frame_program(in, in->point, program);
+        frame_program(in, end, program);
     }
     if (at_pole && !machine) {
         const enum fault f = polar_words(in, b, program, r);
@@ -220,7 +310,7 @@ enum fault frame_end(struct interpreter *in, const struct program *p, const stru
             return f;
         }
         polar = 3;
-    } else if (w->polar && !machine && b->g.code[GCODE_NONMODAL] == GCODE_ABSENT &&
+    } else if (w->polar && (other == GCODE_ABSENT || other == 40) &&
                polar_mode(in, b, program)) {
         polar = 1 << axis[0] | 1 << axis[1];
     }
@@ -282,7 +372,8 @@ static enum fault scale(struct interpreter *in, const struct program *p, const s
     if (!all && !any) {
         return tokens_at_line(r, FAULT_NO_FACTOR, &b->tokens);
     }
-    frame_program(in, in->point, here);
+    frame_here(in, here);
+    frame_program(in, here, here);
     struct words w = in->words;
     w.scaled = true;
     for (int i = 0; i < 3; i++) {
@@ -311,7 +402,8 @@ static enum fault rotation(struct interpreter *in, const struct block *b, struct
     if (normal) {
         return tokens_at_word(r, FAULT_UNUSED, normal);
     }
-    frame_program(in, in->point, here);
+    frame_here(in, here);
+    frame_program(in, here, here);
     w->rotated = true;
     w->plane = (int32_t)in->plane;
     w->angle = angle->value;
@@ -325,7 +417,8 @@ static void begin_polar(struct interpreter *in)
     struct words *w = &in->words;
     double here[AXES];
 
-    frame_program(in, in->point, here);
+    frame_here(in, here);
+    frame_program(in, here, here);
     const double x = here[path_first(in->plane)], y = here[path_second(in->plane)];
     w->polar = true;
     w->pole[0] = w->pole[1] = 0.0;

@@ -9,6 +9,7 @@ struct code { int code; enum gcode_group group; };
 static const struct code g_codes[] = {
     { 0, GCODE_MOTION },    { 10, GCODE_MOTION },   { 20, GCODE_MOTION },   { 30, GCODE_MOTION },
     { 50, GCODE_MOTION },   { 51, GCODE_MOTION },   { GCODE_NO_MOTION, GCODE_MOTION },
+    { 331, GCODE_MOTION },  { 52, GCODE_MOTION },   { 53, GCODE_MOTION },
     { 382, GCODE_MOTION },  { 383, GCODE_MOTION },  { 384, GCODE_MOTION },  { 385, GCODE_MOTION },
     { 730, GCODE_MOTION },  { 740, GCODE_MOTION },  { 810, GCODE_MOTION },  { 820, GCODE_MOTION },
     { 830, GCODE_MOTION },  { 840, GCODE_MOTION },  { 850, GCODE_MOTION },  { 860, GCODE_MOTION },
@@ -25,11 +26,17 @@ static const struct code g_codes[] = {
     { 960, GCODE_SURFACE }, { 970, GCODE_SURFACE },
     { 540, GCODE_SYSTEM },  { 550, GCODE_SYSTEM },  { 560, GCODE_SYSTEM },  { 570, GCODE_SYSTEM },
     { 580, GCODE_SYSTEM },  { 590, GCODE_SYSTEM },  { 591, GCODE_SYSTEM },  { 592, GCODE_SYSTEM },
-    { 593, GCODE_SYSTEM },  { 610, GCODE_PATH },    { 640, GCODE_PATH },
+    { 593, GCODE_SYSTEM },  { 610, GCODE_PATH },    { 611, GCODE_PATH },    { 640, GCODE_PATH },
     { 500, GCODE_SCALING }, { 510, GCODE_SCALING }, { 680, GCODE_ROTATION },
     { 690, GCODE_ROTATION }, { 150, GCODE_POLAR },  { 160, GCODE_POLAR },
     { 900, GCODE_DISTANCE }, { 910, GCODE_DISTANCE }, { 901, GCODE_CENTRE }, { 911, GCODE_CENTRE },
     { 930, GCODE_FEED_MODE }, { 940, GCODE_FEED_MODE }, { 950, GCODE_FEED_MODE },
+};
+
+/* What only Fanuc's controls have, and Haas'. */
+static const struct code fanuc_codes[] = {
+    { 90, GCODE_EXACT },    { 670, GCODE_MODAL },   { GCODE_MORE, GCODE_SYSTEM },
+    { GCODE_MORE_HAAS, GCODE_SYSTEM },
 };
 
 static const struct code m_codes[] = {
@@ -40,6 +47,7 @@ static const struct code m_codes[] = {
     { 600, GCODE_STOP },    { 190, GCODE_SPINDLE }, { 60, GCODE_CHANGE },   { 610, GCODE_CHANGE },
     { 480, GCODE_OVERRIDE }, { 490, GCODE_OVERRIDE }, { 500, GCODE_OVERRIDE },
     { 510, GCODE_OVERRIDE }, { 520, GCODE_OVERRIDE }, { 530, GCODE_OVERRIDE },
+    { 700, GCODE_SAVING },  { 710, GCODE_SAVING },  { 720, GCODE_SAVING },  { 730, GCODE_SAVING },
     { 660, GCODE_IO },      { 670, GCODE_IO },      { 680, GCODE_IO },
     { 620, GCODE_IO },      { 630, GCODE_IO },      { 640, GCODE_IO },      { 650, GCODE_IO },
 };
@@ -47,23 +55,37 @@ static const struct code m_codes[] = {
 /* Codes that this machine has no use for, and why. */
 static const struct refusal { int code; enum fault why; } g_refused[] = {
     { 171, FAULT_PLANE },   { 181, FAULT_PLANE },   { 191, FAULT_PLANE },
-    { 52, FAULT_NURBS },    { 53, FAULT_NURBS },
-    { 70, FAULT_TURNING },  { 80, FAULT_TURNING },  { 330, FAULT_TURNING }, { 331, FAULT_TURNING },
+    { 70, FAULT_TURNING },  { 80, FAULT_TURNING },  { 330, FAULT_TURNING },
     { 700, FAULT_TURNING }, { 710, FAULT_TURNING }, { 711, FAULT_TURNING }, { 712, FAULT_TURNING },
     { 720, FAULT_TURNING }, { 721, FAULT_TURNING }, { 722, FAULT_TURNING }, { 760, FAULT_TURNING },
 };
 
-/* Ten times a code; E1 of the facts takes a number within 0.0001 as meant. -1 if it is none. */
-static int tenfold(double value)
+int gcode_code(const struct token *w)
 {
-    const double ten = round(value * 10.0);
-    return value >= 0.0 && value < 1000.0 && fabs(value * 10.0 - ten) <= 1e-3 ? (int)ten : -1;
+    const double tenfold = w->value * 10.0, ten = round(tenfold);
+    return ten >= 0.0 && ten < 10000.0 && fabs(tenfold - ten) <= 1e-3 ? (int)ten : -1;
+}
+
+bool gcode_user(const struct token *w)
+{
+    const int code = gcode_code(w);
+    return w->letter == 'M' && code >= GCODE_USER_FIRST && code <= GCODE_USER_LAST &&
+           code % 10 == 0;
 }
 
 static enum fault sort_code(struct gcode *g, const struct token *w, const struct code *codes,
                             size_t count, struct fault_report *r)
 {
-    const int code = tenfold(w->value);
+    const int code = gcode_code(w);
+    if (gcode_user(w)) {
+        if (g->by[GCODE_USER]) {
+            return tokens_at_words(r, FAULT_GROUP, w, g->by[GCODE_USER]);
+        }
+        g->by[GCODE_USER] = w;
+        g->groups |= (uint32_t)1 << GCODE_USER;
+        g->code[GCODE_USER] = GCODE_USER_FIRST;     /* whichever: it takes the same words */
+        return FAULT_NONE;
+    }
     for (size_t i = 0; i < count; i++) {
         if (codes[i].code == code) {
             const enum gcode_group group = codes[i].group;
@@ -96,7 +118,23 @@ static enum fault sort_code(struct gcode *g, const struct token *w, const struct
     (GCODE_BIT('N') | GCODE_BIT('F') | GCODE_BIT('S') | GCODE_BIT('T') | GCODE_BIT('X') |       \
      GCODE_BIT('Y') | GCODE_BIT('Z') | GCODE_BIT('I') | GCODE_BIT('J') | GCODE_BIT('K') |       \
      GCODE_BIT('R') | GCODE_BIT('P') | GCODE_BIT('L') | GCODE_BIT('Q') | GCODE_BIT('H') |       \
-     GCODE_BIT('D') | GCODE_BIT('E') | GCODE_BIT('@') | GCODE_BIT('^'))
+     GCODE_BIT('D') | GCODE_BIT('E') | GCODE_BIT('@') | GCODE_BIT('^') |                        \
+     GCODE_BIT(TOKENS_CHAMFER) | GCODE_BIT(TOKENS_ROUND))
+
+/* An axis that the machine does not have, at rest: posts write A0 for all machines. */
+static enum fault idle(struct gcode *g, const struct token *w, bool angles,
+                       struct fault_report *r)
+{
+    if (w->value != 0.0) {
+        return tokens_at_word(r, angles ? FAULT_SIDE : FAULT_ANGLE, w);
+    }
+    if (g->idle & GCODE_BIT(w->letter)) {
+        return tokens_at_word(r, FAULT_TWICE, w);
+    }
+    g->idle |= GCODE_BIT(w->letter);
+    tokens_note(r, angles ? FAULT_NOTE_SIDE : FAULT_NOTE_ANGLE, w);
+    return FAULT_NONE;
+}
 
 static enum fault sort_letter(struct gcode *g, const struct token *w, bool angles,
                               struct fault_report *r)
@@ -106,6 +144,9 @@ static enum fault sort_letter(struct gcode *g, const struct token *w, bool angle
     const char letter = (char)(w->letter + (angle ? 'U' - 'A' : 0));
     const struct token **place = &g->word[letter - '@'];
 
+    if (GCODE_BIT(w->letter) & (angles ? LENGTHS : ANGLES)) {
+        return idle(g, w, angles, r);
+    }
     if (!(GCODE_BIT(w->letter) & (LETTERS | (angles ? ANGLES : LENGTHS)))) {
         return tokens_at_word(r, FAULT_WORD, w);
     }
@@ -120,9 +161,25 @@ static enum fault sort_letter(struct gcode *g, const struct token *w, bool angle
     return FAULT_NONE;
 }
 
-static enum fault sort(struct gcode *g, const struct token *w, bool angles, int *m_words,
+static bool fanuc_code(const struct token *w)
+{
+    const int code = gcode_code(w);
+    size_t i = 0;
+
+    while (i < sizeof fanuc_codes / sizeof *fanuc_codes && fanuc_codes[i].code != code) {
+        i++;
+    }
+    return i < sizeof fanuc_codes / sizeof *fanuc_codes;
+}
+
+static enum fault sort(struct block *b, const struct token *w, int *m_words,
                        struct fault_report *r)
 {
+    struct gcode *g = &b->g;
+
+    if (w->letter == 'G' && b->fanuc && fanuc_code(w)) {
+        return sort_code(g, w, fanuc_codes, sizeof fanuc_codes / sizeof *fanuc_codes, r);
+    }
     if (w->letter == 'G') {
         return sort_code(g, w, g_codes, sizeof g_codes / sizeof *g_codes, r);
     }
@@ -132,23 +189,24 @@ static enum fault sort(struct gcode *g, const struct token *w, bool angles, int 
     if (w->letter == 'M') {
         return sort_code(g, w, m_codes, sizeof m_codes / sizeof *m_codes, r);
     }
-    return sort_letter(g, w, angles, r);
+    return sort_letter(g, w, b->angles, r);
 }
 
-enum fault gcode_sort(struct gcode *g, const struct tokens *t, bool angles,
-                      struct fault_report *r)
+enum fault gcode_sort(struct block *b, struct fault_report *r)
 {
+    const struct tokens *t = &b->tokens;
+    struct gcode *g = &b->g;
     enum fault f = FAULT_NONE;
     int m_words = 0;
 
     memset(g->word, 0, sizeof g->word);
     memset(g->by, 0, sizeof g->by);
-    g->letters = g->groups = 0;
+    g->letters = g->idle = g->groups = 0;
     for (int i = 0; i < GCODE_GROUPS; i++) {
         g->code[i] = GCODE_ABSENT;
     }
     for (int i = 0; i < t->count && f == FAULT_NONE; i++) {
-        f = sort(g, &t->word[i], angles, &m_words, r);
+        f = sort(b, &t->word[i], &m_words, r);
     }
     return f;
 }

@@ -3,16 +3,15 @@
 #define MODES_H
 
 #include "command.h"
-#include "cutter_state.h"
-#include "cycle_state.h"
 #include "flow.h"
+#include "kept_words.h"
 #include "parameters.h"
 #include "source.h"
 #include "tool_table.h"
 #include "words.h"
 
 enum {
-    INTERPRETER_MADE = 40       /* commands of one block: outputs, moves, stop or end */
+    INTERPRETER_MADE = 24       /* commands of one block: outputs, moves, stop or end; 12 at most */
 };
 
 /* What a program is read against; all of it constant while it runs. */
@@ -29,7 +28,8 @@ struct program {
     bool has_inputs;        /* M66 can be answered */
     bool has_probe;         /* G38 can */
     bool angles;            /* the last three coordinates are the tool's angles A B C [deg] */
-    bool fanuc;             /* G4 X, G4 P in ms, M98 P with its runs in front, G65 */
+    bool strict_feed;       /* F above the highest feed is a fault, else a note */
+    bool fanuc;             /* the language of Fanuc's controls: P in ms, macros, GOTO .. */
     int64_t check_again;    /* lines read again after which a check stops; 0: CHECK_AGAIN */
     double least_increment; /* [mm, inch, deg] of coordinates without a decimal point; 0: 1 */
 };
@@ -80,9 +80,26 @@ struct tools {
     double  length[AXES];       /* [mm], [deg] offset in force */
 };
 
+/* What is in force: M70, M73. */
+struct saved_modes {
+    bool    kept, returns;  /* it can be restored; at the end of the call it is */
+    enum path_plane plane;
+    bool    inch, incremental, absolute_centre, blend, to_r, by_radius;
+    double  tolerance, merge;   /* [mm] */
+    int32_t system;
+    int32_t feed_mode;
+    double  feed, per_turn;     /* [mm/s], [mm] */
+    double  speed, pass, most;  /* as in struct switches */
+    int32_t turning, coolant;
+    uint32_t overrides;
+    double  length[AXES];       /* [mm], [deg] of the tool */
+    int32_t side;               /* of cutter compensation */
+};
+
 struct interpreter {
     int64_t offset;         /* [byte] next line in the text */
     int32_t line;           /* lines read */
+    int32_t file;           /* of the text: 0 the program, else one that it calls */
     bool    ended;
     bool    waits;          /* for the machine, behind the commands made */
     bool    percent;        /* the first % has passed */
@@ -92,8 +109,9 @@ struct interpreter {
     bool    blend;          /* G64 */
     double  tolerance;      /* [mm] P of G64: look-ahead instead of path mixing; 0 none */
     double  merge;          /* [mm] Q of G64, P without it */
-    int32_t system;         /* 0..8 for G54 .. G59.3 */
-    double  origin[INTERPRETER_SYSTEMS][AXES];  /* [mm] of each system, machine coordinates */
+    int32_t system;         /* 0..8 for G54 .. G59.3, from 9 on G54.1 P1 .. */
+    double  origin[INTERPRETER_ALL][AXES];      /* [mm] of each system, machine coordinates */
+    int32_t more;           /* systems of G54.1 up to the last that has been set */
     double  shift[AXES];    /* [mm] G52, G92 */
     bool    shifted;        /* it is in force */
     double  feed;           /* [mm/s] of G94; 0: none since it is in force again */
@@ -101,16 +119,19 @@ struct interpreter {
     struct words words;
     struct switches switches;
     struct cycle cycle;
+    struct nurbs nurbs;
     struct cutter cutter;
+    struct rounding rounding;
     struct tools tools;
     struct waiting wait;       /* where `waits` */
     double  input;          /* the latest answer to M66 */
     double  contact[AXES];  /* [mm], [deg] of the latest probing, program coordinates */
-    bool    touched;        /* it has touched */
+    double  touched;        /* 1 if it has, or what #5070 has been set to */
     uint32_t set, clear;    /* digital outputs of M62, M63, for the next motion */
     struct outputs_analog analog;   /* the same of M67 */
     struct parameters parameters;
     struct flow flow;
+    struct saved_modes saved[FLOW_CALLS + 1];   /* of each call, the program first */
     struct command made[INTERPRETER_MADE];      /* of the block read last */
     int32_t taken, count;   /* of them handed out, made */
 };

@@ -22,9 +22,29 @@ double offsets_zero(const struct interpreter *in, int axis)
     return in->origin[in->system][axis] + offsets_shift(in, axis) + tools_length(in, axis);
 }
 
-int offsets_system(int code)
+/* System of G54.1 with a P, which may be missing; -1: there is none. */
+static int further(const struct token *p)
 {
-    return code > 590 ? 5 + code - 590 : (code - 540) / 10;
+    const bool good = p && p->value >= 1.0 && p->value <= INTERPRETER_MORE &&
+                      p->value == round(p->value);
+    return good ? INTERPRETER_SYSTEMS + (int)p->value - 1 : -1;
+}
+
+enum fault offsets_select(struct interpreter *in, const struct block *b, struct fault_report *r)
+{
+    const int code = b->g.code[GCODE_SYSTEM];
+    const struct token *p = gcode_word(&b->g, 'P');
+
+    if (code != GCODE_MORE && code != GCODE_MORE_HAAS) {
+        in->system = code > 590 ? 5 + code - 590 : (code - 540) / 10;
+        return FAULT_NONE;
+    }
+    if (further(p) < 0) {
+        return p ? tokens_at_word(r, FAULT_VALUE, p)
+                 : tokens_at_word(r, FAULT_MISSING, b->g.by[GCODE_SYSTEM]);
+    }
+    in->system = further(p);
+    return FAULT_NONE;
 }
 
 bool offsets_changed(const struct block *b)
@@ -52,6 +72,10 @@ static enum fault system_of(const struct interpreter *in, const struct block *b,
     if (l->value != 2.0 && l->value != 20.0) {
         return tokens_at_word(r, FAULT_VALUE, l);
     }
+    if (b->fanuc && l->value == 20.0) {         /* there it sets a system of G54.1 */
+        *system = further(p);
+        return *system < 0 ? tokens_at_word(r, FAULT_VALUE, p) : FAULT_NONE;
+    }
     if (p->value < 0.0 || p->value > INTERPRETER_SYSTEMS || p->value != round(p->value)) {
         return tokens_at_word(r, FAULT_VALUE, p);
     }
@@ -76,23 +100,24 @@ static enum fault check_axes(const struct program *p, const struct block *b,
 static enum fault set_system(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const struct token *turn = gcode_word(&b->g, 'R'), *l = gcode_word(&b->g, 'L');
-    const bool here = l && l->value == 20.0;
+    const bool here = l && l->value == 20.0 && !b->fanuc;
     int system = 0;
     enum fault f = system_of(in, b, &system, r);
 
     if (f != FAULT_NONE) {
         return f;
     }
-    if (here && turn) {
+    if (l->value == 20.0 && turn) {
         return tokens_at_word(r, FAULT_UNUSED, turn);
     }
     if (turn) {
         in->words.turn[system] = turn->value;
     }
-    double program[AXES], place[AXES];
+    double now[AXES], program[AXES], place[AXES];
     const int32_t force = in->system;
     in->system = system;                    /* for the coordinates in it */
-    frame_program(in, in->point, program);
+    frame_here(in, now);
+    frame_program(in, now, program);
     for (int i = 0; i < AXES; i++) {
         const struct token *w = gcode_word(&b->g, BLOCK_AXES[i]);
         program[i] = w ? gcode_value(b, i, w) : program[i];
@@ -101,10 +126,13 @@ static enum fault set_system(struct interpreter *in, const struct block *b, stru
     for (int i = 0; i < AXES; i++) {
         if (gcode_word(&b->g, BLOCK_AXES[i])) {
             double *origin = &in->origin[system][i];
-            *origin = here ? *origin + (in->point[i] - place[i]) : program[i];
+            *origin = here ? *origin + (now[i] - place[i]) : program[i];
         }
     }
     in->system = force;
+    if (system >= INTERPRETER_SYSTEMS + in->more) {
+        in->more = system - INTERPRETER_SYSTEMS + 1;
+    }
     return FAULT_NONE;
 }
 
@@ -117,7 +145,8 @@ static void set_shift(struct interpreter *in, const struct block *b)
         memset(in->shift, 0, sizeof in->shift);
     }
     in->shifted = false;
-    frame_program(in, in->point, program);      /* without the shift */
+    frame_here(in, program);
+    frame_program(in, program, program);        /* without the shift */
     in->shifted = true;
     for (int i = 0; i < AXES; i++) {
         const struct token *w = gcode_word(&b->g, BLOCK_AXES[i]);
@@ -134,14 +163,15 @@ enum fault offsets_change(struct interpreter *in, const struct program *p, const
     const int code = b->g.code[GCODE_NONMODAL];
 
     if (code == 281 || code == 301) {
-        memcpy(in->words.park[code == 301], in->point, sizeof in->point);
+        frame_here(in, in->words.park[code == 301]);
         return FAULT_NONE;
     }
     if (in->words.scaled || in->words.rotated) {
         return tokens_at_word(r, FAULT_FRAME, b->g.by[GCODE_NONMODAL]);
     }
     if (offsets_take_axes(b)) {
-        if (!gcode_first(&b->g, BLOCK_AXES) && !(code == 100 && gcode_word(&b->g, 'R'))) {
+        if (!gcode_first(&b->g, BLOCK_AXES) && !b->g.idle &&
+            !(code == 100 && gcode_word(&b->g, 'R'))) {
             return tokens_at_line(r, FAULT_NO_AXES, &b->tokens);
         }
         const enum fault f = check_axes(p, b, r);
@@ -165,7 +195,22 @@ int offsets_axis(bool angles, int letter)
          : letter >= turned && letter < turned + 3 ? letter - turned + 3 : -1;
 }
 
-bool offsets_parameter(const struct interpreter *in, bool angles, int number, double *value)
+/* Origins of G54.1 as Fanuc's controls number them: the axes in their order, 20 apart. */
+static bool further_parameter(const struct interpreter *in, int number, double *value)
+{
+    const bool all = number >= 14001;
+    const int from = all ? 14001 : 7001, systems = all ? INTERPRETER_MORE : 48;
+    const int system = number >= from ? (number - from) / 20 : -1, axis = (number - from) % 20;
+
+    if (system < 0 || system >= systems || axis >= AXES) {
+        return false;
+    }
+    *value = in->origin[INTERPRETER_SYSTEMS + system][axis];
+    return true;
+}
+
+bool offsets_parameter(const struct interpreter *in, const struct program *p, int number,
+                       double *value)
 {
     static const double NONE[AXES];
     const int block = number >= 5221 ? (number - 5221) / 20 : 0;
@@ -179,10 +224,13 @@ bool offsets_parameter(const struct interpreter *in, bool angles, int number, do
         *value = number == 5220 ? in->system + 1.0 : in->shifted;
         return true;
     }
+    if (p->fanuc && further_parameter(in, number, value)) {
+        return true;
+    }
     if (!row || letter > 9 || (letter == 9 && number < 5221)) {
         return false;
     }
-    const int axis = letter < 9 ? offsets_axis(angles, letter) : -1;
+    const int axis = letter < 9 ? offsets_axis(p->angles, letter) : -1;
     *value = letter == 9 ? in->words.turn[block] : axis < 0 ? NONE[0] : row[axis];
     return true;
 }

@@ -26,15 +26,17 @@ bool offsets_take_axes(const struct block *b);
 enum fault offsets_change(struct interpreter *in, const struct program *p, const struct block *b,
                           struct fault_report *r);
 
-/* System of a code G54 .. G59.3, from 0. */
-int offsets_system(int code);
+/* The code G54 .. G59.3, or G54.1 and its P, of a block comes into force. */
+enum fault offsets_select(struct interpreter *in, const struct block *b, struct fault_report *r);
 
 /* X Y Z A B C U V W of a parameter's nine, from 0, as an axis; -1 if it is none of those here. */
 int offsets_axis(bool angles, int letter);
 
 /* Numbered parameters of these values in mm and degrees: 5161.. G28, 5181.. G30, 5210 whether the
  * shift is in force, 5211.. the shift, 5220 the system, 5221.. origins, 20 apart, and the turn of
- * each behind its nine. False: no such parameter here. */
-bool offsets_parameter(const struct interpreter *in, bool angles, int number, double *value);
+ * each behind its nine; on Fanuc's controls 7001.. and 14001.. origins of G54.1. False: no such
+ * parameter here. */
+bool offsets_parameter(const struct interpreter *in, const struct program *p, int number,
+                       double *value);
 
 #endif

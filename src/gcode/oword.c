@@ -127,13 +127,13 @@ enum fault oword_alone(struct reading *s)
 }
 
 /* Whether a line begins with an O word of this label, and which. */
-static int32_t match(const struct source_line *line, bool block_delete, const char *name,
+static int32_t match(const struct source_line *line, const struct program *p, const char *name,
                      struct oword *o)
 {
     struct fault_report ignored;
     struct reading s = { .text = line->text, .end = line->length, .r = &ignored };
 
-    if (reading_take(&s, '/') && block_delete) {
+    if (reading_take(&s, '/') && p->block_delete) {
         return 0;
     }
     while (reading_digit(reading_peek(&s))) {
@@ -144,15 +144,16 @@ static int32_t match(const struct source_line *line, bool block_delete, const ch
             s.at++;
         }
     }
-    if (!reading_take(&s, 'O') || label(&s, 0, o) != FAULT_NONE || o->computed) {
+    const bool begins = reading_take(&s, 'O') || (p->fanuc && reading_take(&s, ':'));
+    if (!begins || label(&s, 0, o) != FAULT_NONE || o->computed) {
         return 0;
     }
     const int32_t is = kind(&s);
     return is & OWORD_EITHER_SUB || oword_same(o->label, name) ? is : 0;
 }
 
-enum fault oword_seek(const struct program *p, const char *name, int32_t words, int32_t stop,
-                      struct oword_place *place, int32_t *is)
+enum fault oword_seek(const struct program *p, const char *file, const char *name, int32_t words,
+                      int32_t stop, struct oword_place *place, int32_t *is)
 {
     struct fault_report r;
     struct source_line line;
@@ -160,11 +161,11 @@ enum fault oword_seek(const struct program *p, const char *name, int32_t words, 
     for (;;) {
         int64_t next = place->offset;
         struct oword o;
-        const enum fault f = source_read(p->source, &next, &line, &r);
+        const enum fault f = source_read(p->source, file, &next, &line, &r);
         if (f != FAULT_NONE && f != FAULT_LINE_LENGTH) {
             return f;
         }
-        *is = f == FAULT_NONE && line.text ? match(&line, p->block_delete, name, &o) : 0;
+        *is = f == FAULT_NONE && line.text ? match(&line, p, name, &o) : 0;
         if ((*is & words) && oword_same(o.label, name)) {
             return FAULT_NONE;
         }

@@ -30,6 +30,7 @@ struct oword {
 struct oword_place {
     int64_t offset;         /* [byte] of a line */
     int32_t line;           /* lines in front of it */
+    int32_t file;           /* 0 the program; of the files that it calls, from 1 */
 };
 
 /* Whether two labels are one. */
@@ -47,9 +48,10 @@ void oword_label(char label[OWORD_LABEL], int32_t number);
 /* Nothing but a comment may stand in what is left of the line. */
 enum fault oword_alone(struct reading *s);
 
-/* From a place on, the first line with this label and one of these words (bits); *place becomes
- * its own, and *is its word: 0 if there is none in front of one of `stop` with any label. */
-enum fault oword_seek(const struct program *p, const char *label, int32_t words, int32_t stop,
-                      struct oword_place *place, int32_t *is);
+/* From a place on, in a file, the first line with this label and one of these words (bits); *place
+ * becomes its own, and *is its word: 0 if there is none in front of one of `stop` with any
+ * label. */
+enum fault oword_seek(const struct program *p, const char *file, const char *label, int32_t words,
+                      int32_t stop, struct oword_place *place, int32_t *is);
 
 #endif

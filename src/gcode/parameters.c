@@ -8,7 +8,7 @@
 #include "tools.h"
 #include "waiting.h"
 
-_Static_assert(PARAMETERS_NUMBERED <= 2 * 64 * PARAMETERS_PAGE, "a bit for each page");
+_Static_assert(PARAMETERS_PAGE == 64, "a bit of a word for each number");
 
 /* A coordinate of the nine X Y Z A B C U V W, from 0, in the units in force. */
 static double coordinate(const struct interpreter *in, const struct program *p, int32_t letter,
@@ -25,13 +25,19 @@ static bool machine_value(const struct interpreter *in, const struct program *p,
 {
     double point[AXES];
 
+    frame_here(in, point);
     if (n >= 5021 && n <= 5029) {       /* where the axes stand, of the machine */
-        *value = coordinate(in, p, n - 5021, in->point);
+        *value = coordinate(in, p, n - 5021, point);
+    } else if (p->fanuc && ((n >= 5001 && n <= 5006) || (n >= 5041 && n <= 5046))) {
+        frame_program(in, point, point);                /* the axes in their order */
+        *value = point[(n - 1) % 20] / (in->inch && !(p->angles && (n - 1) % 20 >= 3) ? 25.4 : 1.0);
+    } else if (n == 5599) {             /* (DEBUG, ) comments get a note */
+        *value = 1.0 - in->parameters.quiet;
     } else if (n >= 5420 && n <= 5428) {        /* of the program */
-        frame_program(in, in->point, point);
+        frame_program(in, point, point);
         *value = coordinate(in, p, n - 5420, point);
     } else {
-        return offsets_parameter(in, p->angles, n, value) ||
+        return offsets_parameter(in, p, n, value) ||
                tools_parameter(in, p->angles, n, value) ||
                waiting_parameter(in, p->angles, n, value);
     }
@@ -75,7 +81,8 @@ static double feed_of_program(const struct interpreter *in)
     X(_inverse_time, in->words.feed_mode == 930)                                                 \
     X(_units_per_minute, in->words.feed_mode == 940)                                             \
     X(_units_per_rev, in->words.feed_mode == 950)                                                \
-    X(_coord_system, in->system < 6 ? 540 + 10 * in->system : 585 + in->system)                  \
+    X(_coord_system, in->system < 6 ? 540 + 10 * in->system                                      \
+      : in->system < INTERPRETER_SYSTEMS ? 585 + in->system : 541)                           \
     X(_tool_offset, tools_any_length(in))                                                        \
     X(_retract_r_plane, in->cycle.to_r)     X(_retract_old_z, !in->cycle.to_r)                   \
     X(_spindle_rpm_mode, !in->switches.by_radius)                                                \
@@ -93,20 +100,21 @@ static double feed_of_program(const struct interpreter *in)
     X(_current_tool, in->tools.loaded)                                                           \
     X(_current_pocket, pocket_of(in, in->tools.loaded))                                          \
     X(_selected_tool, in->tools.chosen ? in->tools.next : -1)                                    \
-    X(_selected_pocket, in->tools.chosen ? pocket_of(in, in->tools.next) : -1)
+    X(_selected_pocket, in->tools.chosen ? pocket_of(in, in->tools.next) : -1)                   \
+    X(_lathe_diameter_mode, 0)              X(_lathe_radius_mode, 0)                             \
+    X(_remap_level, 0)                      X(_vmajor, 2.9)         X(_vminor, 0)
 
-/* Those of other controllers: of a version, of a lathe, of what is built in there. */
+/* What LinuxCNC has of its own pins and settings. */
 static bool foreign(const char *name)
 {
-    static const char ALL[][PARAMETERS_NAME] = {
-        "_vmajor", "_vminor", "_lathe_diameter_mode", "_lathe_radius_mode", "_remap_level",
-    };
-    bool found = memcmp(name, "_hal[", 5) == 0 || memcmp(name, "_ini[", 5) == 0;
+    return memcmp(name, "_hal[", 5) == 0 || memcmp(name, "_ini[", 5) == 0;
+}
 
-    for (int i = 0; i < (int)(sizeof ALL / sizeof *ALL); i++) {
-        found = found || memcmp(ALL[i], name, PARAMETERS_NAME) == 0;
-    }
-    return found;
+/* The word and the bit that say whether a number has been set. */
+static bool given(const struct parameters *all, int32_t number)
+{
+    const uint32_t i = (uint32_t)(number - 1);
+    return all->given[i / PARAMETERS_PAGE] >> i % PARAMETERS_PAGE & 1;
 }
 
 static bool named_value(const struct interpreter *in, const char *name, double *value)
@@ -149,7 +157,11 @@ enum fault parameters_get(const struct interpreter *in, const struct program *p,
     const struct parameters *all = &in->parameters;
 
     if (which->number >= 1 && which->number <= PARAMETERS_NUMBERED) {
-        *value = all->value[which->number - 1];
+        *value = p->fanuc && !given(all, which->number) ? NAN : all->value[which->number - 1];
+        return FAULT_NONE;
+    }
+    if (which->number == PARAMETERS_ZERO) {
+        *value = NAN;
         return FAULT_NONE;
     }
     if (which->number) {
@@ -172,13 +184,24 @@ enum fault parameters_set(struct interpreter *in, const struct program *p,
     double now;
 
     if (which->number >= 1 && which->number <= PARAMETERS_NUMBERED) {
-        const uint32_t page = (uint32_t)(which->number - 1) / PARAMETERS_PAGE;
-        all->value[which->number - 1] = value;
-        all->set[page / 64] |= UINT64_C(1) << page % 64;
+        const uint32_t i = (uint32_t)(which->number - 1);
+        const uint64_t bit = UINT64_C(1) << i % PARAMETERS_PAGE;
+        uint64_t *const page = &all->given[i / PARAMETERS_PAGE];
+        *page = parameters_vacant(value) ? *page & ~bit : *page | bit;
+        all->value[i] = parameters_number(value);
+        return FAULT_NONE;
+    }
+    value = parameters_number(value);
+    if (which->number == PARAMETERS_ZERO) {
+        return FAULT_FIXED;
+    }
+    if (which->number == 5599) {
+        all->quiet = 1.0 - value;
         return FAULT_NONE;
     }
     if (which->number) {
-        return machine_value(in, p, which->number, &now) ? FAULT_FIXED : FAULT_PARAMETER;
+        return waiting_set(in, p->angles, which->number, value) ? FAULT_NONE
+             : machine_value(in, p, which->number, &now) ? FAULT_FIXED : FAULT_PARAMETER;
     }
     if (named_value(in, which->name, &now) ||
         machine_value(in, p, number_of(which->name), &now)) {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "el_decimal.h"
+
 bool reading_word(struct reading *s, const char *letters)
 {
     const int32_t from = s->at;
@@ -43,17 +45,15 @@ enum fault reading_comment(struct reading *s)
     return FAULT_NONE;
 }
 
-/* Digits make an integer below 2^53, and powers of ten to 10^22 are exact, so the one division
- * gives the nearest double. */
 enum fault reading_number(struct reading *s, int32_t from, double *value, bool *whole)
 {
     const char *const text = s->text;
     const int32_t end = s->end;
-    int64_t mantissa = 0;
-    double scale = 1.0;
+    struct el_decimal d;
     int32_t i = s->at, last = from, digits = 0;
     bool point = false, negative = false, sign = false;
 
+    el_decimal_begin(&d);
     for (; i < end; ++i) {
         const char c = text[i];
         if (reading_blank(c)) {
@@ -66,21 +66,19 @@ enum fault reading_number(struct reading *s, int32_t from, double *value, bool *
             point = true;
         } else if (reading_digit(c)) {
             digits++;
-            if (mantissa > (((int64_t)1 << 53) - 9) / 10 || scale > 1e21) {
+            if (!el_decimal_add(&d, c - '0', point)) {
                 return fault_at(s->r, FAULT_DIGITS, from, i + 1 - from);
             }
-            mantissa = mantissa * 10 + (c - '0');
-            scale *= point ? 10.0 : 1.0;
         } else {
             break;
         }
         last = i;
     }
-    s->at = last + 1;
+    s->at = last < end ? last + 1 : end;        /* where no letter is in front, none is taken */
     if (!digits) {
         return reading_fault(s, FAULT_NUMBER, from);
     }
-    *value = (double)mantissa / scale;
+    *value = el_decimal_value(&d);
     if (negative) {
         *value = -*value;
     }

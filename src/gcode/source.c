@@ -1,14 +1,18 @@
 #include "source.h"
 
 #include <stddef.h>
+#include <string.h>
+
+enum { BOM = 3 };       /* [byte] of the mark with which some editors begin UTF-8 */
 
 /* Leave a line behind that is too long. */
-static enum fault leave(const struct source *s, int64_t *offset, struct fault_report *r)
+static enum fault leave(const struct source *s, const char *file, int64_t *offset,
+                        struct fault_report *r)
 {
     const char *text;
 
     for (;;) {
-        const int64_t there = s->look(s->context, *offset, &text);
+        const int64_t there = s->look(s->context, file, *offset, &text);
         if (there < 0) {
             return fault_at(r, FAULT_READ, 0, 0);
         }
@@ -25,15 +29,20 @@ static enum fault leave(const struct source *s, int64_t *offset, struct fault_re
     }
 }
 
-enum fault source_read(const struct source *s, int64_t *offset, struct source_line *line,
-                       struct fault_report *r)
+enum fault source_read(const struct source *s, const char *file, int64_t *offset,
+                       struct source_line *line, struct fault_report *r)
 {
     const char *text = NULL;
-    const int64_t there = s->look(s->context, *offset, &text);
+    const int64_t there = s->look(s->context, file, *offset, &text);
     const int64_t window = there < SOURCE_WINDOW ? there : SOURCE_WINDOW;
     int32_t n = 0;
 
+    if (*offset == 0 && there >= BOM && memcmp(text, "\xEF\xBB\xBF", BOM) == 0) {
+        *offset = BOM;
+        return source_read(s, file, offset, line, r);
+    }
     r->offset = *offset;
+    memcpy(r->file, file, FAULT_FILE);
     if (there < 0) {
         return fault_at(r, FAULT_READ, 0, 0);
     }
@@ -50,12 +59,32 @@ enum fault source_read(const struct source *s, int64_t *offset, struct source_li
         return FAULT_NONE;
     }
     return n < window ? fault_at(r, FAULT_LINE_LENGTH, 0, SOURCE_LINE_MAX)
-                      : leave(s, offset, r);
+                      : leave(s, file, offset, r);
 }
 
-static int64_t look(void *context, int64_t offset, const char **text)
+bool source_name(const char *file)
+{
+    bool may = file[0] != '\0';
+
+    for (const char *c = file; *c; c++) {
+        may = may && ((*c >= 'a' && *c <= 'z') || (*c >= '0' && *c <= '9') || *c == '-' ||
+                      *c == '_');
+    }
+    return may;
+}
+
+bool source_has(const struct source *s, const char *file)
+{
+    const char *text;
+    return source_name(file) && s->look(s->context, file, 0, &text) != SOURCE_NONE;
+}
+
+static int64_t look(void *context, const char *file, int64_t offset, const char **text)
 {
     const struct source_text *t = context;
+    if (file[0]) {
+        return SOURCE_NONE;
+    }
     *text = t->text + offset;
     return t->length - offset;
 }

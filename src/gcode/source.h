@@ -1,4 +1,5 @@
-/* source - where the text of a part program comes from; the core asks for it line by line.
+/* source - where the text of a part program comes from, and that of files which it calls; the core
+ * asks for it line by line.
  *
  * A source is an argument of the calls that read and is kept by none of them. The place of the next
  * line is an offset in the state, so a program of any length streams through a buffer of fixed
@@ -11,14 +12,16 @@
 
 enum {
     SOURCE_LINE_MAX = 256,                  /* [characters] of a line without CR LF */
-    SOURCE_WINDOW = SOURCE_LINE_MAX + 2     /* [byte] enough to see whether a line is too long */
+    SOURCE_WINDOW = SOURCE_LINE_MAX + 2,    /* [byte] enough to see whether a line is too long */
+    SOURCE_NONE = -2                        /* there is no such file */
 };
 
 struct source {
-    /* Point *text at the bytes from an offset of the program on; they stay until the next call.
+    /* Point *text at the bytes from an offset of the program on (file is empty), or of a file that
+     * it calls by a name (file: small letters, digits, - and _); they stay until the next call.
      * Returns how many there are: SOURCE_WINDOW or more; fewer only in front of the end of the
-     * program, 0 at it; -1 if the program cannot be read. */
-    int64_t (*look)(void *context, int64_t offset, const char **text);
+     * text, 0 at it; -1 if it cannot be read; SOURCE_NONE. */
+    int64_t (*look)(void *context, const char *file, int64_t offset, const char **text);
     void *context;
 };
 
@@ -27,11 +30,16 @@ struct source_line {
     int32_t length;         /* [byte] */
 };
 
-/* Read the line at *offset and move *offset behind its end. */
-enum fault source_read(const struct source *s, int64_t *offset, struct source_line *line,
-                       struct fault_report *r);
+/* Read the line at *offset of a file and move *offset behind its end. A mark of UTF-8 in front of
+ * the first line is not of it. */
+enum fault source_read(const struct source *s, const char *file, int64_t *offset,
+                       struct source_line *line, struct fault_report *r);
 
-/* A program that stands in memory. */
+/* Whether a name may be that of a file that is called; and there is one. */
+bool source_name(const char *file);
+bool source_has(const struct source *s, const char *file);
+
+/* A program that stands in memory and calls no files. */
 struct source_text {
     const char *text;
     int64_t length;         /* [byte] */

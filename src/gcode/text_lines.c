@@ -1,21 +1,7 @@
 #include "text_lines.h"
 
-#include <string.h>
-
 #include "flow.h"
 #include "macro.h"
-
-enum { BOM = 3 };       /* [byte] of the mark with which some editors begin UTF-8 */
-
-static struct reading reading_of(const struct interpreter *in, const struct program *p,
-                                 const struct source_line *line, struct fault_report *r)
-{
-    const bool marked = in->line == 1 && line->length >= BOM &&
-                        !memcmp(line->text, "\xEF\xBB\xBF", BOM);
-
-    return (struct reading){ .text = line->text, .at = marked ? BOM : 0, .end = line->length,
-                             .in = in, .program = p, .r = r };
-}
 
 /* What the line sets takes effect now that all of it has been read. */
 static enum fault set(struct interpreter *in, const struct program *p, const struct tokens *t,
@@ -23,6 +9,9 @@ static enum fault set(struct interpreter *in, const struct program *p, const str
 {
     for (int i = 0; i < t->settings; i++) {
         const struct setting *s = &t->setting[i];
+        if (p->fanuc && s->which.number == PARAMETERS_ALARM) {      /* with its message */
+            return fault_at(r, FAULT_ALARM, s->at, t->at + t->length - s->at);
+        }
         const enum fault f = parameters_set(in, p, &s->which, s->value);
         if (f != FAULT_NONE) {
             return fault_at(r, f, s->at, s->length);
@@ -33,9 +22,18 @@ static enum fault set(struct interpreter *in, const struct program *p, const str
 
 /* Words and settings of a line that is neither passed over nor an O word's. */
 static enum fault words(struct interpreter *in, const struct program *p, struct tokens *t,
-                        enum fault f, struct fault_report *r)
+                        struct oword_place here, enum fault f, struct fault_report *r)
 {
     struct fault_report ignored;
+    const bool called = in->flow.rest;
+
+    in->flow.rest = false;
+    if (f == FAULT_NONE && !called && macro_user(t)) {
+        in->flow.begun = true;
+        f = macro_call_user(in, p, t, here, r);
+        t->count = 0;
+        return f;
+    }
     const enum fault g = t->settings ? set(in, p, t, f == FAULT_NONE ? r : &ignored) : FAULT_NONE;
 
     f = f == FAULT_NONE ? g : f;
@@ -47,23 +45,41 @@ static enum fault words(struct interpreter *in, const struct program *p, struct 
     return f;
 }
 
+/* A line with IF, GOTO, WHILE, DO or END; behind THEN parameters are set, nothing else. */
+static enum fault fanuc(struct interpreter *in, const struct program *p, struct tokens *t,
+                        struct reading *s, struct oword_place here)
+{
+    bool then;
+    enum fault f = flow_fanuc(in, s, here, &then);
+
+    if (f != FAULT_NONE || !then) {
+        return f;
+    }
+    f = tokens_read(t, s);
+    if (f == FAULT_NONE && (t->count > 0 || t->settings == 0 || t->flow)) {
+        f = tokens_at_line(s->r, FAULT_O_BEHIND, t);
+    }
+    t->count = 0;
+    return f == FAULT_NONE ? set(in, p, t, s->r) : f;
+}
+
 enum fault lines_next(struct interpreter *in, const struct program *p, struct tokens *t,
                       struct fault_report *r)
 {
-    const struct oword_place here = { in->offset, in->line };
+    const struct oword_place here = { in->offset, in->line, in->file };
     struct source_line line;
-    enum fault f = source_read(p->source, &in->offset, &line, r);
+    enum fault f = source_read(p->source, flow_file(in, in->file), &in->offset, &line, r);
 
     t->count = 0;
     if (f == FAULT_NONE && !line.text) {
-        in->ended = true;
+        in->ended = true;       /* of a file, too: what was called has no end */
         return flow_end(in, p, r);
     }
     r->line = ++in->line;
     if (f != FAULT_NONE) {
         return f;
     }
-    struct reading s = reading_of(in, p, &line, r);
+    struct reading s = { .text = line.text, .end = line.length, .in = in, .program = p, .r = r };
     f = tokens_read(t, &s);
     if (t->slash && p->block_delete) {
         t->count = 0;           /* whatever stands behind it */
@@ -76,7 +92,7 @@ enum fault lines_next(struct interpreter *in, const struct program *p, struct to
     }
     if (f == FAULT_NONE && t->flow) {
         t->count = 0;
-        return flow_line(in, &s, here);
+        return flow_fanuc_begins(s) ? fanuc(in, p, t, &s, here) : flow_line(in, &s, here);
     }
-    return words(in, p, t, f, r);
+    return words(in, p, t, here, f, r);
 }

@@ -22,7 +22,8 @@ static enum fault setting(struct tokens *t, struct reading *s)
     if (!reading_take(s, '=')) {
         return reading_fault(s, FAULT_ASSIGNMENT, from);
     }
-    f = expression_value(s, from, &to->value, &whole);
+    f = s->program && s->program->fanuc ? expression_bare(s, &to->value)
+                                        : expression_value(s, from, &to->value, &whole);
     if (f == FAULT_NONE) {
         to->at = from;
         to->length = s->at - from;
@@ -39,13 +40,13 @@ static enum fault word(struct tokens *t, struct reading *s, char letter)
     struct token *w = &t->word[t->count];
     w->letter = letter;
     w->at = s->at++;
-    const enum fault f = expression_value(s, w->at, &w->value, &w->whole);
+    const enum fault f = expression_or_vacant(s, w->at, &w->value, &w->whole);
     w->length = s->at - w->at;
     if (f == FAULT_NONE && w->whole && s->program && s->program->least_increment > 0.0 &&
-        strchr("XYZUVWABCIJKRQ", letter)) {
+        strchr("XYZUVWABCIJKRQ[]", letter)) {
         w->value *= s->program->least_increment;
     }
-    t->count += f == FAULT_NONE;
+    t->count += f == FAULT_NONE && !parameters_vacant(w->value);    /* else as if not there */
     return f;
 }
 
@@ -59,6 +60,9 @@ static bool acts(struct reading s)
 
     while (i < sizeof words / sizeof *words && !reading_word(&s, words[i])) {
         i++;
+    }
+    if (i == 1 && s.in && s.in->parameters.quiet >= 1.0) {
+        return false;           /* #5599 is 0 or less */
     }
     return i < sizeof words / sizeof *words;
 }
@@ -96,6 +100,25 @@ static void block_delete(struct tokens *t, struct reading *s)
     }
 }
 
+/* ,C or ,R of Fanuc's controls. */
+static enum fault corner_word(struct tokens *t, struct reading *s)
+{
+    const int32_t from = s->at++;
+    const char c = reading_peek(s);
+    const int count = t->count;
+
+    if (c != 'C' && c != 'R') {
+        s->at += s->at < s->end;
+        return reading_fault(s, FAULT_WORD, from);
+    }
+    const enum fault f = word(t, s, c == 'C' ? TOKENS_CHAMFER : TOKENS_ROUND);
+    if (t->count > count) {
+        t->word[count].length += t->word[count].at - from;
+        t->word[count].at = from;
+    }
+    return f;
+}
+
 /* The next word, setting or comment that begins with c. */
 static enum fault item(struct tokens *t, struct reading *s, char c)
 {
@@ -107,6 +130,9 @@ static enum fault item(struct tokens *t, struct reading *s, char c)
     }
     if (c == '#') {
         return setting(t, s);
+    }
+    if (c == ',' && s->program && s->program->fanuc) {
+        return corner_word(t, s);
     }
     return fault_at(s->r, FAULT_CHARACTER, s->at++, 1);
 }
@@ -130,6 +156,7 @@ static void skip(struct reading *s, int32_t from)
 enum fault tokens_read(struct tokens *t, struct reading *s)
 {
     struct fault_report ignored, *const r = s->r;
+    const bool fanuc = s->program && s->program->fanuc;
     enum fault f = FAULT_NONE;
     int32_t end = s->end;
 
@@ -150,7 +177,8 @@ enum fault tokens_read(struct tokens *t, struct reading *s)
     block_delete(t, s);
     for (char c = reading_peek(s); c != '\0' && c != ';'; c = reading_peek(s)) {
         const int32_t from = s->at;
-        if (c == 'O' && first(t)) {
+        const bool other = fanuc && (c == ':' || flow_fanuc_begins(*s));    /* : as ISO has it */
+        if ((c == 'O' || other) && first(t)) {
             t->flow = true;
             break;
         }

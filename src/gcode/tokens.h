@@ -8,16 +8,19 @@
 
 #include "reading.h"
 
-enum { TOKENS_WORDS_MAX = 40 };
+enum {
+    TOKENS_WORDS_MAX = 40,
+    TOKENS_CHAMFER = '[', TOKENS_ROUND = ']'    /* letters of the words ,C and ,R */
+};
 
 struct token {
-    char    letter;         /* 'A'..'Z', '@', '^' */
+    char    letter;         /* 'A'..'Z', '@', '^', TOKENS_CHAMFER, TOKENS_ROUND */
     bool    whole;          /* a number without a decimal point */
     int32_t at, length;     /* where it stands in the line */
     double  value;
 };
 
-/* #1 = 5: takes effect when the whole line has been read. */
+/* #1 = 5: takes effect when the whole line has been read. The value may be vacant. */
 struct setting {
     struct parameter which;
     double  value;
@@ -30,7 +33,7 @@ struct tokens {
     int     count, settings;
     bool    percent;        /* the line is a % */
     bool    slash;          /* it begins with a /; noted before any fault behind it */
-    bool    flow;           /* it goes on with an O word, where the reading stopped */
+    bool    flow;           /* where the reading stopped stands an O word, or GOTO .. END */
     int32_t at, length;     /* the line without blanks at its ends */
 };
 

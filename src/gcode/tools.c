@@ -151,7 +151,8 @@ bool tools_measured(const struct block *b)
 /* Offset of an axis from program coordinates that are wanted: as they are (L1); that makes the
  * place where the axes stand these, in the frame in force (L10) or by the origin of G59.3 alone
  * (L11). */
-static double measured(const struct interpreter *in, double l, int axis, const double wanted[AXES])
+static double measured(const struct interpreter *in, double l, int axis, const double here[AXES],
+                       const double wanted[AXES])
 {
     double machine[AXES];
 
@@ -159,10 +160,10 @@ static double measured(const struct interpreter *in, double l, int axis, const d
         return wanted[axis];
     }
     if (l == 11.0) {
-        return in->point[axis] - in->origin[INTERPRETER_SYSTEMS - 1][axis] - wanted[axis];
+        return here[axis] - in->origin[INTERPRETER_SYSTEMS - 1][axis] - wanted[axis];
     }
     frame_machine(in, wanted, machine);
-    return in->point[axis] - machine[axis] + tools_length(in, axis);
+    return here[axis] - machine[axis] + tools_length(in, axis);
 }
 
 enum fault tools_measure(struct interpreter *in, const struct program *p, const struct block *b,
@@ -182,8 +183,9 @@ enum fault tools_measure(struct interpreter *in, const struct program *p, const 
     if (!entry) {
         return tokens_at_word(r, FAULT_TOOL, w);
     }
-    double wanted[AXES];
-    frame_program(in, in->point, wanted);
+    double here[AXES], wanted[AXES];
+    frame_here(in, here);
+    frame_program(in, here, wanted);
     for (int i = 0; i < AXES; i++) {
         const struct token *x = gcode_word(&b->g, BLOCK_AXES[i]);
         if (x && !p->machine.axis[i]) {
@@ -193,7 +195,7 @@ enum fault tools_measure(struct interpreter *in, const struct program *p, const 
     }
     for (int i = 0; i < AXES; i++) {
         if (gcode_word(&b->g, BLOCK_AXES[i])) {
-            entry->offset[i] = measured(in, level(b), i, wanted);
+            entry->offset[i] = measured(in, level(b), i, here, wanted);
         }
     }
     entry->diameter = radius ? 2.0 * radius->value * b->scale : entry->diameter;

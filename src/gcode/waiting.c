@@ -74,7 +74,7 @@ void waiting_probed(struct interpreter *in, const double contact[AXES], const do
                     bool touched)
 {
     in->waits = false;
-    in->touched = touched;
+    in->touched = touched ? 1.0 : 0.0;
     frame_program(in, contact, in->contact);
     memcpy(in->point, rest, sizeof in->point);
 }
@@ -90,6 +90,20 @@ bool waiting_parameter(const struct interpreter *in, bool angles, int number, do
     }
     const int axis = offsets_axis(angles, number - 5061);
     *value = axis < 0 ? 0.0 : in->contact[axis];
+    return true;
+}
+
+bool waiting_set(struct interpreter *in, bool angles, int number, double value)
+{
+    if (number < 5061 || number > 5070) {
+        return false;
+    }
+    const int axis = number < 5070 ? offsets_axis(angles, number - 5061) : -1;
+    if (axis >= 0) {
+        in->contact[axis] = value;
+    } else if (number == 5070) {
+        in->touched = value;
+    }
     return true;
 }
 

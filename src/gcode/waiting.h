@@ -40,6 +40,9 @@ void waiting_pass(struct interpreter *in);
  * the input. False: no such parameter here. */
 bool waiting_parameter(const struct interpreter *in, bool angles, int number, double *value);
 
+/* Set one of them but the input: a program prepares a loop of probing. False: it is none. */
+bool waiting_set(struct interpreter *in, bool angles, int number, double value);
+
 /* Whether the input has done what is waited for; *was is its value at the look before. */
 bool waiting_done(const struct waiting *w, double is, double was);
 

@@ -8,7 +8,9 @@
 #include "axis_count.h"
 
 enum {
-    INTERPRETER_SYSTEMS = 9     /* G54 .. G59, G59.1, G59.2, G59.3 */
+    INTERPRETER_SYSTEMS = 9,    /* G54 .. G59, G59.1, G59.2, G59.3 */
+    INTERPRETER_MORE = 99,      /* G54.1 P1 .. */
+    INTERPRETER_ALL = INTERPRETER_SYSTEMS + INTERPRETER_MORE
 };
 
 struct words {

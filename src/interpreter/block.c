@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cutter.h"
+#include "el_extremes.h"
 #include "feed.h"
 #include "frame.h"
 #include "spline.h"
@@ -15,11 +16,27 @@ static const int TURNS_MAX = 10000;         /* P of an arc */
 static const struct path_tolerance POSTED = { 0.0283, 1e-3 };
 static const double COARSER = 2.54;         /* the last decimal in inch against that in mm */
 
+struct kept_line block_line(const struct interpreter *in, const struct block *b,
+                            const struct fault_report *r)
+{
+    return (struct kept_line){ .offset = r->offset, .file = in->file, .line = in->line,
+                               .at = b->tokens.at, .length = b->tokens.length };
+}
+
+enum fault block_at_line(const struct interpreter *in, const struct kept_line *l, enum fault f,
+                         struct fault_report *r)
+{
+    r->line = l->line;
+    r->offset = l->offset;
+    memcpy(r->file, flow_file(in, l->file), FAULT_FILE);
+    return fault_at(r, f, l->at, l->length);
+}
+
 struct command *block_command(struct interpreter *in)
 {
     struct command *c = &in->made[in->count];
     memset(c, 0, sizeof *c);
-    c->line = in->line;
+    c->line = flow_line_shown(in);
     return c;
 }
 
@@ -58,6 +75,32 @@ enum fault block_refusal(enum command_status s, const struct command_refusal *wh
          : s == COMMAND_OUTSIDE ? FAULT_TRAVEL : FAULT_NONE;
 }
 
+enum command_status block_move(struct command *c, const struct program *p, enum command_type type,
+                               double feed, struct command_refusal *why, struct fault_report *r)
+{
+    const enum command_status s = command_move(c, &p->machine, &p->limits, type, feed, why);
+
+    if (s != COMMAND_FAST || p->strict_feed) {
+        return s;
+    }
+    fault_note(r, FAULT_NOTE_FEED, r->at, r->length);
+    return command_move(c, &p->machine, &p->limits, type, why->feed, why);
+}
+
+enum fault block_complete(struct command *c, const struct program *p, struct fault_report *r)
+{
+    struct command_refusal why;
+    enum command_status s = COMMAND_OK;
+
+    if (c->type == COMMAND_PTP) {
+        s = command_ptp(c, &p->machine, &p->limits, &why);
+    } else if (command_lasts(c) && c->type != COMMAND_DELAY) {
+        s = block_move(c, p, c->path.arc ? command_arc_type(&c->path) : COMMAND_LINE, c->feed, &why,
+                       r);
+    }
+    return block_refusal(s, &why, r);
+}
+
 /* How an arc of the program is one of the machine. */
 struct shape {
     double ratio;       /* of the radius */
@@ -71,10 +114,11 @@ static enum fault arc_centre(const struct interpreter *in, const struct block *b
 {
     const int axis[2] = { path_first(in->plane), path_second(in->plane) };
     const struct token *radius = gcode_word(&b->g, 'R');
-    const struct token *any = gcode_first(&b->g, CENTRE_LETTERS);
+    const char letters[3] = { CENTRE_LETTERS[axis[0]], CENTRE_LETTERS[axis[1]] };
+    const struct token *any = gcode_first(&b->g, letters);
     const struct token *normal = gcode_word(&b->g, CENTRE_LETTERS[in->plane]);
 
-    if (normal) {
+    if (normal && normal->value != 0.0) {       /* posts write K0 in XY */
         return tokens_at_word(r, FAULT_UNUSED, normal);
     }
     if (radius && any) {
@@ -155,7 +199,7 @@ enum fault block_motion(struct interpreter *in, const struct program *p, const s
     }
     double feed = 0.0;
     if (in->motion != 0) {
-        f = feed_of(in, p, b, c->path.length, &feed, r);
+        f = feed_of(in, p, b, c->path.length, false, &feed, r);
     }
     if (f != FAULT_NONE) {
         return f;
@@ -177,14 +221,15 @@ enum fault block_motion(struct interpreter *in, const struct program *p, const s
     } else {
         const enum command_type type = c->path.arc ? command_arc_type(&c->path)
                                      : c->path.cubic ? COMMAND_CUBIC : COMMAND_LINE;
-        s = command_move(c, &p->machine, &p->limits, type, feed, &why);
+        tokens_at_line(r, FAULT_NONE, &b->tokens);
+        s = block_move(c, p, type, feed, &why, r);
     }
     accept(in, c);
     return tokens_at_line(r, block_refusal(s, &why, r), &b->tokens);
 }
 
 enum fault block_straight(struct interpreter *in, const struct program *p, const double end[AXES],
-                          double feed, struct fault_report *r)
+                          double feed, bool exact, struct fault_report *r)
 {
     struct command *c = block_command(in);
 
@@ -195,8 +240,33 @@ enum fault block_straight(struct interpreter *in, const struct program *p, const
     }
     struct command_refusal why;
     const enum command_status s =
-        feed > 0.0 ? command_move(c, &p->machine, &p->limits, COMMAND_LINE, feed, &why)
-                   : command_ptp(c, &p->machine, &p->limits, &why);
+        feed == 0.0 ? command_ptp(c, &p->machine, &p->limits, &why)
+        : exact ? command_move(c, &p->machine, &p->limits, COMMAND_LINE, feed, &why)
+                : block_move(c, p, COMMAND_LINE, feed, &why, r);
+    accept(in, c);
+    return block_refusal(s, &why, r);
+}
+
+enum fault block_curve(struct interpreter *in, const struct program *p, const double end[AXES],
+                       const double inner[2][3], double feed, double joined,
+                       struct fault_report *r)
+{
+    struct command *c = block_command(in);
+    struct command_refusal why;
+
+    if (!inner) {
+        path_line(&c->path, in->point, end);
+    } else if (path_cubic(&c->path, in->point, end, inner) != PATH_OK) {
+        return FAULT_CUSP;
+    }
+    if (c->path.length == 0.0) {
+        return FAULT_NONE;
+    }
+    c->tolerance = el_max(in->tolerance, joined);
+    c->merge = el_max(in->merge, joined);
+    c->blend = c->curve = true;
+    const enum command_type type = c->path.cubic ? COMMAND_CUBIC : COMMAND_LINE;
+    const enum command_status s = block_move(c, p, type, feed, &why, r);
     accept(in, c);
     return block_refusal(s, &why, r);
 }
@@ -204,13 +274,13 @@ enum fault block_straight(struct interpreter *in, const struct program *p, const
 static enum fault rapid(struct interpreter *in, const struct program *p, const struct block *b,
                         const double end[AXES], struct fault_report *r)
 {
-    return tokens_at_line(r, block_straight(in, p, end, 0.0, r), &b->tokens);
+    return tokens_at_line(r, block_straight(in, p, end, 0.0, false, r), &b->tokens);
 }
 
 enum fault block_home(struct interpreter *in, const struct program *p, const struct block *b,
                       struct fault_report *r)
 {
-    const bool all = !gcode_first(&b->g, BLOCK_AXES);
+    const bool all = !gcode_first(&b->g, BLOCK_AXES) && !b->g.idle;
     double via[AXES], home[AXES];
     const double *park = in->words.park[b->g.code[GCODE_NONMODAL] == 300];
     enum fault f = frame_end(in, p, b, via, r);
@@ -226,8 +296,15 @@ enum fault block_home(struct interpreter *in, const struct program *p, const str
     return f != FAULT_NONE ? f : rapid(in, p, b, home, r);
 }
 
-/* [s] of a word of G4; Fanuc's controls count ms without a point. */
-static double dwell_of(const struct program *p, const struct token *w)
+bool block_moves(const struct block *b)
+{
+    const int code = b->g.code[GCODE_MOTION];
+
+    return gcode_first(&b->g, BLOCK_AXES "@^") ||
+           (code != GCODE_ABSENT && code != GCODE_NO_MOTION);
+}
+
+double block_seconds(const struct program *p, const struct token *w)
 {
     const bool scaled = p->least_increment > 0.0 && w->letter != 'P';
     return !p->fanuc || !w->whole ? w->value
@@ -237,11 +314,16 @@ static double dwell_of(const struct program *p, const struct token *w)
 enum fault block_dwell(struct interpreter *in, const struct program *p, const struct block *b,
                        struct fault_report *r)
 {
-    const struct token *wait = gcode_word(&b->g, 'P'), *extra = gcode_first(&b->g, "IJKR");
+    const struct token *wait = gcode_word(&b->g, 'P'), *extra = NULL;
 
-    wait = !wait && p->fanuc ? gcode_first(&b->g, "XU") : wait;
-    for (const char *c = BLOCK_AXES; *c && !extra; c++) {
-        extra = gcode_word(&b->g, *c) != wait ? gcode_word(&b->g, *c) : NULL;
+    if (!wait && p->fanuc) {
+        wait = gcode_first(&b->g, "XU");
+        for (const char *c = BLOCK_AXES; *c && !extra; c++) {
+            extra = gcode_word(&b->g, *c) != wait ? gcode_word(&b->g, *c) : NULL;
+        }
+    }
+    if (!block_moves(b)) {
+        extra = extra ? extra : gcode_first(&b->g, "IJKR");
     }
     if (extra) {
         return tokens_at_word(r, FAULT_UNUSED, extra);
@@ -249,7 +331,7 @@ enum fault block_dwell(struct interpreter *in, const struct program *p, const st
     if (!wait) {
         return tokens_at_line(r, FAULT_NO_DWELL, &b->tokens);
     }
-    const double seconds = dwell_of(p, wait);
+    const double seconds = block_seconds(p, wait);
     if (seconds < 0.0 || seconds > BLOCK_DWELL_MAX) {
         return tokens_at_word(r, FAULT_VALUE, wait);
     }

@@ -15,6 +15,10 @@ static const double SHORT = 1e-9;
  * than its square over eight radii. [mm] */
 static const double SMOOTH = 1e-5;
 
+/* Concave corners below this angle are what rounding makes of a smooth contour. The tool may go
+ * back in them, into the contour by less than 1.3e-5 of its radius. [rad] */
+static const double SLIGHT = 0.01;
+
 /* Nearer to half a turn than this angle is a way back. [rad] */
 static const double BACK = 1e-6;
 
@@ -182,14 +186,15 @@ enum contour_corner contour_corner(const struct contour *a, const struct contour
         return CONTOUR_DEEP;
     }
     memcpy(to, from, 2 * sizeof *to);
-    return CONTOUR_JOINED;
+    return fabs(angle) < SLIGHT ? CONTOUR_JOINED : CONTOUR_CONCAVE;
 }
 
 bool contour_path(const struct contour *s, const struct path *along, enum path_plane plane,
-                  const double from[2], const double to[2], struct path *path)
+                  const double from[2], const double to[2], bool back, struct path *path)
 {
     const int a = path_first(plane), b = path_second(plane);
     const double way[2] = { to[0] - from[0], to[1] - from[1] };
+    const bool any = back && el_hypot(way[0], way[1]) > SHORT;
     double start[AXES], end[AXES], miss;
 
     memcpy(start, along->start, sizeof start);
@@ -200,11 +205,15 @@ bool contour_path(const struct contour *s, const struct path *along, enum path_p
     end[b] = to[1];
     if (s->turn == 0.0) {
         path_line(path, start, end);
-        return cross(way, s->first) > SHORT;
+        return any || cross(way, s->first) > SHORT;
     }
     /* The arc of the contour, less what the corners take at its ends. */
     const double sweep = fabs(along->sweep) - angle_along(s, s->start, from) -
                          angle_along(s, to, s->end);
+    if (any && sweep <= 0.0) {
+        path_line(path, start, end);
+        return true;
+    }
     if (path_arc(path, plane, start, end, s->centre, s->turn > 0.0, 1, &miss) != PATH_OK) {
         return false;
     }

@@ -18,7 +18,8 @@ struct contour {
 };
 
 enum contour_corner {
-    CONTOUR_JOINED,     /* the centre goes from one motion straight to the next */
+    CONTOUR_JOINED,     /* the centre goes from one motion straight to the next: slight corner */
+    CONTOUR_CONCAVE,    /* the same, and both are shorter than the contour */
     CONTOUR_CONVEX,     /* it turns about the corner */
     CONTOUR_BACK,       /* the contour turns back on itself */
     CONTOUR_DEEP        /* the tool does not fit into the corner */
@@ -38,9 +39,9 @@ enum contour_corner contour_corner(const struct contour *a, const struct contour
                                    double from[2], double to[2]);
 
 /* The path of the centre between two places, the other axes as in `along`. False: nothing is left
- * of it, or it would be driven backwards. */
+ * of it, or it would be driven backwards, unless it may lead `back`. */
 bool contour_path(const struct contour *s, const struct path *along, enum path_plane plane,
-                  const double from[2], const double to[2], struct path *path);
+                  const double from[2], const double to[2], bool back, struct path *path);
 
 /* The arc of the centre that begins anywhere and ends at a place as the arc of the contour does. */
 bool contour_entry(const struct contour *s, const struct path *along, enum path_plane plane,

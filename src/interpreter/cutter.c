@@ -28,30 +28,10 @@ static bool in_plane(const struct command *c, enum path_plane plane)
     return c->path.arc || c->path.start[a] != c->path.end[a] || c->path.start[b] != c->path.end[b];
 }
 
-/* Complete a command whose path is that of the tool's centre. */
-static enum fault complete(struct command *c, const struct program *p, struct fault_report *r)
-{
-    struct command_refusal why;
-    enum command_status s = COMMAND_OK;
-
-    if (c->type == COMMAND_PTP) {
-        s = command_ptp(c, &p->machine, &p->limits, &why);
-    } else if (command_lasts(c) && c->type != COMMAND_DELAY) {
-        s = command_move(c, &p->machine, &p->limits,
-                         c->path.arc ? command_arc_type(&c->path) : COMMAND_LINE, c->feed, &why);
-    }
-    return block_refusal(s, &why, r);
-}
-
 /* The fault stands in the line of the motion held. */
-static enum fault at_motion(const struct cutter *k, enum fault f, struct fault_report *r)
+static enum fault at_motion(const struct interpreter *in, enum fault f, struct fault_report *r)
 {
-    if (f != FAULT_NONE) {
-        r->line = k->moving.line;
-        r->offset = k->moving.offset;
-        fault_at(r, f, k->moving.at, k->moving.length);
-    }
-    return f;
+    return f != FAULT_NONE ? block_at_line(in, &in->cutter.moving, f, r) : f;
 }
 
 /* The centre goes on from a place that another command had where this one is. */
@@ -67,27 +47,30 @@ static enum fault follow_place(struct command *c, const struct program *p, enum 
     start[path_first(plane)] = end[path_first(plane)] = place[0];
     start[path_second(plane)] = end[path_second(plane)] = place[1];
     path_line(&c->path, start, end);
-    return complete(c, p, r);
+    return block_complete(c, p, r);
 }
 
-/* The motion held ends at a place of the centre; all that is held becomes ready. A fault stands in
- * its line. */
+/* The motion held ends at a place of the centre, in front of a concave corner or not; all that is
+ * held becomes ready. A fault stands in its line. */
 static enum fault end_at(struct interpreter *in, const struct program *p, const double to[2],
-                         struct fault_report *r)
+                         bool concave, struct fault_report *r)
 {
     struct cutter *k = &in->cutter;
+    const bool back = k->enters || !(k->concave || concave);
     struct command *c = held(k, 0);
     const struct path along = c->path;
     struct contour s;
 
-    contour_of(&s, &along, in->plane);
-    if (k->enters && along.arc ? !contour_entry(&s, &along, in->plane, to, &c->path)
-                               : !contour_path(&s, &along, in->plane, k->from, to, &c->path)) {
-        return at_motion(k, k->enters ? FAULT_CUTTER_ENTRY : FAULT_CUTTER_SHORT, r);
+    contour_of(&s, &along, k->plane);
+    const bool found =
+        k->enters && along.arc ? contour_entry(&s, &along, k->plane, to, &c->path)
+                               : contour_path(&s, &along, k->plane, k->from, to, back, &c->path);
+    if (!found) {
+        return at_motion(in, k->enters ? FAULT_CUTTER_ENTRY : FAULT_CUTTER_SHORT, r);
     }
-    enum fault f = at_motion(k, complete(c, p, r), r);
+    enum fault f = at_motion(in, block_complete(c, p, r), r);
     for (int32_t i = 1; i < k->count && f == FAULT_NONE; i++) {
-        f = follow_place(held(k, i), p, in->plane, to, r);
+        f = follow_place(held(k, i), p, k->plane, to, r);
     }
     k->ready = k->count;
     k->moves = k->enters = false;
@@ -100,7 +83,8 @@ static enum fault turn_corner(struct interpreter *in, const struct program *p,
                               const struct command *before, const struct command *next,
                               const double from[2], const double to[2], struct fault_report *r)
 {
-    const int a = path_first(in->plane), b = path_second(in->plane);
+    const enum path_plane plane = in->cutter.plane;
+    const int a = path_first(plane), b = path_second(plane);
     const bool feeds = next->type != COMMAND_PTP;
     const double centre[2] = { next->path.start[a], next->path.start[b] };
     struct command c = feeds ? *next : *before;
@@ -116,11 +100,11 @@ static enum fault turn_corner(struct interpreter *in, const struct program *p,
     c.set = c.clear = 0;
     if (c.type == COMMAND_PTP) {
         path_line(&c.path, start, end);
-    } else if (path_arc(&c.path, in->plane, start, end, centre, in->cutter.edge < 0.0, 1, &miss) !=
+    } else if (path_arc(&c.path, plane, start, end, centre, in->cutter.edge < 0.0, 1, &miss) !=
                PATH_OK) {
         return FAULT_CUTTER_CORNER;
     }
-    const enum fault f = complete(&c, p, r);
+    const enum fault f = block_complete(&c, p, r);
     hold(&in->cutter, &c);
     in->cutter.ready = in->cutter.count;
     return f;
@@ -136,24 +120,25 @@ static enum fault corner(struct interpreter *in, const struct program *p, const 
     struct contour a, b;
     double from[2], to[2];
 
-    contour_of(&a, &before.path, in->plane);
-    contour_of(&b, &c->path, in->plane);
+    contour_of(&a, &before.path, k->plane);
+    contour_of(&b, &c->path, k->plane);
     const enum contour_corner kind = contour_corner(&a, &b, k->edge, from, to);
     if (kind == CONTOUR_BACK || kind == CONTOUR_DEEP) {
         return kind == CONTOUR_BACK ? FAULT_CUTTER_BACK : FAULT_CUTTER_CORNER;
     }
-    if (entry_arc && kind == CONTOUR_JOINED) {
+    if (entry_arc && kind != CONTOUR_CONVEX) {
         contour_beside(&a, true, k->edge, from);    /* smooth, or there is no such arc */
         if (el_hypot(from[0] - to[0], from[1] - to[1]) > 1e-5) {
             return FAULT_CUTTER_ENTRY;
         }
         memcpy(to, from, sizeof to);
     }
-    enum fault f = end_at(in, p, from, r);
+    enum fault f = end_at(in, p, from, kind == CONTOUR_CONCAVE, r);
     if (f == FAULT_NONE && kind == CONTOUR_CONVEX) {
         f = turn_corner(in, p, &before, c, from, to, r);
     }
     memcpy(k->from, to, sizeof k->from);
+    k->concave = kind == CONTOUR_CONCAVE;
     return f;
 }
 
@@ -163,15 +148,15 @@ static enum fault follow(struct interpreter *in, const struct program *p, const 
     struct cutter *k = &in->cutter;
     struct contour s;
 
-    if (!command_lasts(c) || c->type == COMMAND_DELAY || !in_plane(c, in->plane)) {
+    if (!command_lasts(c) || c->type == COMMAND_DELAY || !in_plane(c, k->plane)) {
         if (k->count > CUTTER_HELD - 3) {
             return FAULT_CUTTER_FULL;
         }
         hold(k, c);
         k->ready += !k->moves;
-        return k->moves ? FAULT_NONE : complete(held(k, k->count - 1), p, r);
+        return k->moves ? FAULT_NONE : block_complete(held(k, k->count - 1), p, r);
     }
-    contour_of(&s, &c->path, in->plane);
+    contour_of(&s, &c->path, k->plane);
     if (!contour_fits(&s, k->edge)) {
         r->value = el_min(s.radius[0], s.radius[1]);
         r->limit = fabs(k->edge);
@@ -183,6 +168,7 @@ static enum fault follow(struct interpreter *in, const struct program *p, const 
     } else {
         memcpy(k->from, s.start, sizeof k->from);
         k->enters = true;
+        k->concave = false;
         r->value = el_hypot(s.end[0] - s.start[0], s.end[1] - s.start[1]);
         r->limit = fabs(k->edge);
         f = r->value > r->limit ? FAULT_NONE : FAULT_CUTTER_ENTRY;
@@ -196,7 +182,7 @@ static enum fault follow(struct interpreter *in, const struct program *p, const 
 enum fault cutter_follow(struct interpreter *in, const struct program *p, const struct command *c,
                          struct fault_report *r)
 {
-    fault_at(r, FAULT_NONE, in->cutter.latest.at, in->cutter.latest.length);
+    block_at_line(in, &in->cutter.latest, FAULT_NONE, r);
     return follow(in, p, c, r);
 }
 
@@ -207,12 +193,17 @@ enum fault cutter_end(struct interpreter *in, const struct program *p, struct fa
 
     if (k->moves) {
         struct contour s;
+        double *const a = &in->point[path_first(k->plane)];
+        double *const b = &in->point[path_second(k->plane)];
         double to[2];
-        contour_of(&s, &held(k, 0)->path, in->plane);
+        contour_of(&s, &held(k, 0)->path, k->plane);
         contour_beside(&s, true, k->edge, to);
-        f = end_at(in, p, to, r);
-        in->point[path_first(in->plane)] = to[0];
-        in->point[path_second(in->plane)] = to[1];
+        f = end_at(in, p, to, false, r);
+        k->left[0] = *a;
+        k->left[1] = *b;
+        *a = k->from[0] = to[0];
+        *b = k->from[1] = to[1];
+        k->aside = true;
     }
     k->edge = 0.0;
     k->side = 0;
@@ -240,8 +231,9 @@ void cutter_drop(struct interpreter *in)
 
 bool cutter_damaged(const struct cutter *k)
 {
-    return k->first < 0 || k->first >= CUTTER_HELD || k->count < 0 || k->count > CUTTER_HELD ||
-           k->ready < 0 || k->ready > k->count || (k->moves && k->count == k->ready);
+    return k->plane > PATH_XY || k->first < 0 || k->first >= CUTTER_HELD || k->count < 0 ||
+           k->count > CUTTER_HELD || k->ready < 0 || k->ready > k->count ||
+           (k->moves && k->count == k->ready);
 }
 
 /* The distance of the centre to the left of the contour. */
@@ -306,6 +298,8 @@ enum fault cutter_block(struct interpreter *in, const struct program *p, const s
     const struct token *by = b->g.by[GCODE_CUTTER], *axis = gcode_first(&b->g, "XYZ");
     enum fault f = FAULT_NONE;
 
+    k->aside = k->aside && in->point[path_first(k->plane)] == k->from[0] &&
+               in->point[path_second(k->plane)] == k->from[1];
     if (code == 400) {
         k->straight = k->straight || k->edge != 0.0;
         f = cutter_end(in, p, r);
@@ -329,6 +323,6 @@ enum fault cutter_block(struct interpreter *in, const struct program *p, const s
         return tokens_at_line(r, FAULT_CUTTER_EXIT, &b->tokens);
     }
     k->straight = k->straight && !axis;
-    k->latest = (struct cutter_line){ r->offset, in->line, b->tokens.at, b->tokens.length };
+    k->latest = block_line(in, b, r);
     return FAULT_NONE;
 }

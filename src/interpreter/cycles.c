@@ -28,8 +28,8 @@ static const double SAME = 1e-9;            /* [mm] nearer places are one: round
  *     k feed to K
  */
 static const struct { int code; char steps[14], words[3]; } rows[] = {
-    { 730, "gc<^", "Q" },   { 740, "xdrpUt", "" },  { 810, "d^", "" },      { 820, "dp^", "P" },
-    { 830, "gRc<^", "Q" },  { 840, "xdrpUt", "" },  { 850, "du^", "" },     { 860, "dps^t", "P" },
+    { 730, "gc<p^", "Q" },   { 740, "xdrpUt", "" },  { 810, "d^", "" },      { 820, "dp^", "P" },
+    { 830, "gRc<p^", "Q" },  { 840, "xdrpUt", "" },  { 850, "du^", "" },     { 860, "dps^t", "P" },
     { 870, "isDhtkdsioht", "I" },           { 880, "dps!^t", "P" }, { 890, "dpU", "P" },
 };
 
@@ -56,10 +56,17 @@ static bool taps(int code)
     return code == 740 || code == 840;
 }
 
-/* Whether it takes P, Q, or I J K. */
+static bool pecks(int code)
+{
+    return code == 730 || code == 830;
+}
+
+/* Whether it takes P, Q, or I J K; some may have P, which of these only Fanuc's controls know in
+ * front of pecks. */
 static bool takes(int code, char letter)
 {
-    return strchr(rows[row_of(code)].words, letter) || (letter == 'P' && taps(code));
+    return strchr(rows[row_of(code)].words, letter) ||
+           (letter == 'P' && (taps(code) || pecks(code)));
 }
 
 void cycles_modes(struct interpreter *in, const struct block *b)
@@ -92,7 +99,9 @@ static enum fault go(struct interpreter *in, const struct program *p, const doub
 {
     double end[AXES];
     place_at(in, program, height, end);
-    return block_straight(in, p, end, rapid ? 0.0 : in->cycle.feed, r);
+    const struct cycle *k = &in->cycle;
+    block_at_line(in, &k->line, FAULT_NONE, r);
+    return block_straight(in, p, end, rapid ? 0.0 : k->feed, taps(k->code), r);
 }
 
 /* A word that the cycle keeps: from the block, else *value stays as it was in the series. */
@@ -125,8 +134,8 @@ static enum fault keep_aside(struct interpreter *in, const struct block *b, bool
     return f;
 }
 
-static enum fault keep_words(struct interpreter *in, const struct block *b, bool kept,
-                             struct fault_report *r)
+static enum fault keep_words(struct interpreter *in, const struct program *p,
+                             const struct block *b, bool kept, struct fault_report *r)
 {
     struct cycle *k = &in->cycle;
     const struct token *q = gcode_word(&b->g, 'Q'), *wait = gcode_word(&b->g, 'P');
@@ -141,7 +150,9 @@ static enum fault keep_words(struct interpreter *in, const struct block *b, bool
     }
     if (f == FAULT_NONE && takes(in->motion, 'P')) {
         k->dwell = kept ? k->dwell : 0.0;
-        f = keep(b, kept || taps(in->motion), 'P', 1.0, &k->dwell, FAULT_CYCLE_P, r);
+        f = keep(b, kept || taps(in->motion) || pecks(in->motion), 'P', 1.0, &k->dwell,
+                 FAULT_CYCLE_P, r);
+        k->dwell = wait ? block_seconds(p, wait) : k->dwell;
     }
     if (f == FAULT_NONE && takes(in->motion, 'I')) {
         f = keep_aside(in, b, kept, r);
@@ -159,9 +170,6 @@ static enum fault keep_words(struct interpreter *in, const struct block *b, bool
     if (l && !(l->value >= 1.0 && l->value <= REPEATS_MAX && l->value == round(l->value))) {
         return tokens_at_word(r, FAULT_VALUE, l);
     }
-    if (l && l->value > 1.0 && in->incremental && (in->words.polar || gcode_first(&b->g, "@^"))) {
-        return tokens_at_word(r, FAULT_VALUE, l);   /* the way between the holes would turn */
-    }
     k->repeats = l ? (int32_t)l->value - 1 : 0;
     return FAULT_NONE;
 }
@@ -172,8 +180,7 @@ static enum fault set_places(struct interpreter *in, const struct program *p,
 {
     struct cycle *k = &in->cycle;
     const int n = (int)in->plane;
-    const int plane[2] = { path_first(in->plane), path_second(in->plane) };
-    double here[AXES], end[AXES];
+    double from[AXES], here[AXES], end[AXES];
     const enum fault f = frame_end(in, p, b, end, r);
 
     if (f != FAULT_NONE) {
@@ -182,14 +189,13 @@ static enum fault set_places(struct interpreter *in, const struct program *p,
     if (!p->machine.axis[n]) {
         return tokens_at_line(r, FAULT_AXIS, &b->tokens);
     }
-    frame_program(in, in->point, here);
+    frame_from(in, b, from);
+    frame_program(in, from, here);
     frame_program(in, end, k->hole);
-    for (int i = 0; i < 2; i++) {
-        k->way[i] = in->incremental ? k->hole[plane[i]] - here[plane[i]] : 0.0;
-    }
+    frame_cycle_way(in, b, here, &k->way);
     const double now = here[n];
     k->initial = series ? k->initial : now;
-    k->top = in->incremental ? now + k->r : k->r;
+    k->top = in->incremental ? k->initial + k->r : k->r;
     k->bottom = in->incremental ? k->top + k->depth : k->depth;
     k->clear = k->to_r ? k->top : el_max(k->top, k->initial);
     if (k->top < k->bottom) {
@@ -206,6 +212,7 @@ static enum fault set_places(struct interpreter *in, const struct program *p,
     if (takes(in->motion, 'Q') && k->top - k->bottom > PECKS_MAX * k->peck) {
         return tokens_at_line(r, FAULT_CYCLE_PECKS, &b->tokens);
     }
+    frame_program(in, in->point, here);
     return now < k->top ? tokens_at_line(r, go(in, p, here, k->top, true, r), &b->tokens)
                         : FAULT_NONE;
 }
@@ -228,16 +235,17 @@ enum fault cycles_block(struct interpreter *in, const struct program *p, const s
         return named ? tokens_at_word(r, FAULT_NO_AXES, b->g.by[GCODE_MOTION])
              : extra ? tokens_at_word(r, FAULT_UNUSED, extra) : FAULT_NONE;
     }
-    if ((takes(code, 'I') || (takes(code, 'P') && code != 820 && code != 890)) &&
+    if ((takes(code, 'I') || (takes(code, 'P') && code != 820 && code != 890 && !pecks(code))) &&
         (taps(code) ? turning != (code == 840 ? 1 : -1) : turning == 0)) {
         return tokens_at_line(r, FAULT_CYCLE_SPINDLE, &b->tokens);
     }
     if (in->words.feed_mode == 930) {
         return tokens_at_line(r, FAULT_CYCLE_FEED, &b->tokens);
     }
-    enum fault f = feed_of(in, p, b, 0.0, &k->feed, r);
+    k->line = block_line(in, b, r);
+    enum fault f = feed_of(in, p, b, 0.0, taps(code), &k->feed, r);
     if (f == FAULT_NONE) {
-        f = keep_words(in, b, kept, r);
+        f = keep_words(in, p, b, kept, r);
     }
     if (f == FAULT_NONE) {
         f = set_places(in, p, b, series, r);
@@ -249,9 +257,6 @@ enum fault cycles_block(struct interpreter *in, const struct program *p, const s
     k->turning = in->switches.turning;
     k->overrides = in->switches.overrides;
     k->stop = b->g.code[GCODE_STOP];
-    k->offset = r->offset;
-    k->at = b->tokens.at;
-    k->length = b->tokens.length;
     return f;
 }
 
@@ -343,7 +348,7 @@ static enum fault step(struct interpreter *in, const struct program *p, const ch
 }
 
 /* The hole is made: on to the next one, or the block is done. */
-static void next_hole(struct interpreter *in)
+static enum fault next_hole(struct interpreter *in)
 {
     struct cycle *k = &in->cycle;
 
@@ -351,8 +356,7 @@ static void next_hole(struct interpreter *in)
     k->repeats -= k->running;
     k->step = STEP_HOLE;
     k->pecked = k->top;
-    k->hole[path_first(in->plane)] += k->way[0];
-    k->hole[path_second(in->plane)] += k->way[1];
+    return !k->running || frame_go_on(in, &k->way, k->hole) ? FAULT_NONE : FAULT_POLE;
 }
 
 enum fault cycles_next(struct interpreter *in, const struct program *p, struct fault_report *r)
@@ -362,8 +366,6 @@ enum fault cycles_next(struct interpreter *in, const struct program *p, struct f
     double here[AXES];
     enum fault f = FAULT_NONE;
 
-    r->line = in->line;
-    r->offset = k->offset;
     while (k->running && in->count == 0 && f == FAULT_NONE) {
         in->flow.again += k->repeats > 0;       /* as a line that is read again */
         if (k->step == STEP_HOLE) {
@@ -376,12 +378,12 @@ enum fault cycles_next(struct interpreter *in, const struct program *p, struct f
         } else if (steps[k->step - STEP_FIRST] != '\0') {
             f = step(in, p, steps, r);
         } else {
-            next_hole(in);
+            f = next_hole(in);
         }
     }
     if (f != FAULT_NONE) {
         k->running = false;
-        return fault_at(r, f, k->at, k->length);
+        return block_at_line(in, &k->line, f, r);
     }
     return f;
 }
@@ -389,7 +391,8 @@ enum fault cycles_next(struct interpreter *in, const struct program *p, struct f
 bool cycles_damaged(const struct cycle *k)
 {
     const int row = row_of(k->code), before = k->step - STEP_FIRST - 1;
-    return (k->code != 0 && row < 0) || (k->running && row < 0) || k->step < 0 ||
+    return k->way.polar > CYCLE_POLAR || (k->code != 0 && row < 0) ||
+           (k->running && row < 0) || k->step < 0 ||
            (row >= 0 && before >= 0 &&
             (before >= (int)sizeof rows[row].steps || !rows[row].steps[before])) ||
            k->repeats < 0;

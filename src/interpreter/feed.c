@@ -3,21 +3,27 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "el_extremes.h"
+
 /* So that a path of any length has an end. [mm/s] */
 static const double FEED_MIN = 1e-9;
 
 enum { INVERSE_TIME = 930, PER_MINUTE = 940, PER_TURN = 950 };
 
-static enum fault check(const struct program *p, double feed, const struct token *f,
+/* Above the highest feed is a note, if that may be driven instead, or a fault. */
+static enum fault check(const struct program *p, double feed, bool exact, const struct token *f,
                         const struct tokens *line, struct fault_report *r)
 {
     if (!(feed >= FEED_MIN)) {
         return f ? tokens_at_word(r, FAULT_VALUE, f) : tokens_at_line(r, FAULT_NO_FEED, line);
     }
-    if (feed > p->limits.feed) {
+    if (feed > p->limits.feed && (exact || p->strict_feed)) {
         r->value = feed * 60.0;
         r->limit = p->limits.feed * 60.0;
         return f ? tokens_at_word(r, FAULT_FEED, f) : tokens_at_line(r, FAULT_FEED, line);
+    }
+    if (feed > p->limits.feed) {
+        fault_note(r, FAULT_NOTE_FEED, f ? f->at : line->at, f ? f->length : line->length);
     }
     return FAULT_NONE;
 }
@@ -42,7 +48,7 @@ enum fault feed_set(struct interpreter *in, const struct program *p, const struc
         in->words.per_turn = f->value * b->scale;
     } else if (in->words.feed_mode == PER_MINUTE) {
         const double feed = f->value * b->scale / 60.0;
-        const enum fault fault = check(p, feed, f, &b->tokens, r);
+        const enum fault fault = check(p, feed, false, f, &b->tokens, r);
         in->feed = fault == FAULT_NONE ? feed : in->feed;
         return fault;
     }
@@ -50,14 +56,15 @@ enum fault feed_set(struct interpreter *in, const struct program *p, const struc
 }
 
 enum fault feed_of(const struct interpreter *in, const struct program *p, const struct block *b,
-                   double length, double *feed, struct fault_report *r)
+                   double length, bool exact, double *feed, struct fault_report *r)
 {
     const struct words *w = &in->words;
     const struct token *f = gcode_word(&b->g, 'F');
 
     if (w->feed_mode == PER_MINUTE) {
-        *feed = in->feed;
-        return *feed > 0.0 ? FAULT_NONE : tokens_at_line(r, FAULT_NO_FEED, &b->tokens);
+        *feed = el_min(in->feed, p->limits.feed);
+        return *feed == 0.0 ? tokens_at_line(r, FAULT_NO_FEED, &b->tokens)
+             : exact ? check(p, in->feed, exact, f, &b->tokens, r) : FAULT_NONE;
     }
     if (w->feed_mode == INVERSE_TIME ? !f : w->per_turn == 0.0) {
         return tokens_at_line(r, FAULT_NO_FEED, &b->tokens);
@@ -69,6 +76,8 @@ enum fault feed_of(const struct interpreter *in, const struct program *p, const 
     if (w->feed_mode == PER_TURN && rpm == 0.0) {
         return tokens_at_line(r, FAULT_REST, &b->tokens);
     }
-    *feed = (w->feed_mode == PER_TURN ? w->per_turn * fabs(rpm) : length * f->value) / 60.0;
-    return check(p, *feed, f, &b->tokens, r);
+    const double asked =
+        (w->feed_mode == PER_TURN ? w->per_turn * fabs(rpm) : length * f->value) / 60.0;
+    *feed = el_min(asked, p->limits.feed);
+    return check(p, asked, exact, f, &b->tokens, r);
 }

@@ -10,8 +10,9 @@ enum fault feed_set(struct interpreter *in, const struct program *p, const struc
                     struct fault_report *r);
 
 /* Feed of a motion of the block along a path of a length [mm], into *feed [mm/s]: in G93 its F over
- * the time of all of it, in G95 with the spindle's speed in force. */
+ * the time of all of it, in G95 with the spindle's speed in force; at most the highest feed, if it
+ * need not be `exact`. */
 enum fault feed_of(const struct interpreter *in, const struct program *p, const struct block *b,
-                   double length, double *feed, struct fault_report *r);
+                   double length, bool exact, double *feed, struct fault_report *r);
 
 #endif

@@ -7,9 +7,13 @@
 #include "cycles.h"
 #include "feed.h"
 #include "frame.h"
+#include "nurbs.h"
 #include "offsets.h"
 #include "probing.h"
+#include "rounding.h"
+#include "saved_modes.h"
 #include "switching.h"
+#include "tapping.h"
 #include "text_lines.h"
 #include "tool_change.h"
 #include "tools.h"
@@ -27,7 +31,7 @@ void interpreter_start(struct interpreter *in, const double point[AXES], double 
     in->feed = feed;
     in->words.feed_mode = 940;
     memcpy(in->point, point, sizeof in->point);
-    memcpy(in->origin, origin, sizeof in->origin);
+    memcpy(in->origin, origin, INTERPRETER_SYSTEMS * sizeof *in->origin);
 }
 
 static enum fault set_modes(struct interpreter *in, struct block *b, struct fault_report *r)
@@ -46,7 +50,10 @@ static enum fault set_modes(struct interpreter *in, struct block *b, struct faul
                   : code[GCODE_PLANE] == 180 ? PATH_ZX : PATH_YZ;
     }
     if (code[GCODE_SYSTEM] != GCODE_ABSENT) {
-        in->system = offsets_system(code[GCODE_SYSTEM]);
+        const enum fault f = offsets_select(in, b, r);
+        if (f != FAULT_NONE) {
+            return f;
+        }
     }
     if (code[GCODE_PATH] != GCODE_ABSENT) {
         const struct token *p = gcode_word(&b->g, 'P'), *q = gcode_word(&b->g, 'Q');
@@ -90,6 +97,10 @@ static enum fault move(struct interpreter *in, const struct program *p, const st
     for (const char *c = "RP"; *c && !shape; c++) {     /* unless another code has them */
         shape = uses_of(&b->g, *c) ? NULL : gcode_word(&b->g, *c);
     }
+    if (in->motion == 52 ? axis || code == 52 || gcode_word(&b->g, 'P')
+                         : code == 53 || (in->nurbs.count > 0 && (axis || shape))) {
+        return nurbs_block(in, p, b, r);
+    }
     if (machine && !axis) {
         return tokens_at_line(r, FAULT_NO_AXES, &b->tokens);
     }
@@ -105,8 +116,22 @@ static enum fault move(struct interpreter *in, const struct program *p, const st
     if (probing_asked(b)) {
         return probing_block(in, p, b, r);
     }
+    if (in->motion == 331 && (axis || shape || code == 331)) {
+        return tapping_block(in, p, b, r);
+    }
     const bool alone = gcode_arc(code) || gcode_spline(code);
-    return axis || shape || alone ? block_motion(in, p, b, r) : FAULT_NONE;
+    if (!axis && !shape && !alone) {
+        return FAULT_NONE;
+    }
+    const int32_t before = in->count;
+    const enum fault f = block_motion(in, p, b, r);
+    return f == FAULT_NONE ? rounding_block(in, p, b, before, r) : f;
+}
+
+/* G4 P leaves axis words to a motion; X and U of a Fanuc are its time. */
+static bool moves_behind_dwell(const struct block *b)
+{
+    return gcode_word(&b->g, 'P') && block_moves(b);
 }
 
 /* Dwell, offsets, home or motion, whichever the block asks for. */
@@ -117,7 +142,8 @@ static enum fault act(struct interpreter *in, const struct program *p, const str
     enum fault f = FAULT_NONE;
 
     if (nonmodal == 40) {
-        return block_dwell(in, p, b, r);
+        f = block_dwell(in, p, b, r);
+        return f == FAULT_NONE && moves_behind_dwell(b) ? move(in, p, b, r) : f;
     }
     if (nonmodal == 280 || nonmodal == 300) {
         return block_home(in, p, b, r);
@@ -141,6 +167,16 @@ static enum fault act(struct interpreter *in, const struct program *p, const str
     return move(in, p, b, r);
 }
 
+/* G9: behind the motion of the block the axes rest, as by G4 P0. */
+static void rest_behind(struct interpreter *in, const struct block *b, int32_t before)
+{
+    if (b->g.code[GCODE_EXACT] != GCODE_ABSENT && in->count > before && !in->cycle.running &&
+        !in->nurbs.running) {
+        command_delay(block_command(in), in->point, 0.0);
+        in->count++;
+    }
+}
+
 /* M98, M99 */
 static enum fault subprogram(struct interpreter *in, const struct program *p,
                              const struct block *b, struct fault_report *r)
@@ -151,13 +187,36 @@ static enum fault subprogram(struct interpreter *in, const struct program *p,
     if (code != 980 && code != 990) {
         return FAULT_NONE;
     }
-    if (in->cycle.running) {
+    if (in->cycle.running || in->nurbs.running) {
         return tokens_at_word(r, FAULT_UNUSED, b->g.by[GCODE_STOP]);
     }
     tokens_at_word(r, FAULT_NO_SUB, number ? number : b->g.by[GCODE_STOP]);
     return code == 990 ? flow_return(in, r)
          : !number ? FAULT_NO_SUB
          : flow_subprogram(in, p, number->value, runs ? &runs->value : NULL, NULL, r);
+}
+
+/* The axis words of the block lead somewhere. */
+static bool moves_axes(const struct block *b)
+{
+    const int other = b->g.code[GCODE_NONMODAL], tool = b->g.code[GCODE_TOOL];
+    const bool moves = other == GCODE_ABSENT || other == 280 || other == 300 || other == 530 ||
+                       (other == 40 && moves_behind_dwell(b));
+
+    return moves && tool != 431 && tool != 432 && !frame_takes_axes(b) &&
+           gcode_first(&b->g, BLOCK_AXES "@^");
+}
+
+/* G67, and behind a line that moves the call that G66 asks for. */
+static enum fault modal_macro(struct interpreter *in, const struct program *p,
+                              const struct block *b, struct fault_report *r)
+{
+    in->flow.modal.on = in->flow.modal.on && b->g.code[GCODE_MODAL] == GCODE_ABSENT;
+    if (!flow_modal_acts(&in->flow) || !moves_axes(b) || in->ended) {
+        return FAULT_NONE;
+    }
+    tokens_at_line(r, FAULT_MODAL, &b->tokens);
+    return in->cycle.running || in->nurbs.count > 0 ? FAULT_MODAL : flow_modal_call(in, p, r);
 }
 
 /* Stop or end of a block, ten times its code. */
@@ -189,7 +248,8 @@ static void go_on(struct interpreter *in, const struct program *p, const struct 
 
     in->motion = f == FAULT_NO_MOTION ? 10 : in->motion;
     if (memcmp(before, in->point, sizeof end) == 0 && !frame_takes_axes(b) &&
-        (nonmodal == GCODE_ABSENT || nonmodal == 530) &&
+        (nonmodal == GCODE_ABSENT || nonmodal == 530 ||
+         (nonmodal == 40 && moves_behind_dwell(b))) &&
         frame_end(in, p, b, end, &ignored) == FAULT_NONE) {
         memcpy(in->point, end, sizeof end);
     }
@@ -207,9 +267,11 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     ignored.notes = 0;
     ignored.line = r->line;     /* where calls say they stand */
     ignored.offset = r->offset;
+    memcpy(ignored.file, r->file, FAULT_FILE);
     memcpy(before, in->point, sizeof before);
     b->angles = p->angles;
-    f = also(f, gcode_sort(&b->g, &b->tokens, p->angles, f ? &ignored : r));
+    b->fanuc = p->fanuc;
+    f = also(f, gcode_sort(b, f ? &ignored : r));
     f = also(f, set_modes(in, b, f ? &ignored : r));
     f = also(f, uses_check(in, b, f ? &ignored : r));
     f = also(f, feed_set(in, p, b, f ? &ignored : r));
@@ -217,15 +279,24 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     f = also(f, tool_change(in, p, b, f ? &ignored : r));
     f = also(f, tools_lengths(in, p, b, f ? &ignored : r));
     f = also(f, switching_block(in, p, b, f ? &ignored : r));
+    f = also(f, saved_modes_block(in, b, f ? &ignored : r));
+    if (b->g.code[GCODE_SAVING] == 720) {       /* G codes of the line come behind it */
+        f = also(f, set_modes(in, b, f ? &ignored : r));
+        f = also(f, tools_lengths(in, p, b, f ? &ignored : r));
+    }
     cycles_modes(in, b);
     f = also(f, cutter_block(in, p, b, f ? &ignored : r));
+    f = also(f, nurbs_between(in, b, f ? &ignored : r));
+    const int32_t made = in->count;
     f = also(f, act(in, p, b, f ? &ignored : r));
+    rest_behind(in, b, made);
     if (f != FAULT_NONE) {
         go_on(in, p, b, f, before);
     }
-    if (!in->cycle.running) {
+    if (!in->cycle.running && !in->nurbs.running) {
         stop(in, p, b->g.code[GCODE_STOP]);
     }
+    f = also(f, modal_macro(in, p, b, f ? &ignored : r));
     return also(f, subprogram(in, p, b, f ? &ignored : r));
 }
 
@@ -242,9 +313,19 @@ static enum fault next_line(struct interpreter *in, const struct program *p,
         }
         return f;
     }
-    const enum fault f = lines_next(in, p, &b.tokens, r);
-
-    return b.tokens.count > 0 ? execute(in, p, &b, f, r) : f;
+    if (in->nurbs.running) {
+        const enum fault f = nurbs_next(in, p, r);
+        if (f == FAULT_NONE && !in->nurbs.running) {
+            stop(in, p, in->nurbs.stop);
+        }
+        return f;
+    }
+    enum fault f = lines_next(in, p, &b.tokens, r);
+    if (b.tokens.count > 0) {
+        f = execute(in, p, &b, f, r);
+    }
+    f = also(f, saved_modes_return(in, r));
+    return f == FAULT_NONE && in->ended ? nurbs_end(in, r) : f;
 }
 
 /* A command is handed out. One that takes no time does not end what goes round without any: a
@@ -281,11 +362,14 @@ enum interpreter_result interpreter_read(struct interpreter *in, const struct pr
             r->fault = cutter_end(in, p, r);
         } else {
             in->taken = in->count = 0;
+            in->rounding.fresh = false;
             r->fault = next_line(in, p, r);
+            r->fault = also(r->fault, rounding_missed(in, r));
         }
         if (r->fault != FAULT_NONE) {
             in->taken = in->count = 0;
-            in->waits = in->cycle.running = false;
+            in->waits = in->cycle.running = in->nurbs.running = false;
+            in->rounding.waits = false;
             cutter_drop(in);
             return INTERPRETER_FAULT;
         }
@@ -302,16 +386,27 @@ enum interpreter_result interpreter_next(struct interpreter *in, const struct pr
     return got;
 }
 
+static bool line_damaged(const struct interpreter *in, const struct kept_line *l)
+{
+    return l->file < 0 || l->file > in->flow.files;
+}
+
 bool interpreter_damaged(const struct interpreter *in)
 {
     return flow_damaged(&in->flow) || parameters_damaged(&in->parameters) || in->line < 0 ||
+           in->file < 0 || in->file > in->flow.files ||
            in->offset < 0 || in->plane > PATH_XY || in->system < 0 ||
-           in->system >= INTERPRETER_SYSTEMS || in->count < 0 || in->count > INTERPRETER_MADE ||
+           in->system >= INTERPRETER_ALL || in->more < 0 || in->more > INTERPRETER_MORE ||
+           saved_modes_damaged(in) || in->count < 0 || in->count > INTERPRETER_MADE ||
            in->taken < 0 || in->taken > in->count ||
            in->tools.table.count < 0 || in->tools.table.count > TOOL_TABLE_MAX ||
            in->wait.until < 0 || in->wait.until > in->count ||
            in->wait.behind < 0 || in->wait.behind > in->count ||
            in->wait.index < 0 || in->wait.index >= INPUTS_DIGITAL ||
            (in->wait.kind == WAIT_ANALOG && in->wait.index >= INPUTS_ANALOG) ||
-           cycles_damaged(&in->cycle) || cutter_damaged(&in->cutter);
+           cycles_damaged(&in->cycle) || nurbs_damaged(&in->nurbs) ||
+           rounding_damaged(&in->rounding) || cutter_damaged(&in->cutter) ||
+           line_damaged(in, &in->cycle.line) || line_damaged(in, &in->nurbs.line) ||
+           line_damaged(in, &in->rounding.line) || line_damaged(in, &in->cutter.latest) ||
+           line_damaged(in, &in->cutter.moving);
 }

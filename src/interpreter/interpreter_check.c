@@ -26,7 +26,8 @@ static bool follows(struct check *k, const struct fault_list *all, const struct 
     bool again = false;
 
     for (int i = 0; i < all->count; i++) {
-        again = again || all->of[i].offset == r->offset;
+        again = again || (all->of[i].offset == r->offset &&
+                          memcmp(all->of[i].file, r->file, FAULT_FILE) == 0);
     }
     k->latest = of_axis(r->fault) ? r->fault : k->latest;
     k->axis = r->axis;
@@ -37,7 +38,7 @@ static bool follows(struct check *k, const struct fault_list *all, const struct 
 /* Nothing can be read behind it. */
 static bool last(enum fault f)
 {
-    return f == FAULT_READ || f == FAULT_ZERO || f == FAULT_ENDLESS;
+    return f == FAULT_READ || f == FAULT_ZERO || f == FAULT_ENDLESS || f == FAULT_ALARM;
 }
 
 static void note(struct fault_list *all, const struct fault_note *told)
@@ -52,6 +53,7 @@ static void note(struct fault_list *all, const struct fault_note *told)
     n->fault = told->what;
     n->line = told->line;
     n->offset = told->offset;
+    memcpy(n->file, told->file, FAULT_FILE);
     n->at = told->at;
     n->length = told->length;
 }
@@ -94,7 +96,9 @@ static void check(struct interpreter *in, const struct program *p, int room,
             k.latest = FAULT_NONE;
         }
         if (in->flow.again > most) {
-            note(all, &(struct fault_note){ FAULT_NOTE_CHECKED, r.line, 0, 0, r.offset });
+            struct fault_note end = { FAULT_NOTE_CHECKED, r.line, 0, 0, r.offset, "" };
+            memcpy(end.file, r.file, FAULT_FILE);
+            note(all, &end);
             return;
         }
         memset(&r.other_at, 0, sizeof r - offsetof(struct fault_report, other_at));

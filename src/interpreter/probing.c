@@ -1,6 +1,7 @@
 #include "probing.h"
 
 #include "block.h"
+#include "frame.h"
 #include "waiting.h"
 
 bool probing_asked(const struct block *b)
@@ -28,6 +29,12 @@ enum fault probing_block(struct interpreter *in, const struct program *p, const 
     if (f != FAULT_NONE) {
         return f;
     }
+    in->motion = GCODE_NO_MOTION;
+    if (in->count == before && (code == 383 || code == 385)) {
+        frame_program(in, in->point, in->contact);      /* no way, no contact, and no error */
+        in->touched = 0.0;
+        return FAULT_NONE;
+    }
     if (in->count == before) {
         return tokens_at_line(r, FAULT_PROBE_POINT, &b->tokens);
     }
@@ -40,6 +47,5 @@ enum fault probing_block(struct interpreter *in, const struct program *p, const 
     in->wait.until = in->count;
     in->wait.mode = code < 384 ? WAIT_HIGH : WAIT_LOW;
     in->wait.must = code == 382 || code == 384;
-    in->motion = GCODE_NO_MOTION;
     return FAULT_NONE;
 }

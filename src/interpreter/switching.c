@@ -194,6 +194,20 @@ static bool differ(const struct switches *a, const struct switches *b)
            switches_spindle(a) != switches_spindle(b);
 }
 
+static bool differs(const struct interpreter *in, const struct switches *before)
+{
+    const struct outputs_surface pass = surface_of(in), told = in->switches.told;
+    return differ(&in->switches, before) || pass.speed != told.speed ||
+           pass.centre != told.centre;
+}
+
+void switching_differs(struct interpreter *in, const struct switches *before)
+{
+    if (differs(in, before)) {
+        switching_make(in, 0, 0);
+    }
+}
+
 /* Words that do nothing where only the tool moves and outputs switch. */
 static void tell(const struct block *b, struct fault_report *r)
 {
@@ -235,9 +249,7 @@ enum fault switching_block(struct interpreter *in, const struct program *p, cons
         s->coolant = coolant == 90 ? 0
                    : s->coolant | (coolant == 70 ? OUTPUTS_MIST : OUTPUTS_FLOOD);
     }
-    const struct outputs_surface pass = surface_of(in);
-    if (now.set || now.clear || now.analog.set || differ(s, &before) ||
-        pass.speed != s->told.speed || pass.centre != s->told.centre) {
+    if (now.set || now.clear || now.analog.set || differs(in, &before)) {
         switching_make(in, now.set, now.clear);
         in->made[in->count - 1].analog = now.analog;
     }

@@ -12,6 +12,9 @@ enum fault switching_block(struct interpreter *in, const struct program *p, cons
 /* Make a command that brings everything in force and switches digital outputs. */
 void switching_make(struct interpreter *in, uint32_t set, uint32_t clear);
 
+/* Make a command if the machine is to have anything else than before. */
+void switching_differs(struct interpreter *in, const struct switches *before);
+
 /* M2, M30: spindle and coolant off, overrides on, behind the motion of the block. */
 void switching_end(struct interpreter *in);
 

@@ -14,6 +14,7 @@
 #define J GCODE_BIT('J')
 #define K GCODE_BIT('K')
 #define POLAR (GCODE_BIT('@') | GCODE_BIT('^'))
+#define CORNER (GCODE_BIT(TOKENS_CHAMFER) | GCODE_BIT(TOKENS_ROUND))
 #define AXIS_WORDS ((uint32_t)1 << GCODE_LETTERS)
 
 /* The codes beside those of motion that take words: group, code, letters. */
@@ -22,12 +23,13 @@
     X(NONMODAL, 280, AXIS_WORDS)        X(NONMODAL, 300, AXIS_WORDS)                             \
     X(NONMODAL, 520, AXIS_WORDS)        X(NONMODAL, 920, AXIS_WORDS)                             \
     X(SCALING, 510, P | I | J | K | AXIS_WORDS)     X(ROTATION, 680, R | AXIS_WORDS)             \
-    X(STOP, 980, P | L)                                                                          \
+    X(STOP, 980, P | L)     X(USER, GCODE_USER_FIRST, P | Q)                                     \
     X(IO, 620, P)           X(IO, 630, P)           X(IO, 640, P)           X(IO, 650, P)        \
     X(IO, 660, P | L | E | Q)           X(IO, 670, E | Q)       X(IO, 680, E | Q)                \
     X(TOOL, 430, H)         X(TOOL, 431, AXIS_WORDS)            X(TOOL, 432, H | AXIS_WORDS)     \
     X(CHANGE, 610, Q)       X(SPINDLE, 190, R | P | Q)          X(SURFACE, 960, D)               \
     X(OVERRIDE, 500, P)     X(OVERRIDE, 510, P)     X(OVERRIDE, 520, P)     X(OVERRIDE, 530, P)  \
+    X(SYSTEM, GCODE_MORE, P)            X(SYSTEM, GCODE_MORE_HAAS, P)                            \
     X(PATH, 640, P | Q)                                                                          \
     X(CUTTER, 410, D)       X(CUTTER, 420, D)       X(CUTTER, 411, D)       X(CUTTER, 421, D)
 
@@ -35,6 +37,8 @@
 #define MOVES(X)                                                                                 \
     X(MOTION, 0, POLAR)     X(MOTION, 10, POLAR)                                                 \
     X(MOTION, 20, POLAR | I | J | K | R | P)        X(MOTION, 30, POLAR | I | J | K | R | P)     \
+    X(MOTION, 52, P | L)                X(MOTION, 53, 0)                                         \
+    X(MOTION, 331, POLAR | I | K)                                                                \
     X(MOTION, 50, I | J | P | Q)        X(MOTION, 51, I | J)                                     \
     X(MOTION, 730, POLAR | R | L | Q)   X(MOTION, 740, POLAR | R | L | P)                        \
     X(MOTION, 810, POLAR | R | L)       X(MOTION, 820, POLAR | R | L | P)                        \
@@ -43,13 +47,18 @@
     X(MOTION, 870, POLAR | R | L | I | J | K)                                                    \
     X(MOTION, 880, POLAR | R | L | P)   X(MOTION, 890, POLAR | R | L | P)
 
+/* What some take besides on Fanuc's controls. */
+#define FANUC(X)                                                                                 \
+    X(MOTION, 730, P)       X(MOTION, 830, P)                                                    \
+    X(MOTION, 10, CORNER)   X(MOTION, 20, CORNER)   X(MOTION, 30, CORNER)
+
 #define ROW(group, code, takes) { GCODE_##group, code, takes },
 #define GROUP(group, code, takes) | (uint32_t)1 << GCODE_##group
 #define LETTERS(group, code, takes) | (takes)
 static const struct row { enum gcode_group group; int code; uint32_t takes; }
-    rows[] = { CODES(ROW) }, moves[] = { MOVES(ROW) };
+    rows[] = { CODES(ROW) }, moves[] = { MOVES(ROW) }, fanuc[] = { FANUC(ROW) };
 static const uint32_t OWNERS = 0 CODES(GROUP);      /* groups that have rows */
-static const uint32_t OWNED = (0 CODES(LETTERS) MOVES(LETTERS)) & ~AXIS_WORDS;
+static const uint32_t OWNED = (0 CODES(LETTERS) MOVES(LETTERS) FANUC(LETTERS)) & ~AXIS_WORDS;
 
 /* Which word a code gave that takes each letter, the axis words at the end. */
 struct owners {
@@ -94,14 +103,18 @@ static enum fault share(const struct gcode *g, struct owners *o, struct fault_re
 }
 
 /* Letters that the code of motion in force takes. */
-static uint32_t moves_with(const struct interpreter *in)
+static uint32_t moves_with(const struct interpreter *in, const struct block *b)
 {
     size_t i = 0;
+    uint32_t more = 0;
 
+    for (size_t k = 0; b->fanuc && k < sizeof fanuc / sizeof *fanuc; k++) {
+        more |= fanuc[k].code == in->motion ? fanuc[k].takes : 0;
+    }
     while (i < sizeof moves / sizeof *moves && moves[i].code != in->motion) {
         i++;
     }
-    return i < sizeof moves / sizeof *moves ? moves[i].takes : 0;
+    return i < sizeof moves / sizeof *moves ? moves[i].takes | more : 0;
 }
 
 /* The block moves: by its code of motion, its axis words, or what else only a motion has. */
@@ -116,6 +129,14 @@ static bool moves_by(const struct gcode *g, const struct owners *o)
     return any;
 }
 
+/* G0 or G1 beside G28 or G30, as posts write it: it holds from the next line on. */
+static bool homes_beside(const struct gcode *g)
+{
+    const int other = g->code[GCODE_NONMODAL], motion = g->code[GCODE_MOTION];
+
+    return (other == 280 || other == 300) && (motion == 0 || motion == 10);
+}
+
 enum fault uses_check(const struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const struct gcode *g = &b->g;
@@ -127,12 +148,12 @@ enum fault uses_check(const struct interpreter *in, const struct block *b, struc
     }
     const enum fault f = share(g, &o, r);
     const struct token *axes = o.of[GCODE_LETTERS];
-    const uint32_t moved = !axes && moves_by(g, &o) ? moves_with(in) : 0;
+    const uint32_t moved = !axes && moves_by(g, &o) ? moves_with(in, b) : 0;
 
     if (f != FAULT_NONE) {
         return f;
     }
-    if (axes && motion && g->code[GCODE_MOTION] != GCODE_NO_MOTION) {
+    if (axes && motion && g->code[GCODE_MOTION] != GCODE_NO_MOTION && !homes_beside(g)) {
         return tokens_at_words(r, FAULT_SHARED, motion, axes);
     }
     uint32_t left = g->letters & OWNED;

@@ -1,18 +1,23 @@
 """What both interpreters make of a program, in one form, and how they differ."""
 
+import itertools
 import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 from second import Options, Refused, Step, run
+from second.nurbs import samples
 
 from motionfmu.gcode import Program, read
 
 OPTIONS = ("block_delete", "optional_stop", "angles", "feed", "fanuc")
 ROUNDING = 1e-9  # [mm] a move that is shorter is none
 PLACE, ANGLE, RATIO = 1e-7, 1e-9, 1e-9  # [mm], [rad], of a feed
+CURVE = 2e-4  # [mm] commands from a NURBS, 1e-4 by the table of words, and chords of both
 TYPES = ("rapid", "line", "arc", "arc", "arc", "arc", "dwell")
 OUTPUTS, STOP, CUBIC = 11, 12, 14
 # Settings of the C interpreter that hide no fault the other one does not know.
@@ -36,7 +41,7 @@ def first(text: str, options: Options | None = None) -> Program:
     """The program by the C interpreter."""
     options = options or Options()
     lines = (f"T{n} P{n} Z{z} D{d}\n" for n, (z, d) in options.tools.items())
-    return read(text, "".join(lines), **settings_of(options))
+    return read(text, "".join(lines), folder=options.folder, **settings_of(options))
 
 
 def of_c(program: Program) -> list[Event]:
@@ -69,6 +74,7 @@ def of_c(program: Program) -> list[Event]:
                 event["sweep"] = float(c["sweep"])
             if name == "spline":
                 event["inner"] = [*c["inner"][0:2], *c["inner"][3:5]]
+            event["command"] = c
         events.append(event)
     return [*events, {"kind": "end"} | state]
 
@@ -96,6 +102,8 @@ def of_python(steps: list[Step]) -> list[Event]:
                 event |= {"plane": s.plane, "centre": s.centre, "sweep": s.sweep}
             if s.kind == "spline":
                 event["inner"] = inner(s.control)
+            if s.kind == "nurbs":
+                event |= {"nurbs": s.nurbs, "order": s.order}
         events.append(event)
     return [*events, {"kind": "end"} | state]
 
@@ -137,10 +145,7 @@ def difference(text: str, options: Options | None = None) -> str:
     steps, refused = run(text, replace(options, tools=dict(options.tools)))
     found = _faults(one, refused)
     a, b = of_c(one), of_python(steps)
-    if refused:  # what is held back at a fault is nobody's business
-        shorter = min(len(a), len(b)) - 1
-        a, b = a[:shorter], b[:shorter]
-    return found or _events(a, b)
+    return found or _events(a, b, bool(refused))
 
 
 def _faults(one: Program, refused: Refused | None) -> str:
@@ -152,12 +157,78 @@ def _faults(one: Program, refused: Refused | None) -> str:
     return f"C: {theirs}; Python: {refused}"
 
 
-def _events(a: list[Event], b: list[Event]) -> str:
-    for i, (x, y) in enumerate(zip(a, b, strict=False)):
-        for name in x.keys() | y.keys():
+def _bezier(c: Any) -> NDArray[np.float64]:
+    """Points of a command, a line or a cubic curve, 0.025 mm apart. [mm]"""
+    a, d = c["start"][:3], c["end"][:3]
+    t = np.linspace(0.0, 1.0, 50 + int(40.0 * c["length"]))[:, None]
+    if not c["cubic"]:
+        return np.asarray(a + t * (d - a))
+    p, q, u = c["inner"][:3], c["inner"][3:], 1.0 - t
+    return np.asarray(u**3 * a + 3.0 * u * u * t * p + 3.0 * u * t * t * q + t**3 * d)
+
+
+def _nurbs(pieces: list[Event], whole: Event) -> str:
+    """Whether the C interpreter's pieces are a curve, and both have the same beside it."""
+    fine = samples(whole["nurbs"], whole["order"], 20_000)
+    parts = [_bezier(x["command"]) for x in pieces]
+    path = np.vstack([parts[0], *(x[1:] for x in parts[1:])])
+    apart = max(_farthest(path, fine), _farthest(fine[::20], path))
+    gaps = [b["start"] - a["end"] for a, b in itertools.pairwise(pieces)]
+    if apart > CURVE or np.abs(gaps).max(initial=0.0) > PLACE:
+        return f"pieces {apart} mm from the curve"
+    for x in pieces:
+        for name in x.keys() & whole.keys() - {"kind", "line", "start", "end"}:
+            if not _same(name, x[name], whole[name]):
+                return f"{name} of a piece"
+    ends = _same("start", pieces[0]["start"], whole["start"])
+    return "" if ends and _same("end", pieces[-1]["end"], whole["end"]) else "ends of a curve"
+
+
+def _farthest(points: NDArray[np.float64], line: NDArray[np.float64]) -> float:
+    """The largest distance of points from a line of chords. [mm]"""
+    near = cKDTree(line).query(points)[1]
+    least = np.full(len(points), np.inf)
+    for begin in (np.maximum(near - 1, 0), np.minimum(near, len(line) - 2)):
+        a, chord = line[begin], line[begin + 1] - line[begin]
+        square = np.maximum((chord * chord).sum(axis=1), 1e-300)
+        share = np.clip(((points - a) * chord).sum(axis=1) / square, 0.0, 1.0)[:, None]
+        least = np.minimum(least, np.linalg.norm(points - a - share * chord, axis=1))
+    return float(least.max())
+
+
+def _pieces(a: list[Event], whole: Event) -> list[Event]:
+    """Those of a curve at the beginning of what the C interpreter has made."""
+    fine = samples(whole["nurbs"], whole["order"], 20_000)
+    left = float(np.linalg.norm(np.diff(fine, axis=0), axis=1).sum())
+    for i, x in enumerate(a):
+        if x["kind"] not in ("line", "spline"):
+            return a[:i]
+        left -= float(x["command"]["length"])
+        if left < 1e-2 and _same("end", x["end"], whole["end"]):
+            return a[: i + 1]
+    return a
+
+
+def _events(a: list[Event], b: list[Event], refused: bool = False) -> str:
+    """What is held back at a fault, by one of them, is nobody's business."""
+    at = 0
+    a, b = (a[:-1], b[:-1]) if refused else (a, b)
+    for i, y in enumerate(b):
+        if at == len(a):
+            return "" if refused else f"C has {len(a)} events, Python {len(b)}"
+        if y["kind"] == "nurbs":
+            pieces = _pieces(a[at:], y)
+            why = _nurbs(pieces, y) if pieces else "no pieces"
+            if why:
+                return f"event {i}: {why}"
+            at += len(pieces)
+            continue
+        x = a[at]
+        at += 1
+        for name in (x.keys() | y.keys()) - {"command"}:
             if name not in x or name not in y or not _same(name, x[name], y[name]):
                 return f"event {i}, {name}:\n  C      {x}\n  Python {y}"
-    return "" if len(a) == len(b) else f"C has {len(a)} events, Python {len(b)}"
+    return "" if at == len(a) or refused else f"C has {len(a)} events, Python {len(b)}"
 
 
 def programs() -> list[Path]:

@@ -25,8 +25,9 @@ WRONG = (
 class Lines(Values):
     """Writes lines; each method one thing that a program may do."""
 
-    def __init__(self, seed: int, expressions: bool) -> None:
+    def __init__(self, seed: int, expressions: bool, plain: bool = False) -> None:
         super().__init__(seed, expressions)
+        self.plain = plain  # only what rs274 knows as well
         self.lines: list[str] = []
         self.straight = False  # G0 or G1 is in force, as far as is known
 
@@ -59,7 +60,7 @@ class Lines(Values):
         )
 
     def far(self) -> None:
-        self.write(f"G1 {self.axes('XYZUVW', 0.3)}")
+        self.write(f"G1 {self.axes('XYZ' if self.plain else 'XYZUVW', 0.3)}")
 
     def feed(self) -> None:
         self.write(f"F{self.value(10.0, 3000.0)}")
@@ -79,7 +80,7 @@ class Lines(Values):
         words = f"{first}{da:.4f} {second}{db:.4f} {offsets[first]}{a:.4f} {offsets[second]}{b:.4f}"
         if r.random() < 0.3:
             words += f" {'ZYX'[plane]}{self.number(-5.0, 5.0)}"
-        if r.random() < 0.15:
+        if plane == 0 and r.random() < 0.25:
             words += f" P{r.randint(1, 4)}"
         self.write(f"G{17 + plane} G91 G{3 if ccw else 2} {words}")
         self.write("G17 G90")
@@ -93,18 +94,26 @@ class Lines(Values):
         self.write("G90")
 
     def circle(self) -> None:
-        self.write(f"G{self.r.choice((2, 3))} I{self.number(1.0, 5.0)} J{self.number(1.0, 5.0)}")
+        nothing = " K0.000" if self.r.random() < 0.1 and not self.plain else ""
+        centre = f"I{self.number(1.0, 5.0)} J{self.number(1.0, 5.0)}"
+        self.write(f"G{self.r.choice((2, 3))} {centre}{nothing}")
 
     def modes(self) -> None:
-        self.write(self.r.choice(("G90", "G91", "G90", "G20", "G21", "G61", "G64", "G80 G0")))
+        self.write(
+            self.r.choice(("G90", "G91", "G90", "G20", "G21", "G61", "G61.1", "G64", "G80 G0"))
+        )
 
     def dwell(self) -> None:
-        self.write(f"G4 P{self.value(0.0, 3.0)}")
+        r = self.r
+        motion = f" G{r.choice((0, 1))} {self.axes()}" if r.random() < 0.2 else ""
+        self.write(f"G4 P{self.value(0.0, 3.0)}{motion}")
 
     def switch(self) -> None:
         r = self.r
         words = (f"S{self.value(0.0, 9000.0)}", "M3", "M4", "M5", "M7", "M8", "M9")
         words = (*words, f"S{r.randint(0, 9000)} M3", "M3 M8", "M5 M9", "M19", "M19 R90 P1")
+        if self.plain:  # where M19 turns the spindle
+            words = words[:-2]
         self.write(r.choice(words))
 
     def digital(self) -> None:
@@ -138,6 +147,21 @@ class Lines(Values):
         if self.expressions and r.random() < 0.7:
             self.write(f"G0 X[#{r.randint(5061, 5063)} + #5070 + 0.37]")
 
+    def tap(self) -> None:
+        r = self.r
+        self.write(f"G97 S{r.randint(100, 900)} M{r.randint(3, 4)}")
+        back = r.choice(("", f" I{self.number(0.5, 3.0)}"))
+        self.write(f"G33.1 {self.axes('ZXY', 0.3)} K{self.number(0.2, 2.0)}{back}")
+        self.write(r.choice(("G1", "G80", "G0")))
+
+    def saved(self) -> None:
+        """Modes that come back."""
+        r = self.r
+        self.write("M70")
+        for _ in range(r.randint(0, 4)):
+            self.one(("line", "modes", "feed", "switch", "overrides", "tool", "offsets", "surface"))
+        self.write(r.choice(("M72", "M72", "M72 G1 X1", "M71", "M73")))
+
     def surface(self) -> None:
         r = self.r
         self.write(f"G96 S{r.randint(0, 200)} D{r.randint(100, 4000)} M{r.randint(3, 5)}")
@@ -148,11 +172,12 @@ class Lines(Values):
 
     def offsets(self) -> None:
         r = self.r
+        axes = self.axes("XYZ" if self.plain else "XYZUVW", 0.4)
         self.write(
             r.choice(
                 (
                     f"G5{r.randint(4, 9)}",
-                    f"G10 L2 P{r.randint(0, 6)} {self.axes('XYZUVW', 0.4)}",
+                    f"G10 L2 P{r.randint(0, 6)} {axes}",
                     f"G92 {self.axes()}",
                     f"G92.{r.randint(1, 3)}",
                     f"G52 {self.axes()}",
@@ -162,7 +187,8 @@ class Lines(Values):
         )
 
     def home(self) -> None:
-        self.write(self.r.choice(("G28", "G28 " + self.axes())))
+        beside = "G0 " if self.r.random() < 0.2 and not self.plain else ""  # rs274 refuses that
+        self.write(beside + self.r.choice(("G28", "G28 " + self.axes())))
 
     def wrong(self) -> None:
         """Now and then a line that is none."""
@@ -188,6 +214,13 @@ class Lines(Values):
     def tool(self) -> None:
         r = self.r
         number = r.choice(list(TOOLS))
+        if self.plain:  # alone, rs274 loses its place behind M6 and stops, unless it has just moved
+            self.write("G49")
+            self.write(f"G90 G0 Z{self.number()}")
+            self.write(f"T{number} M6")
+            self.write(r.choice(("G43", f"G43 H{number}", f"G43.1 Z{self.number()}", "G49")))
+            self.write(f"G90 G0 Z{self.number()}")
+            return
         self.write(
             r.choice((f"T{number} M6", f"T{number}", f"T{number} M6 G43", f"G43 H{number}"))
             if r.random() < 0.7
@@ -216,6 +249,24 @@ class Lines(Values):
             if self.r.random() < 0.5:
                 self.write(f"G5 X{n(9.0, 30.0)} Y{n()} P-{n(*near)} Q{n(*near)}")
         self.write("G90")
+
+    def nurbs(self) -> None:
+        """Points that go on to one side, in any plane; now and then too few, or one axis alone."""
+        r = self.r
+        plane = r.choice((0, 1, 2))
+        first, second = ("XY", "ZX", "YZ")[plane]
+        order = r.choice((0, 0, 3, 4, 5))
+        count = max(order, 3) - (1 if r.random() < 0.05 else 0) + r.randint(0, 4)
+        self.write("G94 F600")
+        self.write(f"G{17 + plane} G91")
+        begin = r.choice(("", f" P{self.number(0.5, 2.0)}"))
+        self.write("G5.2" + begin + (f" L{order}" if order else ""))
+        for _ in range(count - 1):
+            weight = r.choice(("", f" P{self.number(0.5, 2.0)}"))
+            way = f" {second}{self.number(-5.0, 5.0)}" if r.random() < 0.98 else ""
+            self.write(f"{first}{self.number(3.0, 9.0)}{way}{weight}")
+        self.write("G5.3")
+        self.write("G17 G90")
 
     def rotation(self) -> None:
         r = self.r
@@ -248,6 +299,71 @@ class Lines(Values):
             repeat = f" L{r.randint(1, 3)}" if r.random() < 0.3 else ""
             self.write(f"X{self.number()} Y{self.number()}{repeat}")
         self.write("G80 G90")
+
+    def series(self) -> None:
+        """Lines of one cycle in any plane, above a level that holds for all of them."""
+        r, n = self.r, self.number
+        code = r.choice((73, 74, 81, 82, 83, 84, 85, 86, 89))
+        # rs274 2.9 swaps axes in taps of other planes, and repeats neither G73 nor G74.
+        plane = 0 if self.plain and code in (74, 84) else r.choice((0, 0, 1, 2))
+        repeats = not (self.plain and code in (73, 74))
+        first, second, deep = ("XYZ", "ZXY", "YZX")[plane]
+        incremental = r.random() < 0.5
+        self.write(f"G90 G94 G0 {deep}{n(5.0, 30.0)} F{n(50.0, 500.0)}")
+        self.write(f"G97 S{r.randint(100, 2000)} M{4 if code == 74 else 3}")
+        words = f" {deep}{n(-30.0, -20.0)} R{n(-18.0, 4.0)}"
+        words += f" Q{n(2.0, 9.0)}" if code in (73, 83) else ""
+        words += f" P{n(0.0, 1.0)}" if code in (74, 82, 84, 86, 89) else ""
+        if plane == 0 and r.random() < 0.25:
+            self.round(code, words, incremental)
+            return
+        modes = f"G{17 + plane} G{r.choice((98, 99))} G{91 if incremental else 90} G{code}"
+        self.write(f"{modes} {first}{n()} {second}{n()}{words}")
+        for _ in range(r.randint(0, 4)):
+            hole = r.choice((f"{first}{n()}", f"{second}{n()}", f"{first}{n()} {second}{n()}"))
+            hole += f" L{r.randint(1, 4)}" if repeats and r.random() < 0.4 else ""
+            hole += f" {deep}{n(-40.0, -20.0)}" if r.random() < 0.2 else ""
+            self.write(hole)
+        self.write("G80 G90 G17")
+
+    def round(self, code: int, words: str, incremental: bool) -> None:
+        """Holes about the zero by radius and angle."""
+        r, n = self.r, self.number
+        self.write(f"G17 G0 X{n(1.0, 9.0)} Y{n(1.0, 9.0)} Z20")
+        modes = f"G{r.choice((98, 99))} G{91 if incremental else 90} G{code}"
+        self.write(f"{modes} @{n(1.0, 9.0)} ^{n(5.0, 90.0)}{words}")
+        for _ in range(r.randint(0, 4)):
+            hole = r.choice((f"@{n(0.5, 3.0)}", f"^{n(5.0, 90.0)}", f"@{n(0.5, 3.0)} ^{n()}"))
+            repeats = r.random() < 0.5 and not (self.plain and code in (73, 74))
+            self.write(hole + (f" L{r.randint(2, 5)}" if repeats else ""))
+        if not self.plain and r.random() < 0.5:  # Fanuc's form
+            self.write("G16")
+            self.write(f"X{n(1.0, 9.0)} Y{n(5.0, 90.0)} L{r.randint(1, 4)}")
+            self.write(f"Y{n(5.0, 90.0)} L{r.randint(1, 4)}")
+            self.write("G15")
+        self.write("G80 G90")
+
+    def corners(self) -> None:
+        """A way of lines with any corners, small ones among them, cut with compensation."""
+        r = self.r
+        side, x, y = r.choice((41, 42)), 0.0, 0.0
+        heading = r.uniform(0.0, math.tau)
+        self.write("G17 G21 G90 G94 G80")
+        self.write(f"G0 X{x} Y{y}")
+        self.write(f"G{side}.1 D{self.number(0.5, 4.0)}")
+        slight = False
+        for _ in range(r.randint(2, 9)):
+            turn = r.choice((r.uniform(-2.0, 2.0), r.uniform(-0.6, 0.6), r.uniform(-0.005, 0.005)))
+            both, slight = slight and abs(turn) < 0.005, abs(turn) < 0.005
+            way = r.uniform(0.03, 0.1) if both and r.random() < 0.7 else r.uniform(15.0, 60.0)
+            x, y = x + way * math.cos(heading), y + way * math.sin(heading)
+            self.write(f"G1 X{x:.4f} Y{y:.4f} F{r.randint(100, 900)}")
+            heading += turn
+        self.write("G40")
+        if not self.plain and r.random() < 0.3:  # rs274 moves aside with it, through the contour
+            self.write(f"G{r.choice((0, 1))} Z{self.number()}")
+        leave = (f"X{x + 30.0:.3f} Y{y - 30.0:.3f}", f"X{x + 30.0:.3f}", f"Y{y - 30.0:.3f}")
+        self.write(f"G{r.choice((0, 1))} {r.choice(leave)}")
 
     def contour(self) -> None:
         """A polygon about a centre with some arcs, cut outside or inside with compensation."""

@@ -26,11 +26,12 @@ MORE = (
     "inverse",
     "turned",
     "spline",
+    "nurbs",
     "rotation",
     "scaling",
-    "cycle",
-    "contour",
-    *("analog", "overrides", "wait", "probe", "surface"),
+    *("cycle", "series"),
+    *("contour", "corners"),
+    *("analog", "overrides", "wait", "probe", "surface", "tap", "saved"),
 )
 # What the machine knows by name.
 NAMES = (
@@ -41,18 +42,30 @@ NAMES = (
     *("spindle_css_mode", "spindle_on", "spindle_rpm_mode", "task", "tool_offset"),
     *("units_per_minute", "units_per_rev", "value", "value_returned"),
 )
-FLOW = ("setting", "indirect", "read_back", "condition", "repeat", "loop", "sub", "call", "macro")
+FLOW = (
+    "setting",
+    "indirect",
+    "read_back",
+    "condition",
+    "repeat",
+    "loop",
+    "sub",
+    "call",
+    "macro",
+    "jump",
+    "further",
+)
 PARTS: tuple[str, ...] = (*FLAT, *MORE, *FLOW)
 
 
 class Writer(Lines):
     """Writes one program; `parts` are the names of the methods it may use."""
 
-    def __init__(self, seed: int, parts: tuple[str, ...] = ()) -> None:
+    def __init__(self, seed: int, parts: tuple[str, ...] = (), plain: bool = False) -> None:
         self.parts = parts or PARTS
-        super().__init__(seed, "setting" in self.parts)
+        super().__init__(seed, "setting" in self.parts, plain)
         self.label = 100
-        self.fanuc = options(seed).fanuc
+        self.fanuc = options(seed).fanuc and not plain
         self.depth = 0
         self.subs: list[str] = []
         self.macros: list[str] = []
@@ -111,8 +124,8 @@ class Writer(Lines):
         self.write(f"o{label} endrepeat")
 
     def leave(self, label: str) -> None:
-        """Break or continue, on a condition."""
-        if self.r.random() < 0.3:
+        """Break or continue, on a condition; rs274 2.9 miscounts the loops behind one."""
+        if self.r.random() < 0.3 and not self.plain:
             inner = self.new_label()
             self.write(f"o{inner} if [{self.tree(1)}]")
             self.write(f"o{label} {self.r.choice(('break', 'continue'))}")
@@ -132,6 +145,74 @@ class Writer(Lines):
         self.body()
         self.leave(label)
         self.write(f"o{label} {bottom}")
+
+    def jump(self) -> None:
+        """GOTO, IF, WHILE and END of Fanuc's controls, with counters of their own."""
+        if not self.fanuc or self.depth:
+            return
+        r, self.depth = self.r, 2
+        n = 20000 + 10 * (self.label + 1)
+        self.label += 1
+        kind = r.choice(("back", "ahead", "loops", "then", "out", "wrong"))
+        if kind == "back":
+            self.lines += ["#31=0", f"N{n} #31=#31+1"]
+            self.one(FLAT)
+            self.lines.append(f"IF [#31 {r.choice(('LT', 'LE', 'NE'))} 3] GOTO {n}")
+        elif kind == "ahead":
+            way = r.choice((f"GOTO {n}", f"GOTO[{n - 1}+1]", f"if[{self.tree(1)}]goto{n}"))
+            self.lines.append(way)
+            self.one(FLAT)
+            self.lines.append(f"N{n} G1 X#31")
+        elif kind in ("loops", "out"):
+            self.lines += ["#31=0", f"WHILE [#31 LT {r.randint(0, 3)}] DO{n % 3 + 1}"]
+            self.lines += ["#32=0", "#31=#31+1"]
+            if kind == "out":
+                self.lines.append(f"IF[[#31 EQ 2] AND [{self.tree(0)} GT 0]]GOTO{n}")
+            self.lines.append(f"WHILE[#32LE#31]DO{(n + 1) % 3 + 1}")
+            self.one(FLAT)
+            self.lines += [f"#32=#32+1*{r.randint(1, 2)}", f"END {(n + 1) % 3 + 1}"]
+            self.lines += [f"END{n % 3 + 1}", f"N{n}"]
+        elif kind == "then":
+            self.lines.append(f"IF [{self.tree(1)}] THEN #33=-#31+{self.number()}*2")
+            self.lines.append("G1 X[#33 mod 10 + 0.37]")
+        elif r.random() < 0.2:
+            wrong = ("GOTO 99", "END 1", "WHILE [0] DO 2", "IF [1] X1", "DO 4", "IF 1 GOTO 2")
+            self.lines.append(r.choice(wrong))
+        self.depth = 0
+
+    def further(self) -> None:
+        """Words that only Fanuc's and Haas' controls have."""
+        if not self.fanuc or self.depth:
+            return
+        r, self.depth = self.r, 2
+        kind = r.choice(("exact", "origin", "take", "peck", "vacant", "modal"))
+        if kind == "exact":
+            self.lines.append(f"G9 G1 X{self.value()} Y{self.value()}")
+        elif kind == "origin":
+            n = r.randint(1, 48)
+            self.lines.append(f"G10 L20 P{n} X{self.value()} Y{self.value()}")
+            self.lines.append(f"G1 X[#{7001 + 20 * (n - 1)} mod 10] Y[#5002 mod 10]")
+        elif kind == "take":
+            self.lines.append(f"{r.choice(('G54.1', 'G154'))} P{r.choice((1, 2, 48, 99))}")
+            self.one(FLAT)
+            self.lines.append("G54")
+        elif kind == "peck":
+            dwell = r.choice(("", " P200", " P.5"))
+            self.lines.append(f"G90 G{r.choice((73, 83))} X{self.value()} Z-9 R-2 Q3{dwell} F200")
+            self.lines.append(f"Y{self.value()}\nG80")
+        elif kind == "vacant":
+            self.lines.append(f"#{r.randint(1, 40)}=#{r.choice((0, 33, 150))}")
+            n = r.randint(1, 40)
+            self.lines.append(f"IF [#{n} {r.choice(('EQ', 'NE', 'GE'))} #0] THEN #33=#{n}*2+1")
+            self.lines.append(f"G1 X#{n} Y[#33 mod 10]")
+        else:
+            self.macros.append(f"O{5000 + len(self.macros)}")
+            letters = "".join(f" {c}{self.value()}" for c in r.sample("ABIJKXYZ", r.randint(0, 4)))
+            self.lines.append(f"G66 P{self.macros[-1][1:]}{letters}")
+            for _ in range(r.randint(1, 3)):
+                self.one(FLAT)
+            self.lines.append("G67")
+        self.depth = 0
 
     def sub(self) -> None:
         """A sub, defined where only the main program stands, and its calls."""

@@ -15,6 +15,8 @@ class Values:
 
     def number(self, low: float = -20.0, high: float = 20.0) -> str:
         """A literal."""
+        if self.r.random() < 0.05:  # in full, as programs print what they have computed
+            return f"{self.r.uniform(low, high):.{self.r.randint(15, 60)}f}"
         digits = self.r.choice((0, 1, 2, 3, 4) if high - low > 1.0 else (3, 4))
         text = f"{self.r.uniform(low, high):.{digits}f}"
         return text + "." if digits == 0 and self.r.random() < 0.5 else text

@@ -71,7 +71,11 @@ def test_limits_and_feeds_are_those_given(tmp_path: Path) -> None:
     file.write_text("G1 X50 F3000\nM2\n")
     assert command(file, "--json", "--limit", "X=-1:50")[0] == 0
     assert command(file, "--json", "--limit", "X=-1:49")[0] == 1
-    assert command(file, "--json", "--max-feed", 2999)[0] == 1
+    assert command(file, "--json", "--max-feed", 2999, "--strict-feed")[0] == 1
+    code, text = command(file, "--json", "--max-feed", 1500)
+    found = json.loads(text)[str(file)]
+    assert code == 0 and [n["text"] for n in found["notes"]] == ["F3000"]
+    assert found["time"] == pytest.approx(2.025, abs=2e-3)
     quick, slow = (
         json.loads(command(file, "--json", "--acceleration", a)[1])[str(file)]["time"]
         for a in (1000, 100)

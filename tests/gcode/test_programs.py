@@ -39,7 +39,7 @@ def test_both_read_random_programs_the_same() -> None:
 def test_random_programs_are_worth_reading() -> None:
     made = [run(text, options(seed)) for seed, text in each(RANDOM)]
     kinds = {step.kind for steps, _ in made for step in steps}
-    assert kinds == {"rapid", "line", "arc", "spline", "dwell", "outputs", "stop", "tool"}
+    assert kinds == {"rapid", "line", "arc", "spline", "nurbs", "dwell", "outputs", "stop", "tool"}
     assert sum(refused is not None for _, refused in made) < 0.15 * RANDOM
     assert sum(len(steps) for steps, _ in made) > 20 * RANDOM
     assert Writer(5).program() == Writer(5).program() != Writer(6).program()
@@ -60,6 +60,9 @@ def test_random_programs_are_worth_reading() -> None:
         ("G4 P1", "G4 P1.1"),
         ("T1 M6", "T2 M6"),
         ("G5.1 X2 I1 J1", "G5.1 X2 I1 J1.1"),
+        ("G5.2\nX2 Y1\nX4 Y0\nG5.3", "G5.2\nX2 Y1.001\nX4 Y0\nG5.3"),
+        ("G5.2\nX2 Y1\nX4 Y0\nG5.3", "G5.2\nX2 Y1 P1.001\nX4 Y0\nG5.3"),
+        ("G5.2\nX2 Y1\nX4 Y0\nG5.3", "G5.2\nX2 Y1\nX4 Y0 F61\nG5.3"),
         ("G1 X1", "G1 X1\nM0"),
     ],
 )

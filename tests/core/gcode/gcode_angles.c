@@ -61,16 +61,58 @@ static void refused(bool angles, const char *text, int line, const char *at, enu
     CHECK(!memcmp(text + r.offset + r.at, at, strlen(at)));
 }
 
+/* A0, B0, C0 without angles: a note, once; an axis that is not there does not move others. */
+static void at_rest(void)
+{
+    struct fault_list all;
+    struct reader x;
+    turned(&x, "G0 X5 Y6 A0. B0\nG91 G28 A0\nG92 C0\nG90 G1 X7 A0 F60\nG28 X7 A0\n");
+    x.program.angles = false;
+    interpreter_check_all(&x.in, &x.program, &all);
+    CHECK_EQ(all.count, 0);
+    CHECK(all.notes == 1 && all.note[0].fault == FAULT_NOTE_ANGLE && all.note[0].line == 1);
+    CHECK_EQ(next(&x), COMMAND_PTP);
+    expect_end(&x, 5.0, 6.0, 0.0);
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    expect_end(&x, 7.0, 6.0, 0.0);
+    CHECK_EQ(next(&x), COMMAND_PTP);
+    expect_end(&x, 0.0, 6.0, 0.0);
+    CHECK_EQ(next(&x), -1);
+}
+
+/* All nine letters at once: those of the machine move, the others may stand at 0. */
+static void nine(void)
+{
+    struct fault_list all;
+    struct reader x;
+    turned(&x, "G0 X1 Y2 Z3 A4 B5 C6 U0 V0 W0\nG1 X2 W0 F60\n");
+    interpreter_check_all(&x.in, &x.program, &all);
+    CHECK_EQ(all.count, 0);
+    CHECK(all.notes == 1 && all.note[0].fault == FAULT_NOTE_SIDE && all.note[0].line == 1);
+    CHECK_EQ(next(&x), COMMAND_PTP);
+    expect_end(&x, 1.0, 2.0, 3.0);
+    CHECK_NEAR(x.c.path.end[5], 6.0, 0.0);
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    x.program.angles = false;
+    turned(&x, "G0 X1 Y2 Z3 U4 V5 W6 A0 B0 C0\n");
+    x.program.angles = false;
+    CHECK_EQ(next(&x), COMMAND_PTP);
+    CHECK_NEAR(x.c.path.end[5], 6.0, 0.0);
+}
+
 int main(void)
 {
     meaning();
     lengths();
-    refused(true, "G1 X1 F600\nU5\n", 2, "U5", FAULT_WORD);
-    refused(true, "G1 V5 F600\n", 1, "V5", FAULT_WORD);
-    refused(true, "G1 W5 F600\n", 1, "W5", FAULT_WORD);
-    refused(false, "G1 X1 F600\nA5\n", 2, "A5", FAULT_WORD);
-    refused(false, "G1 B5 F600\n", 1, "B5", FAULT_WORD);
-    refused(false, "G1 C5 F600\n", 1, "C5", FAULT_WORD);
+    refused(true, "G1 X1 F600\nU5\n", 2, "U5", FAULT_SIDE);
+    refused(true, "G1 V5 F600\n", 1, "V5", FAULT_SIDE);
+    refused(true, "G1 W5 F600\n", 1, "W5", FAULT_SIDE);
+    refused(false, "G1 X1 F600\nA5\n", 2, "A5", FAULT_ANGLE);
+    refused(false, "G1 B5 F600\n", 1, "B5", FAULT_ANGLE);
+    refused(false, "G1 C5 F600\n", 1, "C5", FAULT_ANGLE);
+    refused(false, "G1 X5 C0 C0 F600\n", 1, "C0", FAULT_TWICE);
+    at_rest();
+    nine();
     refused(true, "G1 A1 B2 A3 F600\n", 1, "A3", FAULT_TWICE);
     refused(true, "G1 C1 C1 F600\n", 1, "C1", FAULT_TWICE);
     refused(true, "G1 D1 F600\n", 1, "D1", FAULT_UNUSED);

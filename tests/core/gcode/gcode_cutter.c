@@ -164,8 +164,8 @@ static void order(void)
     CHECK_NEAR(x.c.feed, 0.5, 1e-12);
     expect(&x, COMMAND_LINE, 10, 0.0, 22.0, 5.0);
     expect(&x, COMMAND_OUTPUTS, 11, 0.0, 0.0, 0.0);
-    expect(&x, COMMAND_LINE, 11, -5.0, 22.0, 5.0);      /* Y stays where the tool's centre is */
-    expect(&x, COMMAND_LINE, 12, 0.0, 22.0, 5.0);
+    expect(&x, COMMAND_LINE, 11, -5.0, 20.0, 5.0);      /* Y is where the contour ended */
+    expect(&x, COMMAND_LINE, 12, 0.0, 20.0, 5.0);
     expect(&x, COMMAND_OUTPUTS, 12, 0.0, 0.0, 0.0);
     CHECK_EQ(next(&x), -1);
 }
@@ -201,7 +201,7 @@ static void cases(void)
     begin(&x, "G18 G41.1 D4 G1 Z20\nX10\nG40 X20\n");    /* left of Z, seen against Y, is X */
     expect(&x, COMMAND_LINE, 1, 2.0, 0.0, 18.0);
     expect(&x, COMMAND_LINE, 2, 10.0, 0.0, 18.0);
-    expect(&x, COMMAND_LINE, 3, 20.0, 0.0, 18.0);
+    expect(&x, COMMAND_LINE, 3, 20.0, 0.0, 20.0);
     begin(&x, "G10 L1 P7 R3\nG41 D7 G1 X20\nX30\nG40 X40 Y0\nG42.1 D-6 X60\nX70\nG40 X80\n"
               "G41 D0 X90\nX100 Y10\nG40 X0\n");
     expect(&x, COMMAND_LINE, 2, 20.0, 3.0, 0.0);
@@ -209,10 +209,77 @@ static void cases(void)
     expect(&x, COMMAND_LINE, 4, 40.0, 0.0, 0.0);
     expect(&x, COMMAND_LINE, 5, 60.0, 3.0, 0.0);
     expect(&x, COMMAND_LINE, 6, 70.0, 3.0, 0.0);
-    expect(&x, COMMAND_LINE, 7, 80.0, 3.0, 0.0);
-    expect(&x, COMMAND_LINE, 8, 90.0, 3.0, 0.0);
+    expect(&x, COMMAND_LINE, 7, 80.0, 0.0, 0.0);
+    expect(&x, COMMAND_LINE, 8, 90.0, 0.0, 0.0);
     expect(&x, COMMAND_LINE, 9, 100.0, 10.0, 0.0);
     expect(&x, COMMAND_LINE, 10, 0.0, 10.0, 0.0);
+    CHECK_EQ(next(&x), -1);
+}
+
+/* Behind G40 words count from the end of the contour; what has none in the plane stays aside. */
+static void exits(void)
+{
+    struct reader x;
+    begin(&x, "G41.1 D4 G1 X20\nX30\nG40 G0 Z9\nG91 X5\nY1\n");
+    expect(&x, COMMAND_LINE, 1, 20.0, 2.0, 0.0);
+    expect(&x, COMMAND_LINE, 2, 30.0, 2.0, 0.0);
+    expect(&x, COMMAND_PTP, 3, 30.0, 2.0, 9.0);
+    expect(&x, COMMAND_PTP, 4, 35.0, 0.0, 9.0);
+    expect(&x, COMMAND_PTP, 5, 35.0, 1.0, 9.0);
+    CHECK_EQ(next(&x), -1);
+    begin(&x, "G41.1 D4 G1 X20\nX30\nG40 M8\nG91 G99 G81 X5 Z-1 R1 L2\n");
+    expect(&x, COMMAND_LINE, 1, 20.0, 2.0, 0.0);
+    expect(&x, COMMAND_LINE, 2, 30.0, 2.0, 0.0);
+    CHECK_EQ(next(&x), COMMAND_OUTPUTS);
+    expect(&x, COMMAND_PTP, 4, 30.0, 2.0, 1.0);
+    expect(&x, COMMAND_PTP, 4, 35.0, 0.0, 1.0);
+    expect(&x, COMMAND_LINE, 4, 35.0, 0.0, 0.0);
+    expect(&x, COMMAND_PTP, 4, 35.0, 0.0, 1.0);
+    expect(&x, COMMAND_PTP, 4, 40.0, 0.0, 1.0);
+}
+
+/* A plane beside G40 is the next motion's: the contour still ends square to its own. */
+static void other_plane(void)
+{
+    struct reader x;
+
+    begin(&x, "G41.1 D4 G1 X20\nX30\nG40 G18 X40 Z3\n");
+    expect(&x, COMMAND_LINE, 1, 20.0, 2.0, 0.0);
+    expect(&x, COMMAND_LINE, 2, 30.0, 2.0, 0.0);
+    expect(&x, COMMAND_LINE, 3, 40.0, 0.0, 3.0);
+    begin(&x, "G18 G41.1 D4 G1 Z20\nZ30\nG40 G17\nX9 Y5\n");
+    expect(&x, COMMAND_LINE, 1, 2.0, 0.0, 20.0);
+    expect(&x, COMMAND_LINE, 2, 2.0, 0.0, 30.0);
+    expect(&x, COMMAND_LINE, 4, 9.0, 5.0, 30.0);
+}
+
+/* Concave corners: in a sharp one behind the entry the tool goes back to where both ways cross,
+ * and in slight ones by their part of the radius; one that is not slight refuses that. */
+static void back(void)
+{
+    struct reader x;
+    begin(&x, "G42.1 D10 G1 X10\nX-50 Y-15\n");
+    /* 5 from both lines: half the angle between them is a, tan(2 a) = 1/4 */
+    const double half = 5.0 / tan(0.5 * atan(0.25));
+    expect(&x, COMMAND_LINE, 1, 10.0 - half, -5.0, 0.0);
+    expect(&x, COMMAND_LINE, 2, -50.0 - 5.0 / sqrt(17.0), -15.0 + 20.0 / sqrt(17.0), 0.0);
+    CHECK_EQ(next(&x), -1);
+    begin(&x, "G41.1 D10 G1 X10\nX20\nX20.01 Y.00008\nX30 Y.14\n");
+    expect(&x, COMMAND_LINE, 1, 10.0, 5.0, 0.0);
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    CHECK_NEAR(x.c.path.end[0], 20.0 - 5.0 * 0.004, 1e-4);
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    CHECK_NEAR(x.c.path.end[0], 20.01 - 5.0 * (0.008 + 0.5 * 0.006), 1e-4);
+    CHECK_NEAR(x.c.path.end[1], 4.9998, 1e-5);
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    CHECK_NEAR(x.c.path.end[0], 30.0 - 5.0 * 0.014, 1e-4);
+    fault_is("G41.1 D10 G1 X10\nX20\nX20.01 Y.00008\nX30 Y5\n", 3, "X20.01 Y.00008",
+             FAULT_CUTTER_SHORT);
+    begin(&x, "G41.1 D10 G1 X10\nX20\nG3 X20.01 Y.00008 R50\nG1 X30 Y.14\n");
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    CHECK_EQ(next(&x), COMMAND_LINE);       /* nothing is left of the arc */
+    CHECK_EQ(next(&x), COMMAND_LINE);
     CHECK_EQ(next(&x), -1);
 }
 
@@ -238,6 +305,9 @@ int main(void)
 {
     order();
     cases();
+    exits();
+    other_plane();
+    back();
     entries();
     contours();
     return check_result();

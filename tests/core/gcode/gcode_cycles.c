@@ -127,11 +127,10 @@ static void one(int cycle, int plane, bool to_r, bool incremental)
     expect_list(&x, plane, cycles[cycle].list, 5.0, 7.0, clear);
     CHECK_EQ(x.c.line, 3);
     CHECK_EQ(next(&x), COMMAND_STOP);       /* behind the whole cycle */
-    if (!incremental || !to_r) {            /* words are kept; a kept R with G91 is a way again */
-        expect_approach(&x, plane, 9.0, incremental ? 12.0 : 7.0, clear);
-        expect_list(&x, plane, cycles[cycle].list, 9.0, incremental ? 12.0 : 7.0, clear);
-        CHECK_EQ(next(&x), -1);
-    }
+    /* words are kept, and a kept R with G91 counts from where the series began */
+    expect_approach(&x, plane, 9.0, incremental ? 12.0 : 7.0, clear);
+    expect_list(&x, plane, cycles[cycle].list, 9.0, incremental ? 12.0 : 7.0, clear);
+    CHECK_EQ(next(&x), -1);
 }
 
 static void all(void)
@@ -229,6 +228,24 @@ static void heights(void)
     CHECK_NEAR(x.c.feed, 254.0 / 60.0, 1e-12);
 }
 
+/* P is kept by the cycle that had it, in its series; another one without P does not wait. */
+static void dwells(void)
+{
+    struct reader x;
+    begin(&x, "S100 M3 G0 Z5\nG82 X1 Z-1 R2 P.5\nX2\nG84 X3 Z-1 R2\nG84 X4 P.5\nX5\n"
+              "G81 X6 Z-1 R2\nG84 X7 Z-1 R2\n");
+    CHECK_EQ(next(&x), COMMAND_OUTPUTS);
+    CHECK_EQ(next(&x), COMMAND_PTP);
+    expect_list(&x, 0, "r5 r2 f-1 w r5", 1.0, 0.0, 0.0);
+    expect_list(&x, 0, "r5 r2 f-1 w r5", 2.0, 0.0, 0.0);
+    expect_list(&x, 0, "r5 r2 =+ f-1 =- f5 +", 3.0, 0.0, 0.0);
+    expect_list(&x, 0, "r5 r2 =+ f-1 =- w f5 +", 4.0, 0.0, 0.0);
+    expect_list(&x, 0, "r5 r2 =+ f-1 =- w f5 +", 5.0, 0.0, 0.0);
+    expect_list(&x, 0, "r5 r2 f-1 r5", 6.0, 0.0, 0.0);
+    expect_list(&x, 0, "r5 r2 =+ f-1 =- f5 +", 7.0, 0.0, 0.0);
+    CHECK_EQ(next(&x), -1);
+}
+
 /* An axis that no word names does not move, whatever the rounding of offsets. */
 static void rests(void)
 {
@@ -312,6 +329,29 @@ static void refused(void)
     fault_is("G41.1 D1 G0 X5\nG81 X1 Z-1 R0\n", 2, "G81", FAULT_CUTTER_WORD);
 }
 
+/* The spindle's turns ask for the feed of a tap: one that would be cut down is refused. */
+static void taps_above_the_highest_feed(void)
+{
+    static const struct { const char *text; double feed; } taps[] = {
+        { "S1000 M3\nG33.1 Z-5 K5\n", 5000.0 }, { "S1000 M3\nG33.1 Z-5 K2 I2\n", 4000.0 },
+        { "S1000 M3\nG33.1 Z-5 K3\n", 0.0 }, { "S1000 M3\nG33.1 Z-5 K1.5 I2\n", 0.0 }
+    };
+    for (size_t i = 0; i < sizeof taps / sizeof *taps; i++) {
+        struct reader x;
+        int got;
+        begin(&x, taps[i].text);
+        x.program.limits.feed = 50.0;
+        while ((got = next(&x)) >= 0) {
+        }
+        CHECK_EQ(got, taps[i].feed > 0.0 ? -2 : -1);
+        CHECK_EQ(x.r.fault, taps[i].feed > 0.0 ? FAULT_FEED : FAULT_NONE);
+        if (x.r.fault != FAULT_NONE) {
+            CHECK_NEAR(x.r.value, taps[i].feed, 1e-9);
+            CHECK_NEAR(x.r.limit, 3000.0, 1e-9);
+        }
+    }
+}
+
 int main(void)
 {
     all();
@@ -322,9 +362,11 @@ int main(void)
     }
     repeats();
     heights();
+    dwells();
     rests();
     streams();
     checked();
     refused();
+    taps_above_the_highest_feed();
     return check_result();
 }

@@ -3,6 +3,8 @@
 
 #define WAITS "G4 P1\nG4 P1\nG4 P1\nG4 P1\nG4 P1\n"
 
+#define FORTY "0000000000000000000000000000000000000000"
+
 static void faults(void)
 {
     static const struct { const char *text; int line; const char *at; enum fault fault; } bad[] = {
@@ -15,12 +17,23 @@ static void faults(void)
         { "G91 G1 ^3", 1, "^3", FAULT_POLE },
         { "G33 Z1 K1", 1, "G33", FAULT_TURNING },
         { "G7", 1, "G7", FAULT_TURNING },
-        { "G5.2 X1", 1, "G5.2", FAULT_NURBS },
-        { "G1 X1 A5", 1, "A5", FAULT_WORD },
+        { "F9 G5.2 X1", 1, "F9 G5.2 X1", FAULT_NURBS_POINT },
+        { "F9 G5.2\nX1 Y1\nG1 X1", 3, "G1 X1", FAULT_NURBS },
+        { "F60 G81 X1 Z-1 R1\nX2 R900", 2, "X2 R900", FAULT_TRAVEL },
+        { "G5.3", 1, "G5.3", FAULT_NURBS_NONE },
+        { "F9 G5.2\nX1 Y1\nM2", 3, "M2", FAULT_NURBS },
+        { "F9 G5.2\nX1 Y1\nX2 Y3 M30", 3, "M30", FAULT_NURBS },
+        { "F9 G5.2\nX1 Y1\nM99", 3, "M99", FAULT_NURBS },
+        { "F9 G5.2\nX1 Y1\nG28 Z1", 3, "G28", FAULT_NURBS },
+        { "F9 G5.2\nX1 Y1\nG18\nX2 Z1", 4, "X2 Z1", FAULT_NURBS },
+        { "%\nF9 G5.2\nX1 Y1\n\n%", 3, "X1 Y1", FAULT_NURBS_END },
+        { "F9 G5.2\nX1 Y1\n", 2, "X1 Y1", FAULT_NURBS_END },
+        { "F9 G5.2\nX1 Y1\nG5.3", 3, "G5.3", FAULT_NURBS_FEW },
+        { "G93 G5.2 F9", 1, "G93 G5.2 F9", FAULT_NURBS_FEED },
+        { "G1 X1 A5", 1, "A5", FAULT_ANGLE },
         { "G1.5 X1", 1, "G1.5", FAULT_WORD },
         { "G-1 X1", 1, "G-1", FAULT_WORD },
         { "G9999999 X1", 1, "G9999999", FAULT_WORD },
-        { "G61.1", 1, "G61.1", FAULT_WORD },
         { "M6", 1, "M6", FAULT_NO_TOOL },
         { "\n\nG1 X1 $", 3, "$", FAULT_CHARACTER },
         { "G1 X1 / Y2", 1, "/", FAULT_CHARACTER },
@@ -30,7 +43,8 @@ static void faults(void)
         { "G1 X-Y1", 1, "X-", FAULT_NUMBER },
         { "G1 X1.2.3", 1, ".", FAULT_CHARACTER },
         { "G1 X1e3", 1, "e3", FAULT_UNUSED },
-        { "G1 X12345678901234567", 1, "X12345678901234567", FAULT_DIGITS },
+        { "G1 X12345678901234567", 1, "G1 X12345678901234567", FAULT_RANGE },
+        { "G1 X." FORTY FORTY FORTY "1", 1, "X." FORTY FORTY FORTY "1", FAULT_DIGITS },
         { "G1 X1 (open", 1, "(open", FAULT_COMMENT },
         { "G1 X1 x 2", 1, "x 2", FAULT_TWICE },
         { "N1 N2", 1, "N2", FAULT_TWICE },
@@ -119,7 +133,8 @@ static void faults(void)
         { "G64 P-1", 1, "P-1", FAULT_VALUE },
         { "G61 P1", 1, "P1", FAULT_UNUSED },
         { "G1 G92 X0", 1, "G1", FAULT_SHARED },
-        { "G28 G0 X0", 1, "G0", FAULT_SHARED },
+        { "G28 G2 X0", 1, "G2", FAULT_SHARED },
+        { "G10 L2 P1 G0 X0", 1, "G0", FAULT_SHARED },
         { "G52 X0 G3", 1, "G3", FAULT_SHARED },
         { "G10 P1 X0", 1, "G10 P1 X0", FAULT_NO_SYSTEM },
         { "G10 L2 X0", 1, "G10 L2 X0", FAULT_NO_SYSTEM },
@@ -191,8 +206,11 @@ static void faults(void)
         { "F60000.1", 1, "F60000.1", FAULT_FEED },
         { "G20 F2363", 1, "F2363", FAULT_FEED },
         { "G4", 1, "G4", FAULT_NO_DWELL },
+        { "G4 P1 R5", 1, "R5", FAULT_UNUSED },
+        { "G4 P1 G2 X1 R5", 1, "P1", FAULT_SHARED },
         { "G4 P-1", 1, "P-1", FAULT_VALUE },
-        { "G1 X1\nG4 P1 X2", 2, "X2", FAULT_UNUSED },
+        { "G17 G2 X2 I1 K1", 1, "K1", FAULT_UNUSED },
+        { "o1 sub\no2 endsub\no1 endsub\no1 call", 2, "o2 endsub", FAULT_O_PLACE },
         { "G53", 1, "G53", FAULT_NO_AXES },
         { "G53 X1", 1, "G53 X1", FAULT_G53 },
         { "G1 U1", 1, "U1", FAULT_AXIS },
@@ -239,7 +257,13 @@ static void faults(void)
         { "G96 G97 S1 D9", 1, "G97", FAULT_GROUP },
         { "G96 S1 D9 G41", 1, "G41", FAULT_SHARED },
         { "G96 S1 D9 M3\nG95 G1 F1 X1", 2, "G95 G1 F1 X1", FAULT_SURFACE },
-        { "G1 X#<_vmajor>", 1, "#<_vmajor>", FAULT_FOREIGN },
+        { "G1 X#<_hal[x]>", 1, "#<_hal[x]>", FAULT_FOREIGN },
+        { "M70\nM71\nM72", 3, "M72", FAULT_NO_MODES },
+        { "M70\nG41.1 D1\n M72 ", 3, "M72", FAULT_RESTORE },
+        { "G1 X1 M101 P1", 1, "M101", FAULT_USER }, { "M100 M199", 1, "M199", FAULT_GROUP },
+        { "G4 P1 M101\no<m101> sub\no<m101> endsub", 1, "M101", FAULT_SHARED },
+        { "M100.5", 1, "M100.5", FAULT_WORD }, { "M200", 1, "M200", FAULT_WORD },
+        { "M3 S1\nG33.1 Z1", 2, "G33.1 Z1", FAULT_TAP_K },
         { "#<_ini[emc]machine>=1", 1, "#<_ini[emc]machine>=1", FAULT_FOREIGN },
         { "#<_hal[spindle]> = 1", 1, "#<_hal[spindle]> = 1", FAULT_FOREIGN },
         { "#<_rpm>=1", 1, "#<_rpm>=1", FAULT_FIXED },
@@ -270,12 +294,18 @@ static void faults(void)
           FAULT_CUTTER_FULL },
     };
     /* Three have tests of their own below; gcode_stream.c has those of a source, gcode_machine.c
-     * one of a machine with a probe. */
+     * one of a machine with a probe, tests/gcode/test_files.py one of files,
+     * tests/gcode/test_fanuc*.py those of Fanuc's controls, gcode_angles.c one of U V W. */
     bool seen[FAULT_COUNT] = { [FAULT_NONE] = true, [FAULT_LINE_LENGTH] = true,
                                [FAULT_WORD_COUNT] = true, [FAULT_READ] = true,
                                [FAULT_ZERO] = true, [FAULT_PLAIN] = true,
                                [FAULT_PROBE_POINT] = true, [FAULT_DEEP] = true,
-                               [FAULT_NAMES] = true, [FAULT_O_DEEP] = true };
+                               [FAULT_NAMES] = true, [FAULT_O_DEEP] = true,
+                               [FAULT_FILES] = true, [FAULT_SEQUENCE] = true,
+                               [FAULT_LOOP_END] = true, [FAULT_THEN] = true,
+                               [FAULT_SIDE] = true, [FAULT_ALARM] = true,
+                               [FAULT_MODAL] = true, [FAULT_ROUND_NEXT] = true,
+                               [FAULT_ROUND_SHORT] = true };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         fault_is(bad[i].text, bad[i].line, bad[i].at, bad[i].fault);
         seen[bad[i].fault] = true;

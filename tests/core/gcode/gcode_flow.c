@@ -61,6 +61,7 @@ static void loops(void)
 
 static void calls(void)
 {
+    PATH("\xEF\xBB\xBFo1 sub\nG1 X#1\no1 endsub\no1 call [5]\n", 5);
     PATH("o1 sub\nG1 X#1\nX[#2 + 1]\no1 endsub\no1 call [5] [7]\nM2\n", 5, 8);
     PATH("o<b> call [3]\nM2\no<b> sub\nG1 X#1\no<b> endsub\n", 3);
     PATH("#1=4 #2=6 #31=1\no1 call [3]\nG1 X[#1+#31]\nM2\n"
@@ -81,6 +82,13 @@ static void calls(void)
          "#5000=[#5000+1]\no1 endsub\n", 10);
 }
 
+/* A computed number is a code as that of any other word is: 1.1 * 100 is 110 but for rounding. */
+static void users(void)
+{
+    PATH("o<m110> sub\nG1 X1\no<m110> endsub\nM[1.1*100] G1 X2\n", 1, 2);
+    PATH("o<m110> sub\nG1 X1\no<m110> endsub\nG1\nM109.99995 X2\n", 1, 2);
+}
+
 static void fanuc(void)
 {
     PATH("%\nO1000 (PLATE)\nG91 G1 X1\nM98 P2000 L3\nM98 P2000 L0\n"
@@ -95,6 +103,15 @@ static void fanuc(void)
           "G1 X[#1+#2*2+#3*4+#4*8+#5*16+#6*32+#7*64+#8*128+#9*256+#26*512+#10]\n#1=100\nX0\nM99\n",
           1 + 4 + 12 + 32 + 80 + 192 + 448 + 1024 + 2304 + 26 * 512, 0,
           1 + 4 + 12 + 32 + 80 + 192 + 448 + 1024 + 2304 + 26 * 512, 0, 5);
+    FANUC("G1\n#1=0\nN10 #1=#1+1\nX#1\nIF[#1LT3]GOTO10\nX9\nM30\n", 1, 2, 3, 9);
+    FANUC("G1 X1\nGOTO 20\nX2\nN20 X3\nGOTO[10+20]\nX4\n/N30 X5\nN030\nX6\nM30\n", 1, 3, 5, 6);
+    FANUC("G1\n#1=1\nWHILE [#1 LE 3] DO1\n#2=1\nWHILE[#2LT#1]DO 2\nX[10*#1+#2]\n#2=#2+1\nEND 2\n"
+          "#1=#1+1\nEND1\nWHILE[0]DO1\nX1\nEND1\nX9\nM30\n", 21, 31, 32, 9);
+    FANUC("G1\n#1=0\nDO1\n#1=#1+1\nX#1\nIF[#1EQ2]GOTO5\nEND1\nX8\nN5 X9\nDO1\nX10\nGOTO 7\n"
+          "END1\nN7M30\n", 1, 2, 9, 10);
+    FANUC("G1\nIF [1 EQ 1] THEN #1=5 #2=6\nIF [1 NE 1] THEN #1=7\nX[#1+#2]\nM30\n", 11);
+    FANUC("O1\nG1\nM98 P2\nN1 X5\nM30\nO2\nN1 X[#1+1]\n#1=#1+1\nIF[#1 LT 3]GOTO 1\nM99\nO3\nN1X7\n",
+          1, 2, 3, 5);
     path_is("G91 G1 X1\nM99\n", false, (double[]){ 1, 2, 3, 4, 5 }, 5, false);
     PATH("G90 G1 X1\n/M30\nM99\n", 1);
 }
@@ -114,6 +131,9 @@ static void forms(void)
         }
         CHECK_EQ(next(&x), COMMAND_LINE);
     }
+    begin(&x, "\xEF\xBB\xBFG1 X1 Q2\n");
+    CHECK_EQ(next(&x), -2);
+    CHECK_EQ(x.r.at, 6);        /* the mark is in no column */
     begin(&x, "G4 P500\nG4 P0.5\nG4 X1.5\nG4 U2\nG1 X100 Y1. F6\n");
     x.program.fanuc = true;
     x.program.least_increment = 0.001;
@@ -132,6 +152,7 @@ int main(void)
     conditions();
     loops();
     calls();
+    users();
     fanuc();
     forms();
     return check_result();

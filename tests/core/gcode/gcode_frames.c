@@ -63,14 +63,16 @@ static void parking(void)
     expect_move(&x, COMMAND_PTP, 10.0, 20.0, 30.0);
     CHECK_EQ(next(&x), -1);                 /* there already */
     double value;
-    CHECK(offsets_parameter(&x.in, false, 5162, &value) && value == 20.0);
-    CHECK(offsets_parameter(&x.in, false, 5181, &value) && value == 1.0);
-    CHECK(offsets_parameter(&x.in, false, 5220, &value) && value == 2.0);
-    CHECK(offsets_parameter(&x.in, false, 5242, &value) && value == 10.0);
-    CHECK(offsets_parameter(&x.in, false, 5250, &value) && value == 0.0);
-    CHECK(offsets_parameter(&x.in, true, 5247, &value) && value == 0.0);
-    CHECK(!offsets_parameter(&x.in, false, 5231, &value));
-    CHECK(!offsets_parameter(&x.in, false, 5401, &value));
+    CHECK(offsets_parameter(&x.in, &x.program, 5162, &value) && value == 20.0);
+    CHECK(offsets_parameter(&x.in, &x.program, 5181, &value) && value == 1.0);
+    CHECK(offsets_parameter(&x.in, &x.program, 5220, &value) && value == 2.0);
+    CHECK(offsets_parameter(&x.in, &x.program, 5242, &value) && value == 10.0);
+    CHECK(offsets_parameter(&x.in, &x.program, 5250, &value) && value == 0.0);
+    x.program.angles = true;
+    CHECK(offsets_parameter(&x.in, &x.program, 5247, &value) && value == 0.0);
+    x.program.angles = false;
+    CHECK(!offsets_parameter(&x.in, &x.program, 5231, &value));
+    CHECK(!offsets_parameter(&x.in, &x.program, 5401, &value));
 }
 
 /* Factors about a centre, mirrored ones too; arcs turn the other way round in a mirror. */
@@ -227,6 +229,34 @@ static void feeds(void)
     CHECK_EQ(next(&x), -1);
 }
 
+/* Modes of M70 that none can have, and systems beyond all, are a damaged state. */
+static void damaged(void)
+{
+    struct reader x;
+
+    begin(&x, "G55 M70\nG1 X1\nM72\nX2\n");
+    x.program.fanuc = true;
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    CHECK(!interpreter_damaged(&x.in) && x.in.saved[0].kept);
+    struct interpreter in = x.in;
+    in.saved[0].system = INTERPRETER_ALL;
+    CHECK(interpreter_damaged(&in));
+    in.saved[0].system = -1;
+    CHECK(interpreter_damaged(&in));
+    in.saved[0].kept = false;
+    CHECK(!interpreter_damaged(&in));
+    in.system = INTERPRETER_ALL - 1;
+    CHECK(!interpreter_damaged(&in));
+    in.system++;
+    CHECK(interpreter_damaged(&in));
+    in = x.in;
+    in.more = INTERPRETER_MORE + 1;
+    CHECK(interpreter_damaged(&in));
+    in = x.in;
+    in.saved[0].plane = PATH_XY + 1;
+    CHECK(interpreter_damaged(&in));
+}
+
 int main(void)
 {
     systems();
@@ -238,5 +268,6 @@ int main(void)
     mirrored_cutter();
     splines();
     feeds();
+    damaged();
     return check_result();
 }

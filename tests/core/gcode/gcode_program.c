@@ -141,8 +141,47 @@ static void values(void)
     CHECK_EQ(x.c.line, 2);
 }
 
+/* F above the highest feed (1000 mm/s), and above what the screws bear along a path (500 mm/s):
+ * what is possible is driven, and a note tells it; a tap needs its own. */
+static void quick(void)
+{
+    static const double feeds[] = { 10.0, 500.0, 707.10678118654752, 500.0,
+                                    502.4937810560445, 500.0, 10.0 };
+    struct fault_list all;
+    struct reader x;
+
+    begin(&x, "F600 G1 X10\nF60000.1 G1 X20\nG1 X40 Y20\nG93 X10 Y20 F2000\nG94 F90000\n"
+              "G41.1 D2 X20\nX40\nG40 F600\nX60 Y0\n");
+    x.program.strict_feed = false;
+    interpreter_check_all(&x.in, &x.program, &all);
+    CHECK_EQ(all.count, 0);
+    CHECK(all.notes == 1 && all.note[0].fault == FAULT_NOTE_FEED && all.note[0].line == 2);
+    for (size_t i = 0; i < sizeof feeds / sizeof *feeds; i++) {
+        CHECK(next(&x) >= 0);
+        CHECK_NEAR(x.c.feed, feeds[i], 1e-9);
+    }
+    CHECK_EQ(next(&x), -1);
+    begin(&x, "S9000 M3 F90000 G0 Z5\nG81 X1 Z-1 R2\nG84 X2 Z-1 R2\n");
+    x.program.strict_feed = false;
+    for (int i = 0; i < 4; i++) {
+        CHECK(next(&x) >= 0);
+    }
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    CHECK_NEAR(x.c.feed, 500.0, 1e-9);
+    while (next(&x) >= 0) {
+    }
+    CHECK_EQ(x.r.fault, FAULT_FEED);
+    CHECK_NEAR(x.r.value, 90000.0, 1e-6);
+    begin(&x, "S9000 M3 F36000 G0 Z5\nG84 X2 Z-1 R2\n");
+    x.program.strict_feed = false;
+    while (next(&x) >= 0) {
+    }
+    CHECK_EQ(x.r.fault, FAULT_SPEED);
+}
+
 int main(void)
 {
+    quick();
     lines_and_modes();
     arcs();
     numbers();

@@ -29,6 +29,7 @@ static inline void begin(struct reader *x, const char *text)
     x->text = (struct source_text){ text, (int64_t)strlen(text) };
     x->source = source_of(&x->text);
     x->program = (struct program){ .source = &x->source,
+                                   .strict_feed = true,
                                    .machine = machine_mechanism(&x->machine),
                                    .limits = machine_limits(&x->machine) };
     interpreter_start(&x->in, zero, x->machine.feed, origins);

@@ -11,8 +11,11 @@ struct narrow {
     char window[SOURCE_WINDOW];
 };
 
-static int64_t narrow_look(void *context, int64_t offset, const char **text)
+static int64_t narrow_look(void *context, const char *file, int64_t offset, const char **text)
 {
+    if (file[0]) {
+        return SOURCE_NONE;
+    }
     struct narrow *n = context;
     const int64_t left = n->length - offset;
     const int64_t there = left < SOURCE_WINDOW ? left : SOURCE_WINDOW;
@@ -165,8 +168,11 @@ static void write_line(const struct endless *e, char *to, int64_t n)
     }
 }
 
-static int64_t endless_look(void *context, int64_t offset, const char **text)
+static int64_t endless_look(void *context, const char *file, int64_t offset, const char **text)
 {
+    if (file[0]) {
+        return SOURCE_NONE;
+    }
     struct endless *e = context;
     const int64_t room = (int64_t)sizeof e->window, all = (int64_t)LINES * LINE;
     if (e->from < 0 || offset < e->from * LINE || offset + SOURCE_WINDOW > e->from * LINE + room) {
@@ -242,7 +248,7 @@ static void million_interpreted(void)
     CHECK_EQ(x.in.offset, (int64_t)LINES * LINE);
     CHECK_NEAR(sum_x, LINES * 0.4995, 1e-5);    /* 0 .. 999 a thousand times */
     CHECK_NEAR(sum_y, LINES * 499.5, 1e-2);
-    CHECK(sizeof x.in < 100000);
+    CHECK(sizeof x.in < 110000);    /* of any program */
 }
 
 int main(void)

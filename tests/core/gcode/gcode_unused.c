@@ -30,11 +30,27 @@ static struct interpreter without(const struct interpreter *in)
     return other;
 }
 
+/* One number that is set is kept, in whichever page it lies, at either end of that. */
+static void each_page(void)
+{
+    for (int32_t n = PARAMETERS_PAGE; n < PARAMETERS_NUMBERED; n += n % 2 ? 1 : 63) {
+        char one[64];
+        struct reader x;
+        snprintf(one, sizeof one, "#%d=%d\nG1 F600 X#%d\nX0\n", (int)n, (int)n, (int)n);
+        begin(&x, one);
+        CHECK_EQ(next(&x), COMMAND_LINE);
+        x.in = without(&x.in);
+        CHECK_NEAR(x.c.path.end[0], n, 0.0);
+        CHECK_EQ(next(&x), COMMAND_LINE);
+    }
+}
+
 int main(void)
 {
     struct reader whole, part;
     int32_t commands = 0;
 
+    each_page();
     begin(&whole, text);
     begin(&part, text);
     for (;;) {

@@ -215,6 +215,13 @@ static void digital(void)
     CHECK_EQ(x.c.set, 0);
     CHECK_EQ(next(&x), -2);                 /* P of M63 or of the arc? */
     CHECK_EQ(x.r.fault, FAULT_SHARED);
+    begin(&x, "M63 P4\nM63 P5\nM62 P4\nG1 X1\nM62 P6\nM63 P6\nX2\n");
+    CHECK_EQ(next(&x), COMMAND_LINE);       /* one output is set or cleared, never both */
+    CHECK_EQ(x.c.set, 0x10);
+    CHECK_EQ(x.c.clear, 0x20);
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    CHECK_EQ(x.c.set, 0);
+    CHECK_EQ(x.c.clear, 0x40);
 }
 
 /* G80 beside a motion word gives way to it, on either side. */

@@ -22,6 +22,8 @@ def arc_of(s: State, w: Words) -> None:
     ccw = s.motion == 30
     radius = w.one("r")
     offsets = w.use("".join(names))
+    if any(w.use("ijk"[s.plane]).values()):
+        raise Wrong("centre along the normal")
     if (radius is None) == (not offsets):
         raise Wrong("arc with neither centre nor radius, or with both")
     if radius is not None:

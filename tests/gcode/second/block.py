@@ -5,9 +5,10 @@ import math
 from second.arcs import arc_of, splines
 from second.cutter import begin, finish
 from second.cycles import Cycle
-from second.frames import end_point, machine, plane_axes, program
-from second.machine import outputs, probe, switches, wait
+from second.frames import end_point, here, machine, origin, plane_axes, program
+from second.machine import FEED, SPEED, outputs, probe, saving, switches, wait
 from second.moves import straight
+from second.nurbs import nurbs
 from second.offsets import change, predefined
 from second.parameters import Wrong
 from second.state import AXES, State, Step
@@ -110,7 +111,7 @@ def _polar(s: State, on: bool) -> None:
     """G16 begins with the point where the tool is."""
     s.polar = on
     a, b = plane_axes(s.plane)
-    now = program(s, s.point)
+    now = program(s, here(s))
     s.pole = (0.0, 0.0)
     s.polar_radius = math.hypot(now[a], now[b])
     s.polar_angle = math.degrees(math.atan2(now[b], now[a]))
@@ -128,6 +129,29 @@ def _dwell(s: State, w: Words) -> None:
     s.steps.append(step)
 
 
+def _tap(s: State, w: Words) -> None:
+    """G33.1: K a turn to the point, back with the spindle the other way, I times as fast."""
+    turn, faster = w.one("k"), w.one("i")
+    if turn is None or turn <= 0.0 or (faster is not None and faster <= 0.0):
+        raise Wrong("K or I of G33.1")
+    if s.rpm == 0.0 or s.by_radius or s.edge or not w.has(w.axes + "@^"):
+        raise Wrong("G33.1 without spindle or axes")
+    begin, mode = list(s.point), (s.feed_mode, s.feed)
+    turning, speed, overrides = s.turning, s.speed, s.overrides
+    end = machine(s, end_point(s, w))
+    s.feed_mode, s.feed = 940, turn * s.unit * speed / 60.0
+    s.overrides |= FEED | SPEED
+    outputs(s)
+    straight(s, end, False)
+    s.turning, s.speed = -turning, speed * max(1.0, faster or 1.0)
+    s.feed *= s.speed / speed
+    outputs(s)
+    straight(s, begin, False)
+    s.turning, s.speed, s.overrides = turning, speed, overrides
+    outputs(s)
+    s.feed_mode, s.feed = mode
+
+
 def _move(s: State, w: Words) -> None:
     """The motion in force, if the line has words for it."""
     axes = w.has(w.axes + "@^")
@@ -143,7 +167,7 @@ def _move(s: State, w: Words) -> None:
     if free:
         if s.motion not in (0, 10) or not axes:
             raise Wrong("G53")
-        end = list(s.point)
+        end = list(origin(s, w))
         for i, letter in enumerate(w.axes):
             if (value := w.one(letter)) is not None:
                 end[i] = value * (1.0 if letter in "abc" else s.unit)
@@ -151,13 +175,19 @@ def _move(s: State, w: Words) -> None:
         return
     if s.motion != 50:
         s.spline = None
-    if s.motion in PROBES:
+    held = bool(s.nurbs) and (axes or any(c in w.rest() for c in "ijkrp"))
+    if s.motion == 53 or held or (s.motion == 52 and (now or axes or "p" in w.rest())):
+        nurbs(s, w)
+    elif s.motion in PROBES:
         probe(s, w)
+    elif s.motion == 331:
+        if now or axes or w.has("ik"):
+            _tap(s, w)
     elif s.motion in CYCLES:
         if axes or now:
             if not axes:
                 raise Wrong("cycle without axes")
-            Cycle(s, w.use("xyzrqplijk"), outputs).run()
+            Cycle(s, w, outputs).run()
     elif s.motion in (20, 30):
         if now or axes or any(c in w.rest() for c in "ijkr"):
             arc_of(s, w)
@@ -178,6 +208,8 @@ def _stop(s: State, w: Words) -> None:
     if stop in (0, 60) or (stop == 1 and s.options.optional_stop):
         s.steps.append(Step("stop", s.line, tuple(s.point), tuple(s.point)))
     if stop in (2, 30):
+        if s.nurbs:
+            raise Wrong("no G5.3 before the end")
         finish(s)
         on = s.rpm != 0.0 or s.coolant or s.overrides
         s.turning = s.coolant = s.overrides = 0
@@ -187,22 +219,38 @@ def _stop(s: State, w: Words) -> None:
         s.ended = True
 
 
+def _frame(s: State, w: Words) -> None:
+    """Units, system and length of the tool."""
+    if "units" in w.code:
+        s.inch = w.code["units"] == 200
+    if "system" in w.code:
+        if w.code["system"] in GSYSTEMS:
+            s.system = GSYSTEMS.index(w.code["system"])
+        else:
+            s.system = 8 + w.whole("p", 1, 99)
+    if "length" in w.code:
+        _length(s, w)
+
+
 def execute(s: State, w: Words) -> None:
     """Everything that a line says, but calls."""
     if "units" in w.code:
         s.inch = w.code["units"] == 200
     other = w.code.get("other")
-    if other in TAKES_AXES and w.code.get("motion", 800) != 800 and w.has(w.axes):
+    beside = (0, 10, 800) if other in (280, 300) else (800,)  # G28 of posts with G0 or G1
+    if other in TAKES_AXES and w.code.get("motion", 800) not in beside and w.has(w.axes):
         raise Wrong("two codes that take axis words")
+    if "user" in w.code:
+        w.use("pq")
     _feed(s, w)
     if w.code.get("io") == 66:
         wait(s, w)
     _tool(s, w)
-    if "system" in w.code:
-        s.system = GSYSTEMS.index(w.code["system"])
-    if "length" in w.code:
-        _length(s, w)
+    _frame(s, w)
     switches(s, w)
+    if "saving" in w.code:
+        saving(s, w.code["saving"])
+        _frame(s, w)
     if other == 40:
         _dwell(s, w)
     _modes(s, w)
@@ -210,13 +258,20 @@ def execute(s: State, w: Words) -> None:
         change(s, w)
     if "polar" in w.code:
         _polar(s, w.code["polar"] == 160)
+    if s.nurbs and other in (280, 300):
+        raise Wrong("not between G5.2 and G5.3")
     if other in (280, 281, 300, 301):
         predefined(s, w)
-    if other not in TAKES_AXES and not ("scale" in w.code or "turn" in w.code):
+    made = len(s.steps)
+    if other == 40 and not w.has("p"):
+        pass  # X or U of a Fanuc, which are its time
+    elif other not in TAKES_AXES and not ("scale" in w.code or "turn" in w.code):
         if w.code.get("length") not in (431, 432):
             _move(s, w)
-    elif w.code.get("motion") == 800:
-        s.motion = -1
+    elif "motion" in w.code:
+        s.motion = w.code["motion"] if w.code["motion"] != 800 else -1
+    if "exact" in w.code and len(s.steps) > made and s.motion not in CYCLES and not s.nurbs:
+        s.steps.append(Step("dwell", s.line, tuple(s.point), tuple(s.point)))
     if w.rest():
         raise Wrong(f"words without use: {sorted(w.rest())}")
     _stop(s, w)

@@ -13,6 +13,7 @@ from second.state import Point, State, Step
 
 SMOOTH = 1e-5  # [mm] offset ends that are nearer need no corner
 ROUNDING = 1e-9  # [mm]
+SLIGHT = 0.01  # [rad] concave corners below it are what rounding makes of a smooth contour
 
 
 @dataclass
@@ -45,6 +46,7 @@ class Cutter:
         self.out: list[Step] = []
         self.line = 0
         self.at = 0j
+        self.shortened = False  # by the corner that `corner` looked at last
 
     def flat(self, p: Point) -> complex:
         return complex(p[self.a], p[self.b])
@@ -68,6 +70,7 @@ class Cutter:
         """Where the centre ends a motion and begins the next."""
         u, v = one.left(one.end), two.left(two.start)
         angle = cmath.phase(v / u)
+        self.shortened = angle * self.edge >= max(SMOOTH, SLIGHT * abs(self.edge))
         if abs(angle) > math.pi - 1e-6:
             raise Wrong("the contour turns back on itself")
         if abs(angle * self.edge) < SMOOTH:
@@ -91,18 +94,28 @@ class Cutter:
             return p.beside(p.start, self.edge), (p.end - p.start) / abs(p.end - p.start)
         return p.centre, abs(p.beside(p.end, self.edge) - p.centre)
 
-    def emit(self, piece: Piece, start: complex, end: complex) -> None:
-        """The motion between two places of the centre."""
+    def emit(self, piece: Piece, start: complex, end: complex, back: bool) -> None:
+        """The motion between two places of the centre, which may lead back."""
         step = piece.step
         new = replace(step, start=self.placed(step.start, start), end=self.placed(step.end, end))
-        if piece.centre is not None:
+        if back and piece.centre is not None and self.nothing(piece, start, end):
+            new.kind, new.centre, new.sweep = "line", (0.0, 0.0), 0.0
+        elif piece.centre is not None:
             turn = cmath.phase((end - piece.centre) / (start - piece.centre))
             whole = math.tau * round((step.sweep - turn) / math.tau)
             new.sweep = turn + whole
-        elif ((end - start) / (piece.end - piece.start)).real < 0.0:
+        elif not back and ((end - start) / (piece.end - piece.start)).real < 0.0:
             raise Wrong("a motion shorter than the tool needs")
         self.out.append(new)
         self.at = end
+
+    @staticmethod
+    def nothing(piece: Piece, start: complex, end: complex) -> bool:
+        """Whether corners at both ends leave nothing of an arc."""
+        assert piece.centre is not None
+        ahead = cmath.phase((start - piece.centre) / (piece.start - piece.centre))
+        behind = cmath.phase((piece.end - piece.centre) / (end - piece.centre))
+        return abs(piece.step.sweep) <= piece.turn * (ahead + behind)
 
     def round(self, before: Step, step: Step, about: complex, end: complex) -> None:
         """The arc about a convex corner, at the feed of the motion behind it."""
@@ -121,7 +134,7 @@ class Cutter:
         held: Piece | None = None
         self.line = line
         waiting: list[Step] = []
-        begin = 0j
+        begin, entry, short = 0j, True, False
         for step in [*steps, None]:
             piece = self.piece(step) if step else None
             if step and not piece:
@@ -133,8 +146,10 @@ class Cutter:
                     end, onward = self.corner(held, piece)
                 else:
                     end = onward = held.beside(held.end, self.edge)
+                shorter = bool(piece) and self.shortened
                 self.line = held.step.line
-                self.emit(held, begin, end)
+                self.emit(held, begin, end, entry or not (short or shorter))
+                entry, short = False, shorter
                 for w in waiting:
                     self.out.append(
                         replace(w, start=self.placed(w.start, end), end=self.placed(w.end, end))
@@ -199,6 +214,7 @@ def finish(s: State) -> None:
         s.steps[s.contour_from :] = new
         for step in reversed(new):
             if step.kind in ("line", "rapid", "arc"):
+                s.aside = (list(s.point), list(step.end), plane_axes(s.plane))
                 s.point = list(step.end)
                 break
     s.side, s.edge = 0, 0.0

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 
-from second.frames import machine, plane_axes, program
+from second.frames import end_from, machine, origin, plane_axes, program
 from second.moves import straight
 from second.parameters import Wrong
 from second.state import State, Step
+from second.words import Words
 
 STEP_BACK_MM, STEP_BACK_INCH = 0.254, 0.010 * 25.4  # [mm] of G73 and G83
 PECKED, DWELLING = (730, 830), (820, 840, 740, 860, 880, 890)
@@ -15,9 +16,10 @@ FIXED = 3  # overrides of feed and spindle
 class Cycle:
     """One block of a cycle, in the coordinates of the program."""
 
-    def __init__(self, s: State, words: dict[str, float], outputs: Callable[[State], None]) -> None:
-        self.s, self.words, self.outputs = s, words, outputs
-        self.at = program(s, s.point)
+    def __init__(self, s: State, w: Words, outputs: Callable[[State], None]) -> None:
+        self.line = w
+        self.s, self.words, self.outputs = s, w.use("xyzrqplijk"), outputs
+        self.at, self.begin = program(s, s.point), program(s, origin(s, w))
         self.deep = s.plane
         self.r = self.bottom = self.clear = 0.0
 
@@ -45,17 +47,20 @@ class Cycle:
         names = "xyz"[self.deep]
         for letter in (names, "r", "q", "p", "i", "j", "k"):
             if letter in self.words:
-                s.sticky[letter] = self.words[letter] * (1.0 if letter == "p" else unit)
+                ms = letter == "p" and s.options.fanuc and "p" in self.line.whole_numbers
+                size = (1e-3 if ms else 1.0) if letter == "p" else unit
+                s.sticky[letter] = self.words[letter] * size
         if "r" not in s.sticky or names not in s.sticky:
             raise Wrong("cycle without R or depth")
         if s.motion in PECKED and s.sticky.get("q", 0.0) <= 0.0:
             raise Wrong("cycle without Q")
-        self.r = s.sticky["r"] + (old if s.incremental else 0.0)
+        if s.old_level is None:
+            s.old_level = old
+        # A way down to R begins at the level from which the series set out, for all of its holes.
+        self.r = s.sticky["r"] + (s.old_level if s.incremental else 0.0)
         self.bottom = s.sticky[names] + (self.r if s.incremental else 0.0)
         if self.bottom > self.r:
             raise Wrong("R below the bottom")
-        if s.old_level is None:
-            s.old_level = old
         if s.motion == 870 and not {"i", "j", "k"} <= s.sticky.keys():
             raise Wrong("G87 without I, J, K")
         self.clear = max(self.r, s.old_level) if s.old_plane else self.r
@@ -70,11 +75,12 @@ class Cycle:
         if self.at[self.deep] < self.r:
             self.go(True, self.r)
         axes = plane_axes(self.deep)
+        for i in axes:
+            self.at[i] = self.begin[i]
         for _ in range(round(times)):
+            hole = end_from(s, self.line, self.at)
             for i in axes:
-                if (letter := "xyz"[i]) in self.words:
-                    value = self.words[letter] * s.unit
-                    self.at[i] = self.at[i] + value if s.incremental else value
+                self.at[i] = hole[i]
             self.go(True)
             self.go(True, self.r)
             self.hole()
@@ -89,6 +95,8 @@ class Cycle:
             return
         if code in PECKED:
             self.pecks(code == 830)
+            if s.options.fanuc:
+                self.dwell()
             return
         if code in (860, 880) and s.rpm == 0.0:
             raise Wrong("cycle with a spindle at rest")

@@ -69,9 +69,32 @@ def program(s: State, point: Vector) -> Vector:
     ]
 
 
+def here(s: State) -> Vector:
+    """Where the program has led the tool: where the contour ended, until the tool leaves it."""
+    if s.aside is None:
+        return s.point
+    ended, stands, plane = s.aside
+    if any(s.point[i] != stands[i] for i in plane):
+        s.aside = None
+        return s.point
+    return [ended[i] if i in plane else x for i, x in enumerate(s.point)]
+
+
+def origin(s: State, w: Words) -> Vector:
+    """The point that words count from; without any in its plane the tool stays beside a contour."""
+    place = here(s)
+    if s.aside is None or w.has("@^" + "".join("xyz"[i] for i in s.aside[2])):
+        return place
+    return s.point
+
+
 def end_point(s: State, w: Words) -> Vector:
     """End of a motion by its axis words or polar ones, in the program's coordinates."""
-    now = program(s, s.point)
+    return end_from(s, w, program(s, origin(s, w)))
+
+
+def end_from(s: State, w: Words, now: Vector) -> Vector:
+    """The same from any point."""
     end = list(now)
     polar = w.use("@^")
     if polar:
@@ -90,7 +113,7 @@ def end_point(s: State, w: Words) -> Vector:
             radius * math.sin(math.radians(angle)),
         )
     words = w.use(w.axes)
-    if s.polar and "other" not in w.code:
+    if s.polar and w.code.get("other", 40) == 40:
         words = _polar_mode(s, w, words, now, end)
     for i, letter in enumerate(w.axes):
         if letter in words:

@@ -6,13 +6,18 @@ from dataclasses import dataclass, field
 
 from second.parameters import Parameters, Wrong
 
-Value = Callable[[Parameters], float]
+Value = Callable[[Parameters], float | None]  # None: vacant, on Fanuc's controls
 
 KEYWORDS = (
     "sub endsub call return do while endwhile if elseif else endif break continue repeat endrepeat"
 ).split()
 # Each row binds tighter than the one before; within a row from left to right.
 LEVELS = (("and", "or", "xor"), ("eq", "ne", "gt", "ge", "lt", "le"), ("+", "-"), ("*", "/", "mod"))
+LEVELS_FANUC = (
+    ("eq", "ne", "gt", "ge", "lt", "le"),
+    ("+", "-", "or", "xor"),
+    ("*", "/", "mod", "and"),
+)
 EQUAL = 1e-6  # numbers that differ by less are the same to EQ and NE
 
 
@@ -29,6 +34,7 @@ class Line:
     order: str = ""
     arguments: list[Value] = field(default_factory=list)
     blank: bool = True  # nothing but comments
+    number: float | None = None  # of N
 
 
 def _power(a: float, b: float) -> float:
@@ -81,6 +87,24 @@ def _checked(f: Callable[[float], float]) -> Callable[[float], float]:
     return safe
 
 
+def _bits(f: Callable[[int, int], int]) -> Callable[[float, float], float]:
+    """An operation on the bits of whole numbers."""
+
+    def whole(x: float) -> int:
+        near = int(math.copysign(math.floor(abs(x) + 0.5), x))
+        if not -(2**31) < near < 2**31:
+            raise Wrong("more than 32 bits")
+        return near
+
+    return lambda a, b: float(f(whole(a), whole(b)))
+
+
+BINARY_FANUC = BINARY | {
+    "and": _bits(lambda a, b: a & b),
+    "or": _bits(lambda a, b: a | b),
+    "xor": _bits(lambda a, b: a ^ b),
+}
+
 UNARY: dict[str, Callable[[float], float]] = {
     "abs": abs,
     "acos": _checked(lambda x: math.degrees(math.acos(x))),
@@ -95,6 +119,17 @@ UNARY: dict[str, Callable[[float], float]] = {
     "sqrt": _checked(math.sqrt),
     "tan": lambda x: math.tan(math.radians(x)),
 }
+
+
+UNARY_FANUC = UNARY | {
+    "fix": lambda x: float(math.trunc(x)),
+    "fup": lambda x: math.copysign(math.ceil(abs(x)), x) + 0.0,
+}
+
+
+def plain(value: float | None) -> float:
+    """A value to reckon with."""
+    return 0.0 if value is None else value
 
 
 def without_comments(text: str) -> str:
@@ -117,8 +152,8 @@ def without_comments(text: str) -> str:
 class Reader:
     """Reads one line from left to right."""
 
-    def __init__(self, text: str) -> None:
-        self.text, self.at = without_comments(text), 0
+    def __init__(self, text: str, fanuc: bool) -> None:
+        self.text, self.at, self.fanuc = without_comments(text), 0, fanuc
 
     def next(self) -> str:
         return self.text[self.at : self.at + 1]
@@ -151,7 +186,7 @@ class Reader:
             if self.text.startswith(("+", "-"), self.at):
                 raise Wrong("two signs")
             inner = self.value()
-            return inner if sign == "+" else lambda p: -inner(p)
+            return lambda p: plain(inner(p)) * (1.0 if sign == "+" else -1.0)
         number = self.number()
         if number is not None:
             return lambda p: number
@@ -185,12 +220,12 @@ class Reader:
             if not self.take("/["):
                 raise Wrong("ATAN")
             x = self.bracket()
-            return lambda p: math.degrees(math.atan2(y(p), x(p)))
+            return lambda p: math.degrees(math.atan2(plain(y(p)), plain(x(p))))
         name = self.take(*(f"{n}[" for n in UNARY))[:-1]
         if not name:
             raise Wrong("value")
-        inner, f = self.bracket(), UNARY[name]
-        return lambda p: f(inner(p))
+        inner, f = self.bracket(), (UNARY_FANUC if self.fanuc else UNARY)[name]
+        return lambda p: f(plain(inner(p)))
 
     def bracket(self) -> Value:
         """What stands behind a [, to its ]."""
@@ -201,40 +236,53 @@ class Reader:
 
     def level(self, depth: int) -> Value:
         """Operators of one row and of those that bind tighter."""
-        if depth == len(LEVELS):
+        levels = LEVELS_FANUC if self.fanuc else LEVELS
+        if depth == len(levels):
             return self.powers()
         found = self.level(depth + 1)
-        while not self.text.startswith("**", self.at) and (sign := self.take(*LEVELS[depth])):
-            found = self.joined(found, BINARY[sign], self.level(depth + 1))
+        while not self.text.startswith("**", self.at) and (sign := self.take(*levels[depth])):
+            f = (BINARY_FANUC if self.fanuc else BINARY)[sign]
+            found = self.joined(found, f, self.level(depth + 1), sign)
         return found
 
     def powers(self) -> Value:
         found = self.value()
         while self.take("**"):
-            found = self.joined(found, _power, self.value())
+            found = self.joined(found, _power, self.value(), "**")
         return found
 
     @staticmethod
-    def joined(a: Value, f: Callable[[float, float], float], b: Value) -> Value:
-        return lambda p: f(a(p), b(p))
+    def joined(a: Value, f: Callable[[float, float], float], b: Value, sign: str) -> Value:
+        def both(p: Parameters) -> float:
+            x, y = a(p), b(p)
+            if sign in ("eq", "ne") and None in (x, y):
+                return float((x is y) == (sign == "eq"))
+            return f(plain(x), plain(y))
+
+        return both
 
     def line(self) -> Line:
         found = Line()
         if self.text == "%":
             return Line(percent=True)
         found.slash = bool(self.take("/"))
+        if found.slash:
+            self.take(*"123456789")  # of its switch
         found.blank = self.at == len(self.text)
         if self.take("n"):
-            if self.number() is None:
+            found.number = self.number()
+            if found.number is None:
                 raise Wrong("line number")
         if self.take("o"):
             return self.flow(found)
+        if self.fanuc and (order := self.take("goto", "if", "while", "do", "end")):
+            return self.macro(found, order)
         while self.at < len(self.text):
             if self.take("#"):
                 target = self.parameter()
                 if not self.take("="):
                     raise Wrong("=")
-                found.settings.append((target, self.value()))
+                found.settings.append((target, self.level(0) if self.fanuc else self.value()))
                 continue
             letter = self.next()
             if not (letter.isalpha() and letter.isascii()) and letter not in "@^$":
@@ -248,6 +296,28 @@ class Reader:
                 found.words.append((letter, self.value()))
                 if self.text[begin : self.at].lstrip("+-").isdigit():
                     found.whole += letter
+        return found
+
+    def macro(self, found: Line, order: str) -> Line:
+        """IF, GOTO, WHILE, DO, END of Fanuc's controls; arguments: the condition, a number."""
+        found.label, found.order = "fanuc", f"fanuc_{order}"
+        if order in ("if", "while"):
+            if not self.take("["):
+                raise Wrong("condition")
+            found.arguments.append(self.bracket())
+            behind = self.take("goto", "then") if order == "if" else self.take("do")
+            if not behind:
+                raise Wrong("behind a condition")
+            found.order += f"_{behind}"
+            if behind == "then":
+                inner = Reader(self.text[self.at :], True).line()
+                if not inner.settings or inner.words or inner.label or inner.number:
+                    raise Wrong("behind THEN")
+                found.settings = inner.settings
+                return found
+        found.arguments.append(self.value())
+        if self.at < len(self.text):
+            raise Wrong("text behind a number")
         return found
 
     def flow(self, found: Line) -> Line:
@@ -273,6 +343,6 @@ class Reader:
         return name
 
 
-def read(text: str) -> Line:
+def read(text: str, fanuc: bool = False) -> Line:
     """The tree of one line; `Wrong` says that it is none."""
-    return Reader(text).line()
+    return Reader(text, fanuc).line()

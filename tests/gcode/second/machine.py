@@ -105,6 +105,41 @@ def switches(s: State, w: Words) -> None:
         outputs(s, on, off, analog)
 
 
+# What M70 keeps.
+SAVED = (
+    "inch plane incremental feed_mode feed system length old_plane by_radius passing most speed "
+    "absolute_centre turning coolant overrides side"
+).split()
+
+
+def saving(s: State, code: int) -> None:
+    """M70 to M73."""
+    if code == 71:
+        s.saved[-1] = {}
+    elif code == 72:
+        restore(s, s.saved[-1])
+    else:
+        kept = {name: getattr(s, name) for name in SAVED} | {"length": list(s.length)}
+        s.saved[-1] = kept | {"returns": code == 73 and len(s.saved) > 1}
+
+
+def restore(s: State, kept: dict[str, object]) -> None:
+    """Bring modes into force again; what cuts a contour or is turned bears no other frame."""
+    if not kept:
+        raise Wrong("M72 without M70")
+    moved = kept["plane"] != s.plane or kept["system"] != s.system
+    if kept["side"] != s.side or ((s.scaled or s.rotated) and moved):
+        raise Wrong("M72 cannot restore this")
+    if s.edge and (moved or kept["length"] != s.length):
+        raise Wrong("M72 within a contour")
+    before = s.rpm, s.coolant, s.overrides
+    for name in SAVED:
+        setattr(s, name, kept[name])
+    s.length = list(s.length)
+    if before != (s.rpm, s.coolant, s.overrides) or surface(s) != s.told:
+        outputs(s)
+
+
 def wait(s: State, w: Words) -> None:
     """M66, to which a program without a machine gets 0 for an answer."""
     if s.edge:
@@ -131,7 +166,10 @@ def probe(s: State, w: Words) -> None:
     made = len(s.steps)
     straight(s, machine(s, end_point(s, w)), False)
     if len(s.steps) == made:
-        raise Wrong("probing leads nowhere")
-    s.steps[-1].probes = True
+        if s.motion in (382, 384):
+            raise Wrong("probing leads nowhere")
+    else:
+        s.steps[-1].probes = True
+    s.touched = 0.0
     s.contact = program(s, s.point)
     s.motion = -1

@@ -1,6 +1,6 @@
 """G10, G52, G92, G28, G30, G51, G68: where the program's coordinates lie."""
 
-from second.frames import end_point, machine, plane_axes, program
+from second.frames import end_point, here, machine, plane_axes, program
 from second.moves import straight
 from second.parameters import Wrong
 from second.state import AXES, State
@@ -28,9 +28,11 @@ def _table(s: State, w: Words, values: dict[int, float]) -> None:
         return
     if kind not in (2, 20):
         raise Wrong("L")
-    p = w.whole("p", 0, 9)
+    more = s.options.fanuc and kind == 20  # there it is an origin of G54.1
+    p = 9 + w.whole("p", 1, 99) if more else w.whole("p", 0, 9)
+    kind = 2 if more else kind
     system = p - 1 if p else s.system
-    r = w.one("r") if kind == 2 else None
+    r = w.one("r") if kind == 2 and not more else None
     if not values and r is None:
         raise Wrong("G10 without axes")
     if r is not None:
@@ -38,10 +40,10 @@ def _table(s: State, w: Words, values: dict[int, float]) -> None:
     force, s.system = s.system, system
     if kind == 20:
         # The origin moves by what the place lacks of the coordinates that are asked for.
-        now = program(s, s.point)
+        now = program(s, here(s))
         place = machine(s, [values.get(i, x) for i, x in enumerate(now)])
     for i, value in values.items():
-        s.origin[system][i] = value if kind == 2 else s.origin[system][i] + s.point[i] - place[i]
+        s.origin[system][i] = value if kind == 2 else s.origin[system][i] + here(s)[i] - place[i]
     s.system = force
 
 
@@ -68,7 +70,7 @@ def change(s: State, w: Words) -> None:
         if not s.shifted:
             s.shift = [0.0] * AXES
         s.shifted = False
-        now = program(s, s.point)
+        now = program(s, here(s))
         s.shifted = True
         for i, value in values.items():
             s.shift[i] = value if code == 520 else now[i] - value
@@ -91,7 +93,7 @@ def _scale(s: State, w: Words) -> None:
         s.scale, s.scaled = [1.0] * 3, False
         return
     s.scaled = True
-    now = program(s, s.point)
+    now = program(s, here(s))
     values = _given(s, w)
     s.scale_at = [values.get(i, now[i]) for i in range(3)]
     p = w.one("p")
@@ -111,7 +113,7 @@ def _turn(s: State, w: Words) -> None:
     r = w.one("r")
     if r is None:
         raise Wrong("G68 without R")
-    now = program(s, s.point)
+    now = program(s, here(s))
     values = _given(s, w)
     a, b = plane_axes(s.plane)
     s.turn_at = (values.get(a, now[a]), values.get(b, now[b]))
@@ -123,7 +125,7 @@ def predefined(s: State, w: Words) -> None:
     code = w.code["other"]
     kept = s.home[code >= 300]
     if code in (281, 301):
-        kept[:] = s.point
+        kept[:] = here(s)
         return
     named = w.use(w.axes)
     straight(s, machine(s, end_point(s, w)), True)

@@ -12,8 +12,12 @@ class Wrong(Exception):
         self.line = line
 
 
-LOCAL = 30  # parameters of a call
+LOCAL, LOCAL_FANUC = 30, 33  # parameters of a call
 LAST = 5602
+
+
+class Alarm(Wrong):
+    """#3000 has been set."""
 
 
 class Parameters:
@@ -21,16 +25,20 @@ class Parameters:
 
     def __init__(self) -> None:
         self.numbered: dict[int, float] = {}
+        self.fanuc = False  # what was never set is vacant: None
         self.globals: dict[str, float] = {}
         self.locals: list[dict[str, float]] = [{}]
         self.system: Callable[[int | str], float | None] = lambda name: None
         self.kept: Callable[[int, float], bool] = lambda number, value: False
 
-    @staticmethod
-    def whole(number: float) -> int:
+    def whole(self, number: float) -> int:
         """A parameter's number; nearly whole is whole."""
         near = round(number)
-        if not math.isfinite(number) or abs(number - near) > 1e-4 or not 1 <= near <= LAST:
+        if (
+            not math.isfinite(number)
+            or abs(number - near) > 1e-4
+            or not 1 <= near <= LAST + 11000 * self.fanuc
+        ):
             raise Wrong("number of a parameter")
         return near
 
@@ -42,7 +50,7 @@ class Parameters:
         """Whether a name has a value."""
         return name in self.named(name) or self.system(name) is not None
 
-    def get(self, name: str | float) -> float:
+    def get(self, name: str | float | None) -> float | None:
         """Value of a parameter; of an unknown name there is none."""
         if isinstance(name, str):
             found = self.system(name)
@@ -51,37 +59,51 @@ class Parameters:
             if found is None:
                 raise Wrong("unknown name")
             return found
-        number = self.whole(name)
+        if self.fanuc and abs(name or 0.0) <= 1e-4:
+            return None
+        number = self.whole(name or 0.0)
         found = self.system(number)
-        return self.numbered.get(number, 0.0) if found is None else found
+        return self.numbered.get(number, None if self.fanuc else 0.0) if found is None else found
 
-    def set(self, name: str | float, value: float) -> None:
+    def set(self, name: str | float | None, value: float | None) -> None:
         """Set one; those of the machine itself are refused."""
+        if value is None and not isinstance(name, str) and 1 <= (name or 0.0) <= 5000:
+            self.numbered.pop(self.whole(name or 0.0), None)
+            return
+        value = value or 0.0
         if isinstance(name, str):
             if self.system(name) is not None:
                 raise Wrong("read only")
             self.named(name)[name] = value
             return
-        number = self.whole(name)
+        number = self.whole(name or 0.0)
+        if self.fanuc and number == 3000:
+            raise Alarm("alarm")
         if not self.kept(number, value):
             if self.system(number) is not None:
                 raise Wrong("read only")
             self.numbered[number] = value
 
-    def give(self, values: list[float] | None) -> None:
+    def give(self, values: list[float | None] | None) -> None:
         """The parameters of a call, if it has any of its own."""
-        self.numbered.update(enumerate(values or [], start=1))
+        for i, value in enumerate(values or [], start=1):
+            self.numbered.pop(i, None)
+            if value is not None:
+                self.numbered[i] = value
 
-    def enter(self, given: list[float] | None) -> dict[int, float]:
+    def enter(self, given: list[float | None] | None) -> list[float | None] | None:
         """Begin a call; what its own parameters were is given back."""
-        own = range(1, LOCAL + 1) if given is not None else ()
-        before = {i: self.numbered.get(i, 0.0) for i in own}
+        if given is None:
+            before = None
+        else:
+            given = given + [None] * ((LOCAL_FANUC if self.fanuc else LOCAL) - len(given))
+            before = [self.numbered.get(i) for i in range(1, len(given) + 1)]
         self.give(given)
         self.locals.append({})
         self.globals["_value"] = self.globals["_value_returned"] = 0.0
         return before
 
-    def leave(self, before: dict[int, float]) -> None:
+    def leave(self, before: list[float | None] | None) -> None:
         """End a call."""
-        self.numbered.update(before)
+        self.give(before)
         self.locals.pop()

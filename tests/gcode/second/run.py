@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass, field
 
-from second.block import execute
-from second.lines import Line, read
-from second.parameters import LOCAL, Parameters, Wrong
+from second.block import CYCLES, execute
+from second.lines import Line, plain, read
+from second.machine import restore
+from second.parameters import LOCAL, LOCAL_FANUC, Parameters, Wrong
 from second.state import Options, Refused, State, Step
 from second.system import connect
 from second.words import NEAR, Words
@@ -20,12 +21,16 @@ class Frame:
     """A call: where it returns to, what it hides, and its loops."""
 
     back: int
+    file: str  # to which it returns
+    shown: int  # line of the program in which it stands
     label: object
     style: str  # sub, program or main
-    before: dict[int, float] = field(default_factory=dict)
+    before: list[float | None] | None = None
     left: int = 0  # repeats of M98 or G65 still to do
-    given: list[float] | None = None  # to each of them
+    given: list[float | None] | None = None  # to each of them
+    rest: bool = False  # the line that calls it is still to be executed
     loops: dict[object, list[float]] = field(default_factory=dict)  # repeats left, doing
+    fanuc: list[tuple[int, int]] = field(default_factory=list)  # DO that run: number, line
     chosen: set[object] = field(default_factory=set)  # if with a branch done
 
 
@@ -33,28 +38,61 @@ class Program:
     """The lines of a text and the one that is next."""
 
     def __init__(self, text: str, options: Options) -> None:
-        self.lines = text.removeprefix("\ufeff").split("\n")
-        self.read: dict[int, Line] = {}
+        self.texts = {"": text.removeprefix("\ufeff").split("\n")}
+        self.file = ""  # that is called, by its name
+        self.read: dict[tuple[str, int], Line] = {}
         self.s = State(options)
-        self.s.origin = [list(o) for o in options.origin]
+        self.s.origin = [list(o) for o in options.origin] + [[0.0] * 6 for _ in range(99)]
+        self.modal: tuple[int, Words, list[float | None]] | None = None  # depth of G66, its words
         self.s.point, self.s.feed = list(options.point), options.feed
         self.p: Parameters = self.s.parameters
         connect(self.s)
-        self.next = 0
-        self.frames = [Frame(-1, None, "main")]
-        self.percent = False
+        self.p.fanuc = options.fanuc
+        self.next = self.at = 0
+        self.frames = [Frame(-1, "", 0, None, "main")]
+        self.percent = self.called = False
         self.work = 0
+
+    @property
+    def lines(self) -> list[str]:
+        """Those of the text that is read now."""
+        return self.texts[self.file]
 
     def line(self, at: int) -> Line:
         """The tree of a line, by its index."""
-        if at not in self.read:
-            self.read[at] = read(self.lines[at])
-        return self.read[at]
+        if (self.file, at) not in self.read:
+            text = self.lines[at]
+            colon = text.lstrip().startswith(":") and self.s.options.fanuc
+            self.read[self.file, at] = read(
+                text.replace(":", "O", 1) if colon else text, self.s.options.fanuc
+            )
+        return self.read[self.file, at]
+
+    def shown(self) -> int:
+        """The line of the program that is executed, of a call where it is in a file."""
+        if not self.file:
+            return self.at + 1
+        return next(f.shown for f in reversed(self.frames) if not f.file and f.label is not None)
+
+    def sub(self, label: object) -> int:
+        """Go to the text with the sub of a label, and to its line."""
+        for file in (self.file, "", str(label)):
+            if file not in self.texts:
+                folder = self.s.options.folder
+                if folder is None or not (folder / f"{file}.ngc").is_file():
+                    continue
+                self.texts[file] = (folder / f"{file}.ngc").read_text().split("\n")
+            before, self.file = self.file, file
+            try:
+                return self.find(label, ("sub",), 0)
+            except Wrong:
+                self.file = before
+        raise Wrong(f"no sub {label}")
 
     def label(self, line: Line) -> object:
         """A number or a name."""
         if callable(line.label):
-            value = line.label(self.p)
+            value = plain(line.label(self.p))
             if abs(value - round(value)) > NEAR or value < 0.0:
                 raise Wrong("label")
             return round(value)
@@ -73,10 +111,19 @@ class Program:
                 continue
         raise Wrong(f"no {'/'.join(orders)} of {label}")
 
+    def leave(self, frame: Frame) -> None:
+        """Back behind a call."""
+        self.frames.pop()
+        self.p.leave(frame.before)
+        self.next, self.file = frame.back, frame.file
+        self.called = frame.rest
+        if (kept := self.s.saved.pop()).get("returns"):
+            restore(self.s, kept)
+
     def value(self, line: Line) -> float:
         if len(line.arguments) != 1:
             raise Wrong("one value wanted")
-        return line.arguments[0](self.p)
+        return plain(line.arguments[0](self.p))
 
     # ---- orders ----
 
@@ -93,12 +140,14 @@ class Program:
         self.next = self.find(label, ("endsub",), at) + 1
 
     def on_call(self, at: int, line: Line, label: object, frame: Frame) -> None:
-        arguments = [a(self.p) for a in line.arguments]
+        arguments: list[float | None] = [plain(a(self.p)) for a in line.arguments]
         if len(self.frames) > DEPTH_MAX:
             raise Wrong("calls too deep")
-        begin = self.find(label, ("sub",), 0)
+        file = self.file
+        begin = self.sub(label)
         before = self.p.enter(arguments + [0.0] * (LOCAL - len(arguments)))
-        self.frames.append(Frame(at + 1, label, "sub", before))
+        self.frames.append(Frame(at + 1, file, self.s.line, label, "sub", before))
+        self.s.saved.append({})
         self.next = begin + 1
 
     def on_endsub(self, at: int, line: Line, label: object, frame: Frame) -> None:
@@ -107,11 +156,11 @@ class Program:
         if line.arguments:
             self.p.globals["_value"] = self.value(line)
             self.p.globals["_value_returned"] = 1.0
-        self.frames.pop()
-        self.p.leave(frame.before)
-        self.next = frame.back
+        self.leave(frame)
 
-    on_return = on_endsub
+    def on_return(self, at: int, line: Line, label: object, frame: Frame) -> None:
+        """It may have the label of an if or a loop around it."""
+        self.on_endsub(at, line, frame.label, frame)
 
     def on_if(self, at: int, line: Line, label: object, frame: Frame) -> None:
         if self.value(line) != 0.0:
@@ -195,10 +244,92 @@ class Program:
     def on_continue(self, at: int, line: Line, label: object, frame: Frame) -> None:
         self.next = self.bottom(label, frame)
 
+    # ---- Fanuc ----
+
+    def around(self, at: int) -> range:
+        """Lines of the numbered program that a line is in."""
+
+        def heads(i: int) -> bool:
+            try:
+                line = self.line(i)
+            except Wrong:
+                return False
+            return line.label is not None and line.order == ""
+
+        begin = next((i for i in range(at, -1, -1) if heads(i)), 0)
+        end = next((i for i in range(at + 1, len(self.lines)) if heads(i)), len(self.lines))
+        return range(begin, end)
+
+    def tree(self, at: int) -> Line:
+        """A line; nothing if it is none, or passed over."""
+        passed = self.lines[at].strip().startswith("/") and self.s.options.block_delete
+        try:
+            return Line() if passed else self.line(at)
+        except Wrong:
+            return Line()
+
+    def counted(self, given: float | None, most: int) -> int:
+        value = plain(given)
+        if abs(value - round(value)) > NEAR or not 1 <= round(value) <= most:
+            raise Wrong("number")
+        return round(value)
+
+    def end_of(self, loop: int, begin: int) -> int:
+        """The END of a DO."""
+        for at in self.around(begin):
+            line = self.tree(at)
+            if at > begin and line.order == "fanuc_end" and line.arguments[0](self.p) == loop:
+                return at
+        raise Wrong("DO without END")
+
+    def jump(self, at: int, value: float | None) -> None:
+        """GOTO."""
+        number = self.counted(value, 99999999)
+        found = [i for i in self.around(at) if self.tree(i).number == number]
+        if not found:
+            raise Wrong(f"no N{number}")
+        self.next = next((i for i in found if i > at), found[0])
+        loops = self.frames[-1].fanuc
+        while loops and not loops[-1][1] < self.next <= self.end_of(*loops[-1]):
+            loops.pop()
+
+    def on_fanuc_goto(self, at: int, line: Line, label: object, frame: Frame) -> None:
+        self.jump(at, line.arguments[0](self.p))
+
+    def on_fanuc_if_goto(self, at: int, line: Line, label: object, frame: Frame) -> None:
+        if plain(line.arguments[0](self.p)) != 0.0:
+            self.jump(at, line.arguments[1](self.p))
+
+    def on_fanuc_if_then(self, at: int, line: Line, label: object, frame: Frame) -> None:
+        if plain(line.arguments[0](self.p)) != 0.0:
+            self.put(line)
+
+    def on_fanuc_do(self, at: int, line: Line, label: object, frame: Frame) -> None:
+        loop = self.counted(line.arguments[-1](self.p), 3)
+        if loop in [n for n, _ in frame.fanuc]:
+            raise Wrong("DO within its own")
+        if len(line.arguments) == 2 and plain(line.arguments[0](self.p)) == 0.0:
+            self.next = self.end_of(loop, at) + 1
+        else:
+            frame.fanuc.append((loop, at))
+
+    on_fanuc_while_do = on_fanuc_do
+
+    def on_fanuc_end(self, at: int, line: Line, label: object, frame: Frame) -> None:
+        if not frame.fanuc or frame.fanuc[-1][0] != line.arguments[0](self.p):
+            raise Wrong("END without its DO")
+        self.next = frame.fanuc.pop()[1]
+
+    def put(self, line: Line) -> None:
+        """What a line sets, all of it read before."""
+        new = [(t if isinstance(t, str) else t(self.p), v(self.p)) for t, v in line.settings]
+        for target, value in new:
+            self.p.set(target, value)
+
     # ---- numbered programs ----
 
-    def call(self, at: int, w: Words, given: list[float] | None = None) -> None:
-        """P L of M98 or G65: a program further down, with #1 to #30 of its own if they are given.
+    def call(self, at: int, w: Words, given: list[float | None] | None = None) -> None:
+        """P L of M98 or G65: a program further down, with #1 .. of its own if they are given.
 
         Fanuc's controls may write how often in front of the four digits of its number.
         """
@@ -211,24 +342,74 @@ class Program:
             raise Wrong("calls too deep")
         begin = self.find(number, ("",), 0)
         if times:
-            frame = Frame(at + 1, number, "program", self.p.enter(given), times - 1, given)
+            before = self.p.enter(given)
+            line = self.s.line
+            frame = Frame(at + 1, self.file, line, number, "program", before, times - 1, given)
             self.frames.append(frame)
+            self.s.saved.append({})
             self.next = begin + 1
 
+    def user(self, at: int, numbers: list[int], values: dict[str, float]) -> None:
+        """M100 to M199: a sub with P and Q, before the rest of the line."""
+        if len(numbers) > 1 or len(self.frames) > DEPTH_MAX:
+            raise Wrong("two user commands, or too deep")
+        file, label = self.file, f"m{numbers[0]}"
+        begin = self.sub(label)
+        given: list[float | None] = [values.get("p", -1.0), values.get("q", -1.0)]
+        before = self.p.enter(given + [0.0] * (LOCAL - 2))
+        self.frames.append(Frame(at, file, self.s.line, label, "sub", before, rest=True))
+        self.s.saved.append({})
+        self.next = begin + 1
+
     def macro(self, at: int, pairs: list[tuple[str, float]]) -> None:
-        """G65: letters are the parameters of the program that it calls."""
-        given = [0.0] * LOCAL
+        """G65, G66: letters are the parameters of the program that it calls."""
+        given: list[float | None] = [None] * LOCAL_FANUC
+        places = {c: [n] for c, n in MACRO.items() if c not in "ijk"}
+        places |= {c: [4 + i + 3 * n for n in range(10)] for i, c in enumerate("ijk")}
+        group, latest = -1, "z"
         for letter, value in pairs[1:]:
-            if letter in MACRO:
-                given[MACRO[letter] - 1] = value
+            if letter in "ijk":
+                group, latest = group + (letter <= latest), letter
+                if group > 9:
+                    raise Wrong("too many I J K")
+                given[places[letter][group] - 1] = value
+            elif letter in MACRO:
+                if not places[letter]:
+                    raise Wrong("argument given twice")
+                given[places[letter].pop() - 1] = value
         w = Words([(c, v) for c, v in pairs[1:] if c not in MACRO], False)
-        self.call(at, w, given)
-        if w.rest() or w.code:
+        if w.code or w.rest() - set("pl"):
             raise Wrong("no argument of G65")
+        if pairs[0][1] == 65.0:
+            self.call(at, w, given)
+            return
+        number = w.whole("p", 0, 99999999)
+        self.find(number if w.has("l") else number % 10000, ("",), 0)
+        if self.modal:
+            raise Wrong("G66 within G66")
+        self.modal = len(self.frames), w, given
+
+    def again(self, at: int, w: Words) -> None:
+        """The call of G66 behind a line that moves; G67 ends it."""
+        if "modal" in w.code:
+            self.modal = None
+        if not self.modal or self.modal[0] != len(self.frames) or self.s.ended:
+            return
+        other, length = w.code.get("other"), w.code.get("length")
+        moves = other in (None, 280, 300, 530) or (other == 40 and w.has("p"))
+        if not w.has(w.axes + "@^") or not moves or length in (431, 432):
+            return
+        if w.code.get("scale") == 510 or w.code.get("turn") == 680:
+            return
+        if self.s.motion in CYCLES or self.s.nurbs:
+            raise Wrong("cycle while G66 is in force")
+        self.call(at, *self.modal[1:])
 
     def come_back(self) -> None:
         """M99."""
         frame = self.frames[-1]
+        if frame.style == "main" and self.s.nurbs:
+            raise Wrong("no G5.3 before M99")
         if frame.style == "main":
             self.s.ended = True
         elif frame.style == "sub":
@@ -238,15 +419,15 @@ class Program:
             self.p.give(frame.given)
             self.next = self.find(frame.label, ("",), 0) + 1
         else:
-            self.frames.pop()
-            self.p.leave(frame.before)
-            self.next = frame.back
+            self.leave(frame)
+            if self.modal:
+                self.modal = min(self.modal[0], len(self.frames)), *self.modal[1:]
 
     def step(self) -> None:
         """Execute the next line."""
-        at = self.next
+        self.at = at = self.next
         self.next += 1
-        self.s.line = at + 1
+        self.s.line = self.shown()
         text = self.lines[at]
         if text.strip().startswith("/") and self.s.options.block_delete:
             return
@@ -258,17 +439,22 @@ class Program:
         if line.label is not None:
             self.flow(at, line)
             return
-        pairs = [(c, v(self.p)) for c, v in line.words]
-        new = [(t if isinstance(t, str) else t(self.p), v(self.p)) for t, v in line.settings]
-        for target, value in new:
-            self.p.set(target, value)
-        if self.s.options.fanuc and pairs[:1] == [("g", 65.0)]:
+        values = [(c, v(self.p)) for c, v in line.words]
+        pairs = [(c, v) for c, v in values if v is not None]
+        user = [round(v) for c, v in pairs if c == "m" and 100 <= v < 200 and v == round(v)]
+        called, self.called = self.called, False
+        if user and not called:
+            self.user(at, user, dict(pairs))
+            return
+        self.put(line)
+        if self.s.options.fanuc and pairs[:1] in ([("g", 65.0)], [("g", 66.0)]):
             self.macro(at, pairs)
             return
-        words = Words(pairs, self.s.options.angles, line.whole)
+        words = Words(pairs, self.s.options.angles, line.whole, self.s.options.fanuc)
         if words.code.get("call"):
             self.call(at, words)
         execute(self.s, words)
+        self.again(at, words)
         if words.code.get("stop") == 99:
             self.come_back()
 
@@ -286,6 +472,6 @@ def run(text: str, options: Options | None = None) -> tuple[list[Step], Refused 
             program.step()
         except (Wrong, OverflowError) as error:
             del s.steps[made:]
-            line = error.line if isinstance(error, Wrong) and error.line else s.line
+            line = error.line if isinstance(error, Wrong) and error.line else program.at + 1
             return s.steps[: s.contour_from if s.edge else None], Refused(line, str(error))
-    return s.steps, None
+    return s.steps, Refused(s.nurbs_line, "no G5.3") if s.nurbs else None

@@ -1,6 +1,7 @@
 """What a part program is read with, what it makes, and what is in force in it."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from second.parameters import Parameters
 
@@ -30,13 +31,14 @@ class Options:
     tools: dict[int, tuple[float, float]] = field(default_factory=dict)
     closed: bool = False  # there are no other tools
     stops: bool = True  # M6 waits for the operator
+    folder: Path | None = None  # of files that it calls
 
 
 @dataclass
 class Step:
     """One thing the machine does; only the members of its kind mean something."""
 
-    kind: str  # rapid line arc spline dwell outputs stop tool
+    kind: str  # rapid line arc spline nurbs dwell outputs stop tool
     line: int
     end: Point  # [mm] machine coordinates
     start: Point = ()
@@ -45,6 +47,8 @@ class Step:
     centre: tuple[float, float] = (0.0, 0.0)  # [mm] in the plane's first and second axis
     sweep: float = 0.0  # [rad] counter-clockwise positive
     control: tuple[tuple[float, float], ...] = ()  # [mm] of a spline, with start and end
+    nurbs: tuple[tuple[float, ...], ...] = ()  # [mm] points, and their weights
+    order: int = 0  # of a NURBS
     dwell: float = 0.0  # [s]
     set: int = 0  # digital outputs, bits
     clear: int = 0
@@ -74,7 +78,7 @@ class State:
     feed: float = 0.0  # [mm/s]; of G95 [mm] a turn
     system: int = 0
     origin: list[list[float]] = field(default_factory=list)
-    turns: list[float] = field(default_factory=lambda: [0.0] * 9)  # [deg] R of G10 L2
+    turns: list[float] = field(default_factory=lambda: [0.0] * 108)  # [deg] R of G10 L2
     shift: list[float] = field(default_factory=lambda: [0.0] * AXES)  # G52, G92
     shifted: bool = False
     length: list[float] = field(default_factory=lambda: [0.0] * AXES)  # of the tool, G43
@@ -103,6 +107,8 @@ class State:
     analog: dict[int, float] = field(default_factory=dict)  # M67, for the next motion
     told: tuple[float, float] = (0.0, 0.0)  # of G96, to the machine
     answer: float = 0.0  # to M66
+    touched: float = 0.0  # #5070
+    debug: float = 1.0  # #5599
     contact: list[float] = field(default_factory=lambda: [0.0] * AXES)  # of the probe, program
     selected: int = 0  # T
     chosen: bool = False  # since the latest M6
@@ -111,10 +117,18 @@ class State:
     old_level: float | None = None  # where the series of cycles began
     sticky: dict[str, float] = field(default_factory=dict)  # words of a cycle
     spline: tuple[float, float] | None = None  # direction in which the last G5 ended
+    nurbs: list[tuple[list[float], float]] = field(default_factory=list)  # since G5.2
+    nurbs_order: int = 0
+    nurbs_feed: float = 0.0  # [mm/s]
+    nurbs_plane: int = 2  # that of G5.2
+    nurbs_line: int = 0  # of the latest point
     side: int = 0  # of compensation: -1 right, 1 left
     edge: float = 0.0  # [mm] of the centre to the left of the contour
     contour_from: int = 0  # first step of the contour
+    # Behind G40: where the contour ended, where the tool stands beside it, the axes of its plane.
+    aside: tuple[list[float], list[float], tuple[int, int]] | None = None
     ended: bool = False
+    saved: list[dict[str, object]] = field(default_factory=lambda: [{}])  # M70, a row each call
 
     @property
     def rpm(self) -> float:

@@ -5,7 +5,7 @@ from second.parameters import Wrong
 GROUPS = {
     "other": (40, 100, 280, 281, 300, 301, 520, 530, 920, 921, 922, 923),
     "motion": (
-        *(0, 10, 20, 30, 50, 51, 382, 383, 384, 385, 730, 740, 800),
+        *(0, 10, 20, 30, 50, 51, 52, 53, 331, 382, 383, 384, 385, 730, 740, 800),
         *(810, 820, 830, 840, 850, 860, 870, 880, 890),
     ),
     "plane": (170, 180, 190),
@@ -29,31 +29,41 @@ M_GROUPS = {
     "change": (6, 61),
     "turning": (3, 4, 5, 19),
     "coolant": (7, 8, 9),
+    "saving": (70, 71, 72, 73),
     "overrides": (48, 49, 50, 51, 52, 53),
     "call": (98,),
+    "user": tuple(range(100, 200)),
 }
 G_GROUP = {code: group for group, codes in GROUPS.items() for code in codes}
 M_GROUP = {code: group for group, codes in M_GROUPS.items() for code in codes}
+# What only Fanuc's controls have.
+FANUC_GROUP = {90: "exact", 670: "modal", 541: "system", 1540: "system"}
 NEAR = 1e-4  # of a code
 
 
 class Words:
     """What a line says; `use` takes letters as spoken for, `rest` says which are left."""
 
-    def __init__(self, pairs: list[tuple[str, float]], angles: bool, whole: str = "") -> None:
+    def __init__(
+        self, pairs: list[tuple[str, float]], angles: bool, whole: str = "", fanuc: bool = False
+    ) -> None:
+        self.fanuc = fanuc
         self.value: dict[str, float] = {}
         self.code: dict[str, int] = {}  # ten times the number of G; M as it is
         self.used: set[str] = set()
         self.whole_numbers = whole  # letters whose value is written without a point
         self.axes = "xyzabc" if angles else "xyzuvw"
         self.m_count = 0
+        idle: set[str] = set()  # axes that the machine does not have
         for letter, value in pairs:
             if letter in "gm":
                 self.add_code(letter, value)
             elif letter in self.value:
                 raise Wrong(f"{letter} twice")
             elif letter in "abcuvw" and letter not in self.axes:
-                raise Wrong(f"no {letter}")
+                if value != 0.0 or letter in idle:
+                    raise Wrong(f"no {letter}")
+                idle.add(letter)
             else:
                 self.value[letter] = value
 
@@ -61,6 +71,8 @@ class Words:
         number = value * 10.0 if letter == "g" else value
         code = round(number)
         group = (G_GROUP if letter == "g" else M_GROUP).get(code)
+        if letter == "g" and self.fanuc:
+            group = FANUC_GROUP.get(code, group)
         if group is None or abs(number - code) > NEAR * (10.0 if letter == "g" else 1.0):
             raise Wrong(f"{letter}{value:g}")
         self.m_count += letter == "m"
