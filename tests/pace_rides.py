@@ -179,3 +179,45 @@ def ride(told: np.ndarray, bounds: np.ndarray, orders: Orders | None = None) -> 
     )
     count = o.most if time < 0 else int(np.ceil(time / o.dt - 1e-9))
     return Ride(time, steps[:count], length)
+
+
+def random_ride(seed: int, smooth: bool) -> tuple[Ride, np.ndarray, Orders]:
+    """Random pieces, limits, overrides, holds and look-ahead, and how the ride went."""
+    dice = np.random.default_rng(seed)
+    count, size = int(dice.integers(1, 14)), float(10 ** dice.uniform(-1, 1.5))
+    told = random_chain(dice, count, size, float(10 ** dice.uniform(1, 2.8))).told()
+    acc = 10 ** dice.uniform(2, 4) * np.array([1, dice.uniform(0.3, 3), 1, 1, 1, 1])
+    bounds = limits(acc, dice.choice([0, 30.0, 100.0]), acc * 10 ** dice.uniform(0.5, 3) * smooth)
+    choices = dice.choice([0, 0.05, 0.3, 0.7, 1, 1.5, 2], dice.integers(1, 60))
+    overrides = np.append(np.repeat(choices, dice.integers(1, 200)), 1.0)
+    ahead, dt = int(dice.choice([0, 1, 3, 1000])), 10 ** dice.uniform(-3.5, -2.3)
+    orders = Orders(dt, overrides, ahead, 1_000_000)
+    return ride(told, bounds, orders), bounds, orders
+
+
+def shares(steps: np.ndarray, bounds: np.ndarray, dt: float) -> dict[str, float]:
+    """Most of each limit that an axis takes at a sample, and between samples in the mean."""
+    found = {}
+    for name, quantity, before in (
+        ("speed", "velocity", "point"),
+        ("acc", "acc", "velocity"),
+        ("jerk", "jerk", "acc"),
+    ):
+        most = bounds[name][0]
+        if most.any():
+            found[quantity] = float((np.abs(steps[quantity]) / most).max())
+            change = np.abs(np.diff(steps[before], axis=0)) / (most * dt)
+            found[f"change of {before}"] = float(change.max(initial=0.0))
+    return found
+
+
+def at_rest_at_its_end(done: Ride) -> bool:
+    """Never back, never too far, and at last without speed at the end of the path."""
+    way = done.steps["way"]
+    return (
+        done.time > 0
+        and abs(way[-1] - done.length) <= 1e-9
+        and done.steps["rate"][-1] == 0
+        and bool((np.diff(way) >= 0).all())
+        and way.max() <= done.length + 1e-9
+    )

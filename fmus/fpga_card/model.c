@@ -10,6 +10,7 @@ struct model {
     int64_t instant;    /* [clock] next instant of that grid */
     struct fpga_taken taken;
     int64_t warned;     /* refused when that was last said */
+    int64_t dry;        /* underruns when these were last said */
     double  ai[FPGA_ANALOG];    /* [V] as read last */
 };
 
@@ -147,6 +148,19 @@ static void warn_refused(struct fmu *f)
                  fpga_status_text(r->status));
 }
 
+/* Pulses have stood still because the host was late: at first, and each time that there are twice
+ * as many. */
+static void warn_underruns(struct fmu *f, int64_t clock)
+{
+    struct model *m = &f->s.m;
+    const int64_t n = m->card.underruns;
+    if (n == 0 || n / 2 < m->dry)
+        return;
+    m->dry = n;
+    fmu_warn(f, "%d underrun%s by %.9g s: the next pulse memory was not full in time, and the "
+             "pulses stood still", (int)n, n == 1 ? "" : "s", (double)clock / FPGA_CLOCK_HZ);
+}
+
 static void publish(struct fmu *f)
 {
     struct vars *v = &f->s.v;
@@ -178,6 +192,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     }
     fpga_advance(&m->card, end);
     warn_refused(f);
+    warn_underruns(f, end);
     publish(f);
     return 0;
 }

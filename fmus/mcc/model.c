@@ -171,7 +171,8 @@ static int set_tools(struct fmu *f)
     const struct vars *v = &f->s.v;
     const bool stops = strcmp(v->tool_change, "stop") == 0;
     struct mcc *mcc = &f->s.m.pc.mcc;
-    const struct mcc_dialect dialect = { v->rotary_names, v->fanuc, v->least_increment };
+    const struct mcc_dialect dialect = { v->rotary_names, v->fanuc, v->strict_feed,
+                                         v->least_increment };
     struct tool_file file = { .line = 0 };
 
     if (!stops && strcmp(v->tool_change, "immediate")) {

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "byte_ring.h"
+#include "fmu_spans.h"
 #include "netcard.h"
 #include "vars.h"
 
@@ -14,6 +15,7 @@ struct model {
 };
 
 #define MODEL_BLOB
+#define MODEL_UNUSED
 #include "fmi_model.h"
 #include "fmu_period.h"
 #include "job_file.h"
@@ -141,6 +143,15 @@ static const char *model_check(const struct state *s)
         return "its next instant is another one";
     }
     return netcard_damage(&m->card, s->now);
+}
+
+static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
+{
+    struct spans unused;
+
+    unused.count = 0;
+    netcard_unused(&s->m.card, &unused);
+    return fmu_spans(&unused, s, span);
 }
 
 /* The stream of a connection; a new number begins a new one. */

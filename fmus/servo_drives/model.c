@@ -34,6 +34,8 @@ static struct drive_config config(const struct vars *v, int i)
         .torque_limit = v->torque_limit[i],
         .speed_limit = v->speed_limit[i],
         .error_limit = v->error_limit[i],
+        .overload_time = v->overload_time[i],
+        .brake_torque = v->brake_torque[i],
     };
 }
 
@@ -85,7 +87,11 @@ static int sample(struct fmu *f)
         if (drive_tick(&c, &m->drive[i], &in, &m->next[i]) != DRIVE_OK)
             return fmu_fail(f, "phase[%d] = %g: more counts than a number can hold exactly", i + 1,
                             v->phase[i]);
-        if (m->next[i].alarm != alarm)
+        if (m->next[i].alarm == DRIVE_OVERLOAD && alarm != DRIVE_OVERLOAD)
+            fmu_warn(f, "axis %d: overload at %.9f s: its torque was at its limit of %g N.m for "
+                     "more than overload_time = %g s", i + 1, (double)m->instant * 1e-9,
+                     v->torque_limit[i], v->overload_time[i]);
+        else if (m->next[i].alarm != alarm)
             fmu_event(f, "axis %d: alarm %d at %.9f s", i + 1, (int)m->next[i].alarm,
                       (double)m->instant * 1e-9);
     }

@@ -127,7 +127,7 @@ static void publish(struct fmu *f)
     struct soft *s = &f->s.m.soft;
     const struct soft_blob *b = f->blob;
     const struct soft_panel panel = panel_of(v);
-    const bool cycle = s->posts || f->s.m.instant == 0;
+    const bool cycle = s->posts || s->stopped || f->s.m.instant == 0;
 
     v->status = soft_status(s, &panel);
     v->done = soft_done(s);

@@ -51,6 +51,31 @@ static double speed_command(const struct drive_config *c, struct drive_state *s,
     return clamp(turns_per_s * RPM_PER_TURN_PER_S, c->speed_limit);
 }
 
+/* A load that the torque limit does not bear keeps the torque there; a ramp does so for less than
+ * the time allowed, and what is below the limit counts back. */
+static bool overloaded(const struct drive_config *c, struct drive_state *s, bool saturated)
+{
+    if (!(c->overload_time > 0.0))
+        return false;
+    s->load += saturated ? 1 : s->load > 0 ? -1 : 0;
+    return (double)s->load * c->period > c->overload_time;
+}
+
+/* Off: no torque but that of the holding brake, which is what brings the motor to rest and keeps it
+ * there, up to what the brake bears. */
+static void stand(const struct drive_config *c, struct drive_state *s, struct drive_output *out)
+{
+    s->on = out->ready = false;
+    out->torque = out->speed_command = 0.0;
+    if (c->brake_torque > 0.0) {
+        struct drive_config brake = *c;
+        brake.torque_limit = c->brake_torque;
+        s->integral = clamp(s->integral, c->brake_torque);
+        velocity_loop(&brake, s, -out->speed * RAD_PER_S_PER_RPM, false, out);
+    }
+    out->saturated = false;     /* of the drive, which gives no torque */
+}
+
 enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,
                              const struct drive_input *in, struct drive_output *out)
 {
@@ -74,6 +99,7 @@ enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s
         s->zero = s->counts;
         s->command = 0;
         s->forward = 0.0;
+        s->load = 0;
         pulses = 0;
     }
     if (run) {
@@ -85,12 +111,14 @@ enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s
             s->alarm = DRIVE_OVERSPEED;
         run = s->alarm == DRIVE_NO_ALARM;
     }
-    s->on = run;
-    out->ready = run;
-    out->alarm = s->alarm;
-    if (run)
+    if (run) {
+        s->on = out->ready = true;
         velocity_loop(c, s, (out->speed_command - out->speed) * RAD_PER_S_PER_RPM, first, out);
-    else
-        out->speed_command = 0.0;
+        if (overloaded(c, s, out->saturated))
+            s->alarm = DRIVE_OVERLOAD;
+    }
+    if (!run || s->alarm == DRIVE_OVERLOAD)
+        stand(c, s, out);
+    out->alarm = s->alarm;
     return DRIVE_OK;
 }

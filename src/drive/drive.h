@@ -7,7 +7,9 @@
 #include <stdint.h>
 
 enum drive_mode { DRIVE_VELOCITY = 0, DRIVE_POSITION = 1 };
-enum drive_alarm { DRIVE_NO_ALARM = 0, DRIVE_FOLLOWING_ERROR = 1, DRIVE_OVERSPEED = 2 };
+enum drive_alarm {
+    DRIVE_NO_ALARM = 0, DRIVE_FOLLOWING_ERROR = 1, DRIVE_OVERSPEED = 2, DRIVE_OVERLOAD = 3
+};
 enum drive_status { DRIVE_OK = 0, DRIVE_BAD_PHASE = -1 };
 
 /* Overspeed alarm at this multiple of the speed limit: the usual factory setting, above what a
@@ -33,6 +35,8 @@ struct drive_config {
     double  torque_limit;       /* [N.m] */
     double  speed_limit;        /* [rpm] */
     double  error_limit;        /* [turns] following error that raises the alarm */
+    double  overload_time;      /* [s] torque at its limit that raises the alarm; 0: none */
+    double  brake_torque;       /* [N.m] of the motor's holding brake; 0: none */
 };
 
 struct drive_input {
@@ -54,6 +58,7 @@ struct drive_state {
     int64_t command;            /* [pulses] received since the loops were switched on */
     double  integral;           /* [N.m] of the velocity loop */
     double  forward;            /* [turns/s] command speed behind its filter */
+    int64_t load;               /* samples with the torque at its limit less those without, >= 0 */
 };
 
 struct drive_output {

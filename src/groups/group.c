@@ -1,11 +1,16 @@
 #include "group_parts.h"
 
+#include <stddef.h>
 #include <string.h>
 
 void groups_init(struct groups *s, const struct group_config *config,
                  const struct machine card[GROUP_CARDS])
 {
-    memset(s, 0, sizeof *s);
+    memset(s, 0, offsetof(struct groups, group));
+    memset(s->card, 0, sizeof s->card);
+    for (int i = 0; i < GROUP_MAX; i++) {
+        memset(&s->group[i], 0, offsetof(struct group, mcc));
+    }
     s->config = *config;
     for (int k = 0; k < GROUP_CARDS; k++) {
         s->card[k].machine = card[k];

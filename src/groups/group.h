@@ -60,14 +60,15 @@ struct group {
     bool    voltage;        /* its channels are DAC */
     int32_t card;
     int32_t channel[AXES];  /* of the card, -1: no such axis */
-    struct mcc mcc;
     struct pcl_part part;   /* of the card's transaction */
-    struct servo servo;     /* of a voltage group */
     int32_t starved;        /* frames of standstill that were too late */
     bool    program;        /* there is one */
     int64_t start;          /* [clocks] it starts at the first cycle from here on */
     bool    started;        /* or dropped by an abort */
     struct key abort, cycle_start;
+    /* From here on it is large, and anything may stand there while the group is not used. */
+    struct mcc mcc;
+    struct servo servo;     /* of a voltage group */
 };
 
 struct group_card {

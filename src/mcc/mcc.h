@@ -80,7 +80,7 @@ typedef struct {
 
 /* How the text of programs is meant: members of struct program. */
 struct mcc_dialect {
-    bool   angles, fanuc;
+    bool   angles, fanuc, strict_feed;
     double least_increment;
 };
 

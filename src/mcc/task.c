@@ -15,6 +15,7 @@ struct program task_program(const struct mcc *m, const struct source *s)
                              .change_stops = m->change_stops, .has_inputs = true,
                              .has_probe = true, .angles = m->dialect.angles,
                              .fanuc = m->dialect.fanuc,
+                             .strict_feed = m->dialect.strict_feed,
                              .least_increment = m->dialect.least_increment };
 }
 

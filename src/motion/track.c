@@ -125,6 +125,20 @@ static double turn_limit(const struct ring *r, int32_t i, double override)
     return i > 0 ? el_min(v, command_speed(&ring_peek(r, i - 1)->command, override)) : v;
 }
 
+/* Along a command its own acceleration and deceleration; in the corner before it what the one
+ * before allows, too. */
+static struct ramp_limits ramp_of(const struct ring *r, int32_t i, bool turning)
+{
+    struct ramp_limits own = ring_peek(r, i)->command.ramp;
+
+    if (turning) {
+        const struct ramp_limits *before = &ring_peek(r, i - 1)->command.ramp;
+        own.acc = el_min(own.acc, before->acc);
+        own.dec = el_min(own.dec, before->dec);
+    }
+    return own;
+}
+
 /* From the end backwards. */
 static void plan(struct track *t, struct ring *r, double override)
 {
@@ -142,7 +156,7 @@ static void plan(struct track *t, struct ring *r, double override)
         brake_limit(&b, body, body * t->smooth);
         n->enter = b;
         if (half > 0.0) {
-            brake_back(&b, 2.0 * half, dec);
+            brake_back(&b, 2.0 * half, ramp_of(r, i, true).dec);
             brake_limit(&b, turn, turn * t->smooth);
         }
         t->dec = el_min(t->dec, dec);
@@ -169,10 +183,10 @@ static struct piece next_piece(const struct track *t, const struct ring *r, doub
 {
     const struct ring_entry *n = ring_peek(r, t->at);
     const double most = t->turning ? turn_limit(r, t->at, override) : body_limit(n, override);
+    const struct ramp_limits ramp = ramp_of(r, t->at, t->turning);
     const struct brake_piece b = brake_next(t->turning ? &n->enter : &n->leave, t->s,
-                                            border(t, r), n->command.ramp.dec);
-    struct piece p = { b.end, el_min(most, b.top), b.leave,
-                       n->command.ramp.acc, n->command.ramp.dec };
+                                            border(t, r), ramp.dec);
+    struct piece p = { b.end, el_min(most, b.top), b.leave, ramp.acc, ramp.dec };
 
     for (int32_t i = 0; i < t->caps; i++) {
         const double until = t->cap[i].until - t->base;

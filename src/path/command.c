@@ -50,12 +50,29 @@ static double safe_speed(const struct mechanism_way *w, const struct mechanism *
     return least;
 }
 
-static void set_speed(struct command *c, const struct motion_limits *l, double feed, double cap)
+/* The lower of a value and what a joint allows along the path; 0 is no limit. */
+static double lower(double value, double joint, double share)
 {
+    const double most = joint / share;
+    return !(share > 0.0 && joint > 0.0) || (value > 0.0 && value <= most) ? value : most;
+}
+
+static void set_speed(struct command *c, const struct mechanism *m, const struct mechanism_way *w,
+                      const struct motion_limits *l, double feed, double cap)
+{
+    struct ramp_limits r = ramp_both(&l->up, &l->down, feed);
+
+    for (int i = 0; i < AXES; i++) {
+        const struct joint *j = &m->joint[i];
+        r.acc = lower(r.acc, j->acc, w->share[i]);
+        r.dec = lower(r.dec, j->acc, w->share[i]);
+        r.acc_jerk = lower(r.acc_jerk, j->jerk, w->share[i]);
+        r.dec_jerk = lower(r.dec_jerk, j->jerk, w->share[i]);
+    }
     c->feed = feed;
     c->cap = cap;
     c->smooth = l->smooth;
-    c->ramp = ramp_both(&l->up, &l->down, feed);
+    c->ramp = r;
 }
 
 enum command_status command_move(struct command *c, const struct mechanism *m,
@@ -75,7 +92,7 @@ enum command_status command_move(struct command *c, const struct mechanism *m,
         *r = (struct command_refusal){ joint, feed / safe, 1.0, safe };
         return COMMAND_FAST;
     }
-    set_speed(c, l, feed, el_min(safe, l->feed));
+    set_speed(c, m, &w, l, feed, el_min(safe, l->feed));
     return check_range(&c->path, m, &w, r);
 }
 
@@ -92,7 +109,7 @@ enum command_status command_ptp(struct command *c, const struct mechanism *m,
         return COMMAND_FAR;
     }
     const double safe = safe_speed(&w, m, &joint);
-    set_speed(c, l, safe * l->rapid, safe);
+    set_speed(c, m, &w, l, safe * l->rapid, safe);
     return check_range(&c->path, m, &w, r);
 }
 

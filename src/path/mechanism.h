@@ -20,6 +20,7 @@ struct joint {
     bool   bounded;         /* low and high hold */
     double scale;           /* [pulses/mm] */
     double speed;           /* [mm/s] highest */
+    double acc, jerk;       /* [mm/s^2], [mm/s^3] highest, along a path; 0: what ramps have */
     double low, high;       /* [mm] */
 };
 

@@ -87,12 +87,20 @@ static double plant_stiffness(const double *x, const double *u, const double *p)
     }
     for (int begin = 0; begin < 2; begin++) {
         unsigned branches = begin ? all : 0u;
-        double here = plant_radius(x, u, p, branches, PLANT_ROUGH);
+        double a[PLANT_STATES * PLANT_STATES], changed[PLANT_STATES * PLANT_STATES];
+        plant_jacobian(x, u, p, branches, a);
+        double here = plant_spectral_radius(a, PLANT_ROUGH);
         for (int bit = 0; bit < PLANT_BRANCHES; bit++) {
-            const double radius = plant_radius(x, u, p, branches ^ 1u << bit, PLANT_ROUGH);
-            const bool better = plant_larger(radius, here);
-            branches ^= better ? 1u << bit : 0u;
-            here = better ? radius : here;
+            plant_jacobian(x, u, p, branches ^ 1u << bit, changed);
+            if (memcmp(a, changed, sizeof a) == 0) { /* as many a branch does that is far away */
+                continue;
+            }
+            const double radius = plant_spectral_radius(changed, PLANT_ROUGH);
+            if (plant_larger(radius, here)) {
+                branches ^= 1u << bit;
+                here = radius;
+                memcpy(a, changed, sizeof a);
+            }
         }
         here = plant_radius(x, u, p, branches, PLANT_FINE);
         largest = plant_larger(here, largest) ? here : largest;

@@ -176,7 +176,7 @@ static struct stretch next_feed(const struct pace_cell *c, double left, double x
     if (x > goal * (1.0 + SAME)) {
         const struct stretch s = halt(c, left, x);
         const double steeper = -2.0 * s.acc - slope;
-        double way = x > most && s.acc < 0.0 ? (most - x) / (2.0 * s.acc) : 0.0;
+        double way = x <= most ? 0.0 : s.acc < 0.0 ? (most - x) / (2.0 * s.acc) : INFINITY;
         if (x > line) {
             way = steeper > 0.0 ? el_max(way, (x - line) / steeper) : left;
         }

@@ -17,6 +17,10 @@ static const double JOIN = 0.01, SPECK = 1e-6;
 /* Of a step: share of the steepest b that may come, of x, and the least part of a way to rest. */
 static const double STEEPER = 0.25, FASTER = 0.12, FINEST = 1.0 / 16.0;
 
+/* From nearly rest c lifts x to so much of itself at most: the jerk grows as c sqrt(x), so that a
+ * tenth of c keeps its limit, and HALVES find it. */
+static const double LEAP = 1000.0;
+
 /* Most that a step may be above a limit by rounding. */
 static const double ROUNDING = 1e-10;
 
@@ -383,6 +387,7 @@ double pace_box_stride(const struct pace_box *g, struct pace_state from, double 
     double s = el_max(STEEPER * steep / c, FINEST * from.x / steep);
 
     s = el_min(s, FASTER * from.x / el_max(fabs(from.b), 1e-300));
+    s = el_min(s, sqrt(2.0 * LEAP * from.x / c));
     return rest <= s ? rest : rest / ceil(rest / s);
 }
 

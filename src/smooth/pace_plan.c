@@ -27,6 +27,10 @@ static const double SAME = 1e-12;
 /* Limits are met, and a state is met again, to such a share. */
 static const double NEARLY = 1e-9;
 
+/* What the way and the jerk of a landing are off by from a state that is met again: the jerk is as
+ * b^2, the way as 1/b. */
+static const double LANDS = 4e-9;
+
 /* At the most speed a state that is so much as steep as the next one is made flatter: of mere
  * shares there may be no end. */
 static const double STEEP = 0.97;
@@ -153,7 +157,8 @@ bool pace_plan_safe(const struct pace_plan *p, const struct pace_road *r, struct
             if (share > 1.0 + SAME) {
                 return false;
             }
-            if (fabs(to.b - share * node->state.b) <= NEARLY * (1.0 + fabs(node->state.b))) {
+            const double coarse = spot.node < PACE_NODES ? 1.0 : 0.0;   /* the last one lands */
+            if (fabs(to.b - share * node->state.b) <= NEARLY * (coarse + fabs(node->state.b))) {
                 return true;
             }
         }
@@ -202,10 +207,13 @@ bool pace_road_lands(const struct pace_road *r, double at, int32_t box, struct p
     int32_t i = box;
 
     do {
-        if (s.c > pace_box_jerk(pace_road_box(r, i), s.speed, -s.acc)) {
+        const struct pace_box *g = pace_road_box(r, i);
+        const double rest = i > box ? (end - g->from) / s.way : 1.0;    /* x is as rest^(4/3) */
+        if (s.c > pace_box_jerk(g, s.speed, -s.acc) * (1.0 + LANDS) ||
+            state.x * rest * el_cbrt(rest) > pace_road_top(r, g) * (1.0 + SAME)) {
             return false;
         }
-    } while (pace_road_end(r, i) < end && ++i < r->count);
+    } while (pace_road_end(r, i) < end - LANDS * s.way && ++i < r->count);
     return i < r->count;
 }
 

@@ -116,7 +116,7 @@ static void run(struct soft *s, const struct soft_config *c, const struct orders
     const int64_t clock = (int64_t)card->irq_clock;
     const int64_t begin = clock + layers_wait(&s->layers, &c->layers);
     const uint32_t di = (uint32_t)card->irq_inputs;
-    const double way = s->robot.length;
+    const double way = s->robot.solved;
 
     see_lines(s, card, clock);
     poll(s, c, t, card, begin);
@@ -137,7 +137,7 @@ static void run(struct soft *s, const struct soft_config *c, const struct orders
         soft_program_drop(s);
     }
     make_slots(s, c);
-    const int32_t points = (int32_t)(floor(s->robot.length / c->pitch) - floor(way / c->pitch));
+    const int32_t points = (int32_t)(floor(s->robot.solved / c->pitch) - floor(way / c->pitch));
     time_run(s, c, card, clock, begin, lines, points);
     soft_program_outputs(s, s->mark);
     layers_put(&s->layers, &c->layers, di, s->mark, &s->outbox);

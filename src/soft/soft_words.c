@@ -19,6 +19,8 @@ static const char *name_of(enum robot_status status)
     case ROBOT_OTHER_BRANCH: return "the path does not lead to the configuration of the target";
     case ROBOT_OTHER_TURN:   return "the path does not lead to the turn of the target";
     case ROBOT_NO_CIRCLE:    return "three points on one line";
+    case ROBOT_OFF_PLANE:    return "the start is not in the plane of the arc's centre";
+    case ROBOT_NO_UNIT:      return "the normal of the arc is no unit vector";
     }
     return "";
 }
@@ -74,6 +76,14 @@ void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
         add(&t, " ends at ", r->value / DEGREE);
         add(&t, " deg, not within 180 deg of ", r->limit / DEGREE);
         inform_text_add(&t, " deg");
+        break;
+    case ROBOT_OFF_PLANE:
+        add(&t, ": ", r->value);
+        add(&t, " mm off it, limit ", r->limit);
+        inform_text_add(&t, " mm");
+        break;
+    case ROBOT_NO_UNIT:
+        add(&t, ": its length is ", r->value);
         break;
     default:
         break;

@@ -23,9 +23,6 @@ void spans_ring(struct spans *s, const void *array, size_t size, int32_t element
     const char *at = array;
     const int32_t end = first + used;
 
-    if (used >= elements) {
-        return;
-    }
     if (end <= elements) {
         spans_leave(s, at, at + size * (size_t)first);
         spans_leave(s, at + size * (size_t)end, at + size * (size_t)elements);

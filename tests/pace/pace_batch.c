@@ -84,7 +84,8 @@ static void look(int64_t *piece, int64_t n, struct sample *s)
 
 /* Ride along the n pieces that were made, of which `ahead` are known at a time (besides the one of
  * the motion), with an override for each of `count` steps of dt; the last one goes on. Returns the
- * time to the end [s], or -1; samples (or NULL) are taken after each step. */
+ * time to the end [s], or -1 if there is none or a step spends all it may without its time; samples
+ * (or NULL) are taken after each step. */
 double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, double dt,
                        int64_t count, const double *override, int64_t most, struct sample *s)
 {
@@ -104,6 +105,9 @@ double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, do
         }
         if (joined == n && pace_at_end(&pace)) {
             return dt * (double)(i + 1) - left;
+        }
+        if (left > 0.0 && pace.at.left > 0.0) {
+            return -1.0;
         }
     }
     return -1.0;

@@ -12,11 +12,14 @@ from pace_rides import (
     SAMPLE,
     Chain,
     Orders,
+    at_rest_at_its_end,
     hermite,
     limits,
     place,
     random_chain,
+    random_ride,
     ride,
+    shares,
 )
 from toppra_bound import bound
 
@@ -26,16 +29,8 @@ ROUNDING = 1e-9
 
 def within(steps: np.ndarray, bounds: np.ndarray, dt: float) -> None:
     """Each axis keeps its limits at every sample, and between samples in the mean."""
-    for name, quantity, before in (
-        ("speed", "velocity", "point"),
-        ("acc", "acc", "velocity"),
-        ("jerk", "jerk", "acc"),
-    ):
-        most = bounds[name][0]
-        if most.any():
-            assert (np.abs(steps[quantity]) <= most * (1 + ROUNDING)).all(), name
-            change = np.abs(np.diff(steps[before], axis=0))
-            assert (change <= most * dt * (1 + 1e-6)).all(), f"change of {before}"
+    for name, share in shares(steps, bounds, dt).items():
+        assert share <= 1 + (1e-6 if name.startswith("change") else ROUNDING), name
 
 
 def corners(size: float, length: float, count: int) -> np.ndarray:
@@ -100,7 +95,7 @@ def test_circle() -> None:
     assert 0.995 < np.abs(by_axes.steps["acc"]).max() / 1000.0 <= 1 + ROUNDING
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SEEDS)
 def test_path_rule(seed: int) -> None:
     """Without limits of axes: along the path and across it, each within the ramp."""
@@ -131,33 +126,43 @@ def test_bound(seed: int) -> None:
     assert 0.9995 < ratio < 1.025
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(SEEDS, st.booleans())
 @example(10, False)
 @example(223, False)
 @example(3, True)
 @example(35, True)
+@example(4105827, False)  # a low override where an axis needs the speed to rise
+@example(16054, True)  # braking to rest leads into parts with a lower most speed
+@example(10905, True)  # from nearly rest, at no acceleration
+@example(27476, True)  # a share of a plan that lands where the chain ends, but for rounding
+@example(47927, True)
 def test_orders(seed: int, smooth: bool) -> None:
     """Random overrides, holds and look-ahead: within the limits, at rest at the end."""
+    done, bounds, orders = random_ride(seed, smooth)
+    within(done.steps, bounds, orders.dt)
+    assert at_rest_at_its_end(done)
+
+
+@settings(max_examples=60)
+@given(SEEDS)
+@example(28)
+@example(760)
+def test_sudden_overrides(seed: int) -> None:
+    """High and low overrides in turn: no speed is left but by an acceleration within the limits."""
     dice = np.random.default_rng(seed)
-    count, size = int(dice.integers(1, 14)), float(10 ** dice.uniform(-1, 1.5))
-    told = random_chain(dice, count, size, float(10 ** dice.uniform(1, 2.8))).told()
-    acc = 10 ** dice.uniform(2, 4) * np.array([1, dice.uniform(0.3, 3), 1, 1, 1, 1])
-    bounds = limits(acc, dice.choice([0, 30.0, 100.0]), acc * 10 ** dice.uniform(0.5, 3) * smooth)
-    choices = dice.choice([0, 0.05, 0.3, 0.7, 1, 1.5, 2], dice.integers(1, 60))
-    overrides = np.append(np.repeat(choices, dice.integers(1, 200)), 1.0)
-    ahead, dt = int(dice.choice([0, 1, 3, 1000])), 10 ** dice.uniform(-3.5, -2.3)
-    done = ride(told, bounds, Orders(dt, overrides, ahead, 1_000_000))
-    steps = done.steps
-    within(steps, bounds, dt)
-    assert done.time > 0
-    assert steps["way"][-1] == pytest.approx(done.length, abs=1e-9)
-    assert steps["rate"][-1] == 0
-    assert (np.diff(steps["way"]) >= 0).all()
-    assert steps["way"].max() <= done.length + 1e-9
+    size, feed = float(10 ** dice.uniform(0, 1)), float(10 ** dice.uniform(2, 2.8))
+    told = random_chain(dice, 8, size, feed).told()
+    bounds = limits(10 ** dice.uniform(2, 4) * np.array([1, dice.uniform(0.3, 3), 1, 1, 1, 1]))
+    choices = dice.choice([0.05, 0.3, 1, 2], 300)
+    overrides = np.append(np.repeat(choices, dice.integers(1, 8, 300)), 1.0)
+    orders = Orders(10 ** dice.uniform(-3.5, -2.3), overrides, 1000, 1_000_000)
+    done = ride(told, bounds, orders)
+    within(done.steps, bounds, orders.dt)
+    assert at_rest_at_its_end(done)
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60, derandomize=True)
 @given(SEEDS, st.booleans())
 @example(3641, False)
 @example(3030, False)

@@ -168,7 +168,7 @@ def test_an_axis_alone_has_scalars(library):
     assert drive(run, 0.01, voltage=10.0).max() == 0.0
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     cuts=st.sets(st.integers(1, 399), max_size=20),
     switch=st.integers(1, 399),

@@ -42,7 +42,7 @@ def test_natural_frequency_at_mid_stroke():
     assert resonance(case.slope(case.start, [0, 0]).full())[0] == pytest.approx(expected, rel=0.01)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     area_a=st.floats(3e-4, 5e-3),
     area_b=st.floats(3e-4, 5e-3),

@@ -35,7 +35,7 @@ def outputs(run):
     return b"".join(run.get(n).tobytes() for n in names)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     cuts=st.sets(INSIDE | ON_GRID, max_size=30),
     switch=INSIDE | ON_GRID,

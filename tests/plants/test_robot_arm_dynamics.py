@@ -68,7 +68,7 @@ def puma():
         moments.append(np.diag(tensor))
     return Arm(
         **EXACT, a1=0, a2=0.0203, b=-0.15005, c1=0.672, c2=0.4318, c3=0.4318, c4=0,
-        joint_sign=signs, joint_offset=signs * up, mass=[m for *_, m, _, _ in PUMA],
+        joint_sign=signs, joint_offset=np.degrees(signs * up), mass=[m for *_, m, _, _ in PUMA],
         center=centers, inertia=moments, payload_mass=0, payload_center=0, payload_inertia=0,
         link_viscous=0, gear_ratio=PUMA_GEARS, motor_inertia=PUMA_MOTORS,
     )  # fmt: skip
@@ -83,7 +83,7 @@ def test_puma_560():
     a = puma()
     signs, gears = a.parameter("joint_sign"), a.parameter("gear_ratio")
     q = np.array([0, np.pi / 4, np.pi, 0, np.pi / 4, 0])
-    inner = signs * q - a.parameter("joint_offset")
+    inner = signs * q - np.radians(a.parameter("joint_offset"))
     x = a.state(link_angle=inner, rotor_angle=inner * gears)
     still = a.rates(x, np.zeros(9))
     links, motors = [], []

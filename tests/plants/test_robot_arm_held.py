@@ -20,7 +20,7 @@ arm    = "robot_arm"
 "arm.torque"   = "drives.torque"
 
 [set]
-"arm.start_angle" = [0.0, 0.3, -0.2, 0.0, 0.4, 0.0]
+"arm.start_joint" = [0.0, 17.188733853924695, -11.459155902616466, 0.0, 22.918311805232932, 0.0]
 "drives.mode" = 1
 "drives.pulses_per_turn" = 2500
 "drives.position_gain" = 30

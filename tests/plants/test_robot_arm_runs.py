@@ -16,7 +16,7 @@ H = 50e-6
 
 def inner(a, joints):
     """Angles of the class from those of the maker."""
-    return a.parameter("joint_sign") * joints - a.parameter("joint_offset")
+    return a.parameter("joint_sign") * joints - np.radians(a.parameter("joint_offset"))
 
 
 def turns(quaternion):
@@ -28,7 +28,7 @@ def turns(quaternion):
 
 KUKA = {"a1": 0.025, "a2": -0.035, "b": 0.0, "c1": 0.4, "c2": 0.315, "c3": 0.365, "c4": 0.08,
         "joint_sign": [-1, 1, 1, -1, 1, -1],
-        "joint_offset": [0, -np.pi / 2, 0, 0, 0, 0]}  # fmt: skip
+        "joint_offset": [0, -90, 0, 0, 0, 0]}  # fmt: skip
 
 
 @pytest.mark.parametrize("changed", [{}, {"b": 0.035}, KUKA], ids=["default", "lateral", "KUKA"])
@@ -37,7 +37,7 @@ def test_poses_are_those_of_the_other_library(changed):
     a = Arm(**EXACT, **changed, tool_length=0.0)
     lengths = {n: float(a.parameter(n)) for n in ("a1", "a2", "b", "c1", "c2", "c3", "c4")}
     flips = tuple(bool(s < 0) for s in a.parameter("joint_sign"))
-    model = opw.KinematicModel(**lengths, offsets=tuple(a.parameter("joint_offset")),
+    model = opw.KinematicModel(**lengths, offsets=tuple(np.radians(a.parameter("joint_offset"))),
                                flip_axes=flips)  # fmt: skip
     robot = opw.Robot(model, degrees=False)
     rng, worst = np.random.default_rng(2), 0.0
@@ -65,7 +65,7 @@ def spring_energy(a, windup):
 
 def test_energy_balance_along_a_run():
     """Kinetic, potential and spring energy less work and losses: 1e-6 of the work."""
-    a = Arm(start_angle=POSE, paper_height=float("-inf"))
+    a = Arm(start_joint=np.degrees(POSE), paper_height=float("-inf"))
     oracle, gears = Pinocchio(a), a.parameter("gear_ratio")
     u = np.array([1.0, -1.5, -0.8, 0.3, 0.2, -0.1, 30.0, -20.0, 40.0])
     steps = 8000
@@ -105,7 +105,7 @@ def test_energy_balance_along_a_run():
 def test_sag_under_gravity():
     """Motors locked, the links settle where pinocchio's torque winds the springs up."""
     damping = 4 * Arm().parameter("gear_damping")
-    a = Arm(**EXACT, **LOCKED, start_angle=POSE, gear_damping=damping)
+    a = Arm(**EXACT, **LOCKED, start_joint=np.degrees(POSE), gear_damping=damping)
     oracle, q0 = Pinocchio(a), inner(a, POSE)
     x = a.state(link_angle=q0, rotor_angle=q0 * a.parameter("gear_ratio"))
     last = a.stepped(H, 30000)(x, np.zeros((9, 30000)))[:, -1]
@@ -126,7 +126,7 @@ def test_sag_under_gravity():
 
 def test_free_vibrations_have_the_frequencies_of_the_eigenvalues():
     """Each mode alone, motors locked and no gravity, against K and pinocchio's mass matrix."""
-    a = Arm(**FREE, **LOCKED, gravity=0, gear_damping=0, start_angle=POSE)
+    a = Arm(**FREE, **LOCKED, gravity=0, gear_damping=0, start_joint=np.degrees(POSE))
     q0 = inner(a, POSE)
     squares, modes = scipy.linalg.eigh(
         np.diag(a.parameter("stiffness_1")), Pinocchio(a).inertia(q0)
@@ -146,7 +146,7 @@ def test_free_vibrations_have_the_frequencies_of_the_eigenvalues():
 def test_one_elastic_joint_against_the_closed_form():
     """Step of torque on joint 1, the others in line: two masses, a spring and a damper."""
     joints = np.array([0.3, 0, 0, 0, 0, 0])
-    a = Arm(**FREE, gravity=0, start_angle=joints)
+    a = Arm(**FREE, gravity=0, start_joint=np.degrees(joints))
     torque, n = 0.5, a.parameter("gear_ratio")[0]
     k, d = a.parameter("stiffness_1")[0], a.parameter("gear_damping")[0]
     motor, load = (
