@@ -37,8 +37,7 @@ static bool cut_is_due(const struct ethernet *e, int64_t now)
         if (c->cut_at[k] > e->instant && c->cut_at[k] <= now && c->cut_at[k] > 0)
             return true;
         for (int i = 0; i < ETHERNET_ENDS && e->connection; i++) {
-            if (c->cut_behind[i][k] > 0 && e->pipe[i].passed == c->cut_behind[i][k] &&
-                e->shown[i].rx_count > 0)
+            if (e->pipe[i].passed == c->cut_behind[i][k] && e->shown[i].rx_count > 0)
                 return true;
         }
     }
@@ -118,7 +117,6 @@ static void call(struct ethernet *e, int64_t now, const struct ethernet_seen see
     e->wanted = e->wanted < 0 ? now : e->wanted;
     if (now - e->wanted < e->config.connect)
         return;
-    disconnect(e, now);
     e->connection = ++e->connections;
 }
 

@@ -44,6 +44,7 @@ static bool counts_sound(const struct netcard *c)
 const char *netcard_damage(const struct netcard *c, int64_t now)
 {
     struct card_wrong wrong;
+    int64_t busy[CARD_LOADS];
 
     if (!card_settings_good(&c->settings, &wrong)) {
         return "its settings";
@@ -65,6 +66,10 @@ const char *netcard_damage(const struct netcard *c, int64_t now)
     if (!home_cycle_sound(&c->home) || !card_inputs_sound(&c->inputs) ||
         !card_outputs_sound(&c->outputs)) {
         return "its inputs, outputs or homing";
+    }
+    card_busy(c, busy);
+    if (c->power && !card_load_sound(&c->load, c->kernel.processor.clock, busy)) {
+        return "its loads";
     }
     if (!session_sound(&c->session)) {
         return "its link";

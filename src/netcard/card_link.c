@@ -217,20 +217,24 @@ int card_message(struct netcard *c)
     }
 }
 
-/* Share of the time since power-up. */
-static uint16_t load(const struct netcard *c, int64_t busy)
-{
-    const int64_t all = c->kernel.processor.clock;
-
-    return (uint16_t)(all > 0 ? busy * 1000 / all : 0);
-}
-
 static uint32_t switches(const struct netcard *c)
 {
     const struct netcard_axes *a = &c->axes;
 
     return a->plus | a->minus << 4 | a->origin << 8 | a->alarm << 12 | c->homed << 16 |
            (uint32_t)a->stop << 20;
+}
+
+void card_busy(const struct netcard *c, int64_t busy[CARD_LOADS])
+{
+    _Static_assert(CARD_LOADS == NETCARD_TASKS + 1, "the tasks, and all interrupts together");
+    for (int i = 0; i < NETCARD_TASKS; i++) {
+        busy[i] = kernel_busy(&c->kernel, i);
+    }
+    busy[NETCARD_TASKS] = 0;
+    for (int i = 0; i < NETCARD_INTERRUPTS; i++) {
+        busy[NETCARD_TASKS] += kernel_busy(&c->kernel, KERNEL_TASKS + i);
+    }
 }
 
 void card_tell_status(struct netcard *c)
@@ -243,18 +247,14 @@ void card_tell_status(struct netcard *c)
         .switches = switches(c), .rate = (uint16_t)(player_rate(&c->player) * 1000.0),
         .wear = flash_wear(&c->flash)
     };
-    int64_t interrupts = 0;
+    int64_t busy[CARD_LOADS];
 
+    _Static_assert(sizeof s.load == 2 * CARD_LOADS, "what STATUS has room for");
     for (int i = 0; i < CARD_AXES; i++) {
         s.position[i] = (int32_t)netcard_position(c, i);
     }
-    for (int i = 0; i < NETCARD_TASKS; i++) {
-        s.load[i] = load(c, kernel_busy(&c->kernel, i));
-    }
-    for (int i = 0; i < NETCARD_INTERRUPTS; i++) {
-        interrupts += kernel_busy(&c->kernel, KERNEL_TASKS + i);
-    }
-    s.load[NETCARD_TASKS] = load(c, interrupts);
+    card_busy(c, busy);
+    card_load_tell(&c->load, c->kernel.processor.clock, busy, s.load);
     session_status(&c->session, &s, c->now);
 }
 

@@ -1,5 +1,6 @@
 #include "flash_chip.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* splitmix64 */
@@ -21,7 +22,7 @@ struct flash_config flash_config_usual(void)
 
 static bool time_good(const struct flash_time *t)
 {
-    return t->typical >= 1 && t->longest >= t->typical && t->longest <= 60000000000;
+    return t->typical >= 1 && t->longest >= t->typical && t->longest <= FLASH_TIME_MAX;
 }
 
 bool flash_config_good(const struct flash_config *c)
@@ -32,10 +33,33 @@ bool flash_config_good(const struct flash_config *c)
 
 void flash_start(struct flash_chip *f, const struct flash_config *config)
 {
-    memset(f, 0, sizeof *f);
-    memset(f->array, 0xff, sizeof f->array);
+    memset(f, 0, offsetof(struct flash_chip, array));
     f->config = *config;
     f->random = config->seed;
+}
+
+/* The sector's bytes are in the array from now on. */
+static void open_sector(struct flash_chip *f, int32_t sector)
+{
+    if (!f->written[sector])
+        memset(f->array + sector * FLASH_SECTOR, 0xff, FLASH_SECTOR);
+    f->written[sector] = true;
+}
+
+void flash_put(struct flash_chip *f, int32_t page, const uint8_t *bytes, int32_t pages)
+{
+    for (int32_t k = 0; k < pages; k++) {
+        open_sector(f, (page + k) / FLASH_SECTOR_PAGES);
+        memcpy(f->array + (page + k) * FLASH_PAGE, bytes + k * FLASH_PAGE, FLASH_PAGE);
+    }
+}
+
+void flash_look(const struct flash_chip *f, int32_t page, uint8_t bytes[FLASH_PAGE])
+{
+    if (f->written[page / FLASH_SECTOR_PAGES])
+        memcpy(bytes, f->array + page * FLASH_PAGE, FLASH_PAGE);
+    else
+        memset(bytes, 0xff, FLASH_PAGE);
 }
 
 bool flash_busy(const struct flash_chip *f, int64_t now)
@@ -48,11 +72,13 @@ static void settle(struct flash_chip *f, int64_t now)
 {
     if (f->work == FLASH_IDLE || now < f->end)
         return;
-    if (f->work == FLASH_ERASE)
-        memset(f->array + f->at, 0xff, (size_t)f->bytes);
-    else
+    if (f->work == FLASH_ERASE) {
+        memset(f->written + f->at / FLASH_SECTOR, 0, (size_t)(f->bytes / FLASH_SECTOR));
+    } else {
+        open_sector(f, f->at / FLASH_SECTOR);
         for (int k = 0; k < FLASH_PAGE; k++)
             f->array[f->at + k] &= f->page[k];
+    }
     f->work = FLASH_IDLE;
 }
 
@@ -112,7 +138,7 @@ int64_t flash_read(struct flash_chip *f, int32_t page, uint8_t bytes[FLASH_PAGE]
 {
     if (!ready(f, page, FLASH_PAGES, now))
         return 0;
-    memcpy(bytes, f->array + page * FLASH_PAGE, FLASH_PAGE);
+    flash_look(f, page, bytes);
     const int64_t bits = 8 * (FLASH_PAGE + FLASH_COMMAND_BYTES);
     return (bits * 1000000000 + f->config.read_hz - 1) / f->config.read_hz;
 }
@@ -132,6 +158,8 @@ void flash_cut(struct flash_chip *f, int64_t now)
     settle(f, now);
     const uint32_t p = f->work == FLASH_IDLE
                        ? 0 : (uint32_t)(((now - f->begin) << 16) / (f->end - f->begin));
+    for (int32_t k = 0; f->work != FLASH_IDLE && k < f->bytes; k += FLASH_SECTOR)
+        open_sector(f, (f->at + k) / FLASH_SECTOR);
     for (int32_t k = 0; f->work != FLASH_IDLE && k < f->bytes; k++) {
         uint8_t *byte = f->array + f->at + k;
         const uint8_t reached = bits_of(&f->random, p);
@@ -155,17 +183,29 @@ uint32_t flash_wear(const struct flash_chip *f)
     return most;
 }
 
+_Static_assert(FLASH_SECTORS / 2 <= SPANS_MAX, "every other sector");
+
+void flash_unused(const struct flash_chip *f, struct spans *s)
+{
+    for (int32_t from = 0, to; from < FLASH_SECTORS; from = to + 1) {
+        for (to = from; to < FLASH_SECTORS && !f->written[to]; to++)
+            ;
+        spans_leave(s, f->array + from * FLASH_SECTOR, f->array + to * FLASH_SECTOR);
+    }
+}
+
 const char *flash_damage(const struct flash_chip *f)
 {
     if (!flash_config_good(&f->config))
         return "the flash has other times";
     if (f->work != FLASH_IDLE && f->work != FLASH_PROGRAM && f->work != FLASH_ERASE)
         return "the flash does what it cannot";
-    const bool place = f->at >= 0 && f->bytes >= 0 && f->bytes <= FLASH_BLOCK
-                       && f->at <= FLASH_BYTES - f->bytes
-                       && (f->work != FLASH_PROGRAM || f->bytes == FLASH_PAGE);
+    const bool size = f->work == FLASH_PROGRAM ? f->bytes == FLASH_PAGE
+                      : f->bytes == FLASH_SECTOR || f->bytes == FLASH_BLOCK;
+    const bool place = size && f->at >= 0 && f->at <= FLASH_BYTES - f->bytes
+                       && f->at % f->bytes == 0;
     if (f->work != FLASH_IDLE && (!place || f->begin < 0 || f->end <= f->begin
-                                  || f->end - f->begin > 60000000000))
+                                  || f->end - f->begin > FLASH_TIME_MAX))
         return "an operation of the flash is damaged";
     return NULL;
 }

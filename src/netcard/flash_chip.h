@@ -14,6 +14,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "spans.h"
+
 enum {
     FLASH_PAGE = 256,
     FLASH_SECTOR = 4096,
@@ -38,6 +40,8 @@ struct flash_config {
     uint64_t seed;
 };
 
+#define FLASH_TIME_MAX INT64_C(100000000000) /* [ns] the longest that a setting can ask for */
+
 enum flash_work { FLASH_IDLE, FLASH_PROGRAM, FLASH_ERASE };
 
 struct flash_chip {
@@ -49,7 +53,8 @@ struct flash_chip {
     uint8_t  page[FLASH_PAGE];          /* to be programmed */
     uint32_t wear[FLASH_SECTORS];       /* erases begun */
     uint32_t programs, sector_erases, block_erases, refused;
-    uint8_t  array[FLASH_BYTES];
+    bool     written[FLASH_SECTORS];    /* something was programmed since its latest erase */
+    uint8_t  array[FLASH_BYTES];        /* of the others nobody reads it: they are 0xff */
 };
 
 /* Of the data sheet: 0.7 / 3 ms a page, 45 / 400 ms a sector, 150 / 2000 ms a block, no spread,
@@ -58,6 +63,10 @@ struct flash_config flash_config_usual(void);
 
 /* A new chip, erased. */
 void flash_start(struct flash_chip *f, const struct flash_config *config);
+
+/* From outside, without time: some pages become these bytes; the bytes of a page. */
+void flash_put(struct flash_chip *f, int32_t page, const uint8_t *bytes, int32_t pages);
+void flash_look(const struct flash_chip *f, int32_t page, uint8_t bytes[FLASH_PAGE]);
 
 /* Is an operation under way? */
 bool flash_busy(const struct flash_chip *f, int64_t now);
@@ -78,8 +87,12 @@ void flash_cut(struct flash_chip *f, int64_t now);
 /* Most erases of any sector. */
 uint32_t flash_wear(const struct flash_chip *f);
 
-/* Whether a chip can have this configuration: each time of 1 ns to a minute, typical <= longest. */
+/* Whether a chip can have this configuration: each time of 1 ns to FLASH_TIME_MAX, typical <=
+ * longest. */
 bool flash_config_good(const struct flash_config *config);
+
+/* Parts of a state that a saved one leaves out: sectors without anything. */
+void flash_unused(const struct flash_chip *f, struct spans *s);
 
 /* What is wrong with a state, NULL if nothing is; the array may hold anything. */
 const char *flash_damage(const struct flash_chip *f);

@@ -113,9 +113,12 @@ enum net_code job_store_load(struct job_store *s, struct flash_chip *f, const ui
     s->job = (struct job_place){.sequence = 1, .bytes = bytes, .crc = net_crc(0, file, bytes),
                                 .id = s->check.header.id};
     net_sha(file, bytes, s->job.hash);
-    memcpy(f->array, file, bytes);
-    store_write_record(&s->job, f->array + store_record_sector(s->slots, 0) * FLASH_SECTOR);
-    store_write_mark(&s->job, f->array + store_mark_sector(s->slots, 0) * FLASH_SECTOR);
+    uint8_t page[FLASH_PAGE];
+    flash_put(f, 0, file, (int32_t)store_pages(&s->job));
+    store_write_record(&s->job, page);
+    flash_put(f, store_record_sector(s->slots, 0) * FLASH_SECTOR_PAGES, page, 1);
+    store_write_mark(&s->job, page);
+    flash_put(f, store_mark_sector(s->slots, 0) * FLASH_SECTOR_PAGES, page, 1);
     return NET_DONE;
 }
 

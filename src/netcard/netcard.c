@@ -92,6 +92,7 @@ static void boot(struct netcard *c)
     memset(c->gives, 0, sizeof c->gives);
     memset(&c->told, 0, sizeof c->told);
     memset(&c->page, 0, sizeof c->page);
+    memset(&c->load, 0, sizeof c->load);
     c->job = c->primed = c->read = c->ended = c->over = c->holds = c->released = false;
     c->deferred = c->asked = c->homing = false;
     c->works = c->approach = c->clears = c->cleared = false;
@@ -138,7 +139,7 @@ enum net_code netcard_start(struct netcard *c, const struct netcard_config *conf
     const struct player_config player = player_of(s);
     enum net_code code = NET_DONE;
 
-    memset(c, 0, sizeof *c);
+    memset(c, 0, offsetof(struct netcard, flash));
     c->settings = *s;
     c->power = true;
     c->least = s->fifo_depth;
@@ -392,4 +393,9 @@ bool netcard_command(struct netcard *c, enum card_command command, uint8_t axes)
     };
     card_pend(c, NETCARD_NETWORK);
     return true;
+}
+
+void netcard_unused(const struct netcard *c, struct spans *s)
+{
+    flash_unused(&c->flash, s);
 }

@@ -15,6 +15,7 @@
 #define NETCARD_H
 
 #include "card_inputs.h"
+#include "card_load.h"
 #include "card_outputs.h"
 #include "card_settings.h"
 #include "card_state.h"
@@ -87,13 +88,13 @@ struct netcard {
     int64_t now;                /* [ns] all up to here is done */
     int64_t boot;               /* [ns] clock 0 of the kernel */
     struct kernel kernel;
-    struct flash_chip flash;
     struct job_store store;
     struct player player;
     struct card_inputs inputs;
     struct card_outputs outputs;
     struct home_cycle home;
     struct session session;
+    struct card_load load;      /* of the processor, as told */
     struct netcard_axes axes;   /* levels */
     uint32_t input_levels;
 
@@ -141,6 +142,8 @@ struct netcard {
     struct netcard_result result;
     int32_t least;              /* [frames] smallest stock while a job played, not all read */
     int32_t dropped;            /* semaphores taken that the state did not want */
+
+    struct flash_chip flash;    /* the last: it clears itself */
 };
 
 /* Power on, flash erased or with a job in slot 0. The settings must be good. NET_DONE, or why the
@@ -177,5 +180,8 @@ int64_t netcard_frames(const struct netcard *c);
 
 /* What is wrong with a state that came as bytes, or NULL. */
 const char *netcard_damage(const struct netcard *c, int64_t now);
+
+/* Parts of a state that a saved one leaves out. */
+void netcard_unused(const struct netcard *c, struct spans *s);
 
 #endif

@@ -50,6 +50,9 @@ int card_message(struct netcard *c);
 void card_tell_store(struct netcard *c);
 void card_tell_status(struct netcard *c);
 
+/* Time that each task, and all interrupts together, have had the processor. [ns] */
+void card_busy(const struct netcard *c, int64_t busy[CARD_LOADS]);
+
 /* The player is advanced to now, what it tells is kept for its interrupt. */
 void card_advance_player(struct netcard *c);
 

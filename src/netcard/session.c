@@ -87,7 +87,6 @@ void session_connected(struct session *s, const struct session_about *a, int64_t
     uint8_t payload[NET_BYTES_hello];
     if (s->phase != SESSION_CALLING)
         return;
-    net_channel_start(&s->channel, true);
     memcpy(s->secret.key, s->config.key, sizeof s->secret.key);
     s->secret.card = s->config.card;
     net_random_draw(&s->random, s->secret.card_nonce, NET_NONCE);

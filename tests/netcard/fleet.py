@@ -55,7 +55,7 @@ class Fleet:
         for queue in self.queues:
             queue.put_nowait(event)
 
-    async def command(self, card: int, name: str, **values: int) -> Result:
+    async def command(self, card: int, name: str, /, **values: int) -> Result:
         view = self.cards.get(card, CardView(card))
         if not view.connected:
             return Result.of(Code.OFFLINE)

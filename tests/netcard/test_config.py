@@ -192,7 +192,7 @@ KEYS = st.sampled_from(
 TREES = st.recursive(VALUES, lambda inner: st.dictionaries(KEYS, inner, max_size=4), max_leaves=12)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.dictionaries(KEYS, st.one_of(TREES, st.lists(TREES, max_size=3)), max_size=4))
 def test_whatever_stands_in_a_file_is_told(found: dict[str, Any]) -> None:
     wrong = faults(found)

@@ -1,5 +1,7 @@
 """The page of the cards, without a socket: who may, commands, jobs, configuration."""
 
+import asyncio
+import contextlib
 import io
 import json
 import shutil
@@ -22,12 +24,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
+from websockets.asyncio.client import connect
+from websockets.exceptions import ConnectionClosed
 
 from motionfmu.errors import InputError
 from motionfmu.netcard.config import CardConfig, load, read
 from motionfmu.netcard.config_text import text_of, with_values
 from motionfmu.netcard.job import decode
-from motionfmu.netcard.page import application
+from motionfmu.netcard.page import Serving, application
 from motionfmu.netcard.page.form import form
 from motionfmu.netcard.page.guard import HEADERS
 from motionfmu.netcard.page.pictures import POINTS, picture
@@ -36,7 +40,7 @@ CARD = ROOT / "examples/network_card_firmware/card.toml"
 TOKEN, HOST, LIVE = "a-token", "http://127.0.0.1:8766", "ws://127.0.0.1:8766/live"
 
 
-def client(fleet: Fleet, config: Path | None = None, **headers: str) -> TestClient:
+def client(fleet: Any, config: Path | None = None, **headers: str) -> TestClient:
     own = {"authorization": f"Bearer {TOKEN}"} | headers
     return TestClient(application(fleet, TOKEN, config), HOST, headers=own)
 
@@ -93,6 +97,21 @@ def test_nobody_else_hears_of_the_cards(fleet: Fleet, headers: Any, token: str) 
     assert fleet.queues == []
 
 
+def test_who_has_no_token_yet_can_send_little(fleet: Fleet) -> None:
+    """4 kB, that are no token, and no byte of a longer message is kept."""
+
+    async def closed(length: int) -> int:
+        async with Serving(application(fleet, TOKEN), 0) as port:
+            async with connect(f"ws://127.0.0.1:{port}/live") as line:
+                with contextlib.suppress(ConnectionClosed):
+                    await line.send("x" * length)
+                await line.wait_closed()
+                return line.close_code or 0
+
+    assert asyncio.run(closed(4096)) == 1008  # read, and no token
+    assert asyncio.run(closed(4097)) == 1009  # too big to be read
+
+
 def test_the_page_is_whole_without_any_other_server(fleet: Fleet) -> None:
     c = client(fleet, authorization="")
     text = c.get("/?token=x").text
@@ -100,7 +119,7 @@ def test_the_page_is_whole_without_any_other_server(fleet: Fleet) -> None:
     folder = ROOT / "src/motionfmu/netcard/page"
     for file in folder.glob("*.[jch]*s*"):
         assert c.get(f"/{file.name}").text == file.read_text()
-        assert "://" not in file.read_text().replace("ws://${location.host}", "")
+        assert "://" not in file.read_text()
     assert c.get("/app.py").status_code == 404 and c.get("/..%2fconfig.py").status_code == 404
     assert c.get("/cards/1/command").status_code == 405
 
@@ -203,6 +222,64 @@ def test_a_drawing_is_planned_with_the_configuration_and_sent(fleet: Fleet, tmp_
     damaged = bytearray(circle())
     damaged[300] ^= 1
     assert c.post("/open", content=bytes(damaged)).status_code == 422
+
+
+def test_one_page_of_a_drawing_is_opened(fleet: Fleet) -> None:
+    drawing = b"IN;SP1;PU400,400;PD2000,400;PG;PU400,800;PD1000,800;PG;"
+    c = client(fleet, CARD)
+    for page, width in (("", 40), ("&page=1", 40), ("&page=2", 15)):
+        p = c.post(f"/open?name=a.plt{page}", content=drawing).json()
+        assert p["drawn"] == pytest.approx(width, abs=0.1)
+        assert (p["page"], p["pages"]) == (int(page[-1:] or 1), 2)
+        assert p["notes"] == []  # nothing is passed over
+    for page, why in (("3", "a.plt: no page 3, it has 2 pages"), ("x", "page 'x': a number")):
+        wrong = c.post(f"/open?name=a.plt&page={page}", content=drawing)
+        assert wrong.status_code == 422 and wrong.json()["errors"][0].startswith(why)
+
+
+def test_files_are_opened_by_a_process_of_their_own(
+    fleet: Fleet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Commands do not wait for a plan: nothing of it runs beside them."""
+
+    def never(*_: object) -> None:
+        raise AssertionError("a file was opened by the server itself")
+
+    for name in ("planning.opened", "pictures.opened", "pictures.decode", "pictures.picture"):
+        monkeypatch.setattr(f"motionfmu.netcard.page.{name}", never)
+    c = client(fleet, CARD)
+    assert c.post("/open?name=a.plt", content=b"PU400,400;PD2000,400;").json()["lines"] == 1
+    assert c.post("/open?name=b.mcj", content=circle()).json()["lines"] == 1
+    monkeypatch.setattr("sys.executable", shutil.which("false"))
+    told = c.post("/open?name=c.plt", content=b"PD1,1;")
+    assert told.status_code == 422 and "c.plt: it could not be opened" in told.json()["errors"][0]
+
+
+def test_that_process_imports_nothing_of_the_folder_it_runs_in(
+    fleet: Fleet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("json", "numpy", "contextlib", "motionfmu"):
+        (tmp_path / f"{name}.py").write_text("open('imported', 'w').write(__name__)\n")
+    monkeypatch.chdir(tmp_path)
+    opened = client(fleet).post("/open?name=b.mcj", content=circle())
+    assert not (tmp_path / "imported").exists()
+    assert opened.json()["lines"] == 1
+
+
+def test_an_answer_is_not_held_back_for_an_acknowledgement(fleet: Fleet) -> None:
+    async def option() -> int:
+        serving = Serving(application(fleet, TOKEN), 0)
+        async with serving as port:
+            reader, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(b"GET / HTTP/1.1\r\nhost: localhost\r\n\r\n")
+            await reader.readline()
+            (taken,) = serving._server.server_state.connections
+            there = taken.transport.get_extra_info("socket")  # type: ignore[union-attr]
+            found = int(there.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+            return found
+
+    assert asyncio.run(option())
 
 
 def test_more_bytes_than_a_job_can_have_are_not_kept(fleet: Fleet) -> None:
@@ -320,7 +397,7 @@ def test_the_form_is_sent_to_a_card(fleet: Fleet) -> None:
 NUMBERS = st.floats(0.5, 400).map(lambda x: round(x, 6))
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.data())
 def test_the_text_of_a_configuration_is_read_as_the_same(data: Any) -> None:
     tree = load(CARD).model_dump()

@@ -276,3 +276,82 @@ def test_the_page_works_on_the_real_server_with_a_card_that_comes_late(
         expect(tab.locator("#told")).to_have_text("Home: done (READY)")
     kinds = [type(order) for order in soft.orders]
     assert kinds == [messages.Start, messages.Pause, messages.Stop, messages.Home]
+
+
+def test_another_page_of_a_drawing_is_chosen(tab: Any, served: Served, tmp_path: Path) -> None:
+    from playwright.sync_api import expect
+
+    file = tmp_path / "two.plt"
+    file.write_bytes(b"IN;SP1;PU400,400;PD2000,400;PG;PU400,800;PD1000,800;PG;")
+    tab.locator("#file").set_input_files(file)
+    about, page = tab.locator("#job-about"), tab.get_by_label("Page", exact=True)
+    expect(about).to_contain_text("40.0 \N{MULTIPLICATION SIGN} 0.0 mm")
+    expect(tab.locator("#pages")).to_have_text("Page of 2")
+    assert tab.locator("#pages").bounding_box()["width"] < 160
+    page.fill("2")
+    page.press("Enter")
+    expect(about).to_contain_text("15.0 \N{MULTIPLICATION SIGN} 0.0 mm, 1 line")
+
+
+# Four rules for people who see little, hear the page read, or have no mouse.
+RULES = """() => {
+  const all = [...document.querySelectorAll("body *")].filter((e) => e.checkVisibility());
+  const name = (e) => `${e.tagName}#${e.id}.${e.className} ${e.textContent.slice(0, 30)}`;
+  const plain = new Set(["I", "B", "SPAN", "DIV", "P", "SMALL", "KBD", "CODE", "TIME", "TD"]);
+  const labelled = all.filter((e) => e.ariaLabel && plain.has(e.tagName) && !e.role);
+  const lists = all.filter((e) => e.tagName === "DL").flatMap((dl) => [...dl.children])
+    .flatMap((e) => e.tagName === "DIV" ? [...e.children] : [e])
+    .filter((e) => !["DT", "DD"].includes(e.tagName));
+  const focusable = (e) => [e, ...e.querySelectorAll("*")].some((x) => x.tabIndex >= 0);
+  const scrolling = all.filter((e) => /auto|scroll/.test(getComputedStyle(e).overflowY)
+    && e.scrollHeight > e.clientHeight + 1 && !focusable(e));
+
+  const dot = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+  dot.canvas.width = dot.canvas.height = 1;
+  const over = (colour, alpha, below) => {  // what a colour looks like on another
+    dot.globalAlpha = 1;
+    dot.fillStyle = `rgb(${below})`;
+    dot.fillRect(0, 0, 1, 1);
+    dot.globalAlpha = alpha;
+    dot.fillStyle = colour;
+    dot.fillRect(0, 0, 1, 1);
+    return [...dot.getImageData(0, 0, 1, 1).data].slice(0, 3);
+  };
+  const ground = (e) => e === null ? [255, 255, 255]
+    : over(getComputedStyle(e).backgroundColor, 1, ground(e.parentElement));
+  const faint = (e) => e === null ? 1
+    : Number(getComputedStyle(e).opacity) * faint(e.parentElement);
+  const light = (c) => c.map((v) => v / 255)
+    .map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0);
+  const words = all.filter((e) => !e.closest(":disabled") && e.tagName !== "OPTION"
+    && [...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim()));
+  const pale = words.map((e) => {
+    const style = getComputedStyle(e), behind = ground(e);
+    const shown = over(style.color, faint(e), behind);
+    const pair = [light(shown), light(behind)].sort((a, b) => b - a);
+    const large = parseFloat(style.fontSize) >= (style.fontWeight >= 700 ? 18.66 : 24);
+    return [name(e), (pair[0] + 0.05) / (pair[1] + 0.05) / (large ? 3 : 4.5)];
+  }).filter(([, share]) => share < 1);
+  return { words: words.length, wrong: { labelled: labelled.map(name), lists: lists.map(name),
+    scrolling: scrolling.map(name), pale } };
+}"""
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("size", [(1280, 900), (390, 844)], ids=["desk", "phone"])
+def test_everyone_can_read_and_reach_the_page(
+    browser: Any, served: Served, size: tuple[int, int], theme: Any
+) -> None:
+    for k in range(40):
+        served.fleet.tell("result", 1, f"start {k}: done")
+    with browser_tab(browser, address(served.port), {"width": size[0], "height": size[1]}) as tab:
+        tab.emulate_media(color_scheme=theme)
+        tab.locator("#events li").nth(30).wait_for()
+        found = tab.evaluate(RULES)
+        assert found["words"] > 60
+        assert {rule: wrong for rule, wrong in found["wrong"].items() if wrong} == {}
+        tab.locator("#tab-config").click()
+        tab.locator("#form fieldset, #form table").first.wait_for()
+        found = tab.evaluate(RULES)
+        assert {rule: wrong for rule, wrong in found["wrong"].items() if wrong} == {}

@@ -274,8 +274,8 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = Path("results/a.plan/report.html").read_text()
     assert "Speed of the axes" in page and Path("results/a.plan/plan.png").stat().st_size > 10_000
     plain = run(app, words, catch_exceptions=False)
-    assert "3 contours, 12 segments" in plain.stdout
-    for file, text in (("a.plt", "pen"), ("a.mcj", "event 1: output 0, level high, 3 times")):
+    assert "contours: 3, segments: 12" in plain.stdout
+    for file, text in (("a.plt", "pen"), ("a.mcj", "event 1: output 0, level high, times: 3")):
         shown = run(app, ["card", "show", file, "--picture", "x.png"], catch_exceptions=False)
         assert shown.exit_code == 0 and text in shown.stdout
         assert Path("x.png").stat().st_size > 10_000
@@ -286,6 +286,9 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         run(app, [*words, "--order", "far"], catch_exceptions=False)
     with pytest.raises(InputError, match=r"cannot read b\.plt"):
         run(app, ["card", "show", "b.plt"], catch_exceptions=False)
+    for option in (["--page", "2"], ["--frame", "0", "0", "1", "1"]):
+        with pytest.raises(InputError, match=r"a\.mcj: --frame and --page are for drawings"):
+            run(app, ["card", "show", "a.mcj", *option], catch_exceptions=False)
 
 
 def test_the_job_of_the_scenario_is_of_its_drawing() -> None:

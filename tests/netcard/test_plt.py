@@ -119,6 +119,13 @@ def test_each_command_is_drawn_as_another_reader_draws_it(text: str) -> None:
         ("LBPD9,9;\x03PD1,1", [[[0, 0], [1, 1]]]),
         ("DT#;LBPD9,9;\x03#PD1,1;IN;LBx\x03", [[[0, 0], [1, 1]]]),
         ('CO"PD9,9"PD1,1;SMPPD2,2', [[[0, 0], [1, 1], [2, 2]]]),
+        ("PD1,1;CO note PD9,9;PD2,2;", [[[0, 0], [1, 1], [2, 2]]]),
+        ("PD1,1;CO PD9,9\nPD8,8;PD2,2;CO to the end PD7,7", [[[0, 0], [1, 1], [2, 2]]]),
+        ('PD1,1;CO "a;PD9,9";PD2,2;CO"";PD3,3', [[[0, 0], [1, 1], [2, 2], [3, 3]]]),
+        ('PD1,1;MG"PD9,9;";MGPD8,8;PD2,2', [[[0, 0], [1, 1], [2, 2]]]),
+        ('BP1,"PD9,9;",5,1PD1,1;', [[[0, 0], [1, 1]]]),
+        ("BLPD9,9;\x03PD1,1;PB;PD2,2;PB\nPD3,3", [[[0, 0], [1, 1], [2, 2], [3, 3]]]),
+        ("\xef\xbb\xbfIN;PD1,1", [[[0, 0], [1, 1]]]),
         ("SP0;PD5,5;SP2;PU0,0;PD1,1", [[[0, 0], [1, 1]]]),
         ("SP1;PD1,1;SP2;PD2,2", [[[0, 0], [1, 1]], [[1, 1], [2, 2]]]),
         ("IP0,0,100,200;SC0,10,0,10;PU1,1;PD2,2;SC;PD5,5", [[[10, 20], [20, 40], [5, 5]]]),
@@ -167,6 +174,9 @@ def test_commands_and_quirks(text: str, lines: list) -> None:
         ("PE?", "byte 2", "an encoded number that does not end"),
         ("PE\xc1;", "byte 3", "an odd number of coordinates"),
         ("BZ1,2,3;", "byte 0", "a multiple of 6"),
+        ('PD1,1;CO"no end;PD9,9;', "byte 6", "the text in quotes has no end"),
+        ("PE\xc1\xc1XX;", "byte 4", "an encoded number that does not end"),
+        ("PE\xc1\xc1PU\xc1;", "byte 7", "an odd number of coordinates"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(text: str, where: str, why: str) -> None:
@@ -213,6 +223,47 @@ def test_encoded_polylines(base: int, fraction: int) -> None:
     np.testing.assert_allclose(line, wanted, atol=1e-6)
     pens = plt.parse(f"PE:{encoded(np.array([3]), 64, 0)}{encoded(steps[0], 64, 0)};".encode("l1"))
     assert list(pens.layers) == [3]
+
+
+@pytest.mark.parametrize("base", [64, 32])
+@pytest.mark.parametrize("end", [";", "PUSP0;PG;", "PU;", "SP\n0;", "\x1b%0APU9"])
+def test_an_encoded_line_may_end_with_the_next_instruction(base: int, end: str) -> None:
+    """As AutoCAD ends its pages; a number over two lines is still one."""
+    digits = encoded(np.array([3.0, 4.0, 700.0, -900.0]), base, 0)
+    digits = digits[:-2] + "\r\n" + digits[-2:]
+    (line,) = drawn(f"IN;PE{'7' if base == 32 else ''}{digits}{end}")
+    np.testing.assert_allclose(line, [[0, 0], [3, 4], [703, -896]], atol=1e-9)
+
+
+def test_a_file_that_an_editor_wrote_as_utf_8() -> None:
+    """The last digits of PE have two bytes then, in one base alone."""
+    text = f"IN;PE<={encoded(np.array([3.0, 4.0]), 64, 0)}{encoded(np.arange(80.0) - 40, 64, 0)};"
+    (raw,) = drawn(text)
+    for mark in (b"", b"\xef\xbb\xbf"):
+        (again,) = drawn(mark + text.encode("utf-8"))
+        assert again.tolist() == raw.tolist()
+    assert len(raw) == 41
+
+
+PAGES = "IN;SP1;{0}PU0,0;PD9,0;{1}PU0,5;PD0,9,9,9;PU;{1}{1}PD7,7;LBPG;\x03{1}PU0,0;{2}"
+
+
+@pytest.mark.parametrize("sheet", ["PG;", "PG1;", "AF", "AH;", "FR;", "BP;", "!PG;;"])
+def test_a_page_of_a_file_with_several(sheet: str) -> None:
+    """None is drawn over another; a sheet that nothing is drawn on is none."""
+    text = PAGES.format(sheet, sheet, sheet)
+    pages = [[[[0, 0], [9, 0]]], [[[0, 5], [0, 9], [9, 9]]], [[[9, 9], [7, 7]]]]
+    for page, lines in enumerate(pages, 1):
+        read = plt.parse(text.encode(), page=page)
+        assert [(p.points / 0.025).round(6).tolist() for p in read.lines if p.down] == lines
+        assert (read.page, read.pages) == (page, 3)
+    for page in (0, 4):
+        with pytest.raises(InputError, match=f"x.plt: no page {page}, it has 3 pages"):
+            plt.parse(text.encode(), "x.plt", page=page)
+    single = plt.parse(f"{sheet}PD1,1;{sheet}".encode())
+    assert single.pages == 1
+    with pytest.raises(InputError, match="drawing: no page 2, it has one page"):
+        plt.parse(b"PD1,1;", page=2)
 
 
 def test_layers_bytes_and_speeds() -> None:

@@ -1,7 +1,10 @@
 """The server of cards on real connections: commands, jobs, links that cut."""
 
 import asyncio
+import errno
 import hashlib
+import logging
+import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -22,6 +25,7 @@ from card_links import (
 from motionfmu.errors import InputError
 from motionfmu.netcard import messages as m
 from motionfmu.netcard.client import SoftCard, serve_card
+from motionfmu.netcard.control import Control, ask
 from motionfmu.netcard.keys import new_key, read_keys
 from motionfmu.netcard.line import Limits
 from motionfmu.netcard.server import Cards
@@ -62,16 +66,79 @@ def test_a_job_and_commands_reach_their_card_and_no_other() -> None:
     run(main())
 
 
+def test_a_full_disk_keeps_no_command_back(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Numbers stay new, a server that comes after it included; the log says what is wrong, once."""
+    asked: list[str] = []
+
+    def full(file: Path, *_: object, **__: object) -> None:
+        asked.append(file.name)
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    async def main() -> None:
+        async with bench() as b:
+            card = SoftCard(1)
+            b.serve(card)
+            await b.online([1])
+            assert (await b.cards.upload(1, job_of(3))).ok
+            assert (await b.cards.command(1, "start")).ok  # takes 256 numbers
+            monkeypatch.setattr("motionfmu.netcard.outbox.BLOCK", 0)
+            b.cards._cards[1]._outbox.load()
+            with monkeypatch.context() as disk:
+                disk.setattr(Path, "write_text", full)
+                disk.setattr(Path, "mkdir", full)
+                disk.setattr("motionfmu.netcard.keys.os.open", full_open)
+                for name in ("stop", "home", "start", "pause", "stop"):
+                    assert (await b.cards.command(1, name)).ok, name
+                with pytest.raises(InputError, match="No space left"):
+                    await b.cards.upload(1, job_of(4))
+            told = [e.text for e in b.view(1).events if e.kind == "disk"]
+            assert len(told) == 1 and "number: No space left on device" in told[0]
+            last = card.done
+            assert last > 2**30 and len({o.number for o in card.orders}) == len(card.orders)
+            b.cards._cards[1]._outbox.load()  # as another server would
+            assert (await b.cards.command(1, "home")).ok and card.done > last
+
+    def full_open(*_: object) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    caplog.set_level(logging.INFO, "motionfmu.netcard")
+    run(main())
+    assert asked and caplog.text.count("No space left on device") == 1
+
+
+def test_a_request_that_fails_is_answered(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """What no one thought of, too: who asks for a stop shall not wait for an answer in vain."""
+
+    class Broken:
+        async def command(self, *_: object, **__: object) -> None:
+            raise OSError(errno.EIO, "the disk is gone")
+
+    async def main() -> None:
+        control = Control(Broken(), tmp_path)  # type: ignore[arg-type]
+        await control.listen()
+        wish = {"do": "command", "card": 1, "name": "stop"}
+        with pytest.raises(InputError, match=r"its log says more: .*the disk is gone"):
+            await asyncio.to_thread(ask, tmp_path, wish)
+        await control.close()
+
+    run(main())
+    assert "a request was not done" in caplog.text
+
+
 def test_wrong_input_is_told_before_anything_is_sent(tmp_path: Path) -> None:
     async def main() -> None:
         async with bench() as b:
             for values, told in (
                 ((1, "fly"), "no command 'fly'"),
                 ((-1, "start"), "-1 is no id"),
-                ((1, "home", 16), "axes = 16: 0 to 15"),
+                ((1, "home", {"axes": 16}), "axes = 16: 0 to 15"),
                 ((1, "output"), "level, mode, pins, width wanted"),
+                ((1, "start", {"card": 5}), "start has no 'card'"),
+                ((1, "stop", {"self": 1, "name": "x"}), "stop has no 'self'"),
             ):
-                given = {"axes": values[2]} if len(values) > 2 else {}
+                given = values[2] if len(values) > 2 else {}
                 with pytest.raises(InputError, match=told):
                     await b.cards.command(values[0], values[1], **given)
             for job in (b"", b"MCJ1" + bytes(252), b"MCJ1" + bytes(1000), bytes(512)):

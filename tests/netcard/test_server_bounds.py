@@ -109,6 +109,7 @@ def frame(length: int) -> bytes:
 
 def test_the_bounds_are_those_of_the_readme() -> None:
     assert astuple(LIMITS)[:6] == (256, 8, 1024, 5.0, 15.0, 30.0)
+    assert LIMITS.place == 0.2
     assert (LIMITS.ping, LIMITS.pings, LIMITS.write, LIMITS.lines) == (1.0, 3, 65536, 100)
 
 
@@ -116,6 +117,37 @@ def test_a_handshake_has_5_s() -> None:
     peer = Peer()
     hello = iter(peer.end.take()[:-1])
     assert peer.closed_at(lambda: peer.say(bytes([next(hello)]))) == 5.1
+
+
+def test_a_place_of_a_handshake_is_its_own_for_so_long(tmp_path: Path) -> None:
+    """One neighbour that always connects anew keeps nobody out: the oldest makes room."""
+    cards, now = Cards(tmp_path), 0.0
+    lines: list[Line] = []
+
+    def comes() -> bool:
+        """Whether one more is let in."""
+        lines.append(Line(cards, lambda _: OPEN_KEY, lambda: now))
+        lines[-1].connection_made(Pipe())  # type: ignore[arg-type]
+        return lines[-1].open
+
+    for k in range(8):
+        now = 0.01 * k
+        assert comes()
+    now = 0.19
+    assert not comes() and lines[0].open
+    for k in range(40):  # eight neighbours' places are given on, oldest first
+        now = 0.21 + 0.2 * k
+        assert comes()
+        assert not lines[0].open and sum(line.open for line in lines) == 8
+        lines = [line for line in lines if line.open]
+    assert "place went to a newer" in _why(lines, comes)
+
+
+def _why(lines: list[Line], comes: Callable[[], bool]) -> str:
+    """Why the oldest was closed when one more came."""
+    oldest = lines[0]
+    comes()
+    return oldest._why
 
 
 @pytest.mark.parametrize(("pause", "end"), [(1000, 15.1), (14, 30.1)], ids=["no byte", "slow"])

@@ -109,7 +109,7 @@ def test_who_does_not_read_is_closed_before_memory_fills() -> None:
 @pytest.mark.parametrize(
     ("limits", "addresses", "refused"),
     [
-        (Limits(strangers=3), ["127.0.0.2"] * 6 + ["127.0.0.3"], 3),
+        (Limits(strangers=3, place=1e3), ["127.0.0.2"] * 6 + ["127.0.0.3"], 3),
         (Limits(connections=5), [f"127.0.0.{k}" for k in range(2, 9)], 2),
     ],
     ids=["of an address", "in all"],

@@ -123,7 +123,7 @@ NAMES = {m.Start: "command", m.Pause: "command", m.Stop: "command", m.Reset: "co
 NAMES |= {m.Ping: "token", m.Pong: "token"}
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.data())
 @pytest.mark.parametrize("kind", [k for k in KINDS if k is not m.JobData])
 def test_c_reads_each_message_as_it_was_meant(kind: type[m.Message], data: st.DataObject) -> None:
@@ -152,7 +152,7 @@ def test_c_reads_each_message_as_it_was_meant(kind: type[m.Message], data: st.Da
                 kind.read(text)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(ANY, max_size=8), st.data(), st.booleans(), st.booleans())
 def test_frames_of_python_and_c_are_the_same_bytes_however_cut(
     sent: list[m.Message], data: st.DataObject, keyed: bool, from_card: bool
@@ -201,7 +201,7 @@ def test_a_frame_without_the_key_or_back_to_its_sender_is_refused() -> None:
     assert refused(stream(TO_PC, KEY).frame(m.Ping(1)), KEY) == []
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(ANY, st.data(), st.booleans())
 def test_a_frame_with_a_bit_turned_is_never_taken(
     message: m.Message, data: st.DataObject, keyed: bool
@@ -218,7 +218,7 @@ def test_a_frame_with_a_bit_turned_is_never_taken(
     assert c.take(bytes(frame)) == []
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.binary(max_size=3000), st.booleans())
 def test_any_bytes_are_refused_or_waited_for(data: bytes, keyed: bool) -> None:
     end = stream(TO_PC, KEY if keyed else b"")

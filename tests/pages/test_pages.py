@@ -16,6 +16,7 @@ KINDS = (
     "contour",
     "robot",
     "iso9283",
+    "compare",
     "margins",
     "tune",
     "causes",
@@ -51,6 +52,24 @@ LOOK = """async () => {
     }
   }
   if (!bars) wrong.push("no plot");
+  for (const plot of document.querySelectorAll(".js-plotly-plot")) {
+    const titles = [...plot.querySelectorAll("text[class$=title]")]
+      .filter((e) => e.textContent);
+    titles.forEach((a, k) => titles.slice(0, k).forEach((b) => {
+      if (hit(box(a), box(b))) wrong.push(`titles: ${a.textContent} over ${b.textContent}`);
+    }));
+  }
+  const words = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (words.nextNode()) {
+    const { data, parentElement } = words.currentNode;
+    if (!parentElement.closest("script, style, code") && /(?<![\\w.>\\/+\\]:-])-\\d/.test(data))
+      wrong.push(`a hyphen for a minus: ${data}`);
+  }
+  for (const card of document.querySelectorAll(".card"))
+    if (card.scrollWidth > card.clientWidth) wrong.push(`beyond its card: ${card.innerText}`);
+  for (const part of room < 861 ? [] : document.querySelectorAll(".wide .scroll, .two .scroll"))
+    if (!part.closest(".readout") && part.scrollWidth > part.clientWidth)
+      wrong.push(`${name(part)}: a table cut`);
   const range = document.createRange();
   for (const cell of document.querySelectorAll("td, th, h1, h2, .what, .value")) {
     const walk = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
@@ -121,6 +140,14 @@ def test_nothing_overlaps_overflows_or_breaks(browser: Any, pages: Any, kind: st
         assert page.evaluate(LOOK) == []
         if kind == "contour":
             a_plot_is_saved(page)
+
+
+def test_a_long_name_breaks_in_its_card(browser: Any, pages: Any) -> None:
+    with tab(browser, pages[0]["tune"].as_uri(), PHONE) as page:
+        page.locator(".card .value").first.evaluate(
+            "e => e.textContent = 'controller.' + 'x'.repeat(30)"
+        )
+        assert page.evaluate(LOOK) == []
 
 
 def cells(page: Any, plot: str) -> dict[str, list[float]]:

@@ -6,8 +6,8 @@ may open the folder may command the cards.
 
 import asyncio
 import contextlib
-import fcntl
 import json
+import logging
 import os
 import socket
 from dataclasses import asdict
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import InputError
+from motionfmu.locking import lock
 from motionfmu.netcard import messages as m
 from motionfmu.netcard.config import CardConfig
 from motionfmu.netcard.server import JOB_MAX, Cards
@@ -22,6 +23,7 @@ from motionfmu.netcard.settings import asked as wanted
 from motionfmu.netcard.settings import lines
 from motionfmu.netcard.views import CardView
 
+LOG = logging.getLogger("motionfmu.netcard")
 SOCKET, LOCK = "control", "lock"
 LINE_MAX = 65536  # [byte] of a request
 
@@ -36,16 +38,17 @@ class Control:
 
     async def listen(self) -> None:
         """Take requests; InputError if another server uses the folder."""
+        _needs_sockets(self._folder)
         try:
             self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
             self._lock = os.open(self._folder / LOCK, os.O_RDWR | os.O_CREAT, 0o600)
         except OSError as error:
             raise InputError(f"folder {self._folder}: {error.strerror}") from None
         try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
+            lock(self._lock, self._folder, "another server uses this folder")
+        except InputError:
             os.close(self._lock)
-            raise InputError(f"{self._folder}: another server uses this folder") from None
+            raise
         place = self._folder / SOCKET
         place.unlink(missing_ok=True)
         before = os.umask(0o077)
@@ -70,6 +73,11 @@ class Control:
                 answer = await self._answer(json.loads(await reader.readline()), reader)
             except (InputError, ValueError, KeyError, TypeError) as error:
                 answer = {"wrong": str(error)}
+            except (ConnectionError, asyncio.IncompleteReadError):
+                raise
+            except Exception as error:  # whatever it is, who asked shall hear of it
+                LOG.exception("a request was not done")
+                answer = {"wrong": f"the server failed, its log says more: {error!r}"}
             writer.write(json.dumps(answer).encode() + b"\n")
             await writer.drain()
         except (OSError, asyncio.IncompleteReadError):
@@ -98,6 +106,15 @@ class Control:
         return asdict(result)
 
 
+def _needs_sockets(folder: Path) -> None:
+    """InputError where Python has no sockets that are files, which is Windows."""
+    if not hasattr(socket, "AF_UNIX"):
+        raise InputError(
+            f"{folder}: a server and its commands meet at a Unix socket here, which Python does "
+            "not have on this system; run them on Linux or macOS, or in WSL"
+        )
+
+
 def shown(view: CardView) -> dict[str, Any]:
     """A card as JSON has it."""
     status = view.status
@@ -111,6 +128,7 @@ def shown(view: CardView) -> dict[str, Any]:
 
 def ask(folder: Path, request: dict[str, Any], file: bytes = b"") -> dict[str, Any]:
     """The answer of the server that runs in a folder; InputError if none does."""
+    _needs_sockets(folder)
     with contextlib.closing(socket.socket(socket.AF_UNIX)) as link:
         try:
             link.connect(str(folder / SOCKET))

@@ -1,7 +1,6 @@
 """Keys of cards: a file of lines ``id = "64 hexadecimal digits"`` that only its owner reads."""
 
 import contextlib
-import fcntl
 import os
 import secrets
 import stat
@@ -9,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from motionfmu.errors import InputError
+from motionfmu.locking import POSIX, lock, open_folder
 from motionfmu.netcard.wire import OPEN_KEY
 from motionfmu.toml_lines import Lines, shown, tables_of, text_of
 
@@ -19,7 +19,7 @@ CARD_MAX = 2**32 - 1
 def read_keys(file: Path) -> dict[int, bytes]:
     """Key of each card; InputError if others than the owner may read the file."""
     text = text_of(file)
-    if others := stat.S_IMODE(file.stat().st_mode) & 0o077:
+    if POSIX and (others := stat.S_IMODE(file.stat().st_mode) & 0o077):
         raise InputError(f"{file}: others may read it; chmod 600 it (now {others | 0o600:03o})")
     found = {}
     for name, value in tables_of(text, file).items():
@@ -57,14 +57,11 @@ def alone(folder: Path, wait: bool = True) -> Iterator[None]:
     """Nobody else is in here with this folder; InputError if one is and shall not be waited for."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        held = os.open(folder, os.O_RDONLY)
+        held = open_folder(folder)
     except OSError as error:
         raise InputError(f"{folder}: {error.strerror}") from None
     try:
-        try:
-            fcntl.flock(held, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-        except BlockingIOError:
-            raise InputError(f"{folder}: another program uses this folder") from None
+        lock(held, folder, "another program uses this folder", wait)
         yield
     finally:
         os.close(held)

@@ -29,6 +29,7 @@ class Limits:
     retry: float = 2.0  # [s] until a busy card is asked again for a job that waits
     stall: float = 60.0  # [s] without progress of an upload
     lines: int = 100  # of the log [1/s]
+    place: float = 0.2  # [s] for which a handshake has its place among the strangers to itself
 
 
 class Card(Protocol):
@@ -73,6 +74,11 @@ class Line(asyncio.BufferedProtocol):
         self._pings = 0
         self._why = "closed by the card"
         self._transport: asyncio.Transport | None = None
+
+    @property
+    def age(self) -> float:
+        """Since it has come [s]."""
+        return self._now() - self._born
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """A peer has connected."""

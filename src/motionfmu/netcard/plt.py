@@ -25,12 +25,14 @@ class Note:
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a PLT file draws."""
+    """What one page of a PLT file draws."""
 
     lines: list[Polyline]  # In the file's order, moves with the pen up between them
-    notes: list[Note]
+    notes: list[Note]  # Of all pages
     name: str = "drawing"  # Of the file
     text: bytes = b""  # Of it
+    page: int = 1  # Which one, from 1
+    pages: int = 1  # Of the file that draw something
 
     def where(self, byte: int) -> str:
         """Say where a byte stands, in words."""
@@ -53,14 +55,17 @@ class Drawing:
 
 
 def read(
-    file: Path, frame: tuple[float, float, float, float] | None = None, fills: bool = True
+    file: Path,
+    frame: tuple[float, float, float, float] | None = None,
+    fills: bool = True,
+    page: int = 1,
 ) -> Drawing:
-    """Read a PLT file."""
+    """Read a page of a PLT file."""
     try:
         text = Path(file).read_bytes()
     except OSError as error:
         raise InputError(f"cannot read {file}: {error.strerror}") from None
-    return parse(text, str(file), frame, fills)
+    return parse(text, str(file), frame, fills, page)
 
 
 def parse(
@@ -68,8 +73,14 @@ def parse(
     name: str = "drawing",
     frame: tuple[float, float, float, float] | None = None,
     fills: bool = True,
+    page: int = 1,
 ) -> Drawing:
-    """Read the text of a PLT file."""
+    """Read a page of the text of a PLT file."""
     plotter = Plotter(Scanner(text, name), frame, fills)
     plotter.run()
-    return Drawing(plotter.lines, [Note(*n) for n in plotter.scan.notes()], name, text)
+    pages = plotter.pages
+    if not 1 <= page <= len(pages):
+        there = "one page" if len(pages) == 1 else f"{len(pages)} pages"
+        raise InputError(f"{name}: no page {page}, it has {there}")
+    notes = [Note(*n) for n in plotter.scan.notes()]
+    return Drawing(pages[page - 1], notes, name, text, page, len(pages))

@@ -47,7 +47,7 @@ class Plotter:
     ) -> None:
         self.scan, self.fills = scan, fills
         self.frame = Frame(frame)
-        self.lines: list[Polyline] = []
+        self.pages: list[list[Polyline]] = [[]]  # moves and lines of each
         self.count = 0
         self.pen, self.down, self.relative = 1, False, False
         self.at = (0.0, 0.0)  # [plotter units] on the sheet
@@ -68,9 +68,19 @@ class Plotter:
                 self._encoded()
             elif pair in _FILLS:
                 self._fill(pair)
+            elif pair in _NEXT_PAGE:
+                self._next_page()
             else:
                 self.scan.skip(pair)
+        self._next_page()
+        if len(self.pages) > 1:
+            self.pages.pop()
+
+    def _next_page(self) -> None:
+        """Take a new sheet if something is drawn on this one."""
         self._flush()
+        if any(line.down for line in self.pages[-1]):
+            self.pages.append([])
 
     # Lines
 
@@ -80,7 +90,7 @@ class Plotter:
             return
         points = np.stack([np.array(s.xs), np.array(s.ys)], axis=1) * UNIT
         speed = self.speeds.get(self.pen, self.speeds.get(0, 0.0))
-        self.lines.append(Polyline(self.pen, s.down, points, s.first, s.last, speed))
+        self.pages[-1].append(Polyline(self.pen, s.down, points, s.first, s.last, speed))
         if self.window is not None and s.down:
             low, high = points.min(axis=0) / UNIT, points.max(axis=0) / UNIT
             w = self.window
@@ -366,7 +376,7 @@ class Plotter:
     def _encoded(self) -> None:
         """PE: each pair by itself, relative but behind an equals sign."""
         down = True
-        for what, numbers in self.scan.encoded():
+        for what, numbers in self.scan.encoded(_DO):
             if what == ":":
                 self._select_pen(numbers)
                 continue
@@ -375,6 +385,7 @@ class Plotter:
             self.down = down
 
 
+_NEXT_PAGE = ("PG", "AF", "AH", "FR", "BP")
 _FILLS = ("FP", "RA", "RR", "WG")
 _DO = {
     "PU": Plotter._pen_up,

@@ -1,7 +1,7 @@
 """The text of an HP-GL file as instructions: pairs of letters with their numbers."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from typing import NoReturn
 
 from motionfmu.errors import InputError
@@ -18,13 +18,19 @@ _DEVICE = re.compile(
 )
 _PCL = re.compile(rb"\x1b%-?[0-9]*A\Z")
 _BACK = re.compile(rb"\x1b%-?[0-9]*[BX]")
-_LABELS = ("LB", "BL", "PB", "WD")
-_COMMENT = re.compile(rb'\s*"[^"]*"?[;\s]*')
+_LABELS = ("LB", "BL", "WD")
+# Texts in quotes, or without them up to a semicolon; BP has its texts among numbers.
+_QUOTED = ("CO", "MG", "BP")
+_QUOTE = re.compile(rb'[^;"A-Za-z]*"')
+_PLAIN = re.compile(rb"[^;]*")
+_BOM = b"\xef\xbb\xbf"
+_TWO_BYTES = re.compile(rb"[\xc2\xc3][\x80-\xbe]")  # in UTF-8; no digits of PE
 _REST = re.compile(rb"[-+0-9., ]*[;\s]*")
 _KINDS = {
     "text": "AD CF CP DI DR DV ES LO PB BL SA SD SI SL SM SR SS DT LB TD UC DL CC CS CA SB",
     "pen": "AC AP AS FS GP PC PW PT TR UL LA LT SG NP MC PP WU SV SC VA VN",
     "page": "AF AH EC FR PG PS RP BP NR",
+    "comment": "CO MG",
     "tick marks": "TL XT YT",
     "filled area": "FP FT RA RR WG RF",
     "polygon": "FI FN",
@@ -33,12 +39,24 @@ _KINDS = {
 _KNOWN = {pair: kind for kind, pairs in _KINDS.items() for pair in pairs.split()}
 
 
+def _is_utf8(text: bytes) -> bool:
+    try:
+        text.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
 class Scanner:
     """Goes through a text; knows where it is."""
 
     def __init__(self, text: bytes, name: str) -> None:
         self.text, self.name = text, name
         self.first = self.next = 0  # bytes of the instruction under way
+        if text.startswith(_BOM):
+            self.next = len(_BOM)
+        # An editor wrote it as UTF-8: the last digits of PE have two bytes.
+        self._two_bytes = _TWO_BYTES.search(text) is not None and _is_utf8(text)
         self.pair = ""
         self.terminator = b"\x03"
         self._skipped: dict[str, list[int]] = {}
@@ -91,10 +109,9 @@ class Scanner:
             self.pair = pair = m[1].decode().upper()
             if pair in _SPECIAL:
                 self.next = m.end(1)
-                if pair == "PE":
-                    yield pair, []
-                else:
+                if pair != "PE":
                     self._special(pair)
+                yield pair, []
                 continue
             self.next = m.end()
             yield pair, self._numbers(m)
@@ -143,7 +160,7 @@ class Scanner:
             self.refuse(f"{byte!r} begins no instruction")
 
     def _special(self, pair: str) -> None:
-        """Instructions whose parameters are no numbers."""
+        """Pass over parameters that are no numbers."""
         text = self.text
         if pair in _LABELS:
             end = text.find(self.terminator, self.next)
@@ -157,24 +174,41 @@ class Scanner:
             self.next += len(mark)
             if not plain:
                 self._to_end()
-        elif pair == "CO" and (m := _COMMENT.match(text, self.next)):
-            self.next = m.end()
+        elif pair in _QUOTED:
+            self._quoted()
         elif pair == "SM" and text[self.next : self.next + 1] not in (b";", b"\r", b"\n", b""):
             self.next += 1
             self._to_end()
-        self.skip(pair)
+
+    def _quoted(self) -> None:
+        """Texts of one instruction: their pairs of letters are none."""
+        text, quoted = self.text, False
+        while m := _QUOTE.match(text, self.next):
+            end = text.find(b'"', m.end())
+            if end < 0:
+                self.refuse("the text in quotes has no end")
+            self.next, quoted = end + 1, True
+        if not quoted and self.pair != "BP" and (m := _PLAIN.match(text, self.next)):
+            self.next = m.end()
+        self._to_end()
 
     def _to_end(self) -> None:
         m = _REST.match(self.text, self.next)
         self.next = m.end() if m else self.next
 
-    def encoded(self) -> Iterator[tuple[str, list[float]]]:
-        """Flags and numbers of PE: (":", [pen]), or (flags among "<=", [x, y])."""
+    def encoded(self, drawn: Container[str]) -> Iterator[tuple[str, list[float]]]:
+        """Flags and numbers of PE: (":", [pen]), or (flags among "<=", [x, y]).
+
+        drawn: pairs that draw something; one of these or of those passed over may end it, too.
+        """
         text, at, base, fraction = self.text, self.next, 64, 0
         pair: list[float] = []
         flags, self.next = "", len(text)
         while at < len(text):
             c = text[at]
+            if c == 0x1B and not pair:  # ESC: HP-GL/2 is left
+                self.next = at
+                return
             if c == 0x3B:  # ;
                 break
             if c in b":<>=7":
@@ -197,6 +231,9 @@ class Scanner:
             if c <= 32 or c == 127:
                 at += 1
                 continue
+            if not pair and self._unclosed(at, base, drawn):
+                self.next = at
+                return
             value, at = self._encoded(at, base)
             pair.append(value * 2.0**-fraction)
             if abs(pair[-1]) > NUMBER_MAX:
@@ -208,6 +245,19 @@ class Scanner:
             self.refuse("an odd number of coordinates", at)
         self.next = min(at + 1, len(text))
 
+    def _unclosed(self, at: int, base: int, drawn: Container[str]) -> bool:
+        """Whether the next instruction begins here, PE without its semicolon.
+
+        Its letters are digits that no last digit follows: AutoCAD ends its pages so.
+        """
+        text, last = self.text, 191 if base == 64 else 95
+        pair = text[at : at + 2].decode("latin-1")
+        if pair not in _KNOWN and pair not in drawn:
+            return False
+        while at < len(text) and (63 <= text[at] < last or text[at] <= 32):
+            at += 1
+        return at == len(text) or text[at] < 63
+
     def _encoded(self, at: int, base: int) -> tuple[int, int]:
         """One number, its last digit marked, and where it ends."""
         text, first, value, shift = self.text, at, 0, 0
@@ -217,6 +267,9 @@ class Scanner:
             at += 1
             if c <= 32 or c == 127:
                 continue
+            if self._two_bytes and c in (0xC2, 0xC3):
+                c = (c & 3) << 6 | text[at] & 0x3F
+                at += 1
             digit = c - last if c >= last else c - 63
             if not (0 <= digit < base) or shift > 60:
                 self.refuse("an encoded number that does not end", first)
@@ -226,4 +279,4 @@ class Scanner:
             shift += bits
 
 
-_SPECIAL = frozenset((*_LABELS, "PE", "DT", "CO", "SM"))
+_SPECIAL = frozenset((*_LABELS, *_QUOTED, "PE", "DT", "SM"))

@@ -85,6 +85,7 @@ class RemoteCard:
         self._job = _Job(JobFile(job)) if job else None
         self._keeping = asyncio.Lock()
         self._question: _Question | None = None
+        self._disk = ""  # what is wrong with it, told once
         self._configuring = asyncio.Lock()
 
     @property
@@ -181,11 +182,19 @@ class RemoteCard:
 
     async def command(self, make: Callable[[int], m.Message], name: str) -> Result:
         """Send a command and wait for its result, over a new connection too if need be."""
-        number = self._outbox.number(self._done)
+        number = self._number()
         if self.line is None or not number:
             return self._ended(name, Result.of(Code.RANGE if self.line else Code.OFFLINE))
         self.tell("command", f"{name} {number}")
         return self._ended(f"{name} {number}", await self._do(number, make(number), self.line))
+
+    def _number(self) -> int:
+        """Number of the next command; 0 if all are used up."""
+        number, before = self._outbox.number(self._done), self._disk
+        self._disk = self._outbox.wrong
+        if self._disk and self._disk != before:
+            self.tell("disk", f"{self._disk}; commands go on, jobs cannot be kept")
+        return number
 
     async def _do(self, number: int, message: m.Message, line: Line) -> Result:
         order = self._orders[number] = _Order(message, self._loop.create_future())
@@ -244,7 +253,7 @@ class RemoteCard:
             end, has = await self._settings(wanted)
             changed: list[Setting] = []
             for name, index in in_order(wanted, has) if end.ok else ():
-                value, number = wanted[name, index], self._outbox.number(self._done)
+                value, number = wanted[name, index], self._number()
                 if self.line is None or not number:
                     end = Result.of(Code.RANGE if self.line else Code.OFFLINE, self._state)
                 else:

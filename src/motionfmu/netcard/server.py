@@ -21,6 +21,8 @@ from motionfmu.netcard.views import FLEETING, CardView, Code, Configured, Event,
 from motionfmu.toml_lines import shown
 
 if TYPE_CHECKING:
+    import ssl
+
     from motionfmu.netcard.config import CardConfig
 
 LOG = logging.getLogger("motionfmu.netcard")
@@ -87,7 +89,9 @@ class Cards:
         self._server: asyncio.Server | None = None
         self._watching: asyncio.Task[None] | None = None
 
-    async def listen(self, host: str = "127.0.0.1", port: int = PORT) -> int:
+    async def listen(
+        self, host: str = "127.0.0.1", port: int = PORT, tls: "ssl.SSLContext | None" = None
+    ) -> int:
         """Take connections of cards; returns the port, chosen by the system if 0 was given."""
         keys = self._keys = Keys(self._key_file, demanded=not is_local(host))
         if not is_local(host) and not len(keys):
@@ -100,7 +104,11 @@ class Cards:
                 self._card(int(place.name))
         try:
             self._server = await loop.create_server(
-                lambda: Line(self, keys.of, loop.time), host, port
+                lambda: Line(self, keys.of, loop.time),
+                host,
+                port,
+                ssl=tls,
+                ssl_handshake_timeout=self.limits.authenticate if tls else None,
             )
         except OSError as error:
             known = not isinstance(error, socket.gaierror) and error.errno
@@ -123,7 +131,7 @@ class Cards:
         """All cards that were heard or have a job waiting, by id."""
         return [self._cards[i].view() for i in sorted(self._cards)]
 
-    async def command(self, card: int, name: str, **values: int) -> Result:
+    async def command(self, card: int, name: str, /, **values: int) -> Result:
         """Do start, pause, stop, home (axes), reset or output (pins, mode, level, width).
 
         Never raises for what the card or the link does: a Result says it. InputError for a name
@@ -191,9 +199,13 @@ class Cards:
         """A connection has come; why it is refused, or nothing."""
         if len(self._lines) >= self.limits.connections:
             return f"more than {self.limits.connections} connections"
-        same = sum(not x.end.ready and x.address == line.address for x in self._lines)
-        if same >= self.limits.strangers:
-            return f"more than {self.limits.strangers} connections in their handshake"
+        pending = (x for x in self._lines if x.open and not x.end.ready)
+        same = [x for x in pending if x.address == line.address]
+        if len(same) >= self.limits.strangers:
+            oldest = max(same, key=lambda x: x.age)
+            if oldest.age < self.limits.place:
+                return f"more than {self.limits.strangers} connections in their handshake"
+            oldest.drop("its place went to a newer handshake")
         self._lines.add(line)
         return ""
 

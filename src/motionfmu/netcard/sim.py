@@ -9,13 +9,16 @@ import ctypes
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from motionfmu.binding import Struct, library
 from motionfmu.errors import InputError
 from motionfmu.netcard.keys import write_whole
 from motionfmu.netcard.messages import State
 from motionfmu.netcard.wire import OPEN_KEY
+
+if TYPE_CHECKING:
+    import ssl
 
 FLASH_BYTES = 2_097_152
 ORIGIN = 5000  # [pulses] from where the machine stands at power-up, in the way of homing
@@ -70,7 +73,9 @@ class VirtualCard:
     @property
     def flash(self) -> bytes:
         """Its flash as it is now."""
-        return ctypes.string_at(self._c.binding_netcard_flash(self._sim.pointer), FLASH_BYTES)
+        room = ctypes.create_string_buffer(FLASH_BYTES)
+        self._c.binding_netcard_flash(self._sim.pointer, room)
+        return room.raw
 
     @property
     def online(self) -> bool:
@@ -147,8 +152,14 @@ class _Link(asyncio.Protocol):
 class Run:
     """A card on the clock of the wall, `speed` times as fast."""
 
-    def __init__(self, card: VirtualCard, place: tuple[str, int], speed: float) -> None:
-        self.card, self._place, self._speed = card, place, speed
+    def __init__(
+        self,
+        card: VirtualCard,
+        place: tuple[str, int],
+        speed: float,
+        tls: "ssl.SSLContext | None" = None,
+    ) -> None:
+        self.card, self._place, self._speed, self._tls = card, place, speed, tls
         self._clock = asyncio.get_running_loop().time
         self._zero = self._clock() - card.now * 1e-9 / speed
         self._link: _Link | None = None
@@ -176,7 +187,9 @@ class Run:
         loop = asyncio.get_running_loop()
         with contextlib.suppress(OSError, TimeoutError):
             async with asyncio.timeout(5.0):
-                _, self._link = await loop.create_connection(lambda: _Link(self), *self._place)
+                _, self._link = await loop.create_connection(
+                    lambda: _Link(self), *self._place, ssl=self._tls
+                )
         if self._link is None:  # the card itself waits longer each time
             while self.card.wants:
                 await asyncio.sleep(TICK)
@@ -188,9 +201,10 @@ async def simulate(
     place: tuple[str, int],
     speed: float = 1.0,
     each: Callable[[], None] = lambda: None,
+    tls: "ssl.SSLContext | None" = None,
 ) -> None:
     """Run cards as clients of a server until this is cancelled; `each` is called each second."""
-    runs = [Run(card, place, speed) for card in cards]
+    runs = [Run(card, place, speed, tls) for card in cards]
     clock = asyncio.get_running_loop().time
     due = clock() + SAVE
     while True:

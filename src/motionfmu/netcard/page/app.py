@@ -17,8 +17,10 @@ from motionfmu.netcard.config import CardConfig, load
 from motionfmu.netcard.page.configuration import Configuration
 from motionfmu.netcard.page.guard import Guard
 from motionfmu.netcard.page.live import Live
-from motionfmu.netcard.page.pictures import Pictures, opened
+from motionfmu.netcard.page.pictures import Pictures
+from motionfmu.netcard.page.planning import opened_apart
 from motionfmu.netcard.views import CardView, Configured, Event, Result
+from motionfmu.toml_lines import shown
 
 FILES = Path(__file__).parent
 KINDS = {
@@ -37,7 +39,7 @@ class Fleet(Protocol):
     def list(self) -> list[CardView]:
         """All cards."""
 
-    async def command(self, card: int, name: str, **values: int) -> Result:
+    async def command(self, card: int, name: str, /, **values: int) -> Result:
         """Do a command."""
 
     async def upload(self, card: int, job: bytes) -> Result:
@@ -79,8 +81,8 @@ def application(cards: Fleet, token: str, config: Path | None = None) -> Starlet
     routes = [
         Route("/", _file("page.html")),
         *(Route(f"/{f.name}", _file(f.name)) for f in sorted(FILES.iterdir()) if f.suffix in KINDS),
-        Route("/cards/{card:int}/command", page.command, methods=["POST"]),
-        Route("/cards/{card:int}/job", page.send, methods=["POST"]),
+        Route("/cards/{card:card}/command", page.command, methods=["POST"]),
+        Route("/cards/{card:card}/job", page.send, methods=["POST"]),
         Route("/open", page.open, methods=["POST"]),
         Route("/picture", page.picture, methods=["POST"]),
         *page.configuration.routes(),
@@ -145,9 +147,12 @@ class _Page:
     async def open(self, request: Request) -> Response:
         """Read a job or plan a drawing, and show it."""
         name = Path(request.query_params.get("name", "drawing")).name
+        page = request.query_params.get("page", "1")
+        if not (page.isascii() and page.isdecimal() and len(page) < 10):
+            raise InputError(f"page {shown(page)}: a number from 1 wanted")
         data = await body(request, FILE_MAX)
         async with self._planning:  # one at a time: it takes a processor
-            job = await asyncio.to_thread(opened, data, name, self.configuration.used)
+            job = await opened_apart(data, name, self.configuration.used, int(page))
         self._pictures.add(job)
         return JSONResponse(job.picture)
 

@@ -43,7 +43,7 @@ class Configuration:
             "save": self._save,
             "headers": self._headers,
         }
-        named["send/{card:int}"] = self._send
+        named["send/{card:card}"] = self._send
         return [Route(f"/config/{n}", answer, methods=["POST"]) for n, answer in named.items()]
 
     async def _form(self, request: Request) -> Response:

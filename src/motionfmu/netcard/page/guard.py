@@ -2,6 +2,7 @@
 
 import secrets
 
+from starlette.convertors import IntegerConvertor, register_url_convertor
 from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -19,16 +20,25 @@ HEADERS = {
 }
 
 
-def refused(headers: Headers) -> str:
+def refused(headers: Headers, tls: bool = False) -> str:
     """Why a request or connection is refused by its Host and Origin; empty if it is not."""
     host = headers.get("host", "")
     if host.rsplit(":", 1)[0] not in HOSTS and host not in HOSTS:
         return "this host name is not the page's"
     origin = headers.get("origin")
     # A browser tells it with every POST and WebSocket; other programs need none.
-    if origin is not None and origin != f"http://{host}":
+    if origin is not None and origin != f"http{'s' * tls}://{host}":
         return "another page may not do this"
     return ""
+
+
+class CardId(IntegerConvertor):
+    """A card of a path: Python reads no number of thousands of digits."""
+
+    regex = "[0-9]{1,20}"
+
+
+register_url_convertor("card", CardId())
 
 
 class Guard:
@@ -43,7 +53,7 @@ class Guard:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        why = refused(headers)
+        why = refused(headers, scope.get("scheme") in ("https", "wss"))
         if scope["type"] == "websocket":
             if why:
                 await send({"type": "websocket.close", "code": 1008, "reason": why})

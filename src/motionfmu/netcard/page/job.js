@@ -6,6 +6,7 @@ import { draw } from "./picture.js";
 const pictures = new Map(); // by the job's hash; null: the server has none
 const sendings = new Map(); // by card: what the last upload said
 const openings = new Map(); // by card: what was opened for it
+const files = new Map(); // by card: its file, of which another page may be wanted
 let last = null, card = null, wrong = "", opening = "";
 
 // The picture to be shown: what was opened for the card, else its job, else what was opened last.
@@ -22,6 +23,13 @@ export function showJob(now) {
   if (card.job && !pictures.has(card.job)) fetchPicture(card.job);
   const shown = picture(), upload = card.upload;
   part("job-name").textContent = shown ? shown.name : "Job";
+  const several = openings.get(card.id)?.pages > 1;
+  part("pages").hidden = !several;
+  if (several) {
+    const { page, pages } = openings.get(card.id);
+    [part("page").max, part("of").textContent] = [pages, `of ${pages}`];
+    if (document.activeElement !== part("page")) part("page").value = page;
+  }
   const inCard = shown && shown.job === card.job;
   part("send").disabled = !shown || !!upload || (inCard && card.connected);
   part("sending").hidden = !upload;
@@ -73,14 +81,15 @@ async function fetchPicture(job) {
   } catch { /* the server is away */ }
 }
 
-async function open(file) {
+async function open(file, page = 1) {
   const { id } = card;
   [wrong, opening] = ["", file.name];
   dispatchEvent(new Event("job"));
   try {
-    last = await post(`/open?name=${encodeURIComponent(file.name)}`, file);
+    last = await post(`/open?name=${encodeURIComponent(file.name)}&page=${page}`, file);
     pictures.set(last.job, last);
     openings.set(id, last);
+    files.set(id, file);
     sendings.delete(id);
   } catch (error) {
     wrong = error.message;
@@ -93,6 +102,11 @@ part("file").addEventListener("change", (event) => {
   const [file] = event.target.files;
   if (file) open(file);
   event.target.value = ""; // the same file may be opened again
+});
+
+part("page").addEventListener("change", (event) => {
+  const file = files.get(card.id);
+  if (file && event.target.validity.valid && event.target.value) open(file, event.target.value);
 });
 
 const drop = document.querySelector(".job");

@@ -31,7 +31,7 @@ export function live(hear, tell) {
   const WAITS = [0.5, 1, 2, 5]; // [s] before each new try
   let tries = 0;
   const connect = () => {
-    const line = new WebSocket(`ws://${location.host}/live`);
+    const line = new WebSocket(`${location.origin.replace("http", "ws")}/live`);
     line.onopen = () => line.send(token);
     line.onmessage = (event) => {
       if (tries !== -1) tell("connected", true);

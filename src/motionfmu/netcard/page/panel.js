@@ -67,12 +67,13 @@ export function showCard(card) {
   showSwitches(s.switches, axes);
   showPins(s);
   const tasks = rows(part("load"), TASKS, (name) => {
-    const row = made("div");
-    row.append(made("dt", name), made("meter", "", { max: 1000, ariaLabel: name }), made("dd"));
+    const row = made("div"), bar = made("dd");
+    bar.append(made("meter", "", { max: 1000, ariaLabel: name }));
+    row.append(made("dt", name), bar, made("dd"));
     return row;
   });
   tasks.forEach((row, k) => {
-    row.children[1].value = s.load[k];
+    row.children[1].firstChild.value = s.load[k];
     set(row.children[2], `${(s.load[k] / 10).toFixed(1)} %`);
   });
 }
@@ -81,7 +82,7 @@ function showRun(card, s) {
   const facts = s ? {
     "frame": s.frame.toLocaleString("en"), "buffer": `${s.stock} frames`,
     "rate": `${(s.rate / 10).toFixed(1)} %`, "underflows": s.underflows, "error": s.error,
-    "flash wear": `${s.wear} erases`, "firmware": card.firmware,
+    "flash wear": `${s.wear} erase${s.wear === 1 ? "" : "s"}`, "firmware": card.firmware,
   } : { "status": "none heard yet" };
   rows(part("run"), Object.keys(facts), (name) => {
     const row = made("div");
@@ -97,10 +98,10 @@ function showRun(card, s) {
 function showSwitches(word, axes) {
   const nodes = rows(part("switches"), ["", ...SWITCHES, "E-stop"], (name) => {
     const row = made("tr");
-    row.append(made("th", name, { scope: "row" }));
+    row.append(name ? made("th", name, { scope: "row" }) : made("td"));
     for (const axis of name === "E-stop" ? [""] : axes) {
       row.append(name ? made("td") : made("th", axis, { scope: "col" }));
-      if (name) row.lastChild.append(made("i"));
+      if (name) row.lastChild.append(made("i", "", { role: "img" }));
     }
     return row;
   });
@@ -117,12 +118,14 @@ function showPins(s) {
   const groups = rows(part("pins"), ["inputs", "outputs"], (name) => {
     const row = made("div", "", { ariaLabel: name, role: "group" });
     row.append(made("span", name === "inputs" ? "in" : "out"));
-    for (let k = 0; k < 16; k++) row.append(made("i", k));
+    for (let k = 0; k < 16; k++) row.append(made("i", k, { role: "img" }));
     return row;
   });
   groups.forEach((row) => {
     for (let k = 0; k < 16; k++) {
-      row.children[k + 1].className = bit(s[row.dataset.key], k) ? "on" : "";
+      const on = bit(s[row.dataset.key], k);
+      row.children[k + 1].className = on ? "on" : "";
+      row.children[k + 1].ariaLabel = `${k} ${on ? "on" : "off"}`;
     }
   });
 }

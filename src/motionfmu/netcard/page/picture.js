@@ -40,6 +40,8 @@ export function draw(canvas, picture, tool, frame) {
   if (tool) cross(pen, place(...tool), css);
 }
 
+const signed = (number) => String(number).replace("-", "\u2212");
+
 // All that does not move.
 function base(picture, w, h, dense, css) {
   const image = document.createElement("canvas");
@@ -77,14 +79,14 @@ function grid(pen, [w, h], place, low, scale, css) {
     const x = Math.round(x0 + k * step * scale) + 0.5;
     pen.moveTo(x, 0);
     pen.lineTo(x, h);
-    if (x > 24 && x < w - 24) pen.fillText(+(k * step).toPrecision(6), x, h - 5);
+    if (x > 24 && x < w - 24) pen.fillText(signed(+(k * step).toPrecision(6)), x, h - 5);
   }
   pen.textAlign = "left";
   for (let k = Math.ceil((y0 - h) / (step * scale)); y0 - k * step * scale > 0; k++) {
     const y = Math.round(y0 - k * step * scale) + 0.5;
     pen.moveTo(0, y);
     pen.lineTo(w, y);
-    if (y > 16 && y < h - 18) pen.fillText(+(k * step).toPrecision(6), 5, y - 3);
+    if (y > 16 && y < h - 18) pen.fillText(signed(+(k * step).toPrecision(6)), 5, y - 3);
   }
   pen.stroke();
 }

@@ -41,22 +41,25 @@ class Pictures:
             self._kept.popitem(last=False)
 
 
-def opened(data: bytes, name: str, config: CardConfig | None) -> Opened:
+def opened(data: bytes, name: str, config: CardConfig | None, page: int = 1) -> Opened:
     """A job file, or a drawing that is planned for the configuration; InputError if neither."""
-    notes: list[str] = []
+    told = {"notes": [], "page": 1, "pages": 1}
     if not data.startswith(b"MCJ1"):
-        data, notes = _planned(data, name, config)
-    return Opened(data, picture(decode(data, name), data, name) | {"notes": notes})
+        data, told = _planned(data, name, config, page)
+    return Opened(data, picture(decode(data, name), data, name) | told)
 
 
-def _planned(data: bytes, name: str, config: CardConfig | None) -> tuple[bytes, list[str]]:
+def _planned(
+    data: bytes, name: str, config: CardConfig | None, page: int
+) -> tuple[bytes, dict[str, Any]]:
     from motionfmu.errors import InputError
     from motionfmu.netcard import plan, plt
 
     if config is None:
         raise InputError(f"{name}: a drawing needs the card's configuration: fill it in first")
-    drawing = plt.parse(data, name)
-    return plan.plan(drawing, config).job, [n.text for n in drawing.notes]
+    drawing = plt.parse(data, name, page=page)
+    told = {"notes": [n.text for n in drawing.notes], "page": drawing.page, "pages": drawing.pages}
+    return plan.plan(drawing, config).job, told
 
 
 def picture(job: Job, data: bytes, name: str) -> dict[str, Any]:
