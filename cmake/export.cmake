@@ -3,7 +3,7 @@
 execute_process(COMMAND ${Python_EXECUTABLE} -c "import ziglang; print(ziglang.__path__[0])"
   OUTPUT_STRIP_TRAILING_WHITESPACE OUTPUT_VARIABLE zig RESULT_VARIABLE no_zig ERROR_QUIET)
 if(no_zig)
-  message(FATAL_ERROR "There is no zig: pip install \"motionfmu[export]\", or make export, which does")
+  message(FATAL_ERROR "There is no zig: make export installs it")
 endif()
 find_program(zig_program zig PATHS ${zig} NO_DEFAULT_PATH REQUIRED)
 execute_process(COMMAND ${PACK} platforms OUTPUT_VARIABLE rows COMMAND_ERROR_IS_FATAL ANY)

@@ -47,6 +47,7 @@ struct recorder {
     int      count, group_count;
     double   time, period; /* [s] */
     int64_t  row;          /* the next one */
+    int64_t  full;         /* no block is full before that many rows */
     char     why[RECORDER_WHY];
 };
 
@@ -252,6 +253,18 @@ static inline int recorder_flush_all(struct recorder *r)
     return 0;
 }
 
+static inline int recorder_flush_full(struct recorder *r)
+{
+    r->full = INT64_MAX;
+    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
+        if (r->row - g->first == g->room && recorder_flush(r, g) != 0) {
+            return -1;
+        }
+        r->full = r->full < g->first + g->room ? r->full : g->first + g->room;
+    }
+    return 0;
+}
+
 /* Record one row of all values, as they are now. */
 static inline int recorder_row(struct recorder *r)
 {
@@ -260,13 +273,21 @@ static inline int recorder_row(struct recorder *r)
     }
     r->time = (double)r->row * r->period;
     for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
-        const struct recorder_stream *s = g->streams, *const end = s + g->count;
+        const struct recorder_stream *const s = g->streams;
+        const int count = g->count;
         const size_t at = (size_t)(r->row - g->first) * g->width;
-/* A copy of a known size is a few instructions without a call. */
+/* A copy of a known size is a few instructions without a call, about as many as a turn of the
+ * loop around it. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define RECORDER_UNROLLED _Pragma("GCC unroll 8")
+#else
+#define RECORDER_UNROLLED
+#endif
 #define RECORDER_COPY(size) \
     case size: \
-        for (; s < end; s++) { \
-            memcpy(s->block + at, s->value, (size)); \
+        RECORDER_UNROLLED \
+        for (int k = 0; k < count; k++) { \
+            memcpy(s[k].block + at, s[k].value, (size)); \
         } \
         break
         switch (g->width) {
@@ -278,19 +299,14 @@ static inline int recorder_row(struct recorder *r)
             RECORDER_COPY(32); /* four numbers */
             RECORDER_COPY(48); /* six numbers */
         default:
-            for (; s < end; s++) {
-                memcpy(s->block + at, s->value, g->width);
+            for (int k = 0; k < count; k++) {
+                memcpy(s[k].block + at, s[k].value, g->width);
             }
         }
 #undef RECORDER_COPY
+#undef RECORDER_UNROLLED
     }
-    r->row++;
-    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
-        if (r->row - g->first == g->room && recorder_flush(r, g) != 0) {
-            return -1;
-        }
-    }
-    return 0;
+    return ++r->row < r->full ? 0 : recorder_flush_full(r);
 }
 
 /* The next row is this one, as after a state was restored: later ones are forgotten, and rows that
@@ -315,6 +331,7 @@ static inline int recorder_at(struct recorder *r, int64_t row)
         g->first = row;
     }
     r->row = row;
+    r->full = 0;
     return 0;
 }
 

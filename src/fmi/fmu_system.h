@@ -60,28 +60,60 @@ struct system_column {
         memcpy(&(to), &(from), sizeof(to));                                         \
     } while (0)
 
-/* Are all elements within limits? Not a number is not. */
-#define SYSTEM_REALS(x, low, high) \
-    system_reals((const double *)&(x), sizeof(x) / sizeof(double), low, high)
-#define SYSTEM_WHOLES(x, low, high) \
-    system_wholes((const int32_t *)&(x), sizeof(x) / sizeof(int32_t), low, high)
+/* What the values that all wires have brought are together, so that it is asked once. Most need
+ * only be finite: x * 0 is 0 of these and no number of all others. */
+struct system_check {
+    double   off[2];    /* sums of x * 0, of every other element */
+    uint32_t bits;      /* that no whole number may have */
+    bool     good;      /* those with other limits are within them */
+};
 
-static inline bool system_reals(const double *x, size_t n, double low, double high)
+#define SYSTEM_FINITE(x) system_finite(&check, (const double *)&(x), sizeof(x) / sizeof(double))
+#define SYSTEM_REALS(x, low, high) \
+    system_reals(&check, (const double *)&(x), sizeof(x) / sizeof(double), low, high)
+#define SYSTEM_BITS(x, high) \
+    system_bits(&check, (const int32_t *)&(x), sizeof(x) / sizeof(int32_t), high)
+#define SYSTEM_WHOLES(x, low, high) \
+    system_wholes(&check, (const int32_t *)&(x), sizeof(x) / sizeof(int32_t), low, high)
+
+static inline void system_finite(struct system_check *c, const double *x, size_t n)
 {
-    bool good = true;
-    for (size_t i = 0; i < n; i++) {
-        good &= (x[i] >= low) & (x[i] <= high);
+    for (size_t i = 0; i + 1 < n; i += 2) {
+        c->off[0] += x[i] * 0.0;
+        c->off[1] += x[i + 1] * 0.0;
     }
-    return good;
+    if (n % 2) {
+        c->off[0] += x[n - 1] * 0.0;
+    }
 }
 
-static inline bool system_wholes(const int32_t *x, size_t n, int32_t low, int32_t high)
+static inline void system_reals(struct system_check *c, const double *x, size_t n, double low,
+                                double high)
 {
-    bool good = true;
     for (size_t i = 0; i < n; i++) {
-        good &= (x[i] >= low) & (x[i] <= high);
+        c->good &= (x[i] >= low) & (x[i] <= high);
     }
-    return good;
+}
+
+/* Whole numbers from 0 to 2^k - 1. */
+static inline void system_bits(struct system_check *c, const int32_t *x, size_t n, int32_t high)
+{
+    for (size_t i = 0; i < n; i++) {
+        c->bits |= (uint32_t)x[i] & ~(uint32_t)high;
+    }
+}
+
+static inline void system_wholes(struct system_check *c, const int32_t *x, size_t n, int32_t low,
+                                 int32_t high)
+{
+    for (size_t i = 0; i < n; i++) {
+        c->good &= (x[i] >= low) & (x[i] <= high);
+    }
+}
+
+static inline bool system_good(const struct system_check *c)
+{
+    return c->good & (c->bits == 0) & (c->off[0] + c->off[1] == 0.0);
 }
 
 #endif

@@ -14,10 +14,20 @@ static struct quote quote(struct program_file *program, const struct fault_repor
                           int32_t length)
 {
     const char *text = "";
-    const int64_t there = program_look(program, r->offset, &text);
+    const int64_t there = program_look(program, r->file, r->offset, &text);
     struct quote q;
     snprintf(q.text, sizeof q.text, "%.*s", there < at + length ? 0 : (int)length, text + at);
     return q;
+}
+
+/* Name of the text that a report speaks of: of the program, and of a file that it calls. */
+struct file_name { char text[1200]; };
+
+static struct file_name file_of(const char *program, const struct fault_report *r)
+{
+    struct file_name n;
+    snprintf(n.text, sizeof n.text, r->file[0] ? "%s: %s.ngc" : "%s", program, r->file);
+    return n;
 }
 
 /* What is wrong with a line of a program of that name. */
@@ -43,7 +53,7 @@ static int tell_fault(struct fmu *f, const char *name, struct program_file *prog
         snprintf(detail, sizeof detail, " (%.6g mm, half the distance is %.6g mm)", r->value,
                  r->limit);
     }
-    return fmu_fail(f, "%s: line %d: %s \"%s\"%s, column %d", name, (int)r->line,
+    return fmu_fail(f, "%s: line %d: %s \"%s\"%s, column %d", file_of(name, r).text, (int)r->line,
                     fault_text(r->fault), quote(program, r, r->at, r->length).text, detail,
                     (int)r->at + 1);
 }
@@ -56,12 +66,13 @@ static int judge_program(struct fmu *f, const char *parameter, const char *name,
 
     for (int i = 0; i < all->notes; i++) {
         const struct fault_report *r = &all->note[i];
-        fmu_warn(f, "%s: line %d: note: %s \"%s\", column %d", name, (int)r->line,
+        fmu_warn(f, "%s: line %d: note: %s \"%s\", column %d", file_of(name, r).text, (int)r->line,
                   fault_text(r->fault), quote(program, r, r->at, r->length).text, (int)r->at + 1);
     }
     for (int i = 0; i < all->count; i++) {
         status = all->of[i].fault != FAULT_READ ? tell_fault(f, name, program, &all->of[i])
-               : fmu_fail(f, "%s: cannot read %s: %s", parameter, name, strerror(program->error));
+               : fmu_fail(f, "%s: cannot read %s: %s", parameter, file_of(name, &all->of[i]).text,
+                          strerror(program->error));
     }
     return all->more ? fmu_fail(f, "%s: ... and more", name) : status;
 }

@@ -8,12 +8,15 @@
 
 enum { PROGRAM_WINDOW = 1 << 16 };      /* [byte] some two thousand blocks */
 
-/* An open part program; byte[0 .. count) stands at an offset of the file, which is read up to
- * offset + count. */
+/* An open part program, or a file that one calls; byte[0 .. count) stands at an offset of the file,
+ * which is read up to offset + count. */
 struct program_file {
     FILE   *file;
     int64_t offset, count;
     int     error;          /* errno value of a read that failed */
+    char   *path;           /* of the program: files that it calls are beside it */
+    struct program_file *next;      /* of those that it has called */
+    char    name[FAULT_FILE];       /* of such a file */
     char    byte[PROGRAM_WINDOW];
 };
 
@@ -51,10 +54,9 @@ static int program_fill(struct program_file *p, int64_t offset)
     return 0;
 }
 
-/* struct source's look. */
-static int64_t program_look(void *context, int64_t offset, const char **text)
+/* Bytes of an open file from an offset on. */
+static int64_t program_bytes(struct program_file *p, int64_t offset, const char **text)
 {
-    struct program_file *p = context;
     const int64_t behind = p->offset + p->count;
 
     if (offset < p->offset || offset > behind - SOURCE_WINDOW) {
@@ -76,16 +78,23 @@ static const char *program_open(const char *name, struct program_file **program)
         return why;
     }
     struct program_file *p = malloc(sizeof *p);
-    if (!p) {
+    char *path = malloc(strlen(name) + 1);
+    if (!p || !path) {
         fclose(file);
+        free(p);
+        free(path);
         return strerror(ENOMEM);
     }
     setvbuf(file, NULL, _IONBF, 0);     /* the window is the buffer */
     p->file = file;
+    p->path = strcpy(path, name);
+    p->next = NULL;
+    p->name[0] = '\0';
     p->offset = p->count = p->error = 0;
     if (program_fill(p, 0) || p->count == 0) {
         const int error = p->error;
         fclose(file);
+        free(path);
         free(p);
         return error ? strerror(error) : NULL;
     }
@@ -95,10 +104,52 @@ static const char *program_open(const char *name, struct program_file **program)
 
 static void program_close(struct program_file *p)
 {
-    if (p) {
+    while (p) {
+        struct program_file *next = p->next;
         fclose(p->file);
+        free(p->path);
         free(p);
+        p = next;
     }
+}
+
+/* The file of a name beside a program, opened at its first use; NULL: there is none. */
+static struct program_file *program_called(struct program_file *p, const char *name)
+{
+    char path[4096];
+    int folder = 0;
+
+    for (struct program_file *c = p->next; c; c = c->next) {
+        if (strcmp(c->name, name) == 0) {
+            return c;
+        }
+    }
+    for (int i = 0; p->path[i]; i++) {
+        folder = p->path[i] == '/' || p->path[i] == '\\' ? i + 1 : folder;
+    }
+    const int length = snprintf(path, sizeof path, "%.*s%s.ngc", folder, p->path, name);
+    struct program_file *c = NULL;
+    if (length < 0 || length >= (int)sizeof path || program_open(path, &c) || !c) {
+        return NULL;
+    }
+    snprintf(c->name, sizeof c->name, "%s", name);
+    c->next = p->next;
+    p->next = c;
+    return c;
+}
+
+/* struct source's look. */
+static int64_t program_look(void *context, const char *file, int64_t offset, const char **text)
+{
+    struct program_file *p = context;
+    struct program_file *of = file[0] ? program_called(p, file) : p;
+
+    if (!of) {
+        return SOURCE_NONE;
+    }
+    const int64_t there = program_bytes(of, offset, text);
+    p->error = there < 0 ? of->error : p->error;
+    return there;
 }
 
 #endif

@@ -28,7 +28,7 @@ def test_a_program_with_any_name_is_packed_and_run(fmi: int, tmp_path: Path) -> 
         folder=tmp_path,
     )
     assert done.returncode == 0, done.stderr
-    told = f"m.fmu: FMI {fmi}, mcc with pärt.ngc in its resources, 3 values set\n"
+    told = f"m.fmu: FMI {fmi}, mcc with pärt.ngc in its resources, values set: 3\n"
     assert done.stdout.replace("\n", "") == told.strip()
     (tmp_path / "pärt.ngc").unlink()
     starts = {
@@ -52,11 +52,11 @@ def test_any_fmu_with_files_is_packed(tmp_path: Path) -> None:
         "group3_program": "resource:there already",
     }
     target = tmp_path / "g.fmu"
-    assert packed("mcc_groups", target, 3, given) == ["a.ngc", "group2_program.a.ngc"]
+    assert packed("mcc_groups", target, 3, given) == ["a.ngc", "group2_program/a.ngc"]
     with zipfile.ZipFile(target) as archive:
         xml = archive.read("modelDescription.xml").decode()
-        assert archive.read("resources/group2_program.a.ngc").decode() == TEXT
-    assert '"resource:group2_program.a.ngc"' in xml and '"resource:there already"' in xml
+        assert archive.read("resources/group2_program/a.ngc").decode() == TEXT
+    assert '"resource:group2_program/a.ngc"' in xml and '"resource:there already"' in xml
 
 
 WRONG = {

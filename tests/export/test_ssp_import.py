@@ -1,6 +1,7 @@
 """An SSP of others becomes a scenario, or is refused with the place."""
 
 import io
+import shutil
 import sys
 import tomllib
 import zipfile
@@ -172,6 +173,18 @@ def test_values_of_the_system_are_stronger_and_find_nested_parts(tmp_path: Path)
     found = taken(tmp_path, system(inner, own=own))
     assert found["set"] == {"in_p.n": 2, "in_p.on": True}
     assert found["warnings"] == ["values of no parameter and no input, left out: in.q.n"]
+
+
+def test_a_value_of_a_systems_input_goes_to_all_that_it_feeds(tmp_path: Path) -> None:
+    """At whatever depth the parameter set is."""
+    ports = f"<ssd:Connectors>{INPUT.format('in')}</ssd:Connectors>"
+    wires = wire("in", "p.u") + wire("in", "q.u")
+    inner = part("p") + part("q")
+    own = ports + bound(value("in", "Real", "2.5"))
+    assert taken(tmp_path, system(inner, wires, own=own))["set"] == {"p.u": 2.5, "q.u": 2.5}
+    shutil.rmtree(tmp_path / "out")
+    outer = system(system(inner, wires, "a", ports), own=bound(value("a.in", "Real", "1.5")))
+    assert taken(tmp_path, outer)["set"] == {"a_p.u": 1.5, "a_q.u": 1.5}
 
 
 def test_a_file_of_values_with_a_prefix_and_a_mapping(tmp_path: Path) -> None:

@@ -9,6 +9,8 @@ from conftest import ROOT
 
 import motionfmu
 from motionfmu.export import as_ssp
+from motionfmu.export.stimuli import stimuli
+from motionfmu.run import Options
 from motionfmu.ssp.imported import take
 
 STEPS = 120  # of each run
@@ -21,7 +23,9 @@ SCENARIOS = {
     "compensation": "machine.table_position",
 }
 FORCE = {"input": "axis.force", "at": [0.002, 0.004], "value": [4000.0, -2000.0]}
-CHANGED: dict[str, dict[str, Any]] = {"hydraulic_load": {"drive": [FORCE]}}
+# What an input has before it is driven is neither 0 nor its start value.
+BEFORE = {"axis.force": 3000.0}
+CHANGED: dict[str, dict[str, Any]] = {"hydraulic_load": {"drive": [FORCE], "set": BEFORE}}
 
 
 def column(result: Any, name: str, shape: tuple[int, ...]) -> np.ndarray:
@@ -30,6 +34,19 @@ def column(result: Any, name: str, shape: tuple[int, ...]) -> np.ndarray:
         return np.asarray(result[name])
     names = [f"{name}[{','.join(str(k + 1) for k in place)}]" for place in np.ndindex(shape)]
     return np.stack([result[n] for n in names], -1).reshape(-1, *shape)
+
+
+@pytest.mark.parametrize(("before", "first"), [(BEFORE, 3000.0), ({}, 0.0)])
+def test_an_input_has_its_own_value_until_it_is_driven(
+    before: dict[str, float], first: float
+) -> None:
+    """The FMU that drives it says so from the start: its wire is there at once."""
+    load = motionfmu.load(ROOT / "scenarios/hydraulic_load")
+    for at, rows in ((0.002, [(0.0, 1, first), (0.002, 1, 4000.0)]), (0.0, [(0.0, 1, 4000.0)])):
+        drive = {"input": "axis.force", "at": [at], "value": [4000.0]}
+        system = load.changed(drive=[drive], set=before).resolved(Options())
+        ((made,), lost) = stimuli(system)
+        assert (made.rows, lost) == (rows, [])
 
 
 @pytest.mark.parametrize("fmi", [2, 3])

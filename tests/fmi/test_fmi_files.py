@@ -1,6 +1,7 @@
 """Files of the FMUs: regular text files are read, and what is written replaces nothing else."""
 
 import os
+import stat
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -114,11 +115,12 @@ def things(folder: Path) -> list[Path]:
     (folder / "old").write_text("old\n")
     (folder / "link").symlink_to(folder / "old")
     (folder / "directory").mkdir()
-    return [folder / name for name in ("pipe", "link", "directory")] + [Path("/dev/null")]
+    os.mknod(folder / "socket", stat.S_IFSOCK | 0o600)
+    return [folder / name for name in ("pipe", "link", "directory", "socket")]
 
 
 def kept(place: Path) -> tuple[int, ...]:
-    """What stays of a file that is left alone; others read and write /dev/null meanwhile."""
+    """What stays of a file that is left alone."""
     now = place.lstat()
     return now.st_mode, now.st_ino, now.st_dev, now.st_nlink, now.st_size
 

@@ -21,7 +21,7 @@ from motionfmu import units
 from motionfmu.export.system_fmu import as_fmu as export
 from motionfmu.fmu.fmu_toml import parse
 from motionfmu.fmu.modeldescription import model_description
-from motionfmu.fmu.shown import joined, page, png
+from motionfmu.fmu.shown import icon_of, joined, page, png
 from motionfmu.scenarios.fmus import fmu_names, fmu_path, ports, terminals_of
 
 every_fmu = pytest.mark.parametrize("name", fmu_names())
@@ -110,7 +110,7 @@ def test_a_date_is_the_one_of_the_sources(monkeypatch: pytest.MonkeyPatch) -> No
 @every_fmu
 def test_its_icon_is_drawn_in_both_forms(name: str) -> None:
     drawn = member(name, 3, "terminalsAndIcons/icon.svg")
-    assert drawn == (ROOT / "fmus" / name / "icon.svg").read_bytes()
+    assert drawn.decode() == icon_of(ROOT / "fmus" / name)
     for picture in (member(name, 3, "terminalsAndIcons/icon.png"), member(name, 2, "model.png")):
         image = Image.open(io.BytesIO(picture))
         assert image.size == (400, 400)
@@ -120,12 +120,13 @@ def test_its_icon_is_drawn_in_both_forms(name: str) -> None:
 
 
 def test_all_icons_differ() -> None:
-    pictures = {member(name, 2, "model.png") for name in fmu_names()}
-    assert len(pictures) == len(fmu_names()) > 15
+    """Those that have one of their own."""
+    own = [name for name in fmu_names() if (ROOT / "fmus" / name / "icon.svg").is_file()]
+    assert len({member(name, 2, "model.png") for name in own}) == len(own) > 15
 
 
 def test_pictures_and_joined_drawings_are_the_same_bytes_again() -> None:
-    drawn = [(ROOT / "fmus" / name / "icon.svg").read_text() for name in fmu_names()[:5]]
+    drawn = [file.read_text() for file in sorted(ROOT.glob("fmus/*/icon.svg"))[:5]]
     assert joined([drawn[0]] * 3) == drawn[0]
     assert png(joined(drawn)) == png(joined(drawn)) == png(joined(drawn[:4])) != png(drawn[0])
 

@@ -7,6 +7,7 @@ from conftest import ROOT
 from console import within
 
 import motionfmu
+from motionfmu.run.engines import ENGINES
 
 CIRCLE = (ROOT / "scenarios/circle_theory/scenario.toml").read_text()
 PROGRAM = "G21 G17 G90\nG1 X5 F3000\nM30\n"
@@ -209,13 +210,39 @@ def test_a_wrong_option(tmp_path: Path, option: tuple[str, ...], what: str) -> N
     assert what in message(scenario(tmp_path), *option)
 
 
-@pytest.mark.parametrize("engine", ["native", "python", "fmpy"])
-def test_every_engine_tells_the_fmus_own_message(tmp_path: Path, engine: str) -> None:
+def test_wrong_options_are_told_together(tmp_path: Path) -> None:
+    options = ("--engine", "steam", "--set", "mcc.p_gian=3", "--set", "axis.lead=1")
+    told = message(scenario(tmp_path), *options, lines=3)
+    for line, what in zip(told.splitlines(), ("'steam'", "p_gian", "axis.lead"), strict=True):
+        assert what in line
+
+
+@pytest.mark.parametrize("ends", ["stop = 3.0", 'stop = "mcc.done"\nlimit = 1.0'])
+@pytest.mark.parametrize(
+    ("option", "told"),
+    [
+        (("--stop", "0"), "stop = 0.0 s: more than 0 wanted"),
+        (("--stop=-1",), "stop = -1.0 s: more than 0 wanted"),
+        (("--stop", "1e-10"), "stop = 1e-10 s is not a whole number of ns"),
+        (("--stop", "0.00005"), "stop = 5e-05 s is no whole number of steps"),
+        (("--stop", "1e9"), "stop = 1000000000.0 s: 100000 s are the most"),
+        (("--step", "0"), "step = 0.0 s: more than 0 wanted"),
+    ],
+)
+def test_a_wrong_time_is_named_as_it_was_given(
+    tmp_path: Path, ends: str, option: tuple[str, ...], told: str
+) -> None:
+    """Whatever the scenario itself ends by."""
+    assert message(scenario(tmp_path, "stop = 3.0", ends), *option) == told
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("engine", ENGINES)
+def test_every_engine_tells_the_fmus_own_message(tmp_path: Path, engine: str, fmi: int) -> None:
     folder = scenario(tmp_path, program="G21\nG1 X5 Q3 F100\nX6 $\n")
     with pytest.raises(motionfmu.InputError) as caught:
-        motionfmu.load(folder).run(engine=engine, fmi=2)
-    name = "" if engine == "fmpy" else "mcc: "  # FMPy's container drops the component's name
-    place = f"{folder}/scenario.toml: {name}{folder}/circle.ngc: line"
+        motionfmu.load(folder).run(engine=engine, fmi=fmi)
+    place = f"{folder}/scenario.toml: mcc: {folder}/circle.ngc: line"
     assert str(caught.value).splitlines() == [
         f'{place} 2: word has no use in this line "Q3", column 7',
         f'{place} 3: unexpected character "$", column 4',

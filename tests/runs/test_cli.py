@@ -29,6 +29,8 @@ def test_run_writes_a_whole_result_and_says_where(demo: tuple[Path, str]) -> Non
     folder, text = demo
     assert f"report: {folder}/report.html" in text
     assert "circle: all checks hold" in text
+    (radius,) = (line for line in text.splitlines() if "contour.error.max" in line)
+    assert re.fullmatch(r" ok  contour.error.max +0\.0\d+ +>= 0\.044 and <= 0\.047", radius)
     names = {p.name for p in folder.iterdir()}
     assert names == {
         "signals",

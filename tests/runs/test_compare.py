@@ -189,6 +189,37 @@ def synthetic(time: np.ndarray, **signals: np.ndarray) -> Side:
     return Side("x", made, time, signals, {})
 
 
+def judged(ok: bool, *checks: tuple[str, bool | None]) -> Side:
+    """A run with a verdict as a whole, and checks with theirs."""
+    side = synthetic(np.arange(10) * 1e-3, x=np.zeros(10))
+    rows = [
+        {"name": n, "bounds": "<= 1", "value": 0.5, "ok": held, "reason": ""} for n, held in checks
+    ]
+    return replace(side, numbers=side.numbers | {"ok": ok, "checks": rows})
+
+
+def test_a_check_that_a_has_not_and_b_fails_is_worse_if_a_holds() -> None:
+    b = judged(False, ("old", True), ("new", False))
+    assert compare_sides(judged(True, ("old", True)), b).worse == ["new"]
+    assert compare_sides(judged(False, ("old", True), ("gone", False)), b).worse == []
+    fails = judged(False, ("old", False), ("new", False))
+    assert compare_sides(judged(False, ("old", True)), fails).worse == ["old"]
+    assert compare_sides(b, judged(True, ("old", True))).worse == []
+
+
+def test_a_default_that_one_run_spells_out_is_no_difference() -> None:
+    scenario = motionfmu.load(THEORY)
+    port = scenario.resolver.end("mcc.acc_time", "set", "mcc.acc_time").port
+    default = float((port.start or "").split()[0])
+    plain = scenario.run(stop=0.01)
+    assert "mcc.acc_time" not in plain.parameters
+    spelled = scenario.run(stop=0.01, set={"mcc.acc_time": default})
+    assert compare(plain, spelled).different == compare(spelled, plain).different == []
+    other = scenario.run(stop=0.01, set={"mcc.acc_time": 2.0 * default})
+    for pair in ((plain, other), (other, plain)):
+        assert [d.what for d in compare(*pair).different] == ["mcc.acc_time"]
+
+
 def test_other_steps_and_lengths_are_compared_on_the_common_time() -> None:
     fine, coarse = np.arange(1000) * 1e-3, np.arange(350) * 2e-3
     a = synthetic(fine, x=np.sin(fine), n=(fine * 100).astype(int))

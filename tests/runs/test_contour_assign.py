@@ -51,7 +51,7 @@ def triangle():
     return points, tuple(segments), np.zeros(5, dtype=int), np.array([0, 0, 0, 2, 2])
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @example(triangle(), 1)
 @given(cases(), st.integers(1, 4))
 def test_no_monotone_assignment_is_better(case, together) -> None:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from motionfmu.contour.arcs import kepler_root
 from motionfmu.contour.geometry import Arc, Cubic, Label, Line
@@ -24,14 +24,14 @@ positive = st.floats(0.1, 50.0)
 
 @st.composite
 def arcs(draw) -> Arc:
-    """Arcs and helices of up to three turns about any axis, some with a growing radius."""
+    """Arcs and helices of up to three turns about any axis, some with a radius that changes."""
     axis = draw(point.filter(lambda v: np.linalg.norm(v) > 1.0))
     axis = axis / np.linalg.norm(axis)
     spoke = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
     radius = draw(positive)
     centre = draw(point)
     rise = draw(st.one_of(st.just(0.0), st.floats(-40.0, 40.0)))
-    growth = draw(st.one_of(st.just(0.0), st.floats(-1e-3, 1e-3))) * radius
+    growth = draw(st.one_of(st.just(0.0), st.floats(-1e-3, 1e-3), st.floats(-1.0, 3.0))) * radius
     angle = draw(st.floats(0.01, 6.0 * math.pi))
     start = centre + radius * spoke / np.linalg.norm(spoke)
     return Arc(LABEL, start, centre, axis, angle, rise, growth)
@@ -44,8 +44,21 @@ def segments(draw) -> Line | Arc:
     return Line(LABEL, draw(point), draw(point))
 
 
-@settings(max_examples=200, deadline=None)
+# Each turn has a nearest point of its own; the radius that shrinks and the rise choose among them.
+SPIRAL = Arc(
+    LABEL,
+    np.array([0.0, 1.0, 1.0]),
+    np.array([0.0, 0.0, 1.0]),
+    np.array([0.0, 0.0, 1.0]),
+    13.0,
+    -0.0078125,
+    -0.0007720621271445606,
+)
+
+
+@settings(max_examples=200)
 @given(segments(), st.lists(point, min_size=1, max_size=8))
+@example(SPIRAL, [np.array([0.0, -12.0, 0.0])])
 def test_no_sampled_point_is_nearer(segment, points) -> None:
     points = np.array(points)
     foot = segment.foot(points)
@@ -59,12 +72,36 @@ def test_no_sampled_point_is_nearer(segment, points) -> None:
     assert np.allclose(foot.distance, own, atol=ROUNDING, rtol=0.0)
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_the_nearest_of_all_turns_of_a_spiral(seed: int) -> None:
+    """Each minimum of dense samples, made exact by Brent: the least one is the foot's distance."""
+    rng = np.random.default_rng(seed)
+    for _ in range(12):
+        radius = 10 ** rng.uniform(-1, 1.5)
+        growth = radius * rng.choice([1e-4 * rng.normal(), rng.uniform(-1, 3)])
+        rise = rng.choice([0.0, 1e-3 * rng.normal(), radius * rng.normal()])
+        shape = (10 ** rng.uniform(-1, 1.6), rise, growth)
+        spiral = Arc(LABEL, radius * np.eye(3)[0], np.zeros(3), np.eye(3)[2], *shape)
+        for query in rng.normal(size=(4, 3)) * 2 * radius * 10 ** rng.uniform(-3, 0.5, (4, 1)):
+
+            def gap(along: float, spiral: Arc = spiral, query: np.ndarray = query) -> float:
+                return float(np.linalg.norm(spiral.at(np.array([along]))[0] - query))
+
+            ways = np.linspace(0.0, spiral.length, 4001)
+            gaps = np.linalg.norm(spiral.at(ways) - query, axis=1)
+            least = gaps.min()
+            for i in np.flatnonzero((gaps[1:-1] <= gaps[:-2]) & (gaps[1:-1] <= gaps[2:])):
+                near = (ways[i], ways[i + 2])
+                least = min(least, minimize_scalar(gap, bounds=near, options={"xatol": 1e-9}).fun)
+            assert spiral.foot(query[None, :]).distance[0] == pytest.approx(least, abs=1e-10)
+
+
 # A rise so small that the circle's foot is as near as the helix', to the last digit.
 FLAT = Arc(LABEL, np.array([0.0, 0.0, -1.0]), np.zeros(3), np.array([0.0, 1.0, 0.0]), 4.0, 7.5e-10)
 ROUND = Arc(LABEL, np.array([0.0, 0.0, -1.0]), np.zeros(3), np.array([0.0, 1.0, 0.0]), 4.0, 0.0)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(segments(), point)
 @example(FLAT, np.array([0.0, 1.0, 1.0]))
 @example(ROUND, np.array([1e-303, 0.0, 1e-303]))
@@ -85,7 +122,7 @@ def rotation(axis: np.ndarray, angle: float) -> np.ndarray:
     return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(segments(), point, point, point.filter(lambda v: np.linalg.norm(v) > 1.0), st.floats(-3, 3))
 def test_moving_everything_moves_nothing(segment, query, shift, axis, angle) -> None:
     turn = rotation(axis, angle)
@@ -110,7 +147,7 @@ def test_moving_everything_moves_nothing(segment, query, shift, axis, angle) -> 
     assert after == pytest.approx(before, abs=20.0 * ROUNDING)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(segments(), st.lists(point, min_size=2, max_size=6))
 def test_many_points_at_once_are_as_each_alone(segment, points) -> None:
     points = np.array(points)
@@ -120,7 +157,7 @@ def test_many_points_at_once_are_as_each_alone(segment, points) -> None:
         assert together.distance[i] == pytest.approx(alone.distance[0], abs=ROUNDING)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.floats(0.0, 1e4), st.floats(1e-6, 1e3), st.floats(-math.pi, math.pi))
 def test_kepler_root_is_the_one_brent_finds(pull, stiff, way) -> None:
     def slope(w: float) -> float:
@@ -194,6 +231,12 @@ def test_cubic_has_its_length_and_nothing_is_nearer_than_its_foot(seed: int) -> 
     assert (foot.distance <= gaps + 1e-9).all()
     assert (foot.distance >= gaps - 1e-3).all()
     assert cubic.at(foot.along) == pytest.approx(foot.point, abs=1e-9)
+    # also where it passes by itself, between places at which it would be sampled
+    flat = Cubic(LABEL, control * np.array([1.0, 1.0, 0.0]))
+    on = flat.at(rng.uniform(0.0, flat.length, 500))
+    assert flat.foot(on).distance.max() < 1e-9
+    off = rng.normal(size=on.shape)
+    assert (flat.foot(on + off).distance <= np.linalg.norm(off, axis=1) + 1e-9).all()
     step = np.linalg.norm(np.diff(dense, axis=0), axis=1)
     assert step.sum() == pytest.approx(cubic.length, rel=1e-5)
     assert (step <= cubic.length / 3999 * (1 + 1e-9)).all()

@@ -46,7 +46,7 @@ def windows(rng: np.random.Generator, samples: int, segments: int) -> tuple[np.n
     return np.minimum(*ends), np.maximum(*ends)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32), st.integers(1, 40), st.integers(1, 90), st.sampled_from([0.0, 0.4]))
 def test_nearest_segments_are_those_of_a_search_of_all(seed, segments, samples, room) -> None:
     rng = np.random.default_rng(seed)
@@ -68,7 +68,7 @@ def test_nearest_segments_are_those_of_a_search_of_all(seed, segments, samples, 
             assert every[high[t], t] <= own.min() + 2.0 * SAME
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 2**32), st.integers(1, 30))
 def test_feet_on_many_segments_are_those_on_each(seed, segments) -> None:
     rng = np.random.default_rng(seed)

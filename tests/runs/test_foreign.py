@@ -21,7 +21,7 @@ from motionfmu.run.session import Session
 from motionfmu.ssp.imported import take
 from motionfmu.study import columns
 
-ENGINES = ("python", "native")
+ENGINES = ("python", "native", "fmpy")
 KINDS = {"ball": 2, "van_der_pol": 3, "feedthrough": 2}
 
 
@@ -124,11 +124,12 @@ def test_elements_of_ours_go_through_foreign_scalars(folder: Path, engine: str) 
     assert not angles[:, 2:].any()
 
 
-def test_both_engines_give_the_same_bits(folder: Path) -> None:
-    a, b = (_made(folder, LOOP).run(engine=engine) for engine in ENGINES)
-    assert sorted(a.signals) == sorted(b.signals)
-    for name in a.signals:
-        assert np.array_equal(a[name], b[name]), name
+def test_all_engines_give_the_same_bits(folder: Path) -> None:
+    a, *others = (_made(folder, LOOP).run(engine=engine) for engine in ENGINES)
+    for b in others:
+        assert sorted(a.signals) == sorted(b.signals)
+        for name in a.signals:
+            assert np.array_equal(a[name], b[name]), name
 
 
 def test_nothing_named_runs_natively(folder: Path) -> None:
@@ -316,10 +317,19 @@ def test_wires_of_elements_are_checked(folder: Path) -> None:
         ({"through.in[1]": "axes.motor_angle"}, "through.in[1] is Float64, axes.motor_angle"),
         (
             {"axes.voltage[2]": "through.out[1]", "axes.voltage[02]": "through.out[2]"},
-            "two sources",
+            "axes.voltage[2] has two sources",
+        ),
+        (
+            {"axes.voltage[2]": "through.out[1]", "axes.voltage": "card.dac"},
+            "axes.voltage has two sources",
+        ),
+        (
+            {"axes.voltage": "card.dac", "axes.voltage[2]": "through.out[1]"},
+            "axes.voltage[2] has two sources",
         ),
     ):
-        tables = {**LOOP, "connect": connect, "leave": ["*"], "set": {}}
+        parts = LOOP["component"] | {"card": "epcio"}
+        tables = {**LOOP, "component": parts, "connect": connect, "leave": ["*"], "set": {}}
         with pytest.raises(InputError) as error:
             _made(folder, tables)
         assert told in str(error.value)

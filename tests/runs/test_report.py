@@ -1,8 +1,11 @@
 """The page says what was computed: its curves hold the very numbers, peaks included."""
 
 import base64
+import math
 import re
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import matplotlib.image
 import numpy as np
@@ -13,11 +16,16 @@ from hypothesis import strategies as st
 from page_curves import curve, page_data, unwoven
 
 import motionfmu
+from motionfmu.compare import page as compared
+from motionfmu.compare.differences import Checked
+from motionfmu.explain.theory import CornerRow
 from motionfmu.report import write_report
+from motionfmu.report.causes.explain_page import _corners
 from motionfmu.report.numbers import MINUS, figure, length, magnification
 from motionfmu.report.packed import packed
 from motionfmu.report.samples import COARSE, bits
-from motionfmu.report.tables import judged
+from motionfmu.report.tables import check_table, judged
+from motionfmu.run.checks import Verdict
 from motionfmu.run.decimate import keep_peaks
 
 FLOAT32 = 1e-6
@@ -128,16 +136,76 @@ def test_the_pictures_are_pictures(reported) -> None:
         (0.0419, "in 0.0414 .. 0.0424", "mm", ("41.9 µm", "in 41.4 .. 42.4 µm")),
         (0.15, "peak in 0.1 .. 0.2, at 0.5 s", "mm", ("150 µm", "peak in 100 .. 200 µm, at 0.5 s")),
         (0.1, "|.| <= 5, 0.5 to 0.6 s", "mm", ("0.1 mm", "|.| <= 5 mm, 0.5 to 0.6 s")),
-        (-3e-6, ">= -1e-05", "mm", (f"{MINUS}0.003 µm", ">= -0.01 µm")),
+        (-3e-6, ">= -1e-05", "mm", (f"{MINUS}0.003 µm", f">= {MINUS}0.01 µm")),
         (3.0, "changes = 3, in 2 windows", "mm", ("3", "changes = 3, in 2 windows")),
         (4.0, "rate over 0.002 s <= 5", "mm", ("4", "rate over 0.002 s <= 5")),
         (2.0, "order 1, 2", "", ("2", "order 1, 2")),
+        (0.2, ">= 0.1, in 2 windows", "mm", ("200 µm", ">= 100 µm, in 2 windows")),
+        (0.2, "min in 0.1 .. 3, in 2 windows", "m", ("0.2 m", "min in 0.1 .. 3 m, in 2 windows")),
     ],
 )
 def test_checks_are_told_in_the_unit_of_the_cards(
     value: float, bounds: str, unit: str, shown: tuple[str, str]
 ) -> None:
     assert judged(value, bounds, unit) == shown
+
+
+def test_one_number_between_two_bounds_is_one_row() -> None:
+    def shown(*checks: Verdict) -> list[str]:
+        rows = check_table(checks, lambda _: ("", "mm")).split("<tr>")[2:]
+        return [re.sub("<[^>]+>", " ", row).split("pass")[-1].strip() for row in rows]
+
+    low, high = Verdict("a.max", ">= 0.04", 0.045, True), Verdict("a.max", "<= 0.05", 0.045, True)
+    (row,) = shown(low, high)
+    assert "45 µm" in row and "&gt;= 40 µm and &lt;= 50 µm" in row
+    other = Verdict("a.max", "<= 0.05", 0.046, True)  # of another sample: a row of its own
+    assert len(shown(low, other)) == len(shown(low, Verdict("b", "<= 0.05", 0.045, True))) == 2
+    failed = Verdict("a.max", "<= 0.04", 0.045, False)
+    assert len(shown(low, failed)) == 2
+    first, second = (
+        [replace(v, bounds=f"{v.bounds}, at {t} s") for v in (low, high)] for t in (3, 7)
+    )
+    before, after = shown(*first, *second)  # the same value twice is not one number
+    assert "&gt;= 40 µm and &lt;= 50 µm, at 3 s" in before and "µm, at 7 s" in after
+    without = [Verdict("a.max", "<= 1", math.nan, False, why) for why in ("no path", "no run")]
+    assert len(shown(*without)) == 2
+
+
+def test_a_comparison_has_one_row_for_one_number_of_each_run() -> None:
+    def rows(*bounds: tuple[str, bool, bool]) -> list[str]:
+        checks = [
+            Checked("contour.error.max", (b, b), (0.045, 0.021), (a_ok, b_ok), ("", ""))
+            for b, a_ok, b_ok in bounds
+        ]
+        text = compared._checks(SimpleNamespace(checks=checks))  # type: ignore[arg-type]
+        return [re.sub("<[^>]+>", "|", row) for row in text.split("<tr>")[2:]]
+
+    (row,) = rows((">= 0.02", True, True), ("<= 0.05", True, True))
+    assert "|&gt;= 20 µm and &lt;= 50 µm|" in row and row.count("45 µm") == 1
+    worse, same = rows(("<= 0.05", True, True), (">= 0.044", True, False))
+    assert "&gt;= 44 µm" in worse and "✗" in worse and "&lt;= 50 µm" in same
+
+
+def test_failed_checks_stand_first() -> None:
+    """In the order they were given, whatever their names and values are."""
+    checks = [Verdict(n, "<= 1", v, v <= 1.0) for n, v in (("b", 0), ("c", 2), ("a", 3), ("d", 1))]
+    rows = check_table(checks, lambda _: ("", "")).split("<tr>")[2:]
+    marks = ["pass" if "✓ pass" in row else "fail" for row in rows]
+    assert marks == ["fail", "fail", "pass", "pass"]
+    names = [re.sub("<[^>]+>", " ", row).split()[2] for row in rows]
+    assert names == ["c", "a", "b", "d"]
+
+
+def test_a_page_of_many_corners_shows_the_worst_and_opens_the_others() -> None:
+    def corners(count: int) -> str:
+        rows = (CornerRow((k, k + 1), "sharp", 1.0, 9.0, 1e-3 * k, 0.0, 0.0) for k in range(count))
+        return _corners(SimpleNamespace(corners=tuple(rows)))  # type: ignore[arg-type]
+
+    whole = corners(670)
+    seen, _, hidden = whole.partition("<details>")
+    assert re.findall(r">(\d+) to", seen) == [str(k) for k in range(669, 659, -1)]
+    assert re.findall(r">(\d+) to", hidden) == [str(k) for k in range(659, -1, -1)]
+    assert "660 more" in hidden and "<details>" not in corners(10)
 
 
 def test_the_page_tells_a_failed_check(tmp_path: Path) -> None:

@@ -187,3 +187,14 @@ def test_a_time_takes_the_place_of_a_signal(base: motionfmu.Scenario) -> None:
     assert (by_signal.stop_limit, by_signal.document.body.settle) == (2.5, 0.1)
     assert by_signal.changed(stop=1.7).document.body.limit is None
     assert by_signal.changed(settle=None).document.body.limit == 2.5
+
+
+def test_a_value_of_one_element_is_stronger_than_one_of_all() -> None:
+    """In whatever order they are given, and in the scenario's own table, too."""
+    scenario = motionfmu.load(ROOT / "scenarios/circle")
+    one, whole = {"mcc.p_gain[2]": 300}, {"mcc.p_gain": 250}
+    wanted = (250, 300, 250, 250, 250, 250)
+    for given in (one | whole, whole | one):
+        assert scenario.run(stop=0.01, set=given).parameters["mcc.p_gain"] == wanted
+        changed = scenario.changed(set={"mcc.p_gain": None}).changed(set=given)
+        assert changed.run(stop=0.01).parameters["mcc.p_gain"] == wanted

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -21,6 +22,7 @@ from hypothesis import strategies as st
 
 import motionfmu
 from motionfmu.run.session import Session
+from motionfmu.scenarios import fmus
 from motionfmu.scenarios.body import Check
 from motionfmu.scenarios.system import End
 from motionfmu.study import axes, book, columns, processes, worker
@@ -78,7 +80,7 @@ def test_a_grid_has_every_combination_the_last_axis_fastest() -> None:
     assert (decades[0], decades[-1]) == (1e-3, 1e3)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(runs=st.integers(1, 200), dimensions=st.integers(1, 5), seed=st.integers(0, 2**32))
 def test_a_latin_hypercube_takes_every_part_of_every_axis_once(
     runs: int, dimensions: int, seed: int
@@ -179,8 +181,10 @@ def test_a_cluster_gives_the_same_rows(whole: Outcome, tmp_path: Path) -> None:
 def test_contour_figures_and_checks_become_columns() -> None:
     found = study(CIRCLE, {"axis": {GAIN: [100, 200]}})
     names = [c.name for c in found.columns]
-    assert names[-1] == "contour.circles.0.ccw.radius_change"
+    assert names[-2] == "contour.circles.0.ccw.radius_change"
     assert "mcc.error.absmax" in names and "mcc.done.final" in names
+    # Nothing checks it, and no cost is named: it is what a study of a contour is about.
+    assert names[-1] == found.cost == found.shown == "contour.error.max"
 
 
 def test_a_check_of_one_element_becomes_a_column_of_it() -> None:
@@ -353,6 +357,24 @@ def test_another_study_does_not_mix_with_it(whole: Outcome, tmp_path: Path, here
     (tmp_path / "mine/letter.txt").write_text("dear")
     with pytest.raises(motionfmu.InputError, match="holds no earlier study"):
         conduct(other, tmp_path / "mine")
+
+
+def test_a_study_knows_its_fmus(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows of other FMUs are not gone on with: those of the scenario, and what records."""
+    used = {*motionfmu.load(CIRCLE).document.body.component.values(), "scope"}
+    for name in (*used, "stimulus"):
+        shutil.copy(fmus.fmu_path(name), tmp_path)
+    monkeypatch.setenv("MOTIONFMU_FMUS", str(tmp_path))
+    axis = {"mcc.p_gain": [100, 200]}
+    found = {study(CIRCLE, {**SHORT, "axis": axis}).digest for _ in range(2)}
+    assert len(found) == 1 and len(used) > 3
+    for name in sorted(used):
+        with zipfile.ZipFile(tmp_path / f"{name}.fmi3.fmu", "a") as archive:
+            archive.comment = b"built anew"
+        found.add(study(CIRCLE, {**SHORT, "axis": axis}).digest)
+    assert len(found) == 1 + len(used)
+    (tmp_path / "stimulus.fmi3.fmu").unlink()  # which no component is
+    assert study(CIRCLE, {**SHORT, "axis": axis}).digest in found
 
 
 def test_a_study_knows_the_files_its_values_name(tmp_path: Path) -> None:

@@ -125,6 +125,21 @@ def test_units_stand_beside_every_number_of_a_page(tmp_path: Path) -> None:
         assert word in page
 
 
+def test_the_cost_stands_first_in_the_table_of_best_runs(tmp_path: Path) -> None:
+    from motionfmu.report.studies import sweep
+
+    results = ["contour.lag", "contour.error.rms", "contour.error.max"]
+    given = {"axis": {"mcc.irq_latency": [2e-4, 3e-3]}, "results": results, "stop": 0.03}
+    chosen = study(CIRCLE, given | {"cost": "contour.error.max"})
+    rows = [worker.Row(i, "ok", "", True, (0.02, 0.03, 0.05 - 0.01 * i)) for i in range(2)]
+    page = sweep.page(Outcome(chosen, rows, tmp_path, 0))
+    table = page[page.index("<h2>Best runs") :]
+    heads = re.findall(r"<th[^>]*>([^<]*)</th>", table)[:6]
+    assert [h.partition(" ")[0] for h in heads[3:]] == [results[2], *results[:2]]
+    cells = re.findall(r"<td[^>]*>([^<]*)</td>", table)[:12]
+    assert cells[3:6] == ["0.04", "0.02", "0.03"] and cells[9:] == ["0.05", "0.02", "0.03"]
+
+
 def test_a_best_run_at_the_edge_of_the_study_is_said(tmp_path: Path) -> None:
     from motionfmu.report.studies import sweep
 

@@ -1,12 +1,14 @@
 """The C cores: which others one uses, and which of their files a model needs.
 
-A folder under src/ with a core.toml is a core: `uses` names the cores whose headers it may include.
+A folder under src/ with a core.toml is a core: `uses` names the cores whose headers it may include,
+`shared = true` says that it knows no controller and serves any.
 """
 
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _GUARD = re.compile(r"^#ifndef (\w+)\n#define \1\n", re.MULTILINE)
@@ -34,7 +36,23 @@ _CLOSED = """#ifdef __cplusplus
 
 def uses(core: Path) -> list[str]:
     """Names of the cores that a core may include."""
-    return tomllib.loads((core / "core.toml").read_text())["uses"]
+    return list(_told(core)["uses"])
+
+
+def shared(core: Path) -> bool:
+    """Whether a core knows no controller."""
+    return bool(_told(core).get("shared", False))
+
+
+def _told(core: Path) -> Mapping[str, Any]:
+    file = core / "core.toml"
+    told = tomllib.loads(file.read_text())
+    known = told.keys() - {"shared"} == {"uses"}
+    if not (
+        known and isinstance(told["uses"], list) and isinstance(told.get("shared", False), bool)
+    ):
+        raise ValueError(f"{file}: uses, a list of names, and shared, true or false, wanted")
+    return told
 
 
 def closure(source: Path, names: Iterable[str]) -> list[str]:

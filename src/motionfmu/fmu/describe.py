@@ -116,6 +116,8 @@ class Description:
     grid: str = ""
     variables: tuple[Variable, ...] = field(default=())
     terminals: tuple[Terminal, ...] = field(default=())
+    # quantities that other FMUs of a system describe, too, such as arm.a1, and their parameters
+    agree: tuple[tuple[str, str], ...] = ()
 
     @property
     def step(self) -> float:

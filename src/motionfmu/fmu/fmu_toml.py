@@ -1,17 +1,18 @@
 """Reads the description of an FMU: its `fmu.toml`."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import Faults, InputError, suggestion
-from motionfmu.fmu import terminals
+from motionfmu.fmu import agree, terminals
 from motionfmu.fmu.describe import CAUSALITIES, STRICT, Description, strict_tick, variable
 from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
 from motionfmu.toml_lines import ordered, shown, tables_of, text_of
 
 HEAD = {"name", "description", "tick_ns", "experiment", "cores"}
-MAY = {"grid", "terminal"}
+MAY = {"grid", "terminal", "agree"}
 _CORE = r"[a-z][a-z0-9_]{0,63}"
 
 
@@ -49,19 +50,26 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
         told = f"grid {shown(doc['grid'])}: the name of a parameter of type f64 wanted"
         told += suggestion(str(doc["grid"]), periods)
         faults.lines.append(f"{file}:{line_of(text, 'grid')}: {told}")
-    joined = []
-    try:
-        joined = terminals.read(doc.pop("terminal", {}), variables)
-    except InputError as error:
-        for told in error.args:
-            key = ".".join(told.partition(":")[0].split(" ")[:2])
-            faults.lines.append(f"{file}:{line_of(text, key)}: {told}")
+    joined = placed(faults, text, file, lambda: terminals.read(doc.pop("terminal", {}), variables))
+    shared = placed(faults, text, file, lambda: agree.read(doc.pop("agree", {}), variables))
     Faults(ordered(faults.lines, [file])).tell()
     return Description(
         **{**doc, "cores": tuple(cores)},
         variables=(*variables, strict_tick(doc["tick_ns"])),
         terminals=tuple(joined),
+        agree=tuple(shared),
     )
+
+
+def placed(faults: Faults, text: str, file: str, read: Callable[[], list[Any]]) -> list[Any]:
+    """What a reader of tables finds; its faults, ``table name: what``, get file and line."""
+    try:
+        return read()
+    except InputError as error:
+        for told in error.args:
+            key = ".".join(told.partition(":")[0].split(" ")[:2])
+            faults.lines.append(f"{file}:{line_of(text, key)}: {told}")
+        return []
 
 
 def _real(row: Any) -> bool:

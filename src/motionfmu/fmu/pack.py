@@ -31,7 +31,7 @@ from motionfmu.fmu import (
     start_values,
     terminals,
 )
-from motionfmu.fmu.inside import EXTRA, GRID, MAIN_UNIT, PART_UNIT, PARTS, RESOURCES
+from motionfmu.fmu.inside import AGREE, EXTRA, GRID, MAIN_UNIT, PART_UNIT, PARTS, RESOURCES
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.platforms import Platform
 from motionfmu.toml_lines import text_of
@@ -71,6 +71,7 @@ def generate(fmu: Path, out: Path) -> None:
     _write(out / shown.VARIABLES, shown.variables(d))
     _write(out / shown.TERMINALS, terminals.described(d.terminals))
     _write(out / GRID, json.dumps({"grid": d.grid}) + "\n")
+    _write(out / AGREE, json.dumps(dict(d.agree)) + "\n")
     compiled = [f.name for f in compiled_sources(fmu, out)]
     model = "plant_model.c" if is_modelica(fmu) else "model.c"
     _write(out / PART_UNIT, ctables.part_unit(model, d.name))

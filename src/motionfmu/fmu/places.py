@@ -15,8 +15,3 @@ def local(text: str) -> Path | None:
         return Path(text)
     uri = urlsplit(text)
     return Path(url2pathname(uri.path) if uri.netloc in ("", "localhost") else unquote(text))
-
-
-def free_name(file: Path, owner: str, taken: dict[str, Path]) -> str:
-    """A name for a file among resources; with its owner's before it where another has it."""
-    return f"{owner}.{file.name}" if taken.get(file.name, file) != file else file.name

@@ -7,7 +7,7 @@ from pathlib import Path
 from motionfmu import kept
 from motionfmu.scenarios.fmus import PACKAGE
 
-OPTIMIZED = "-O2"
+OPTIMIZED = "-O3"
 
 
 def folders() -> list[Path]:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from motionfmu import kept
-from motionfmu.compiler import FLAGS, HINT, NONE, compiler, cross
+from motionfmu.compiler import FLAGS, compiler, cross, none
+from motionfmu.extras import install
 from motionfmu.fmu.platforms import Platform
 from motionfmu.fused import layer
 from motionfmu.fused.parts import NoCompiler, NotFused
@@ -101,7 +102,7 @@ def _made(
     platforms = to_export.platforms if to_export else ()
     cc = cross() if platforms else compiler()
     if cc is None:
-        raise NotFused(f"there is no zig: {HINT}") if platforms else NoCompiler(NONE)
+        raise NotFused(f"there is no zig: {install('export')}") if platforms else NoCompiler(none())
     key = _key(system, recorded, name, given)
     whole = kept.key(
         key,

@@ -40,16 +40,20 @@ def _function(head: str, lines: Iterable[str], unused: Iterable[str], end: str =
 
 
 def _limits(end: End) -> str:
-    """What must hold for a value that a wire has brought; empty if all is allowed."""
+    """What looks at a value that a wire has brought; empty if all is allowed."""
     port, name = end.port, _in_part(end)
     if port.type == "Float64":
+        if math.isinf(port.low) and math.isinf(port.high):
+            return f"SYSTEM_FINITE({name});"
         low = "-DBL_MAX" if math.isinf(port.low) else repr(port.low)
         high = "DBL_MAX" if math.isinf(port.high) else repr(port.high)
-        return f"SYSTEM_REALS({name}, {low}, {high})"
+        return f"SYSTEM_REALS({name}, {low}, {high});"
     low_i, high_i = max(port.low, _I32[0]), min(port.high, _I32[1])
     if port.type == "Int32" and (low_i, high_i) != _I32:
+        if low_i == 0 and int(high_i) & (int(high_i) + 1) == 0:
+            return f"SYSTEM_BITS({name}, {int(high_i)});"
         low = "INT32_MIN" if low_i == _I32[0] else str(int(low_i))
-        return f"SYSTEM_WHOLES({name}, {low}, {int(high_i)})"
+        return f"SYSTEM_WHOLES({name}, {low}, {int(high_i)});"
     return ""
 
 
@@ -93,7 +97,7 @@ def _carry(system: System) -> str:
     """All wires, output to input, then the limits of the inputs."""
     lines = [f"SYSTEM_COPY({_in_part(w.target)}, {_in_part(w.source)});" for w in system.wires]
     checks = [check for w in system.wires if (check := _limits(w.target))]
-    ends = ["bool good = true;", *(f"good &= {check};" for check in checks), "return good;"]
+    ends = ["struct system_check check = { .good = true };", *checks, "return system_good(&check);"]
     return _function("bool system_carry(struct model *m)", [*lines, *ends], ["m"])
 
 

@@ -1,9 +1,11 @@
 """Verdicts: bounds of signals and contour figures."""
 
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from itertools import groupby
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +16,12 @@ from motionfmu.scenarios import rates
 from motionfmu.scenarios.body import Body, Check, Pair
 
 TABLES = ("contour", "iso9283")  # analyses whose figures can be checked, by table
+# A bound in words: what, its numbers, when.
+_BOUNDS = re.compile(r"((?:.*? )??(?:>=|<=|in|=|order) )(.*?)((?:, (?:at|in) .*|, \S+ to \S+ s)?)$")
 BOUNDS = ("min", "max", "absmax", "peak", "rms", "final", "changes", "order")
+
+
+Judged = TypeVar("Judged", bound=Any)  # a Verdict, or what a saved result has of one
 
 
 @dataclass(frozen=True)
@@ -26,6 +33,24 @@ class Verdict:
     value: float  # the worst over time and axes; NaN if there is no number
     ok: bool
     reason: str = ""  # why there is no number; else empty
+
+
+def parts(bounds: str) -> tuple[str, str, str]:
+    """Words of a bound, its numbers, and at which times it is asked."""
+    found = _BOUNDS.match(bounds)
+    return (found[1], found[2], found[3]) if found else (bounds, "", "")
+
+
+def of_one_number(checks: Iterable[Judged]) -> list[list[Judged]]:
+    """Verdicts that stand side by side together where they bound one number, by both sides."""
+    groups = groupby(checks, lambda c: (c.name, c.ok, str(c.value), c.reason, parts(c.bounds)[2]))
+    return [list(group) for _, group in groups]
+
+
+def together(bounds: Sequence[str]) -> str:
+    """Bounds of one number in words; the times at which all are asked stand once."""
+    where = parts(bounds[0])[2]
+    return " and ".join(dict.fromkeys(b.removesuffix(where) for b in bounds)) + where
 
 
 def misplaced(name: str, body: Body) -> str:

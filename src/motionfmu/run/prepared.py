@@ -10,6 +10,7 @@ from motionfmu.errors import Faults, InputError
 from motionfmu.run import contrary, figures, waveforms
 from motionfmu.run.checks import is_figure, misplaced
 from motionfmu.scenarios import (
+    agreement,
     contour_signals,
     iso9283_signals,
     rates,
@@ -181,7 +182,7 @@ class Prepared:
     def _times(self, options: Options) -> tuple[int, int]:
         """Communication step [ns] and how many there are at most."""
         document, body = self.document, self.document.body
-        key = "stop" if isinstance(body.stop, float) else "limit"
+        key = "stop" if isinstance(body.stop, float) or options.stop is not None else "limit"
         step_ns = self._time("step", options.step, body.step)
         stop_ns = self._time(key, options.stop, body.stop_limit)
         given = options.stop is not None or options.step is not None
@@ -189,7 +190,6 @@ class Prepared:
             text = f"step = {step_ns * 1e-9:.9g} s is no whole number of {system.CLOCK_NS} ns"
             raise InputError(text) if given else document.error(text, "", "step")
         if stop_ns % step_ns:
-            key = "stop" if options.stop is not None else key
             text = f"{key} = {stop_ns * 1e-9:.9g} s is no whole number of steps"
             raise InputError(text) if given else document.error(text, "", key)
         if stop_ns // step_ns > system.STEPS_MAX:
@@ -235,6 +235,10 @@ class Prepared:
         if self.document.body.contour is None:
             return None
         return contour_signals.library_of(self.resolver)
+
+    def disagreements(self, given: Mapping[str, Any]) -> list[str]:
+        """What its FMUs say differently of one thing, with the values of `given` as a run's."""
+        return agreement.warnings(self.resolved(Options(set=given)))
 
     def located(
         self, error: InputError, plain: system.System, given: Mapping[str, Any]

@@ -69,7 +69,8 @@ class Result(Mapping[str, NDArray[Any]]):
     geometry : str or None
         The planned path as the library wrote it (CSV), if the scenario has a contour.
     warnings : tuple of str
-        What the FMUs warned of, and grids that do not divide each other; each once.
+        What the FMUs warned of, FMUs that do not agree on a machine, grids that do not divide each
+        other; each once.
     options : mapping
         How it was run, as given: engine, fmi, set, stop, step, every.
     overrides : list of str

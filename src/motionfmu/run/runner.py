@@ -13,9 +13,10 @@ from motionfmu.run.engines.job import Ran
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
 from motionfmu.run.wired import Wired, own_settings
-from motionfmu.scenarios import grids
+from motionfmu.scenarios import agreement, grids
 from motionfmu.scenarios.document import changed, made, plain
 from motionfmu.scenarios.system import System
+from motionfmu.scenarios.values import settings
 from motionfmu.toml_lines import shown
 
 
@@ -76,7 +77,7 @@ class Scenario(Prepared):
             ``$MOTIONFMU_ENGINE``, else fused where there is a C compiler and every FMU is ours, and
             native elsewhere.
         fmi : int, optional
-            2 or 3; if not given 3, and 2 for the engine ``fmpy``.
+            2 or 3; 3 if not given.
         set : mapping, optional
             Value by ``component.variable`` or, for one element, ``component.variable[i]``, i from
             1; stronger than the scenario's.
@@ -110,7 +111,7 @@ class Scenario(Prepared):
         chosen = faults.of(lambda: engines.named(engine))
         asked = Options(
             engine=chosen,
-            fmi=engines.version(chosen, fmi),
+            fmi=3 if fmi is None else fmi,
             set=plain(set or {}),
             stop=stop,
             step=step,
@@ -121,6 +122,9 @@ class Scenario(Prepared):
             progress=progress or (lambda share: None),
         )
         _check(asked, faults)
+        if faults.lines and isinstance(asked.set, Mapping):  # those of a good run are read later
+            faults.of(lambda: settings(self.resolver, asked.set))
+        faults.tell()
         with columns.temporary(asked.scratch) as name:
             folder = Path(name)
             given = replace(asked, set={**asked.set, **own_settings(self, folder)})
@@ -129,7 +133,8 @@ class Scenario(Prepared):
             def master(system: System) -> Ran:
                 with closing(engines.opened(chosen, wired.job(asked.fmi))) as ready:
                     ran = ready.run(system, asked.progress)
-                return replace(ran, warnings=[*grids.warnings(system), *ran.warnings])
+                early = [*agreement.warnings(system), *grids.warnings(system)]
+                return replace(ran, warnings=[*early, *ran.warnings])
 
             result = wired.run(master, asked)
         result.warnings += _sparse(result, wired.system)
@@ -268,7 +273,7 @@ def _names(given: Iterable[str]) -> list[str]:
 
 
 def _check(asked: Options, faults: Faults) -> None:
-    """Refuse options that no run can have."""
+    """Gather options that no run can have."""
     if asked.fmi not in (2, 3):
         faults.lines.append(f"FMI {asked.fmi!r}: 2 or 3")
     if not isinstance(asked.set, Mapping):
@@ -280,4 +285,3 @@ def _check(asked: Options, faults: Faults) -> None:
     every = asked.every
     if every is not None and (isinstance(every, bool) or not isinstance(every, int) or every < 1):
         faults.lines.append(f"every = {shown(every)}: a whole number from 1 wanted")
-    faults.tell()

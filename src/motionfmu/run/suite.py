@@ -1,7 +1,6 @@
 """Many scenarios judged, one after the other or in processes of this machine."""
 
 import contextlib
-import os
 import subprocess
 import sys
 import tempfile
@@ -15,6 +14,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+from motionfmu.children import child
 from motionfmu.errors import InputError
 from motionfmu.run import contrary
 from motionfmu.run.checks import Verdict
@@ -102,16 +102,11 @@ class _Worker:
 
     def __init__(self, temporary: str) -> None:
         self.pipe, theirs = Pipe()
-        place = str(Path(__file__).resolve().parents[2])
-        path = [place, *filter(None, [os.environ.get("PYTHONPATH")])]
         with theirs:
             program = f"from motionfmu.run.suite import serve; serve({theirs.fileno()})"
+            command, options = child(program, TMPDIR=temporary)
             self.process = subprocess.Popen(
-                [sys.executable, "-P", "-c", program],
-                pass_fds=[theirs.fileno()],
-                stdin=subprocess.DEVNULL,
-                env={**os.environ, "TMPDIR": temporary, "PYTHONPATH": os.pathsep.join(path)},
-                start_new_session=True,  # an interrupt from the keyboard is for us alone
+                command, pass_fds=[theirs.fileno()], stdin=subprocess.DEVNULL, **options
             )
 
     def judged(self, *task: Any) -> list[Case] | None:

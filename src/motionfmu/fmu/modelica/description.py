@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import Faults
-from motionfmu.fmu import describe, terminals
+from motionfmu.fmu import agree, describe, terminals
 from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
 from motionfmu.fmu.modelica import causal
 from motionfmu.fmu.modelica.flat import Declaration
@@ -16,7 +16,7 @@ from motionfmu.toml_lines import ordered, shown, tables_of, text_of
 
 _TYPES = {"Real": "f64", "Integer": "i32", "Boolean": "bool"}
 _KEYS = ("name", "description", "tick_ns", "experiment", "modelica", "instances", "micro_step")
-_OPTIONAL = ("tolerance", "terminal")
+_OPTIONAL = ("tolerance", "terminal", "agree")
 INSTANCES_MAX = 64
 
 
@@ -36,6 +36,7 @@ class Packing:
     # None: equal steps
     tolerance: float | None = None
     terminal: dict[str, Any] = field(default_factory=dict)  # as in every fmu.toml
+    agree: dict[str, Any] = field(default_factory=dict)  # likewise
 
 
 def read(toml: Path) -> Packing:
@@ -106,6 +107,7 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
                 raise ValueError(f"the name {name} is taken: every plant has it")
         variables = tuple(describe.variable(*row) for row in own)
         joined = terminals.read(packing.terminal, variables)
+        shared = agree.read(packing.agree, variables)
     except ValueError as error:
         raise ValueError(f"{toml}: {packing.modelica}: {error}") from None
     return describe.Description(
@@ -116,6 +118,7 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
         grid="micro_step",
         variables=(*variables, describe.strict_tick(packing.tick_ns)),
         terminals=tuple(joined),
+        agree=tuple(shared),
     )
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from motionfmu.compiler import NotCompiled, there
 from motionfmu.errors import InputError, suggestion
-from motionfmu.extras import needed
 from motionfmu.run.engines.job import Engine, Job, Progress, Ran
 from motionfmu.scenarios.fmus import is_ours
 from motionfmu.scenarios.system import System
@@ -51,10 +50,9 @@ def _python(job: Job) -> Engine:
 
 
 def _fmpy(job: Job) -> Engine:
-    needed("fmpy")
-    from motionfmu.run.engines import fmpy_container
+    from motionfmu.run.engines import fmpy_slave
 
-    return fmpy_container.opened(job)
+    return fmpy_slave.opened(job)
 
 
 ENGINES: dict[str, Callable[[Job], Engine]] = {
@@ -73,11 +71,6 @@ def named(engine: str | None) -> str | None:
         known = f"(there are: {', '.join(ENGINES)}){suggestion(str(given), ENGINES)}"
         raise InputError(f"{place}no engine {given!r} {known}")
     return given or None
-
-
-def version(engine: str | None, fmi: int | None) -> int:
-    """FMI version of the FMUs; FMPy's container runs those of FMI 2 only."""
-    return fmi if fmi is not None else 2 if engine == "fmpy" else 3
 
 
 def opened(engine: str | None, job: Job) -> Engine:

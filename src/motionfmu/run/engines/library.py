@@ -13,7 +13,7 @@ from motionfmu.run.engines.messages import WARNING
 Log = Callable[[int, str], None]  # status and message
 
 # Types and their values, by version; FMI 2 names elements, FMI 3 arrays.
-_NAMES = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
+NAMES = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
 _VALUES: dict[str, Any] = {
     "Float64": c_double,
     "Float32": ctypes.c_float,
@@ -25,13 +25,6 @@ _VALUES: dict[str, Any] = {
 _LOG3 = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p)
 
 
-class _Told(ctypes.Structure):
-    """struct binding_log, the environment of an instance of FMI 2."""
-
-    TOLD = ctypes.CFUNCTYPE(None, c_int, c_char_p)
-    _fields_ = (("told", TOLD),)
-
-
 class _Callbacks(ctypes.Structure):
     """fmi2CallbackFunctions."""
 
@@ -40,13 +33,25 @@ class _Callbacks(ctypes.Structure):
     )
 
 
-def _callbacks(told: _Told) -> _Callbacks:
-    from motionfmu.binding import library
+class Told(ctypes.Structure):
+    """struct binding_log, the environment of an instance of FMI 2; it is to live as long."""
 
-    system = ctypes.CDLL(None)
-    functions = (library().binding_log, system.calloc, system.free)
-    addresses = (ctypes.cast(function, c_void_p) for function in functions)
-    return _Callbacks(*addresses, None, ctypes.cast(byref(told), c_void_p))
+    _TOLD = ctypes.CFUNCTYPE(None, c_int, c_char_p)
+    _fields_ = (("told", _TOLD),)
+
+    @classmethod
+    def to(cls, log: Log) -> "Told":
+        """One that tells a log, the values of a format filled in."""
+        return cls(cls._TOLD(lambda status, text: log(status, read(text))))
+
+    def callbacks(self) -> _Callbacks:
+        """What the instance is given."""
+        from motionfmu.binding import library
+
+        system = ctypes.CDLL(None)
+        functions = (library().binding_log, system.calloc, system.free)
+        addresses = (ctypes.cast(function, c_void_p) for function in functions)
+        return _Callbacks(*addresses, None, ctypes.cast(byref(self), c_void_p))
 
 
 @dataclass(frozen=True)
@@ -87,13 +92,13 @@ class Library:
         rest: tuple[Any, ...]
         off, nothing = c_bool(False), c_void_p()
         if self.fmi == 3:
-            self._log: Any = _LOG3(lambda _, status, __, text: log(status, _read(text)))
+            self._log: Any = _LOG3(lambda _, status, __, text: log(status, read(text)))
             make, given = self.function("InstantiateCoSimulation"), f"{resources}/".encode()
             told = (off, c_bool(everything), off, off)
             rest = (*told, nothing, c_size_t(0), nothing, self._log, nothing)
         else:
-            self._log = _Told(_Told.TOLD(lambda status, text: log(status, _read(text))))
-            self._callbacks = _callbacks(self._log)
+            self._log = Told.to(log)
+            self._callbacks = self._log.callbacks()
             make, given = self.function("Instantiate"), resources.as_uri().encode()
             texts.insert(1, c_int(1))  # for co-simulation
             rest = (byref(self._callbacks), c_int(0), c_int(everything))
@@ -132,7 +137,7 @@ class Library:
     def access(self, verb: str, variables: Sequence[Variable], buffer: Any) -> Callable[[], None]:
         """A quick function that gets or sets variables of a type through their buffer."""
         kind, references = variables[0].type, self._several(variables)
-        name = f"{verb}{kind if self.fmi == 3 else _NAMES[kind]}"
+        name = f"{verb}{kind if self.fmi == 3 else NAMES[kind]}"
         call, size = self.function(name), c_size_t(len(references))
         more = (c_size_t(len(buffer)),) if self.fmi == 3 else ()
         arguments = (self.instance, references, size, buffer, *more)
@@ -196,5 +201,6 @@ class Library:
             self._dll = None
 
 
-def _read(text: bytes) -> str:
+def read(text: bytes) -> str:
+    """Text of an FMU."""
     return text.decode(errors="replace")

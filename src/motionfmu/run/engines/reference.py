@@ -53,8 +53,9 @@ def _ending(slaves: dict[str, Slave], system: System) -> Ending:
 class Master:
     """FMUs of their own for each run, one Python call per value."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: Job, engine: str, make: type[Slave]) -> None:
         self._fmi, self._scopes = job.fmi, Scoped(job)
+        self._engine, self._make = engine, make
 
     def run(self, system: System, progress: Progress) -> Ran:
         """Run from the start."""
@@ -63,7 +64,7 @@ class Master:
             slaves: dict[str, Slave] = {}
             for name, fmu in system.components.items():
                 fmi = system.version(name, self._fmi)
-                slaves[name] = Slave(name, lean.unpacked(fmu, fmi), fmi, messages)
+                slaves[name] = self._make(name, lean.unpacked(fmu, fmi), fmi, messages)
                 stack.callback(slaves[name].free)
             for s in system.settings:
                 port = s.end.port
@@ -87,7 +88,7 @@ class Master:
             for slave in slaves.values():
                 slave.end()
             told = [told for slave in slaves.values() for told in slave.warnings]
-            return ending.ran("python", self._scopes, told)
+            return ending.ran(self._engine, self._scopes, told)
 
     def close(self) -> None:
         """Nothing is held between runs."""
@@ -95,4 +96,4 @@ class Master:
 
 def opened(job: Job) -> Master:
     """Plan a job."""
-    return Master(job)
+    return Master(job, "python", Slave)

@@ -40,6 +40,8 @@ class Slave:
     there are errors only.
     """
 
+    loads = Library
+
     def __init__(
         self, name: str, source: Path, fmi: int, errors: list[str], logging: bool = True
     ) -> None:
@@ -59,7 +61,7 @@ class Slave:
         self.references = {row.attrib["name"]: int(row.attrib["valueReference"]) for row in rows}
         machine = here()
         file = f"binaries/{machine.folder(fmi)}/{kind.attrib['modelIdentifier']}{machine.suffix}"
-        self._library = Library(self._folder.absolute() / file, fmi)
+        self._library = self.loads(self._folder.absolute() / file, fmi)
         self._instantiate()
 
     def _instantiate(self) -> None:

@@ -1,7 +1,7 @@
-"""FMPy's own container as an engine: a third opinion for tests.
+"""FMPy's container FMU as an engine, of tests alone: a master in C of which nothing is ours.
 
-It has no type conversion, so a Boolean is not recorded (it reads as false). It cannot set an array,
-so its components are the FMI 2 FMUs, whose elements are variables of their own.
+It has no type conversion, so a Boolean is not recorded (it reads as false), and tells no warnings.
+It cannot set an array, so it runs FMUs of FMI 2, whose elements are variables of their own.
 """
 
 import tempfile
@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 from fmpy import read_model_description
 from fmpy.container_fmu.cli import create_container_fmu
@@ -20,13 +21,15 @@ from fmpy.model_description import (
     ModelVariable,
 )
 
-from motionfmu.errors import InputError
+import motionfmu
+from motionfmu.run import engines
 from motionfmu.run.engines import lean
 from motionfmu.run.engines.job import Job, Progress, Ran
 from motionfmu.run.engines.scoped import Scoped
 from motionfmu.run.engines.slave import Slave, element_names, ending_of
 from motionfmu.scenarios.system import End, System
 
+NAME = "container"
 TOKEN = "{6d6f7469-6f6e-666d-7500-636f6e746169}"
 
 
@@ -119,9 +122,7 @@ class Container:
     """A container of its own for each run."""
 
     def __init__(self, job: Job) -> None:
-        for version in sorted({job.system.version(c, job.fmi) for c in job.system.components}):
-            if version != 2:
-                raise InputError(f"engine fmpy runs FMI 2 components only, not FMI {version}")
+        assert {job.system.version(c, job.fmi) for c in job.system.components} == {2}
         self._scopes = Scoped(job)
 
     def run(self, system: System, progress: Progress) -> Ran:
@@ -133,9 +134,8 @@ class Container:
             (folder / "unzipped").mkdir()
             configuration = _configuration(system, folder)
             create_container_fmu(configuration, folder / "unzipped", folder / "container.fmu")
-            slave = Slave(
-                "container_fmu", folder / "unzipped", 3, [], logging=False
-            )  # of each call
+            # With logging it would tell each of its calls.
+            slave = Slave("container_fmu", folder / "unzipped", 3, [], logging=False)
             stack.callback(slave.free)
             for s in (s for s in system.settings if s.end.port.type != "String"):
                 _give(slave, s.end, s.values)
@@ -149,12 +149,13 @@ class Container:
                     _give(slave, now.end, now.values)
                 slave.step(k * system.step_ns * 1e-9, step)
             slave.end()
-            return ending.ran("fmpy", self._scopes, [])
+            return ending.ran(NAME, self._scopes, [])
 
     def close(self) -> None:
         """Nothing is held between runs."""
 
 
-def opened(job: Job) -> Container:
-    """Plan a job."""
-    return Container(job)
+def run(scenario: motionfmu.Scenario, **options: Any) -> motionfmu.Result:
+    """Run a scenario in it; options as of `Scenario.run`."""
+    with patch.dict(engines.ENGINES, {NAME: Container}):
+        return scenario.run(engine=NAME, fmi=2, **options)
