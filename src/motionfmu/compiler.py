@@ -12,6 +12,7 @@ from importlib import util
 from pathlib import Path
 
 from motionfmu.errors import InputError
+from motionfmu.extras import install
 
 # As CMakeLists.txt has them: the same bits as the FMUs.
 FLAGS = (
@@ -23,10 +24,12 @@ FLAGS = (
     "-fno-trapping-math",
 )
 
-HINT = 'pip install "motionfmu[export]"'  # what brings zig
-# Without one.
-NONE = f"there is no C compiler (gcc, clang; or {HINT})"
 LINES = 3  # of a compiler's errors that are told
+
+
+def none() -> str:
+    """What is told where there is no compiler; zig is one."""
+    return f"there is no C compiler (gcc, clang; or {install('export')})"
 
 
 class NotCompiled(InputError):

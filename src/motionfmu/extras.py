@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from importlib.util import find_spec
+from pathlib import Path
 
 from motionfmu.errors import InputError
 
@@ -22,7 +23,6 @@ EXTRAS = {
     "dask": Extra(("distributed",), "a study on a cluster"),
     "pandas": Extra(("pandas",), "a table of pandas"),
     "card": Extra(CARD, "planning a drawing"),
-    "fmpy": Extra(("fmpy",), "engine fmpy"),
     "export": Extra(("ziglang",), "compiling for other platforms"),
 }
 
@@ -39,4 +39,21 @@ def missing(extra: str) -> list[str]:
 def needed(extra: str) -> None:
     """Refuse to go on without an extra: what it is for, what is missing, what installs it."""
     if names := ", ".join(missing(extra)):
-        raise Missing(f'{EXTRAS[extra].use} needs {names}: pip install "motionfmu[{extra}]"')
+        raise Missing(f"{EXTRAS[extra].use} needs {names}: {install(extra)}")
+
+
+def install(extra: str) -> str:
+    """The command that installs an extra: no index has this project, only the packages."""
+    import json
+    from importlib import metadata
+    from urllib.parse import urlsplit
+    from urllib.request import url2pathname
+
+    own = metadata.distribution("motionfmu")
+    told = json.loads(own.read_text("direct_url.json") or "{}")
+    if "dir_info" in told:  # from its sources
+        return f"pip install {' '.join(EXTRAS[extra].packages)}"
+    url = urlsplit(told.get("url", ""))
+    file = Path(url2pathname(url.path))
+    there = url.scheme == "file" and file.suffix == ".whl" and file.is_file()
+    return f'pip install "{file if there else f"motionfmu-{own.version}-....whl"}[{extra}]"'

@@ -2,13 +2,14 @@
 #include <string.h>
 
 #include "binding.h"
+#include "binding_text.h"
 #include "interpreter.h"
 #include "mover.h"
 #include "waiting.h"
 
 /* A program as it is read, and a machine to time it on. */
 struct gcode_reader {
-    struct source_text text;
+    struct binding_text text;
     struct source source;
     struct program program;
     struct interpreter in;
@@ -34,6 +35,7 @@ static const struct field reader_fields[] = {
     OPTION(program.block_delete, "block_delete", ""),
     OPTION(program.optional_stop, "optional_stop", ""), OPTION(program.angles, "angles", ""),
     OPTION(program.change_stops, "change_stops", ""), OPTION(program.fanuc, "fanuc", ""),
+    OPTION(program.strict_feed, "strict_feed", ""),
     OPTION(program.least_increment, "least_increment", ""),
     OPTION(program.check_again, "check_again", "lines"),
     OPTION(program.arc.least, "arc_tolerance", "mm"),
@@ -108,11 +110,16 @@ const char *binding_gcode_tool(struct gcode_reader *g, const char *text, int32_t
     return tool_table_line(&g->tools, text, length, g->program.angles, at);
 }
 
-/* Begin a text that stays where it is while it is read. */
-void binding_gcode_begin(struct gcode_reader *g, const char *text, int64_t length)
+/* Begin a text that stays where it is while it is read, as do those of files that it calls. */
+void binding_gcode_begin(struct gcode_reader *g, const char *text, int64_t length,
+                         binding_file file)
 {
-    g->text = (struct source_text){ text, length };
-    g->source = source_of(&g->text);
+    for (int i = 0; i < AXES; i++) {
+        g->program.machine.joint[i].acc = g->curve.limits.acc[i];
+        g->program.machine.joint[i].jerk = g->curve.limits.jerk[i];
+    }
+    g->text = binding_text_of(text, length, file);
+    g->source = binding_source(&g->text);
     g->program.source = &g->source;
     interpreter_start(&g->in, g->point, g->feed, (const double (*)[AXES])g->origin);
     g->in.tools.table = g->tools;

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "binding.h"
+#include "binding_text.h"
 #include "station.h"
 
 /* Settings have the names and units of the FMU's parameters. A member of each axis of a machine. */
@@ -105,6 +106,7 @@ static const struct field report_fields[] = {
     { "fault", "", 'i', OFFSET(fault_report, fault), 1, sizeof(enum fault), SAME },
     REPORT(line), REPORT(offset), REPORT(at), REPORT(length), REPORT(other_at),
     REPORT(other_length), REPORT(value), REPORT(limit),
+    ROW(fault_report, file, "file", ""),
 };
 _Static_assert(sizeof(enum fault) == sizeof(int32_t) &&
                sizeof(enum home_mode) == sizeof(int32_t), "an enum is read as an int32");
@@ -136,30 +138,32 @@ const struct machine *binding_machine(const struct station_config *config)
     return &config->machine;
 }
 
-/* With the text of a part program in memory, NULL for none: run a station, check the program, plan
- * as the task does and take points as a card would: their frames, at most `room`. [pulses] */
-int binding_run(struct station *s, int64_t until, const char *text, int64_t length)
+/* With the text of a part program in memory, NULL for none, and the files it calls: run a station,
+ * check the program, plan as the task does and take points as a card would: their frames, at most
+ * `room`. [pulses] */
+int binding_run(struct station *s, int64_t until, const char *text, int64_t length,
+                binding_file file)
 {
-    struct source_text t = { text, length };
-    const struct source source = source_of(&t);
+    struct binding_text t = binding_text_of(text, length, file);
+    const struct source source = binding_source(&t);
     return station_run(s, until, text ? &source : NULL);
 }
 
-void binding_check(const struct mcc *m, const char *text, int64_t length,
+void binding_check(const struct mcc *m, const char *text, int64_t length, binding_file file,
                    struct fault_report *r, int32_t count[3])
 {
-    struct source_text t = { text, length };
-    const struct source source = source_of(&t);
+    struct binding_text t = binding_text_of(text, length, file);
+    const struct source source = binding_source(&t);
     struct fault_list all;
     task_check_all(m, &source, &all);
     binding_reports(&all, r, count);
 }
 
-int32_t binding_take(struct mcc *m, const char *text, int64_t length, int32_t (*frame)[AXES],
-                 int32_t room)
+int32_t binding_take(struct mcc *m, const char *text, int64_t length, binding_file file,
+                     int32_t (*frame)[AXES], int32_t room)
 {
-    struct source_text t = { text, length };
-    const struct source source = source_of(&t);
+    struct binding_text t = binding_text_of(text, length, file);
+    const struct source source = binding_source(&t);
     for (int32_t n = 0; n < room; n++) {
         task_run(m, text ? &source : NULL);
         if (m->queue.count == 0) {

@@ -60,7 +60,7 @@ bool binding_netcard_start(struct netcard_sim *s, const uint8_t seed[NET_SHA_BYT
     net_random_start(&s->card.session.random, seed);
     netcard_set_power(&s->card, false);
     if (flash) {
-        memcpy(s->card.flash.array, flash, sizeof s->card.flash.array);
+        flash_put(&s->card.flash, 0, flash, FLASH_PAGES);
     }
     netcard_set_power(&s->card, true);
     return true;
@@ -112,9 +112,12 @@ int32_t binding_netcard_state(const struct netcard_sim *s)
     return s->card.state;
 }
 
-uint8_t *binding_netcard_flash(struct netcard_sim *s)
+/* All bytes of its flash. */
+void binding_netcard_flash(const struct netcard_sim *s, uint8_t bytes[FLASH_BYTES])
 {
-    return s->card.flash.array;
+    for (int32_t k = 0; k < FLASH_PAGES; k++) {
+        flash_look(&s->card.flash, k, bytes + k * FLASH_PAGE);
+    }
 }
 
 void binding_netcard_pulses(const struct netcard_sim *s, int64_t counts[CARD_AXES])

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "binding.h"
+#include "binding_text.h"
 #include "robot_station.h"
 #include "soft_words.h"
 
@@ -13,7 +14,7 @@ enum { MESSAGE = INFORM_MESSAGE_MAX };
 
 /* A program in either language with its points; it stays where it is while it runs. */
 struct robot_program {
-    struct source_text text;
+    struct binding_text text;
     struct source source;
     struct inform_program inform;
     struct inform_points points;
@@ -140,7 +141,8 @@ void binding_robot_arm(const struct robot_station *s, struct manipulator *arm)
 
 /* Read a program in one of the languages, none with an empty text, and its points. */
 int binding_robot_read(struct robot_program *p, const char *const text[2],
-                       const int64_t length[2], bool gcode, char message[MESSAGE])
+                       const int64_t length[2], bool gcode, binding_file file,
+                       char message[MESSAGE])
 {
     struct inform_report r;
 
@@ -153,9 +155,9 @@ int binding_robot_read(struct robot_program *p, const char *const text[2],
         snprintf(message, MESSAGE, "points: %.400s", found);
         return 1;
     }
-    p->text = (struct source_text){ text[0], length[0] };
+    p->text = binding_text_of(text[0], length[0], file);
     if (gcode) {
-        p->source = source_of(&p->text);
+        p->source = binding_source(&p->text);
         p->orders.gcode = &p->source;
     } else if (inform_read(&p->inform, &p->points, text[0], length[0], &r) < 0) {
         inform_message(&r, text[0], message);
@@ -176,10 +178,12 @@ static int check_gcode(struct robot_station *s, const struct robot_program *p, s
     orders_check(&s->config.orders, &p->orders, &s->soft.robot.pose, &all);
     for (int i = 0; i < all.count && count < MESSAGE; i++) {
         const struct fault_report *r = &all.of[i];
+        const char *text = "";
+        p->source.look(p->source.context, r->file, r->offset, &text);
         count += snprintf(message + count, (size_t)(MESSAGE - count),
-                          "%sline %d: %s \"%.*s\", column %d", i ? "\n" : "", (int)r->line,
-                          fault_text(r->fault), (int)r->length,
-                          p->text.text + r->offset + r->at, (int)r->at + 1);
+                          "%s%s%sline %d: %s \"%.*s\", column %d", i ? "\n" : "", r->file,
+                          r->file[0] ? ".ngc: " : "", (int)r->line, fault_text(r->fault),
+                          (int)r->length, text + r->at, (int)r->at + 1);
     }
     if (all.count > 0) {
         return 1;

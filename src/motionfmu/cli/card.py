@@ -26,8 +26,12 @@ def on_end(end: Callable[[], object]) -> list[int]:
         came.append(number)
         end()
 
+    loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, ended, number)
+        try:
+            loop.add_signal_handler(number, ended, number)
+        except NotImplementedError:  # Windows
+            signal.signal(number, lambda n, _: loop.call_soon_threadsafe(ended, n))
     return came
 
 

@@ -22,6 +22,7 @@ FrameOption = Annotated[
     tuple[float, float, float, float] | None,
     typer.Option("--frame", metavar="X1 Y1 X2 Y2", help="P1 and P2 of the machine, for SC."),
 ]
+PageOption = Annotated[int, typer.Option("--page", help="Of a drawing with several.")]
 
 
 @card.command()
@@ -35,6 +36,7 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     speeds: Annotated[bool, typer.Option("--speeds", help="Keep speeds of VS.")] = False,
     at: Corner = (0.0, 0.0),
     frame: FrameOption = None,
+    page: PageOption = 1,
     report: Annotated[bool, typer.Option("--report", help="Write a page and a picture.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -53,17 +55,20 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
         if value not in known:
             raise InputError(f"{name} {value}: {' or '.join(known)} wanted")
     settings = load(config)
-    drawing = plt.read(file, frame)
+    drawing = plt.read(file, frame, page=page)
     found = planned(drawing, settings, Options(order, corners, pen or None, speeds, at))
     numbers = figures(found, settings, at)
     target = output or file.with_suffix(".mcj")
     write(found.job, target)
     told: dict[str, Any] = {"drawing": str(file), "job": str(target)} | numbers.numbers()
+    told |= {"page": drawing.page, "pages": drawing.pages}
     if order == "nearest":
         told["way_up_file"] = way_between(clean(drawing, pen or None))
     if as_json:
         print(json.dumps(told, indent=1, allow_nan=False))
     else:
+        if drawing.pages > 1:
+            out.print(f"page {page} of {drawing.pages}; --page chooses another")
         _tell(file, target, numbers, told.get("way_up_file"))
     if report:
         folder = results(file.stem, "plan")
@@ -77,7 +82,7 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
 
 
 def _tell(file: Path, target: Path, n: "Figures", by_file: float | None) -> None:
-    out.print(f"[bold]{file}[/]  {n.time:.3f} s, {n.contours} contours, {n.segments} segments")
+    out.print(f"[bold]{file}[/]  {n.time:.3f} s, contours: {n.contours}, segments: {n.segments}")
     out.print(f"pen down {n.way_down:.1f} mm in {n.time_down:.3f} s", end=", ")
     out.print(f"up {n.way_up:.1f} mm in {n.time - n.time_down:.3f} s, the pen's own time too")
     if by_file is not None:
@@ -119,6 +124,7 @@ def show(
     file: Annotated[Path, typer.Argument(help="Drawing (.plt) or job (.mcj).")],
     picture: Annotated[Path | None, typer.Option(help="Write a picture, .png or .svg.")] = None,
     frame: FrameOption = None,
+    page: PageOption = 1,
 ) -> None:
     """Show what a drawing or a job holds."""
     from motionfmu.netcard import job, plt
@@ -128,9 +134,11 @@ def show(
     if picture:
         needed("report")
     if file.suffix == ".mcj":
+        if frame or page != 1:
+            raise InputError(f"{file}: --frame and --page are for drawings, this is a job")
         _show_job(file, job.read(file), picture)
     else:
-        _show_drawing(file, plt.read(file, frame), picture)
+        _show_drawing(file, plt.read(file, frame, page=page), picture)
     if picture:
         out.print(f"picture: {picture}", soft_wrap=True)
 
@@ -140,7 +148,8 @@ def _show_drawing(file: Path, drawing: "Drawing", picture: Path | None) -> None:
 
     low, high = drawing.extent
     size = f"X {low[0]:.3f} .. {high[0]:.3f}, Y {low[1]:.3f} .. {high[1]:.3f} mm"
-    out.print(f"[bold]{file}[/]  {size}", soft_wrap=True)
+    several = f", page {drawing.page} of {drawing.pages}" if drawing.pages > 1 else ""
+    out.print(f"[bold]{file}[/]  {size}{several}", soft_wrap=True)
     table = bare_table("pen", "lines", "vertices", "way [mm]", "X [mm]", "Y [mm]")
     for pen, lines in drawing.layers.items():
         points = [p.points for p in lines]
@@ -185,7 +194,7 @@ def _show_job(file: Path, found: "Job", picture: Path | None) -> None:
         pins = ", ".join(str(k) for k in range(16) if e.pins >> k & 1)
         times = int((found.frame_events == number).sum())
         active = "high" if e.level else "low"
-        out.print(f"event {number}: output {pins}, {what} {active}, {times} times")
+        out.print(f"event {number}: output {pins}, {what} {active}, times: {times}")
     if picture:
         from motionfmu.report.jobs.card_pictures import draw_job
 

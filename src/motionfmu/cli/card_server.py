@@ -9,6 +9,7 @@ import typer
 from motionfmu.cli.card import card, on_end, stopped
 from motionfmu.cli.common import FAILED, Group, bare_table, out
 from motionfmu.errors import InputError
+from motionfmu.extras import install
 
 if TYPE_CHECKING:
     from motionfmu.netcard.page import Serving
@@ -31,38 +32,51 @@ def serve(  # noqa: PLR0913  (each is an option of the command)
     folder: Folder = HERE,
     keys: Annotated[Path | None, typer.Option(help="Keys; else keys.toml in the folder.")] = None,
     config: Annotated[Path | None, typer.Option("-c", help="card.toml of the page's form.")] = None,
+    tls: Annotated[
+        tuple[Path, Path] | None,
+        typer.Option(metavar="CERT KEY", help="Cards and page by TLS: two PEM files."),
+    ] = None,
 ) -> None:
     """Serve cards: jobs, commands, their states on a page; until Ctrl-C."""
     import asyncio
     import logging
 
     from motionfmu.netcard.server import Cards, check_port
+    from motionfmu.netcard.tls import serving
 
+    if tls:
+        serving(*tls)
     check_port(port)
     check_port(page)
     if config and not page:
         raise InputError(f"-c {config}: is the page's, and --page 0 wants none")
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s")
-    asyncio.run(_serve(Cards(folder, keys=keys), folder, (bind, port, page), config))
+    asyncio.run(_serve(Cards(folder, keys=keys), folder, (bind, port, page), config, tls))
 
 
 async def _serve(
-    cards: "Cards", folder: Path, places: tuple[str, int, int], config: Path | None
+    cards: "Cards",
+    folder: Path,
+    places: tuple[str, int, int],
+    config: Path | None,
+    files: tuple[Path, Path] | None,
 ) -> None:
     import asyncio
     import contextlib
 
+    from motionfmu.netcard import tls
     from motionfmu.netcard.control import Control
 
     bind, port, page = places
-    serving, address = _page(cards, page, config) if page else (contextlib.nullcontext(), "")
+    serving, address = _page(cards, page, config, files) if page else (contextlib.nullcontext(), "")
     control = Control(cards, folder)
     await control.listen()
     ended = asyncio.Event()
     came = on_end(ended.set)
     try:
-        port = await cards.listen(bind, port)
-        out.print(f"cards: {bind}:{port}, folder {folder}", soft_wrap=True)
+        port = await cards.listen(bind, port, tls.serving(*files) if files else None)
+        by = " by TLS" if files else ""
+        out.print(f"cards: {bind}:{port}{by}, folder {folder}", soft_wrap=True)
         async with serving:
             if page:
                 out.print(f"page: {address}", soft_wrap=True)
@@ -73,18 +87,20 @@ async def _serve(
     stopped(came)
 
 
-def _page(cards: "Cards", port: int, config: Path | None) -> "tuple[Serving, str]":
+def _page(
+    cards: "Cards", port: int, config: Path | None, tls: tuple[Path, Path] | None
+) -> "tuple[Serving, str]":
     """The page, and the address that lets a browser in."""
     import secrets
 
     try:
         from motionfmu.netcard.page import Serving, application
     except ImportError as error:
-        text = f'{error.name} is missing; pip install "motionfmu[card]", or --page 0'
+        text = f"{error.name} is missing; {install('card')}, or --page 0"
         raise InputError(f"--page: {text}") from None
     token = secrets.token_urlsafe(16)
-    serving = Serving(application(cards, token, config), port)
-    return serving, f"http://127.0.0.1:{port}/?token={token}"
+    serving = Serving(application(cards, token, config), port, tls)
+    return serving, f"http{'s' * bool(tls)}://127.0.0.1:{port}/?token={token}"
 
 
 def _ask(folder: Path, request: dict[str, Any], file: bytes = b"") -> None:

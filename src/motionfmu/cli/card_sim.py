@@ -22,6 +22,9 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
     keys: Annotated[Path | None, typer.Option("--key-file", help="As made by card key.")] = None,
     flash: Annotated[Path | None, typer.Option(help="Folder that keeps their flash.")] = None,
     config: Annotated[Path | None, typer.Option("-c", help="card.toml of all of them.")] = None,
+    tls: Annotated[
+        Path | None, typer.Option(metavar="CERT", help="By TLS; the certificate they trust.")
+    ] = None,
 ) -> None:
     """Run cards: the card's own code as a client of a server; until Ctrl-C."""
     import asyncio
@@ -30,8 +33,10 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.netcard.config import load
     from motionfmu.netcard.keys import CARD_MAX, alone, read_keys
     from motionfmu.netcard.sim import FlashFile, VirtualCard, simulate
+    from motionfmu.netcard.tls import trusting
     from motionfmu.netcard.wire import OPEN_KEY
 
+    trusted = trusting(tls) if tls else None
     host, _, port = server.rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
         raise InputError(f"--server {server}: HOST:PORT wanted")
@@ -76,7 +81,7 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
 
     async def until_ended() -> None:
         came.append(on_end(cast("asyncio.Task[None]", asyncio.current_task()).cancel))
-        await simulate([one for one, _ in made], (host, int(port)), speed, each)
+        await simulate([one for one, _ in made], (host, int(port)), speed, each, trusted)
 
     with folders:
         try:

@@ -8,7 +8,7 @@ import typer
 
 from motionfmu.cli.common import FAILED, app, bare_table, out, results
 from motionfmu.errors import InputError
-from motionfmu.extras import missing
+from motionfmu.extras import install, missing
 
 if TYPE_CHECKING:
     from motionfmu.gcode import Program
@@ -27,8 +27,13 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     limit: Annotated[
         list[str], typer.Option(metavar="AXIS=LO:HI", help="Travel of an axis [mm].")
     ] = [],  # noqa: B006
-    fanuc: Annotated[bool, typer.Option("--fanuc", help="G4 X, G4 P in ms, G65.")] = False,
+    fanuc: Annotated[
+        bool, typer.Option("--fanuc", help="As for Fanuc and Haas: P in ms, G65, GOTO.")
+    ] = False,
     angles: Annotated[bool, typer.Option("--angles", help="A B C in place of U V W.")] = False,
+    strict_feed: Annotated[
+        bool, typer.Option("--strict-feed", help="Refuse F above the highest feed.")
+    ] = False,
     delete: Annotated[bool, typer.Option("--block-delete", help="Pass over lines with /.")] = False,
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
@@ -43,15 +48,17 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         "jerk_down": jerk,
         "fanuc": fanuc,
         "angles": angles,
+        "strict_feed": strict_feed,
         "block_delete": delete,
     }
     settings |= _limits(limit, angles)
-    table = _text(tools) if tools else ""
+    from motionfmu.gcode import read
+    from motionfmu.gcode.program import text_in
+
+    table = text_in(tools) if tools else ""
     told, good = {}, True
     for file in files:
-        from motionfmu.gcode import read
-
-        program = read(_text(file), table, **settings)
+        program = read(file, table, **settings)
         good = good and not program.faults
         found = _numbers(program)
         told[str(file)] = found
@@ -62,13 +69,6 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         print(json.dumps(told, indent=1, allow_nan=False))
     if not good:
         raise typer.Exit(FAILED)
-
-
-def _text(file: Path) -> str:
-    try:
-        return file.read_bytes().decode(errors="replace")
-    except OSError as error:
-        raise InputError(f"cannot read {file}: {error.strerror}") from None
 
 
 def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
@@ -109,13 +109,15 @@ def _show(file: Path, program: "Program", target: Path) -> None:
         fault_lines,
         metres,
         page_text,
+        place,
     )
 
     for text in fault_lines(str(file), program):
         out.print(text, markup=False, soft_wrap=True)
     for note in program.notes:
-        place = f"{file}:{note.line}:{note.column}"
-        out.print(f"{place}: note: {note.why} {note.text}", markup=False, soft_wrap=True)
+        out.print(
+            f"{place(str(file), note)}: note: {note.why} {note.text}", markup=False, soft_wrap=True
+        )
     if program.faults:
         return
     s = summarise(program)
@@ -143,5 +145,5 @@ def _show(file: Path, program: "Program", target: Path) -> None:
         numbers = json.dumps(_numbers(program), indent=1, allow_nan=False)
         (part / outcome.NUMBERS).write_text(numbers + "\n", encoding="utf-8")
     if without:
-        out.print('no picture: pip install "motionfmu[report]"', markup=False)
+        out.print(f"no picture: {install('report')}", markup=False)
     out.print(f"report: {target / 'report.html'}", soft_wrap=True)

@@ -53,17 +53,23 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.linear.gains import in_lines
     from motionfmu.linear.opened import held
     from motionfmu.report import outcome
-    from motionfmu.report.servo.margin_page import numbers, page_text
+    from motionfmu.report.servo.margin_page import numbers, page_text, point_line
 
     if gain is not None and loop is None:
         raise InputError(f"--gain {gain}: say with --loop which loop it belongs to")
     point = dict(setting(text) for text in at)
     linear = model(path, axis, point, settings(set_))
+    whence = "stated"
+    if not point:
+        found, whence = _of_the_program(linear)
+        linear = linear.moved(found) if found else linear
+    about = point_line(linear, whence)
+    out.print(about, markup=False, soft_wrap=True)
     target = outcome.usable(folder or results(linear.scenario.name, "margins"))
     gains = {loop: gain} if loop is not None and gain is not None else {}
     studies = _study(linear, Asked(loop, gains, simulate, kick))
     with outcome.whole(target) as part:
-        (part / "report.html").write_text(page_text(linear, studies), encoding="utf-8")
+        (part / "report.html").write_text(page_text(linear, studies, about), encoding="utf-8")
         text = json.dumps(numbers(linear, studies), indent=1, allow_nan=False)
         (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
     table = bare_table()
@@ -90,6 +96,23 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
         for note in s.notes:
             out.print(note, markup=False)
     out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+
+
+def _of_the_program(linear: "AxisModel") -> tuple[dict[str, float], str]:
+    """The speed of the scenario's program as an operating point, and where it is from."""
+    from motionfmu.tune.choice import operating_point, speed_output
+
+    contour = linear.scenario.document.body.contour
+    component = contour.position.partition(".")[0] if contour else ""
+    if linear.others or contour is None or component not in linear.blocks:
+        return {}, "no path tells a speed"
+    if not speed_output(linear, contour.position):
+        return {}, "the plant shows no speed"
+    try:
+        base = linear.scenario.run(set=linear.set)
+    except InputError as error:
+        return {}, f"the program did not run: {str(error).splitlines()[0]}"
+    return operating_point(linear, base), "mean feed of the program"
 
 
 def _study(linear: "AxisModel", asked: "Asked") -> "list[LoopStudy]":

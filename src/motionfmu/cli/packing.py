@@ -23,4 +23,4 @@ def pack(
         values[program_of(name)] = str(program)
     file = target or Path(f"{name}.fmu")
     inside = ", ".join(packed(name, file, fmi, values)) or "nothing"
-    print(f"{file}: FMI {fmi}, {name} with {inside} in its resources, {len(values)} values set")
+    print(f"{file}: FMI {fmi}, {name} with {inside} in its resources, values set: {len(values)}")

@@ -1,5 +1,6 @@
 """The command that runs a scenario, and how verdicts are shown."""
 
+import contextlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,6 +18,7 @@ from motionfmu.cli.common import (
     settings,
     under_way,
 )
+from motionfmu.errors import InputError
 from motionfmu.extras import needed
 
 if TYPE_CHECKING:
@@ -26,15 +28,18 @@ if TYPE_CHECKING:
     from motionfmu.run.result import Result
 
 Engine = Annotated[str | None, typer.Option(help="fused, native, python or fmpy.")]
-Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 but for engine fmpy.")]
+Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 if not given.")]
 
 
 def verdicts(checks: "Sequence[Verdict]") -> None:
-    """Each bound, and why there are numbers missing."""
+    """Each number with its bounds, and why there are numbers missing."""
+    from motionfmu.run.checks import of_one_number, together
+
     rows = []
-    for v in checks:
+    for same in of_one_number(checks):
+        v, bounds = same[0], together([c.bounds for c in same])
         mark, style = ("ok", plain.GREEN) if v.ok else ("FAILED", plain.RED)
-        rows.append(((mark, v.name, "none" if v.reason else f"{v.value:.6g}", v.bounds), style))
+        rows.append(((mark, v.name, "none" if v.reason else f"{v.value:.6g}", bounds), style))
     print(plain.table(("", "check", "found", "asked"), rows))
     for reason, names in _reasons(checks).items():
         print(f"{', '.join(names)}: {reason}")
@@ -99,13 +104,17 @@ def run(  # noqa: PLR0913  (each is an option of the command)
         "step": step,
         "every": every,
     }
+    early: list[str] = []
+    with contextlib.suppress(InputError):  # the run tells it, with all else that is wrong
+        early = scenario.disagreements(options["set"])
+    warnings(early)
     result = run_shown(
         scenario, options | {"source": files_of(set_), "scratch": outcome.near(target)}
     )
     shown = outcome.save(result, target, outcome.Kept(csv, signals, pictures), under_way)
     under_way("")
     verdicts(result.checks)
-    warnings(result.warnings)
+    warnings([told for told in result.warnings if told not in early])
     for line in result.overrides:
         print(f"not as written: {line}")
     for line in _ends(result):

@@ -93,7 +93,7 @@ def _settings(a: Side, b: Side) -> Iterable[Different]:
                 texts.append(f"{_text(list(start_values(port)), unit)} (default)")
             else:
                 texts.append(NOTHING)
-        if texts[0] != texts[1].removesuffix(" (default)"):
+        if len({text.removesuffix(" (default)") for text in texts}) > 1:
             yield Different(name, *texts)
 
 

@@ -1,12 +1,14 @@
 """The page of a comparison."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from html import escape
+from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 from motionfmu.compare import plots
-from motionfmu.compare.differences import NOTHING, port_of
+from motionfmu.compare.differences import NOTHING, Checked, port_of
 from motionfmu.compare.figures import Number
 from motionfmu.compare.pairing import Apart, Pairing
 from motionfmu.compare.words import GONE, change_text, row_of, signed, text_of
@@ -16,6 +18,7 @@ from motionfmu.report.contour_words import CIRCLE, CONTOUR, in_words
 from motionfmu.report.numbers import figure, length
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.tables import cards, judged, table
+from motionfmu.run.checks import parts, together
 from motionfmu.run.stored import NUMBERS
 from motionfmu.units import spelled
 
@@ -93,6 +96,9 @@ def _add_different(page: Sheet, found: Pairing) -> None:
     page.section("What was run differently", "", content)
 
 
+_MARKS = {True: ("✓", "pass"), False: ("✗", "fail"), None: (NOTHING, "")}
+
+
 def _unit_of(found: Pairing, name: str) -> str:
     """Unit of what is checked, as on all pages."""
     if name.startswith("contour."):
@@ -102,22 +108,38 @@ def _unit_of(found: Pairing, name: str) -> str:
 
 
 def _checks(found: Pairing) -> str:
-    marks = {True: ("✓", "pass"), False: ("✗", "fail"), None: (NOTHING, "")}
     rows = []
-    for c in sorted(found.checks, key=lambda c: (not c.worse, c.ok[1] is not False)):
-        cells, unit = [], _unit_of(found, c.name)
-        bounds: dict[str, None] = {}
-        for ok, value, asked in zip(c.ok, c.values, c.bounds, strict=True):
-            mark, kind = marks[ok]
-            text, words = judged(value, asked or "", unit)
-            text = NOTHING if value is None else text
-            bounds |= {words: None} if asked is not None else {}
-            cells.append(f'<span class="mark {kind}">{mark}</span> {text}')
-        n = Number(c.name, *c.values)
+    inorder = sorted(found.checks, key=lambda c: (not c.worse, c.ok[1] is not False))
+    for _, group in groupby(inorder, _number):
+        same = list(group)
+        c, unit = same[0], _unit_of(found, same[0].name)
+        sides = [_side(same, k, unit) for k in (0, 1)]
         told = "; ".join(dict.fromkeys(r for r in c.reasons if r))
-        words = " → ".join(bounds) + (f"; {told}" if told else "")
-        rows.append((escape(c.name), escape(words), *cells, change_text(n)))
+        words = " → ".join(dict.fromkeys(text for _, text in sides if text))
+        words += f"; {told}" if told else ""
+        change = change_text(Number(c.name, *c.values))
+        rows.append((escape(c.name), escape(words), *(cell for cell, _ in sides), change))
     return table(("Check", "Bounds", "A", "B", "change of size"), rows, 2)
+
+
+def _number(c: Checked) -> tuple[Any, ...]:
+    """What rows have in common that bound one number of each run, by both sides."""
+    return c.name, c.ok, str(c.values), c.reasons, [parts(b or "")[2] for b in c.bounds]
+
+
+def _side(same: Sequence[Checked], run: int, unit: str) -> tuple[str, str]:
+    """Mark and value of a run, and its bounds in words; those may be empty."""
+    mark, kind = _MARKS[same[0].ok[run]]
+    value = same[0].values[run]
+    told = [judged(value, asked, unit) for c in same if (asked := c.bounds[run]) is not None]
+    text = NOTHING if value is None else told[0][0]
+    words = together([asked for _, asked in told]) if told else ""
+    return f'<span class="mark {kind}">{mark}</span> {text}', words
+
+
+def _beside(plot: str, numbers: str) -> str:
+    """A plot and a table of five columns."""
+    return f'<div class="wide" style="--beside: 575px"><div>{plot}</div><div>{numbers}</div></div>'
 
 
 def _add_contour(page: Sheet, found: Pairing) -> None:
@@ -125,8 +147,7 @@ def _add_contour(page: Sheet, found: Pairing) -> None:
     note = f"Both errors are drawn <b>{factor:,.0f} times</b> as large as they are."
     left = page.place("path", drawn)
     right = f"<h3>Errors</h3>{_numbers(found, 'contour', CONTOUR)}"
-    content = f'<div class="wide" style="--beside: 500px"><div>{left}</div><div>{right}</div></div>'
-    page.section("Path and contour error", note, content)
+    page.section("Path and contour error", note, _beside(left, right))
     if plots.same_path(found.a, found.b):
         drawn, largest = plots.error_figure(found.a, found.b)
         note = (
@@ -146,8 +167,7 @@ def _add_contour(page: Sheet, found: Pairing) -> None:
         rows = _numbers(found, "contour", [(f"circles.{place}.{n}", w, u) for n, w, u in CIRCLE])
         plot = page.place(f"circle{place}", round_)
         note = "ISO 230-4. Radial deviation from the nominal circle about its nominal centre."
-        content = f'<div class="two">{plot}<div>{rows}</div></div>'
-        page.section(f"Circular test, radius {radius:g} mm", note, content)
+        page.section(f"Circular test, radius {radius:g} mm", note, _beside(plot, rows))
 
 
 def _numbers(found: Pairing, name: str, wanted: Iterable[tuple[str, str, str]]) -> str:

@@ -44,9 +44,10 @@ def signal_figure(found: Pairing, name: str) -> Figure:
             Curve(run, x.time, _column(x, name, i), both.steps)
             for run, x in ((RUN_A, found.a), (RUN_B, found.b))
         ]
-        panels.append(Panel(label(both.names[i], both.unit), tuple(curves), {}, True))
+        element = both.names[i].removeprefix(name)  # "[1]": the heading has the name
+        title = label(element or name.rpartition(".")[2], both.unit)
+        panels.append(Panel(title, tuple(curves), {}, True))
         colors += [A, B]
-        element = both.names[i].removeprefix(name)  # "[1]": the title has the name
         gone.append(Curve(element, both.time, both.difference[:, i], both.steps))
     several = len(gone) > 1
     panels.append(Panel(label(GONE, both.unit), tuple(gone), {}, several))

@@ -1,6 +1,7 @@
 """Arcs and helices, one or one for each point, and the nearest point on them."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -168,11 +169,9 @@ class Arcs:
         own = self._frame(points)
         best = np.zeros(len(points))
         distance = self._distance(own, best)
-        whole = best + self.angle
-        for angle in (whole, *self._candidates(own)):
+        found = self._minima(own) if np.any(self.growth) else self._candidates(own)
+        for angle in (best + self.angle, *found):
             inside = np.clip(angle, 0.0, self.angle)
-            if np.any(self.growth):
-                inside = self._refined(own, inside)
             other = self._distance(own, inside)
             nearer = other <= distance  # the later candidates are the more exact
             best = np.where(nearer, inside, best)
@@ -188,8 +187,7 @@ class Arcs:
         """Angles of local minima of the distance, or arbitrary where there is none."""
         x, y, z = own
         phase = np.arctan2(y, x)
-        turns = math.ceil(float(np.max(self.angle)) / TURN) if np.any(self.growth) else 1
-        found = [np.mod(phase, TURN) + TURN * k for k in range(turns)]
+        found = [np.mod(phase, TURN)]
         helix = np.abs(self.rise) > EPS * self.radius  # a smaller one is lost in rounding anyway
         if np.any(helix):
             rise = np.where(helix, self.rise, self.angle)
@@ -226,20 +224,50 @@ class Arcs:
             found.append(phase + base + root)
         return found
 
-    def _refined(self, own: tuple[Array, ...], angle: Array) -> Array:
-        """Newton on the exact condition, for the small growth of a rounded part program."""
+    def _minima(self, own: tuple[Array, ...]) -> Iterator[Array]:
+        """Angles of all local minima of the distance to an arc that grows, one for each turn.
+
+        With w = a - phase, R = radius + g a and `reach` from the axis to the point, half the
+        squared distance D has ``D'' = reach (R cos w + 2 g sin w) + g^2 + k^2``. Its derivative
+        vanishes where ``tan w = 3 g/R``: as R is not negative and tan w - 3 g/R rises, once in each
+        half turn. So D'' has one peak a turn, and between a peak and a minimum of D, where
+        D'' >= 0, it falls away from the peak: D' is concave to the right of it, convex to the left,
+        and Newton from the peak, or from the end of the arc before it, never steps over the root.
+        """
+        x, y, _ = own
+        phase = np.arctan2(y, x)
+        g = self.growth / self.angle
+        for turn in range(-1, math.ceil(float(np.max(self.angle)) / TURN) + 2):
+            base = phase + TURN * turn
+            peak = np.clip(base, 0.0, self.angle)
+            for _ in range(ROUNDS_MAX):  # each leaves a third of the error at most
+                before = peak
+                ahead = np.arctan2(3.0 * g, self.radius + g * peak)
+                peak = np.clip(base + ahead, 0.0, self.angle)
+                if (np.abs(peak - before) <= STEP_DONE * self.angle).all():
+                    break
+            yield self._newton(own, peak)
+
+    def _newton(self, own: tuple[Array, ...], start: Array) -> Array:
+        """Where the distance has no slope: Newton from angles (n,), while it is convex."""
+        found = start.copy()
+        rows = np.arange(len(start))
+        arcs, near, angle = self, own, start
         for _ in range(ROUNDS_MAX):
-            gap = [a - b for a, b in zip(own, self._local(angle), strict=True)]
-            slope, curve = self._slopes(angle)
-            value = sum(g * s for g, s in zip(gap, slope, strict=True))
-            change = sum(g * c - s * s for g, c, s in zip(gap, curve, slope, strict=True))
-            step = np.divide(value, change, out=np.zeros_like(angle), where=change < 0.0)
-            moved = np.clip(angle - step, 0.0, self.angle)
-            done = np.abs(moved - angle) <= STEP_DONE * self.angle
-            angle = moved
-            if done.all():
+            gap = [a - b for a, b in zip(near, arcs._local(angle), strict=True)]
+            slope, curve = arcs._slopes(angle)
+            value = sum(a * s for a, s in zip(gap, slope, strict=True))
+            change = sum(s * s - a * c for a, c, s in zip(gap, curve, slope, strict=True))
+            step = np.divide(value, change, out=np.zeros_like(angle), where=change > 0.0)
+            moved = np.clip(angle + step, 0.0, arcs.angle)
+            found[rows] = moved
+            going = np.abs(moved - angle) > STEP_DONE * arcs.angle
+            if not going.any():
                 break
-        return angle
+            rows, angle = rows[going], moved[going]
+            near = tuple(v[going] for v in near)
+            arcs = arcs[going] if np.ndim(arcs.angle) else arcs
+        return found
 
 
 def unwrapped(values: Array, period: float) -> Array:

@@ -1,16 +1,23 @@
 """Exact path segments in X Y Z and the nearest point on each."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motionfmu.contour.arcs import ROUNDS_MAX, STEP_DONE, Arcs, Array, Foot
 
-# Parts of a cubic: between two of their ends the distance to a point has one minimum at most where
-# it matters, and Gauss and Legendre's rule of 16 points gives their lengths to rounding.
+# Parts of a cubic: Gauss and Legendre's rule of 16 points gives their lengths to rounding.
 PARTS = 64
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+# Halvings of a cubic: parts are as short as the last digit of t then.
+HALVINGS = 54
+# Of Bernstein polynomials of degree 3 and 2 to one of degree 5: C(3,i) C(2,j) / C(5,i+j).
+PRODUCT = [
+    [math.comb(3, i) * math.comb(2, j) / math.comb(5, i + j) for j in range(3)] for i in range(4)
+]
 
 
 @dataclass(frozen=True)
@@ -184,15 +191,53 @@ class Cubic:
 
     def foot(self, points: Array) -> Foot:
         """Nearest points of the segment to points (n, 3) [mm]."""
-        edges = np.linspace(0.0, 1.0, PARTS + 1)
-        middle = self.control.mean(axis=0)
-        known = self._points(edges) - middle
-        # |p - k|^2 = |p|^2 + |k|^2 - 2 p k, the least of one p over all k
-        nearest = np.argmin(
-            np.sum(known * known, axis=1) - 2.0 * (points - middle) @ known.T, axis=1
-        )
-        t = edges[nearest]
-        low, high = edges[np.maximum(nearest - 1, 0)], edges[np.minimum(nearest + 1, PARTS)]
+        best = np.zeros(len(points))
+        distance = norms(points - self.start)
+        rows, t = self._minima(points)
+        gaps = norms(points[rows] - self._points(t))
+        every = (np.append(rows, np.arange(len(points))), np.append(t, np.ones(len(points))))
+        gaps = np.append(gaps, norms(points - self.end))
+        np.minimum.at(distance, every[0], gaps)
+        least = gaps <= distance[every[0]]
+        best[every[0][least]] = every[1][least]
+        point, slope = self._points(best), self._slopes(best)[0]
+        return Foot(point, self._along(best), norms(points - point), slope / norms(slope)[:, None])
+
+    def _minima(self, points: Array) -> tuple[NDArray[np.intp], Array]:
+        """All t at which the distance from points (n, 3) is least nearby, and their rows.
+
+        The slope of half the squared distance is a polynomial of degree 5. By Descartes' rule for
+        its Bernstein coefficients a part where these change sign once has one root, one without a
+        change none; others are halved.
+        """
+        rates = 3.0 * np.diff(self.control, axis=0)
+        slope = np.zeros((len(points), 6))
+        for i, corner in enumerate(self.control):
+            for j, rate in enumerate(rates):
+                slope[:, i + j] += PRODUCT[i][j] * ((corner - points) @ rate)
+        rows, low, width = np.arange(len(points)), np.zeros(len(points)), 1.0
+        found: list[tuple[NDArray[np.intp], Array, Array]] = []
+        for _ in range(HALVINGS):
+            changes = sign_changes(slope)
+            one = (changes == 1) & (slope[:, 0] <= 0.0)  # else it is farthest there
+            found.append((rows[one], low[one], low[one] + width))
+            more = changes > 1
+            if not more.any():
+                break
+            rows, low, width = rows[more], low[more], 0.5 * width
+            left, right = halves(slope[more])
+            flat = right[:, 0] == 0.0
+            found.append((rows[flat], low[flat] + width, low[flat] + width))
+            rows, low = np.append(rows, rows), np.append(low, low + width)
+            slope = np.vstack([left, right])
+        else:
+            found.append((rows, low, low + width))
+        of, start, end = (np.concatenate(part) for part in zip(*found, strict=True))
+        return of, self._root(points[of], start, end)
+
+    def _root(self, points: Array, low: Array, high: Array) -> Array:
+        """Where the distance has no slope between some t: Newton, by halves where that leaves."""
+        t = 0.5 * (low + high)
         rows = np.arange(len(points))
         for _ in range(ROUNDS_MAX):
             now = t[rows]
@@ -210,8 +255,7 @@ class Cubic:
             rows = rows[np.abs(t[rows] - now) > STEP_DONE]
             if not len(rows):
                 break
-        point, slope = self._points(t), self._slopes(t)[0]
-        return Foot(point, self._along(t), norms(points - point), slope / norms(slope)[:, None])
+        return t
 
 
 Segment = Line | Arc | Cubic
@@ -220,6 +264,26 @@ Segment = Line | Arc | Cubic
 def norms(vectors: Array) -> Array:
     """Lengths (n,) of vectors (n, 3)."""
     return np.sqrt(_dots(vectors, vectors))
+
+
+def sign_changes(coefficients: Array) -> NDArray[np.intp]:
+    """How often the signs of rows (n, k) change; zeros do not count."""
+    last = np.zeros(len(coefficients))
+    count = np.zeros(len(coefficients), np.intp)
+    for column in np.sign(coefficients).T:
+        count += column * last < 0.0
+        last = np.where(column == 0.0, last, column)
+    return count
+
+
+def halves(bernstein: Array) -> tuple[Array, Array]:
+    """Coefficients (n, k) of both halves of Bernstein polynomials, by de Casteljau."""
+    left, right = np.empty_like(bernstein), np.empty_like(bernstein)
+    rest = bernstein
+    for k in range(bernstein.shape[1]):
+        left[:, k], right[:, -1 - k] = rest[:, 0], rest[:, -1]
+        rest = 0.5 * (rest[:, :-1] + rest[:, 1:])
+    return left, right
 
 
 def _dots(a: Array, b: Array) -> Array:

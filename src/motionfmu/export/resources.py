@@ -1,9 +1,11 @@
 """Files that settings name, which travel inside an archive."""
 
 from dataclasses import dataclass, field, replace
+from itertools import chain, count
 from pathlib import Path
 
 from motionfmu.fmu import places
+from motionfmu.gcode.called import called
 from motionfmu.scenarios.system import Setting
 from motionfmu.toml_lines import is_file
 
@@ -15,10 +17,17 @@ class Resources:
     files: dict[str, Path] = field(default_factory=dict)
 
     def added(self, file: Path, owner: str) -> str:
-        """Take a file in; what a parameter says to name it. `owner` tells two of one name apart."""
-        name = places.free_name(file, owner, self.files)
-        self.files[name] = file
-        return places.RESOURCE + name
+        """Take a file in, with those that it calls; what a parameter says to name it.
+
+        They stay side by side: where another file has a name of theirs, in a folder of `owner`.
+        """
+        several = [file, *called(file)]
+        folders = chain(("", f"{owner}/"), (f"{owner}.{k}/" for k in count(2)))
+        folder = next(
+            f for f in folders if all(self.files.get(f + x.name, x) == x for x in several)
+        )
+        self.files |= {folder + x.name: x for x in several}
+        return places.RESOURCE + folder + file.name
 
     def inside(self, setting: Setting) -> Setting:
         """The setting with files as ``resource:NAME``; they are added to those there are."""

@@ -12,7 +12,6 @@ from motionfmu.binding import Struct, dtype, library
 from motionfmu.binding import text as text_of
 from motionfmu.errors import InputError
 from motionfmu.toml_lines import is_file
-from motionfmu.toml_lines import text_of as of_file
 
 AXES = 6
 ROOM = 4096
@@ -37,6 +36,8 @@ class Fault:
         That text.
     why : str
         What is wrong with it, in words.
+    file : str
+        Name, without its ending, of a file that the program calls; empty: the program itself.
     """
 
     line: int
@@ -44,27 +45,79 @@ class Fault:
     length: int
     text: str
     why: str
+    file: str = ""
 
     def __str__(self) -> str:
-        return f'line {self.line}: {self.why} "{self.text}", column {self.column}'
+        file = f"{self.file}.ngc: " if self.file else ""
+        return f'{file}line {self.line}: {self.why} "{self.text}", column {self.column}'
+
+
+# How C asks for the text of a file that a program calls: by name, with its length.
+_FILE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_int64))
 
 
 def judged(
-    text: bytes, check: Callable[[ctypes.c_void_p, Any], Any]
+    texts: Callable[[str], bytes], check: Callable[[ctypes.c_void_p, Any], Any]
 ) -> tuple[list[Fault], list[Fault], bool]:
-    """Faults and notes of a text as a C check tells them, and whether there are more faults."""
+    """Faults and notes of texts as a C check tells them, and whether there are more faults.
+
+    The texts are those of the files that a program calls, and with an empty name its own.
+    """
     rows, count = np.zeros(REPORTS, dtype("report")), (ctypes.c_int32 * 3)()
     check(rows.ctypes.data_as(ctypes.c_void_p), count)
-    found = [_fault(text, r) for r in rows[: count[0] + count[1]]]
+    found = [_fault(texts, r) for r in rows[: count[0] + count[1]]]
     return found[: count[0]], found[count[0] :], bool(count[2])
 
 
-def _fault(text: bytes, r: Any) -> Fault:
+def _fault(texts: Callable[[str], bytes], r: Any) -> Fault:
+    file = b"".join(r["file"].tolist()).decode()
+    text = texts(file)
     line, begin = int(r["offset"]), int(r["offset"] + r["at"])
     words = text[begin : begin + int(r["length"])].decode(errors="replace")
-    column = len(text[line:begin].decode(errors="replace").removeprefix("\ufeff")) + 1
+    column = len(text[line:begin].decode(errors="replace")) + 1
     why = library().fault_text(ctypes.c_int32(int(r["fault"]))).decode()
-    return Fault(int(r["line"]), column, len(words), words, why)
+    return Fault(int(r["line"]), column, len(words), words, why, file)
+
+
+class Texts:
+    """A part program and the files beside it that it calls, as C asks for them.
+
+    `of` has their texts by name, that of the program under an empty one.
+    """
+
+    def __init__(self, text: str | Path, folder: Path | None = None) -> None:
+        if isinstance(text, Path):
+            folder = folder or text.parent
+            text = text_in(text)
+        elif isinstance(text, str) and "\n" not in text and is_file(Path(text)):
+            raise InputError(f"{text!r} is the name of a file; Path({text!r}) reads it")
+        self.text, self._folder = text, folder
+        self.of = {"": text_of(text)}
+        self._unreadable: InputError | None = None
+        self.file = _FILE(self._at)
+
+    def call(self) -> tuple[bytes, ctypes.c_int64, Any]:
+        """Arguments of the calls that read it; `self` has to live as long as C keeps them."""
+        return self.of[""], ctypes.c_int64(len(self.of[""])), self.file
+
+    def tell(self) -> None:
+        """Raise what kept a file from being read while C asked for it."""
+        if self._unreadable:
+            raise self._unreadable
+
+    def _at(self, name: bytes, length: Any) -> int | None:
+        """Address of the text of a file that is called; none if there is no such file."""
+        if (found := name.decode()) not in self.of:
+            file = self._folder / f"{found}.ngc" if self._folder else None
+            if file is None or not is_file(file):
+                return None
+            try:
+                self.of[found] = text_of(text_in(file))
+            except InputError as error:  # C between here and the caller lets no exception pass
+                self._unreadable = error
+                return None
+        length[0] = len(self.of[found])
+        return ctypes.cast(ctypes.c_char_p(self.of[found]), ctypes.c_void_p).value
 
 
 class Program:
@@ -83,18 +136,21 @@ class Program:
         There are more faults than these.
     notes : list of Fault
         Words that are accepted and do nothing here, each once.
+    files : dict of str to str
+        Texts of the files that it calls, by their names without ending.
     """
 
-    def __init__(self, text: str, reader: Struct) -> None:
-        self._bytes = text_of(text)
-        self.text, self._reader = text, reader
-        begin = library().binding_gcode_begin
-        begin(reader.pointer, self._bytes, ctypes.c_int64(len(self._bytes)))
+    def __init__(self, texts: Texts, reader: Struct) -> None:
+        self._texts, self._reader = texts, reader
+        self.text = texts.text
+        library().binding_gcode_begin(reader.pointer, *texts.call())
         check = library().binding_gcode_check
         self.faults, self.notes, self.more = judged(
-            self._bytes, lambda rows, count: check(reader.pointer, rows, count)
+            texts.of.__getitem__, lambda rows, count: check(reader.pointer, rows, count)
         )
         self.commands = self._read()
+        texts.tell()
+        self.files = {n: t.decode(errors="replace") for n, t in texts.of.items() if n}
 
     def __repr__(self) -> str:
         faults = f"{len(self.faults)}{' or more' if self.more else ''}"
@@ -180,7 +236,21 @@ def defaults() -> dict[str, Any]:
     return {name: reader[name] for name in reader if name not in ("line", "ended")}
 
 
-def read(text: str | Path, tools: str = "", **settings: Any) -> Program:
+def text_in(file: Path) -> str:
+    """Text of a program's file, of any length; bytes that are not UTF-8 are in comments only."""
+    try:
+        if file.exists() and not file.is_file():  # a pipe would be waited for
+            raise InputError(f"cannot read {file}: not a regular file")
+        return file.read_bytes().decode(errors="replace")
+    except OSError as error:
+        raise InputError(f"cannot read {file}: {error.strerror}") from None
+    except ValueError as error:  # a NUL in the name
+        raise InputError(f"cannot read {file}: {error}") from None
+
+
+def read(
+    text: str | Path, tools: str = "", *, folder: Path | None = None, **settings: Any
+) -> Program:
     """Read a part program.
 
     Parameters
@@ -190,6 +260,8 @@ def read(text: str | Path, tools: str = "", **settings: Any) -> Program:
     tools : str
         Lines of a tool table (``T1 P1 Z10 D6``: number, pocket, length, diameter [mm]); without
         one every tool exists and has length and diameter 0.
+    folder : Path, optional
+        Where the files are that it calls (``o<name> call``: name.ngc); that of a file by default.
     **settings
         Machine and switches of the language; `defaults` lists them.
 
@@ -203,8 +275,4 @@ def read(text: str | Path, tools: str = "", **settings: Any) -> Program:
         There is no such setting, or it has another shape; a line of the tool table is wrong; a file
         cannot be read, or the text is the name of one.
     """
-    if isinstance(text, Path):
-        text = of_file(text)
-    elif isinstance(text, str) and "\n" not in text and is_file(Path(text)):
-        raise InputError(f"{text!r} is the name of a file; Path({text!r}) reads it")
-    return Program(text, _reader(settings, tools))
+    return Program(Texts(text, folder), _reader(settings, tools))

@@ -90,7 +90,7 @@ class Evaluation:
 
     def _speed(self) -> dict[str, Any]:
         """Velocity accuracy, repeatability and fluctuation (ISO 9283:1998, 9)."""
-        means = np.array([v.mean() for v in self.path.speeds])
+        means = self.path.mean_speeds
         found: dict[str, Any] = {"speed": float(means.mean()), "AV": None, "RV": None}
         found["FV"] = float(max(np.ptp(v) for v in self.path.speeds))
         if command := self.path.given.speed:

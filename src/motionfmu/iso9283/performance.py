@@ -95,17 +95,33 @@ class Performance:
         up /= np.linalg.norm(up, axis=1, keepdims=True)
         return np.asarray(((self.point - self.command) * up).sum(axis=2))
 
+    @property
+    def _middle(self) -> list[int]:
+        """Planes at the ends of the middle half of the path, where no ramp reaches."""
+        return [len(self.along) // 4, (3 * len(self.along) + 3) // 4 - 1]
+
+    @cached_property
+    def mean_speeds(self) -> Array:
+        """Way over time of each cycle, middle half (n,) [mm/s]."""
+        # The way from plane to plane: what goes back between two of them is none.
+        first, last = self._middle
+        steps = np.linalg.norm(np.diff(self.point[:, first : last + 1], axis=1), axis=2)
+        return np.asarray(steps.sum(axis=1) / (self.time[:, last] - self.time[:, first]))
+
     @cached_property
     def speeds(self) -> list[Array]:
-        """Speed of each cycle on the middle half of the path [mm/s]."""
-        # Steady speed is meant: no ramp reaches so far.
+        """Speed of each cycle along its way, middle half [mm/s]."""
         found = []
-        ends = len(self.along) // 4, (3 * len(self.along) + 3) // 4 - 1
-        for cycle, time in zip(self.given.cycles, self.time[:, list(ends)], strict=True):
-            inside = (cycle.time >= time[0]) & (cycle.time <= time[-1])
+        for cycle, time, point in zip(self.given.cycles, self.time, self.point, strict=True):
+            first, last = time[self._middle]
+            inside = (cycle.time >= first) & (cycle.time <= last)
             if not inside.any():
-                inside[np.searchsorted(cycle.time, time[0]).clip(0, len(inside) - 1)] = True
-            found.append(speed(cycle)[inside])
+                inside[np.searchsorted(cycle.time, first).clip(0, len(inside) - 1)] = True
+            way = np.diff(point, axis=0)
+            way /= np.linalg.norm(way, axis=1, keepdims=True)
+            plane = np.searchsorted(time, cycle.time[inside], "right").clip(1, len(way)) - 1
+            velocity = np.gradient(cycle.position, cycle.time, axis=0)[inside]
+            found.append(np.asarray((velocity * way[plane]).sum(axis=1)))
         return found
 
     @property
@@ -132,7 +148,7 @@ class Performance:
         for j, time in enumerate(self.time):
             row: dict[str, Any] = {"start": float(time[0]), "end": float(time[-1])}
             row["largest"] = float(size[j].max())
-            row["speed"] = float(self.speeds[j].mean())
+            row["speed"] = float(self.mean_speeds[j])
             row |= {k: float(v[j]) for k, v in self.shapes().items()}
             rows.append(row)
         return rows

@@ -95,6 +95,27 @@ class AxisModel:
         """
         return _build(self.scenario, self.axis, self.at, {**self.set, **set}, self._parts)
 
+    def moved(self, at: Mapping[str, float]) -> "AxisModel":
+        """The same model about another operating point.
+
+        The scenario is not read anew, and plants that are not asked to move are kept.
+
+        Parameters
+        ----------
+        at : mapping
+            Value by ``component.variable``, in the units of the description.
+
+        Returns
+        -------
+        AxisModel
+
+        Raises
+        ------
+        InputError
+            A name or value is wrong, or there is no such operating point.
+        """
+        return _build(self.scenario, self.axis, dict(at), self.set, self._parts)
+
     def system(
         self,
         inputs: str | Iterable[str],

@@ -79,8 +79,7 @@ class VirtualCard(Station[Reading]):
         self.mcc = Mcc._of_card(inner, self._state)
 
     def _advance(self, until: ctypes.c_int64) -> None:
-        text, length = self.mcc._program()
-        status = self._library.binding_run(self._state.pointer, until, text, length)
+        status = self._library.binding_run(self._state.pointer, until, *self.mcc._program())
         if status:
             raise CardError(
                 "a motor is beyond what its encoder can follow"

@@ -1,13 +1,14 @@
 """One library: start, program, control and status."""
 
 import ctypes
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from motionfmu.binding import Struct, text, whole
+from motionfmu.binding import Struct, whole
 from motionfmu.errors import InputError
-from motionfmu.gcode.program import judged
+from motionfmu.gcode.program import Texts, judged
 from motionfmu.mcc.axes import Axes
 from motionfmu.mcc.calls import Calls
 from motionfmu.mcc.library import AXES
@@ -66,7 +67,7 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
     def __init__(self, **settings: Any) -> None:
         state = Struct("mcc")
         super().__init__(state.pointer, state)
-        self._text: bytes | None = None
+        self._texts: Texts | None = None
         self.init_motion(**settings)
 
     def __repr__(self) -> str:
@@ -78,7 +79,7 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
     def _of_card(cls, pointer: ctypes.c_void_p, owner: object) -> "Mcc":
         mcc = cls.__new__(cls)
         Calls.__init__(mcc, pointer, owner)
-        mcc._text = None
+        mcc._texts = None
         return mcc
 
     def init_motion(self, **settings: Any) -> None:
@@ -166,32 +167,41 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         """
         return np.array(self._get("MCC_get_errcnt"))
 
-    def task_check(self, program: str) -> None:
+    def task_check(self, program: str | Path, *, folder: Path | None = None) -> None:
         """Read a whole part program as it would run; nothing moves.
 
         Parameters
         ----------
-        program : str
-            Its text.
+        program : str or Path
+            Its text; or, as a `pathlib.Path`, the file that holds it.
+        folder : Path, optional
+            Where the files are that it calls (``o<name> call``); that of a file by default.
 
         Raises
         ------
         InputError
             All faults, a line each, with their line, text and column.
         """
-        given, check = text(program), self._library.binding_check
-        size = ctypes.c_int64(len(given))
-        faults, _, more = judged(given, lambda *rows: check(self._pointer, given, size, *rows))
+        self._check(Texts(program, folder))
+
+    def _check(self, texts: Texts) -> None:
+        check = self._library.binding_check
+        faults, _, more = judged(
+            texts.of.__getitem__, lambda *rows: check(self._pointer, *texts.call(), *rows)
+        )
+        texts.tell()
         if faults:
             raise InputError(*map(str, faults), *(["... and more"] if more else []))
 
-    def task_start(self, program: str) -> None:
+    def task_start(self, program: str | Path, *, folder: Path | None = None) -> None:
         """Check a part program, then start it.
 
         Parameters
         ----------
-        program : str
-            Its text.
+        program : str or Path
+            Its text; or, as a `pathlib.Path`, the file that holds it.
+        folder : Path, optional
+            Where the files are that it calls (``o<name> call``); that of a file by default.
 
         Raises
         ------
@@ -200,9 +210,10 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         MccError
             The library does not take it now.
         """
-        self.task_check(program)
+        texts = Texts(program, folder)
+        self._check(texts)
         self._do("task_start")
-        self._text = text(program)
+        self._texts = texts
 
     def task_continue(self) -> None:
         """Go on behind M0 or M1."""
@@ -228,9 +239,9 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         """
         return self._do("task_status")
 
-    def _program(self) -> tuple[bytes | None, ctypes.c_int64]:
-        """Text of the program that runs, for the calls of binding.c."""
-        return self._text, ctypes.c_int64(len(self._text or b""))
+    def _program(self) -> tuple[bytes | None, ctypes.c_int64, Any]:
+        """The program that runs, for the calls of binding_mcc.c."""
+        return self._texts.call() if self._texts else (None, ctypes.c_int64(0), None)
 
     def take(self, count: int) -> np.ndarray:
         """Plan, and take points as a card would.

@@ -26,6 +26,9 @@ from motionfmu.view.scene import STANDS, position, tool_signal
 Array = NDArray[np.float64]
 # The speed of the tool is its mean over twice this time [s], or over two samples.
 OVER, OVER_PULSES = 1e-3, 5e-3
+# A step of the tool this long [mm], and so much longer than those beside it, is another tool's
+# tip: a motion takes samples to come up and to end.
+LEAP, LEAP_RATIO = 1.0, 100.0
 # Fewer points are no curve.
 _LEAST = 3
 # What a library has of its axes: pulses per turn, gear, lead [mm]; and its speed along the path.
@@ -83,7 +86,7 @@ def ran_of(result: Result, contour: ContourResult | None) -> Ran:
         return Ran(began, result.done_at, None, way, None, gains)
     every = max(1, round(over / (result.time[1] - result.time[0])))
     some = np.arange(0, len(result.time), every)
-    time, points = result.time[some], at(tool, some)
+    time, points = result.time[some], without_leaps(at(tool, some))
     distance = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     if len(time) < _LEAST:
         return Ran(began, result.done_at, distance, way, None, gains)
@@ -111,6 +114,15 @@ def _tool(result: Result, contour: ContourResult | None) -> tuple[Read | None, s
             ppr, gear, lead = (np.array(result.parameter(f"{component}.{n}")) for n in AXIS[:3])
             return _of_pulses(reader(pulses[0]), lead, ppr * gear), "pulses", OVER_PULSES
     return None, "", OVER
+
+
+def without_leaps(points: Array) -> Array:
+    """Positions (n, 3) [mm] moved together where another tool, not a motion, makes them leap."""
+    steps = np.diff(points, axis=0)
+    way = np.linalg.norm(steps, axis=1)
+    beside = np.maximum(np.append(0.0, way[:-1]), np.append(way[1:], 0.0))
+    leaps = np.where(((way > LEAP) & (way > LEAP_RATIO * beside))[:, None], steps, 0.0)
+    return np.asarray(points - np.vstack([0.0 * points[:1], np.cumsum(leaps, axis=0)]))
 
 
 def _of_pulses(read: Read, lead: Array, turn: Array) -> Read:

@@ -12,6 +12,7 @@ from motionfmu.contour import ContourResult
 from motionfmu.contour.circles import CircularTest, Way
 from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.report.numbers import unit as length_unit
+from motionfmu.run.checks import of_one_number, parts, together
 
 # What the RMS of a contour error is, on every page.
 RMS = "over time where the tool cuts"
@@ -21,9 +22,7 @@ LINES_SHOWN = 10
 LONG, SMALL = 13, ' style="font-size:17px"'
 # Letters from which on the text of a column may break into lines.
 WIDE = 26
-# A bound in words: what, its numbers, when.
-_NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-_BOUNDS = re.compile(r"((?:.*? )?(?:>=|<=|in|=|order) )(.*?)((?:, (?:at|in) .*|, \S+ to \S+ s)?)$")
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")  # of a bound
 _DASH = re.compile(r"(?<![\w.>-])-(?=\d)|^-(?=\d)")  # before a number a minus
 
 
@@ -121,12 +120,17 @@ def warning_list(warnings: Sequence[str]) -> str:
 
 
 def check_table(checks: Sequence[Check], words: Callable[[str], tuple[str, str]]) -> str:
-    """Verdicts of the scenario, failures first; `words` say what is checked, and its unit."""
+    """Verdicts of the scenario, failures first; `words` say what is checked, and its unit.
+
+    The least and the largest that one number may be are one row.
+    """
     rows = []
-    for check in sorted(checks, key=lambda c: c.ok):
+    for same in of_one_number(sorted(checks, key=lambda c: c.ok)):
+        check = same[0]
         mark, kind = ("✓ pass", "pass") if check.ok else ("✗ fail", "fail")
         said, unit = words(check.name)
-        text, bounds = judged(check.value, check.bounds, unit)
+        told = [judged(c.value, c.bounds, unit) for c in same]
+        text, bounds = told[0][0], together([b for _, b in told])
         text = "none" if check.reason else text
         below = (t for t in (said, check.reason) if t)
         sub = "".join(f'<div class="sub">{escape(t)}</div>' for t in below)
@@ -143,7 +147,7 @@ def check_table(checks: Sequence[Check], words: Callable[[str], tuple[str, str]]
 
 def judged(value: Any, bounds: str, unit: str) -> tuple[str, str]:
     """Value and bounds of a verdict with their unit; lengths below a mm in µm, as on the cards."""
-    words, asked, where = _parts(bounds)
+    words, asked, where = parts(bounds)
     plain = words.startswith(("changes", "order", "rate"))
     limits = [float(n) for n in _NUMBER.findall(asked)]
     factor = 1.0
@@ -153,17 +157,11 @@ def judged(value: Any, bounds: str, unit: str) -> tuple[str, str]:
         asked = _NUMBER.sub(lambda m: f"{float(m[0]) * factor:.6g}", asked)
     if unit and not plain and limits:
         asked = f"{asked} {unit}"
-    bounds = f"{words}{asked}{where}"
+    bounds = f"{words}{_DASH.sub(MINUS, asked)}{where}"
     if not isinstance(value, float):
         return str(value), bounds
     text = f"{value * factor:.6g}".replace("-", MINUS)
     return f"{text} {unit}" if unit and not words.startswith(("changes", "rate")) else text, bounds
-
-
-def _parts(bounds: str) -> tuple[str, str, str]:
-    """Words of a bound, its numbers, and at which times it is asked."""
-    found = _BOUNDS.match(bounds)
-    return (found[1], found[2], found[3]) if found else (bounds, "", "")
 
 
 def error_table(contour: ContourResult) -> str:

@@ -1,14 +1,16 @@
 """What a robot is told: moves, jogs, programs, outputs, keys of the pendant."""
 
 import ctypes
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from motionfmu.binding import Struct, library, text
 from motionfmu.errors import suggestion
+from motionfmu.gcode.program import Texts
 from motionfmu.robot.kinematics import Kinematics, pose_of
-from motionfmu.robot.refusal import RobotError, message, numbers, refused, within
+from motionfmu.robot.refusal import RobotError, bounded, message, numbers, refused, within
 
 _JOINTS, _LINE, _CIRCLE = range(3)
 _SINGULAR = {"slow": 0, "refuse": 1, "wrist": 2}
@@ -21,7 +23,7 @@ class Commands:
     def __init__(self, state: Struct, settings: dict[str, Any]) -> None:
         self._state, self._panel = state, Struct("robot_panel", state.pointer)
         self._program: Struct | None = None
-        self._texts: list[bytes] = []
+        self._texts: tuple[Texts, list[bytes]] | None = None  # C reads them
         self.kinematics = Kinematics(**settings)
 
     def move_joints(self, target: Any, *, share: float = 0.5, zone: float = 0.0) -> int:
@@ -41,7 +43,7 @@ class Commands:
 
     def move_circle(self, via: Any, target: Any, **how: Any) -> int:
         """Move the tip on a circle through a place [mm] to a pose; the rest as move_line."""
-        place = numbers("via", np.asarray(via)[:3] if np.ndim(via) == 1 else via, 3)
+        place = bounded("via", numbers("via", np.asarray(via)[:3] if np.ndim(via) == 1 else via, 3))
         return self._move("move_circle", self._pose("target", target), _CIRCLE, via=place, **how)
 
     def move_pose(self, target: Any, **how: Any) -> int:
@@ -55,6 +57,7 @@ class Commands:
         move, why, words = Struct("robot_move"), Struct("robot_refusal"), message()
         if target.shape != (6,):
             raise RobotError(f"{call}: one target of 6 numbers is wanted, got shape {target.shape}")
+        bounded("target", target)
         given: dict[str, Any] = {
             "feed": 0.0,
             "spin": 0.0,
@@ -105,7 +108,7 @@ class Commands:
         `direction`: six numbers; `speed`: share of the highest; `way` > 0: only so far, [mm], or
         [deg] where it only turns.
         """
-        six = numbers("direction", direction, 6)
+        six = bounded("direction", numbers("direction", direction, 6))
         before = {n: self._panel[n] for n in ("jog", "frame", "jog_speed", "jog_way")}
         asked = {
             "jog": six,
@@ -128,18 +131,25 @@ class Commands:
 
     def set_tool(self, tool: Any) -> None:
         """Tool X Y Z A B C in the flange's frame for moves by calls; at rest only."""
-        six = (ctypes.c_double * 6)(*numbers("tool", tool, 6))
+        six = (ctypes.c_double * 6)(*bounded("tool", numbers("tool", tool, 6), 1e4))
         if library().binding_robot_tool(self._state.pointer, six):
             raise RobotError("set_tool: not now: the arm moves", "BUSY")
         library().binding_robot_arm(self._state.pointer, self.kinematics._arm.pointer)
 
     def start(
-        self, program: str, points: str = "", *, language: str = "inform", job: str = ""
+        self,
+        program: str | Path,
+        points: str = "",
+        *,
+        language: str = "inform",
+        job: str = "",
+        folder: Path | None = None,
     ) -> None:
         """Start a program from its text: the robot language with the text of its points, or G-code.
 
         `language`: inform or gcode; a part program is planned move by move before anything moves.
-        `job`: the one to start with.
+        `job`: the one to start with. `folder`: where the files are that a part program calls; a
+        program that is a Path is read from there, and its folder is the default.
         """
         if language not in ("inform", "gcode"):
             raise RobotError(f"language = {language!r}: inform or gcode is wanted")
@@ -148,19 +158,26 @@ class Commands:
         if not self._rests():
             raise RobotError("start: not now: the arm moves", "BUSY")
         read, words = Struct("robot_program"), message()
-        texts = [text(program), text(points)]
-        places = (ctypes.c_char_p * 2)(*texts)
-        lengths = (ctypes.c_int64 * 2)(*map(len, texts))
+        texts = Texts(program, folder)
+        both = [texts.of[""], text(points)]
+        places = (ctypes.c_char_p * 2)(*both)
+        lengths = (ctypes.c_int64 * 2)(*map(len, both))
         gcode = ctypes.c_bool(language == "gcode")
         c = library()
-        if c.binding_robot_read(read.pointer, places, lengths, gcode, words):
+        refused = c.binding_robot_read(read.pointer, places, lengths, gcode, texts.file, words)
+        texts.tell()
+        if refused:
             raise RobotError(words.value.decode(), "PROGRAM")
         trial = Struct("robot_soft")
         name = text(job)
-        if c.binding_robot_start(self._state.pointer, read.pointer, name, trial.pointer, words):
+        refused = c.binding_robot_start(
+            self._state.pointer, read.pointer, name, trial.pointer, words
+        )
+        texts.tell()
+        if refused:
             first, *more = words.value.decode(errors="replace").split("\n")
             raise RobotError(first, "PROGRAM", more=more)
-        self._program, self._texts = read, texts
+        self._program, self._texts = read, (texts, both)
 
     def _rests(self) -> bool:
         reading = Struct("robot_reading")

@@ -21,9 +21,13 @@ STATUS = (
     "OTHER_BRANCH",
     "OTHER_TURN",
     "NO_CIRCLE",
+    "OFF_PLANE",
+    "NO_UNIT",
 )
 _IN_RADIANS = "OUTSIDE"
 _LENGTH = 420
+# Of places [mm], angles [deg], directions.
+MOST = 1e6
 
 
 class RobotError(InputError):
@@ -32,7 +36,8 @@ class RobotError(InputError):
     Attributes
     ----------
     status : str
-        Why: BUSY, PARAMETER, FAR, OUTSIDE, SINGULAR, OTHER_BRANCH, OTHER_TURN, NO_CIRCLE of a move;
+        Why: BUSY, PARAMETER, FAR, OUTSIDE, SINGULAR, OTHER_BRANCH, OTHER_TURN, NO_CIRCLE,
+        OFF_PLANE, NO_UNIT of a move;
         VALUE of an argument; PROGRAM of a text.
     value, limit : float
         What is wrong and how far it may go [deg] [mm]; NaN: no number decides.
@@ -80,6 +85,13 @@ def within(name: str, value: float, low: float, high: float) -> float:
         text = f"{name} = {value!r}: {low:g} to {high:g} is wanted"
         raise RobotError(text, "VALUE", number, limit)
     return float(value)
+
+
+def bounded(name: str, values: np.ndarray, most: float = MOST) -> np.ndarray:
+    """Take an array of numbers up to a limit; RobotError names the first beyond it."""
+    for k in np.flatnonzero(~(np.abs(values) <= most).ravel()):
+        within(f"{name}[{k}]", float(values.flat[k]), -most, most)
+    return values
 
 
 def numbers(name: str, values: Any, *shape: int) -> np.ndarray:

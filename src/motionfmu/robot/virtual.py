@@ -1,11 +1,12 @@
 """A virtual robot: soft controller, card and an ideal arm, exact to the clock."""
 
 import ctypes
+import warnings
 from typing import Any
 
 import numpy as np
 
-from motionfmu.binding import Station, Struct, Values, library
+from motionfmu.binding import CLOCK_HZ, Station, Struct, Values, library
 from motionfmu.robot.commands import Commands
 from motionfmu.robot.kinematics import configuration, switched_on
 from motionfmu.robot.refusal import message, within
@@ -112,7 +113,16 @@ class VirtualRobot(Commands, Station[Reading]):
 
     def _advance(self, until: ctypes.c_int64) -> None:
         program = self._program.pointer if self._program else None
+        before = self._state["underruns"]
         library().binding_robot_run(self._state.pointer, until, program)
+        if missed := self._state["underruns"] - before:
+            when, cycle = self._state["clock"] / CLOCK_HZ, self._state["cycle_time_most"] * 1e6
+            warnings.warn(
+                f"{missed} underruns of the card by {when:.6g} s: cycles of the driver "
+                f"take up to {cycle:.4g} µs (ik_time, pitch)",
+                RuntimeWarning,
+                stacklevel=4,
+            )
 
     def read(self) -> Reading:
         """What there is to see now.

@@ -119,6 +119,8 @@ def nanoseconds(key: str, seconds: float) -> int:
     """Whole nanoseconds of a time [s], positive, up to `TIME_MAX`; a ValueError names the key."""
     if seconds > TIME_MAX:
         raise ValueError(f"{key} = {seconds!r} s: {TIME_MAX:g} s are the most")
+    if seconds <= 0:
+        raise ValueError(f"{key} = {seconds!r} s: more than 0 wanted")
     ns = seconds * 1e9
     if not (math.isfinite(ns) and ns >= 1 and abs(ns - round(ns)) <= NS_TOLERANCE):
         raise ValueError(f"{key} = {seconds!r} s is not a whole number of ns")

@@ -71,6 +71,8 @@ class Asked:
             return ()
         if not self.body.results:
             checked = tuple(usual(self.scenario))
+            if self.scenario.document.body.contour and USUAL_COST not in {c.name for c in checked}:
+                checked += (column(self.scenario, USUAL_COST),)
             with self.faults.each():
                 if not checked:
                     text = "no results: name some, the scenario checks nothing"

@@ -6,7 +6,6 @@ study that is killed at any moment loses nothing but the runs in flight.
 """
 
 import contextlib
-import fcntl
 import json
 import os
 from collections.abc import Iterable
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.errors import InputError
+from motionfmu.locking import lock
 from motionfmu.study.study import Study
 from motionfmu.study.worker import CRASH, Row
 
@@ -130,10 +130,10 @@ def _locked(journal: Path) -> int:
     while True:
         file = os.open(journal, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+            lock(file, journal, "another sweep is running here")
+        except InputError:
             os.close(file)
-            raise InputError(f"{journal}: another sweep is running here") from None
+            raise
         if _is_same(file, journal):
             return file
         os.close(file)  # the one that held it has removed it in between

@@ -3,7 +3,6 @@
 import contextlib
 import os
 import subprocess
-import sys
 import tempfile
 from collections import deque
 from collections.abc import Iterator, Sequence
@@ -12,8 +11,8 @@ from multiprocessing import Pipe
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
+from motionfmu.children import child
 from motionfmu.errors import InputError
-from motionfmu.scenarios.fmus import PACKAGE
 from motionfmu.study.axes import Point
 from motionfmu.study.study import Job
 from motionfmu.study.worker import CRASH, Row
@@ -44,18 +43,11 @@ class _Process:
 
 def _start(job: Job, temporary: str) -> _Process:
     ours, theirs = Pipe()
-    own = {"TMPDIR": temporary, **dict.fromkeys(THREADS, "1")}
-    path = [str(PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])]
     with theirs:
         number = theirs.fileno()
         program = f"from motionfmu.study.worker import main; main({number})"
-        process = subprocess.Popen(
-            [sys.executable, "-P", "-c", program],
-            pass_fds=[number],
-            stdin=subprocess.DEVNULL,
-            env={**os.environ, **own, "PYTHONPATH": os.pathsep.join(path)},
-            start_new_session=True,  # an interrupt from the keyboard is for us alone
-        )
+        command, options = child(program, TMPDIR=temporary, **dict.fromkeys(THREADS, "1"))
+        process = subprocess.Popen(command, pass_fds=[number], stdin=subprocess.DEVNULL, **options)
     ours.send(job)
     return _Process(process, ours)
 

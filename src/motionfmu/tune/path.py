@@ -12,6 +12,8 @@ from motionfmu.contour.error import AHEAD
 from motionfmu.run import Result
 from motionfmu.tune.steps import Array
 
+# Each step of a run is a row, whatever the scenario records: the model is compared at its instants.
+EVERY = 1
 # Distance between two samples of the path [s]: about one command of the card.
 SAMPLE = 1e-3
 # The same where a search asks only where to look: costs within 5 % where limits are kept.

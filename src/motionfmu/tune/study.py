@@ -15,7 +15,7 @@ from motionfmu.tune.axis import AxisStudy, Motion
 from motionfmu.tune.curve import margin
 from motionfmu.tune.family import Family
 from motionfmu.tune.move import MoveCost
-from motionfmu.tune.path import ROUGH, PathCost
+from motionfmu.tune.path import EVERY, ROUGH, PathCost
 from motionfmu.tune.problem import ON_PATH, Margins, Problem
 from motionfmu.tune.steps import Array
 
@@ -60,7 +60,8 @@ class Values:
 class Study(Family):
     """A tuning problem, ready to be evaluated.
 
-    `base` is a run of the scenario with its present gains and `set`.
+    `base` is a run of the scenario with its present gains and `set`, each step a row; InputError if
+    there are fewer.
     """
 
     def __init__(
@@ -70,6 +71,9 @@ class Study(Family):
         base: Result,
         set: Mapping[str, Any] | None = None,
     ) -> None:
+        every = base.options["every"] or base.scenario.document.body.record.every
+        if every != EVERY:
+            raise InputError(f"a tuning needs each step of its run, not one of {every}: every = 1")
         super().__init__(scenario, problem, base, set or {})
         first = next(iter(self.axes))
         self.path, self.lag = self._path(first, self.parts[0][first])

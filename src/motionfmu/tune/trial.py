@@ -9,6 +9,7 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.run import Scenario, Session
 from motionfmu.tune.move import MoveCost
+from motionfmu.tune.path import EVERY
 from motionfmu.tune.solve import RanAway
 
 # Values of the first look, and of each finer one; costs within this share are the same.
@@ -69,7 +70,8 @@ def tried(
     whole = port.type == "Int32"
     found: dict[float, Look] = {}
 
-    with Session(scenario, [name], set={n: v for n, v in set.items() if n != name}) as session:
+    fixed = {n: v for n, v in set.items() if n != name}
+    with Session(scenario, [name], set=fixed, every=EVERY) as session:
 
         def look(values: Any) -> None:
             for value in values:

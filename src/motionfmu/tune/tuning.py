@@ -11,6 +11,7 @@ import numpy as np
 from motionfmu.errors import InputError
 from motionfmu.run import Result, Scenario, load
 from motionfmu.tune.move import MoveCost
+from motionfmu.tune.path import EVERY
 from motionfmu.tune.problem import Problem, check_names, problem
 from motionfmu.tune.result import Run, Tuned, settings
 from motionfmu.tune.solve import TOLERANCE, merit, solve
@@ -86,7 +87,7 @@ def tune(
         raise InputError("trial: only for a scenario that is judged by command and position")
     check_names(asked, loaded)
     given = dict(set or {})
-    base = loaded.run(set=given, progress=lambda share: progress("path", share))
+    base = loaded.run(set=given, every=EVERY, progress=lambda share: progress("path", share))
     study = Study(loaded, asked, base, given)
     found = solve(study, lambda share: progress("gains", share))
     z, values = rounded(study, found.z)
@@ -105,9 +106,10 @@ def tune(
     present = settings(study, study.present)
     for i, p in enumerate(plants):
         progress("FMUs", i / len(plants))
-        ran = base if p == 0 else loaded.run(set={**given, **present, **study.plants[p]})
+        plant = study.plants[p]
+        ran = base if p == 0 else loaded.run(set={**given, **present, **plant}, every=EVERY)
         tuned.before.append(_run(study, study.present, p, ran))
-        ran = loaded.run(set={**given, **tuned.settings, **study.plants[p]})
+        ran = loaded.run(set={**given, **tuned.settings, **plant}, every=EVERY)
         tuned.after.append(_run(study, z, p, ran))
     tuned.seconds = time.perf_counter() - begun
     return tuned

@@ -120,8 +120,10 @@ def arm_of(run: Recorded, joints: str) -> Arm | None:
         return None
 
     def told(name: str, usual: tuple[float, ...]) -> tuple[float, ...]:
-        there = name in ports and ports[name].count == len(usual)
-        return tuple(map(float, run.parameter(f"{component}.{name}"))) if there else usual
+        if name not in ports or ports[name].count != len(usual):
+            return usual
+        to_si = units.parse(ports[name].unit or "1").factor
+        return tuple(to_si * float(x) for x in run.parameter(f"{component}.{name}"))
 
     lengths = tuple(1e3 * float(run.parameter(f"{component}.{n}")[0]) for n in LENGTHS)
     offsets, signs = told(OFFSETS, (0.0,) * 6), told(SIGNS, (1.0,) * 6)

@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -12,13 +13,14 @@ from motionfmu.contour.circles import CircularTest
 from motionfmu.explain import ballbar
 from motionfmu.explain.ballbar import Signature
 from motionfmu.explain.decompose import Effect, Explanation
+from motionfmu.explain.theory import CornerRow
 from motionfmu.report.causes.explain_picture import CAUSE, FORMULA, write_picture
 from motionfmu.report.formula import readable
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.polar_plot import polar_figure
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
-from motionfmu.report.tables import RMS, cards, circle_table, overrides, table
+from motionfmu.report.tables import CORNERS_SHOWN, RMS, cards, circle_table, overrides, table
 from motionfmu.run.decimate import keep_peaks
 
 PAGE, NUMBERS = "report.html", "result.json"
@@ -213,6 +215,15 @@ def _circle_title(test: CircularTest) -> str:
 
 
 def _corners(found: Explanation) -> str:
+    """Those with the largest errors; the others are behind a line that opens them."""
+    worst = sorted(found.corners, key=lambda c: -c.error)
+    shown = _corner_rows(worst[:CORNERS_SHOWN])
+    if not (rest := worst[CORNERS_SHOWN:]):
+        return shown
+    return f"{shown}<details><summary>{len(rest)} more</summary>{_corner_rows(rest)}</details>"
+
+
+def _corner_rows(corners: Sequence[CornerRow]) -> str:
     rows = [
         (
             f"{c.lines[0]} to {c.lines[1]}",
@@ -223,7 +234,7 @@ def _corners(found: Explanation) -> str:
             length(c.ideal),
             "" if c.theory is None else length(c.theory),
         )
-        for c in found.corners
+        for c in corners
     ]
     heads = ("Lines", "Kind", "Angle", "Speed", "Error", "Servo and path only", "Theory")
     return table(heads, rows, numeric=2)

@@ -55,7 +55,9 @@ def plan_page(name: str, plan: Plan, drawing: Drawing, numbers: dict[str, Any]) 
         told = [(f"{x.line}", f"{x.byte}", f"{x.count}", escape(x.text)) for x in drawing.notes]
         heads = ("line", "byte", "times", "passed over")
         page.section("Notes", "What the file says that draws nothing.", table(heads, told, 4))
-    return page.text(Frame(name, "A drawing as a job of a network card", "plan", [], FOOTER))
+    which = f", page {drawing.page} of {drawing.pages}" if drawing.pages > 1 else ""
+    about = f"A drawing as a job of a network card{which}"
+    return page.text(Frame(name, about, "plan", [], FOOTER))
 
 
 def _runs(mask: np.ndarray) -> list[tuple[int, int]]:

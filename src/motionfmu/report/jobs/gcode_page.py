@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from html import escape
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from motionfmu.gcode import Program, Stroke, Summary
+from motionfmu.gcode import Fault, Program, Stroke, Summary
 from motionfmu.report.packed import packed
 from motionfmu.report.path_plot import CAMERA, scene
 from motionfmu.report.sheet import Frame, Sheet
@@ -68,7 +69,7 @@ def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Str
     page.section("Extents", "", _extents(summary))
     page.section("Tools", "", _tools(summary))
     if program.notes:
-        rows = [(f"{n.line}", escape(n.text), n.why) for n in program.notes]
+        rows = [(f"{n.file} {n.line}".strip(), escape(n.text), n.why) for n in program.notes]
         told = table(("line", "text", "note"), rows, numeric=3)
         page.section("Notes", "Accepted, and without effect here; each once.", told)
     return page.text(Frame(name, "A part program", "program", [], FOOTER))
@@ -189,13 +190,20 @@ def _ends(points: Any, space: bool) -> dict[str, Any]:
     return {a: packed(points[:, i]) for i, a in enumerate("xyz"[: 3 if space else 2])}
 
 
+def place(name: str, f: Fault) -> str:
+    """Where a fault or a note stands; a file that the program calls is beside it."""
+    file = str(Path(name).with_name(f"{f.file}.ngc")) if f.file else name
+    return f"{file}:{f.line}:{f.column}"
+
+
 def fault_lines(name: str, program: Program) -> list[str]:
     """Each fault with its place, its line and a mark below the text."""
-    lines = program.text.split("\n")
+    texts = {"": program.text, **program.files}
     told = []
     for f in program.faults:
+        lines = texts[f.file].split("\n")
         about = f' "{f.text}"' if 0 < len(f.text) <= SHORT else ""
-        told.append(f"{name}:{f.line}:{f.column}: {f.why}{about}")
+        told.append(f"{place(name, f)}: {f.why}{about}")
         if 0 < f.line <= len(lines):
             text = lines[f.line - 1].removeprefix("\ufeff").rstrip("\r").replace("\t", " ")
             told += [f"    {text}", " " * (f.column + 3) + "^" + "~" * max(0, f.length - 1)]

@@ -30,8 +30,8 @@ FOOTER = (
 )
 
 
-def page_text(axis: AxisModel, studies: Sequence[LoopStudy]) -> str:
-    """The whole HTML page."""
+def page_text(axis: AxisModel, studies: Sequence[LoopStudy], about: str = "") -> str:
+    """The whole HTML page; `about` is what the operating point is and whence."""
     page = Sheet()
     if told := worst(axis):
         note = "The model is the worst that the FMUs can become; they are not run."
@@ -44,7 +44,8 @@ def page_text(axis: AxisModel, studies: Sequence[LoopStudy]) -> str:
         _add(page, study, f"loop{k}", _gains(axis, study))
     page.section("Operating point", _point_note(axis), _points(axis))
     name = f"{axis.scenario.name}, axis {axis.axis}"
-    frame = Frame(name, axis.scenario.document.about, "margins report", [], FOOTER)
+    head = f"{axis.scenario.document.about} {about}".strip()
+    frame = Frame(name, head, "margins report", [], FOOTER)
     return page.text(frame)
 
 
@@ -204,22 +205,34 @@ def kp_at(limit: Limit, study: LoopStudy, gains: Sequence[LoopGain]) -> list[flo
     return [g.at(limit.gain).kp for g in gains if g.name == study.gain]
 
 
+def point_line(axis: AxisModel, whence: str) -> str:
+    """What the model is linearised about, in one line."""
+    if axis.at:
+        end = axis.scenario.resolver.end
+        units = {name: end(name, "at", name).port.unit or "" for name in axis.at}
+        shown = (f"{name} = {value:.6g} {units[name]}".strip() for name, value in axis.at.items())
+        point = ", ".join(shown)
+        other = "; --at states another" if whence != "stated" else ""
+        return f"Operating point: {point} ({whence}){other}"
+    friction = "friction is the steep slope of a part that sticks"
+    return f"Operating point: at rest ({whence}), where {friction}; --at states another"
+
+
 def _point_note(axis: AxisModel) -> str:
     told = [f"{escape(n)} = {v:g}" for n, v in axis.at.items()]
     if axis.others:
         joints = ", ".join(map(str, axis.others))
-        stated = f"Stated: {', '.join(told)}. " if told else ""
+        stated = f"At {', '.join(told)}. " if told else ""
         return (
             f"{stated}At rest where it starts, held by the"
             f" drives' integrals. Axes {joints} are coupled with it, and held by their own loops."
             " Friction is the steep slope of a part that sticks; a gap is as the load has it."
         )
     if told:
-        stated = f"Stated: {', '.join(told)}."
         kept = f" {escape(text)}." if (text := held(axis)) else ""
-        return f"{stated}{kept} The rest follows: a uniform motion.{_over(axis)}"
+        return f"At {', '.join(told)}.{kept} The rest follows: a uniform motion.{_over(axis)}"
     return (
-        "Nothing was stated: the state at the start, at rest. Friction there is the steep slope of"
+        "The state at the start, at rest. Friction there is the steep slope of"
         " a part that sticks; state a speed to linearise about a motion."
     )
 

@@ -100,7 +100,7 @@ def nyquist(study: LoopStudy) -> Figure:
         ends = -(1.0 + half) / (1.0 - half), -(1.0 - half) / (1.0 + half)
         disk = _circle(sum(ends) / 2.0, 0.0, (ends[1] - ends[0]) / 2.0, color=RED, width=1)
         shapes.append(disk | {"fillcolor": "rgba(213,94,0,0.10)"})
-    point = _line(np.array([-1.0]), np.array([0.0]), "-1", INK)
+    point = _line(np.array([-1.0]), np.array([0.0]), "\N{MINUS SIGN}1", INK)
     mark = {"mode": "markers", "marker": {"symbol": "cross", "size": 9, "color": INK}}
     data = [
         _line(values.real, values.imag, "0 to half the sampling rate", BLUE),

@@ -124,14 +124,18 @@ def _best(outcome: "Outcome") -> str:
     known = np.flatnonzero(np.isfinite(cost_of(outcome)))
     order = known[np.argsort(cost_of(outcome)[known], kind="stable")][:BEST_SHOWN]
     words = {True: "✓", False: "✗", None: ""}
+    names = [c.name for c in study.columns]
+    first = sorted(
+        range(len(names)), key=lambda k: names[k] != study.cost
+    )  # the cost, then as asked
     body = []
     for i in order:
         row = outcome.rows[i]
-        numbers = [*study.points[row.run], *row.values]
+        numbers = [*study.points[row.run], *(row.values[k] for k in first)]
         mark = escape(row.status if row.status != "ok" else words[row.checks])
         body.append([str(row.run), mark, *map(_number, numbers)])
     units = [label(a.name, a.unit) for a in study.axes]
-    units += [label(c.name, c.unit) for c in study.columns]
+    units += [label(study.columns[k].name, study.columns[k].unit) for k in first]
     return table(["Run", "Checks", *map(escape, units)], body, numeric=2)
 
 

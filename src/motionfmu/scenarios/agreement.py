@@ -1,0 +1,93 @@
+"""Whether FMUs that describe the same thing, such as an arm and its controller, agree on it."""
+
+import functools
+import json
+from collections.abc import Iterator, Mapping, Sequence
+
+from motionfmu import units
+from motionfmu.fmu.inside import AGREE, EXTRA
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.port import Port
+from motionfmu.scenarios.system import System
+from motionfmu.scenarios.values import start_values
+
+# Values in SI that differ by less, or by this share, are equal: 1 um, 0.2 arc seconds. It is less
+# than a machine repeats, and more than what printed digits lose.
+CLOSE = 1e-6
+
+
+@functools.cache
+def quantities(fmu: str) -> Mapping[str, str]:
+    """Parameter by quantity, such as arm.start: what an FMU says of things outside it."""
+    if not fmus.is_ours(fmu):
+        return {}
+    with fmus.opened(fmu) as archive:
+        file = f"{EXTRA}/{AGREE}"
+        there = file in archive.namelist()
+        return dict(json.loads(archive.read(file))) if there else {}
+
+
+def warnings(system: System) -> list[str]:
+    """A sentence for each quantity of which two FMUs along the wires have different values.
+
+    An FMU is compared with the nearest ones behind its outputs that know the quantity, through
+    others that do not; two of the same kind, such as two controllers, are never compared.
+    """
+    given = {s.end.name: s.values for s in system.settings}
+    behind: dict[str, set[str]] = {}
+    for wire in system.wires:
+        behind.setdefault(wire.source.component, set()).add(wire.target.component)
+    known = {c: quantities(fmu) for c, fmu in system.components.items()}
+    found: dict[frozenset[str], str] = {}
+    for one, own in known.items():
+        for quantity, name in own.items():
+            for other in _nearest(one, behind, {c for c in known if quantity in known[c]}):
+                if system.components[one] == system.components[other]:
+                    continue
+                pair = f"{one}.{name}", f"{other}.{known[other][quantity]}"
+                ports = [fmus.ports(system.components[p.partition(".")[0]]) for p in pair]
+                sides = [
+                    (p, port[p.partition(".")[2]]) for p, port in zip(pair, ports, strict=True)
+                ]
+                if frozenset(pair) not in found and (told := _apart(sides, given)):
+                    found[frozenset(pair)] = f"{told}: both mean {quantity}"
+    return list(found.values())
+
+
+def _nearest(start: str, behind: Mapping[str, set[str]], knowing: set[str]) -> Iterator[str]:
+    """The first components along the wires that know a quantity, too; sorted in each distance."""
+    seen, edge = {start}, {start}
+    while edge:
+        edge = {t for c in edge for t in behind.get(c, ())} - seen
+        seen |= edge
+        yield from sorted(edge & knowing)
+        edge -= knowing
+
+
+def _apart(sides: list[tuple[str, Port]], given: Mapping[str, Sequence[object]]) -> str:
+    """The first elements that differ, with names and values; empty if none does."""
+    (a, left), (b, right) = sides
+    if left.count != right.count:
+        return f"{a} has {left.count} elements, {b} has {right.count}"
+    factors = [units.parse(port.unit or "1").factor for port in (left, right)]
+    values = [_values(port, given.get(name, ())) for name, port in sides]
+    wrong = []
+    for k, (x, y) in enumerate(zip(*values, strict=True), 1):
+        p, q = x * factors[0], y * factors[1]
+        if abs(p - q) > CLOSE * max(1.0, abs(p), abs(q)):
+            at = f"[{k}]" if left.shape else ""
+            wrong.append(f"{a}{at} = {_shown(x, left)} but {b}{at} = {_shown(y, right)}")
+    more = f" and {len(wrong) - 1} more of its elements" if len(wrong) > 1 else ""
+    return wrong[0] + more if wrong else ""
+
+
+def _values(port: Port, given: Sequence[object]) -> list[float]:
+    """What a scenario gives, else the default, one number for each element."""
+    values = [float(str(x)) for x in given or start_values(port)]
+    return values * port.count if len(values) == 1 else values
+
+
+def _shown(value: float, port: Port) -> str:
+    """A value with its unit."""
+    unit = units.spelled(port.unit)
+    return f"{value:.9g}{'' if unit in ('', '°') else ' '}{unit}"
