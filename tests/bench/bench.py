@@ -3,7 +3,7 @@
 Every time is processor time, the best of several rounds, and the rounds take turns, so that a busy
 machine slows all of them alike; instructions are counted beside. README.md beside this file says
 what each line means and where the time goes. `--renew` keeps the figures as those to compare with,
-`--quick` takes one round, `--long` long work alone.
+`--quick` takes one round, a rough look that is never kept; `--long` does long work alone.
 """
 
 import subprocess
@@ -42,7 +42,8 @@ PULSE_AXES = Path(__file__).parent / "pulse_axes"
 BUILT = ROOT / "build/tests/bench"
 CARD_COST = BUILT / "card_cost"
 INTERPRETER_COST = BUILT / "interpreter_cost"
-ROUNDS = 1 if "--quick" in sys.argv else 5
+QUICK, RENEW = "--quick" in sys.argv, "--renew" in sys.argv
+ROUNDS = 1 if QUICK else 5
 SLOW_STOP = 0.2  # [s] simulated by the engines that go through Python at every step
 
 
@@ -194,13 +195,13 @@ def system_figures(
     return found
 
 
-def main(renew: bool) -> None:
+def main(kept: figures.Kept) -> None:
     best = next(e for e in ("fused", "native") if e in ENGINES)
     quick = [e for e in ("fused", "native") if e in ENGINES]
     demos = {f"{e}, FMI {f}": Timed(DEMO, engine=e, fmi=f) for e in quick for f in (3, 2)}
     demos |= {
         f"{e}, FMI {f}": Timed(DEMO, engine=e, fmi=f, stop=SLOW_STOP)
-        for e, f in (("python", 3), ("python", 2), ("fmpy", 2))
+        for e, f in (("python", 3), ("python", 2), ("fmpy", 3), ("fmpy", 2))
     }
     sixes = {f"{e}, FMI 3": Timed(SIX_AXES, engine=e) for e in quick}
     native, six = demos[f"{best}, FMI 3"], sixes[f"{best}, FMI 3"]
@@ -265,7 +266,7 @@ def main(renew: bool) -> None:
     counts = counting.count(loops, studies.loops(study.cores))
 
     found = system_figures("demo", by_hand, demos, counts, 1.1)
-    found += system_figures("six axes", by_hand_six, sixes, counts, 1.2)
+    found += system_figures("six axes", by_hand_six, sixes, counts, 1.1)
     print(f"\n{'simulated s per processor s':34}{'loop':>10}{'whole run':>10}")
     for name, run in (
         ("demo", native),
@@ -319,11 +320,14 @@ def main(renew: bool) -> None:
         Figure("state of mcc at rest, us to restore", 1e6 * library.restore, most=5.0),
         *study.figures(counts),
     ]
-    figures.show(found, counting.method(), renew)
+    figures.show(found, counting.method(), kept)
 
 
 if __name__ == "__main__":
+    if QUICK and RENEW:
+        sys.exit("bench: --quick takes one round, which --renew does not keep")
     if "--long" in sys.argv:
-        figures.show(long_run.figures_of_long_work(), None, renew=False)
+        figures.show(long_run.figures_of_long_work(), None, figures.Kept.SHOWN)
     else:
-        main(renew="--renew" in sys.argv[1:])
+        one, more = figures.Kept.ONE_ROUND, figures.Kept.SHOWN
+        main(one if QUICK else figures.Kept.NEW if RENEW else more)

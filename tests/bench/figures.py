@@ -4,6 +4,7 @@ import json
 import math
 import platform
 from dataclasses import dataclass
+from enum import Enum, auto
 from pathlib import Path
 
 LAST = Path(__file__).parent / "last.json"
@@ -40,8 +41,16 @@ def machine(method: str | None) -> str:
     return f"{platform.machine()}, {platform.python_version()}, counts: {method or 'none'}"
 
 
-def show(figures: list[Figure], method: str | None, renew: bool) -> None:
-    """Print all beside what is asked and what was last; keep them if told to."""
+class Kept(Enum):
+    """What becomes of the figures."""
+
+    SHOWN = auto()
+    NEW = auto()  # those to compare with from now on
+    ONE_ROUND = auto()  # of which times are no figures: one may be twice the next
+
+
+def show(figures: list[Figure], method: str | None, kept: Kept) -> None:
+    """Print all beside what is asked and what was last; times of one round without judging them."""
     last = json.loads(LAST.read_text()) if LAST.exists() else {"machine": "", "figures": {}}
     here = machine(method)
     print(f"\n{'':52}{'now':>10}{'last':>10}   asked")
@@ -50,11 +59,21 @@ def show(figures: list[Figure], method: str | None, renew: bool) -> None:
             continue
         before = last["figures"].get(f.name)
         same = before is not None and (not f.counted or last["machine"] == here)
+        if kept is Kept.ONE_ROUND and not f.counted:
+            about = f"about {float(f'{f.value:.2g}'):g}"
+            print(f"{f.name:52}{about:>10}{'':10}   {f.asked.removesuffix(' MISSED')}")
+            continue
         told = f"{before:10.5g}" if same else f"{'-':>10}"
         mark = "   WORSE" if same and f.worse(before) else ""
         print(f"{f.name:52}{f.value:10.5g}{told}   {f.asked}{mark}")
     print(f"here: {here}; last: {last['machine'] or 'none'}")
-    if renew:
-        kept = {f.name: float(f"{f.value:.5g}") for f in figures if not math.isnan(f.value)}
-        text = json.dumps({"machine": here, "figures": kept}, indent=1)
+    if kept is Kept.ONE_ROUND:
+        print(
+            "one round: its times, and what was printed before, are a rough look; nothing is kept"
+        )
+    if kept is Kept.NEW:
+        found = [f for f in figures if not math.isnan(f.value)]
+        values = {f.name: float(f"{f.value:.5g}") for f in found}
+        asked = {f.name: f.asked for f in found if f.asked}
+        text = json.dumps({"machine": here, "figures": values, "asked": asked}, indent=1)
         LAST.write_text(text + "\n")

@@ -17,6 +17,7 @@ import ctypes
 import itertools
 import os
 
+import pytest
 from conftest import ROOT
 from hypothesis import settings
 from hypothesis import strategies as st
@@ -32,8 +33,6 @@ from hypothesis.stateful import (
 RUNS = settings(
     max_examples=int(os.environ.get("CARD_EXAMPLES", "120")),
     stateful_step_count=int(os.environ.get("CARD_STEPS", "60")),
-    deadline=None,
-    derandomize=True,
 )
 
 LIBRARY = ctypes.CDLL(os.environ.get("CARD_BRUTE", str(ROOT / "build" / "lib" / "card_brute.so")))
@@ -479,6 +478,7 @@ class Cards(RuleBasedStateMachine):
             assert fired <= served or card.flags[page] >> bit & 1, f"page {page} bit {bit}"
 
 
+@pytest.mark.hypothesis
 def test_the_card_is_what_ticking_gives() -> None:
     run_state_machine_as_test(Cards, settings=RUNS)
 

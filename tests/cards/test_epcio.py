@@ -311,7 +311,7 @@ def test_refused_frames_are_counted_and_explained() -> None:
     fmu.free()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     length=st.integers(10, 12),
     divider=st.integers(1, 20),

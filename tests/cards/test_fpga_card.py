@@ -17,8 +17,6 @@ from hypothesis import strategies as st
 
 RUNS = settings(
     max_examples=int(os.environ.get("CARD_EXAMPLES", "150")),
-    deadline=None,
-    derandomize=True,
     phases=[Phase.explicit, Phase.generate],
 )
 CLOCK = 25e-9  # [s]

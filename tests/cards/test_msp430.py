@@ -39,7 +39,7 @@ moves = st.lists(
 )
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     moves=moves,
     start=st.sampled_from([0, 1, -1, 16, 15, -16, 5000]),

@@ -26,8 +26,6 @@ from motionfmu.units import spelled
 ROOT = Path(__file__).parents[2]
 RUNS = settings(
     max_examples=int(os.environ.get("CARD_EXAMPLES", "12")),
-    deadline=None,
-    derandomize=True,
     phases=[Phase.explicit, Phase.generate],
 )
 START, PAUSE, STOP, HOME, RESET = range(32, 37)

@@ -59,7 +59,6 @@ def test_delay_of_a_chain(
     tmp_path: Path, engine: str, parts: float, dac: float, torque: float
 ) -> None:
     (tmp_path / "scenario.toml").write_text(SCENARIO)
-    fmi = 2 if engine == "fmpy" else 3
-    result = motionfmu.load(tmp_path).run(engine=engine, fmi=fmi, step=PERIOD / parts)
+    result = motionfmu.load(tmp_path).run(engine=engine, step=PERIOD / parts)
     assert first_change(result, "card.dac") == pytest.approx(dac)
     assert first_change(result, "drives.torque") == pytest.approx(torque)

@@ -16,8 +16,11 @@ struct narrow {
     char *shown;
 };
 
-static int64_t look(void *context, int64_t offset, const char **text)
+static int64_t look(void *context, const char *file, int64_t offset, const char **text)
 {
+    if (file[0]) {
+        return SOURCE_NONE;
+    }
     struct narrow *n = context;
     const int64_t left = n->length - offset;
     const int64_t size = left < SOURCE_WINDOW ? left : SOURCE_WINDOW;

@@ -309,7 +309,9 @@ static void come_to_rest(struct bytes *b)
     }
     pins(&s.lines, off);
     pins(&cut.lines, off);
-    for (int64_t n = 0; n < 400; n++) {
+    /* A run is short where a module's cycle is: the time counts, not the runs. */
+    const int64_t end = s.clock + 8 * (int64_t)STATION_HZ;
+    while (s.clock < end) {
         for (int i = 0; i < 2; i++) {
             MCC_clear_error(both[i]);
             MCC_motion_abort(both[i]);

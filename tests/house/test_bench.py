@@ -1,11 +1,86 @@
-"""The benchmark's own loops record what their scenarios do, or its comparison would stop."""
+"""The benchmark's own loops record what their scenarios do; its table says what it misses."""
 
+import json
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 from conftest import ROOT
 
 import motionfmu
+
+sys.path.insert(0, str(ROOT / "tests/bench"))
+import figures
+from figures import Figure
+
+FOUND = [
+    Figure("loop, times real time", 60.0, least=50.0),
+    Figure("sweep, efficiency", 0.85, least=0.9),
+    Figure("instructions a step", 10100.0, counted=True),
+    Figure("instructions / limit", 1.125, most=1.1, counted=True),
+    Figure("not measured", float("nan"), most=1.0),
+]
+
+
+@pytest.fixture
+def last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A table of the time before, on this machine."""
+    file = tmp_path / "last.json"
+    before = {"loop, times real time": 90.0, "instructions a step": 10000.0}
+    file.write_text(json.dumps({"machine": figures.machine("perf"), "figures": before}))
+    monkeypatch.setattr(figures, "LAST", file)
+    return file
+
+
+def test_what_is_missed_is_marked_and_kept_so(last: Path, capsys) -> None:
+    figures.show(FOUND, "perf", figures.Kept.NEW)
+    told = {line[:52].strip(): line[52:] for line in capsys.readouterr().out.splitlines()}
+    assert told["loop, times real time"].split() == "60 90 at least 50 WORSE".split()
+    assert told["sweep, efficiency"].split() == "0.85 - at least 0.9 MISSED".split()
+    assert told["instructions / limit"].split() == "1.125 - at most 1.1 MISSED".split()
+    kept = json.loads(last.read_text())
+    assert kept["asked"] == {
+        "loop, times real time": "at least 50",
+        "sweep, efficiency": "at least 0.9 MISSED",
+        "instructions / limit": "at most 1.1 MISSED",
+    }
+    assert list(kept["figures"]) == [f.name for f in FOUND[:4]]
+
+
+def test_one_round_gives_no_figures_of_time(last: Path, capsys) -> None:
+    before = last.read_text()
+    figures.show(FOUND, "perf", figures.Kept.ONE_ROUND)
+    out = capsys.readouterr().out
+    told = {line[:52].strip(): line[52:] for line in out.splitlines()}
+    assert told["loop, times real time"].split() == ["about", "60", "at", "least", "50"]
+    assert told["sweep, efficiency"].split() == ["about", "0.85", "at", "least", "0.9"]
+    assert told["instructions a step"].split() == "10100 10000".split()
+    assert told["instructions / limit"].split() == "1.125 - at most 1.1 MISSED".split()
+    assert out.count("one round") == 1 and "nothing is kept" in out
+    assert last.read_text() == before
+
+
+def test_one_round_is_never_kept() -> None:
+    bench = [sys.executable, ROOT / "tests/bench/bench.py", "--quick", "--renew"]
+    path = {"PYTHONPATH": str(ROOT / "tests")}
+    done = subprocess.run(bench, capture_output=True, text=True, env=path)
+    assert done.returncode != 0 and done.stdout == ""
+    assert done.stderr == "bench: --quick takes one round, which --renew does not keep\n"
+
+
+def test_the_committed_table_marks_what_it_misses() -> None:
+    kept = json.loads((ROOT / "tests/bench/last.json").read_text())
+    bounds = {"most": "at most", "least": "at least"}
+    assert len(kept["asked"]) > 40 and set(kept["asked"]) <= set(kept["figures"])
+    for name, words in kept["asked"].items():
+        ((key, number),) = [
+            (key, float(words.removeprefix(text).split()[0]))
+            for key, text in bounds.items()
+            if words.startswith(text)
+        ]
+        assert Figure(name, kept["figures"][name], **{key: number}).asked == words
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import FMUS, ROOT
+
+import motionfmu
 
 # Core and program of each example, its package, its inputs.
 EXAMPLES = [
@@ -116,6 +118,23 @@ def test_the_example_of_the_robot_station_runs() -> None:
     assert code
     told, where = output(sys.executable, "-c", code[1]).splitlines()
     assert "joint 1 to 190 deg, limit 180 deg" in told and where == "[1000.0, 100.0, 900.0]"
+
+
+def test_a_master_of_ones_own_finds_the_bits_of_a_run(tmp_path: Path) -> None:
+    folder = ROOT / "examples/fmpy_loop"
+    told = output(sys.executable, folder / "circle.py", FMUS, cwd=tmp_path)
+    run = motionfmu.load("circle").run()
+    error = run.contour().error.max * 1e3  # [µm]
+    assert told == f"feed 100.000 mm/s, largest contour error {error:.1f} µm\n"
+    with np.load(tmp_path / "circle.npz") as found:
+        assert len(found.files) == 6
+        for name, values in found.items():
+            own = run[name].reshape(len(run.time), -1).astype(float)
+            assert values.tobytes() == own.tobytes(), name
+    imported = re.findall(r"^(?:import|from) (\w+)", (folder / "circle.py").read_text(), re.M)
+    assert set(imported) - sys.stdlib_module_names == {"fmpy", "numpy"}
+    files = {f.name for f in folder.iterdir()} - {"README.md"}
+    assert files == set(re.findall(r"\]\(([\w.]+)\)", (folder / "README.md").read_text()))
 
 
 def test_the_script_of_a_student_shows_half_the_backlash(tmp_path: Path) -> None:

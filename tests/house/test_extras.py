@@ -1,8 +1,11 @@
 """What is not in the base of the package is told by the extra that brings it, at once."""
 
+import json
 import re
 import tomllib
+from importlib import metadata
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from conftest import ROOT
@@ -18,7 +21,9 @@ import motionfmu.tune
 from motionfmu import extras
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-LARGE = "distributed|pandas|scipy|matplotlib|casadi|control|pyarrow|starlette|fmpy|ziglang"
+WHEEL = f"motionfmu-{PROJECT['version']}-....whl"
+TEXTS = {".md", ".py", ".toml", ".cmake", ".txt", ".c", ".h", ".html", ".js"}
+LARGE = "distributed|pandas|scipy|matplotlib|casadi|control|pyarrow|starlette|ziglang"
 
 
 def names(requirements: list[str]) -> set[str]:
@@ -50,7 +55,6 @@ def base(monkeypatch: pytest.MonkeyPatch) -> None:
         ("contour mismatch_line", "report"),
         ("sweep circle", "study"),
         ("run circle --pictures", "report"),
-        ("run schedule --engine fmpy", "fmpy"),
         ("card plan none.plt -c none.toml", "card"),
         ("card show none.plt --picture a.png", "report"),
     ],
@@ -58,7 +62,8 @@ def base(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_missing_extra_is_one_message(base, tmp_path: Path, line: str, extra: str) -> None:
     done = within(*line.split(), folder=tmp_path)
     assert done.returncode == 2 and done.stdout == ""
-    told = f'{", ".join(extras.EXTRAS[extra].packages)}: pip install "motionfmu[{extra}]"\n'
+    packages = extras.EXTRAS[extra].packages
+    told = f"{', '.join(packages)}: pip install {' '.join(packages)}\n"
     assert done.stderr.count("\n") == 1 and done.stderr.endswith(f" needs {told}")
     assert list(tmp_path.iterdir()) == []
 
@@ -66,7 +71,7 @@ def test_a_missing_extra_is_one_message(base, tmp_path: Path, line: str, extra: 
 def test_a_result_says_what_its_pictures_and_tables_need(base) -> None:
     result = motionfmu.load("schedule").run(stop=0.1)
     for ask, extra in ((result.plot, "report"), (result.to_pandas, "pandas")):
-        with pytest.raises(extras.Missing, match=rf"motionfmu\[{extra}\]"):
+        with pytest.raises(extras.Missing, match=f"pip install {extras.EXTRAS[extra].packages[0]}"):
             ask()
 
 
@@ -74,4 +79,29 @@ def test_gains_that_are_not_kept_are_left_out(base, tmp_path: Path, monkeypatch)
     monkeypatch.setenv("MOTIONFMU_CACHE", str(tmp_path / "cache"))
     told = " ".join(within("info", "circle").stdout.split())
     assert " gain in 1/s: a linear model needs casadi, control, " in told
-    assert 'pip install "motionfmu[tune]" ' in told
+    assert "pip install casadi control " in told
+
+
+def test_an_extra_is_asked_of_the_wheels_file(tmp_path: Path, monkeypatch) -> None:
+    """No index has the project: whoever took its name there would be installed by it."""
+    wheel = tmp_path / "my wheels" / "motionfmu-0.1.0-py3-none-any.whl"
+    given = {"url": wheel.as_uri(), "archive_info": {}}
+    own = SimpleNamespace(version="0.1.0", read_text=lambda name: json.dumps(given))
+    monkeypatch.setattr(metadata, "distribution", lambda name: own)
+    assert extras.install("tune") == f'pip install "{WHEEL}[tune]"', "the file is gone"
+    wheel.parent.mkdir()
+    wheel.touch()
+    assert extras.install("tune") == f'pip install "{wheel}[tune]"'
+    given.update(url=tmp_path.as_uri(), dir_info={"editable": True})
+    assert extras.install("study") == "pip install matplotlib pyarrow scipy", "of a checkout"
+    own.read_text = lambda name: None
+    assert extras.install("card") == f'pip install "{WHEEL}[card]"'
+
+
+def test_no_text_asks_an_index_for_the_project() -> None:
+    files = [*ROOT.glob("*.*"), *ROOT.glob("Makefile")]
+    for place in ("cmake", "docs", "examples", "fmus", "scenarios", "src"):
+        files += (f for f in (ROOT / place).rglob("*") if f.suffix in TEXTS)
+    asking = re.compile(r"pip install \S*motionfmu(?!-)")
+    found = [str(f) for f in files if f.is_file() and asking.search(f.read_text("utf-8", "ignore"))]
+    assert found == [] and len(files) > 500

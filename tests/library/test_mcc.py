@@ -37,13 +37,13 @@ def start(fmi: int, text: str | bytes, folder: Path, **values: Any) -> tuple[int
     ("text", "said"),
     [
         ("G1 X1\n\nY2 Q3\n", 'line 3: word has no use in this line "Q3", column 4'),
-        ("G1 X1 A1", 'line 1: unknown word "A1"'),
+        ("G1 X1 A1", "line 1: this machine has no rotary axes (--angles: A B C in place"),
         ("G2 X10 R4 (tight)", 'half the distance to the end "G2 X10 R4 (tight)" (4 mm, half'),
         ("G2 X10 I6", '"G2 X10 I6" (by 2 mm)'),
-        ("F60001", 'feed above max_feed [mm/min] "F60001" (60001, limit 60000)'),
+        ("S9 M3 F60001\nG84 X1 Z-1 R0", '"G84 X1 Z-1 R0" (60001, limit 60000)'),
         (
-            "G1 X10 F40000",
-            'above max_rpm [rpm] "G1 X10 F40000" (4000, limit 3000; F30000 mm/min is possible)',
+            "S9 M3 F40000\nG84 X1 Z-1 R0",
+            'above max_rpm [rpm] "G84 X1 Z-1 R0" (4000, limit 3000; F30000 mm/min is possible)',
         ),
         ("G1 X1\n\x00", "line 2: byte 0, which no text has, behind"),
         (b"G1 X1 \xff\xfe", "line 1: unexpected character"),

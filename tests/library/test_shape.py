@@ -92,6 +92,40 @@ def test_a_curve_within_the_tolerance(shape, tolerance, least, most) -> None:  #
     assert np.allclose(pieces[-1].at(np.array([pieces[-1].length]))[0][0, :2], points[-1, :2])
 
 
+def arc_gap(points: Array, arc: tuple[Array, float, float, float]) -> Array:
+    """Distance of points (n, 2) from an arc by centre, radius, first angle and sweep."""
+    centre, radius, first, sweep = arc
+    off = points - centre
+    turned = np.mod((np.arctan2(off[:, 1], off[:, 0]) - first) * np.sign(sweep), TURN)
+    ends = [
+        np.linalg.norm(off - radius * polar(np.ones(1), np.array([a])), axis=1)
+        for a in (first, first + sweep)
+    ]
+    on = np.abs(np.hypot(off[:, 0], off[:, 1]) - radius)
+    return np.where(turned <= abs(sweep), on, np.minimum(*ends))
+
+
+def test_a_corner_of_arcs_is_within_the_tolerance_of_the_arcs() -> None:
+    """Not of the chords that stand for them in the proof: these take a part of the tolerance."""
+    tolerance, heading = 0.1, -2.329
+    before = (np.array([0.0, -9.363]), 9.363, TURN / 4.0 + 4.6 / 9.363, -4.6 / 9.363)
+    normal = np.array([-math.sin(heading), math.cos(heading)])
+    behind = (24.608 * normal, 24.608, heading - TURN / 4.0, 7.825 / 24.608)
+    rows = ["merge 0", "start"]
+    for centre, radius, first, sweep in (before, behind):
+        at = (centre + polar(radius * np.ones(2), np.array([first, first + sweep]))).ravel()
+        x, y, to_x, to_y, a, b = (repr(float(v)) for v in (*at, *centre))
+        rows[1] += f" {x} {y} 0 0 0 0" if rows[1] == "start" else ""
+        rows.append(f"arc {tolerance} 100 2 {int(sweep > 0)} 1 {a} {b} {to_x} {to_y} 0 0 0 0")
+    curves = [p for p in shaped(rows)[0] if p.kind == "curve"]
+    assert len(curves) >= 1
+    far = 0.0
+    for curve in curves:
+        points = curve.at(np.linspace(0.0, curve.length, 4001))[0][:, :2]
+        far = max(far, np.minimum(arc_gap(points, before), arc_gap(points, behind)).max())
+    assert 0.9 * tolerance < far <= tolerance
+
+
 def wander(seed: int, scale: float, tolerance: float) -> tuple[list[str], Array]:
     """Lines and arcs at random, mostly nearly tangential, in all six axes."""
     dice = np.random.default_rng(seed)

@@ -105,6 +105,15 @@ def test_the_band_is_what_the_deadband_leaves(tuned: Tuned) -> None:
     assert any("controller.band" in text for text in tuned.stopped_by)
 
 
+def test_what_a_scenario_records_changes_no_trial(tuned: Tuned) -> None:
+    sparse = motionfmu.load(SCENARIO).changed(record={"every": 3})
+    asked, path = tuned.study.problem, tuned.study.path
+    assert isinstance(path, MoveCost) and tuned.trial is not None
+    ((name, ends),) = asked.trial.items()
+    again = tried(sparse, path, (name, ends, tuned.trial.limit), tuned.settings)
+    assert again == tuned.trial
+
+
 @pytest.mark.parametrize("late", [0, 1, 5])
 def test_a_command_that_is_shown_late_is_put_in_earlier(late: int) -> None:
     """What follows the command at once, and is seen as late as the command is, has no error."""

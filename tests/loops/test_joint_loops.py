@@ -20,7 +20,7 @@ from motionfmu.linear.stability import margins, response
 
 LINE = Path(__file__).resolve().parents[2] / "scenarios" / "robot_line"
 POSE = [0.2, 0.5, -0.3, 0.4, 0.7, -0.2]
-PLAIN = {f"arm.{n}": v for n, v in EXACT.items()} | {"arm.start_angle": POSE}
+PLAIN = {f"arm.{n}": v for n, v in EXACT.items()} | {"arm.start_joint": np.degrees(POSE).tolist()}
 AXES = range(1, 7)
 
 
@@ -51,7 +51,7 @@ def test_modes_with_the_motors_locked() -> None:
     links = [k for k, s in enumerate(parts.ode.states) if s.name.startswith("link")]
     roots = np.linalg.eigvals(a[np.ix_(links, links)])
     arm = Arm(**EXACT)
-    inner = arm.parameter("joint_sign") * POSE - arm.parameter("joint_offset")
+    inner = arm.parameter("joint_sign") * POSE - np.radians(arm.parameter("joint_offset"))
     stiffness = np.diag(arm.parameter("stiffness_1"))
     squares = scipy.linalg.eigh(stiffness, Pinocchio(arm).inertia(inner), eigvals_only=True)
     found = np.sort(roots.imag[roots.imag > 0.0])
@@ -65,8 +65,8 @@ def test_the_drives_hold_the_arm_where_it_starts() -> None:
     ratio = arm.parameter("gear_ratio")
     still = linear.model(LINE, 3, set=PLAIN | {"arm.paper_height": -10.0})
     pushed = still.points["arm"].values
-    q = joints(pushed, "link_angle", 3) * arm.parameter("joint_sign") - arm.parameter(
-        "joint_offset"
+    q = joints(pushed, "link_angle", 3) * arm.parameter("joint_sign") - np.radians(
+        arm.parameter("joint_offset")
     )
     assert joints(pushed, "torque", 3) * ratio == pytest.approx(
         Pinocchio(arm).gravity(q), rel=1e-6, abs=1e-6

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 
 import control
@@ -10,6 +11,7 @@ import pytest
 from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE, theory
 from typer.testing import CliRunner
 
+import motionfmu
 from motionfmu import InputError, freq, linear
 from motionfmu.cli import app
 from motionfmu.freq import limit
@@ -17,6 +19,7 @@ from motionfmu.freq.limit import Trial, simulated_gain, small_signal_gain, usual
 from motionfmu.freq.study import Asked, study
 from motionfmu.linear.loops import Limit, boundary, feedbacks, largest_gain
 from motionfmu.linear.stability import closed_poles, margins
+from motionfmu.report.servo.margin_page import point_line
 
 ENC, PHASE = "card.enc_phase", "drives.phase"
 T = 1e-4  # [s]
@@ -190,7 +193,8 @@ def run(*arguments: object):
 
 def test_the_command_writes_a_report_with_all_numbers(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    done = run(THEORY, "--set", "machine.tau=1e-3", "--out", out)
+    rest = ("--at", "machine.table_speed=0")
+    done = run(THEORY, "--set", "machine.tau=1e-3", *rest, "--out", out)
     assert done.exit_code == 0, done.output
     assert "card.enc_phase" in done.output and "mcc.p_gain[1] = 200 (Kp 47.7 1/s)" in done.output
     assert "Position gain Kp" in (out / "report.html").read_text()
@@ -214,11 +218,37 @@ def test_the_command_writes_a_report_with_all_numbers(tmp_path: Path) -> None:
         "Bode",
         "Nyquist",
         "Step response",
-        "at rest",
+        "machine.table_speed = 0 m/s (stated)",
     ):
         assert told in page
     assert numbers["operating_point"]["machine"]["values"]["motor_speed"] == 0.0
     assert list(tmp_path.iterdir()) == [out]
+
+
+def test_the_operating_point_is_the_programs_and_told_first(tmp_path: Path) -> None:
+    """At rest the demo's axis sticks: 13 degrees of phase that no cut of its circle has."""
+    done = run(DEMO, "--no-simulate", "--out", tmp_path / "a")
+    first = done.output.splitlines()[0]
+    told = re.match(r"Operating point: (\S+) = (\S+) m/s \(mean feed of the program\)", first)
+    assert told, first
+    speed = float(told[2])
+    base = motionfmu.load(DEMO)
+    cut = base.run().contour()
+    way = np.linalg.norm(np.diff(cut.run.commanded, axis=0), axis=1)[cut.cutting[1:]]
+    mean = way[way > 0.0].mean() / np.diff(cut.run.time).mean() / 1e3  # [m/s]
+    assert speed == pytest.approx(mean, rel=1e-3) and 0.09 < mean < 0.1
+    numbers = json.loads((tmp_path / "a" / "result.json").read_text())
+    outer = next(row for row in numbers["loops"] if row["at"] == ENC)
+    moving = margins(linear.model(DEMO, 1, {told[1]: mean}).loop(ENC)).phase
+    assert outer["margins"]["phase"] == pytest.approx(moving, rel=1e-3) and moving > 80.0
+    page = (tmp_path / "a" / "report.html").read_text()
+    head = page[page.index("<header>") : page.index("</header>")]
+    assert "Operating point: " in head and f"At {told[1]} = " in page and "Stated" not in page
+
+    done = run(DEMO, "--no-simulate", "--at", f"{told[1]}=0", "--out", tmp_path / "b")
+    assert done.output.splitlines()[0] == f"Operating point: {told[1]} = 0 m/s (stated)"
+    still = point_line(linear.model(DEMO), "no path tells a speed")
+    assert still.startswith("Operating point: at rest (no path tells a speed), where friction is")
 
 
 @pytest.mark.parametrize(
@@ -252,7 +282,7 @@ def test_the_running_fmus_do_what_the_model_says(scenario, axis, at, monkeypatch
 def test_what_was_not_excited_is_left_out_and_told(tmp_path: Path) -> None:
     """A quarter count beside friction that sticks: nothing small enough stands above rounding."""
     out = tmp_path / "out"
-    done = run(DEMO, "--loop", ENC, "--out", out)
+    done = run(DEMO, "--loop", ENC, "--at", "machine.motor_speed=0", "--out", out)
     told = "53 of 53 frequencies left out"
     assert done.exit_code == 0 and told in " ".join(done.output.split())
     (loop,) = json.loads((out / "result.json").read_text())["loops"]
@@ -302,3 +332,28 @@ def test_a_wrong_command_is_named_and_writes_nothing(tmp_path, arguments, told) 
     assert isinstance(done.exception, InputError)
     assert told in str(done.exception)
     assert not list(tmp_path.iterdir())
+
+
+def test_without_a_point_the_scenario_is_read_and_run_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A model that is moved to the program's speed is the one made there."""
+    seen: list[str] = []
+    own, models = motionfmu.Scenario.run, linear.axis.parts
+    monkeypatch.setattr(
+        motionfmu.Scenario, "run", lambda *a, **k: seen.append("run") or own(*a, **k)
+    )
+    monkeypatch.setattr(
+        linear.axis,
+        "parts",
+        lambda *a: seen.append("new" if a[4] is None else "kept") or models(*a),
+    )
+    done = run(DEMO, "--no-simulate", "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    assert (seen.count("new"), seen.count("run")) == (1, 1)
+
+    at = {"machine.motor_speed": 30.0}
+    moved, made = linear.model(DEMO).moved(at), linear.model(DEMO, 1, at)
+    assert moved.at == made.at and moved.points.keys() == made.points.keys()
+    z = np.exp(1j * np.array([1.0, 30.0, 900.0]) * T)
+    assert np.array_equal(moved.loop(ENC)(z), made.loop(ENC)(z))

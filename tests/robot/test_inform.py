@@ -226,7 +226,7 @@ def same_variables(core: Core, brute: Brute) -> None:
     st.lists(st.sampled_from([0.0, 0.5, -3.0, 9.75]), min_size=1, max_size=5),
     st.integers(1, 4),
 )
-@settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=100, suppress_health_check=list(HealthCheck))
 def test_programs_at_random_ask_for_the_same(
     text: str, inputs: list[int], volts: list[float], slow: int
 ) -> None:

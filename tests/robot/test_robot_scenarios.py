@@ -148,7 +148,7 @@ def test_an_emergency_stop_ends_the_program_and_the_arm_is_where_the_card_counte
     [
         ("a.ngc", "G0 X900\nG1 X950 U5 F600\n", "", ["a.ngc", "line 2", "U5"]),
         ("a.ngc", "G0 X900 A180 C180\nG1 X9000 F600\n", "", ["a.ngc", "line 2", "out of reach"]),
-        ("a.ngc", "G1 X900 F999999999\n", "", ["a.ngc", "line 1", "F999999999"]),
+        ("a.ngc", "G1 X900 F-600\n", "", ["a.ngc", "line 1", "F-600"]),
         ("a.job", "MOVJ P000\nMOVL P777 V=10\n", "", ["a.job", "2", "P777"]),
         ("a.job", "MOVJ P000 V=9\n", "", ["a.job", "1", "V"]),
         ("a.job", "MOVJ P000\n", '"soft.job" = "NONE"\n', ["a.job", "NONE"]),

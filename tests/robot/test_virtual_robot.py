@@ -235,6 +235,63 @@ def test_teach_replay_and_tool() -> None:
     assert robot.run_until_stop().joint[0] == pytest.approx(30, abs=1e-3)
 
 
+def test_a_move_of_joints_takes_no_inverse_kinematics() -> None:
+    robot = VirtualRobot()
+    robot.move_joints([60, 0, 0, 0, 90, 0])
+    end = robot.run_until_stop()
+    assert end.points_computed <= 1 and end.deadline_misses == end.underruns == 0
+    robot.move_line([600, 800, 900, 180, 0, 180], feed=100)
+    before, after = end.path_length, robot.run_until_stop().path_length
+    points = robot.read().points_computed
+    assert points == pytest.approx((after - before) / 0.1, abs=2)
+
+
+def test_underruns_are_told() -> None:
+    robot = VirtualRobot(ik_time=80e-6)  # 2 m/s: two points in 100 us
+    robot.move_line([1000, 400, 900, 180, 0, 180], feed=2000)
+    with pytest.warns(RuntimeWarning, match=r"underruns of the card by .* s: cycles of the driver"):
+        robot.run(1.0)
+    assert robot.read().underruns > 0
+
+
+@pytest.mark.parametrize("huge", [1e308, 1.4e154, 1e153, 1e30, 1.0000001e6])
+def test_extremes_are_refused_with_value_and_limit(huge: float) -> None:
+    robot = VirtualRobot()
+    for at in range(6):
+        pose = list(START)
+        pose[at] = -huge if at % 2 else huge
+        calls: list[Call] = [
+            lambda r, pose=pose: r.move_line(pose),
+            lambda r, pose=pose: r.move_pose(pose),
+            lambda r, pose=pose: r.move_joints(pose),
+            lambda r, pose=pose: r.move_circle(UP, pose),
+            lambda r, pose=pose: r.jog(pose, robots.BASE),
+            lambda r, pose=pose: r.jog(pose, robots.JOINTS),
+            lambda r, pose=pose: r.set_tool(pose),
+        ]
+        for call in calls:
+            with pytest.raises(RobotError) as e:
+                call(robot)
+            assert (e.value.status, abs(e.value.value)) == ("VALUE", huge)
+            assert abs(e.value.limit) in (1e6, 1e4)
+    with pytest.raises(RobotError, match=r"^via\[0\] = "):
+        robot.move_circle([huge, 0, 0], UP)
+    assert robot.read().rests and robot.read().move == 0
+
+
+def test_jog_that_turns_keeps_all_limits() -> None:
+    robot = VirtualRobot()
+    robot.jog([1, 0, 0, 0, 0, 1], robots.BASE, speed=0.3, way=50.265)
+    found = robot.record(12.0, 1e-4, "joint_command")["joint_command"]
+    limits = {n: robots.defaults()[n][0] for n in ("joint_speed", "joint_acc", "joint_high")}
+    rate = np.diff(found, axis=0) * 1e4
+    assert np.abs(rate).max() > 1
+    assert (np.abs(rate) <= np.array(limits["joint_speed"]) * (1 + 1e-6)).all()
+    room = np.array(limits["joint_acc"]) * (1 + 1e-6) + 1e-4  # [deg/s2] rounding of degrees
+    assert (np.abs(np.diff(rate, axis=0)) * 1e4 <= room).all()
+    assert (np.abs(found) <= np.array(limits["joint_high"]) + 1e-7).all()
+
+
 UP = [1000.0, 0.0, 1000.0, 180.0, 0.0, 180.0]
 START = [1000.0, 0.0, 900.0, 180.0, 0.0, 180.0]
 BRANCH = "the path does not lead to the configuration of the target: shoulder"

@@ -88,6 +88,20 @@ def test_a_circle_too_small_is_off_by_the_radius() -> None:
         found.number("straightness")
 
 
+def test_av_is_way_over_time_and_fv_counts_backwards() -> None:
+    time = np.arange(0.0, 20.0, 1e-3)  # 5 mm/s with a ripple of 8 mm/s at 7 Hz: it goes back
+    ripple = 8.0 / (14.0 * np.pi) * np.sin(14.0 * np.pi * time)
+    x = 5.0 * 0.9993 * time + ripple
+    path = CommandPath(np.array([[0.0, 0.0, 0.0], [90.0, 0.0, 0.0]]))
+    shake = 1e-2 * np.sin(200.0 * time)  # across the path: no part of its speed
+    cycle = Cycle(time, np.stack([x, shake, 0.0 * x], axis=1))
+    found = Evaluation(analyse(Cycles([cycle], path, 5.0, ramp=0.0)))
+    middle = 45.0 / 5.0  # [s]; the ripple moves each end by at most its amplitude
+    assert found.number("AV") == pytest.approx(-0.07, abs=100 * 2 * 0.182 / (5.0 * middle))
+    tilt = 2 * 1e-2 / (90.0 / 200)  # of the way from plane to plane, by the shake
+    assert found.number("FV") == pytest.approx(16.0, abs=2.0 * 2.0 * tilt)
+
+
 def test_speeds_give_av_rv_and_fv() -> None:
     parts = np.array([0.99, 1.0, 1.02, 0.97])
     found = evaluated([along_line(still, speed=SPEED * p) for p in parts], speed=SPEED)
@@ -165,7 +179,7 @@ def test_the_best_line_is_the_one_that_a_search_finds() -> None:
     assert straightness(points) == pytest.approx(distances(best).max(), rel=1e-4)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.floats(-3, 3), min_size=2, max_size=12), st.floats(0.1, 2.5))
 def test_strokes_are_what_shapely_paints(offsets: list[float], width: float) -> None:
     found = coincidence(np.array(offsets)[:, None], width)
@@ -182,7 +196,7 @@ def test_strokes_are_what_shapely_paints(offsets: list[float], width: float) -> 
     assert found.common == pytest.approx(whole.area / (20.0 * width), abs=1e-9)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, 10**6), st.integers(2, 5), st.integers(1, 6))
 def test_any_path_is_as_shapely_cuts_it(seed: int, corners: int, cycles: int) -> None:
     """Planes are lines in a drawing: where shapely cuts the recorded lines is where we do."""

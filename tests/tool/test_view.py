@@ -16,6 +16,7 @@ from py_mini_racer import MiniRacer
 
 import motionfmu
 from motionfmu.report import write_report
+from motionfmu.report.ran import without_leaps
 from motionfmu.report.view_section import SCRIPTS, add_view, quantised, view_data
 from motionfmu.view.arm import Arm, chain
 from motionfmu.view.deviations import from_contour
@@ -215,6 +216,18 @@ def test_no_corner_of_the_path_is_lost() -> None:
     assert np.abs(drawn - 1e3 * y).max() < 4.0  # a sample's way is 3.4 mm
 
 
+def test_the_speed_is_that_between_the_samples_beside() -> None:
+    """On a parabola the mean over two steps is the slope itself; at the ends it is over one."""
+    time = np.linspace(0.0, 1.0, 3001)
+    run = recorded({}, **{"arm.tool_position": np.stack([time**2, time, 0 * time], axis=1)})
+    run.time = time
+    scene = scene_of(run)
+    assert scene is not None and scene.path_time[0] == 0.0 and scene.path_time[-1] == 1.0
+    slope = 2 * scene.path_time
+    slope[[0, -1]] += np.array([time[1], -time[1]])
+    assert np.allclose(scene.speed, 1e3 * np.hypot(1.0, slope), rtol=1e-9, atol=0.0)
+
+
 def test_an_arm_appears_by_itself_with_the_lengths_of_its_fmu() -> None:
     joints = np.outer(np.linspace(0, 1, 400), [0.4, 0.3, -0.2, 0.5, 0.6, -1.0])
     tip = 1e-3 * chain(ARMS["IRB 2600"], joints)["tip"]
@@ -232,3 +245,17 @@ def test_an_arm_appears_by_itself_with_the_lengths_of_its_fmu() -> None:
 
     page = Sheet()
     assert add_view(page, None) == {} and page.sections == []
+
+
+def test_another_tool_is_no_motion() -> None:
+    """Its tip is 150 mm away in one sample; 100 mm/s from rest before and behind it stay."""
+    time = np.arange(1000) * 1e-3
+    x = 0.1e3 * (time - 0.1).clip(0.0, 0.5)
+    tip = np.stack([x, 0.2 * x, 0.0 * x], axis=1)
+    assert np.array_equal(without_leaps(tip), tip)
+    for first in (1, 50, 800):
+        other = tip - np.where(np.arange(1000)[:, None] < first, 0.0, [0.0, 0.0, 150.0])
+        assert np.allclose(without_leaps(other), tip, atol=1e-9)
+    coarse = np.zeros((9, 3))
+    coarse[4:, 0] = (2.0, 8.0, 14.0, 16.0, 16.0)  # a quick motion in few samples
+    assert np.array_equal(without_leaps(coarse), coarse)

@@ -106,6 +106,84 @@ static void overspeed_alarm(void)
     CHECK_EQ(out.alarm, DRIVE_NO_ALARM);
 }
 
+/* A load that the torque does not move: the alarm is raised one sample after the time allowed. Time
+ * below the limit counts back, so that a share of less than half never does. */
+static void overload_alarm(void)
+{
+    struct drive_config c = config(DRIVE_VELOCITY);
+    struct drive_output out;
+    c.overload_time = 0.1;
+    for (int busy = 3; busy <= 10; busy++) {    /* of ten samples in a row */
+        struct drive_state s = {0};
+        struct drive_input in = {.enable = true};
+        int limited = 0, first = -1;
+        c.velocity_time = 0.0;                  /* torque by the volts of this sample alone */
+        for (int k = 0; k < 20000 && first < 0; k++) {
+            in.volts = k % 10 < busy ? 8.0 : 0.001;
+            drive_tick(&c, &s, &in, &out);
+            limited += out.saturated || out.alarm ? 1 : limited > 0 ? -1 : 0;
+            CHECK(out.alarm == (limited > 1000 ? DRIVE_OVERLOAD : DRIVE_NO_ALARM));
+            first = out.alarm ? k : -1;
+            CHECK(!(out.saturated && out.alarm));     /* no torque is at no limit */
+            CHECK(out.ready == !out.alarm && (out.alarm ? out.torque == 0.0 : out.torque > 0.0));
+        }
+        CHECK((first > 0) == (busy > 5));
+        CHECK(busy < 10 || first == 1000);
+        if (busy == 10) {
+            drive_tick(&c, &s, &in, &out);
+            CHECK(out.alarm == DRIVE_OVERLOAD && out.torque == 0.0 && !out.ready);
+            in.alarm_reset = true;
+            drive_tick(&c, &s, &in, &out);
+            CHECK(out.alarm == DRIVE_NO_ALARM && out.ready);
+        }
+    }
+    /* However long the torque was below the limit before, nothing is saved up. */
+    struct drive_state rested = {0};
+    for (int k = 0; k < 5000 + 1001; k++) {
+        CHECK_EQ(out.alarm, DRIVE_NO_ALARM);
+        const double volts = k < 5000 ? 0.001 : 8.0;
+        drive_tick(&c, &rested, &(struct drive_input){.enable = true, .volts = volts}, &out);
+    }
+    CHECK_EQ(out.alarm, DRIVE_OVERLOAD);
+    struct drive_state never = {0};
+    c.overload_time = 0.0;
+    for (int k = 0; k < 20000; k++)
+        drive_tick(&c, &never, &(struct drive_input){.enable = true, .volts = 8.0}, &out);
+    CHECK(out.saturated && out.alarm == DRIVE_NO_ALARM);
+}
+
+/* A motor with a load that pulls: falls when the drive goes off, or the brake stops and holds it as
+ * long as it bears the load. */
+static void brake(void)
+{
+    static const double INERTIA = 1e-3, STEP = 1e-4, PULL = 2.0;   /* [kg.m^2] [s] [N.m] */
+
+    for (int bears = 0; bears < 3; bears++) {       /* none, too little, enough */
+        struct drive_config c = config(DRIVE_VELOCITY);
+        struct drive_state s = {0};
+        struct drive_output out = {0};
+        double speed = 20.0, angle = 0.0, at = 0.0, most = 0.0;     /* [rad/s] [rad] */
+        c.brake_torque = bears == 0 ? 0.0 : bears == 1 ? 0.5 * PULL : 2.0 * PULL;
+        c.velocity_gain = 0.2;
+        c.velocity_time = 0.05;
+        for (int k = 0; k < 10000; k++) {
+            const struct drive_input in = {.phase = angle / 6.283185307179586 * c.encoder_lines};
+            CHECK_EQ(drive_tick(&c, &s, &in, &out), DRIVE_OK);
+            CHECK(!out.ready && !out.saturated && out.speed_command == 0.0);
+            CHECK(fabs(out.torque) <= c.brake_torque);
+            speed += STEP * (out.torque + PULL) / INERTIA;
+            angle += STEP * speed;
+            at = k == 5000 ? angle : at;
+            most = k > 5000 ? fmax(most, fabs(angle - at)) : most;
+        }
+        const double pull = (PULL - c.brake_torque) / INERTIA;      /* [rad/s^2] it falls with */
+        if (bears < 2)
+            CHECK_NEAR(speed, 20.0 + pull, 0.01 * pull);
+        else
+            CHECK(most < 2.0 * 6.283185307179586 / c.encoder_counts);
+    }
+}
+
 /* A phase that cannot be counted changes nothing. */
 static void bad_phase(void)
 {
@@ -131,6 +209,8 @@ int main(void)
     bumpless(DRIVE_POSITION, 0.0);
     following_error_alarm();
     overspeed_alarm();
+    overload_alarm();
+    brake();
     bad_phase();
     return check_result();
 }

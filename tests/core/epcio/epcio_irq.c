@@ -43,6 +43,20 @@ static void line_and_sequence(void)
     CHECK_EQ(q.flags[IRQ_PCL], 1u << 5);
 }
 
+/* A source that is told later, as an index is, was first: the line rose with it. */
+static void told_later(void)
+{
+    struct irq q = {.mask = {[IRQ_DDA] = 8, [IRQ_ENC0] = 1}};
+    irq_raise(&q, IRQ_DDA, 8, 20);
+    irq_raise(&q, IRQ_ENC0, 2, 5);          /* masked */
+    CHECK_EQ(q.clock, 20);
+    irq_raise(&q, IRQ_ENC0, 1, 15);
+    CHECK_EQ(q.clock, 15);
+    irq_raise(&q, IRQ_ENC0, 1, 18);
+    CHECK_EQ(q.clock, 15);
+    CHECK_EQ(q.seq, 1);
+}
+
 /* Fires again after the host looked, before its acknowledge arrives: must come back. */
 static void fired_between_read_and_acknowledge(void)
 {
@@ -147,6 +161,7 @@ static void card_sources(void)
 int main(void)
 {
     line_and_sequence();
+    told_later();
     fired_between_read_and_acknowledge();
     for (uint64_t seed = 1; seed <= 5; seed++)
         nothing_is_lost(seed * 32452843);

@@ -235,6 +235,22 @@ static void test_any_step_and_the_stop_time(void)
     call_free(c);
 }
 
+/* What an importer's clock has lost is its own affair until the reset: nothing of it is left. */
+static void test_reset_forgets_the_drift(void)
+{
+    void *c = make_strict(0.0);
+    const double h = 1e-3 + 1e-12;
+    double t = 0.0;
+    for (int i = 0; i < 20000; i++, t += h) {   /* 0.8 ticks in all */
+        CHECK(call_step(c, t, h) == 0);
+    }
+    CHECK(inside(c) == INT64_C(20000000000) && call_reset(c) == 0);
+    CHECK(call_enter(c, 0.0, -1.0) == 0 && call_exit(c) == 0);
+    CHECK(call_step(c, 0.0, 0.6 * TICK) == 0 && inside(c) == FMU_TICK_NS);
+    CHECK(call_step(c, 0.6 * TICK, 0.6 * TICK) == 0 && inside(c) == FMU_TICK_NS);
+    call_free(c);
+}
+
 static void test_any_step(void)
 {
     test_every_step_ends_at_the_nearest_tick();
@@ -245,6 +261,7 @@ static void test_any_step(void)
     test_a_state_between_ticks();
     test_strict_steps();
     test_any_step_and_the_stop_time();
+    test_reset_forgets_the_drift();
 }
 
 #endif

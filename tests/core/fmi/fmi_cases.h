@@ -189,6 +189,19 @@ static void test_start_on_demand(void)
     call_free(c);
 }
 
+/* The dummy looks at its memory at each start: behind steps, behind the state of another one. */
+static void test_a_start_finds_cleared_memory(void)
+{
+    void *a = make_running(0.0, -1.0), *b = make(), *state = NULL;
+    CHECK(call_step(a, 0.0, 0.1) == 0 && call_get_state(a, &state) == 0);
+    CHECK(call_reset(a) == 0 && call_enter(a, 0.0, -1.0) == 0 && call_exit(a) == 0);
+    CHECK(call_set_state(b, state) == 0 && call_reset(b) == 0);
+    CHECK(call_enter(b, 0.0, -1.0) == 0 && call_exit(b) == 0);
+    call_free_state(a, &state);
+    call_free(a);
+    call_free(b);
+}
+
 static void test_steps(void)
 {
     void *c = make_running(10.0, 10.5);
@@ -463,6 +476,7 @@ static int test_all(void)
     test_messages_of_wrong_order();
     test_values_are_refused_whole();
     test_start_on_demand();
+    test_a_start_finds_cleared_memory();
     test_steps();
     test_an_hour_of_added_doubles();
     test_any_step();

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "fmi_vars.h"
 
@@ -96,6 +97,10 @@ static int model_end(struct fmu *f)
 
 static int model_start(struct fmu *f)
 {
+    static const struct model cleared;
+    if (memcmp(&f->s.m, &cleared, sizeof cleared) != 0) {
+        return fmu_fail(f, "the memory of the model was not cleared");
+    }
     if (f->s.v.name[0] == 's') {
         return fmu_fail(f, "name = %s does not start", f->s.v.name);
     }

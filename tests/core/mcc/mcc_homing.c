@@ -178,6 +178,24 @@ static void backward_and_again(void)
     }
 }
 
+/* An axis that need not settle is done with all its points planned: the origin waits until they
+ * are written. */
+static void no_settling(void)
+{
+    struct pc_config c = config_of(HOME_SENSOR_INDEX, 6);
+    c.home_settle = 0.0;
+    depth = 300;
+    start(&c, 777, false);
+    depth = 12;
+    CHECK_EQ(search(), 1);
+    for (int j = 0; j < 20000; j++) {
+        CHECK_EQ(pc.mcc.queue.count, 0);
+        period(NULL);
+        CHECK_EQ(pc.mcc.written.pulses[0], 0);
+    }
+    CHECK_EQ(room.motor[0].now, 1000);
+}
+
 /* Axes of one number together, then the next; others keep their place. */
 static void orders(void)
 {
@@ -406,6 +424,7 @@ int main(void)
     same_place();
     index_only();
     backward_and_again();
+    no_settling();
     orders();
     before_the_program();
     hold_and_abort();

@@ -157,6 +157,13 @@ static void by_point(void)
     bool ccw;
     CHECK(path_centre_by_point(PATH_XY, a, (double[]){ 1.0, 1.0 }, b, centre, &ccw) ==
           PATH_OPEN);
+    for (double r = 10.0; r < 1e9; r *= 10.0) {     /* flat arcs with a chord of 2 mm */
+        const double from[AXES] = { -1.0 }, to[AXES] = { 1.0 };
+        const double via[2] = { 0.0, 1.0 / (r + sqrt(r * r - 1.0)) };
+        CHECK(path_centre_by_point(PATH_XY, from, via, to, centre, &ccw) == PATH_OK);
+        CHECK_NEAR(centre[1], -sqrt(r * r - 1.0), 1e-6 * r);
+        CHECK(!ccw);
+    }
 }
 
 /* The tolerance of E1: 0.005 mm always, 0.5 mm never more, 0.1 % between. */
@@ -254,6 +261,15 @@ static void tilted(void)
     }
     const double a[AXES] = { 1, 2, 3 }, b[3] = { 2, 4, 6 }, c[3] = { 3, 6, 9 };
     double m[3], n[3], sweep;
+    for (double r = 10.0; r < 1e9; r *= 10.0) {     /* flat arcs with a chord of 2 mm */
+        const double high = sqrt(r * r - 1.0), rise = 1.0 / (r + high);
+        const double from[3] = { -1.0, 0, 0 }, to[3] = { 1.0, 0, 0 };
+        const double via[3] = { 0, 0.6 * rise, 0.8 * rise };
+        CHECK(path_tilted_by_point(from, via, to, m, n, &sweep) == PATH_OK);
+        CHECK_NEAR(m[1], -0.6 * high, 1e-6 * r);
+        CHECK_NEAR(m[2], -0.8 * high, 1e-6 * r);
+        CHECK_NEAR(sweep, 2.0 * asin(1.0 / r), 1e-6 / r);
+    }
     CHECK(path_tilted_by_point(a, b, c, m, n, &sweep) == PATH_OPEN);
     CHECK(path_tilted_by_point(a, b, a, m, n, &sweep) == PATH_OPEN);
     CHECK(path_tilted(&p, a, a, a, normal, 1.0) == PATH_NO_RADIUS);

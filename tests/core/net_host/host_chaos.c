@@ -87,10 +87,40 @@ static void check_power(struct rig *r)
     CHECK(lost > 0 && answered > lost);
 }
 
+/* Behind the link is another card, or the same one: which of them gets the commands that were on
+ * their way? Only the same one, with the number it knows. */
+static void check_other_card(struct rig *r)
+{
+    for (int other = 0; other < 2; other++) {
+        rig_start(r, 4, false, 77);
+        const uint16_t life = r->card.session.life;
+        CHECK(rig_run(r, MOST_MS));
+        const struct net_host_order start_order = { .at = r->now, .type = NET_START, .axes = 3 };
+        CHECK(net_host_give(&r->host, &start_order));
+        const int64_t lost = r->to_card.passed + 1;
+        r->to_card.cut_after = lost;            /* in the midst of the command */
+        for (int i = 0; i < 1000 && r->cuts == 0; i++) {
+            rig_step(r);
+        }
+        CHECK_EQ(r->cuts, 1);
+        const struct net_host_order *o = &r->host.order[0];
+        CHECK_EQ(o->stage, NET_HOST_SENT);
+        r->card.session.config.card += other;
+        CHECK_EQ(r->card.session.life, life);   /* what else a card is known by */
+        for (int i = 0; i < 3000; i++) {
+            rig_step(r);
+        }
+        CHECK_EQ(r->host.connections, 2);
+        CHECK_EQ(o->stage, other ? NET_HOST_LOST : NET_HOST_ANSWERED);
+        CHECK_EQ(r->card.done[o->number % RIG_NUMBERS], !other);
+    }
+}
+
 int main(void)
 {
     static struct rig r;
     check_links(&r);
     check_power(&r);
+    check_other_card(&r);
     return check_result();
 }

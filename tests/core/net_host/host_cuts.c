@@ -43,9 +43,36 @@ static void cut_runs(struct rig *r, bool keyed, bool to_card, int64_t bytes)
     CHECK(to_card || repeats > 0);
 }
 
+/* A connection that begins before anybody told the end of the one before it has none of its bytes:
+ * neither half a frame that came nor what waited to go. */
+static void anew_without_a_cut(void)
+{
+    static struct net_host host;
+    struct net_channel card;
+    const struct net_host_config config = { .seed = { 1 } };
+    const struct net_command command = { 77 };
+    uint8_t bytes[NET_OUT], payload[NET_PAYLOAD];
+
+    net_host_start(&host, &config);
+    net_host_connected(&host, 0);
+    net_channel_start(&card, true);
+    net_put_command(payload, &command);
+    CHECK(net_channel_put(&card, NET_HELLO, payload, NET_BYTES_command));
+    const size_t n = net_channel_out(&card, bytes, sizeof bytes);
+    net_host_bytes(&host, bytes, n - 3, RIG_MS);
+    CHECK_EQ(host.channel.held, n - 3);
+    CHECK(net_channel_put(&host.channel, NET_START, payload, NET_BYTES_command));
+    net_host_connected(&host, 2 * RIG_MS);
+    CHECK_EQ(host.channel.held, 0);
+    CHECK_EQ(net_host_out(&host, bytes, sizeof bytes), 0);
+    CHECK_EQ(host.channel.sent, 0);
+    CHECK_EQ(host.connections, 2);
+}
+
 int main(void)
 {
     static struct rig r;
+    anew_without_a_cut();
     for (int keyed = 0; keyed < 2; keyed++) {
         whole_run(&r, keyed);
         const int64_t to_card = r.to_card.passed, to_host = r.to_host.passed;

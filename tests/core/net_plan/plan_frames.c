@@ -169,6 +169,29 @@ static void test_output_pen(void)
     }
 }
 
+/* The pen's rest is the smallest whole number of periods that is not shorter, one at least. */
+static void test_dwell(void)
+{
+    static const struct { double dwell; int32_t period_ns, rest; } CASES[] = {
+        { 0.03, 1000000, 30 }, { 0.0301, 1000000, 31 }, { 0.0309999, 1000000, 31 },
+        { 0.0005, 1000000, 1 }, { 0.0, 1000000, 1 }, { 0.007, 2000000, 4 }, { 0.1, 300000, 334 },
+        { 0.0105, 700000, 15 }              /* the quotient is above 15 in double precision */
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        struct net_plan_config c = config_of(NET_PLAN_OUTPUT);
+        c.dwell = CASES[i].dwell;
+        c.period_ns = CASES[i].period_ns;
+        const int32_t n = run(&c, draw(), false, frame[0]);
+        int32_t rests = 0, events = 0;
+        for (int32_t k = 0; k < n; k++) {
+            rests += frame[0][k].step == NET_PLAN_RESTS;
+            events += frame[0][k].job.event != 0;
+        }
+        CHECK_EQ(events, 11);
+        CHECK_EQ(rests, events * CASES[i].rest);
+    }
+}
+
 static void test_pen_axis(void)
 {
     const struct net_plan_config c = config_of(NET_PLAN_AXIS);
@@ -233,6 +256,7 @@ static void test_rests_beyond_a_plan(void)
 int main(void)
 {
     test_output_pen();
+    test_dwell();
     test_rests_beyond_a_plan();
     test_pen_axis();
     test_order_of_calls();

@@ -119,15 +119,14 @@ static inline void bench_times(const struct netcard *c)
 /* The running task is the most urgent one that is ready. */
 static inline void bench_urgent(const struct kernel *k)
 {
-    const struct processor *p = &k->processor;
-    const int r = p->running;
+    const int r = k->processor.running;
 
     if (r < 0 || r >= KERNEL_TASKS || k->chooses) {
         return;
     }
+    CHECK(k->task[r].ready);
     for (int i = 0; i < NETCARD_TASKS; i++) {
-        CHECK(i == r || k->task[i].wait != KERNEL_READY
-              || p->task[i].priority <= p->task[r].priority);
+        CHECK(!k->task[i].ready || kernel_priority(k, i) <= kernel_priority(k, r));
     }
 }
 

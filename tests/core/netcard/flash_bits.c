@@ -5,7 +5,16 @@
 #include <string.h>
 
 static struct flash_chip f;
-static uint8_t plain[FLASH_BYTES];
+static uint8_t plain[FLASH_BYTES], erased[FLASH_SECTOR];
+
+/* All that is in a chip, until the next call. */
+static const uint8_t *all(const struct flash_chip *chip)
+{
+    static uint8_t bytes[FLASH_BYTES];
+    for (int32_t k = 0; k < FLASH_PAGES; k++)
+        flash_look(chip, k, bytes + k * FLASH_PAGE);
+    return bytes;
+}
 
 static void start(int32_t spread)
 {
@@ -14,7 +23,28 @@ static void start(int32_t spread)
     c.spread = spread;
     c.seed = ++seed;
     flash_start(&f, &c);
+    memset(f.array, 0x5a, sizeof f.array);      /* what nobody wrote may hold anything */
     memset(plain, 0xff, sizeof plain);
+}
+
+/* A chip of which a saved state leaves out what it may is the same chip; erased sectors are out. */
+static void saved(const struct flash_chip *chip)
+{
+    static struct flash_chip again;
+    struct spans s = {.count = 0};
+    uintptr_t out = 0;
+    int blank = 0;
+    flash_unused(chip, &s);
+    again = *chip;
+    for (int32_t i = 0; i < s.count; i++) {
+        const uintptr_t at = s.span[i].from - (uintptr_t)chip;
+        memset((char *)&again + at, 0xa5, s.span[i].to - s.span[i].from);
+        out += s.span[i].to - s.span[i].from;
+    }
+    for (int k = 0; k < FLASH_SECTORS; k++)
+        blank += !memcmp(plain + k * FLASH_SECTOR, erased, FLASH_SECTOR);
+    CHECK(!memcmp(all(&again), plain, sizeof plain));
+    CHECK_EQ(out, (uintptr_t)blank * FLASH_SECTOR);
 }
 
 /* Programs and erases at random; what is under way refuses all else. */
@@ -59,8 +89,10 @@ static void bits(void)
         CHECK_EQ(flash_read(&f, at, read, now), 49715);     /* 261 bytes at 42 MHz */
         CHECK(!memcmp(read, plain + at * FLASH_PAGE, FLASH_PAGE));
         CHECK(flash_damage(&f) == NULL);
+        if (k % 100 == 0)
+            saved(&f);
     }
-    CHECK(!memcmp(f.array, plain, sizeof plain));
+    CHECK(!memcmp(all(&f), plain, sizeof plain));
     CHECK(!memcmp(f.wear, wear, sizeof wear));
     CHECK_EQ(f.programs, programs);
     CHECK_EQ(f.refused, refused);
@@ -72,7 +104,7 @@ static void bits(void)
     CHECK(!flash_read(&f, -1, page, now) && !flash_read(&f, FLASH_PAGES, page, now));
     CHECK(!flash_program(&f, FLASH_PAGES, page, now) && !flash_erase_sector(&f, 512, now));
     CHECK(!flash_erase_block(&f, 32, now) && !flash_erase_block(&f, -1, now));
-    CHECK(!memcmp(f.array, plain, sizeof plain));
+    CHECK(!memcmp(all(&f), plain, sizeof plain));
 }
 
 /* Share of bits in n bytes that are 1. */
@@ -87,48 +119,49 @@ static double ones(const uint8_t *at, int n)
 /* A torn program: a subset of its 0-bits, as many as the share of the time. */
 static void torn_programs(void)
 {
-    uint8_t page[FLASH_PAGE];
+    uint8_t page[FLASH_PAGE], before[FLASH_PAGE];
     for (int percent = 0; percent <= 100; percent += 10) {
         double made = 0;
         for (int k = 0; k < 20; k++) {
             start(0);
             memset(page, 0xa5, sizeof page);
-            memset(f.array + 256 * 77, 0x3c, FLASH_PAGE);
+            memset(before, 0x3c, sizeof before);
+            flash_put(&f, 77, before, 1);
             flash_program(&f, 77, page, 1000);
             flash_cut(&f, 1000 + 7000 * percent - (percent == 100));
-            for (int j = 0; j < FLASH_PAGE; j++) {
-                const uint8_t now = f.array[256 * 77 + j];
-                CHECK((now & (0xa5 & 0x3c)) == (0xa5 & 0x3c) && (now & ~0x3c) == 0);
-            }
-            made += 4 - 8 * ones(f.array + 256 * 77, FLASH_PAGE);
-            CHECK(!flash_busy(&f, 1000) && f.array[256 * 76] == 0xff && f.array[256 * 78] == 0xff);
+            const uint8_t *now = all(&f) + 256 * 77;
+            for (int j = 0; j < FLASH_PAGE; j++)
+                CHECK((now[j] & (0xa5 & 0x3c)) == (0xa5 & 0x3c) && (now[j] & ~0x3c) == 0);
+            made += 4 - 8 * ones(now, FLASH_PAGE);
+            CHECK(!flash_busy(&f, 1000) && now[-FLASH_PAGE] == 0xff && now[FLASH_PAGE] == 0xff);
         }
         CHECK_NEAR(made / 20 / 2, percent / 100.0, 0.02);
     }
     start(0);
     flash_program(&f, 0, page, 0);
     flash_cut(&f, 700000);      /* it was over */
-    CHECK_EQ(f.array[0], 0xa5);
+    CHECK_EQ(all(&f)[0], 0xa5);
 }
 
 /* A torn erase of zeros: (1 - p)^2 are left as they were, p^2 are 1, of the rest half. */
 static void torn_erases(void)
 {
-    static uint8_t zeros[FLASH_BLOCK];
+    static uint8_t zeros[FLASH_BYTES];
     for (int percent = 0; percent <= 100; percent += 10) {
         const double p = percent / 100.0;
         start(0);
-        memset(f.array, 0, sizeof f.array);
+        flash_put(&f, 0, zeros, FLASH_PAGES);
         flash_erase_block(&f, 3, 0);
         flash_cut(&f, 1500000 * percent - (percent == 100));
-        CHECK_NEAR(ones(f.array + 3 * FLASH_BLOCK, FLASH_BLOCK), p * p + p * (1 - p), 0.003);
-        CHECK(!memcmp(f.array, zeros, FLASH_BLOCK));
-        CHECK(!memcmp(f.array + 4 * FLASH_BLOCK, zeros, FLASH_BLOCK));
+        const uint8_t *now = all(&f);
+        CHECK_NEAR(ones(now + 3 * FLASH_BLOCK, FLASH_BLOCK), p * p + p * (1 - p), 0.003);
+        CHECK(!memcmp(now, zeros, FLASH_BLOCK));
+        CHECK(!memcmp(now + 4 * FLASH_BLOCK, zeros, FLASH_BLOCK));
         CHECK_EQ(f.wear[47] + f.wear[48] + f.wear[63] + f.wear[64], 2);
-        memset(f.array, 0xff, sizeof f.array);
+        start(0);
         flash_erase_sector(&f, 5, 0);
         flash_cut(&f, 450000 * percent);
-        CHECK_NEAR(ones(f.array + 5 * FLASH_SECTOR, FLASH_SECTOR), 1 - p * (1 - p), 0.02);
+        CHECK_NEAR(ones(all(&f) + 5 * FLASH_SECTOR, FLASH_SECTOR), 1 - p * (1 - p), 0.02);
     }
 }
 
@@ -136,12 +169,13 @@ static void torn_erases(void)
 static void seeds(void)
 {
     static struct flash_chip g, h;
+    static uint8_t zeros[FLASH_BLOCK];
     struct flash_config c = flash_config_usual();
     static struct flash_chip *const chip[] = {&f, &g, &h};
     for (int k = 0; k < 3; k++) {
         c.seed = k < 2 ? 4 : 5;
         flash_start(chip[k], &c);
-        memset(chip[k]->array, 0, FLASH_BLOCK);
+        flash_put(chip[k], 0, zeros, FLASH_BLOCK / FLASH_PAGE);
         flash_erase_block(chip[k], 0, 0);
         flash_cut(chip[k], 70000000);
     }
@@ -173,6 +207,7 @@ static void damage(void)
 
 int main(void)
 {
+    memset(erased, 0xff, sizeof erased);
     bits();
     torn_programs();
     torn_erases();

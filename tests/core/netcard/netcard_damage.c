@@ -52,6 +52,9 @@ static void parts(void)
     REFUSED(c.kernel.config.tick = 0);
     REFUSED(c.kernel.next_tick = c.kernel.processor.clock + 2 * c.kernel.config.tick);
     REFUSED(c.kernel.current = KERNEL_TASKS);
+    REFUSED(c.kernel.first = NETCARD_TASKS);
+    REFUSED(c.kernel.asked = KERNEL_TASKS + NETCARD_INTERRUPTS);
+    REFUSED(c.kernel.asked = (c.kernel.current + 1) % NETCARD_TASKS);
     REFUSED(c.kernel.events = -1);
     REFUSED(c.kernel.turns = INT64_MAX);
     REFUSED(c.kernel.processor.tasks = PROCESSOR_TASKS + 1);
@@ -61,6 +64,25 @@ static void parts(void)
     REFUSED(c.kernel.processor.task[KERNEL_TASKS + NETCARD_INTERRUPTS].ready = true);
     REFUSED(c.kernel.processor.task[NETCARD_RUN].left = -1);
     REFUSED(c.kernel.processor.task[NETCARD_RUN].busy = -1);
+    REFUSED(c.kernel.processor.task[(c.kernel.current + 1) % NETCARD_TASKS].ready = true);
+    REFUSED(c.kernel.task[NETCARD_TASKS].ready = true);
+    REFUSED(c.kernel.task[KERNEL_TASKS].ready = false);
+    REFUSED(c.kernel.task[NETCARD_RUN].priority = -1);
+    REFUSED(c.kernel.task[NETCARD_RUN].base = 1001);
+    REFUSED(c.kernel.task[NETCARD_RUN].rank = -1);
+    REFUSED(c.kernel.task[NETCARD_RUN].since = c.kernel.ticks + 1);
+    REFUSED(c.kernel.task[NETCARD_RUN].turn = INT64_MAX);
+    REFUSED(c.kernel.task[NETCARD_RUN].place = INT64_MAX);
+    REFUSED(c.kernel.task[NETCARD_RUN].queue = KERNEL_QUEUES);
+    REFUSED(c.kernel.task[NETCARD_RUN].call = KERNEL_CALLS);
+    REFUSED(c.kernel.task[NETCARD_RUN].notified = KERNEL_NOTIFY_STATES);
+    REFUSED(c.kernel.task[NETCARD_RUN].wake = -1);
+    REFUSED(c.kernel.task[NETCARD_RUN].ticks = -1);
+    REFUSED(c.kernel.task[NETCARD_RUN].result = KERNEL_IN_VAIN - 1);
+    REFUSED(c.kernel.queue[3].count = 2);
+    REFUSED(c.kernel.queue[3].first = KERNEL_ITEMS);
+    REFUSED(c.kernel.queue[3].holder = NETCARD_TASKS);
+    REFUSED(c.kernel.config.queue[3].kind = KERNEL_KINDS);
     REFUSED(c.kernel.pending[NETCARD_INTERRUPTS] = 0);
     REFUSED(c.flash.work = (enum flash_work)3);
     REFUSED(c.flash.at = -1; c.flash.work = FLASH_ERASE);
@@ -71,8 +93,36 @@ static void parts(void)
     REFUSED(c.player.fifo.head = -1);
     REFUSED(c.inputs.pending = 1u << 16);
     REFUSED(c.outputs.levels = 1u << 16);
+    REFUSED(c.load.latest = CARD_LOAD_MARKS);
+    REFUSED(c.load.mark[3].clock = c.kernel.processor.clock + 1);
+    REFUSED(c.load.mark[0].busy[6] = -1);
+    REFUSED(c.load.mark[3].clock = c.kernel.processor.clock;
+            c.load.mark[3].busy[2] = kernel_busy(&c.kernel, 2) + 1);
+    REFUSED(c.load.mark[3].clock = c.kernel.processor.clock;
+            c.load.mark[3].busy[6] = 0);        /* more in no time than there is */
     REFUSED(c.session.channel.held = NET_FRAME + 1);
     REFUSED(c.session.channel.out_first = NET_OUT);
+}
+
+/* Each setting at either end of its range: what a card starts with is a state of it. */
+static void ends(const struct card_settings *usual)
+{
+    struct netcard_config config = bench_config();
+    struct card_wrong wrong;
+    int started = 0;
+
+#define ENDS(type, name, elements, unit, start, low, high, words) \
+    for (int end = 0; end < 2; end++) { \
+        config.settings = *usual; \
+        *(type *)&config.settings.name = (type)(end ? (high) : (low)); \
+        if (card_settings_good(&config.settings, &wrong)) { \
+            bench_start(&c, &config); \
+            CHECK(netcard_damage(&c, c.now) == NULL); \
+            started++; \
+        } \
+    }
+    CARD_SETTINGS(ENDS)
+    CHECK(started > 100);
 }
 
 int main(void)
@@ -87,5 +137,6 @@ int main(void)
     CHECK(netcard_damage(&c, c.now) == NULL);
     card();
     parts();
+    ends(&config.settings);
     return check_result();
 }

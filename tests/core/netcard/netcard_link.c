@@ -97,6 +97,49 @@ static void upload(void)
     bench_times(&c);
 }
 
+/* The load that STATUS tells is that of the last second, whatever was before: each is the share of
+ * the processor that run had in 1 to 1.1 s before, as sampled each ms. A card that has rested for
+ * 20 s tells what its job takes, and a second behind the job nothing of it. */
+static void loads(void)
+{
+    enum { CYCLES = 40000, FRAMES = 3000, LONGEST = 30000 };
+    static int64_t had[LONGEST];        /* [ns] by run, each ms */
+    struct netcard_config config = bench_config();
+    int statuses = 0, most = 0;
+
+    config.settings.frame_cycles = CYCLES;
+    bench_make(FRAMES, 100, NULL, 0);
+    begin(&config, true);
+    pass(20000);
+    CHECK_EQ(host.status.load[NETCARD_RUN], 0);
+    CHECK_EQ(give(NET_START), NET_DONE);
+    for (int ms = 0; ms < 6000; ms++) {
+        const uint32_t before = host.statuses;
+        pass(1);
+        had[ms] = kernel_busy(&c.kernel, NETCARD_RUN);
+        if (ms < 1200 || host.statuses == before) {
+            continue;
+        }
+        double low = 1000.0, high = 0.0;
+        for (int way = 995; way <= 1105; way++) {
+            for (int late = 0; late <= 2; late++) {
+                const int64_t share = had[ms - late] - had[ms - late - way];
+                low = fmin(low, (double)share * 1e-3 / way);
+                high = fmax(high, (double)share * 1e-3 / way);
+            }
+        }
+        CHECK(host.status.load[NETCARD_RUN] >= low - 1.0);
+        CHECK(host.status.load[NETCARD_RUN] <= high + 1.0);
+        most = host.status.load[NETCARD_RUN] > most ? host.status.load[NETCARD_RUN] : most;
+        statuses++;
+    }
+    CHECK(statuses > 40);
+    CHECK_NEAR(most, CYCLES / 168.0, 80.0);     /* a frame each ms, in batches of half a FIFO */
+    CHECK_EQ(c.state, NET_READY);
+    CHECK_EQ(host.status.load[NETCARD_RUN], 0);
+    CHECK(host.status.load[NETCARD_TASKS] <= 1);
+}
+
 /* Packets at the rate of the line take the processor from run, but not so much that the FIFO falls
  * below half. */
 static void flooded(void)
@@ -175,6 +218,7 @@ static void lost(enum card_link_loss loss, enum net_state state)
 int main(void)
 {
     upload();
+    loads();
     flooded();
     writes_while_running(false);
     writes_while_running(true);

@@ -1,5 +1,5 @@
-/* Further sequences under the literal rules, each derived by hand from the rules of FreeRTOS: what
- * two packets, full semaphores, equal priorities and buttons lead to. */
+/* Further sequences under the literal rules: what two packets, full semaphores, equal priorities
+ * and buttons lead to. The scheme alone does the same on FreeRTOS (tasks_sequences.c). */
 #include "card_tokens.h"
 
 static void both(int unit, enum card_command first, enum card_command second)
@@ -129,7 +129,29 @@ static void button_in_the_parser(void)
     shows("r3 !pause >parse >pause p4 p5 !button-stop >stop s6 >pause p7 ");
 }
 
-/* Homing lowered to the priority of run goes behind it, and they take turns at the tick. */
+/* A start is kept while its task waits for the processor: of two of them while homing works one is
+ * left, and the job is done once. */
+static void starts_while_homing(void)
+{
+    begin();
+    send_behind(3, CARD_DO_STOP);
+    pass(BENCH_MS);
+    CHECK_EQ(c.jobs, 1);
+    CHECK_EQ(c.state, NET_READY);
+    anew();
+    send_behind(0, CARD_DO_HOME);
+    send_behind(2, CARD_DO_START);
+    send_behind(4, CARD_DO_START);
+    until("2>5 ");
+    pass(900 * BENCH_MS);
+    shows("!home >parse >home 5>2 h1 h2 !start >parse >home h3 h4 !start >parse >home h5 h6 ");
+    shows(" 2>5 >run r");
+    CHECK_EQ(c.jobs, 2);
+    CHECK_EQ(c.state, NET_READY);
+}
+
+/* Homing lowered to the priority of run has the processor on: run was interrupted, so it had its
+ * turn before. They take turns at the tick. */
 static void equals(void)
 {
     struct netcard_config config = bench_config();
@@ -138,8 +160,9 @@ static void equals(void)
     begin_with(config);
     send_behind(3, CARD_DO_HOME);
     pass(3 * BENCH_MS);
-    shows("r3 !home >parse >home 5>2 >run r4 r5 ");
-    shows(" >home h");
+    shows("r3 !home >parse >home 5>2 h4 h5 ");
+    shows(" >run r8 ");
+    shows(" >home ");
 }
 
 int main(void)
@@ -150,6 +173,7 @@ int main(void)
     full_semaphore();
     pause_twice();
     button_in_the_parser();
+    starts_while_homing();
     equals();
     return check_result();
 }

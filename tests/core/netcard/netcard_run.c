@@ -71,8 +71,37 @@ static void words_take_their_time(void)
     printf("run: %.0f ns a frame\n", (double)busy[0] / 2000);
 }
 
+/* A page of the job is damaged in the flash after it was stored, each of them once. Nothing of it
+ * is played: the card says why and stands, and takes no start until the fault is cleared. */
+static void damaged_pages_are_told(void)
+{
+    const struct netcard_config config = bench_config();
+
+    bench_make(2000, 150, NULL, 0);
+    for (uint32_t page = 0; page < bench_bytes / FLASH_PAGE; page++) {
+        bench_start(&c, &config);
+        uint8_t *stored = NULL;
+        for (size_t at = 0; at < FLASH_BYTES && !stored; at += FLASH_PAGE) {
+            if (!memcmp(c.flash.array + at, bench_job, FLASH_PAGE)) {
+                stored = c.flash.array + at + page * FLASH_PAGE;
+            }
+        }
+        CHECK(stored && !memcmp(stored, bench_job + page * FLASH_PAGE, FLASH_PAGE));
+        stored[100] ^= 1;
+        CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+        until(NET_FAULT, 3000);
+        CHECK_EQ(c.error, NET_BAD_JOB);
+        CHECK(page > 0 || bench_count(&c, 0) == 0);
+        const int64_t stood = bench_count(&c, 0);
+        bench_pass(&c, 50);
+        CHECK_EQ(bench_count(&c, 0), stood);
+        CHECK(bench_order(&c, CARD_DO_START) != NET_DONE);
+    }
+}
+
 int main(void)
 {
+    damaged_pages_are_told();
     words_take_their_time();
     plays_to_its_end();
     pauses_leave_the_path();

@@ -70,6 +70,55 @@ static void goes_home(void)
     }
 }
 
+/* HOME is for the axes it names: the others keep their place, their zero, whether they are homed.
+ * With must_home a job starts when all that have an order are homed, not before; a new homing of
+ * one takes its own away first. */
+static void homes_what_is_asked(void)
+{
+    struct netcard_config config = bench_config();
+    struct netcard_axes switches = { 0 };
+    int64_t zero[CARD_AXES];
+
+    config.settings.must_home = true;
+    config.settings.home_order[2] = config.settings.home_order[3] = 0;
+    bench_start(&c, &config);
+    for (int turn = 0; turn < 3; turn++) {      /* Y, X, then Y again */
+        const int axis = turn != 1;
+        const uint32_t asked = 1u << axis, before = c.homed & ~asked;
+        CHECK_EQ(c.state, NET_READY);
+        CHECK_EQ(bench_order(&c, CARD_DO_START), turn < 2 ? NET_NOT_HOMED : NET_DONE);
+        const int64_t other = bench_count(&c, 1 - axis);
+        memcpy(zero, c.zero, sizeof zero);
+        CHECK(netcard_command(&c, CARD_DO_HOME, (uint8_t)asked));
+        bool moved = false;
+        for (int i = 0; i < 200000; i++) {
+            switches.origin = 0;
+            for (int a = 0; a < 2; a++) {
+                switches.origin |= (uint32_t)(bench_count(&c, a) <= SWITCH) << a;
+            }
+            netcard_set_axes(&c, &switches);
+            netcard_advance(&c, c.now + 20000);
+            moved = moved || bench_count(&c, 1 - axis) != other;
+            CHECK(c.state != NET_HOMING || !c.homing || c.home.state == HOME_CYCLE_IDLE ||
+                  c.homed == before);
+            if (i > 100 && c.state == NET_READY) {
+                break;
+            }
+        }
+        CHECK_EQ(c.state, NET_READY);
+        CHECK(turn == 2 || !moved);             /* a job was given up for the last one */
+        CHECK_EQ(c.homed, before | asked);
+        CHECK_EQ(netcard_position(&c, axis), 0);
+        CHECK_EQ(c.zero[1 - axis], zero[1 - axis]);
+    }
+    CHECK_EQ(c.homed, 3);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    CHECK_EQ(c.state, NET_RUNNING);
+    netcard_set_power(&c, false);               /* without power nothing is homed */
+    netcard_set_power(&c, true);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_NOT_HOMED);
+}
+
 /* Homing without a switch ends in a fault behind the travel; a stop ends it at any time. */
 static void finds_no_home(void)
 {
@@ -88,7 +137,7 @@ static void finds_no_home(void)
     CHECK_EQ(bench_order(&c, CARD_DO_STOP), NET_DONE);
     pass(300000, false);
     CHECK_EQ(c.state, NET_READY);
-    CHECK_EQ(c.kernel.processor.task[NETCARD_HOME].priority, 5);
+    CHECK_EQ(kernel_priority(&c.kernel, NETCARD_HOME), 5);
 }
 
 /* The emergency stop ends all pulses at once; only RESET and a new start move again. */
@@ -277,9 +326,32 @@ static void keeps_range(void)
     CHECK(bench_count(&c, 0) <= 60000 && bench_count(&c, 0) > 10000);
 }
 
+/* The range counts from where a job begins: literally started twice, it begins where it ended, and
+ * the second one meets the limit that the first was far from. */
+static void keeps_range_from_its_begin(void)
+{
+    struct netcard_config config = bench_config();
+
+    bench_make(2000, 100, NULL, 0);
+    const int64_t high = bench_end[0] + bench_end[0] / 2;
+    config.settings.policy = CARD_LITERAL;
+    config.settings.position_high[0] = (int32_t)high;
+    bench_start(&c, &config);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    bench_pass(&c, 2500);
+    CHECK_EQ(c.state, NET_READY);
+    CHECK_EQ(netcard_position(&c, 0), bench_end[0]);
+    CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+    bench_pass(&c, 2500);
+    CHECK_EQ(c.state, NET_FAULT);
+    CHECK_EQ(c.error, NET_LIMIT);
+    CHECK(netcard_position(&c, 0) > bench_end[0] && netcard_position(&c, 0) <= high);
+}
+
 int main(void)
 {
     goes_home();
+    homes_what_is_asked();
     finds_no_home();
     stops_at_once();
     keeps_off_limits();
@@ -287,6 +359,7 @@ int main(void)
     switches_outputs();
     loses_power();
     keeps_range();
+    keeps_range_from_its_begin();
     clears_alarms();
     reads_first();
     return check_result();

@@ -38,6 +38,8 @@ static bool kept(const struct rig *r, const struct rig *before)
     return slot < 0
            || (!memcmp(r->chip.array + half * (size_t)slot,
                        before->chip.array + half * (size_t)slot, half)
+               && !memcmp(r->chip.written + sectors * (size_t)slot,
+                          before->chip.written + sectors * (size_t)slot, sectors)
                && !memcmp(r->chip.wear + sectors * (size_t)slot,
                           before->chip.wear + sectors * (size_t)slot,
                           sectors * sizeof *r->chip.wear));

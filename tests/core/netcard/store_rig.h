@@ -5,6 +5,7 @@
 #include "job_make.h"
 #include "job_store.h"
 #include "net_crc.h"
+#include "store_layout.h"
 
 struct sent { const struct made *file; uint8_t hash[NET_SHA_BYTES]; uint32_t crc; };
 
@@ -67,8 +68,9 @@ static inline bool rig_step(struct rig *r, int64_t *took)
         r->now += *took;
         return true;
     }
-    for (int k = 0; c->work == FLASH_PROGRAM && k < c->bytes; k++)
-        CHECK_EQ(c->array[c->at + k], 0xff);    /* only what is erased is programmed */
+    uint8_t page[FLASH_PAGE];
+    flash_look(c, c->at / FLASH_PAGE, page);
+    CHECK(c->work != FLASH_PROGRAM || store_blank(page));   /* only what is erased is programmed */
     if (++r->operations != r->cut) {
         r->now += *took;
         return true;

@@ -139,6 +139,27 @@ static void known(void)
     CHECK(rig_send(&r, &b, &result) && result == NET_DONE && rig_holds(&r, &b));
 }
 
+/* With one slot the job in force goes as soon as another is begun, for its sectors are erased next;
+ * its own, told again or refused, leaves it. With two it stays until the other is whole. */
+static void one_slot(void)
+{
+    const struct sent a = sent_of(&file), b = sent_of(&other);
+    uint8_t page[FLASH_PAGE];
+    for (int32_t slots = 1; slots <= 2; slots++) {
+        rig_start(&r, slots);
+        CHECK(rig_send(&r, &a, &result) && result == NET_DONE && rig_holds(&r, &a));
+        CHECK_EQ(job_store_begin(&r.store, 256, b.hash, b.crc), NET_RANGE);
+        CHECK_EQ(job_store_begin(&r.store, (uint32_t)file.bytes, a.hash, a.crc), NET_DONE);
+        CHECK(rig_holds(&r, &a));
+        CHECK_EQ(job_store_begin(&r.store, (uint32_t)other.bytes, b.hash, b.crc), NET_DONE);
+        CHECK_EQ(r.store.job.slot, slots == 1 ? -1 : 0);
+        CHECK_EQ(job_store_read(&r.store.job, &r.chip, 0, page, r.now) > 0, slots == 2);
+        steps();
+        CHECK_EQ(r.store.job.slot, slots == 1 ? -1 : 0);
+        CHECK(rig_send(&r, &b, &result) && result == NET_DONE && rig_holds(&r, &b));
+    }
+}
+
 /* A file that is no job, or not that of its hash: the job in force stays, and nothing of the file
  * counts. */
 static void no_job(void)
@@ -259,6 +280,7 @@ int main(void)
     any_order();
     early();
     known();
+    one_slot();
     no_job();
     fallen_back();
     from_workshop();

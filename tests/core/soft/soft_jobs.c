@@ -164,6 +164,22 @@ static void steps(void)
     CHECK(soft_done(&soft));
     CHECK_EQ(keys, 3);                      /* the pause, the second move, the third */
     pc_at(1100.0, 0.0, 350.0, 1e-6);
+
+    /* The key while a move runs lets the next one begin, but once the arm rests: no zone. */
+    begin("MOVJ P001\nMOVL P002 V=500 PL=3\nMOVL P003 V=500\nEND\n");
+    panel.single = true;
+    pc_until(SOFT_PAUSED);
+    pc_press(&panel.start);
+    pc_run(200);
+    CHECK_EQ(soft_status(&soft, &panel), SOFT_RUNNING);
+    pc_press(&panel.start);
+    double nearest = INFINITY;
+    for (int n = 0; n < 100000 && !soft_done(&soft); n++) {
+        const double *at = soft.robot.pose.at;
+        pc_cycle();
+        nearest = fmin(nearest, hypot(hypot(at[0] - 1000.0, at[1] - 100.0), at[2] - 350.0));
+    }
+    CHECK(soft_done(&soft) && nearest < 1e-6);
 }
 
 /* The user program does not look at what stands behind a pause before that is over. */

@@ -25,18 +25,24 @@ struct slot {
 
 extern const struct side *const side[VERSIONS];
 
-/* Make a call of both versions, which must answer alike and tell an error once. */
+/* Make a call of both versions, which must answer alike and tell the same errors. */
 #define BOTH(call) __extension__ ({ \
     int status_[VERSIONS]; \
-    for (int v_ = 0; v_ < VERSIONS; v_++) { \
-        side_errors = 0; \
-        status_[v_] = side[v_]->call; \
-        HOLDS(status_[v_] == 0 || status_[v_] == ERROR); \
-        HOLDS(side_errors == (status_[v_] == ERROR)); \
-    } \
-    HOLDS(status_[0] == status_[1]); \
+    pair_settle(); \
+    EACH_OF_BOTH(call); \
     status_[0]; \
 })
+#define EACH_OF_BOTH(call) do { \
+    for (int v_ = 0; v_ < VERSIONS; v_++) { \
+        side_told[v_].errors = 0; \
+        status_[v_] = side[v_]->call; \
+    } \
+    pair_alike(status_); \
+} while (0)
+
+/* Were calls of both versions answered alike? An error is told once; of a part program, as often as
+ * it has lines that are wrong. */
+void pair_alike(const int status[VERSIONS]);
 
 void pair_save(struct pair *p, struct slot *s);
 
@@ -48,11 +54,20 @@ extern struct slot pair_before;
 void pair_look(struct pair *p);
 void pair_same(struct pair *p);
 
+/* The pair whose latest calls were all refused: where it is, is looked at before the next other
+ * call, which takes long if states are large. */
+extern struct pair *pair_refused;
+void pair_settle(void);
+
 /* A call that must be refused and change nothing. */
 #define REFUSED(p, call) do { \
-    pair_look(p); \
-    HOLDS(BOTH(call) == ERROR); \
-    pair_same(p); \
+    int status_[VERSIONS]; \
+    if (pair_refused != (p)) { \
+        pair_look(p); \
+    } \
+    EACH_OF_BOTH(call); \
+    HOLDS(status_[0] == ERROR && side_told[0].errors == 1); \
+    pair_refused = (p); \
 } while (0)
 
 #endif

@@ -7,7 +7,7 @@ static void logger(void *environment, fmi2String name, fmi2Status status, fmi2St
 {
     (void)environment;
     HOLDS(name && name[0]);
-    side_tell(status, category, message, true);
+    side_tell(2, status, category, message);
 }
 
 static const fmi2CallbackFunctions callbacks = { logger, NULL, NULL, NULL, NULL };
@@ -21,7 +21,7 @@ static int enter(void *c, double start, bool stops, double stop, bool hasty)
 {
     if (hasty) {
         HOLDS(fmi2EnterInitializationMode(c) == fmi2Error);
-        side_errors = 0;
+        side_told[0].errors = 0;
     }
     const int status = fmi2SetupExperiment(c, 0, 0.0, start, stops, stop);
     return status ? status : (int)fmi2EnterInitializationMode(c);

@@ -5,7 +5,7 @@
 static void logger(void *environment, fmi3Status status, fmi3String category, fmi3String message)
 {
     (void)environment;
-    side_tell(status, category, message, false);
+    side_tell(3, status, category, message);
 }
 
 static void *instantiate(const char *token, const char *resources)

@@ -11,9 +11,9 @@ enum { SIDE_REAL, SIDE_INTEGER, SIDE_BOOLEAN, SIDE_STRING };
 /* Values of a variable: as many elements as it has, of its type. */
 union side_value { double real; int32_t integer; int32_t boolean; const char *string; };
 
-/* Errors that were told since it was set to 0, and the latest text. */
-extern int  side_errors;
-extern char side_said[256];
+/* What a call told of errors: how many, and the beginning of each text. */
+enum { SIDE_ERRORS = 32, SIDE_TEXT = 256 };
+struct side_told { int errors; char text[SIDE_ERRORS][SIDE_TEXT]; };
 
 struct side {
     void *(*instantiate)(const char *token, const char *resources);
@@ -39,7 +39,10 @@ struct side {
 enum { SIDE_ODDS = 8, SIDE_ELEMENTS = 256 };
 extern const struct side side_2, side_3;
 
-/* Counts a message and looks at it; `format`: as FMI 2.0, where it is one of printf. */
-void side_tell(int status, const char *category, const char *text, bool format);
+/* What was told of FMI 2.0 and of 3.0 since it was cleared. */
+extern struct side_told side_told[2];
+
+/* Looks at a message of FMI version 2 or 3 and keeps that of an error. */
+void side_tell(int version, int status, const char *category, const char *text);
 
 #endif

@@ -1,0 +1,101 @@
+"""Changes of one line: what `make mutants` draws from, and the tests that it asks."""
+
+import ast
+import random
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+sys.path.append(str(ROOT / "tests/mutants"))
+
+from changes import Change, changes
+from nearest_tests import of_c, of_python
+
+C = """/* a < b */
+int f(int a)
+{
+    const char *s = "a == b";
+    if (a < 10) {
+        a = g(a, 3);
+    }
+    return a * 2; /* a + 1 */
+}
+"""
+PYTHON = '''"""A text with a < b and 3."""
+LIMIT = "x == 1"
+
+
+def f(a: int) -> str:
+    if a < 10:
+        a = a + 1  # and 2
+    return f"{a:3d} == {a}"
+'''
+
+
+def made(name: str, text: str) -> list[tuple[int, str]]:
+    return [(c.line, c.became.strip()) for c in changes(Path(name), text)]
+
+
+def test_code_is_changed_and_neither_text_nor_comments() -> None:
+    assert made("f.c", C) == [
+        (5, "if (a <= 10) {"),
+        (5, "if (a < 11) {"),
+        (5, "if (!(a < 10)) {"),
+        (6, "a = g(a, 4);"),
+        (6, ";"),
+        (8, "return a / 2; /* a + 1 */"),
+        (8, "return a * 3; /* a + 1 */"),
+    ]
+    assert made("f.py", PYTHON) == [
+        (6, "if a <= 10:"),
+        (6, "if a < 11:"),
+        (6, "if not (a < 10):"),
+        (7, "a = a - 1  # and 2"),
+        (7, "a = a + 2  # and 2"),
+        (7, "pass"),
+    ]
+
+
+def test_what_is_the_same_either_way_is_no_change() -> None:
+    """The less of two that are equal, and a place of an array that nobody reads."""
+    within = "int f(int a, int b)\n{{\n    {}\n}}\n"
+    for line, became in {
+        "const int c[3] = { a, b };": [],
+        "struct step all[STEPS + 1];": [],
+        "return a < b ? a : b;": [],
+        "return p->a[i] > b.c ? b.c : p->a[i];": [],
+        "return a < b ? a : c;": ["return a <= b ? a : c;"],
+        "return a < b ? a : b + c;": ["return a <= b ? a : b + c;", "return a < b ? a : b - c;"],
+        "return c + a < b ? a : b;": ["return c + a <= b ? a : b;", "return c - a < b ? a : b;"],
+        "return a < b ? b : a[0];": ["return a <= b ? b : a[0];", "return a < b ? b : a[1];"],
+        "return c[3];": ["return c[4];"],
+    }.items():
+        assert [text for _, text in made("f.c", within.format(line))] == became, line
+
+
+@pytest.mark.parametrize("pattern", ["src/*/*.c", "src/motionfmu/**/*.py"])
+def test_a_change_is_one_line_and_python_stays_python(pattern: str) -> None:
+    files = random.Random(1).sample(sorted(ROOT.glob(pattern)), 25)
+    for file in files:
+        text = file.read_text()
+        found: list[Change] = list(changes(file, text))
+        for change in random.Random(2).sample(found, min(10, len(found))):
+            pairs = zip(text.split("\n"), change.text(text).split("\n"), strict=True)
+            assert [k + 1 for k, (a, b) in enumerate(pairs) if a != b] == [change.line]
+            if file.suffix == ".py":
+                ast.parse(change.text(text))
+
+
+def test_most_cores_have_tests_that_are_near() -> None:
+    """The others are seen by tests of FMUs alone, and told as such."""
+    cores = [f.parent for f in ROOT.glob("src/*/core.toml")]
+    near = [core.name for core in cores if of_c(ROOT, next(core.glob("*.c")))]
+    assert 0.8 * len(cores) <= len(near)
+    assert of_c(ROOT, ROOT / "src/netcard/flash_chip.c")[0].startswith("flash")
+
+
+def test_tests_of_a_module_are_those_that_name_it() -> None:
+    near = of_python(ROOT, ROOT / "src/motionfmu/tune/choice.py")
+    assert len(near) == 3 and "tune" in near[0]
