@@ -11,7 +11,7 @@ NEEDS := import sys; v = sys.version_info; \
   sys.exit(None if v >= (3, 11) else "%s is Python %d.%d, 3.11 or newer is needed: make PYTHON=..." % ((sys.executable,) + tuple(v[:2])))
 VENV := import ensurepip, venv
 
-.PHONY: needs demo test check bench importers warnings fuzz build export wheel clean
+.PHONY: needs demo test test-long check bench importers warnings fuzz explore mutants build export wheel clean
 
 demo: build                     ## build all and run the demo scenario
 	$(BIN)/motionfmu run scenarios/circle
@@ -41,6 +41,9 @@ test: build check               ## everything: style, C tests (also sanitized), 
 	@ctest --test-dir build/asan -j 2 --output-on-failure
 	$(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25 --durations-min=5
 
+test-long: build                ## what takes an hour and `make test` shows of a few: FMPy on all scenarios
+	$(BIN)/python -m pytest -m long -n 2 --dist loadgroup --durations=25 --durations-min=60
+
 check: needs .venv/installed          ## formatting, lint, types
 	$(BIN)/ruff format --check src tests scenarios
 	$(BIN)/ruff check src tests scenarios
@@ -60,6 +63,12 @@ SECONDS ?= 120
 fuzz: needs .venv/installed           ## every tests/fuzz/fuzz_*.c on inputs at random, SECONDS each
 	tests/fuzz/run.sh $(SECONDS)
 	MOTIONFMU_FUZZ=$(SECONDS) $(BIN)/python -m pytest -n 2 tests/house/test_fuzz_readers.py
+
+explore: build                  ## property tests on fresh inputs for SECONDS; what fails is kept in build/explore
+	$(BIN)/python tests/explore.py $(SECONDS)
+
+mutants: build                  ## one line changed at a time, the nearest tests; MUTANTS="--count 100 --only src/robot"
+	$(BIN)/python tests/mutants/mutants.py $(MUTANTS)
 
 clean:
 	rm -rf build results

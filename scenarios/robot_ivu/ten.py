@@ -3,7 +3,7 @@
     .venv/bin/python scenarios/robot_ivu/ten.py [picture.png]
 
 The first five runs begin each stroke from the one side, the others from the other side. The run of
-500 s takes about a minute; its report with the moving picture is results/robot_ivu.ten/report.html.
+500 s takes about a minute; picture and report with the moving picture are in results/robot_ivu.ten.
 """
 
 import sys
@@ -131,4 +131,4 @@ def main(picture: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "ivu.png")
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else OUT / "ivu.png")

@@ -46,7 +46,7 @@ Gains = np.ndarray[Any, np.dtype[np.float64]]  # (3, 6): position, velocity gain
 
 def at(pose: str, gains: Gains | None = None, axis: int = 1) -> AxisModel:
     """The model of a joint in a pose."""
-    start = {"arm.start_angle": np.radians(POSES[pose]).tolist()}
+    start = {"arm.start_joint": list(POSES[pose])}
     given = {} if gains is None else settings(gains)
     return linear.model(HERE, axis, set={**MOVING, **start, **given})
 
