@@ -69,8 +69,9 @@ pytestmark = pytest.mark.xdist_group("wheel")
 
 
 def test_the_base_is_small(installed: Installed) -> None:
-    # Byte code is 32 MB more, FMUs of all platforms 12; CMake, for FMPy, is 76 of these.
-    assert 120.0 < sum(installed.others.values()) < 205.0
+    # 206 MB in November 2026, CMake, for FMPy, 76 of them; newer releases may grow by a twentieth.
+    # Byte code would be 32 MB more, FMUs of all platforms 12.
+    assert 120.0 < sum(installed.others.values()) < 217.0
     assert 10.0 < installed.own < 30.0
     assert installed.others.keys() >= {"fmpy", "numpy", "pydantic"}
     assert not installed.others.keys() & {"scipy", "matplotlib", "casadi", "plotly"}
