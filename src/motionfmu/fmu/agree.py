@@ -1,4 +1,4 @@
-"""Quantities of a machine that several FMUs describe: which parameter says each of them."""
+"""Quantities of a machine that several FMUs describe: which variable says each of them."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,24 +7,28 @@ from motionfmu.errors import Faults, InputError, suggestion
 from motionfmu.fmu.describe import Variable
 from motionfmu.toml_lines import shown
 
+SAYS = ("parameter", "output")
+
 
 def read(table: Any, variables: Sequence[Variable]) -> list[tuple[str, str]]:
-    """Quantities and parameters of the tables ``[agree.THING]`` of an fmu.toml.
+    """Quantities and variables of the tables ``[agree.THING]`` of an fmu.toml.
 
     ``[agree.arm]`` with ``start = "start_joint"`` makes the parameter start_joint what this FMU
-    takes as arm.start. An InputError has a line for each thing that is wrong.
+    takes as arm.start. With an output it is what this FMU has of it as time goes on.
+    An InputError has a line for each thing that is wrong.
     """
     if not isinstance(table, dict):
         raise InputError(f"agree {shown(table)} is no table")
     faults, found = Faults(), []
-    numbers = [v.name for v in variables if v.causality == "parameter" and v.type in ("f64", "i32")]
+    numbers = [v.name for v in variables if v.causality in SAYS and v.type in ("f64", "i32")]
     for thing, row in table.items():
         if not isinstance(row, dict) or not row:
-            faults.lines.append(f"agree {thing}: {shown(row)}: parameters by quantity wanted")
+            faults.lines.append(f"agree {thing}: {shown(row)}: variables by quantity wanted")
             continue
         for quantity, name in row.items():
             if name not in numbers:
                 told = f"agree {thing}: {quantity} = {shown(name)}: no such numeric parameter"
+                told += " or output"
                 faults.lines.append(told + suggestion(str(name), numbers))
             found.append((f"{thing}.{quantity}", name))
     faults.tell()

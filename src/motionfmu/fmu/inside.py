@@ -8,7 +8,7 @@ EXTRA = f"extra/{DOMAIN}"
 RESOURCES = "resources"
 # Which parameter is the FMU's grid; carried in EXTRA.
 GRID = "grid.json"
-# Parameters that agree with those of other FMUs; carried in EXTRA.
+# Parameters and outputs that agree with those of other FMUs; carried in EXTRA.
 AGREE = "agree.json"
 # The model without FMI: its C text, and where an FMU carries its object, by the machine.
 PART_UNIT = "fmu_part.c"

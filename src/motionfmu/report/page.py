@@ -36,6 +36,7 @@ from motionfmu.report.time_plots import (
     following_figure,
     trace_figures,
 )
+from motionfmu.report.tool_section import add_tools
 from motionfmu.report.view_section import SCRIPTS as VIEW
 from motionfmu.report.view_section import add_view
 from motionfmu.run.figures import Chart
@@ -131,6 +132,7 @@ def page_text(
         page.section("Warnings", "", warning_list(result.warnings))
     views = add_view(page, scene_of(result, deviations(result) or [from_contour(contour)]))
     add_performance(page, result)
+    add_tools(page, result, ran.tools)
     for i, test in enumerate(contour.circles[:CIRCLES_SHOWN]):
         _add_circle(page, f"circle{i}", test)
     add_speed(page, ran)

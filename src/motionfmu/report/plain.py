@@ -11,6 +11,7 @@ from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.shown_run import Result
 from motionfmu.report.signal_words import words_of
 from motionfmu.report.tables import check_table, warning_list
+from motionfmu.report.tool_section import add_tools
 from motionfmu.report.view_section import SCRIPTS, add_view
 from motionfmu.run.figures import Chart
 from motionfmu.view.deviations import from_cycles
@@ -48,6 +49,7 @@ def plain_text(result: Result, charts: Sequence[Chart], ran: Ran) -> str:
         page.section("Contour error", escape(result.no_contour), "")
     views = add_view(page, scene_of(result, deviations(result)))
     add_performance(page, result)
+    add_tools(page, result, ran.tools)
     shown = charts or result.overview()
     add_charts(page, shown, pictures=bool(charts))
     add_speed(page, ran)

@@ -21,6 +21,7 @@ from motionfmu.report.time_plots import Speeds, speed_figure
 from motionfmu.run import Scenario
 from motionfmu.run.decimate import Read, at, blocks, reader
 from motionfmu.run.figures import Chart
+from motionfmu.run.tool_apart import Apart, apart
 from motionfmu.view.scene import STANDS, position, tool_signal
 
 Array = NDArray[np.float64]
@@ -49,6 +50,7 @@ class Ran:
     programmed: tuple[float, float] | None  # of it, as programmed: cutting and rapids [mm]
     speeds: Speeds | None
     gains: tuple[LoopGain, ...]
+    tools: tuple[Apart, ...]  # each beside its command
 
     @property
     def cycle(self) -> float | None:
@@ -64,6 +66,7 @@ class Ran:
             "cycle_time": self.cycle,
             "distance": self.distance,
             "position_gains": gains,
+            "tools": [tool.numbers() for tool in self.tools],
         }
 
 
@@ -73,6 +76,7 @@ def ran_of(result: Result, contour: ContourResult | None) -> Ran:
     gains: tuple[LoopGain, ...] = ()
     with contextlib.suppress(Missing):
         gains = gain_of(scenario, given) if isinstance(scenario, Scenario) else ()
+    tools = tuple(apart(result))
     tool, source, over = _tool(result, contour)
     way, began = None, None
     if contour is not None:
@@ -83,19 +87,19 @@ def ran_of(result: Result, contour: ContourResult | None) -> Ran:
     elif tool is not None:
         began = _moves(result.time, tool)
     if tool is None or began is None:
-        return Ran(began, result.done_at, None, way, None, gains)
+        return Ran(began, result.done_at, None, way, None, gains, tools)
     every = max(1, round(over / (result.time[1] - result.time[0])))
     some = np.arange(0, len(result.time), every)
     time, points = result.time[some], without_leaps(at(tool, some))
     distance = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     if len(time) < _LEAST:
-        return Ran(began, result.done_at, distance, way, None, gains)
+        return Ran(began, result.done_at, distance, way, None, gains, tools)
     speed = np.linalg.norm(np.gradient(points, time, axis=0), axis=1)
     planned, programmed = _planned(result), _programmed(result, contour)
     factor, unit = (1.0, "mm/s") if contour is None else (MINUTE, "mm/min")
     rest = [None if v is None else factor * at(v, some) for v in (planned, programmed)]
     speeds = Speeds(time, factor * speed, rest[0], rest[1], (unit, source), result.done_at)
-    return Ran(began, result.done_at, distance, way, speeds, gains)
+    return Ran(began, result.done_at, distance, way, speeds, gains, tools)
 
 
 def _tool(result: Result, contour: ContourResult | None) -> tuple[Read | None, str, float]:

@@ -1,5 +1,6 @@
 """The interactive plots over time."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,7 @@ from motionfmu.report.numbers import label, length, unit
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID, axis, layout
 from motionfmu.run.decimate import Read, ends, reader
+from motionfmu.run.tool_apart import Apart
 
 Figure = dict[str, Any]
 
@@ -94,11 +96,25 @@ def following_figure(contour: ContourResult) -> Figure:
     return _curves(run.time, shown, f"Following error [{name}]", 270)
 
 
+def apart_figure(time: Array, tool: Apart) -> Figure:
+    """How far a tool is from its command against time, and how it is turned from it."""
+    factor, name = unit(tool.sizes[0].largest)
+    curves = [(lambda first, last: factor * tool.distance(first, last), f"Distance [{name}]")]
+    if tool.angle is not None:
+        curves.append((tool.angle, "Attitude [°]"))
+    return _panels(
+        time,
+        [
+            (sampled(Samples.made(time, read), title.partition(" [")[0], AXES[i]), title, True)
+            for i, (read, title) in enumerate(curves)
+        ],
+    )
+
+
 def fifo_figure(contour: ContourResult) -> Figure | None:
     """FIFO stock and interrupts against time; None without either."""
     run = contour.run
-    traces: list[Figure] = []
-    rows = []
+    rows: list[tuple[Figure, str, bool]] = []
     if run.stock is not None:
         stock = reader(run.stock)
 
@@ -106,28 +122,31 @@ def fifo_figure(contour: ContourResult) -> Figure | None:
             several = stock(first, last)
             return several[:, list(run.axes)].min(axis=1) if several.ndim > 1 else several
 
-        traces.append(sampled(Samples.made(run.time, least, True), "FIFO stock", AXES[0]))
-        rows.append("FIFO stock<br>[commands]")
+        stocked = sampled(Samples.made(run.time, least, True), "FIFO stock", AXES[0])
+        rows.append((stocked, "FIFO stock<br>[commands]", True))
     if run.interrupts is not None:
         parts = in_blocks(run.interrupts, run.time, back=1)
         at = np.concatenate([time[1:][np.diff(number) > 0] for number, time in parts])
         between = Samples(at[1:], np.diff(at) * 1e3, dots=True)
         trace = sampled(between, "since last interrupt", AXES[1])
-        traces.append(trace | {"marker": {"size": 3, "color": AXES[1]}})
-        rows.append("Since last<br>interrupt [ms]")
-    if not traces:
-        return None
+        marked = trace | {"marker": {"size": 3, "color": AXES[1]}}
+        rows.append((marked, "Since last<br>interrupt [ms]", not rows))
+    return _panels(run.time, rows) if rows else None
+
+
+def _panels(time: Array, rows: Sequence[tuple[Figure, str, bool]]) -> Figure:
+    """One or two curves over each other: trace, title of its axis, whether that shows zero."""
     more: Figure = {}
-    for i, (trace, title) in enumerate(zip(traces, rows, strict=True)):
+    for i, (trace, title, zero) in enumerate(rows):
         low = 0.0 if i == len(rows) - 1 else 0.54
         high = 1.0 if i == 0 else 0.46
         key = "" if i == 0 else "2"
         trace |= {"yaxis": "y" + key, "showlegend": False}
-        shown = _range(trace["samples"].values, zero=i == 0)
+        shown = _range(trace["samples"].values, zero=zero)
         more["yaxis" + key] = _axis(title, domain=[low, high], range=shown, nticks=5)
-    figure = _over_time(300 if len(rows) == 2 else 230, run.time, **more)
+    figure = _over_time(300 if len(rows) == 2 else 230, time, **more)
     figure["xaxis"]["anchor"] = "y2" if len(rows) == 2 else "y"
-    return {"data": traces, "layout": figure}
+    return {"data": [trace for trace, _, _ in rows], "layout": figure}
 
 
 def trace_figures(contour: ContourResult) -> list[tuple[str, Figure]]:

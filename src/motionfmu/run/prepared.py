@@ -16,6 +16,7 @@ from motionfmu.scenarios import (
     rates,
     recording,
     system,
+    tool_signals,
     values,
     view_signals,
 )
@@ -86,7 +87,7 @@ class Prepared:
         """Look up what is recorded, drawn and checked."""
         resolver, body = self.resolver, self.document.body
         listed = faults.of(lambda: recording.chosen(resolver, body.record.signals)) or []
-        for wanted in (contour_signals, iso9283_signals, view_signals):
+        for wanted in (contour_signals, iso9283_signals, view_signals, tool_signals):
             with faults.each():
                 listed += recording.chosen(resolver, wanted.wanted(resolver))
         if body.iso9283 is not None:

@@ -2,23 +2,25 @@
 
 import functools
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from motionfmu import units
 from motionfmu.fmu.inside import AGREE, EXTRA
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.port import Port
-from motionfmu.scenarios.system import System
+from motionfmu.scenarios.system import System, Wire
 from motionfmu.scenarios.values import start_values
 
 # Values in SI that differ by less, or by this share, are equal: 1 um, 0.2 arc seconds. It is less
 # than a machine repeats, and more than what printed digits lose.
 CLOSE = 1e-6
+# A quantity of this ending is what one FMU wants of another, which has it without the ending.
+COMMAND = "_command"
 
 
 @functools.cache
 def quantities(fmu: str) -> Mapping[str, str]:
-    """Parameter by quantity, such as arm.start: what an FMU says of things outside it."""
+    """Variable by quantity, such as arm.start: what an FMU says of things outside it."""
     if not fmus.is_ours(fmu):
         return {}
     with fmus.opened(fmu) as archive:
@@ -34,10 +36,15 @@ def warnings(system: System) -> list[str]:
     others that do not; two of the same kind, such as two controllers, are never compared.
     """
     given = {s.end.name: s.values for s in system.settings}
-    behind: dict[str, set[str]] = {}
-    for wire in system.wires:
-        behind.setdefault(wire.source.component, set()).add(wire.target.component)
-    known = {c: quantities(fmu) for c, fmu in system.components.items()}
+    behind = _behind(system.wires)
+    known = {
+        c: {
+            quantity: name
+            for quantity, name in quantities(fmu).items()
+            if fmus.ports(fmu)[name].causality == "parameter"
+        }
+        for c, fmu in system.components.items()
+    }
     found: dict[frozenset[str], str] = {}
     for one, own in known.items():
         for quantity, name in own.items():
@@ -52,6 +59,31 @@ def warnings(system: System) -> list[str]:
                 if frozenset(pair) not in found and (told := _apart(sides, given)):
                     found[frozenset(pair)] = f"{told}: both mean {quantity}"
     return list(found.values())
+
+
+def commanded(
+    components: Mapping[str, str], wires: Iterable[Wire], asked: Sequence[str]
+) -> dict[str, list[tuple[str, str]]]:
+    """Pairs of outputs for each quantity: what one FMU commands, what another behind it has."""
+    behind = _behind(wires)
+    known = {c: quantities(fmu) for c, fmu in components.items()}
+    found: dict[str, list[tuple[str, str]]] = {quantity: [] for quantity in asked}
+    for quantity, pairs in found.items():
+        having = {c for c in known if quantity in known[c]}
+        for one, own in known.items():
+            if quantity + COMMAND in own:
+                command = f"{one}.{own[quantity + COMMAND]}"
+                others = list(_nearest(one, behind, having))
+                pairs += [(command, f"{c}.{known[c][quantity]}") for c in others]
+    return found
+
+
+def _behind(wires: Iterable[Wire]) -> dict[str, set[str]]:
+    """The components to which wires lead from each."""
+    behind: dict[str, set[str]] = {}
+    for wire in wires:
+        behind.setdefault(wire.source.component, set()).add(wire.target.component)
+    return behind
 
 
 def _nearest(start: str, behind: Mapping[str, set[str]], knowing: set[str]) -> Iterator[str]:

@@ -1,0 +1,98 @@
+"""How far a tool is from where its controller commands it at the same instant."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu import units
+from motionfmu.run.decimate import Read, blocks, reader
+from motionfmu.run.recorded import Recorded
+from motionfmu.scenarios.tool_signals import Tool, tools
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Size:
+    """What a distance or an angle comes to over a run."""
+
+    largest: float
+    at: float  # [s]
+    rms: float
+
+    def numbers(self) -> dict[str, float]:
+        """The same for JSON."""
+        return {"max": self.largest, "at": self.at, "rms": self.rms}
+
+
+@dataclass(frozen=True)
+class Apart:
+    """A tool beside its command."""
+
+    tool: Tool
+    distance: Read  # (n,) [mm]
+    angle: Read | None  # (n,) [deg]; None if attitudes are unknown
+    sizes: tuple[Size, Size | None]
+
+    def numbers(self) -> dict[str, Any]:
+        """Names of both signals, distance [mm] and angle [deg], for JSON."""
+        (command, actual), (distance, angle) = self.tool.position, self.sizes
+        return {
+            "command": command,
+            "actual": actual,
+            "distance": distance.numbers(),
+            "angle": None if angle is None else angle.numbers(),
+        }
+
+
+def apart(run: Recorded) -> list[Apart]:
+    """Each tool whose command and place were recorded, as numbers, throughout."""
+    found = []
+    for tool in tools(run.resolver):
+        names = (*tool.position, *(tool.attitude or ()))
+        reads = [reader(run.signals[n]) for n in names if n in run.signals]
+        finite = all(np.isfinite(b).all() for r in reads for b in blocks(len(run.time), r))
+        if len(reads) == len(names) and finite:
+            distance = _distance(run, tool.position)
+            angle = None if tool.attitude is None else _angle(run, tool.attitude)
+            sizes = _size(run.time, distance), angle and _size(run.time, angle)
+            found.append(Apart(tool, distance, angle, sizes))
+    return found
+
+
+def _distance(run: Recorded, pair: tuple[str, str]) -> Read:
+    ports = [run.resolver.end(name, "", "").port for name in pair]
+    factors = [units.parse(p.unit or "1").factor / units.parse("mm").factor for p in ports]
+    command, actual = (reader(run[name]) for name in pair)
+
+    def distance(first: int, last: int) -> Array:
+        gap = factors[1] * actual(first, last) - factors[0] * command(first, last)
+        return np.asarray(np.linalg.norm(gap, axis=1))
+
+    return distance
+
+
+def _angle(run: Recorded, pair: tuple[str, str]) -> Read:
+    """Of the turn from one quaternion to the other, which loses no digits near 0."""
+    command, actual = (reader(run[name]) for name in pair)
+
+    def angle(first: int, last: int) -> Array:
+        p, q = command(first, last), actual(first, last)
+        p = np.where((p * q).sum(axis=1, keepdims=True) < 0.0, -p, p)
+        half = np.linalg.norm(q - p, axis=1), np.linalg.norm(q + p, axis=1)
+        return np.asarray(np.degrees(4.0 * np.arctan2(*half)))
+
+    return angle
+
+
+def _size(time: Array, read: Read) -> Size:
+    largest, at, squares, before = -1.0, 0, 0.0, 0
+    for block in blocks(len(time), read):
+        k = int(np.argmax(block))
+        if block[k] > largest:
+            largest, at = float(block[k]), before + k
+        squares += float((block**2).sum())
+        before += len(block)
+    return Size(largest, float(time[at]), float(np.sqrt(squares / len(time))))
