@@ -20,7 +20,7 @@ from motionfmu.netcard import tls
 from motionfmu.netcard.client import SoftCard
 from motionfmu.netcard.page import Serving, application
 from motionfmu.netcard.server import Cards
-from motionfmu.netcard.sim import VirtualCard, simulate
+from motionfmu.netcard.sim import VirtualCard, Watch, simulate
 from motionfmu.netcard.wire import MAGIC, OPEN_KEY, CardEnd
 
 FILES = Path(__file__).parent / "tls"
@@ -54,6 +54,38 @@ def test_cards_come_in_by_tls_and_trust_one_certificate(tmp_path: Path) -> None:
         await cards.close()
 
     asyncio.run(main())
+
+
+@pytest.mark.parametrize(
+    ("served", "trusted", "told"),
+    [
+        (None, CERT, "it does not speak TLS ("),
+        ((CERT, KEY), OTHER, "by TLS its certificate is not trusted ("),
+        ((), None, "Connect call failed ("),
+    ],
+)
+def test_why_a_card_does_not_come_in(tmp_path: Path, served, trusted, told: str) -> None:
+    async def main() -> list[str]:
+        cards = Cards(tmp_path)
+        port = await cards.listen(HOST, 0, tls.serving(*served) if served else None)
+        if served == ():
+            await cards.close()
+        context = tls.trusting(trusted) if trusted else None
+        reasons: list[str] = []
+        card = VirtualCard(1)
+        run = asyncio.create_task(
+            simulate([card], (HOST, port), tls=context, watch=Watch(failed=reasons.append))
+        )
+        await until(lambda: bool(reasons))
+        assert not card.online
+        run.cancel()
+        await asyncio.gather(run, return_exceptions=True)
+        if served != ():
+            await cards.close()
+        return reasons
+
+    (why, *_) = asyncio.run(main())
+    assert why.startswith(told)
 
 
 def test_the_page_is_there_by_tls_alone() -> None:

@@ -32,7 +32,7 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
 
     from motionfmu.netcard.config import load
     from motionfmu.netcard.keys import CARD_MAX, alone, read_keys
-    from motionfmu.netcard.sim import FlashFile, VirtualCard, simulate
+    from motionfmu.netcard.sim import FlashFile, VirtualCard, Watch, simulate
     from motionfmu.netcard.tls import trusting
     from motionfmu.netcard.wire import OPEN_KEY
 
@@ -66,6 +66,13 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
             what = "" if now else "; they go on to try"
             out.print(f"{now} of {cards} connected{what}", soft_wrap=True)
 
+    reasons: set[str] = set()
+
+    def failed(why: str) -> None:
+        if why not in reasons:
+            reasons.add(why)
+            out.print(f"server {server}: {why}", soft_wrap=True, markup=False)
+
     def each() -> None:
         tell()
         keep()
@@ -81,7 +88,8 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
 
     async def until_ended() -> None:
         came.append(on_end(cast("asyncio.Task[None]", asyncio.current_task()).cancel))
-        await simulate([one for one, _ in made], (host, int(port)), speed, each, trusted)
+        all_of_them = [one for one, _ in made]
+        await simulate(all_of_them, (host, int(port)), speed, Watch(each, failed), trusted)
 
     with folders:
         try:

@@ -4,10 +4,10 @@ Its machine counts pulses; an origin switch stands at a place.
 """
 
 import asyncio
-import contextlib
 import ctypes
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -27,6 +27,7 @@ AHEAD_NS = 1_000_000  # a card answers at once: it may be so far ahead of the cl
 MOST_NS = 100_000_000  # a card that is later than this does not catch up
 CHUNK = 4096  # [byte]
 UP = 4  # SESSION_UP of src/netcard/session.h
+CALL = 5.0  # [s] for a connection to come about
 SAVE = 1.0  # [s] between two looks at the flash
 
 
@@ -158,8 +159,10 @@ class Run:
         place: tuple[str, int],
         speed: float,
         tls: "ssl.SSLContext | None" = None,
+        failed: Callable[[str], None] = lambda why: None,
     ) -> None:
         self.card, self._place, self._speed, self._tls = card, place, speed, tls
+        self._failed = failed
         self._clock = asyncio.get_running_loop().time
         self._zero = self._clock() - card.now * 1e-9 / speed
         self._link: _Link | None = None
@@ -185,26 +188,40 @@ class Run:
 
     async def _call(self) -> None:
         loop = asyncio.get_running_loop()
-        with contextlib.suppress(OSError, TimeoutError):
-            async with asyncio.timeout(5.0):
+        try:
+            async with asyncio.timeout(CALL):
                 _, self._link = await loop.create_connection(
                     lambda: _Link(self), *self._place, ssl=self._tls
                 )
+        except TimeoutError:
+            self._failed(f"no answer within {CALL:g} s")
+        except OSError as error:
+            from motionfmu.netcard.tls import refused
+
+            self._failed(refused(error))
         if self._link is None:  # the card itself waits longer each time
             while self.card.wants:
                 await asyncio.sleep(TICK)
         self._calls = None
 
 
+@dataclass(frozen=True)
+class Watch:
+    """What is called while cards run."""
+
+    each: Callable[[], None] = lambda: None  # each second
+    failed: Callable[[str], None] = lambda why: None  # a connection did not come about
+
+
 async def simulate(
     cards: list[VirtualCard],
     place: tuple[str, int],
     speed: float = 1.0,
-    each: Callable[[], None] = lambda: None,
+    watch: Watch = Watch(),
     tls: "ssl.SSLContext | None" = None,
 ) -> None:
-    """Run cards as clients of a server until this is cancelled; `each` is called each second."""
-    runs = [Run(card, place, speed, tls) for card in cards]
+    """Run cards as clients of a server until this is cancelled."""
+    runs = [Run(card, place, speed, tls, watch.failed) for card in cards]
     clock = asyncio.get_running_loop().time
     due = clock() + SAVE
     while True:
@@ -212,7 +229,7 @@ async def simulate(
             run.turn()
         if clock() >= due:
             due = clock() + SAVE
-            each()
+            watch.each()
         await asyncio.sleep(TICK)
 
 

@@ -28,6 +28,17 @@ def trusting(certificate: Path) -> ssl.SSLContext:
     return context
 
 
+def refused(error: OSError) -> str:
+    """Why a connection did not come about."""
+    if isinstance(error, ssl.SSLCertVerificationError):
+        return f"by TLS its certificate is not trusted ({error.verify_message})"
+    if isinstance(error, ssl.SSLError):
+        return f"it does not speak TLS ({error.reason or error})"
+    if isinstance(error, ConnectionError) and not str(error):
+        return "it does not speak TLS (it closed the connection)"
+    return error.strerror or str(error)
+
+
 def _told(error: Exception) -> str:
     if isinstance(error, ssl.SSLError):
         return f"no PEM file, or not of one another ({error.reason or error})"
