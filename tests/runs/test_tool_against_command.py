@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 
 from motionfmu import load, scenario
-from motionfmu.run.tool_apart import apart
+from motionfmu.run.tool_gap import tool_gaps
 from motionfmu.scenarios.tool_signals import tools
 
 LINE = ROOT / "scenarios/robot_line"
@@ -47,7 +47,7 @@ def test_it_is_recorded_and_shown_unasked(tmp_path: Path) -> None:
     moved = [*start[:4], start[4] + 3.0, start[5] - 200.0]
     run = chain(["soft.done"], arm__start_joint=moved).run()
     assert run.signals.keys() == SAID | {"soft.done"}
-    (tool,) = apart(run)
+    (tool,) = tool_gaps(run)
     gap = 1e3 * (run["arm.tool_position"] - run["soft.tool_position"])
     distance = np.sqrt((gap**2).sum(axis=1))
     turn = turned(run["arm.tool_quaternion"]).transpose(0, 2, 1) @ turned(
@@ -101,5 +101,5 @@ def test_each_arm_has_its_own_controller() -> None:
 
 def test_a_controller_without_an_arm_has_no_such_section(tmp_path: Path) -> None:
     run = load(ROOT / "scenarios/robot_jog").run(stop=0.05)
-    assert tools(run.resolver) == [] == apart(run)
+    assert tools(run.resolver) == [] == tool_gaps(run)
     assert "Tool against command" not in run.save(tmp_path / "out").read_text()

@@ -21,7 +21,7 @@ from motionfmu.report.time_plots import Speeds, speed_figure
 from motionfmu.run import Scenario
 from motionfmu.run.decimate import Read, at, blocks, reader
 from motionfmu.run.figures import Chart
-from motionfmu.run.tool_apart import Apart, apart
+from motionfmu.run.tool_gap import ToolGap, tool_gaps
 from motionfmu.view.scene import STANDS, position, tool_signal
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ class Ran:
     programmed: tuple[float, float] | None  # of it, as programmed: cutting and rapids [mm]
     speeds: Speeds | None
     gains: tuple[LoopGain, ...]
-    tools: tuple[Apart, ...]  # each beside its command
+    tools: tuple[ToolGap, ...]  # each beside its command
 
     @property
     def cycle(self) -> float | None:
@@ -76,7 +76,7 @@ def ran_of(result: Result, contour: ContourResult | None) -> Ran:
     gains: tuple[LoopGain, ...] = ()
     with contextlib.suppress(Missing):
         gains = gain_of(scenario, given) if isinstance(scenario, Scenario) else ()
-    tools = tuple(apart(result))
+    tools = tuple(tool_gaps(result))
     tool, source, over = _tool(result, contour)
     way, began = None, None
     if contour is not None:

@@ -13,7 +13,7 @@ from motionfmu.report.numbers import label, length, unit
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID, axis, layout
 from motionfmu.run.decimate import Read, ends, reader
-from motionfmu.run.tool_apart import Apart
+from motionfmu.run.tool_gap import ToolGap
 
 Figure = dict[str, Any]
 
@@ -96,7 +96,7 @@ def following_figure(contour: ContourResult) -> Figure:
     return _curves(run.time, shown, f"Following error [{name}]", 270)
 
 
-def apart_figure(time: Array, tool: Apart) -> Figure:
+def gap_figure(time: Array, tool: ToolGap) -> Figure:
     """How far a tool is from its command against time, and how it is turned from it."""
     factor, name = unit(tool.sizes[0].largest)
     curves = [(lambda first, last: factor * tool.distance(first, last), f"Distance [{name}]")]

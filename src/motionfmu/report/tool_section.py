@@ -7,11 +7,11 @@ from motionfmu.report.numbers import figure, length
 from motionfmu.report.sheet import Sheet
 from motionfmu.report.shown_run import Result
 from motionfmu.report.tables import table
-from motionfmu.report.time_plots import apart_figure
-from motionfmu.run.tool_apart import Apart
+from motionfmu.report.time_plots import gap_figure
+from motionfmu.run.tool_gap import ToolGap
 
 
-def add_tools(page: Sheet, result: Result, found: Sequence[Apart]) -> None:
+def add_tools(page: Sheet, result: Result, found: Sequence[ToolGap]) -> None:
     """Add a section if controllers and machines of the run say where the tool is."""
     if not found:
         return
@@ -21,11 +21,11 @@ def add_tools(page: Sheet, result: Result, found: Sequence[Apart]) -> None:
     )
     content = table(("", "Largest", "at", "RMS"), [row for one in found for row in _rows(one)])
     for k, one in enumerate(found):
-        content += page.place(f"tool{k}", apart_figure(result.time, one), True)
+        content += page.place(f"tool{k}", gap_figure(result.time, one), True)
     page.section("Tool against command", note, content)
 
 
-def _rows(one: Apart) -> list[tuple[str, ...]]:
+def _rows(one: ToolGap) -> list[tuple[str, ...]]:
     command, actual = map(escape, one.tool.position)
     distance, angle = one.sizes
     at = f"{distance.at:.3f} s"

@@ -28,7 +28,7 @@ class Size:
 
 
 @dataclass(frozen=True)
-class Apart:
+class ToolGap:
     """A tool beside its command."""
 
     tool: Tool
@@ -47,7 +47,7 @@ class Apart:
         }
 
 
-def apart(run: Recorded) -> list[Apart]:
+def tool_gaps(run: Recorded) -> list[ToolGap]:
     """Each tool whose command and place were recorded, as numbers, throughout."""
     found = []
     for tool in tools(run.resolver):
@@ -58,7 +58,7 @@ def apart(run: Recorded) -> list[Apart]:
             distance = _distance(run, tool.position)
             angle = None if tool.attitude is None else _angle(run, tool.attitude)
             sizes = _size(run.time, distance), angle and _size(run.time, angle)
-            found.append(Apart(tool, distance, angle, sizes))
+            found.append(ToolGap(tool, distance, angle, sizes))
     return found
 
 
