@@ -67,7 +67,7 @@ fuzz: needs .venv/installed           ## every tests/fuzz/fuzz_*.c on inputs at 
 explore: build                  ## property tests on fresh inputs for SECONDS; what fails is kept in build/explore
 	$(BIN)/python tests/explore.py $(SECONDS)
 
-mutants: build                  ## one line changed at a time, the nearest tests; MUTANTS="--count 100 --only src/robot"
+mutants: build                  ## one line changed at a time, the nearest tests; MUTANTS="--count 100 --only src/controllers/robot"
 	$(BIN)/python tests/mutants/mutants.py $(MUTANTS)
 
 clean:

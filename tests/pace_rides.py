@@ -1,4 +1,4 @@
-"""Rides along chains of smooth pieces, planned by src/smooth/pace."""
+"""Rides along chains of smooth pieces, planned by src/motion/smooth/pace."""
 
 import ctypes
 import os

@@ -15,7 +15,7 @@ from motionfmu.fmu.modelica import codegen
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 PACKAGE = ROOT / "modelica" / "MotionControl"
-_ELEMENTARY = ROOT / "src/elementary"
+_ELEMENTARY = ROOT / "src/base/elementary"
 _FLAGS = (
     "-std=c11 -O2 -Wall -Wextra -Wpedantic -Wno-unused-function -Werror "
     "-ffp-contract=off -fno-math-errno -fno-trapping-math -fPIC"

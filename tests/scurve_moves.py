@@ -1,4 +1,4 @@
-"""Random moves of one coordinate, planned by src/path/scurve and by the ruckig package."""
+"""Random moves of one coordinate, planned by src/motion/path/scurve and by the ruckig package."""
 
 import ctypes
 import os

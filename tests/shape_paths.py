@@ -1,4 +1,4 @@
-"""Pieces of src/smooth/shape for rows of commands, and their distance from the programmed path."""
+"""Pieces of src/motion/smooth/shape for rows of commands, and how far they are from the path."""
 
 import itertools
 import math

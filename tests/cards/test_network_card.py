@@ -93,7 +93,7 @@ class Card:
 
 
 def test_the_parameters_are_the_settings_of_the_card() -> None:
-    text = (ROOT / "src/netcard/card_settings.h").read_text().replace("\\\n", "")
+    text = (ROOT / "src/controllers/netcard/card_settings.h").read_text().replace("\\\n", "")
     rows = re.findall(
         r'X\((bool|int32_t|double),\s*(\w+),\s*(?:\[(\d+)\])?\s*,\s*"([^"]*)",\s*([^,]+),'
         r'\s*([^,]+),\s*([^,]+),\s*"([^"]*)"\)',

@@ -1,7 +1,7 @@
 """How far the elementary functions are from the true values, by mpmath.
 
-`python tests/elementary/nearest.py 1000000` prints the table of src/elementary/README.md; its last
-column counts results that are not the nearest double. Twelve minutes with gmpy2 installed.
+`python tests/elementary/nearest.py 1000000` prints the table of src/base/elementary/README.md;
+its last column counts results that are not the nearest double. Twelve minutes with gmpy2 installed.
 """
 
 import ctypes
@@ -18,7 +18,7 @@ from typing import Any
 import mpmath
 from mpmath import mp, mpf
 
-CORE = Path(__file__).resolve().parents[2] / "src/elementary"
+CORE = Path(__file__).resolve().parents[2] / "src/base/elementary"
 FLAGS = "-std=c11 -Wall -Wextra -Wpedantic -Werror -ffp-contract=off -fno-math-errno".split()
 Arguments = tuple[float, ...]
 rnd = random.Random(19)

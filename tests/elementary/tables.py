@@ -1,4 +1,4 @@
-"""Make src/elementary/el_*_tables.h: every constant of the functions, from mpmath alone.
+"""Make src/base/elementary/el_*_tables.h: every constant of the functions, from mpmath alone.
 
 `python tests/elementary/tables.py`; test_elementary.py holds the files against this.
 """
@@ -11,7 +11,7 @@ import mpmath
 from mpmath import mp, mpf
 
 mp.prec = 1400
-CORE = Path(__file__).resolve().parents[2] / "src/elementary"
+CORE = Path(__file__).resolve().parents[2] / "src/base/elementary"
 Number = float | mpf
 
 SINES = 256  # steps of a turn

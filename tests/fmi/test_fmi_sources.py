@@ -13,6 +13,7 @@ from fmi_tools import Instance
 from fmpy.model_description import read_build_description
 
 from motionfmu.compiler import Compiler, compiler
+from motionfmu.fmu import cores
 from motionfmu.fmu.sources import NAMES, shown
 from motionfmu.scenarios.fmus import fmu_names, fmu_path
 
@@ -57,9 +58,9 @@ def object_of(name: str, folder: Path) -> tuple[Path, set[str]]:
     return sources / "all.o", {line.split()[-1] for line in told.splitlines()}
 
 
-@pytest.mark.parametrize("core", [f.parent.name for f in sorted(ROOT.glob("src/*/core.toml"))])
+@pytest.mark.parametrize("core", cores.folders(ROOT / "src"))
 def test_every_name_that_a_core_shows_is_found_in_its_text(core: str) -> None:
-    texts = [f.read_text() for f in (ROOT / "src" / core).glob("*.[ch]")]
+    texts = [f.read_text() for f in cores.folders(ROOT / "src")[core].glob("*.[ch]")]
     told = subprocess.run(
         ["nm", "-g", "--defined-only", ROOT / f"build/lib{core}.a"],
         capture_output=True,

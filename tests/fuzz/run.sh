@@ -15,8 +15,7 @@ clang=${CLANG:-clang}
 built=$PWD/build/fuzz
 sanitize="-DFLOW_AGAIN=2000 -g -O1 -fno-sanitize-recover=all -fno-omit-frame-pointer -ffp-contract=off -fno-math-errno"
 sanitize="$sanitize -fsanitize=address,undefined"
-# The cores are the folders of src with C files but for the FMI layer, the plants' template and the binding.
-cores=$(ls -d "$PWD"/src/*/*.c | sed 's|/[^/]*$||' | sort -u | grep -v -E '/(fmi|plant|python)$')
+cores=$(ls -d "$PWD"/src/*/*/core.toml | sed 's|/[^/]*$||')
 include=$(for core in $cores; do printf ' -I%s' "$core"; done)
 headers=$(${PYTHON:-.venv/bin/python} -c "import fmpy; print(fmpy.__path__[0])")/c-code
 fmi_include="-I$PWD/tests/fuzz -I$PWD/tests/fuzz/fmi -I$headers"

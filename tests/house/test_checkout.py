@@ -25,7 +25,7 @@ sys.meta_path.insert(0, First)
 def test_a_second_checkout_builds_its_own_sources(tmp_path: Path) -> None:
     """Its environment has the package of this one, by a finder as editable installs have."""
     second = tmp_path / "second"
-    for part in ("src", "cmake", "fmus/scope"):
+    for part in ("src", "fmus/scope"):
         shutil.copytree(ROOT / part, second / part, ignore=shutil.ignore_patterns("__pycache__"))
     for file in ("CMakeLists.txt", "pyproject.toml", "LICENSE"):
         shutil.copy(ROOT / file, second)

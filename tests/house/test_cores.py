@@ -15,16 +15,18 @@ sys.path.insert(0, str(ROOT / "src"))
 from motionfmu.fmu import cores, pack  # noqa: E402
 
 SOURCE = ROOT / "src"
-CORES = sorted(f.parent.name for f in SOURCE.glob("*/core.toml"))
-USES = {core: set(cores.uses(SOURCE / core)) for core in CORES}
-# Those that know no controller, as they say themselves, and what they may not even mention.
-SHARED = [core for core in CORES if cores.shared(SOURCE / core)]
+FOLDERS = cores.folders(SOURCE)
+CORES = sorted(FOLDERS)
+USES = {core: set(cores.uses(FOLDERS[core])) for core in CORES}
+STOREYS = {f.parent.name: cores.stands_on(f.parent) for f in SOURCE.glob("*/storey.toml")}
+# Storeys that serve any controller, and what their cores may not even mention.
+SHARED = [core for core in CORES if FOLDERS[core].parent.name in ("base", "motion", "language")]
 WORDS = re.compile(r"(?<![a-z])(mcc|mccl|epcio|msp430|fmi|fmu)(?![a-z])", re.IGNORECASE)
 Graph = dict[str, set[str]]
 
 
 def files(core: str) -> list[Path]:
-    return [*SOURCE.glob(f"{core}/*.[ch]")]
+    return [*FOLDERS[core].glob("*.[ch]")]
 
 
 def core_of() -> dict[str, str]:
@@ -78,12 +80,23 @@ def test_a_core_uses_what_it_includes_and_nothing_else(core: str) -> None:
     assert included(core) == USES[core]
 
 
+@pytest.mark.parametrize("core", CORES)
+def test_a_core_uses_its_own_storey_and_those_below(core: str) -> None:
+    own = FOLDERS[core].parent.name
+    below = {used: FOLDERS[used].parent.name for used in USES[core]}
+    assert {u: s for u, s in below.items() if s != own and s not in STOREYS[own]} == {}
+
+
+def test_storeys_stand_on_each_other_in_no_circle() -> None:
+    assert circle({name: set(on) for name, on in STOREYS.items()}) == []
+    assert {f.parent.name for f in FOLDERS.values()} == STOREYS.keys()
+
+
 @pytest.mark.parametrize("core", SHARED)
 def test_a_shared_core_knows_no_controller(core: str) -> None:
-    assert set(cores.closure(SOURCE, [core])) <= set(SHARED)
     told = [
         f"{f.relative_to(ROOT)}:{n}: {line}"
-        for f in sorted(SOURCE.glob(f"{core}/*"))
+        for f in sorted(FOLDERS[core].glob("*"))
         for n, line in enumerate(f.read_text().splitlines(), 1)
         if WORDS.search(line)
     ]
@@ -145,7 +158,7 @@ def test_a_header_that_cannot_be_installed_is_told(tmp_path: Path) -> None:
 
 
 def test_nine_cores_or_more_serve_any_controller() -> None:
-    assert len(SHARED) >= 9 and {"elementary", "path", "motion", "tasks"} <= set(SHARED)
+    assert len(SHARED) >= 9 and {"elementary", "path", "mover", "tasks"} <= set(SHARED)
     assert not {"mcc", "epcio", "soft", "netcard"} & set(SHARED)
 
 
@@ -160,7 +173,7 @@ def test_a_drawing_has_each_core_above_all_that_it_uses() -> None:
         assert int(n) == 1 + max((level[used] for used in USES[core]), default=-1)
 
 
-@pytest.mark.parametrize("line", ['uses = []\nusse = ["path"]', 'uses = ["path"]\nshared = 1', ""])
+@pytest.mark.parametrize("line", ['uses = []\nusse = ["path"]', 'uses = "path"', ""])
 def test_what_a_core_says_is_known(tmp_path: Path, line: str) -> None:
     (tmp_path / "core.toml").write_text(line)
     with pytest.raises(ValueError, match=r"core\.toml: .* wanted"):

@@ -113,7 +113,7 @@ def test_the_readme_example_runs() -> None:
 
 
 def test_the_example_of_the_robot_station_runs() -> None:
-    text = (ROOT / "src/robot_station/README.md").read_text()
+    text = (ROOT / "src/controllers/robot_station/README.md").read_text()
     code = re.search(r"```python\n(.*?)```", text, re.S)
     assert code
     told, where = output(sys.executable, "-c", code[1]).splitlines()

@@ -126,4 +126,4 @@ def test_no_folder_is_too_full_to_be_read() -> None:
 
 def test_the_root_holds_the_folders_it_was_designed_with() -> None:
     folders = {n.split("/")[0] for n in listed() if "/" in n and not n.startswith(".")}
-    assert folders == {"cmake", "docs", "examples", "fmus", "modelica", "scenarios", "src", "tests"}
+    assert folders == {"docs", "examples", "fmus", "modelica", "scenarios", "src", "tests"}

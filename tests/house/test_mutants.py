@@ -75,7 +75,7 @@ def test_what_is_the_same_either_way_is_no_change() -> None:
         assert [text for _, text in made("f.c", within.format(line))] == became, line
 
 
-@pytest.mark.parametrize("pattern", ["src/*/*.c", "src/motionfmu/**/*.py"])
+@pytest.mark.parametrize("pattern", ["src/*/*/*.c", "src/motionfmu/**/*.py"])
 def test_a_change_is_one_line_and_python_stays_python(pattern: str) -> None:
     files = random.Random(1).sample(sorted(ROOT.glob(pattern)), 25)
     for file in files:
@@ -90,10 +90,10 @@ def test_a_change_is_one_line_and_python_stays_python(pattern: str) -> None:
 
 def test_most_cores_have_tests_that_are_near() -> None:
     """The others are seen by tests of FMUs alone, and told as such."""
-    cores = [f.parent for f in ROOT.glob("src/*/core.toml")]
+    cores = [f.parent for f in ROOT.glob("src/*/*/core.toml")]
     near = [core.name for core in cores if of_c(ROOT, next(core.glob("*.c")))]
     assert 0.8 * len(cores) <= len(near)
-    assert of_c(ROOT, ROOT / "src/netcard/flash_chip.c")[0].startswith("flash")
+    assert of_c(ROOT, ROOT / "src/controllers/netcard/flash_chip.c")[0].startswith("flash")
 
 
 def test_tests_of_a_module_are_those_that_name_it() -> None:

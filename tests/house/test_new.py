@@ -43,7 +43,7 @@ def test_a_new_fmu_builds_and_passes_what_every_fmu_must(project: Path) -> None:
     line = "gcc -std=c11 -Wall -Wextra -Wpedantic -Werror -fPIC -fvisibility=hidden"
     line += " -ffp-contract=off -r -nostdlib"
     cores = pack.compiled_sources(source, gen)
-    folders = (gen, source, ROOT / "src/fmi", ROOT / "src/elementary")
+    folders = (gen, source, ROOT / "src/fmi", ROOT / "src/base/elementary")
     places = [f"-I{p}" for p in folders]
     subprocess.run([*line.split(), *places, gen / pack.PART_UNIT, *cores, "-o", part], check=True)
     subprocess.run(["objcopy", "--localize-hidden", part], check=True)

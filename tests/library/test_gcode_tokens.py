@@ -1,8 +1,8 @@
 """The words of a line are those that gcodeparser, another program, finds in it.
 
-Random lines go to `src/gcode/tokens.h` and to gcodeparser 0.3. That one reads the dialect of
-printers, so half of the lines are written in what both have in common and reach it as they are, and
-the other half may use all of RS-274 and are put into its dialect by `plain`.
+Random lines go to `src/language/gcode/tokens.h` and to gcodeparser 0.3. That one reads the dialect
+of printers, so half of the lines are written in what both have in common and reach it as they are,
+and the other half may use all of RS-274 and are put into its dialect by `plain`.
 
 More: GCODE_LINES=1000000 .venv/bin/python -m pytest tests/library/test_gcode_tokens.py
 """

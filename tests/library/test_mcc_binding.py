@@ -17,7 +17,7 @@ import motionfmu.mcc as mcc
 from motionfmu.errors import InputError
 from motionfmu.mcc import Mcc, MccError, VirtualCard
 
-HEADER = (ROOT / "src/mcc/mcc.h").read_text()
+HEADER = (ROOT / "src/controllers/mcc/mcc.h").read_text()
 
 
 def test_codes_are_those_of_the_header() -> None:

@@ -20,11 +20,11 @@ def table(text: str) -> dict[str, list[str]]:
     return found
 
 
-README = table((ROOT / "src/mcc/README.md").read_text())
+README = table((ROOT / "src/controllers/mcc/README.md").read_text())
 
 
 def declared() -> set[str]:
-    headers = [f for f in (ROOT / "src/mcc").glob("*.h") if f.name != "mccl.h"]
+    headers = [f for f in (ROOT / "src/controllers/mcc").glob("*.h") if f.name != "mccl.h"]
     text = "\n".join(f.read_text() for f in headers)
     return set(re.findall(r"^[a-z]\w* (MCC_\w+)\(", text, re.M))
 
@@ -103,7 +103,7 @@ def test_a_name_that_is_not_called_is_no_test() -> None:
 
 
 def test_the_parameters_are_a_type_of_the_headers() -> None:
-    text = "\n".join(f.read_text() for f in (ROOT / "src/mcc").glob("*.h"))
+    text = "\n".join(f.read_text() for f in (ROOT / "src/controllers/mcc").glob("*.h"))
     assert "} MCC_MACH_PARAM;" in text and "epcio_axis_param[AXES]" in text
 
 

@@ -60,22 +60,22 @@ def test_settings_have_names_and_units_of_the_fmu() -> None:
 
 def test_every_setting_of_library_and_pc_has_its_name() -> None:
     have = set(mcc.defaults())
-    machine = (ROOT / "src/mcc/machine.h").read_text()
-    pc = (ROOT / "src/pc/pc.h").read_text()
+    machine = (ROOT / "src/controllers/mcc/machine.h").read_text()
+    pc = (ROOT / "src/controllers/pc/pc.h").read_text()
     # A program of the FMU, its start and its panel have calls here.
     wanted = members(machine, "machine") | members(machine, "machine_axis")
     modules = {"priority", "offset", "time", "unit", "most"}
     wanted |= members(pc, "pc_config") - {"start", "no_panel"} - modules
     wanted |= {f"module_{n}" for n in modules}
     wanted |= {f"asyn_{n}" for n in members(machine, "machine_asyn")}
-    homing = (ROOT / "src/mcc/home.h").read_text()
+    homing = (ROOT / "src/controllers/mcc/home.h").read_text()
     wanted |= {f"home_{n}" for n in members(homing, "home_config")}
     wanted = {RENAMED.get(n, n) for n in wanted}
     assert wanted <= have, wanted - have
 
 
 def test_every_reading_has_its_name() -> None:
-    station = (ROOT / "src/station/station.h").read_text()
+    station = (ROOT / "src/controllers/station/station.h").read_text()
     assert members(station, "station_reading") == set(Struct("reading"))
 
 

@@ -109,7 +109,7 @@ def model_at(speed: float) -> linear.AxisModel:
 
 
 def test_an_input_is_not_moved_faster_than_it_is_followed() -> None:
-    """The edge rate at which the first count is lost: 57 and 457 clocks, src/msp430/README.md."""
+    """The edge rate at which the first count is lost: 57 and 457 clocks, README of the msp430."""
     assert fastest(model(), SCALE) == pytest.approx(0.8 * 8e6 / (6 + 5 + 51) / 4)
     axis = model(controller__timer_cycles=400)
     assert fastest(axis, SCALE) == pytest.approx(0.8 * 8e6 / 457 / 4)

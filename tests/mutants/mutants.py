@@ -5,7 +5,7 @@ root of its lines asks for. They are made in a copy under build/mutants, never i
 nobody notices is listed with file, line and texts; accepted.toml names those that change nothing
 that matters, with the reason, and they are told no more.
 
-    mutants.py [--count 300] [--seed 1] [--minutes 60] [--only src/robot] [--ending c]
+    mutants.py [--count 300] [--seed 1] [--minutes 60] [--only src/controllers/robot] [--ending c]
 """
 
 import argparse
@@ -38,7 +38,7 @@ PYTEST = (
     "sys.path[:0] = ['src', 'tests']; import pytest; sys.exit(pytest.main(sys.argv[1:]))"
 )
 # No C test compiles these: a plant is made of its template, others are loaded built, by Python.
-ELSEWHERE = ("src/plant", "src/python", "src/robot_station")
+ELSEWHERE = ("src/plant", "src/python", "src/controllers/robot_station")
 
 
 def copy() -> None:
@@ -64,7 +64,12 @@ def draw(count: int, seed: int, only: str, ending: str) -> list[Change]:
     folders: dict[str, list[list[Change]]] = defaultdict(list)  # of a line each: tables are long
     lines: Counter[str] = Counter()
     for file in sorted(
-        [*TREE.glob("src/*/*.c"), *TREE.glob("src/fmi/*.inc"), *TREE.glob("src/motionfmu/**/*.py")]
+        [
+            *TREE.glob("src/*/*.c"),
+            *TREE.glob("src/*/*/*.c"),
+            *TREE.glob("src/fmi/*.inc"),
+            *TREE.glob("src/motionfmu/**/*.py"),
+        ]
     ):
         folder = str(file.parent.relative_to(TREE))
         if folder.startswith(only) and file.suffix.endswith(ending) and folder not in ELSEWHERE:
@@ -161,9 +166,7 @@ class Run:
     @staticmethod
     def _objects(file: Path) -> dict[Path, str]:
         """What a core's file was compiled to."""
-        found = BUILT.glob(
-            f"CMakeFiles/{file.parent.name}.dir/src/{file.parent.name}/{file.name}.o"
-        )
+        found = BUILT.glob(f"CMakeFiles/{file.parent.name}.dir/{file.relative_to(TREE)}.o")
         return {f: hashlib.sha256(f.read_bytes()).hexdigest() for f in found}
 
 

@@ -10,7 +10,9 @@ MOST = 12  # tests of a change: whoever is farther away sees it by chance
 @cache
 def _headers(tree: Path) -> dict[str, Path]:
     return {
-        f.name: f for pattern in ("src/*/*.[hi]*", "tests/core/**/*.h") for f in tree.glob(pattern)
+        f.name: f
+        for pattern in ("src/*/*.[hi]*", "src/*/*/*.[hi]*", "tests/core/**/*.h")
+        for f in tree.glob(pattern)
     }
 
 

@@ -18,7 +18,7 @@ EXAMPLE = ROOT / "examples/network_card_firmware/card.toml"
 TEXT = EXAMPLE.read_text()
 # Type, name, elements, lowest and highest value of each setting of the card.
 SETTING = re.compile(r'X\((\w+), +(\w+), (?:\[(\d+)\])?,\s*"[^"]*", [^,]+, ([^,]+), ([^,]+),')
-HEADER = (ROOT / "src/netcard/card_settings.h").read_text().replace("\\\n", "")
+HEADER = (ROOT / "src/controllers/netcard/card_settings.h").read_text().replace("\\\n", "")
 KNOWN = {m[2]: m for m in SETTING.finditer(HEADER)}
 
 

@@ -17,7 +17,7 @@ from motionfmu.netcard.sim import VirtualCard, simulate
 from motionfmu.netcard.views import Code
 
 CONFIG = load(ROOT / "examples/network_card_firmware/card.toml")
-HEADER = (ROOT / "src/netcard/card_settings.h").read_text()
+HEADER = (ROOT / "src/controllers/netcard/card_settings.h").read_text()
 
 
 def changed(**values: Any) -> CardConfig:

@@ -57,7 +57,7 @@ class Head(ctypes.Structure):
 
 
 class CChannel:
-    """One end's frames by src/net_link."""
+    """One end's frames by src/net/net_link."""
 
     def __init__(self, card: bool, key: bytes = b"") -> None:
         self.c, self.memory = library(), ctypes.create_string_buffer(ROOM)

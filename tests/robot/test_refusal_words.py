@@ -6,7 +6,9 @@ from conftest import ROOT
 
 from motionfmu.robot.refusal import STATUS
 
-ENUM = re.search(r"enum robot_status \{(.*?)\};", (ROOT / "src/robot/robot.h").read_text(), re.S)
+ENUM = re.search(
+    r"enum robot_status \{(.*?)\};", (ROOT / "src/controllers/robot/robot.h").read_text(), re.S
+)
 
 
 def test_names_are_those_of_the_core() -> None:

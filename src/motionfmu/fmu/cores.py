@@ -1,14 +1,14 @@
 """The C cores: which others one uses, and which of their files a model needs.
 
-A folder under src/ with a core.toml is a core: `uses` names the cores whose headers it may include,
-`shared = true` says that it knows no controller and serves any.
+A folder src/<storey>/<core>/ with a core.toml is a core, whose `uses` names the cores whose headers
+it may include: those of its own storey, and of the storeys that src/<storey>/storey.toml names in
+`stands_on`.
 """
 
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _GUARD = re.compile(r"^#ifndef (\w+)\n#define \1\n", re.MULTILINE)
@@ -34,36 +34,39 @@ _CLOSED = """#ifdef __cplusplus
 """
 
 
+def folders(source: Path) -> dict[str, Path]:
+    """The folder of each core by its name."""
+    return {f.parent.name: f.parent for f in sorted(source.glob("*/*/core.toml"))}
+
+
 def uses(core: Path) -> list[str]:
     """Names of the cores that a core may include."""
-    return list(_told(core)["uses"])
+    return _names(core / "core.toml", "uses")
 
 
-def shared(core: Path) -> bool:
-    """Whether a core knows no controller."""
-    return bool(_told(core).get("shared", False))
+def stands_on(storey: Path) -> list[str]:
+    """Names of the storeys below one, whose cores its own may use."""
+    return _names(storey / "storey.toml", "stands_on")
 
 
-def _told(core: Path) -> Mapping[str, Any]:
-    file = core / "core.toml"
+def _names(file: Path, key: str) -> list[str]:
     told = tomllib.loads(file.read_text())
-    known = told.keys() - {"shared"} == {"uses"}
-    if not (
-        known and isinstance(told["uses"], list) and isinstance(told.get("shared", False), bool)
-    ):
-        raise ValueError(f"{file}: uses, a list of names, and shared, true or false, wanted")
-    return told
+    names = told.get(key)
+    if told.keys() != {key} or not isinstance(names, list):
+        raise ValueError(f"{file}: {key}, a list of names, wanted, and nothing else")
+    return names
 
 
 def closure(source: Path, names: Iterable[str]) -> list[str]:
     """These cores, and those they use, directly or not."""
+    place = folders(source)
     found: list[str] = []
     waiting = list(names)
     while waiting:
         name = waiting.pop(0)
         if name not in found:
             found.append(name)
-            waiting += uses(source / name)
+            waiting += uses(place[name])
     return sorted(found)
 
 
@@ -104,11 +107,12 @@ def needed(source: Path, names: Iterable[str], roots: Iterable[Path]) -> list[Pa
 
     A C file belongs to the header of its own name, or else to the first one it includes.
     """
-    folders = [source / name for name in closure(source, names)]
-    headers = [f for folder in folders for f in folder.glob("*.h")]
+    place = folders(source)
+    used = [place[name] for name in closure(source, names)]
+    headers = [f for folder in used for f in folder.glob("*.h")]
     names_of = {f.name for f in headers}
     owned: dict[str, list[Path]] = {}
-    for file in (f for folder in folders for f in sorted(folder.glob("*.c"))):
+    for file in (f for folder in used for f in sorted(folder.glob("*.c"))):
         own = f"{file.stem}.h"
         owned.setdefault(own if own in names_of else included(file)[0], []).append(file)
     return reached(headers, roots, owned)

@@ -216,7 +216,7 @@ def repacked(
 
 def headers(source: Path, out: Path) -> None:
     """Write the headers of all cores into one folder, fit for C++."""
-    made = {f.name: f for core in source.glob("*/core.toml") for f in core.parent.glob("*.h")}
+    made = {f.name: f for core in cores.folders(source).values() for f in core.glob("*.h")}
     for name, header in made.items():
         _write(out / name, cores.cxx(header))
     for old in {f.name for f in out.iterdir()} - set(made):

@@ -1,6 +1,6 @@
 """The MCC library and a virtual card, from Python.
 
-The same C code as in the FMUs; see src/mcc/README.md and src/station/station.h.
+The same C code as in the FMUs; see src/controllers: mcc/README.md and station/station.h.
 """
 
 from motionfmu.binding import CLOCK_HZ, Station

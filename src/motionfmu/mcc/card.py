@@ -37,7 +37,7 @@ class Reading(Values):
     stopped : bool
         All commands done and every pulse put out.
     ... :
-        All names: ``dir(reading)``; meanings in src/station/station.h.
+        All names: ``dir(reading)``; meanings in src/controllers/station/station.h.
     """
 
 

@@ -15,7 +15,7 @@ from motionfmu.units import spelled
 if TYPE_CHECKING:
     from motionfmu.netcard.config import CardConfig
 
-Key = tuple[str, int]  # name in src/netcard/card_settings.h, element
+Key = tuple[str, int]  # name in src/controllers/netcard/card_settings.h, element
 TABLES: tuple[type[Table], ...] = (Motion, Pulse, Fifo, Tasks, Axis, Input)
 # Numbers that are an upper bound of another one: raised before it, lowered behind it.
 _UPPER = ("speed_max", "position_high")

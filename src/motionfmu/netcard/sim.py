@@ -26,13 +26,13 @@ TICK = 0.01  # [s] from one look at the clock to the next
 AHEAD_NS = 1_000_000  # a card answers at once: it may be so far ahead of the clock
 MOST_NS = 100_000_000  # a card that is later than this does not catch up
 CHUNK = 4096  # [byte]
-UP = 4  # SESSION_UP of src/netcard/session.h
+UP = 4  # SESSION_UP of src/controllers/netcard/session.h
 CALL = 5.0  # [s] for a connection to come about
 SAVE = 1.0  # [s] between two looks at the flash
 
 
 class VirtualCard:
-    """A card of src/netcard with its machine; time is its own, in ns since power came."""
+    """A card of src/controllers/netcard with its machine; its time is in ns since power came."""
 
     def __init__(
         self, card: int, key: bytes = OPEN_KEY, flash: bytes = b"", **parameters: Any

@@ -1,7 +1,7 @@
 """The protocol between PC and card, without I/O: frames, messages, handshake, session.
 
 Little-endian. A frame is a header of 12 bytes, a payload, and a CRC-32, or behind the handshake
-with a key 8 bytes of an HMAC-SHA256. src/net_link has the same in C, for the card.
+with a key 8 bytes of an HMAC-SHA256. src/net/net_link has the same in C, for the card.
 """
 
 import hmac

@@ -66,7 +66,8 @@ class Reading(Values):
         line's way to its first slot [s]; the longest are irq_wait_most, cycle_time_most,
         line_latency_most.
     ... :
-        All names: ``dir(reading)``; meanings in src/soft/soft.h and src/fpga/fpga.h.
+        All names: ``dir(reading)``; meanings in src/controllers/soft/soft.h
+        and src/devices/fpga/fpga.h.
     """
 
 

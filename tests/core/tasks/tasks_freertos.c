@@ -1,5 +1,5 @@
 /* The kernel against the FreeRTOS kernel V11.1.0: 5000 random programs, the same tokens. The real
- * one's hashes are in freertos_hashes.h; the README of src/tasks says how they were recorded. */
+ * one's hashes are in freertos_hashes.h; the README of the core says how they were recorded. */
 #include "task_programs.h"
 
 #include <stdlib.h>
