@@ -21,9 +21,9 @@ def tools(resolver: Resolver) -> list[Tool]:
     """Each tool whose command and place FMUs of the scenario say."""
     try:
         joined = wires(resolver)
-    except InputError:  # told where wires are checked
+        found = commanded(resolver.document.body.component, joined, (TOOL, ATTITUDE))
+    except InputError:  # told where components and wires are checked
         return []
-    found = commanded(resolver.document.body.component, joined, (TOOL, ATTITUDE))
     turns = {pair[0].partition(".")[0]: pair for pair in found[ATTITUDE]}
     return [Tool(pair, turns.get(pair[0].partition(".")[0])) for pair in found[TOOL]]
 
