@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import lfilter
 
-from motionfmu.contour import ContourInput, Path
-from motionfmu.contour.geometry import Label, Line, Segment
-from motionfmu.contour.planned import make_arc
+from motionfmu.analysis.contour import ContourInput, Path
+from motionfmu.analysis.contour.geometry import Label, Line, Segment
+from motionfmu.analysis.contour.planned import make_arc
 
 Z = (0.0, 0.0, 1.0)
 

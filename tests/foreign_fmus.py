@@ -8,8 +8,8 @@ from pathlib import Path
 import fmpy
 from conftest import ROOT
 
-from motionfmu.compiler import compiler
-from motionfmu.fmu.platforms import here
+from motionfmu.base.compiler import compiler
+from motionfmu.base.platforms import here
 
 SOURCES = ROOT / "tests" / "foreign"
 HEADERS = Path(fmpy.__file__).parent / "c-code"

@@ -4,7 +4,7 @@ from typing import Any
 
 from conftest import ROOT
 
-from motionfmu import linear
+from motionfmu.analysis import linear
 
 THEORY, DEMO, MODES = (ROOT / "scenarios" / n for n in ("circle_theory", "circle", "output_modes"))
 SMOOTH = {

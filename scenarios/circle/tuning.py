@@ -17,10 +17,10 @@ import numpy as np
 from rich.progress import track
 
 import motionfmu
-from motionfmu.tune import Tuned, problem, tune
-from motionfmu.tune.curve import margin
-from motionfmu.tune.result import settings
-from motionfmu.tune.study import Study
+from motionfmu.study.tune import Tuned, problem, tune
+from motionfmu.study.tune.curve import margin
+from motionfmu.study.tune.result import settings
+from motionfmu.study.tune.study import Study
 
 HERE = Path(__file__).parent
 PROGRAMS = ("circle", "square", "lookahead")

@@ -20,7 +20,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import motionfmu
-from motionfmu.contour import ContourResult
+from motionfmu.analysis.contour import ContourResult
 
 HERE = Path(__file__).parent
 GAINS = (40.0, 30.0)  # [1/s] Kx, Ky

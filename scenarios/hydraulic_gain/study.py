@@ -23,9 +23,9 @@ import numpy as np
 from rich.progress import track
 
 import motionfmu
-from motionfmu import linear
-from motionfmu.freq.limit import Trial, simulated_gain
-from motionfmu.linear import largest_gain
+from motionfmu.analysis import linear
+from motionfmu.analysis.freq.limit import Trial, simulated_gain
+from motionfmu.analysis.linear import largest_gain
 
 HERE = Path(__file__).parent
 SCALE = "controller.scale_phase"

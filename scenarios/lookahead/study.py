@@ -22,7 +22,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import motionfmu
-from motionfmu.contour import ContourInput, analyse, read_path
+from motionfmu.analysis.contour import ContourInput, analyse, read_path
 
 HERE = Path(__file__).parent
 TOLERANCE, FEED = make_program.TOLERANCE, make_program.FEED / 60.0  # [mm], [mm/s]

@@ -20,7 +20,7 @@ from rich.progress import Progress
 from write import CAP, ORIGIN, looked_at, strokes
 
 import motionfmu
-from motionfmu.iso9283 import CommandPath, Cycle, Cycles, Evaluation, analyse
+from motionfmu.analysis.iso9283 import CommandPath, Cycle, Cycles, Evaluation, analyse
 from motionfmu.report import write_report
 
 HERE = Path(__file__).parent

@@ -16,10 +16,10 @@ import numpy as np
 from scipy.optimize import minimize
 
 import motionfmu
-from motionfmu import linear
-from motionfmu.linear import AxisModel
-from motionfmu.linear.opened import linearised, matrices
-from motionfmu.linear.stability import closed_poles, margins, moving
+from motionfmu.analysis import linear
+from motionfmu.analysis.linear import AxisModel
+from motionfmu.analysis.linear.opened import linearised, matrices
+from motionfmu.analysis.linear.stability import closed_poles, margins, moving
 
 HERE = Path(__file__).parent
 # Pen down at the middle of the line; arm nearly straight; forearm folded back.

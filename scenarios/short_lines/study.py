@@ -24,7 +24,7 @@ import toppra
 from toppra import algorithm, constraint, interpolator
 
 import motionfmu
-from motionfmu import gcode
+from motionfmu.analysis import gcode
 
 HERE = Path(__file__).parent
 sys.path.append(str(HERE.parents[1] / "tests"))

@@ -4,8 +4,9 @@
 >>> result = motionfmu.load("scenarios/circle").run()  # doctest: +SKIP
 >>> result.plot("mcc.path_feed")  # doctest: +SKIP
 
-The library and the card without FMUs are in `motionfmu.mcc`, the robot in `motionfmu.robot`, part
-programs in `motionfmu.gcode`, linear models in `motionfmu.linear`.
+The library and the card without FMUs are in `motionfmu.virtual.mcc`, the robot in
+`motionfmu.virtual.robot`, part programs in `motionfmu.analysis.gcode`, linear models in
+`motionfmu.analysis.linear`.
 """
 
 # Nothing is imported here: the console command stands behind this file, and what takes time before
@@ -14,7 +15,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from motionfmu.errors import InputError
+    from motionfmu.base.errors import InputError
     from motionfmu.run import Result, Scenario, load, scenario
 
 __all__ = ["InputError", "Result", "Scenario", "load", "scenario"]
@@ -23,7 +24,7 @@ __all__ = ["InputError", "Result", "Scenario", "load", "scenario"]
 def __getattr__(name: str) -> "Any":
     """Import the runner, or a folder, when it is first used; the build needs descriptions only."""
     if name == "InputError":
-        from motionfmu.errors import InputError
+        from motionfmu.base.errors import InputError
 
         return InputError
     if name in __all__:

@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-import motionfmu.tune
+import motionfmu.study.tune
 
 ROOT = Path(__file__).resolve().parents[2]
 DEMO = ROOT / "scenarios/circle"
@@ -65,7 +65,7 @@ class Session:
 
     def __call__(self) -> None:
         start = time.process_time()
-        motionfmu.tune.tune(DEMO)
+        motionfmu.study.tune.tune(DEMO)
         self.seconds = min(self.seconds, time.process_time() - start)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import py_opw_kinematics as opw
 
-from motionfmu import robot
+from motionfmu.virtual import robot
 
 PROGRAM = Path(__file__).resolve().parents[2] / "build/tests/bench/kinematics_cost"
 POSES = 20_000
@@ -23,7 +23,7 @@ class Kinematics:
     inverse: float = np.inf  # all eight branches
     cycle: float = np.inf  # of a line: path, joints, pose
     plan: float = np.inf  # of a line
-    python: float = np.inf  # all eight branches by motionfmu.robot
+    python: float = np.inf  # all eight branches by motionfmu.virtual.robot
     other: float = np.inf  # py-opw-kinematics, all eight branches
 
     def __post_init__(self) -> None:

@@ -5,8 +5,8 @@ from typing import Any
 
 from fmi_tools import OK, Instance
 
-from motionfmu.netcard import messages as m
-from motionfmu.netcard.wire import CardEnd
+from motionfmu.cards import messages as m
+from motionfmu.cards.wire import CardEnd
 
 STEP = 1e-3  # [s] bus period of these tests
 WORDS = struct.Struct("<128i")

@@ -17,7 +17,7 @@ from host_link import AXES, CLOCK, PULSES_PER_MM, Case, Run, execute
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
 
 RUNS = settings(
     max_examples=int(os.environ.get("LINK_EXAMPLES", "12")),

@@ -17,11 +17,11 @@ from fmi_tools import OK, Instance
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from motionfmu.netcard import messages as m
-from motionfmu.netcard.job import Event, Job, encode
-from motionfmu.netcard.keys import OPEN_KEY
-from motionfmu.netcard.wire import PcEnd
-from motionfmu.units import spelled
+from motionfmu.base.units import spelled
+from motionfmu.cards import messages as m
+from motionfmu.cards.job import Event, Job, encode
+from motionfmu.cards.keys import OPEN_KEY
+from motionfmu.cards.wire import PcEnd
 
 ROOT = Path(__file__).parents[2]
 RUNS = settings(

@@ -11,7 +11,7 @@ from console import within
 from fmpy import read_model_description, simulate_fmu
 
 import motionfmu
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
 from motionfmu.export.packed import packed
 from motionfmu.export.system_fmu import as_fmu as export
 

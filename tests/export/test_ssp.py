@@ -17,7 +17,7 @@ from pyssp_standard.ssp import SSP
 
 import motionfmu
 from motionfmu import cli
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
 from motionfmu.export import as_ssp, system_ssp
 from motionfmu.export.stimuli import stimuli
 from motionfmu.run.prepared import Options

@@ -14,7 +14,7 @@ from conftest import ROOT
 
 import motionfmu
 from motionfmu import cli
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
 from motionfmu.export import as_ssp
 from motionfmu.ssp.imported import take
 

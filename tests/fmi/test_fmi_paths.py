@@ -11,7 +11,7 @@ import pytest
 from fmi_tools import ERROR, OK, Instance
 from fmpy import read_model_description, simulate_fmu
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
 from motionfmu.fmu.pack import repacked
 from motionfmu.scenarios.fmus import fmu_path
 

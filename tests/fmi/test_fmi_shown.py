@@ -17,7 +17,7 @@ from lxml import etree
 from PIL import Image
 
 import motionfmu
-from motionfmu import units
+from motionfmu.base import units
 from motionfmu.export.system_fmu import as_fmu as export
 from motionfmu.fmu.fmu_toml import parse
 from motionfmu.fmu.modeldescription import model_description

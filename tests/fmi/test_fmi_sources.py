@@ -12,7 +12,7 @@ from conftest import ROOT
 from fmi_tools import Instance
 from fmpy.model_description import read_build_description
 
-from motionfmu.compiler import Compiler, compiler
+from motionfmu.base.compiler import Compiler, compiler
 from motionfmu.fmu import cores
 from motionfmu.fmu.sources import NAMES, shown
 from motionfmu.scenarios.fmus import fmu_names, fmu_path

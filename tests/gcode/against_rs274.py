@@ -25,7 +25,7 @@ import numpy as np
 from random_lines import TOOLS
 from random_programs import FLOW, Writer
 
-from motionfmu.gcode import Program, read
+from motionfmu.analysis.gcode import Program, read
 
 INCH = 25.4  # [mm]; rs274 without a machine counts in inches
 PARTS = (

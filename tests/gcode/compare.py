@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from second import Options, Refused, Step, run
 from second.nurbs import samples
 
-from motionfmu.gcode import Program, read
+from motionfmu.analysis.gcode import Program, read
 
 OPTIONS = ("block_delete", "optional_stop", "angles", "feed", "fanuc")
 ROUNDING = 1e-9  # [mm] a move that is shorter is none

@@ -8,7 +8,7 @@ import pytest
 from compare import difference, first
 from second import Options
 
-from motionfmu.gcode import Program, read
+from motionfmu.analysis.gcode import Program, read
 
 ROOT2, ROOT3 = math.sqrt(2.0), math.sqrt(3.0)
 TOOLS = "T1 P1 Z10 D6\nT2 P2 Z20 D8\n"
@@ -234,7 +234,7 @@ def test_a_parabola() -> None:
     t = 4.0
     length = 2.0 * (t * math.sqrt(1.0 + t**2) + math.asinh(t)) / 4.0
     assert way["length"] == pytest.approx(length, rel=1e-12)
-    from motionfmu.gcode import strokes
+    from motionfmu.analysis.gcode import strokes
 
     points = next(s for s in strokes(program) if not s.rapid).points
     assert points[:, 1] == pytest.approx(points[:, 0] ** 2, abs=1e-9)

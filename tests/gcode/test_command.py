@@ -7,8 +7,8 @@ import pytest
 from conftest import ROOT
 from typer.testing import CliRunner
 
+from motionfmu.analysis.gcode import read, strokes, summarise
 from motionfmu.cli import app
-from motionfmu.gcode import read, strokes, summarise
 
 GOOD = ROOT / "tests/gcode/programs/post_mill.ngc"
 

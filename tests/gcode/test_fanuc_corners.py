@@ -8,7 +8,7 @@ import pytest
 from compare import first
 from second import Options
 
-from motionfmu.gcode import read
+from motionfmu.analysis.gcode import read
 
 FANUC = Options(fanuc=True)
 ROOT2, ROOT35 = math.sqrt(2.0), math.sqrt(35.0)

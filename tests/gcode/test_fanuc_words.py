@@ -5,7 +5,7 @@ import pytest
 from compare import difference, first
 from second import Options
 
-from motionfmu.gcode import read
+from motionfmu.analysis.gcode import read
 
 FANUC = Options(fanuc=True)
 

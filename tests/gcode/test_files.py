@@ -14,16 +14,16 @@ from second import Options
 from typer.testing import CliRunner
 
 import motionfmu
+from motionfmu.analysis.gcode import Program, read
+from motionfmu.analysis.gcode.called import called
+from motionfmu.analysis.gcode.program import Texts, _reader
+from motionfmu.base.errors import InputError
 from motionfmu.cli import app
-from motionfmu.errors import InputError
 from motionfmu.export.packed import packed
 from motionfmu.export.resources import Resources
 from motionfmu.fmu.places import RESOURCE
-from motionfmu.gcode import Program, read
-from motionfmu.gcode.called import called
-from motionfmu.gcode.program import Texts, _reader
-from motionfmu.mcc import Mcc, VirtualCard
-from motionfmu.robot import RobotError, VirtualRobot
+from motionfmu.virtual.mcc import Mcc, VirtualCard
+from motionfmu.virtual.robot import RobotError, VirtualRobot
 
 CALLS = ROOT / "tests/gcode/programs/calls"
 OPTIONS = Options(folder=CALLS)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from second.nurbs import curve, places
 
-from motionfmu.gcode import Program, read, strokes
+from motionfmu.analysis.gcode import Program, read, strokes
 
 AWAY = 1e-4  # [mm] of a command from the curve
 

@@ -13,7 +13,7 @@ from random_lines import TOOLS
 from random_programs import Writer, each, options
 from second import Options, run
 
-from motionfmu.gcode import read
+from motionfmu.analysis.gcode import read
 
 SCENARIOS = sorted(ROOT.glob("scenarios/*/*.ngc"))
 RANDOM = 150

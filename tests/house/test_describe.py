@@ -10,10 +10,10 @@ import pytest
 from conftest import FMUS, ROOT
 from fmpy import read_model_description
 
-from motionfmu import units
+from motionfmu.base import units
+from motionfmu.base.platforms import here
 from motionfmu.fmu import ctables, fmu_toml, pack
 from motionfmu.fmu.modeldescription import model_description
-from motionfmu.fmu.platforms import here
 
 NAMES = sorted(p.parent.name for p in ROOT.glob("fmus/*/fmu.toml"))
 HEAD = 'name="A"\ndescription="a"\ntick_ns=25\nexperiment={stop=1.0,step=1e-3}\ncores=[]\n'

@@ -61,7 +61,7 @@ def printed(example: tuple[str, str, str, list[str]], prefix: Path, folder: Path
     assert line in (project / "README.md").read_text() and f"motionfmu-{core})" in line
     in_c = output(project / name, *inputs, cwd=project)
     assert in_c == output(
-        sys.executable, "-m", f"motionfmu.{package}.example", *inputs, cwd=project
+        sys.executable, "-m", f"motionfmu.virtual.{package}.example", *inputs, cwd=project
     )
     return in_c
 
@@ -108,7 +108,7 @@ def test_every_example_is_in_the_readme(name: str) -> None:
 
 def test_the_readme_example_runs() -> None:
     text = (ROOT / "README.md").read_text()
-    code = re.search(r"```python\n(from motionfmu\.mcc .*?)```", text, re.S)
+    code = re.search(r"```python\n(from motionfmu\.virtual\.mcc .*?)```", text, re.S)
     assert code and output(sys.executable, "-c", code[1]).split()[:2] == ["[20000", "5000"]
 
 

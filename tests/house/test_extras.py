@@ -14,11 +14,11 @@ from console import within
 import motionfmu
 
 # Loaded already, as in a session: what they ask for when they are loaded is not asked again.
-import motionfmu.explain
-import motionfmu.freq
+import motionfmu.analysis.explain
+import motionfmu.analysis.freq
+import motionfmu.study.tune
 import motionfmu.sweep
-import motionfmu.tune
-from motionfmu import extras
+from motionfmu.base import extras
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 WHEEL = f"motionfmu-{PROJECT['version']}-....whl"

@@ -20,13 +20,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import motionfmu
-from motionfmu import sweep, tune
+from motionfmu import sweep
+from motionfmu.base.errors import InputError
 from motionfmu.cli.common import settings as gains
-from motionfmu.errors import InputError
 from motionfmu.fmu import fmu_toml
 from motionfmu.fmu.modelica import description
 from motionfmu.run.engines.slave import Slave
 from motionfmu.scenarios.fmus import fmu_path
+from motionfmu.study import tune
 
 SECONDS = float(os.environ.get("MOTIONFMU_FUZZ", "0"))
 ROUND = 500  # examples between two looks at the clock

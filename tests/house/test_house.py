@@ -65,7 +65,7 @@ def way() -> list[str]:
     table = re.search(r"## The way of the data\n[^|]*((?:\|.*\n)+)", README)
     assert table
     cells = [row.split("|")[1] for row in table[1].splitlines()[2:]]
-    return [name for cell in cells for name in re.findall(r"`(\w+)/?`", cell)]
+    return [name for cell in cells for name in re.findall(r"`(\w+(?:/\w+)?)/?`", cell)]
 
 
 def against(found: Graph, order: list[str]) -> list[str]:
@@ -73,8 +73,9 @@ def against(found: Graph, order: list[str]) -> list[str]:
     place = {name: k for k, name in enumerate(order)}
 
     def rank(module: str) -> int:
-        parts = module.split(".")
-        return place.get(parts[1], len(order)) if len(parts) > 1 else len(order)
+        parts = module.split(".")[1:]
+        found = [place.get("/".join(parts[:n])) for n in (2, 1) if len(parts) >= n]
+        return next((k for k in found if k is not None), len(order))
 
     return [f"{m} imports {n}" for m, ns in found.items() for n in sorted(ns) if rank(n) > rank(m)]
 
@@ -92,8 +93,14 @@ def test_no_module_imports_what_comes_later_on_the_way() -> None:
 
 
 def test_every_part_of_the_package_has_its_place_on_the_way() -> None:
-    own = {f.parent.name for f in PACKAGE.glob("*/*.py")} | {f.stem for f in PACKAGE.glob("*.py")}
-    assert sorted(way()) == sorted(own - {"__init__", "__main__", "motionfmu"})
+    groups = {name.split("/")[0] for name in way() if "/" in name} - set(way())
+    inner = [f for group in groups for f in (PACKAGE / group).glob("*/__init__.py")]
+    own = {str(f.parent.relative_to(PACKAGE)) for f in (*PACKAGE.glob("*/__init__.py"), *inner)}
+    assert own - groups == {
+        name for name in way() if "/" not in name or name.split("/")[0] in groups
+    }
+    assert {f.stem for f in PACKAGE.glob("*.py")} == {"__init__", "__main__"}
+    assert all((PACKAGE / name).is_dir() for name in way())
 
 
 def test_only_what_a_result_shows_of_itself_is_imported_by_name() -> None:

@@ -97,5 +97,5 @@ def test_most_cores_have_tests_that_are_near() -> None:
 
 
 def test_tests_of_a_module_are_those_that_name_it() -> None:
-    near = of_python(ROOT, ROOT / "src/motionfmu/tune/choice.py")
+    near = of_python(ROOT, ROOT / "src/motionfmu/study/tune/choice.py")
     assert len(near) == 3 and "tune" in near[0]

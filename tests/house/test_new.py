@@ -12,9 +12,9 @@ import pytest
 from conftest import FMUS, ROOT
 from console import within
 
+from motionfmu.base.platforms import here
 from motionfmu.cli.new import TEMPLATES, rendered
 from motionfmu.fmu import pack
-from motionfmu.fmu.platforms import here
 from motionfmu.run import suite
 
 NAME = "lag_filter"

@@ -8,14 +8,14 @@ from typing import Any
 
 from conftest import ROOT
 
-# A unit as FMI names it, as `motionfmu.units.spelled` has it no more. A name in quotes is FMI's.
+# A unit as FMI names it and `units.spelled` no longer does. A name in quotes is FMI's.
 RAW = re.compile(r"(?<![\w.\"])(um|us|deg|Ohm)\b|/s\^?[23]\b|(?<![\w.\"])(N\.m|kg\.m2)\b")
 MAYBE = re.compile(r"\b(um|us|deg|Ohm)\b|/s\^?[23]|N\.m|kg\.m2")  # worth a look
 # Files whose texts name units for FMI or for data: spelled when they are shown.
 NAMES = {
-    "src/motionfmu/units.py",  # the units themselves
-    "src/motionfmu/iso9283/evaluation.py",  # keys of result.json
-    "src/motionfmu/netcard/tables.py",  # also for comments of C headers, in ASCII
+    "src/motionfmu/base/units.py",  # the units themselves
+    "src/motionfmu/analysis/iso9283/evaluation.py",  # keys of result.json
+    "src/motionfmu/cards/tables.py",  # also for comments of C headers, in ASCII
     "scenarios/compensation/study.py",  # a comment of the table it writes, in ASCII
 }
 

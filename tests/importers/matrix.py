@@ -11,8 +11,8 @@ import numpy as np
 from importers import BUILT, EQUAL, PASSED, READ, ROOT, Case, Tool, Verdict
 
 import motionfmu
+from motionfmu.base.platforms import PLATFORMS
 from motionfmu.export import Choice, as_fmu, as_ssp
-from motionfmu.fmu.platforms import PLATFORMS
 
 PAGE = ROOT / "docs" / "importers.md"
 EXPORTED = ROOT / "build" / "export" / "fmus"

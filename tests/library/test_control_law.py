@@ -11,9 +11,9 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu import linear
-from motionfmu.contour import ContourResult
-from motionfmu.errors import InputError
+from motionfmu.analysis import linear
+from motionfmu.analysis.contour import ContourResult
+from motionfmu.base.errors import InputError
 
 FOLDER = ROOT / "scenarios" / "control_law"
 FEED = 100.0  # [mm/s]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from shapely import LineString, Polygon
 
-from motionfmu.gcode import read
+from motionfmu.analysis.gcode import read
 
 CONTOURS = 20
 FINE = 0.002  # [rad] of an arc that becomes a line for shapely

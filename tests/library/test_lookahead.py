@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu.contour import ContourInput, analyse, read_path
+from motionfmu.analysis.contour import ContourInput, analyse, read_path
 
 PLATE = ROOT / "scenarios/lookahead"
 LINES = (PLATE / "plate.ngc").read_text().splitlines()

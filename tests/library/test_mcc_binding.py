@@ -1,4 +1,4 @@
-"""motionfmu.mcc: the C library from Python, alone, on the virtual card, and beside the FMUs."""
+"""The C library from Python, alone, on the virtual card, and beside the FMUs."""
 
 import math
 import pickle
@@ -13,9 +13,9 @@ import pytest
 from conftest import ROOT
 from test_mcc import Machine
 
-import motionfmu.mcc as mcc
-from motionfmu.errors import InputError
-from motionfmu.mcc import Mcc, MccError, VirtualCard
+import motionfmu.virtual.mcc as mcc
+from motionfmu.base.errors import InputError
+from motionfmu.virtual.mcc import Mcc, MccError, VirtualCard
 
 HEADER = (ROOT / "src/controllers/mcc/mcc.h").read_text()
 
@@ -280,9 +280,8 @@ def test_card_is_the_fmus_clock_by_clock(tmp_path: Path) -> None:
 
 
 def test_binding_works_outside_the_source_tree(tmp_path: Path) -> None:
-    text = (
-        "import motionfmu.mcc as m; c = m.VirtualCard(); c.mcc.line_x(1); print(c.run_until_stop())"
-    )
+    text = "import motionfmu.virtual.mcc as m; c = m.VirtualCard(); c.mcc.line_x(1)"
+    text += "; print(c.run_until_stop())"
     run = subprocess.run(
         [sys.executable, "-c", text], cwd=tmp_path, capture_output=True, text=True, check=True
     )

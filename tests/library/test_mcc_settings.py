@@ -1,4 +1,4 @@
-"""motionfmu.mcc's settings: those of the C structs, with names and units of the FMU."""
+"""motionfmu.virtual.mcc's settings: those of the C structs, with names and units of the FMU."""
 
 import re
 import tomllib
@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-import motionfmu.mcc as mcc
-from motionfmu.binding import Struct
-from motionfmu.errors import InputError
-from motionfmu.mcc import VirtualCard
-from motionfmu.mcc.state import configuration
+import motionfmu.virtual.mcc as mcc
+from motionfmu.base.binding import Struct
+from motionfmu.base.errors import InputError
+from motionfmu.virtual.mcc import VirtualCard
+from motionfmu.virtual.mcc.state import configuration
 
 
 def members(header: str, struct: str) -> set[str]:

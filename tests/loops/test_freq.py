@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE
 
-from motionfmu import InputError, freq, linear
+from motionfmu import InputError
+from motionfmu.analysis import freq, linear
 
 ENC = "card.enc_phase"
 N = 500  # samples of a period

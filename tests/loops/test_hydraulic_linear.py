@@ -8,13 +8,14 @@ import pytest
 from conftest import ROOT
 from typer.testing import CliRunner
 
-from motionfmu import InputError, freq, linear
+from motionfmu import InputError
+from motionfmu.analysis import freq, linear
+from motionfmu.analysis.freq.limit import Trial, simulated_gain, usual_kick
+from motionfmu.analysis.freq.response import fastest
+from motionfmu.analysis.freq.study import Asked, study
+from motionfmu.analysis.linear.loops import feedbacks, largest_gain
+from motionfmu.analysis.linear.stability import margins
 from motionfmu.cli import app
-from motionfmu.freq.limit import Trial, simulated_gain, usual_kick
-from motionfmu.freq.response import fastest
-from motionfmu.freq.study import Asked, study
-from motionfmu.linear.loops import feedbacks, largest_gain
-from motionfmu.linear.stability import margins
 
 SCENARIO = ROOT / "scenarios/hydraulic_positioning"
 SCALE = "controller.scale_phase"

@@ -10,12 +10,12 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu.errors import InputError
-from motionfmu.linear.loops import largest_gain
-from motionfmu.linear.stability import margins
-from motionfmu.tune import RanAway, Tuned, problem, read, tune
-from motionfmu.tune.move import MoveCost
-from motionfmu.tune.trial import tried
+from motionfmu.analysis.linear.loops import largest_gain
+from motionfmu.analysis.linear.stability import margins
+from motionfmu.base.errors import InputError
+from motionfmu.study.tune import RanAway, Tuned, problem, read, tune
+from motionfmu.study.tune.move import MoveCost
+from motionfmu.study.tune.trial import tried
 
 SCENARIO = ROOT / "scenarios/hydraulic_gain"
 SCALE = "controller.scale_phase"

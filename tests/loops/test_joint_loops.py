@@ -11,12 +11,12 @@ import pytest
 import scipy.linalg
 from robot_arm import EXACT, Arm, Pinocchio
 
-from motionfmu import freq, linear
-from motionfmu.errors import InputError
-from motionfmu.freq.shape import small
-from motionfmu.linear.loops import feedbacks
-from motionfmu.linear.opened import linearised
-from motionfmu.linear.stability import margins, response
+from motionfmu.analysis import freq, linear
+from motionfmu.analysis.freq.shape import small
+from motionfmu.analysis.linear.loops import feedbacks
+from motionfmu.analysis.linear.opened import linearised
+from motionfmu.analysis.linear.stability import margins, response
+from motionfmu.base.errors import InputError
 
 LINE = Path(__file__).resolve().parents[2] / "scenarios" / "robot_line"
 POSE = [0.2, 0.5, -0.3, 0.4, 0.7, -0.2]

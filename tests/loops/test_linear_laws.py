@@ -10,9 +10,9 @@ import pytest
 from conftest import ROOT
 from fmi_tools import OK, Instance
 
-from motionfmu.linear import law
-from motionfmu.linear.block import Sampled, reaches
-from motionfmu.linear.form import Form, evaluate
+from motionfmu.analysis.linear import law
+from motionfmu.analysis.linear.block import Sampled, reaches
+from motionfmu.analysis.linear.form import Form, evaluate
 from motionfmu.scenarios import fmus
 
 LAWS = sorted(p.parent.name for p in ROOT.glob("fmus/*/linear.toml"))

@@ -9,14 +9,15 @@ import pytest
 from conftest import ROOT
 from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE, kp_of, theory
 
-from motionfmu import InputError, linear
+from motionfmu import InputError
+from motionfmu.analysis import linear
+from motionfmu.analysis.linear import law
+from motionfmu.analysis.linear.block import Plant
+from motionfmu.analysis.linear.loops import feedbacks, largest_gain
+from motionfmu.analysis.linear.stability import margins
+from motionfmu.analysis.linear.systems import System
 from motionfmu.fmu.modelica import causal, description
 from motionfmu.fmu.modelica.ode import Ode
-from motionfmu.linear import law
-from motionfmu.linear.block import Plant
-from motionfmu.linear.loops import feedbacks, largest_gain
-from motionfmu.linear.stability import margins
-from motionfmu.linear.systems import System
 
 T = 1e-4  # [s] sampling period of card and drives
 ENC = "card.enc_phase"

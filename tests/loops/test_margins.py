@@ -12,13 +12,14 @@ from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE, theory
 from typer.testing import CliRunner
 
 import motionfmu
-from motionfmu import InputError, freq, linear
+from motionfmu import InputError
+from motionfmu.analysis import freq, linear
+from motionfmu.analysis.freq import limit
+from motionfmu.analysis.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
+from motionfmu.analysis.freq.study import Asked, study
+from motionfmu.analysis.linear.loops import Limit, boundary, feedbacks, largest_gain
+from motionfmu.analysis.linear.stability import closed_poles, margins
 from motionfmu.cli import app
-from motionfmu.freq import limit
-from motionfmu.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
-from motionfmu.freq.study import Asked, study
-from motionfmu.linear.loops import Limit, boundary, feedbacks, largest_gain
-from motionfmu.linear.stability import closed_poles, margins
 from motionfmu.report.servo.margin_page import point_line
 
 ENC, PHASE = "card.enc_phase", "drives.phase"
@@ -263,7 +264,7 @@ def test_the_operating_point_is_the_programs_and_told_first(tmp_path: Path) -> N
 )
 def test_the_running_fmus_do_what_the_model_says(scenario, axis, at, monkeypatch) -> None:
     """No limit is reached, nothing turns back or comes loose: within 2 % and 2 degrees."""
-    monkeypatch.setattr("motionfmu.freq.study.small_signal_gain", lambda *_: (None, 0.0))
+    monkeypatch.setattr("motionfmu.analysis.freq.study.small_signal_gain", lambda *_: (None, 0.0))
     model = linear.model(scenario, axis, at)
     found = study(model, Asked())
     assert [s.at for s in found] == list(feedbacks(model))
@@ -299,7 +300,7 @@ def test_fmus_that_are_not_linear_are_told_of(peak, told, tmp_path, monkeypatch)
     def large(axis, loop, size, kick) -> freq.Excitation:
         return freq.multisine(*size, peak)
 
-    monkeypatch.setattr("motionfmu.freq.study.small", large)
+    monkeypatch.setattr("motionfmu.analysis.freq.study.small", large)
     at, set_ = "machine.motor_speed=0.5", "drives.torque_limit=1"
     done = run(
         DEMO, "--loop", PHASE, "--at", at, "--set", set_, "--out", tmp_path / "out", "--kick", 0.05

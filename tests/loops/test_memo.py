@@ -1,6 +1,6 @@
 """What was found for the last few keys is not looked for again."""
 
-from motionfmu.memo import Memo
+from motionfmu.base.memo import Memo
 
 
 def test_the_key_used_least_recently_is_forgotten_first() -> None:

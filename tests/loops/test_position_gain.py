@@ -7,8 +7,8 @@ import pytest
 from conftest import FMUS, ROOT
 
 import motionfmu
-from motionfmu import linear
-from motionfmu.linear import gains, position_gain
+from motionfmu.analysis import linear
+from motionfmu.analysis.linear import gains, position_gain
 
 CIRCLE = ROOT / "scenarios/circle"
 CODE = 20.0 / 65536.0  # [V] of the DAC

@@ -13,19 +13,19 @@ from console import command
 from linear_rigs import DEMO, THEORY, kp_of
 
 import motionfmu
-from motionfmu import linear
+from motionfmu.analysis import linear
+from motionfmu.analysis.linear.stability import margins
+from motionfmu.base.errors import InputError
 from motionfmu.cli.common import settings
-from motionfmu.errors import InputError
-from motionfmu.linear.stability import margins
 from motionfmu.run import Options
-from motionfmu.tune import RanAway, Tuned, choice, problem, tune
-from motionfmu.tune.axis import AxisStudy, Signals
-from motionfmu.tune.choice import Variable
-from motionfmu.tune.curve import Loop, margin
-from motionfmu.tune.solve import solve
-from motionfmu.tune.steps import Sloped, lifted, system
-from motionfmu.tune.study import Study, Values
-from motionfmu.tune.words import assumptions
+from motionfmu.study.tune import RanAway, Tuned, choice, problem, tune
+from motionfmu.study.tune.axis import AxisStudy, Signals
+from motionfmu.study.tune.choice import Variable
+from motionfmu.study.tune.curve import Loop, margin
+from motionfmu.study.tune.solve import solve
+from motionfmu.study.tune.steps import Sloped, lifted, system
+from motionfmu.study.tune.study import Study, Values
+from motionfmu.study.tune.words import assumptions
 
 GAINS = ["mcc.p_gain", "drives.velocity_gain", "drives.velocity_time"]
 SIGNALS = Signals("card.pulses", "machine.table_position", ("drives.torque", "card.dac"))

@@ -6,8 +6,8 @@ import pytest
 from linear_rigs import DEMO
 
 import motionfmu
-from motionfmu.errors import InputError
-from motionfmu.tune import read
+from motionfmu.base.errors import InputError
+from motionfmu.study.tune import read
 
 
 @pytest.mark.parametrize(

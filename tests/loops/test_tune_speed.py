@@ -8,13 +8,13 @@ from linear_rigs import DEMO
 from scipy.optimize import linprog
 
 import motionfmu
-from motionfmu import linear
-from motionfmu.linear.parts import equation
-from motionfmu.linear.pointwise import Pointwise, Quick
-from motionfmu.tune import problem, solve
-from motionfmu.tune.curve import Loop
-from motionfmu.tune.path import PathCost
-from motionfmu.tune.study import Study, Values
+from motionfmu.analysis import linear
+from motionfmu.analysis.linear.parts import equation
+from motionfmu.analysis.linear.pointwise import Pointwise, Quick
+from motionfmu.study.tune import problem, solve
+from motionfmu.study.tune.curve import Loop
+from motionfmu.study.tune.path import PathCost
+from motionfmu.study.tune.study import Study, Values
 
 PLANTS = [
     f.parent.name for f in sorted((ROOT / "fmus").glob("*/fmu.toml")) if "modelica" in f.read_text()

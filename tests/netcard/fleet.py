@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from motionfmu.netcard import messages
-from motionfmu.netcard.config import CardConfig
-from motionfmu.netcard.job import Event as Switch
-from motionfmu.netcard.job import Job, decode, encode
-from motionfmu.netcard.settings import asked
-from motionfmu.netcard.views import CardView, Code, Configured, Event, Result, Setting, Upload
+from motionfmu.cards import messages
+from motionfmu.cards.config import CardConfig
+from motionfmu.cards.job import Event as Switch
+from motionfmu.cards.job import Job, decode, encode
+from motionfmu.cards.settings import asked
+from motionfmu.cards.views import CardView, Code, Configured, Event, Result, Setting, Upload
 
 # State behind a command by the state before it; what is not here is refused with STATE.
 TABLE = {

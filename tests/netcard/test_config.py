@@ -9,10 +9,10 @@ from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motionfmu.errors import InputError
-from motionfmu.netcard import load, tables
-from motionfmu.netcard.config import faults, read
-from motionfmu.netcard.fields import choices, described
+from motionfmu.base.errors import InputError
+from motionfmu.cards import load, tables
+from motionfmu.cards.config import faults, read
+from motionfmu.cards.fields import choices, described
 
 EXAMPLE = ROOT / "examples/network_card_firmware/card.toml"
 TEXT = EXAMPLE.read_text()

@@ -11,8 +11,8 @@ import pytest
 from conftest import ROOT
 from console import within
 
-from motionfmu.netcard.config import read
-from motionfmu.netcard.headers import texts, write
+from motionfmu.cards.config import read
+from motionfmu.cards.headers import texts, write
 
 EXAMPLE = ROOT / "examples/network_card_firmware"
 TEXT = (EXAMPLE / "card.toml").read_text()

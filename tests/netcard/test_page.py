@@ -27,14 +27,14 @@ from starlette.websockets import WebSocketDisconnect
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
-from motionfmu.errors import InputError
-from motionfmu.netcard.config import CardConfig, load, read
-from motionfmu.netcard.config_text import text_of, with_values
-from motionfmu.netcard.job import decode
-from motionfmu.netcard.page import Serving, application
-from motionfmu.netcard.page.form import form
-from motionfmu.netcard.page.guard import HEADERS
-from motionfmu.netcard.page.pictures import POINTS, picture
+from motionfmu.base.errors import InputError
+from motionfmu.cards.config import CardConfig, load, read
+from motionfmu.cards.config_text import text_of, with_values
+from motionfmu.cards.job import decode
+from motionfmu.cards.page import Serving, application
+from motionfmu.cards.page.form import form
+from motionfmu.cards.page.guard import HEADERS
+from motionfmu.cards.page.pictures import POINTS, picture
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
 TOKEN, HOST, LIVE = "a-token", "http://127.0.0.1:8766", "ws://127.0.0.1:8766/live"
@@ -116,7 +116,7 @@ def test_the_page_is_whole_without_any_other_server(fleet: Fleet) -> None:
     c = client(fleet, authorization="")
     text = c.get("/?token=x").text
     assert "a-token" not in text and "style=" not in text and "<script>" not in text
-    folder = ROOT / "src/motionfmu/netcard/page"
+    folder = ROOT / "src/motionfmu/cards/page"
     for file in folder.glob("*.[jch]*s*"):
         assert c.get(f"/{file.name}").text == file.read_text()
         assert "://" not in file.read_text()
@@ -246,7 +246,7 @@ def test_files_are_opened_by_a_process_of_their_own(
         raise AssertionError("a file was opened by the server itself")
 
     for name in ("planning.opened", "pictures.opened", "pictures.decode", "pictures.picture"):
-        monkeypatch.setattr(f"motionfmu.netcard.page.{name}", never)
+        monkeypatch.setattr(f"motionfmu.cards.page.{name}", never)
     c = client(fleet, CARD)
     assert c.post("/open?name=a.plt", content=b"PU400,400;PD2000,400;").json()["lines"] == 1
     assert c.post("/open?name=b.mcj", content=circle()).json()["lines"] == 1

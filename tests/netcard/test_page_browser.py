@@ -18,11 +18,11 @@ from browser import tab as browser_tab
 from conftest import ROOT
 from fleet import Fleet, circle, status
 
-from motionfmu.netcard import messages
-from motionfmu.netcard.client import SoftCard, serve_card
-from motionfmu.netcard.config import load
-from motionfmu.netcard.page import Serving, application
-from motionfmu.netcard.server import Cards
+from motionfmu.cards import messages
+from motionfmu.cards.client import SoftCard, serve_card
+from motionfmu.cards.config import load
+from motionfmu.cards.page import Serving, application
+from motionfmu.cards.server import Cards
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
 TOKEN = "a-token"

@@ -8,9 +8,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from test_page import CARD, TOKEN, client
 
-from motionfmu.netcard.config import load
-from motionfmu.netcard.page import application
-from motionfmu.netcard.server import Cards
+from motionfmu.cards.config import load
+from motionfmu.cards.page import application
+from motionfmu.cards.server import Cards
 
 SERVED = client(Cards(Path("no folder of a server")))
 JSON = st.recursive(

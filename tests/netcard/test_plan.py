@@ -11,13 +11,13 @@ from conftest import ROOT
 from lines_apart import apart
 from typer.testing import CliRunner
 
+from motionfmu.base.errors import InputError
+from motionfmu.cards import CardConfig, job, load, plt
+from motionfmu.cards.config import read as config_of
+from motionfmu.cards.contours import clean, corners, way_between
+from motionfmu.cards.figures import figures, paths
+from motionfmu.cards.plan import DRAWS, Options, Plan, origin, plan
 from motionfmu.cli import app
-from motionfmu.errors import InputError
-from motionfmu.netcard import CardConfig, job, load, plt
-from motionfmu.netcard.config import read as config_of
-from motionfmu.netcard.contours import clean, corners, way_between
-from motionfmu.netcard.figures import figures, paths
-from motionfmu.netcard.plan import DRAWS, Options, Plan, origin, plan
 
 ACC, JERK, SCALE = 1000.0, 50_000.0, 800.0
 AXIS = f"""
@@ -279,7 +279,7 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         shown = run(app, ["card", "show", file, "--picture", "x.png"], catch_exceptions=False)
         assert shown.exit_code == 0 and text in shown.stdout
         assert Path("x.png").stat().st_size > 10_000
-    monkeypatch.setattr("motionfmu.netcard.figures.SLOT", 3)
+    monkeypatch.setattr("motionfmu.cards.figures.SLOT", 3)
     long = run(app, words, catch_exceptions=False)
     assert long.exit_code == 1 and "too long for a slot of the card's flash" in long.stdout
     with pytest.raises(InputError, match="--order far: file or nearest wanted"):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from lines_apart import Lines, apart, length
 
-from motionfmu.errors import InputError
-from motionfmu.netcard import plt
+from motionfmu.base.errors import InputError
+from motionfmu.cards import plt
 
 FILES = sorted((Path(__file__).parent / "plt").glob("*.plt"))
 

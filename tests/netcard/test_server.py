@@ -22,14 +22,14 @@ from card_links import (
     until,
 )
 
-from motionfmu.errors import InputError
-from motionfmu.netcard import messages as m
-from motionfmu.netcard.client import SoftCard, serve_card
-from motionfmu.netcard.control import Control, ask
-from motionfmu.netcard.keys import new_key, read_keys
-from motionfmu.netcard.line import Limits
-from motionfmu.netcard.server import Cards
-from motionfmu.netcard.views import Code
+from motionfmu.base.errors import InputError
+from motionfmu.cards import messages as m
+from motionfmu.cards.client import SoftCard, serve_card
+from motionfmu.cards.control import Control, ask
+from motionfmu.cards.keys import new_key, read_keys
+from motionfmu.cards.line import Limits
+from motionfmu.cards.server import Cards
+from motionfmu.cards.views import Code
 
 KEY = bytes(range(32))
 
@@ -83,12 +83,12 @@ def test_a_full_disk_keeps_no_command_back(
             await b.online([1])
             assert (await b.cards.upload(1, job_of(3))).ok
             assert (await b.cards.command(1, "start")).ok  # takes 256 numbers
-            monkeypatch.setattr("motionfmu.netcard.outbox.BLOCK", 0)
+            monkeypatch.setattr("motionfmu.cards.outbox.BLOCK", 0)
             b.cards._cards[1]._outbox.load()
             with monkeypatch.context() as disk:
                 disk.setattr(Path, "write_text", full)
                 disk.setattr(Path, "mkdir", full)
-                disk.setattr("motionfmu.netcard.keys.os.open", full_open)
+                disk.setattr("motionfmu.cards.keys.os.open", full_open)
                 for name in ("stop", "home", "start", "pause", "stop"):
                     assert (await b.cards.command(1, name)).ok, name
                 with pytest.raises(InputError, match="No space left"):
@@ -103,7 +103,7 @@ def test_a_full_disk_keeps_no_command_back(
     def full_open(*_: object) -> int:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    caplog.set_level(logging.INFO, "motionfmu.netcard")
+    caplog.set_level(logging.INFO, "motionfmu.cards")
     run(main())
     assert asked and caplog.text.count("No space left on device") == 1
 
@@ -180,7 +180,7 @@ def test_keys_are_private_and_said_once(tmp_path: Path) -> None:
 def test_only_the_card_with_the_key_takes_the_place_of_the_old_connection(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    caplog.set_level("INFO", "motionfmu.netcard")
+    caplog.set_level("INFO", "motionfmu.cards")
     key = new_key(tmp_path / "keys.toml", 7)
 
     async def main() -> None:

@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from motionfmu.netcard import messages as m
-from motionfmu.netcard.client import SoftCard
-from motionfmu.netcard.line import READ_MAX, Limits, Line
-from motionfmu.netcard.server import Cards
-from motionfmu.netcard.views import Event
-from motionfmu.netcard.wire import HEADER, MAGIC, OPEN_KEY, PAYLOAD_MAX, VERSION, CardEnd
+from motionfmu.cards import messages as m
+from motionfmu.cards.client import SoftCard
+from motionfmu.cards.line import READ_MAX, Limits, Line
+from motionfmu.cards.server import Cards
+from motionfmu.cards.views import Event
+from motionfmu.cards.wire import HEADER, MAGIC, OPEN_KEY, PAYLOAD_MAX, VERSION, CardEnd
 
 LIMITS = Limits()
 
@@ -200,8 +200,8 @@ def test_a_second_has_100_lines_of_the_log(
     tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cards, clock = Cards(tmp_path), [10.0]
-    monkeypatch.setattr("motionfmu.netcard.server.time.monotonic", lambda: clock[0])
-    caplog.set_level(logging.INFO, "motionfmu.netcard")
+    monkeypatch.setattr("motionfmu.cards.server.time.monotonic", lambda: clock[0])
+    caplog.set_level(logging.INFO, "motionfmu.cards")
     for _ in range(1000):
         cards._tell(Event("closed", 3, "again", 0.0))
     assert len(caplog.records) == 100 and cards.dropped == 900

@@ -27,13 +27,13 @@ from card_links import (
 from conftest import ROOT
 from console import within
 
-from motionfmu.errors import InputError
-from motionfmu.netcard import messages as m
-from motionfmu.netcard.client import SoftCard, serve_card
-from motionfmu.netcard.control import ask
-from motionfmu.netcard.line import Limits
-from motionfmu.netcard.server import Cards
-from motionfmu.netcard.wire import OPEN_KEY, CardEnd
+from motionfmu.base.errors import InputError
+from motionfmu.cards import messages as m
+from motionfmu.cards.client import SoftCard, serve_card
+from motionfmu.cards.control import ask
+from motionfmu.cards.line import Limits
+from motionfmu.cards.server import Cards
+from motionfmu.cards.wire import OPEN_KEY, CardEnd
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
 

@@ -9,12 +9,12 @@ from card_links import HOST, bench, run, until
 from conftest import ROOT
 from test_sim import job_of
 
-from motionfmu.netcard.client import SoftCard
-from motionfmu.netcard.config import CardConfig, load
-from motionfmu.netcard.messages import State
-from motionfmu.netcard.settings import asked, fields, lines, numbers, shown
-from motionfmu.netcard.sim import VirtualCard, simulate
-from motionfmu.netcard.views import Code
+from motionfmu.cards.client import SoftCard
+from motionfmu.cards.config import CardConfig, load
+from motionfmu.cards.messages import State
+from motionfmu.cards.settings import asked, fields, lines, numbers, shown
+from motionfmu.cards.sim import VirtualCard, simulate
+from motionfmu.cards.views import Code
 
 CONFIG = load(ROOT / "examples/network_card_firmware/card.toml")
 HEADER = (ROOT / "src/controllers/netcard/card_settings.h").read_text()
@@ -119,7 +119,7 @@ def stock(card: VirtualCard) -> int:
 
 @pytest.mark.parametrize("name", ["speed_max", "position_high"])
 def test_bounds_are_raised_first_and_lowered_last(name: str) -> None:
-    from motionfmu.netcard.settings import in_order
+    from motionfmu.cards.settings import in_order
 
     wanted = {("acc_max", 0): 2, (name, 0): 5, ("home_speed", 0): 3, (name, 1): 5}
     has = {("acc_max", 0): 2, (name, 0): 3, ("home_speed", 0): 1, (name, 1): 9}

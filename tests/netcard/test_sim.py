@@ -15,16 +15,16 @@ from card_links import HOST, bench, run, until
 from conftest import ROOT
 from fmi_tools import OK, Instance
 
-from motionfmu.binding import library
+from motionfmu.base.binding import library
+from motionfmu.base.errors import InputError
+from motionfmu.cards import messages as m
+from motionfmu.cards.job import Job, encode
+from motionfmu.cards.keys import new_key
+from motionfmu.cards.sim import FLASH_BYTES, FlashFile, VirtualCard, simulate
+from motionfmu.cards.transfer import JobFile, Transfer
+from motionfmu.cards.views import Code
+from motionfmu.cards.wire import OPEN_KEY, PcEnd
 from motionfmu.cli.card_sim import sim
-from motionfmu.errors import InputError
-from motionfmu.netcard import messages as m
-from motionfmu.netcard.job import Job, encode
-from motionfmu.netcard.keys import new_key
-from motionfmu.netcard.sim import FLASH_BYTES, FlashFile, VirtualCard, simulate
-from motionfmu.netcard.transfer import JobFile, Transfer
-from motionfmu.netcard.views import Code
-from motionfmu.netcard.wire import OPEN_KEY, PcEnd
 
 KEY = bytes(range(32))
 MS = 1_000_000  # [ns]

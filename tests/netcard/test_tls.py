@@ -15,13 +15,13 @@ from card_links import HOST, until
 from fleet import Fleet
 from websockets.asyncio.client import connect
 
-from motionfmu.errors import InputError
-from motionfmu.netcard import tls
-from motionfmu.netcard.client import SoftCard
-from motionfmu.netcard.page import Serving, application
-from motionfmu.netcard.server import Cards
-from motionfmu.netcard.sim import VirtualCard, Watch, simulate
-from motionfmu.netcard.wire import MAGIC, OPEN_KEY, CardEnd
+from motionfmu.base.errors import InputError
+from motionfmu.cards import tls
+from motionfmu.cards.client import SoftCard
+from motionfmu.cards.page import Serving, application
+from motionfmu.cards.server import Cards
+from motionfmu.cards.sim import VirtualCard, Watch, simulate
+from motionfmu.cards.wire import MAGIC, OPEN_KEY, CardEnd
 
 FILES = Path(__file__).parent / "tls"
 CERT, KEY, OTHER = FILES / "cert.pem", FILES / "key.pem", FILES / "other.pem"
@@ -145,7 +145,7 @@ def test_a_key_behind_a_password_is_refused_without_a_question() -> None:
 
     host, terminal = pty.openpty()
     files = f"Path({str(CERT)!r}), Path({str(FILES / 'locked.pem')!r})"
-    text = f"from pathlib import Path; from motionfmu.netcard import tls; tls.serving({files})"
+    text = f"from pathlib import Path; from motionfmu.cards import tls; tls.serving({files})"
     asked = subprocess.Popen(
         [sys.executable, "-c", text],
         stdin=terminal,

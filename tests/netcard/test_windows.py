@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-from motionfmu.errors import InputError
-from motionfmu.netcard.keys import alone
+from motionfmu.base.errors import InputError
+from motionfmu.cards.keys import alone
 
 # Its msvcrt locks a byte by another way of this system, so that locks still keep others out.
 HIDDEN = """
@@ -22,7 +22,7 @@ def locking(file, mode, count):
 
 sys.modules["msvcrt"] = types.SimpleNamespace(locking=locking, LK_LOCK=0, LK_NBLCK=1)
 sys.modules["fcntl"] = None
-import motionfmu.netcard.control as control
+import motionfmu.cards.control as control
 control.socket = types.SimpleNamespace()
 from motionfmu.__main__ import main
 sys.argv[0] = "motionfmu"
@@ -68,7 +68,7 @@ def test_what_needs_a_unix_socket_says_so(folder: Path, words: list[str]) -> Non
 
 def test_a_lock_by_msvcrt_keeps_others_out(folder: Path) -> None:
     held = f"""
-from motionfmu.netcard.keys import alone
+from motionfmu.cards.keys import alone
 from pathlib import Path
 with alone(Path({str(folder)!r}), wait=False):
     print(subprocess.run([sys.executable, "-c", {HIDDEN!r}, "card", "sim", "--flash",

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motionfmu.binding import library
-from motionfmu.netcard import messages as m
-from motionfmu.netcard.wire import OPEN_KEY, TO_CARD, TO_PC, CardEnd, End, PcEnd, Stream
+from motionfmu.base.binding import library
+from motionfmu.cards import messages as m
+from motionfmu.cards.wire import OPEN_KEY, TO_CARD, TO_PC, CardEnd, End, PcEnd, Stream
 
 KEY = bytes(range(32))
 ROOM = 65536  # [byte] more than a struct net_channel

@@ -41,8 +41,8 @@ def compared(result: motionfmu.Result) -> str:
 
 
 def margins() -> str:
-    from motionfmu.freq.study import Asked, study
-    from motionfmu.linear import model
+    from motionfmu.analysis.freq.study import Asked, study
+    from motionfmu.analysis.linear import model
     from motionfmu.report.servo import margin_page
 
     linear = model(CIRCLE, 1, {"machine.motor_speed": 30.0}, {})
@@ -52,20 +52,20 @@ def margins() -> str:
 def tuned() -> str:
     from motionfmu.report.servo import tune_page
     from motionfmu.run import load
-    from motionfmu.tune import problem, tune
+    from motionfmu.study.tune import problem, tune
 
     return tune_page.page_text(tune(load(ROOT / "scenarios/mismatch_line"), problem({}), {}))
 
 
 def causes() -> str:
-    from motionfmu.explain import explain
+    from motionfmu.analysis.explain import explain
     from motionfmu.report.causes import explain_page
 
     return explain_page.page_text(explain(ROOT / "scenarios/mismatch_line", {}))
 
 
 def program() -> str:
-    from motionfmu.gcode import read, strokes, summarise
+    from motionfmu.analysis.gcode import read, strokes, summarise
     from motionfmu.report.jobs import gcode_page
 
     found = read((CIRCLE / "circle.ngc").read_text())
@@ -73,9 +73,9 @@ def program() -> str:
 
 
 def plan() -> str:
-    from motionfmu.netcard import load, plt
-    from motionfmu.netcard.figures import figures
-    from motionfmu.netcard.plan import plan as planned
+    from motionfmu.cards import load, plt
+    from motionfmu.cards.figures import figures
+    from motionfmu.cards.plan import plan as planned
     from motionfmu.report.jobs import card_page
 
     folder = ROOT / "scenarios/plt_plate"
@@ -103,7 +103,7 @@ def swept(folder: Path) -> str:
 
 
 def path_causes(folder: Path) -> str:
-    from motionfmu.explain import explain_path
+    from motionfmu.analysis.explain import explain_path
     from motionfmu.report.causes.path_causes_page import write_path_explanation
 
     found = explain_path(ROOT / "scenarios/plt_plate", {})

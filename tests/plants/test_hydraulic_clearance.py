@@ -6,7 +6,7 @@ from hydraulic_rig import HARD, SHOWN, START, STEP, Case, drive, drive_all, refe
 from plant_library import ROOT, Library, Run
 
 import motionfmu
-from motionfmu import linear
+from motionfmu.analysis import linear
 
 GAP = 1e-4  # [m]
 BOTH = ("table_position", "rod_position", "table_speed")

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from plant_library import ROOT, Library
 
+from motionfmu.analysis.linear.law import carried
+from motionfmu.analysis.linear.plant import Linearised
 from motionfmu.fmu.modelica.ode import Ode
-from motionfmu.linear.law import carried
-from motionfmu.linear.plant import Linearised
 
 NO_FRICTION = {"table_coulomb": 0.0, "table_static": 0.0, "table_viscous": 0.0}
 TIGHT = {"valve_leakage": 0.0, "cylinder_leakage": 0.0, "valve_rounding": 1e-7}

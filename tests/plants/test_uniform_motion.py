@@ -12,9 +12,10 @@ from plant_library import Library
 from test_hydraulics_theory import INCH, esposito
 from typer.testing import CliRunner
 
-from motionfmu import InputError, linear
+from motionfmu import InputError
+from motionfmu.analysis import linear
+from motionfmu.analysis.linear.plant import Linearised, Point
 from motionfmu.cli import app
-from motionfmu.linear.plant import Linearised, Point
 
 LOADED = ROOT / "scenarios/hydraulic_gain"
 VISCOUS = esposito() | {"table_viscous": 1000.0}

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import fmpy
 
-from motionfmu.fmu.platforms import PLATFORMS, Platform
+from motionfmu.base.platforms import PLATFORMS, Platform
 
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 

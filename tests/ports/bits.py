@@ -15,7 +15,7 @@ from pathlib import Path
 import fmpy
 from fmpy.model_description import ModelVariable
 
-from motionfmu.fmu.platforms import Platform, here
+from motionfmu.base.platforms import Platform, here
 
 SOURCE = Path(__file__).with_name("fmu_bits.c")
 HEADERS = Path(fmpy.__file__).parent / "c-code"

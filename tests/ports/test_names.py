@@ -10,7 +10,7 @@ import pytest
 from conftest import ROOT
 from test_ports import EXPORTED, exported
 
-from motionfmu.fmu.platforms import Platform, here
+from motionfmu.base.platforms import Platform, here
 
 PLATFORMS = (here(), Platform("x86_64-windows"))
 STEP = 1e-3  # [s]

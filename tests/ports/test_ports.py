@@ -16,7 +16,7 @@ import pytest
 from binary import library, mac_faults, pe, standard
 from conftest import ROOT
 
-from motionfmu.fmu.platforms import PLATFORMS, Platform, here, universal
+from motionfmu.base.platforms import PLATFORMS, Platform, here, universal
 
 EXPORTED = Path(os.environ.get("MOTIONFMU_EXPORTED", ROOT / "build/export/fmus"))
 FMUS = sorted(EXPORTED.glob("*.fmu"))

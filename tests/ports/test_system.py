@@ -12,8 +12,8 @@ from conftest import ROOT
 from console import command
 
 import motionfmu
-from motionfmu.errors import InputError
-from motionfmu.fmu.platforms import PLATFORMS, Platform, here, named
+from motionfmu.base.errors import InputError
+from motionfmu.base.platforms import PLATFORMS, Platform, here, named
 
 SCENARIO = ROOT / "scenarios/circle"
 STEPS, STEP = 400, 1e-4

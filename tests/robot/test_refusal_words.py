@@ -4,7 +4,7 @@ import re
 
 from conftest import ROOT
 
-from motionfmu.robot.refusal import STATUS
+from motionfmu.virtual.robot.refusal import STATUS
 
 ENUM = re.search(
     r"enum robot_status \{(.*?)\};", (ROOT / "src/controllers/robot/robot.h").read_text(), re.S

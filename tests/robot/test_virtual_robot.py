@@ -1,4 +1,4 @@
-"""motionfmu.robot: beside the FMUs run by the native engine, and each call and its refusal."""
+"""The virtual robot beside the FMUs run by the native engine; each call and its refusal."""
 
 import math
 import tomllib
@@ -12,9 +12,9 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-import motionfmu.robot as robots
-from motionfmu.errors import InputError
-from motionfmu.robot import Kinematics, RobotError, VirtualRobot, matrix_of, pose_of
+import motionfmu.virtual.robot as robots
+from motionfmu.base.errors import InputError
+from motionfmu.virtual.robot import Kinematics, RobotError, VirtualRobot, matrix_of, pose_of
 
 EXAMPLE = ROOT / "examples/virtual_robot"
 JOB, POINTS = ((EXAMPLE / name).read_text() for name in ("plate.job", "plate.points"))

@@ -10,14 +10,14 @@ from conftest import ROOT
 from typer.testing import CliRunner
 
 from motionfmu import load, scenario
+from motionfmu.base.errors import InputError
+from motionfmu.base.units import parse
 from motionfmu.cli import app
-from motionfmu.errors import InputError
 from motionfmu.fmu import fmu_toml
 from motionfmu.run import Scenario
 from motionfmu.scenarios import agreement, fmus
 from motionfmu.scenarios.agreement import quantities
 from motionfmu.scenarios.values import start_values
-from motionfmu.units import parse
 
 LINE = ROOT / "scenarios/robot_line"
 # Each quantity of which controller, drives or arm could be told another value.

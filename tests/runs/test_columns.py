@@ -12,9 +12,9 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu import columns
-from motionfmu.columns import Columns
-from motionfmu.errors import InputError
+from motionfmu.base import columns
+from motionfmu.base.columns import Columns
+from motionfmu.base.errors import InputError
 from motionfmu.run import Result, checks, decimate
 from motionfmu.run.session import Session
 from motionfmu.scenarios import rates, recording
@@ -83,7 +83,7 @@ def test_whole_files_get_a_second_name_or_a_copy(
     def refused(*_: object) -> None:
         raise OSError(18, "Invalid cross-device link")
 
-    monkeypatch.setattr("motionfmu.columns.os.link", refused)
+    monkeypatch.setattr("motionfmu.base.columns.os.link", refused)
     columns.write(tmp_path / "third", kept, kept.time)
     for file in (tmp_path / "first").iterdir():
         copy = tmp_path / "third" / file.name
@@ -172,7 +172,7 @@ def test_peaks_and_steps_of_blocks_are_those_of_the_whole(short_blocks: None) ->
 
 PASS = """
 import resource, sys
-from motionfmu.columns import Columns
+from motionfmu.base.columns import Columns
 from motionfmu.run import checks, figures, decimate
 from motionfmu.scenarios.body import Check
 kept = Columns.of(__import__("pathlib").Path(sys.argv[1]))

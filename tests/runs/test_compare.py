@@ -14,13 +14,13 @@ from conftest import ROOT
 from console import within
 
 import motionfmu
-from motionfmu import columns
+from motionfmu.base import columns
+from motionfmu.base.errors import InputError
 from motionfmu.compare import Comparison, compare, overlay, plots
 from motionfmu.compare.figures import Number
 from motionfmu.compare.page import page_text
 from motionfmu.compare.side import Side
 from motionfmu.compare.words import GONE
-from motionfmu.errors import InputError
 from motionfmu.report.numbers import length
 from motionfmu.run import Result, stored
 

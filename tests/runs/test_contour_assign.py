@@ -10,9 +10,9 @@ from contour_runs import Machine, Program, run_along
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from motionfmu.contour import Path, analyse
-from motionfmu.contour.assign import assign
-from motionfmu.contour.geometry import Label, Line
+from motionfmu.analysis.contour import Path, analyse
+from motionfmu.analysis.contour.assign import assign
+from motionfmu.analysis.contour.geometry import Label, Line
 
 small = st.integers(-3, 3).map(float)
 dot = st.tuples(small, small).map(lambda p: np.array([*p, 0.0]))
@@ -56,7 +56,7 @@ def triangle():
 @given(cases(), st.integers(1, 4))
 def test_no_monotone_assignment_is_better(case, together) -> None:
     points, segments, first, last = case
-    with patch("motionfmu.contour.assign.STRIDE", together):
+    with patch("motionfmu.analysis.contour.assign.STRIDE", together):
         chosen = assign(points, Path(segments), first, last)
     assert (np.diff(chosen) >= 0).all()
     assert (chosen >= first).all() and (chosen <= last).all()

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from contour_runs import Machine, Program, run_along
 
-from motionfmu.contour import analyse, commanded, scaled
-from motionfmu.contour.commanded import Known
-from motionfmu.contour.instants import Instants
-from motionfmu.contour.order import distinct, median, quantiles
+from motionfmu.analysis.contour import analyse, commanded, scaled
+from motionfmu.analysis.contour.commanded import Known
+from motionfmu.analysis.contour.instants import Instants
+from motionfmu.analysis.contour.order import distinct, median, quantiles
 
 PATH = Program(0, 0).line(20, 0).arc((20, 10), 6.0).line(0, 5).path()
 RUN = run_along(PATH, 100.0, Machine(step=5e-4))

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from contour_runs import Machine, Program, lag_error, run_along
 
-from motionfmu.contour import ContourInput, Trace, analyse
-from motionfmu.contour.error import servo_lag
-from motionfmu.contour.instants import Instants
-from motionfmu.errors import NoNumber
+from motionfmu.analysis.contour import ContourInput, Trace, analyse
+from motionfmu.analysis.contour.error import servo_lag
+from motionfmu.analysis.contour.instants import Instants
+from motionfmu.base.errors import NoNumber
 
 FEED = 100.0  # [mm/s]
 

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 
-from motionfmu.contour.arcs import kepler_root
-from motionfmu.contour.geometry import Arc, Cubic, Label, Line
-from motionfmu.contour.planned import make_arc
+from motionfmu.analysis.contour.arcs import kepler_root
+from motionfmu.analysis.contour.geometry import Arc, Cubic, Label, Line
+from motionfmu.analysis.contour.planned import make_arc
 
 LABEL = Label(1, 10, "line", 0.0)
 # Rounding of coordinates up to about 200 mm, a few operations long. [mm]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, minimize
 
-from motionfmu.contour.circles import plane_axes
-from motionfmu.contour.iso230 import (
+from motionfmu.analysis.contour.circles import plane_axes
+from motionfmu.analysis.contour.iso230 import (
     both_ways,
     fit_ellipse,
     least_squares_circle,

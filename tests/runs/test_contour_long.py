@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from contour_runs import Machine, Program, run_along
 
-from motionfmu.contour import ContourResult, analyse, result, scaled
+from motionfmu.analysis.contour import ContourResult, analyse, result, scaled
 from motionfmu.report import drawing
 from motionfmu.run import decimate
 from motionfmu.run.stored import json_of

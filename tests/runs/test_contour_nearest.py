@@ -10,11 +10,11 @@ from contour_runs import Machine, Program, run_along
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motionfmu.contour import ContourInput, Path, analyse
-from motionfmu.contour.assign import SAME, assign, nearest
-from motionfmu.contour.result import GROUPS
-from motionfmu.contour.scaled import Scaled
-from motionfmu.contour.segments import Segments
+from motionfmu.analysis.contour import ContourInput, Path, analyse
+from motionfmu.analysis.contour.assign import SAME, assign, nearest
+from motionfmu.analysis.contour.result import GROUPS
+from motionfmu.analysis.contour.scaled import Scaled
+from motionfmu.analysis.contour.segments import Segments
 
 
 def wild(rng: np.random.Generator, count: int) -> Path:
@@ -75,7 +75,7 @@ def test_feet_on_many_segments_are_those_on_each(seed, segments) -> None:
     path = wild(rng, segments)
     points = rng.normal(size=(50, 3)) * 6.0
     which = np.sort(rng.integers(0, segments, 50))
-    with patch("motionfmu.contour.segments.RUN", int(rng.choice([1, 256]))):
+    with patch("motionfmu.analysis.contour.segments.RUN", int(rng.choice([1, 256]))):
         found = path.segments.foot(points, which)
     for t in range(50):
         alone = path.segments[int(which[t])].foot(points[t : t + 1])
@@ -159,7 +159,7 @@ def test_parts_leave_no_seam_and_memory_maps_are_read_as_arrays(tmp_path) -> Non
     assert mapped.commanded[5:9, 1:3] == pytest.approx(run.commanded[5:9, 1:3], abs=1e-12)
     assert mapped.actual[[7, 3], 0] == pytest.approx(run.actual[[7, 3], 0], abs=1e-12)
     told: list[float] = []
-    with patch("motionfmu.contour.scaled.BLOCK", 97):
+    with patch("motionfmu.analysis.contour.scaled.BLOCK", 97):
         parts = analyse(mapped, told.append)
         numbers = parts.numbers()
     for name in ("segment", "along", "distance", "right"):
@@ -182,7 +182,7 @@ def test_numbers_are_made_once_and_only_those_asked_for() -> None:
         name: lambda r, name=name, make=make: made.append(name) or make(r)
         for name, make in GROUPS.items()
     }
-    with patch("motionfmu.contour.result.GROUPS", groups):
+    with patch("motionfmu.analysis.contour.result.GROUPS", groups):
         for _ in range(3):
             assert result.number("error.max") == result.error.max
             assert result.number("circles.1.cw.g") > 0.0

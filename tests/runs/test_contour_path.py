@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from contour_runs import Program
 
-from motionfmu.contour.geometry import Arc, Line
-from motionfmu.contour.path import Path, outline
-from motionfmu.contour.planned import COLUMNS, read_path
+from motionfmu.analysis.contour.geometry import Arc, Line
+from motionfmu.analysis.contour.path import Path, outline
+from motionfmu.analysis.contour.planned import COLUMNS, read_path
 
 HEAD = (
     ["command", "line", "type"]

@@ -7,8 +7,8 @@ from conftest import ROOT
 from contour_runs import Machine, Program, run_along
 
 import motionfmu
-from motionfmu.contour import ContourInput, ContourResult, analyse
-from motionfmu.contour.sparse import sparse
+from motionfmu.analysis.contour import ContourInput, ContourResult, analyse
+from motionfmu.analysis.contour.sparse import sparse
 
 STEP = 1e-3
 

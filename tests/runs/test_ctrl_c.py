@@ -41,7 +41,7 @@ def environment(folder: Path) -> dict[str, str]:
         (RUN, "numpy"),
         (RUN, "motionfmu.run.engines.fused"),  # the run has a folder by then
         (RUN, "motionfmu.run.contour_of"),  # so has its result
-        ("card serve --page 0 --port 0 --folder", "motionfmu.netcard.control"),
+        ("card serve --page 0 --port 0 --folder", "motionfmu.cards.control"),
     ],
 )
 def test_an_interrupt_while_modules_are_loaded(line: str, module: str, tmp_path: Path) -> None:

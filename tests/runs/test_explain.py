@@ -15,11 +15,11 @@ from contour_runs import Machine, Program, lag_error, run_along
 from typer.testing import CliRunner
 
 import motionfmu
-from motionfmu.contour import ContourInput, analyse
-from motionfmu.errors import InputError
-from motionfmu.explain import causes, decompose, explain, servo, signature, theory
-from motionfmu.explain.expression import evaluate
-from motionfmu.explain.servo import Axis
+from motionfmu.analysis.contour import ContourInput, analyse
+from motionfmu.analysis.explain import causes, decompose, explain, servo, signature, theory
+from motionfmu.analysis.explain.expression import evaluate
+from motionfmu.analysis.explain.servo import Axis
+from motionfmu.base.errors import InputError
 from motionfmu.report.causes.explain_page import page_text
 from motionfmu.report.numbers import length
 from motionfmu.scenarios import fmus

@@ -9,12 +9,12 @@ from matplotlib import pyplot as plt
 from page_curves import curve, page_data, unwoven
 
 import motionfmu
+from motionfmu.base.toml_lines import Lines
 from motionfmu.report.chart_pictures import chart_picture
 from motionfmu.report.charts import BUCKETS, chart_figure, shown
 from motionfmu.report.outcome import Kept, save
 from motionfmu.report.samples import COARSE
 from motionfmu.run.figures import OVERVIEW, Chart, Curve, Panel
-from motionfmu.toml_lines import Lines
 
 # 1 V is 300 rpm: 5 turns of 10 mm, 50 000 encoder counts per second.
 SPEED, COUNTS = 0.05, 50_000.0

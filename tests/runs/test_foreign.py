@@ -12,10 +12,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import motionfmu
-from motionfmu import binding
-from motionfmu.errors import InputError
+from motionfmu.base import binding
+from motionfmu.base.errors import InputError
+from motionfmu.base.platforms import here
 from motionfmu.export import as_ssp
-from motionfmu.fmu.platforms import here
 from motionfmu.report import outcome
 from motionfmu.run.session import Session
 from motionfmu.ssp.imported import take

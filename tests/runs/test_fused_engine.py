@@ -15,8 +15,9 @@ from conftest import FMUS, ROOT
 
 import motionfmu
 import motionfmu.fused
-from motionfmu import cli, compiler
-from motionfmu.compiler import Compiler
+from motionfmu import cli
+from motionfmu.base import compiler
+from motionfmu.base.compiler import Compiler
 
 STOP = 0.01  # [s]
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from motionfmu import kept
-from motionfmu.compiler import Compiler, compiler
-from motionfmu.errors import InputError
+from motionfmu.base import kept
+from motionfmu.base.compiler import Compiler, compiler
+from motionfmu.base.errors import InputError
 
 
 @pytest.fixture(autouse=True)

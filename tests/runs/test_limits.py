@@ -8,11 +8,13 @@ from conftest import ROOT
 from test_bad_input import message, scenario
 
 import motionfmu
-from motionfmu import sweep, toml_lines, tune
-from motionfmu.errors import InputError
+from motionfmu import sweep
+from motionfmu.base import toml_lines
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import SIZE_MAX, tables_of, text_of, word
 from motionfmu.run.session import Session
 from motionfmu.scenarios import recording
-from motionfmu.toml_lines import SIZE_MAX, tables_of, text_of, word
+from motionfmu.study import tune
 
 TRACE = '[component]\ntrace = "scope"\n'
 OPEN = 'leave = ["trace.*", '

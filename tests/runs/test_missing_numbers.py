@@ -13,9 +13,9 @@ from console import command, within
 from contour_runs import Machine, Program, run_along
 
 import motionfmu
-from motionfmu.contour import analyse
-from motionfmu.contour.names import wrong
-from motionfmu.errors import NoNumber
+from motionfmu.analysis.contour import analyse
+from motionfmu.analysis.contour.names import wrong
+from motionfmu.base.errors import NoNumber
 from motionfmu.report.outcome import save
 from motionfmu.run.checks import judge
 from motionfmu.scenarios.body import Check

@@ -8,9 +8,12 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu import gcode, linear, mcc, robot, sweep, tune
-from motionfmu.errors import InputError, suggestion
+from motionfmu import sweep
+from motionfmu.analysis import gcode, linear
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run import Scenario, Session
+from motionfmu.study import tune
+from motionfmu.virtual import mcc, robot
 
 CIRCLE = ROOT / "scenarios/circle/circle.ngc"
 

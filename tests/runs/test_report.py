@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from page_curves import curve, page_data, unwoven
 
 import motionfmu
+from motionfmu.analysis.explain.theory import CornerRow
 from motionfmu.compare import page as compared
 from motionfmu.compare.differences import Checked
-from motionfmu.explain.theory import CornerRow
 from motionfmu.report import write_report
 from motionfmu.report.causes.explain_page import _corners
 from motionfmu.report.numbers import MINUS, figure, length, magnification

@@ -13,7 +13,7 @@ from console import within
 from matplotlib import pyplot
 
 import motionfmu
-from motionfmu.errors import InputError, UnknownSignal
+from motionfmu.base.errors import InputError, UnknownSignal
 from motionfmu.run import Result
 
 SIX = [f"machine.table_position[{k}]" for k in range(1, 7)]

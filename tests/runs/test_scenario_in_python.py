@@ -11,8 +11,8 @@ from conftest import ROOT
 
 import motionfmu
 from motionfmu import InputError
+from motionfmu.base.toml_lines import tables_of
 from motionfmu.run.session import Session
-from motionfmu.toml_lines import tables_of
 
 CIRCLE = ROOT / "scenarios/circle_theory"
 TEXT = (CIRCLE / "scenario.toml").read_text()

@@ -44,8 +44,12 @@ def test_gains_of_a_scenario_are_kept_for_the_next_command(tmp_path) -> None:
     second = loaded(tmp_path, "info", "scenarios/circle")
     assert second & LARGE == {"numpy"}
     # what checks and the engine are named by comes without what they are made by
-    unused = {"motionfmu.contour.arcs", "motionfmu.fmu.pack", "motionfmu.linear.position_gain"}
-    assert "motionfmu.contour.names" in second and not second & unused
+    unused = {
+        "motionfmu.analysis.contour.arcs",
+        "motionfmu.fmu.pack",
+        "motionfmu.analysis.linear.position_gain",
+    }
+    assert "motionfmu.analysis.contour.names" in second and not second & unused
 
 
 def test_a_command_loads_no_other(tmp_path) -> None:

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from motionfmu.errors import NoNumber
-from motionfmu.iso9283 import (
+from motionfmu.analysis.iso9283 import (
     CommandPath,
     Cycle,
     Cycles,
@@ -23,8 +22,9 @@ from motionfmu.iso9283 import (
     read_points,
     straightness,
 )
-from motionfmu.iso9283.evaluation import TREE, wrong
-from motionfmu.iso9283.simplify import simplified
+from motionfmu.analysis.iso9283.evaluation import TREE, wrong
+from motionfmu.analysis.iso9283.simplify import simplified
+from motionfmu.base.errors import NoNumber
 
 LENGTH = 90.0  # [mm]
 SPEED = 30.0  # [mm/s]

@@ -10,8 +10,8 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu.errors import InputError, NoNumber
-from motionfmu.explain import explain_path
+from motionfmu.analysis.explain import explain_path
+from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.report.causes.path_causes_page import write_path_explanation
 from motionfmu.study import columns
 

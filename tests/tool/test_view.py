@@ -17,10 +17,10 @@ from py_mini_racer import MiniRacer
 import motionfmu
 from motionfmu.report import write_report
 from motionfmu.report.ran import without_leaps
+from motionfmu.report.view.arm import Arm, chain
+from motionfmu.report.view.deviations import from_contour
+from motionfmu.report.view.scene import scene_of
 from motionfmu.report.view_section import SCRIPTS, add_view, quantised, view_data
-from motionfmu.view.arm import Arm, chain
-from motionfmu.view.deviations import from_contour
-from motionfmu.view.scene import scene_of
 
 REPORT = ROOT / "src/motionfmu/report"
 BYTES_MAX = 60_000  # of the scripts, without data

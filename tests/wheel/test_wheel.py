@@ -117,13 +117,13 @@ def test_what_else_the_base_does(installed: Installed) -> None:
     done = installed.run("motionfmu", "examples", "--copy", "schedule", "copies")
     assert done.returncode == 0 and (installed.empty / "copies/schedule/wave.ngc").is_file()
     code = (
-        "import motionfmu.mcc as m; c = m.VirtualCard(feed=1200, p_gain=200); "
+        "import motionfmu.virtual.mcc as m; c = m.VirtualCard(feed=1200, p_gain=200); "
         "c.mcc.line([1, 0, 0, 0, 0, 0]); print(c.run_until_stop().pulses[0])"
     )
     assert installed.run("python", "-c", code).stdout == "1000\n"
     told = installed.run("motionfmu", "tune", "circle")
     assert told.returncode == 2 and told.stderr.endswith(f'pip install "{installed.file}[tune]"\n')
-    code = "import motionfmu.tune"
+    code = "import motionfmu.study.tune"
     assert '.whl[tune]"' in installed.run("python", "-c", code).stderr.splitlines()[-1]
     made = installed.run("motionfmu", "export", "circle", "--ssp")
     assert made.returncode == 0 and (installed.empty / "circle.ssp").is_file()

@@ -101,7 +101,7 @@ def main(packed: str, folder: str) -> None:
         empty.mkdir()
         told = output(python.parent / "motionfmu", "run", "circle", cwd=empty, HOME=str(place))
         report = empty / "results/circle/report.html"
-        card = "from motionfmu.mcc import VirtualCard; print(VirtualCard().read().clock)"
+        card = "from motionfmu.virtual.mcc import VirtualCard; print(VirtualCard().read().clock)"
         output(python, "-c", card, cwd=empty)
         print(*told.splitlines()[-2:-1], f"report: {report.stat().st_size / MEGA:.1f} MB", sep="\n")
     if sum(found.values()) > BASE_MAX:

@@ -61,8 +61,8 @@ def _status() -> tuple[int, str]:
     app = _commands(*sys.argv[1:2])
     from typer.exceptions import TyperException
 
+    from motionfmu.base.errors import InputError
     from motionfmu.cli.common import STOPPED, WRONG, Stopped
-    from motionfmu.errors import InputError
 
     # All is done then; an interrupt would only show where Python is.
     atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)

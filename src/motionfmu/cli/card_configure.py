@@ -20,8 +20,8 @@ def configure(
     folder: Folder = HERE,
 ) -> None:
     """Send what differs of a configuration to a card that rests; its id and addresses stay."""
-    from motionfmu.netcard.config import load
-    from motionfmu.netcard.control import ask
+    from motionfmu.cards.config import load
+    from motionfmu.cards.control import ask
 
     asked = {"do": "configure", "card": id, "config": load(config).model_dump()}
     answer = ask(folder, asked)
@@ -40,7 +40,7 @@ def settings(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, all of them.")] = False,
 ) -> None:
     """Show what is set in a card; of its inputs those that do something."""
-    from motionfmu.netcard.control import ask
+    from motionfmu.cards.control import ask
 
     answer = ask(folder, {"do": "settings", "card": id})
     found: dict[str, list[int]] = {}
@@ -56,9 +56,9 @@ def settings(
 
 
 def _tell(found: dict[str, list[int]]) -> None:
-    from motionfmu.netcard.settings import fields, shown, words
-    from motionfmu.netcard.tables import Axis, Input
-    from motionfmu.units import spelled
+    from motionfmu.base.units import spelled
+    from motionfmu.cards.settings import fields, shown, words
+    from motionfmu.cards.tables import Axis, Input
 
     used = [i for i, action in enumerate(found["in_action"]) if action]
     tables: dict[Any, Any] = {

@@ -18,8 +18,8 @@ def headers(
     crlf: Annotated[bool, typer.Option("--crlf", help="Lines end in CR LF.")] = False,
 ) -> None:
     """Make the headers of a firmware project; those that are as they should be stay untouched."""
-    from motionfmu.netcard import load
-    from motionfmu.netcard.headers import write
+    from motionfmu.cards import load
+    from motionfmu.cards.headers import write
 
     for file in write(load(config), folder, config.name, crlf):
         out.print(str(file), markup=False, soft_wrap=True)

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.errors import InputError
+from motionfmu.base.extras import needed
 from motionfmu.cli.card import card
 from motionfmu.cli.common import FAILED, bare_table, out, results
-from motionfmu.errors import InputError
-from motionfmu.extras import needed
 
 if TYPE_CHECKING:
-    from motionfmu.netcard.figures import Figures
-    from motionfmu.netcard.job import Job
-    from motionfmu.netcard.plt import Drawing
+    from motionfmu.cards.figures import Figures
+    from motionfmu.cards.job import Job
+    from motionfmu.cards.plt import Drawing
 
 Config = Annotated[Path, typer.Option("-c", "--config", help="Configuration of the card.")]
 Corner = Annotated[tuple[float, float], typer.Option(metavar="X Y", help="Place of its 0 [mm].")]
@@ -42,11 +42,11 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Plan a drawing: a job for the card, and what it comes to."""
     needed("card")
-    from motionfmu.netcard import load, plt
-    from motionfmu.netcard.contours import clean, way_between
-    from motionfmu.netcard.figures import figures
-    from motionfmu.netcard.plan import Options, write
-    from motionfmu.netcard.plan import plan as planned
+    from motionfmu.cards import load, plt
+    from motionfmu.cards.contours import clean, way_between
+    from motionfmu.cards.figures import figures
+    from motionfmu.cards.plan import Options, write
+    from motionfmu.cards.plan import plan as planned
 
     for name, value, known in (
         ("--order", order, ("file", "nearest")),
@@ -127,7 +127,7 @@ def show(
     page: PageOption = 1,
 ) -> None:
     """Show what a drawing or a job holds."""
-    from motionfmu.netcard import job, plt
+    from motionfmu.cards import job, plt
 
     if picture and picture.suffix not in (".png", ".svg"):
         raise InputError(f"--picture {picture}: .png or .svg wanted")

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.errors import InputError
+from motionfmu.base.extras import install
 from motionfmu.cli.card import card, on_end, stopped
 from motionfmu.cli.common import FAILED, Group, bare_table, out
-from motionfmu.errors import InputError
-from motionfmu.extras import install
 
 if TYPE_CHECKING:
-    from motionfmu.netcard.page import Serving
-    from motionfmu.netcard.server import Cards
+    from motionfmu.cards.page import Serving
+    from motionfmu.cards.server import Cards
 
 AXES = "XYZU"
 Folder = Annotated[Path, typer.Option("--folder", help="The server's folder.")]
@@ -41,8 +41,8 @@ def serve(  # noqa: PLR0913  (each is an option of the command)
     import asyncio
     import logging
 
-    from motionfmu.netcard.server import Cards, check_port
-    from motionfmu.netcard.tls import serving
+    from motionfmu.cards.server import Cards, check_port
+    from motionfmu.cards.tls import serving
 
     if tls:
         serving(*tls)
@@ -64,8 +64,8 @@ async def _serve(
     import asyncio
     import contextlib
 
-    from motionfmu.netcard import tls
-    from motionfmu.netcard.control import Control
+    from motionfmu.cards import tls
+    from motionfmu.cards.control import Control
 
     bind, port, page = places
     serving, address = _page(cards, page, config, files) if page else (contextlib.nullcontext(), "")
@@ -94,7 +94,7 @@ def _page(
     import secrets
 
     try:
-        from motionfmu.netcard.page import Serving, application
+        from motionfmu.cards.page import Serving, application
     except ImportError as error:
         text = f"{error.name} is missing; {install('card')}, or --page 0"
         raise InputError(f"--page: {text}") from None
@@ -105,7 +105,7 @@ def _page(
 
 def _ask(folder: Path, request: dict[str, Any], file: bytes = b"") -> None:
     """Ask the server, print how it ended; status 1 if it was refused or failed."""
-    from motionfmu.netcard.control import ask
+    from motionfmu.cards.control import ask
 
     answer = ask(folder, request, file)
     state = f" ({answer['state']})" if answer["state"] else ""
@@ -123,7 +123,7 @@ def send(
     id: Id, file: Annotated[Path, typer.Argument(help="job.mcj")], folder: Folder = HERE
 ) -> None:
     """Bring a job file into a card; ends when it is there, or refused."""
-    from motionfmu.netcard.server import check_job
+    from motionfmu.cards.server import check_job
 
     try:
         job = file.read_bytes()
@@ -179,7 +179,7 @@ def status(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Show the cards of a server; status 1 if the card asked for is not connected."""
-    from motionfmu.netcard.control import ask
+    from motionfmu.cards.control import ask
 
     cards = [c for c in ask(folder, {"do": "list"})["cards"] if id in (None, c["id"])]
     if as_json:
@@ -211,7 +211,7 @@ def key_new(
     keys: Annotated[Path | None, typer.Option(help="Keys; else keys.toml in the folder.")] = None,
 ) -> None:
     """Make a key for a card, in a file that only you read."""
-    from motionfmu.netcard.keys import new_key
+    from motionfmu.cards.keys import new_key
 
     file = keys or folder / "keys.toml"
     new_key(file, id)

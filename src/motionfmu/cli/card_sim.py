@@ -5,9 +5,9 @@ from typing import Annotated, cast
 
 import typer
 
+from motionfmu.base.errors import InputError
 from motionfmu.cli.card import card, on_end, stopped
 from motionfmu.cli.common import out
-from motionfmu.errors import InputError
 
 CARDS_MAX = 1000
 SPEED = (0.001, 1000.0)
@@ -30,11 +30,11 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
     import asyncio
     import contextlib
 
-    from motionfmu.netcard.config import load
-    from motionfmu.netcard.keys import CARD_MAX, alone, read_keys
-    from motionfmu.netcard.sim import FlashFile, VirtualCard, Watch, simulate
-    from motionfmu.netcard.tls import trusting
-    from motionfmu.netcard.wire import OPEN_KEY
+    from motionfmu.cards.config import load
+    from motionfmu.cards.keys import CARD_MAX, alone, read_keys
+    from motionfmu.cards.sim import FlashFile, VirtualCard, Watch, simulate
+    from motionfmu.cards.tls import trusting
+    from motionfmu.cards.wire import OPEN_KEY
 
     trusted = trusting(tls) if tls else None
     host, _, port = server.rpartition(":")

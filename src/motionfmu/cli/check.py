@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.errors import InputError
 from motionfmu.cli.common import FAILED, WRONG, app, out, run_shown
 from motionfmu.cli.run import Engine, Fmi, verdicts, warnings
-from motionfmu.errors import InputError
 
 if TYPE_CHECKING:
     from motionfmu.run.suite import Case

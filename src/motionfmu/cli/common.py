@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from motionfmu.errors import InputError
-from motionfmu.toml_lines import tables_of, text_of, word
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import tables_of, text_of, word
 
 if TYPE_CHECKING:
     from rich.console import Console

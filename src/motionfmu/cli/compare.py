@@ -90,6 +90,6 @@ def _share(difference: float, span: float) -> float:
 
 
 def _unit(name: str) -> str:
-    from motionfmu.units import spelled
+    from motionfmu.base.units import spelled
 
     return spelled(name)

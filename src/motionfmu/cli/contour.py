@@ -6,6 +6,7 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 
+from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     ScenarioPath,
     Set,
@@ -17,7 +18,6 @@ from motionfmu.cli.common import (
     run_shown,
     settings,
 )
-from motionfmu.extras import needed
 
 T = TypeVar("T")
 
@@ -68,7 +68,7 @@ def _with_bar(work: Callable[..., T], name: str, path: Path, settings: dict[str,
 
 
 def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
-    from motionfmu.explain import explain_path
+    from motionfmu.analysis.explain import explain_path
     from motionfmu.report import outcome
     from motionfmu.report.causes.path_causes_page import HEADS, write_path_explanation
     from motionfmu.report.numbers import length
@@ -102,7 +102,7 @@ def bar_columns() -> tuple[Any, ...]:
 
 
 def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
-    from motionfmu.explain import explain
+    from motionfmu.analysis.explain import explain
     from motionfmu.report import outcome
     from motionfmu.report.causes.explain_page import write_explanation
     from motionfmu.report.numbers import length

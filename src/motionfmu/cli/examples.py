@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
+from motionfmu.base.errors import InputError
 from motionfmu.cli.common import app
 from motionfmu.cli.info import first_line, print_rows
-from motionfmu.errors import InputError
 
 
 @app.command()

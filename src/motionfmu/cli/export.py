@@ -5,9 +5,9 @@ from typing import Annotated
 
 import typer
 
+from motionfmu.base.errors import InputError
 from motionfmu.cli.common import Set, app, settings
 from motionfmu.cli.run import warnings
-from motionfmu.errors import InputError
 
 
 @app.command()
@@ -55,7 +55,7 @@ def export(  # noqa: PLR0913  (each is an option)
         raise InputError(
             "--program is for an FMU alone; of a scenario --set COMPONENT.program=FILE"
         )
-    from motionfmu.fmu.platforms import named
+    from motionfmu.base.platforms import named
     from motionfmu.run import load
 
     scenario = load(path)

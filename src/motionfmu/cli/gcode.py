@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.errors import InputError
+from motionfmu.base.extras import install, missing
 from motionfmu.cli.common import FAILED, app, bare_table, out, results
-from motionfmu.errors import InputError
-from motionfmu.extras import install, missing
 
 if TYPE_CHECKING:
-    from motionfmu.gcode import Program
+    from motionfmu.analysis.gcode import Program
 
 AXES = "XYZUVW"
 
@@ -52,8 +52,8 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         "block_delete": delete,
     }
     settings |= _limits(limit, angles)
-    from motionfmu.gcode import read
-    from motionfmu.gcode.program import text_in
+    from motionfmu.analysis.gcode import read
+    from motionfmu.analysis.gcode.program import text_in
 
     table = text_in(tools) if tools else ""
     told, good = {}, True
@@ -93,7 +93,7 @@ def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
 def _numbers(program: "Program") -> dict[str, Any]:
     from dataclasses import asdict
 
-    from motionfmu.gcode import summarise
+    from motionfmu.analysis.gcode import summarise
 
     faults = [asdict(f) for f in program.faults]
     notes = [asdict(n) for n in program.notes]
@@ -102,7 +102,7 @@ def _numbers(program: "Program") -> dict[str, Any]:
 
 def _show(file: Path, program: "Program", target: Path) -> None:
     """Print what was found and write the report."""
-    from motionfmu.gcode import strokes, summarise
+    from motionfmu.analysis.gcode import strokes, summarise
     from motionfmu.report import outcome
     from motionfmu.report.jobs.gcode_page import (
         clock,

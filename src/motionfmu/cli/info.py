@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.extras import Missing
+from motionfmu.base.units import spelled
 from motionfmu.cli.common import app
 from motionfmu.cli.plain import width
-from motionfmu.errors import InputError, suggestion
-from motionfmu.extras import Missing
-from motionfmu.units import spelled
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
@@ -198,8 +198,8 @@ def _value(value: Any) -> str:
 
 
 def _scenario(scenario: "Scenario") -> None:
-    from motionfmu.linear import gain_of
-    from motionfmu.linear.gains import in_lines
+    from motionfmu.analysis.linear import gain_of
+    from motionfmu.analysis.linear.gains import in_lines
     from motionfmu.scenarios import fmus
 
     body = scenario.document.body

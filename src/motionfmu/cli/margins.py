@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from motionfmu.base.errors import InputError
+from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     ScenarioPath,
     Set,
@@ -19,12 +21,10 @@ from motionfmu.cli.common import (
     setting,
     settings,
 )
-from motionfmu.errors import InputError
-from motionfmu.extras import needed
 
 if TYPE_CHECKING:
-    from motionfmu.freq.study import Asked, LoopStudy
-    from motionfmu.linear import AxisModel
+    from motionfmu.analysis.freq.study import Asked, LoopStudy
+    from motionfmu.analysis.linear import AxisModel
 
 
 @app.command()
@@ -48,10 +48,10 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Margins and largest stable gains of a scenario's loops, and their report."""
     needed("tune")
-    from motionfmu.freq.study import Asked
-    from motionfmu.linear import gain_of, model
-    from motionfmu.linear.gains import in_lines
-    from motionfmu.linear.opened import held
+    from motionfmu.analysis.freq.study import Asked
+    from motionfmu.analysis.linear import gain_of, model
+    from motionfmu.analysis.linear.gains import in_lines
+    from motionfmu.analysis.linear.opened import held
     from motionfmu.report import outcome
     from motionfmu.report.servo.margin_page import numbers, page_text, point_line
 
@@ -100,7 +100,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
 
 def _of_the_program(linear: "AxisModel") -> tuple[dict[str, float], str]:
     """The speed of the scenario's program as an operating point, and where it is from."""
-    from motionfmu.tune.choice import operating_point, speed_output
+    from motionfmu.study.tune.choice import operating_point, speed_output
 
     contour = linear.scenario.document.body.contour
     component = contour.position.partition(".")[0] if contour else ""
@@ -117,7 +117,7 @@ def _of_the_program(linear: "AxisModel") -> tuple[dict[str, float], str]:
 
 def _study(linear: "AxisModel", asked: "Asked") -> "list[LoopStudy]":
     """Study with a progress bar, which shows on a terminal only."""
-    from motionfmu.freq.study import study
+    from motionfmu.analysis.freq.study import study
 
     with progress_bar() as bar:
         task = bar.add_task(linear.scenario.name, total=1.0)

@@ -9,8 +9,8 @@ from typing import Annotated
 
 import typer
 
+from motionfmu.base.errors import InputError
 from motionfmu.cli.common import Group, app
-from motionfmu.errors import InputError
 
 TEMPLATES = Path(__file__).parent / "templates"
 Name = Annotated[str, typer.Argument(help="Small letters, digits and _; its folder's name.")]

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.errors import InputError
+from motionfmu.base.extras import needed
 from motionfmu.cli import plain
 from motionfmu.cli.common import (
     FAILED,
@@ -18,8 +20,6 @@ from motionfmu.cli.common import (
     settings,
     under_way,
 )
-from motionfmu.errors import InputError
-from motionfmu.extras import needed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     FAILED,
     Set,
@@ -16,7 +17,6 @@ from motionfmu.cli.common import (
     results,
     settings,
 )
-from motionfmu.extras import needed
 
 if TYPE_CHECKING:
     from motionfmu.sweep import Outcome, Study, Ways
@@ -81,9 +81,9 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
     """Run a scenario at many points; resumes where an earlier call was ended."""
     needed("study")
     from motionfmu import sweep as sweeps
+    from motionfmu.base.units import spelled
     from motionfmu.report.numbers import length
     from motionfmu.study.axes import option
-    from motionfmu.units import spelled
 
     given: dict[str, Any] = {"sampling": sampling, "runs": runs, "seed": seed, "cost": cost}
     given |= {"tuned": tuned, "stop": stop, "step": step, "results": result or None}

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     ScenarioPath,
     Set,
@@ -16,11 +17,10 @@ from motionfmu.cli.common import (
     results,
     settings,
 )
-from motionfmu.extras import needed
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
-    from motionfmu.tune import Problem, Tuned
+    from motionfmu.study.tune import Problem, Tuned
 
 
 @app.command()
@@ -41,12 +41,12 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Find servo gains for a scenario's own path; write gains.toml and a report."""
     needed("tune")
-    from motionfmu.linear.gains import in_lines
+    from motionfmu.analysis.linear.gains import in_lines
     from motionfmu.report import outcome
     from motionfmu.report.servo.tune_page import page_text
     from motionfmu.run import load
-    from motionfmu.tune import problem, read
-    from motionfmu.tune.words import plant_text
+    from motionfmu.study.tune import problem, read
+    from motionfmu.study.tune.words import plant_text
 
     scenario = load(path)
     beside = scenario.document.file.parent / "tune.toml"
@@ -85,7 +85,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
 
 def _tune(scenario: "Scenario", asked: "Problem", given: dict[str, Any]) -> "Tuned":
     """Tune with a progress bar, which shows on a terminal only."""
-    from motionfmu.tune import tune
+    from motionfmu.study.tune import tune
 
     with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=1.0)

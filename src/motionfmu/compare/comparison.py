@@ -5,11 +5,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.compare import overlay
 from motionfmu.compare.page import write_comparison
 from motionfmu.compare.pairing import Pairing
 from motionfmu.compare.side import side
-from motionfmu.errors import InputError, suggestion
 from motionfmu.run import Result, Scenario
 
 

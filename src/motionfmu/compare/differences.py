@@ -4,11 +4,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from motionfmu.base.errors import InputError
+from motionfmu.base.units import spelled
 from motionfmu.compare.side import Side
-from motionfmu.errors import InputError
 from motionfmu.scenarios.fmus import Port, ports
 from motionfmu.scenarios.values import start_values
-from motionfmu.units import spelled
 
 NOTHING = "—"
 LISTED = 8  # values of a list that are shown

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.base.errors import InputError
+from motionfmu.base.units import spelled
 from motionfmu.compare.side import Side
-from motionfmu.errors import InputError
-from motionfmu.units import spelled
 
 Array = NDArray[np.float64]
 

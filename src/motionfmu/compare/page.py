@@ -7,12 +7,13 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from motionfmu.analysis.iso9283.evaluation import unit as unit_of_iso9283
+from motionfmu.base.units import spelled
 from motionfmu.compare import plots
 from motionfmu.compare.differences import NOTHING, Checked, port_of
 from motionfmu.compare.figures import Number
 from motionfmu.compare.pairing import Apart, Pairing
 from motionfmu.compare.words import GONE, change_text, row_of, signed, text_of
-from motionfmu.iso9283.evaluation import unit as unit_of_iso9283
 from motionfmu.report import outcome
 from motionfmu.report.contour_words import CIRCLE, CONTOUR, in_words
 from motionfmu.report.numbers import figure, length
@@ -20,7 +21,6 @@ from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.tables import cards, judged, table
 from motionfmu.run.checks import parts, together
 from motionfmu.run.stored import NUMBERS
-from motionfmu.units import spelled
 
 PAGE = "report.html"
 ELEMENTS = 40  # of signals are drawn; all are in the table

@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.compare.differences import Checked, Different, checks, different
 from motionfmu.compare.figures import Number, side_by_side
 from motionfmu.compare.overlay import Common, Pair, pair
 from motionfmu.compare.side import Side
-from motionfmu.errors import InputError, suggestion
 
 
 @dataclass(frozen=True)

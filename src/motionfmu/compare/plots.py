@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.analysis.contour.circles import plane_axes
 from motionfmu.compare.overlay import Pair
 from motionfmu.compare.pairing import Pairing
 from motionfmu.compare.side import Side
 from motionfmu.compare.words import GONE
-from motionfmu.contour.circles import plane_axes
 from motionfmu.report.charts import CHARACTER, RIGHT, chart_figure
 from motionfmu.report.numbers import label, magnification, unit
 from motionfmu.report.packed import packed

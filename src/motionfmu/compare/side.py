@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.columns import TIME, Columns
-from motionfmu.errors import InputError
+from motionfmu.base.columns import TIME, Columns
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import is_file
 from motionfmu.run import Result, Scenario, load
 from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, numbers, track
-from motionfmu.toml_lines import is_file
 
 WANTED = ("scenario", "ok", "checks", "units", "figures", "run")
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 
-from motionfmu.errors import InputError, suggestion
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run.prepared import Prepared
 from motionfmu.scenarios.system import End
 

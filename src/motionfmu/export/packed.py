@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import InputError, suggestion
+from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.toml_lines import is_file
 from motionfmu.export.chosen import check_version
 from motionfmu.export.resources import Resources
 from motionfmu.fmu import places
@@ -13,7 +14,6 @@ from motionfmu.fmu.start_values import texts
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End
 from motionfmu.scenarios.values import values_of
-from motionfmu.toml_lines import is_file
 
 
 def packed(name: str, target: Path, fmi: int, given: Mapping[str, Any]) -> list[str]:

@@ -4,10 +4,10 @@ from dataclasses import dataclass, field, replace
 from itertools import chain, count
 from pathlib import Path
 
+from motionfmu.analysis.gcode.called import called
+from motionfmu.base.toml_lines import is_file
 from motionfmu.fmu import places
-from motionfmu.gcode.called import called
 from motionfmu.scenarios.system import Setting
-from motionfmu.toml_lines import is_file
 
 
 @dataclass

@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu import fused
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
+from motionfmu.base.platforms import Platform
+from motionfmu.base.toml_lines import is_file
 from motionfmu.export.chosen import also_shown, check_version
 from motionfmu.export.resources import Resources
 from motionfmu.fmu import shown
 from motionfmu.fmu.pack import RESOURCES, write_whole
-from motionfmu.fmu.platforms import Platform
 from motionfmu.fused.carried import carrying, placed
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.scenarios import fmus
-from motionfmu.toml_lines import is_file
 
 PROGRAM = "program.json"  # what a run here reads instead of the description
 _LEFT = (PROGRAM, shown.VARIABLES, shown.TERMINALS)  # the latter two are in the documentation

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu import ssp
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import is_file
 from motionfmu.export.chosen import VERSIONS, also_shown, check_version
 from motionfmu.export.resources import Resources
 from motionfmu.export.ssp_values import kind, values
@@ -18,7 +19,6 @@ from motionfmu.fmu.start_values import texts
 from motionfmu.run.prepared import Options, Prepared
 from motionfmu.scenarios.fmus import fmu_path, is_ours
 from motionfmu.scenarios.system import End, Setting, System, Wire
-from motionfmu.toml_lines import is_file
 
 SET = "scenario"  # name of the parameter sets
 RESOURCES = "resources"

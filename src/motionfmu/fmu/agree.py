@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.base.errors import Faults, InputError, suggestion
+from motionfmu.base.toml_lines import shown
 from motionfmu.fmu.describe import Variable
-from motionfmu.toml_lines import shown
 
 SAYS = ("parameter", "output")
 

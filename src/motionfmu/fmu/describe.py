@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
-from motionfmu import units
-from motionfmu.errors import InputError, suggestion
-from motionfmu.toml_lines import shown
+from motionfmu.base import units
+from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.toml_lines import shown
 
 TYPES = ("f64", "i32", "bool", "string")
 CAUSALITIES = ("parameter", "input", "output", "local")
@@ -58,7 +58,7 @@ class Variable:
     type: str  # one of `TYPES`
     doc: str
     dims: tuple[int, ...] = ()  # empty for a scalar
-    unit: str | None = None  # see `motionfmu.units.parse`; f64 only
+    unit: str | None = None  # see `motionfmu.base.units.parse`; f64 only
     start: list[Any] | None = None  # one per element (row-major); None for outputs and locals
     min: float | int | None = None  # limits that a set call must keep
     max: float | int | None = None

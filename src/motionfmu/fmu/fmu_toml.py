@@ -5,11 +5,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.base.errors import Faults, InputError, suggestion
+from motionfmu.base.toml_lines import ordered, shown, tables_of, text_of
 from motionfmu.fmu import agree, terminals
 from motionfmu.fmu.describe import CAUSALITIES, STRICT, Description, strict_tick, variable
 from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
-from motionfmu.toml_lines import ordered, shown, tables_of, text_of
 
 HEAD = {"name", "description", "tick_ns", "experiment", "cores"}
 MAY = {"grid", "terminal", "agree"}

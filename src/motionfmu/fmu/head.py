@@ -5,8 +5,8 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
-from motionfmu.errors import suggestion
-from motionfmu.toml_lines import shown
+from motionfmu.base.errors import suggestion
+from motionfmu.base.toml_lines import shown
 
 TICK_MAX = 1_000_000_000  # [ns]
 _NAME = r"[A-Z][A-Za-z0-9]{0,63}"  # it is part of the name of C functions and of files

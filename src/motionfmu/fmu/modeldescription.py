@@ -5,7 +5,7 @@ import time
 from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
-from motionfmu import units
+from motionfmu.base import units
 from motionfmu.fmu import licence
 from motionfmu.fmu.describe import DOMAIN, TOOL, Description, Variable
 

@@ -19,13 +19,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from motionfmu.errors import InputError
+from motionfmu.base import platforms
+from motionfmu.base.errors import InputError
+from motionfmu.base.platforms import Platform
+from motionfmu.base.toml_lines import text_of
 from motionfmu.fmu import (
     cores,
     cstructs,
     ctables,
     fmu_toml,
-    platforms,
     shown,
     sources,
     start_values,
@@ -33,8 +35,6 @@ from motionfmu.fmu import (
 )
 from motionfmu.fmu.inside import AGREE, EXTRA, GRID, MAIN_UNIT, PART_UNIT, PARTS, RESOURCES
 from motionfmu.fmu.modeldescription import model_description
-from motionfmu.fmu.platforms import Platform
-from motionfmu.toml_lines import text_of
 
 SOURCE = Path(__file__).resolve().parents[2]
 # Zip cannot date earlier; a fixed date makes equal FMUs equal files.

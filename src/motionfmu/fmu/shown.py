@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from motionfmu import units
+from motionfmu.base import units
 from motionfmu.fmu import licence, terminals
 from motionfmu.fmu.describe import Description, Variable
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Mapping
 from xml.etree import ElementTree as ET
 
-from motionfmu.errors import InputError, suggestion
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.fmu.describe import I32, STRING_MAX, TOOL
 
 FILE = "start_values.txt"

@@ -5,9 +5,9 @@ from collections.abc import Container, Sequence
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.base.errors import Faults, InputError, suggestion
+from motionfmu.base.toml_lines import shown
 from motionfmu.fmu.describe import DOMAIN, Terminal, Variable
-from motionfmu.toml_lines import shown
 
 XML = "terminalsAndIcons/terminalsAndIcons.xml"
 ICON = "terminalsAndIcons/icon"

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from motionfmu.base.platforms import Platform
 from motionfmu.fmu import terminals
 from motionfmu.fmu.describe import STRICT, Description, Terminal, Variable, strict_step
 from motionfmu.fmu.head import TICK_MAX
-from motionfmu.fmu.platforms import Platform
 from motionfmu.fused.parts import NotFused
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.fmus import Port

@@ -4,8 +4,9 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from motionfmu.compiler import FLAGS, cross
-from motionfmu.fmu import cores, platforms
+from motionfmu.base import platforms
+from motionfmu.base.compiler import FLAGS, cross
+from motionfmu.fmu import cores
 from motionfmu.fmu.inside import MAIN_UNIT
 from motionfmu.fmu.sources import NAMES, build_description, renamed
 from motionfmu.fused import layer

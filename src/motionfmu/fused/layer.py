@@ -4,7 +4,7 @@ import functools
 from importlib import util
 from pathlib import Path
 
-from motionfmu import kept
+from motionfmu.base import kept
 from motionfmu.scenarios.fmus import PACKAGE
 
 OPTIMIZED = "-O3"

@@ -4,12 +4,12 @@ import json
 import math
 from pathlib import Path
 
-from motionfmu.compiler import Compiler
+from motionfmu.base.compiler import Compiler
+from motionfmu.base.platforms import here
 from motionfmu.fmu import ctables, shown, terminals
 from motionfmu.fmu.describe import Description
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.pack import RESOURCES
-from motionfmu.fmu.platforms import here
 from motionfmu.fused import everywhere, layer, text
 from motionfmu.fused.carried import carrying
 from motionfmu.fused.description import TYPES, Job, described, roles

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from motionfmu import kept
-from motionfmu.compiler import FLAGS, Compiler, compiler
+from motionfmu.base import kept
+from motionfmu.base.compiler import FLAGS, Compiler, compiler
+from motionfmu.base.platforms import here
 from motionfmu.fmu.inside import MAIN_UNIT, PART_UNIT, PARTS
-from motionfmu.fmu.platforms import here
 from motionfmu.scenarios.fmus import digest, opened
 
 # Interface, instance and struct vars [bytes]: how the object of a part says them.

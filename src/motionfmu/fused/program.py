@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from motionfmu import kept
-from motionfmu.compiler import FLAGS, compiler, cross, none
-from motionfmu.extras import install
-from motionfmu.fmu.platforms import Platform
+from motionfmu.base import kept
+from motionfmu.base.compiler import FLAGS, compiler, cross, none
+from motionfmu.base.extras import install
+from motionfmu.base.platforms import Platform
 from motionfmu.fused import layer
 from motionfmu.fused.parts import NoCompiler, NotFused
 from motionfmu.scenarios.fmus import digest

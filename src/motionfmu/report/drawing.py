@@ -6,15 +6,15 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.contour import ContourResult
-from motionfmu.contour.arcs import Array
-from motionfmu.contour.circles import plane_axes
-from motionfmu.contour.geometry import norms
-from motionfmu.contour.order import distinct
-from motionfmu.contour.path import Path, outline
-from motionfmu.contour.scaled import blocks, places
-from motionfmu.contour.segments import Index
-from motionfmu.iso9283.simplify import simplified
+from motionfmu.analysis.contour import ContourResult
+from motionfmu.analysis.contour.arcs import Array
+from motionfmu.analysis.contour.circles import plane_axes
+from motionfmu.analysis.contour.geometry import norms
+from motionfmu.analysis.contour.order import distinct
+from motionfmu.analysis.contour.path import Path, outline
+from motionfmu.analysis.contour.scaled import blocks, places
+from motionfmu.analysis.contour.segments import Index
+from motionfmu.analysis.iso9283.simplify import simplified
 from motionfmu.report.numbers import magnification
 from motionfmu.run.decimate import peaks_of
 

@@ -7,8 +7,8 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from motionfmu.contour.circles import plane_axes
-from motionfmu.iso9283 import Evaluation, Performance
+from motionfmu.analysis.contour.circles import plane_axes
+from motionfmu.analysis.iso9283 import Evaluation, Performance
 from motionfmu.report.iso9283_section import parts
 from motionfmu.report.numbers import length, magnification, unit
 from motionfmu.report.pictures import PLAIN, STABLE

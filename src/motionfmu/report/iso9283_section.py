@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.iso9283 import Evaluation, Performance
-from motionfmu.iso9283.evaluation import ANGLES
+from motionfmu.analysis.iso9283 import Evaluation, Performance
+from motionfmu.analysis.iso9283.evaluation import ANGLES
 from motionfmu.report.formula import readable
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.sheet import Sheet

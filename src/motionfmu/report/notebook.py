@@ -12,7 +12,8 @@ from matplotlib.backends import BackendFilter, backend_registry
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
+from motionfmu.base.units import spelled
 from motionfmu.report.chart_pictures import MARKS, chart_picture
 from motionfmu.report.drawing import draw
 from motionfmu.report.numbers import figure, label, length
@@ -22,7 +23,6 @@ from motionfmu.run.checks import Verdict
 from motionfmu.run.decimate import Read, reader
 from motionfmu.run.figures import Chart, Panel, curve
 from motionfmu.run.signals import elements
-from motionfmu.units import spelled
 
 # Checks that the view shows; those that failed come first.
 CHECKS_SHOWN = 15

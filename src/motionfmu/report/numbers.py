@@ -2,7 +2,7 @@
 
 import math
 
-from motionfmu.units import spelled
+from motionfmu.base.units import spelled
 
 MINUS = "\N{MINUS SIGN}"
 # At the chosen magnification the usual error, and the largest, are these parts of the path's size.

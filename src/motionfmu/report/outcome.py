@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from motionfmu.columns import in_blocks, write
-from motionfmu.errors import InputError, NoNumber
+from motionfmu.base.columns import in_blocks, write
+from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run.result import Result
 from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, json_of, numbers, track
 

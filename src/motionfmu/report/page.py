@@ -5,8 +5,8 @@ from functools import partial
 from html import escape
 from pathlib import Path
 
-from motionfmu.contour import ContourResult
-from motionfmu.contour.circles import CircularTest
+from motionfmu.analysis.contour import ContourResult
+from motionfmu.analysis.contour.circles import CircularTest
 from motionfmu.report.charts import add_charts
 from motionfmu.report.drawing import Drawing, draw
 from motionfmu.report.numbers import figure, length
@@ -37,12 +37,12 @@ from motionfmu.report.time_plots import (
     trace_figures,
 )
 from motionfmu.report.tool_section import add_tools
+from motionfmu.report.view.deviations import from_contour
+from motionfmu.report.view.scene import scene_of
 from motionfmu.report.view_section import SCRIPTS as VIEW
 from motionfmu.report.view_section import add_view
 from motionfmu.run.figures import Chart
 from motionfmu.run.stored import json_of
-from motionfmu.view.deviations import from_contour
-from motionfmu.view.scene import scene_of
 
 PAGE = "report.html"
 NUMBERS = "contour.json"

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.contour.arcs import Array
+from motionfmu.analysis.contour.arcs import Array
 from motionfmu.report.drawing import Drawing
 from motionfmu.report.packed import packed
 from motionfmu.report.style import COLORSCALE, HEAT, MUTED, PATH, RAPID, axis, layout

@@ -11,7 +11,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-from motionfmu.contour import ContourResult
+from motionfmu.analysis.contour import ContourResult
 from motionfmu.report.drawing import Drawing
 from motionfmu.report.numbers import length
 from motionfmu.report.style import GRID, HEAT, INK, MUTED, PATH, RAPID

@@ -12,10 +12,10 @@ from motionfmu.report.shown_run import Result
 from motionfmu.report.signal_words import words_of
 from motionfmu.report.tables import check_table, warning_list
 from motionfmu.report.tool_section import add_tools
+from motionfmu.report.view.deviations import from_cycles
+from motionfmu.report.view.scene import Line, scene_of
 from motionfmu.report.view_section import SCRIPTS, add_view
 from motionfmu.run.figures import Chart
-from motionfmu.view.deviations import from_cycles
-from motionfmu.view.scene import Line, scene_of
 
 FOOTER = "A point holds the outputs at its communication step, before that step was taken."
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.contour.arcs import Array
-from motionfmu.contour.circles import CircularTest, Way
+from motionfmu.analysis.contour.arcs import Array
+from motionfmu.analysis.contour.circles import CircularTest, Way
 from motionfmu.report.numbers import MINUS, round_up
 from motionfmu.report.packed import packed
 from motionfmu.report.style import CCW, CW, GRID, INK, MUTED, layout

@@ -9,20 +9,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.columns import ROWS
-from motionfmu.contour import ContourResult
-from motionfmu.extras import Missing
-from motionfmu.linear import LoopGain, gain_of
-from motionfmu.linear.gains import in_lines
+from motionfmu.analysis.contour import ContourResult
+from motionfmu.analysis.linear import LoopGain, gain_of
+from motionfmu.analysis.linear.gains import in_lines
+from motionfmu.base.columns import ROWS
+from motionfmu.base.extras import Missing
 from motionfmu.report.sheet import Sheet
 from motionfmu.report.shown_run import Result
 from motionfmu.report.tables import facts
 from motionfmu.report.time_plots import Speeds, speed_figure
+from motionfmu.report.view.scene import STANDS, position, tool_signal
 from motionfmu.run import Scenario
 from motionfmu.run.decimate import Read, at, blocks, reader
 from motionfmu.run.figures import Chart
 from motionfmu.run.tool_gap import ToolGap, tool_gaps
-from motionfmu.view.scene import STANDS, position, tool_signal
 
 Array = NDArray[np.float64]
 # The speed of the tool is its mean over twice this time [s], or over two samples.

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
-from motionfmu.iso9283 import Evaluation
+from motionfmu.analysis.iso9283 import Evaluation
 from motionfmu.report.tables import Check
 from motionfmu.run.figures import Chart
 from motionfmu.run.prepared import Prepared

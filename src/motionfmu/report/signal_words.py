@@ -2,9 +2,9 @@
 
 import re
 
+from motionfmu.base.units import spelled
 from motionfmu.report.contour_words import in_words
 from motionfmu.scenarios.system import Resolver
-from motionfmu.units import spelled
 
 # Where the first clause of a description ends, and its first sentence.
 _END, _SENTENCE = re.compile(r"[;:(\[]|, "), re.compile(r"[;(\[]|\. ")

@@ -8,8 +8,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from motionfmu.contour import ContourResult
-from motionfmu.contour.circles import CircularTest, Way
+from motionfmu.analysis.contour import ContourResult
+from motionfmu.analysis.contour.circles import CircularTest, Way
 from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.report.numbers import unit as length_unit
 from motionfmu.run.checks import of_one_number, parts, together

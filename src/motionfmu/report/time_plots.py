@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.columns import in_blocks
-from motionfmu.contour import ContourResult
-from motionfmu.contour.arcs import Array
+from motionfmu.analysis.contour import ContourResult
+from motionfmu.analysis.contour.arcs import Array
+from motionfmu.base.columns import in_blocks
 from motionfmu.report.numbers import label, length, unit
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID, axis, layout

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from motionfmu.report.numbers import figure, magnification
 from motionfmu.report.sheet import Sheet
 from motionfmu.report.style import AXES
-from motionfmu.view.scene import Scene
+from motionfmu.report.view.scene import Scene
 
 SCRIPTS = ("view_math.js", "view.js")
 LEVELS = 65535

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.columns import ROWS
+from motionfmu.base.columns import ROWS
 from motionfmu.run.decimate import Read, reader
 from motionfmu.scenarios import rates
 from motionfmu.scenarios.body import Body, Check, Pair
@@ -77,9 +77,9 @@ def wrong_figure(name: str, body: Body) -> str:
     if getattr(body, table) is None:
         return f"{name}: there is no [{table}] table"
     if table == "contour":
-        from motionfmu.contour.names import wrong  # with the analysis; the other one, too
+        from motionfmu.analysis.contour.names import wrong  # with the analysis; the other one, too
     else:
-        from motionfmu.iso9283.evaluation import wrong
+        from motionfmu.analysis.iso9283.evaluation import wrong
     return wrong(figure)
 
 

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu import units
-from motionfmu.contour import ContourInput, ContourResult, Path, Trace, analyse
-from motionfmu.contour.commanded import Known
-from motionfmu.contour.planned import path_of_text
-from motionfmu.contour.scaled import Scaled
-from motionfmu.errors import InputError, NoNumber
+from motionfmu.analysis.contour import ContourInput, ContourResult, Path, Trace, analyse
+from motionfmu.analysis.contour.commanded import Known
+from motionfmu.analysis.contour.planned import path_of_text
+from motionfmu.analysis.contour.scaled import Scaled
+from motionfmu.base import units
+from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios.contour_signals import CARD, library_of
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.base.errors import Faults, InputError, suggestion
 from motionfmu.run.checks import Verdict
 from motionfmu.scenarios import system
 from motionfmu.scenarios.body import Contrary

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.columns import ROWS, forget
+from motionfmu.base.columns import ROWS, forget
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.errors import Faults
+from motionfmu.base.errors import Faults
+from motionfmu.base.units import spelled
 from motionfmu.run.decimate import Read, at, few, reader
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios import rates, recording
 from motionfmu.scenarios.body import Plot
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.system import End, Resolver
-from motionfmu.units import spelled
 
 # Signals that a report without figures shows.
 OVERVIEW = 12

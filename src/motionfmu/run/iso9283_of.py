@@ -6,9 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu import units
-from motionfmu.errors import InputError, NoNumber
-from motionfmu.iso9283 import (
+from motionfmu.analysis.iso9283 import (
     CommandPath,
     Cycle,
     Cycles,
@@ -17,7 +15,9 @@ from motionfmu.iso9283 import (
     pose_performance,
     read_points,
 )
-from motionfmu.iso9283.simplify import simplified
+from motionfmu.analysis.iso9283.simplify import simplified
+from motionfmu.base import units
+from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.system import Resolver

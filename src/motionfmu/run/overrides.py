@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING, Any
 
+from motionfmu.base.toml_lines import shown
+from motionfmu.base.units import spelled
 from motionfmu.scenarios.system import System
 from motionfmu.scenarios.values import settings, start_values
-from motionfmu.toml_lines import shown
-from motionfmu.units import spelled
 
 if TYPE_CHECKING:
     from motionfmu.run.prepared import Options, Prepared

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import Faults, InputError
+from motionfmu.base.errors import Faults, InputError
 from motionfmu.run import contrary, figures, waveforms
 from motionfmu.run.checks import is_figure, misplaced
 from motionfmu.scenarios import (

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.columns import ROWS, Columns, forget
-from motionfmu.errors import InputError, NoNumber
-from motionfmu.extras import needed
+from motionfmu.base.columns import ROWS, Columns, forget
+from motionfmu.base.errors import InputError, NoNumber
+from motionfmu.base.extras import needed
 from motionfmu.run import figures, signals, waveforms
 from motionfmu.run.checks import TABLES, Verdict, is_figure, judge
 from motionfmu.run.figures import Chart
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
 
-    from motionfmu.contour import ContourResult
-    from motionfmu.contour.commanded import Known
-    from motionfmu.iso9283 import Evaluation
+    from motionfmu.analysis.contour import ContourResult
+    from motionfmu.analysis.contour.commanded import Known
+    from motionfmu.analysis.iso9283 import Evaluation
 
 
 def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:

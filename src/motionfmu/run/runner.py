@@ -6,8 +6,9 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from motionfmu import columns
-from motionfmu.errors import Faults, InputError, NoNumber, suggestion
+from motionfmu.base import columns
+from motionfmu.base.errors import Faults, InputError, NoNumber, suggestion
+from motionfmu.base.toml_lines import shown
 from motionfmu.run import engines
 from motionfmu.run.engines.job import Ran
 from motionfmu.run.prepared import Options, Prepared
@@ -17,7 +18,6 @@ from motionfmu.scenarios import agreement, grids
 from motionfmu.scenarios.document import changed, made, plain
 from motionfmu.scenarios.system import System
 from motionfmu.scenarios.values import settings
-from motionfmu.toml_lines import shown
 
 
 class Scenario(Prepared):
@@ -259,7 +259,7 @@ def _sparse(result: Result, system: System) -> tuple[str, ...]:
     """Warnings about a contour of rows of every so many steps, if there is one."""
     if system.every == 1 or result.scenario.document.body.contour is None:
         return ()
-    from motionfmu.contour.sparse import sparse
+    from motionfmu.analysis.contour.sparse import sparse
 
     try:
         return tuple(sparse(result.contour(), system.step_ns * 1e-9))

@@ -5,8 +5,8 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from motionfmu import columns
-from motionfmu.errors import InputError, suggestion
+from motionfmu.base import columns
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run import engines
 from motionfmu.run.engines.job import Engine, Ran
 from motionfmu.run.prepared import Options, Prepared
@@ -16,7 +16,7 @@ from motionfmu.scenarios.system import End, Setting, System
 from motionfmu.scenarios.values import settings, start_values
 
 if TYPE_CHECKING:
-    from motionfmu.contour.commanded import Known
+    from motionfmu.analysis.contour.commanded import Known
 
 
 class Session:
@@ -133,6 +133,6 @@ def _known(scenario: Prepared) -> "Known | None":
     """What the contours of runs have in common; None if the scenario does not look at it."""
     if scenario.document.body.contour is None:
         return None
-    from motionfmu.contour.commanded import Known
+    from motionfmu.analysis.contour.commanded import Known
 
     return Known()

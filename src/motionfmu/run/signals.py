@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.errors import UnknownSignal, suggestion
-from motionfmu.extras import needed
+from motionfmu.base.errors import UnknownSignal, suggestion
+from motionfmu.base.extras import needed
 
 if TYPE_CHECKING:
     import pandas

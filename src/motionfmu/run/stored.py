@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionfmu.columns import Made, forget
-from motionfmu.contour.scaled import places
+from motionfmu.analysis.contour.scaled import places
+from motionfmu.base.columns import Made, forget
+from motionfmu.base.toml_lines import is_file
 from motionfmu.run.result import Result
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import wires
-from motionfmu.toml_lines import is_file
 
 if TYPE_CHECKING:
-    from motionfmu.contour import ContourResult
+    from motionfmu.analysis.contour import ContourResult
 
 SIGNALS, NUMBERS, TRACK = "signals", "result.json", "contour"
 DEPTH = 1  # tables in tables of result.json that have lines of their own

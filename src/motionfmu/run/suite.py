@@ -14,13 +14,13 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from motionfmu.children import child
-from motionfmu.errors import InputError
+from motionfmu.base.children import child
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import is_file
 from motionfmu.run import contrary
 from motionfmu.run.checks import Verdict
 from motionfmu.run.runner import load
 from motionfmu.scenarios import shipped
-from motionfmu.toml_lines import is_file
 
 FILE = "scenario.toml"
 PATIENCE = 10  # [s] for a process to remove its files when it is told to end

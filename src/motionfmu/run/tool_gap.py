@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu import units
+from motionfmu.base import units
 from motionfmu.run.decimate import Read, blocks, reader
 from motionfmu.run.recorded import Recorded
 from motionfmu.scenarios.tool_signals import Tool, tools

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
 from motionfmu.run.engines.job import Job, Ran
 from motionfmu.run.overrides import overrides
 from motionfmu.run.prepared import Options, Prepared

@@ -4,7 +4,7 @@ import functools
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from motionfmu import units
+from motionfmu.base import units
 from motionfmu.fmu.inside import AGREE, EXTRA
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.port import Port

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from motionfmu.toml_lines import KEY_MAX
+from motionfmu.base.toml_lines import KEY_MAX
 
 STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, defer_build=True)
 CYCLES_MAX, POINTS_MAX = 1000, 100_000

@@ -4,8 +4,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
+from motionfmu.base.toml_lines import KEY_MAX
 from motionfmu.scenarios.analyses import Iso9283, View, Waveform
-from motionfmu.toml_lines import KEY_MAX
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 Pair = tuple[float, float]

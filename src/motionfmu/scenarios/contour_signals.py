@@ -1,6 +1,6 @@
 """What a scenario with a [contour] table records for the analysis."""
 
-from motionfmu import units
+from motionfmu.base import units
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import Resolver
 

@@ -8,12 +8,12 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.base.errors import Faults, InputError, suggestion
+from motionfmu.base.toml_lines import is_file, ordered, shown
 from motionfmu.scenarios import body as tables_
 from motionfmu.scenarios.body import Body
 from motionfmu.scenarios.foreign import is_foreign
 from motionfmu.scenarios.sources import Source, Tables, chain, merged, of_file
-from motionfmu.toml_lines import is_file, ordered, shown
 
 # Tables of which each key is the user's own.
 OPEN = ("component", "connect", "set", "check")

@@ -14,15 +14,15 @@ from pathlib import Path
 from typing import IO, Any
 from xml.etree import ElementTree
 
-from motionfmu import kept
-from motionfmu.errors import InputError, suggestion
+from motionfmu.base import kept
+from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.platforms import here
+from motionfmu.base.toml_lines import is_file
 from motionfmu.fmu import terminals
 from motionfmu.fmu.describe import Terminal
-from motionfmu.fmu.platforms import here
 from motionfmu.scenarios import foreign
 from motionfmu.scenarios.foreign import is_foreign
 from motionfmu.scenarios.port import Port
-from motionfmu.toml_lines import is_file
 
 _TYPES = "TypeDefinitions/*"
 HEAD = 2000  # [bytes] of a description, in which its root stands

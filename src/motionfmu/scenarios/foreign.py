@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import is_file
 from motionfmu.fmu.describe import TOOL
 from motionfmu.scenarios.port import Port
-from motionfmu.toml_lines import is_file
 
 ENDING = ".fmu"
 _FMI2 = {"Real": "Float64", "Integer": "Int32", "Enumeration": "Int32"}

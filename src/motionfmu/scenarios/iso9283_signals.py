@@ -1,7 +1,7 @@
 """What a scenario with an [iso9283] table records for the analysis."""
 
-from motionfmu import units
-from motionfmu.errors import InputError
+from motionfmu.base import units
+from motionfmu.base.errors import InputError
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import Resolver
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.columns import forget
+from motionfmu.base.columns import forget
 from motionfmu.scenarios.system import NS_TOLERANCE
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from motionfmu.columns import Columns, Part, kept
-from motionfmu.errors import Faults
+from motionfmu.base.columns import Columns, Part, kept
+from motionfmu.base.errors import Faults
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.fmus import Port
 from motionfmu.scenarios.system import STEPS_MAX, End, Resolver, Setting, System, Wire

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from motionfmu.errors import InputError, suggestion
+from motionfmu.base.errors import InputError, suggestion
 
 PACKAGE = Path(__file__).resolve().parents[1]
 SCENARIO = "scenario.toml"

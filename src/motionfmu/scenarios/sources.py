@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import InputError, suggestion
+from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.toml_lines import Lines, is_file, shown, tables_of, text_of
 from motionfmu.scenarios import shipped
-from motionfmu.toml_lines import Lines, is_file, shown, tables_of, text_of
 
 Tables = dict[str, Any]
 DEPTH_MAX = 8  # scenarios that extend one another

@@ -5,8 +5,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from motionfmu import units
-from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.base import units
+from motionfmu.base.errors import Faults, InputError, suggestion
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.body import LONGEST
 from motionfmu.scenarios.document import Document

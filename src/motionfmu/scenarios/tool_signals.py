@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
 from motionfmu.scenarios.agreement import commanded
 from motionfmu.scenarios.system import Resolver, wires
 

@@ -4,7 +4,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from motionfmu.errors import Faults, InputError
+from motionfmu.base.errors import Faults, InputError
+from motionfmu.base.toml_lines import shown
 from motionfmu.fmu.describe import STRING_MAX
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.fmus import Port
@@ -17,7 +18,6 @@ from motionfmu.scenarios.system import (
     Stimulus,
     Values,
 )
-from motionfmu.toml_lines import shown
 
 # Limits of the types that are whole numbers.
 WHOLE = {f"Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)}

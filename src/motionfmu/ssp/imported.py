@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from motionfmu.errors import Faults, InputError
+from motionfmu.base.errors import Faults, InputError
 from motionfmu.fmu.describe import TOOL
 from motionfmu.ssp import drives, inside
 from motionfmu.ssp.flat import SSC, SSD, Nodes, Way, shown

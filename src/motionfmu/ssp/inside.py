@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from xml.etree import ElementTree as ET
 
-from motionfmu import units
+from motionfmu.base import units
 from motionfmu.ssp.xml import Archive, number, plain
 
 _BASE = "BaseUnit"

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from xml.etree import ElementTree as ET
 
-from motionfmu import units
+from motionfmu.base import units
 from motionfmu.fmu.describe import TOOL
 from motionfmu.ssp.structure import (
     COMMON,
@@ -95,7 +95,7 @@ def description(s: Structure, files: dict[str, str]) -> bytes:
     Parameters
     ----------
     s : Structure
-        Names of units are those of `motionfmu.units`.
+        Names of units are those of `motionfmu.base.units`.
     files : dict
         Path of the parameter set of a component in the archive, by the component's name.
     """

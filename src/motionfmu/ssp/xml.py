@@ -6,7 +6,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 from xml.etree import ElementTree as ET
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
 
 SIZE_MAX = 64 << 20  # [byte] of an XML file
 

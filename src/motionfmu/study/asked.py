@@ -5,14 +5,14 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.base.errors import Faults, InputError, suggestion
+from motionfmu.base.toml_lines import shown, tables_of, text_of
 from motionfmu.run import Options, Scenario
 from motionfmu.scenarios import values
 from motionfmu.scenarios.system import End
 from motionfmu.study import axes as ax
 from motionfmu.study.columns import Column, column, usual
 from motionfmu.study.study_file import StudyFile
-from motionfmu.toml_lines import shown, tables_of, text_of
 
 USUAL_COST = "contour.error.max"  # where none is named
 _KINDS: dict[str, Any] = {"String": str, "Boolean": bool}

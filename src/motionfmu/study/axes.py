@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import word
 from motionfmu.scenarios.system import End
-from motionfmu.toml_lines import word
 
 Value = float | int | bool | str
 Point = tuple[Value, ...]

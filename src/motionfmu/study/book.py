@@ -13,8 +13,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import InputError
-from motionfmu.locking import lock
+from motionfmu.base.errors import InputError
+from motionfmu.base.locking import lock
 from motionfmu.study.study import Study
 from motionfmu.study.worker import CRASH, Row
 

@@ -5,8 +5,8 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from motionfmu.errors import InputError
-from motionfmu.extras import needed
+from motionfmu.base.errors import InputError
+from motionfmu.base.extras import needed
 from motionfmu.study.processes import Task
 from motionfmu.study.study import Job
 from motionfmu.study.worker import CRASH, Row, chunk

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.contour.names import unit as unit_of
-from motionfmu.errors import NoNumber, suggestion
-from motionfmu.iso9283.evaluation import unit as units_of
+from motionfmu.analysis.contour.names import unit as unit_of
+from motionfmu.analysis.iso9283.evaluation import unit as units_of
+from motionfmu.base.errors import NoNumber, suggestion
 from motionfmu.run import Scenario
 from motionfmu.run.checks import TABLES, is_figure, wrong_figure
 from motionfmu.run.result import Result

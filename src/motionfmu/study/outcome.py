@@ -8,11 +8,11 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.errors import InputError, suggestion
+from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.units import spelled
 from motionfmu.study.axes import Normal, Value
 from motionfmu.study.study import Study
 from motionfmu.study.worker import OK, Row
-from motionfmu.units import spelled
 
 EDGE = 0.02  # part of an axis that counts as its end, where points are drawn at random
 

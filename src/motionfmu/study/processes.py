@@ -11,8 +11,8 @@ from multiprocessing import Pipe
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-from motionfmu.children import child
-from motionfmu.errors import InputError
+from motionfmu.base.children import child
+from motionfmu.base.errors import InputError
 from motionfmu.study.axes import Point
 from motionfmu.study.study import Job
 from motionfmu.study.worker import CRASH, Row

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import Faults, InputError
+from motionfmu.base.errors import Faults, InputError
 from motionfmu.run import Scenario, load
 from motionfmu.scenarios import fmus
 from motionfmu.study import axes as ax

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from motionfmu.errors import Faults, InputError, suggestion
+from motionfmu.base.errors import Faults, InputError, suggestion
+from motionfmu.base.toml_lines import Lines, is_file, ordered, shown, tables_of, text_of
 from motionfmu.scenarios import shipped
 from motionfmu.scenarios.body import Name, Names, Value
 from motionfmu.scenarios.sources import scenario_file
-from motionfmu.toml_lines import Lines, is_file, ordered, shown, tables_of, text_of
 
 FILE = "sweep.toml"
 ABOUT = "the first line is a comment that says what the study shows"

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Any
 
-from motionfmu.errors import InputError, NoNumber
+from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run import load
 from motionfmu.run.session import Session
 from motionfmu.study.axes import Point

@@ -1,7 +1,7 @@
 """Studies: one scenario run at many points, on all cores or a cluster."""
 
 # ruff: noqa: E402
-from motionfmu.extras import needed
+from motionfmu.base.extras import needed
 
 needed("study")
 

@@ -11,7 +11,7 @@ from jobs import Task, main
 sys.path.insert(0, str(Path(__file__).parents[2] / "ports"))
 import bits
 
-from motionfmu.fmu.platforms import Platform
+from motionfmu.base.platforms import Platform
 
 PLATFORM = Platform(sys.argv.pop(1))
 

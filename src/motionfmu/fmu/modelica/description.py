@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from motionfmu.errors import Faults
+from motionfmu.base.errors import Faults
+from motionfmu.base.toml_lines import ordered, shown, tables_of, text_of
 from motionfmu.fmu import agree, describe, terminals
 from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
 from motionfmu.fmu.modelica import causal
 from motionfmu.fmu.modelica.flat import Declaration
 from motionfmu.fmu.modelica.ode import Ode
-from motionfmu.toml_lines import ordered, shown, tables_of, text_of
 
 _TYPES = {"Real": "f64", "Integer": "i32", "Boolean": "bool"}
 _KEYS = ("name", "description", "tick_ns", "experiment", "modelica", "instances", "micro_step")

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.contour.circles import CircularTest
-from motionfmu.explain import ballbar
-from motionfmu.explain.ballbar import Signature
-from motionfmu.explain.decompose import Effect, Explanation
-from motionfmu.explain.theory import CornerRow
+from motionfmu.analysis.contour.circles import CircularTest
+from motionfmu.analysis.explain import ballbar
+from motionfmu.analysis.explain.ballbar import Signature
+from motionfmu.analysis.explain.decompose import Effect, Explanation
+from motionfmu.analysis.explain.theory import CornerRow
 from motionfmu.report.causes.explain_picture import CAUSE, FORMULA, write_picture
 from motionfmu.report.formula import readable
 from motionfmu.report.numbers import figure, length, unit

@@ -14,7 +14,7 @@ from motionfmu.report.polar_plot import polar_names, polar_trace
 from motionfmu.report.style import CCW, CW, GRID, INK, MUTED
 
 if TYPE_CHECKING:
-    from motionfmu.explain.decompose import Effect, Explanation
+    from motionfmu.analysis.explain.decompose import Effect, Explanation
 
 PICTURES = ("causes.svg", "causes.png")
 CAUSE, FORMULA = "#0072b2", "#9ec8e3"

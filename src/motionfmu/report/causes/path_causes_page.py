@@ -9,7 +9,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from motionfmu.explain.path_causes import FIGURES, PathEffect, PathExplanation
+from motionfmu.analysis.explain.path_causes import FIGURES, PathEffect, PathExplanation
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.sheet import Frame, Sheet

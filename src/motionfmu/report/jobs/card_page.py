@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from matplotlib.colors import to_hex
 
-from motionfmu.netcard.figures import speeds
-from motionfmu.netcard.plan import DRAWS, Plan
-from motionfmu.netcard.plt import Drawing
+from motionfmu.cards.figures import speeds
+from motionfmu.cards.plan import DRAWS, Plan
+from motionfmu.cards.plt import Drawing
 from motionfmu.report.jobs.card_pictures import MOST, SPEEDS
 from motionfmu.report.packed import packed
 from motionfmu.report.samples import Samples, sampled

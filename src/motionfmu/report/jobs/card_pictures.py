@@ -11,11 +11,11 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from motionfmu.errors import InputError
-from motionfmu.netcard.figures import speeds
-from motionfmu.netcard.job import Job
-from motionfmu.netcard.plan import DRAWS, Plan
-from motionfmu.netcard.plt import Drawing
+from motionfmu.base.errors import InputError
+from motionfmu.cards.figures import speeds
+from motionfmu.cards.job import Job
+from motionfmu.cards.plan import DRAWS, Plan
+from motionfmu.cards.plt import Drawing
 from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.style import AXES, GRID, HEAT, MUTED, RAPID
 

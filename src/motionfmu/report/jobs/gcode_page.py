@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.gcode import Fault, Program, Stroke, Summary
+from motionfmu.analysis.gcode import Fault, Program, Stroke, Summary
 from motionfmu.report.packed import packed
 from motionfmu.report.path_plot import CAMERA, scene
 from motionfmu.report.sheet import Frame, Sheet

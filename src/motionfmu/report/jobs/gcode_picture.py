@@ -7,7 +7,7 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 
-from motionfmu.gcode import Stroke
+from motionfmu.analysis.gcode import Stroke
 from motionfmu.report.jobs.gcode_page import NAMES, colors, is_space
 from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.style import GRID, MUTED, RAPID

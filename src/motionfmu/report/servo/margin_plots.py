@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.freq.study import LoopStudy
-from motionfmu.linear.stability import closed_poles, grid, response
+from motionfmu.analysis.freq.study import LoopStudy
+from motionfmu.analysis.linear.stability import closed_poles, grid, response
 from motionfmu.report.packed import packed
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted

@@ -6,18 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.linear import LoopGain
-from motionfmu.linear.gains import in_words
+from motionfmu.analysis.linear import LoopGain
+from motionfmu.analysis.linear.gains import in_words
+from motionfmu.base.units import spelled
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.samples import Samples, sampled
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, RAPID, axis, layout
 from motionfmu.report.tables import RMS, cards, overrides, table
-from motionfmu.tune.problem import ON_PATH
-from motionfmu.tune.result import Run, Tuned
-from motionfmu.tune.trial import Trial
-from motionfmu.tune.words import assumptions, plant_text, units_of
-from motionfmu.units import spelled
+from motionfmu.study.tune.problem import ON_PATH
+from motionfmu.study.tune.result import Run, Tuned
+from motionfmu.study.tune.trial import Trial
+from motionfmu.study.tune.words import assumptions, plant_text, units_of
 
 BEFORE, AFTER = RAPID, AXES[0]
 _STEPS = 600

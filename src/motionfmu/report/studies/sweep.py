@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
+from motionfmu.base.units import spelled
 from motionfmu.report.numbers import label
 from motionfmu.report.packed import packed
 from motionfmu.report.sheet import Frame, Sheet
@@ -29,7 +30,6 @@ from motionfmu.report.studies.sweep_field import (
 )
 from motionfmu.report.style import AXES, COLORSCALE, INK, MUTED, axis, layout
 from motionfmu.report.tables import cards, picture_links, table
-from motionfmu.units import spelled
 
 if TYPE_CHECKING:
     from motionfmu.study.outcome import Outcome

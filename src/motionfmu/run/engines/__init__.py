@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from motionfmu.compiler import NotCompiled, there
-from motionfmu.errors import InputError, suggestion
+from motionfmu.base.compiler import NotCompiled, there
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run.engines.job import Engine, Job, Progress, Ran
 from motionfmu.scenarios.fmus import is_ours
 from motionfmu.scenarios.system import System

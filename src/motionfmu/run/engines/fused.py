@@ -8,7 +8,7 @@ import re
 from typing import Any
 
 from motionfmu import fused
-from motionfmu.columns import Columns
+from motionfmu.base.columns import Columns
 from motionfmu.fmu.describe import STRICT
 from motionfmu.fused.carried import carrying, placed
 from motionfmu.run.engines import messages

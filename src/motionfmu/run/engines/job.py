@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from motionfmu.columns import Columns
+from motionfmu.base.columns import Columns
 from motionfmu.scenarios.system import End, System
 
 Progress = Callable[[float], None]

@@ -10,8 +10,8 @@ import zipfile
 from pathlib import Path
 from xml.etree import ElementTree
 
-from motionfmu.compiler import compiler
-from motionfmu.errors import InputError
+from motionfmu.base.compiler import compiler
+from motionfmu.base.errors import InputError
 from motionfmu.fused import layer
 from motionfmu.run.engines.messages import ERROR
 from motionfmu.scenarios import fmus

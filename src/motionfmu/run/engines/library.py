@@ -46,7 +46,7 @@ class Told(ctypes.Structure):
 
     def callbacks(self) -> _Callbacks:
         """What the instance is given."""
-        from motionfmu.binding import library
+        from motionfmu.base.binding import library
 
         system = ctypes.CDLL(None)
         functions = (library().binding_log, system.calloc, system.free)

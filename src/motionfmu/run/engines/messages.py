@@ -2,7 +2,7 @@
 
 import re
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
 
 WARNING, ERROR = 1, 3  # status of both FMI versions; from an error on nothing is good
 # A run is not told more than so many different warnings of its FMUs.

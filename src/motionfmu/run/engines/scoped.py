@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from motionfmu.columns import Columns
-from motionfmu.errors import InputError
+from motionfmu.base.columns import Columns
+from motionfmu.base.errors import InputError
 from motionfmu.run.engines.job import Job
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import System

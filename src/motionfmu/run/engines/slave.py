@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from motionfmu.errors import InputError
+from motionfmu.base.errors import InputError
+from motionfmu.base.platforms import here
 from motionfmu.fmu import describe
-from motionfmu.fmu.platforms import here
 from motionfmu.run.engines import messages
 from motionfmu.run.engines.ending import Ending
 from motionfmu.run.engines.library import Library, Refused, Variable

@@ -1,0 +1,244 @@
+"""Which segment each sample belongs to: monotone along the path."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.analysis.contour.arcs import Array
+from motionfmu.analysis.contour.geometry import norms
+from motionfmu.analysis.contour.path import Path
+from motionfmu.analysis.contour.scaled import BLOCK, blocks, places
+from motionfmu.analysis.contour.segments import Index
+
+# Of so many samples in a row the middle one is searched first.
+STRIDE = 32
+# Parts of its candidates at whose ends such a sample looks first.
+SPREAD = 8
+# Distances that differ by less are the same [mm]: a corner is as far from both its moves.
+SAME = 1e-9
+# The way along a path of kilometres is rounded to less than this [mm].
+ROUNDED = 1e-6
+
+
+def assign(
+    points: Any,
+    path: Path,
+    first: Index,
+    last: Index,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Index:
+    """Give each sample one segment of its candidates, first to last (n,), never going back.
+
+    `points` are an array (n, 3 or more) [mm], or what gives one for some rows of it.
+
+    Of all assignments that stay within the candidates and never return to an earlier segment, the
+    one with the least sum of squared distances is found. So a path that crosses itself, or touches
+    itself, attracts no sample to the wrong branch: jumping ahead would have to be paid for by all
+    samples that follow. Of segments that are as near, as both moves are at a corner, the later one
+    is taken. It is a ValueError if candidates decrease or are missing.
+
+    No assignment is better than one where each sample has its nearest candidate. Where those do not
+    decrease, they are the result. Stretches where they do are solved by dynamic programming, each
+    by itself; if what is found there does not fit what is around it, both become one stretch.
+    """
+    if (first > last).any() or _falls(first) or _falls(last):
+        raise ValueError("candidates must not be empty nor decrease with time")
+    low, high = np.asarray(first).astype(np.int32), np.asarray(last).astype(np.int32)
+    for some in blocks(len(low), points):
+        several = some.start + np.flatnonzero(low[some] < high[some])
+        if len(several):
+            part = places(points, several)
+            low[several], high[several] = nearest(part, path, (low[several], high[several]))
+        progress(some.stop / len(low))
+    if not len(low):
+        return low
+    alone, solved = low.copy(), np.zeros(len(low), dtype=bool)
+    while True:
+        own = np.minimum.accumulate(high[::-1])[::-1]
+        bad = np.maximum.accumulate(low) > own
+        # a path that comes back may have farther segments between two that are as near
+        between = np.flatnonzero((low < own) & (own < high))
+        bad[between] = ~_as_near(points, path, between, (low, own))
+        if not bad.any():
+            return own
+        for a, b in _stretches(bad | solved):
+            if bad[a:b].any():
+                candidates = np.asarray(first[a:b]), np.asarray(last[a:b])
+                part = places(points, slice(a, b))
+                low[a:b] = high[a:b] = _solved(part, path, candidates, alone[a:b])
+                solved[a:b] = True
+
+
+def _as_near(points: Any, path: Path, rows: Index, segments: tuple[Index, Index]) -> Any:
+    """Whether two segments of each of some samples are as near."""
+    good = np.empty(len(rows), dtype=bool)
+    for begin in range(0, len(rows), BLOCK):
+        own = rows[begin : begin + BLOCK]
+        part = places(points, own)
+        one, other = (path.segments.foot(part, s[own]).distance for s in segments)
+        good[begin : begin + BLOCK] = other <= one + 2.0 * SAME
+    return good
+
+
+def nearest(
+    points: Array, path: Path, candidates: tuple[Index, Index], room: Array | float = 0.0
+) -> tuple[Index, Index]:
+    """First and last of the segments that are nearest to points (n, 3), but for `room` [mm].
+
+    Candidates (n,) are the segments from a first one to a last one. Nothing is missed: where the
+    end of a segment is d farther from a point than the nearest place so far, no place within the
+    way d of that end is nearer, and the search goes on behind it. Of points in a row, which lie
+    within r of the middle one, none has a nearest segment that is more than 2 r farther from that
+    one than its own: what is farther needs no look from the others.
+    """
+    count, (first, last) = len(points), candidates
+    room = np.broadcast_to(np.asarray(room) + SAME, count)
+    starts = np.arange(0, count, STRIDE)
+    stops = np.minimum(starts + STRIDE, count)
+    middle = (starts + stops) // 2
+    sizes = stops - starts
+    radius = np.maximum.reduceat(norms(points - np.repeat(points[middle], sizes, axis=0)), starts)
+    wide = (first[starts], last[stops - 1])  # what is a candidate of one of the row at least
+    own = 2.0 * radius + np.maximum.reduceat(room, starts)
+    search = _Search.begin(points[middle], path, wide, own)
+    for k in range(SPREAD + 1):
+        search.look(np.arange(len(middle)), wide[0] + (wide[1] - wide[0]) * k // SPREAD)
+    search.spread()
+    found = search.nearest
+    every = (first[stops - 1] <= found) & (found <= last[starts])  # a candidate of all of the row
+    low = np.repeat(np.where(every, search.low, wide[0]), sizes)
+    high = np.repeat(np.where(every, search.high, wide[1]), sizes)
+    low, high = np.maximum(low, first), np.minimum(high, last)
+    rows = np.flatnonzero(low < high)
+    if len(rows):
+        some = (low[rows], high[rows])
+        guess = np.round(np.interp(rows, middle, found)).astype(np.int32)
+        search = _Search.begin(points[rows], path, some, room[rows])
+        search.look(np.arange(len(rows)), np.clip(guess, *some))
+        search.spread()
+        low[rows], high[rows] = search.low, search.high
+    return low, high
+
+
+@dataclass(eq=False)
+class _Search:
+    """What is known of the nearest segments of some points."""
+
+    points: Array
+    path: Path
+    candidates: tuple[Index, Index]
+    room: Array
+    best: Array  # distance of the nearest place so far [mm]
+    nearest: Index  # its segment
+    low: Index  # first and last segment that is as near
+    high: Index
+
+    @classmethod
+    def begin(
+        cls, points: Array, path: Path, candidates: tuple[Index, Index], room: Array
+    ) -> "_Search":
+        one = candidates[0].astype(np.int32)
+        none = np.full(len(points), np.inf)
+        return cls(points, path, candidates, room, none, one, one.copy(), one.copy())
+
+    def look(self, rows: Index, segment: Index) -> None:
+        """See how near a segment is to some of the points."""
+        distance = self.path.segments.foot(self.points[rows], segment).distance
+        best, room = self.best[rows], self.room[rows]
+        near = distance <= best + room
+        if not near.any():
+            return
+        fresh = distance < best - room
+        low, high = self.low[rows], self.high[rows]
+        self.low[rows] = np.where(fresh, segment, np.where(near, np.minimum(low, segment), low))
+        self.high[rows] = np.where(fresh, segment, np.where(near, np.maximum(high, segment), high))
+        self.nearest[rows] = np.where(distance < best, segment, self.nearest[rows])
+        self.best[rows] = np.minimum(distance, best)
+
+    def spread(self) -> None:
+        """Look at all candidates to either side that may be as near as the best so far."""
+        segments = self.path.segments
+        begin, end = segments.way
+        here = self.nearest.copy()
+        rows, s = np.flatnonzero(here < self.candidates[1]), here[here < self.candidates[1]]
+        while len(rows):
+            free = self._free(rows, segments.ends[s])
+            s = np.maximum(s + 1, np.searchsorted(end, end[s] + free))
+            on = s <= self.candidates[1][rows]
+            rows, s = rows[on], s[on]
+            self.look(rows, s)
+        rows, s = np.flatnonzero(here > self.candidates[0]), here[here > self.candidates[0]]
+        while len(rows):
+            free = self._free(rows, segments.columns.start[s])
+            s = np.minimum(s - 1, np.searchsorted(begin, begin[s] - free, side="right") - 1)
+            on = s >= self.candidates[0][rows]
+            rows, s = rows[on], s[on]
+            self.look(rows, s)
+
+    def _free(self, rows: Index, node: Array) -> Array:
+        """Way from an end of a segment on which nothing is as near as the best so far [mm]."""
+        return norms(self.points[rows] - node) - self.best[rows] - self.room[rows] - ROUNDED
+
+
+def _solved(points: Array, path: Path, candidates: tuple[Index, Index], alone: Index) -> Index:
+    """The best assignment of some samples, by dynamic programming along the segments.
+
+    Were each to go no farther back than the ones before it have to, that would be one of them; a
+    segment that costs a sample more than this costs all of them has no part in the best one.
+
+    With C(s, t) the least cost when sample t is on segment s, and D the running sum of its squared
+    distances, ``C(s, t) = D(t) + min over u <= t of (M(u - 1) - D(u - 1))``, where M is the least C
+    of all earlier segments: one running minimum per segment.
+    """
+    foot = path.segments.foot
+    single = foot(points, alone).distance
+    trial = foot(points, np.maximum.accumulate(alone)).distance
+    slack = float(np.sum(np.maximum(trial**2 - single**2, 0.0)))
+    slack += 2.0 * SAME * float(np.sum(trial + SAME))
+    low, high = nearest(points, path, candidates, np.sqrt(single**2 + slack) - single + SAME)
+    low, high = np.minimum.accumulate(low[::-1])[::-1], np.maximum.accumulate(high)
+    count = len(points)
+    least = np.full(count, np.inf)  # M
+    owner = np.full(count, -1)  # segment that attains M
+    table: dict[int, tuple[int, Index, Index]] = {}
+    for s in range(int(low[0]), int(high[-1]) + 1):
+        a, b = int(np.searchsorted(high, s)), int(np.searchsorted(low, s, side="right"))
+        if a >= b:
+            continue
+        square = foot(points[a:b], np.full(b - a, s)).distance ** 2
+        total = np.cumsum(square)
+        enter = np.concatenate([[0.0 if a == 0 else least[a - 1]], least[a : b - 1]])
+        enter = enter - (total - square)
+        run = np.minimum.accumulate(enter)
+        fresh = np.concatenate([[True], enter[1:] < run[:-1]])
+        entry = np.maximum.accumulate(np.where(fresh, np.arange(b - a), 0))
+        before = np.concatenate([[-1 if a == 0 else owner[a - 1]], owner[a : b - 1]])
+        table[s] = (a, entry.astype(np.int32), before.astype(np.int32))
+        cost = run + total
+        better = cost < least[a:b]
+        least[a:b][better] = cost[better]
+        owner[a:b][better] = s
+    return _trace_back(count, int(owner[-1]), table)
+
+
+def _trace_back(count: int, s: int, table: dict[int, tuple[int, Index, Index]]) -> Index:
+    chosen = np.empty(count, dtype=np.int32)
+    stop = count
+    while stop > 0:
+        a, entry, before = table[s]
+        start = int(entry[stop - 1 - a])
+        chosen[a + start : stop] = s
+        stop, s = a + start, int(before[start])
+    return chosen
+
+
+def _falls(values: Index) -> bool:
+    return bool((values[1:] < values[:-1]).any())
+
+
+def _stretches(chosen: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]])))
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -1,0 +1,29 @@
+"""Values in their order, as NumPy has it, without the masked arrays that it loads for that."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from motionfmu.analysis.contour.arcs import Array
+
+
+def quantiles(values: Array, shares: Sequence[float]) -> list[float]:
+    """Below each value lies this share of the values (n,), with straight lines between two."""
+    places = [share * (len(values) - 1) for share in shares]
+    low = [int(place) for place in places]
+    high = [min(k + 1, len(values) - 1) for k in low]
+    ordered = np.partition(values, sorted({*low, *high}))
+    ends = zip(places, low, high, strict=True)
+    return [float(ordered[a] + (ordered[b] - ordered[a]) * (place - a)) for place, a, b in ends]
+
+
+def median(values: Array) -> float:
+    """The middle of the values (n,)."""
+    return quantiles(values, (0.5,))[0]
+
+
+def distinct(values: Any) -> Any:
+    """Each value once, from the least to the largest."""
+    ordered = np.sort(values)
+    return ordered[np.concatenate([[True], ordered[1:] != ordered[:-1]])] if len(values) else values

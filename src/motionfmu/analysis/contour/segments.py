@@ -1,0 +1,208 @@
+"""All segments of a path as columns, and the nearest points on many of them in one go."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.analysis.contour.arcs import Arcs, Array, Foot
+from motionfmu.analysis.contour.geometry import Arc, Cubic, Label, Line, Segment, norms
+from motionfmu.analysis.contour.order import distinct
+from motionfmu.base.memo import Memo
+
+Index = NDArray[Any]  # of integers
+KINDS = ("ptp", "line", "arc", "helix", "curve")
+LINE, ARC, CUBIC = 0, 1, 2
+# Points that follow each other on one segment are taken by themselves from so many on: what they
+# share is then not copied for each.
+RUN = 256
+# Segments that are kept as they were made, with what has been worked out about them.
+KEPT = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """What many segments are, a row each."""
+
+    command: Index  # (n,) of the library
+    line: Index  # (n,) of the part program
+    kind: Index  # (n,) place in KINDS
+    feed: Array  # (n,) as programmed [mm/s]
+    shape: Index  # (n,) LINE, ARC or CUBIC
+    start: Array  # (n, 3) [mm]
+    end: Array  # (n, 3) of a line [mm]
+    centre: Array  # (k, 3) of each arc [mm]
+    axis: Array  # (k, 3)
+    turned: Array  # (k, 3) its angle [rad], rise and growth [mm]
+    curves: dict[int, Cubic]  # by row
+
+
+class Segments(Sequence[Segment]):
+    """Segments in the order of travel; each is made when it is asked for."""
+
+    def __init__(self, columns: Columns) -> None:
+        self.columns = columns
+        self._made: Memo[Segment] = Memo(KEPT)
+
+    @classmethod
+    def of(cls, segments: Iterable[Segment]) -> "Segments":
+        """The columns of segments."""
+        found = list(segments)
+        arcs = [s for s in found if isinstance(s, Arc)]
+        shapes = {Line: LINE, Arc: ARC, Cubic: CUBIC}
+        places = np.array([s.start for s in found], dtype=float).reshape(-1, 3)
+        return cls(
+            Columns(
+                np.array([s.label.command for s in found], dtype=np.int64),
+                np.array([s.label.line for s in found], dtype=np.int64),
+                np.array([KINDS.index(s.label.kind) for s in found], dtype=np.int8),
+                np.array([s.label.feed for s in found], dtype=float),
+                np.array([shapes[type(s)] for s in found], dtype=np.int8),
+                places,
+                np.array([s.end for s in found], dtype=float).reshape(-1, 3),
+                np.array([s.centre for s in arcs], dtype=float).reshape(-1, 3),
+                np.array([s.axis for s in arcs], dtype=float).reshape(-1, 3),
+                np.array([(s.angle, s.rise, s.growth) for s in arcs]).reshape(-1, 3),
+                {i: s for i, s in enumerate(found) if isinstance(s, Cubic)},
+            )
+        )
+
+    def __len__(self) -> int:
+        return len(self.columns.command)
+
+    @overload
+    def __getitem__(self, i: int) -> Segment: ...
+
+    @overload
+    def __getitem__(self, i: slice) -> list[Segment]: ...
+
+    def __getitem__(self, i: int | slice) -> Segment | list[Segment]:
+        if isinstance(i, slice):
+            return [self[k] for k in range(*i.indices(len(self)))]
+        k = range(len(self))[i]
+        return self._made(k, lambda: self._one(k))
+
+    def _one(self, i: int) -> Segment:
+        c = self.columns
+        if c.shape[i] == CUBIC:
+            return c.curves[i]
+        label = Label(int(c.command[i]), int(c.line[i]), KINDS[c.kind[i]], float(c.feed[i]))
+        if c.shape[i] == LINE:
+            return Line(label, c.start[i], c.end[i])
+        k = int(self.place[i])
+        return Arc(label, c.start[i], c.centre[k], c.axis[k], *c.turned[k].tolist())
+
+    @cached_property
+    def place(self) -> Index:
+        """Place of each arc among the arcs (n,)."""
+        return np.asarray(np.cumsum(self.columns.shape == ARC) - 1)
+
+    @cached_property
+    def arcs(self) -> Arcs:
+        """All arcs."""
+        c = self.columns
+        return Arcs.of(c.start[c.shape == ARC], (c.centre, c.axis), tuple(c.turned.T))
+
+    @cached_property
+    def lengths(self) -> Array:
+        """Length of each [mm]."""
+        c = self.columns
+        found = norms(c.end - c.start)
+        found[c.shape == ARC] = self.arcs.length
+        for i, curve in c.curves.items():
+            found[i] = curve.length
+        return found
+
+    @cached_property
+    def directions(self) -> Array:
+        """Unit vector from start to end of each (n, 3); zero without length."""
+        way = self.columns.end - self.columns.start
+        size = norms(way)
+        way /= np.where(size > 0.0, size, 1.0)[:, None]
+        return way
+
+    @cached_property
+    def ends(self) -> Array:
+        """Last point of each (n, 3) [mm]."""
+        c = self.columns
+        found = c.end.copy()
+        found[c.shape == ARC] = self.arcs.points(self.arcs.angle)
+        return found
+
+    @cached_property
+    def way(self) -> tuple[Array, Array]:
+        """Way to the start and to the end of each (n,), jumps between them as well [mm].
+
+        Two points of the path are no farther apart than the way between them is long.
+        """
+        c = self.columns
+        own = self.lengths.copy()
+        own[c.shape == ARC] = self.arcs.reach
+        jumps = np.concatenate([[0.0], norms(c.start[1:] - self.ends[:-1])])
+        end = np.cumsum(own + jumps)
+        return end - own, end
+
+    def foot(self, points: Array, which: Index) -> Foot:
+        """Nearest point to each of the points (n, 3) [mm] on the segment of its number (n,)."""
+        cuts = np.flatnonzero(which[1:] != which[:-1]) + 1
+        if len(which) and RUN * (len(cuts) + 1) <= len(which):
+            ends = [0, *cuts.tolist(), len(which)]
+            parts = [self[int(which[a])].foot(points[a:b]) for a, b in pairwise(ends)]
+            return parts[0] if len(parts) == 1 else _joined(parts)
+        shapes = self.columns.shape[which]
+        if (shapes == LINE).all():
+            return self._on_lines(points, which)
+        found = Foot(*(np.empty((len(points), *s)) for s in ((3,), (), (), (3,))))
+        for shape, foot in ((LINE, self._on_lines), (ARC, self._on_arcs), (CUBIC, self._on_curves)):
+            rows = np.flatnonzero(shapes == shape)
+            if len(rows):
+                _put(found, rows, foot(points[rows], which[rows]))
+        return found
+
+    def _on_lines(self, points: Array, which: Index) -> Foot:
+        c = self.columns
+        start, way, length = c.start[which], self.directions[which], self.lengths[which]
+        along = np.einsum("ij,ij->i", points - start, way)
+        along = np.minimum(np.maximum(along, 0.0), length)
+        point = start + along[:, None] * way
+        ended = along >= length
+        point[ended] = c.end[which[ended]]
+        return Foot(point, along, norms(points - point), way)
+
+    def _on_arcs(self, points: Array, which: Index) -> Foot:
+        return self.arcs[self.place[which]].foot(points)
+
+    def _on_curves(self, points: Array, which: Index) -> Foot:
+        found = Foot(*(np.empty((len(points), *s)) for s in ((3,), (), (), (3,))))
+        order = np.argsort(which, kind="stable")
+        for rows in np.split(order, np.flatnonzero(np.diff(which[order])) + 1):
+            _put(found, rows, self.columns.curves[int(which[rows[0]])].foot(points[rows]))
+        return found
+
+    def at(self, which: Index, along: Array) -> Array:
+        """Points (n, 3) on segments of their numbers, at distances from the start [mm]."""
+        c = self.columns
+        found = c.start[which] + along[:, None] * self.directions[which]
+        shapes = c.shape[which]
+        rows = np.flatnonzero(shapes == ARC)
+        if len(rows):
+            arcs = self.arcs[self.place[which[rows]]]
+            found[rows] = arcs.points(along[rows] / arcs.length * arcs.angle)
+        for i in distinct(which[shapes == CUBIC]).tolist():
+            rows = np.flatnonzero(which == i)
+            found[rows] = c.curves[i].at(along[rows])
+        return found
+
+
+def _put(found: Foot, rows: Index, part: Foot) -> None:
+    for name in Foot.__dataclass_fields__:
+        getattr(found, name)[rows] = getattr(part, name)
+
+
+def _joined(parts: list[Foot]) -> Foot:
+    names = Foot.__dataclass_fields__
+    return Foot(*(np.concatenate([getattr(p, name) for p in parts]) for name in names))

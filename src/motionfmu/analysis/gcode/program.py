@@ -1,0 +1,278 @@
+"""A part program as the commands that the C interpreter makes of it."""
+
+import ctypes
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motionfmu.base.binding import Struct, dtype, library
+from motionfmu.base.binding import text as text_of
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import is_file
+
+AXES = 6
+ROOM = 4096
+REPORTS = 64  # room for all faults and notes
+TYPES = (
+    "rapid line cw_arc ccw_arc cw_helix ccw_helix dwell 7 8 9 10 outputs stop rapid_joints curve"
+).split()
+_MORE = 0  # of enum interpreter_result: room was all that ended it
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing that is wrong in a program, or worth a note.
+
+    Attributes
+    ----------
+    line : int
+        From 1.
+    column, length : int
+        Offending text in the line, from 1; [characters].
+    text : str
+        That text.
+    why : str
+        What is wrong with it, in words.
+    file : str
+        Name, without its ending, of a file that the program calls; empty: the program itself.
+    """
+
+    line: int
+    column: int
+    length: int
+    text: str
+    why: str
+    file: str = ""
+
+    def __str__(self) -> str:
+        file = f"{self.file}.ngc: " if self.file else ""
+        return f'{file}line {self.line}: {self.why} "{self.text}", column {self.column}'
+
+
+# How C asks for the text of a file that a program calls: by name, with its length.
+_FILE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_int64))
+
+
+def judged(
+    texts: Callable[[str], bytes], check: Callable[[ctypes.c_void_p, Any], Any]
+) -> tuple[list[Fault], list[Fault], bool]:
+    """Faults and notes of texts as a C check tells them, and whether there are more faults.
+
+    The texts are those of the files that a program calls, and with an empty name its own.
+    """
+    rows, count = np.zeros(REPORTS, dtype("report")), (ctypes.c_int32 * 3)()
+    check(rows.ctypes.data_as(ctypes.c_void_p), count)
+    found = [_fault(texts, r) for r in rows[: count[0] + count[1]]]
+    return found[: count[0]], found[count[0] :], bool(count[2])
+
+
+def _fault(texts: Callable[[str], bytes], r: Any) -> Fault:
+    file = b"".join(r["file"].tolist()).decode()
+    text = texts(file)
+    line, begin = int(r["offset"]), int(r["offset"] + r["at"])
+    words = text[begin : begin + int(r["length"])].decode(errors="replace")
+    column = len(text[line:begin].decode(errors="replace")) + 1
+    why = library().fault_text(ctypes.c_int32(int(r["fault"]))).decode()
+    return Fault(int(r["line"]), column, len(words), words, why, file)
+
+
+class Texts:
+    """A part program and the files beside it that it calls, as C asks for them.
+
+    `of` has their texts by name, that of the program under an empty one.
+    """
+
+    def __init__(self, text: str | Path, folder: Path | None = None) -> None:
+        if isinstance(text, Path):
+            folder = folder or text.parent
+            text = text_in(text)
+        elif isinstance(text, str) and "\n" not in text and is_file(Path(text)):
+            raise InputError(f"{text!r} is the name of a file; Path({text!r}) reads it")
+        self.text, self._folder = text, folder
+        self.of = {"": text_of(text)}
+        self._unreadable: InputError | None = None
+        self.file = _FILE(self._at)
+
+    def call(self) -> tuple[bytes, ctypes.c_int64, Any]:
+        """Arguments of the calls that read it; `self` has to live as long as C keeps them."""
+        return self.of[""], ctypes.c_int64(len(self.of[""])), self.file
+
+    def tell(self) -> None:
+        """Raise what kept a file from being read while C asked for it."""
+        if self._unreadable:
+            raise self._unreadable
+
+    def _at(self, name: bytes, length: Any) -> int | None:
+        """Address of the text of a file that is called; none if there is no such file."""
+        if (found := name.decode()) not in self.of:
+            file = self._folder / f"{found}.ngc" if self._folder else None
+            if file is None or not is_file(file):
+                return None
+            try:
+                self.of[found] = text_of(text_in(file))
+            except InputError as error:  # C between here and the caller lets no exception pass
+                self._unreadable = error
+                return None
+        length[0] = len(self.of[found])
+        return ctypes.cast(ctypes.c_char_p(self.of[found]), ctypes.c_void_p).value
+
+
+class Program:
+    """What a part program does.
+
+    Attributes
+    ----------
+    text : str
+        As read.
+    commands : ndarray
+        Structured, a row each; the names of its fields are those of ``commands.dtype``, places
+        in machine coordinates [mm], feeds [mm/s], dwells [s].
+    faults : list of Fault
+        None if the program is good, at most 20; the commands are those before the first.
+    more : bool
+        There are more faults than these.
+    notes : list of Fault
+        Words that are accepted and do nothing here, each once.
+    files : dict of str to str
+        Texts of the files that it calls, by their names without ending.
+    """
+
+    def __init__(self, texts: Texts, reader: Struct) -> None:
+        self._texts, self._reader = texts, reader
+        self.text = texts.text
+        library().binding_gcode_begin(reader.pointer, *texts.call())
+        check = library().binding_gcode_check
+        self.faults, self.notes, self.more = judged(
+            texts.of.__getitem__, lambda rows, count: check(reader.pointer, rows, count)
+        )
+        self.commands = self._read()
+        texts.tell()
+        self.files = {n: t.decode(errors="replace") for n, t in texts.of.items() if n}
+
+    def __repr__(self) -> str:
+        faults = f"{len(self.faults)}{' or more' if self.more else ''}"
+        return f"<Program: {len(self.commands)} commands, {faults} faults>"
+
+    def _read(self) -> np.ndarray:
+        c, result, report = library(), ctypes.c_int32(_MORE), Struct("report")
+        parts, kind = [], dtype("gcode_command")
+        c.binding_gcode_read.restype = ctypes.c_int64
+        while result.value == _MORE:
+            rows = np.zeros(ROOM * kind.itemsize, np.uint8)  # whole structs: fields are not all
+            count = c.binding_gcode_read(
+                self._reader.pointer,
+                rows.ctypes.data_as(ctypes.c_void_p),
+                ctypes.c_int64(ROOM),
+                ctypes.byref(result),
+                report.pointer,
+            )
+            parts.append(rows[: count * kind.itemsize].copy())
+        return np.concatenate(parts).view(kind)
+
+    def seconds(self) -> np.ndarray:
+        """Time of each command on the machine.
+
+        Returns
+        -------
+        (n,) ndarray
+            [s] from its begin to that of the next one that takes time, to a period of points.
+        """
+        return self._driven(None)[0]
+
+    def places(self) -> np.ndarray:
+        """Where the tool is at the end of each period.
+
+        Returns
+        -------
+        (n, 6) ndarray
+            [mm] in machine coordinates, a row for each ``period`` from the start on.
+        """
+        places = np.zeros((self._driven(None)[1], AXES))
+        self._driven(places)
+        return places
+
+    def _driven(self, places: np.ndarray | None) -> tuple[np.ndarray, int]:
+        """Times of the commands, and how many periods there are."""
+        times, drive = np.zeros(len(self.commands)), library().binding_gcode_time
+        drive.restype = ctypes.c_int64
+        periods = drive(
+            self._reader.pointer,
+            self.commands.ctypes.data_as(ctypes.c_void_p),
+            ctypes.c_int64(len(times)),
+            times.ctypes.data_as(ctypes.c_void_p),
+            None if places is None else places.ctypes.data_as(ctypes.c_void_p),
+        )
+        return times, periods
+
+
+def _reader(settings: dict[str, Any], tools: str = "") -> Struct:
+    reader = Struct("gcode_reader")
+    library().binding_gcode_defaults(reader.pointer)
+    for name, value in settings.items():
+        reader[name] = value
+    tool = library().binding_gcode_tool
+    tool.restype = ctypes.c_char_p
+    for number, line in enumerate(tools.splitlines(), 1):
+        text, at = line.encode(), (ctypes.c_int32 * 2)()
+        if why := tool(reader.pointer, text, ctypes.c_int32(len(text)), at):
+            found = text[at[0] : at[0] + at[1]].decode(errors="replace")
+            raise InputError(f"tool table: line {number}: {why.decode()} {found!r}")
+    return reader
+
+
+def defaults() -> dict[str, Any]:
+    """Settings of `read` and their values.
+
+    Returns
+    -------
+    dict
+        Lengths in mm, feed and max_feed in mm/min, speeds in mm/s, accelerations in mm/s^2,
+        jerks in mm/s^3 (0: unlimited).
+    """
+    reader = _reader({})
+    return {name: reader[name] for name in reader if name not in ("line", "ended")}
+
+
+def text_in(file: Path) -> str:
+    """Text of a program's file, of any length; bytes that are not UTF-8 are in comments only."""
+    try:
+        if file.exists() and not file.is_file():  # a pipe would be waited for
+            raise InputError(f"cannot read {file}: not a regular file")
+        return file.read_bytes().decode(errors="replace")
+    except OSError as error:
+        raise InputError(f"cannot read {file}: {error.strerror}") from None
+    except ValueError as error:  # a NUL in the name
+        raise InputError(f"cannot read {file}: {error}") from None
+
+
+def read(
+    text: str | Path, tools: str = "", *, folder: Path | None = None, **settings: Any
+) -> Program:
+    """Read a part program.
+
+    Parameters
+    ----------
+    text : str or Path
+        All its lines; or, as a `pathlib.Path`, the file that holds them.
+    tools : str
+        Lines of a tool table (``T1 P1 Z10 D6``: number, pocket, length, diameter [mm]); without
+        one every tool exists and has length and diameter 0.
+    folder : Path, optional
+        Where the files are that it calls (``o<name> call``: name.ngc); that of a file by default.
+    **settings
+        Machine and switches of the language; `defaults` lists them.
+
+    Returns
+    -------
+    Program
+
+    Raises
+    ------
+    InputError
+        There is no such setting, or it has another shape; a line of the tool table is wrong; a file
+        cannot be read, or the text is the name of one.
+    """
+    return Program(Texts(text, folder), _reader(settings, tools))

@@ -1,0 +1,169 @@
+"""Read the sampled law that an FMU carries, and make a block of it."""
+
+import functools
+import tomllib
+import zipfile
+from collections import ChainMap
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from motionfmu.analysis.linear.block import Sampled
+from motionfmu.analysis.linear.form import Form, Gain, Quantity, evaluate
+from motionfmu.fmu.inside import EXTRA
+from motionfmu.fmu.modelica import stored
+from motionfmu.fmu.modelica.ode import Ode
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.system import nanoseconds
+
+LAW = "linear.toml"
+# Decimal periods are not exact in binary: a quotient is off by far less than this share.
+_WHOLE = 1e-9
+
+
+class Law(BaseModel):
+    """The tables of a linear.toml: formulas by name, as in the README."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+    period: str  # sampling period [s]
+    cycle: str = "1"  # instants after which the law begins again
+    inputs: list[str]  # ports that move
+    commands: list[str] = Field(default_factory=list)
+    let: dict[str, str] = Field(default_factory=dict)
+    state: dict[str, str] = Field(default_factory=dict)
+    output: dict[str, str] = Field(default_factory=dict)
+    early: dict[str, str] = Field(default_factory=dict)
+    direct: dict[str, str] = Field(default_factory=dict)
+    constant: dict[str, str] = Field(default_factory=dict)
+    grain: dict[str, str] = Field(default_factory=dict)
+    gain: dict[str, str] = Field(default_factory=dict)
+    limit: dict[str, str] = Field(default_factory=dict)
+    still: dict[str, bool | int | float | str] = Field(default_factory=dict)
+    refuse: dict[str, str] = Field(default_factory=dict)
+    point: dict[str, str] = Field(default_factory=dict)
+    speed: dict[str, str] = Field(default_factory=dict)
+    worst: dict[str, str] = Field(default_factory=dict)
+
+
+class Refused(ValueError):
+    """A law does not hold for the values given."""
+
+
+def parse(text: str, file: str = LAW) -> Law:
+    """Read a linear.toml; the ValueError begins with the file's name."""
+    try:
+        return Law.model_validate(tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{file}: {error}") from None
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(p) for p in first["loc"])
+        raise ValueError(f"{file}: {where}: {first['msg'].lower()}") from None
+
+
+@functools.cache
+def carried(fmu: str) -> Law | Ode | None:
+    """A sampled law, a plant's equation, or nothing, from its archive."""
+    # A wrong law is a ValueError; no such folder under fmus/, an InputError.
+    with zipfile.ZipFile(fmus.fmu_path(fmu)) as archive:
+        names = archive.namelist()
+        if f"{EXTRA}/{LAW}" in names:
+            return parse(archive.read(f"{EXTRA}/{LAW}").decode(), f"{fmu}: {LAW}")
+        if f"{EXTRA}/{stored.FILE}" in names:
+            return stored.from_json(archive.read(f"{EXTRA}/{stored.FILE}").decode())
+    return None
+
+
+class _Names(Mapping[str, Any]):
+    """Moving quantities first, then formulas of `let`, then values of the FMU's variables."""
+
+    def __init__(self, law: Law, given: Mapping[str, Any], moving: dict[str, Quantity]) -> None:
+        self._law, self._given, self._moving = law, given, moving
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._moving:
+            if name not in self._law.let:
+                return self._given[name]
+            self._moving[name] = evaluate(self._law.let[name], self)
+        return self._moving[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*self._moving, *self._law.let, *self._given))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
+def block(law: Law, values: Mapping[str, Any], point: Mapping[str, float] | None = None) -> Sampled:
+    """Make the block of one axis from its values that stay.
+
+    `point` has the outputs at the operating point, 0 where nothing is said. A wrong or not linear
+    formula is a ValueError, as is `Refused`.
+    """
+    at = {name: (point or {}).get(output, 0.0) for name, output in law.point.items()}
+    given = ChainMap(dict(at), values)  # type: ignore[arg-type]
+    for formula, reason in law.refuse.items():
+        if number(law, given, formula):
+            raise Refused(reason)
+    count = number(law, given, law.cycle)
+    if not (round(count) >= 1 and abs(count - round(count)) <= _WHOLE * count):
+        raise ValueError(f"cycle: {law.cycle!r} is {count:g}, a whole number is wanted")
+    made = [_instant(law, given, (k, round(count))) for k in range(round(count))]
+    nothing = _Names(law, given, {})
+    return Sampled(
+        inputs=tuple(law.inputs),
+        commands=tuple(law.commands),
+        states=tuple(law.state),
+        outputs=tuple(law.output),
+        early=tuple(law.early),
+        direct=tuple(law.direct),
+        grid_ns=nanoseconds(law.period, number(law, given, law.period)),
+        laws=tuple(m for m, _ in made),
+        now=made[0][1],
+        grain={n: float(evaluate(text, nothing)) for n, text in law.grain.items()},  # type: ignore[arg-type]
+        speed={n: float(evaluate(text, nothing)) for n, text in law.speed.items()},  # type: ignore[arg-type]
+    )
+
+
+def _instant(
+    law: Law, given: Mapping[str, Any], place: tuple[int, int]
+) -> tuple[np.ndarray[Any, np.dtype[np.float64]], np.ndarray[Any, np.dtype[np.float64]]]:
+    """The law at one instant of its cycle, and what it shows at once."""
+    moving = [*law.state, *law.inputs, *law.commands]
+    known: dict[str, Quantity] = dict(zip(("instant", "instants"), place, strict=True))
+    for name, unit in zip(moving, np.eye(len(moving)), strict=True):
+        known[name] = Form(unit)
+    names = _Names(law, given, known)
+    later = [*law.state.items(), *law.output.items(), *law.early.items()]
+    rows = [_row(text, names, len(moving)) for _, text in later]
+    now = [_row(text, names, len(moving)) for text in law.direct.values()]
+    first = len(moving) - len(law.commands)
+    for name, row in zip(law.direct, now, strict=True):
+        if row[:first].any():
+            raise ValueError(f"{name} is shown at once and may depend on commands only")
+    empty = np.zeros((0, len(moving)))
+    return np.vstack([empty, *rows]), np.vstack([empty, *now])[:, first:]
+
+
+def _row(text: str, names: _Names, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    found = evaluate(text, names)
+    if isinstance(found, Form):
+        return found.row
+    if found != 0.0:
+        raise ValueError(f"{text!r} is the number {found:g}: only deviations are meant here")
+    return np.zeros(count)
+
+
+def constant(law: Law, values: Mapping[str, Any], name: str) -> float | None:
+    """Value of an output that stays; None if the law does not give it."""
+    if name not in law.constant:
+        return None
+    found = evaluate(law.constant[name], _Names(law, values, {}))
+    return found if isinstance(found, Gain) else float(found)  # type: ignore[arg-type]
+
+
+def number(law: Law, values: Mapping[str, Any], formula: str) -> float:
+    """Value of a formula in which nothing moves."""
+    return float(evaluate(formula, _Names(law, values, {})))  # type: ignore[arg-type]

@@ -1,0 +1,198 @@
+"""Signals in NumPy's files: mapped when asked for, passed in blocks, gone with who holds them."""
+
+import contextlib
+import mmap
+import os
+import shutil
+import tempfile
+import weakref
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.base.errors import InputError
+
+# Rows of a block: of six numbers they are 6 MB.
+ROWS = 1 << 17
+TIME, ENDING = "time", ".npy"
+
+
+@dataclass(frozen=True)
+class Part:
+    """Where an array stands: a file, or columns of it."""
+
+    file: Path
+    columns: slice | int | None = None  # None: the whole file
+    boolean: bool = False  # it is Boolean, the file has whole numbers
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """An array of which parts are made when they are asked for."""
+
+    shape: tuple[int, ...]
+    dtype: np.dtype[Any]
+    make: Callable[[slice], NDArray[Any]]
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, rows: slice) -> NDArray[Any]:
+        return self.make(rows).astype(self.dtype, copy=False)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        return np.asarray(self[:], dtype=dtype)
+
+
+class Columns(Mapping[str, NDArray[Any]]):
+    """Arrays by name, a row a sample, that cannot be written to."""
+
+    # An array is mapped as long as somebody has it; `own` is a folder that goes with this one.
+
+    def __init__(self, parts: Mapping[str, Part], own: Path | None = None) -> None:
+        self._parts = dict(parts)
+        self._heads: dict[Path, tuple[Any, ...]] = {}
+        self._mapped: weakref.WeakValueDictionary[Any, NDArray[Any]] = weakref.WeakValueDictionary()
+        self._time = self._parts.pop(TIME, None)
+        if own is not None:
+            weakref.finalize(self, _remove, own, os.getpid())
+
+    @classmethod
+    def of(cls, folder: Path, order: Iterable[str] = (), own: bool = False) -> "Columns":
+        """All files of a folder, by their names, which may have an order."""
+        there = {f.stem: f for f in sorted(folder.iterdir()) if f.suffix == ENDING}
+        first = dict.fromkeys(n for n in order if n in there)
+        return cls({n: Part(there[n]) for n in first | there}, folder if own else None)
+
+    @classmethod
+    def taken(cls, folder: Path, order: Iterable[str] = ()) -> "Columns":
+        """A folder that goes with the arrays; it is moved out of the one that it is in."""
+        own = Path(tempfile.mkdtemp(prefix="motionfmu-", dir=folder.parent.parent))
+        folder.rename(own)
+        return cls.of(own, order, own=True)
+
+    @property
+    def time(self) -> NDArray[Any] | None:
+        """Times of the rows [s], if they have a file."""
+        return None if self._time is None else self._array(self._time)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self._array(self._parts[name])
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._parts
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._parts)
+
+    def __len__(self) -> int:
+        return len(self._parts)
+
+    def _array(self, part: Part) -> NDArray[Any]:
+        key = part.file, str(part.columns), part.boolean
+        found = self._mapped.get(key)
+        if found is None:
+            whole = self._map(part.file)
+            found = whole if part.columns is None else whole[:, part.columns]
+            if part.boolean:
+                found = found.astype(bool)
+                found.flags.writeable = False
+            self._mapped[key] = found
+        return found
+
+    def _map(self, file: Path) -> NDArray[Any]:
+        if file not in self._heads:
+            self._heads[file] = _head(file)
+        kind, shape, offset = self._heads[file]
+        return np.memmap(file, kind, "r", offset, shape).view(np.ndarray)
+
+    def files(self) -> dict[str, Path] | None:
+        """The file of each array and of the time; None if one has no file for itself."""
+        parts = self._parts | ({} if self._time is None else {TIME: self._time})
+        whole = all(p.columns is None for p in parts.values())
+        return {name: p.file for name, p in parts.items()} if whole else None
+
+
+def temporary(place: Path | None) -> tempfile.TemporaryDirectory[str]:
+    """A folder for the files of runs, in a place or in the system's temporary folder."""
+    try:
+        return tempfile.TemporaryDirectory(prefix="motionfmu-", dir=place)
+    except OSError as error:
+        told = error.strerror or error
+        raise InputError(f"cannot write {place or tempfile.gettempdir()}: {told}") from None
+
+
+def kept(folder: Path, files: Iterable[str]) -> Path:
+    """Move files to a new folder beside the one they are in."""
+    own = Path(tempfile.mkdtemp(prefix="motionfmu-", dir=folder.parent))
+    for file in files:
+        (folder / file).rename(own / file)
+    return own
+
+
+def _remove(folder: Path, process: int) -> None:
+    """Delete a folder, but not in a process that was forked from its own."""
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _head(file: Path) -> tuple[Any, ...]:
+    """Type, shape and begin of the data of a file; a ValueError if it is none of NumPy's."""
+    with file.open("rb") as opened:
+        version = np.lib.format.read_magic(opened)
+        read = np.lib.format.read_array_header_1_0
+        if version != (1, 0):
+            raise ValueError(f"format version {version[0]}.{version[1]}")
+        shape, fortran, kind = read(opened)
+        if fortran or kind.hasobject:
+            raise ValueError("not rows of numbers")
+        return kind, shape, opened.tell()
+
+
+def in_blocks(*arrays: NDArray[Any], back: int = 0) -> Iterator[tuple[NDArray[Any], ...]]:
+    """The same rows of all arrays, block by block, each with some rows of the one before it."""
+    # Pages of a file count as memory of a process while they are mapped: passed ones are let go.
+    for first in range(0, len(arrays[0]), ROWS):
+        yield tuple(x[max(0, first - back) : first + ROWS] for x in arrays)
+        for x in arrays:
+            forget(x)
+
+
+def forget(array: Any) -> None:
+    """Let go the pages of an array that a file has; they are read again when needed."""
+    base = array
+    while (inner := getattr(base, "base", None)) is not None:
+        base = inner
+    if isinstance(base, mmap.mmap) and hasattr(base, "madvise"):
+        base.madvise(mmap.MADV_DONTNEED)
+
+
+def write(folder: Path, signals: Mapping[str, NDArray[Any]], time: NDArray[Any]) -> None:
+    """Make a folder of them, and of the times, a file each."""
+    # Files that are there already get a second name, which costs nothing, or else a copy.
+    folder.mkdir()
+    there = signals.files() if isinstance(signals, Columns) else None
+    for name, file in (there or {}).items():
+        target = folder / f"{name}{ENDING}"
+        try:
+            os.link(file, target)
+        except OSError:
+            shutil.copyfile(file, target)
+    rest = {} if there is not None else dict(signals)
+    if there is None or TIME not in there:
+        rest[TIME] = time
+    with contextlib.ExitStack() as stack:
+        opened = {}
+        for name, data in rest.items():
+            opened[name] = stack.enter_context((folder / f"{name}{ENDING}").open("wb"))
+            descr = np.lib.format.dtype_to_descr(data.dtype)
+            head = {"descr": descr, "fortran_order": False, "shape": data.shape}
+            np.lib.format.write_array_header_1_0(opened[name], head)
+        for first in range(0, max(map(len, rest.values()), default=0), ROWS):
+            for name, data in rest.items():
+                np.ascontiguousarray(data[first : first + ROWS]).tofile(opened[name])
+                forget(data)

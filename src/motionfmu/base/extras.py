@@ -1,0 +1,59 @@
+"""What the package's base does without: large packages, by the extra that brings them."""
+
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from motionfmu.base.errors import InputError
+
+
+@dataclass(frozen=True)
+class Extra:
+    """A row of pyproject.toml's optional dependencies."""
+
+    packages: tuple[str, ...]  # as they are imported
+    use: str  # what it is for, in words that end before "needs"
+
+
+CARD = ("matplotlib", "scipy", "starlette", "uvicorn", "websockets")
+EXTRAS = {
+    "tune": Extra(("casadi", "control", "scipy", "threadpoolctl"), "a linear model"),
+    "report": Extra(("matplotlib", "scipy"), "a picture or an explanation"),
+    "study": Extra(("matplotlib", "pyarrow", "scipy"), "a study"),
+    "dask": Extra(("distributed",), "a study on a cluster"),
+    "pandas": Extra(("pandas",), "a table of pandas"),
+    "card": Extra(CARD, "planning a drawing"),
+    "export": Extra(("ziglang",), "compiling for other platforms"),
+}
+
+
+class Missing(InputError, ImportError):
+    """An extra that is not installed; the text says which, and how it is."""
+
+
+def missing(extra: str) -> list[str]:
+    """Packages of an extra that are not installed."""
+    return [name for name in EXTRAS[extra].packages if find_spec(name) is None]
+
+
+def needed(extra: str) -> None:
+    """Refuse to go on without an extra: what it is for, what is missing, what installs it."""
+    if names := ", ".join(missing(extra)):
+        raise Missing(f"{EXTRAS[extra].use} needs {names}: {install(extra)}")
+
+
+def install(extra: str) -> str:
+    """The command that installs an extra: no index has this project, only the packages."""
+    import json
+    from importlib import metadata
+    from urllib.parse import urlsplit
+    from urllib.request import url2pathname
+
+    own = metadata.distribution("motionfmu")
+    told = json.loads(own.read_text("direct_url.json") or "{}")
+    if "dir_info" in told:  # from its sources
+        return f"pip install {' '.join(EXTRAS[extra].packages)}"
+    url = urlsplit(told.get("url", ""))
+    file = Path(url2pathname(url.path))
+    there = url.scheme == "file" and file.suffix == ".whl" and file.is_file()
+    return f'pip install "{file if there else f"motionfmu-{own.version}-....whl"}[{extra}]"'

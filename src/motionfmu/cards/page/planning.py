@@ -1,0 +1,57 @@
+"""Opens files in a process of its own: a plan takes seconds, and no command waits for one.
+
+The file goes in behind a line of JSON, the job comes out behind one.
+"""
+
+import asyncio
+import contextlib
+import json
+import os
+import sys
+from subprocess import PIPE
+from typing import Any, BinaryIO
+
+from motionfmu.base.children import child
+from motionfmu.base.errors import InputError
+from motionfmu.cards.config import CardConfig
+from motionfmu.cards.page.pictures import Opened, opened
+
+
+async def opened_apart(data: bytes, name: str, config: CardConfig | None, page: int) -> Opened:
+    """As `opened`; who does not wait any more ends the process, too."""
+    asked = {"name": name, "page": page, "config": config.model_dump() if config else None}
+    command, options = child(f"from {__name__} import main; main()")
+    process = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE, **options)
+    try:
+        said, _ = await process.communicate(json.dumps(asked).encode() + b"\n" + data)
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            process.kill()
+    if not said:
+        raise InputError(f"{name}: it could not be opened, the server's log says why")
+    line, _, job = said.partition(b"\n")
+    answer: dict[str, Any] = json.loads(line)
+    if "errors" in answer:
+        raise InputError(*answer["errors"])
+    return Opened(job, answer["picture"])
+
+
+def answered(request: BinaryIO, answer: BinaryIO) -> None:
+    """The process' part."""
+    asked = json.loads(request.readline())
+    config = CardConfig.model_validate(asked["config"]) if asked["config"] else None
+    try:
+        found = opened(request.read(), asked["name"], config, asked["page"])
+    except InputError as error:
+        answer.write(json.dumps({"errors": error.args}).encode())
+        return
+    answer.write(json.dumps({"picture": found.picture}).encode() + b"\n" + found.job)
+
+
+def main() -> None:
+    """Answer one request."""
+    if hasattr(os, "nice"):
+        os.nice(5)
+    with contextlib.suppress(BrokenPipeError):
+        answered(sys.stdin.buffer, sys.stdout.buffer)
+        sys.stdout.flush()

@@ -1,5 +1,0 @@
-"""Network motion cards on the PC: configuration, plan, job file, protocol, server and page."""
-
-from motionfmu.netcard.config import CardConfig, load
-
-__all__ = ["CardConfig", "load"]

@@ -1,0 +1,150 @@
+"""From a run to what the moving picture needs, in mm and few enough numbers."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.analysis.iso9283.simplify import simplified
+from motionfmu.base import units
+from motionfmu.report.view.arm import Arm
+from motionfmu.run.decimate import Read, at, ends, reader
+from motionfmu.run.recorded import Recorded
+from motionfmu.scenarios.system import Resolver
+from motionfmu.scenarios.view_signals import JOINTS
+
+Array = NDArray[np.float64]
+FRAMES = 2000  # of the machine, evenly over the run
+POINTS = 3000  # of the path
+# The drawn path is off by less than this part of its extent: half a pixel.
+COARSE = 3e-4
+# An axis that moves by less than this does not [mm].
+STANDS = 1e-6
+# Names that tell a tool and an arm by themselves.
+TOOLS = ("tool_position", "table_position")
+LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+OFFSETS, SIGNS, PEN = "joint_offset", "joint_sign", "tool_length"
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line that was followed, and how far off."""
+
+    foot: Array  # (n, 3) points of the command [mm]
+    gap: Array  # (n, 3) deviation there [mm]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What the moving picture shows."""
+
+    time: Array  # (n,) of the frames [s]
+    tool: Array  # (n, 3) [mm]
+    joints: Array | None  # (n, 6) [rad]
+    arm: Arm | None  # None: axes X, Y, Z
+    path_time: Array  # (m,) [s]
+    path: Array  # (m, 3) [mm]
+    speed: Array  # (m,) of the tool [mm/s]
+    lines: tuple[Line, ...] = ()
+
+
+def scene_of(run: Recorded, lines: Sequence[Line] = ()) -> Scene | None:
+    """The moving picture of a run; None where nothing moves that it could show."""
+    view = run.resolver.document.body.view
+    name = tool_signal(run)
+    if not view.show or name is None or len(run.time) < 2:
+        return None
+    count, tool = len(run.time), position(run, name)
+    joints = joint_signal(run, name)
+    arm = None if joints is None else arm_of(run, joints)
+    low, high = ends(count, tool)
+    moved = high - low > STANDS
+    if not np.isfinite(high - low).all() or moved.sum() < (1 if arm else 2):
+        return None
+    frames = np.unique(np.linspace(0, count - 1, FRAMES).round().astype(np.int64))
+    kept = _path(count, tool, float(np.linalg.norm(high - low)))
+    before, after = (kept - 1).clip(0), (kept + 1).clip(None, count - 1)
+    way = np.linalg.norm(at(tool, after) - at(tool, before), axis=1)
+    return Scene(
+        run.time[frames],
+        at(tool, frames),
+        at(reader(run[joints]), frames) if arm and joints else None,
+        arm,
+        run.time[kept],
+        at(tool, kept),
+        way / (run.time[after] - run.time[before]),
+        tuple(lines),
+    )
+
+
+def position(run: Recorded, name: str) -> Read:
+    """A recorded position in mm, block by block."""
+    read = reader(run[name])
+    return lambda first, last: millimetres(run.resolver, name, read(first, last))
+
+
+def tool_signal(run: Recorded) -> str | None:
+    """The signal that is the tool's position; None if there is none."""
+    body = run.resolver.document.body
+    if body.view.tool:
+        return body.view.tool
+    if body.iso9283:
+        return body.iso9283.position
+    for ending in TOOLS:
+        for name in run.signals:
+            component, _, variable = name.partition(".")
+            port = run.resolver.ports[component][variable]
+            if variable == ending and port.shape in ((3,), (6,)):
+                return name
+    return body.contour.position if body.contour else None
+
+
+def joint_signal(run: Recorded, tool: str) -> str | None:
+    """The recorded signal of six joint angles: named, or the tool's own component has it."""
+    named = run.resolver.document.body.view.joints
+    name = named or f"{tool.partition('.')[0]}.{JOINTS}"
+    there = name in run.signals and run.signals[name].ndim == 2 and run.signals[name].shape[1] == 6
+    return name if there else None
+
+
+def arm_of(run: Recorded, joints: str) -> Arm | None:
+    """The arm's lengths: of [view], or parameters of the component that shows the joint angles."""
+    view = run.resolver.document.body.view
+    if view.lengths is not None:
+        lengths = tuple(1e3 * x for x in view.lengths)
+        return Arm(lengths, tuple(view.offsets), tuple(view.signs), 1e3 * view.pen)
+    component = joints.partition(".")[0]
+    ports = run.resolver.ports[component]
+    if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
+        return None
+
+    def told(name: str, usual: tuple[float, ...]) -> tuple[float, ...]:
+        if name not in ports or ports[name].count != len(usual):
+            return usual
+        to_si = units.parse(ports[name].unit or "1").factor
+        return tuple(to_si * float(x) for x in run.parameter(f"{component}.{name}"))
+
+    lengths = tuple(1e3 * float(run.parameter(f"{component}.{n}")[0]) for n in LENGTHS)
+    offsets, signs = told(OFFSETS, (0.0,) * 6), told(SIGNS, (1.0,) * 6)
+    return Arm(lengths, offsets, signs, 1e3 * told(PEN, (0.0,))[0])
+
+
+def millimetres(resolver: Resolver, name: str, values: Array) -> Array:
+    """The first three elements of a recorded position (n, 3) [mm]."""
+    component, _, variable = name.partition(".")
+    unit = units.parse(resolver.ports[component][variable].unit or "1")
+    return np.asarray(values[:, :3] * (unit.factor / units.parse("mm").factor))
+
+
+def _path(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
+    """Samples that draw the path: where it bends, and some at even times for the colour."""
+    coarse = max(1, count // (20 * POINTS))
+    some = np.arange(0, count, coarse)
+    if some[-1] != count - 1:
+        some = np.append(some, count - 1)
+    bends = some[simplified(at(tool, some), COARSE * extent)]
+    even = np.linspace(0, count - 1, POINTS // 2).round().astype(np.int64)
+    if len(bends) > POINTS // 2:
+        bends = bends[np.linspace(0, len(bends) - 1, POINTS // 2).round().astype(np.int64)]
+    return np.unique(np.concatenate([bends, even]))

@@ -1,0 +1,86 @@
+"""The position error of one axis on a scenario's own move."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from motionfmu.base import units
+from motionfmu.base.errors import InputError
+from motionfmu.run import Result
+from motionfmu.study.tune.path import Measured, PathError
+from motionfmu.study.tune.steps import Array
+
+# The axis is judged as standing from so long after its command has come to rest [s].
+SETTLED = 0.1
+
+
+class MoveCost:
+    """The move of one axis, from a run of its FMUs.
+
+    Names are those of command and position; the period [s] is the linear model's; `shown` is the
+    position per command and after how many periods the FMU shows the command that it follows.
+    """
+
+    what = "position error"
+    periods = 1  # of the model, from one sample to the next
+
+    def __init__(
+        self, base: Result, names: tuple[str, str], period: float, shown: tuple[float, int]
+    ) -> None:
+        self._names, (self._scale, late) = names, shown
+        time, command = base.time, self._command(base)
+        stride = max(1, round(period / (time[1] - time[0])))
+        self.time = time[::stride]
+        self._shown = command[::stride]
+        # command at the samples, from 0
+        self.pulses = {1: np.append(self._shown[late:], np.full(late, self._shown[-1]))}
+        if not np.ptp(command) > 0.0:
+            raise InputError(f"{base.scenario.document.file}: {names[0]} does not move")
+        port = base.scenario.resolver.end(names[1], "position", names[1]).port
+        self.factor = units.parse(port.unit or "1").factor / units.parse("mm").factor
+        moving = np.flatnonzero(np.diff(command))
+        self.speed = (
+            abs(self._scale)
+            * float(np.abs(np.diff(command)).sum())
+            / (len(moving) * float(time[1] - time[0]))
+        )
+
+    def _command(self, result: Result) -> Array:
+        found: Array = np.asarray(result[self._names[0]], dtype=float).reshape(len(result.time), -1)
+        return found[:, 0] - found[0, 0]
+
+    def error(self, positions: Mapping[int, Array]) -> PathError:
+        """Position error of positions (count,) by axis, which begin at 0."""
+        gap = np.zeros((len(self.time), 3))
+        gap[:, 0] = (positions[1] - self._scale * self._shown) * self.factor
+        return PathError(np.abs(gap[:, 0]), gap)
+
+    def chain(self, slope: Array, axis: int, changes: Array) -> Array:
+        """Derivatives of a cost to the gains, from those of the position."""
+        found: Array = changes @ slope[:, axis - 1] * self.factor
+        return found
+
+    def measured(self, result: Result) -> Measured:
+        """Position error of a run."""
+        position = np.asarray(result[self._names[1]], dtype=float).reshape(len(result.time), -1)
+        command = self._command(result)
+        error = (position[:, 0] - position[0, 0] - self._scale * command) * self.factor
+        rms = float(np.sqrt(np.mean(error**2)))
+        return Measured(rms, float(np.abs(error).max()), result.time, error)
+
+    def beyond(self, result: Result) -> float:
+        """Way past the ends of the command [mm]; 0 between them."""
+        way = self._scale * self.factor * self._command(result)
+        place = way + self.measured(result).values
+        return max(float(place.max() - way.max()), float(way.min() - place.min()), 0.0)
+
+    def standing(self, result: Result) -> float:
+        """RMS error [mm] while the axis is to stand, after a first motion."""
+        command, time = self._command(result), result.time
+        moves = np.flatnonzero(np.diff(command))
+        latest = moves[np.maximum(np.searchsorted(moves, np.arange(len(time))) - 1, 0)]
+        rest = (np.arange(len(time)) > moves[0]) & (time - time[latest] > SETTLED)
+        if not rest.any():
+            file = result.scenario.document.file
+            raise InputError(f"{file}: {self._names[0]} never rests, so nothing can be tried")
+        return float(np.sqrt(np.mean(self.measured(result).values[rest] ** 2)))

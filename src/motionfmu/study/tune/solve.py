@@ -1,0 +1,350 @@
+"""Find the gains: a CasADi NLP from several points, checked by a global search."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from motionfmu.base.errors import InputError
+from motionfmu.study.tune.choice import Variable
+from motionfmu.study.tune.steps import Array
+from motionfmu.study.tune.study import Limit, Study, Values
+
+# A limit, or a bound of a variable, is reached within this share.
+_REACHED = 2e-3
+# What a result may miss a limit by, relative.
+TOLERANCE = 1e-4
+_PENALTY = 10.0
+# Half the width of the box of one solution, share of the range: slopes are trusted so far.
+_BOX, _BOXES, _EDGE = 0.15, 8, 1e-4
+# A solution is begun anew in a smaller box while that lowers the cost by this share.
+_SMALLER, _SMALLEST, _GAIN, _AGAIN = 0.4, 0.01, 5e-4, 6
+# What each axis for itself could gain, of the cost, is no reason to look for it.
+_SETTLED = 1e-7
+_OPTIONS: Any = {
+    "ipopt.hessian_approximation": "limited-memory",
+    "ipopt.limited_memory_max_history": 12,
+    "ipopt.print_level": 0,
+    "ipopt.sb": "yes",
+    "ipopt.tol": 1e-5,
+    "ipopt.acceptable_tol": 1e-2,
+    "ipopt.acceptable_obj_change_tol": 1e-5,
+    "ipopt.acceptable_constr_viol_tol": 1e-6,
+    "ipopt.constr_viol_tol": 1e-6,
+    "ipopt.acceptable_iter": 3,
+    "ipopt.mu_init": 1e-2,
+    "ipopt.max_iter": 25,
+    "ipopt.bound_relax_factor": 0.0,
+    "print_time": False,
+    "show_eval_warnings": False,
+}
+
+
+class RanAway(InputError):
+    """A gain ran to its own bound: nothing else stopped it."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A solution of the problem."""
+
+    z: Array  # (n,) share of its range of each variable
+    values: Values
+    stopped_by: tuple[Limit, ...]  # limits that are reached there
+    ends: tuple[str, ...]  # variables at an end of their parameter's own range
+    starts: tuple[float, ...]  # cost found from each start; NaN where the search failed
+    # Cost of the global search alone; NaN if it found nothing within the limits, or was not made.
+    check: float
+    seconds: tuple[float, float]  # of the NLP and of the global search
+    evaluations: tuple[int, int]  # of both
+
+
+class _Function(ca.Callback):
+    """Logarithms of the costs and the slacks, for CasADi."""
+
+    def __init__(self, study: Study) -> None:
+        super().__init__()
+        self.study = study
+        self.n = len(study.variables)
+        self.m = len(study.plants) + len(study.limits)
+        self._slopes: Any = None
+        self.construct("values", {})
+
+    def get_n_in(self) -> int:
+        """One: the shares."""
+        return 1
+
+    def get_n_out(self) -> int:
+        """One: costs and slacks."""
+        return 1
+
+    def get_sparsity_in(self, i: int) -> ca.Sparsity:
+        """Dense column."""
+        return ca.Sparsity.dense(self.n)
+
+    def get_sparsity_out(self, i: int) -> ca.Sparsity:
+        """Dense column."""
+        return ca.Sparsity.dense(self.m)
+
+    def eval(self, arg: Sequence[ca.DM]) -> list[ca.DM]:
+        """Values."""
+        found = self.study.values(np.asarray(arg[0].full()).ravel())
+        return [ca.DM(np.concatenate([np.log(found.costs), found.slack]))]
+
+    def has_jacobian(self) -> bool:
+        """Always."""
+        return True
+
+    def get_jacobian(self, name: str, inames: Any, onames: Any, opts: Any) -> ca.Function:
+        """Slopes."""
+        self._slopes = _Slopes(name, self)
+        return self._slopes
+
+
+class _Slopes(ca.Callback):
+    """Jacobian of `_Function`."""
+
+    def __init__(self, name: str, of: _Function) -> None:
+        super().__init__()
+        self.of = of
+        self.construct(name, {})
+
+    def get_n_in(self) -> int:
+        """The shares, and the values there."""
+        return 2
+
+    def get_n_out(self) -> int:
+        """One matrix."""
+        return 1
+
+    def get_sparsity_in(self, i: int) -> ca.Sparsity:
+        """Dense column."""
+        return ca.Sparsity.dense(self.of.n if i == 0 else self.of.m)
+
+    def get_sparsity_out(self, i: int) -> ca.Sparsity:
+        """Dense."""
+        return ca.Sparsity.dense(self.of.m, self.of.n)
+
+    def eval(self, arg: Sequence[ca.DM]) -> list[ca.DM]:
+        """Slopes."""
+        found = self.of.study.values(np.asarray(arg[0].full()).ravel())
+        return [ca.DM(np.vstack([found.dcosts / found.costs[:, None], found.dslack]))]
+
+
+_Run = Callable[[Array, Values, float], tuple[Array, Values, bool]]
+
+
+def _shared(study: Study) -> Array:
+    """Shares of all variables from those of the gains: axes move together."""
+    found = np.zeros((len(study.variables), len(study.names)))
+    for row, variable in enumerate(study.variables):
+        found[row, study.names.index(variable.name)] = 1.0
+    return found
+
+
+def _solver(study: Study, spread: Array) -> tuple[_Run, Any]:
+    """min t over y and t, z = spread y, with log cost <= t for every plant and no slack < 0."""
+    function = _Function(study)
+    n, plants = spread.shape[1], len(study.plants)
+    inverse = np.linalg.pinv(spread)
+    y, t = ca.MX.sym("y", n), ca.MX.sym("t")
+    found = function(ca.mtimes(ca.DM(spread), y))
+    nlp: Any = {"x": ca.vertcat(y, t), "f": t, "g": ca.vertcat(t - found[:plants], found[plants:])}
+    solver = ca.nlpsol("tune", "ipopt", nlp, _OPTIONS)
+
+    def solve(start: Array, values: Values, box: float) -> tuple[Array, Values, bool]:
+        """One box after another, until the solution lies inside its own; whether it does."""
+        best = start, values
+        for _ in range(_BOXES):
+            centre = np.clip(inverse @ best[0], 0.01, 0.99)
+            low, high = np.maximum(centre - box, 0.0), np.minimum(centre + box, 1.0)
+            answer = solver(
+                x0=np.append(centre, np.log(best[1].worst) + 0.01),
+                lbx=np.append(low, -np.inf),
+                ubx=np.append(high, np.inf),
+                lbg=0.0,
+                ubg=np.inf,
+            )
+            y = np.clip(np.asarray(answer["x"].full()).ravel()[:n], low, high)
+            z = spread @ y
+            found = study.values(z)
+            if not merit(found) < merit(best[1]):
+                box *= _SMALLER  # the slopes did not hold so far
+                if box < _SMALLEST:
+                    break
+                continue
+            best = z, found
+            free = (y > low + _EDGE) | (low == 0.0)
+            if (free & ((y < high - _EDGE) | (high == 1.0))).all():
+                return *best, solver.stats()["return_status"] == "Solve_Succeeded"
+        return *best, False
+
+    return solve, function
+
+
+def merit(values: Values) -> float:
+    """One number for a search that knows no limits."""
+    # Logarithm of the worst cost plus a penalty for limits that are broken.
+    if not np.isfinite(values.costs).all():
+        return 1e3
+    return float(np.log(values.worst)) + _PENALTY * float(-np.minimum(values.slack, 0.0).sum())
+
+
+def solve(study: Study, progress: Callable[[float], None] = lambda share: None) -> Found:
+    """Find the gains within the limits; `RanAway` at a bound alone."""
+    together = _solver(study, _shared(study))
+    begun, first = time.perf_counter(), study.evaluations
+    check, points = np.nan, [study.present]
+    if study.problem.check:
+        point, values = _global(study, lambda share: progress(0.4 * share))
+        check = values.worst if values.feasible(TOLERANCE) else np.nan
+        points.append(point)
+    spent = time.perf_counter() - begun, study.evaluations - first
+    begun, first = time.perf_counter(), study.evaluations
+    points = points[: study.problem.starts]
+    if len(points) < study.problem.starts:
+        points = [*points, *_spread(study)][: study.problem.starts]
+    candidates: list[tuple[Array, Values]] = []
+    costs = []
+    for i, start in enumerate(points):
+        progress(0.4 + 0.6 * i / len(points))
+        found = _attempt(study, together[0], start)
+        costs.append(found[1].worst if found and found[1].feasible(TOLERANCE) else np.nan)
+        candidates += [found] if found else []
+    if len(study.variables) > len(study.names) and candidates:
+        best = min(candidates, key=lambda c: merit(c[1]))
+        if not _settled(study.values(best[0])):
+            alone = _solver(study, np.eye(len(study.variables)))
+            candidates += [c for c in [_attempt(study, alone[0], best[0])] if c]
+    seconds, count = time.perf_counter() - begun, study.evaluations - first
+    progress(1.0)
+    kept = [c for c in candidates if c[1].feasible(TOLERANCE)]
+    if not kept:
+        raise InputError(_hopeless(study, candidates))
+    z, values = min(kept, key=lambda c: c[1].worst)
+    ends = _ends(study, z, values)
+    return Found(
+        z,
+        values,
+        tuple(x for x, s in zip(study.limits, values.slack, strict=True) if s < _REACHED),
+        ends,
+        tuple(costs),
+        float(check),
+        (seconds, spent[0]),
+        (count, spent[1]),
+    )
+
+
+def _attempt(study: Study, run: _Run, start: Array) -> tuple[Array, Values] | None:
+    """The NLP from one point; the point itself if nothing better comes of it."""
+    best = start, study.values(start)
+    if not np.isfinite(best[1].costs).all():
+        return None
+    box = _BOX
+    for _ in range(_AGAIN):
+        try:
+            z, values, done = run(*best, box)
+        except RuntimeError:  # CasADi: not a number somewhere
+            break
+        lower = merit(best[1]) - merit(values)
+        best = z, values
+        if done or lower < _GAIN:
+            break
+        box = max(box * _SMALLER, _SMALLEST)
+    return best
+
+
+def _settled(values: Values) -> bool:
+    """Whether no direction in the box lowers the cost to first order: each axis for itself, too.
+
+    For multipliers m >= 0 of the limits with slack s and slopes G the linear problem gains at most
+    m s + box |g - G' m| (its dual), g being the slope of the logarithm of the cost.
+    """
+    if len(values.costs) > 1 or not values.feasible(TOLERANCE):
+        return False
+    near = values.slack < _REACHED
+    slope, limits = values.dcosts[0] / values.costs[0], values.dslack[near]
+    weights = np.linalg.lstsq(limits.T, slope, rcond=None)[0].clip(min=0.0)
+    left = float(np.abs(slope - limits.T @ weights).sum())
+    return abs(float(weights @ values.slack[near])) + _BOX * left < _SETTLED
+
+
+def _spread(study: Study) -> list[Array]:
+    """Points spread over the range, drawn to the present gains until all loops are stable."""
+    from scipy.stats import qmc  # a third of a second, and seldom needed
+
+    present, found = study.present, []
+    drawn = qmc.Sobol(len(present), seed=1).random_base2(6)
+    for point in drawn[: max(0, study.problem.starts - 1)]:
+        for share in (1.0, 0.5, 0.25, 0.1):
+            between = present + share * (point - present)
+            if np.isfinite(study.values(between, False).costs).all():
+                found.append(between)
+                break
+    return found
+
+
+def _global(study: Study, progress: Callable[[float], None]) -> tuple[Array, Values]:
+    """DIRECT: divides the box, needs no slope and no start; all axes move together."""
+    spread = _shared(study)
+    box = [(0.0, 1.0)] * spread.shape[1]
+    best: tuple[float, Array] = (np.inf, study.present)
+    done = 0
+
+    def at(y: Array) -> float:
+        nonlocal best, done
+        z = spread @ y
+        done += 1
+        progress(min(1.0, done / study.problem.check))
+        value = merit(study.rough(z))
+        best = min(best, (value, z), key=lambda pair: pair[0])
+        return value
+
+    from scipy.optimize import direct  # whose import takes a third of a second
+
+    direct(at, box, maxfun=study.problem.check, maxiter=10_000, locally_biased=True)
+    return best[1], study.values(best[1], False)
+
+
+def _ends(study: Study, z: Array, values: Values) -> tuple[str, ...]:
+    """Variables at their bounds; an error if that is the search's own bound and holds the cost."""
+    ends = []
+    for k, (variable, share) in enumerate(zip(study.variables, z, strict=True)):
+        high = share > 1.0 - _REACHED
+        if _REACHED <= share <= 1.0 - _REACHED:
+            continue
+        worst = int(np.argmax(values.costs))
+        falls = values.dcosts[worst, k] < 0.0 if high else values.dcosts[worst, k] > 0.0
+        if not falls:
+            continue
+        if variable.own[1 if high else 0] and not variable.whole:
+            ends.append(f"{variable.title} = {variable.value(float(share)):g}, an end of its range")
+            continue
+        raise RanAway(_away(study, variable, high))
+    return tuple(ends)
+
+
+def _away(study: Study, variable: Variable, high: bool) -> str:
+    bound = variable.high if high else variable.low
+    side = "upper" if high else "lower"
+    return (
+        f"{study.scenario.document.file}: {variable.title} ran to its own {side} bound {bound:g}:"
+        f" {study.problem.cost} still falls there and no limit stops it, so this is no result;"
+        " ask for margins or an overshoot limit, or give other bounds"
+    )
+
+
+def _hopeless(study: Study, candidates: list[tuple[Array, Values]]) -> str:
+    text = f"{study.scenario.document.file}: no gains within the bounds keep all limits"
+    if not candidates:
+        return f"{text}: the loop is unstable wherever the search began"
+    _, values = min(candidates, key=lambda c: merit(c[1]))
+    worst = int(np.argmin(values.slack))
+    limit = study.limits[worst]
+    return (
+        f"{text}; nearest: {limit.what}, axis {limit.axis},"
+        f" plant {limit.plant} is missed by {-100.0 * values.slack[worst]:.3g} %"
+    )

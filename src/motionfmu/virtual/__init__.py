@@ -1,0 +1,1 @@
+"""Controllers without FMUs: the motion library on its card, the robot's controller with its arm."""

@@ -1,0 +1,106 @@
+"""What a refused call of the robot raises, and how C tells it."""
+
+import ctypes
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from motionfmu.base.binding import Struct
+from motionfmu.base.errors import InputError
+
+# Of enum robot_status.
+STATUS = (
+    "OK",
+    "BUSY",
+    "PARAMETER",
+    "FAR",
+    "OUTSIDE",
+    "SINGULAR",
+    "OTHER_BRANCH",
+    "OTHER_TURN",
+    "NO_CIRCLE",
+    "OFF_PLANE",
+    "NO_UNIT",
+)
+_IN_RADIANS = "OUTSIDE"
+_LENGTH = 420
+# Of places [mm], angles [deg], directions.
+MOST = 1e6
+
+
+class RobotError(InputError):
+    """A call that is refused; it has changed nothing.
+
+    Attributes
+    ----------
+    status : str
+        Why: BUSY, PARAMETER, FAR, OUTSIDE, SINGULAR, OTHER_BRANCH, OTHER_TURN, NO_CIRCLE,
+        OFF_PLANE, NO_UNIT of a move;
+        VALUE of an argument; PROGRAM of a text.
+    value, limit : float
+        What is wrong and how far it may go [deg] [mm]; NaN: no number decides.
+    which : int
+        Joint from 0 (OUTSIDE, OTHER_TURN), factor 0 shoulder 1 elbow 2 wrist (SINGULAR), or -1.
+    part : float
+        Of the path, 0 .. 1; NaN: it is no matter of the path.
+    """
+
+    def __init__(
+        self,
+        text: str,
+        status: str = "VALUE",
+        value: float = math.nan,
+        limit: float = math.nan,
+        *,
+        more: Iterable[str] = (),
+    ) -> None:
+        super().__init__(text, *more)
+        self.status, self.value, self.limit = status, value, limit
+        self.which, self.part = -1, math.nan
+
+
+def message() -> Any:
+    """Room for a message of C."""
+    return ctypes.create_string_buffer(_LENGTH)
+
+
+def refused(call: str, code: int, why: Struct, words: Any) -> RobotError:
+    """What a move or jog that C has refused raises."""
+    status = STATUS[code]
+    error = RobotError(f"{call}: {words.value.decode()}", status)
+    if status not in ("BUSY", "PARAMETER"):
+        scale = math.degrees(1.0) if status == _IN_RADIANS else 1.0
+        error.value, error.limit = why["value"] * scale, why["limit"] * scale
+        error.which, error.part = why["which"], why["part"]
+    return error
+
+
+def within(name: str, value: float, low: float, high: float) -> float:
+    """Take a number of a range; RobotError if it is not within."""
+    if not isinstance(value, int | float | np.number) or not low <= value <= high:
+        limit = high if isinstance(value, int | float) and value > high else low
+        number = float(value) if isinstance(value, int | float | np.number) else math.nan
+        text = f"{name} = {value!r}: {low:g} to {high:g} is wanted"
+        raise RobotError(text, "VALUE", number, limit)
+    return float(value)
+
+
+def bounded(name: str, values: np.ndarray, most: float = MOST) -> np.ndarray:
+    """Take an array of numbers up to a limit; RobotError names the first beyond it."""
+    for k in np.flatnonzero(~(np.abs(values) <= most).ravel()):
+        within(f"{name}[{k}]", float(values.flat[k]), -most, most)
+    return values
+
+
+def numbers(name: str, values: Any, *shape: int) -> np.ndarray:
+    """Take an array of finite numbers whose last axes have a shape; RobotError if it is none."""
+    try:
+        array = np.ascontiguousarray(values, np.float64)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.shape[max(0, array.ndim - len(shape)) :] != shape or not np.isfinite(array).all():
+        text = f"{name}: finite numbers of shape {shape} are wanted, got {values!r:.200}"
+        raise RobotError(text)
+    return array
