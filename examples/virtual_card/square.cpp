@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <motionfmu/short_names.h>
 #include <motionfmu/station.h>
 
 struct Corner {

@@ -6,6 +6,7 @@
  */
 #include <stdio.h>
 
+#include <motionfmu/short_names.h>
 #include <motionfmu/station.h>
 
 static struct station station;  /* 400 kB: not on the stack */

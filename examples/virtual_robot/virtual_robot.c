@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include <motionfmu/robot_station.h>
+#include <motionfmu/short_names.h>
 #include <motionfmu/soft_words.h>
 
 static struct robot_station station;    /* 600 kB: not on the stack */

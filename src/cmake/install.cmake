@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 
-# The headers as they are installed, in one folder; examples are compiled with them.
+# The headers as they are installed, in one folder.
 set(header_folder ${CMAKE_BINARY_DIR}/include)
 set(header_stamp ${CMAKE_BINARY_DIR}/headers.stamp)
 add_custom_command(OUTPUT ${header_stamp} DEPENDS ${core_headers} ${generator} ${CMAKE_BINARY_DIR}/core_files.txt
@@ -13,8 +13,13 @@ add_custom_command(OUTPUT ${header_stamp} DEPENDS ${core_headers} ${generator} $
 add_custom_target(headers ALL DEPENDS ${header_stamp})
 install(DIRECTORY ${header_folder}/motionfmu DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
-# Cores have short names: their libraries get a folder of their own.
+# Cores have short names: their libraries get a folder of their own, and what they show gets the project's prefix, so
+# that a program may have a queue_push of its own.
 install(TARGETS ${cores} EXPORT motionfmu ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/motionfmu)
+install(CODE "foreach(core ${cores})
+    execute_process(COMMAND \"${CMAKE_OBJCOPY}\" --redefine-syms=${CMAKE_BINARY_DIR}/include/symbols.txt
+      \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/motionfmu/lib\${core}.a\" COMMAND_ERROR_IS_FATAL ANY)
+  endforeach()")
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/motionfmu)
 install(EXPORT motionfmu NAMESPACE motionfmu:: FILE motionfmuConfig.cmake DESTINATION ${package})
 file(STRINGS pyproject.toml version REGEX "^version")

@@ -99,6 +99,43 @@ def test_a_project_finds_the_package_in_c_and_cxx(prefix: Path, tmp_path: Path) 
     assert path == pytest.approx(2.1, abs=0.02)
 
 
+def test_installed_libraries_show_names_of_the_project_alone(prefix: Path) -> None:
+    found = output("nm", "-g", "--defined-only", *(prefix / "lib/motionfmu").glob("*.a"))
+    shown = {words[2] for line in found.splitlines() if len(words := line.split()) == 3}
+    assert len(shown) > 1400
+    assert {name for name in shown if not name.startswith("motionfmu_")} == set()
+
+
+def test_a_program_may_have_names_of_the_sources(prefix: Path, tmp_path: Path) -> None:
+    own = "int ring_push(void) { return 1; }\nint adc_start(void) { return 2; }\n"
+    call = (
+        "#include <motionfmu/station.h>\n#include <stdio.h>\nstatic struct station s;\n"
+        "int ring_push(void);\nint adc_start(void);\nint main(void)\n{\n"
+        "    struct station_config c = motionfmu_station_defaults();\n"
+        '    printf("%d %d\\n", motionfmu_station_start(&s, &c), ring_push() + adc_start());\n}\n'
+    )
+    (tmp_path / "own.c").write_text(own)
+    (tmp_path / "main.c").write_text("/* cc -O2 main.c own.c LIBRARIES */\n" + call)
+    flags = output(
+        "sh",
+        "-c",
+        f"PKG_CONFIG_PATH={prefix}/lib/pkgconfig pkg-config --cflags --libs motionfmu-station",
+    )
+    output(
+        "cc",
+        "-O2",
+        "-Wall",
+        "-Werror",
+        "main.c",
+        "own.c",
+        *flags.split(),
+        "-o",
+        "own",
+        cwd=tmp_path,
+    )
+    assert output(tmp_path / "own") == "0 3\n"
+
+
 @pytest.mark.parametrize("name", [e[1] for e in EXAMPLES])
 def test_every_example_is_in_the_readme(name: str) -> None:
     folder = ROOT / "examples" / name

@@ -215,12 +215,19 @@ def repacked(
 
 
 def headers(source: Path, out: Path) -> None:
-    """Write the headers of all cores into one folder, fit for C++."""
-    made = {f.name: f for core in cores.folders(source).values() for f in core.glob("*.h")}
-    for name, header in made.items():
-        _write(out / name, cores.cxx(header))
+    """Write the headers of all cores into one folder, fit for C++, with the names of the installed
+    libraries; beside it the list by which objcopy gives the libraries these names."""
+    files = [f for core in cores.folders(source).values() for f in sorted(core.glob("*.[ch]"))]
+    texts = {f: f.read_text() for f in files}
+    names = sources.shown(texts.values())
+    made = {f.name: sources.prefixed(cores.cxx(f), names) for f in files if f.suffix == ".h"}
+    made["short_names.h"] = sources.short_names(names)
+    for name, text in made.items():
+        _write(out / name, text)
     for old in {f.name for f in out.iterdir()} - set(made):
         (out / old).unlink()
+    rows = "".join(f"{name} {sources.PREFIX}{name}\n" for name in sorted(names))
+    _write(out.with_name("symbols.txt"), rows)
 
 
 def main(arguments: list[str]) -> int:

@@ -1,10 +1,11 @@
 """The C text that an FMU carries, as importers compile it or link it into a program."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from xml.etree import ElementTree as ET
 
 NAMES = "fmu_names.h"
+PREFIX = "motionfmu_"  # of every name that an installed library shows
 
 # What the objects show: functions and tables, inline functions of headers, what a list X(name, ..)
 # declares. The renaming of a name too much does no harm.
@@ -33,6 +34,43 @@ def shown(texts: Iterable[str]) -> set[str]:
         stems, listed = _STEM.findall(text), _LISTED.findall(text)
         found.update(stem + name for stem in stems for name in listed)
     return found
+
+
+def prefixed(text: str, names: Set[str]) -> str:
+    """A header whose functions have the project's prefix: where they are declared or called, where
+    a macro stands for one or joins a name to the stem of some. Other things may have the name of a
+    function, but not one of the library's calls, which begin with MCC_."""
+
+    def named(match: re.Match[str]) -> str:
+        return PREFIX + match[0] if match[0] in names else match[0]
+
+    def stem(match: re.Match[str]) -> str:
+        return PREFIX + match[0] if any(n.startswith(match[1]) for n in names) else match[0]
+
+    text = re.sub(r"\bMCC_\w+|\b[A-Za-z_]\w*(?=\s*\()", named, text)
+    text = re.sub(r"(?<=\s)(?<!struct )(?<!enum )\b([A-Za-z]\w*_)(?=##)", stem, text)
+    return re.sub(
+        r"^(#define \w+ +)(\w+)\b",
+        lambda m: m[1] + (PREFIX * (m[2] in names)) + m[2],
+        text,
+        flags=re.M,
+    )
+
+
+def short_names(names: Iterable[str]) -> str:
+    """Text of the header by which functions of installed libraries are called as in the sources."""
+    rows = "".join(f"#define {name}(...) {PREFIX}{name}(__VA_ARGS__)\n" for name in sorted(names))
+    return f"""\
+/* short_names - calls without the prefix {PREFIX}, as the documents and sources have them.
+ * Leave it out in a program that has such names of its own. */
+#ifndef MOTIONFMU_SHORT_NAMES_H
+#define MOTIONFMU_SHORT_NAMES_H
+
+#include <stddef.h> /* so that it is a text of C by itself */
+
+{rows}
+#endif
+"""
 
 
 def _systems(text: str) -> Iterator[str]:
