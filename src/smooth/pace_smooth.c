@@ -169,11 +169,12 @@ static void brake(struct ride *r)
             return;
         }
     }
-    if (lands) {
+    const bool steers = pace_plan_steer(held(r), &hard, &spot, &s, &steer);
+    if (lands || (!steers && spot.state.b < 0.0)) {
         land(r);
         return;
     }
-    if (!pace_plan_steer(held(r), &hard, &spot, &s, &steer)) {
+    if (!steers) {      /* a state from outside, beyond all limits */
         go(r, &hard, spot, 0.0, stride);
         return;
     }
