@@ -1,5 +1,6 @@
 """motionfmu export of an FMU with its program inside, and of systems by the same words."""
 
+import re
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from console import within
 from fmpy import read_model_description, simulate_fmu
 
 import motionfmu
+from motionfmu.analysis.gcode import read
 from motionfmu.base.errors import InputError
 from motionfmu.export.packed import packed
 from motionfmu.export.system_fmu import as_fmu as export
@@ -49,14 +51,114 @@ def test_any_fmu_with_files_is_packed(tmp_path: Path) -> None:
         "group1_program": str(tmp_path / "a.ngc"),
         "group2_program": (tmp_path / "b/a.ngc").as_uri(),
         "group2_card": 2,
+        "group2_channel": [1, 2, 3, 0, 0, 0],
         "group3_program": "resource:there already",
     }
     target = tmp_path / "g.fmu"
-    assert packed("mcc_groups", target, 3, given) == ["a.ngc", "group2_program/a.ngc"]
+    assert packed("mcc_groups", target, 3, given) == (["a.ngc", "group2_program/a.ngc"], "")
     with zipfile.ZipFile(target) as archive:
         xml = archive.read("modelDescription.xml").decode()
         assert archive.read("resources/group2_program/a.ngc").decode() == TEXT
     assert '"resource:group2_program/a.ngc"' in xml and '"resource:there already"' in xml
+
+
+PROGRAMS = {
+    "wrong.ngc": "G1 X10 F600\nG1 X5 Q3\nY[1/0]\nM2\n",
+    "uvw.ngc": "G1 X10 U5 F600\nM2\n",
+    "far.ngc": "G1 X50 F600\nM2\n",
+    "abc.ngc": "G1 X10 C5 F600\nM2\n",
+    "goto.ngc": "#1=5\nIF [#1 EQ 5] GOTO 3\nN3 G1 X#1 F600\nM30\n",
+    "both.ngc": "G1 X10 U5 F600\nG1 X1 Q3\nM2\n",
+    "slash.ngc": "/G1 X1 Q3\nG1 X1 F600\nM2\n",
+    "tools.ngc": "T5 M6\nG1 X1 F600\nM2\n",
+    "wrong.job": "NOP\nMOVY P1 VJ=50\nEND\n",
+    "point.job": "NOP\nMOVJ P1 VJ=50\nEND\n",
+    "points.txt": "",
+    "tools.tbl": "T1 P1 Z10\n",
+}
+# What is wrong for any machine that has the values given: the lines of the faults.
+REFUSED: dict[tuple[str, ...], list[int]] = {
+    ("mcc", "--program", "wrong.ngc"): [2, 3],
+    ("mcc", "--program", "both.ngc"): [2],
+    ("mcc", "--program", "uvw.ngc", "--set", "active=[true,true,true,false,false,true]"): [1],
+    ("mcc", "--program", "abc.ngc", "--set", "rotary_names=false"): [1],
+    ("mcc", "--program", "goto.ngc", "--set", "fanuc=false"): [2],
+    ("mcc", "--program", "slash.ngc", "--set", "block_delete=false"): [1],
+    ("mcc", "--program", "tools.ngc", "--set", "tool_table=tools.tbl"): [1],
+    ("mcc", "--program", "far.ngc", "--set", "high_limit=40", "--set", "check_over_travel=true"): [
+        1
+    ],
+    ("mcc_groups", "--set", "group1_program=wrong.ngc"): [2, 3],
+    ("mcc_groups", "--set", "group1_program=goto.ngc"): [2],
+    ("soft_controller", "--program", "wrong.ngc"): [2, 3],
+    ("soft_controller", "--program", "wrong.job", "--set", "points=points.txt"): [2],
+}
+# What other values make good: as it is the FMU tells this line.
+WARNED: dict[tuple[str, ...], int] = {
+    ("mcc", "--program", "uvw.ngc"): 1,
+    ("mcc", "--program", "abc.ngc"): 1,
+    ("mcc", "--program", "goto.ngc"): 2,
+    ("mcc_groups", "--set", "group1_program=uvw.ngc"): 1,
+    ("soft_controller", "--program", "point.job"): 2,
+}
+GOOD = (
+    ("mcc", "--program", "far.ngc"),
+    ("mcc", "--program", "far.ngc", "--set", "high_limit=40"),
+    ("mcc", "--program", "slash.ngc"),
+    ("mcc", "--program", "tools.ngc"),
+    ("mcc", "--program", "uvw.ngc", "--set", "active=true", "--set", "path_file=written.txt"),
+    ("mcc", "--program", "goto.ngc", "--set", "fanuc=true"),
+)
+
+
+def export_of(line: tuple[str, ...], folder: Path) -> Any:
+    """The command in a folder with all programs, and the lines that its messages name."""
+    for name, text in PROGRAMS.items():
+        (folder / name).write_text(text)
+    done = within("export", *line, "-o", "x.fmu", folder=folder)
+    told = (done.stdout + done.stderr).replace("\n", " ")
+    return done, [int(n) for n in re.findall(r"\.(?:ngc|job): line (\d+): ", told)]
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_a_program_that_no_machine_takes_is_not_packed(
+    line: tuple[str, ...], tmp_path: Path
+) -> None:
+    done, lines = export_of(line, tmp_path)
+    assert (done.returncode, lines) == (2, REFUSED[line]), done.stderr
+    assert not (tmp_path / "x.fmu").exists()
+    text = PROGRAMS["wrong.ngc"]
+    if "wrong.ngc" in line:  # in the words of `motionfmu gcode`
+        assert all(str(fault).partition(": ")[2] in done.stderr for fault in read(text).faults)
+
+
+@pytest.mark.parametrize("line", WARNED)
+def test_a_program_that_other_values_make_good_is_packed_with_a_warning(
+    line: tuple[str, ...], tmp_path: Path
+) -> None:
+    done, lines = export_of(line, tmp_path)
+    assert (done.returncode, lines) == (0, [WARNED[line]]), done.stderr
+    assert "warning until other values are set: " in done.stdout.replace("\n", " ")
+    assert (tmp_path / "x.fmu").exists()
+
+
+@pytest.mark.parametrize("line", GOOD)
+def test_a_good_program_is_packed_without_a_word(line: tuple[str, ...], tmp_path: Path) -> None:
+    done, lines = export_of(line, tmp_path)
+    assert (done.returncode, lines) == (0, []) and "warning" not in done.stdout
+    assert (tmp_path / "x.fmu").exists() and not (tmp_path / "written.txt").exists()
+
+
+@pytest.mark.parametrize("kind", ["--fmu", "--ssp"])
+def test_a_scenario_whose_program_is_wrong_is_not_exported(kind: str, tmp_path: Path) -> None:
+    """Its machine is known: an axis that it has not is a fault, too."""
+    for program, wanted in (("wrong.ngc", [2, 3]), ("uvw.ngc", [1]), ("far.ngc", [])):
+        file = tmp_path / "x.fmu"
+        line = (str(ROOT / "scenarios/circle"), kind, "--set", f"mcc.program={tmp_path / program}")
+        done, lines = export_of(line, tmp_path)
+        assert (done.returncode, lines) == (2 if wanted else 0, wanted), done.stderr
+        assert file.exists() == (not wanted)
+        file.unlink(missing_ok=True)
 
 
 WRONG = {

@@ -276,3 +276,19 @@ def test_override_of_a_corner() -> None:
     twice = ride(told, limits(1000.0), Orders(overrides=[2.0])).time
     assert twice == pytest.approx(ride(fast, limits(1000.0)).time, rel=1e-12)
     assert twice < ride(told, limits(1000.0)).time
+
+
+@pytest.mark.parametrize("override", [2.0, 1.0, 0.1, 0.01, 3e-3, 1e-3, 5e-4])
+def test_a_hold_of_a_slow_ride_brings_it_to_rest(override: float) -> None:
+    """However slow it goes: the quickest way to rest is two ramps of the jerk, or with steady ones
+    between; from nearly rest the strides take up to five times as long."""
+    chain, acc, jerk = Chain(feed=50.0), 1000.0, 20000.0
+    chain.line(place(), place(200.0))
+    orders = Orders(1e-4, [override] * 3000 + [0.0], 1000, 9000)
+    steps = ride(chain.told(), limits(acc, 0.0, jerk), orders).steps
+    v = steps["rate"][2999]
+    assert v == pytest.approx(50.0 * override, rel=0.05)
+    best = 2.0 * np.sqrt(v / jerk) if v < acc**2 / jerk else v / acc + acc / jerk
+    rests = np.flatnonzero(steps["rate"][3000:] == 0.0)
+    assert len(rests) and 0.98 * best - 1e-4 < (rests[0] + 1) * 1e-4 < 5.0 * best
+    within(steps, limits(acc, 0.0, jerk), 1e-4)

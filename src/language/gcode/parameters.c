@@ -32,7 +32,7 @@ static bool machine_value(const struct interpreter *in, const struct program *p,
         frame_program(in, point, point);                /* the axes in their order */
         *value = point[(n - 1) % 20] / (in->inch && !(p->angles && (n - 1) % 20 >= 3) ? 25.4 : 1.0);
     } else if (n == 5599) {             /* (DEBUG, ) comments get a note */
-        *value = 1.0 - in->parameters.quiet;
+        *value = in->parameters.debug;
     } else if (n >= 5420 && n <= 5428) {        /* of the program */
         frame_program(in, point, point);
         *value = coordinate(in, p, n - 5420, point);
@@ -196,7 +196,7 @@ enum fault parameters_set(struct interpreter *in, const struct program *p,
         return FAULT_FIXED;
     }
     if (which->number == 5599) {
-        all->quiet = 1.0 - value;
+        all->debug = value;
         return FAULT_NONE;
     }
     if (which->number) {

@@ -42,7 +42,7 @@ struct parameters {
     uint64_t given[PARAMETERS_PAGES];       /* bits: has been set; what has not is 0 */
     struct parameter_named named[PARAMETERS_NAMED];
     int32_t names;
-    double quiet;               /* 1 - #5599 */
+    double debug;               /* #5599 */
 };
 
 struct interpreter;

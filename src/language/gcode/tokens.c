@@ -61,8 +61,8 @@ static bool acts(struct reading s)
     while (i < sizeof words / sizeof *words && !reading_word(&s, words[i])) {
         i++;
     }
-    if (i == 1 && s.in && s.in->parameters.quiet >= 1.0) {
-        return false;           /* #5599 is 0 or less */
+    if (i == 1 && s.in && s.in->parameters.debug <= 0.0) {
+        return false;
     }
     return i < sizeof words / sizeof *words;
 }

@@ -51,7 +51,7 @@ bool cycles_code(int code)
     return code >= 730 && row_of(code) >= 0;
 }
 
-static bool taps(int code)
+bool cycles_taps(int code)
 {
     return code == 740 || code == 840;
 }
@@ -66,7 +66,7 @@ static bool pecks(int code)
 static bool takes(int code, char letter)
 {
     return strchr(rows[row_of(code)].words, letter) ||
-           (letter == 'P' && (taps(code) || pecks(code)));
+           (letter == 'P' && (cycles_taps(code) || pecks(code)));
 }
 
 void cycles_modes(struct interpreter *in, const struct block *b)
@@ -101,7 +101,7 @@ static enum fault go(struct interpreter *in, const struct program *p, const doub
     place_at(in, program, height, end);
     const struct cycle *k = &in->cycle;
     block_at_line(in, &k->line, FAULT_NONE, r);
-    return block_straight(in, p, end, rapid ? 0.0 : k->feed, taps(k->code), r);
+    return block_straight(in, p, end, rapid ? 0.0 : k->feed, cycles_taps(k->code), r);
 }
 
 /* A word that the cycle keeps: from the block, else *value stays as it was in the series. */
@@ -150,7 +150,7 @@ static enum fault keep_words(struct interpreter *in, const struct program *p,
     }
     if (f == FAULT_NONE && takes(in->motion, 'P')) {
         k->dwell = kept ? k->dwell : 0.0;
-        f = keep(b, kept || taps(in->motion) || pecks(in->motion), 'P', 1.0, &k->dwell,
+        f = keep(b, kept || cycles_taps(in->motion) || pecks(in->motion), 'P', 1.0, &k->dwell,
                  FAULT_CYCLE_P, r);
         k->dwell = wait ? block_seconds(p, wait) : k->dwell;
     }
@@ -236,14 +236,14 @@ enum fault cycles_block(struct interpreter *in, const struct program *p, const s
              : extra ? tokens_at_word(r, FAULT_UNUSED, extra) : FAULT_NONE;
     }
     if ((takes(code, 'I') || (takes(code, 'P') && code != 820 && code != 890 && !pecks(code))) &&
-        (taps(code) ? turning != (code == 840 ? 1 : -1) : turning == 0)) {
+        (cycles_taps(code) ? turning != (code == 840 ? 1 : -1) : turning == 0)) {
         return tokens_at_line(r, FAULT_CYCLE_SPINDLE, &b->tokens);
     }
     if (in->words.feed_mode == 930) {
         return tokens_at_line(r, FAULT_CYCLE_FEED, &b->tokens);
     }
     k->line = block_line(in, b, r);
-    enum fault f = feed_of(in, p, b, 0.0, taps(code), &k->feed, r);
+    enum fault f = feed_of(in, p, b, 0.0, cycles_taps(code), &k->feed, r);
     if (f == FAULT_NONE) {
         f = keep_words(in, p, b, kept, r);
     }

@@ -12,6 +12,9 @@
 /* Whether a code of motion is a canned cycle. */
 bool cycles_code(int code);
 
+/* Whether it is a tap, whose feed is that of its spindle's thread and never cut down. */
+bool cycles_taps(int code);
+
 /* G98, G99 of a block; any other code of motion ends a series of cycles. */
 void cycles_modes(struct interpreter *in, const struct block *b);
 

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "cycles.h"
 #include "el_extremes.h"
 
 /* So that a path of any length has an end. [mm/s] */
@@ -48,7 +49,8 @@ enum fault feed_set(struct interpreter *in, const struct program *p, const struc
         in->words.per_turn = f->value * b->scale;
     } else if (in->words.feed_mode == PER_MINUTE) {
         const double feed = f->value * b->scale / 60.0;
-        const enum fault fault = check(p, feed, false, f, &b->tokens, r);
+        const bool tap = cycles_taps(in->motion) && gcode_first(&b->g, BLOCK_AXES "@^");
+        const enum fault fault = check(p, feed, tap, f, &b->tokens, r);
         in->feed = fault == FAULT_NONE ? feed : in->feed;
         return fault;
     }

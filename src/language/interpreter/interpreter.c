@@ -30,6 +30,7 @@ void interpreter_start(struct interpreter *in, const double point[AXES], double 
     in->plane = PATH_XY;
     in->feed = feed;
     in->words.feed_mode = 940;
+    in->parameters.debug = 1.0;
     memcpy(in->point, point, sizeof in->point);
     memcpy(in->origin, origin, INTERPRETER_SYSTEMS * sizeof *in->origin);
 }

@@ -14,6 +14,10 @@ enum { HALVES = 4, STEPS = 4096 };
 /* A way that one jerk drives at so much of what the place allows needs no plan. */
 static const double HOPS = 0.9;
 
+/* From nearly rest without an acceleration the jerk stops the motion within a stride, which lets it
+ * gain a thousandfold of x (pace_box): over such a share of it no more than half of x is lost. */
+static const double NEAR_REST = 1.0 / 64.0;
+
 /* Ways and states that differ by such a share are the same. */
 static const double SAME = 1e-9;
 
@@ -149,11 +153,15 @@ static void brake(struct ride *r)
     const struct pace_road hard = road(r, -1.0);
     const struct pace_spot spot = pace_plan_spot(held(r), &hard, r->at.here, r->at.state);
     const struct pace_box *g = pace_road_box(&hard, spot.box);
-    const double stride = pace_box_stride(g, spot.state, pace_plan_rest(held(r), &hard, &spot));
     const bool lands = pace_road_lands(&hard, spot.at, spot.box, spot.state);
+    double stride = pace_box_stride(g, spot.state, pace_plan_rest(held(r), &hard, &spot));
     double s, steer, c;
 
-    const bool turns = pace_box_turn(g, spot.state, stride, -1.0, &c);
+    bool turns = pace_box_turn(g, spot.state, stride, -1.0, &c);
+    if (turns && c == 0.0 && fabs(spot.state.b) * stride <= SAME * spot.state.x) {
+        stride *= NEAR_REST;
+        turns = pace_box_turn(g, spot.state, stride, -1.0, &c);
+    }
     if (turns && good(r, &hard, spot, c, stride, true)) {
         const struct pace_state to = pace_step_to(spot.state, c, stride);
         if (to.b >= 0.0 || !lands || pace_road_lands(&hard, spot.at + stride, spot.box, to)) {
@@ -161,11 +169,12 @@ static void brake(struct ride *r)
             return;
         }
     }
-    if (lands) {
+    const bool steers = pace_plan_steer(held(r), &hard, &spot, &s, &steer);
+    if (lands || (!steers && spot.state.b < 0.0)) {
         land(r);
         return;
     }
-    if (!pace_plan_steer(held(r), &hard, &spot, &s, &steer)) {
+    if (!steers) {      /* a state from outside, beyond all limits */
         go(r, &hard, spot, 0.0, stride);
         return;
     }

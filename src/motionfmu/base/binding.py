@@ -1,5 +1,6 @@
 """What the C stations have in common for Python: their library, structs, a run on the clock."""
 
+import contextlib
 import ctypes
 import functools
 from collections.abc import Collection, Iterable
@@ -154,16 +155,18 @@ class Struct:
             if kind == "b" and not np.isin(given, (0, 1)).all():
                 raise ValueError
             if view.dtype.kind in "iu" and kind == "f":
-                given = np.rint(given * float(f.times) / f.over)
+                with np.errstate(over="ignore", invalid="ignore"):  # told below
+                    given = np.rint(given * float(f.times) / f.over)
                 if not (np.abs(given) < _CLOCKS_MAX).all():
                     raise ValueError
             elif f.times != f.over:
-                given = given == 0 if kind == "b" else given * float(f.times) / f.over
+                with np.errstate(over="ignore"):  # without end, which its user refuses
+                    given = given == 0 if kind == "b" else given * float(f.times) / f.over
             if kind in "iu" and not np.array_equal(given.astype(view.dtype), given):
                 raise ValueError
             if kind == "S" and len(value) != 1:
                 raise ValueError
-        except (ValueError, TypeError, AttributeError):
+        except (ValueError, TypeError, AttributeError, OverflowError):
             wanted = {"i": "whole number", "u": "whole number", "f": "number", "b": "truth value"}
             shape = f" or {len(view)} of them" if len(view) > 1 else ""
             kind_name = wanted.get(kind, "letter")
@@ -182,14 +185,15 @@ def whole(value: float) -> int:
     if isinstance(value, int | float | np.number) and -(2**31) <= value < 2**31:
         if value == int(value):
             return int(value)
-    raise InputError(f"{value!r}: a whole number of 32 bits wanted")
+    raise InputError(f"{value!r:.80}: a whole number of 32 bits wanted")
 
 
 def real(value: float) -> float:
     """Take a number; InputError if it is none."""
     if isinstance(value, int | float | np.number) and not isinstance(value, bool):
-        return float(value)
-    raise InputError(f"{value!r}: a number wanted")
+        with contextlib.suppress(OverflowError):  # an int that is beyond all floats
+            return float(value)
+    raise InputError(f"{value!r:.80}: a number wanted")
 
 
 def text(value: str) -> bytes:
@@ -347,8 +351,8 @@ class Station(Generic[R]):
         if clocks < 1 or not 0 <= real(seconds) <= _SECOND_MAX:
             raise InputError(f"step {step} s, {seconds} s: cannot be run")
         first = self.read()
-        if unknown := [n for n in names if n not in first.__dict__]:
-            raise InputError(unread(unknown[0], first.__dict__))
+        if unknown := [n for n in names if not isinstance(n, str) or n not in first.__dict__]:
+            raise InputError(unread(text(unknown[0]).decode(), first.__dict__))
         rows = [first]
         for k in range(1, round(seconds * CLOCK_HZ) // clocks + 1):
             rows.append(self.run_to(first.clock + k * clocks))

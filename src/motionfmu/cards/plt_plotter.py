@@ -67,7 +67,7 @@ class Plotter:
             elif pair == "PE":
                 self._encoded()
             elif pair in _FILLS:
-                self._fill(pair)
+                self._fill(pair, numbers)
             elif pair in _NEXT_PAGE:
                 self._next_page()
             else:
@@ -233,16 +233,27 @@ class Plotter:
         self._around(points, start)
 
     def _edge_rectangle(self, numbers: list[float]) -> None:
-        self.scan.wants(numbers, 2, 2)
-        (x, y), (ex, ey) = self.frame.user(self.at), numbers
-        self._around([ex, y, ex, ey, x, ey, x, y], [x, y])
+        self._around(*self._rectangle(numbers))
 
     def _edge_rectangle_relative(self, numbers: list[float]) -> None:
-        self.scan.wants(numbers, 2, 2)
-        x, y = self.frame.user(self.at)
-        self._edge_rectangle([x + numbers[0], y + numbers[1]])
+        self._around(*self._rectangle_relative(numbers))
 
     def _edge_wedge(self, numbers: list[float]) -> None:
+        self._around(*self._wedge(numbers))
+
+    # Corners and start of closed lines, which become the polygon that EP edges
+
+    def _rectangle(self, numbers: list[float]) -> tuple[list[float], list[float]]:
+        self.scan.wants(numbers, 2, 2)
+        (x, y), (ex, ey) = self.frame.user(self.at), numbers
+        return self._keep([ex, y, ex, ey, x, ey, x, y], [x, y])
+
+    def _rectangle_relative(self, numbers: list[float]) -> tuple[list[float], list[float]]:
+        self.scan.wants(numbers, 2, 2)
+        x, y = self.frame.user(self.at)
+        return self._rectangle([x + numbers[0], y + numbers[1]])
+
+    def _wedge(self, numbers: list[float]) -> tuple[list[float], list[float]]:
         self.scan.wants(numbers, 3, 4)
         at, (x, y) = self.at, self.frame.user(self.at)
         radius, start = numbers[0], numbers[1] * _DEGREE
@@ -250,7 +261,13 @@ class Plotter:
         self.at = self.frame.place(*first)
         points = self._arc((x, y), numbers[2], numbers[3] if len(numbers) > 3 else None)
         self.at = at
-        self._around([*first, *points, x, y], [x, y])
+        return self._keep([*first, *points, x, y], [x, y])
+
+    def _keep(self, corners: list[float], start: list[float]) -> tuple[list[float], list[float]]:
+        if self.polygon is None:
+            places = zip(*self.frame.places([*start, *corners], False, self.at), strict=True)
+            self.kept = [[(x, y, k > 0) for k, (x, y) in enumerate(places)]]
+        return corners, start
 
     def _bezier(self, numbers: list[float]) -> None:
         """BZ: curves by three control points each."""
@@ -309,9 +326,11 @@ class Plotter:
         if self.at != at:
             self._move([at[0]], [at[1]], False)
 
-    def _fill(self, pair: str) -> None:
+    def _fill(self, pair: str, numbers: list[float]) -> None:
         if not self.fills:
             self.scan.refuse("filled areas are not drawn")
+        if (area := _FILLS[pair]) is not None:
+            area(self, numbers)
         self.scan.skip(pair)
 
     # Mapping and tools
@@ -386,7 +405,12 @@ class Plotter:
 
 
 _NEXT_PAGE = ("PG", "AF", "AH", "FR", "BP")
-_FILLS = ("FP", "RA", "RR", "WG")
+_FILLS = {
+    "FP": None,
+    "RA": Plotter._rectangle,
+    "RR": Plotter._rectangle_relative,
+    "WG": Plotter._wedge,
+}
 _DO = {
     "PU": Plotter._pen_up,
     "PD": Plotter._pen_down,

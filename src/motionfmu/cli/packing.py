@@ -16,11 +16,14 @@ def pack(
     name: str, target: Path | None, fmi: int, program: Path | None, given: Mapping[str, Any]
 ) -> None:
     """Write an FMU with its files inside, and say what it has."""
+    from motionfmu.cli.run import warnings
     from motionfmu.export.packed import packed, program_of
 
     values = {key.removeprefix(f"{name}."): value for key, value in given.items()}
     if program is not None:
         values[program_of(name)] = str(program)
     file = target or Path(f"{name}.fmu")
-    inside = ", ".join(packed(name, file, fmi, values)) or "nothing"
+    files, refused = packed(name, file, fmi, values)
+    inside = ", ".join(files) or "nothing"
     print(f"{file}: FMI {fmi}, {name} with {inside} in its resources, values set: {len(values)}")
+    warnings([f"until other values are set: {line}" for line in refused.splitlines()])

@@ -7,40 +7,46 @@ from typing import Any
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.toml_lines import is_file
 from motionfmu.export.chosen import check_version
+from motionfmu.export.judged import check_alone
 from motionfmu.export.resources import Resources
 from motionfmu.fmu import places
 from motionfmu.fmu.pack import repacked
 from motionfmu.fmu.start_values import texts
 from motionfmu.scenarios import fmus
-from motionfmu.scenarios.system import End
+from motionfmu.scenarios.system import End, Setting
 from motionfmu.scenarios.values import values_of
 
 
-def packed(name: str, target: Path, fmi: int, given: Mapping[str, Any]) -> list[str]:
+def packed(name: str, target: Path, fmi: int, given: Mapping[str, Any]) -> tuple[list[str], str]:
     """Write a built FMU that begins with values given; files that it reads become resources.
 
-    Returns the names of these. Paths are from the working directory.
+    Returns the names of these, and why it does not begin until other values are set; empty if it
+    does. A part program that is wrong for any machine is an InputError. Paths are from the working
+    directory.
     """
     check_version(fmi)
     ports = fmus.ports(name)
     resources = Resources()
-    starts = {}
+    starts, settings = {}, []
     for variable, value in given.items():
         if variable not in ports:
             told = f"{name} has no variable {variable!r}"
             raise InputError(told + suggestion(variable, ports))
         try:
-            values = values_of(End(name, ports[variable]), value)
+            end = End(name, ports[variable])
+            values = values_of(end, value)
         except ValueError as error:
             raise InputError(str(error)) from None
+        settings.append(Setting(end, values))
         said = texts(values)
         if ports[variable].file == "read" and (file := places.local(said[0])) is not None:
             if not is_file(file):
                 raise InputError(f"{variable}: there is no file {file}")
             said = (resources.added(file, variable),)
         starts[variable] = " ".join(said)
+    refused = check_alone(name, settings)
     repacked(fmus.fmu_path(name, fmi), target, resources.files, starts)
-    return sorted(resources.files)
+    return sorted(resources.files), refused
 
 
 def program_of(name: str) -> str:

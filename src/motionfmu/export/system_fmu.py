@@ -12,6 +12,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.platforms import Platform
 from motionfmu.base.toml_lines import is_file
 from motionfmu.export.chosen import also_shown, check_version
+from motionfmu.export.judged import check_scenario
 from motionfmu.export.resources import Resources
 from motionfmu.fmu import shown
 from motionfmu.fmu.pack import RESOURCES, write_whole
@@ -75,6 +76,7 @@ def as_fmu(
     """
     check_version(fmi)
     system, resources = scenario.resolved(Options(set=given)), Resources()
+    check_scenario(scenario, system, given)
     system = placed(system, carrying(system))
     settings = tuple(resources.inside(s) for s in system.settings)
     ends = also_shown(scenario, choice.inner, ("output",))

@@ -10,6 +10,7 @@ from motionfmu import ssp
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file
 from motionfmu.export.chosen import VERSIONS, also_shown, check_version
+from motionfmu.export.judged import check_scenario
 from motionfmu.export.resources import Resources
 from motionfmu.export.ssp_values import kind, values
 from motionfmu.export.stimuli import FMU, Stimuli, stimuli
@@ -72,6 +73,7 @@ def as_ssp(
     """
     check_version(fmi)
     system = scenario.resolved(Options(set=given))
+    check_scenario(scenario, system, given)
     _check_parts(scenario.name, system, fmi)
     shown = also_shown(scenario, inner, ("output", "input"))
     driving, left_out = stimuli(system)

@@ -113,6 +113,39 @@ static void bare(void)
     CHECK(list.notes == 1 && list.note[0].line == 1);
 }
 
+/* Where a tap has an F above the highest feed there is one fault and no note that it is cut down,
+ * which a tap never is. The note is for an F by which something else may move. */
+static void taps(void)
+{
+    static const struct { const char *text; int fault, at, note; } rows[] = {
+        { "S9000 M3 G0 Z5\nG84 X2 Z-1 R2 F90000\n", 2, 14, 0 },
+        { "S9000 M4 G0 Z5\nG74 X2 Z-1 R2 F90000\n", 2, 14, 0 },
+        { "S9000 M4 G0 Z5\nG84 X2 Z-1 R2 F90000\n", 2, 14, 0 },     /* turns the wrong way */
+        { "S9000 M3 G0 Z5 F600\nG84 X2 Z-1 R2\nX3 F90000\n", 3, 3, 0 },
+        { "G95 F10 S9000 M3 G0 Z5\nG84 X2 Z-1 R2\n", 2, 0, 0 },
+        { "S9000 M3 G0 Z5 F90000\nG84 X2 Z-1 R2\n", 2, 0, 1 },
+        { "S9000 M3 G0 Z5 F600\nG84 X2 Z-1 R2\nF90000\nG80 G1 X1\n", 0, 0, 3 },
+    };
+    struct reader x;
+
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        begin(&x, rows[i].text);
+        x.program.strict_feed = false;
+        interpreter_check_all(&x.in, &x.program, &list);
+        CHECK_EQ(list.count, rows[i].fault > 0);
+        CHECK_EQ(list.notes, rows[i].note > 0);
+        if (list.count > 0) {
+            CHECK(list.of[0].fault == FAULT_FEED && list.of[0].line == rows[i].fault);
+            CHECK_EQ(list.of[0].at, rows[i].at);
+            CHECK_NEAR(list.of[0].value, 90000.0, 1e-9);
+        }
+        if (list.notes > 0) {
+            CHECK(list.note[0].fault == FAULT_NOTE_FEED && list.note[0].line == rows[i].note);
+        }
+    }
+    LINES("S9000 M3 G0 Z5\nG84 X2 Z-1 R2 F90000\nX3\nG80 G1 X4\n", 2);
+}
+
 /* A program that runs for ever is checked so far and no further. */
 static void endless(void)
 {
@@ -173,6 +206,7 @@ int main(void)
     places();
     many();
     notes();
+    taps();
     bare();
     endless();
     bounds();

@@ -253,6 +253,30 @@ static void order(void)
     CHECK_EQ(next(&x), -1);
 }
 
+/* A number that a program may set reads back to the bit, whatever its value; #5599 begins as 1. */
+static void read_back(void)
+{
+    static const double values[] = { 0.1, 1.0, 0.0, -0.0, -2.0, 1e-17, 0x1p-1074, 1e308, -1e308 };
+    static const int32_t numbers[] = { 1, 5000, 5061, 5070, 5599 };
+    struct reader x;
+    double value;
+
+    begin(&x, "");
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+        const struct parameter which = { .number = numbers[k] };
+        CHECK_EQ(parameters_get(&x.in, &x.program, &which, &value), FAULT_NONE);
+        CHECK(value == (numbers[k] == 5599 ? 1.0 : 0.0));
+        for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+            CHECK_EQ(parameters_set(&x.in, &x.program, &which, values[i]), FAULT_NONE);
+            CHECK_EQ(parameters_get(&x.in, &x.program, &which, &value), FAULT_NONE);
+            CHECK(memcmp(&value, &values[i], sizeof value) == 0);
+        }
+    }
+    begin(&x, "#5599 = 0.1\nG1 X#5599\n");
+    CHECK_EQ(next(&x), COMMAND_LINE);
+    CHECK(x.c.path.end[0] == 0.1);
+}
+
 int main(void)
 {
     block_delete();
@@ -266,5 +290,6 @@ int main(void)
     digital();
     safety_line();
     order();
+    read_back();
     return check_result();
 }

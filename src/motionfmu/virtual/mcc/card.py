@@ -3,12 +3,14 @@
 import ctypes
 from typing import Any
 
-from motionfmu.base.binding import Station, Struct, Values, library, real
+from motionfmu.base.binding import Station, Struct, Values, library, real, whole
 from motionfmu.base.errors import InputError
 from motionfmu.virtual.mcc.state import Mcc, configuration
 
 # What the motor of an axis follows: setting output_mode.
 PULSES, LOOP, SOFTWARE = 0, 1, 2
+# Where an encoder may stand: QUADRATURE_PHASE_MAX of src/pulse, four counts a line period.
+_COUNTS_MAX = 2.0**52
 # Of enum station_status.
 _MOTOR_LOST = 6
 
@@ -117,8 +119,9 @@ class VirtualCard(Station[Reading]):
             There is no such switch or axis.
         """
         if name not in ("home", "up", "down") or not all(a in range(6) for a in axes):
-            raise InputError(f"switch {name!r} of axes {axes}: home, up or down of 0 .. 5 wanted")
-        self._state[name] = sum(1 << a for a in set(axes))
+            told = f"switch {name!r:.80} of axes {axes!r:.80}: home, up or down of 0 .. 5 wanted"
+            raise InputError(told)
+        self._state[name] = sum(1 << a for a in set(map(whole, axes)))
 
     def set_encoder(self, encoder: int, counts: float) -> None:
         """Turn a spare encoder, a hand wheel for one.
@@ -133,13 +136,14 @@ class VirtualCard(Station[Reading]):
         Raises
         ------
         InputError
-            There is no such encoder.
+            There is no such encoder, or no such place.
         """
-        real(counts)
+        if not abs(real(counts)) <= _COUNTS_MAX:
+            raise InputError(f"counts = {counts!r:.80}: at most 2^52 either way wanted")
         if encoder not in (6, 7, 8):
-            raise InputError(f"encoder {encoder}: 6 .. 8 wanted; 0 .. 5 are the motors'")
+            raise InputError(f"encoder {encoder!r:.80}: 6 .. 8 wanted; 0 .. 5 are the motors'")
         phase = self._state["phase"]
-        phase[encoder] = counts / 4.0
+        phase[whole(encoder)] = real(counts) / 4.0
         self._state["phase"] = phase
 
     def set_stop(self, pressed: bool) -> None:

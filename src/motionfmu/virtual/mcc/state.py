@@ -19,6 +19,7 @@ from motionfmu.virtual.mcc.settings import Settings
 
 # Answers of task_status.
 RUNNING, STOPPED, HOLD, DELAY, BLOCK, WHEEL = range(6)
+_FRAMES = 65536  # DDA times for which there is room at a time
 
 
 def configuration(settings: dict[str, Any]) -> Struct:
@@ -260,9 +261,12 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         """
         if whole(count) < 0:
             raise InputError(f"count = {count!r}: 0 or more wanted")
-        frames = np.zeros((whole(count), AXES), np.int32)
-        where = frames.ctypes.data_as(ctypes.c_void_p)
-        n = self._library.binding_take(
-            self._pointer, *self._program(), where, ctypes.c_int32(count)
-        )
-        return frames[:n]
+        frames = [np.zeros((0, AXES), np.int32)]
+        left = whole(count)
+        while left > 0:
+            part = np.zeros((min(left, _FRAMES), AXES), np.int32)
+            where, most = part.ctypes.data_as(ctypes.c_void_p), ctypes.c_int32(len(part))
+            n = self._library.binding_take(self._pointer, *self._program(), where, most)
+            frames.append(part[:n])
+            left = left - n if n == len(part) else 0
+        return np.concatenate(frames)

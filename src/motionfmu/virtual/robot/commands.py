@@ -10,7 +10,15 @@ from motionfmu.analysis.gcode.program import Texts
 from motionfmu.base.binding import Struct, library, text
 from motionfmu.base.errors import suggestion
 from motionfmu.virtual.robot.kinematics import Kinematics, pose_of
-from motionfmu.virtual.robot.refusal import RobotError, bounded, message, numbers, refused, within
+from motionfmu.virtual.robot.refusal import (
+    RobotError,
+    bounded,
+    message,
+    numbers,
+    refused,
+    whole_within,
+    within,
+)
 
 _JOINTS, _LINE, _CIRCLE = range(3)
 _SINGULAR = {"slow": 0, "refuse": 1, "wrist": 2}
@@ -75,7 +83,7 @@ class Commands:
         if mode not in _SINGULAR:
             raise RobotError(f"singular = {mode!r}: one of {', '.join(_SINGULAR)} is wanted")
         move["kind"], move["target.by_joints"] = kind, call == "move_joints"
-        move["target.branch"] = int(within("branch", given["branch"], _ANY_BRANCH, 7))
+        move["target.branch"] = whole_within("branch", given["branch"], _ANY_BRANCH, 7)
         move["via"], move["singular"] = given["via"], _SINGULAR[mode]
         for name, low, high in (
             ("feed", 0.0, 1e6),
@@ -112,7 +120,7 @@ class Commands:
         before = {n: self._panel[n] for n in ("jog", "frame", "jog_speed", "jog_way")}
         asked = {
             "jog": six,
-            "frame": int(within("frame", frame, 0, 2)),
+            "frame": whole_within("frame", frame, 0, 2),
             "jog_speed": within("speed", speed, 1e-3, 1.0),
             "jog_way": within("way", way, 0.0, 1e6),
         }
@@ -242,9 +250,7 @@ class Commands:
             )
 
     def _number(self, name: str, number: int, most: int) -> int:
-        if isinstance(number, float) and number != int(number):
-            raise RobotError(f"{name} {number}: a whole number is wanted", "VALUE", number)
-        return int(within(name, number, 1, most))
+        return whole_within(name, number, 1, most)
 
     def _volts(self, volts: float) -> float:
         return within("volts", volts, -10.0, 10.0)

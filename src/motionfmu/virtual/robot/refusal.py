@@ -1,5 +1,6 @@
 """What a refused call of the robot raises, and how C tells it."""
 
+import contextlib
 import ctypes
 import math
 from collections.abc import Iterable
@@ -81,10 +82,21 @@ def within(name: str, value: float, low: float, high: float) -> float:
     """Take a number of a range; RobotError if it is not within."""
     if not isinstance(value, int | float | np.number) or not low <= value <= high:
         limit = high if isinstance(value, int | float) and value > high else low
-        number = float(value) if isinstance(value, int | float | np.number) else math.nan
-        text = f"{name} = {value!r}: {low:g} to {high:g} is wanted"
+        number = math.nan
+        if isinstance(value, int | float | np.number):
+            with contextlib.suppress(OverflowError):  # an int that is beyond all floats
+                number = float(value)
+        text = f"{name} = {value!r:.80}: {low:g} to {high:g} is wanted"
         raise RobotError(text, "VALUE", number, limit)
     return float(value)
+
+
+def whole_within(name: str, value: float, low: int, high: int) -> int:
+    """Take a whole number of a range; RobotError if it is none."""
+    number = within(name, value, low, high)
+    if number != int(number):
+        raise RobotError(f"{name} {value}: a whole number is wanted", "VALUE", number)
+    return int(number)
 
 
 def bounded(name: str, values: np.ndarray, most: float = MOST) -> np.ndarray:
@@ -97,8 +109,9 @@ def bounded(name: str, values: np.ndarray, most: float = MOST) -> np.ndarray:
 def numbers(name: str, values: Any, *shape: int) -> np.ndarray:
     """Take an array of finite numbers whose last axes have a shape; RobotError if it is none."""
     try:
-        array = np.ascontiguousarray(values, np.float64)
-    except (TypeError, ValueError):
+        given = np.asarray(values)
+        array = np.ascontiguousarray(given, np.float64) if given.dtype.kind != "c" else np.empty(0)
+    except (TypeError, ValueError, OverflowError):
         array = np.empty(0)
     if array.shape[max(0, array.ndim - len(shape)) :] != shape or not np.isfinite(array).all():
         text = f"{name}: finite numbers of shape {shape} are wanted, got {values!r:.200}"

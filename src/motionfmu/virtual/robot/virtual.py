@@ -9,7 +9,7 @@ import numpy as np
 from motionfmu.base.binding import CLOCK_HZ, Station, Struct, Values, library
 from motionfmu.virtual.robot.commands import Commands
 from motionfmu.virtual.robot.kinematics import configuration, switched_on
-from motionfmu.virtual.robot.refusal import message, within
+from motionfmu.virtual.robot.refusal import message, whole_within
 
 # Answers of reading.status.
 IDLE, RUNNING, HOLD, WAITING, DELAY, PAUSED, JOG, ERROR, STOPPED = range(9)
@@ -186,7 +186,7 @@ class VirtualRobot(Commands, Station[Reading]):
         RobotError
             There is no such joint.
         """
-        self._panel["alarm"] = sum({1 << (int(within("joint", j, 0, 5))) for j in joints})
+        self._panel["alarm"] = sum({1 << whole_within("joint", j, 0, 5) for j in joints})
 
     def set_stop(self, pressed: bool) -> None:
         """Emergency stop at the card's terminal.
