@@ -6,9 +6,11 @@
  *     +--+-----+--+----+---+---> u    such x stays below it, too: a lower override, or none, brakes
  *                                     as much as the limits allow, wherever the motion is.
  *
- * For these bounds the motion is the quickest one: the states from which the rest can be driven are
- * all those below that curve. The acceleration is constant in a cell, or changes once or twice. At
- * the end of what is known the motion can always come to rest. With limited jerk: pace_plan.h.
+ * The states from which the rest can be driven with a constant acceleration in each cell are all
+ * those below that curve. The motion is nearly the quickest one within these bounds: the most speed
+ * here may cost some behind (docs/theory/speed.md). Its acceleration is constant in a cell, or
+ * changes once or twice. At the end of what is known it can always come to rest. With limited jerk:
+ * pace_plan.h.
  */
 #ifndef PACE_H
 #define PACE_H
