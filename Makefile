@@ -45,8 +45,8 @@ test-long: build                ## what takes an hour and `make test` shows of a
 	$(BIN)/python -m pytest -m long -n 2 --dist loadgroup --durations=25 --durations-min=60
 
 check: needs .venv/installed          ## formatting, lint, types
-	$(BIN)/ruff format --check src tests scenarios
-	$(BIN)/ruff check src tests scenarios
+	$(BIN)/ruff format --check src tests scenarios docs
+	$(BIN)/ruff check src tests scenarios docs
 	$(BIN)/mypy
 
 bench: build                    ## speed, as ratios measured in one run; BENCH=--renew keeps its figures

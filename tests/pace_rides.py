@@ -22,6 +22,13 @@ SAMPLE = np.dtype(
 )
 STATE = np.dtype([(name, float, AXES) for name in ("point", "slope", "bend")])
 LIMITS = np.dtype([(name, float, AXES) for name in ("speed", "acc", "jerk")])
+# struct known and struct pace_node, and a row of pace_batch_boxes.
+CELL = np.dtype(
+    [(name, float) for name in ("length", "feed", "flat", "most", "top", "planes")]
+    + [("plane", float, (11, 2))]
+)
+NODE = np.dtype([(name, float) for name in ("at", "x", "b")])
+BOX = np.dtype([(name, float) for name in ("start", "length", "feed", "most")])
 
 LIBRARY = ctypes.CDLL(os.environ.get("PACE_BATCH", str(ROOT / "build/lib/pace_batch.so")))
 _TOLD, _SAMPLE, _LIMITS, _DOUBLES = (
@@ -46,6 +53,8 @@ LIBRARY.pace_batch_path.argtypes = [
 ]
 LIBRARY.pace_batch_path.restype = None
 LIBRARY.pace_batch_go.argtypes = [ctypes.c_int64, ctypes.c_double, ctypes.c_double, _SAMPLE]
+for each in ("cells", "nodes", "boxes"):
+    getattr(LIBRARY, f"pace_batch_{each}").restype = ctypes.c_int64
 for each in ("pieces", "ride", "stop_way", "gap", "go"):
     getattr(LIBRARY, f"pace_batch_{each}").restype = ctypes.c_double
 
@@ -147,6 +156,19 @@ def limits(acc: float | np.ndarray = 0.0, speed: float = 0.0, jerk: float = 0.0)
     told = np.zeros(1, LIMITS)
     told["acc"], told["speed"], told["jerk"] = acc, speed, jerk
     return told
+
+
+def planned(told: np.ndarray, bounds: np.ndarray, what: str) -> np.ndarray:
+    """Rows of CELL, NODE or BOX ("cells", "nodes", "boxes") of a plan of all pieces from rest."""
+    LIBRARY.pace_batch_pieces(len(told), told)
+    rows = np.zeros(2048, {"cells": CELL, "nodes": NODE, "boxes": BOX}[what])
+    known = (ctypes.c_int64(len(told)), bounds.ctypes.data_as(ctypes.c_void_p))
+    room = (ctypes.c_int64(len(rows)), rows.ctypes.data_as(ctypes.c_void_p))
+    if what == "boxes":
+        planned(told, bounds, "nodes")
+        return rows[: LIBRARY.pace_batch_boxes(*room)]
+    plan = LIBRARY.pace_batch_cells if what == "cells" else LIBRARY.pace_batch_nodes
+    return rows[: plan(*known, ctypes.c_double(1.0), *room)]
 
 
 @dataclass

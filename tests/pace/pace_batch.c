@@ -155,3 +155,60 @@ void pace_batch_path(int64_t pieces_made, int64_t n, const double *way, struct p
         piece_at(&pieces[at], way[i] - starts[at], &s[i]);
     }
 }
+
+/* What a plan knows of a cell: its length [mm], the most x of the feed, of a = 0 within the limits,
+ * at its start and its end [mm^2/s^2] (pace_cell.h), and its planes [s^2/mm^2]. */
+struct known {
+    double length, feed, flat, most, top, planes;
+    double plane[PACE_PLANES][2];
+};
+
+/* Plan the n pieces, which must fit, from rest. */
+static void plan_all(int64_t n, const struct pace_limits *l, double override)
+{
+    pace_start(&pace, l);
+    for (int64_t i = 0; i < n; i++) {
+        pace_join(&pace, &pieces[i]);
+    }
+    pace_advance(&pace, override, 0.0);
+}
+
+/* The cells of that plan without limited jerk, at most so many; returns their number. */
+int64_t pace_batch_cells(int64_t n, const struct pace_limits *l, double override, int64_t most,
+                         struct known *known)
+{
+    plan_all(n, l, override);
+    const int64_t count = pace.count < most ? pace.count : most;
+    for (int64_t i = 0; i < count; i++) {
+        const struct pace_cell *c = &pace.cell[(pace.at.head + i) % PACE_CELLS];
+        const double feed = fmin(c->feed * override, c->cap);
+        known[i] = (struct known){ c->length, feed * feed, c->flat, c->most, c->top, c->planes,
+                                   { { 0.0 } } };
+        memcpy(known[i].plane, c->plane, sizeof known[i].plane);
+    }
+    return count;
+}
+
+/* The nodes of that plan with limited jerk, at most so many; returns their number. */
+int64_t pace_batch_nodes(int64_t n, const struct pace_limits *l, double override, int64_t most,
+                         struct pace_node *node)
+{
+    plan_all(n, l, override);
+    const struct pace_plan *plan = &pace.plan[pace.held];
+    const int64_t count = PACE_NODES - plan->first < most ? PACE_NODES - plan->first : most;
+    memcpy(node, plan->node + plan->first, (size_t)count * sizeof *node);
+    return count;
+}
+
+/* The boxes of that plan: start and length [mm], the most x of the feed and of the limits
+ * [mm^2/s^2]; returns their number. */
+int64_t pace_batch_boxes(int64_t most, double (*box)[4])
+{
+    const int64_t count = pace.count < most ? pace.count : most;
+    for (int64_t i = 0; i < count; i++) {
+        const struct pace_box *g = &pace.box[(pace.at.head + i) % PACE_CELLS];
+        const double row[4] = { g->from, g->length, g->feed * g->feed, g->cap * g->cap };
+        memcpy(box[i], row, sizeof row);
+    }
+    return count;
+}

@@ -5,7 +5,7 @@
 
 #include "el_extremes.h"
 
-/* In halves until nothing in a part leaves the places known by more than BOW_NEAR. */
+/* Widen by halves until nothing in a part leaves the places known by more than BOW_NEAR. */
 static void widen(const struct bow *w, double s0, const double p0[AXES], double s1,
                   const double p1[AXES], double low[AXES], double high[AXES])
 {

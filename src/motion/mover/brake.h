@@ -29,14 +29,15 @@ void brake_rest(struct brake *b);
 /* One step more. With too many, two become one that holds for both. */
 void brake_limit(struct brake *b, double speed, double even);
 
-/* The same for the place that lies `way` [mm] before, from where on the deceleration is dec. */
+/* Limits before a place become limits before an earlier one, `way` [mm] back; the deceleration
+ * between them is dec. */
 void brake_back(struct brake *b, double way, double dec);
 
 /* What is allowed on a piece of the way. */
 struct brake_piece {
     double end;     /* [mm] */
-    double top;     /* [mm/s] on it; INFINITY: only what can be braked to `leave` */
-    double leave;   /* [mm/s] at its end */
+    double top;     /* [mm/s] most speed on it; INFINITY: what can be braked to `leave` */
+    double leave;   /* [mm/s] most speed at its end */
 };
 
 /* The piece that begins at s; the place is at `place`, beyond s. */

@@ -14,10 +14,12 @@ static const double LEAST = 1e-6;
  * B at x = 1/2, 2 half times the integral of 1 - h over the second half. */
 static const double CUT = 0.1875;
 
-/* Bound of y (2 half - s - half - y) / half^2 + half of its square terms, for curved paths. */
+/* Bound of what curved paths add, by the sum of their curvatures and half^2: (y^2 - 2 y s) / 2 of
+ * the path that is followed and y^2 / 2 of the other one (docs/theory/speed.md). */
 static const double CUT_CURVED = 0.035;
 
-/* Bound of (1 - h)^2 + h' (1 - ...) that scales the curvature of one path. */
+/* Bound of |P''| by the curvature of the paths: (1 - h)^2 + h^2 and what the turn of their
+ * directions adds, h' times the way walked on both. */
 static const double BEND_CURVED = 1.17;
 
 static double norm3(const double a[3])

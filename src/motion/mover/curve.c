@@ -36,7 +36,7 @@ void curve_start(struct curve *c, struct curve_plan *m, const struct ring *r)
  * them would have no acceleration that could be told. [mm] */
 static const double NEAR = 1e-9;
 
-/* The next finished piece, or what is left of it, or what lies before the goal, to the pace. */
+/* Give the pace the next finished piece, or what is left of it, or what lies before the goal. */
 static bool join_one(const struct curve *c, struct curve_plan *m)
 {
     const struct piece *whole = shape_piece(&m->shape, m->joined);
@@ -65,7 +65,7 @@ static bool join_one(const struct curve *c, struct curve_plan *m)
     return true;
 }
 
-/* Finished pieces to the pace, up to the goal, one with a rest at its end, or the last of all. */
+/* Give the pace finished pieces up to the goal, to one that ends at rest, or to the last of all. */
 static void join(struct curve *c, struct curve_plan *m)
 {
     while (!m->pace.closed && m->joined < shape_count(&m->shape) && join_one(c, m)) {
@@ -118,7 +118,7 @@ static bool rests_between(const struct curve *c, const struct curve_plan *m)
            !curve_waits(c);
 }
 
-/* The pace to where the motion is; if its latest rest has been taken back, that is there. */
+/* Put the pace where the motion is; if its latest rest has been taken back, where that was. */
 static void resume(struct curve *c, struct curve_plan *m)
 {
     if (c->start == m->start) {
@@ -129,7 +129,7 @@ static void resume(struct curve *c, struct curve_plan *m)
     }
 }
 
-/* Of the motion, from the start of the chain. [mm] */
+/* Way of the motion from the start of the chain. [mm] */
 static double way_of(const struct curve *c)
 {
     return c->start + c->place.way;
@@ -141,7 +141,7 @@ static int32_t pieces_known(const struct curve_plan *m)
     return m->joined + (m->part > 0.0);
 }
 
-/* Over the ends of pieces to the one at a way. */
+/* The piece at a way, which lies not before the one found last. */
 static const struct piece *find(struct curve *c, const struct curve_plan *m, double way)
 {
     const struct piece *p = shape_piece(&m->shape, c->at);
@@ -153,7 +153,7 @@ static const struct piece *find(struct curve *c, const struct curve_plan *m, dou
     return p;
 }
 
-/* From rest, or at the speed that the pace then gets, from a way of the chain on. */
+/* Begin a pace at a way of the chain, at rest; the caller may give it a speed then. */
 static void set_out(struct curve *c, struct curve_plan *m, double way)
 {
     m->start = c->start = way;
@@ -161,7 +161,7 @@ static void set_out(struct curve *c, struct curve_plan *m, double way)
     join(c, m);
 }
 
-/* A block begins with this mark: another line of the program, or call, than the one before. */
+/* Whether a block begins with this mark: another line of the program, or call, than before. */
 static bool begins_block(const struct curve *c, const struct curve_plan *m, int32_t i)
 {
     const struct shape_mark *k = shape_mark(&m->shape, i);

@@ -15,28 +15,28 @@
 
 /* What stands beside the mover. */
 struct curve_plan {
-    struct pace_limits limits;  /* of chains from now on */
-    bool   last;                /* what has come need not wait for more: none comes for now */
-    double end[AXES];           /* [mm] of the latest command taken */
-    int32_t joined;             /* finished pieces of the shape that the pace has, */
-    double joined_way;          /* [mm] their end on the chain, */
-    double part;                /* [mm] and how much of the next one */
+    struct pace_limits limits;  /* limits of chains from now on */
+    bool   last;                /* no more commands come for now: none is waited for */
+    double end[AXES];           /* [mm] end of the latest command taken */
+    int32_t joined;             /* number of finished pieces of the shape that the pace has */
+    double joined_way;          /* [mm] their end on the chain */
+    double part;                /* [mm] length of the next one that the pace has, too */
     double start;               /* [mm] where the pace begins, from the start of the chain */
     struct shape shape;
     struct pace pace;
 };
 
 struct curve {
-    struct pace_place place;    /* of the motion since it rested last, */
-    double  start;              /* [mm] there, from the start of the chain */
+    struct pace_place place;    /* the motion since it rested last */
+    double  start;              /* [mm] where it rested, from the start of the chain */
     bool    closed;             /* no further command joins */
     bool    halts;              /* single block: a goal is to be chosen */
     double  goal;               /* [mm] where a block begins, before which it rests; or INFINITY */
-    int32_t line;               /* of the latest mark */
+    int32_t line;               /* line of the latest mark */
     int32_t idle;               /* points since the ring has been empty */
-    int32_t begun;              /* marks of the shape that the tool has passed */
+    int32_t begun;              /* number of marks of the shape that the tool has passed */
     int32_t at;                 /* piece of the tool, from the first that the shape keeps */
-    double  base;               /* [mm] its start on the chain */
+    double  base;               /* [mm] start of that piece on the chain */
     double  point[AXES], velocity[AXES];    /* [mm], [mm/s] of the tool */
 };
 
@@ -56,7 +56,7 @@ double curve_advance(struct curve *c, struct curve_plan *m, struct ring *r, doub
  * it can rest before; or no longer. */
 void curve_single(struct curve *c, struct curve_plan *m, bool on);
 
-/* It rests before a block. */
+/* Whether it rests before a block. */
 bool curve_waits(const struct curve *c);
 
 /* Go on from there, to the next block or to the end. */
@@ -79,7 +79,7 @@ void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[A
 /* Whether counts and places of a state, which came from outside, lead out of its arrays. */
 bool curve_damaged(const struct curve *c, const struct curve_plan *m);
 
-/* It stands; at the end of a chain that nothing joins any more. */
+/* Whether it stands; whether it is at the end of a chain that nothing joins any more. */
 bool curve_rests(const struct curve *c);
 bool curve_done(const struct curve *c, const struct curve_plan *m);
 

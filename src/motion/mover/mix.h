@@ -14,7 +14,7 @@ struct mix_move {
 
 struct mix {
     struct mix_move move[2];    /* the older first */
-    int32_t count;              /* under way */
+    int32_t count;              /* number of commands under way */
 };
 
 /* A command that lasts begins, at a speed under an override; not when two are under way. */

@@ -29,7 +29,7 @@ bool mover_held(const struct mover *p)
     return p->hold && !(p->overrides & OUTPUTS_HOLD_OFF);
 }
 
-/* On a ramp to rest, or there by one. */
+/* Whether the motion is on a ramp to rest, or rests there. */
 bool mover_brakes(const struct mover *p)
 {
     return mover_held(p) || p->abort || p->leave;
@@ -145,7 +145,7 @@ static void place_of_axes(const struct axes *a, double point[AXES], double veloc
     }
 }
 
-/* Nothing is under way any more. */
+/* The motion ends at a place: nothing is under way any more. */
 void mover_rest_at(struct mover *p, const double place[AXES], bool joints)
 {
     memcpy(p->rest, place, sizeof p->rest);

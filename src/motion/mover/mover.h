@@ -35,29 +35,29 @@ struct mover_beside {
 };
 
 struct mover {
-    enum mover_motion motion;   /* under way, or the latest */
-    struct mix mix;             /* of MOVER_AXES: the command, or none: the axes follow orders */
-    struct track track;         /* of MOVER_CHAIN */
-    struct curve curve;         /* of MOVER_CURVE */
-    struct axes axes;           /* of MOVER_AXES */
+    enum mover_motion motion;   /* the motion under way, or the latest */
+    struct mix mix;             /* MOVER_MIX; in MOVER_AXES the command, none: by orders */
+    struct track track;         /* MOVER_CHAIN */
+    struct curve curve;         /* MOVER_CURVE */
+    struct axes axes;           /* MOVER_AXES */
     double  rest[AXES];         /* [mm] where nothing is under way */
-    bool    joints;             /* rest is one of joints */
-    int32_t pulses[AXES];       /* [pulses] of the latest point */
-    double  override[2];        /* of lines and arcs, of point-to-point; 1 is 100 % */
+    bool    joints;             /* `rest` is a place of joints */
+    int32_t pulses[AXES];       /* [pulses] position of the latest point */
+    double  override[2];        /* overrides of lines and arcs, of point-to-point; 1 is 100 % */
     double  adaptive;           /* share of the feed while OUTPUTS_ADAPTIVE; 1 at the start */
     uint32_t overrides;         /* enum outputs_overrides */
-    bool    hold;               /* acts unless OUTPUTS_HOLD_OFF */
+    bool    hold;               /* a hold is asked for; it acts unless OUTPUTS_HOLD_OFF */
     bool    leave;              /* ramp to rest, then drop the command under way */
     bool    abort;              /* ramp to rest, then drop everything */
     bool    stopped;            /* M0, M1: at rest until mover_continue */
-    bool    single;             /* each block waits for mover_continue, */
-    bool    allowed;            /* but the next one may begin */
-    int32_t block;              /* line of the latest one */
-    bool    confirm;            /* each motion that ends at rest waits to be confirmed, */
-    bool    confirming;         /* as one does now: in-position check */
+    bool    single;             /* each block waits for mover_continue */
+    bool    allowed;            /* the next block may begin nevertheless */
+    int32_t block;              /* line of the latest block */
+    bool    confirm;            /* in-position check: a motion that ends at rest waits for it */
+    bool    confirming;         /* one waits now */
     bool    untold;             /* outputs or line have changed since the latest point */
     struct outputs outputs;
-    struct outputs_surface surface;     /* outputs.spindle is the most, then */
+    struct outputs_surface surface;     /* if it has a speed, outputs.spindle is the most */
     int32_t started, line;      /* index and source line of the latest command begun */
 };
 
@@ -74,14 +74,14 @@ bool mover_resting(const struct mover *p, const struct ring *r);
 /* True while pulses are due: a line, arc or rapid under way that is not brought to rest. */
 bool mover_moving(const struct mover *p);
 
-/* A command or a chain is under way, or the axes follow orders. */
+/* Whether a command or a chain is under way, or the axes follow orders. */
 bool mover_busy(const struct mover *p);
 
 /* Let the axes follow orders, nothing being under way: from now on p->axes may get them. Hold,
  * override and abort act on them as on commands; abort ends it. False: the joints are not known. */
 bool mover_order(struct mover *p, const struct mechanism *m);
 
-/* They do. */
+/* Whether the axes follow orders. */
 bool mover_ordered(const struct mover *p);
 
 /* Back to commands; the axes rest. */
@@ -90,7 +90,7 @@ void mover_bind(struct mover *p);
 /* Pause on the path, or go on. */
 void mover_hold(struct mover *p, bool on);
 
-/* The place is one of joints, else of the tool. */
+/* Whether the place is one of joints, else of the tool. */
 bool mover_in_joints(const struct mover *p);
 
 /* Joints of a place of the mover; joint[] holds those nearby. False: out of reach. */
@@ -120,10 +120,10 @@ void mover_allow(struct mover *p);
 /* Go on behind a stop of the program, or with one block. */
 void mover_continue(struct mover *p);
 
-/* It acts. */
+/* Whether a hold acts. */
 bool mover_held(const struct mover *p);
 
-/* Share of the feed that counts while a program lets it. */
+/* The adaptive feed: a share of the feed, which counts while a program lets it. */
 void mover_adapt(struct mover *p, double share);
 
 /* New overrides, from now on. A move that hands over to the next one keeps its deceleration. */
@@ -135,7 +135,7 @@ void mover_leave(struct mover *p, const struct ring *r);
 /* Ramp to rest; when there, moves and ring are dropped, spindle and coolant go off. */
 void mover_abort(struct mover *p, struct ring *r);
 
-/* The same without a ramp, at the latest point. */
+/* Abort without a ramp, at the latest point. */
 void mover_stop(struct mover *p, struct ring *r);
 
 /* Let up to dt seconds pass. Stops early after it took a command from the ring, so that the caller

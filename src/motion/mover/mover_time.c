@@ -43,7 +43,7 @@ static bool may_start(const struct mover *p, const struct ring *r)
     return p->mix.count == 0 || (mix_open(&p->mix) && command_blends(next));
 }
 
-/* A command begins; an index of 0: one that takes no time. */
+/* A command begins: its outputs and its line count from now on. Index 0: it takes no time. */
 static void begin(struct mover *p, const struct shape_mark *k)
 {
     p->outputs.digital = (p->outputs.digital | k->set) & ~k->clear;
@@ -172,7 +172,7 @@ static double advance_chain(struct mover *p, struct ring *r, double dt)
     return left;
 }
 
-/* Up to the next end or beginning of a command; returns the time left. */
+/* Let time pass up to the next end or beginning of a command; returns the time left. */
 static double advance_commands(struct mover *p, bool startable, double dt)
 {
     struct profile *old = &p->mix.move[0].profile;

@@ -15,11 +15,11 @@ struct instant {
 };
 
 struct ramp_view {
-    struct mover ramp;                      /* its clocks at `at` */
+    struct mover ramp;                      /* the ramp, whose clocks are at `at` */
     double at;                              /* [s] */
-    double dt;                              /* [s] from point to point */
-    double acc[AXES];                       /* [mm/s^2] highest of independent axes */
-    double from[AXES];                      /* [pulses] */
+    double dt;                              /* [s] time from point to point */
+    double acc[AXES];                       /* [mm/s^2] highest acceleration of independent axes */
+    double from[AXES];                      /* [pulses] position of the latest point */
     double near[AXES];                      /* [mm] joints there, if there are kinematics */
     const struct ring *ring;
     const struct mechanism *machine;
@@ -83,7 +83,7 @@ static bool between(const struct ramp_view *v, const struct instant *a, const st
     return beyond(v, low, high) < 0;
 }
 
-/* First joint beyond at the points i + 1 .. j, whose first and last places are known. */
+/* First joint beyond its bounds at the points i + 1 .. j; those at i and j are known. */
 static int search(struct ramp_view *v, int64_t i, const struct instant *a, int64_t j,
                   const struct instant *b)
 {
@@ -127,7 +127,7 @@ static void widen(const struct path *p, double from, double to, double margin, d
 
 /* Way of a chain from the tool to its rest. */
 struct way {
-    const struct track *t;      /* at rest */
+    const struct track *t;      /* the chain, brought to rest */
     const struct ring *ring;
     double from, to;            /* [mm] on the chain */
 };
@@ -205,7 +205,7 @@ static void extent_of_chain(const struct way *w, double low[AXES], double high[A
     }
 }
 
-/* Places on the way of a chain as far apart as the fastest joint goes in dt. */
+/* First joint beyond its bounds at places of a chain, as far apart as the tool goes in dt. */
 static int beyond_on_way(const struct way *w, const struct ramp_view *v)
 {
     struct track tool = *w->t;

@@ -14,11 +14,11 @@ struct ring_entry {
     union {
         struct {    /* in a chain (track.h) */
             struct corner corner;   /* at its start, with the command before */
-            double body, turn;      /* [mm/s] bends allow so much: of the command, of that corner */
-            struct brake enter, leave;  /* before the end of the corner at its start, the start of
-                                         * that at its end */
+            double body, turn;      /* [mm/s] most by the bend: of the command, of that corner */
+            struct brake enter, leave;  /* limits before the end of the corner at its start, and
+                                         * before the start of the corner at its end */
         };
-        struct axes_limits axis[AXES];      /* of COMMAND_PTP_ASYN */
+        struct axes_limits axis[AXES];      /* limits of a COMMAND_PTP_ASYN */
     };
 };
 
@@ -30,7 +30,7 @@ struct ring {
 void ring_clear(struct ring *r);
 bool ring_full(const struct ring *r);
 void ring_push(struct ring *r, const struct command *c);    /* not when full */
-/* The same for COMMAND_PTP_ASYN, with limits of each axis. */
+/* Push a COMMAND_PTP_ASYN, with limits of each axis. */
 void ring_push_asyn(struct ring *r, const struct command *c, const struct axes_limits axis[AXES]);
 const struct command *ring_head(const struct ring *r);      /* NULL when empty */
 void ring_pop(struct ring *r);                              /* not when empty */

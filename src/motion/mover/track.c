@@ -37,7 +37,7 @@ bool track_begins(const struct ring *r)
     return c && c->tolerance > 0.0 && command_blends(c);
 }
 
-/* Limits of a command on its own, and its corner with the one before. */
+/* Append a command: its limits on its own, and those of its corner with the one before. */
 static void add(struct track *t, struct ring *r, const struct corner *k)
 {
     struct ring_entry *n = ring_at(r, t->joined);
@@ -57,7 +57,7 @@ static void add(struct track *t, struct ring *r, const struct corner *k)
     t->joined++;
 }
 
-/* Whether the motion, on its way to rest at the end, can still be as slow `way` before that. */
+/* Whether the motion can still be as slow as `speed` once it has gone `way` on, its mean, too. */
 static bool slow_at(const struct track *t, double speed, double way)
 {
     const double brake = el_max(0.0, way - speed * t->smooth);
@@ -139,7 +139,7 @@ static struct ramp_limits ramp_of(const struct ring *r, int32_t i, bool turning)
     return own;
 }
 
-/* From the end backwards. */
+/* Plan the speeds from the end backwards. */
 static void plan(struct track *t, struct ring *r, double override)
 {
     struct brake b;
@@ -195,7 +195,7 @@ static struct piece next_piece(const struct track *t, const struct ring *r, doub
             p.end = el_min(p.end, until);
         }
     }
-    /* What can be braked from there on. */
+    /* so much speed can still be braked from there on */
     p.leave = el_min(p.top, sqrt(p.leave * p.leave + 2.0 * p.dec * (b.end - p.end)));
     return p;
 }
@@ -211,7 +211,7 @@ static double glide(struct track *t, double acc, double to, double way, double d
     return time;
 }
 
-/* A plan met again may be missed by so much. */
+/* Part by which braking may be harder to meet a plan again that rounding has missed. */
 static const double ROUNDING = 1e-7;
 
 /* Too fast for the piece: slower, to the limit or as much as the way allows, at most `leave` at its
@@ -292,7 +292,7 @@ static void keep_limit(struct track *t, double speed)
     t->caps = n + 1;
 }
 
-/* Over the border to the next piece of way. */
+/* Go over the border to the next piece of the way. */
 static void cross(struct track *t, const struct ring *r, double override)
 {
     keep_limit(t, t->turning ? turn_limit(r, t->at, override)

@@ -36,27 +36,27 @@ struct track {
     bool    closed;         /* no further command joins */
     int32_t started;        /* index of its first command */
     int32_t joined;         /* commands from the head of the ring that are in the chain */
-    int32_t planned;        /* of these, known to the latest plan of the speeds */
-    double  override;       /* of that plan */
-    double  dec;            /* [mm/s^2] least of the commands that are not behind */
+    int32_t planned;        /* how many of these the latest plan of the speeds knows */
+    double  override;       /* override of that plan */
+    double  dec;            /* [mm/s^2] least deceleration of the commands not left behind */
     double  smooth;         /* [s] time of the mean; 0 none */
     double  end;            /* [mm] end of the joined commands on the chain */
 
     int32_t at;             /* command of the planned motion, from the head */
     bool    turning;        /* it is in the corner at that command's start */
     double  base;           /* [mm] start of that command on the chain */
-    double  s, v;           /* [mm] from there, [mm/s] */
+    double  s, v;           /* [mm] place of the planned motion from there, [mm/s] */
     struct track_cap cap[TRACK_CAPS];
     int32_t caps;
 
-    int32_t taps, next;     /* of the mean: samples, place of the next; 0 taps before the first */
+    int32_t taps, next;     /* samples of the mean, 0 before the first; place of the next */
     int32_t still;          /* samples since the planned motion moved */
-    double  sum, zero;      /* [mm] of the samples, counted from `zero` */
+    double  sum, zero;      /* [mm] sum of the samples, each counted from `zero` */
 
     int32_t out;            /* command of the tool, from the head */
-    int32_t begun;          /* commands of which track_begun has told */
-    double  out_base;       /* [mm] its start on the chain */
-    double  out_s, out_v;   /* [mm], [mm/s] the tool, from there */
+    int32_t begun;          /* number of commands of which track_begun has told */
+    double  out_base;       /* [mm] start of the tool's command on the chain */
+    double  out_s, out_v;   /* [mm] place of the tool from there, [mm/s] */
     double  way;            /* [mm] the tool on the chain: base + s of the planned motion once it
                              * is there, which out_base + out_s need not round to */
 };
@@ -84,22 +84,22 @@ const struct command *track_begun(struct track *t, const struct ring *r);
 /* Drop commands that the tool has left. */
 void track_drop(struct track *t, struct ring *r);
 
-/* The planned motion to where an override of 0 brings it to rest. */
+/* Let the planned motion go to where an override of 0 brings it to rest. */
 void track_to_rest(struct track *t, struct ring *r);
 
-/* Half of the corner at the start of a command of the chain; 0 none. [mm] */
+/* Half length of the corner at the start of a command of the chain; 0: it has none. [mm] */
 double track_half(const struct track *t, const struct ring *r, int32_t i);
 
-/* The planned motion stands and the tool is there. */
+/* Whether the planned motion stands and the tool is there. */
 bool track_rests(const struct track *t);
 
-/* The planned motion is at the end of what is joined. */
+/* Whether the planned motion is at the end of what is joined. */
 bool track_at_end(const struct track *t, const struct ring *r);
 
-/* That it stands there, and the tool too. */
+/* Whether the planned motion stands at the end of what is joined, and the tool is there. */
 bool track_done(const struct track *t);
 
-/* The tool to a place further on the chain. [mm] */
+/* Move the tool to a place further on the chain. [mm] */
 void track_go(struct track *t, const struct ring *r, double way);
 
 /* Place of the tool [mm] and its velocity [mm/s]. */

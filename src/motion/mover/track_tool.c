@@ -24,7 +24,7 @@ static double mean_of(struct track *t, struct track_mean *m, double way)
     m->sample[t->next] = way;
     t->next = (t->next + 1) % TRACK_MEAN;
     if (t->next == 0) {
-        /* What rounding has left in the sum goes. */
+        /* The sum is made anew, so that rounding does not gather in it. */
         t->zero = way;
         t->sum = 0.0;
         for (int32_t i = 0; i < t->taps; i++) {

@@ -74,7 +74,7 @@ static void replan(const struct axes *a, struct axes_axis *x)
                                x->limits.dec, x->limits.jerk };
 
     if (l.speed <= 0.0) {
-        return;     /* it never had an order */
+        return;     /* the axis never had an order */
     }
     x->side = side_of(x, &at, speed);
     at.s *= x->side;
@@ -83,7 +83,7 @@ static void replan(const struct axes *a, struct axes_axis *x)
     x->t = 0.0;
     make(x, &at, speed, &l);
     if (l.acc != l.dec && scurve_slowest(&x->plan) < 0.0) {
-        l.acc = l.dec = el_min(l.acc, l.dec);     /* it turns round */
+        l.acc = l.dec = el_min(l.acc, l.dec);     /* the axis turns round */
         make(x, &at, speed, &l);
     }
 }
@@ -160,7 +160,7 @@ void axes_reach(const struct axes *a, int axis, double *low, double *high, doubl
 
     *acc = 0.0;
     for (int i = 0; i < x->plan.count; i++) {
-        const struct scurve_phase *h = &x->plan.phase[i];   /* may pass a peak of speed: a = 0 */
+        const struct scurve_phase *h = &x->plan.phase[i];   /* it may pass a peak of speed, a = 0 */
         fastest = el_max(fastest,
                          fabs(h->v) + (h->j != 0.0 ? h->a * h->a / fabs(2.0 * h->j) : 0.0));
         *acc = el_max(*acc, el_max(fabs(h->a + h->j * (begin - h->t)),

@@ -61,18 +61,18 @@ void axes_advance(struct axes *a, double dt);
 /* Where an axis is and how fast: [mm], [mm/s]. */
 void axes_state(const struct axes *a, int axis, double *place, double *speed);
 
-/* Bounds of where an axis will be, wide rather than exact, without end if it runs [mm]; and the
- * highest acceleration either way of its plan, or above [mm/s^2]. */
+/* Bounds of the places where an axis will be [mm]: they may be wide, and have no end if it runs.
+ * *acc is a bound of the acceleration of its plan, either way. [mm/s^2] */
 void axes_reach(const struct axes *a, int axis, double *low, double *high, double *acc);
 
 /* True if the axis, or every axis, stays where it is until the next order or ratio. */
 bool axes_rests(const struct axes *a, int axis);
 bool axes_resting(const struct axes *a);
 
-/* True if the axis rests and has done what it was ordered. */
+/* True if the axis rests and has carried out its order. */
 bool axes_done(const struct axes *a, int axis);
 
-/* Time until the last axis rests; those that run are left out. [s] */
+/* Time until the last axis rests; axes that run on are left out. [s] */
 double axes_left(const struct axes *a);
 
 #endif

@@ -12,7 +12,7 @@ void bernstein_cut(double c[], int n, double t, double before[])
     before[n] = c[0];
 }
 
-/* Cut at t1, then at t0. */
+/* The polynomial is cut at t1, then at t0. */
 void bernstein_part(double c[], int n, double t0, double t1)
 {
     for (int k = n; k > 0 && t1 < 1.0; k--) {

@@ -5,11 +5,13 @@
 
 #include "el_extremes.h"
 
-static const double AGREE = 1e-14;      /* of a length, between an integral and its two halves */
-static const double NEWTON = 1e-15;     /* of a length, a step that ends the search of its t */
-static const double SLACK = 1e-3;       /* of a bound above what is reached */
-static const double BEND_MAX = 1e4;     /* [1/mm] */
-static const double TOO_MUCH = 1e9;     /* [1/mm], [1/mm^2] no need to know it better */
+/* An integral and the sum of its halves agree to this part of a length; a step of the search for t
+ * that is shorter than this part of the length ends it. */
+static const double AGREE = 1e-14;
+static const double NEWTON = 1e-15;
+static const double SLACK = 1e-3;       /* part by which a bound may be above what is reached */
+static const double BEND_MAX = 1e4;     /* [1/mm] curvature from which on a curve is refused */
+static const double TOO_MUCH = 1e9;     /* [1/mm], [1/mm^2] more need not be known better */
 
 enum { HALVINGS = 40, STEPS = 60 };
 
@@ -45,7 +47,7 @@ static double blossom(const struct hodograph *h, int i, double s, double t)
     return a + t * (b - a);
 }
 
-/* The same of the part from t0 to t1, derivatives still by the t of all. */
+/* Derivatives at both ends of the part from t0 to t1, still by the t of the whole curve. */
 static void part_of(const struct hodograph *h, double t0, double t1, struct hodograph *part)
 {
     for (int i = 0; i < 3; i++) {
@@ -106,7 +108,7 @@ static double between(const struct hodograph *h, double t0, double t1, double si
     return way(h, t0, t1, gauss(h, t0, t1), AGREE * size, HALVINGS);
 }
 
-/* t of a length. */
+/* The t at a length s. */
 static double parameter(const struct bezier *b, const struct hodograph *h, double length, double s)
 {
     int k = 0;
@@ -133,7 +135,7 @@ static double parameter(const struct bezier *b, const struct hodograph *h, doubl
     return t;
 }
 
-/* What is bounded: the share of an axis 0..2, the curvature k, or with |B'| = v
+/* The quantity that is bounded: the share of an axis 0..2, the curvature k, or with |B'| = v
  *
  *     |P'''| <= |B'''| / v^3 + 4 k |B''| / v^2
  */
@@ -151,7 +153,7 @@ static double twist(const struct hodograph *h, double k, double second, double v
     return sqrt(dot(h->third, h->third)) / (v * v * v) + 4.0 * k * second / (v * v);
 }
 
-/* What it is at the beginning of a part. */
+/* The quantity at the beginning of a part. */
 static double value(const struct hodograph *h, int what)
 {
     const double v = sqrt(dot(h->d[0], h->d[0]));
@@ -165,7 +167,7 @@ static double value(const struct hodograph *h, int what)
     return what == CURVATURE ? k : twist(h, k, sqrt(dot(h->e[0], h->e[0])), v);
 }
 
-/* Nowhere in the part is it more: the control points of B' x B'' and of B' bound both. */
+/* A bound of the quantity in the part: control points of B' x B'' and of B' bound these. */
 static double bound(const struct hodograph *h, int what)
 {
     double along[3], most = 0.0, least = INFINITY;
@@ -185,7 +187,7 @@ static double bound(const struct hodograph *h, int what)
         return most / least;
     }
     double c[2][3], sum[3];
-    for (int n = 0; n < 4; n++) {   /* of degree 3 in Bernstein's form */
+    for (int n = 0; n < 4; n++) {   /* B' x B'' has degree 3 */
         memset(c, 0, sizeof c);
         if (n < 3) {
             cross(h->d[n], h->e[0], c[0]);
@@ -334,7 +336,7 @@ void bezier_extent(const struct bezier *b, const double start[3], const double e
     const double p = h.d[2][axis] - 2.0 * h.d[1][axis] + r;
     const double under = q * q - 4.0 * p * r;
     const double half = -0.5 * (q + copysign(sqrt(el_max(0.0, under)), q));
-    const double root[2] = { half / p, r / half };      /* none of both loses digits */
+    const double root[2] = { half / p, r / half };      /* neither loses digits */
     for (int k = 0; k < 2 && under >= 0.0; k++) {
         if (root[k] > t0 && root[k] < t1) {
             const double x = place(b, start, end, axis, root[k]);

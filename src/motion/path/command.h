@@ -32,25 +32,25 @@ struct motion_limits {
 struct command {
     enum command_type type;
     int32_t index;      /* counts from 1 those that take time; 0 for the others */
-    int32_t line;       /* of the part program; 0 for a call of the API */
+    int32_t line;       /* line of the part program; 0 for a call of the API */
     bool    blend;      /* continuous path: the next command may start in the deceleration */
-    double  tolerance;  /* [mm] of the corners with its neighbours, by look-ahead; 0 none */
-    bool    curve;      /* that look-ahead is the one of curve.h, not of track.h */
+    double  tolerance;  /* [mm] tolerance of corners with its neighbours; 0: no look-ahead */
+    bool    curve;      /* its look-ahead is the one of curve.h, not of track.h */
     double  merge;      /* [mm] tolerance of runs of short ones that become one curve; 0 none do */
     double  smooth;     /* [s] time of the mean that makes a chain's ramps S-shaped */
     double  feed;       /* [mm/s] programmed */
     double  cap;        /* [mm/s] highest speed any override may bring */
-    struct ramp_limits ramp;    /* for its feed */
-    double  dwell;      /* [s] of a delay */
+    struct ramp_limits ramp;    /* its ramps at its feed */
+    double  dwell;      /* [s] time of a delay */
     uint32_t set, clear;    /* digital outputs that its start switches on, off */
-    double  spindle;    /* [rpm] of COMMAND_OUTPUTS, */
-    struct outputs_surface surface;     /* and at most, if this has a speed */
-    int32_t coolant;    /* of COMMAND_OUTPUTS */
-    uint32_t overrides; /* of COMMAND_OUTPUTS: enum outputs_overrides */
-    int32_t tool;       /* of COMMAND_OUTPUTS: in the spindle; of a stop that changes: asked for */
-    bool    probes;     /* may be cut short: it never shares the tool with a neighbour */
-    bool    changes;    /* of COMMAND_STOP: the tool */
-    struct outputs_analog analog;   /* that its start switches */
+    double  spindle;    /* [rpm] COMMAND_OUTPUTS: of the spindle; the most, if `surface` is on */
+    struct outputs_surface surface;     /* COMMAND_OUTPUTS: the surface speed, if it has one */
+    int32_t coolant;    /* COMMAND_OUTPUTS: enum outputs_coolant */
+    uint32_t overrides; /* COMMAND_OUTPUTS: enum outputs_overrides */
+    int32_t tool;       /* COMMAND_OUTPUTS: tool in the spindle; a stop for a change: the new one */
+    bool    probes;     /* it may be cut short, so it never shares the tool with a neighbour */
+    bool    changes;    /* COMMAND_STOP: it waits for a change of the tool */
+    struct outputs_analog analog;   /* analog outputs that its start sets */
     struct path path;
 };
 
@@ -64,8 +64,8 @@ enum command_status {
 
 struct command_refusal {
     int joint;
-    double value, limit;    /* FAST [of the highest speed] and 1; OUTSIDE [mm] */
-    double feed;            /* FAST: the largest at which no joint is too fast [mm/s] */
+    double value, limit;    /* FAST: part of the highest speed, and 1; OUTSIDE: place, bound [mm] */
+    double feed;            /* FAST: the largest feed at which no joint is too fast [mm/s] */
 };
 
 /* Complete a command whose path is set (and is not a point): type and feed [mm/s] given; cap, acc

@@ -5,10 +5,10 @@
 
 #include "el_extremes.h"
 
-/* More than was found between the places looked at. */
+/* A rate between the places looked at may be so much of itself above those found. */
 static const double MARGIN = 1e-3;
 
-/* A cubic turns no further. [rad] */
+/* A cubic turns by no more than this. [rad] */
 static const double TAU = 6.283185307179586;
 
 bool mechanism_joints(const struct mechanism *m, const double place[AXES], double joint[AXES])
@@ -90,7 +90,7 @@ static void kinematic_way(const struct mechanism *m, const struct path *p,
 {
     const double turn = p->arc ? el_max(1.0, fabs(p->sweep)) : p->cubic ? TAU : 1.0;
     const int64_t places = (int64_t)ceil(MECHANISM_PLACES * turn);
-    double low[AXES], high[AXES], place[AXES], slope[AXES];     /* of the rates */
+    double low[AXES], high[AXES], place[AXES], slope[AXES];     /* low, high: of rates */
     struct trio t = { 0 };
 
     w->reached = isfinite(p->length);

@@ -16,12 +16,12 @@
 #include "path.h"
 
 struct joint {
-    bool   used;            /* else it gets no pulses */
-    bool   bounded;         /* low and high hold */
+    bool   used;            /* false: it gets no pulses */
+    bool   bounded;         /* low and high are its range */
     double scale;           /* [pulses/mm] */
     double speed;           /* [mm/s] highest */
-    double acc, jerk;       /* [mm/s^2], [mm/s^3] highest, along a path; 0: what ramps have */
-    double low, high;       /* [mm] */
+    double acc, jerk;       /* [mm/s^2], [mm/s^3] highest along a path; 0: the ramps' alone */
+    double low, high;       /* [mm] range */
 };
 
 /* Functions of a mechanism whose joints are not the coordinates of the tool. */
@@ -42,34 +42,35 @@ struct mechanism {
     struct joint joint[AXES];
     const struct kinematics *kinematics;    /* NULL: joints are coordinates */
     const void *geometry;                   /* what its functions know of the mechanism */
-    const double *near;     /* [mm] joints, from which the branch of a path is looked for */
+    const double *near;     /* [mm] joints: the branch of a path is the one near these */
 };
 
 /* Joints of a place, joint[] nearby before. False: out of reach. */
 bool mechanism_joints(const struct mechanism *m, const double place[AXES], double joint[AXES]);
 
-/* The same of a first place, joints near m->near. */
+/* Joints of the first place of a path, on the branch near m->near. */
 bool mechanism_first(const struct mechanism *m, const double place[AXES], double joint[AXES]);
 
-/* Joints by the position in pulses, those not used at 0, to begin mechanism_joints with; without
- * kinematics it needs none and joint[] is left as it is. */
+/* Joints at a position in pulses, to begin mechanism_joints with; a joint not in use is at 0.
+ * Without kinematics none are needed, and joint[] is left as it is. */
 void mechanism_near(const struct mechanism *m, const int32_t pulses[AXES], double joint[AXES]);
 
 /* Place of joints. */
 void mechanism_place(const struct mechanism *m, const double joint[AXES], double place[AXES]);
 
-/* The position in whole pulses, joint by joint; of a joint not used as it was. */
+/* The joints' position in whole pulses; that of a joint not in use stays as it was. */
 void mechanism_pulses(const struct mechanism *m, const double joint[AXES], int32_t pulses[AXES]);
 
 /* What a path asks of the joints. */
 struct mechanism_way {
-    bool   reached;             /* every place of it is, and none is singular */
+    bool   reached;             /* every place of it can be reached, and none is singular */
     double share[AXES];         /* highest |d(joint)/ds| */
     double low[AXES], high[AXES];   /* extent of the joints [mm] */
 };
 
-/* Without kinematics exact. With them found at places no further apart than 1/MECHANISM_PLACES of
- * the path, of an arc of so much of a radian, and at the tops of the parabolas through them. */
+/* Without kinematics it is exact. With them it is found at places no further apart than
+ * 1/MECHANISM_PLACES of the path, or of a radian on an arc, and at the tops of the parabolas
+ * through three places in a row. */
 enum { MECHANISM_PLACES = 64 };
 void mechanism_way(const struct mechanism *m, const struct path *p, struct mechanism_way *w);
 
@@ -79,10 +80,10 @@ void mechanism_way(const struct mechanism *m, const struct path *p, struct mecha
 int mechanism_beyond(const struct mechanism *m, const double from[AXES], const double low[AXES],
                      const double high[AXES], int *side);
 
-/* The same of a position. [pulses] */
+/* The same for a motion from one position to another. [pulses] */
 int mechanism_outside(const struct mechanism *m, const int32_t from[AXES], const int32_t to[AXES]);
 
-/* Any joint has bounds. */
+/* Whether any joint has a range. */
 bool mechanism_bounded(const struct mechanism *m);
 
 #endif

@@ -8,9 +8,9 @@
 
 static const double TAU = 6.283185307179586;
 
-/* What an arc may miss its end by if nothing else is said: rounding at 3 decimals of a mm. */
+/* An arc may miss its end by so much if nothing else is said: rounding at 3 decimals of a mm. */
 static const struct path_tolerance TIGHT = { 0.005, 1e-3 };
-static const double MISS_MAX = 100.0;       /* of the least: refused whatever the radius */
+static const double MISS_MAX = 100.0;       /* times the least: more is refused at any radius */
 
 /* An end nearer to the start than this angle means a full circle: 0.1 um at a radius of 100 mm,
  * less than a pulse, so no program can mean the tiny arc. [rad] */
@@ -111,7 +111,7 @@ enum path_status path_arc_within(struct path *p, enum path_plane plane, const do
     p->sweep = ccw ? turn : -turn;
     const double way[3] = { (r0 + 0.5 * p->growth) * p->sweep, p->growth, end[n] - start[n] };
     p->length = norm3(way);
-    return p->length > 0.0 ? PATH_OK : PATH_NO_RADIUS;     /* its square is 0 */
+    return p->length > 0.0 ? PATH_OK : PATH_NO_RADIUS;     /* 0: its square underflows */
 }
 
 enum path_status path_tilted(struct path *p, const double start[AXES], const double end[AXES],

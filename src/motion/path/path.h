@@ -32,17 +32,17 @@ struct path {
     enum path_plane plane;
     double start[AXES], end[AXES];  /* [mm] */
     union {
-        struct {                            /* of an arc: */
+        struct {                            /* an arc: */
             double centre[2];               /* [mm] in the plane's first and second axis */
-            double middle[3], normal[3];    /* of a tilted one: centre [mm], unit vector */
+            double middle[3], normal[3];    /* a tilted arc: centre [mm], unit vector */
             double radius;                  /* [mm] at the start */
             double growth;                  /* [mm] radius at the end - radius at the start;
                                              * rounding of the program makes it, and keeps start
                                              * and end exact */
-            double angle;                   /* [rad] of the start, seen from the normal's end */
+            double angle;                   /* [rad] where it starts, seen from the normal's end */
             double sweep;                   /* [rad] counter-clockwise positive */
         };
-        struct bezier bezier;               /* of a cubic */
+        struct bezier bezier;               /* a cubic */
     };
     double length;                  /* [mm] */
 };
@@ -67,7 +67,7 @@ enum path_status path_arc(struct path *p, enum path_plane plane, const double st
                           const double end[AXES], const double centre[2], bool ccw, int turns,
                           double *miss);
 
-/* The same with a tolerance; path_arc has 0.005 mm and 0.1 %. */
+/* An arc as by path_arc, with a tolerance; path_arc has 0.005 mm and 0.1 %. */
 enum path_status path_arc_within(struct path *p, enum path_plane plane, const double start[AXES],
                                  const double end[AXES], const double centre[2], bool ccw,
                                  int turns, const struct path_tolerance *t, double *miss);

@@ -24,7 +24,7 @@ struct profile {
     double tail;                    /* [s] when the deceleration that ends at length begins */
     double total;                   /* [s] */
     bool   ends;                    /* true: total is the end of the path; false: rest before it */
-    bool   smooth;                  /* ramps as below */
+    bool   smooth;                  /* ramps are S-shaped, as below */
     struct ramp rise, fall;
 };
 

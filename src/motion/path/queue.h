@@ -13,10 +13,10 @@ enum { OUTPUTS_ANALOG = 4 };        /* E0 .. E3 of M67, M68 */
 
 enum outputs_coolant { OUTPUTS_MIST = 1, OUTPUTS_FLOOD = 2 };   /* bits: M7, M8 */
 
-/* Bits: what M48 to M53 let act on the motion; none at the start. */
+/* Bits that M48 to M53 set, which let overrides and the hold act or not; none at the start. */
 enum outputs_overrides {
     OUTPUTS_FEED_FIXED = 1,     /* M49, M50 P0: feed override 1 */
-    OUTPUTS_SPEED_FIXED = 2,    /* M49, M51 P0: the same of the spindle, which has none here */
+    OUTPUTS_SPEED_FIXED = 2,    /* M49, M51 P0: spindle override 1; there is none here */
     OUTPUTS_ADAPTIVE = 4,       /* M52: the adaptive feed counts */
     OUTPUTS_HOLD_OFF = 8        /* M53 P0: the hold does not act */
 };
@@ -26,9 +26,9 @@ struct outputs {
     uint32_t digital;   /* bit n is output Pn */
     int32_t  coolant;   /* enum outputs_coolant */
     double   analog[OUTPUTS_ANALOG];
-    int32_t  tool;      /* number of the one in the spindle, 0 none */
-    bool     asks;      /* the stop waits for another one: */
-    int32_t  asked;     /* its number */
+    int32_t  tool;      /* number of the tool in the spindle, 0 none */
+    bool     asks;      /* the stop waits for another tool */
+    int32_t  asked;     /* number of that tool */
 };
 
 /* Analog outputs that change: bit n of `set` is of value[n]. */
@@ -40,11 +40,11 @@ struct outputs_analog {
 /* G96: the spindle turns so fast that the tool passes the work at a speed, but at most at the
  * speed it has without. */
 struct outputs_surface {
-    double speed;           /* [mm/s] 0: it does not */
+    double speed;           /* [mm/s] 0: the spindle keeps its speed */
     double centre;          /* [mm] X of the axis that the work turns about */
 };
 
-/* Speed of the spindle, of the sign of the one it has at most, with the tool at X. [rpm], [mm] */
+/* Speed of the spindle [rpm] with the tool at X [mm]: at most `most`, whose sign it has. */
 double outputs_spindle(const struct outputs_surface *s, double most, double x);
 
 enum { QUEUE_SIZE = 1024 };
@@ -56,10 +56,10 @@ struct point {
     int32_t added[AXES];    /* [pulses] compensation in all frames up to the end */
     double  place[AXES];    /* [mm] ideal position at the end */
     double  feed;           /* [mm/s] speed along the path at the end */
-    int32_t line, command;  /* that moves at the end; of two that are mixed, the older */
-    int32_t newest;         /* command; of two that are mixed, the newer */
+    int32_t line, command;  /* line and command that move at the end; if two are mixed, the older */
+    int32_t newest;         /* command that moves at the end; if two are mixed, the newer */
     bool    waits;          /* the end lies in a delay */
-    struct outputs outputs; /* at the end */
+    struct outputs outputs; /* as they are at the end */
 };
 
 struct queue {

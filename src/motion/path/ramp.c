@@ -14,7 +14,6 @@ static double jerk_of(const struct ramp_limits *l, bool up)
               : (l->dec_jerk > 0.0 ? l->dec_jerk : l->dec / AT_ONCE);
 }
 
-/* Speed at which the acceleration of a start is gone. */
 double ramp_eased(const struct scurve_start *from, const struct ramp_limits *l)
 {
     return from->v + from->a * fabs(from->a) / (2.0 * jerk_of(l, from->a > 0.0));

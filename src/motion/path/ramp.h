@@ -21,14 +21,14 @@ struct ramp_limits {
 struct ramp_rule {
     double acc;             /* [mm/s^2] */
     double jerk;            /* [mm/s^3]; 0 unlimited */
-    double time;            /* [s] > 0: from rest to any speed; acc and jerk follow from it, and */
+    double time;            /* [s] > 0: from rest to any speed; acc and jerk follow from it */
     double share;           /* 0..1 part of it in which the acceleration changes; 0: at once */
 };
 
-/* The numbers of a rule for a speed [mm/s]; its time, if it has one, is 0 then. */
+/* A rule by numbers that does for a speed [mm/s] what this one does; its own time is 0. */
 struct ramp_rule ramp_to(const struct ramp_rule *r, double speed);
 
-/* Both rules for a speed. */
+/* The limits that both rules give for a speed. */
 struct ramp_limits ramp_both(const struct ramp_rule *up, const struct ramp_rule *down,
                              double speed);
 
@@ -42,11 +42,11 @@ struct ramp {
 void ramp_plan(struct ramp *r, struct scurve_start from, double speed,
                const struct ramp_limits *l);
 
-/* Its way, without planning it. [mm] */
+/* Way of that ramp, without planning it. [mm] */
 double ramp_way(struct scurve_start from, double speed, const struct ramp_limits *l);
 
-/* Way and speed of the ease alone: where a start comes to a = 0. */
-double ramp_eased(const struct scurve_start *from, const struct ramp_limits *l);    /* [mm/s] */
+/* Speed with which a start comes to a = 0 by the ease alone. [mm/s] */
+double ramp_eased(const struct scurve_start *from, const struct ramp_limits *l);
 
 /* The motion at t, 0 .. total. */
 struct scurve_start ramp_state(const struct ramp *r, double t);

@@ -102,7 +102,7 @@ static enum scurve_status usable(const struct scurve_start *from, double s1, dou
     return SCURVE_OK;
 }
 
-/* In units of the jerk. */
+/* A leg in units of the jerk. */
 static struct scurve_leg leg_of(const struct scurve_start *from, double way, double v1,
                                 const struct scurve_limits *l)
 {

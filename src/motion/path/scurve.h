@@ -55,8 +55,8 @@ struct scurve {
 enum scurve_status scurve_plan(struct scurve *p, const struct scurve_start *from, double s1,
                                const struct scurve_limits *l);
 
-/* The same, to pass s1 with speed v1 (-speed .. speed) and a = 0. Every target can be reached, but
- * one nearer than scurve_way() may need a run-up backwards: see scurve_slowest(). */
+/* Plan the fastest way past s1 with speed v1 (-speed .. speed) and a = 0. Every target can be
+ * reached, but one nearer than scurve_way() may need a run-up backwards: see scurve_slowest(). */
 enum scurve_status scurve_plan_through(struct scurve *p, const struct scurve_start *from,
                                        double s1, double v1, const struct scurve_limits *l);
 

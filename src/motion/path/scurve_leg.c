@@ -79,7 +79,7 @@ void scurve_leg_brake(struct scurve_leg *l, int speed, double jerk[SCURVE_LEG_BR
     }
 }
 
-/* What v1 lacks after a has gone to 0 at once, and what of that is rounding. [s^2] */
+/* By how much v1 is above the speed once a has gone to 0, and what of it may be rounding. [s^2] */
 static double lacking(const struct scurve_leg *l, double *rounding)
 {
     const double gain = l->a * fabs(l->a) / 2.0;

@@ -63,8 +63,8 @@ static double root(const double c[4], double low, double guess, double high)
 }
 
 struct pulses {
-    double base, v1, acc, dec;      /* see above */
-    double way;
+    double base, v1, acc, dec;      /* [s^2], [s^2], [s], [s] as above */
+    double way;                     /* [s^3] way' as above */
 };
 
 struct shape {

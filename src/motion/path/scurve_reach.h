@@ -4,8 +4,8 @@
 
 #include "scurve_leg.h"
 
-/* For a leg that starts within its limits and whose way is longer than that of its fastest change
- * to v1: times of its phases, none below 0. */
+/* Times of the phases of the fastest way, none below 0. The leg starts within its limits, and its
+ * way is longer than that of its fastest change to v1. */
 void scurve_reach(const struct scurve_leg *l, double t[SCURVE_LEG_PHASES]);
 
 #endif

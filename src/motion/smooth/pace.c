@@ -8,13 +8,13 @@
  * each cell the same whatever their number. */
 enum { PLAN_SHARE = 4 };
 
-/* Values of x that differ by such a share are the same. */
+/* Values of x count as the same if they differ by such a share. */
 static const double SAME = 1e-12;
 
-/* A bend that takes less of the limits is as good as none. */
+/* A bend that takes less than this part of the limits counts as none. */
 static const double SLIGHT = 0.05;
 
-/* Of a way to rest that is told, so much is more than counted. */
+/* Part by which the way to rest that is told is longer than the one that is counted. */
 static const double SLOWER = 1e-3;
 
 static struct pace_cell *cell_at(struct pace *p, int32_t i)
@@ -77,14 +77,15 @@ static double feed_limit(const struct pace_cell *c, double override)
     return v * v;
 }
 
-/* Most x at the end of cell i of so many that are known. */
+/* Most x at the end of cell i, if so many cells are known. */
 static double end_limit(const struct pace *p, int32_t i, int32_t known, double override)
 {
     return i + 1 < known
         ? el_min(feed_limit(cell_peek(p, i), override), cell_peek(p, i + 1)->most) : 0.0;
 }
 
-/* From the end backwards; what is not new and comes out the same needs no further look. */
+/* Plan from the end backwards. Once a cell that is not new comes out as it was, those before it
+ * would, too. */
 static void plan(struct pace *p, double override)
 {
     const bool all = override != p->override;
@@ -116,13 +117,13 @@ struct stretch {
     double x;       /* [mm^2/s^2] at its end */
 };
 
-/* To x1 at the end of the cell. */
+/* The stretch to the end of the cell, with at most x1 there. */
 static struct stretch across(double acc, double left, double x, double x1)
 {
     return (struct stretch){ acc, left, el_min(x1, el_max(0.0, x + 2.0 * acc * left)) };
 }
 
-/* As slow as the limits allow: to rest, or to the end of the cell, or until they allow more. */
+/* The slowest stretch within the limits: to rest, to the cell's end, or until they allow more. */
 static struct stretch halt(const struct pace_cell *c, double left, double x)
 {
     const struct pace_span span = pace_span(c, left, x);
@@ -140,9 +141,9 @@ struct line {
     double x, fall;
 };
 
-/* As fast as they allow: with `want` at most, up to `until`, or x1 at the end of the cell; or with
- * what is within the limits anywhere in the cell, below a line from which the rest can be driven.
- */
+/* The fastest stretch within the limits: with an acceleration of at most `want`, up to x = `until`
+ * or to x1 at the end of the cell. Below the line `safe`, from which the rest can be driven, also
+ * with what is within the limits anywhere in the cell. */
 static struct stretch hurry(const struct pace_cell *c, double left, double x, double want,
                             double until, struct line safe, double x1)
 {
@@ -194,7 +195,8 @@ static struct stretch next_feed(const struct pace_cell *c, double left, double x
     return way < s.way ? (struct stretch){ s.acc, way, x1 + slope * (left - way) } : s;
 }
 
-/* The same where the limits are less: to x1 at the end of the cell, or as near as they allow. */
+/* What comes next where the limits allow less than the feed: to x1 at the end of the cell, or as
+ * near to it as they allow. */
 static struct stretch next_bend(const struct pace_cell *c, double left, double x, double most,
                                 double x1)
 {
@@ -260,7 +262,7 @@ static double length_at(const struct pace *p, int32_t i)
     return p->smooth ? p->box[at].length : p->cell[at].length;
 }
 
-/* Without a limit of jerk. */
+/* pace_advance without a limit of jerk. */
 static double advance(struct pace *p, double override, double dt)
 {
     cross(p);
@@ -298,7 +300,7 @@ double pace_advance(struct pace *p, double override, double dt)
     return left;
 }
 
-/* Where the most braking leads that is looked for only where a stretch ends. */
+/* Where the most braking leads if it is looked for only where a stretch ends. [mm] */
 static double rest_way(const struct pace *p)
 {
     double x = p->at.rate * p->at.rate, base = p->at.base;

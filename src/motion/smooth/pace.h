@@ -6,9 +6,11 @@
  *     +--+-----+--+----+---+---> u    such x stays below it, too: a lower override, or none, brakes
  *                                     as much as the limits allow, wherever the motion is.
  *
- * For these bounds the motion is the quickest one: the states from which the rest can be driven are
- * all those below that curve. The acceleration is constant in a cell, or changes once or twice. At
- * the end of what is known the motion can always come to rest. With limited jerk: pace_plan.h.
+ * The states from which the rest can be driven with a constant acceleration in each cell are all
+ * those below that curve. The motion is nearly the quickest one within these bounds: the most speed
+ * here may cost some behind (docs/theory/speed.md). Its acceleration is constant in a cell, or
+ * changes once or twice. At the end of what is known it can always come to rest. With limited jerk:
+ * pace_plan.h.
  */
 #ifndef PACE_H
 #define PACE_H
@@ -20,18 +22,18 @@ enum { PACE_CELLS = 1024, PACE_KEPT = 256 };
 
 /* Where the motion is. */
 struct pace_place {
-    int32_t head;           /* its cell, */
-    int32_t planned;        /* how many from there on are known to the latest plan */
+    int32_t head;           /* its cell */
+    int32_t planned;        /* cells from there on that the latest plan knows */
     double  base;           /* [mm] start of that cell, from the start of the chain */
     double  left;           /* [mm] to the end of that cell */
     double  way;            /* [mm] since the start of the chain */
-    double  rate, gain, twitch;     /* [mm/s], [mm/s^2], [mm/s^3] of the way */
+    double  rate, gain, twitch;     /* [mm/s], [mm/s^2], [mm/s^3] derivatives of the way */
 
     /* with limited jerk */
     double  here;           /* [mm] from the start of the chain */
-    struct pace_state state;        /* between steps, */
-    struct pace_step step;  /* or the step under way, */
-    double  spent, origin, goal;    /* [s] since its start, [mm] from where to where */
+    struct pace_state state;        /* speed between two steps */
+    struct pace_step step;  /* the step under way, if there is one */
+    double  spent, origin, goal;    /* [s] since its start; [mm] its start and end on the chain */
     double  asked;          /* the latest override */
 };
 
@@ -39,12 +41,12 @@ struct pace {
     struct pace_limits limits;
     bool    smooth;         /* jerk is limited: boxes and plans, else cells */
     int32_t reach;          /* boxes of the latest plan, if there was no room for all; else 0 */
-    int32_t held;           /* that plan holds, */
-    bool    pending;        /* the other one will, as soon as the motion can turn into it */
+    int32_t held;           /* index of the plan in force */
+    bool    pending;        /* the other one will be, as soon as the motion can turn into it */
     struct pace_place at;
     int32_t count;          /* cells from that of the motion on */
     bool    closed;         /* no further piece joins */
-    double  override;       /* of the latest plan */
+    double  override;       /* the one of the latest plan */
     double  end;            /* [mm] end of the pieces, from the start of the chain */
     union {
         struct pace_cell cell[PACE_CELLS];
@@ -83,10 +85,10 @@ double pace_advance(struct pace *p, double override, double dt);
  * longer (4e-4 of it without that). [mm] */
 double pace_stop_way(const struct pace *p);
 
-/* Whether, that much further [mm], it brakes for the end of the pieces that are known. */
+/* Whether the motion, that much further on [mm], brakes for the end of the known pieces. */
 bool pace_nears_end(const struct pace *p, double further);
 
-/* It rests at the end of the pieces that are known. */
+/* Whether it rests at the end of the known pieces. */
 bool pace_at_end(const struct pace *p);
 
 #endif

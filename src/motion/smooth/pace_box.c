@@ -14,7 +14,8 @@ static const double TURN_ACC = 0.97, TURN_JERK = 0.99;
  * and always if one is shorter than SPECK. [mm] */
 static const double JOIN = 0.01, SPECK = 1e-6;
 
-/* Of a step: share of the steepest b that may come, of x, and the least part of a way to rest. */
+/* A step changes b by at most STEEPER of the steepest b, and x by at most FASTER of itself; it need
+ * not be shorter than FINEST of a way to rest. */
 static const double STEEPER = 0.25, FASTER = 0.12, FINEST = 1.0 / 16.0;
 
 /* From nearly rest c lifts x to so much of itself at most: the jerk grows as c sqrt(x), so that a
@@ -24,13 +25,13 @@ static const double LEAP = 1000.0;
 /* Most that a step may be above a limit by rounding. */
 static const double ROUNDING = 1e-10;
 
-/* Of the larger bound, more than a float's rounding. */
+/* Part of the larger bound by which both are widened: more than a float's rounding. */
 static const double OUTWARDS = 1e-7;
 
-/* [s] */
+/* An acceleration whose jerk has no limit is there after this time. [s] */
 static const double SOON = 1e-4;
 
-/* A turn is looked for at so many places if c = 0 does not keep the limits, and then by halves. */
+/* If c = 0 does not keep the limits, a c is looked for at SCAN places; HALVES make it better. */
 enum { SCAN = 16, HALVES = 5 };
 
 bool pace_by_axes(const struct pace_limits *l)
@@ -95,7 +96,7 @@ static struct range scaled(struct pace_bound b, double x)
     return times(wide(b), x);
 }
 
-/* Speed at which turning takes shares of the limits. */
+/* Speed at which turning alone takes shares `acc` and `jerk` of the limits. */
 static double turn_speed(const struct pace_box *g, double acc, double jerk)
 {
     double v = g->cap;
@@ -114,7 +115,7 @@ static void finish(struct pace_box *g)
     g->brisk = turn_speed(g, TURN_ACC, TURN_JERK);
 }
 
-/* Bounds of r', r'' and r''', over the limits: these as factors. */
+/* Adds a limit: bounds r of r', r'' and r''' times 1 / acceleration and 1 / jerk. */
 static void add_row(struct pace_box *g, const struct range r[3], double acc, double jerk)
 {
     struct pace_row *row = &g->row[g->rows++];
@@ -126,7 +127,7 @@ static void add_row(struct pace_box *g, const struct range r[3], double acc, dou
     row->acc[1] = narrow(times(r[1], acc));
 }
 
-/* Along the path and across it; the jerk of all of r'' and r''' counts as one across. */
+/* The limits along the path and across it; all jerk by r'' and r''' counts as one across. */
 static void path_rule(struct pace_box *g, const struct piece *p, const struct piece_bounds *b)
 {
     const double acc = 1.0 / el_min(p->ramp.acc, p->ramp.dec);
@@ -234,7 +235,7 @@ static struct range twist_of(const struct pace_row *r, struct pace_state s)
     return plus(scaled(r->jerk[1], 1.5 * s.b), scaled(r->jerk[2], s.x));
 }
 
-/* Most c of a state, or the least, by its sign; it may be on the other side of 0. */
+/* The most c of a state (sign 1) or the least (-1); it may be on the other side of 0. */
 static double bend(const struct pace_box *g, struct pace_state s, double sign)
 {
     const double all = 1.0 / sqrt(s.x);

@@ -16,16 +16,16 @@ struct pace_bound {
 
 /* A limit of an axis, or of the path: bounds over what is allowed. */
 struct pace_row {
-    struct pace_bound acc[2];   /* of r' [s^2/mm], r'' [s^2/mm^2] */
-    struct pace_bound jerk[3];  /* of r' [s^3/mm], r'' [s^3/mm^2], r''' [s^3/mm^3] */
+    struct pace_bound acc[2];   /* r' [s^2/mm], r'' [s^2/mm^2] over the acceleration */
+    struct pace_bound jerk[3];  /* r' [s^3/mm], r'' [s^3/mm^2], r''' [s^3/mm^3] over the jerk */
 };
 
 struct pace_box {
     double from, length;    /* [mm] of the chain's parameter */
     double feed, cap;       /* [mm/s] du/dt: programmed, and most with any override and within the
                              * limits */
-    double brisk;           /* [mm/s] up to which enough is left to change it */
-    double ideal;           /* [s] its parts would take at their own speeds */
+    double brisk;           /* [mm/s] speed up to which enough is left to change it */
+    double ideal;           /* [s] time of its parts at their own speeds */
     int32_t rows;
     struct pace_row row[AXES];
 };
@@ -38,14 +38,14 @@ struct pace_state {
 /* Whether the axes have limits of their own. */
 bool pace_by_axes(const struct pace_limits *l);
 
-/* Of a part of a piece, from a place on, with the bounds of that part. */
+/* The box of a part of a piece that begins at `from` [mm], by the bounds of that part. */
 void pace_box_make(struct pace_box *g, const struct piece *p, const struct pace_limits *l,
                    double from, double length, const struct piece_bounds *b);
 
-/* Two that follow each other as one; false: it would be slower than two. */
+/* Join a box and the next one to one; false, and not done: it would be slower than two. */
 bool pace_box_join(struct pace_box *g, const struct pace_box *next);
 
-/* Most |b| of a sign at x. */
+/* The most |b| of this sign that the accelerations allow at x. [mm/s^2] */
 double pace_box_steepest(const struct pace_box *g, double x, double sign);
 
 /* Whether a step of s with a constant c keeps the limits all along. */
@@ -61,13 +61,13 @@ bool pace_box_turn_to(const struct pace_box *g, struct pace_state to, double s, 
 /* Length of a step: `rest`, or an even share of it in which x and b do not change too much. */
 double pace_box_stride(const struct pace_box *g, struct pace_state from, double rest);
 
-/* Jerk that may be had with speed and acceleration up to v and a, all its life. [mm/s^3] */
+/* Jerk of the way that keeps the limits while speed and acceleration are up to v and a. [mm/s^3] */
 double pace_box_jerk(const struct pace_box *g, double v, double a);
 
 /* Time in which the jerk reaches the most acceleration. [s] */
 double pace_box_rise(const struct pace_box *g);
 
-/* Acceleration and jerk of a state that goes on as it is, over what the box allows. */
+/* Acceleration, and jerk, of a state that goes on with c = 0, over what the box allows. */
 double pace_box_acc(const struct pace_box *g, struct pace_state s);
 double pace_box_twist(const struct pace_box *g, struct pace_state s);
 
@@ -78,7 +78,7 @@ static inline struct pace_state pace_step_to(struct pace_state from, double c, d
     return to;
 }
 
-/* The state at its start. */
+/* The state at the start of a step. */
 static inline struct pace_state pace_step_from(struct pace_state to, double c, double s)
 {
     const struct pace_state from = { to.x - s * (to.b - 0.5 * c * s), to.b - c * s };

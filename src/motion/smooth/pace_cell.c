@@ -7,11 +7,11 @@
 #include "pace_box.h"
 #include "pace_pull.h"
 
-/* A cell turns by so much at most [rad], and the bend of r' over it is at most that. Found by
+/* A cell turns by at most TURN [rad], and r' leaves its chord over it by at most SAG. Found by
  * measuring: half as much gains less than 1 % of time. */
 static const double TURN = 0.1, SAG = 0.005;
 
-/* Less of an acceleration than this is none. */
+/* A part of an acceleration that is less than this counts as none. */
 static const double LEAST = 0.01;
 
 /* A bend that takes at most so much of an axis' acceleration at any speed is left out, and as much
@@ -54,7 +54,7 @@ static void add_plane(struct pace_cell *c, double g0, double g1)
     for (to = i; to < c->planes && (c->plane[to][0] <= g0 ||
          (to + 1 < c->planes && between(g, c->plane[to], c->plane[to + 1]))); to++) {
     }
-    if (from == to && c->planes == PACE_PLANES) {       /* as one with a neighbour */
+    if (from == to && c->planes == PACE_PLANES) {       /* joined with a neighbour */
         i = from < c->planes ? from : from - 1;
         add_plane(c, most(g0, c->plane[i][0]), most(g1, c->plane[i][1]));
         return;
@@ -65,15 +65,15 @@ static void add_plane(struct pace_cell *c, double g0, double g1)
     c->planes += from + 1 - to;
 }
 
-/* A limit: at least -acc[0], at most acc[1]. */
+/* A limit of an acceleration: at least -acc[0], at most acc[1]. */
 struct row {
     struct pace_pull pull;
     double acc[2];      /* [mm/s^2] */
-    double rest;        /* share of acc that is left where q x is left out, */
-    bool   bends;       /* or it counts */
+    double rest;        /* share of acc that is left where q x is left out */
+    bool   bends;       /* q x counts */
 };
 
-/* The planes of a row; |a| <= (x0 + x1) / (2 h). */
+/* Adds the planes of a row (docs/theory/speed.md); |a| <= (x0 + x1) / (2 h). */
 static void add_row(struct pace_cell *c, const struct row *r)
 {
     const double per = 0.5 / c->length;
@@ -194,7 +194,7 @@ int32_t pace_cut(const struct piece *p, const struct pace_limits *l,
     return n;
 }
 
-/* x0 and x1. */
+/* x at both ends of a cell. */
 struct ends {
     double x[2];
 };

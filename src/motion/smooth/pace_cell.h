@@ -14,10 +14,10 @@
 #include "piece.h"
 
 struct pace_limits {
-    double speed[AXES];     /* [mm/s] of each axis; 0 none */
+    double speed[AXES];     /* [mm/s] highest of each axis; 0: no limit */
     double acc[AXES];       /* [mm/s^2] of each axis, > 0; or all 0: along the path and across it
                              * within the ramp of the piece, each by itself */
-    double jerk[AXES];      /* [mm/s^3] of each axis, with acc; 0 none */
+    double jerk[AXES];      /* [mm/s^3] of each axis, with acc; 0: no limit */
 };
 
 enum {
@@ -34,17 +34,17 @@ struct pace_cell {
     double plane[PACE_PLANES][2];   /* [s^2/mm^2] g0, g1; for x0, x1 >= 0 */
     int32_t planes;
     double most;            /* [mm^2/s^2] x at its start from which the rest can be driven */
-    double top;             /* a feed <= flat: the same on the line of steepest braking, however
-                             * fast; else x at the end, if it is `most` at the start */
+    double top;             /* feed below `flat`: x at the start of the line of steepest braking,
+                             * whatever the feed; else x at the end of a cell begun with `most` */
 };
 
-/* A piece in up to PACE_SPLIT parts, one after another: of an equal share of the turn and of the
- * change of r''. */
+/* A piece in up to PACE_SPLIT parts of equal length, one after another: as many as its turn and the
+ * bend of r' ask for. */
 struct pace_part {
     const struct piece *piece;
     int32_t count, next;
-    double from, to;        /* [mm] of the piece: the latest part, */
-    struct piece_bounds bounds;     /* and its bounds */
+    double from, to;        /* [mm] the latest part of the piece */
+    struct piece_bounds bounds;     /* bounds over that part */
     struct piece_rest rest;
 };
 
@@ -58,7 +58,7 @@ int32_t pace_cut(const struct piece *p, const struct pace_limits *l,
 /* Most x at the start, up to `most`, from which x1 or less is reached: that is *end. */
 double pace_back(const struct pace_cell *c, double x1, double most, double *end);
 
-/* The same for x1 <= most <= flat, on the line of steepest braking to x1, however fast. */
+/* x at the start of the line of steepest braking to x1, however fast; for x1 <= most <= flat. */
 double pace_top(const struct pace_cell *c, double x1, double most);
 
 /* Accelerations with which x may go on from where it is, `left` before the end, for the rest of the

@@ -11,31 +11,31 @@
 enum { STEPS = 200, RAMPS = 12, HALVES = 5 };
 static const double LONGEST = 0.7, SHORTER = 0.7;
 
-/* Turns of a plan, at most, and what is left of a state that a box does not take. */
+/* Most steps back of a plan, and the share that is left of a state to which no step leads. */
 enum { ROUNDS = 4 * PACE_NODES };
 static const double SHARE = 0.97;
 
-/* A ramp to the end takes at most such a part of the way. */
+/* The ramp to rest at the end takes at most this part of the way. */
 static const double END_PART = 0.3;
 
 /* A node is far if it is so many strides away. */
 static const double FAR = 2.5;
 
-/* x is met again to such a share. */
+/* An x counts as met again if it differs by such a share. */
 static const double SAME = 1e-12;
 
-/* Limits are met, and a state is met again, to such a share. */
+/* Limits count as kept, and a state as met again, to such a share. */
 static const double NEARLY = 1e-9;
 
-/* What the way and the jerk of a landing are off by from a state that is met again: the jerk is as
- * b^2, the way as 1/b. */
+/* Share by which way and jerk of a landing may be off from a state that is met again: the jerk goes
+ * as b^2, the way as 1/b. */
 static const double LANDS = 4e-9;
 
-/* At the most speed a state that is so much as steep as the next one is made flatter: of mere
- * shares there may be no end. */
+/* A state at the most speed whose b is steeper than this share of the next one's is made flatter:
+ * mere shares might never become level. */
 static const double STEEP = 0.97;
 
-/* Share of the jerk that a state may take that is made to fit a box. */
+/* A state that is made to fit a box takes at most this share of the jerk. */
 static const double ROOM = 0.8;
 
 const struct pace_box *pace_road_box(const struct pace_road *r, int32_t i)
@@ -258,7 +258,7 @@ static struct pace_state fit(const struct pace_road *r, const struct pace_box *g
     return (struct pace_state){ share * (1.0 - SAME) * s.x, share * (1.0 - SAME) * s.b };
 }
 
-/* Of states that a box takes and from which the plan can be driven, nearly the fastest. */
+/* Nearly the fastest of the states that a box takes and from which the plan can be driven. */
 static struct pace_state lower(const struct pace_plan *p, const struct pace_road *r, double at,
                                int32_t box, const struct pace_box *g, struct pace_state s)
 {
@@ -304,7 +304,8 @@ static void put(struct pace_plan *p, double at, struct pace_state state)
     p->node[--p->first] = (struct pace_node){ at, state };
 }
 
-/* One step back from the first node, through a box, to at most its start; false: none. */
+/* One step back from the first node, through a box, to at most its start; false: none. A b above 0
+ * becomes 0: that such a state can be driven is seen, not proved (docs/theory/speed.md). */
 static bool step_back(struct pace_plan *p, const struct pace_road *r, int32_t box, double to)
 {
     const struct pace_box *g = pace_road_box(r, box);

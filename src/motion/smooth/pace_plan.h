@@ -20,7 +20,7 @@ struct pace_node {
 
 struct pace_plan {
     double end;             /* [mm] where it comes to rest */
-    int32_t first;          /* node; the others follow */
+    int32_t first;          /* index of the first node; the others follow */
     struct pace_node node[PACE_NODES];
 };
 
@@ -28,7 +28,7 @@ struct pace_plan {
 struct pace_road {
     const struct pace_box *ring;
     int32_t size, head, count;
-    double override;        /* of feeds that are kept; < 0: only the limits are */
+    double override;        /* of the feeds to be kept; < 0: only the limits are kept */
 };
 
 /* A place on the way of a plan. */
@@ -41,10 +41,10 @@ struct pace_spot {
 
 const struct pace_box *pace_road_box(const struct pace_road *r, int32_t i);
 
-/* [mm] of the chain */
+/* Where a box ends. [mm] of the chain */
 double pace_road_end(const struct pace_road *r, int32_t box);
 
-/* Plan from the end of the boxes back to a place in the first one; false: that has no room. */
+/* Plan from the end of the boxes back to a place in the first one; false: too many nodes. */
 bool pace_plan_make(struct pace_plan *p, const struct pace_road *r, double back_to);
 
 struct pace_spot pace_plan_spot(const struct pace_plan *p, const struct pace_road *r, double at,
@@ -59,22 +59,23 @@ double pace_plan_rest(const struct pace_plan *p, const struct pace_road *r,
 bool pace_plan_steer(const struct pace_plan *p, const struct pace_road *r,
                      const struct pace_spot *spot, double *s, double *c);
 
-/* On by a step. */
+/* Move a spot on by a step. */
 void pace_plan_pass(const struct pace_plan *p, const struct pace_road *r, struct pace_spot *spot,
                     double s, struct pace_state to);
 
-/* Whether such steps lead into the way of the plan. */
+/* Whether such steps lead from a spot into the way of the plan. */
 bool pace_plan_safe(const struct pace_plan *p, const struct pace_road *r, struct pace_spot spot);
 
-/* From rest at a place, within a way forwards or (sign -1) backwards: the longest ramp of constant
- * jerk among some, the n-th of those that keep the limits; false: none. */
+/* A ramp of constant jerk from rest at a place, forwards or (sign -1) backwards, at most `within`
+ * long [mm]: the n-th of those that are tried and keep the limits, the longest first; false: none.
+ */
 bool pace_road_start(const struct pace_road *r, double at, int32_t box, double sign, double within,
                      int n, struct pace_step *step);
 
 /* Whether a state may come to rest by constant jerk. */
 bool pace_road_lands(const struct pace_road *r, double at, int32_t box, struct pace_state state);
 
-/* From rest to rest over a way. */
+/* The step from rest to rest over a way. [mm] */
 struct pace_step pace_road_hop(const struct pace_road *r, double at, int32_t box, double way);
 
 /* Most x in a box under the override. */

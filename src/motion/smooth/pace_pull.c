@@ -4,7 +4,7 @@
 
 #include "el_extremes.h"
 
-/* Of the most |r'| at least such a share is taken as the least: less is where a path turns back. */
+/* The least |r'| counts as at least this share of the most: it is less where a path turns back. */
 static const double LEAST = 1e-9;
 
 struct range {
@@ -80,7 +80,7 @@ static struct range twist(const struct piece_bounds *b, int first)
     return times(turn, per);
 }
 
-/* Along the path; first: of its axes. */
+/* The pull along the path, whose axes are `first` and two more. */
 static void look_along(struct pace_pull *l, const struct piece *p, double length,
                        const struct piece_bounds *b, int first)
 {
@@ -105,8 +105,8 @@ static void look_along(struct pace_pull *l, const struct piece *p, double length
     l->most[2] = size(s);
 }
 
-/* Most across it: at most |r'' - k r'| with any k. With one that is right at both ends and straight
- * in between, that vector leaves its chord as the spread of its derivative allows. */
+/* The most n: it is at most |r'' - k r'| for any k. With a k that is right at both ends and
+ * straight in between, that vector leaves its chord as the spread of its derivative allows. */
 static double most_across(const struct pace_pull *along, double length,
                           const struct piece_bounds *b, int first)
 {

@@ -17,13 +17,13 @@
 struct pace_pull {
     double p[2], q[2];      /* at both ends; q [1/mm] */
     double sag, stray;      /* p and q leave their chords by at most that */
-    double most[3];         /* of |p|, |q| [1/mm], |s| [1/mm^2] */
+    double most[3];         /* bounds of |p|, |q| [1/mm], |s| [1/mm^2] */
 };
 
-/* An axis that moves, over a part of a piece that is so long [mm] and has these bounds. */
+/* The pull of an axis that moves, over a part of a piece with this length [mm] and these bounds. */
 void pace_pull_axis(struct pace_pull *l, int axis, double length, const struct piece_bounds *b);
 
-/* The way. Returns the most n. [1/mm] */
+/* The pull of the way along the path. Returns the most n. [1/mm] */
 double pace_pull_path(struct pace_pull *along, const struct piece *p, double length,
                       const struct piece_bounds *b);
 

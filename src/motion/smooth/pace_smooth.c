@@ -5,23 +5,23 @@
 
 #include "el_extremes.h"
 
-/* A plan is made once so many of the boxes it would know (a fourth) are new. */
+/* A plan is made once a fourth of the boxes it would know are new. */
 enum { PLAN_SHARE = 4 };
 
 /* Bisections of a step, and steps in one call, at most. */
 enum { HALVES = 4, STEPS = 4096 };
 
-/* A way that one jerk drives at so much of what the place allows needs no plan. */
+/* A way needs no plan if one jerk drives it that is at least this part of what its start allows. */
 static const double HOPS = 0.9;
 
 /* From nearly rest without an acceleration the jerk stops the motion within a stride, which lets it
  * gain a thousandfold of x (pace_box): over such a share of it no more than half of x is lost. */
 static const double NEAR_REST = 1.0 / 64.0;
 
-/* Ways and states that differ by such a share are the same. */
+/* Ways and states count as the same if they differ by such a share. */
 static const double SAME = 1e-9;
 
-/* The motion, of a pace that stays as it is. */
+/* A motion along a pace that stays as it is. */
 struct ride {
     const struct pace *p;
     struct pace_place at;
@@ -43,8 +43,8 @@ static const struct pace_plan *held(const struct ride *r)
     return &r->p->plan[r->p->held];
 }
 
-/* The next one begins where this ends, to the bit: between two a motion that rests would be at the
- * end of the one, and no plan would lead on. */
+/* Append a box. It begins where the last one ends, to the bit: in a gap a motion that rests would
+ * be at the end of one box, and no plan would lead on. */
 static void append(struct pace *p, const struct pace_box *g)
 {
     if (p->count == 0 || p->at.planned == p->count ||
@@ -71,7 +71,7 @@ bool pace_smooth_join(struct pace *p, const struct piece *piece)
     return true;
 }
 
-/* Take a step from here, to a place. */
+/* Begin a step from here to a place. */
 static void set_out(struct ride *r, struct pace_step step, double goal)
 {
     r->at.step = step;
@@ -136,7 +136,7 @@ static void land(struct ride *r)
     set_out(r, step, fabs(goal - end) <= SAME * step.way || goal > r->p->end ? end : goal);
 }
 
-/* Between a c that is good and one that is not: nearly the last good one. */
+/* Between a c that is good and one that is not, nearly the last good one. */
 static double halve(const struct ride *r, const struct pace_road *to, const struct pace_spot *spot,
                     double kept, double fails, double s, bool may_land)
 {
@@ -147,7 +147,7 @@ static double halve(const struct ride *r, const struct pace_road *to, const stru
     return kept;
 }
 
-/* As slow as the limits allow, as long as the motion can go on by the plan or come to rest. */
+/* The slowest step within the limits from which the motion can go on by the plan or rest. */
 static void brake(struct ride *r)
 {
     const struct pace_road hard = road(r, -1.0);
@@ -182,7 +182,7 @@ static void brake(struct ride *r)
     go(r, &hard, spot, turns ? halve(r, &hard, &spot, steer, c, s, true) : steer, s);
 }
 
-/* As quick as the motion can still turn into the way of the plan. */
+/* The fastest step from which the motion can still turn into the way of the plan. */
 static void hurry(struct ride *r, double override)
 {
     const struct pace_plan *plan = held(r);

@@ -64,7 +64,7 @@ static struct pace_motion steady(double v, double a, double j, double t)
                                  el_max(0.0, v + t * (a + 0.5 * t * j)), a + t * j, j };
 }
 
-/* A fourth of the time up to half of the most speed, and on to it; the rest is that backwards. */
+/* In a fourth of the time to half of the most speed, in the next to all of it; then backwards. */
 static struct pace_motion hop_at(const struct pace_step *s, double t)
 {
     const double part = 0.25 * s->time, v = 0.5 * s->c * part * part;

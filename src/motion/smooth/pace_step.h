@@ -26,7 +26,7 @@ struct pace_motion {
 
 struct pace_step pace_step_bent(struct pace_state from, double c, double s);
 
-/* From rest for a time; to rest, from a state with b < 0; over a way from rest to rest. */
+/* A step from rest for a time; one to rest, from a state with b < 0; one from rest to rest. */
 struct pace_step pace_step_start(double jerk, double time);
 struct pace_step pace_step_land(struct pace_state from);
 struct pace_step pace_step_hop(double jerk, double way);

@@ -8,7 +8,7 @@
 
 enum { DEGREE = PIECE_POINTS - 1 };
 
-/* U V W follow evenly. */
+/* A cubic in X Y Z; U V W follow evenly with its length. */
 static void cubic_at(const struct piece *p, double u, struct piece_state *s)
 {
     const struct path *c = &p->path;
@@ -65,7 +65,7 @@ void piece_at(const struct piece *p, double u, struct piece_state *s)
     }
 }
 
-/* From the middle r' and r'' change by no more than half the way allows. */
+/* From the middle r' and r'' change by at most half the length times a bound of r'' and r'''. */
 static void cubic_bounds(const struct piece *p, double from, double to, struct piece_bounds *b)
 {
     const struct path *c = &p->path;
@@ -98,7 +98,7 @@ static void cubic_bounds(const struct piece *p, double from, double to, struct p
 
 static void line_bounds(const struct piece *p, struct piece_bounds *b)
 {
-    double square[2] = { 0.0, 0.0 };    /* of X Y Z, of U V W */
+    double square[2] = { 0.0, 0.0 };    /* of |r'| in X Y Z, in U V W */
 
     for (int i = 0; i < AXES; i++) {
         b->low[0][i] = b->high[0][i] = b->slope[0][i] = b->slope[1][i] = p->slope[i];
@@ -109,7 +109,7 @@ static void line_bounds(const struct piece *p, struct piece_bounds *b)
     b->most[0] = sqrt(square[square[0] <= 0.0]);
 }
 
-/* Of the n-th derivative. */
+/* Bounds of the n-th derivative, from its control values. */
 static inline void hull_bounds(const struct piece_hull *h, int n, struct piece_bounds *b)
 {
     const int last = DEGREE - n, first = h->axis[0] < 3 ? 0 : 3;
@@ -186,7 +186,7 @@ void piece_rest_start(struct piece_rest *r, const struct piece *p)
     }
 }
 
-/* The hull before `to`; the rest keeps the one behind it. */
+/* `before` gets the hull of the part before `to`; the rest keeps that of the part behind it. */
 static void cut(struct piece_rest *r, double to, struct piece_hull *before)
 {
     const double t = (to - r->from) / (r->piece->length - r->from);

@@ -21,7 +21,7 @@ void piece_arc_at(const struct piece *p, double u, struct piece_state *s)
         }
         return;
     }
-    /* d2/du2 of (radius + growth part) (cos, sin) of an angle that runs evenly */
+    /* second derivative of (radius + growth part) (cos, sin) of an angle that runs evenly */
     const int x = path_first(a->plane), y = path_second(a->plane);
     const double r = a->radius + a->growth * part;
     const double twice = r > 0.0 ? 2.0 * per * a->growth / (a->length * r) : 0.0;
@@ -44,7 +44,7 @@ static struct range minus(struct range r)
     return (struct range){ -r.high, -r.low };
 }
 
-/* Of the product with something between two values. */
+/* Range of the product of r with a factor between a and b. */
 static struct range times(struct range r, double a, double b)
 {
     const struct range low = span(r.low * a, r.low * b), high = span(r.high * a, r.high * b);
@@ -55,13 +55,14 @@ static struct range times(struct range r, double a, double b)
 /* Part of an arc: its place in the plane is radius (cos, sin), or that without the radius on two
  * vectors of a tilted one. */
 struct part {
-    double angle;               /* [rad] it turns by, >= 0 */
-    double radius[2], growth;   /* [mm] at both ends, and each mm */
+    double angle;               /* [rad] by which it turns, >= 0 */
+    double radius[2], growth;   /* [mm] at both ends, and its change in each mm of the parameter */
     double per;                 /* [rad/mm] */
-    double cos[2], sin[2];      /* at both ends */
+    double cos[2], sin[2];      /* of the angles at both ends */
 };
 
-/* Between its values at both ends, of an oscillation up to `most`; from, to: its slope there. */
+/* Range of an oscillation up to `most` in the part. a, b: its values at both ends; from, to: its
+ * slopes there. */
 static struct range swing(const struct part *t, double a, double b, double from, double to,
                           double most)
 {
@@ -104,7 +105,7 @@ static void turn_bounds(struct piece_bounds *b, int axis, const struct part *t, 
     }
 }
 
-/* Axes that follow evenly. */
+/* Bounds of axes that follow evenly: their slope is constant. */
 static void even_bounds(const struct path *a, struct piece_bounds *b)
 {
     for (int i = 0; i < AXES; i++) {
@@ -126,7 +127,7 @@ void piece_arc_bounds(const struct piece *p, double from, double to, struct piec
     const struct path *a = &p->path;
     const bool tilted = a->plane == PATH_TILTED;
     const double u[2] = { p->from + from, p->from + to };
-    double along = 0.0;     /* of |r'|, beside the turning */
+    double along = 0.0;     /* slope along the arc's axis, a part of |r'| */
     struct part t = { .angle = fabs(a->sweep) * (to - from) / a->length,
                       .growth = tilted ? 0.0 : a->growth / a->length,
                       .per = a->sweep / a->length };

@@ -6,7 +6,7 @@
 
 void piece_arc_at(const struct piece *p, double u, struct piece_state *s);
 
-/* Into bounds that are all 0. */
+/* Writes the bounds of an arc over those in *b, which are all 0. */
 void piece_arc_bounds(const struct piece *p, double from, double to, struct piece_bounds *b);
 
 #endif

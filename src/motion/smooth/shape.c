@@ -9,17 +9,17 @@
 #include "shape_turn.h"
 #include "shape_whole.h"
 
-/* Longer commands, in tolerances, keep their geometry: 3 mm at 0.02 mm. */
+/* Commands longer than so many tolerances keep their geometry: 3 mm at 0.02 mm. */
 static const double LONG = 150.0;
 
-/* Shorter ways are none: rounding. [mm] */
+/* A shorter way is rounding and counts as none. [mm] */
 static const double NONE = 1e-9;
 
-/* Closest spacings of knots, or vertices, from which on a window is fitted. */
+/* A window is fitted once it has so many closest spacings of knots, or so many vertices. */
 static const double WINDOW = 128.0;
 enum { WINDOW_VERTICES = 600, ROOM = 2 * SHAPE_SPANS + 8 };
 
-/* A window with so many spans has no room for more, and one of so few vertices gains none. */
+/* A window with so many spans has no room for more; one of so few vertices is not halved. */
 enum { FULL = SHAPE_SPANS - 2, FEWEST = 60 };
 
 void shape_start(struct shape *s, double merge)
@@ -28,7 +28,7 @@ void shape_start(struct shape *s, double merge)
     s->merge = merge;
 }
 
-/* The n oldest commands without a place have it now. */
+/* The n oldest commands without a place get it: they begin at u. */
 static void settle(struct shape *s, int32_t n, double u)
 {
     for (; n > 0; n--) {
@@ -42,7 +42,7 @@ static void settle_loose(struct shape *s)
     s->marks_loose = 0;
 }
 
-/* The long command before is a piece, up to there, and what waited for it is done. */
+/* The long command that waited becomes a piece, up to a length; a corner before it is rounded. */
 static void push_whole(struct shape *s, double to)
 {
     if (to < s->whole.length) {
@@ -121,13 +121,13 @@ static void open_run(struct shape *s, const double start[AXES], double tolerance
     s->marks_loose = 0;
 }
 
-/* No room for the chords of a command. */
+/* Whether there is no room for the chords of another command. */
 static bool full(const struct shape_run *r)
 {
     return r->vertices + 3 * SHAPE_CHORDS > SHAPE_VERTICES;
 }
 
-/* The first n spans of the fit are pieces. */
+/* The first n spans of the fit become pieces. */
 static void commit(struct shape *s, int32_t n)
 {
     struct shape_run *r = &s->run;
@@ -149,7 +149,7 @@ static void commit(struct shape *s, int32_t n)
     s->u = r->knot[n + 3];
 }
 
-/* Vertices before one are gone. */
+/* The first n vertices are gone, so the numbers of others change. */
 static void forget(struct shape *s, int32_t n)
 {
     s->looked = s->looked > n ? s->looked - n : 0;
@@ -191,7 +191,7 @@ static void restart(struct shape *s, int32_t v)
     }
 }
 
-/* One chord for itself, as a line. */
+/* The first chord becomes a piece by itself, a line. */
 static void push_chord(struct shape *s)
 {
     const struct shape_vertex *v = s->run.vertex;
@@ -229,7 +229,7 @@ static void begin_again(struct shape *s)
         restart(s, v);
         return;
     }
-    /* from where the pieces end, near a chord */
+    /* it begins where the pieces end, near a chord */
     double way = 0.0, along = 0.0, off = 0.0;
     struct piece_state at;
     struct shape_vertex *v = r->vertex;
@@ -272,7 +272,7 @@ static void break_up(struct shape *s, int32_t end, int32_t worst)
     s->looked = 0;
 }
 
-/* A window of the run, of which the first part is made. */
+/* Fit a window of the run, and make pieces of its first part. */
 static void pass_window(struct shape *s, int32_t end)
 {
     struct shape_run *r = &s->run;
@@ -296,7 +296,7 @@ static void pass_window(struct shape *s, int32_t end)
     forget(s, shape_run_drop(r, n));
 }
 
-/* The run, or the part of it before a corner, ends at a vertex. */
+/* Fit the run, or its part before a corner, up to a vertex, and make pieces of it. */
 static void finish(struct shape *s, int32_t end, bool stop)
 {
     struct shape_run *r = &s->run;
@@ -327,7 +327,7 @@ static void finish(struct shape *s, int32_t end, bool stop)
     restart(s, end);
 }
 
-/* All that can be made now. */
+/* Make all pieces that can be made now. */
 static void pump(struct shape *s)
 {
     struct shape_run *r = &s->run;

@@ -23,8 +23,8 @@
 
 enum {
     SHAPE_PIECES = 640,
-    SHAPE_MARKS = 1536,         /* those of a window of SHAPE_VERTICES and of what lies ahead */
-    SHAPE_HELD = 8,             /* newest pieces, which a corner may cut: not finished */
+    SHAPE_MARKS = 1536,         /* for a window of SHAPE_VERTICES and for what lies ahead */
+    SHAPE_HELD = 8,             /* newest pieces, which a corner may cut: they are not finished */
     SHAPE_TAIL = 24             /* vertices of a run that are kept for the corner at its end */
 };
 
@@ -32,7 +32,7 @@ enum shape_closing { SHAPE_OPEN, SHAPE_BY_LONG, SHAPE_BY_END };
 
 /* Where a command begins. */
 struct shape_mark {
-    double at;                  /* [mm] of the parameter, since the chain's start */
+    double at;                  /* [mm] parameter, from the chain's start */
     int32_t index, line;        /* of the command */
     uint32_t set, clear;        /* digital outputs */
     struct outputs_analog analog;
@@ -48,30 +48,30 @@ enum shape_status {
 struct shape {
     double merge;               /* [mm] highest tolerance of a run; 0 none */
     bool started, ended;
-    double end[AXES];           /* [mm] of the commands so far */
-    double u;                   /* [mm] of the pieces so far */
-    struct shape_law law;       /* of the newest command */
+    double end[AXES];           /* [mm] end of the commands so far */
+    double u;                   /* [mm] length of the pieces so far */
+    struct shape_law law;       /* limits of the newest command */
     bool exact;                 /* a long command waits for what follows it */
-    struct piece whole;         /* that one */
-    double whole_tolerance;     /* [mm] */
+    struct piece whole;         /* that long command */
+    double whole_tolerance;     /* [mm] its tolerance */
     bool running;
     enum shape_closing closing; /* what ends the run */
-    struct piece next;          /* the long command that does */
-    double next_tolerance;      /* [mm] */
+    struct piece next;          /* the long command that ends it */
+    double next_tolerance;      /* [mm] its tolerance */
     double next_from;           /* [mm] its part up to there is in the run */
-    int32_t next_vertex;        /* of the run, where it begins */
+    int32_t next_vertex;        /* vertex of the run where it begins */
     int32_t grabbed;            /* vertex of the run where the long command ends; 0 none */
     int32_t looked;             /* vertices up to it are no corners */
     int64_t made, gone;         /* pieces, since the chain's start */
     int64_t stretch;            /* first piece that a corner at the end may cut */
-    bool corner;                /* one waits for the pieces behind it */
-    int64_t corner_made;        /* pieces before it */
+    bool corner;                /* a corner waits for the pieces behind it */
+    int64_t corner_made;        /* number of pieces before it */
     int64_t corner_stretch;     /* first of these that it may cut */
-    double corner_tolerance;    /* [mm] of a long one before it */
-    int32_t tail_points;        /* vertices of a run before it, the last is the corner; 0: long */
+    double corner_tolerance;    /* [mm] of a long command before it */
+    int32_t tail_points;        /* kept vertices of a run before it, the last is it; else 0 */
     double tail[SHAPE_TAIL][AXES], tail_u[SHAPE_TAIL], tail_tolerance[SHAPE_TAIL];
     int64_t marks, marks_set, marks_gone;
-    int32_t marks_loose;        /* newest ones, which begin where the next command begins */
+    int32_t marks_loose;        /* newest marks, which lie where the next command begins */
     struct shape_run run;
     struct piece piece[SHAPE_PIECES];
     struct shape_mark mark[SHAPE_MARKS];

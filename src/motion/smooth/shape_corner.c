@@ -5,25 +5,27 @@
 
 #include "el_extremes.h"
 
-/* Farthest of the quintic from two lines whose directions differ by 1, of its half length; and from
- * paths of a curvature of 1 that touch, of its square. Where the search begins. */
+/* One quintic is off the corner of two lines by CUT times its half length times the difference of
+ * their directions. Where paths bend, about CUT_CURVED times the square of its half length times
+ * the sum of their curvatures is added. The search for a half length begins there. */
 static const double CUT = 0.1875, CUT_CURVED = 0.035;
 
-/* A curve that swings out first: where it swings out as far as it cuts in, its middle is off the
- * vertex by SWING times the cosine of half the angle, or more, of its half length times half the
- * turn. r'' there, of half the turn by the half length, falls along a line from one quintic's
- * (2 CUT, BEND). With r''' = 0 at the line's end it would be 8 - 20 of that part, which lets V rise
- * on the way out; a little less swings out farther. The slope is the one with the least times.
+/* Two quintics that swing out first: their middle is off the vertex by a part p of the half length
+ * times half the turn. They swing out as far as they cut in at about p = SWING times the cosine of
+ * half the angle (4 % less at small turns, more above 48 degrees): the search begins there. r'' in
+ * the middle, in units of half the turn by the half length, is BEND + MORE_BEND (2 CUT - p), a line
+ * from that of one quintic. With 8 - 20 p r''' would be 0 at the line's end, which lets the speed
+ * rise on the way out; a little less swings out farther. The slope is the one with the least times.
  */
 static const double SWING = 0.05, BEND = 1.5, MORE_BEND = 17.0;
 
-/* The first attempt takes a little less, each one so much less than the one before (one that swings
- * out, and another), and none less than that. [mm] */
+/* The first attempt takes FIRST of what should fit. Each one takes SWING_SHORTER (two quintics) or
+ * SHORTER (one) of the half length before it, and none less than LEAST. [mm] */
 static const double FIRST = 0.99, SWING_SHORTER = 0.97, SHORTER = 0.85, LEAST = 1e-6;
 
 enum { SWINGS = 64, ATTEMPTS = 24 };
 
-/* Of a curve at least this part is left or nothing: a sliver's derivatives would be rounding. */
+/* A cut leaves at least this part of a curve or none: a sliver's derivatives would be rounding. */
 static const double SLIVER = 0.1;
 
 /* Directions that differ by more turn back: the curve would come to a point. */
@@ -35,7 +37,7 @@ static const double SAME = 1e-11;
 /* Part of the tolerance that a chord of an arc may take. */
 static const double SAGITTA = 0.05;
 
-/* Of an arc or a cubic no more than this angle, by the curvature at its end, is cut. [rad] */
+/* A corner cuts no more of an arc or a cubic than this angle, by the curvature at its end. [rad] */
 static const double ARC = 0.5;
 
 struct piece *shape_made(struct shape *s, int64_t number)
@@ -76,7 +78,8 @@ static void add(struct shape_way *w, const double point[AXES], double u, double 
     w->points++;
 }
 
-/* Chords of a long piece in a corner: a line whole, an arc in equal ones and one more. */
+/* Chords of a long piece at a corner: one of a line; of an arc equal ones over `half` and one more.
+ * *left is the tolerance that they leave. Their number; 0: they leave none. */
 static int32_t chords(const struct piece *p, double half, double tolerance, double *step,
                       double *left)
 {
@@ -149,7 +152,7 @@ static bool way_behind(struct shape *s, double before, double half, double toler
 
 /* The middle of a curve that swings out and then cuts in, `part` of its half length times half the
  * turn off the vertex. Between lines r' along the bisector is constant, as in one quintic, so that
- * all else is along the normal and the same for each turn. How far off. [mm]
+ * all else is along the normal and the same for each turn. Returns how far off it is. [mm]
  */
 static double middle(const struct piece_state *in, const struct piece_state *out, double half,
                    double part, struct piece_state *m)
@@ -167,7 +170,7 @@ static double middle(const struct piece_state *in, const struct piece_state *out
     return part * half * sqrt(square);
 }
 
-/* What is cut off: pieces and where in them. */
+/* Where a corner cuts: in which piece before and behind it, and where in these. [mm] */
 struct cut {
     int64_t piece[2];
     double at[2];
@@ -257,7 +260,7 @@ static bool is_arc(const struct piece *p)
     return p->kind != PIECE_LINE && p->kind != PIECE_CURVE;
 }
 
-/* Rounds the corner so, if that stays within the tolerance. */
+/* Rounds the corner by such an attempt; false, and not done: it is not within the tolerance. */
 static bool rounded(struct shape *s, double half, double part, double tolerance)
 {
     const struct piece *a = shape_made(s, s->corner_made - 1);

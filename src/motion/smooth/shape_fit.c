@@ -5,7 +5,7 @@
 
 #include "el_extremes.h"
 
-/* Boehm: the blossom at each knot four times. */
+/* The blossom of the spline at both ends of the span, as Boehm has it (docs/theory). */
 void shape_extract(const double t[7], double m[4][4])
 {
     const double a = t[1], b = t[2], c = t[3], d = t[4], e = t[5], g = t[6];
@@ -24,7 +24,8 @@ void shape_extract(const double t[7], double m[4][4])
     m[3][3] = w * q;
 }
 
-/* Row of h1 (r'(between c1 and c2) - r'(between c0 and c1)) / 3 at a clamped end: 0 if r'' is. */
+/* Equations of integral |r'''|^2. A clamped end without a state gets a heavy row for r'' = 0 there:
+ * h1 (r'(between c1 and c2) - r'(between c0 and c1)) / 3 = 0. */
 static void put_bend(struct shape_fit *f)
 {
     const double *t = f->run->knot;
@@ -64,7 +65,7 @@ static void of_state(const struct shape_run *r, const struct piece_state *s, dou
     }
 }
 
-/* Known control points at both ends. */
+/* Set the control points that are known at both ends. */
 static void put_known(struct shape_fit *f)
 {
     struct shape_run *r = f->run;
@@ -123,7 +124,7 @@ static void put_axes(struct shape_fit *f)
     }
 }
 
-/* What stays where it is, at all control points. */
+/* An axis that does not move has the first coordinate at all control points. */
 static void hold_axes(struct shape_fit *f)
 {
     struct shape_run *r = f->run;
@@ -161,7 +162,7 @@ void shape_fit_split(struct shape_fit *f, int32_t spans, const double knot[])
 {
     double *old = f->run->knot;
 
-    for (int32_t k = spans - 1, j = f->spans - 1; k >= 0; k--) {    /* j: the span before */
+    for (int32_t k = spans - 1, j = f->spans - 1; k >= 0; k--) {    /* j: the old span */
         if (memcmp(knot + k + 1, old + j + 1, 6 * sizeof knot[0]) == 0) {
             memmove(f->extract[k], f->extract[j], sizeof f->extract[k]);
         } else {

@@ -10,6 +10,7 @@ static const double USED = 0.995;
 /* Steps to the foot of a vertex on the curve; halvings of a part whose hull is too wide. */
 enum { STEPS = 4, HALVINGS = 4 };
 
+/* Squared distance of a point from a chord. [mm^2] */
 static double off_chord(const double x[AXES], const double a[AXES], const double b[AXES])
 {
     double ww = 0.0, wf = 0.0, sum = 0.0;
@@ -55,7 +56,7 @@ static bool within(const struct piece *p, double t0, double t1, const double a[A
         && within(p, middle, t1, a, b, square, halvings - 1);
 }
 
-/* Part of the curve nearest to a point, not before `least`; the square of its distance. */
+/* *t becomes where the curve is nearest to a point, not before `least`. Squared distance. [mm^2] */
 static double foot(const struct piece *p, const double x[AXES], double least, double *t)
 {
     struct piece_state s;

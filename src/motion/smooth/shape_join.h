@@ -18,11 +18,12 @@ enum { SHAPE_WAY = 48 };
 struct shape_way {
     int32_t points;
     double point[SHAPE_WAY][AXES];      /* [mm] */
-    double u[SHAPE_WAY];                /* [mm] about where, from the join's start */
+    double u[SHAPE_WAY];                /* [mm] about where it lies, from the join's start */
     double tolerance[SHAPE_WAY];        /* [mm] of the chord that ends here */
 };
 
-/* False: it is not within the tolerance, or cannot be seen to be. Sets kind, length, control. */
+/* Join two states by a quintic: sets kind, length, origin, control. False: it is not within the
+ * tolerance, or cannot be seen to be. */
 bool shape_join(struct piece *p, const struct piece_state *a, const struct piece_state *b,
                 double length, const struct shape_way *way);
 

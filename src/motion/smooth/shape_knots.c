@@ -5,7 +5,7 @@
 
 #include "el_extremes.h"
 
-/* Closest spacings of a span at first; vertices of one, for each of them. */
+/* A span has so many closest spacings at first, and that times SHAPE_CROWD vertices at most. */
 enum { COARSE = 5 };
 
 /* Spans are at least this part of the spacing. */
@@ -54,7 +54,7 @@ bool shape_knots_put(struct shape_fit *f)
         f->end--;
     }
     const double at_end = v[f->end].u;
-    /* the last one at the end: drop it if it is nearer to the one before */
+    /* the last knot is the end: without the one before it if that is nearer */
     if (k > held + 1 && k > SHAPE_SPANS_LEAST + 3
         && r->knot[k] - at_end > at_end - r->knot[k - 1]) {
         k--;

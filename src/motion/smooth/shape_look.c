@@ -5,27 +5,28 @@
 /* Weights grow where a distance is above this part of the tolerance. */
 static const double GROWS = 0.9;
 
-/* Slowest and fastest r' of a curve, and what a distance counts as where it is not between. */
+/* Least and most |r'| of a spline, and what counts as squared distance, in tolerance^2, where |r'|
+ * is not between them. */
 static const double SLOW = 0.5, FAST = 1.6, ASTRAY = 4.0;
 
-/* Place and slope of the curve, one event on the way. */
+/* Place and slope of the curve at an event on the way, a vertex or a knot. */
 struct place {
     double u, point[AXES], slope[AXES];
 };
 
-/* A distance by its square, of the tolerance. */
+/* Note a squared distance, in tolerance^2. */
 static inline void note(struct shape_fit *f, int32_t vertex, double off)
 {
     struct shape_vertex *v = &f->run->vertex[vertex];
 
     v->off = !(off <= v->off) ? off : v->off;
-    if (!(off <= f->worst)) {     /* what is no number, too */
+    if (!(off <= f->worst)) {     /* not a number counts, too */
         f->worst = off;
         f->worst_vertex = vertex;
     }
 }
 
-/* Values over a span: of r, axis by axis of those that move, from the run's origin. [mm] */
+/* Bernstein values of r over a span, for each axis that moves, from the run's origin. [mm] */
 static void values(const struct shape_fit *f, int32_t span, double b[AXES][4])
 {
     const double (*m)[4] = (const double (*)[4])f->extract[span];
@@ -65,7 +66,7 @@ void shape_fit_look(struct shape_fit *f)
         for (int32_t i = f->first[k]; i < f->first[k + 1]; i++) {
             const double off = r->vertex[i].off * f->per[i];
             r->vertex[i].off = off;
-            if (!(off <= f->worst)) {       /* what is no number, too */
+            if (!(off <= f->worst)) {       /* not a number counts, too */
                 f->worst = off;
                 f->worst_vertex = i;
             }
@@ -73,7 +74,7 @@ void shape_fit_look(struct shape_fit *f)
     }
 }
 
-/* From its place on the curve to its foot. [mm] */
+/* Way from the place of a vertex on the curve to its foot, by a step of Newton. [mm] */
 static double to_foot(const struct shape_fit *f, int32_t vertex, int32_t span,
                       const double b[AXES][4])
 {
@@ -127,8 +128,8 @@ void shape_fit_push(struct shape_fit *f, bool all)
     }
 }
 
-/* The part of the curve between two events belongs to the chord that ends at a vertex: how far its
- * control points but the first are from there, the inner two or all three. */
+/* The part of the curve between two events belongs to the chord that ends at a vertex. Note how far
+ * its control points but the first are from that chord: the inner two, or all three. */
 static void prove_chord(struct shape_fit *f, int32_t vertex, const struct place *a,
                         const struct place *b, int points)
 {
@@ -172,7 +173,7 @@ static void place_at(const struct shape_fit *f, int32_t span, const double b[AXE
     }
 }
 
-/* At a vertex: its distance, and whether |r'| (of path.h's length) is near 1. */
+/* Note how far a vertex is from its place, and whether |r'| is near 1 there (path.h's length). */
 static void prove_vertex(struct shape_fit *f, int32_t vertex, const struct place *p)
 {
     const struct shape_vertex *v = &f->run->vertex[vertex];

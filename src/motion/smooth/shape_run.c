@@ -6,13 +6,13 @@
 #include "el_extremes.h"
 #include "shape_fit.h"
 
-/* Of the tolerance: closest spacing of knots; way over which the direction of a raster is taken. */
+/* In tolerances: closest spacing of knots; way over which the direction of a raster is taken. */
 static const double SPACING = 12.0, SMOOTHED = 12.0;
 
 /* Wave length of the first weights' smoothing, in spacings of knots. */
 static const double WAVE = 18.0;
 
-/* The last spans of a window, which the next one places anew. */
+/* Knots of so many last spans of a window are placed anew by the next one. */
 enum { UNSETTLED = 2 };
 
 /* Weights grow so often; vertices go to their feet FOLLOWS times, then only those whose weight
@@ -21,8 +21,8 @@ enum { UNSETTLED = 2 };
 enum { ROUNDS = 24, FOLLOWS = 2, SPLIT = 2, LATE = 5 };
 static const double LONGER = 1.5, LONGER_LATE = 0.7;
 
-/* What a distance may be in what is not made yet, the next half of it and the rest: its square, of
- * the tolerance. */
+/* Most squared distance, in tolerance^2, of vertices that are not made into pieces yet: in the next
+ * half of them, and in the rest. */
 static const double NEARLY = 1.2, FAR = 4.0;
 
 double shape_spacing(double tolerance)
@@ -75,14 +75,14 @@ static void put_weights(struct shape_fit *f)
     }
 }
 
-/* How many of its spans are made once it fits: what the rest is depends on what comes. */
+/* How many spans become pieces once a fit is good: the rest depends on what comes. */
 static int32_t sure(const struct shape_fit *f)
 {
     const int32_t rest = f->spans / 6 > 2 ? f->spans / 6 : 2;
     return f->last ? f->spans : f->spans - rest;
 }
 
-/* Whether the vertices of these spans, and the next one, are near the curve, and others nearly. */
+/* Whether the vertices of those spans, and the next one, are near the curve, and others nearly. */
 static bool near(const struct shape_fit *f)
 {
     const int32_t first = f->first[sure(f)], middle = (first + f->end) / 2;
@@ -157,7 +157,7 @@ static double least(double a, double b)
     return a < b ? a : b;
 }
 
-/* Of two jerks the smaller; 0 is one without limit. */
+/* The smaller of two jerks, where 0 is one without limit. */
 static double least_jerk(double a, double b)
 {
     return a > 0.0 && b > 0.0 ? least(a, b) : a + b;
@@ -182,7 +182,7 @@ void shape_run_piece(const struct shape_run *r, int32_t k, int32_t *vertex, stru
     p->kind = PIECE_CURVE;
     p->length = t[4] - t[3];
     shape_extract(t, m);
-    for (int i = 0; i < AXES; i++) {    /* from the first control point: small differences */
+    for (int i = 0; i < AXES; i++) {    /* from the first control point, so differences are small */
         const double at = r->control[k][i], c1 = r->control[k + 1][i] - at;
         const double c2 = r->control[k + 2][i] - at, c3 = r->control[k + 3][i] - at;
         const double start = m[0][1] * c1 + m[0][2] * c2;
@@ -196,7 +196,7 @@ void shape_run_piece(const struct shape_run *r, int32_t k, int32_t *vertex, stru
         p->control[4][i] = 0.6 * b2 + 0.4 * b3;
         p->control[5][i] = b3;
     }
-    /* chords with a part in it */
+    /* limits of the chords that have a part in the span */
     while (*vertex < r->vertices - 1 && r->vertex[*vertex].u <= t[3]) {
         (*vertex)++;
     }

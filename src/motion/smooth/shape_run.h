@@ -23,9 +23,9 @@
 #include "piece.h"
 
 enum {
-    SHAPE_SPANS = 64,           /* of a window, at most */
-    SHAPE_CROWD = 16,           /* vertices of a span, at most about */
-    SHAPE_VERTICES = 900        /* of a window, and what waits behind it */
+    SHAPE_SPANS = 64,           /* most spans of a window */
+    SHAPE_CROWD = 16,           /* about the most vertices of a span */
+    SHAPE_VERTICES = 900        /* most vertices of a window and of what waits behind it */
 };
 
 /* What a chord's command asks of the motion along it. */
@@ -36,35 +36,35 @@ struct shape_law {
 
 struct shape_vertex {
     double point[AXES];         /* [mm] */
-    double s;                   /* [mm] along the polyline */
-    double u;                   /* [mm] of the curve's parameter */
-    double tolerance;           /* [mm] of the chord that ends here */
-    double weight;              /* 0: none yet */
-    double off;                 /* of the tolerance, as last seen: its square */
-    struct shape_law law;       /* of the chord that ends here */
-    int32_t marks;              /* commands that begin here */
+    double s;                   /* [mm] where it lies along the polyline */
+    double u;                   /* [mm] parameter of its place on the curve */
+    double tolerance;           /* [mm] tolerance of the chord that ends here */
+    double weight;              /* weight of its distance; 0: none yet */
+    double off;                 /* largest squared distance last seen here, in tolerance^2 */
+    struct shape_law law;       /* limits of the chord that ends here */
+    int32_t marks;              /* number of commands that begin here */
     bool joint;                 /* a command ends here: it may be a corner */
     bool corner;
 };
 
 struct shape_run {
-    int32_t vertices, placed;   /* of these, with a u */
+    int32_t vertices, placed;   /* number of vertices; how many of them have a u */
     bool begun;                 /* pieces of it exist: knots and control points hold at the left */
     bool bound;                 /* it begins with the state `begin`, else with r'' = 0 */
     struct piece_state begin;
-    int32_t spans, fitted;      /* of the last fit; its last vertex */
-    int32_t proved;             /* its first spans, which keep the tolerance */
+    int32_t spans, fitted;      /* spans of the last fit; its last vertex */
+    int32_t proved;             /* so many of its first spans keep the tolerance */
     int32_t kept;               /* knots up to this one are good for the next window, too */
     double knot[SHAPE_SPANS + 7];       /* [mm]; span k lies between knots k + 3 and k + 4 */
-    double origin[AXES];                /* [mm] near the run, */
-    double control[SHAPE_SPANS + 3][AXES];      /* [mm] from there */
+    double origin[AXES];                /* [mm] a point near the run */
+    double control[SHAPE_SPANS + 3][AXES];      /* [mm] control points, from the origin */
     struct shape_vertex vertex[SHAPE_VERTICES];
 };
 
-/* A piece obeys a law, too. */
+/* Lower the limits of a piece to those of a law, too. */
 void shape_obey(struct piece *p, double feed, double cap, const struct ramp_limits *r);
 
-/* In six coordinates. [mm] */
+/* Distance of two points in six coordinates. [mm] */
 double shape_distance(const double a[AXES], const double b[AXES]);
 
 /* Closest spacing of knots for a tolerance. [mm] */

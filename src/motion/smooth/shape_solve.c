@@ -18,7 +18,7 @@ void shape_solve_add(double band[][SHAPE_BAND], int32_t k, const double row[4], 
     band[k + 3][0] += weight * row[3] * row[3];
 }
 
-/* A place by the control points of its span, t = 0 .. 1 on it. */
+/* Shares of the four control points of a span in its place at t = 0 .. 1. */
 static inline void put_row(const struct shape_fit *f, int32_t span, double t, double row[4])
 {
     const double (*m)[4] = (const double (*)[4])f->extract[span];
@@ -31,7 +31,7 @@ static inline void put_row(const struct shape_fit *f, int32_t span, double t, do
     row[3] = b3 * m[3][3];
 }
 
-/* Adds weight |r(u) - vertex|^2. */
+/* Adds weight |r(u) - vertex|^2 to the equations. */
 static void add_vertex(struct shape_fit *f, int32_t vertex, int32_t span, double weight)
 {
     const double *row = f->row[vertex], *point = f->run->vertex[vertex].point;
@@ -47,7 +47,7 @@ static void add_vertex(struct shape_fit *f, int32_t vertex, int32_t span, double
     }
 }
 
-/* Adds all vertices of a span, sum by sum. */
+/* Adds all vertices of a span to the equations, sum by sum. */
 static void add_span(struct shape_fit *f, int32_t span)
 {
     const int32_t from = f->first[span], to = f->first[span + 1];
@@ -134,7 +134,7 @@ void shape_solve_change(struct shape_fit *f, int32_t vertex, int32_t span, doubl
     add_vertex(f, vertex, span, weight);
 }
 
-/* What known control points give goes to the right side. */
+/* Takes known control points to the right side. */
 static void take_known(const struct shape_fit *f, int32_t first, int32_t last,
                        double right[][AXES])
 {
@@ -204,7 +204,7 @@ void shape_solve(struct shape_fit *f)
             r->control[i][f->axis[x + 1]] = right[i][x + 1] = c;
         }
     }
-    /* r'' = 0 exactly where it was asked for by weight */
+    /* r'' is exactly 0 where a heavy row has made it nearly so */
     const double *t = r->knot;
     for (int x = 0; x < f->axes; x++) {
         const int i = f->axis[x];

@@ -6,15 +6,15 @@
  * turns, it does so over a third of it, too. */
 static const double AROUND = 15.0, CLOSE = 1.0 / 3.0;
 
-/* A corner is seen once so much of the way behind it is known, in tolerances; of corners within
- * half of that there is one. */
+/* A corner is looked for once so much of the way behind it is known, in tolerances; within half of
+ * that there is only one. */
 static const double AHEAD = 30.0;
 
 /* sin^2 of half the angle of a turn that is a corner before any spline has been tried: 53 degrees.
  * Measured: with 25 degrees an outline with radii of 0.4 mm takes 9 % longer. */
 static const double SHARP = 0.2;
 
-/* sin^2 of half of 25 degrees; of an angle that is 0.6 of another, about. */
+/* sin^2 of half of 25 degrees, the least turn; ratio of sin^2 where an angle is 0.6 of another. */
 static const double TURN = 0.0468, SAME_TURN = 0.36;
 
 /* sin^2 of half the angle at a vertex between its chords to the points so far away; 0 if it is not

@@ -4,11 +4,11 @@
 
 #include "shape_run.h"
 
-/* 0: no corner at a vertex, neither its first nor its last one; else the greater the more it turns
- * within 15 tolerances. The steps of a raster are no corners. */
+/* How much a run turns within 15 tolerances at a vertex, neither its first nor its last one: sin^2
+ * of half the angle, 0 if that is no corner. The steps of a raster are no corners. */
 double shape_turn(const struct shape_run *r, int32_t vertex);
 
-/* The one before `end` that turns most near a vertex, or that one itself. */
+/* The vertex before `end` where the run turns most near a vertex, or that vertex itself. */
 int32_t shape_turn_most(const struct shape_run *r, int32_t vertex, int32_t end);
 
 /* The next vertex behind *looked that is a corner, marked as one; 0: none. `waits`: only as far as

@@ -6,7 +6,7 @@
 #include "el_extremes.h"
 #include "elementary.h"
 
-/* Part of a long command that a run may take: of its length, and in tolerances. */
+/* A run takes at most this part of a long command, and so many tolerances. */
 static const double SHARE = 1.0 / 3.0, GRAB = 60.0;
 
 enum { HALVINGS = 60 };

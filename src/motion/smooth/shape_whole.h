@@ -13,12 +13,12 @@ struct piece shape_whole(const struct path *path, const struct shape_law *law);
 /* The path of such a piece; of a cut line what is left. */
 struct path shape_whole_path(const struct piece *p);
 
-/* How many chords a part of a path becomes that stay near it; 0: too many. Of what bends they are
- * off by at most SHAPE_SAGITTA of the tolerance. */
+/* Number of chords that stand for a length of a path; 0: too many. Where it bends they are off by
+ * at most SHAPE_SAGITTA of the tolerance. */
 #define SHAPE_SAGITTA 0.05
 int32_t shape_chords(const struct path *p, double length, double tolerance);
 
-/* Way on a long command that a run takes. [mm] */
+/* Length of a long command that a run takes. [mm] */
 double shape_grab(const struct piece *p, double tolerance);
 
 #endif
