@@ -238,19 +238,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    if (m->bus < CLOCK_NS || m->instant < s->now || m->instant - s->now >= m->bus) {
-        return "its next instant is another one";
-    }
-    if (m->bus % CLOCK_NS != 0 || m->bus / CLOCK_NS != m->pc.config.bus
-        || m->pc.program != (s->v.program[0] != '\0')) {
-        return "its bus period or whether it has a program";
-    }
-    return pc_damage(&m->pc);
-}
-
 static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
 {
     struct spans unused;

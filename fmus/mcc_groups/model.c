@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "fmu_spans.h"
-#include "groups_damage.h"
+#include "group.h"
 #include "groups_unused.h"
 #include "vars.h"
 
@@ -219,25 +219,6 @@ static int model_start(struct fmu *f)
     m->bus = config.bus * CLOCK_NS;
     publish(f);
     return 0;
-}
-
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    if (m->bus < CLOCK_NS || m->instant < s->now || m->instant - s->now >= m->bus
-        || m->bus % CLOCK_NS != 0 || m->bus / CLOCK_NS != m->groups.config.bus) {
-        return "its next instant is another one";
-    }
-    for (int n = 0; n < GROUP_MAX; n++) {
-        const int32_t k = m->index[n];
-        if (k < -1 || k >= GROUP_MAX || (k >= 0 && !m->groups.group[k].used)) {
-            return "the number of a group";
-        }
-        if (k >= 0 && m->groups.group[k].program && !wanted(&s->v, n).program[0]) {
-            return "whether a group has a program";
-        }
-    }
-    return groups_damage(&m->groups);
 }
 
 /* What a card is given, under the names of its outputs; it keeps its command_aux while no axis has

@@ -134,17 +134,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-
-    if (m->period < FMU_TICK_NS || m->period % FMU_TICK_NS || m->instant < s->now ||
-        m->instant - s->now >= m->period || m->instant % FMU_TICK_NS) {
-        return "its next instant is another one";
-    }
-    return netcard_damage(&m->card, s->now);
-}
-
 static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
 {
     struct spans unused;

@@ -52,12 +52,6 @@ static int model_start(struct fmu *f);
  * Any split of an interval into steps must give the same outputs at the common points. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1);
 
-/* Called for a state that came back as bytes and has been started, whose variables, Booleans and
- * enumerations have been looked at: words for what model_step cannot work with, or NULL. It must
- * find every index and count that leads beyond its array, and every number that would make a loop
- * endless. Values that are only wrong it need not see. */
-static const char *model_check(const struct state *s);
-
 #ifdef MODEL_UNUSED
 /* Name parts of s->m in a state that has been started and is not damaged which a saved state need
  * not have, from counts and places alone: up to FMU_SPANS, none twice. Returns their number. A

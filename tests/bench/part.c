@@ -57,7 +57,6 @@ void JOIN(PART, start)(void);
 void JOIN(PART, start)(void)
 {
     (void)fmu_resources(&part);
-    (void)model_check;      /* of states that come back */
 #ifdef MODEL_BLOB
     model_open(&part);
 #endif

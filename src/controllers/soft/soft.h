@@ -161,10 +161,6 @@ bool soft_done(const struct soft *s);
  * in the robot language cannot be rehearsed: its inputs decide what it does. */
 void soft_rehearse(struct soft *s, const struct soft_config *c, const struct orders_text *t);
 
-/* What is wrong with a state that comes back from outside, at a clock, in words, or NULL. Its
- * program is for orders_damaged. */
-const char *soft_damage(const struct soft *s, int64_t clock);
-
 /* Parts of a state that is not damaged which need no copy. */
 void soft_unused(const struct soft *f, struct spans *s);
 

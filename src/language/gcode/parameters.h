@@ -74,10 +74,4 @@ enum fault parameters_set(struct interpreter *in, const struct program *p,
 /* The names of a call that ends. */
 void parameters_leave(struct parameters *all, int32_t level);
 
-/* Whether a state is none that it can have. */
-static inline bool parameters_damaged(const struct parameters *all)
-{
-    return all->names < 0 || all->names > PARAMETERS_NAMED;
-}
-
 #endif

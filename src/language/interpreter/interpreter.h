@@ -39,9 +39,6 @@ void interpreter_check_all(const struct interpreter *from, const struct program 
 enum interpreter_result interpreter_read(struct interpreter *in, const struct program *p,
                                          struct command *c, struct fault_report *r);
 
-/* Whether places and numbers of a state are none that it can have. */
-bool interpreter_damaged(const struct interpreter *in);
-
 /* Parts of a state that is not damaged which need no copy. */
 void interpreter_unused(const struct interpreter *in, struct spans *s);
 

@@ -152,10 +152,6 @@ bool mover_point(struct mover *p, const struct mover_beside *b, const struct mec
  * need. */
 void mover_accept(struct mover *p, const struct mover_beside *b, const struct point *point);
 
-/* Whether counts and places of a state, which came from outside, lead out of its arrays. */
-bool mover_damaged(const struct mover *p, const struct ring *r);
-bool queue_damaged(const struct queue *q);
-
 /* Parts of a state that is not damaged which need no copy. */
 void mover_unused(const struct mover *p, const struct mover_beside *b, struct spans *s);
 void queue_unused(const struct queue *q, struct spans *s);

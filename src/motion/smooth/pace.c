@@ -346,19 +346,6 @@ void pace_put(struct pace *p, const struct pace_place *place)
     }
 }
 
-bool pace_damaged(const struct pace *p)
-{
-    const struct pace_place *at = &p->at;
-    bool good = at->head >= 0 && at->head < PACE_CELLS && p->count >= 0 &&
-                p->count <= PACE_CELLS && at->planned >= 0 && at->planned <= p->count;
-
-    for (int32_t i = 0; good && !p->smooth && i < p->count; i++) {
-        const struct pace_cell *c = cell_peek(p, i);
-        good = c->planes >= 0 && c->planes <= PACE_PLANES;
-    }
-    return !good || (p->smooth && pace_smooth_damaged(p));
-}
-
 /* An earlier place may be put back: the cells up to it stay. */
 void pace_unused(const struct pace *p, bool on, struct spans *u)
 {

@@ -58,9 +58,6 @@ struct pace {
 /* Back to an earlier place, from which fewer than PACE_KEPT cells have been crossed. */
 void pace_put(struct pace *p, const struct pace_place *place);
 
-/* Whether counts of a state, which came from outside, lead out of its arrays. */
-bool pace_damaged(const struct pace *p);
-
 /* Parts of one that is not damaged which a saved state can do without; `on`: a chain is under way,
  * else the next one begins with pace_start. */
 void pace_unused(const struct pace *p, bool on, struct spans *u);

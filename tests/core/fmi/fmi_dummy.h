@@ -13,6 +13,7 @@
 
 #define FMU_NAME       "Dummy"
 #define FMU_TOKEN      "{dummy}"
+#define FMU_VERSION    "1.0"
 #define FMU_TICK_NS    25
 #define FMU_STRING_MAX 64
 #define FMU_STRICT     strict_step
@@ -63,7 +64,6 @@ enum { KEPT = 100 };
 struct model {
     double  sum[2];
     int32_t at;
-    bool    odd;
     int32_t first, used;    /* of `kept`, a ring: what is not in use holds nothing that is read */
     double  kept[KEPT];
     double  zeros[20];      /* none of them is set */
@@ -112,15 +112,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    return m->at < 0 || m->at > 1                         ? "at is no index of sum"
-           : m->first < 0 || m->first >= KEPT             ? "first is no index of kept"
-           : m->used < 0 || m->used > KEPT                ? "used is no count of kept"
-                                                          : NULL;
-}
-
 /* Told out of order, as models may. */
 static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
 {
@@ -134,11 +125,6 @@ static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS
     }
     n = fmu_span_add(span, n, kept + end * each, kept + KEPT * each, 0);
     return fmu_span_add(span, n, kept, kept + first * each, 0);
-}
-
-static bool fmi_good_model(const struct model *p)
-{
-    return *(const unsigned char *)&p->odd <= 1;
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)

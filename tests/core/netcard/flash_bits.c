@@ -88,7 +88,6 @@ static void bits(void)
         now += took;
         CHECK_EQ(flash_read(&f, at, read, now), 49715);     /* 261 bytes at 42 MHz */
         CHECK(!memcmp(read, plain + at * FLASH_PAGE, FLASH_PAGE));
-        CHECK(flash_damage(&f) == NULL);
         if (k % 100 == 0)
             saved(&f);
     }
@@ -182,29 +181,6 @@ static void seeds(void)
     CHECK(!memcmp(f.array, g.array, FLASH_BLOCK) && memcmp(f.array, h.array, FLASH_BLOCK));
 }
 
-/* States that no chip has. */
-static void damage(void)
-{
-    start(0);
-    flash_erase_block(&f, 31, 5);
-    CHECK(flash_damage(&f) == NULL);
-    f.at++;
-    CHECK(flash_damage(&f) != NULL);
-    f.at = -1;
-    CHECK(flash_damage(&f) != NULL);
-    f.at = FLASH_BYTES - FLASH_BLOCK;
-    f.work = (enum flash_work)3;
-    CHECK(flash_damage(&f) != NULL);
-    f.work = FLASH_PROGRAM;
-    CHECK(flash_damage(&f) != NULL);
-    f.work = FLASH_ERASE;
-    f.end = f.begin;
-    CHECK(flash_damage(&f) != NULL);
-    f.end = f.begin + 1;
-    f.config.spread = 1001;
-    CHECK(flash_damage(&f) != NULL);
-}
-
 int main(void)
 {
     memset(erased, 0xff, sizeof erased);
@@ -212,6 +188,5 @@ int main(void)
     torn_programs();
     torn_erases();
     seeds();
-    damage();
     return check_result();
 }
