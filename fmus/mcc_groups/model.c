@@ -2,9 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "fmu_spans.h"
 #include "group.h"
-#include "groups_unused.h"
+#include "library_in_use.h"
 #include "vars.h"
 
 struct model {
@@ -18,7 +17,16 @@ struct model {
 };
 
 #define MODEL_BLOB
-#define MODEL_UNUSED
+#define GROUP_IN_USE(one)                                                                         \
+    FMU_WHEN(one.mcc, one.used, 1, 1)                                                             \
+    MCC_IN_USE(one.mcc)                                                                           \
+    FMU_WHEN(one.servo, one.used, 1, 1)                                                           \
+    FMU_WHEN(one.servo, one.voltage, 1, 1)                                                        \
+    VOLTAGE_IN_USE(one.servo.voltage)
+#define MODEL_IN_USE                                                                              \
+    GROUP_IN_USE(groups.group[0]) GROUP_IN_USE(groups.group[1]) GROUP_IN_USE(groups.group[2])     \
+    GROUP_IN_USE(groups.group[3]) GROUP_IN_USE(groups.group[4]) GROUP_IN_USE(groups.group[5])
+_Static_assert(GROUP_MAX == 6, "a row of each group's arrays");
 #include "fmi_model.h"
 #include "fmu_period.h"
 #include "program_fault.h"
@@ -316,14 +324,6 @@ static int refused_by_card(struct fmu *f, int card)
 {
     return fmu_fail(f, "card %d has refused every frame of %d transactions in a row: is every "
                     "channel of a group active on it?", card + 1, PCL_REFUSALS);
-}
-
-static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
-{
-    struct spans unused;
-    unused.count = 0;
-    groups_unused(&s->m.groups, &unused);
-    return fmu_spans(&unused, s, span);
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)

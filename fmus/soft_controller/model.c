@@ -1,7 +1,7 @@
 /* The software of the controller on the wires of a co-simulation: bus grid, mailboxes, files. */
 #include <string.h>
 
-#include "fmu_spans.h"
+#include "library_in_use.h"
 #include "soft_calls.h"
 #include "soft_settings.h"
 #include "soft_words.h"
@@ -16,7 +16,14 @@ struct model {
 };
 
 #define MODEL_BLOB
-#define MODEL_UNUSED
+#define MODEL_IN_USE                                                                              \
+    RING_IN_USE(soft.robot.ring)                                                                  \
+    MEAN_IN_USE(soft.robot.mean, soft.robot.mover)                                                \
+    FMU_LIST(soft.robot.course.move, soft.robot.course.count)                                     \
+    FMU_LIST(soft.robot.way.piece, soft.robot.way.count)                                          \
+    INTERPRETER_IN_USE(soft.orders.gcode)                                                         \
+    FMU_RING(soft.queue, soft.heads, soft.count, 0)                                               \
+    FMU_LIST(soft.taught, soft.taught_count)
 #include "fmi_model.h"
 #include "fmu_period.h"
 #include "soft_parameters.h"
@@ -209,14 +216,6 @@ static void read_bus(struct fmu *f, int64_t at)
     READ(bool, stopped, )
     READ(int32_t, pulse_count, )
     soft_instant(&f->s.m.soft, &b->config, &t, &card, &panel, at / FPGA_CLOCK_NS);
-}
-
-static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
-{
-    struct spans unused;
-    unused.count = 0;
-    soft_unused(&s->m.soft, &unused);
-    return fmu_spans(&unused, s, span);
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)

@@ -77,8 +77,3 @@ void JOIN(PART, end)(void)
     model_close(&part);
 #endif
 }
-
-#ifdef MODEL_UNUSED
-/* No state is saved here. */
-size_t (*const JOIN(PART, span_list))(const struct state *, struct fmu_span *) = model_unused;
-#endif

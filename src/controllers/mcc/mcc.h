@@ -15,7 +15,6 @@
 #include "manual.h"
 #include "mover.h"
 #include "signals.h"
-#include "spans.h"
 
 /* Return codes of the library that occur here. */
 enum mcc_return {
@@ -287,8 +286,5 @@ bool control_rests(const struct mcc *m);
 
 /* With nothing under way and nothing to come, the next command begins where the axes stand. */
 void control_settle(struct mcc *m);
-
-/* Parts of a state that is not damaged which need no copy. */
-void mcc_unused(const struct mcc *m, struct spans *s);
 
 #endif

@@ -172,13 +172,3 @@ uint32_t flash_wear(const struct flash_chip *f)
     return most;
 }
 
-_Static_assert(FLASH_SECTORS / 2 <= SPANS_MAX, "every other sector");
-
-void flash_unused(const struct flash_chip *f, struct spans *s)
-{
-    for (int32_t from = 0, to; from < FLASH_SECTORS; from = to + 1) {
-        for (to = from; to < FLASH_SECTORS && !f->written[to]; to++)
-            ;
-        spans_leave(s, f->array + from * FLASH_SECTOR, f->array + to * FLASH_SECTOR);
-    }
-}

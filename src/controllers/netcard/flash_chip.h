@@ -14,7 +14,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "spans.h"
 
 enum {
     FLASH_PAGE = 256,
@@ -84,8 +83,5 @@ void flash_cut(struct flash_chip *f, int64_t now);
 
 /* Most erases of any sector. */
 uint32_t flash_wear(const struct flash_chip *f);
-
-/* Parts of a state that a saved one leaves out: sectors without anything. */
-void flash_unused(const struct flash_chip *f, struct spans *s);
 
 #endif

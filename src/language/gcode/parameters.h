@@ -39,7 +39,7 @@ struct parameter_named {
 
 struct parameters {
     double value[PARAMETERS_NUMBERED];      /* of #1 on */
-    uint64_t given[PARAMETERS_PAGES];       /* bits: has been set; what has not is 0 */
+    uint64_t given[PARAMETERS_PAGES];       /* bits: has been set; else nobody reads the value */
     struct parameter_named named[PARAMETERS_NAMED];
     int32_t names;
     double quiet;               /* 1 - #5599 */

@@ -26,12 +26,12 @@ struct ride {
 
 static struct pace_box *box_at(struct pace *p, int32_t i)
 {
-    return &p->box[(uint32_t)(p->at.head + i) % PACE_CELLS];
+    return &p->ring[(uint32_t)(p->at.head + i) % PACE_CELLS].box;
 }
 
 static struct pace_road road(const struct ride *r, double override)
 {
-    return (struct pace_road){ r->p->box, PACE_CELLS, r->at.head, r->count, override };
+    return (struct pace_road){ r->p->ring, PACE_CELLS, r->at.head, r->count, override };
 }
 
 static const struct pace_plan *held(const struct ride *r)

@@ -168,7 +168,7 @@ def model(system: System, parts: Mapping[str, Part], used: Roles, recorded: Sequ
         '#include "vars.h"\n#include "fmu_system.h"\n\n',
         *_structs(parts),
         _model(system, parts),
-        "\n#define MODEL_BLOB\n#define MODEL_UNUSED\n",
+        "\n#define MODEL_BLOB\n#define MODEL_PARTS\n",
         '#include "fmi_model.h"\n#include "fmu_recorder.h"\n\n',
         "SYSTEM_COLD_BEGIN\n",
         *_gives(system, parts, used),
