@@ -79,17 +79,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    if (m->period < FMU_TICK_NS || m->instant < s->now || m->instant - s->now >= m->period)
-        return "its next instant is another one";
-    if (!(m->owed >= 0.0 && m->owed <= 1.0))
-        return "its flood is damaged";
-    return m->tx_count >= 0 && m->rx_taken >= 0 && net_host_sound(&m->host)
-           ? NULL : "its link is damaged";
-}
-
 /* Another connection, or none: streams start anew. */
 static void see_connection(struct fmu *f)
 {

@@ -43,12 +43,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const char *what = wires_check(s);
-    return what ? what : epcio_damage(&s->m.card, s->m.period);
-}
-
 /* A new number in the register mailbox writes its registers in order, now, up to the first that the
  * card refuses. */
 static void take_registers(struct fmu *f)

@@ -46,20 +46,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    const struct ether_config *c = &m->link.config.pipe;
-    if (m->period < FMU_TICK_NS || m->instant < s->now || m->instant - s->now >= m->period)
-        return "its next instant is another one";
-    if (c->rate < 1 || c->segment < 1 || c->segment > 1460 || c->overhead < 0 ||
-        c->overhead > 1000 || c->jitter < 0 || c->jitter > INT64_C(10000000000) || c->delay < 0 ||
-        c->delay > INT64_C(10000000000) || c->stall < 0 || c->stall > INT64_C(60000000000) ||
-        m->link.config.away < 0 || m->link.config.away > INT64_C(10000000000000))
-        return "its line is another one";
-    return ethernet_sound(&m->link) ? NULL : "its streams are damaged";
-}
-
 #define END(at, end) \
     struct ethernet_seen *end = &seen[at]; \
     memcpy(end->tx_words, v->end##_tx_words, sizeof end->tx_words); \

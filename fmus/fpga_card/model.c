@@ -55,15 +55,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    const int64_t clock = s->now / FPGA_CLOCK_NS;
-    if (m->period < 1 || m->instant < clock || m->instant - clock >= m->period)
-        return "its next instant is another one";
-    return m->card.clock == clock ? fpga_damage(&m->card) : "its clock is another one";
-}
-
 /* The clock of an input, of its element k > 0 if it is an array, rounded up to a whole one; 0 if
  * none is stated, -1 after fmu_fail(). */
 static int64_t clock_of(struct fmu *f, const char *name, int k, double clock)

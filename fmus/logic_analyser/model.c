@@ -71,16 +71,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    const int64_t clock = s->now / CLOCK_NS, period = llround(s->v.bus_period * CLOCK_HZ);
-    if (m->analyser.config.period != period || m->instant < clock || m->instant - clock >= period)
-        return "its next instant is another one";
-    return m->held < 0 || m->held > INT32_MAX ? "its events are damaged"
-                                              : analyser_damage(&m->analyser);
-}
-
 /* Keep an event. Those that an FMU state brings along from another instance are not known here. */
 static int record(struct fmu *f, const struct analyser_event *event)
 {

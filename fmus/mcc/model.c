@@ -1,7 +1,7 @@
 /* The motion library on its PC, on the wires of a co-simulation: bus grid, registers, mailboxes. */
 #include <string.h>
 
-#include "fmu_spans.h"
+#include "library_in_use.h"
 #include "pc.h"
 #include "vars.h"
 
@@ -15,7 +15,7 @@ struct model {
 };
 
 #define MODEL_BLOB
-#define MODEL_UNUSED
+#define MODEL_IN_USE MCC_IN_USE(pc.mcc) VOLTAGE_IN_USE(pc.voltage)
 #include "fmi_model.h"
 #include "comp_file.h"
 #include "mcc_parameters.h"
@@ -236,27 +236,6 @@ static int model_start(struct fmu *f)
     warn_of_cycle(f);
     publish(f);
     return 0;
-}
-
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    if (m->bus < CLOCK_NS || m->instant < s->now || m->instant - s->now >= m->bus) {
-        return "its next instant is another one";
-    }
-    if (m->bus % CLOCK_NS != 0 || m->bus / CLOCK_NS != m->pc.config.bus
-        || m->pc.program != (s->v.program[0] != '\0')) {
-        return "its bus period or whether it has a program";
-    }
-    return pc_damage(&m->pc);
-}
-
-static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
-{
-    struct spans unused;
-    unused.count = 0;
-    pc_unused(&s->m.pc, &unused);
-    return fmu_spans(&unused, s, span);
 }
 
 /* Read the wires at an instant of the bus grid and let the PC work. */

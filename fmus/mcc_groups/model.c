@@ -2,9 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "fmu_spans.h"
-#include "groups_damage.h"
-#include "groups_unused.h"
+#include "group.h"
+#include "library_in_use.h"
 #include "vars.h"
 
 struct model {
@@ -18,7 +17,16 @@ struct model {
 };
 
 #define MODEL_BLOB
-#define MODEL_UNUSED
+#define GROUP_IN_USE(one)                                                                         \
+    FMU_WHEN(one.mcc, one.used, 1, 1)                                                             \
+    MCC_IN_USE(one.mcc)                                                                           \
+    FMU_WHEN(one.servo, one.used, 1, 1)                                                           \
+    FMU_WHEN(one.servo, one.voltage, 1, 1)                                                        \
+    VOLTAGE_IN_USE(one.servo.voltage)
+#define MODEL_IN_USE                                                                              \
+    GROUP_IN_USE(groups.group[0]) GROUP_IN_USE(groups.group[1]) GROUP_IN_USE(groups.group[2])     \
+    GROUP_IN_USE(groups.group[3]) GROUP_IN_USE(groups.group[4]) GROUP_IN_USE(groups.group[5])
+_Static_assert(GROUP_MAX == 6, "a row of each group's arrays");
 #include "fmi_model.h"
 #include "fmu_period.h"
 #include "program_fault.h"
@@ -221,25 +229,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    if (m->bus < CLOCK_NS || m->instant < s->now || m->instant - s->now >= m->bus
-        || m->bus % CLOCK_NS != 0 || m->bus / CLOCK_NS != m->groups.config.bus) {
-        return "its next instant is another one";
-    }
-    for (int n = 0; n < GROUP_MAX; n++) {
-        const int32_t k = m->index[n];
-        if (k < -1 || k >= GROUP_MAX || (k >= 0 && !m->groups.group[k].used)) {
-            return "the number of a group";
-        }
-        if (k >= 0 && m->groups.group[k].program && !wanted(&s->v, n).program[0]) {
-            return "whether a group has a program";
-        }
-    }
-    return groups_damage(&m->groups);
-}
-
 /* What a card is given, under the names of its outputs; it keeps its command_aux while no axis has
  * the seventh error counter. */
 #define SHOW_1(type, name, elements) LINK_CARRY(v->card1_##name, link.name)
@@ -335,14 +324,6 @@ static int refused_by_card(struct fmu *f, int card)
 {
     return fmu_fail(f, "card %d has refused every frame of %d transactions in a row: is every "
                     "channel of a group active on it?", card + 1, PCL_REFUSALS);
-}
-
-static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
-{
-    struct spans unused;
-    unused.count = 0;
-    groups_unused(&s->m.groups, &unused);
-    return fmu_spans(&unused, s, span);
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)

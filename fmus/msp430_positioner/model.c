@@ -3,7 +3,7 @@
 
 #include "el_extremes.h"
 #include "fixed.h"
-#include "msp430_damage.h"
+#include "msp430.h"
 #include "vars.h"
 
 struct model {
@@ -197,19 +197,6 @@ static double plugged(struct model *m, const struct vars *v)
         m->phase = v->scale_phase - m->missed;
     m->unplugged = v->scale_unplugged;
     return m->phase;
-}
-
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    if (m->clock_ns < 1 || m->period < 1 || m->period > INT64_MAX / m->clock_ns
-        || m->instant < 0 || m->instant > INT64_MAX / m->clock_ns
-        || m->instant * m->clock_ns < s->now
-        || m->instant * m->clock_ns - s->now >= m->period * m->clock_ns)
-        return "its next instant is another one";
-    if (m->instant > 0 && m->chip.clock != m->instant - m->period)
-        return "its clock is another one";
-    return msp430_damage(&m->chip);
 }
 
 static int sample(struct fmu *f)

@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "byte_ring.h"
-#include "fmu_spans.h"
 #include "netcard.h"
 #include "vars.h"
 
@@ -15,11 +14,12 @@ struct model {
 };
 
 #define MODEL_BLOB
-#define MODEL_UNUSED
+#define MODEL_IN_USE FMU_FLAGS(card.flash.array, FLASH_SECTOR, card.flash.written)
 #include "fmi_model.h"
 #include "fmu_period.h"
 #include "job_file.h"
 
+_Static_assert(FLASH_SECTORS / 2 < FMU_SPANS, "every other sector may be left out");
 _Static_assert(sizeof ((struct job_file *)0)->byte == FLASH_BYTES + 1, "a whole flash");
 _Static_assert(NET_RESET - NET_START == (int)CARD_DO_RESET, "commands are those of the link");
 
@@ -132,26 +132,6 @@ static int model_start(struct fmu *f)
     }
     publish(f);
     return 0;
-}
-
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-
-    if (m->period < FMU_TICK_NS || m->period % FMU_TICK_NS || m->instant < s->now ||
-        m->instant - s->now >= m->period || m->instant % FMU_TICK_NS) {
-        return "its next instant is another one";
-    }
-    return netcard_damage(&m->card, s->now);
-}
-
-static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
-{
-    struct spans unused;
-
-    unused.count = 0;
-    netcard_unused(&s->m.card, &unused);
-    return fmu_spans(&unused, s, span);
 }
 
 /* The stream of a connection; a new number begins a new one. */

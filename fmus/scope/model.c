@@ -129,14 +129,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    if (s->v.rows < 0) {
-        return "rows is less than 0";
-    }
-    return s->m.period == llround(s->v.period * 1e9) ? NULL : "its period is another one";
-}
-
 static int make_room(struct fmu *f, struct rows *r, int64_t rows)
 {
     if (rows <= r->room) {

@@ -66,13 +66,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    const bool next = m->instant >= s->now && m->instant - s->now < m->period;
-    return m->period >= FMU_TICK_NS && next ? NULL : "its next instant is another one";
-}
-
 static int sample(struct fmu *f)
 {
     const struct vars *v = &f->s.v;

@@ -31,12 +31,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const char *what = wires_check(s);
-    return what ? what : single_buffer_damage(&s->m.card);
-}
-
 static int read_host(struct fmu *f)
 {
     const struct vars *v = &f->s.v;

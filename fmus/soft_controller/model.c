@@ -1,7 +1,7 @@
 /* The software of the controller on the wires of a co-simulation: bus grid, mailboxes, files. */
 #include <string.h>
 
-#include "fmu_spans.h"
+#include "library_in_use.h"
 #include "soft_calls.h"
 #include "soft_settings.h"
 #include "soft_words.h"
@@ -12,10 +12,18 @@ struct model {
     int64_t instant;        /* [ns] next instant of the bus grid that reads */
     bool    unpublished;    /* what was read last shows at that instant */
     int32_t told;           /* error that was reported */
+    uint64_t text;          /* digest of the jobs it runs */
 };
 
 #define MODEL_BLOB
-#define MODEL_UNUSED
+#define MODEL_IN_USE                                                                              \
+    RING_IN_USE(soft.robot.ring)                                                                  \
+    MEAN_IN_USE(soft.robot.mean, soft.robot.mover)                                                \
+    FMU_LIST(soft.robot.course.move, soft.robot.course.count)                                     \
+    FMU_LIST(soft.robot.way.piece, soft.robot.way.count)                                          \
+    INTERPRETER_IN_USE(soft.orders.gcode)                                                         \
+    FMU_RING(soft.queue, soft.heads, soft.count, 0)                                               \
+    FMU_LIST(soft.taught, soft.taught_count)
 #include "fmi_model.h"
 #include "fmu_period.h"
 #include "soft_parameters.h"
@@ -187,19 +195,9 @@ static int model_start(struct fmu *f)
         }
         soft_start(s, &b->config);
     }
+    f->s.m.text = b->text;
     publish(f);
     return 0;
-}
-
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    const int64_t bus = llround(s->v.bus_period * FPGA_CLOCK_HZ) * FPGA_CLOCK_NS;
-
-    if (bus < FPGA_CLOCK_NS || m->instant < s->now || m->instant - s->now >= bus) {
-        return "its next instant is another one";
-    }
-    return soft_damage(&m->soft, m->instant / FPGA_CLOCK_NS);
 }
 
 /* Read the wires at an instant of the bus grid and let the PC work. */
@@ -220,34 +218,11 @@ static void read_bus(struct fmu *f, int64_t at)
     soft_instant(&f->s.m.soft, &b->config, &t, &card, &panel, at / FPGA_CLOCK_NS);
 }
 
-/* Whether a state came from outside with a program's place that this program does not have. The
- * bytes it was left with need no second look. */
-static bool foreign(const struct soft_blob *b, const struct orders *o, const struct orders_text *t)
-{
-    const bool known = memcmp(&b->known, &o->inform, sizeof b->known) == 0;
-
-    return known && !t->gcode ? o->moves < 0 : orders_damaged(o, t);
-}
-
-static void keep_known(struct soft_blob *b, const struct orders *o)
-{
-    memcpy(&b->known, &o->inform, sizeof b->known);
-}
-
-static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
-{
-    struct spans unused;
-    unused.count = 0;
-    soft_unused(&s->m.soft, &unused);
-    return fmu_spans(&unused, s, span);
-}
-
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;
     const struct soft_blob *b = f->blob;
     const struct vars *v = &f->s.v;
-    const struct orders_text t = text_of(b);
 
     (void)t0;
     if (!(fabs(v->card_irq_clock) < FMU_TICKS_MAX &&
@@ -255,7 +230,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
         return fmu_fail(f, "card_irq_clock = %g, card_input_irq_clock = %g: not clocks",
                         v->card_irq_clock, v->card_input_irq_clock);
     }
-    if (foreign(f->blob, &m->soft.orders, &t)) {
+    if (m->text != b->text) { /* a restored place is one of another list of instructions */
         return fmu_fail(f, "program: the state is one of another program");
     }
     for (;;) {
@@ -264,7 +239,6 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
             m->unpublished = false;
         }
         if (m->instant >= t1) {
-            keep_known(f->blob, &m->soft.orders);
             return 0;
         }
         read_bus(f, m->instant);

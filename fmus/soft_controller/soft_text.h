@@ -15,7 +15,7 @@ struct soft_blob {
     bool   has_inform;
     struct inform_program inform;
     struct inform_points points;
-    struct inform_run known;    /* place in the program that was looked at */
+    uint64_t text;              /* digest of the jobs' text, 0 without jobs */
 };
 
 static struct orders_text text_of(const struct soft_blob *b)
@@ -45,6 +45,16 @@ static char *read_text(struct fmu *f, const char *parameter, const char *name, i
         return NULL;
     }
     return text;
+}
+
+/* FNV-1a: another text has another digest, but for one in 2^64. */
+static uint64_t digest_of(const char *text, int64_t length)
+{
+    uint64_t sum = 0xcbf29ce484222325u;
+    for (int64_t i = 0; i < length; i++) {
+        sum = (sum ^ (unsigned char)text[i]) * 0x100000001b3u;
+    }
+    return sum;
 }
 
 /* A reader's report, told with the file's name. */
@@ -89,6 +99,7 @@ static int read_jobs(struct fmu *f, struct soft_blob *b)
     }
     int code = inform_read(&b->inform, &b->points, text, length, &r);
     code = code ? refuse_text(f, name, text, &r) : 0;
+    b->text = digest_of(text, length);
     free(text);
     if (code == 0 && job[0]) {
         b->config.orders.start.job = inform_job(&b->inform, job);

@@ -50,15 +50,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-static const char *model_check(const struct state *s)
-{
-    const int32_t n = s->m.steps;
-    bool good = n >= 0 && n <= ROWS;
-    for (int k = 0; good && k < n; k++)
-        good = s->v.signal[k] >= 1 && s->v.signal[k] <= SIGNALS;
-    return good ? NULL : "its table is another one";
-}
-
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     (void)t0;

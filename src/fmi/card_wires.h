@@ -21,16 +21,6 @@ static int64_t wires_period(struct fmu *f)
     return 0;
 }
 
-/* What model_check() says of the grid and the card's clock. */
-static const char *wires_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    const int64_t clock = s->now / EPCIO_CLOCK_NS;
-    if (m->period < 1 || m->instant < clock || m->instant - clock >= m->period)
-        return "its next instant is another one";
-    return m->card.clock == clock ? NULL : "its clock is another one";
-}
-
 /* What the card says of the DDA time on the wires. A length that must wait is told once. */
 static int wires_dda(struct fmu *f, enum epcio_status s)
 {

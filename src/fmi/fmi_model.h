@@ -4,7 +4,7 @@
  *     #include "vars.h"           generated from the description: struct vars, FMU_* constants
  *     struct model { ... };       all other state; plain data, no pointers
  *     #define MODEL_BLOB          only if it keeps something beside the state (files, buffers)
- *     #define MODEL_UNUSED        only if much of its state may be not in use
+ *     #define MODEL_IN_USE ...    only if it has large arrays: rows of fmu_in_use.h
  *     #include "fmi_model.h"
  * and then defines the functions declared below. The layer is compiled into the same unit; its own
  * names start with fmi, FMI, var_, VAR_, CAUSE_ and VARY_.
@@ -27,9 +27,9 @@
 #define FMU_PRINTF __printf__
 #endif
 
-#include "fmu_span.h"
+#include "fmu_in_use.h"
 
-/* Everything getFMUState keeps, but for what model_unused names. */
+/* Everything getFMUState keeps, but for what MODEL_IN_USE leaves out. */
 struct state {
     struct vars  v;     /* every variable of the description, by its name */
     struct model m;
@@ -51,19 +51,6 @@ static int model_start(struct fmu *f);
 /* Advance from t0 to t1 [ns], t1 > t0, both whole multiples of FMU_TICK_NS, inputs held.
  * Any split of an interval into steps must give the same outputs at the common points. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1);
-
-/* Called for a state that came back as bytes and has been started, whose variables, Booleans and
- * enumerations have been looked at: words for what model_step cannot work with, or NULL. It must
- * find every index and count that leads beyond its array, and every number that would make a loop
- * endless. Values that are only wrong it need not see. */
-static const char *model_check(const struct state *s);
-
-#ifdef MODEL_UNUSED
-/* Name parts of s->m in a state that has been started and is not damaged which a saved state need
- * not have, from counts and places alone: up to FMU_SPANS, none twice. Returns their number. A
- * restored state has there what the instance had before, so nothing may read it. */
-static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS]);
-#endif
 
 #ifdef MODEL_BLOB
 /* Make f->blob from the fixed parameters in f->s.v, nothing else; before model_start. When an FMU

@@ -6,7 +6,7 @@
  * place; whoever writes keeps the limits of the description (finite numbers, ends of strings).
  *
  * Between fmu_part.attach and .detach an instance holds pointers; else it is plain bytes that may
- * be copied, saved and compared. All other functions but `clear` and `damage` want it attached.
+ * be copied, saved and compared. All other functions but `clear` want it attached.
  * Functions return 0, or -1 after a message to the host.
  */
 #ifndef FMU_PART_H
@@ -16,7 +16,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "fmu_span.h"
+#include "fmu_in_use.h"
 
 enum fmu_message { FMU_ERROR, FMU_WARNING, FMU_EVENT };
 
@@ -30,7 +30,7 @@ struct fmu_host {
 };
 
 /* Sizes stand in the object as digits, so that who generates C text can read them there. */
-#define FMU_PART_MARK "motionfmu part 2 "
+#define FMU_PART_MARK "motionfmu part 3 "
 enum { FMU_PART_DIGITS = 9, FMU_PART_ALIGN = 16 };
 
 struct fmu_part {
@@ -63,11 +63,9 @@ struct fmu_part {
     /* Tell which elements of an input, by its offset in struct vars, break its limits: -1. */
     int (*refuse)(void *part, size_t offset);
 
-    /* What is wrong with bytes that came back as an instance, or NULL. Time [ns] of all parts. */
-    const char *(*damage)(const void *part, int64_t now);
-
-    /* As model_unused, behind n that are listed; places count from `base`. */
-    size_t (*unused)(const void *part, const void *base, struct fmu_span *span, size_t n);
+    /* Which part of its arrays is in use: MODEL_IN_USE, places in the instance. */
+    const struct fmu_row *rows;
+    size_t row_count;
 };
 
 #endif

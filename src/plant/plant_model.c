@@ -410,28 +410,6 @@ static int model_start(struct fmu *f)
     return plant_publish(f, 0);
 }
 
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    if (m->step_ns < FMU_TICK_NS || m->blocks < 0 || m->blocks > PLANT_INSTANCES) {
-        return "its micro step or its number of blocks";
-    }
-    for (int n = 0; n < m->blocks; n++) {
-        const struct plant_block *b = &m->block[n];
-        if (b->lanes < 1 || b->lanes > PLANT_LANES || plant_width(b->lanes) != b->lanes
-            || b->used < 1 || b->used > b->lanes || b->sub_steps < 1
-            || b->sub_steps > PLANT_SUB_STEPS_MAX) {
-            return "the lanes or sub-steps of a block";
-        }
-        for (int lane = 0; lane < b->lanes; lane++) {
-            if (b->instance[lane] < 0 || b->instance[lane] >= PLANT_INSTANCES) {
-                return "an axis of a block";
-            }
-        }
-    }
-    return NULL;
-}
-
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     const int64_t h = f->s.m.step_ns, first = t0 / h * h, last = t1 / h * h;

@@ -57,7 +57,6 @@ void JOIN(PART, start)(void);
 void JOIN(PART, start)(void)
 {
     (void)fmu_resources(&part);
-    (void)model_check;      /* of states that come back */
 #ifdef MODEL_BLOB
     model_open(&part);
 #endif
@@ -78,8 +77,3 @@ void JOIN(PART, end)(void)
     model_close(&part);
 #endif
 }
-
-#ifdef MODEL_UNUSED
-/* No state is saved here. */
-size_t (*const JOIN(PART, span_list))(const struct state *, struct fmu_span *) = model_unused;
-#endif

@@ -47,14 +47,6 @@ enum { CHECK_EACH = 1 };
         } \
     } while (0)
 
-/* A copy of a good state with a member changed: what is then told of it. */
-#define CHECK_MEMBER(copy, good, member, given, told, want) \
-    do { \
-        (copy) = (good); \
-        (copy).member = (given); \
-        CHECK_EQ(told, want); \
-    } while (0)
-
 static inline int check_result(void)
 {
     if (check_failures != 0)

@@ -226,7 +226,8 @@ def test_states_of_others_are_refused(name: str, fmi: int, tmp_path: Path) -> No
     for wrong, words in (
         (data[:-1], f"{len(data) - 1} bytes given"),
         (data.replace(token, b"{00000000" + token[9:]), "the state is not one of"),
-        (data[:64] + bytes(8) + data[72:], "damaged or of another build"),
+        (data[:64] + b"9" + data[65:], "the state is not one of this version of"),
+        (data[:96] + bytes(8) + data[104:], "the state is not one of this version of"),
     ):
         status, made = instance.deserialize(wrong)
         assert (status, made.value) == (ERROR, None)

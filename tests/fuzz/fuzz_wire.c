@@ -203,7 +203,6 @@ static void one(struct bytes *b)
     if (session_next_time(&card) <= now)
         session_tick(&card, now);
     net_host_tick(&host, job, now);
-    HOLDS(session_sound(&card) && net_host_sound(&host));
     HOLDS(card.channel.taken <= host.channel.sent || forged || host.phase == NET_HOST_DOWN);
     HOLDS(!keyed || card.phase != SESSION_UP || card.channel.keyed);
     HOLDS(host.pages_sent - host.pages_again <= JOB_PAGES);

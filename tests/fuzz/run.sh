@@ -69,9 +69,7 @@ run() {
 fmi() {
     fmu=$1
     gen=build/fuzz/gen/$fmu
-    for make in generate flags; do
-        ${PYTHON:-.venv/bin/python} src/pack.py $make fmus/$fmu $gen
-    done
+    ${PYTHON:-.venv/bin/python} src/pack.py generate fmus/$fmu $gen
     plant=$(ls $gen/plant.c 2> /dev/null || true)
     # shellcheck disable=SC2086
     $compiler $seen -w $include -I$gen -Ifmus/$fmu -Isrc/fmi -Isrc/plant $fmi_include -include tests/fuzz/fmi/fence.h \

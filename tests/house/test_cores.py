@@ -22,6 +22,13 @@ STOREYS = {f.parent.name: cores.stands_on(f.parent) for f in SOURCE.glob("*/stor
 # Storeys that serve any controller, and what their cores may not even mention.
 SHARED = [core for core in CORES if FOLDERS[core].parent.name in ("base", "motion", "language")]
 WORDS = re.compile(r"(?<![a-z])(mcc|mccl|epcio|msp430|fmi|fmu)(?![a-z])", re.IGNORECASE)
+# What a core would have that knows of saved states: functions that judge one or tell what needs no
+# copy, and the words for it.
+SAVED = re.compile(
+    r"\w_(unused|damaged?|sound)\((const )?struct|\bspans_\w+\(|struct spans?\b|\bspans\.h"
+    r"|_(unused|damaged?)\.[ch]|saved state|serializ|snapshot|_IN_USE\b",
+    re.IGNORECASE,
+)
 Graph = dict[str, set[str]]
 
 
@@ -106,6 +113,33 @@ def test_a_shared_core_knows_no_controller(core: str) -> None:
 def test_a_word_of_a_controller_is_found() -> None:
     assert all(WORDS.search(t) for t in ("the MCC library", "epcio_step", "an FMU", "FMI 3"))
     assert not WORDS.search("fmin(l.acc, l.dec)")
+
+
+def test_no_core_knows_of_saved_states() -> None:
+    told = [
+        f"{f.relative_to(ROOT)}:{n}: {line}"
+        for core in CORES
+        for f in sorted(FOLDERS[core].glob("*"))
+        for n, line in enumerate([f.name, *f.read_text().splitlines()])
+        if SAVED.search(line)
+    ]
+    assert told == []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "bool mover_damaged(const struct mover *p, const struct ring *r);",
+        "bool dda_sound(const struct dda *d, int32_t channels)",
+        "void queue_unused(const struct queue *q, struct spans *s);",
+        "const char *pc_damage(const struct pc *pc)",
+        "    spans_ring(s, q->item, sizeof q->item[0], QUEUE_SIZE, q->head, q->count);",
+        "mcc_damage.c",
+        "/* Parts of a saved state that need no copy. */",
+    ],
+)
+def test_what_a_core_had_for_saved_states_is_found(line: str) -> None:
+    assert SAVED.search(line)
 
 
 @pytest.mark.parametrize("core", CORES)

@@ -185,7 +185,6 @@ def test_equal_input_packs_equal_bytes(fmi: int, tmp_path: Path) -> None:
         (tmp_path / "scope.so").write_bytes(z.read(library))
     compiled = pack.Compiled({here(): tmp_path / "scope.so"}, ROOT / "build/parts/scope.o")
     pack.generate(ROOT / "fmus/scope", tmp_path / "gen")
-    pack.flags(ROOT / "fmus/scope", tmp_path / "gen")
     target = tmp_path / "again.fmu"
     pack.archive(ROOT / "fmus/scope", tmp_path / "gen", fmi, compiled, target)
     assert target.read_bytes() == source.read_bytes()

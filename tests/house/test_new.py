@@ -37,7 +37,6 @@ def test_a_new_fmu_builds_and_passes_what_every_fmu_must(project: Path) -> None:
     source, gen, built = project / "fmus" / NAME, project / "gen", project / "built"
     built.mkdir()
     pack.generate(source, gen)
-    pack.flags(source, gen)
     headers = Path(fmpy.__file__).parent / "c-code"
     part = built / "part.o"  # compiled as the build does
     line = "gcc -std=c11 -Wall -Wextra -Wpedantic -Werror -fPIC -fvisibility=hidden"

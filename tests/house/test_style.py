@@ -18,8 +18,8 @@ BUILT = [
     *sorted((ROOT / "build/lib").glob("motionfmu_stations.so")),
     *sorted((ROOT / "build/parts").glob("*.o")),
 ]
-# A file past this size is two things.
-LINES_MAX = 500
+# A file past this size may be two things: to be looked at, not to be cut for the number.
+LINES_MAX = 600
 # What a core may take from outside: mathematics that IEEE 754 fixes to the bit, and the copies the
 # compiler makes by itself. All other mathematics is in elementary, the same bits everywhere.
 ALLOWED = set(

@@ -125,9 +125,9 @@ double pace_batch_gap(void)
     double widest = 0.0;
 
     for (int32_t i = 0; i < pace.count; i++) {
-        const struct pace_box *g = &pace.box[(pace.at.head + i) % PACE_CELLS];
+        const struct pace_box *g = &pace.ring[(pace.at.head + i) % PACE_CELLS].box;
         const double next = i + 1 < pace.count
-            ? pace.box[(pace.at.head + i + 1) % PACE_CELLS].from : pace.end;
+            ? pace.ring[(pace.at.head + i + 1) % PACE_CELLS].box.from : pace.end;
         widest = fmax(widest, fabs(next - (g->from + g->length)));
     }
     return widest;

@@ -123,10 +123,6 @@ int main(int argc, char **argv)
         while ((status = shape_take(&shape, &c)) == SHAPE_FULL) {
             drain();
         }
-        if (shape_damaged(&shape)) {
-            printf("damaged %d\n", (int)commands);
-            return 1;
-        }
         if (status != SHAPE_TAKEN) {
             printf("other %d\n", (int)commands);
         }

@@ -48,15 +48,6 @@ void dda_reset(struct dda *d, int32_t channels, int32_t ticks, int32_t divider)
                       .next_ticks = ticks, .next_divider = divider, .run = true};
 }
 
-bool dda_sound(const struct dda *d, int32_t channels)
-{
-    bool sound = d->channels == channels && d->ticks > 1 && d->next_ticks > 1 && d->divider > 0 &&
-                 d->next_divider > 0 && d->start >= 0 && d->start < INT64_MAX / 4;
-    for (int i = 0; i < channels && sound; i++)
-        sound = llabs((long long)d->command[i]) <= dda_largest(d->ticks);
-    return sound;
-}
-
 void dda_set_time(struct dda *d, int32_t ticks, int32_t divider, int64_t clock)
 {
     d->next_ticks = ticks;

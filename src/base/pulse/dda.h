@@ -44,10 +44,6 @@ int64_t dda_edge_tick(int32_t command, int32_t ticks, int32_t j);
 /* Stand at clock 0, running, at the beginning of an idle DDA time. */
 void dda_reset(struct dda *d, int32_t channels, int32_t ticks, int32_t divider);
 
-/* Whether a state that came from outside can be worked with: so many channels, nothing to divide by
- * that is zero, no command that does not fit. */
-bool dda_sound(const struct dda *d, int32_t channels);
-
 /* Ask for another DDA time. It holds from the next boundary on; at the very clock at which an idle
  * DDA time begins (as after reset) it holds for that one already. */
 void dda_set_time(struct dda *d, int32_t ticks, int32_t divider, int64_t clock);

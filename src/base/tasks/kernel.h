@@ -83,10 +83,10 @@ enum kernel_status {
 /* What a task has asked for and has not got. */
 enum kernel_call {
     KERNEL_NO_CALL, KERNEL_TAKES, KERNEL_RECEIVES, KERNEL_SENDS, KERNEL_NOTIFY_TAKES,
-    KERNEL_NOTIFY_WAITS, KERNEL_CALLS
+    KERNEL_NOTIFY_WAITS
 };
 
-enum kernel_notified { KERNEL_NOT_WAITING, KERNEL_WAITING, KERNEL_NOTIFIED, KERNEL_NOTIFY_STATES };
+enum kernel_notified { KERNEL_NOT_WAITING, KERNEL_WAITING, KERNEL_NOTIFIED };
 
 struct kernel_task {
     bool    ready;
@@ -204,10 +204,6 @@ int32_t kernel_value(const struct kernel *k);
 
 /* Of a task, perhaps a lent one. */
 int32_t kernel_priority(const struct kernel *k, int task);
-
-/* Can a kernel be in this state, one that may have come from outside: with so many tasks, only the
- * first so many interrupts in use? */
-bool kernel_sound(const struct kernel *k, int tasks, int interrupts);
 
 /* A line of the caller's own in the log: no answer, it may stand anywhere. */
 void kernel_mark(struct kernel *k, int32_t number, int32_t value);

@@ -18,11 +18,6 @@ void servo_start(struct servo *s, const struct law_config *law, const struct mac
     voltage_start(&s->voltage, &c, m);
 }
 
-const char *servo_damage(const struct servo *s)
-{
-    return dda_sound(&s->dda, AXES) ? NULL : "the frames of axes moved by voltages";
-}
-
 /* What the library sees of the machine: its own pulses in the place of the card's. */
 static void look(struct servo *s, struct mcc *m, const int32_t counts[AXES])
 {

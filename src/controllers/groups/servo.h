@@ -30,9 +30,6 @@ struct servo {
 void servo_start(struct servo *s, const struct law_config *law, const struct machine *m,
                  int64_t bus);
 
-/* NULL, or what of a state that came from outside it cannot work with. */
-const char *servo_damage(const struct servo *s);
-
 /* A bus instant, with the counters as the card shows them. The library has the points of all cycles
  * before now + bus. */
 void servo_instant(struct servo *s, struct mcc *m, int64_t now, int64_t bus,

@@ -72,9 +72,6 @@ struct machine {
     double  inpos_timeout;  /* [s] in which that must have happened; 0: no end */
 };
 
-/* What is wrong with a state from outside, in words, or NULL: see mcc_damage. */
-const char *machine_damage(const struct machine *m);
-
 /* True if every value lies in its range and is finite. */
 bool machine_valid(const struct machine *m);
 

@@ -15,7 +15,6 @@
 #include "manual.h"
 #include "mover.h"
 #include "signals.h"
-#include "spans.h"
 
 /* Return codes of the library that occur here. */
 enum mcc_return {
@@ -287,13 +286,5 @@ bool control_rests(const struct mcc *m);
 
 /* With nothing under way and nothing to come, the next command begins where the axes stand. */
 void control_settle(struct mcc *m);
-
-/* What is wrong with a state that comes back from outside, in words, or NULL if every index and
- * count lies within its array. Booleans and enumerations must have been looked at; values that are
- * only wrong are not seen. */
-const char *mcc_damage(const struct mcc *m);
-
-/* Parts of a state that is not damaged which need no copy. */
-void mcc_unused(const struct mcc *m, struct spans *s);
 
 #endif

@@ -109,9 +109,4 @@ void pcl_merge(struct pcl *p, const struct mcc *m, const int32_t channel[AXES],
 /* What was taken last becomes a transaction that reaches the card at a clock. */
 void pcl_write(struct pcl *p, int64_t clock);
 
-/* What is wrong with a state from outside, in words, or NULL; of what a library has in the
- * transaction too. */
-const char *pcl_damage(const struct pcl *p);
-const char *pcl_part_damage(const struct pcl_part *part);
-
 #endif

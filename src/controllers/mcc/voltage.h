@@ -44,10 +44,4 @@ void voltage_taken(struct voltage *v, const struct mcc *m, const struct pcl_part
 void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t stock,
                   double limit, double volts[AXES]);
 
-/* What is wrong with a state from outside, in words, or NULL. */
-const char *voltage_damage(const struct voltage *v);
-
-/* Parts of a state that is not damaged which need no copy. */
-void voltage_unused(const struct voltage *v, struct spans *s);
-
 #endif

@@ -150,19 +150,3 @@ struct card_input_served card_inputs_serve(struct card_inputs *c, int vector, in
     }
     return (struct card_input_served){ -1, CARD_NONE };
 }
-
-bool card_inputs_sound(const struct card_inputs *c)
-{
-    const uint32_t bits = c->levels | c->taken | c->pending | c->waiting | c->ended;
-    bool ok = (bits & ~(uint32_t)LINES) == 0 &&
-              c->edges >= 0 && c->lost >= 0 && c->ignored >= 0;
-
-    for (int i = 0; ok && i < CARD_INPUTS; i++) {
-        const struct card_input *in = &c->config.line[i];
-        ok = (int)in->action >= CARD_NONE && in->action <= CARD_EVENT &&
-             (int)in->edge >= CARD_EDGE_RISE && in->edge <= CARD_EDGE_BOTH &&
-             in->debounce >= 0 && in->debounce < INT64_MAX / 4 && c->deaf[i] >= -1 &&
-             c->deaf[i] < INT64_MAX / 2;
-    }
-    return ok;
-}

@@ -65,7 +65,4 @@ struct card_input_served card_inputs_serve(struct card_inputs *c, int vector, in
 uint32_t card_inputs_vectors(const struct card_inputs *c);
 int card_inputs_vector(int line);
 
-/* Whether a state from outside can be worked with. */
-bool card_inputs_sound(const struct card_inputs *c);
-
 #endif

@@ -34,17 +34,3 @@ void card_load_tell(struct card_load *l, int64_t clock, const int64_t busy[CARD_
         memcpy(l->mark[l->latest].busy, busy, sizeof l->mark[l->latest].busy);
     }
 }
-
-bool card_load_sound(const struct card_load *l, int64_t clock, const int64_t busy[CARD_LOADS])
-{
-    bool ok = l->latest >= 0 && l->latest < CARD_LOAD_MARKS;
-
-    for (int i = 0; i < CARD_LOAD_MARKS; i++) {
-        ok = ok && l->mark[i].clock >= 0 && l->mark[i].clock <= clock;
-        for (int k = 0; k < CARD_LOADS; k++) {
-            const int64_t since = busy[k] - l->mark[i].busy[k];
-            ok = ok && l->mark[i].busy[k] >= 0 && since >= 0 && since <= clock - l->mark[i].clock;
-        }
-    }
-    return ok;
-}

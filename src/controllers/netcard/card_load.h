@@ -27,7 +27,4 @@ struct card_load {
 void card_load_tell(struct card_load *l, int64_t clock, const int64_t busy[CARD_LOADS],
                     uint16_t share[CARD_LOADS]);
 
-/* Can the marks be so when each has had so much at this clock? */
-bool card_load_sound(const struct card_load *l, int64_t clock, const int64_t busy[CARD_LOADS]);
-
 #endif

@@ -83,13 +83,3 @@ void card_outputs_advance(struct card_outputs *c, int64_t now)
         }
     }
 }
-
-bool card_outputs_sound(const struct card_outputs *c)
-{
-    bool ok = c->levels >> CARD_OUTPUTS == 0 && c->stores >= 0 && c->merged >= 0;
-
-    for (int i = 0; ok && i < CARD_OUTPUTS; i++) {
-        ok = c->pulse_end[i] >= 0 && (!c->flag[i] || (good(&c->po[i]) && c->po[i].pin == i));
-    }
-    return ok;
-}

@@ -51,7 +51,4 @@ uint32_t card_outputs_serve(struct card_outputs *c, int64_t now);
 int64_t card_outputs_next(const struct card_outputs *c);
 void card_outputs_advance(struct card_outputs *c, int64_t now);
 
-/* Whether a state from outside can be worked with. */
-bool card_outputs_sound(const struct card_outputs *c);
-
 #endif

@@ -20,17 +20,6 @@ struct flash_config flash_config_usual(void)
     };
 }
 
-static bool time_good(const struct flash_time *t)
-{
-    return t->typical >= 1 && t->longest >= t->typical && t->longest <= FLASH_TIME_MAX;
-}
-
-bool flash_config_good(const struct flash_config *c)
-{
-    return time_good(&c->program) && time_good(&c->sector) && time_good(&c->block)
-           && c->spread >= 0 && c->spread <= 1000 && c->read_hz >= 1000;
-}
-
 void flash_start(struct flash_chip *f, const struct flash_config *config)
 {
     memset(f, 0, offsetof(struct flash_chip, array));
@@ -183,29 +172,3 @@ uint32_t flash_wear(const struct flash_chip *f)
     return most;
 }
 
-_Static_assert(FLASH_SECTORS / 2 <= SPANS_MAX, "every other sector");
-
-void flash_unused(const struct flash_chip *f, struct spans *s)
-{
-    for (int32_t from = 0, to; from < FLASH_SECTORS; from = to + 1) {
-        for (to = from; to < FLASH_SECTORS && !f->written[to]; to++)
-            ;
-        spans_leave(s, f->array + from * FLASH_SECTOR, f->array + to * FLASH_SECTOR);
-    }
-}
-
-const char *flash_damage(const struct flash_chip *f)
-{
-    if (!flash_config_good(&f->config))
-        return "the flash has other times";
-    if (f->work != FLASH_IDLE && f->work != FLASH_PROGRAM && f->work != FLASH_ERASE)
-        return "the flash does what it cannot";
-    const bool size = f->work == FLASH_PROGRAM ? f->bytes == FLASH_PAGE
-                      : f->bytes == FLASH_SECTOR || f->bytes == FLASH_BLOCK;
-    const bool place = size && f->at >= 0 && f->at <= FLASH_BYTES - f->bytes
-                       && f->at % f->bytes == 0;
-    if (f->work != FLASH_IDLE && (!place || f->begin < 0 || f->end <= f->begin
-                                  || f->end - f->begin > FLASH_TIME_MAX))
-        return "an operation of the flash is damaged";
-    return NULL;
-}

@@ -14,7 +14,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "spans.h"
 
 enum {
     FLASH_PAGE = 256,
@@ -39,8 +38,6 @@ struct flash_config {
     int32_t  read_hz;                           /* [Hz] clock of the bus, a bit each */
     uint64_t seed;
 };
-
-#define FLASH_TIME_MAX INT64_C(100000000000) /* [ns] the longest that a setting can ask for */
 
 enum flash_work { FLASH_IDLE, FLASH_PROGRAM, FLASH_ERASE };
 
@@ -86,15 +83,5 @@ void flash_cut(struct flash_chip *f, int64_t now);
 
 /* Most erases of any sector. */
 uint32_t flash_wear(const struct flash_chip *f);
-
-/* Whether a chip can have this configuration: each time of 1 ns to FLASH_TIME_MAX, typical <=
- * longest. */
-bool flash_config_good(const struct flash_config *config);
-
-/* Parts of a state that a saved one leaves out: sectors without anything. */
-void flash_unused(const struct flash_chip *f, struct spans *s);
-
-/* What is wrong with a state, NULL if nothing is; the array may hold anything. */
-const char *flash_damage(const struct flash_chip *f);
 
 #endif

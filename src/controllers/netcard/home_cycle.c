@@ -292,20 +292,3 @@ struct frame home_cycle_step(struct home_cycle *h, const struct home_cycle_input
     }
     return frame;
 }
-
-bool home_cycle_sound(const struct home_cycle *h)
-{
-    const bool moves = h->state == HOME_CYCLE_RUNNING || h->state == HOME_CYCLE_STOPPING;
-    bool ok = (int)h->state >= HOME_CYCLE_IDLE && h->state <= HOME_CYCLE_FAILED &&
-              (int)h->fault >= HOME_CYCLE_OK && h->fault <= HOME_CYCLE_LIMIT &&
-              h->fault_axis >= -1 && h->fault_axis < CARD_AXES && h->mask >> CARD_AXES == 0 &&
-              (!moves || home_cycle_valid(&h->config));
-
-    for (int i = 0; ok && moves && i < CARD_AXES; i++) {
-        const struct home_course *c = &h->axis[i];
-        ok = (int)c->phase >= HOME_CYCLE_NONE && c->phase <= HOME_CYCLE_DONE &&
-             llabs(c->begin) < INT64_MAX / 4 && llabs(c->place) < INT64_MAX / 4 &&
-             home_motion_sound(&c->motion, INT16_MAX - 1);
-    }
-    return ok;
-}

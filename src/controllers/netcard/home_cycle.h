@@ -108,7 +108,4 @@ int64_t home_cycle_zero(const struct home_cycle *h, int axis);
 /* Level of a switch that is on. An edge to it is what `latched` tells. */
 bool home_cycle_on_level(enum card_trigger trigger);
 
-/* Whether a state from outside can be worked with. */
-bool home_cycle_sound(const struct home_cycle *h);
-
 #endif

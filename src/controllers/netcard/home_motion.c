@@ -60,9 +60,3 @@ bool home_motion_at(const struct home_motion *m, int64_t target)
 {
     return m->commanded == target && m->rest == 0.0;
 }
-
-bool home_motion_sound(const struct home_motion *m, double most)
-{
-    return llabs(m->commanded) < INT64_MAX / 4 && m->rest >= 0.0 && m->rest <= 1.0 &&
-           m->speed >= -most && m->speed <= most && m->still >= 0;
-}

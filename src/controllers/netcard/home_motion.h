@@ -26,7 +26,4 @@ int32_t home_motion_to(struct home_motion *m, const struct home_limits *l, int64
 
 bool home_motion_at(const struct home_motion *m, int64_t target);
 
-/* Whether a state from outside can be worked with at speeds up to this one [pulses/period]. */
-bool home_motion_sound(const struct home_motion *m, double most);
-
 #endif

@@ -225,35 +225,3 @@ int64_t job_store_read(const struct job_place *job, struct flash_chip *f, uint32
         return 0;
     return flash_read(f, store_first_page(job->slot) + (int32_t)page, bytes, now);
 }
-
-static bool place_good(const struct job_place *p, int32_t slots)
-{
-    return p->slot == -1
-           || (p->slot >= 0 && p->slot < slots && p->bytes % FLASH_PAGE == 0
-               && p->bytes >= 2 * FLASH_PAGE && store_pages(p) <= store_room(slots));
-}
-
-const char *job_store_damage(const struct job_store *s)
-{
-    if (s->slots != 1 && s->slots != 2)
-        return "the store has other slots";
-    if (!place_good(&s->job, s->slots) || !place_good(&s->next, s->slots)
-        || (s->next.slot >= 0 && s->slots == 2 && s->next.slot == s->job.slot))
-        return "a job in the store is damaged";
-    if ((int)s->phase < STORE_REST || s->phase >= STORE_PHASES
-        || (s->phase == STORE_REST) != (s->next.slot < 0) || s->waiting < 0
-        || s->waiting > STORE_BUFFER || s->result >= NET_CODES || (s->again && s->job.slot < 0))
-        return "the store's transfer is damaged";
-    const int32_t pages = (int32_t)store_pages(&s->next);
-    for (int32_t k = 0; k < s->waiting; k++)
-        if (s->number[k] >= pages)
-            return "a page that waits for the flash is damaged";
-    if (s->phase != STORE_REST && (s->at < -1 || s->at >= pages))
-        return "the place of the store's transfer is damaged";
-    for (int32_t k = 0; k < FLASH_SECTORS; k++)
-        if (store_bit(s->dirty, (uint32_t)k)
-            && (s->next.slot < 0 || k < store_first_sector(s->next.slot)
-                || k > store_mark_sector(s->slots, s->next.slot)))
-            return "a sector to be erased is not of the transfer";
-    return NULL;
-}

@@ -121,7 +121,4 @@ bool job_store_ended(struct job_store *s, enum net_code *result);
 int64_t job_store_read(const struct job_place *job, struct flash_chip *f, uint32_t page,
                        uint8_t bytes[FLASH_PAGE], int64_t now);
 
-/* What is wrong with a state, NULL if nothing is. */
-const char *job_store_damage(const struct job_store *s);
-
 #endif

@@ -394,8 +394,3 @@ bool netcard_command(struct netcard *c, enum card_command command, uint8_t axes)
     card_pend(c, NETCARD_NETWORK);
     return true;
 }
-
-void netcard_unused(const struct netcard *c, struct spans *s)
-{
-    flash_unused(&c->flash, s);
-}

@@ -178,10 +178,4 @@ int64_t netcard_position(const struct netcard *c, int axis);
 /* Frames of the job begun so far. */
 int64_t netcard_frames(const struct netcard *c);
 
-/* What is wrong with a state that came as bytes, or NULL. */
-const char *netcard_damage(const struct netcard *c, int64_t now);
-
-/* Parts of a state that a saved one leaves out. */
-void netcard_unused(const struct netcard *c, struct spans *s);
-
 #endif

@@ -405,12 +405,3 @@ void session_status(struct session *s, const struct net_status *status, int64_t 
     else
         s->dropped++;
 }
-
-bool session_sound(const struct session *s)
-{
-    const int64_t longest = INT64_C(1000000) * UINT16_MAX;
-    return s->phase < SESSION_PHASES && s->attempts >= 0 && s->attempts <= DOUBLINGS &&
-           s->interval >= 0 && s->interval <= longest && s->status_due >= 0 &&
-           (!s->offered || (s->channel.whole && s->phase == SESSION_UP)) &&
-           net_channel_sound(&s->channel);
-}

@@ -23,7 +23,7 @@
 enum { SESSION_KEPT = 8 };
 
 enum session_phase {
-    SESSION_IDLE, SESSION_CALLING, SESSION_GREETING, SESSION_PROVING, SESSION_UP, SESSION_PHASES
+    SESSION_IDLE, SESSION_CALLING, SESSION_GREETING, SESSION_PROVING, SESSION_UP
 };
 
 struct session_config {
@@ -121,8 +121,5 @@ void session_setting(struct session *s, const struct net_config *c);
 /* When a STATUS is due [ns]; INT64_MAX: none is wanted. It is dropped if answers need the room. */
 int64_t session_status_time(const struct session *s);
 void session_status(struct session *s, const struct net_status *status, int64_t now);
-
-/* Is every index within its array? */
-bool session_sound(const struct session *s);
 
 #endif

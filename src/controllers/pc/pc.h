@@ -14,7 +14,6 @@
 #include "card_view.h"
 #include "cyclic.h"
 #include "pcl.h"
-#include "spans.h"
 #include "task.h"
 #include "voltage.h"
 
@@ -122,11 +121,5 @@ enum pc_cycle pc_ipo_cycle(const struct pc *pc);
 
 /* What the card is given, on the link; frames if they are new there. */
 void pc_publish(const struct pc *pc, struct link_host *link);
-
-/* What is wrong with a state that comes back from outside, in words, or NULL: see mcc_damage. */
-const char *pc_damage(const struct pc *pc);
-
-/* Parts of a state that is not damaged which need no copy. */
-void pc_unused(const struct pc *pc, struct spans *s);
 
 #endif

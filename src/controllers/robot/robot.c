@@ -231,10 +231,3 @@ void robot_factors(const struct robot *r, const struct robot_config *c, double f
 {
     opw_factors(&c->arm.opw, r->joint, factor);
 }
-
-bool robot_damaged(const struct robot *r)
-{
-    const struct way *w = &r->way;
-    return mover_damaged(&r->mover, &r->ring) || r->course.count < 1 || w->count < 0 ||
-           w->count > WAY_PIECES || w->next < 0 || w->next > w->count;
-}

@@ -172,7 +172,4 @@ void robot_teach(const struct robot *r, const struct robot_config *c, struct rob
 /* Factors (opw_factors) of the joints now. */
 void robot_factors(const struct robot *r, const struct robot_config *c, double factor[3]);
 
-/* Whether counts of a state, which came from outside, lead out of its arrays. */
-bool robot_damaged(const struct robot *r);
-
 #endif

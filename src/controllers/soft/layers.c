@@ -65,9 +65,3 @@ void layers_put(struct layers *l, const struct layers_config *c, uint32_t inputs
     outbox_put(out, done, l->mask, l->value);
     l->mask = 0;
 }
-
-/* No access takes longer than a second, and no bus period. */
-bool layers_damaged(const struct layers *l, int64_t clock)
-{
-    return l->tick < clock - FPGA_CLOCK_HZ || l->poll < clock - FPGA_CLOCK_HZ || l->polls < 0;
-}

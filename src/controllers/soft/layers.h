@@ -68,7 +68,4 @@ void layers_copied(struct layers *l, int64_t clock, uint32_t inputs);
 void layers_put(struct layers *l, const struct layers_config *c, uint32_t inputs, int64_t done,
                 struct outbox *out);
 
-/* Whether its ticks and polls are not those that come next at a clock, more or less. */
-bool layers_damaged(const struct layers *l, int64_t clock);
-
 #endif

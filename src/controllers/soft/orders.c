@@ -1,6 +1,5 @@
 #include "orders.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "waiting.h"
@@ -313,10 +312,4 @@ void orders_next(struct orders *o, const struct orders_config *c, const struct o
         inform_order(o, c, t, in, order);
     }
     o->on = order->kind != ORDER_END && order->kind != ORDER_FAULT;
-}
-
-bool orders_damaged(const struct orders *o, const struct orders_text *t)
-{
-    return o->moves < 0 || (t->gcode && interpreter_damaged(&o->gcode)) ||
-           (t->inform && o->on && inform_damaged(&o->inform, t->inform));
 }

@@ -76,6 +76,4 @@ void orders_next(struct orders *o, const struct orders_config *c, const struct o
 void orders_check(const struct orders_config *c, const struct orders_text *t,
                   const struct pose *at, struct fault_list *all);
 
-bool orders_damaged(const struct orders *o, const struct orders_text *t);
-
 #endif

@@ -31,8 +31,3 @@ void outbox_post(struct outbox *o, struct fpga_host *host)
     o->count -= n;
     memmove(o->entry, o->entry + n, (size_t)o->count * sizeof o->entry[0]);
 }
-
-bool outbox_damaged(const struct outbox *o)
-{
-    return o->count < 0 || o->count > OUTBOX_SIZE || o->seq < 0 || o->seq == INT32_MAX;
-}

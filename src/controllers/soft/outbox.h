@@ -23,6 +23,4 @@ void outbox_put(struct outbox *o, int64_t clock, uint32_t mask, uint32_t value);
 /* Move what the next mailbox has room for into it. */
 void outbox_post(struct outbox *o, struct fpga_host *host);
 
-bool outbox_damaged(const struct outbox *o);
-
 #endif

@@ -14,7 +14,6 @@
 
 #include "layers.h"
 #include "orders.h"
-#include "spans.h"
 
 enum { SOFT_QUEUE = 64, SOFT_OUTPUTS = 32, SOFT_TAUGHT = 64, SOFT_MOVES = 1024 };
 
@@ -160,12 +159,5 @@ bool soft_done(const struct soft *s);
  * up to the first that is refused: s->trouble says which. Then *s is to be started again. A program
  * in the robot language cannot be rehearsed: its inputs decide what it does. */
 void soft_rehearse(struct soft *s, const struct soft_config *c, const struct orders_text *t);
-
-/* What is wrong with a state that comes back from outside, at a clock, in words, or NULL. Its
- * program is for orders_damaged. */
-const char *soft_damage(const struct soft *s, int64_t clock);
-
-/* Parts of a state that is not damaged which need no copy. */
-void soft_unused(const struct soft *f, struct spans *s);
 
 #endif

@@ -84,24 +84,3 @@ int32_t analyser_instant(struct analyser *a, int64_t instant, uint32_t response,
     }
     return n;
 }
-
-static bool counts(int32_t n)
-{
-    return n >= 0 && n < 1 << 30;
-}
-
-const char *analyser_damage(const struct analyser *a)
-{
-    const int64_t far = (int64_t)1 << 60;
-    for (int i = 0; i < ANALYSER_CHANNELS; i++) {
-        const struct analyser_channel *c = &a->channel[i];
-        if (a->config.least[i] < 1 || a->config.most[i] < a->config.least[i]
-            || a->config.most[i] > far)
-            return "its pauses are other ones";
-        if (a->config.timeout[i] < 0 || c->edge < 0 || c->edge > far || c->sum < 0
-            || c->sum > far || !counts(c->edges) || !counts(c->responses)
-            || !counts(c->timeouts) || !counts(c->strays))
-            return "a channel is damaged";
-    }
-    return NULL;
-}

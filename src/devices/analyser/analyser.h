@@ -62,7 +62,4 @@ int32_t analyser_instant(struct analyser *a, int64_t instant, uint32_t response,
                          const double clock[ANALYSER_CHANNELS],
                          struct analyser_event event[ANALYSER_CHANNELS]);
 
-/* What is wrong with a state that comes back from outside, in words, or NULL. */
-const char *analyser_damage(const struct analyser *a);
-
 #endif

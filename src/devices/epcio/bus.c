@@ -21,11 +21,3 @@ struct bus_write bus_take(struct bus *b)
     b->used--;
     return w;
 }
-
-bool bus_sound(const struct bus *b)
-{
-    bool good = b->head >= 0 && b->head < BUS_DEPTH && b->used >= 0 && b->used <= BUS_DEPTH;
-    for (int i = 0; i < BUS_DEPTH && good; i++)
-        good = b->slot[i].count >= 0 && b->slot[i].count <= BUS_FRAMES;
-    return good;
-}

@@ -37,7 +37,4 @@ int64_t bus_due(const struct bus *b);
 /* Take the transaction that arrives next; bus_due() must have been finite. */
 struct bus_write bus_take(struct bus *b);
 
-/* Whether a state from outside leads out of no array. */
-bool bus_sound(const struct bus *b);
-
 #endif

@@ -19,18 +19,4 @@ enum {
     EPCIO_RESET_DIVIDER = 10,
 };
 
-/* Whether the DDA of a state from outside can be worked with; `ticks`: it runs, so that its
- * boundary lies ahead. */
-static inline bool card_dda_sound(const struct dda *d, bool ticks, int64_t clock)
-{
-    const int32_t least = 1 << EPCIO_LENGTH_MIN, most = 1 << EPCIO_LENGTH_MAX;
-    const bool good = dda_sound(d, EPCIO_AXES) && d->ticks >= least && d->ticks <= most &&
-                      !(d->ticks & (d->ticks - 1)) && d->next_ticks >= least &&
-                      d->next_ticks <= most && !(d->next_ticks & (d->next_ticks - 1)) &&
-                      d->divider >= 1 && d->divider <= EPCIO_DIVIDER_MAX &&
-                      d->next_divider >= 1 && d->next_divider <= EPCIO_DIVIDER_MAX &&
-                      d->start >= 0 && d->start <= clock && d->stop >= 0 && d->stop <= clock;
-    return good && (!ticks || dda_boundary(d) > clock);
-}
-
 #endif

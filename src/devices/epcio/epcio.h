@@ -157,10 +157,4 @@ void epcio_watch_stock(struct epcio *card, int axis);
 void epcio_encoder_events(struct epcio *card, int encoder, int events);
 void epcio_plan(struct epcio *card);
 
-/* What is wrong with a state that comes back from outside, in words, or NULL: every index, count
- * and divisor is in its range, and what is due has not been due for long. Booleans and enumerations
- * must have been looked at; values that are only wrong are not seen. The card has been advanced to
- * its clock; `period`: [clocks] since the latest sample of the pins at most. */
-const char *epcio_damage(const struct epcio *card, int64_t period);
-
 #endif

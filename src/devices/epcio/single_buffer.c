@@ -226,11 +226,3 @@ void single_buffer_pulses(const struct single_buffer *card, int64_t pulses[EPCIO
 {
     dda_counts(&card->dda, card->clock, pulses);
 }
-
-const char *single_buffer_damage(const struct single_buffer *card)
-{
-    const bool ticks = card->config.latched || card->running;
-    if (card->clock < 0 || !card_dda_sound(&card->dda, ticks && card->dda.run, card->clock))
-        return "a time of the card or its DDA";
-    return bus_sound(&card->bus) ? NULL : "a transaction on its way";
-}

@@ -113,7 +113,4 @@ int32_t single_buffer_underflows(const struct single_buffer *card, int axis);
 /* Pulses put out up to and including the card's clock, forward minus backward [pulses]. */
 void single_buffer_pulses(const struct single_buffer *card, int64_t pulses[EPCIO_AXES]);
 
-/* What is wrong with a state that comes back from outside, in words, or NULL: see epcio_damage. */
-const char *single_buffer_damage(const struct single_buffer *card);
-
 #endif

@@ -73,20 +73,3 @@ size_t ether_pipe_get(struct ether_pipe *p, int64_t now, uint8_t *bytes, size_t 
     p->passed += (int64_t)n;
     return n;
 }
-
-bool ether_pipe_sound(const struct ether_pipe *p)
-{
-    int32_t bytes = 0;
-    if (p->random == 0 || p->first < 0 || p->first >= ETHER_BUFFER || p->held < 0 ||
-        p->held > ETHER_BUFFER || p->first_segment < 0 || p->first_segment >= ETHER_SEGMENTS ||
-        p->segments < 0 || p->segments > ETHER_SEGMENTS)
-        return false;
-    for (int i = 0; i < p->segments; i++) {
-        const struct ether_segment *s = &p->segment[(p->first_segment + i) % ETHER_SEGMENTS];
-        if (s->bytes < 1 || s->bytes > p->held - bytes)
-            return false;
-        bytes += s->bytes;
-    }
-    return p->sent == bytes && p->passed >= 0 && p->passed < INT64_MAX / 2 &&
-           p->free >= 0 && p->free < INT64_MAX / 2;
-}

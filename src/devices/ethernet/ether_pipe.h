@@ -53,6 +53,4 @@ void ether_pipe_send(struct ether_pipe *p, const struct ether_config *c, int64_t
 /* Move bytes out that have arrived; returns how many. */
 size_t ether_pipe_get(struct ether_pipe *p, int64_t now, uint8_t *bytes, size_t most);
 
-bool ether_pipe_sound(const struct ether_pipe *p);
-
 #endif

@@ -137,13 +137,3 @@ void ethernet_instant(struct ethernet *e, int64_t now, int64_t next,
     }
     e->instant = now;
 }
-
-bool ethernet_sound(const struct ethernet *e)
-{
-    for (int i = 0; i < ETHERNET_ENDS; i++) {
-        if (!ether_pipe_sound(&e->pipe[i]) || e->shown[i].rx_count < 0 || e->shown[i].tx_taken < 0)
-            return false;
-    }
-    return e->connection >= 0 && e->connections >= 0 && e->wanted >= -1 && e->instant >= -1 &&
-           e->blocked >= 0 && e->blocked < INT64_MAX / 2;
-}

@@ -53,6 +53,4 @@ void ethernet_start(struct ethernet *e, const struct ethernet_config *c);
 void ethernet_instant(struct ethernet *e, int64_t now, int64_t next,
                       const struct ethernet_seen seen[ETHERNET_ENDS]);
 
-bool ethernet_sound(const struct ethernet *e);
-
 #endif

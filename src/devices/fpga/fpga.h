@@ -181,10 +181,6 @@ int32_t fpga_slot(const struct fpga *f);
 /* What a status means, in words. */
 const char *fpga_status_text(enum fpga_status s);
 
-/* What is wrong with a state that comes back from outside, in words, or NULL: whatever could lead
- * beyond an array or into an endless loop. */
-const char *fpga_damage(const struct fpga *f);
-
 /* Within the core: the clock of the first exchange behind the card's clock, and of the first at or
  * behind a clock; what an exchange and a stop do with the pulse memories; a refusal. */
 int64_t fpga_next_exchange(const struct fpga *f);

@@ -46,9 +46,3 @@ bool frame_fifo_fell(struct frame_fifo *f)
     f->high = f->stock > f->depth / 2;
     return was && !f->high;
 }
-
-bool frame_fifo_sound(const struct frame_fifo *f)
-{
-    return f->depth >= 1 && f->depth <= FRAME_FIFO_LARGEST && f->head >= 0 && f->head < f->depth &&
-           f->stock >= 0 && f->stock <= f->depth;
-}

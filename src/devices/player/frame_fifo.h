@@ -35,7 +35,4 @@ const struct frame *frame_fifo_at(const struct frame_fifo *f, int32_t n);
 /* True once each time that the stock falls to half the depth. Call it after every change. */
 bool frame_fifo_fell(struct frame_fifo *f);
 
-/* Whether a state from outside can be worked with. */
-bool frame_fifo_sound(const struct frame_fifo *f);
-
 #endif

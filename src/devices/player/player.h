@@ -166,7 +166,4 @@ int64_t player_edge(const struct player *p, int axis, int64_t after);
 double player_rate(const struct player *p);
 double player_velocity(const struct player *p, int axis);
 
-/* Whether a state from outside can be worked with. */
-bool player_sound(const struct player *p);
-
 #endif

@@ -161,14 +161,3 @@ double rate_ramp_way(const struct rate_ramp *r)
     }
     return way;
 }
-
-bool rate_ramp_sound(const struct rate_ramp *r)
-{
-    bool ok = r->pieces >= 0 && r->pieces <= RATE_RAMP_PIECES && r->time[0] == 0.0;
-
-    for (int k = 0; ok && k <= r->pieces; k++) {
-        ok = isfinite(r->time[k]) && r->time[k] < 1e9 && isfinite(r->slope[k]) &&
-             r->rate[k] >= 0.0 && r->rate[k] <= 1.0 && (k == 0 || r->time[k] >= r->time[k - 1]);
-    }
-    return ok;
-}

@@ -58,7 +58,4 @@ double rate_ramp_way(const struct rate_ramp *r);
 /* Rate and slope [1/s] at a time since its begin; at its end from there on. */
 double rate_ramp_at(const struct rate_ramp *r, double time, double *slope);
 
-/* Whether a state from outside can be worked with. */
-bool rate_ramp_sound(const struct rate_ramp *r);
-
 #endif

@@ -318,34 +318,3 @@ enum fault flow_end(const struct interpreter *in, const struct program *p, struc
     const enum fault g = source_read(p->source, flow_file(in, at.file), &at.offset, &line, r);
     return g != FAULT_NONE ? g : fault_at(r, FAULT_O_END, 0, line.length);
 }
-
-static bool place_damaged(const struct flow *f, struct oword_place p)
-{
-    return p.offset < 0 || p.line < 0 || p.file < 0 || p.file > f->files;
-}
-
-bool flow_damaged(const struct flow *f)
-{
-    bool bad = f->opens < 0 || f->opens > FLOW_OPEN || f->level < 0 || f->level > FLOW_CALLS ||
-               f->subs < 0 || f->subs >= FLOW_KNOWN || f->ends < 0 || f->ends >= FLOW_KNOWN ||
-               f->files < 0 || f->files > FLOW_FILES ||
-               f->left < 0 || f->left > FLOW_CALLS || place_damaged(f, f->modal.body);
-
-    for (int i = 0; !bad && i < f->files; i++) {
-        bad = f->file[i][OWORD_LABEL - 1] != '\0' || !source_name(f->file[i]);
-    }
-    for (int i = 0; !bad && i < f->opens; i++) {
-        bad = place_damaged(f, f->open[i].here) || place_damaged(f, f->open[i].behind) ||
-              f->open[i].kind > FLOW_REPEAT;
-    }
-    for (int i = 0; !bad && i < f->level; i++) {
-        const struct flow_call *c = &f->call[i];
-        bad = place_damaged(f, c->body) || place_damaged(f, c->here) || place_damaged(f, c->back) ||
-              c->caller > FLOW_G65 || c->opens < 0 || c->opens > f->opens ||
-              c->locals < 0 || c->locals > PARAMETERS_LOCAL_FANUC;
-    }
-    for (int i = 0; !bad && i < FLOW_KNOWN; i++) {
-        bad = place_damaged(f, f->sub[i].place) || place_damaged(f, f->end[i].place);
-    }
-    return bad;
-}

@@ -139,7 +139,4 @@ enum fault flow_return(struct interpreter *in, struct fault_report *r);
 enum fault flow_end(const struct interpreter *in, const struct program *p,
                     struct fault_report *r);
 
-/* Whether a state is none that it can have. */
-bool flow_damaged(const struct flow *f);
-
 #endif

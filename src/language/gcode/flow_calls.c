@@ -84,8 +84,10 @@ static uint64_t bits(int32_t count)
 /* #1 .. of the call that runs, out of the parameters and into them. */
 static void take_locals(const struct parameters *all, int32_t count, struct flow_local *local)
 {
-    memcpy(local->value, all->value, (size_t)count * sizeof *local->value);
     local->set = all->given[0] & bits(count);
+    for (int32_t i = 0; i < count; i++) {
+        local->value[i] = local->set >> i & 1 ? all->value[i] : 0.0;
+    }
 }
 
 static void put_locals(struct parameters *all, int32_t count, const struct flow_local *local)

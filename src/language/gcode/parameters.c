@@ -157,7 +157,7 @@ enum fault parameters_get(const struct interpreter *in, const struct program *p,
     const struct parameters *all = &in->parameters;
 
     if (which->number >= 1 && which->number <= PARAMETERS_NUMBERED) {
-        *value = p->fanuc && !given(all, which->number) ? NAN : all->value[which->number - 1];
+        *value = given(all, which->number) ? all->value[which->number - 1] : p->fanuc ? NAN : 0.0;
         return FAULT_NONE;
     }
     if (which->number == PARAMETERS_ZERO) {

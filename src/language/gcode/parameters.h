@@ -39,7 +39,7 @@ struct parameter_named {
 
 struct parameters {
     double value[PARAMETERS_NUMBERED];      /* of #1 on */
-    uint64_t given[PARAMETERS_PAGES];       /* bits: has been set; what has not is 0 */
+    uint64_t given[PARAMETERS_PAGES];       /* bits: has been set; else nobody reads the value */
     struct parameter_named named[PARAMETERS_NAMED];
     int32_t names;
     double debug;               /* #5599 */
@@ -73,11 +73,5 @@ enum fault parameters_set(struct interpreter *in, const struct program *p,
 
 /* The names of a call that ends. */
 void parameters_leave(struct parameters *all, int32_t level);
-
-/* Whether a state is none that it can have. */
-static inline bool parameters_damaged(const struct parameters *all)
-{
-    return all->names < 0 || all->names > PARAMETERS_NAMED;
-}
 
 #endif

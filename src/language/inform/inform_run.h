@@ -105,7 +105,4 @@ void inform_next(struct inform_run *run, const struct inform_program *p,
 int32_t inform_running(const struct inform_run *run, const struct inform_program *p,
                        int32_t *line);
 
-/* Whether bytes that came back are no state that this program can be in. */
-bool inform_damaged(const struct inform_run *run, const struct inform_program *p);
-
 #endif

@@ -229,13 +229,6 @@ void cutter_drop(struct interpreter *in)
     memset(&in->cutter, 0, sizeof in->cutter);
 }
 
-bool cutter_damaged(const struct cutter *k)
-{
-    return k->plane > PATH_XY || k->first < 0 || k->first >= CUTTER_HELD || k->count < 0 ||
-           k->count > CUTTER_HELD || k->ready < 0 || k->ready > k->count ||
-           (k->moves && k->count == k->ready);
-}
-
 /* The distance of the centre to the left of the contour. */
 static enum fault set_edge(struct interpreter *in, const struct block *b, struct fault_report *r)
 {

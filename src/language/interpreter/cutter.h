@@ -33,7 +33,4 @@ bool cutter_take(struct interpreter *in, struct command *c);
 /* Forget what is held; compensation is off. */
 void cutter_drop(struct interpreter *in);
 
-/* Whether numbers of a state are none that it can have. */
-bool cutter_damaged(const struct cutter *k);
-
 #endif

@@ -1,7 +1,6 @@
 #include "cycles.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 #include "block.h"
@@ -386,14 +385,4 @@ enum fault cycles_next(struct interpreter *in, const struct program *p, struct f
         return block_at_line(in, &k->line, f, r);
     }
     return f;
-}
-
-bool cycles_damaged(const struct cycle *k)
-{
-    const int row = row_of(k->code), before = k->step - STEP_FIRST - 1;
-    return k->way.polar > CYCLE_POLAR || (k->code != 0 && row < 0) ||
-           (k->running && row < 0) || k->step < 0 ||
-           (row >= 0 && before >= 0 &&
-            (before >= (int)sizeof rows[row].steps || !rows[row].steps[before])) ||
-           k->repeats < 0;
 }

@@ -25,7 +25,4 @@ enum fault cycles_block(struct interpreter *in, const struct program *p, const s
 /* Go on with it, while it is running, up to one command at least or its end. */
 enum fault cycles_next(struct interpreter *in, const struct program *p, struct fault_report *r);
 
-/* Whether numbers of a state are none that it can have. */
-bool cycles_damaged(const struct cycle *k);
-
 #endif

@@ -386,28 +386,3 @@ enum interpreter_result interpreter_next(struct interpreter *in, const struct pr
     in->ended = in->ended || got == INTERPRETER_FAULT;
     return got;
 }
-
-static bool line_damaged(const struct interpreter *in, const struct kept_line *l)
-{
-    return l->file < 0 || l->file > in->flow.files;
-}
-
-bool interpreter_damaged(const struct interpreter *in)
-{
-    return flow_damaged(&in->flow) || parameters_damaged(&in->parameters) || in->line < 0 ||
-           in->file < 0 || in->file > in->flow.files ||
-           in->offset < 0 || in->plane > PATH_XY || in->system < 0 ||
-           in->system >= INTERPRETER_ALL || in->more < 0 || in->more > INTERPRETER_MORE ||
-           saved_modes_damaged(in) || in->count < 0 || in->count > INTERPRETER_MADE ||
-           in->taken < 0 || in->taken > in->count ||
-           in->tools.table.count < 0 || in->tools.table.count > TOOL_TABLE_MAX ||
-           in->wait.until < 0 || in->wait.until > in->count ||
-           in->wait.behind < 0 || in->wait.behind > in->count ||
-           in->wait.index < 0 || in->wait.index >= INPUTS_DIGITAL ||
-           (in->wait.kind == WAIT_ANALOG && in->wait.index >= INPUTS_ANALOG) ||
-           cycles_damaged(&in->cycle) || nurbs_damaged(&in->nurbs) ||
-           rounding_damaged(&in->rounding) || cutter_damaged(&in->cutter) ||
-           line_damaged(in, &in->cycle.line) || line_damaged(in, &in->nurbs.line) ||
-           line_damaged(in, &in->rounding.line) || line_damaged(in, &in->cutter.latest) ||
-           line_damaged(in, &in->cutter.moving);
-}

@@ -7,7 +7,6 @@
 #define INTERPRETER_H
 
 #include "modes.h"
-#include "spans.h"
 
 /* WAIT: the next line needs something that only the machine can tell behind all commands so far (an
  * input, a probe); who has it clears `waits`. */
@@ -38,11 +37,5 @@ void interpreter_check_all(const struct interpreter *from, const struct program 
 /* interpreter_next, but a fault does not end the program. */
 enum interpreter_result interpreter_read(struct interpreter *in, const struct program *p,
                                          struct command *c, struct fault_report *r);
-
-/* Whether places and numbers of a state are none that it can have. */
-bool interpreter_damaged(const struct interpreter *in);
-
-/* Parts of a state that is not damaged which need no copy. */
-void interpreter_unused(const struct interpreter *in, struct spans *s);
 
 #endif

@@ -302,18 +302,3 @@ enum fault nurbs_end(struct interpreter *in, struct fault_report *r)
     n->count = 0;
     return block_at_line(in, &n->line, FAULT_NURBS_END, r);
 }
-
-bool nurbs_damaged(const struct nurbs *n)
-{
-    if (n->plane > PATH_XY || n->count < 0 || n->order < 0 || n->order > NURBS_ORDER ||
-        n->first < 0 || n->span < n->first || n->span - n->first > NURBS_ORDER ||
-        !(n->from >= 0.0 && n->from < 1.0)) {
-        return true;
-    }
-    const int32_t spans = n->count < n->order ? 0 : n->count - n->order + 1;
-    const bool points = n->count > 0 &&
-                        (n->order < 3 || n->count <= n->first || n->span > spans ||
-                         n->count - n->first >= NURBS_WINDOW);
-    return points ||
-           (n->running && (n->count == 0 || n->span >= n->upto || n->upto > spans));
-}

@@ -22,7 +22,4 @@ enum fault nurbs_end(struct interpreter *in, struct fault_report *r);
 /* The next command of a curve that runs. */
 enum fault nurbs_next(struct interpreter *in, const struct program *p, struct fault_report *r);
 
-/* Whether a state is none that it can have. */
-bool nurbs_damaged(const struct nurbs *n);
-
 #endif

@@ -209,8 +209,3 @@ enum fault rounding_missed(const struct interpreter *in, struct fault_report *r)
 
     return k->waits && other ? at_motion(in, FAULT_ROUND_NEXT, r) : FAULT_NONE;
 }
-
-bool rounding_damaged(const struct rounding *k)
-{
-    return k->plane > PATH_XY || (k->waits && k->held.path.cubic);
-}

@@ -17,7 +17,4 @@ enum fault rounding_block(struct interpreter *in, const struct program *p, const
 /* Whether anything but a motion has come behind one that waits; the fault stands in its line. */
 enum fault rounding_missed(const struct interpreter *in, struct fault_report *r);
 
-/* Whether numbers of a state are none that it can have. */
-bool rounding_damaged(const struct rounding *k);
-
 #endif

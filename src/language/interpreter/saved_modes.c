@@ -92,15 +92,3 @@ enum fault saved_modes_return(struct interpreter *in, struct fault_report *r)
     in->flow.left = 0;
     return level > 0 ? restore(in, &in->saved[level], r) : FAULT_NONE;
 }
-
-bool saved_modes_damaged(const struct interpreter *in)
-{
-    bool bad = false;
-
-    for (int32_t i = 0; i <= in->flow.level; i++) {
-        const struct saved_modes *m = &in->saved[i];
-        bad = bad || ((m->kept || m->returns) &&
-                      (m->plane > PATH_XY || m->system < 0 || m->system >= INTERPRETER_ALL));
-    }
-    return bad;
-}

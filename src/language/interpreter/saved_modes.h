@@ -12,7 +12,4 @@ enum fault saved_modes_block(struct interpreter *in, const struct block *b,
 /* A call that had M73 has ended: its caller's modes are in force again. */
 enum fault saved_modes_return(struct interpreter *in, struct fault_report *r);
 
-/* Whether what is kept is none that a state can have. */
-bool saved_modes_damaged(const struct interpreter *in);
-
 #endif

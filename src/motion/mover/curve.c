@@ -380,15 +380,3 @@ void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[A
         high[k] += BOW_NEAR;
     }
 }
-
-bool curve_damaged(const struct curve *c, const struct curve_plan *m)
-{
-    const int32_t count = shape_damaged(&m->shape) ? -1 : shape_count(&m->shape);
-    const int32_t marks = count < 0 ? -1 : shape_marks(&m->shape);
-
-    return count < 0 || pace_damaged(&m->pace) || m->joined < 0 || m->joined > count ||
-           (m->part > 0.0 && m->joined == count) || c->begun < 0 || c->begun > marks ||
-           c->at < 0 || (c->at > 0 && c->at >= m->joined + (m->part > 0.0)) ||
-           c->place.head < 0 || c->place.head >= PACE_CELLS || c->place.planned < 0 ||
-           (m->pace.at.head - c->place.head + PACE_CELLS) % PACE_CELLS + m->pace.count > PACE_CELLS;
-}

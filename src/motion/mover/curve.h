@@ -76,9 +76,6 @@ void curve_drop(struct curve *c, struct curve_plan *m);
 void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[AXES],
                        double high[AXES]);
 
-/* Whether counts and places of a state, which came from outside, lead out of its arrays. */
-bool curve_damaged(const struct curve *c, const struct curve_plan *m);
-
 /* Whether it stands; whether it is at the end of a chain that nothing joins any more. */
 bool curve_rests(const struct curve *c);
 bool curve_done(const struct curve *c, const struct curve_plan *m);

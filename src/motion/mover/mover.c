@@ -1,9 +1,14 @@
-#include "mover_inside.h"
+#include "mover.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "el_extremes.h"
+
+static bool is_ptp(const struct command *c)
+{
+    return c->type == COMMAND_PTP || c->type == COMMAND_PTP_ASYN;
+}
 
 void mover_start(struct mover *p)
 {
@@ -30,17 +35,17 @@ bool mover_held(const struct mover *p)
 }
 
 /* Whether the motion is on a ramp to rest, or rests there. */
-bool mover_brakes(const struct mover *p)
+static bool brakes(const struct mover *p)
 {
     return mover_held(p) || p->abort || p->leave;
 }
 
 /* Override in force for a kind of command, and for the motion under way. */
-double mover_share(const struct mover *p, bool ptp)
+static double in_force(const struct mover *p, bool ptp)
 {
     const double panel = p->overrides & OUTPUTS_FEED_FIXED ? 1.0 : p->override[ptp];
 
-    return mover_brakes(p) ? 0.0
+    return brakes(p) ? 0.0
          : p->overrides & OUTPUTS_ADAPTIVE ? panel * p->adaptive : panel;
 }
 
@@ -59,9 +64,9 @@ bool mover_busy(const struct mover *p)
     return p->motion != MOVER_MIX || p->mix.count > 0;
 }
 
-/* Single block: the next command is the first of a block that may not begin yet. A block is a line
+/* Single block: whether the next command is the first of a block that may not begin yet. A block is a line
  * of the program, or one call. */
-bool mover_blocked(const struct mover *p, const struct ring *r)
+static bool blocked(const struct mover *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
     return p->single && !p->allowed && next && (next->line == 0 || next->line != p->block);
@@ -72,23 +77,23 @@ bool mover_waits(const struct mover *p, const struct ring *r)
     if (p->motion == MOVER_CURVE) {
         return curve_waits(&p->curve) && (p->stopped || (p->single && !p->allowed));
     }
-    return !mover_busy(p) && (p->stopped || mover_blocked(p, r));
+    return !mover_busy(p) && (p->stopped || blocked(p, r));
 }
 
 bool mover_resting(const struct mover *p, const struct ring *r)
 {
     if (p->motion == MOVER_CHAIN) {
-        return mover_share(p, false) <= 0.0 && track_rests(&p->track);
+        return in_force(p, false) <= 0.0 && track_rests(&p->track);
     }
     if (p->motion == MOVER_CURVE) {
         return curve_rests(&p->curve) &&
-               (mover_share(p, false) <= 0.0 || p->confirming || mover_waits(p, r));
+               (in_force(p, false) <= 0.0 || p->confirming || mover_waits(p, r));
     }
     if (mover_ordered(p)) {
         return axes_resting(&p->axes);
     }
-    return mix_rests(&p->mix, mover_brakes(p)) &&
-           (p->mix.count > 0 || mover_brakes(p) || p->confirming || mover_waits(p, r) ||
+    return mix_rests(&p->mix, brakes(p)) &&
+           (p->mix.count > 0 || brakes(p) || p->confirming || mover_waits(p, r) ||
             r->count == 0);
 }
 
@@ -100,7 +105,7 @@ bool mover_moving(const struct mover *p)
 }
 
 /* A command of axes lasts as long as the last of them. */
-void mover_wait_for_axes(struct mover *p)
+static void wait_for_axes(struct mover *p)
 {
     struct profile *wait = &p->mix.move[0].profile;
     profile_wait(wait, axes_left(&p->axes));
@@ -108,17 +113,17 @@ void mover_wait_for_axes(struct mover *p)
 }
 
 /* Plan what is under way afresh from where it is; chain and curve do it by themselves. */
-void mover_replan(struct mover *p)
+static void replan(struct mover *p)
 {
     const struct mix *x = &p->mix;
 
     if (p->motion == MOVER_AXES) {
-        axes_set_ratio(&p->axes, mover_share(p, true));
+        axes_set_ratio(&p->axes, in_force(p, true));
         if (x->count > 0) {
-            mover_wait_for_axes(p);
+            wait_for_axes(p);
         }
     } else if (x->count > 0) {
-        mix_replan(&p->mix, mover_share(p, is_ptp(&x->move[x->count - 1].command)));
+        mix_replan(&p->mix, in_force(p, is_ptp(&x->move[x->count - 1].command)));
     }
 }
 
@@ -133,7 +138,7 @@ bool mover_order(struct mover *p, const struct mechanism *m)
             return false;
         }
     }
-    axes_start(&p->axes, joint, mover_share(p, true));
+    axes_start(&p->axes, joint, in_force(p, true));
     p->motion = MOVER_AXES;
     return true;
 }
@@ -146,7 +151,7 @@ static void place_of_axes(const struct axes *a, double point[AXES], double veloc
 }
 
 /* The motion ends at a place: nothing is under way any more. */
-void mover_rest_at(struct mover *p, const double place[AXES], bool joints)
+static void rest_at(struct mover *p, const double place[AXES], bool joints)
 {
     memcpy(p->rest, place, sizeof p->rest);
     p->joints = joints;
@@ -158,14 +163,14 @@ void mover_bind(struct mover *p)
 {
     double place[AXES], velocity[AXES];
     place_of_axes(&p->axes, place, velocity);
-    mover_rest_at(p, place, true);
+    rest_at(p, place, true);
 }
 
 void mover_hold(struct mover *p, bool on)
 {
     if (p->hold != on) {
         p->hold = on;
-        mover_replan(p);
+        replan(p);
     }
 }
 
@@ -190,7 +195,7 @@ void mover_ramp(const struct mover *p, struct mover *ramp)
 {
     *ramp = *p;
     ramp->abort = true;
-    mover_replan(ramp);
+    replan(ramp);
 }
 
 void mover_shift(struct mover *ramp, double dt)
@@ -220,7 +225,7 @@ void mover_override(struct mover *p, double feed, double ptp)
     if (p->override[0] != feed || p->override[1] != ptp) {
         p->override[0] = feed;
         p->override[1] = ptp;
-        mover_replan(p);
+        replan(p);
     }
 }
 
@@ -248,7 +253,7 @@ void mover_stop(struct mover *p, struct ring *r)
     double velocity[AXES], at[AXES];
 
     mover_place(p, r, at, velocity);
-    mover_rest_at(p, at, mover_in_joints(p));
+    rest_at(p, at, mover_in_joints(p));
     p->hold = p->abort = p->leave = p->stopped = p->allowed = p->confirming = false;
     p->untold = p->untold || p->outputs.spindle != 0.0 || p->outputs.coolant != 0 ||
                 p->outputs.asks;
@@ -263,15 +268,312 @@ void mover_adapt(struct mover *p, double share)
 {
     if (p->adaptive != share) {
         p->adaptive = share;
-        mover_replan(p);
+        replan(p);
     }
 }
 
 void mover_abort(struct mover *p, struct ring *r)
 {
     p->abort = true;
-    mover_replan(p);
+    replan(p);
     if (mover_resting(p, r)) {
         mover_stop(p, r);
     }
+}
+
+/* The older command has ended. */
+static void retire(struct mover *p)
+{
+    const struct command ended = p->mix.move[0].command;
+
+    mix_retire(&p->mix);
+    if (p->mix.count == 0) {
+        rest_at(p, ended.path.end, p->motion == MOVER_AXES);
+        p->confirming = p->confirm && ended.type != COMMAND_DELAY;
+        p->leave = false;
+    }
+}
+
+void mover_leave(struct mover *p, const struct ring *r)
+{
+    double at[AXES], velocity[AXES];
+
+    p->leave = p->motion == MOVER_MIX && p->mix.count == 1;
+    replan(p);
+    if (p->leave && mover_resting(p, r)) {
+        mover_place(p, r, at, velocity);
+        rest_at(p, at, false);
+        p->confirming = p->confirm;
+        p->leave = false;
+    }
+}
+
+/* Whether the next command may begin, now or in the deceleration of the one under way. */
+static bool may_start(const struct mover *p, const struct ring *r)
+{
+    const struct command *next = ring_head(r);
+    if (!next || p->motion != MOVER_MIX || brakes(p) || p->stopped || p->confirming ||
+        blocked(p, r)) {
+        return false;
+    }
+    return p->mix.count == 0 || (mix_open(&p->mix) && command_blends(next));
+}
+
+/* A command begins: its outputs and its line count from now on. Index 0: it takes no time. */
+static void begin(struct mover *p, const struct shape_mark *k)
+{
+    p->outputs.digital = (p->outputs.digital | k->set) & ~k->clear;
+    for (int i = 0; i < OUTPUTS_ANALOG; i++) {
+        p->outputs.analog[i] = k->analog.set >> i & 1 ? k->analog.value[i] : p->outputs.analog[i];
+    }
+    p->line = p->block = k->line;
+    p->allowed = false;
+    p->started = k->index > 0 ? k->index : p->started;
+}
+
+static void begin_command(struct mover *p, const struct command *c)
+{
+    const struct shape_mark k = {
+        .index = command_lasts(c) ? c->index : 0, .line = c->line, .set = c->set,
+        .clear = c->clear, .analog = c->analog
+    };
+    begin(p, &k);
+}
+
+static void begin_axes(struct mover *p, const struct command *c,
+                       const struct axes_limits l[AXES])
+{
+    axes_start(&p->axes, c->path.start, in_force(p, true));
+    for (int i = 0; i < AXES; i++) {
+        if (c->path.end[i] != c->path.start[i]) {
+            axes_go(&p->axes, i, c->path.end[i], &l[i]);
+        }
+    }
+    p->mix.move[p->mix.count++].command = *c;
+    p->motion = MOVER_AXES;
+    wait_for_axes(p);
+}
+
+static void begin_next(struct mover *p, const struct mover_beside *b)
+{
+    struct ring *r = b->ring;
+    const struct command *c = ring_head(r);
+
+    if (p->mix.count == 0 && !p->single && b->curve && curve_begins(r)) {
+        curve_start(&p->curve, b->curve, r);
+        p->motion = MOVER_CURVE;
+        return;
+    }
+    if (p->mix.count == 0 && !p->single && track_begins(r)) {
+        track_start(&p->track, r);
+        p->motion = MOVER_CHAIN;
+        return;
+    }
+    begin_command(p, c);
+    if (c->type == COMMAND_PTP_ASYN) {
+        begin_axes(p, c, ring_peek(r, 0)->axis);
+    } else if (command_lasts(c)) {
+        mix_begin(&p->mix, c, in_force(p, is_ptp(c)));
+    } else if (c->type == COMMAND_OUTPUTS) {
+        p->outputs.spindle = c->spindle;
+        p->surface = c->surface;
+        p->outputs.coolant = c->coolant;
+        p->outputs.tool = c->tool;
+        p->overrides = c->overrides;
+        p->untold = true;
+    } else {
+        p->outputs.asks = c->changes;
+        p->outputs.asked = c->tool;
+        p->stopped = p->untold = true;
+    }
+    ring_pop(r);
+}
+
+static void begin_chained(struct mover *p, const struct ring *r)
+{
+    const struct command *c;
+    while ((c = track_begun(&p->track, r)) != NULL) {
+        begin_command(p, c);
+    }
+}
+
+static void begin_curved(struct mover *p, const struct curve_plan *m)
+{
+    const struct shape_mark *k;
+    while ((k = curve_begun(&p->curve, m)) != NULL) {
+        begin(p, k);
+    }
+}
+
+/* The motion that has looked ahead is over. */
+static void end_ahead(struct mover *p, struct ring *r, const double place[AXES])
+{
+    rest_at(p, place, false);
+    p->confirming = p->confirm;
+    if (p->abort) {
+        mover_stop(p, r);       /* the ramp of the abort was that to its end */
+    }
+}
+
+static double advance_curve(struct mover *p, const struct mover_beside *b, double dt)
+{
+    if (curve_waits(&p->curve)) {
+        if (p->confirming || brakes(p) || mover_waits(p, b->ring)) {
+            return 0.0;
+        }
+        curve_go(&p->curve, b->curve, p->single);
+    }
+    const double left = curve_advance(&p->curve, b->curve, b->ring, in_force(p, false), dt);
+    p->confirming = p->confirm && curve_waits(&p->curve);
+    if (curve_done(&p->curve, b->curve)) {
+        begin_curved(p, b->curve);
+        end_ahead(p, b->ring, b->curve->end);
+    }
+    return left;
+}
+
+static double advance_chain(struct mover *p, struct ring *r, double dt)
+{
+    struct track *t = &p->track;
+    const double left = track_advance(t, r, in_force(p, false), dt);
+    if (left <= 0.0 || (t->smooth > 0.0 && !track_done(t))) {
+        return 0.0;         /* the tool has to come after */
+    }
+    begin_chained(p, r);
+    const struct command last = ring_peek(r, t->joined - 1)->command;
+    for (int32_t i = t->joined; i > 0; i--) {
+        ring_pop(r);
+    }
+    end_ahead(p, r, last.path.end);
+    return left;
+}
+
+/* Let time pass up to the next end or beginning of a command; returns the time left. */
+static double advance_commands(struct mover *p, bool startable, double dt)
+{
+    struct profile *old = &p->mix.move[0].profile;
+    const double event = startable ? old->tail : old->total;
+    const double step = el_min(dt, event - old->t);
+
+    mix_shift(&p->mix, step);
+    if (step < dt) {
+        old->t = event;     /* met exactly, whatever the sum rounds to */
+    }
+    if (p->motion == MOVER_AXES) {
+        axes_advance(&p->axes, step);
+    }
+    return dt - step;
+}
+
+double mover_advance(struct mover *p, const struct mover_beside *b, double dt)
+{
+    struct ring *r = b->ring;
+
+    if (p->motion == MOVER_CHAIN) {
+        return advance_chain(p, r, dt);
+    }
+    if (p->motion == MOVER_CURVE) {
+        return advance_curve(p, b, dt);
+    }
+    for (;;) {
+        const bool startable = may_start(p, r);
+        const struct profile *old = &p->mix.move[0].profile;
+
+        if (startable && (p->mix.count == 0 || old->t >= old->tail)) {
+            begin_next(p, b);
+            return dt;
+        }
+        if (p->mix.count && old->ends && old->t >= old->total) {
+            retire(p);
+            continue;
+        }
+        if (mover_resting(p, r)) {
+            if (p->abort) {
+                mover_stop(p, r);
+            } else if (p->leave) {
+                mover_leave(p, r);
+            }
+            return dt;
+        }
+        if (dt <= 0.0) {
+            return 0.0;
+        }
+        if (mover_ordered(p)) {
+            axes_advance(&p->axes, dt);
+            dt = 0.0;
+        } else {
+            dt = advance_commands(p, startable, dt);
+        }
+    }
+}
+
+void mover_accept(struct mover *p, const struct mover_beside *b, const struct point *point)
+{
+    memcpy(p->pulses, point->pulses, sizeof p->pulses);
+    p->untold = false;
+    if (p->motion == MOVER_CHAIN) {
+        track_drop(&p->track, b->ring);
+    } else if (p->motion == MOVER_CURVE) {
+        curve_drop(&p->curve, b->curve);
+    }
+}
+
+bool mover_joints(const struct mover *p, const struct mechanism *m, const double place[AXES],
+                  double joint[AXES])
+{
+    if (mover_in_joints(p)) {
+        memcpy(joint, place, AXES * sizeof *joint);
+        return true;
+    }
+    return mechanism_joints(m, place, joint);
+}
+
+/* What looks ahead moves the tool to where the planned motion is. */
+static void sample(struct mover *p, const struct mover_beside *b, double dt)
+{
+    if (p->motion == MOVER_CHAIN) {
+        track_sample(&p->track, b->mean, b->ring, dt);
+        begin_chained(p, b->ring);
+        if (p->abort && track_rests(&p->track)) {
+            mover_stop(p, b->ring);
+        }
+    } else if (p->motion == MOVER_CURVE) {
+        curve_sample(&p->curve, b->curve);
+        begin_curved(p, b->curve);
+        if (p->abort && curve_rests(&p->curve)) {
+            mover_stop(p, b->ring);
+        }
+    }
+}
+
+bool mover_point(struct mover *p, const struct mover_beside *b, const struct mechanism *m,
+                 double dt, struct point *point)
+{
+    double velocity[AXES], joint[AXES];
+
+    sample(p, b, dt);
+    struct ring *r = b->ring;
+    mover_place(p, r, point->place, velocity);
+    const double *v = velocity;
+    point->feed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    if (point->feed == 0.0) {
+        point->feed = sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
+    }
+    mechanism_near(m, p->pulses, joint);
+    const bool reached = mover_joints(p, m, point->place, joint);
+    if (mover_in_joints(p)) {
+        mechanism_place(m, joint, point->place);
+    }
+    memcpy(point->pulses, p->pulses, sizeof point->pulses);
+    if (reached) {
+        mechanism_pulses(m, joint, point->pulses);
+    }
+    const struct command *c = p->mix.count ? &p->mix.move[0].command : NULL;
+    point->line = c ? c->line : p->line;
+    point->command = c ? c->index : p->started;
+    point->newest = c ? p->mix.move[p->mix.count - 1].command.index : p->started;
+    point->waits = c && c->type == COMMAND_DELAY;
+    point->outputs = p->outputs;
+    point->outputs.spindle = outputs_spindle(&p->surface, p->outputs.spindle, point->place[0]);
+    return reached;
 }

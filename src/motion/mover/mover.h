@@ -22,7 +22,6 @@
 #include "curve.h"
 #include "mix.h"
 #include "queue.h"
-#include "spans.h"
 #include "track.h"
 
 enum mover_motion { MOVER_MIX, MOVER_CHAIN, MOVER_AXES, MOVER_CURVE };
@@ -151,13 +150,5 @@ bool mover_point(struct mover *p, const struct mover_beside *b, const struct mec
 /* The point is taken. Until then an earlier *p can be put back: chain and curve keep what they
  * need. */
 void mover_accept(struct mover *p, const struct mover_beside *b, const struct point *point);
-
-/* Whether counts and places of a state, which came from outside, lead out of its arrays. */
-bool mover_damaged(const struct mover *p, const struct ring *r);
-bool queue_damaged(const struct queue *q);
-
-/* Parts of a state that is not damaged which need no copy. */
-void mover_unused(const struct mover *p, const struct mover_beside *b, struct spans *s);
-void queue_unused(const struct queue *q, struct spans *s);
 
 #endif

@@ -19,12 +19,12 @@ static const double SLOWER = 1e-3;
 
 static struct pace_cell *cell_at(struct pace *p, int32_t i)
 {
-    return &p->cell[(uint32_t)(p->at.head + i) % PACE_CELLS];
+    return &p->ring[(uint32_t)(p->at.head + i) % PACE_CELLS].cell;
 }
 
 static const struct pace_cell *cell_peek(const struct pace *p, int32_t i)
 {
-    return &p->cell[(uint32_t)(p->at.head + i) % PACE_CELLS];
+    return &p->ring[(uint32_t)(p->at.head + i) % PACE_CELLS].cell;
 }
 
 void pace_start(struct pace *p, const struct pace_limits *l)
@@ -259,7 +259,7 @@ static void cross(struct pace *p)
 static double length_at(const struct pace *p, int32_t i)
 {
     const uint32_t at = (uint32_t)(p->at.head + i) % PACE_CELLS;
-    return p->smooth ? p->box[at].length : p->cell[at].length;
+    return p->smooth ? p->ring[at].box.length : p->ring[at].cell.length;
 }
 
 /* pace_advance without a limit of jerk. */
@@ -345,37 +345,5 @@ void pace_put(struct pace *p, const struct pace_place *place)
     p->count += crossed;
     if (p->at.way <= 0.0 && p->count > 0) {     /* no cell was known, or the first has grown */
         p->at.left = length_at(p, 0);
-    }
-}
-
-bool pace_damaged(const struct pace *p)
-{
-    const struct pace_place *at = &p->at;
-    bool good = at->head >= 0 && at->head < PACE_CELLS && p->count >= 0 &&
-                p->count <= PACE_CELLS && at->planned >= 0 && at->planned <= p->count;
-
-    for (int32_t i = 0; good && !p->smooth && i < p->count; i++) {
-        const struct pace_cell *c = cell_peek(p, i);
-        good = c->planes >= 0 && c->planes <= PACE_PLANES;
-    }
-    return !good || (p->smooth && pace_smooth_damaged(p));
-}
-
-/* An earlier place may be put back: the cells up to it stay. */
-void pace_unused(const struct pace *p, bool on, struct spans *u)
-{
-    const char *end = (const char *)(p + 1);
-    const int32_t first = (p->at.head + PACE_CELLS - PACE_KEPT) % PACE_CELLS;
-    const int32_t used = on ? p->count + PACE_KEPT : 0;
-
-    if (!p->smooth) {
-        spans_ring(u, p->cell, sizeof p->cell[0], PACE_CELLS, first, used);
-        spans_leave(u, p->cell + PACE_CELLS, end);
-        return;
-    }
-    spans_ring(u, p->box, sizeof p->box[0], PACE_CELLS, first, used);
-    for (int i = 0; i < 2; i++) {
-        const struct pace_plan *plan = &p->plan[i];
-        spans_leave(u, plan->node, plan->node + (on ? plan->first : PACE_NODES));
     }
 }

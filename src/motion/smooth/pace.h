@@ -16,7 +16,6 @@
 #define PACE_H
 
 #include "pace_plan.h"
-#include "spans.h"
 
 enum { PACE_CELLS = 1024, PACE_KEPT = 256 };
 
@@ -48,24 +47,12 @@ struct pace {
     bool    closed;         /* no further piece joins */
     double  override;       /* the one of the latest plan */
     double  end;            /* [mm] end of the pieces, from the start of the chain */
-    union {
-        struct pace_cell cell[PACE_CELLS];
-        struct {
-            struct pace_box box[PACE_CELLS];
-            struct pace_plan plan[2];
-        };
-    };
+    union pace_element ring[PACE_CELLS];
+    struct pace_plan plan[2];       /* with limited jerk */
 };
 
 /* Back to an earlier place, from which fewer than PACE_KEPT cells have been crossed. */
 void pace_put(struct pace *p, const struct pace_place *place);
-
-/* Whether counts of a state, which came from outside, lead out of its arrays. */
-bool pace_damaged(const struct pace *p);
-
-/* Parts of one that is not damaged which a saved state can do without; `on`: a chain is under way,
- * else the next one begins with pace_start. */
-void pace_unused(const struct pace *p, bool on, struct spans *u);
 
 /* A chain begins at rest, without pieces. Its jerk is limited if one of an axis is given, or,
  * without limits of the axes, by the ramp of its first piece. */

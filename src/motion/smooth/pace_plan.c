@@ -40,7 +40,7 @@ static const double ROOM = 0.8;
 
 const struct pace_box *pace_road_box(const struct pace_road *r, int32_t i)
 {
-    return &r->ring[(uint32_t)(r->head + i) % (uint32_t)r->size];
+    return &r->ring[(uint32_t)(r->head + i) % (uint32_t)r->size].box;
 }
 
 double pace_road_end(const struct pace_road *r, int32_t i)

@@ -24,9 +24,15 @@ struct pace_plan {
     struct pace_node node[PACE_NODES];
 };
 
+/* A short part of a chain: a cell, or a box where jerk is limited. */
+union pace_element {
+    struct pace_cell cell;
+    struct pace_box box;
+};
+
 /* Boxes in a ring, from that of the motion on. */
 struct pace_road {
-    const struct pace_box *ring;
+    const union pace_element *ring;
     int32_t size, head, count;
     double override;        /* of the feeds to be kept; < 0: only the limits are kept */
 };

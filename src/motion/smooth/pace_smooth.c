@@ -30,12 +30,12 @@ struct ride {
 
 static struct pace_box *box_at(struct pace *p, int32_t i)
 {
-    return &p->box[(uint32_t)(p->at.head + i) % PACE_CELLS];
+    return &p->ring[(uint32_t)(p->at.head + i) % PACE_CELLS].box;
 }
 
 static struct pace_road road(const struct ride *r, double override)
 {
-    return (struct pace_road){ r->p->box, PACE_CELLS, r->at.head, r->count, override };
+    return (struct pace_road){ r->p->ring, PACE_CELLS, r->at.head, r->count, override };
 }
 
 static const struct pace_plan *held(const struct ride *r)
@@ -402,22 +402,6 @@ bool pace_smooth_nears_end(const struct pace *p, double further)
         i--;
     }
     return p->at.here + further >= (plan->first < PACE_NODES ? plan->node[i].at : p->end);
-}
-
-bool pace_smooth_damaged(const struct pace *p)
-{
-    const struct ride r = ride_of(p);
-    const struct pace_road any = road(&r, 1.0);
-    bool good = p->held >= 0 && p->held <= 1 && p->at.step.kind >= PACE_NO_STEP &&
-                p->at.step.kind <= PACE_HOP;
-
-    for (int32_t i = 0; good && i < p->count; i++) {
-        good = pace_road_box(&any, i)->rows >= 0 && pace_road_box(&any, i)->rows <= AXES;
-    }
-    for (int i = 0; good && i < 2; i++) {
-        good = p->plan[i].first >= 0 && p->plan[i].first <= PACE_NODES;
-    }
-    return !good;
 }
 
 bool pace_smooth_end(struct pace *p, double way)

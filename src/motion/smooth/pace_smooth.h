@@ -9,8 +9,6 @@ double pace_smooth_advance(struct pace *p, double override, double dt);
 double pace_smooth_stop_way(const struct pace *p);
 bool pace_smooth_nears_end(const struct pace *p, double further);
 
-bool pace_smooth_damaged(const struct pace *p);
-
 /* The chain ends at a way within it; false: it can't come to rest there, nothing changes. */
 bool pace_smooth_end(struct pace *p, double way);
 

@@ -19,7 +19,6 @@
 
 #include "shape_join.h"
 #include "shape_run.h"
-#include "spans.h"
 
 enum {
     SHAPE_PIECES = 640,
@@ -95,12 +94,5 @@ void shape_drop(struct shape *s, int32_t n);
 int32_t shape_marks(const struct shape *s);
 const struct shape_mark *shape_mark(const struct shape *s, int32_t i);
 void shape_drop_marks(struct shape *s, int32_t n);
-
-/* Whether one that may have been written to from outside leaves its arrays, or never ends. */
-bool shape_damaged(const struct shape *s);
-
-/* Parts of one that is not damaged which a saved state can do without; `on`: a chain is under way,
- * else the next one begins with shape_start. */
-void shape_unused(const struct shape *s, bool on, struct spans *u);
 
 #endif

@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterable
 
 from motionfmu.fmu.describe import STRING_MAX, Description, Variable
+from motionfmu.fmu.licence import version
 
 _NOTE = "/* Generated from the FMU's description; do not edit. */\n"
 _CTYPE = {"f64": "double", "i32": "int32_t", "bool": "bool", "string": "char"}
@@ -61,6 +62,7 @@ def header(d: Description) -> str:
         f"{_NOTE}#ifndef VARS_H\n#define VARS_H\n"
         "#include <stdbool.h>\n#include <stdint.h>\n\n"
         f'#define FMU_NAME "{d.name}"\n#define FMU_TOKEN "{d.token}"\n'
+        f'#define FMU_VERSION "{version()}"\n'
         f"#define FMU_TICK_NS {d.tick_ns}\n#define FMU_STRING_MAX {STRING_MAX}\n"
         f"{known}#define FMU_NVARS {len(d.variables)}\n#define FMU_NREFS {d.reference_count}\n\n"
         f"struct vars {{\n{members}\n}};\n#endif\n"
@@ -97,7 +99,7 @@ def main_unit(model: str, fmi: int) -> str:
         f"{_NOTE}#define FMI_VERSION {fmi}\n"
         "#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */\n"
         f'#include "{model}"\n#include "vars.c"\n'
-        '#include "state_flags.h"\n#include "fmi.inc"\n'
+        '#include "fmi.inc"\n'
     )
 
 
@@ -107,5 +109,5 @@ def part_unit(model: str, identifier: str) -> str:
         f"{_NOTE}#define FMU_PART motionfmu_part_{identifier}\n"
         "#define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */\n"
         f'#include "{model}"\n#include "vars.c"\n'
-        '#include "state_flags.h"\n#include "fmi_part.inc"\n'
+        '#include "fmi_part.inc"\n'
     )

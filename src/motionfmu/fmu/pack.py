@@ -1,7 +1,6 @@
 """Generate an FMU's C and XML, pack its .fmu files, make headers; called by the build.
 
 python src/pack.py generate fmus/epcio build/gen/epcio
-python src/pack.py flags    fmus/epcio build/gen/epcio
 python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.o epcio.fmi3.fmu here=epcio.so
 python src/pack.py headers  src build/include/motionfmu
 python src/pack.py platforms
@@ -25,7 +24,6 @@ from motionfmu.base.platforms import Platform
 from motionfmu.base.toml_lines import text_of
 from motionfmu.fmu import (
     cores,
-    cstructs,
     ctables,
     fmu_toml,
     shown,
@@ -79,16 +77,6 @@ def generate(fmu: Path, out: Path) -> None:
         _write(out / f"fmi{fmi}/{MAIN_UNIT}", ctables.main_unit(model, fmi))
         xml = model_description(d, fmi, [MAIN_UNIT, *compiled])
         _write(out / f"fmi{fmi}/modelDescription.xml", xml)
-
-
-def flags(fmu: Path, out: Path) -> None:
-    """Write state_flags.h of one FMU from its C text; `out` has what `generate` wrote."""
-    files = [f for f in _core_files(fmu) if f.suffix == ".h"]
-    if is_modelica(fmu):
-        files += [out / "plant.h", SOURCE / "plant" / "plant_model.c"]
-    else:
-        files += [*sorted(fmu.glob("*.h")), fmu / "model.c"]
-    (out / "state_flags.h").write_text(cstructs.flags(f.read_text() for f in files))
 
 
 def _core_files(fmu: Path) -> list[Path]:
@@ -231,9 +219,9 @@ def headers(source: Path, out: Path) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """Run one of the five as in the module's first lines; 0, or 2 after one message on stderr."""
+    """Run one of the four as in the module's first lines; 0, or 2 after one message on stderr."""
     try:
-        two = {"generate": generate, "flags": flags, "headers": headers}
+        two = {"generate": generate, "headers": headers}
         if arguments == ["platforms"]:
             print(*(f"{p.name} {p.target} {p.suffix}" for p in platforms.PLATFORMS), sep="\n")
         elif arguments[0] in two:

@@ -52,7 +52,6 @@ def make(folder: Path, job: Job, cc: Compiler) -> None:
         "vars.h": ctables.header(d),
         "vars.c": ctables.table(d),
         "model.c": text.model(job.system, parts, used, job.recorded),
-        "state_flags.h": text.FLAGS,
         "fmu_main.c": text.main_unit(job.fmi, quickly=job.given is None),
     }
     for file, content in texts.items():

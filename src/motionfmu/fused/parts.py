@@ -15,7 +15,7 @@ from motionfmu.fmu.inside import MAIN_UNIT, PART_UNIT, PARTS
 from motionfmu.scenarios.fmus import digest, opened
 
 # Interface, instance and struct vars [bytes]: how the object of a part says them.
-_MARK = re.compile(rb"motionfmu part 2 (\d{9}) (\d{9})\n")
+_MARK = re.compile(rb"motionfmu part 3 (\d{9}) (\d{9})\n")
 _DEFINED = re.compile(r'^#define FMU_(\w+) "?([^"\n]*)"?$', re.MULTILINE)
 _STRUCT = re.compile(r"^struct vars \{\n(.*?)^\};", re.MULTILINE | re.DOTALL)
 

@@ -11,13 +11,6 @@ from motionfmu.scenarios.system import End, System
 
 _KINDS = {"Float64": "d", "Int32": "i", "Boolean": "b"}
 _I32 = (-(2**31), 2**31 - 1)
-FLAGS = """/* Generated: a system keeps no flags beside those of its parts; do not edit. */
-static bool fmi_good_model(const struct model *m)
-{
-    (void)m;
-    return true;
-}
-"""
 
 
 def _in_part(end: End) -> str:
@@ -163,7 +156,7 @@ def main_unit(fmi: int, quickly: bool) -> str:
         + ("#define SYSTEM_QUICKLY\n" if quickly else "")
         + f"#define FMI_VERSION {fmi}\n"
         "#define _GNU_SOURCE /* kinds of files, fmu_file.h; room for them on the disk */\n"
-        '#include "model.c"\n#include "vars.c"\n#include "state_flags.h"\n'
+        '#include "model.c"\n#include "vars.c"\n'
         'SYSTEM_COLD_BEGIN\n#include "fmi.inc"\nSYSTEM_COLD_END\n'
     )
 
@@ -175,7 +168,7 @@ def model(system: System, parts: Mapping[str, Part], used: Roles, recorded: Sequ
         '#include "vars.h"\n#include "fmu_system.h"\n\n',
         *_structs(parts),
         _model(system, parts),
-        "\n#define MODEL_BLOB\n#define MODEL_UNUSED\n",
+        "\n#define MODEL_BLOB\n#define MODEL_PARTS\n",
         '#include "fmi_model.h"\n#include "fmu_recorder.h"\n\n',
         "SYSTEM_COLD_BEGIN\n",
         *_gives(system, parts, used),

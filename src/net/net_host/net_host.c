@@ -253,11 +253,3 @@ size_t net_host_out(struct net_host *h, uint8_t *bytes, size_t most)
 {
     return net_channel_out(&h->channel, bytes, most);
 }
-
-bool net_host_sound(const struct net_host *h)
-{
-    if (h->phase >= NET_HOST_PHASES || h->upload >= NET_HOST_UPLOADS || h->flights < 0 ||
-        h->flights > NET_HOST_FLIGHTS || h->job.bytes % NET_PAGE_BYTES != 0)
-        return false;
-    return h->page <= h->job.bytes / NET_PAGE_BYTES && net_channel_sound(&h->channel);
-}

@@ -22,7 +22,7 @@ enum {
 };
 
 enum net_host_phase {
-    NET_HOST_DOWN, NET_HOST_GREETED, NET_HOST_CHALLENGED, NET_HOST_UP, NET_HOST_PHASES
+    NET_HOST_DOWN, NET_HOST_GREETED, NET_HOST_CHALLENGED, NET_HOST_UP
 };
 
 enum net_host_upload {
@@ -32,8 +32,7 @@ enum net_host_upload {
     NET_HOST_SENDING,
     NET_HOST_ENDED,         /* JOB_END waits for its answer */
     NET_HOST_STORED,        /* it is the card's job */
-    NET_HOST_REFUSED,
-    NET_HOST_UPLOADS
+    NET_HOST_REFUSED
 };
 
 enum net_host_stage {
@@ -133,8 +132,5 @@ void net_host_tick(struct net_host *h, const uint8_t *job, int64_t now);
 
 /* Ask for a setting; false if there is no room. */
 bool net_host_ask(struct net_host *h, uint16_t id, uint16_t index);
-
-/* Is every index within its array? */
-bool net_host_sound(const struct net_host *h);
 
 #endif

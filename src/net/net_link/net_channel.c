@@ -183,18 +183,3 @@ const char *net_fault_text(enum net_fault fault)
     }
     return "";
 }
-
-bool net_channel_sound(const struct net_channel *c)
-{
-    const int32_t header = NET_HEADER;
-    if (c->fault >= NET_FAULTS || c->held < 0 || c->held > NET_FRAME)
-        return false;
-    if (c->out_first < 0 || c->out_first >= NET_OUT || c->out_count < 0 || c->out_count > NET_OUT)
-        return false;
-    if (c->held >= header && c->fault == NET_FINE) {
-        const int32_t whole = header + (int32_t)net_channel_length(c) + (int32_t)check_bytes(c);
-        if (net_channel_length(c) > NET_PAYLOAD || (c->whole ? c->held != whole : c->held >= whole))
-            return false;
-    }
-    return c->held >= header || !c->whole;
-}

@@ -75,7 +75,4 @@ size_t net_channel_out(struct net_channel *c, uint8_t *bytes, size_t most);
 /* Words for a fault. */
 const char *net_fault_text(enum net_fault fault);
 
-/* Is every index within its array? */
-bool net_channel_sound(const struct net_channel *c);
-
 #endif

@@ -13,6 +13,7 @@
 
 #define FMU_NAME       "Dummy"
 #define FMU_TOKEN      "{dummy}"
+#define FMU_VERSION    "1.0"
 #define FMU_TICK_NS    25
 #define FMU_STRING_MAX 64
 #define FMU_STRICT     strict_step
@@ -63,14 +64,12 @@ enum { KEPT = 100 };
 struct model {
     double  sum[2];
     int32_t at;
-    bool    odd;
     int32_t first, used;    /* of `kept`, a ring: what is not in use holds nothing that is read */
     double  kept[KEPT];
-    double  zeros[20];      /* none of them is set */
 };
 
 #define MODEL_BLOB
-#define MODEL_UNUSED
+#define MODEL_IN_USE FMU_RING(kept, first, used, 0)
 #include "fmi_model.h"
 
 static int blobs_open; /* those of the whole test: 0 at its end */
@@ -110,35 +109,6 @@ static int model_start(struct fmu *f)
     fmu_event(f, "started with gain %g", f->s.v.gain);
     fmu_warn(f, "resources in \"%s\"", fmu_resources(f));
     return 0;
-}
-
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    return m->at < 0 || m->at > 1                         ? "at is no index of sum"
-           : m->first < 0 || m->first >= KEPT             ? "first is no index of kept"
-           : m->used < 0 || m->used > KEPT                ? "used is no count of kept"
-                                                          : NULL;
-}
-
-/* Told out of order, as models may. */
-static size_t model_unused(const struct state *s, struct fmu_span span[FMU_SPANS])
-{
-    const struct model *m = &s->m;
-    const size_t kept = offsetof(struct state, m.kept), each = sizeof m->kept[0];
-    const size_t zeros = offsetof(struct state, m.zeros);
-    const size_t first = (size_t)m->first, end = (size_t)(m->first + m->used);
-    size_t n = fmu_span_add(span, 0, zeros, zeros + sizeof m->zeros, 1);
-    if (end > KEPT) {
-        return fmu_span_add(span, n, kept + (end - KEPT) * each, kept + first * each, 0);
-    }
-    n = fmu_span_add(span, n, kept + end * each, kept + KEPT * each, 0);
-    return fmu_span_add(span, n, kept, kept + first * each, 0);
-}
-
-static bool fmi_good_model(const struct model *p)
-{
-    return *(const unsigned char *)&p->odd <= 1;
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)

@@ -229,34 +229,6 @@ static void feeds(void)
     CHECK_EQ(next(&x), -1);
 }
 
-/* Modes of M70 that none can have, and systems beyond all, are a damaged state. */
-static void damaged(void)
-{
-    struct reader x;
-
-    begin(&x, "G55 M70\nG1 X1\nM72\nX2\n");
-    x.program.fanuc = true;
-    CHECK_EQ(next(&x), COMMAND_LINE);
-    CHECK(!interpreter_damaged(&x.in) && x.in.saved[0].kept);
-    struct interpreter in = x.in;
-    in.saved[0].system = INTERPRETER_ALL;
-    CHECK(interpreter_damaged(&in));
-    in.saved[0].system = -1;
-    CHECK(interpreter_damaged(&in));
-    in.saved[0].kept = false;
-    CHECK(!interpreter_damaged(&in));
-    in.system = INTERPRETER_ALL - 1;
-    CHECK(!interpreter_damaged(&in));
-    in.system++;
-    CHECK(interpreter_damaged(&in));
-    in = x.in;
-    in.more = INTERPRETER_MORE + 1;
-    CHECK(interpreter_damaged(&in));
-    in = x.in;
-    in.saved[0].plane = PATH_XY + 1;
-    CHECK(interpreter_damaged(&in));
-}
-
 int main(void)
 {
     systems();
@@ -268,6 +240,5 @@ int main(void)
     mirrored_cutter();
     splines();
     feeds();
-    damaged();
     return check_result();
 }

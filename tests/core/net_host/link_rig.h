@@ -289,7 +289,6 @@ static void rig_step(struct rig *r)
         rig_connect(r);
     if (r->connected)
         rig_carry(r);
-    CHECK(session_sound(s) && net_host_sound(&r->host));
 }
 
 /* Have all commands an answer, and the card its job? */

@@ -43,7 +43,6 @@ static int take_all(struct net_channel *card, const uint8_t *bytes, size_t n, si
     for (size_t at = 0; at < n && card->fault == NET_FINE;) {
         const size_t part = n - at < most ? n - at : most;
         at += net_channel_take(card, bytes + at, part);
-        CHECK(net_channel_sound(card));
         frames += card->whole;
         if (card->whole)
             net_channel_drop(card);
@@ -197,7 +196,6 @@ static void check_queue(uint64_t *seed)
         put += room;
         const size_t some = net_channel_out(&out, bytes, (size_t)check_random(seed, 0, 700));
         got += take_all(&in, bytes, some, sizeof bytes);
-        CHECK(net_channel_sound(&out));
     }
     size_t rest;
     while ((rest = net_channel_out(&out, bytes, sizeof bytes)) > 0)

@@ -74,7 +74,6 @@ static struct shown run(uint32_t mask, int stop)
         see();
         const struct frame f = home_cycle_step(&h, &in);
         in.latched = 0;
-        CHECK(home_cycle_sound(&h));
         for (int i = 0; i < CARD_AXES; i++) {
             const struct home_axis *a = &config.axis[i];
             const double t = config.period, v = h.axis[i].motion.speed, dv = fabs(v - last[i]),

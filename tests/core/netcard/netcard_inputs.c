@@ -144,7 +144,7 @@ static void against_model(void)
                 served += want >= 0;
                 shared += count > 1;
             }
-            CHECK(c.lost == lost && c.ignored == ignored && card_inputs_sound(&c));
+            CHECK(c.lost == lost && c.ignored == ignored);
         }
     }
     printf("inputs: %lld served, %lld actions, %lld times the lowest of several\n", served,

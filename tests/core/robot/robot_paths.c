@@ -73,7 +73,6 @@ static void polyline(const struct robot_config *c, int k)
     CHECK(zone > 0.0 || stops >= LINES - 1);
     const struct pose end = pose_of(at[LINES], abc[LINES]);
     CHECK(turned(end.turn, robot.pose.turn) < 1e-9);
-    CHECK(!robot_damaged(&robot));
 }
 
 /* A circle in any plane: at its radius, through its point, at the feed. */

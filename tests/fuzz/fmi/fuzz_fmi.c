@@ -235,41 +235,6 @@ static void from_damaged(struct pair *p, struct bytes *b)
     }
 }
 
-/* Bytes with a right hash may be a state; a step from there may be nonsense, so it is only made in
- * a build without checks for overflow. */
-static void from_forged(struct pair *p, struct bytes *b)
-{
-    struct slot forged = { { NULL, NULL }, NEW, 0.0 };
-    if (!in_bytes || p->stand == FAILED) {
-        return;
-    }
-    const size_t size = inside_size(bytes[0]);
-    memcpy(other, bytes[0], size);
-    for (uint32_t n = 1 + take(b, 1) % 3; n > 0; n--) {
-        const uint32_t at = take(b, 3);
-        other[inside_place(bytes[0], at)] = (char)take(b, 1);
-    }
-    inside_forge(other);
-    pair_look(p);
-    if (BOTH(deserialize(p->c[v_], other, size, &forged.state[v_])) == 0) {
-        if (BOTH(set_state(p->c[v_], forged.state[v_])) == 0) {
-            static union side_value x[SIDE_ELEMENTS];
-            const struct inside_variable v = inside_variable(pick_variable(b));
-            (void)BOTH(get(p->c[v_], v.type, v.ref, v.count, x));
-#ifdef FUZZ_FORGED_STEPS
-            double t, h = 1e-3;
-            memcpy(&t, other + 64 + 8 + 8 + 4 + 4 + 8, sizeof t);
-            for (int i = 0; i < 3 && BOTH(step(p->c[v_], t, h)) == 0; i++) {
-                t += h;
-            }
-#endif
-        }
-        HOLDS(BOTH(set_state(p->c[v_], pair_before.state[v_])) == 0);
-        HOLDS(BOTH(free_state(p->c[v_], &forged.state[v_])) == 0);
-    }
-    pair_same(p);
-}
-
 static void release(struct pair *p)
 {
     pair_settle();
@@ -330,8 +295,7 @@ static void call(struct bytes *b)
     case 21: case 22: restore(p, s); break;
     case 23: to_bytes(p, s); break;
     case 24: from_bytes(p, s); break;
-    case 25: from_damaged(p, b); break;
-    case 26: from_forged(p, b); break;
+    case 25: case 26: from_damaged(p, b); break;
     case 27: HOLDS(BOTH(free_state(p->c[v_], &s->state[v_])) == 0 && !s->state[0]); break;
     case 28: { const uint32_t which = take(b, 1); REFUSED(p, odd(p->c[v_], which)); break; }
     case 29: log_switch(p, b); break;

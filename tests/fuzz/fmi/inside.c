@@ -84,28 +84,3 @@ bool inside_alike(const char *a, const char *b)
     const size_t model = offsetof(struct fmi_snapshot, s.m);
     return memcmp(a, b, hash) == 0 && memcmp(a + behind, b + behind, model - behind) == 0;
 }
-
-size_t inside_place(const char *bytes, size_t n)
-{
-    const size_t head = offsetof(struct fmi_snapshot, mode);
-    size_t at = head + n % (inside_size(bytes) - head);
-    for (size_t i = 0; i < FMU_NVARS; i++) {
-        const size_t from = offsetof(struct fmi_snapshot, s.v) + var_table[i].offset;
-        const size_t size = var_table[i].count * FMU_STRING_MAX;
-        if (var_table[i].type == VAR_STRING && at >= from && at < from + size) {
-            at = head + (at - from) % 32; /* mode, stale and times instead */
-        }
-    }
-    return at;
-}
-
-void inside_forge(char *bytes)
-{
-    static _Alignas(struct fmi_snapshot) char copy[sizeof(struct fmi_snapshot)
-                                                   + FMU_SPANS * sizeof(struct fmu_span)];
-    struct fmi_snapshot *p = (void *)copy;
-    const size_t size = inside_size(bytes);
-    memcpy(copy, bytes, size);
-    p->hash = fmi_hash(p);
-    memcpy(bytes, copy, size);
-}

@@ -30,8 +30,4 @@ size_t inside_size(const char *state);  /* and of this one */
 /* Are serialized states of two instances alike? Padding in the model's structs may differ. */
 bool inside_alike(const char *a, const char *b);
 
-/* Serialized bytes: a place outside the strings, and the hash that belongs to what stands there. */
-size_t inside_place(const char *bytes, size_t n);
-void   inside_forge(char *bytes);
-
 #endif

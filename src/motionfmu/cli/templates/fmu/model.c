@@ -25,15 +25,6 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* An instant far behind would make the loop below long, a period of 0 endless. */
-static const char *model_check(const struct state *s)
-{
-    const struct model *m = &s->m;
-    const bool good = m->period >= FMU_TICK_NS && m->instant > s->now &&
-                      m->instant - s->now <= m->period;
-    return good ? NULL : "no sample follows in the filter";
-}
-
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct vars *v = &f->s.v;
