@@ -8,13 +8,18 @@ from conftest import ROOT
 
 from motionfmu.fmu import cstructs
 
-TEXT = """
+TEXT = r"""
 #include <stdint.h>   /* struct model { char not_this; }; */
 #define TWO 2
 enum colour { RED, GREEN, BLUE = 7 };
 enum { SIZE = 3 };
+#define SHADES(X) \
+    X(LIGHT, "a, b") /* X(NONE, "") */ \
+    X(DARK, "c")
+#define SHADE(name, text) name,
+enum shade { SHADES(SHADE) };
 typedef struct { int32_t n; bool flag; } OLD;
-struct leaf { double x; bool flag, more[2][TWO]; /* bool none; */ enum colour colour; };
+struct leaf { double x; bool flag, more[2][TWO]; /* bool none; */ enum colour colour; enum shade shade; };
 struct plain { double x[SIZE]; int32_t n; };
 static int use(const struct plain *p) { struct plain q = { { 0 }, 1 }; return p->n + q.n; }
 struct model {
@@ -52,7 +57,7 @@ def test_every_boolean_and_enumeration_is_found(tmp_path: Path) -> None:
     subprocess.run([*command, "-o", str(program)], check=True)
     seen = subprocess.run([program], check=True, capture_output=True, text=True).stdout
     # On every common machine: double 8 bytes, enumeration 4, each at a multiple of its size.
-    leaf = "0" * 8 + "11111" + "000" + "1111" + "0000"
+    leaf = "0" * 8 + "11111" + "000" + "1111" + "1111"
     whole = 6 * leaf + "0" * 32 + 2 * "00001000" + "0100" + "1000" + 2 * "1111"
     assert seen == whole + "0" * 32  # the union
 

@@ -8,6 +8,7 @@ _NOTE = "/* Generated from the structs of the model's state; do not edit. */\n"
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*|^[ \t]*#(?:\\\n|[^\n])*", re.DOTALL | re.MULTILINE)
 _LIST = re.compile(r"^[ \t]*#define (\w+)\(X\)((?:\\\n|[^\n])*)", re.MULTILINE)
 _LISTED = re.compile(r"\bX\((\w+),\s*(\w+),|\b(\w+)\(X\)")
+_FIRST = re.compile(r"\bX\((\w+),")
 _TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|\w+|[^\w\s]")
 
 
@@ -63,6 +64,10 @@ class _Reader:
         names, depth, begins = [], 1, True
         while depth:
             token = self.take()
+            if begins and token in self.found.lists:  # LIST(MACRO): one of each X(name, ...)
+                names += _FIRST.findall(self.found.lists[token])
+                self.at += 3
+                continue
             depth += (token in "({") - (token in ")}") if token else -depth
             if begins and depth:
                 names.append(token)
