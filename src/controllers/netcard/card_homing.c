@@ -124,12 +124,24 @@ void card_home_raise(struct netcard *c)
     kernel_set_priority(&c->kernel, NETCARD_HOME, c->settings.priority_home);
 }
 
-/* Does homing go on? A stop lowers the rate: until rest it is given frames. */
-static bool goes_on(const struct netcard *c, bool stops)
+/* A stop lowers the rate: until rest the task gives frames. */
+static bool stops(const struct netcard *c)
 {
-    const bool paused = c->state == NET_PAUSING || c->state == NET_PAUSED;
+    const int32_t at = c->step[NETCARD_HOME];
 
-    return stops || c->state == NET_HOMING || (paused && c->resumes == NET_HOMING);
+    return c->state == NET_STOPPING && (at == HOME_STEP || at == HOME_LAST);
+}
+
+/* Is homing over before its end? */
+static bool given_up(const struct netcard *c)
+{
+    const int32_t at = c->step[NETCARD_HOME];
+    const bool paused = c->state == NET_PAUSING || c->state == NET_PAUSED,
+               goes_on = stops(c) || c->state == NET_HOMING ||
+                         (paused && c->resumes == NET_HOMING);
+
+    return (at > HOME_LOWERED && at < HOME_RAISE && !goes_on) ||
+           (at > HOME_CLEARED && at < HOME_RAISE && c->home.state == HOME_CYCLE_IDLE);
 }
 
 static void look(struct netcard *c)
@@ -142,17 +154,44 @@ static void look(struct netcard *c)
     }
 }
 
+static void come_to_rest(struct netcard *c)
+{
+    if (player_at_rest(&c->player)) {
+        card_home_clear(c);
+    } else {
+        player_set_target(&c->player, 0);
+        card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, HOME_STILL);
+    }
+}
+
+/* A frame, if there is room for it; else sleep. */
+static void step(struct netcard *c)
+{
+    if (card_home_full(c)) {
+        kernel_delay(&c->kernel, 1);
+    } else {
+        card_home_frame(c, c->state == NET_HOMING);
+    }
+}
+
+/* Sleep until all frames are played. */
+static void last(struct netcard *c)
+{
+    if (c->homing == HOMING_PLAYED && !stops(c)) {
+        card_home_found(c);
+        go(c, HOME_RAISE);
+    } else {
+        kernel_delay(&c->kernel, 1);
+    }
+}
+
 void card_home(struct netcard *c)
 {
-    const enum card_home_step at = (enum card_home_step)c->step[NETCARD_HOME];
-    const bool stops = c->state == NET_STOPPING && (at == HOME_STEP || at == HOME_LAST);
-
-    if ((at > HOME_LOWERED && at < HOME_RAISE && !goes_on(c, stops)) ||
-        (at > HOME_CLEARED && at < HOME_RAISE && c->home.state == HOME_CYCLE_IDLE)) {
+    if (given_up(c)) {
         go(c, HOME_RAISE);
         return;
     }
-    switch (at) {
+    switch (c->step[NETCARD_HOME]) {
     case HOME_WAIT:
         card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, HOME_LOOK);
         break;
@@ -164,30 +203,16 @@ void card_home(struct netcard *c)
         kernel_give(&c->kernel, NETCARD_GIVE_FIFO);     /* run gives its job up */
         break;
     case HOME_STILL:
-        if (player_at_rest(&c->player)) {
-            card_home_clear(c);
-        } else {
-            player_set_target(&c->player, 0);
-            card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, HOME_STILL);
-        }
+        come_to_rest(c);
         break;
     case HOME_CLEARED:
         card_home_begin(c);
         break;
     case HOME_STEP:
-        if (card_home_full(c)) {
-            kernel_delay(&c->kernel, 1);
-        } else {
-            card_home_frame(c, c->state == NET_HOMING);
-        }
+        step(c);
         break;
     case HOME_LAST:
-        if (c->homing == HOMING_PLAYED && !stops) {
-            card_home_found(c);
-            go(c, HOME_RAISE);
-        } else {
-            kernel_delay(&c->kernel, 1);
-        }
+        last(c);
         break;
     default:
         card_home_raise(c);

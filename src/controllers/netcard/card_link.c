@@ -175,6 +175,10 @@ static void config_get(struct netcard *c, const struct session_message *m)
     }
 }
 
+_Static_assert(NET_PAUSE - NET_START == (int)CARD_DO_PAUSE &&
+               NET_STOP - NET_START == (int)CARD_DO_STOP &&
+               NET_RESET - NET_START == (int)CARD_DO_RESET, "messages of commands in their order");
+
 int card_message(struct netcard *c)
 {
     struct session_message m;
@@ -208,9 +212,7 @@ int card_message(struct netcard *c)
     case NET_STOP:
     case NET_RESET:
         net_get_command(m.payload, &n);
-        return order(c, n.number, m.type == NET_START ? CARD_DO_START :
-                     m.type == NET_PAUSE ? CARD_DO_PAUSE :
-                     m.type == NET_STOP ? CARD_DO_STOP : CARD_DO_RESET, 0);
+        return order(c, n.number, (enum card_command)(m.type - NET_START), 0);
     default:
         return -1;
     }

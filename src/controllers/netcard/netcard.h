@@ -91,12 +91,11 @@ enum card_job_phase {
     JOB_DRAINING,               /* all are in the FIFO */
     JOB_PLAYED,                 /* and out of it */
     JOB_CUT,                    /* to be given up, from PLAYING: what is in stock still counts */
-    JOB_OVER,                   /* to be given up, from another phase */
-    JOB_PHASES
+    JOB_OVER                    /* to be given up, from another phase */
 };
 
 /* The way to where a job begins: the tool's axes first, then X and Y. */
-enum card_approach { APPROACH_NONE, APPROACH_TOOL, APPROACH_PLANE, APPROACH_THERE, APPROACHES };
+enum card_approach { APPROACH_NONE, APPROACH_TOOL, APPROACH_PLANE, APPROACH_THERE };
 
 /* The home task, from the command to its end. What the axes search is in `home`. */
 enum card_homing {
@@ -105,16 +104,15 @@ enum card_homing {
     HOMING_GIVES,               /* frames */
     HOMING_GIVEN,               /* all are in the FIFO */
     HOMING_PLAYED,              /* and out of it */
-    HOMING_STOPPED,             /* literal: it is to give up */
-    HOMINGS
+    HOMING_STOPPED              /* literal: it is to give up */
 };
 
 /* Literal: pause has the processor; it is to end. */
-enum card_hold { HOLD_NONE, HOLD_HOLDS, HOLD_RELEASED, HOLDS };
+enum card_hold { HOLD_NONE, HOLD_HOLDS, HOLD_RELEASED };
 
 /* A RESET in an alarm: the drives have their error clear; it has helped, or its time is over, and
  * the parser is to answer. */
-enum card_clear { CLEAR_NONE, CLEAR_GIVEN, CLEAR_OVER, CLEARS };
+enum card_clear { CLEAR_NONE, CLEAR_GIVEN, CLEAR_OVER };
 
 struct netcard_config {
     struct card_settings settings;
