@@ -11,12 +11,12 @@ from collections.abc import AsyncIterator, Callable, Coroutine, Iterable
 from pathlib import Path
 from typing import Any
 
+from soft_card import CardEnd, SoftCard, serve_card
+
 from motionfmu.netcard import messages as m
-from motionfmu.netcard.client import SoftCard, serve_card
 from motionfmu.netcard.line import Limits
 from motionfmu.netcard.server import Cards
 from motionfmu.netcard.sim import FLASH_BYTES
-from motionfmu.netcard.wire import CardEnd
 
 HOST = "127.0.0.1"
 PATIENCE = 10.0  # [s] for what comes at once on a machine that is not asleep

@@ -19,7 +19,12 @@ enum { SIZE = 3 };
 #define SHADE(name, text) name,
 enum shade { SHADES(SHADE) };
 typedef struct { int32_t n; bool flag; } OLD;
-struct leaf { double x; bool flag, more[2][TWO]; /* bool none; */ enum colour colour; enum shade shade; };
+struct leaf {
+    double x;
+    bool flag, more[2][TWO]; /* bool none; */
+    enum colour colour;
+    enum shade shade;
+};
 struct plain { double x[SIZE]; int32_t n; };
 static int use(const struct plain *p) { struct plain q = { { 0 }, 1 }; return p->n + q.n; }
 struct model {

@@ -17,9 +17,9 @@ import pytest
 from browser import tab as browser_tab
 from conftest import ROOT
 from fleet import Fleet, circle, status
+from soft_card import SoftCard, serve_card
 
 from motionfmu.netcard import messages
-from motionfmu.netcard.client import SoftCard, serve_card
 from motionfmu.netcard.config import load
 from motionfmu.netcard.page import Serving, application
 from motionfmu.netcard.server import Cards

@@ -21,10 +21,10 @@ from card_links import (
     run,
     until,
 )
+from soft_card import SoftCard, serve_card
 
 from motionfmu.errors import InputError
 from motionfmu.netcard import messages as m
-from motionfmu.netcard.client import SoftCard, serve_card
 from motionfmu.netcard.control import Control, ask
 from motionfmu.netcard.keys import new_key, read_keys
 from motionfmu.netcard.line import Limits

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from soft_card import CardEnd, SoftCard
 
 from motionfmu.netcard import messages as m
-from motionfmu.netcard.client import SoftCard
 from motionfmu.netcard.line import READ_MAX, Limits, Line
 from motionfmu.netcard.server import Cards
 from motionfmu.netcard.views import Event
-from motionfmu.netcard.wire import HEADER, MAGIC, OPEN_KEY, PAYLOAD_MAX, VERSION, CardEnd
+from motionfmu.netcard.wire import HEADER, MAGIC, OPEN_KEY, PAYLOAD_MAX, VERSION
 
 LIMITS = Limits()
 

@@ -26,14 +26,14 @@ from card_links import (
 )
 from conftest import ROOT
 from console import within
+from soft_card import CardEnd, SoftCard, serve_card
 
 from motionfmu.errors import InputError
 from motionfmu.netcard import messages as m
-from motionfmu.netcard.client import SoftCard, serve_card
 from motionfmu.netcard.control import ask
 from motionfmu.netcard.line import Limits
 from motionfmu.netcard.server import Cards
-from motionfmu.netcard.wire import OPEN_KEY, CardEnd
+from motionfmu.netcard.wire import OPEN_KEY
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
 

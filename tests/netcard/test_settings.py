@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from card_links import HOST, bench, run, until
 from conftest import ROOT
+from soft_card import SoftCard
 from test_sim import job_of
 
-from motionfmu.netcard.client import SoftCard
 from motionfmu.netcard.config import CardConfig, load
 from motionfmu.netcard.messages import State
 from motionfmu.netcard.settings import asked, fields, lines, numbers, shown

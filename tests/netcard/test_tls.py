@@ -13,15 +13,15 @@ import httpx2
 import pytest
 from card_links import HOST, until
 from fleet import Fleet
+from soft_card import CardEnd, SoftCard
 from websockets.asyncio.client import connect
 
 from motionfmu.errors import InputError
 from motionfmu.netcard import tls
-from motionfmu.netcard.client import SoftCard
 from motionfmu.netcard.page import Serving, application
 from motionfmu.netcard.server import Cards
 from motionfmu.netcard.sim import VirtualCard, Watch, simulate
-from motionfmu.netcard.wire import MAGIC, OPEN_KEY, CardEnd
+from motionfmu.netcard.wire import MAGIC, OPEN_KEY
 
 FILES = Path(__file__).parent / "tls"
 CERT, KEY, OTHER = FILES / "cert.pem", FILES / "key.pem", FILES / "other.pem"
