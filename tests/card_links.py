@@ -11,12 +11,12 @@ from collections.abc import AsyncIterator, Callable, Coroutine, Iterable
 from pathlib import Path
 from typing import Any
 
+from soft_card import CardEnd, SoftCard, serve_card
+
 from motionfmu.cards import messages as m
-from motionfmu.cards.client import SoftCard, serve_card
 from motionfmu.cards.line import Limits
 from motionfmu.cards.server import Cards
 from motionfmu.cards.sim import FLASH_BYTES
-from motionfmu.cards.wire import CardEnd
 
 HOST = "127.0.0.1"
 PATIENCE = 10.0  # [s] for what comes at once on a machine that is not asleep

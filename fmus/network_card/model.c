@@ -57,7 +57,7 @@ static void publish_axes(struct vars *v, const struct netcard *c)
         v->error_clear[i] = c->power && c->now < c->clear_until;
     }
     v->frame = whole(netcard_frames(c));
-    v->approach = c->approach;
+    v->approach = c->approach != APPROACH_NONE;
     v->stock = c->player.fifo.stock;
     v->stock_least = c->least;
     v->underflows = whole(c->player.dry);

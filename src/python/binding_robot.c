@@ -76,7 +76,6 @@ static const struct field panel_fields[] = {
     KEY(start), KEY(abort), KEY(reset), KEY(teach), KEY(replay),
     ONE(robot_station, inputs, "inputs", "bits"), ONE(robot_station, alarm, "alarm", "bits"),
     ONE(robot_station, emergency, "emergency", ""), ROW(robot_station, ai, "ai", "V"),
-    ONE(robot_station, soft.running, "running", ""),
     ONE(robot_station, card.stopped, "stopped", ""),
 };
 
@@ -237,6 +236,11 @@ int binding_robot_move(struct robot_station *s, struct robot_move *m, const doub
     const enum robot_status status = soft_move(&s->soft, &s->config, m, &s->tool, why);
     soft_refusal_words(status, why, message);
     return (int)status;
+}
+
+int binding_robot_running(const struct robot_station *s)
+{
+    return soft_running(&s->soft);
 }
 
 int binding_robot_jog(struct robot_station *s, struct robot_refusal *why, char message[MESSAGE])

@@ -4,9 +4,9 @@ import struct
 from typing import Any
 
 from fmi_tools import OK, Instance
+from soft_card import CardEnd
 
 from motionfmu.cards import messages as m
-from motionfmu.cards.wire import CardEnd
 
 STEP = 1e-3  # [s] bus period of these tests
 WORDS = struct.Struct("<128i")

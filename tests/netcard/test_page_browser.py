@@ -17,9 +17,9 @@ import pytest
 from browser import tab as browser_tab
 from conftest import ROOT
 from fleet import Fleet, circle, status
+from soft_card import SoftCard, serve_card
 
 from motionfmu.cards import messages
-from motionfmu.cards.client import SoftCard, serve_card
 from motionfmu.cards.config import load
 from motionfmu.cards.page import Serving, application
 from motionfmu.cards.server import Cards

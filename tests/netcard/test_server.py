@@ -21,10 +21,10 @@ from card_links import (
     run,
     until,
 )
+from soft_card import SoftCard, serve_card
 
 from motionfmu.base.errors import InputError
 from motionfmu.cards import messages as m
-from motionfmu.cards.client import SoftCard, serve_card
 from motionfmu.cards.control import Control, ask
 from motionfmu.cards.keys import new_key, read_keys
 from motionfmu.cards.line import Limits

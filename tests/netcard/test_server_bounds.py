@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from soft_card import CardEnd, SoftCard
 
 from motionfmu.cards import messages as m
-from motionfmu.cards.client import SoftCard
 from motionfmu.cards.line import READ_MAX, Limits, Line
 from motionfmu.cards.server import Cards
 from motionfmu.cards.views import Event
-from motionfmu.cards.wire import HEADER, MAGIC, OPEN_KEY, PAYLOAD_MAX, VERSION, CardEnd
+from motionfmu.cards.wire import HEADER, MAGIC, OPEN_KEY, PAYLOAD_MAX, VERSION
 
 LIMITS = Limits()
 

@@ -26,14 +26,14 @@ from card_links import (
 )
 from conftest import ROOT
 from console import within
+from soft_card import CardEnd, SoftCard, serve_card
 
 from motionfmu.base.errors import InputError
 from motionfmu.cards import messages as m
-from motionfmu.cards.client import SoftCard, serve_card
 from motionfmu.cards.control import ask
 from motionfmu.cards.line import Limits
 from motionfmu.cards.server import Cards
-from motionfmu.cards.wire import OPEN_KEY, CardEnd
+from motionfmu.cards.wire import OPEN_KEY
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
 

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from card_links import HOST, bench, run, until
 from conftest import ROOT
+from soft_card import SoftCard
 from test_sim import job_of
 
-from motionfmu.cards.client import SoftCard
 from motionfmu.cards.config import CardConfig, load
 from motionfmu.cards.messages import State
 from motionfmu.cards.settings import asked, fields, lines, numbers, shown

@@ -13,15 +13,15 @@ import httpx2
 import pytest
 from card_links import HOST, until
 from fleet import Fleet
+from soft_card import CardEnd, SoftCard
 from websockets.asyncio.client import connect
 
 from motionfmu.base.errors import InputError
 from motionfmu.cards import tls
-from motionfmu.cards.client import SoftCard
 from motionfmu.cards.page import Serving, application
 from motionfmu.cards.server import Cards
 from motionfmu.cards.sim import VirtualCard, Watch, simulate
-from motionfmu.cards.wire import MAGIC, OPEN_KEY, CardEnd
+from motionfmu.cards.wire import MAGIC, OPEN_KEY
 
 FILES = Path(__file__).parent / "tls"
 CERT, KEY, OTHER = FILES / "cert.pem", FILES / "key.pem", FILES / "other.pem"

@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from soft_card import CardEnd
 
 from motionfmu.base.binding import library
 from motionfmu.cards import messages as m
-from motionfmu.cards.wire import OPEN_KEY, TO_CARD, TO_PC, CardEnd, End, PcEnd, Stream
+from motionfmu.cards.wire import OPEN_KEY, TO_CARD, TO_PC, End, PcEnd, Stream
 
 KEY = bytes(range(32))
 ROOM = 65536  # [byte] more than a struct net_channel

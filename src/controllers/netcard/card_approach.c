@@ -6,9 +6,8 @@
 
 #include "el_extremes.h"
 
-/* Axes that go together, in turn. */
-static const uint32_t TURNS[] = { 0xC, 0x3 };
-enum { TURN_COUNT = sizeof TURNS / sizeof TURNS[0] };
+/* Axes that go together. */
+static const uint32_t TURN[] = { [APPROACH_TOOL] = 0xC, [APPROACH_PLANE] = 0x3, [APPROACH_THERE] = 0 };
 
 bool card_approach_due(const struct netcard *c)
 {
@@ -29,6 +28,24 @@ static double fastest(const struct netcard *c, int axis)
     return el_min(s->speed_max[axis] * (s->period_ns * 1e-9), most - 1.0);
 }
 
+static bool there(const struct netcard *c, uint32_t axes)
+{
+    bool all = true;
+
+    for (int i = 0; i < CARD_AXES; i++) {
+        all = all && (!(axes >> i & 1) || home_motion_at(&c->way[i], 0));
+    }
+    return all;
+}
+
+/* Turns whose axes are all there. */
+static void pass_turns(struct netcard *c)
+{
+    while (c->approach < APPROACH_THERE && there(c, TURN[c->approach])) {
+        c->approach = (enum card_approach)(c->approach + 1);
+    }
+}
+
 bool card_approach_begin(struct netcard *c)
 {
     const struct card_settings *s = &c->settings;
@@ -43,24 +60,9 @@ bool card_approach_begin(struct netcard *c)
         job.speed[i] = s->speed_max[i];
         job.acc[i] = s->acc_max[i];
     }
-    c->approach = c->read = true;       /* nothing of the job is read meanwhile */
-    c->ended = false;
+    c->approach = APPROACH_TOOL;
+    pass_turns(c);
     return player_begin(&c->player, &job, card_clock(c)) == PLAYER_OK;
-}
-
-static bool there(const struct netcard *c, uint32_t axes)
-{
-    bool all = true;
-
-    for (int i = 0; i < CARD_AXES; i++) {
-        all = all && (!(axes >> i & 1) || home_motion_at(&c->way[i], 0));
-    }
-    return all;
-}
-
-bool card_approach_given(const struct netcard *c)
-{
-    return there(c, (1u << CARD_AXES) - 1);
 }
 
 /* A step from or to rest keeps within the speed, too. */
@@ -69,18 +71,15 @@ struct frame card_approach_next(struct netcard *c)
     const struct card_settings *s = &c->settings;
     const double period = s->period_ns * 1e-9;
     struct frame f = { .event = 0 };
-    int turn = 0;
 
-    while (turn < TURN_COUNT - 1 && there(c, TURNS[turn])) {
-        turn++;
-    }
     for (int i = 0; i < CARD_AXES; i++) {
-        if (TURNS[turn] >> i & 1) {
+        if (TURN[c->approach] >> i & 1) {
             const double speed = fastest(c, i), acc = s->acc_max[i] * (1.0 - s->reserve);
             const struct home_limits limits = { el_min(acc * period * period, speed),
                                                 el_min(s->speed_min[i] * period, speed) };
             f.command[i] = (int16_t)home_motion_to(&c->way[i], &limits, 0, speed);
         }
     }
+    pass_turns(c);
     return f;
 }

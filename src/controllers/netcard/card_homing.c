@@ -1,11 +1,9 @@
-/* The home task. */
+/* The home task, and what of it both policies have. */
 #include "netcard_parts.h"
 
 #include <string.h>
 
-enum { WAIT, LOOK, LOWERED, STILL, CLEARED, STEP, LAST, RAISE };
-
-static void go(struct netcard *c, int step)
+static void go(struct netcard *c, enum card_home_step step)
 {
     c->step[NETCARD_HOME] = step;
 }
@@ -50,52 +48,64 @@ static bool begin(struct netcard *c)
         return false;
     }
     home_cycle_begin(&c->home, &h, c->home_axes, &in);
-    c->ended = false;
+    c->homing = HOMING_GIVES;
     c->homed &= ~c->home_axes;
     return true;
 }
 
-/* Does homing go on? */
-static bool wanted(const struct netcard *c)
+void card_home_lower(struct netcard *c)
 {
-    const bool paused = c->state == NET_PAUSING || c->state == NET_PAUSED;
-
-    return card_literal(c) ? c->state != NET_FAULT && !c->over
-                           : c->state == NET_HOMING || (paused && c->resumes == NET_HOMING);
+    c->home.state = HOME_CYCLE_IDLE;
+    c->homing = HOMING_BEGINS;
+    go(c, HOME_LOWERED);
+    kernel_set_priority(&c->kernel, NETCARD_HOME, c->settings.priority_home_active);
 }
 
-/* A frame, if there is room for it; else sleep. The literal task keeps the processor. */
-static void step(struct netcard *c)
+void card_home_clear(struct netcard *c)
 {
-    if (c->player.fifo.stock >= lead(&c->settings)) {
-        if (card_literal(c)) {
-            card_spend(c, NETCARD_HOME, c->settings.period_ns, STEP);
-        } else {
-            kernel_delay(&c->kernel, 1);
-        }
-        return;
+    player_clear(&c->player);
+    card_put_rest(c);
+    go(c, HOME_CLEARED);
+}
+
+void card_home_begin(struct netcard *c)
+{
+    if (begin(c)) {
+        go(c, HOME_STEP);
+    } else {
+        card_fault(c, NET_RANGE);
     }
+}
+
+bool card_home_full(const struct netcard *c)
+{
+    return c->player.fifo.stock >= lead(&c->settings);
+}
+
+void card_home_frame(struct netcard *c, bool goes)
+{
     const struct home_cycle_input in = seen(c);
     const struct frame f = home_cycle_step(&c->home, &in);
+
     kernel_mark(&c->kernel, NETCARD_STEP, NETCARD_HOME);
     player_push(&c->player, &f);
-    if (c->player.target == 0 && (card_literal(c) || c->state == NET_HOMING)) {
+    if (c->player.target == 0 && goes) {
         player_set_target(&c->player, 1);
     }
     if (c->home.state != HOME_CYCLE_RUNNING && c->home.state != HOME_CYCLE_STOPPING) {
         player_whole(&c->player);
-        go(c, LAST);
+        c->homing = HOMING_GIVEN;
+        go(c, HOME_LAST);
     }
     card_spend(c, NETCARD_HOME, card_frame_ns(c, c->settings.step_cycles),
                c->step[NETCARD_HOME]);
 }
 
-/* All frames are played. */
-static void finish(struct netcard *c)
+bool card_home_found(struct netcard *c)
 {
     if (c->home.state != HOME_CYCLE_ENDED) {
         card_fault(c, NET_NOT_HOMED);
-        return;
+        return false;
     }
     for (int i = 0; i < CARD_AXES; i++) {
         if (c->home.mask >> i & 1) {
@@ -104,85 +114,107 @@ static void finish(struct netcard *c)
         }
     }
     card_rest(c);
-    if (card_literal(c) && c->job) {        /* run goes on with its next frame, from here */
-        c->state = NET_RUNNING;
-        player_begin(&c->player, &c->plays, card_clock(c));
-        player_set_target(&c->player, 1);
-        c->ended = c->read;
+    return true;
+}
+
+void card_home_raise(struct netcard *c)
+{
+    c->homing = HOMING_NONE;
+    go(c, HOME_WAIT);
+    kernel_set_priority(&c->kernel, NETCARD_HOME, c->settings.priority_home);
+}
+
+/* A stop lowers the rate: until rest the task gives frames. */
+static bool stops(const struct netcard *c)
+{
+    const int32_t at = c->step[NETCARD_HOME];
+
+    return c->state == NET_STOPPING && (at == HOME_STEP || at == HOME_LAST);
+}
+
+/* Is homing over before its end? */
+static bool given_up(const struct netcard *c)
+{
+    const int32_t at = c->step[NETCARD_HOME];
+    const bool paused = c->state == NET_PAUSING || c->state == NET_PAUSED,
+               goes_on = stops(c) || c->state == NET_HOMING ||
+                         (paused && c->resumes == NET_HOMING);
+
+    return (at > HOME_LOWERED && at < HOME_RAISE && !goes_on) ||
+           (at > HOME_CLEARED && at < HOME_RAISE && c->home.state == HOME_CYCLE_IDLE);
+}
+
+static void look(struct netcard *c)
+{
+    if (c->state == NET_HOMING) {
+        card_home_lower(c);
+    } else {
+        c->dropped++;
+        go(c, HOME_WAIT);
     }
 }
 
-/* A stop lowers the rate: until rest it is given frames. */
+static void come_to_rest(struct netcard *c)
+{
+    if (player_at_rest(&c->player)) {
+        card_home_clear(c);
+    } else {
+        player_set_target(&c->player, 0);
+        card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, HOME_STILL);
+    }
+}
+
+/* A frame, if there is room for it; else sleep. */
+static void step(struct netcard *c)
+{
+    if (card_home_full(c)) {
+        kernel_delay(&c->kernel, 1);
+    } else {
+        card_home_frame(c, c->state == NET_HOMING);
+    }
+}
+
+/* Sleep until all frames are played. */
+static void last(struct netcard *c)
+{
+    if (c->homing == HOMING_PLAYED && !stops(c)) {
+        card_home_found(c);
+        go(c, HOME_RAISE);
+    } else {
+        kernel_delay(&c->kernel, 1);
+    }
+}
+
 void card_home(struct netcard *c)
 {
-    const int at = c->step[NETCARD_HOME];
-    const bool stops = c->state == NET_STOPPING && (at == STEP || at == LAST);
-
-    if ((at > LOWERED && at < RAISE && !wanted(c) && !stops) ||
-        (at > CLEARED && at < RAISE && c->home.state == HOME_CYCLE_IDLE)) {
-        go(c, RAISE);
+    if (given_up(c)) {
+        go(c, HOME_RAISE);
         return;
     }
-    switch (at) {
-    case WAIT:
-        card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, LOOK);
-        return;
-    case LOOK:
-        if (!card_literal(c) && c->state != NET_HOMING) {
-            c->dropped++;
-            go(c, WAIT);
-            return;
-        }
-        c->home.state = HOME_CYCLE_IDLE;
-        c->over = c->over && c->job;        /* a stop from here on is one of homing too */
-        c->homing = true;
-        go(c, LOWERED);
-        kernel_set_priority(&c->kernel, NETCARD_HOME, c->settings.priority_home_active);
-        return;
-    case LOWERED:
-        go(c, STILL);
+    switch (c->step[NETCARD_HOME]) {
+    case HOME_WAIT:
+        card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, HOME_LOOK);
+        break;
+    case HOME_LOOK:
+        look(c);
+        break;
+    case HOME_LOWERED:
+        go(c, HOME_STILL);
         kernel_give(&c->kernel, NETCARD_GIVE_FIFO);     /* run gives its job up */
-        return;
-    case STILL:
-        if (card_literal(c)) {
-            c->state = NET_HOMING;
-        } else if (!player_at_rest(&c->player)) {
-            player_set_target(&c->player, 0);
-            card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, STILL);
-            return;
-        }
-        player_clear(&c->player);
-        card_put_rest(c);
-        go(c, CLEARED);
-        return;
-    case CLEARED:
-        if (begin(c)) {
-            go(c, STEP);
-        } else {
-            card_fault(c, NET_RANGE);
-        }
-        return;
-    case STEP:
+        break;
+    case HOME_STILL:
+        come_to_rest(c);
+        break;
+    case HOME_CLEARED:
+        card_home_begin(c);
+        break;
+    case HOME_STEP:
         step(c);
-        return;
-    case LAST:
-        if (!c->ended || stops) {
-            if (card_literal(c)) {
-                card_spend(c, NETCARD_HOME, c->settings.period_ns, LAST);
-            } else {
-                kernel_delay(&c->kernel, 1);
-            }
-            return;
-        }
-        finish(c);
-        go(c, RAISE);
-        return;
+        break;
+    case HOME_LAST:
+        last(c);
+        break;
     default:
-        if (card_literal(c) && c->state == NET_HOMING) {    /* stopped */
-            card_rest(c);
-        }
-        c->homing = false;
-        go(c, WAIT);
-        kernel_set_priority(&c->kernel, NETCARD_HOME, c->settings.priority_home);
+        card_home_raise(c);
     }
 }

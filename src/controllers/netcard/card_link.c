@@ -45,10 +45,10 @@ static int job_begin(struct netcard *c, const uint8_t *payload)
     struct net_job_begin m;
 
     net_get_job_begin(payload, &m);
-    if (c->job && c->place.slot != c->store.job.slot) {
+    if (card_job_under_way(c) && c->place.slot != c->store.job.slot) {
         code = NET_BUSY;        /* the free slot is the one that is read */
     }
-    if (c->job && c->settings.slots == 1) {
+    if (card_job_under_way(c) && c->settings.slots == 1) {
         code = NET_BUSY;
     }
     if (code == NET_DONE) {
@@ -112,9 +112,8 @@ static int order(struct netcard *c, uint32_t number, enum card_command command, 
     const int give = card_order(c, command, axes, &code);
 
     if (code == NET_CODES) {
-        c->clears = true;
-        c->cleared = false;
-        c->clears_number = number;
+        c->clear = CLEAR_GIVEN;
+        c->clear_number = number;
         return -1;
     }
     answer(c, number, command, code);
@@ -126,12 +125,12 @@ static void end_clear(struct netcard *c)
 {
     const enum net_code code = c->axes.stop || c->axes.alarm ? NET_ALARM : NET_DONE;
 
-    c->clears = c->cleared = false;
+    c->clear = CLEAR_NONE;
     if (code == NET_DONE) {
         c->error = NET_DONE;
         card_rest(c);
     }
-    answer(c, c->clears_number, CARD_DO_RESET, code);
+    answer(c, c->clear_number, CARD_DO_RESET, code);
 }
 
 static void output(struct netcard *c, const uint8_t *payload)
@@ -176,6 +175,10 @@ static void config_get(struct netcard *c, const struct session_message *m)
     }
 }
 
+_Static_assert(NET_PAUSE - NET_START == (int)CARD_DO_PAUSE &&
+               NET_STOP - NET_START == (int)CARD_DO_STOP &&
+               NET_RESET - NET_START == (int)CARD_DO_RESET, "messages of commands in their order");
+
 int card_message(struct netcard *c)
 {
     struct session_message m;
@@ -209,9 +212,7 @@ int card_message(struct netcard *c)
     case NET_STOP:
     case NET_RESET:
         net_get_command(m.payload, &n);
-        return order(c, n.number, m.type == NET_START ? CARD_DO_START :
-                     m.type == NET_PAUSE ? CARD_DO_PAUSE :
-                     m.type == NET_STOP ? CARD_DO_STOP : CARD_DO_RESET, 0);
+        return order(c, n.number, (enum card_command)(m.type - NET_START), 0);
     default:
         return -1;
     }
@@ -242,7 +243,8 @@ void card_tell_status(struct netcard *c)
     struct net_status s = {
         .state = (uint8_t)c->state, .error = (uint8_t)c->error,
         .inputs = (uint16_t)c->input_levels, .outputs = (uint16_t)c->outputs.levels,
-        .stock = (uint16_t)c->player.fifo.stock, .job = c->job ? c->played_id : c->store.job.id,
+        .stock = (uint16_t)c->player.fifo.stock,
+        .job = card_job_under_way(c) ? c->played_id : c->store.job.id,
         .frame = (uint32_t)netcard_frames(c), .underflows = (uint32_t)c->player.dry,
         .switches = switches(c), .rate = (uint16_t)(player_rate(&c->player) * 1000.0),
         .wear = flash_wear(&c->flash)
@@ -319,7 +321,7 @@ void card_parse(struct netcard *c)
     default:
         break;
     }
-    if (c->cleared) {
+    if (c->clear == CLEAR_OVER) {
         card_work(c, NETCARD_PARSER, c->settings.step_cycles, CLEARED);
     } else if (c->orders > 0) {
         card_work(c, NETCARD_PARSER, c->settings.packet_cycles, ORDER);

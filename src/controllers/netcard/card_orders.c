@@ -35,7 +35,7 @@ void card_fault(struct netcard *c, enum net_code error)
         card_put_rest(c);
         c->state = NET_FAULT;
         c->error = error;
-        c->over = true;
+        card_job_give_up(c);
         c->told.what |= PLAYER_REST;    /* all that wait for the player look again */
         card_pend(c, NETCARD_FPGA);
     }
@@ -55,29 +55,6 @@ static enum net_code startable(const struct netcard *c)
     return has_job(c) ? NET_DONE : NET_NO_JOB;
 }
 
-/* The document's scheme: each packet gives its semaphore, whatever the card does. A start ends a
- * pause that holds the processor. */
-static int literal(struct netcard *c, enum card_command command, uint32_t axes)
-{
-    switch (command) {
-    case CARD_DO_START:
-        if (c->holds) {
-            c->released = true;
-            return -1;
-        }
-        return NETCARD_GIVE_RUN;
-    case CARD_DO_PAUSE:
-        return NETCARD_GIVE_PAUSE;
-    case CARD_DO_STOP:
-        return NETCARD_GIVE_STOP;
-    case CARD_DO_HOME:
-        c->home_axes = axes;
-        return NETCARD_GIVE_HOME;
-    default:
-        return -1;
-    }
-}
-
 /* The states that an accepted command leads to. */
 static int accepted(struct netcard *c, enum card_command command, uint32_t axes)
 {
@@ -95,12 +72,12 @@ static int accepted(struct netcard *c, enum card_command command, uint32_t axes)
         return NETCARD_GIVE_PAUSE;
     case CARD_DO_STOP:
         c->state = NET_STOPPING;
-        c->over = true;
+        card_job_give_up(c);
         return NETCARD_GIVE_STOP;
     case CARD_DO_HOME:
         c->state = NET_HOMING;
         c->home_axes = axes;
-        c->over = true;
+        card_job_give_up(c);
         return NETCARD_GIVE_HOME;
     default:
         c->error = NET_DONE;
@@ -115,7 +92,7 @@ int card_order(struct netcard *c, enum card_command command, uint32_t axes, enum
 
     *code = rule.code;
     if (command == CARD_DO_RESET && c->state == NET_FAULT) {
-        if (c->clears) {
+        if (c->clear != CLEAR_NONE) {
             *code = NET_BUSY;
             return -1;
         }
@@ -124,7 +101,7 @@ int card_order(struct netcard *c, enum card_command command, uint32_t axes, enum
     }
     if (card_literal(c) && c->state != NET_FAULT) {
         *code = NET_DONE;
-        return literal(c, command, axes);
+        return literal_order(c, command, axes);
     }
     if (*code == NET_DONE && command == CARD_DO_START && c->state == NET_READY) {
         *code = startable(c);

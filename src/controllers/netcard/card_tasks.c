@@ -1,21 +1,10 @@
+/* The storage task, and what the interrupts do. */
 #include "netcard_parts.h"
 
 #include <string.h>
 
 /* In which run reads and writes what fills the FIFO again. */
 static const int64_t ERASE_MARGIN_NS = 10000000;
-
-/* A step of a task: a frame of run and home, a turn of pause and stop. */
-static void mark(struct netcard *c, enum netcard_task task)
-{
-    kernel_mark(&c->kernel, NETCARD_STEP, task);
-}
-
-/* Frames of a job have still to be read. */
-static bool reads(const struct netcard *c)
-{
-    return c->job && !c->over && !c->read;
-}
 
 /* Could the FIFO run dry while the chip erases a sector? Then run reads first. */
 static bool must_wait(const struct netcard *c)
@@ -53,8 +42,8 @@ void card_store(struct netcard *c)
         card_spend(c, NETCARD_STORAGE, ns + card_cycles_ns(c->settings.page_cycles), READ);
         return;
     }
-    c->store.hurried = reads(c);
-    c->deferred = c->store.phase != STORE_REST && reads(c) && must_wait(c);
+    c->store.hurried = card_job_reads(c);
+    c->deferred = c->store.phase != STORE_REST && card_job_reads(c) && must_wait(c);
     ns = c->deferred ? 0 : job_store_step(&c->store, &c->flash, c->now);
     card_tell_store(c);
     if (ns > 0) {       /* nobody reads while it writes */
@@ -62,102 +51,6 @@ void card_store(struct netcard *c)
         card_take(c, NETCARD_STORAGE, NETCARD_GIVE_FLASH, LOOK);
     } else {
         card_take(c, NETCARD_STORAGE, NETCARD_GIVE_STORAGE, LOOK);
-    }
-}
-
-void card_stop(struct netcard *c)
-{
-    enum { WAIT, LOOK, ACT, RELEASE, RELEASE_HOME };
-    const int step = c->step[NETCARD_STOP];
-
-    if (step == WAIT) {
-        card_take(c, NETCARD_STOP, NETCARD_GIVE_STOP, LOOK);
-    } else if (step == LOOK) {
-        card_work(c, NETCARD_STOP, c->settings.step_cycles, ACT);
-    } else if (step == RELEASE) {       /* run and home give up */
-        c->step[NETCARD_STOP] = c->homing && !card_literal(c) ? RELEASE_HOME : WAIT;
-        kernel_give(&c->kernel, NETCARD_GIVE_FIFO);
-    } else if (step == RELEASE_HOME) {
-        c->step[NETCARD_STOP] = WAIT;
-        kernel_give(&c->kernel, NETCARD_GIVE_HOME);
-    } else if (card_literal(c)) {
-        mark(c, NETCARD_STOP);
-        player_clear(&c->player);
-        c->over = c->job || c->homing;
-        c->step[NETCARD_STOP] = RELEASE;
-    } else if (c->state != NET_STOPPING) {
-        c->dropped++;
-        c->step[NETCARD_STOP] = WAIT;
-    } else if (!player_at_rest(&c->player)) {
-        mark(c, NETCARD_STOP);
-        player_set_target(&c->player, 0);
-        c->step[NETCARD_STOP] = WAIT;
-    } else {
-        mark(c, NETCARD_STOP);
-        player_clear(&c->player);
-        card_put_rest(c);
-        c->home.state = HOME_CYCLE_IDLE;
-        if (c->error == NET_DONE) {
-            card_rest(c);
-        } else {
-            c->state = NET_FAULT;
-        }
-        c->step[NETCARD_STOP] = RELEASE;
-    }
-}
-
-/* The literal pause has the processor until a start. */
-static void hold(struct netcard *c)
-{
-    enum { WAIT, LOOK, ACT };
-
-    mark(c, NETCARD_PAUSE);
-    if (!c->holds) {
-        c->holds = true;
-        c->released = false;
-        c->resumes = c->state;
-    }
-    c->state = NET_PAUSED;
-    if (c->released) {
-        c->holds = false;
-        c->state = c->resumes;
-        c->step[NETCARD_PAUSE] = WAIT;
-    } else {
-        card_work(c, NETCARD_PAUSE, c->settings.step_cycles, ACT);
-    }
-}
-
-void card_pause(struct netcard *c)
-{
-    enum { WAIT, LOOK, ACT, RELEASE };
-    const int step = c->step[NETCARD_PAUSE];
-    const bool goes = c->state == NET_RUNNING || c->state == NET_HOMING;
-
-    if (step == WAIT) {
-        card_take(c, NETCARD_PAUSE, NETCARD_GIVE_PAUSE, LOOK);
-    } else if (step == LOOK) {
-        card_work(c, NETCARD_PAUSE, c->settings.step_cycles, ACT);
-    } else if (step == RELEASE) {       /* they look what has become of the motion meanwhile */
-        c->step[NETCARD_PAUSE] = WAIT;
-        kernel_give(&c->kernel,
-                    c->state == NET_HOMING ? NETCARD_GIVE_HOME : NETCARD_GIVE_FIFO);
-    } else if (card_literal(c)) {
-        hold(c);
-    } else {
-        c->step[NETCARD_PAUSE] = WAIT;
-        if (c->state == NET_PAUSING) {
-            mark(c, NETCARD_PAUSE);
-            player_set_target(&c->player, 0);
-            c->state = player_at_rest(&c->player) ? NET_PAUSED : NET_PAUSING;
-        } else if (goes) {
-            mark(c, NETCARD_PAUSE);
-            if (c->state == NET_RUNNING ? c->primed : c->home.state != HOME_CYCLE_IDLE) {
-                player_set_target(&c->player, 1);
-            }
-            c->step[NETCARD_PAUSE] = RELEASE;
-        } else {
-            c->dropped += c->state != NET_PAUSED;
-        }
     }
 }
 
@@ -174,7 +67,7 @@ static uint32_t told(struct netcard *c)
     if (what & (PLAYER_REST | PLAYER_ENDED) && !card_literal(c)) {
         gives |= c->state == NET_PAUSING ? 1u << NETCARD_GIVE_PAUSE : 0;
         gives |= c->state == NET_STOPPING ? 1u << NETCARD_GIVE_STOP : 0;
-        gives |= c->homing && (c->state == NET_HOMING || c->state == NET_FAULT)
+        gives |= c->homing != HOMING_NONE && (c->state == NET_HOMING || c->state == NET_FAULT)
                  ? 1u << NETCARD_GIVE_HOME : 0;
     }
     for (uint32_t i = 1; events && i <= c->reader.header.events; i++) {

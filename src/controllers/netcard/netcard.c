@@ -93,9 +93,12 @@ static void boot(struct netcard *c)
     memset(&c->told, 0, sizeof c->told);
     memset(&c->page, 0, sizeof c->page);
     memset(&c->load, 0, sizeof c->load);
-    c->job = c->primed = c->read = c->ended = c->over = c->holds = c->released = false;
-    c->deferred = c->asked = c->homing = false;
-    c->works = c->approach = c->clears = c->cleared = false;
+    c->phase = JOB_NONE;
+    c->approach = APPROACH_NONE;
+    c->homing = HOMING_NONE;
+    c->hold = HOLD_NONE;
+    c->clear = CLEAR_NONE;
+    c->deferred = c->asked = c->works = false;
     c->first = c->orders = 0;
     c->homed = c->latched = 0;
     c->error = NET_DONE;
@@ -189,8 +192,9 @@ int64_t netcard_frames(const struct netcard *c)
 /* The drives' error clear has helped or its time is over: the parser answers the RESET. */
 static void look_cleared(struct netcard *c)
 {
-    if (c->clears && !c->cleared && (!c->axes.alarm || c->axes.stop || c->now >= c->clear_until)) {
-        c->cleared = true;
+    if (c->clear == CLEAR_GIVEN &&
+        (!c->axes.alarm || c->axes.stop || c->now >= c->clear_until)) {
+        c->clear = CLEAR_OVER;
         card_pend(c, NETCARD_NETWORK);
     }
 }
@@ -218,17 +222,31 @@ static void guard(struct netcard *c)
     }
 }
 
+/* The last frame of homing, the approach or the job is over. */
+static void frames_ended(struct netcard *c)
+{
+    if (c->homing == HOMING_GIVEN) {
+        c->homing = HOMING_PLAYED;
+    } else if (c->phase == JOB_DRAINING) {
+        c->phase = JOB_PLAYED;
+    }
+}
+
 void card_advance_player(struct netcard *c)
 {
+    const bool counts = (c->phase == JOB_PLAYING && !c->approach) || c->phase == JOB_CUT;
+
     player_advance(&c->player, card_clock(c));
     const struct player_told t = player_take(&c->player);
-    if (c->job && c->primed && !c->read && c->player.fifo.stock < c->least) {
+    if (counts && c->player.fifo.stock < c->least) {
         c->least = c->player.fifo.stock;
     }
     if (t.what) {
         c->told.what |= t.what;
         c->told.events |= t.events;
-        c->ended = c->ended || t.what & PLAYER_ENDED;
+        if (t.what & PLAYER_ENDED) {
+            frames_ended(c);
+        }
         card_pend(c, NETCARD_FPGA);
     }
 }
@@ -278,7 +296,7 @@ static int64_t horizon(const struct netcard *c, int64_t until)
     if (status > c->now) {
         until = earlier(until, status);
     }
-    if (c->clears && !c->cleared) {
+    if (c->clear == CLEAR_GIVEN) {
         until = earlier(until, c->clear_until);
     }
     until = earlier(until, card_inputs_next(&c->inputs));
@@ -287,15 +305,10 @@ static int64_t horizon(const struct netcard *c, int64_t until)
     return until;
 }
 
-static void answer(struct netcard *c, int who)
+/* A task that moves the axes, by the table of states and commands. */
+static void table_task(struct netcard *c, enum netcard_task task)
 {
-    switch (who) {
-    case NETCARD_PARSER:
-        card_parse(c);
-        break;
-    case NETCARD_STORAGE:
-        card_store(c);
-        break;
+    switch (task) {
     case NETCARD_HOME:
         card_home(c);
         break;
@@ -305,11 +318,23 @@ static void answer(struct netcard *c, int who)
     case NETCARD_PAUSE:
         card_pause(c);
         break;
-    case NETCARD_RUN:
-        card_run(c);
-        break;
     default:
+        card_run(c);
+    }
+}
+
+static void answer(struct netcard *c, int who)
+{
+    if (who >= KERNEL_TASKS) {
         card_interrupt(c, who - KERNEL_TASKS);
+    } else if (who == NETCARD_PARSER) {
+        card_parse(c);
+    } else if (who == NETCARD_STORAGE) {
+        card_store(c);
+    } else if (card_literal(c)) {
+        literal_task(c, (enum netcard_task)who);
+    } else {
+        table_task(c, (enum netcard_task)who);
     }
 }
 

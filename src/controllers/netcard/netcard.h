@@ -77,6 +77,43 @@ struct netcard_page {
     uint8_t bytes[FLASH_PAGE];
 };
 
+/* The job of the run task, from its start to where run has left it:
+ *
+ *     NONE --> READING --> PLAYING --> DRAINING --> PLAYED --> NONE
+ *                 '------------------------^
+ *
+ * The same for the frames of the approach, then READING again. A stop, homing or a fault leads to
+ * CUT or OVER from anywhere; run gives the job up when it has the processor. */
+enum card_job_phase {
+    JOB_NONE,
+    JOB_READING,                /* the first frames go into the FIFO */
+    JOB_PLAYING,                /* the player has been let go, more frames follow */
+    JOB_DRAINING,               /* all are in the FIFO */
+    JOB_PLAYED,                 /* and out of it */
+    JOB_CUT,                    /* to be given up, from PLAYING: what is in stock still counts */
+    JOB_OVER                    /* to be given up, from another phase */
+};
+
+/* The way to where a job begins: the tool's axes first, then X and Y. */
+enum card_approach { APPROACH_NONE, APPROACH_TOOL, APPROACH_PLANE, APPROACH_THERE };
+
+/* The home task, from the command to its end. What the axes search is in `home`. */
+enum card_homing {
+    HOMING_NONE,
+    HOMING_BEGINS,              /* it has lowered its priority and waits for rest */
+    HOMING_GIVES,               /* frames */
+    HOMING_GIVEN,               /* all are in the FIFO */
+    HOMING_PLAYED,              /* and out of it */
+    HOMING_STOPPED              /* literal: it is to give up */
+};
+
+/* Literal: pause has the processor; it is to end. */
+enum card_hold { HOLD_NONE, HOLD_HOLDS, HOLD_RELEASED };
+
+/* A RESET in an alarm: the drives have their error clear; it has helped, or its time is over, and
+ * the parser is to answer. */
+enum card_clear { CLEAR_NONE, CLEAR_GIVEN, CLEAR_OVER };
+
 struct netcard_config {
     struct card_settings settings;
     uint8_t key[NET_SHA_BYTES];     /* of the link; 0: open */
@@ -103,8 +140,8 @@ struct netcard {
     enum net_code error;        /* why FAULT; NET_DONE none */
     uint32_t homed;             /* axes */
     int64_t clear_until;        /* [ns] the drives' error clear is given */
-    bool    clears, cleared;    /* a RESET waits for its end; the parser is to answer it, */
-    uint32_t clears_number;     /* with this number */
+    enum card_clear clear;      /* of a RESET, */
+    uint32_t clear_number;      /* answered with this number */
     int64_t loading;            /* [ns] that power-up reads the flash */
     int64_t zero[CARD_AXES];    /* [pulses] count at which the position is 0 */
     uint32_t latched;           /* origins that a latch of the FPGA has seen, */
@@ -115,16 +152,12 @@ struct netcard {
     struct player_told told;    /* by the FPGA, for its interrupt */
     int64_t served[NETCARD_INTERRUPTS]; /* interrupts so far */
 
-    bool    job;                /* run has one under way, */
-    bool    primed;             /* it has been let go, */
-    bool    read;               /* all of it is in the FIFO, */
-    bool    ended;              /* and out of it */
-    bool    over;               /* it is to be given up */
+    enum card_job_phase phase;  /* of the job of run */
     bool    works;              /* its outputs may be on: its rest event is owed */
-    bool    approach;           /* the axes are on their way to its begin, */
-    struct home_motion way[CARD_AXES];  /* so far */
-    bool    holds, released;    /* literal: pause has the processor; it is to end */
-    bool    homing;             /* the home task has something under way */
+    enum card_approach approach;
+    struct home_motion way[CARD_AXES];  /* of it, so far */
+    enum card_hold hold;
+    enum card_homing homing;
     bool    deferred;           /* storage waits for a full FIFO */
     int32_t jobs;               /* begun so far */
     uint32_t played_id;         /* of the latest */

@@ -14,18 +14,31 @@ int64_t card_cycles_ns(int64_t cycles);
 /* So many cycles, and a frame of five words on the bus to the FPGA. [ns] */
 int64_t card_frame_ns(const struct netcard *c, int64_t cycles);
 
-/* What one context does next; each gives the kernel one answer. */
+/* What one context does next; each gives the kernel one answer. home, stop, pause and run by the
+ * table of states and commands; literal_task: one of them as the document has it. */
 void card_parse(struct netcard *c);
 void card_store(struct netcard *c);
 void card_home(struct netcard *c);
 void card_stop(struct netcard *c);
 void card_pause(struct netcard *c);
 void card_run(struct netcard *c);
+void literal_task(struct netcard *c, enum netcard_task task);
 void card_interrupt(struct netcard *c, int interrupt);
+
+/* Where such a task goes on: c->step has it. */
+enum card_run_step {
+    RUN_WAIT, RUN_BEGIN, RUN_HEADER, RUN_NEXT, RUN_PAGE, RUN_WRITTEN, RUN_FULL, RUN_LAST,
+    RUN_ARRIVED
+};
+enum card_home_step {
+    HOME_WAIT, HOME_LOOK, HOME_LOWERED, HOME_STILL, HOME_CLEARED, HOME_STEP, HOME_LAST, HOME_RAISE
+};
+enum card_turn_step { TURN_WAIT, TURN_LOOK, TURN_ACT, TURN_RELEASE, TURN_RELEASE_HOME };
 
 /* A command by the table of the policy. Returns the semaphore to be given; -1 none. NET_CODES:
  * a RESET that is answered when the drives' error clear is over. */
 int card_order(struct netcard *c, enum card_command command, uint32_t axes, enum net_code *code);
+int literal_order(struct netcard *c, enum card_command command, uint32_t axes);
 
 /* Rest: READY or EMPTY, as the flash has it. */
 void card_rest(struct netcard *c);
@@ -35,11 +48,49 @@ void card_put_rest(struct netcard *c);
 
 /* The way of the axes to position 0, where a job begins: the tool's (Z, U) first, then X and Y
  * together, each within its own speed and acceleration. Whether they stand elsewhere; false: they
- * cannot move with these settings; whether all frames are given; the next one. */
+ * cannot move with these settings; the next frame, of which the last leads to APPROACH_THERE. */
 bool card_approach_due(const struct netcard *c);
 bool card_approach_begin(struct netcard *c);
-bool card_approach_given(const struct netcard *c);
 struct frame card_approach_next(struct netcard *c);
+
+/* The job of run: there is one; the player has been let go; its frames are still to be read; it is
+ * to be given up. */
+bool card_job_under_way(const struct netcard *c);
+bool card_job_let_go(const struct netcard *c);
+bool card_job_reads(const struct netcard *c);
+bool card_job_given_up(const struct netcard *c);
+
+/* It is to be given up, if there is one; run has given it up or ended it, and waits. */
+void card_job_give_up(struct netcard *c);
+void card_job_leave(struct netcard *c);
+
+/* The job in flash begins: its header is asked for. Whether the header that has come is good;
+ * whether a page is; whether the FPGA takes the job, whose frames are given from now on. */
+void card_job_begin(struct netcard *c);
+bool card_job_header(struct netcard *c);
+bool card_job_page(struct netcard *c);
+bool card_job_play(struct netcard *c);
+
+/* The next frame; false: it leads out of the range. A frame goes into the FIFO. */
+bool card_job_frame(struct netcard *c, struct frame *to);
+void card_job_push(struct netcard *c, const struct frame *frame);
+
+/* What comes behind a frame: nothing, sleep as the FIFO is full, or the page or frame that has been
+ * begun. Before a sleep the storage task has its turn, if it waits for that. */
+enum card_job_next { JOB_NEXT_NONE, JOB_NEXT_FULL, JOB_NEXT_COMES };
+enum card_job_next card_job_next(struct netcard *c);
+void card_job_slept(struct netcard *c);
+
+/* Homing: the task works at its other priority; the FIFO is cleared; the search begins; there are
+ * frames enough in the FIFO; the next one, after which the player may be let go; whether all
+ * origins were found, else FAULT; the task waits again. */
+void card_home_lower(struct netcard *c);
+void card_home_clear(struct netcard *c);
+void card_home_begin(struct netcard *c);
+bool card_home_full(const struct netcard *c);
+void card_home_frame(struct netcard *c, bool goes);
+bool card_home_found(struct netcard *c);
+void card_home_raise(struct netcard *c);
 
 /* FAULT at once: no more pulses, the job and homing are over. */
 void card_fault(struct netcard *c, enum net_code error);

@@ -129,7 +129,7 @@ void robot_station_read(const struct robot_station *s, struct robot_station_read
     r->status = soft_status(soft, &s->panel);
     r->line = soft->robot.line > 0 ? soft->move_line[soft->robot.line % SOFT_MOVES] : 0;
     r->done = soft_done(soft);
-    r->rests = soft->stopped || (!soft->running && soft->replaying < 0 && !soft->jogs &&
+    r->rests = soft->stopped || (!soft_running(soft) && soft->replaying < 0 && !soft->jogs &&
                                  !soft->output_count && !soft->start.pressed &&
                                  robot_idle(&soft->robot) && due == 0);
 }

@@ -101,7 +101,7 @@ static void poll(struct soft *s, const struct soft_config *c, const struct order
 
     for (int64_t at = s->layers.poll; layers_poll(&s->layers, &c->layers, until, &seen);
          at = s->layers.poll) {
-        if (c->user && s->running) {
+        if (c->user && soft_running(s)) {
             const struct inform_inputs in = inputs_of(s, card, seen.inputs, at);
             soft_program_poll(s, c, t, &in, at);
         }
@@ -109,27 +109,28 @@ static void poll(struct soft *s, const struct soft_config *c, const struct order
     s->report.polls = s->layers.polls;
 }
 
-/* The driver's run for the interrupt at a clock. */
-static void run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                const struct fpga_shown *card, const struct soft_panel *panel)
+/* Keys and what the program wants; lines that are done. */
+static int32_t decide(struct soft *s, const struct soft_config *c, const struct orders_text *t,
+                      const struct fpga_shown *card, const struct soft_panel *panel,
+                      int64_t clock)
 {
-    const int64_t clock = (int64_t)card->irq_clock;
-    const int64_t begin = clock + layers_wait(&s->layers, &c->layers);
-    const uint32_t di = (uint32_t)card->irq_inputs;
-    const double way = s->robot.solved;
-
-    see_lines(s, card, clock);
-    poll(s, c, t, card, begin);
-    layers_copied(&s->layers, begin + c->copy_in, di);
     soft_panel_run(s, c, t, panel, clock);
     look_at_moves(s);
-    const struct inform_inputs in = inputs_of(s, card, di, clock);
+    const struct inform_inputs in = inputs_of(s, card, (uint32_t)card->irq_inputs, clock);
     s->known = -1;
     const int32_t lines = s->stopped ? 0 : soft_program_run(s, c, t, panel, &in);
     s->start.pressed = s->replay.pressed = false;
     if (s->known >= 0) {
         s->asked = clock;
     }
+    return lines;
+}
+
+/* A cycle of the arm and its pulses; points whose kinematics it takes. */
+static int32_t move_arm(struct soft *s, const struct soft_config *c)
+{
+    const double way = s->robot.solved;
+
     robot_cycle(&s->robot, &c->robot);
     if (s->robot.lost && s->trouble.error == SOFT_OK) {
         s->trouble.error = SOFT_LOST;
@@ -137,7 +138,22 @@ static void run(struct soft *s, const struct soft_config *c, const struct orders
         soft_program_drop(s);
     }
     make_slots(s, c);
-    const int32_t points = (int32_t)(floor(s->robot.solved / c->pitch) - floor(way / c->pitch));
+    return (int32_t)(floor(s->robot.solved / c->pitch) - floor(way / c->pitch));
+}
+
+/* The driver's run for the interrupt at a clock: wait, copy in, lines, points, copy out. */
+static void run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
+                const struct fpga_shown *card, const struct soft_panel *panel)
+{
+    const int64_t clock = (int64_t)card->irq_clock;
+    const int64_t begin = clock + layers_wait(&s->layers, &c->layers);
+    const uint32_t di = (uint32_t)card->irq_inputs;
+
+    see_lines(s, card, clock);
+    poll(s, c, t, card, begin);
+    layers_copied(&s->layers, begin + c->copy_in, di);
+    const int32_t lines = decide(s, c, t, card, panel, clock);
+    const int32_t points = move_arm(s, c);
     time_run(s, c, card, clock, begin, lines, points);
     soft_program_outputs(s, s->mark);
     layers_put(&s->layers, &c->layers, di, s->mark, &s->outbox);
@@ -212,23 +228,40 @@ void soft_post(struct soft *s, const struct soft_config *c, struct fpga_host *ho
     host->reset_seq = s->reset_seq;
 }
 
+bool soft_running(const struct soft *s)
+{
+    return s->program >= PROGRAM_RUNS;
+}
+
+/* What a program, or a replay, does while nothing holds it. */
+static enum soft_status program_status(const struct soft *s, const struct soft_panel *panel)
+{
+    const bool idle = robot_idle(&s->robot),
+               held = panel->single && s->next.kind == ORDER_MOVE && idle && !s->leave;
+
+    if (s->program == PROGRAM_PAUSED || held) {
+        return SOFT_PAUSED;
+    }
+    if (s->program == PROGRAM_DELAYS) {
+        return SOFT_DELAY;
+    }
+    return s->program == PROGRAM_WAITS && idle ? SOFT_WAITING : SOFT_RUNNING;
+}
+
 enum soft_status soft_status(const struct soft *s, const struct soft_panel *panel)
 {
+    const bool idle = !soft_running(s) && s->replaying < 0 && robot_idle(&s->robot);
+
     return s->stopped ? SOFT_STOPPED
          : s->trouble.error != SOFT_OK ? SOFT_ERROR
          : s->jogs ? SOFT_JOG
-         : !s->running && s->replaying < 0 && robot_idle(&s->robot) ? SOFT_IDLE
-         : panel->hold ? SOFT_HOLD
-         : s->paused || (panel->single && s->next.kind == ORDER_MOVE && robot_idle(&s->robot) &&
-                         !s->leave)
-             ? SOFT_PAUSED
-         : s->delay > 0 ? SOFT_DELAY
-         : s->waits && robot_idle(&s->robot) ? SOFT_WAITING : SOFT_RUNNING;
+         : idle ? SOFT_IDLE
+         : panel->hold ? SOFT_HOLD : program_status(s, panel);
 }
 
 bool soft_done(const struct soft *s)
 {
-    return s->begun && s->ended && !s->running && robot_idle(&s->robot);
+    return s->program == PROGRAM_ENDED && robot_idle(&s->robot);
 }
 
 void soft_rehearse(struct soft *s, const struct soft_config *c, const struct orders_text *t)

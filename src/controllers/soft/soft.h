@@ -52,6 +52,17 @@ enum soft_status {
     SOFT_ERROR, SOFT_STOPPED
 };
 
+/* The program; from PROGRAM_RUNS on it is not over. */
+enum soft_program {
+    PROGRAM_NEW,        /* not started yet */
+    PROGRAM_ENDED,      /* its last order is done */
+    PROGRAM_DROPPED,    /* it was given up */
+    PROGRAM_RUNS,
+    PROGRAM_DELAYS,     /* until its time is over */
+    PROGRAM_WAITS,      /* for an input, or a time of the job */
+    PROGRAM_PAUSED      /* until the operator goes on */
+};
+
 /* Why the program was ended. */
 enum soft_error {
     SOFT_OK,
@@ -116,14 +127,11 @@ struct soft {
     double  origin[OPW_JOINTS]; /* [pulses] of the joints where the card's counters are 0 */
 
     /* the program */
-    bool    begun, running;     /* it has been started; it is not over */
-    bool    ended;              /* its last order is done */
+    enum soft_program program;
     int32_t heads, count;       /* queue of the user program */
     struct order queue[SOFT_QUEUE];
     struct order next;          /* taken, not yet done; ORDER_NONE: none */
-    bool    waits;
     int64_t delay;              /* [clocks] left */
-    bool    paused;
     int64_t given, reached;     /* moves of the arm */
     int64_t first;              /* of them before the program */
     int32_t move_line[SOFT_MOVES];  /* line of move n at n mod SOFT_MOVES */
@@ -151,6 +159,9 @@ void soft_instant(struct soft *s, const struct soft_config *c, const struct orde
 void soft_post(struct soft *s, const struct soft_config *c, struct fpga_host *host);
 
 enum soft_status soft_status(const struct soft *s, const struct soft_panel *panel);
+
+/* A program has been started and is not over. */
+bool soft_running(const struct soft *s);
 
 /* The program is over and the arm at rest. */
 bool soft_done(const struct soft *s);

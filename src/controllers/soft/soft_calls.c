@@ -6,7 +6,7 @@ static const double DEGREE = 0.017453292519943295;
 
 static bool taken(const struct soft *s)
 {
-    return s->running || s->stopped || s->replaying >= 0;
+    return soft_running(s) || s->stopped || s->replaying >= 0;
 }
 
 /* What a call starts leaves nothing of an earlier program's end. */

@@ -33,7 +33,7 @@ static void jog(struct soft *s, const struct soft_config *c, const struct soft_p
 {
     struct robot_refusal why;
 
-    if (!jog_wanted(panel) || s->running || s->replaying >= 0 || s->stopped) {
+    if (!jog_wanted(panel) || soft_running(s) || s->replaying >= 0 || s->stopped) {
         if (s->jogs) {
             robot_release(&s->robot);
         }
@@ -70,11 +70,33 @@ static void replay(struct soft *s, const struct soft_config *c, const struct sof
     }
 }
 
+/* Nothing moves the arm, or is about to. */
+static bool free_to_start(const struct soft *s)
+{
+    return !soft_running(s) && !s->stopped && s->replaying < 0;
+}
+
+/* The start key begins the program, or lets the next of single steps go. */
+static void start(struct soft *s, const struct soft_config *c, const struct orders_text *t,
+                  const struct soft_panel *panel, int64_t clock)
+{
+    const bool program = t->gcode || t->inform,
+               due = s->program == PROGRAM_NEW && clock >= c->start;
+
+    if (program && free_to_start(s) && robot_idle(&s->robot) &&
+        (soft_key_take(&s->start) || due)) {
+        soft_program_start(s, c, t);
+        s->leave = true;
+    }
+    if (soft_running(s) && panel->single && s->program != PROGRAM_PAUSED &&
+        soft_key_take(&s->start)) {
+        s->leave = true;
+    }
+}
+
 void soft_panel_run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
                     const struct soft_panel *panel, int64_t clock)
 {
-    const bool program = t->gcode || t->inform;
-
     robot_hold(&s->robot, panel->hold);
     robot_override(&s->robot, panel->override);
     if (soft_key_take(&s->abort)) {
@@ -85,19 +107,11 @@ void soft_panel_run(struct soft *s, const struct soft_config *c, const struct or
     if (soft_key_take(&s->teach)) {
         teach(s, c);
     }
-    if (soft_key_take(&s->replay) && !s->running && !s->stopped && s->replaying < 0) {
+    if (soft_key_take(&s->replay) && free_to_start(s)) {
         s->trouble = (struct soft_trouble){ 0 };
         s->replaying = 0;
     }
-    const bool due = !s->begun && clock >= c->start;
-    if (program && !s->running && !s->stopped && s->replaying < 0 && robot_idle(&s->robot) &&
-        (soft_key_take(&s->start) || due)) {
-        soft_program_start(s, c, t);
-        s->leave = true;
-    }
-    if (s->running && panel->single && !s->paused && soft_key_take(&s->start)) {
-        s->leave = true;
-    }
+    start(s, c, t, panel, clock);
     jog(s, c, panel);
     replay(s, c, panel);
 }

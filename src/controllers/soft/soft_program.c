@@ -6,18 +6,17 @@ void soft_program_start(struct soft *s, const struct soft_config *c, const struc
 {
     soft_program_drop(s);
     s->trouble = (struct soft_trouble){ 0 };
-    s->begun = true;
-    s->ended = false;
     s->first = s->given;
     struct orders_config now = c->orders;
     now.start.out = s->out;
     orders_start(&s->orders, &now, t, &s->robot.pose);
-    s->running = s->orders.on;
+    s->program = s->orders.on ? PROGRAM_RUNS : PROGRAM_DROPPED;
 }
 
 void soft_program_drop(struct soft *s)
 {
-    s->orders.on = s->running = s->paused = s->waits = false;
+    s->orders.on = false;
+    s->program = soft_running(s) ? PROGRAM_DROPPED : s->program;
     s->heads = s->count = s->output_count = 0;
     s->next.kind = ORDER_NONE;
     s->delay = 0;
@@ -92,6 +91,30 @@ bool soft_program_put(struct soft *s, const struct order *o)
     return true;
 }
 
+/* A move of the program; of single steps each is let go by the start key. */
+static bool carry_out_move(struct soft *s, const struct soft_config *c,
+                           const struct soft_panel *panel, struct order *o)
+{
+    const bool held = panel->single && !(robot_idle(&s->robot) && s->leave);
+
+    if (held || !soft_program_move(s, c, o)) {
+        return false;
+    }
+    s->leave = false;
+    return true;
+}
+
+/* The end, once the arm rests and all outputs are put out. */
+static bool end(struct soft *s)
+{
+    if (!robot_idle(&s->robot) || s->output_count) {
+        return false;
+    }
+    soft_program_drop(s);
+    s->program = PROGRAM_ENDED;
+    return true;
+}
+
 /* False: not now. */
 static bool carry_out(struct soft *s, const struct soft_config *c, const struct soft_panel *panel,
                       struct order *o)
@@ -100,14 +123,7 @@ static bool carry_out(struct soft *s, const struct soft_config *c, const struct 
 
     switch (o->kind) {
     case ORDER_MOVE:
-        if (panel->single && !(idle && s->leave)) {
-            return false;
-        }
-        if (!soft_program_move(s, c, o)) {
-            return false;
-        }
-        s->leave = false;
-        return true;
+        return carry_out_move(s, c, panel, o);
     case ORDER_OUT:
     case ORDER_ANALOG:
         return soft_program_put(s, o);
@@ -115,15 +131,10 @@ static bool carry_out(struct soft *s, const struct soft_config *c, const struct 
         s->delay = idle ? llround(o->amount * FPGA_CLOCK_HZ) : 0;
         return idle;
     case ORDER_PAUSE:
-        s->paused = idle && !soft_key_take(&s->start);
-        return idle && !s->paused;
+        s->program = idle && !soft_key_take(&s->start) ? PROGRAM_PAUSED : PROGRAM_RUNS;
+        return idle && s->program == PROGRAM_RUNS;
     case ORDER_END:
-        if (!idle || s->output_count) {
-            return false;
-        }
-        soft_program_drop(s);
-        s->ended = true;
-        return true;
+        return end(s);
     default:
         return fail(s, SOFT_PROGRAM, o);
     }
@@ -171,13 +182,22 @@ static bool fetch(struct soft *s, const struct soft_config *c, const struct orde
     return s->next.kind != ORDER_NONE;
 }
 
+/* What the program does until the next run; a delay goes on while inputs are asked behind it. */
+static void look_what_is_next(struct soft *s)
+{
+    if (soft_running(s) && s->program != PROGRAM_PAUSED) {
+        s->program = s->delay > 0 ? PROGRAM_DELAYS
+                   : s->orders.on && s->orders.waits ? PROGRAM_WAITS : PROGRAM_RUNS;
+    }
+}
+
 int32_t soft_program_run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
                          const struct soft_panel *panel, const struct inform_inputs *in)
 {
     int32_t done = 0;
 
     s->delay -= s->delay > 0 ? c->slots * c->slot : 0;
-    while (s->running && done < c->lines && s->delay <= 0) {
+    while (soft_running(s) && done < c->lines && s->delay <= 0) {
         if (s->next.kind == ORDER_NONE && !fetch(s, c, t, in)) {
             break;
         }
@@ -191,7 +211,7 @@ int32_t soft_program_run(struct soft *s, const struct soft_config *c, const stru
         }
         s->next.kind = ORDER_NONE;
     }
-    s->waits = s->orders.on && s->orders.waits;
+    look_what_is_next(s);
     return done;
 }
 

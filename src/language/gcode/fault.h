@@ -5,137 +5,180 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Each fault with its text, which fits behind "line 12: ". The notes, which are no faults, are the
+ * last. */
+#define FAULT_TEXTS(X) \
+    X(FAULT_NONE, "no fault") \
+    X(FAULT_CHARACTER, "unexpected character")  /* neither letter, comment nor end of line */ \
+    X(FAULT_NUMBER, "number expected after") \
+    X(FAULT_DIGITS, "number of more than 120 digits") \
+    X(FAULT_ZERO, "byte 0, which no text has, behind") \
+    X(FAULT_LINE_LENGTH, "line longer than 256 characters") \
+    X(FAULT_WORD_COUNT, "too many words in the line") \
+    X(FAULT_READ, "the program cannot be read") \
+    X(FAULT_COMMENT, "comment without )") \
+    X(FAULT_BRACKET, "[ ] expected")  /* [ ] expected, or left open */ \
+    X(FAULT_OPERATOR, "operation or ] expected")  /* no operation that exists */ \
+    X(FAULT_NAME, "a name has 1 to 31 characters between < and >") \
+    X(FAULT_ATAN, "ATAN needs [ ]/[ ]") \
+    X(FAULT_EXISTS, "EXISTS needs [#<name>]") \
+    X(FAULT_ASSIGNMENT, "= expected behind")  /* # at the start of a word, no = behind it */ \
+    X(FAULT_DEEP, "more than 30 brackets within one another") \
+    X(FAULT_DIVISION, "division by zero") \
+    X(FAULT_ARGUMENT, "no value for this argument")  /* a function has no value there */ \
+    X(FAULT_LARGE, "value too large") \
+    X(FAULT_PARAMETER, "no such parameter")  /* a number that no parameter has */ \
+    X(FAULT_UNSET, "parameter has not been set")  /* a name read before it was set */ \
+    /* a name that other controllers give a value */ \
+    X(FAULT_FOREIGN, "this machine has no value for") \
+    X(FAULT_FIXED, "parameter cannot be set") \
+    X(FAULT_NAMES, "more than 100 named parameters") \
+    X(FAULT_O_WORD, "unknown O word")  /* no O word of the language, or in the middle of a line */ \
+    /* a label computed where it must be written */ \
+    X(FAULT_O_LABEL, "only a call may compute its O number") \
+    X(FAULT_O_BEHIND, "O words allow no other word in their line") \
+    /* an O word whose beginning is not the innermost that is open */ \
+    X(FAULT_O_PLACE, "O word without its beginning") \
+    /* the label of a loop or an if that is open already */ \
+    X(FAULT_O_OPEN, "O number is open already") \
+    X(FAULT_O_END, "O word without its end") \
+    /* an O number that is not the program's */ \
+    X(FAULT_O_NUMBER, "second O number without M2, M30 or M99 in front of it") \
+    X(FAULT_O_DEEP, "more than 64 loops and conditions within one another") \
+    X(FAULT_SEQUENCE, "no line of this program has this N") \
+    X(FAULT_LOOP_END, "DO without the END of its number") \
+    X(FAULT_THEN, "IF [ ] goes on with GOTO or THEN, WHILE [ ] with DO") \
+    X(FAULT_ALARM, "alarm of the program")  /* #3000 = n (message) */ \
+    /* G66 or a canned cycle while G66 is in force */ \
+    X(FAULT_MODAL, "not while G66 is in force (G67 ends it)") \
+    X(FAULT_NO_SUB, "no such subprogram")  /* the text does not have what is called */ \
+    X(FAULT_USER, "no subprogram of its name (o<m100> sub) says what it does:") \
+    X(FAULT_FILES, "more than 32 files are called") \
+    X(FAULT_CALLS, "more than 10 calls within one another") \
+    X(FAULT_M99, "M99 in a subprogram that ends with endsub")  /* M99 in an o sub */ \
+    X(FAULT_ENDLESS, "1,000,000 lines read again without anything that takes time") \
+    /* A B C where the tool does not turn */ \
+    X(FAULT_ANGLE, "this machine has no rotary axes (--angles: A B C in place of U V W)") \
+    X(FAULT_SIDE, "this machine has A B C in place of the axes U V W")  /* U V W where it does */ \
+    X(FAULT_WORD, "unknown word")  /* letter or G, M number not in the language */ \
+    X(FAULT_TWICE, "word given twice")  /* a letter other than G and M twice */ \
+    X(FAULT_GROUP, "second word of one modal group") \
+    X(FAULT_M_COUNT, "more than four M words in the line") \
+    /* two codes that take the same words: axes, or P */ \
+    X(FAULT_SHARED, "two codes take the same words") \
+    X(FAULT_UNUSED, "word has no use in this line") \
+    X(FAULT_VALUE, "value out of range") \
+    X(FAULT_NO_MOTION, "axis word without G0, G1, G2 or G3") \
+    X(FAULT_NO_DWELL, "G4 without P") \
+    X(FAULT_NO_AXES, "no axis word")  /* G10, G52, G53 or G92 without an axis */ \
+    X(FAULT_NO_SYSTEM, "G10 needs L2 or L20 and P0 to P9")  /* G10 without L2 or P */ \
+    X(FAULT_NO_OUTPUT, "output without P0 to P31")  /* M62 .. M65 without P */ \
+    X(FAULT_G53, "G53 needs G0 or G1") \
+    X(FAULT_AXIS, "axis is not active") \
+    /* arc with neither centre nor radius, or half a centre */ \
+    X(FAULT_NO_CENTRE, "arc without centre or radius") \
+    X(FAULT_CENTRE_AND_R, "arc with both centre and radius") \
+    X(FAULT_ARC_RADIUS, "arc of radius zero") \
+    /* start and end have different distances from the centre */ \
+    X(FAULT_ARC_END, "arc end does not lie on the circle through its start") \
+    X(FAULT_ARC_CHORD, "arc radius is smaller than half the distance to the end") \
+    /* R form with end = start, or three points on one line */ \
+    X(FAULT_ARC_CLOSED, "arc is not determined by its points") \
+    X(FAULT_TURNING, "for turning; this is no lathe") \
+    X(FAULT_NURBS, "G5.2 is not ended by G5.3 before")  /* another motion or plane before G5.3 */ \
+    X(FAULT_NURBS_END, "G5.2 is not ended by G5.3 behind") \
+    X(FAULT_NURBS_NONE, "no G5.2 before") \
+    X(FAULT_NURBS_FEW, "fewer points since G5.2 than its order L, or 3, before") \
+    X(FAULT_NURBS_POINT, "point of a NURBS without both axes of the plane") \
+    X(FAULT_NURBS_FEED, "NURBS with G93, in which a feed is that of one motion") \
+    X(FAULT_SPLINE, "spline without control points (G5 I J P Q, G5.1 I J)") \
+    X(FAULT_SPLINE_PLANE, "splines are in the plane of G17")  /* not in the plane XY */ \
+    X(FAULT_CUSP, "spline turns on the spot") \
+    X(FAULT_PLAIN, "this machine drives no splines") \
+    /* changes the zero while G51 or G68 is in force, or G51 within G68 */ \
+    X(FAULT_FRAME, "not while G51 or G68 is in force") \
+    X(FAULT_NO_FACTOR, "G51 without P or I J K") \
+    X(FAULT_NO_ANGLE, "G68 without R") \
+    /* arc in a plane with two factors, or not that of the rotation */ \
+    X(FAULT_OVAL, "arc in a plane that G51 or a rotation does not keep round") \
+    X(FAULT_POLE, "polar word without an angle: the tool is at the pole") \
+    X(FAULT_NO_FEED, "no F since G93, G94 or G95; with G93 each line needs one") \
+    X(FAULT_REST, "G95 with the spindle at rest") \
+    /* G95 with G96 */ \
+    X(FAULT_SURFACE, "G95 needs G97: the spindle's speed would change on the way") \
+    X(FAULT_FEED, "feed above max_feed [mm/min]") \
+    /* drives an axis above its safe motor speed */ \
+    X(FAULT_SPEED, "feed drives an axis above max_rpm [rpm]") \
+    X(FAULT_RANGE, "position does not fit the 32-bit pulse counter") \
+    X(FAULT_TRAVEL, "path leaves the software limits") \
+    /* a code without a word that it needs */ \
+    X(FAULT_MISSING, "a word is missing that goes with") \
+    X(FAULT_TOOL, "no such tool in the tool table") \
+    X(FAULT_NO_INPUTS, "this machine has no inputs for")  /* M66 where no inputs can be asked */ \
+    X(FAULT_NO_PROBE, "this machine has no probe for")  /* G38 without a probe */ \
+    X(FAULT_PROBE_POINT, "probing leads nowhere")  /* G38 to where the tool stands */ \
+    /* M72 without M70 or M73 in this call */ \
+    X(FAULT_NO_MODES, "no M70 or M73 in this call before") \
+    /* M72 or the end of a call with M73 beside a contour or G51, G68 */ \
+    X(FAULT_RESTORE, "cutter compensation, G51 or G68 allow no change that this restores") \
+    X(FAULT_NO_TOOL, "no T since the tool change before")  /* M6 with no T since the one before */ \
+    /* G17.1, G18.1, G19.1 */ \
+    X(FAULT_PLANE, "plane of U V W, in which this machine has no arcs or cycles") \
+    X(FAULT_CYCLE_R, "canned cycle without R") \
+    /* a cycle without the word along the normal of the plane */ \
+    X(FAULT_CYCLE_DEPTH, "canned cycle without its depth") \
+    X(FAULT_CYCLE_Q, "canned cycle without Q")  /* G73 or G83 without Q */ \
+    X(FAULT_CYCLE_P, "canned cycle without P")  /* G82, G86, G88 or G89 without P */ \
+    /* G87 without the letters of I J K that it needs */ \
+    X(FAULT_CYCLE_ASIDE, "G87 without I, J and K") \
+    X(FAULT_TAP_K, "G33.1 without K, the way of a turn") \
+    X(FAULT_CYCLE_LOW, "R is below the bottom of the hole") \
+    X(FAULT_CYCLE_PECKS, "more than 10,000 pecks in one hole") \
+    X(FAULT_CYCLE_FEED, "canned cycle with G93, in which a feed is that of one motion") \
+    /* the spindle is off, or turns the wrong way round */ \
+    X(FAULT_CYCLE_SPINDLE, "the spindle does not turn as this cycle needs") \
+    X(FAULT_ROUND_NEXT, \
+      ",C and ,R are between two lines or arcs in the plane that follow each other") \
+    X(FAULT_ROUND_SHORT, "no room for ,C or ,R between the motions") \
+    /* G41 or G42 while one of them is in force */ \
+    X(FAULT_CUTTER_ON, "cutter compensation is on already") \
+    /* G19, or another plane while compensation is on */ \
+    X(FAULT_CUTTER_PLANE, "cutter compensation does not work in this plane") \
+    /* what moves or measures the tool beside its contour */ \
+    X(FAULT_CUTTER_WORD, "not while cutter compensation is on") \
+    /* the first motion is too short, or cannot meet the second */ \
+    X(FAULT_CUTTER_ENTRY, "first motion of cutter compensation cannot reach the contour") \
+    X(FAULT_CUTTER_EXIT, "motion behind G40 has to be straight")  /* an arc right behind G40 */ \
+    X(FAULT_CUTTER_ARC, "tool does not fit into the arc") \
+    X(FAULT_CUTTER_CORNER, "tool does not fit into the corner in front of") \
+    X(FAULT_CUTTER_SHORT, "motion too short for the tool to fit into its corners") \
+    X(FAULT_CUTTER_BACK, "contour turns back on itself at the start of") \
+    /* more than 21 commands between two motions */ \
+    X(FAULT_CUTTER_FULL, "too much between two motions of cutter compensation") \
+    /* a note, no fault: (PRINT, ...) and the like */ \
+    X(FAULT_NOTE_COMMENT, "a comment that does nothing here") \
+    /* a note: M19 only stops the spindle */ \
+    X(FAULT_NOTE_ORIENT, "the spindle stops, it has no angle") \
+    /* a note: M51, there is no override of the spindle */ \
+    X(FAULT_NOTE_SPEED, "the spindle has no override") \
+    X(FAULT_NOTE_SPINDLE, "this machine has no spindle for") \
+    X(FAULT_NOTE_COOLANT, "this machine has no coolant for") \
+    /* a note: M48 to M53 change nothing */ \
+    X(FAULT_NOTE_OVERRIDE, "overrides act here whatever a program says") \
+    /* a note: F above the highest feed, or that of an axis */ \
+    X(FAULT_NOTE_FEED, "feed above the highest one of the machine, which it gets") \
+    /* a note: A0, B0 or C0 */ \
+    X(FAULT_NOTE_ANGLE, "this machine has no rotary axes (--angles: A B C in place of U V W) for") \
+    /* a note: U0, V0 or W0 */ \
+    X(FAULT_NOTE_SIDE, "this machine has A B C in place of the axes U V W, so it has none for") \
+    /* a note: Q of G64, runs of lines stay lines */ \
+    X(FAULT_NOTE_MERGE, "runs of short lines stay lines here") \
+    /* a note: what comes behind has not been checked */ \
+    X(FAULT_NOTE_CHECKED, "lines that repeat are checked up to here")
+
+#define FAULT_ENTRY(name, text) name,
 enum fault {
-    FAULT_NONE,
-    FAULT_CHARACTER,        /* neither letter, comment nor end of line */
-    FAULT_NUMBER,           /* a letter without a number */
-    FAULT_DIGITS,           /* a number of more digits than EL_DECIMAL_DIGITS */
-    FAULT_ZERO,             /* a byte 0: no text */
-    FAULT_LINE_LENGTH,      /* more than 256 characters */
-    FAULT_WORD_COUNT,       /* more words than any line can need */
-    FAULT_READ,             /* the text cannot be read */
-    FAULT_COMMENT,          /* ( without ) */
-    FAULT_BRACKET,          /* [ ] expected, or left open */
-    FAULT_OPERATOR,         /* no operation that exists */
-    FAULT_NAME,             /* a name without >, without or with too many characters */
-    FAULT_ATAN,             /* ATAN without its / */
-    FAULT_EXISTS,           /* EXISTS of anything but a name */
-    FAULT_ASSIGNMENT,       /* # at the start of a word, no = behind it */
-    FAULT_DEEP,             /* brackets too deep within one another */
-    FAULT_DIVISION,         /* by zero */
-    FAULT_ARGUMENT,         /* a function has no value there */
-    FAULT_LARGE,            /* a value beyond all numbers */
-    FAULT_PARAMETER,        /* a number that no parameter has */
-    FAULT_UNSET,            /* a name read before it was set */
-    FAULT_FOREIGN,          /* a name that other controllers give a value */
-    FAULT_FIXED,            /* a parameter that a program cannot set */
-    FAULT_NAMES,            /* too many names */
-    FAULT_O_WORD,           /* no O word of the language, or in the middle of a line */
-    FAULT_O_LABEL,          /* a label computed where it must be written */
-    FAULT_O_BEHIND,         /* something behind the O word */
-    FAULT_O_PLACE,          /* an O word whose beginning is not the innermost that is open */
-    FAULT_O_OPEN,           /* the label of a loop or an if that is open already */
-    FAULT_O_END,            /* what begins has no end */
-    FAULT_O_NUMBER,         /* an O number that is not the program's */
-    FAULT_O_DEEP,           /* too many loops and ifs within one another */
-    FAULT_SEQUENCE,         /* no line has the N of a GOTO */
-    FAULT_LOOP_END,         /* DO without END of its number */
-    FAULT_THEN,             /* behind the condition of IF or WHILE stands something else */
-    FAULT_ALARM,            /* #3000 = n (message) */
-    FAULT_MODAL,            /* G66 or a canned cycle while G66 is in force */
-    FAULT_NO_SUB,           /* the text does not have what is called */
-    FAULT_USER,             /* M100 .. M199 without the subprogram that says what it does */
-    FAULT_FILES,            /* too many files are called */
-    FAULT_CALLS,            /* too many calls within calls */
-    FAULT_M99,              /* M99 in an o sub */
-    FAULT_ENDLESS,          /* too many lines read again without a command that takes time */
-    FAULT_ANGLE,            /* A B C where the tool does not turn */
-    FAULT_SIDE,             /* U V W where it does */
-    FAULT_WORD,             /* letter or G, M number not in the language */
-    FAULT_TWICE,            /* a letter other than G and M twice */
-    FAULT_GROUP,            /* two codes of one modal group */
-    FAULT_M_COUNT,          /* more than four M words */
-    FAULT_SHARED,           /* two codes that take the same words: axes, or P */
-    FAULT_UNUSED,           /* a known word that has no use in this line */
-    FAULT_VALUE,            /* a value outside its range */
-    FAULT_NO_MOTION,        /* axis words with no motion code in force */
-    FAULT_NO_DWELL,         /* G4 without P */
-    FAULT_NO_AXES,          /* G10, G52, G53 or G92 without an axis */
-    FAULT_NO_SYSTEM,        /* G10 without L2 or P */
-    FAULT_NO_OUTPUT,        /* M62 .. M65 without P */
-    FAULT_G53,              /* G53 without G0 or G1 */
-    FAULT_AXIS,             /* the axis is not used */
-    FAULT_NO_CENTRE,        /* arc with neither centre nor radius, or half a centre */
-    FAULT_CENTRE_AND_R,     /* arc with both */
-    FAULT_ARC_RADIUS,       /* radius zero */
-    FAULT_ARC_END,          /* start and end have different distances from the centre */
-    FAULT_ARC_CHORD,        /* radius smaller than half the distance start - end */
-    FAULT_ARC_CLOSED,       /* R form with end = start, or three points on one line */
-    FAULT_TURNING,          /* a code that only a lathe has */
-    FAULT_NURBS,            /* another motion, plane or the end before G5.3 */
-    FAULT_NURBS_END,        /* no G5.3 behind the points */
-    FAULT_NURBS_NONE,       /* G5.3 without G5.2 */
-    FAULT_NURBS_FEW,        /* fewer points than the order */
-    FAULT_NURBS_POINT,      /* a point without one of its coordinates */
-    FAULT_NURBS_FEED,       /* G5.2 with G93 */
-    FAULT_SPLINE,           /* a spline without what its control points need */
-    FAULT_SPLINE_PLANE,     /* not in the plane XY */
-    FAULT_CUSP,             /* it turns on the spot */
-    FAULT_PLAIN,            /* the machine drives none */
-    FAULT_FRAME,            /* changes the zero while G51 or G68 is in force, or G51 within G68 */
-    FAULT_NO_FACTOR,        /* G51 without P or I J K */
-    FAULT_NO_ANGLE,         /* G68 without R */
-    FAULT_OVAL,             /* arc in a plane with two factors, or not that of the rotation */
-    FAULT_POLE,             /* polar words where the tool is at the pole */
-    FAULT_NO_FEED,          /* no F in the line with G93, or since G94 or G95 */
-    FAULT_REST,             /* G95 with the spindle at rest */
-    FAULT_SURFACE,          /* G95 with G96 */
-    FAULT_FEED,             /* above max_feed */
-    FAULT_SPEED,            /* drives an axis above its safe motor speed */
-    FAULT_RANGE,            /* a position that does not fit the pulse counter */
-    FAULT_TRAVEL,           /* the path leaves the software limits of an axis */
-    FAULT_MISSING,          /* a code without a word that it needs */
-    FAULT_TOOL,             /* no such tool in the tool table */
-    FAULT_NO_INPUTS,        /* M66 where no inputs can be asked */
-    FAULT_NO_PROBE,         /* G38 without a probe */
-    FAULT_PROBE_POINT,      /* G38 to where the tool stands */
-    FAULT_NO_MODES,         /* M72 without M70 or M73 in this call */
-    FAULT_RESTORE,          /* M72 or the end of a call with M73 beside a contour or G51, G68 */
-    FAULT_NO_TOOL,          /* M6 with no T since the one before */
-    FAULT_PLANE,            /* G17.1, G18.1, G19.1 */
-    FAULT_CYCLE_R,          /* a cycle without R */
-    FAULT_CYCLE_DEPTH,      /* a cycle without the word along the normal of the plane */
-    FAULT_CYCLE_Q,          /* G73 or G83 without Q */
-    FAULT_CYCLE_P,          /* G82, G86, G88 or G89 without P */
-    FAULT_CYCLE_ASIDE,      /* G87 without the letters of I J K that it needs */
-    FAULT_TAP_K,            /* G33.1 without K */
-    FAULT_CYCLE_LOW,        /* R below the bottom of the hole */
-    FAULT_CYCLE_PECKS,      /* more than 10,000 pecks */
-    FAULT_CYCLE_FEED,       /* a cycle with G93 */
-    FAULT_CYCLE_SPINDLE,    /* the spindle is off, or turns the wrong way round */
-    FAULT_ROUND_NEXT,       /* behind ,C or ,R comes something else than a motion in the plane */
-    FAULT_ROUND_SHORT,      /* ,C or ,R has no room between the motions */
-    FAULT_CUTTER_ON,        /* G41 or G42 while one of them is in force */
-    FAULT_CUTTER_PLANE,     /* G19, or another plane while compensation is on */
-    FAULT_CUTTER_WORD,      /* what moves or measures the tool beside its contour */
-    FAULT_CUTTER_ENTRY,     /* the first motion is too short, or cannot meet the second */
-    FAULT_CUTTER_EXIT,      /* an arc right behind G40 */
-    FAULT_CUTTER_ARC,       /* the tool does not fit into an arc */
-    FAULT_CUTTER_CORNER,    /* nor into the corner in front of a motion */
-    FAULT_CUTTER_SHORT,     /* a motion too short for the corners at its ends */
-    FAULT_CUTTER_BACK,      /* the contour turns back on itself */
-    FAULT_CUTTER_FULL,      /* more than 21 commands between two motions */
-    FAULT_NOTE_COMMENT,     /* no fault but a note: (PRINT, ...) and the like do nothing here */
-    FAULT_NOTE_ORIENT,      /* a note: M19 only stops the spindle */
-    FAULT_NOTE_SPEED,       /* a note: M51, there is no override of the spindle */
-    FAULT_NOTE_SPINDLE,     /* a note: there is none */
-    FAULT_NOTE_COOLANT,     /* a note: there is none */
-    FAULT_NOTE_OVERRIDE,    /* a note: M48 to M53 change nothing */
-    FAULT_NOTE_FEED,        /* a note: F above the highest feed, or that of an axis */
-    FAULT_NOTE_ANGLE,       /* a note: A0, B0 or C0 */
-    FAULT_NOTE_SIDE,        /* a note: U0, V0 or W0 */
-    FAULT_NOTE_MERGE,       /* a note: Q of G64, runs of lines stay lines */
-    FAULT_NOTE_CHECKED,     /* a note: what comes behind has not been checked */
+    FAULT_TEXTS(FAULT_ENTRY)
     FAULT_COUNT
 };
 

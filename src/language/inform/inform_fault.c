@@ -2,50 +2,15 @@
 
 #include "inform_decimal.h"
 
+/* The texts themselves, not pointers to them, which would not be constant in a shared library. */
+#define ROW(name, text) [name] = text,
+#define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
+static const char TEXT[INFORM_FAULT_COUNT][51] = { INFORM_FAULT_TEXTS(ROW) };
+INFORM_FAULT_TEXTS(FITS)
+
 const char *inform_fault_text(enum inform_fault f)
 {
-    switch (f) {    /* no table: one of pointers would not be constant in a shared library */
-    case INFORM_OK:                return "no fault";
-    case INFORM_BAD_BYTE:          return "byte 0, which no text has, behind";
-    case INFORM_BAD_TEXT_LENGTH:   return "text too long";
-    case INFORM_BAD_LINE_LENGTH:   return "line too long";
-    case INFORM_BAD_WORD:          return "unknown word";
-    case INFORM_BAD_MISSING:       return "incomplete";
-    case INFORM_BAD_EXTRA:         return "unexpected";
-    case INFORM_BAD_TWICE:         return "given twice";
-    case INFORM_BAD_NUMBER:        return "number with more than 15 digits";
-    case INFORM_BAD_WHOLE:         return "no whole number";
-    case INFORM_BAD_VALUE:         return "value out of range";
-    case INFORM_BAD_POINT_TWICE:   return "defined twice";
-    case INFORM_BAD_COORDINATES:   return "needs X Y Z A B C or J1 to J6";
-    case INFORM_BAD_MIXED:         return "joints beside coordinates or configuration";
-    case INFORM_BAD_POINT_FRAME:   return "tool or user frame not defined above";
-    case INFORM_BAD_POINT:         return "point not in the points file";
-    case INFORM_BAD_FRAME:         return "tool or user frame not in the points file";
-    case INFORM_BAD_JOB:           return "no such job";
-    case INFORM_BAD_LABEL:         return "no such label in this job";
-    case INFORM_BAD_JOB_TWICE:     return "second job of this name";
-    case INFORM_BAD_LABEL_TWICE:   return "second label of this name in the job";
-    case INFORM_BAD_INTO_LOOP:     return "jump into a LOOP";
-    case INFORM_BAD_NOT_OPEN:      return "does not end what is open";
-    case INFORM_BAD_OPEN:          return "has no end";
-    case INFORM_BAD_AFTER_ELSE:    return "behind ELSE";
-    case INFORM_BAD_AFTER_END:     return "behind END";
-    case INFORM_BAD_NAME:          return "name too long";
-    case INFORM_BAD_ARC_POINTS:    return "MOVC of one point: three in a row, start, via, end";
-    case INFORM_BAD_ARC_SPEED:     return "via and end with different speeds";
-    case INFORM_BAD_ARC_FRAMES:    return "via and end with different tools or user frames";
-    case INFORM_BAD_KIND:          return "operand of the wrong kind";
-    case INFORM_BAD_COMPARE:       return "IN# and OT# compare by = or <> with ON or OFF";
-    case INFORM_BAD_EMPTY:         return "no instruction";
-    case INFORM_BAD_TOO_MANY:      return "too many";
-    case INFORM_BAD_STACK:         return "CALL inside too many others";
-    case INFORM_BAD_ZERO_DIVISION: return "division by zero";
-    case INFORM_BAD_RANGE:         return "result out of range";
-    case INFORM_BAD_ENDLESS:       return "endless without motion, input, output or wait";
-    case INFORM_FAULT_COUNT:       break;
-    }
-    return "";
+    return (uint32_t)f < INFORM_FAULT_COUNT ? TEXT[f] : "";
 }
 
 void inform_message(const struct inform_report *r, const char *text,

@@ -4,50 +4,68 @@
 
 #include <stdint.h>
 
+/* Each fault with its text. `low`, `high` and `other` are those of the report. */
+#define INFORM_FAULT_TEXTS(X) \
+    X(INFORM_OK, "no fault") \
+    /* any text */ \
+    X(INFORM_BAD_BYTE, "byte 0, which no text has, behind") \
+    X(INFORM_BAD_TEXT_LENGTH, "text too long")  /* more than INFORM_TEXT_MAX bytes */ \
+    X(INFORM_BAD_LINE_LENGTH, "line too long")  /* more than INFORM_LINE_MAX characters */ \
+    X(INFORM_BAD_WORD, "unknown word") \
+    X(INFORM_BAD_MISSING, "incomplete")  /* the line ends before it is complete */ \
+    X(INFORM_BAD_EXTRA, "unexpected")  /* something else is expected here, or nothing more */ \
+    X(INFORM_BAD_TWICE, "given twice")  /* a tag given twice, or two that exclude each other */ \
+    X(INFORM_BAD_NUMBER, "number with more than 15 digits") \
+    X(INFORM_BAD_WHOLE, "no whole number") \
+    X(INFORM_BAD_VALUE, "value out of range")  /* outside low .. high of the report */ \
+    /* points file */ \
+    /* a point, tool or user frame has been defined; other: its line */ \
+    X(INFORM_BAD_POINT_TWICE, "defined twice") \
+    X(INFORM_BAD_COORDINATES, "needs X Y Z A B C or J1 to J6") \
+    X(INFORM_BAD_MIXED, "joints beside coordinates or configuration") \
+    X(INFORM_BAD_POINT_FRAME, "tool or user frame not defined above") \
+    /* program */ \
+    X(INFORM_BAD_POINT, "point not in the points file") \
+    X(INFORM_BAD_FRAME, "tool or user frame not in the points file") \
+    X(INFORM_BAD_JOB, "no such job") \
+    X(INFORM_BAD_LABEL, "no such label in this job") \
+    X(INFORM_BAD_JOB_TWICE, "second job of this name")  /* other: line of the first */ \
+    /* other: line of the first */ \
+    X(INFORM_BAD_LABEL_TWICE, "second label of this name in the job") \
+    /* a jump into a LOOP from outside; other: line of the LOOP */ \
+    X(INFORM_BAD_INTO_LOOP, "jump into a LOOP") \
+    /* ELSE, ELSEIF, ENDIF, ENDLOOP, ENDWHILE without its beginning, or within another block */ \
+    X(INFORM_BAD_NOT_OPEN, "does not end what is open") \
+    /* IF, LOOP, WHILE without end; other: line where the job ends */ \
+    X(INFORM_BAD_OPEN, "has no end") \
+    /* ELSE or ELSEIF behind ELSE; other: line of the ELSE */ \
+    X(INFORM_BAD_AFTER_ELSE, "behind ELSE") \
+    X(INFORM_BAD_AFTER_END, "behind END")  /* an instruction behind END; other: line of the END */ \
+    /* no name, or one with more than INFORM_NAME_MAX characters */ \
+    X(INFORM_BAD_NAME, "name too long") \
+    X(INFORM_BAD_ARC_POINTS, "MOVC of one point: three in a row, start, via, end") \
+    /* the two speeds of an arc differ; other: line of the first */ \
+    X(INFORM_BAD_ARC_SPEED, "via and end with different speeds") \
+    /* points of an arc with another tool or user frame */ \
+    X(INFORM_BAD_ARC_FRAMES, "via and end with different tools or user frames") \
+    /* an operand of another kind than the instruction takes */ \
+    X(INFORM_BAD_KIND, "operand of the wrong kind") \
+    /* a signal compared with <, > or with what is neither ON nor OFF */ \
+    X(INFORM_BAD_COMPARE, "IN# and OT# compare by = or <> with ON or OFF") \
+    X(INFORM_BAD_EMPTY, "no instruction") \
+    /* instructions, jobs, labels, blocks; high: how many may be */ \
+    X(INFORM_BAD_TOO_MANY, "too many") \
+    /* while it runs */ \
+    X(INFORM_BAD_STACK, "CALL inside too many others")  /* CALL deeper than INFORM_CALLS */ \
+    X(INFORM_BAD_ZERO_DIVISION, "division by zero") \
+    /* a result outside the range of its variable or output */ \
+    X(INFORM_BAD_RANGE, "result out of range") \
+    /* INFORM_IDLE_MAX instructions that nobody sees */ \
+    X(INFORM_BAD_ENDLESS, "endless without motion, input, output or wait")
+
+#define INFORM_FAULT_ENTRY(name, text) name,
 enum inform_fault {
-    INFORM_OK,
-    /* any text */
-    INFORM_BAD_BYTE,          /* a byte 0: no text */
-    INFORM_BAD_TEXT_LENGTH,   /* more than INFORM_TEXT_MAX bytes */
-    INFORM_BAD_LINE_LENGTH,   /* more than INFORM_LINE_MAX characters */
-    INFORM_BAD_WORD,          /* not in the language */
-    INFORM_BAD_MISSING,       /* the line ends before it is complete */
-    INFORM_BAD_EXTRA,         /* something else is expected here, or nothing more */
-    INFORM_BAD_TWICE,         /* a tag given twice, or two that exclude each other */
-    INFORM_BAD_NUMBER,        /* no number, or one with more than 15 digits */
-    INFORM_BAD_WHOLE,         /* no whole number */
-    INFORM_BAD_VALUE,         /* outside low .. high of the report */
-    /* points file */
-    INFORM_BAD_POINT_TWICE,   /* a point, tool or user frame has been defined; other: its line */
-    INFORM_BAD_COORDINATES,   /* a coordinate or joint is missing */
-    INFORM_BAD_MIXED,         /* joints beside coordinates, or beside a configuration */
-    INFORM_BAD_POINT_FRAME,   /* a point names a frame that is not defined above it */
-    /* program */
-    INFORM_BAD_POINT,         /* no such point */
-    INFORM_BAD_FRAME,         /* no such tool or user frame */
-    INFORM_BAD_JOB,           /* no such job */
-    INFORM_BAD_LABEL,         /* no such label in the job */
-    INFORM_BAD_JOB_TWICE,     /* other: line of the first */
-    INFORM_BAD_LABEL_TWICE,   /* other: line of the first */
-    INFORM_BAD_INTO_LOOP,     /* a jump into a LOOP from outside; other: line of the LOOP */
-    INFORM_BAD_NOT_OPEN,      /* ELSE, ELSEIF, ENDIF, ENDLOOP, ENDWHILE without its beginning, or
-                               * inside another block that is still open */
-    INFORM_BAD_OPEN,          /* IF, LOOP, WHILE without end; other: line where the job ends */
-    INFORM_BAD_AFTER_ELSE,    /* ELSE or ELSEIF behind ELSE; other: line of the ELSE */
-    INFORM_BAD_AFTER_END,     /* an instruction behind END; other: line of the END */
-    INFORM_BAD_NAME,          /* no name, or one with more than INFORM_NAME_MAX characters */
-    INFORM_BAD_ARC_POINTS,    /* MOVC with one point each not in threes */
-    INFORM_BAD_ARC_SPEED,     /* the two speeds of an arc differ; other: line of the first */
-    INFORM_BAD_ARC_FRAMES,    /* points of an arc with another tool or user frame */
-    INFORM_BAD_KIND,          /* an operand of another kind than the instruction takes */
-    INFORM_BAD_COMPARE,       /* a signal compared with <, > or with what is neither ON nor OFF */
-    INFORM_BAD_EMPTY,         /* a program without an instruction */
-    INFORM_BAD_TOO_MANY,      /* instructions, jobs, labels, blocks; high: how many may be */
-    /* while it runs */
-    INFORM_BAD_STACK,         /* CALL deeper than INFORM_CALLS */
-    INFORM_BAD_ZERO_DIVISION, /* DIV by 0 */
-    INFORM_BAD_RANGE,         /* a result outside the range of its variable or output */
-    INFORM_BAD_ENDLESS,       /* INFORM_IDLE_MAX instructions that nobody sees */
+    INFORM_FAULT_TEXTS(INFORM_FAULT_ENTRY)
     INFORM_FAULT_COUNT
 };
 

@@ -3,6 +3,20 @@
 #include <math.h>
 #include <string.h>
 
+enum kind { NOTHING, MOTION, MODE, OUTPUT, NUMBER, TIME, FLOW, OPERATOR };
+
+/* What an instruction is about. */
+static const uint8_t KIND[] = {
+    [INFORM_OP_MOVE] = MOTION, [INFORM_OP_SPEED] = MODE, [INFORM_OP_LEVEL] = MODE,
+    [INFORM_OP_TOOL] = MODE, [INFORM_OP_USER] = MODE, [INFORM_OP_DOUT] = OUTPUT,
+    [INFORM_OP_AOUT] = OUTPUT, [INFORM_OP_SET] = NUMBER, [INFORM_OP_ADD] = NUMBER,
+    [INFORM_OP_SUB] = NUMBER, [INFORM_OP_MUL] = NUMBER, [INFORM_OP_DIV] = NUMBER,
+    [INFORM_OP_WAIT] = TIME, [INFORM_OP_TIMER] = TIME, [INFORM_OP_JUMP] = FLOW,
+    [INFORM_OP_UNLESS] = FLOW, [INFORM_OP_CALL] = FLOW, [INFORM_OP_RET] = FLOW,
+    [INFORM_OP_LOOP] = FLOW, [INFORM_OP_ENDLOOP] = FLOW, [INFORM_OP_PAUSE] = OPERATOR,
+    [INFORM_OP_NOP] = NOTHING
+};
+
 void inform_begin(struct inform_run *run, const struct inform_program *p,
                   const struct inform_start *start)
 {
@@ -138,18 +152,31 @@ static bool waited(struct inform_run *run, const struct inform_inputs *in,
     return false;
 }
 
-static enum inform_fault call(struct inform_run *run, int32_t to)
+/* Each of these returns where the program goes on, in the frame that is the top then. */
+
+static int32_t call(struct inform_run *run, int32_t to)
 {
     if (run->depth == INFORM_CALLS) {
-        return INFORM_BAD_STACK;
+        run->fault = INFORM_BAD_STACK;
+        return run->frame[run->depth].pc;
     }
     run->frame[run->depth++].pc++;
     memset(&run->frame[run->depth], 0, sizeof run->frame[0]);
-    run->frame[run->depth].pc = to;
-    return INFORM_OK;
+    return to;
 }
 
-/* LOOP sets its counter and ENDLOOP goes back; returns where it goes on. */
+static int32_t come_back(struct inform_run *run, struct inform_request *r)
+{
+    if (run->depth > 0) {
+        run->depth--;
+    } else {
+        run->ended = 1;
+        r->answer = INFORM_END;
+    }
+    return run->frame[run->depth].pc;
+}
+
+/* LOOP sets its counter and ENDLOOP goes back. */
 static int32_t loop(struct inform_run *run, const struct inform_inputs *in,
                     const struct inform_code *c, int32_t pc)
 {
@@ -161,6 +188,39 @@ static int32_t loop(struct inform_run *run, const struct inform_inputs *in,
     }
     *left -= *left > 0;
     return *left == 0 ? pc + 1 : c->to;
+}
+
+static int32_t flow(struct inform_run *run, const struct inform_inputs *in,
+                    const struct inform_code *c, bool done, struct inform_request *r)
+{
+    const int32_t pc = run->frame[run->depth].pc;
+
+    switch (c->op) {
+    case INFORM_OP_JUMP:   return done ? c->to : pc + 1;
+    case INFORM_OP_UNLESS: return done ? pc + 1 : c->to;
+    case INFORM_OP_CALL:   return done ? call(run, c->to) : pc + 1;
+    case INFORM_OP_RET:    return done ? come_back(run, r) : pc + 1;
+    default:               return loop(run, in, c, pc);
+    }
+}
+
+/* SPEED, PL, TOOL, USER: what is in force from here on. */
+static void set_mode(struct inform_run *run, const struct inform_code *c)
+{
+    switch (c->op) {
+    case INFORM_OP_SPEED:
+        run->speed[c->tag] = c->speed;
+        run->rotary = c->tag == INFORM_VJ ? run->rotary : c->tag == INFORM_VR;
+        break;
+    case INFORM_OP_LEVEL:
+        run->level = c->to;
+        break;
+    case INFORM_OP_TOOL:
+        run->tool = c->to;
+        break;
+    default:
+        run->user = c->to;
+    }
 }
 
 /* Whether an instruction must see all moves before it reached. */
@@ -176,91 +236,9 @@ static bool needs_rest(const struct inform_run *run, const struct inform_inputs 
     }
 }
 
-/* Do one instruction: true if it makes a request. */
-static bool step(struct inform_run *run, const struct inform_program *p,
-                 const struct inform_points *points, const struct inform_inputs *in,
-                 struct inform_request *r)
+/* The instruction is done, unless it has a fault: true if it makes a request. */
+static bool finish(struct inform_run *run, struct inform_request *r, int32_t next)
 {
-    int32_t *pc = &run->frame[run->depth].pc;
-    const struct inform_code *c = &p->code[*pc];
-    int32_t next = *pc + 1;
-
-    r->line = c->line;
-    if (in->reached < run->moves && needs_rest(run, in, c)) {
-        r->answer = INFORM_REACH;
-        return true;
-    }
-    const bool done = c->op == INFORM_OP_WAIT || holds(run, in, c);
-    run->idle = is_input(&c->left) || is_input(&c->right) ? 0 : run->idle + 1;
-    switch (c->op) {
-    case INFORM_OP_MOVE:
-        move(run, points, c, r);
-        break;
-    case INFORM_OP_SPEED:
-        run->speed[c->tag] = c->speed;
-        run->rotary = c->tag == INFORM_VJ ? run->rotary : c->tag == INFORM_VR;
-        break;
-    case INFORM_OP_LEVEL:
-        run->level = c->to;
-        break;
-    case INFORM_OP_TOOL:
-        run->tool = c->to;
-        break;
-    case INFORM_OP_USER:
-        run->user = c->to;
-        break;
-    case INFORM_OP_DOUT:
-    case INFORM_OP_AOUT:
-        run->fault = output(run, in, c, r);
-        break;
-    case INFORM_OP_SET:
-    case INFORM_OP_ADD:
-    case INFORM_OP_SUB:
-    case INFORM_OP_MUL:
-    case INFORM_OP_DIV:
-        run->fault = calculate(run, in, c);
-        break;
-    case INFORM_OP_WAIT:
-    case INFORM_OP_TIMER:
-        if (!waited(run, in, c)) {
-            r->answer = INFORM_WAIT;
-            next = *pc;
-        }
-        break;
-    case INFORM_OP_JUMP:
-        next = done ? c->to : next;
-        break;
-    case INFORM_OP_UNLESS:
-        next = done ? next : c->to;
-        break;
-    case INFORM_OP_CALL:
-        if (done) {
-            run->fault = call(run, c->to);
-            next = run->fault == INFORM_OK ? c->to : next;
-            pc = &run->frame[run->depth].pc;
-        }
-        break;
-    case INFORM_OP_RET:
-        if (done && run->depth > 0) {
-            run->depth--;
-            next = run->frame[run->depth].pc;
-            pc = &run->frame[run->depth].pc;
-        } else if (done) {
-            run->ended = 1;
-            r->answer = INFORM_END;
-            next = *pc;
-        }
-        break;
-    case INFORM_OP_LOOP:
-    case INFORM_OP_ENDLOOP:
-        next = loop(run, in, c, *pc);
-        break;
-    case INFORM_OP_PAUSE:
-        r->answer = done ? INFORM_PAUSE : r->answer;
-        break;
-    case INFORM_OP_NOP:
-        break;
-    }
     if (r->answer != INFORM_BUSY) {
         run->idle = 0;
     } else if (run->fault == INFORM_OK && run->idle >= INFORM_IDLE_MAX) {
@@ -271,8 +249,55 @@ static bool step(struct inform_run *run, const struct inform_program *p,
         r->fault = run->fault;
         return true;
     }
-    *pc = next;
+    run->frame[run->depth].pc = next;
     return r->answer != INFORM_BUSY;
+}
+
+/* Do one instruction: true if it makes a request. */
+static bool step(struct inform_run *run, const struct inform_program *p,
+                 const struct inform_points *points, const struct inform_inputs *in,
+                 struct inform_request *r)
+{
+    const int32_t pc = run->frame[run->depth].pc;
+    const struct inform_code *c = &p->code[pc];
+    int32_t next = pc + 1;
+
+    r->line = c->line;
+    if (in->reached < run->moves && needs_rest(run, in, c)) {
+        r->answer = INFORM_REACH;
+        return true;
+    }
+    const bool done = c->op == INFORM_OP_WAIT || holds(run, in, c);
+    run->idle = is_input(&c->left) || is_input(&c->right) ? 0 : run->idle + 1;
+    switch (KIND[c->op]) {
+    case MOTION:
+        move(run, points, c, r);
+        break;
+    case MODE:
+        set_mode(run, c);
+        break;
+    case OUTPUT:
+        run->fault = output(run, in, c, r);
+        break;
+    case NUMBER:
+        run->fault = calculate(run, in, c);
+        break;
+    case TIME:
+        if (!waited(run, in, c)) {
+            r->answer = INFORM_WAIT;
+            next = pc;
+        }
+        break;
+    case FLOW:
+        next = flow(run, in, c, done, r);
+        break;
+    case OPERATOR:
+        r->answer = done ? INFORM_PAUSE : r->answer;
+        break;
+    default:
+        break;
+    }
+    return finish(run, r, next);
 }
 
 void inform_next(struct inform_run *run, const struct inform_program *p,

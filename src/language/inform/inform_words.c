@@ -3,29 +3,71 @@
 #include <math.h>
 #include <stddef.h>
 
-enum word {
-    MOVJ, MOVL, MOVC, SPEED, PL, TOOL, USER, DOUT, AOUT, DIN, AIN, SET, ADD, SUB, MUL, DIV, INC,
-    DEC, WAIT, TIMER, JUMP, CALL, RET, END, LABEL, IF, ELSEIF, ELSE, ENDIF, LOOP, ENDLOOP, WHILE,
-    ENDWHILE, PAUSE, NOP, WORDS
-};
-
-static const struct { char text[12]; uint8_t word; } TABLE[] = {
-    { "MOVJ", MOVJ }, { "MOVL", MOVL }, { "MOVC", MOVC }, { "SPEED", SPEED }, { "PL", PL },
-    { "TOOL", TOOL }, { "USER", USER }, { "DOUT", DOUT }, { "AOUT", AOUT }, { "DIN", DIN },
-    { "AIN", AIN }, { "SET", SET }, { "ADD", ADD }, { "SUB", SUB }, { "MUL", MUL },
-    { "DIV", DIV }, { "INC", INC }, { "DEC", DEC }, { "WAIT", WAIT }, { "TIMER", TIMER },
-    { "JUMP", JUMP }, { "CALL", CALL }, { "RET", RET }, { "END", END }, { "LABEL", LABEL },
-    { "IF", IF }, { "IFTHEN", IF }, { "IFTHENEXP", IF }, { "ELSEIF", ELSEIF },
-    { "ELSEIFEXP", ELSEIF }, { "ELSE", ELSE }, { "ENDIF", ENDIF }, { "LOOP", LOOP },
-    { "ENDLOOP", ENDLOOP }, { "WHILE", WHILE }, { "WHILEEXP", WHILE }, { "ENDWHILE", ENDWHILE },
-    { "PAUSE", PAUSE }, { "NOP", NOP }
-};
-
 enum {
     WHOLE = 1u << INFORM_B | 1u << INFORM_I | 1u << INFORM_D,
     VARIABLE = WHOLE | 1u << INFORM_R,
-    VALUE = VARIABLE | 1u << INFORM_CONSTANT
+    VALUE = VARIABLE | 1u << INFORM_CONSTANT,
+    SIGNAL = 1u << INFORM_IN | 1u << INFORM_OT
 };
+
+/* What follows a word. */
+enum form {
+    MOVE, SPEED, LEVEL, FRAME, OUTPUT, ARITHMETIC, STEP, WAIT, TIMER, JUMP, CONDITION, END, LABEL,
+    BLOCK, NOTHING
+};
+
+enum block { IF, ELSEIF, ELSE, ENDIF, LOOP, ENDLOOP, WHILE, ENDWHILE };
+
+/* A word: what follows it, what it becomes (a path, an instruction, a part of a block; of FRAME and
+ * OUTPUT one of two), kinds of its operands. */
+struct word {
+    char     text[12];
+    uint8_t  form, what;
+    uint16_t left, right;
+};
+
+static const struct word WORDS[] = {
+    { "MOVJ", MOVE, INFORM_JOINT, 0, 0 },
+    { "MOVL", MOVE, INFORM_LINE, 0, 0 },
+    { "MOVC", MOVE, INFORM_CIRCLE, 0, 0 },
+    { "SPEED", SPEED, 0, 0, 0 },
+    { "PL", LEVEL, 0, 0, 0 },
+    { "TOOL", FRAME, INFORM_OP_TOOL, 0, 0 },
+    { "USER", FRAME, INFORM_OP_USER, 0, 0 },
+    { "DOUT", OUTPUT, INFORM_OP_DOUT, 0, 0 },
+    { "AOUT", OUTPUT, INFORM_OP_AOUT, 0, 0 },
+    { "DIN", ARITHMETIC, INFORM_OP_SET, WHOLE, SIGNAL },
+    { "AIN", ARITHMETIC, INFORM_OP_SET, 1u << INFORM_R, 1u << INFORM_AI },
+    { "SET", ARITHMETIC, INFORM_OP_SET, VARIABLE, VALUE },
+    { "ADD", ARITHMETIC, INFORM_OP_ADD, VARIABLE, VALUE },
+    { "SUB", ARITHMETIC, INFORM_OP_SUB, VARIABLE, VALUE },
+    { "MUL", ARITHMETIC, INFORM_OP_MUL, VARIABLE, VALUE },
+    { "DIV", ARITHMETIC, INFORM_OP_DIV, VARIABLE, VALUE },
+    { "INC", STEP, INFORM_OP_ADD, 0, 0 },
+    { "DEC", STEP, INFORM_OP_SUB, 0, 0 },
+    { "WAIT", WAIT, 0, 0, 0 },
+    { "TIMER", TIMER, 0, 0, 0 },
+    { "JUMP", JUMP, INFORM_OP_JUMP, 0, 0 },
+    { "CALL", JUMP, INFORM_OP_CALL, 0, 0 },
+    { "RET", CONDITION, INFORM_OP_RET, 0, 0 },
+    { "PAUSE", CONDITION, INFORM_OP_PAUSE, 0, 0 },
+    { "END", END, 0, 0, 0 },
+    { "IF", BLOCK, IF, 0, 0 },
+    { "IFTHEN", BLOCK, IF, 0, 0 },
+    { "IFTHENEXP", BLOCK, IF, 0, 0 },
+    { "ELSEIF", BLOCK, ELSEIF, 0, 0 },
+    { "ELSEIFEXP", BLOCK, ELSEIF, 0, 0 },
+    { "ELSE", BLOCK, ELSE, 0, 0 },
+    { "ENDIF", BLOCK, ENDIF, 0, 0 },
+    { "LOOP", BLOCK, LOOP, 0, 0 },
+    { "ENDLOOP", BLOCK, ENDLOOP, 0, 0 },
+    { "WHILE", BLOCK, WHILE, 0, 0 },
+    { "WHILEEXP", BLOCK, WHILE, 0, 0 },
+    { "ENDWHILE", BLOCK, ENDWHILE, 0, 0 },
+    { "NOP", NOTHING, 0, 0, 0 },
+    { "LABEL", LABEL, 0, 0, 0 }
+};
+enum { WORD_COUNT = sizeof WORDS / sizeof WORDS[0] };
 
 struct inform_code *inform_reading_add(struct inform_reading *in, enum inform_op op)
 {
@@ -247,59 +289,58 @@ static int end(struct inform_reading *in)
     return inform_block_all_closed(in) || !inform_reading_add(in, INFORM_OP_RET) ? -1 : 0;
 }
 
-static int instruction(struct inform_reading *in, enum word word)
+static int nothing(struct inform_reading *in)
 {
-    switch (word) {
-    case MOVJ:     return inform_move(in, INFORM_JOINT);
-    case MOVL:     return inform_move(in, INFORM_LINE);
-    case MOVC:     return inform_move(in, INFORM_CIRCLE);
-    case SPEED:    return inform_move_speed(in);
-    case PL:       return level(in);
-    case TOOL:     return frame(in, true);
-    case USER:     return frame(in, false);
-    case DOUT:     return output(in, true);
-    case AOUT:     return output(in, false);
-    case DIN:      return arithmetic(in, INFORM_OP_SET, WHOLE, 1u << INFORM_IN | 1u << INFORM_OT);
-    case AIN:      return arithmetic(in, INFORM_OP_SET, 1u << INFORM_R, 1u << INFORM_AI);
-    case SET:      return arithmetic(in, INFORM_OP_SET, VARIABLE, VALUE);
-    case ADD:      return arithmetic(in, INFORM_OP_ADD, VARIABLE, VALUE);
-    case SUB:      return arithmetic(in, INFORM_OP_SUB, VARIABLE, VALUE);
-    case MUL:      return arithmetic(in, INFORM_OP_MUL, VARIABLE, VALUE);
-    case DIV:      return arithmetic(in, INFORM_OP_DIV, VARIABLE, VALUE);
-    case INC:      return step(in, INFORM_OP_ADD);
-    case DEC:      return step(in, INFORM_OP_SUB);
-    case WAIT:     return wait(in);
-    case TIMER:    return timer(in);
-    case JUMP:     return jump(in, INFORM_OP_JUMP);
-    case CALL:     return jump(in, INFORM_OP_CALL);
-    case RET:      return simple(in, INFORM_OP_RET);
-    case END:      return end(in);
-    case LABEL:    return label(in);
-    case IF:       return inform_block_if(in);
-    case ELSEIF:   return inform_block_else(in, true);
-    case ELSE:     return inform_block_else(in, false);
-    case ENDIF:    return inform_block_endif(in);
-    case LOOP:     return inform_block_loop(in);
-    case ENDLOOP:  return inform_block_endloop(in);
-    case WHILE:    return inform_block_while(in);
-    case ENDWHILE: return inform_block_endwhile(in);
-    case PAUSE:    return simple(in, INFORM_OP_PAUSE);
-    case NOP:      return inform_reading_add(in, INFORM_OP_NOP) ? 0 : -1;
-    case WORDS:    break;
-    }
-    return 0;
+    return inform_reading_add(in, INFORM_OP_NOP) ? 0 : -1;
 }
 
-/* Which word the line begins with; WORDS: a report is written. */
-static enum word first_word(struct inform_scan *s)
+static int block(struct inform_reading *in, enum block what)
+{
+    switch (what) {
+    case IF:      return inform_block_if(in);
+    case ELSEIF:  return inform_block_else(in, true);
+    case ELSE:    return inform_block_else(in, false);
+    case ENDIF:   return inform_block_endif(in);
+    case LOOP:    return inform_block_loop(in);
+    case ENDLOOP: return inform_block_endloop(in);
+    case WHILE:   return inform_block_while(in);
+    default:      return inform_block_endwhile(in);
+    }
+}
+
+static int instruction(struct inform_reading *in, const struct word *w)
+{
+    const enum inform_op op = (enum inform_op)w->what;
+
+    switch ((enum form)w->form) {
+    case MOVE:       return inform_move(in, (enum inform_path)w->what);
+    case SPEED:      return inform_move_speed(in);
+    case LEVEL:      return level(in);
+    case FRAME:      return frame(in, op == INFORM_OP_TOOL);
+    case OUTPUT:     return output(in, op == INFORM_OP_DOUT);
+    case ARITHMETIC: return arithmetic(in, op, w->left, w->right);
+    case STEP:       return step(in, op);
+    case WAIT:       return wait(in);
+    case TIMER:      return timer(in);
+    case JUMP:       return jump(in, op);
+    case CONDITION:  return simple(in, op);
+    case END:        return end(in);
+    case LABEL:      return label(in);
+    case BLOCK:      return block(in, (enum block)w->what);
+    default:         return nothing(in);
+    }
+}
+
+/* Which word the line begins with; NULL: a report is written. */
+static const struct word *first_word(struct inform_scan *s)
 {
     if (inform_scan_take(s, '*')) {
-        return LABEL;
+        return &WORDS[WORD_COUNT - 1];      /* LABEL */
     }
     const struct inform_piece w = inform_scan_word(s);
-    for (size_t i = 0; i < sizeof TABLE / sizeof *TABLE; i++) {
-        if (inform_scan_is(s, w, TABLE[i].text)) {
-            return (enum word)TABLE[i].word;
+    for (int i = 0; i < WORD_COUNT; i++) {
+        if (inform_scan_is(s, w, WORDS[i].text)) {
+            return &WORDS[i];
         }
     }
     s->at = w.length > 0 ? s->at : s->begin;
@@ -308,21 +349,21 @@ static enum word first_word(struct inform_scan *s)
     } else {
         inform_scan_unexpected(s);
     }
-    return WORDS;
+    return NULL;
 }
 
 int inform_words(struct inform_reading *in)
 {
     struct inform_scan *s = &in->s;
-    const enum word word = first_word(s);
-    if (word == WORDS) {
+    const struct word *word = first_word(s);
+    if (!word) {
         return -1;
     }
     if (in->end_line > 0) {
         s->r->other = in->end_line;
         return inform_scan_fault_line(s, INFORM_BAD_AFTER_END);
     }
-    if (word != MOVC) {
+    if (word->form != MOVE || word->what != INFORM_CIRCLE) {
         const int32_t at = s->at;
         if (inform_move_arc_over(in)) {
             return -1;

@@ -88,13 +88,17 @@ def proof(key: bytes, role: bytes, hello: Hello, challenge: Challenge) -> bytes:
     return hmac.digest(key, role + hello.nonce + challenge.nonce + ends, "sha256")
 
 
-def _proved(given: bytes, wanted: bytes, whose: str) -> None:
+def proved(given: bytes, wanted: bytes, whose: str) -> None:
+    """WireError unless a proof is the one that is wanted."""
     if not hmac.compare_digest(given, wanted):
         raise WireError(f"the {whose} has another key")
 
 
 class End:
-    """What both ends of a connection do: bytes in, messages out, the handshake first."""
+    """What both ends of a connection do: bytes in, messages out, the handshake first.
+
+    The package has the PC's end; the card's in Python, for tests, is in tests/soft_card.py.
+    """
 
     def __init__(self, out: int) -> None:
         self.stream = Stream(out)
@@ -125,7 +129,8 @@ class End:
     def _shake(self, message: Message | None) -> None:
         raise NotImplementedError
 
-    def _secure(self, key: bytes, hello: Hello, challenge: Challenge) -> None:
+    def secure(self, key: bytes, hello: Hello, challenge: Challenge) -> None:
+        """From here on frames have a MAC, if there is a key."""
         if key != OPEN_KEY:
             self.stream.secure(proof(key, b"K", hello, challenge))
 
@@ -154,33 +159,7 @@ class PcEnd(End):
             return
         if not isinstance(message, Auth):
             raise WireError("no AUTH")
-        _proved(message.proof, proof(self._key, b"C", self.hello, self._challenge), "card")
-        self._secure(self._key, self.hello, self._challenge)
+        proved(message.proof, proof(self._key, b"C", self.hello, self._challenge), "card")
+        self.secure(self._key, self.hello, self._challenge)
         self.send(Welcome(self._interval))
         self.ready = True
-
-
-class CardEnd(End):
-    """The card's end; HELLO is among its bytes from the start."""
-
-    def __init__(self, key: bytes, hello: Hello) -> None:
-        super().__init__(TO_PC)
-        self.interval = 0  # [ms] of status, from WELCOME
-        self._key, self._hello = key, hello
-        self._proven = False
-        self.send(hello)
-
-    def _shake(self, message: Message | None) -> None:
-        if self._proven:
-            if not isinstance(message, Welcome):
-                raise WireError("no WELCOME")
-            self.interval, self.ready = message.interval, True
-            return
-        if not isinstance(message, Challenge):
-            raise WireError("no CHALLENGE")
-        if not self._hello.oldest <= message.protocol <= self._hello.newest:
-            raise WireError(f"protocol {message.protocol}")
-        _proved(message.proof, proof(self._key, b"S", self._hello, message), "PC")
-        self.send(Auth(proof(self._key, b"C", self._hello, message)))
-        self._secure(self._key, self._hello, message)
-        self._proven = True

@@ -131,27 +131,13 @@ void job_header_write(const struct job_header *h, uint8_t page[JOB_PAGE_BYTES])
     job_page_seal(page);
 }
 
+/* The texts themselves, not pointers to them, which would not be constant in a shared library. */
+#define ROW(name, text) [name] = text,
+#define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
+static const char TEXT[JOB_FAULTS][50] = { JOB_FAULT_TEXTS(ROW) };
+JOB_FAULT_TEXTS(FITS)
+
 const char *job_fault_text(enum job_fault fault)
 {
-    switch (fault) {
-    case JOB_GOOD:      return "whole";
-    case JOB_SIZE:      return "its size is not that of its pages";
-    case JOB_CRC:       return "a page does not have its CRC";
-    case JOB_MAGIC:     return "it does not begin with MCJ1";
-    case JOB_FORMAT:    return "another version or page size";
-    case JOB_ID:        return "its number is not that of its origin";
-    case JOB_PERIOD:    return "the period is out of range";
-    case JOB_MASK:      return "the mask of axes is none";
-    case JOB_COUNT:     return "the counts of pages, frames and events do not fit";
-    case JOB_EVENT:     return "an event is bad or not in the table";
-    case JOB_FILL:      return "a byte without meaning is set";
-    case JOB_FRAMES:    return "a frame number is not the next one";
-    case JOB_VARINT:    return "a number in a page is bad";
-    case JOB_COMMAND:   return "a command is out of range";
-    case JOB_POSITION:  return "a position is not where the page before ended";
-    case JOB_REST:      return "it does not begin and end at rest";
-    case JOB_END:       return "it does not end where its header says";
-    case JOB_FAULTS:   break;
-    }
-    return "unknown";
+    return (uint32_t)fault < JOB_FAULTS ? TEXT[fault] : "unknown";
 }

@@ -28,25 +28,39 @@ enum {
     JOB_COMMAND_MAX = 32767,    /* a frame holds 16 bits an axis */
 };
 
-/* What is wrong with a job. */
+/* What is wrong with a job, each fault with its text. */
+#define JOB_FAULT_TEXTS(X) \
+    X(JOB_GOOD, "whole") \
+    /* no whole number of pages, or not as many as the header says */ \
+    X(JOB_SIZE, "its size is not that of its pages") \
+    X(JOB_CRC, "a page does not have its CRC") \
+    X(JOB_MAGIC, "it does not begin with MCJ1") \
+    X(JOB_FORMAT, "another version or page size") \
+    X(JOB_ID, "its number is not that of its origin") \
+    X(JOB_PERIOD, "the period is out of range")  /* or no whole number of clocks */ \
+    X(JOB_MASK, "the mask of axes is none")  /* or more than four axes */ \
+    /* header: no page or frame, more frames than the pages hold, too many events */ \
+    X(JOB_COUNT, "the counts of pages, frames and events do not fit") \
+    /* an event with a bad member; a frame's or the rest's is not in the table */ \
+    X(JOB_EVENT, "an event is bad or not in the table") \
+    /* a byte without meaning is not 0 (header) or FF (behind a payload) */ \
+    X(JOB_FILL, "a byte without meaning is set") \
+    /* a page does not begin with the frame it should, or has none */ \
+    X(JOB_FRAMES, "a frame number is not the next one") \
+    /* a number that does not end, is not the shortest, or does not fill the page */ \
+    X(JOB_VARINT, "a number in a page is bad") \
+    /* a command above half the clocks of a period or above 32767 */ \
+    X(JOB_COMMAND, "a command is out of range") \
+    /* a page does not begin where the one before ended, or 2^31 or more */ \
+    X(JOB_POSITION, "a position is not where the page before ended") \
+    /* the first or the last command is above the start speed */ \
+    X(JOB_REST, "it does not begin and end at rest") \
+    /* the last frame is not the header's, or does not end where it says */ \
+    X(JOB_END, "it does not end where its header says")
+
+#define JOB_FAULT_ENTRY(name, text) name,
 enum job_fault {
-    JOB_GOOD = 0,
-    JOB_SIZE,       /* no whole number of pages, or not as many as the header says */
-    JOB_CRC,        /* a page does not have its CRC */
-    JOB_MAGIC,      /* header: no MCJ1 */
-    JOB_FORMAT,     /* header: another version or page size */
-    JOB_ID,         /* header: id is not the first four bytes of origin */
-    JOB_PERIOD,     /* header: outside its range or no whole number of clocks */
-    JOB_MASK,       /* header: no axis, or more than four */
-    JOB_COUNT,      /* header: no page or frame, more frames than the pages hold, too many events */
-    JOB_EVENT,      /* an event with a bad member; a frame's or the rest's is not in the table */
-    JOB_FILL,       /* a byte without meaning is not 0 (header) or FF (behind a payload) */
-    JOB_FRAMES,     /* a page does not begin with the frame it should, or has none */
-    JOB_VARINT,     /* a number that does not end, is not the shortest, or does not fill the page */
-    JOB_COMMAND,    /* a command above half the clocks of a period or above 32767 */
-    JOB_POSITION,   /* a page does not begin where the one before ended, or 2^31 or more */
-    JOB_REST,       /* the first or the last command is above the start speed */
-    JOB_END,        /* the last frame is not the header's, or does not end where it says */
+    JOB_FAULT_TEXTS(JOB_FAULT_ENTRY)
     JOB_FAULTS
 };
 

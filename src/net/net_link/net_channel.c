@@ -168,18 +168,13 @@ size_t net_channel_out(struct net_channel *c, uint8_t *bytes, size_t most)
     return n;
 }
 
+/* The texts themselves, not pointers to them, which would not be constant in a shared library. */
+#define ROW(name, text) [name] = text,
+#define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
+static const char TEXT[NET_FAULTS][35] = { NET_FAULT_TEXTS(ROW) };
+NET_FAULT_TEXTS(FITS)
+
 const char *net_fault_text(enum net_fault fault)
 {
-    switch (fault) {
-    case NET_FINE:         return "";
-    case NET_BAD_MAGIC:    return "not a frame";
-    case NET_BAD_VERSION:  return "a frame of another version";
-    case NET_BAD_FLAGS:    return "a frame with another kind of check";
-    case NET_BAD_SEQUENCE: return "a frame out of sequence";
-    case NET_BAD_LENGTH:   return "a frame too long";
-    case NET_BAD_CHECK:    return "a frame whose CRC or MAC is wrong";
-    case NET_BAD_PAYLOAD:  return "a message of a wrong length";
-    case NET_FAULTS:       break;
-    }
-    return "";
+    return (uint32_t)fault < NET_FAULTS ? TEXT[fault] : "";
 }

@@ -25,11 +25,20 @@ enum {
     NET_OUT = 4096,         /* bytes that wait to be sent */
 };
 
+/* What is wrong with a stream, each fault with its text. */
+#define NET_FAULT_TEXTS(X) \
+    X(NET_FINE, "") \
+    X(NET_BAD_MAGIC, "not a frame") \
+    X(NET_BAD_VERSION, "a frame of another version") \
+    X(NET_BAD_FLAGS, "a frame with another kind of check") \
+    X(NET_BAD_SEQUENCE, "a frame out of sequence") \
+    X(NET_BAD_LENGTH, "a frame too long") \
+    X(NET_BAD_CHECK, "a frame whose CRC or MAC is wrong") \
+    X(NET_BAD_PAYLOAD, "a message of a wrong length")  /* not the length of its type */
+
+#define NET_FAULT_ENTRY(name, text) name,
 enum net_fault {
-    NET_FINE,
-    NET_BAD_MAGIC, NET_BAD_VERSION, NET_BAD_FLAGS, NET_BAD_SEQUENCE, NET_BAD_LENGTH,
-    NET_BAD_CHECK,          /* CRC or MAC */
-    NET_BAD_PAYLOAD,        /* not the length of its type */
+    NET_FAULT_TEXTS(NET_FAULT_ENTRY)
     NET_FAULTS
 };
 

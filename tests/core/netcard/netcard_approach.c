@@ -50,7 +50,7 @@ static int64_t play(int64_t ms)
 
     while (c.state == state && c.now < end) {
         netcard_advance(&c, c.now + 20000);
-        if (c.primed && netcard_frames(&c) != was) {
+        if (c.phase > JOB_READING && netcard_frames(&c) != was) {
             CHECK(netcard_frames(&c) == was + 1 || was == 0);
             was = netcard_frames(&c);
             on_the_path();

@@ -28,7 +28,7 @@ static void home_during_run(void)
         at = strchr(at, ' ') + 1;
     }
     pass(BENCH_MS);
-    CHECK(c.read && c.state == NET_RUNNING);    /* written, not yet played */
+    CHECK(c.phase == JOB_DRAINING && c.state == NET_RUNNING);    /* written, not yet played */
     pass(350 * BENCH_MS);
     CHECK_EQ(c.state, NET_READY);
     snprintf(tokens, sizeof tokens, "h%d 2>5 >run r%d r%d ", 3 + last, 4 + last, 5 + last);
@@ -43,7 +43,7 @@ static void home_behind_the_job(void)
     until("2>5 ");
     pass(BENCH_MS);
     CHECK_EQ(c.state, NET_READY);
-    CHECK(!c.job);
+    CHECK_EQ(c.phase, JOB_NONE);
     pass(100000);
 }
 

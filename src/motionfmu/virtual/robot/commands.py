@@ -102,12 +102,10 @@ class Commands:
 
     def _busy(self, call: str) -> RobotError | None:
         """Why nothing can be asked for now."""
-        for name, words in (
-            ("stopped", "the card has stopped: reset it"),
-            ("running", "a program runs"),
-        ):
-            if self._panel[name]:
-                return RobotError(f"{call}: not now: {words}", "BUSY")
+        if self._panel["stopped"]:
+            return RobotError(f"{call}: not now: the card has stopped: reset it", "BUSY")
+        if library().binding_robot_running(self._state.pointer):
+            return RobotError(f"{call}: not now: a program runs", "BUSY")
         return None
 
     def jog(self, direction: Any, frame: int = 0, *, speed: float = 0.1, way: float = 0.0) -> None:

@@ -8,14 +8,40 @@ import random
 import zlib
 from collections import deque
 
-from motionfmu.cards import messages as m
+<from motionfmu.cards import messages as m
 from motionfmu.cards.views import Code
-from motionfmu.cards.wire import OPEN_KEY, PROTOCOL, CardEnd
-
+from motionfmu.cards.wire import OPEN_KEY, PROTOCOL, TO_PC, End, proof, proved
+>
 CREDIT = 16  # [pages]
 KEPT = 8  # results of commands
 FIRST_WAIT, LAST_WAIT = 0.5, 30.0  # [s] until it connects again
 PING, PINGS = 1.0, 3  # [s] of silence, without an answer
+
+
+class CardEnd(End):
+    """The card's end; HELLO is among its bytes from the start."""
+
+    def __init__(self, key: bytes, hello: m.Hello) -> None:
+        super().__init__(TO_PC)
+        self.interval = 0  # [ms] of status, from WELCOME
+        self._key, self._hello = key, hello
+        self._proven = False
+        self.send(hello)
+
+    def _shake(self, message: m.Message | None) -> None:
+        if self._proven:
+            if not isinstance(message, m.Welcome):
+                raise m.WireError("no WELCOME")
+            self.interval, self.ready = message.interval, True
+            return
+        if not isinstance(message, m.Challenge):
+            raise m.WireError("no CHALLENGE")
+        if not self._hello.oldest <= message.protocol <= self._hello.newest:
+            raise m.WireError(f"protocol {message.protocol}")
+        proved(message.proof, proof(self._key, b"S", self._hello, message), "PC")
+        self.send(m.Auth(proof(self._key, b"C", self._hello, message)))
+        self.secure(self._key, self._hello, message)
+        self._proven = True
 
 
 class SoftCard:
