@@ -187,7 +187,7 @@ def test_what_goes_together_has_types_shapes_units_and_directions_that_do() -> N
 
 def test_terminals_are_the_bundles_that_scenarios_connect() -> None:
     """Joined by their terminals, the demo's FMUs have the wires that its scenario lists."""
-    system = motionfmu.load(ROOT / "scenarios/circle").resolved(motionfmu.run.prepared.Options())
+    system = motionfmu.load(ROOT / "scenarios/circle").resolved(motionfmu.run.run_plan.Options())
     fmu = system.components
     listed = {
         frozenset((f"{fmu[e.component]}.{e.port.name}") for e in (w.source, w.target))

@@ -16,7 +16,7 @@ from fmi_tools import ERROR, OK, Instance, unpacked
 import motionfmu
 from motionfmu import fused
 from motionfmu.fused import parts
-from motionfmu.run.prepared import Options
+from motionfmu.run.run_plan import Options
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
 

@@ -11,7 +11,7 @@ from contour_runs import Machine, Program, run_along
 from motionfmu.analysis.contour import ContourResult, analyse, result, scaled
 from motionfmu.report import drawing
 from motionfmu.run import decimate
-from motionfmu.run.stored import json_of
+from motionfmu.run.result_files import json_of
 
 
 def zigzag(moves: int, step: float = 1e-3) -> ContourResult:
@@ -86,7 +86,7 @@ def test_a_path_of_many_segments_is_drawn_by_those_that_show(monkeypatch) -> Non
 
 
 def test_arrays_that_are_made_in_parts_are_the_whole() -> None:
-    from motionfmu.run.stored import track
+    from motionfmu.run.result_files import track
 
     found = zigzag(30)
     whole = track(found)

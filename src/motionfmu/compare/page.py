@@ -20,7 +20,7 @@ from motionfmu.report.numbers import figure, length
 from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.tables import cards, judged, table
 from motionfmu.run.checks import parts, together
-from motionfmu.run.stored import NUMBERS
+from motionfmu.run.result_files import NUMBERS
 
 PAGE = "report.html"
 ELEMENTS = 40  # of signals are drawn; all are in the table

@@ -13,7 +13,7 @@ from motionfmu.base.columns import TIME, Columns
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file
 from motionfmu.run import Result, Scenario, load
-from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, numbers, track
+from motionfmu.run.result_files import NUMBERS, SIGNALS, TRACK, numbers, track
 
 WANTED = ("scenario", "ok", "checks", "units", "figures", "run")
 

@@ -3,7 +3,7 @@
 from collections.abc import Collection
 
 from motionfmu.base.errors import InputError, suggestion
-from motionfmu.run.prepared import Prepared
+from motionfmu.run.run_plan import RunPlan
 from motionfmu.scenarios.system import End
 
 # Version of SSP by the version of FMI of its FMUs.
@@ -18,7 +18,7 @@ def check_version(fmi: int) -> None:
 
 
 def also_shown(
-    scenario: Prepared, patterns: Collection[str], causalities: Collection[str]
+    scenario: RunPlan, patterns: Collection[str], causalities: Collection[str]
 ) -> list[End]:
     """What a scenario records, and what patterns name beside it; numbers and Booleans."""
     found = {e.name: e for e in scenario.ends}

@@ -16,7 +16,7 @@ from motionfmu.export.resources import Resources
 from motionfmu.fmu import shown
 from motionfmu.fmu.pack import RESOURCES, write_whole
 from motionfmu.fused.carried import carrying, placed
-from motionfmu.run.prepared import Options, Prepared
+from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import fmus
 
 PROGRAM = "program.json"  # what a run here reads instead of the description
@@ -40,7 +40,7 @@ class Choice:
 
 
 def as_fmu(
-    scenario: Prepared,
+    scenario: RunPlan,
     target: Path,
     fmi: int,
     given: Mapping[str, Any],
@@ -50,7 +50,7 @@ def as_fmu(
 
     Parameters
     ----------
-    scenario : Prepared
+    scenario : RunPlan
         Its parameters, open inputs and recorded outputs become variables, by its names; its values
         are their start values, and the files that they name resources.
     target : Path

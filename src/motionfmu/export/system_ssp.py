@@ -16,7 +16,7 @@ from motionfmu.export.stimuli import FMU, Stimuli, stimuli
 from motionfmu.fmu.describe import element_names
 from motionfmu.fmu.pack import repacked, write_whole
 from motionfmu.fmu.start_values import texts
-from motionfmu.run.prepared import Options, Prepared
+from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios.fmus import fmu_path, is_ours
 from motionfmu.scenarios.system import End, Setting, System, Wire
 
@@ -42,7 +42,7 @@ class Written:
 
 
 def as_ssp(
-    scenario: Prepared,
+    scenario: RunPlan,
     target: Path,
     fmi: int,
     given: Mapping[str, Any],
@@ -54,7 +54,7 @@ def as_ssp(
 
     Parameters
     ----------
-    scenario : Prepared
+    scenario : RunPlan
         With its FMUs.
     target : Path
         The .ssp.
@@ -116,7 +116,7 @@ def _check_parts(name: str, system: System, fmi: int) -> None:
 
 
 def _structure(
-    scenario: Prepared, system: System, shown: Collection[End], driving: list[Stimuli], fmi: int
+    scenario: RunPlan, system: System, shown: Collection[End], driving: list[Stimuli], fmi: int
 ) -> ssp.Structure:
     """What the file says."""
     components = []

@@ -155,7 +155,7 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
         back = rates.steps(time, check.rate)
         time, read = time[back:], rates.reader(data, back, check.rate)
         reason = reason or ("" if len(time) else f"the run is shorter than {check.rate:g} s")
-    seen = Seen(check)
+    seen = SampleStatistics(check)
     if not reason:
         for block in _chosen(check, time, read):
             seen.add(block)
@@ -202,7 +202,7 @@ def _chosen(check: Check, time: NDArray[Any], read: Read) -> Iterator[NDArray[np
             yield block.astype(np.float64)
 
 
-class Seen:
+class SampleStatistics:
     """What bounds ask of the samples of a signal, which come in blocks."""
 
     def __init__(self, check: Check) -> None:

@@ -11,19 +11,19 @@ from motionfmu.analysis.contour.planned import path_of_text
 from motionfmu.analysis.contour.scaled import Scaled
 from motionfmu.base import units
 from motionfmu.base.errors import InputError, NoNumber
-from motionfmu.run.recorded import Recorded
+from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios.contour_signals import CARD, library_of
 
 CLOCK = 25e-9  # [s] of the card
 
 
-def _millimetres(run: Recorded, name: str) -> Scaled:
+def _millimetres(run: RunRecord, name: str) -> Scaled:
     unit = units.parse(run.resolver.end(name, "contour", "position").port.unit or "1")
     return Scaled(run[name], units.parse("mm").factor / unit.factor)
 
 
 def contour_of(
-    run: Recorded,
+    run: RunRecord,
     only_drawn: Collection[str],
     progress: Callable[[float], None] = lambda share: None,
     known: Known | None = None,
@@ -72,13 +72,13 @@ def contour_of(
         raise NoNumber(f"no contour: {error}") from None
 
 
-def _path(run: Recorded, known: Known) -> Path:
+def _path(run: RunRecord, known: Known) -> Path:
     if run.geometry is None:
         raise ValueError("the library wrote no path")
     return known.path(run.geometry, lambda text: path_of_text(text, "planned path"))
 
 
-def _traces(run: Recorded, hidden: Collection[str]) -> tuple[Trace, ...]:
+def _traces(run: RunRecord, hidden: Collection[str]) -> tuple[Trace, ...]:
     """Real signals of the drives and the card that the report also draws."""
     found = []
     for name, values in run.signals.items():

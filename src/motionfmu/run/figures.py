@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from motionfmu.base.errors import Faults
 from motionfmu.base.units import spelled
 from motionfmu.run.decimate import Read, at, few, reader
-from motionfmu.run.recorded import Recorded
+from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios import rates, recording
 from motionfmu.scenarios.body import Plot
 from motionfmu.scenarios.document import Document
@@ -96,7 +96,7 @@ def check(document: Document, step_ns: int) -> None:
     faults.tell()
 
 
-def charts(run: Recorded) -> list[Chart]:
+def charts(run: RunRecord) -> list[Chart]:
     """The figures of a run with their curves, in the order of the scenario."""
     found = []
     for i, figure in enumerate(run.resolver.document.body.figure):
@@ -108,7 +108,7 @@ def charts(run: Recorded) -> list[Chart]:
     return found
 
 
-def _panel(run: Recorded, plot: Plot, table: str, span: tuple[float, float]) -> Panel:
+def _panel(run: RunRecord, plot: Plot, table: str, span: tuple[float, float]) -> Panel:
     names, columns = [], []
     for signal in plot.signals:
         end, elements = recording.elements(run.resolver, signal, table, "signals")
@@ -125,7 +125,7 @@ def _panel(run: Recorded, plot: Plot, table: str, span: tuple[float, float]) -> 
 
 
 def _curve(
-    run: Recorded, plot: Plot, name: str, data: NDArray[Any], span: tuple[float, float]
+    run: RunRecord, plot: Plot, name: str, data: NDArray[Any], span: tuple[float, float]
 ) -> Curve:
     """Samples of a signal in the span, and one on either side of it."""
     time, read = run.time, reader(data)
@@ -155,7 +155,7 @@ def curve(
     return Curve(name, time[first:last][kept], at(inside, kept), steps, all=False)
 
 
-def overview(run: Recorded, ends: Sequence[End]) -> list[Chart]:
+def overview(run: RunRecord, ends: Sequence[End]) -> list[Chart]:
     """A figure over the whole run of each of the first `OVERVIEW` signals, elements together."""
     span = (float(run.time[0]), float(run.time[-1]))
     found = []

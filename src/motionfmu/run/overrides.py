@@ -8,7 +8,7 @@ from motionfmu.scenarios.system import System
 from motionfmu.scenarios.values import settings, start_values
 
 if TYPE_CHECKING:
-    from motionfmu.run.prepared import Options, Prepared
+    from motionfmu.run.run_plan import Options, RunPlan
 
 
 def _value(values: tuple[Any, ...]) -> str:
@@ -21,7 +21,7 @@ def _value(values: tuple[Any, ...]) -> str:
     return text.lower() if isinstance(values[0], bool) else text
 
 
-def overrides(scenario: "Prepared", options: "Options", system: System) -> list[str]:
+def overrides(scenario: "RunPlan", options: "Options", system: System) -> list[str]:
     """One line for each value that is not the scenario's own; none if it runs as written."""
     body = scenario.document.body
     written = {s.end.name: s for s in settings(scenario.resolver, {})}

@@ -17,7 +17,7 @@ from motionfmu.base.extras import needed
 from motionfmu.run import figures, signals, waveforms
 from motionfmu.run.checks import TABLES, Verdict, is_figure, judge
 from motionfmu.run.figures import Chart
-from motionfmu.run.prepared import Prepared
+from motionfmu.run.run_plan import RunPlan
 from motionfmu.scenarios import values
 from motionfmu.scenarios.system import Resolver
 
@@ -91,7 +91,7 @@ class Result(Mapping[str, NDArray[Any]]):
     >>> result.plot("mcc.path_feed", ("drives.torque[1]", "drives.torque[2]"))  # doctest: +SKIP
     """
 
-    scenario: Prepared
+    scenario: RunPlan
     time: NDArray[np.float64]
     signals: Mapping[str, NDArray[Any]]
     parameters: dict[str, Any]

@@ -97,7 +97,7 @@ def judged(
         return [replace(bare, seconds=time.perf_counter() - start, error=str(error))]
 
 
-class _Worker:
+class _SuiteWorker:
     """A process that judges one scenario after the other."""
 
     def __init__(self, temporary: str) -> None:
@@ -142,16 +142,16 @@ def together(
     paths: Sequence[Path], options: Mapping[str, Any], contraries: bool, workers: int
 ) -> Iterator[list[Case]]:
     """Cases of each scenario, in the order of the paths, whatever the number of processes."""
-    running: list[_Worker] = []
+    running: list[_SuiteWorker] = []
     own, lock, ended = threading.local(), threading.Lock(), threading.Event()
 
     def one(path: Path) -> list[Case]:
-        worker: _Worker | None = getattr(own, "worker", None)
+        worker: _SuiteWorker | None = getattr(own, "worker", None)
         if worker is None:
             with lock:  # a pipe's other end is open in no other child
                 if ended.is_set():
                     return []
-                worker = own.worker = _Worker(temporary)
+                worker = own.worker = _SuiteWorker(temporary)
                 running.append(worker)
         cases = worker.judged(path, options, contraries)
         if cases is not None:

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
 from typing import Any
 
-from motionfmu.run.engines.job import Ran
-from motionfmu.run.engines.scoped import Scoped
+from motionfmu.run.engines.engine_job import EngineResult
+from motionfmu.run.engines.scopes import ScopeSystem
 from motionfmu.scenarios.system import System
 
 # Calls of the progress in a run.
@@ -33,9 +33,9 @@ class Ending:
         self.steps = system.steps
         self.signal: int | None = None
 
-    def ran(self, engine: str, scopes: Scoped, warnings: list[str]) -> Ran:
+    def ran(self, engine: str, scopes: ScopeSystem, warnings: list[str]) -> EngineResult:
         """What is told at the end."""
-        return Ran(engine, scopes.signals(), warnings, self.steps, self.signal)
+        return EngineResult(engine, scopes.signals(), warnings, self.steps, self.signal)
 
     def points(self, progress: Callable[[float], None]) -> Iterator[int]:
         """Communication points from which a step is to be made, one after the other."""

@@ -8,8 +8,8 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions
 from fmpy.fmi3 import FMU3Slave
 
-from motionfmu.run.engines.job import Job
-from motionfmu.run.engines.library import Library, Log, Refused, Told, read
+from motionfmu.run.engines.engine_job import EngineJob
+from motionfmu.run.engines.fmu_library import BindingLog, FmuRefusal, Library, Log, read
 from motionfmu.run.engines.reference import Master
 from motionfmu.run.engines.slave import Slave
 
@@ -53,7 +53,7 @@ class FmpyLibrary(Library):
             given["logMessage"] = lambda _, status, __, text: log(status, read(text))
         else:
             # FMPy's own logger of FMI 2 is one for the process: it cannot tell whose message it is.
-            self._log = Told.to(log)
+            self._log = BindingLog.to(log)
             given["callbacks"] = fmi2CallbackFunctions.from_buffer(self._log.callbacks())
         try:
             self._slave.instantiate(**given)
@@ -62,7 +62,7 @@ class FmpyLibrary(Library):
                 raise
             self._slave.freeLibrary()
             self._slave = None
-            raise Refused("instantiate") from None
+            raise FmuRefusal("instantiate") from None
         self.instance = c_void_p(self._slave.component)
 
     def release(self) -> None:
@@ -82,6 +82,6 @@ class FmpySlave(Slave):
     loads = FmpyLibrary
 
 
-def opened(job: Job) -> Master:
+def opened(job: EngineJob) -> Master:
     """Plan a job."""
     return Master(job, "fmpy", FmpySlave)

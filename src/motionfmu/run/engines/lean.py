@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 from motionfmu.base.compiler import compiler
 from motionfmu.base.errors import InputError
 from motionfmu.fused import layer
-from motionfmu.run.engines.messages import ERROR
+from motionfmu.run.engines.fmu_messages import ERROR
 from motionfmu.scenarios import fmus
 
 _FUNCTION = re.compile(r"^#define (fmi[23]\w+) +fmi[23]FullName", re.MULTILINE)

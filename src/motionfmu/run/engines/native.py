@@ -14,8 +14,8 @@ from fmu_manipulation_toolbox.container import FMUContainer
 
 from motionfmu.run.engines import lean
 from motionfmu.run.engines.ending import shares
-from motionfmu.run.engines.job import Job, Progress, Ran
-from motionfmu.run.engines.scoped import Scoped
+from motionfmu.run.engines.engine_job import EngineJob, EngineResult, Progress
+from motionfmu.run.engines.scopes import ScopeSystem
 from motionfmu.run.engines.slave import Slave, ending_of, exposed
 from motionfmu.scenarios.system import End, Setting, Stimulus, System
 
@@ -85,8 +85,8 @@ class Container:
     The system's settings say what can be set in a run.
     """
 
-    def __init__(self, job: Job) -> None:
-        self._scopes, self._fmi = Scoped(job), job.fmi
+    def __init__(self, job: EngineJob) -> None:
+        self._scopes, self._fmi = ScopeSystem(job), job.fmi
         self._folder = tempfile.TemporaryDirectory(prefix="motionfmu-")
         try:
             built = build(self._scopes.system, job.fmi, Path(self._folder.name))
@@ -96,7 +96,7 @@ class Container:
             raise
         self._used = False
 
-    def run(self, system: System, progress: Progress) -> Ran:
+    def run(self, system: System, progress: Progress) -> EngineResult:
         """Run from the start."""
         slave, system = self._slave, self._scopes.of(system)
         if self._used:
@@ -141,6 +141,6 @@ class Container:
             self._folder.cleanup()
 
 
-def opened(job: Job) -> Container:
+def opened(job: EngineJob) -> Container:
     """Build the container of a job."""
     return Container(job)

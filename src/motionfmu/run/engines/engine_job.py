@@ -12,7 +12,7 @@ Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
-class Job:
+class EngineJob:
     """What one run or many are made of; runs differ in values only."""
 
     system: System
@@ -23,7 +23,7 @@ class Job:
 
 
 @dataclass(frozen=True)
-class Ran:
+class EngineResult:
     """What an engine tells of a run."""
 
     engine: str  # its name
@@ -36,7 +36,7 @@ class Ran:
 class Engine(Protocol):
     """A system that is ready to run, once or many times."""
 
-    def run(self, system: System, progress: Progress) -> Ran:
+    def run(self, system: System, progress: Progress) -> EngineResult:
         """Run from the start a system that differs from the job's in values only."""
 
     def close(self) -> None:

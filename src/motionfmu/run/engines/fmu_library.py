@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from motionfmu.run.engines.messages import WARNING
+from motionfmu.run.engines.fmu_messages import WARNING
 
 Log = Callable[[int, str], None]  # status and message
 
@@ -33,14 +33,14 @@ class _Callbacks(ctypes.Structure):
     )
 
 
-class Told(ctypes.Structure):
+class BindingLog(ctypes.Structure):
     """struct binding_log, the environment of an instance of FMI 2; it is to live as long."""
 
     _TOLD = ctypes.CFUNCTYPE(None, c_int, c_char_p)
     _fields_ = (("told", _TOLD),)
 
     @classmethod
-    def to(cls, log: Log) -> "Told":
+    def to(cls, log: Log) -> "BindingLog":
         """One that tells a log, the values of a format filled in."""
         return cls(cls._TOLD(lambda status, text: log(status, read(text))))
 
@@ -55,7 +55,7 @@ class Told(ctypes.Structure):
 
 
 @dataclass(frozen=True)
-class Variable:
+class ValuePlace:
     """Where a value is: its type of FMI 3, its first reference, its elements."""
 
     type: str
@@ -63,7 +63,7 @@ class Variable:
     count: int
 
 
-class Refused(Exception):
+class FmuRefusal(Exception):
     """A call that the FMU refused; what it says of it went to the log."""
 
 
@@ -81,7 +81,7 @@ class Library:
     def call(self, name: str, *arguments: Any) -> None:
         """Call a function of the instance."""
         if self.function(name)(self.instance, *arguments) > WARNING:
-            raise Refused(name)
+            raise FmuRefusal(name)
 
     def instantiate(
         self, name: str, token: str, resources: Path, log: Log, everything: bool = False
@@ -97,7 +97,7 @@ class Library:
             told = (off, c_bool(everything), off, off)
             rest = (*told, nothing, c_size_t(0), nothing, self._log, nothing)
         else:
-            self._log = Told.to(log)
+            self._log = BindingLog.to(log)
             self._callbacks = self._log.callbacks()
             make, given = self.function("Instantiate"), resources.as_uri().encode()
             texts.insert(1, c_int(1))  # for co-simulation
@@ -105,22 +105,22 @@ class Library:
         make.restype = c_void_p
         self.instance = c_void_p(make(*texts, given, *rest))
         if not self.instance:
-            raise Refused("instantiate")
+            raise FmuRefusal("instantiate")
 
     def warn(self) -> None:
         """Let an FMU of ours tell its warnings, too."""
         categories = (c_char_p * 1)(b"logStatusWarning")
         self.call("SetDebugLogging", c_bool(True), c_size_t(1), categories)
 
-    def _several(self, variables: Iterable[Variable]) -> Any:
+    def _several(self, variables: Iterable[ValuePlace]) -> Any:
         """References of variables; in FMI 2 one for each element."""
         elements = 1 if self.fmi == 3 else None
         found = [v.reference + i for v in variables for i in range(elements or v.count)]
         return (c_uint32 * len(found))(*found)
 
-    def set(self, values: Iterable[tuple[Variable, Sequence[Any]]]) -> None:
+    def set(self, values: Iterable[tuple[ValuePlace, Sequence[Any]]]) -> None:
         """Set variables: a call for each type."""
-        by_kind: dict[str, list[tuple[Variable, Sequence[Any]]]] = {}
+        by_kind: dict[str, list[tuple[ValuePlace, Sequence[Any]]]] = {}
         for variable, given in values:
             by_kind.setdefault(variable.type, []).append((variable, given))
         for kind, several in by_kind.items():
@@ -134,7 +134,7 @@ class Library:
         c = c_int if (self.fmi, kind) == (2, "Boolean") else _VALUES[kind]
         return (c * count)()
 
-    def access(self, verb: str, variables: Sequence[Variable], buffer: Any) -> Callable[[], None]:
+    def access(self, verb: str, variables: Sequence[ValuePlace], buffer: Any) -> Callable[[], None]:
         """A quick function that gets or sets variables of a type through their buffer."""
         kind, references = variables[0].type, self._several(variables)
         name = f"{verb}{kind if self.fmi == 3 else NAMES[kind]}"
@@ -144,11 +144,11 @@ class Library:
 
         def run() -> None:
             if call(*arguments) > WARNING:
-                raise Refused(name)
+                raise FmuRefusal(name)
 
         return run
 
-    def get(self, variable: Variable) -> list[Any]:
+    def get(self, variable: ValuePlace) -> list[Any]:
         """Elements of a number."""
         values = self.buffer(variable.type, variable.count)
         self.access("Get", [variable], values)()
@@ -179,7 +179,7 @@ class Library:
 
         def advance(time: float) -> None:
             if step(instance, c_double(time), length, *rest) > WARNING:
-                raise Refused("doStep")
+                raise FmuRefusal("doStep")
 
         return advance
 

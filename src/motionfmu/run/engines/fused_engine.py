@@ -11,10 +11,10 @@ from motionfmu import fused
 from motionfmu.base.columns import Columns
 from motionfmu.fmu.describe import STRICT
 from motionfmu.fused.carried import carrying, placed
-from motionfmu.run.engines import messages
+from motionfmu.run.engines import fmu_messages
 from motionfmu.run.engines.ending import shares
-from motionfmu.run.engines.job import Job, Progress, Ran
-from motionfmu.run.engines.library import Library, Refused, Variable
+from motionfmu.run.engines.engine_job import EngineJob, EngineResult, Progress
+from motionfmu.run.engines.fmu_library import FmuRefusal, Library, ValuePlace
 from motionfmu.scenarios.system import System
 
 NAME = "system"
@@ -29,18 +29,18 @@ _SET = re.compile(r"^(fmi[23]\w+: )(\w+)\.(?=\w)")
 class Fused:
     """A program, and an instance of it for each run."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: EngineJob) -> None:
         self._job, self._signals = job, job.folder / "signals"
         self._carrying = carrying(job.system)
         self._folder = fused.program(job.system, job.recorded, job.fmi).folder
         about = json.loads((self._folder / "program.json").read_bytes())
         self._token: str = about["token"]
-        self._variables = {name: Variable(*row) for name, row in about["variables"].items()}
+        self._variables = {name: ValuePlace(*row) for name, row in about["variables"].items()}
         self._library = Library(self._folder / about["library"], job.fmi)
         self._errors: list[str] = []
         self._warnings: list[str] = []
 
-    def run(self, system: System, progress: Progress) -> Ran:
+    def run(self, system: System, progress: Progress) -> EngineResult:
         """Run from the start."""
         library = self._library
         self._errors.clear()
@@ -53,14 +53,14 @@ class Fused:
             library.leave()
             steps, signal = self._advance(system, progress)
             library.terminate()
-        except Refused as refused:
-            raise messages.failure(NAME, str(refused), self._errors) from None
+        except FmuRefusal as refused:
+            raise fmu_messages.failure(NAME, str(refused), self._errors) from None
         finally:
             library.release()
         progress(1.0)
         names = [end.name for end in self._job.recorded]
         signals = Columns.taken(self._signals, names) if names else Columns({})
-        return Ran("fused", signals, [*self._warnings], steps, signal)
+        return EngineResult("fused", signals, [*self._warnings], steps, signal)
 
     def _set(self, system: System) -> None:
         settings = placed(system, self._carrying).settings
@@ -93,15 +93,15 @@ class Fused:
     def _tell(self, status: int, text: str) -> None:
         told = text.strip().removeprefix(f"{NAME}: ")
         told = _SET.sub(r"\2: \1", told)
-        if messages.unnamed(told) or told.startswith("fmi"):
+        if fmu_messages.unnamed(told) or told.startswith("fmi"):
             told = f"{NAME}: {told}"
-        messages.keep(status, told, self._errors, self._warnings)
+        fmu_messages.keep(status, told, self._errors, self._warnings)
 
     def close(self) -> None:
         """Free the program; it is kept on the disk."""
         self._library.close()
 
 
-def opened(job: Job) -> Fused:
+def opened(job: EngineJob) -> Fused:
     """Make or find the program of a job, and load it."""
     return Fused(job)

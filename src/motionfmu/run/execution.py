@@ -9,35 +9,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError
-from motionfmu.run.engines.job import Job, Ran
+from motionfmu.run.engines.engine_job import EngineJob, EngineResult
 from motionfmu.run.overrides import overrides
-from motionfmu.run.prepared import Options, Prepared
 from motionfmu.run.result import Result
+from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import End, System
 
 PLANNED = "path.csv"
 
 
-def own_settings(scenario: Prepared, folder: Path) -> dict[str, Any]:
+def own_settings(scenario: RunPlan, folder: Path) -> dict[str, Any]:
     """Where the library writes the path that it plans."""
     library = scenario.library()
     return {f"{library}.path_file": str(folder / PLANNED)} if library else {}
 
 
 @dataclass(frozen=True)
-class Wired:
+class Execution:
     """One run, ready for an engine."""
 
-    scenario: Prepared
+    scenario: RunPlan
     system: System
     recorded: tuple[End, ...]
     folder: Path  # for its files
 
     @classmethod
     def plan(
-        cls, scenario: Prepared, options: Options, ends: Iterable[End], folder: Path
-    ) -> "Wired":
+        cls, scenario: RunPlan, options: Options, ends: Iterable[End], folder: Path
+    ) -> "Execution":
         """Say what is run and recorded, with files in a folder."""
         planned = cls(scenario, scenario.resolved(options), tuple(ends), folder)
         scenario.check_scopes(planned.system, options)
@@ -45,12 +45,12 @@ class Wired:
             raise InputError(told)
         return planned
 
-    def job(self, fmi: int) -> Job:
+    def job(self, fmi: int) -> EngineJob:
         """What an engine is to make ready; elements are variables of their own in FMI 2 only."""
         given = 2 if self.system.elementwise else fmi
-        return Job(self.system, self.recorded, self.folder, given)
+        return EngineJob(self.system, self.recorded, self.folder, given)
 
-    def run(self, engine: Callable[[System], Ran], options: Options) -> Result:
+    def run(self, engine: Callable[[System], EngineResult], options: Options) -> Result:
         """Run it; an FMU's message says where its value stands."""
         planned = self.folder / PLANNED
         planned.unlink(missing_ok=True)
@@ -76,7 +76,7 @@ class Wired:
             signal_at=signal,
         )
 
-    def _stopped(self, ran: Ran) -> tuple[str, float | None]:
+    def _stopped(self, ran: EngineResult) -> tuple[str, float | None]:
         """Why the run ended, and when the signal that ends it came [s]."""
         until = self.system.until
         if until is None:

@@ -4,15 +4,15 @@ from dataclasses import replace
 
 from motionfmu.base.columns import Columns
 from motionfmu.base.errors import InputError
-from motionfmu.run.engines.job import Job
+from motionfmu.run.engines.engine_job import EngineJob
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import System
 
 
-class Scoped:
+class ScopeSystem:
     """A job's system with scopes."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: EngineJob) -> None:
         self.system, self._traces = recording.plan(job.system, job.recorded, job.folder)
         if told := recording.refused(self.system)[1]:
             raise InputError(f"{told} in an engine that records in memory")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from motionfmu.scenarios.system import Resolver
 
 
-class Recorded(Protocol):
+class RunRecord(Protocol):
     """A run's signals and parameters; `Result` is one."""
 
     time: NDArray[np.float64]  # [s], shape (N,)

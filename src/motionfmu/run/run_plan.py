@@ -67,7 +67,7 @@ class Options:
         return {name: getattr(self, name) for name in names} | {"set": dict(self.set)}
 
 
-class Prepared:
+class RunPlan:
     """A scenario with its FMUs, and what is recorded of it; checked."""
 
     def __init__(self, source: str | Path | files.Document) -> None:
