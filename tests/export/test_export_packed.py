@@ -12,7 +12,7 @@ from fmpy import read_model_description, simulate_fmu
 
 import motionfmu
 from motionfmu.base.errors import InputError
-from motionfmu.export.packed import packed
+from motionfmu.export.single_fmu import packed
 from motionfmu.export.system_fmu import as_fmu as export
 
 both = pytest.mark.parametrize("fmi", (2, 3))

@@ -13,7 +13,7 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.extras import Missing
 from motionfmu.base.units import spelled
 from motionfmu.cli.common import app
-from motionfmu.cli.plain import width
+from motionfmu.cli.console_text import width
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario

@@ -11,11 +11,11 @@ from motionfmu import fused
 from motionfmu.base.errors import InputError
 from motionfmu.base.platforms import Platform
 from motionfmu.base.toml_lines import is_file
-from motionfmu.export.chosen import also_shown, check_version
+from motionfmu.export.export_choice import also_shown, check_version
 from motionfmu.export.resources import Resources
 from motionfmu.fmu import shown
 from motionfmu.fmu.pack import RESOURCES, write_whole
-from motionfmu.fused.carried import carrying, placed
+from motionfmu.fused.resource_files import carrying, placed
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import fmus
 

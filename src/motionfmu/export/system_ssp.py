@@ -9,7 +9,7 @@ from typing import Any
 from motionfmu import ssp
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file
-from motionfmu.export.chosen import VERSIONS, also_shown, check_version
+from motionfmu.export.export_choice import VERSIONS, also_shown, check_version
 from motionfmu.export.resources import Resources
 from motionfmu.export.ssp_values import kind, values
 from motionfmu.export.stimuli import FMU, Stimuli, stimuli

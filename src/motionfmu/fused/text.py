@@ -5,8 +5,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from motionfmu.fmu.ctables import member
-from motionfmu.fused.description import Roles
-from motionfmu.fused.parts import Part
+from motionfmu.fused.fmu_parts import FmuPart
+from motionfmu.fused.system_variables import Roles
 from motionfmu.scenarios.system import End, System
 
 _KINDS = {"Float64": "d", "Int32": "i", "Boolean": "b"}
@@ -63,7 +63,7 @@ def _table(head: str, rows: Sequence[str]) -> str:
     return f"static const {head}[] = {{\n" + "".join(f"    {row},\n" for row in listed) + "};\n"
 
 
-def _structs(parts: Mapping[str, Part]) -> Iterable[str]:
+def _structs(parts: Mapping[str, FmuPart]) -> Iterable[str]:
     for p in {p.identifier: p for p in parts.values()}.values():
         name = f"struct {p.identifier}_vars"
         yield f"{name} {{\n{p.members}}};\n"
@@ -71,7 +71,7 @@ def _structs(parts: Mapping[str, Part]) -> Iterable[str]:
         yield f"SYSTEM_PART(motionfmu_part_{p.identifier});\n\n"
 
 
-def _model(system: System, parts: Mapping[str, Part]) -> str:
+def _model(system: System, parts: Mapping[str, FmuPart]) -> str:
     lines = []
     for component, fmu in system.components.items():
         p = parts[fmu]
@@ -84,7 +84,7 @@ def _model(system: System, parts: Mapping[str, Part]) -> str:
     )
 
 
-def _gives(system: System, parts: Mapping[str, Part], used: Roles) -> Iterable[str]:
+def _gives(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterable[str]:
     for component, fmu in system.components.items():
         mine = [e for e in used.given if e.component == component]
         lines = [f"struct {parts[fmu].identifier}_vars *to = part;"]
@@ -110,7 +110,7 @@ def _until(system: System) -> str:
     return _function("bool system_until(const struct model *m)", [line], ["m"])
 
 
-def _step(system: System, parts: Mapping[str, Part]) -> str:
+def _step(system: System, parts: Mapping[str, FmuPart]) -> str:
     calls = [
         f"motionfmu_part_{parts[fmu].identifier}.step(&m->of_{component}, t0, t1) != 0"
         for component, fmu in system.components.items()
@@ -129,7 +129,7 @@ def _shows(system: System, used: Roles) -> Iterable[str]:
     yield _function("void system_show(const struct model *m, struct vars *v)", shown, ["m", "v"])
 
 
-def _tables(system: System, parts: Mapping[str, Part], recorded: Sequence[End]) -> Iterable[str]:
+def _tables(system: System, parts: Mapping[str, FmuPart], recorded: Sequence[End]) -> Iterable[str]:
     yield f"enum {{ SYSTEM_PARTS = {len(system.components)}, SYSTEM_WIRES = {len(system.wires)}, "
     yield f"SYSTEM_COLUMNS = {len(recorded)} }};\n\n"
     yield _table(
@@ -168,7 +168,9 @@ def main_unit(fmi: int, quickly: bool) -> str:
     )
 
 
-def model(system: System, parts: Mapping[str, Part], used: Roles, recorded: Sequence[End]) -> str:
+def model(
+    system: System, parts: Mapping[str, FmuPart], used: Roles, recorded: Sequence[End]
+) -> str:
     """Text of model.c; `parts` by the names of the FMUs."""
     pieces = [
         "/* Generated from a scenario's components and wires; do not edit. */\n"

@@ -94,7 +94,7 @@ def usual(system: System) -> tuple[str, str]:
     """The engine that runs a system if none is named, and why it is that one; empty for fused."""
     if given := named(None):
         return given, VARIABLE
-    from motionfmu.fused.parts import NotFused, carried
+    from motionfmu.fused.fmu_parts import NotFused, carried
 
     if why := unfused(system):
         return "native", why

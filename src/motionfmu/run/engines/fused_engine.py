@@ -10,7 +10,7 @@ from typing import Any
 from motionfmu import fused
 from motionfmu.base.columns import Columns
 from motionfmu.fmu.describe import STRICT
-from motionfmu.fused.carried import carrying, placed
+from motionfmu.fused.resource_files import carrying, placed
 from motionfmu.run.engines import fmu_messages
 from motionfmu.run.engines.ending import shares
 from motionfmu.run.engines.engine_job import EngineJob, EngineResult, Progress

@@ -16,7 +16,7 @@ def pack(
     name: str, target: Path | None, fmi: int, program: Path | None, given: Mapping[str, Any]
 ) -> None:
     """Write an FMU with its files inside, and say what it has."""
-    from motionfmu.export.packed import packed, program_of
+    from motionfmu.export.single_fmu import packed, program_of
 
     values = {key.removeprefix(f"{name}."): value for key, value in given.items()}
     if program is not None:

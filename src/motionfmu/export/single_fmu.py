@@ -6,7 +6,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.toml_lines import is_file
-from motionfmu.export.chosen import check_version
+from motionfmu.export.export_choice import check_version
 from motionfmu.export.resources import Resources
 from motionfmu.fmu import places
 from motionfmu.fmu.pack import repacked

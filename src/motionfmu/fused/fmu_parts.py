@@ -29,7 +29,7 @@ class NoCompiler(NotFused):
 
 
 @dataclass(frozen=True)
-class Part:
+class FmuPart:
     """An FMU's model as an object."""
 
     identifier: str  # of the model; the object shows motionfmu_part_<identifier>
@@ -60,7 +60,7 @@ def carried(name: str) -> bool:
     return there
 
 
-def part(name: str) -> Part:
+def part(name: str) -> FmuPart:
     """Read the part of an FMU; NotFused if it has none, nor C text of one."""
     there = carried(name)
     with opened(name) as archive:
@@ -71,7 +71,7 @@ def part(name: str) -> Part:
         raise NotFused(f"{name} carries a part of another version")
     defined = dict(_DEFINED.findall(header))
     text = members[1].replace("FMU_STRING_MAX", defined["STRING_MAX"])
-    return Part(
+    return FmuPart(
         identifier=defined["NAME"],
         tick_ns=int(defined["TICK_NS"]),
         members=text,

@@ -10,13 +10,13 @@ from motionfmu.base.compiler import FLAGS, compiler, cross, none
 from motionfmu.base.extras import install
 from motionfmu.base.platforms import Platform
 from motionfmu.fused import layer
-from motionfmu.fused.parts import NoCompiler, NotFused
+from motionfmu.fused.fmu_parts import NoCompiler, NotFused
 from motionfmu.scenarios.fmus import digest
 from motionfmu.scenarios.system import End, System, Values
 
 
 @dataclass(frozen=True)
-class Program:
+class FusedProgram:
     """A system as an FMU, unpacked.
 
     Attributes
@@ -32,7 +32,9 @@ class Program:
     fmi: int
 
 
-def program(system: System, recorded: Sequence[End], fmi: int = 3, name: str = "System") -> Program:
+def program(
+    system: System, recorded: Sequence[End], fmi: int = 3, name: str = "System"
+) -> FusedProgram:
     """Make a system one program, or find the one that was made.
 
     A program depends on what the system is made of, not on values: settings, stimuli, the number of
@@ -63,7 +65,7 @@ def exported(
     fmi: int = 3,
     name: str = "System",
     platforms: Sequence[Platform] = (),
-) -> Program:
+) -> FusedProgram:
     """As `program`, with the system's settings as start values.
 
     Parameters
@@ -97,7 +99,7 @@ def _made(
     fmi: int,
     name: str,
     to_export: "_Exported | None",
-) -> Program:
+) -> FusedProgram:
     given = to_export.given if to_export else None
     platforms = to_export.platforms if to_export else ()
     cc = cross() if platforms else compiler()
@@ -116,11 +118,15 @@ def _made(
     )
 
     def make(folder: Path) -> None:
-        from motionfmu.fused import making  # what generates C is needed here only
+        from motionfmu.fused import program_files  # what generates C is needed here only
 
-        making.make(folder, making.Job(system, recorded, fmi, name, key, given, platforms), cc)
+        program_files.make(
+            folder,
+            program_files.ProgramPlan(system, recorded, fmi, name, key, given, platforms),
+            cc,
+        )
 
-    return Program(kept.kept("fused", whole, make), fmi)
+    return FusedProgram(kept.kept("fused", whole, make), fmi)
 
 
 def _key(

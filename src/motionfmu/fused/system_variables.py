@@ -9,7 +9,7 @@ from motionfmu.base.platforms import Platform
 from motionfmu.fmu import terminals
 from motionfmu.fmu.describe import STRICT, Description, Terminal, Variable, strict_step
 from motionfmu.fmu.head import TICK_MAX
-from motionfmu.fused.parts import NotFused
+from motionfmu.fused.fmu_parts import NotFused
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.fmus import Port
 from motionfmu.scenarios.system import End, System, Values
@@ -21,7 +21,7 @@ _STEP_MAX = 1e6  # [s]
 
 
 @dataclass(frozen=True)
-class Job:
+class ProgramPlan:
     """What is to be made."""
 
     system: System
@@ -128,7 +128,7 @@ def _own(system: System, step: float, tick_ns: int) -> Iterator[Variable]:
         yield Variable("until.step", "output", "i32", text)
 
 
-def described(job: Job, used: Roles, tick_ns: int) -> Description:
+def described(job: ProgramPlan, used: Roles, tick_ns: int) -> Description:
     """Describe a system as an FMU; `tick_ns`: of which its step must be a whole multiple."""
     system, given = job.system, job.given or {}
     if tick_ns > TICK_MAX or system.step_ns % tick_ns:

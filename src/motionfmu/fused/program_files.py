@@ -10,18 +10,18 @@ from motionfmu.fmu import ctables, shown, terminals
 from motionfmu.fmu.describe import Description
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.pack import RESOURCES
-from motionfmu.fused import everywhere, layer, text
-from motionfmu.fused.carried import carrying
-from motionfmu.fused.description import TYPES, Job, described, roles
-from motionfmu.fused.parts import NotFused, Part, part
+from motionfmu.fused import cross_build, layer, text
+from motionfmu.fused.fmu_parts import FmuPart, NotFused, part
+from motionfmu.fused.resource_files import carrying
+from motionfmu.fused.system_variables import TYPES, ProgramPlan, described, roles
 from motionfmu.scenarios.system import System
 
 FMI_TYPES = {ours: fmi for fmi, ours in TYPES.items()}
 
 
-def _parts(system: System) -> dict[str, Part]:
+def _parts(system: System) -> dict[str, FmuPart]:
     found = {fmu: part(fmu) for fmu in system.components.values()}
-    models: dict[str, Part] = {}
+    models: dict[str, FmuPart] = {}
     for one in found.values():  # a model may come in several files, with other start values
         if models.setdefault(one.identifier, one) != one:
             raise NotFused(f"two FMUs with the model identifier {one.identifier} differ")
@@ -40,7 +40,7 @@ def _unpack_resources(folder: Path, system: System) -> None:
             place.write_bytes(data)
 
 
-def make(folder: Path, job: Job, cc: Compiler) -> None:
+def make(folder: Path, job: ProgramPlan, cc: Compiler) -> None:
     """Fill a folder with an unpacked FMU."""
     parts, used = _parts(job.system), roles(job.system, job.recorded)
     tick = math.lcm(*(one.tick_ns for one in parts.values()))
@@ -58,7 +58,7 @@ def make(folder: Path, job: Job, cc: Compiler) -> None:
     for file, content in texts.items():
         (sources / file).write_text(content)
     if job.platforms:
-        files = everywhere.compile_all(folder, job, {p.identifier: f for f, p in parts.items()})
+        files = cross_build.compile_all(folder, job, {p.identifier: f for f, p in parts.items()})
         (folder / "modelDescription.xml").write_bytes(model_description(d, job.fmi, files))
         _show(folder, d)
         _tell(folder, d, "")

@@ -10,14 +10,14 @@ from motionfmu.fmu import cores
 from motionfmu.fmu.inside import MAIN_UNIT
 from motionfmu.fmu.sources import NAMES, build_description, renamed
 from motionfmu.fused import layer
-from motionfmu.fused.description import Job
-from motionfmu.fused.parts import NotFused, c_files
+from motionfmu.fused.fmu_parts import NotFused, c_files
+from motionfmu.fused.system_variables import ProgramPlan
 from motionfmu.scenarios.fmus import is_foreign, opened
 
 _FLAGS = (*FLAGS, layer.OPTIMIZED, "-shared", "-s", "-DFMU_PART_INSIDE")
 
 
-def compile_all(folder: Path, job: Job, models: Mapping[str, str]) -> list[str]:
+def compile_all(folder: Path, job: ProgramPlan, models: Mapping[str, str]) -> list[str]:
     """Fill ``sources`` and ``binaries`` of a folder; returns names of the C files to compile.
 
     `models` are the FMUs by their model identifiers.
