@@ -19,9 +19,9 @@ from PIL import Image
 import motionfmu
 from motionfmu.base import units
 from motionfmu.export.system_fmu import as_fmu as export
+from motionfmu.fmu.documentation import icon_of, joined, page, png
 from motionfmu.fmu.fmu_toml import parse
 from motionfmu.fmu.modeldescription import model_description
-from motionfmu.fmu.shown import icon_of, joined, page, png
 from motionfmu.scenarios.fmus import fmu_names, fmu_path, ports, terminals_of
 
 every_fmu = pytest.mark.parametrize("name", fmu_names())

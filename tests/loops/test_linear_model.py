@@ -16,7 +16,7 @@ from motionfmu.analysis.linear.block import Plant
 from motionfmu.analysis.linear.loops import feedbacks, largest_gain
 from motionfmu.analysis.linear.stability import margins
 from motionfmu.analysis.linear.systems import System
-from motionfmu.fmu.modelica import causal, description
+from motionfmu.fmu.modelica import causal, class_description
 from motionfmu.fmu.modelica.ode import Ode
 
 T = 1e-4  # [s] sampling period of card and drives
@@ -295,7 +295,7 @@ def test_a_changed_gain_keeps_the_plant() -> None:
 def test_an_fmu_carries_the_equation_of_its_class(name: str) -> None:
     carried = law.carried(name)
     assert isinstance(carried, Ode)
-    packing = description.read(ROOT / "fmus" / name / "fmu.toml")
+    packing = class_description.read(ROOT / "fmus" / name / "fmu.toml")
     fresh = causal.load(packing.package, packing.modelica)
     assert [d.name for d in carried.states] == [d.name for d in fresh.states]
     assert carried.p0 == fresh.p0 and carried.limits == fresh.limits

@@ -18,7 +18,7 @@ from motionfmu.base.platforms import here
 from motionfmu.export import as_ssp
 from motionfmu.report import outcome
 from motionfmu.run.session import Session
-from motionfmu.ssp.imported import take
+from motionfmu.ssp.ssp_import import take
 from motionfmu.study import columns
 
 ENGINES = ("python", "native", "fmpy")

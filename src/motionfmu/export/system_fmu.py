@@ -13,14 +13,18 @@ from motionfmu.base.platforms import Platform
 from motionfmu.base.toml_lines import is_file
 from motionfmu.export.export_choice import also_shown, check_version
 from motionfmu.export.resources import Resources
-from motionfmu.fmu import shown
+from motionfmu.fmu import documentation
 from motionfmu.fmu.pack import RESOURCES, write_whole
 from motionfmu.fused.resource_files import carrying, placed
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import fmus
 
 PROGRAM = "program.json"  # what a run here reads instead of the description
-_LEFT = (PROGRAM, shown.VARIABLES, shown.TERMINALS)  # the latter two are in the documentation
+_LEFT = (
+    PROGRAM,
+    documentation.VARIABLES,
+    documentation.TERMINALS,
+)  # the latter two are in the documentation
 
 
 @dataclass(frozen=True)
@@ -102,9 +106,11 @@ def as_fmu(
     if is_file(readme):
         packed["documentation/README.md"] = readme
         text = readme.read_text()
-    icon = shown.joined([x for fmu in system.components.values() if (x := fmus.icon_of(fmu))])
+    icon = documentation.joined(
+        [x for fmu in system.components.values() if (x := fmus.icon_of(fmu))]
+    )
     about = (scenario.name, f"The system of {scenario.name}: {', '.join(system.components)}")
-    made = shown.files(fmi, program.folder, about, text, icon)
+    made = documentation.files(fmi, program.folder, about, text, icon)
     write_whole(target, {n: f.read_bytes() for n, f in packed.items()} | made)
     return len(json.loads((program.folder / PROGRAM).read_bytes())["variables"])
 

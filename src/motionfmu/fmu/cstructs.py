@@ -27,7 +27,7 @@ class _Definitions:
     lists: dict[str, str] = field(default_factory=dict)  # of X(type, name, ...), by their macro
 
 
-class _Reader:
+class _StructReader:
     """Reads the definitions of one file; what is not one is passed over."""
 
     def __init__(self, text: str, found: _Definitions) -> None:
@@ -157,7 +157,7 @@ def flags(texts: Iterable[str]) -> str:
     """
     found = _Definitions()
     for text in texts:
-        _Reader(text, found).read()
+        _StructReader(text, found).read()
     done: dict[str, str] = {}
     _looks(found, "struct model", done)
     parts = [

@@ -85,7 +85,7 @@ def load(path: str | Path) -> Description:
     """Read the description in an fmu.toml, or of the Modelica class that it names."""
     text = text_of(path)
     if names_modelica(text):
-        from motionfmu.fmu.modelica import description
+        from motionfmu.fmu.modelica import class_description
 
-        return description.from_modelica(Path(path))
+        return class_description.from_modelica(Path(path))
     return parse(text, str(path))

@@ -27,13 +27,13 @@ from motionfmu.fmu import (
     cores,
     cstructs,
     ctables,
+    documentation,
     fmu_toml,
-    shown,
     sources,
     start_values,
     terminals,
 )
-from motionfmu.fmu.inside import AGREE, EXTRA, GRID, MAIN_UNIT, PART_UNIT, PARTS, RESOURCES
+from motionfmu.fmu.archive_names import AGREE, EXTRA, GRID, MAIN_UNIT, PART_UNIT, PARTS, RESOURCES
 from motionfmu.fmu.modeldescription import model_description
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -68,8 +68,8 @@ def generate(fmu: Path, out: Path) -> None:
         d = fmu_toml.load(fmu / "fmu.toml")
     _write(out / "vars.h", ctables.header(d))
     _write(out / "vars.c", ctables.table(d))
-    _write(out / shown.VARIABLES, shown.variables(d))
-    _write(out / shown.TERMINALS, terminals.described(d.terminals))
+    _write(out / documentation.VARIABLES, documentation.variables(d))
+    _write(out / documentation.TERMINALS, terminals.described(d.terminals))
     _write(out / GRID, json.dumps({"grid": d.grid}) + "\n")
     _write(out / AGREE, json.dumps(dict(d.agree)) + "\n")
     compiled = [f.name for f in compiled_sources(fmu, out)]
@@ -125,14 +125,14 @@ def _packed_sources(fmu: Path, out: Path, fmi: int, identifier: str) -> dict[str
 
 
 @dataclass(frozen=True)
-class Compiled:
+class CompilerOutput:
     """What compilers made of an FMU."""
 
     libraries: Mapping[Platform, Path]
     part: Path  # fmu_part.h, for this machine
 
 
-def archive(folder: Path, out: Path, fmi: int, compiled: Compiled, target: Path) -> None:
+def archive(folder: Path, out: Path, fmi: int, compiled: CompilerOutput, target: Path) -> None:
     """Pack one .fmu of its folder, generated text and library; equal input gives equal bytes."""
     xml = (out / f"fmi{fmi}/modelDescription.xml").read_bytes()
     match = re.search(rb'modelIdentifier="(\w+)"', xml)
@@ -146,7 +146,9 @@ def archive(folder: Path, out: Path, fmi: int, compiled: Compiled, target: Path)
     readme = "".join(file.read_text() for file in folder.glob("README.md"))
     about = re.search(rb'description="([^"]*)"', xml)
     words = html.unescape(about[1].decode()) if about else ""
-    files |= shown.files(fmi, out, (identifier, words), readme, shown.icon_of(folder))
+    files |= documentation.files(
+        fmi, out, (identifier, words), readme, documentation.icon_of(folder)
+    )
     if readme:
         files["documentation/README.md"] = readme.encode()
     if fmi == 3:
@@ -238,7 +240,7 @@ def main(arguments: list[str]) -> int:
                 platforms.here() if name == "here" else Platform(name): Path(file)
                 for name, file in named.items()
             }
-            compiled = Compiled(libraries, Path(part))
+            compiled = CompilerOutput(libraries, Path(part))
             archive(Path(fmu), Path(out), int(fmi), compiled, Path(target))
     except ValueError as error:
         print(error, file=sys.stderr)

@@ -24,7 +24,7 @@ def texts(values: Iterable[float | int | bool | str]) -> tuple[str, ...]:
     return tuple(str(v).lower() if isinstance(v, bool) else str(v) for v in values)
 
 
-class _Variable:
+class _StartVariable:
     """A variable in the tree of a description of either version, an array as one."""
 
     def __init__(self, name: str) -> None:
@@ -92,12 +92,12 @@ class _Variable:
         return repr(value), f"{int(share * 2**53)}p{power - 53}"
 
 
-def _variables(root: ET.Element) -> dict[str, _Variable]:
-    found: dict[str, _Variable] = {}
+def _variables(root: ET.Element) -> dict[str, _StartVariable]:
+    found: dict[str, _StartVariable] = {}
     for about in root.iterfind("ModelVariables/*"):
         row = next(iter(about)) if about.tag == "ScalarVariable" else about
         name = about.attrib["name"].partition("[")[0]
-        found.setdefault(name, _Variable(name)).add(about, row)
+        found.setdefault(name, _StartVariable(name)).add(about, row)
     return found
 
 

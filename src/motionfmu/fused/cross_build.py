@@ -7,7 +7,7 @@ from pathlib import Path
 from motionfmu.base import platforms
 from motionfmu.base.compiler import FLAGS, cross
 from motionfmu.fmu import cores
-from motionfmu.fmu.inside import MAIN_UNIT
+from motionfmu.fmu.archive_names import MAIN_UNIT
 from motionfmu.fmu.sources import NAMES, build_description, renamed
 from motionfmu.fused import layer
 from motionfmu.fused.fmu_parts import NotFused, c_files

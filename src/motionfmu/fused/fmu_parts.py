@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 from motionfmu.base import kept
 from motionfmu.base.compiler import FLAGS, Compiler, compiler
 from motionfmu.base.platforms import here
-from motionfmu.fmu.inside import MAIN_UNIT, PART_UNIT, PARTS
+from motionfmu.fmu.archive_names import MAIN_UNIT, PART_UNIT, PARTS
 from motionfmu.scenarios.fmus import digest, opened
 
 # Interface, instance and struct vars [bytes]: how the object of a part says them.

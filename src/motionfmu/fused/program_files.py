@@ -6,7 +6,7 @@ from pathlib import Path
 
 from motionfmu.base.compiler import Compiler
 from motionfmu.base.platforms import here
-from motionfmu.fmu import ctables, shown, terminals
+from motionfmu.fmu import ctables, documentation, terminals
 from motionfmu.fmu.describe import Description
 from motionfmu.fmu.modeldescription import model_description
 from motionfmu.fmu.pack import RESOURCES
@@ -87,8 +87,8 @@ def make(folder: Path, job: ProgramPlan, cc: Compiler) -> None:
 
 def _show(folder: Path, d: Description) -> None:
     """What the documentation of an exported system is made of."""
-    (folder / shown.VARIABLES).write_text(shown.variables(d))
-    (folder / shown.TERMINALS).write_bytes(terminals.described(d.terminals))
+    (folder / documentation.VARIABLES).write_text(documentation.variables(d))
+    (folder / documentation.TERMINALS).write_bytes(terminals.described(d.terminals))
 
 
 def _tell(folder: Path, d: Description, library: str) -> None:

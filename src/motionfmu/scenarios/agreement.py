@@ -5,7 +5,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from motionfmu.base import units
-from motionfmu.fmu.inside import AGREE, EXTRA
+from motionfmu.fmu.archive_names import AGREE, EXTRA
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.port import Port
 from motionfmu.scenarios.system import System, Wire

@@ -4,7 +4,7 @@ import functools
 import json
 from collections.abc import Mapping
 
-from motionfmu.fmu.inside import EXTRA, GRID
+from motionfmu.fmu.archive_names import EXTRA, GRID
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import System, nanoseconds
 from motionfmu.scenarios.values import start_values

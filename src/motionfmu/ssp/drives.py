@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from motionfmu.ssp.flat import Way
+from motionfmu.ssp.flat_wires import WirePath
 from motionfmu.ssp.structure import Value
 
 MODEL = "Stimulus"
@@ -12,7 +12,7 @@ _COLUMNS = ("at", "signal", "value")
 
 
 @dataclass
-class Drive:
+class InputSteps:
     """An input, and what its elements become."""
 
     input: str
@@ -59,7 +59,7 @@ def table(values: Iterable[Value]) -> list[tuple[float, int, float]]:
     return rows
 
 
-def signal_of(way: Way) -> int:
+def signal_of(way: WirePath) -> int:
     """The number of the signal at the source of a wire, from 1."""
     name, bracket, index = way.source[1].partition("[")
     element = int(index[:-1]) if bracket else way.source_index[0]

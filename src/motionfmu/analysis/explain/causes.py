@@ -16,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from motionfmu.analysis.explain.expression import evaluate
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import tables_of
-from motionfmu.fmu.inside import EXTRA
+from motionfmu.fmu.archive_names import EXTRA
 from motionfmu.scenarios import fmus
 
 if TYPE_CHECKING:

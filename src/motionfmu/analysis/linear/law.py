@@ -12,8 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.analysis.linear.block import Sampled
 from motionfmu.analysis.linear.form import Form, Gain, Quantity, evaluate
-from motionfmu.fmu.inside import EXTRA
-from motionfmu.fmu.modelica import stored
+from motionfmu.fmu.archive_names import EXTRA
+from motionfmu.fmu.modelica import equation_text
 from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import nanoseconds
@@ -71,8 +71,8 @@ def carried(fmu: str) -> Law | Ode | None:
         names = archive.namelist()
         if f"{EXTRA}/{LAW}" in names:
             return parse(archive.read(f"{EXTRA}/{LAW}").decode(), f"{fmu}: {LAW}")
-        if f"{EXTRA}/{stored.FILE}" in names:
-            return stored.from_json(archive.read(f"{EXTRA}/{stored.FILE}").decode())
+        if f"{EXTRA}/{equation_text.FILE}" in names:
+            return equation_text.from_json(archive.read(f"{EXTRA}/{equation_text.FILE}").decode())
     return None
 
 

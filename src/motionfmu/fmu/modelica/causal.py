@@ -19,7 +19,7 @@ def load(package: Path, name: str) -> Ode:
 
 def build(flat: Flat) -> Ode:
     """Make the differential equation of a flat class; Unsupported names class and construct."""
-    names = _Names(flat)
+    names = _FlatNames(flat)
     declared = list(flat.declarations.values())
     residuals = [names.evaluate(e) for e in _residuals(flat)]
     inputs = [d for d in declared if d.kind == "input"]
@@ -72,7 +72,7 @@ def build(flat: Flat) -> Ode:
     )
 
 
-class _Names:
+class _FlatNames:
     """Symbols and parameter values by flat name."""
 
     def __init__(self, flat: Flat):
@@ -147,7 +147,7 @@ def _residuals(flat: Flat) -> list[Expression]:
     return found
 
 
-def _linear_parts(names: _Names, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
+def _linear_parts(names: _FlatNames, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
     """A and b of e = A v + b."""
     a = ca.jacobian(e, v)
     if ca.depends_on(a, v) or steps_on(e, v):
@@ -157,7 +157,10 @@ def _linear_parts(names: _Names, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
 
 
 def _dummy_derivatives(
-    names: _Names, residuals: list[ca.SX], dummies: list[str], symbols: tuple[ca.SX, ca.SX, ca.SX]
+    names: _FlatNames,
+    residuals: list[ca.SX],
+    dummies: list[str],
+    symbols: tuple[ca.SX, ca.SX, ca.SX],
 ) -> list[ca.SX]:
     """Equations for der(z) of variables z that are no states.
 
@@ -202,7 +205,7 @@ def _inputs(flat: Flat) -> list[str]:
     return [d.name for d in flat.declarations.values() if d.kind == "input"]
 
 
-def _coupled(names: _Names, a: ca.SX, b: ca.SX, labels: list[str]) -> ca.SX:
+def _coupled(names: _FlatNames, a: ca.SX, b: ca.SX, labels: list[str]) -> ca.SX:
     """Solve A x = b, the parameters near their values."""
     try:
         return elimination.solve(a, b, {d.name: names.default(d) for d in names.parameters}, labels)
@@ -210,7 +213,7 @@ def _coupled(names: _Names, a: ca.SX, b: ca.SX, labels: list[str]) -> ca.SX:
         raise names.refuse(str(error)) from None
 
 
-def _solve(names: _Names, residuals: ca.SX, unknowns: ca.SX) -> ca.SX:
+def _solve(names: _FlatNames, residuals: ca.SX, unknowns: ca.SX) -> ca.SX:
     """Solve residuals = 0 by its block lower triangular form."""
     labels = [str(unknowns[i]) for i in range(unknowns.numel())]
     if residuals.numel() != unknowns.numel():

@@ -15,11 +15,11 @@ from pathlib import Path
 import casadi as ca
 
 from motionfmu.fmu.describe import Description
-from motionfmu.fmu.modelica import causal, description, stored
+from motionfmu.fmu.modelica import causal, class_description, equation_text
 from motionfmu.fmu.modelica.cprint import TURNS, statements, turned
 from motionfmu.fmu.modelica.flat import Declaration
 from motionfmu.fmu.modelica.hoist import Split, split
-from motionfmu.fmu.modelica.nodes import STEPS, Node, Program, program
+from motionfmu.fmu.modelica.nodes import STEPS, Node, Operations, program
 from motionfmu.fmu.modelica.ode import Ode
 
 # Axes that are integrated together, at most, and the numbers of lanes that functions are compiled
@@ -41,12 +41,12 @@ _ARGUMENTS = "xupc"
 
 def write(toml: Path, out: Path) -> Description:
     """Write plant.c, plant.h, ode.json of an fmu.toml with the key ``modelica``, where changed."""
-    packing = description.read(toml)
+    packing = class_description.read(toml)
     ode = causal.load(packing.package, packing.modelica)
-    described = description.describe_class(toml, packing, ode)
+    described = class_description.describe_class(toml, packing, ode)
     out.mkdir(parents=True, exist_ok=True)
     code, header = generate(ode, packing.instances, packing.tolerance)
-    texts = {"plant.c": code, "plant.h": header, stored.FILE: stored.to_json(ode)}
+    texts = {"plant.c": code, "plant.h": header, equation_text.FILE: equation_text.to_json(ode)}
     for name, text in texts.items():
         file = out / name
         if not file.exists() or file.read_text() != text:
@@ -106,7 +106,7 @@ def widths(instances: int) -> tuple[int, ...]:
     return tuple(w for k, w in enumerate(WIDTHS) if k == 0 or WIDTHS[k - 1] < instances)
 
 
-def _branches(jacobian: Program) -> dict[int, tuple[int, bool]]:
+def _branches(jacobian: Operations) -> dict[int, tuple[int, bool]]:
     """Comparisons that state or input decides: bit, and whether its opposite is meant.
 
     The slope of a minimum or maximum has both a <= b and b <= a: one bit is enough for the two.
@@ -269,7 +269,7 @@ def _loops(ode: Ode, equations: Split, used: tuple[int, ...]) -> list[str]:
     return texts
 
 
-def _jacobian(ode: Ode, jacobian: Program, branches: dict[int, tuple[int, bool]]) -> str:
+def _jacobian(ode: Ode, jacobian: Operations, branches: dict[int, tuple[int, bool]]) -> str:
     """plant_jacobian: one instance, comparisons decided from outside."""
 
     def leaf(k: int, node: Node) -> str | None:

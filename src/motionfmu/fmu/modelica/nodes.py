@@ -22,7 +22,7 @@ class Node:
 
 
 @dataclass(frozen=True)
-class Program:
+class Operations:
     """All operations of a function."""
 
     nodes: tuple[Node, ...]
@@ -38,7 +38,7 @@ class Program:
         return found
 
 
-def program(arguments: list[ca.SX], results: list[ca.SX]) -> Program:
+def program(arguments: list[ca.SX], results: list[ca.SX]) -> Operations:
     """List the operations that compute expressions of columns of symbols, and of these only."""
     f = ca.Function("f", arguments, [ca.densify(r) for r in results], {"cse": True})
     nodes: list[Node] = []
@@ -61,7 +61,7 @@ def program(arguments: list[ca.SX], results: list[ca.SX]) -> Program:
             node = Node(op, tuple(register[s] for s in source))
         register[target[0]] = len(nodes)
         nodes.append(node)
-    return Program(tuple(nodes), tuple(map(tuple, outputs)))
+    return Operations(tuple(nodes), tuple(map(tuple, outputs)))
 
 
 def steps_on(expression: ca.SX, variables: ca.SX) -> bool:

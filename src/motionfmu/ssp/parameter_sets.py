@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from xml.etree import ElementTree as ET
 
-from motionfmu.ssp.flat import SSC, SSD, Nodes, Path, shown
+from motionfmu.ssp.flat_wires import SSC, SSD, Nodes, Path, shown
 from motionfmu.ssp.structure import MAPPING, VALUES, Value
 from motionfmu.ssp.xml import Archive, number, plain
 
@@ -13,7 +13,7 @@ _SET = "application/x-ssp-parameter-set"
 
 
 @dataclass(frozen=True)
-class Given:
+class ParameterValue:
     """A value of a component's variable, and the set it is from."""
 
     component: Path
@@ -21,18 +21,20 @@ class Given:
     source: ET.Element  # the parameter set, which has units and enumerations of its own
 
 
-def given(nodes: Nodes) -> tuple[list[Given], list[str]]:
+def given(nodes: Nodes) -> tuple[list[ParameterValue], list[str]]:
     """Values of all components, later ones the stronger; names that nothing here has."""
-    found: list[Given] = []
+    found: list[ParameterValue] = []
     lost: list[str] = []
     for path, component in nodes.components.items():
         for source, value in _bound(nodes.archive, path, component):
-            found.append(Given(path, value, source))
+            found.append(ParameterValue(path, value, source))
     # Those of a system count more than those of its parts.
     for path, system in sorted(nodes.systems.items(), key=lambda x: -len(x[0])):
         for source, value in _bound(nodes.archive, path, system):
             targets = list(_targets(nodes, path, value.name))
-            found += [Given(owner, replace(value, name=name), source) for owner, name in targets]
+            found += [
+                ParameterValue(owner, replace(value, name=name), source) for owner, name in targets
+            ]
             lost += [] if targets else [f"{shown(path)}{'.' if path else ''}{value.name}"]
     return found, lost
 

@@ -24,7 +24,7 @@ class Meaning:
 
 
 @dataclass(frozen=True)
-class Variable:
+class DeclaredVariable:
     """A variable of an FMU, FMI 2 or 3."""
 
     causality: str
@@ -34,13 +34,13 @@ class Variable:
 
 
 @dataclass(frozen=True)
-class Inside:
+class FmuDeclarations:
     """An FMU's description."""
 
     name: str  # of the model
     tool: str  # that made it
     fmi: str  # version
-    variables: dict[str, Variable]
+    variables: dict[str, DeclaredVariable]
     units: dict[str, Meaning]
     stop: float | None  # [s]
     step: float | None
@@ -58,7 +58,7 @@ def meanings(archive: Archive, parent: ET.Element) -> dict[str, Meaning]:
     return found
 
 
-def fmu(archive: Archive, path: str, component: str) -> Inside:
+def fmu(archive: Archive, path: str, component: str) -> FmuDeclarations:
     """Look at an FMU of the archive, which is to run a co-simulation."""
     try:
         with zipfile.ZipFile(io.BytesIO(archive.bytes(path))) as inner:
@@ -74,7 +74,7 @@ def fmu(archive: Archive, path: str, component: str) -> Inside:
     for row in root.iterfind("ModelVariables/*"):
         kind = row if version.startswith("3") else next(iter(row), row)
         shape = tuple(int(size.get("start", "0")) for size in row.iterfind("Dimension"))
-        about = Variable(row.get("causality", "local"), kind.tag, kind.get("unit"), shape)
+        about = DeclaredVariable(row.get("causality", "local"), kind.tag, kind.get("unit"), shape)
         variables[row.get("name", "")] = about
     experiment = root.find("DefaultExperiment")
     times = [
@@ -82,7 +82,7 @@ def fmu(archive: Archive, path: str, component: str) -> Inside:
     ]
     stop, step = (None if t is None else float(t) for t in times)
     name, tool = root.get("modelName", ""), root.get("generationTool", "")
-    return Inside(name, tool, version, variables, meanings(archive, root), stop, step)
+    return FmuDeclarations(name, tool, version, variables, meanings(archive, root), stop, step)
 
 
 def converted(

@@ -17,7 +17,7 @@ Node = tuple[Path, str]  # and a connector
 
 
 @dataclass(frozen=True)
-class Way:
+class WirePath:
     """A connection between two nodes, or several one after the other."""
 
     source: Node
@@ -37,9 +37,9 @@ class Nodes:
         self.systems: dict[Path, ET.Element] = {}
         self.components: dict[Path, ET.Element] = {}
         self.kinds: dict[Node, str] = {}
-        self.steps: list[Way] = []
+        self.steps: list[WirePath] = []
         self._system((), root)
-        self._into: dict[Node, list[Way]] = {}
+        self._into: dict[Node, list[WirePath]] = {}
         for step in self.steps:
             self._into.setdefault(step.target, []).append(step)
 
@@ -65,7 +65,7 @@ class Nodes:
         for connection in system.iterfind(f"{SSD}Connections/{SSD}Connection"):
             self.steps.append(self._step(path, connection))
 
-    def _step(self, path: Path, connection: ET.Element) -> Way:
+    def _step(self, path: Path, connection: ET.Element) -> WirePath:
         """One connection; start and end of the element say nothing of the direction."""
         nodes, inside = [], []
         for end in ("start", "end"):
@@ -87,7 +87,7 @@ class Nodes:
             nodes.reverse()
             indices.reverse()
         as_it_is = connection.get("suppressUnitConversion") in ("true", "1")
-        way = Way(nodes[0], nodes[1], indices[0], indices[1], as_it_is=as_it_is)
+        way = WirePath(nodes[0], nodes[1], indices[0], indices[1], as_it_is=as_it_is)
         for child in connection:
             if plain(child) == "LinearTransformation":
                 factor = number(self.archive, child, "factor", 1.0)
@@ -97,12 +97,12 @@ class Nodes:
                 raise self.archive.error(f"connection to {shown(*nodes[1])}: {told}")
         return way
 
-    def ways(self) -> Iterator[Way]:
+    def ways(self) -> Iterator[WirePath]:
         """Connections of components, end to end; what comes from outside is none."""
         for target in (n for n in self._into if n[0] in self.components):
             yield from self._back(target, frozenset())
 
-    def _back(self, target: Node, seen: frozenset[Node]) -> Iterator[Way]:
+    def _back(self, target: Node, seen: frozenset[Node]) -> Iterator[WirePath]:
         for step in self._into.get(target, ()):
             if step.source[0] in self.components:
                 yield step
@@ -112,11 +112,11 @@ class Nodes:
             for first in self._back(step.source, seen | {step.source}):
                 yield self._joined(first, step)
 
-    def _joined(self, first: Way, then: Way) -> Way:
+    def _joined(self, first: WirePath, then: WirePath) -> WirePath:
         if first.target_index or then.source_index:
             told = "elements of arrays through a nested system are not taken over"
             raise self.archive.error(f"{shown(*then.source)}: {told}")
-        return Way(
+        return WirePath(
             first.source,
             then.target,
             first.source_index,

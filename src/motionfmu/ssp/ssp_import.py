@@ -10,13 +10,13 @@ from pathlib import Path
 
 from motionfmu.base.errors import Faults, InputError
 from motionfmu.fmu.describe import TOOL
-from motionfmu.ssp import drives, inside
-from motionfmu.ssp.flat import SSC, SSD, Nodes, Way, shown
-from motionfmu.ssp.flat import Path as Inner
-from motionfmu.ssp.inside import Inside, Meaning, Variable
+from motionfmu.ssp import declarations, drives
+from motionfmu.ssp.declarations import DeclaredVariable, FmuDeclarations, Meaning
+from motionfmu.ssp.flat_wires import SSC, SSD, Nodes, WirePath, shown
+from motionfmu.ssp.flat_wires import Path as Inner
+from motionfmu.ssp.parameter_sets import ParameterValue, given
 from motionfmu.ssp.structure import OSP
 from motionfmu.ssp.structure import SSD as STRUCTURE
-from motionfmu.ssp.values import Given, given
 from motionfmu.ssp.xml import Archive, number
 
 _FMU = "application/x-fmu-sharedlibrary"
@@ -64,7 +64,7 @@ class _Import:
         self.nodes = Nodes(archive, system)
         self.system = system
         self.sources: dict[Inner, str] = {}
-        self.fmus: dict[Inner, Inside] = {}
+        self.fmus: dict[Inner, FmuDeclarations] = {}
         faults = Faults()
         for path, component in self.nodes.components.items():
             with faults.each():
@@ -72,7 +72,7 @@ class _Import:
         faults.tell()
         if not self.fmus:
             raise archive.error("it has no component")
-        self.units = inside.meanings(archive, self.root)
+        self.units = declarations.meanings(archive, self.root)
         self.given, self.lost = given(self.nodes)
         self.tables = {p: rows for p, fmu in self.fmus.items() if (rows := self._table(p, fmu))}
         for path in self.tables:  # what they do is a [[drive]]
@@ -80,7 +80,7 @@ class _Import:
         self.names = dict(zip(self.fmus, _names(self.fmus), strict=True))
         self.ways = list(self.nodes.ways())
 
-    def _table(self, path: Inner, fmu: Inside) -> list[tuple[float, int, float]]:
+    def _table(self, path: Inner, fmu: FmuDeclarations) -> list[tuple[float, int, float]]:
         """The rows of a Stimulus; none of any other FMU."""
         if (fmu.name, fmu.tool) != (drives.MODEL, TOOL):
             return []
@@ -101,7 +101,7 @@ class _Import:
         if not self.archive.has(source):
             raise self.archive.error(f"{what}: there is no {source} in it")
         self.sources[path] = source
-        self.fmus[path] = inside.fmu(self.archive, source, what)
+        self.fmus[path] = declarations.fmu(self.archive, source, what)
 
     def times(self, stop: float | None, step: float | None) -> tuple[float, float]:
         """End and communication step [s]: those given, the SSP's, the FMUs'."""
@@ -141,7 +141,7 @@ class _Import:
             self._check(way)
             yield target, source
 
-    def _check(self, way: Way) -> None:
+    def _check(self, way: WirePath) -> None:
         """A wire hands on what it gets."""
         what = f"connection of {shown(*way.source)} and {shown(*way.target)}"
         if (way.factor, way.offset) != (1.0, 0.0):
@@ -156,7 +156,7 @@ class _Import:
                 raise self.archive.error(f"{what}: {self.sources[path]} has no {name}")
             unit = fmu.variables[name].unit
             ends.append(fmu.units.get(unit or ""))
-        if not way.as_it_is and not inside.alike(*ends):
+        if not way.as_it_is and not declarations.alike(*ends):
             units = " and ".join(
                 str(self.fmus[p].variables[n].unit) for p, n in (way.source, way.target)
             )
@@ -178,7 +178,7 @@ class _Import:
             self.warnings.append(f"values of no parameter and no input, left out: {some}")
         return values
 
-    def _toml(self, one: Given) -> str:
+    def _toml(self, one: ParameterValue) -> str:
         """A value in the unit of its variable."""
         fmu, value = self.fmus[one.component], one.value
         about = fmu.variables[value.name]
@@ -200,13 +200,13 @@ class _Import:
             raise self.archive.error(f"{what}: {told}") from None
         return texts[0] if len(texts) == 1 else f"[{', '.join(texts)}]"
 
-    def _reals(self, one: Given, wanted: Meaning | None) -> list[float]:
-        own = inside.meanings(self.archive, one.source)
+    def _reals(self, one: ParameterValue, wanted: Meaning | None) -> list[float]:
+        own = declarations.meanings(self.archive, one.source)
         unit = one.value.unit
         meaning = own.get(unit, self.units.get(unit)) if unit else None
-        return inside.converted((float(t) for t in one.value.text), meaning, wanted)
+        return declarations.converted((float(t) for t in one.value.text), meaning, wanted)
 
-    def _whole(self, one: Given, text: str) -> int:
+    def _whole(self, one: ParameterValue, text: str) -> int:
         """A whole number; of an enumeration the name of an item."""
         if one.value.type != "Enumeration":
             return int(text)
@@ -218,7 +218,7 @@ class _Import:
 
     def drives(self) -> dict[str, list[str]]:
         """Inputs that a Stimulus drives, and the lines of their tables."""
-        found: dict[str, tuple[drives.Drive, str]] = {}
+        found: dict[str, tuple[drives.InputSteps, str]] = {}
         for way in self.ways:
             rows = self.tables.get(way.source[0])
             if rows is None:
@@ -228,7 +228,7 @@ class _Import:
             drive, _ = found.setdefault(
                 name,
                 (
-                    drives.Drive(name),
+                    drives.InputSteps(name),
                     _PLAIN.get(self.fmus[path].variables[connector].type, "float"),
                 ),
             )
@@ -262,7 +262,7 @@ class _Import:
         return few or every
 
 
-def _recordable(about: Variable, fmi: str) -> bool:
+def _recordable(about: DeclaredVariable, fmi: str) -> bool:
     """Whether any engine records it: single numbers, groups of six, real ones of 3 and 4.
 
     Of FMI 3's whole numbers those of 32 bits; its enumerations have 64.
