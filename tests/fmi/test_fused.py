@@ -301,7 +301,7 @@ def test_a_program_depends_on_structure_only(monkeypatch: pytest.MonkeyPatch) ->
         made.append(key)
         return Path(key)
 
-    monkeypatch.setattr("motionfmu.base.kept.kept", kept)
+    monkeypatch.setattr("motionfmu.base.disk_cache.kept", kept)
     changes: list[dict[str, Any]] = [
         {},
         {"set": {"one.loop_period": 2e-4}},

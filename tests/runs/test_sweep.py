@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 import motionfmu
 from motionfmu.run.session import Session
 from motionfmu.scenarios import fmus
-from motionfmu.scenarios.body import Check
+from motionfmu.scenarios.body import Bounds
 from motionfmu.scenarios.system import End
 from motionfmu.study import axes, book, columns, processes, worker
 from motionfmu.sweep import Outcome, Study, Ways, conduct, study
@@ -196,7 +196,7 @@ def test_a_check_of_one_element_becomes_a_column_of_it() -> None:
         "card.stock[1].max",
     ]
     assert {"card.frames_refused.max", "mcc.services.final"} < {*names}
-    every = Check(final=0.0)
+    every = Bounds(final=0.0)
     scenario.document.body.check["card.err_count"] = [every]
     names = [c.name for c in columns.usual(scenario)]
     assert names[-6:] == [f"card.err_count[{i}].final" for i in range(1, 7)]

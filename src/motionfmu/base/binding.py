@@ -20,7 +20,7 @@ _CLOCKS_MAX = 2.0**62
 _MILLISECOND = CLOCK_HZ // 1000
 
 
-class _Field(ctypes.Structure):
+class _FieldRow(ctypes.Structure):
     """One row of a table in src/python."""
 
     _fields_ = (
@@ -52,7 +52,7 @@ def library_path() -> Path:
 def library() -> ctypes.CDLL:
     """Load the shared library once."""
     c = ctypes.CDLL(str(library_path()))
-    c.binding_fields.restype = ctypes.POINTER(_Field)
+    c.binding_fields.restype = ctypes.POINTER(_FieldRow)
     c.binding_mcc.restype = c.binding_machine.restype = ctypes.c_void_p
     c.fault_text.restype = ctypes.c_char_p
     c.netcard_receive.restype = c.netcard_send.restype = ctypes.c_size_t
@@ -66,7 +66,7 @@ def library() -> ctypes.CDLL:
 
 
 @functools.cache
-def _table(of: str) -> tuple[int, dict[str, _Field]]:
+def _table(of: str) -> tuple[int, dict[str, _FieldRow]]:
     """Size of a struct [byte] and its members."""
     count, size = ctypes.c_int32(), ctypes.c_int64()
     rows = library().binding_fields(of.encode(), ctypes.byref(count), ctypes.byref(size))
@@ -199,7 +199,7 @@ def text(value: str) -> bytes:
     raise InputError(f"{value!r:.80}: a text wanted")
 
 
-class Values:
+class Reading:
     """What there is to see at one clock, by attributes; `time` is the clock in seconds."""
 
     def __init__(self, values: dict[str, Any]) -> None:
@@ -209,7 +209,7 @@ class Values:
         raise AttributeError(unread(name, self.__dict__))
 
     def __repr__(self) -> str:
-        return f"Reading({', '.join(f'{k}={v}' for k, v in self.__dict__.items())})"
+        return f"{type(self).__name__}({', '.join(f'{k}={v}' for k, v in self.__dict__.items())})"
 
 
 def unread(name: str, known: Collection[str]) -> str:
@@ -221,7 +221,7 @@ def _there_are(known: Iterable[str]) -> str:
     return f" (there are: {', '.join(known)})"
 
 
-R = TypeVar("R", bound=Values)
+R = TypeVar("R", bound=Reading)
 
 
 class Station(Generic[R]):
@@ -328,7 +328,7 @@ class Station(Generic[R]):
         step : float
             [s] between two readings, rounded to 25 ns.
         *names : str
-            Attributes of Reading.
+            Attributes of the reading.
 
         Returns
         -------

@@ -22,7 +22,7 @@ TIME, ENDING = "time", ".npy"
 
 
 @dataclass(frozen=True)
-class Part:
+class ArrayPlace:
     """Where an array stands: a file, or columns of it."""
 
     file: Path
@@ -31,7 +31,7 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
+class LazyArray:
     """An array of which parts are made when they are asked for."""
 
     shape: tuple[int, ...]
@@ -53,7 +53,7 @@ class Columns(Mapping[str, NDArray[Any]]):
 
     # An array is mapped as long as somebody has it; `own` is a folder that goes with this one.
 
-    def __init__(self, parts: Mapping[str, Part], own: Path | None = None) -> None:
+    def __init__(self, parts: Mapping[str, ArrayPlace], own: Path | None = None) -> None:
         self._parts = dict(parts)
         self._heads: dict[Path, tuple[Any, ...]] = {}
         self._mapped: weakref.WeakValueDictionary[Any, NDArray[Any]] = weakref.WeakValueDictionary()
@@ -66,7 +66,7 @@ class Columns(Mapping[str, NDArray[Any]]):
         """All files of a folder, by their names, which may have an order."""
         there = {f.stem: f for f in sorted(folder.iterdir()) if f.suffix == ENDING}
         first = dict.fromkeys(n for n in order if n in there)
-        return cls({n: Part(there[n]) for n in first | there}, folder if own else None)
+        return cls({n: ArrayPlace(there[n]) for n in first | there}, folder if own else None)
 
     @classmethod
     def taken(cls, folder: Path, order: Iterable[str] = ()) -> "Columns":
@@ -92,7 +92,7 @@ class Columns(Mapping[str, NDArray[Any]]):
     def __len__(self) -> int:
         return len(self._parts)
 
-    def _array(self, part: Part) -> NDArray[Any]:
+    def _array(self, part: ArrayPlace) -> NDArray[Any]:
         key = part.file, str(part.columns), part.boolean
         found = self._mapped.get(key)
         if found is None:

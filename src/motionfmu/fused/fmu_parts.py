@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from motionfmu.base import kept
+from motionfmu.base import disk_cache
 from motionfmu.base.compiler import FLAGS, Compiler, compiler
 from motionfmu.base.platforms import here
 from motionfmu.fmu.archive_names import MAIN_UNIT, PART_UNIT, PARTS
@@ -85,8 +85,8 @@ def _compiled(name: str) -> bytes:
     """The object of an FMU that carries none for this machine, from its C text."""
     cc = compiler()
     assert cc is not None, "`carried` has looked for it"
-    key = kept.key(digest(name), cc.version, *cc.command)
-    place = kept.kept("parts", key, lambda folder: _compile(name, cc, folder))
+    key = disk_cache.key(digest(name), cc.version, *cc.command)
+    place = disk_cache.kept("parts", key, lambda folder: _compile(name, cc, folder))
     return (place / "part.o").read_bytes()
 
 

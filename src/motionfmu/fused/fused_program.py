@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from motionfmu.base import kept
+from motionfmu.base import disk_cache
 from motionfmu.base.compiler import FLAGS, compiler, cross, none
 from motionfmu.base.extras import install
 from motionfmu.base.platforms import Platform
@@ -106,7 +106,7 @@ def _made(
     if cc is None:
         raise NotFused(f"there is no zig: {install('export')}") if platforms else NoCompiler(none())
     key = _key(system, recorded, name, given)
-    whole = kept.key(
+    whole = disk_cache.key(
         key,
         str(fmi),
         layer.digest(),
@@ -126,7 +126,7 @@ def _made(
             cc,
         )
 
-    return FusedProgram(kept.kept("fused", whole, make), fmi)
+    return FusedProgram(disk_cache.kept("fused", whole, make), fmi)
 
 
 def _key(
@@ -144,4 +144,4 @@ def _key(
         [name, until.name if until else ""],
         None if given is None else [repr(given), system.step_ns, system.steps],
     ]
-    return kept.key(json.dumps(lists))
+    return disk_cache.key(json.dumps(lists))

@@ -4,7 +4,7 @@ import functools
 from importlib import util
 from pathlib import Path
 
-from motionfmu.base import kept
+from motionfmu.base import disk_cache
 from motionfmu.scenarios.fmus import PACKAGE
 
 OPTIMIZED = "-O3"
@@ -25,4 +25,4 @@ def digest() -> str:
     """Of the layer, and of the Python text that generates what is compiled with it."""
     generators = [*Path(__file__).parent.glob("*.py"), *(PACKAGE / "fmu").glob("*.py")]
     files = sorted([*folders()[0].iterdir(), *generators])
-    return kept.key(*(part for f in files for part in (f.name, f.read_bytes())))
+    return disk_cache.key(*(part for f in files for part in (f.name, f.read_bytes())))

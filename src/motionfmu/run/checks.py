@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from motionfmu.base.columns import ROWS
 from motionfmu.run.decimate import Read, reader
 from motionfmu.scenarios import rates
-from motionfmu.scenarios.body import Body, Check, Pair
+from motionfmu.scenarios.body import Body, Bounds, Pair
 
 TABLES = ("contour", "iso9283")  # analyses whose figures can be checked, by table
 # A bound in words: what, its numbers, when.
@@ -83,7 +83,7 @@ def wrong_figure(name: str, body: Body) -> str:
     return wrong(figure)
 
 
-def _no_time(check: Check, stop: float) -> str:
+def _no_time(check: Bounds, stop: float) -> str:
     """What is wrong with the times of a check; empty if nothing is."""
     if check.at is not None and check.windows is not None:
         return "at and windows exclude each other"
@@ -145,7 +145,7 @@ def _where(windows: tuple[tuple[float, float], ...]) -> str:
     return f", {low:g} to {high:g} s" if len(windows) == 1 else f", in {len(windows)} windows"
 
 
-def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> list[Verdict]:
+def judge(name: str, check: Bounds, time: NDArray[Any], data: NDArray[Any]) -> list[Verdict]:
     """Judge one signal, a row per sample, by every bound of its check; a NaN fails them all."""
     end = float(time[-1]) + (float(time[-1] - time[-2]) if len(time) > 1 else 0.0)
     last = check.at if check.at is not None else max((b for _, b in check.windows or ()), default=0)
@@ -188,7 +188,7 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
     ]
 
 
-def _chosen(check: Check, time: NDArray[Any], read: Read) -> Iterator[NDArray[np.float64]]:
+def _chosen(check: Bounds, time: NDArray[Any], read: Read) -> Iterator[NDArray[np.float64]]:
     """The samples that a check looks at, in blocks."""
     if check.at is not None:
         k = int(np.searchsorted(time, check.at - 1e-12).clip(0, len(time) - 1))
@@ -205,7 +205,7 @@ def _chosen(check: Check, time: NDArray[Any], read: Read) -> Iterator[NDArray[np
 class SampleStatistics:
     """What bounds ask of the samples of a signal, which come in blocks."""
 
-    def __init__(self, check: Check) -> None:
+    def __init__(self, check: Bounds) -> None:
         self.count = 0  # values
         self.low, self.high = math.inf, -math.inf
         self.squares = 0.0  # their sum

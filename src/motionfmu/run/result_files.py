@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from motionfmu.analysis.contour.scaled import places
-from motionfmu.base.columns import Made, forget
+from motionfmu.base.columns import LazyArray, forget
 from motionfmu.base.toml_lines import is_file
 from motionfmu.run.result import Result
 from motionfmu.scenarios import fmus
@@ -125,9 +125,9 @@ def track(contour: "ContourResult") -> dict[str, Any]:
     found: dict[str, Any] = {
         "time": contour.run.time,
         "along": way.along,
-        "error": Made((count,), np.dtype("f8"), error),
-        "foot": Made((count, 3), np.dtype("f4"), way.feet),
-        "gap": Made((count, 3), np.dtype("f4"), gap),
+        "error": LazyArray((count,), np.dtype("f8"), error),
+        "foot": LazyArray((count, 3), np.dtype("f4"), way.feet),
+        "gap": LazyArray((count, 3), np.dtype("f4"), gap),
         "commands": contour.commands,
     }
     for test in contour.circles:

@@ -21,7 +21,7 @@ from motionfmu.scenarios import (
     view_signals,
 )
 from motionfmu.scenarios import document as files
-from motionfmu.scenarios.sources import of_file
+from motionfmu.scenarios.table_sources import of_file
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from motionfmu.base.toml_lines import is_file
 from motionfmu.run import contrary
 from motionfmu.run.checks import Verdict
 from motionfmu.run.runner import load
-from motionfmu.scenarios import shipped
+from motionfmu.scenarios import package_files
 
 FILE = "scenario.toml"
 PATIENCE = 10  # [s] for a process to remove its files when it is told to end
@@ -51,11 +51,15 @@ def found(paths: Sequence[Path]) -> list[Path]:
     """Scenarios that paths or names mean: themselves, or those in the folders of a folder."""
     chosen: list[Path] = []
     for given in paths:
-        path = shipped.scenario(given) or given
+        path = package_files.scenario(given) or given
         if is_file(path) or is_file(path / FILE):
             chosen.append(path)
         elif not path.is_dir():
-            hint = shipped.unknown(str(path), shipped.scenarios) if shipped.is_name(path) else ""
+            hint = (
+                package_files.unknown(str(path), package_files.scenarios)
+                if package_files.is_name(path)
+                else ""
+            )
             raise InputError(f"{path}: no such scenario, nor a folder of scenarios{hint}")
         elif inside := sorted(file.parent for file in path.glob(f"*/{FILE}")):
             chosen += inside

@@ -32,7 +32,7 @@ class Drive(BaseModel):
     value: list[Value] = Field(min_length=1)
 
 
-class Check(BaseModel):
+class Bounds(BaseModel):
     """Bounds of one signal or figure; each one given must hold."""
 
     model_config = _STRICT
@@ -103,7 +103,7 @@ def _listed(x: Any) -> Any:
 
 
 Checks = Annotated[
-    tuple[Check, ...], BeforeValidator(_listed), Field(min_length=1, max_length=LISTED_MAX)
+    tuple[Bounds, ...], BeforeValidator(_listed), Field(min_length=1, max_length=LISTED_MAX)
 ]
 
 
@@ -138,7 +138,7 @@ class Body(BaseModel):
 # The model of a table, by its name.
 MODELS: dict[str, type[BaseModel]] = {
     "drive": Drive,
-    "check": Check,
+    "check": Bounds,
     "contrary": Contrary,
     "contour": Contour,
     "record": Record,

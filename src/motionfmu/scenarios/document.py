@@ -13,7 +13,7 @@ from motionfmu.base.toml_lines import is_file, ordered, shown
 from motionfmu.scenarios import body as tables_
 from motionfmu.scenarios.body import Body
 from motionfmu.scenarios.foreign import is_foreign
-from motionfmu.scenarios.sources import Source, Tables, chain, merged, of_file
+from motionfmu.scenarios.table_sources import Source, Tables, chain, merged, of_file
 
 # Tables of which each key is the user's own.
 OPEN = ("component", "connect", "set", "check")

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import IO, Any
 from xml.etree import ElementTree
 
-from motionfmu.base import kept
+from motionfmu.base import disk_cache
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.platforms import here
 from motionfmu.base.toml_lines import is_file
@@ -105,7 +105,7 @@ def digest(name: str) -> str:
 def _digest(name: str, state: tuple[str, int, int]) -> str:
     with opened(name) as archive:
         rows = [f"{i.filename} {i.CRC:08x} {i.file_size}" for i in archive.infolist()]
-    return kept.key(*rows)
+    return disk_cache.key(*rows)
 
 
 def runnable(name: str, fmi: int) -> Path:

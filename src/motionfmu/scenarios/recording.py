@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from motionfmu.base.columns import Columns, Part, kept
+from motionfmu.base.columns import ArrayPlace, Columns, kept
 from motionfmu.base.errors import Faults
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.fmus import Port
@@ -36,7 +36,7 @@ GROUPS = {
 
 
 @dataclass(frozen=True)
-class Column:
+class TraceColumn:
     """Where the trace files hold a signal."""
 
     end: End
@@ -54,7 +54,7 @@ class Column:
 class Recording:
     """All columns and the folder of the trace files."""
 
-    columns: tuple[Column, ...]
+    columns: tuple[TraceColumn, ...]
     folder: Path
     scopes: int
 
@@ -70,7 +70,7 @@ class Recording:
             before = widths[: widths.index(c.width)]
             first = sum(o.width for o in mine if o.width in before) + c.width * c.group
             columns = slice(first, first + c.width) if c.end.port.shape else first
-            parts[c.end.name] = Part(file, columns, c.end.port.type == "Boolean")
+            parts[c.end.name] = ArrayPlace(file, columns, c.end.port.type == "Boolean")
         return Columns(parts, own)
 
 
@@ -138,8 +138,8 @@ def _matching(resolver: Resolver, pattern: str) -> list[End]:
     return ends
 
 
-def _allocate(ends: Iterable[End]) -> list[Column]:
-    columns: list[Column] = []
+def _allocate(ends: Iterable[End]) -> list[TraceColumn]:
+    columns: list[TraceColumn] = []
     used: dict[tuple[int, str, int], int] = {}
     for end in ends:
         kind, width = _kind(end), end.port.count
@@ -147,7 +147,7 @@ def _allocate(ends: Iterable[End]) -> list[Column]:
         scope = 0
         while used.get((scope, kind, width), 0) == room:
             scope += 1
-        columns.append(Column(end, scope, kind, used.get((scope, kind, width), 0)))
+        columns.append(TraceColumn(end, scope, kind, used.get((scope, kind, width), 0)))
         used[scope, kind, width] = used.get((scope, kind, width), 0) + 1
     return columns
 

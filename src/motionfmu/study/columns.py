@@ -15,7 +15,7 @@ from motionfmu.run import Scenario
 from motionfmu.run.checks import TABLES, is_figure, wrong_figure
 from motionfmu.run.result import Result
 from motionfmu.scenarios import recording
-from motionfmu.scenarios.body import Check
+from motionfmu.scenarios.body import Bounds
 from motionfmu.scenarios.contour_signals import wanted as of_contour
 from motionfmu.scenarios.iso9283_signals import wanted as of_iso9283
 from motionfmu.scenarios.system import End
@@ -98,7 +98,7 @@ def usual(scenario: Scenario) -> list[Column]:
     return list(found.values())
 
 
-def _checked(scenario: Scenario, name: str, check: Check) -> Iterable[str]:
+def _checked(scenario: Scenario, name: str, check: Bounds) -> Iterable[str]:
     if check.at is not None or check.windows is not None or check.rate is not None:
         return
     whole, element = scenario.resolver.split(name)

@@ -9,9 +9,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.base.errors import Faults, InputError, suggestion
 from motionfmu.base.toml_lines import Lines, is_file, ordered, shown, tables_of, text_of
-from motionfmu.scenarios import shipped
+from motionfmu.scenarios import package_files
 from motionfmu.scenarios.body import Name, Names, Value
-from motionfmu.scenarios.sources import scenario_file
+from motionfmu.scenarios.table_sources import scenario_file
 
 FILE = "sweep.toml"
 ABOUT = "the first line is a comment that says what the study shows"
@@ -74,7 +74,7 @@ def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
     Keys given count instead of those written there. What is wrong with keys and their types goes to
     the faults, with file, line and value; a file that cannot be read is an InputError.
     """
-    if shipped.is_name(path) and not path.suffix:
+    if package_files.is_name(path) and not path.suffix:
         path = scenario_file(path).parent
     if is_file(path / FILE):
         path = path / FILE

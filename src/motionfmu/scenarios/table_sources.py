@@ -7,7 +7,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.toml_lines import Lines, is_file, shown, tables_of, text_of
-from motionfmu.scenarios import shipped
+from motionfmu.scenarios import package_files
 
 Tables = dict[str, Any]
 DEPTH_MAX = 8  # scenarios that extend one another
@@ -69,14 +69,14 @@ def scenario_file(path: str | Path) -> Path:
     """
     if not isinstance(path, str | Path):
         raise InputError(f"{shown(path)}: the path of a scenario wanted")
-    file = shipped.scenario(path) or Path(path)
+    file = package_files.scenario(path) or Path(path)
     file = file / "scenario.toml" if is_file(file / "scenario.toml") else file
     if not is_file(file):
         beside = file.parent.iterdir() if file.parent.is_dir() else ()
         near = [p.name for p in beside if is_file(p / "scenario.toml")]
         hint = suggestion(file.name, near)
-        if not hint and shipped.is_name(path):
-            hint = shipped.unknown(str(path), shipped.scenarios)
+        if not hint and package_files.is_name(path):
+            hint = package_files.unknown(str(path), package_files.scenarios)
         raise InputError(f"{file}: no such scenario{hint}")
     return file.resolve()
 

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-from motionfmu.base.binding import Station, Struct, Values, library, real
+from motionfmu.base.binding import Reading, Station, Struct, library, real
 from motionfmu.base.errors import InputError
 from motionfmu.virtual.mcc.state import Mcc, configuration
 
@@ -17,7 +17,7 @@ class CardError(RuntimeError):
     """The run cannot go on; the message says why."""
 
 
-class Reading(Values):
+class CardReading(Reading):
     """What there is to see at one clock.
 
     Attributes
@@ -41,7 +41,7 @@ class Reading(Values):
     """
 
 
-class VirtualCard(Station[Reading]):
+class VirtualCard(Station[CardReading]):
     """PC, library, card and ideal motors in one loop.
 
     Parameters
@@ -87,16 +87,16 @@ class VirtualCard(Station[Reading]):
                 else "the card takes no frame any more"
             )
 
-    def read(self) -> Reading:
+    def read(self) -> CardReading:
         """What there is to see now.
 
         Returns
         -------
-        Reading
+        CardReading
         """
         reading = Struct("reading")
         self._library.station_read(self._state.pointer, reading.pointer)
-        return Reading({name: reading[name] for name in reading})
+        return CardReading({name: reading[name] for name in reading})
 
     def __repr__(self) -> str:
         return f"<VirtualCard at {self.read().time:.9g} s: {self.mcc!r}>"

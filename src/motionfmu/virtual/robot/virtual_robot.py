@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.base.binding import CLOCK_HZ, Station, Struct, Values, library
+from motionfmu.base.binding import CLOCK_HZ, Reading, Station, Struct, library
 from motionfmu.virtual.robot.commands import Commands
 from motionfmu.virtual.robot.kinematics import configuration, switched_on
 from motionfmu.virtual.robot.refusal import message, within
@@ -31,7 +31,7 @@ def defaults() -> dict[str, tuple[Any, str]]:
     return {name: (config[name], unit) for name, unit in config.units.items()}
 
 
-class Reading(Values):
+class RobotReading(Reading):
     """What there is to see at one clock.
 
     Attributes
@@ -71,7 +71,7 @@ class Reading(Values):
     """
 
 
-class VirtualRobot(Commands, Station[Reading]):
+class VirtualRobot(Commands, Station[RobotReading]):
     """Soft controller, FPGA card and an ideal arm in one loop.
 
     Parameters
@@ -125,19 +125,19 @@ class VirtualRobot(Commands, Station[Reading]):
                 stacklevel=4,
             )
 
-    def read(self) -> Reading:
+    def read(self) -> RobotReading:
         """What there is to see now.
 
         Returns
         -------
-        Reading
+        RobotReading
         """
         reading, words = Struct("robot_reading"), message()
         library().robot_station_read(self._state.pointer, reading.pointer)
         library().binding_robot_words(self._state.pointer, words)
         seen = {name: self._state[name] for name in self._state}
         found = {name: reading[name] for name in reading}
-        return Reading({**seen, **found, "words": words.value.decode()})
+        return RobotReading({**seen, **found, "words": words.value.decode()})
 
     def set_inputs(self, *numbers: int) -> None:
         """Digital inputs at the card's terminals.
