@@ -74,8 +74,8 @@ def program() -> str:
 
 def plan() -> str:
     from motionfmu.cards import load, plt
-    from motionfmu.cards.figures import figures
     from motionfmu.cards.plan import plan as planned
+    from motionfmu.cards.plan_figures import figures
     from motionfmu.report.jobs import card_page
 
     folder = ROOT / "scenarios/plt_plate"

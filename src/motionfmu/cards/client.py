@@ -32,7 +32,7 @@ class SoftCard:
         self.orders: list[m.Message] = []  # every command that was carried out
         self.written = 0  # pages that were taken, those taken again too
         self.settings: dict[tuple[int, int], int] = {}  # by number and index; others are 0
-        self._results: deque[m.Result] = deque(maxlen=KEPT)
+        self._results: deque[m.ResultMessage] = deque(maxlen=KEPT)
 
     def hello(self) -> m.Hello:
         """Its first message of a connection."""
@@ -106,16 +106,16 @@ class SoftCard:
         self.state = m.State.READY
         return Code.DONE
 
-    def _order(self, message: m.Message, number: int) -> m.Result:
+    def _order(self, message: m.Message, number: int) -> m.ResultMessage:
         """Carry out a command, or answer it again."""
         if number <= self.done:
             known = (r for r in self._results if r.number == number)
-            return next(known, m.Result(number, Code.STATE, self.state))
+            return next(known, m.ResultMessage(number, Code.STATE, self.state))
         self.done = number
         code = self._do(message)
         if code == Code.DONE:
             self.orders.append(message)
-        self._results.append(m.Result(number, code, self.state))
+        self._results.append(m.ResultMessage(number, code, self.state))
         return self._results[-1]
 
     def _do(self, message: m.Message) -> int:

@@ -10,20 +10,20 @@ from pydantic import BaseModel, BeforeValidator, Field, ValidationError, model_v
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.toml_lines import Lines, shown, tables_of, text_of
-from motionfmu.cards.fields import STRICT, Table, Wrong, choices, described, numbers
-from motionfmu.cards.tables import (
+from motionfmu.cards.config_tables import (
     AXES,
     PINS,
-    Axis,
+    CardAxis,
+    CardMotion,
     Fifo,
     Input,
-    Motion,
     Network,
     Output,
     Pulse,
     Tasks,
     by_pins,
 )
+from motionfmu.cards.fields import STRICT, FieldFaults, Table, choices, described, numbers
 
 
 class CardConfig(BaseModel):
@@ -51,8 +51,8 @@ class CardConfig(BaseModel):
 
     model_config = STRICT
     network: Network = Network()
-    axes: Annotated[list[Axis], Field(min_length=1, max_length=len(AXES))]
-    motion: Motion = Motion()
+    axes: Annotated[list[CardAxis], Field(min_length=1, max_length=len(AXES))]
+    motion: CardMotion = CardMotion()
     pulse: Pulse = Pulse()
     fifo: Fifo = Fifo()
     tasks: Tasks = Tasks()
@@ -83,7 +83,7 @@ class CardConfig(BaseModel):
             if name and name in self.outputs[:k]:
                 found.append(((f"outputs.{k}",), "two outputs of one name"))
         if found:
-            raise Wrong(*found)
+            raise FieldFaults(*found)
         return self
 
     def as_parameters(self) -> dict[str, Any]:
@@ -96,7 +96,7 @@ class CardConfig(BaseModel):
             that the card does not have stands still and has no home.
         """
         found: dict[str, Any] = {}
-        spare = Axis(
+        spare = CardAxis(
             name="U", pulses_per_mm=1000.0, minimum=-1.0, maximum=1.0, speed_max=20.0,
             acceleration_max=1.0, home_order=0,
         )  # fmt: skip
@@ -182,7 +182,7 @@ def _places(error: ValidationError) -> Iterator[tuple[list[str], str]]:
     for one in error.errors():
         table = ".".join(map(str, one["loc"]))
         inner = one.get("ctx", {}).get("error")
-        if isinstance(inner, Wrong):
+        if isinstance(inner, FieldFaults):
             for keys, why in inner.found:
                 yield [f"{table}.{key}".lstrip(".") for key in keys], why
         elif one["type"] == "extra_forbidden":

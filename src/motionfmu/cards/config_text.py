@@ -7,7 +7,7 @@ from typing import Any
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import Lines
 from motionfmu.cards.config import CardConfig, read
-from motionfmu.cards.tables import Input
+from motionfmu.cards.config_tables import Input
 
 Place = tuple[str, str]  # table, key
 _ROW = re.compile(r"""([^=]*=\s*)(?:"[^"]*"|'[^']*'|[^#"'\s]+)(\s*(?:#.*)?)""")

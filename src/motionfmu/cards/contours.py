@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from motionfmu.cards.plt import Drawing
+from motionfmu.cards.plt import PltDrawing
 
 # Places nearer than that are one: below the rounding of every writer. [mm]
 SAME = 1e-6
@@ -13,7 +13,7 @@ REACH = 0.3  # [mm]
 
 
 @dataclass(frozen=True)
-class Contour:
+class PenContour:
     """A line with the pen down all along."""
 
     points: np.ndarray  # [mm]; no two in a row are the same. One alone is a dot.
@@ -23,7 +23,9 @@ class Contour:
     first: int  # Byte of the file where it begins
 
 
-def clean(drawing: Drawing, pens: list[int] | None = None, order: str = "file") -> list[Contour]:
+def clean(
+    drawing: PltDrawing, pens: list[int] | None = None, order: str = "file"
+) -> list[PenContour]:
     """Contours of a drawing in the order of the "file", or always to the "nearest" end.
 
     Lines that follow each other with the same pen and speed are one. A closed contour begins where
@@ -46,16 +48,16 @@ def clean(drawing: Drawing, pens: list[int] | None = None, order: str = "file") 
     return _nearest(found) if order == "nearest" else found
 
 
-def _contour(points: np.ndarray, pen: int, speed: float, first: int) -> Contour:
+def _contour(points: np.ndarray, pen: int, speed: float, first: int) -> PenContour:
     keep = np.abs(np.diff(points, axis=0)).max(axis=1, initial=0.0) > SAME
     points = points[np.concatenate([[True], keep])]
     closed = len(points) > 2 and bool(np.abs(points[-1] - points[0]).max() <= SAME)
-    return Contour(points, pen, closed, speed, first)
+    return PenContour(points, pen, closed, speed, first)
 
 
-def _nearest(contours: list[Contour]) -> list[Contour]:
+def _nearest(contours: list[PenContour]) -> list[PenContour]:
     """Pens one after another, each from where the one before ended."""
-    found: list[Contour] = []
+    found: list[PenContour] = []
     at = np.zeros(2)
     for pen in dict.fromkeys(c.pen for c in contours):
         left = [c for c in contours if c.pen == pen]
@@ -72,7 +74,7 @@ def _nearest(contours: list[Contour]) -> list[Contour]:
     return found
 
 
-def way_between(contours: list[Contour]) -> float:
+def way_between(contours: list[PenContour]) -> float:
     """Way with the pen up, from 0 on [mm]."""
     at, way = np.zeros(2), 0.0
     for c in contours:

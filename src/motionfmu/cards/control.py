@@ -17,10 +17,10 @@ from typing import Any
 from motionfmu.base.errors import InputError
 from motionfmu.base.locking import lock
 from motionfmu.cards import messages as m
+from motionfmu.cards.card_settings import asked as wanted
+from motionfmu.cards.card_settings import lines
 from motionfmu.cards.config import CardConfig
 from motionfmu.cards.server import JOB_MAX, Cards
-from motionfmu.cards.settings import asked as wanted
-from motionfmu.cards.settings import lines
 from motionfmu.cards.views import CardView
 
 LOG = logging.getLogger("motionfmu.cards")

@@ -36,7 +36,7 @@ class Is:
 
 
 @dataclass(frozen=True)
-class Number:
+class WholeNumber:
     """The whole number of a field."""
 
     what: Is
@@ -55,7 +55,7 @@ class Number:
         return f"no whole number of {spelled(w.counts)}" if abs(exactly - self.value) > 1e-6 else ""
 
 
-class Wrong(ValueError):
+class FieldFaults(ValueError):
     """Fields of a table that are wrong: the key, and those it is judged by; what is wrong."""
 
     def __init__(self, *found: tuple[tuple[str, ...], str]) -> None:
@@ -78,7 +78,7 @@ class Table(BaseModel):
             if not (a < b or (sign == "<=" and a == b)):
                 found.append(((left, right), f"{a} is not {sign} {right} = {b}"))
         if found:
-            raise Wrong(*found)
+            raise FieldFaults(*found)
         return self
 
 
@@ -99,7 +99,7 @@ def choices(field: FieldInfo) -> tuple[str, ...]:
     return get_args(kind) if get_origin(kind) is Literal else ()
 
 
-def numbers(table: Table) -> dict[str, Number]:
+def numbers(table: Table) -> dict[str, WholeNumber]:
     """Whole numbers of a table's fields, by their names; texts have none."""
     found = {}
     pulses_per_mm = getattr(table, "pulses_per_mm", 1.0)
@@ -108,8 +108,8 @@ def numbers(table: Table) -> dict[str, Number]:
         words = choices(field)
         if words:
             of_words = replace(what, low=0, high=len(words) - 1, suffix="U")
-            found[name] = Number(of_words, words.index(value), value)
+            found[name] = WholeNumber(of_words, words.index(value), value)
         elif not isinstance(value, str):
             scale = what.factor * (pulses_per_mm if what.pulses else 1.0)
-            found[name] = Number(what, round(value * scale), value)
+            found[name] = WholeNumber(what, round(value * scale), value)
     return found

@@ -237,7 +237,7 @@ class Output(Message):
 
 
 @dataclass(frozen=True)
-class Result(Message):
+class ResultMessage(Message):
     """How a command ended."""
 
     TYPE = 48

@@ -13,8 +13,8 @@ import numpy as np
 from motionfmu.base.binding import Struct, dtype, library
 from motionfmu.base.errors import InputError
 from motionfmu.cards.config import CardConfig
-from motionfmu.cards.contours import Contour, clean, corners
-from motionfmu.cards.plt import Drawing
+from motionfmu.cards.contours import PenContour, clean, corners
+from motionfmu.cards.plt import PltDrawing
 
 AXES = 4
 PAGE = 256
@@ -40,12 +40,12 @@ class Plan:
     events: np.ndarray  # 1 lowers, 2 raises a pen by an output, at the begin of the frame; 0 none
     steps: np.ndarray  # 1 a rest while the pen moves, 2 pen up (or the pen's axis moves), 3 drawing
     stops: int  # Rests within contours
-    contours: list[Contour]  # What is drawn, in this order
+    contours: list[PenContour]  # What is drawn, in this order
     seconds: float  # [s] that planning took
 
 
 @dataclass(frozen=True)
-class Options:
+class PlanOptions:
     """How a drawing is planned."""
 
     order: str = "file"  # "file" or "nearest": of the contours
@@ -58,9 +58,9 @@ class Options:
     offset: tuple[float, float] = (0.0, 0.0)
 
 
-def plan(drawing: Drawing, config: CardConfig, options: Options | None = None) -> Plan:
+def plan(drawing: PltDrawing, config: CardConfig, options: PlanOptions | None = None) -> Plan:
     """Plan a drawing for a card."""
-    options = options or Options()
+    options = options or PlanOptions()
     if len(config.axes) < 2:
         raise InputError(f"{len(config.axes)} axes in the configuration, X and Y wanted")
     contours = clean(drawing, options.pens, options.order)
@@ -87,7 +87,7 @@ def plan(drawing: Drawing, config: CardConfig, options: Options | None = None) -
     )
 
 
-def origin(drawing: Drawing, config: CardConfig, options: Options) -> bytes:
+def origin(drawing: PltDrawing, config: CardConfig, options: PlanOptions) -> bytes:
     """SHA-256 of a drawing and all that its plan depends on: what a job's header has."""
     planner, motion = _planner(config), config.motion
     settings = {name: planner[name] for name in _SETTINGS}
@@ -114,7 +114,7 @@ def write(job: bytes, file: Path) -> None:
 
 
 def _within(
-    drawing: Drawing, contours: list[Contour], config: CardConfig, offset: tuple[float, float]
+    drawing: PltDrawing, contours: list[PenContour], config: CardConfig, offset: tuple[float, float]
 ) -> None:
     """Refuse a vertex beyond a limit of its axis."""
     for c in contours:
@@ -169,7 +169,7 @@ def _pointer(array: np.ndarray) -> ctypes.c_void_p:
     return array.ctypes.data_as(ctypes.c_void_p)
 
 
-def _vertices(contours: list[Contour], config: CardConfig, options: Options) -> np.ndarray:
+def _vertices(contours: list[PenContour], config: CardConfig, options: PlanOptions) -> np.ndarray:
     """Moves and lines of all contours."""
     motion, kind = config.motion, dtype("plan_vertex")
     counts = [max(len(c.points), 2) for c in contours]

@@ -9,7 +9,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.cards.plt_plotter import Plotter, Polyline
 from motionfmu.cards.plt_scan import Scanner
 
-__all__ = ["Drawing", "Note", "Polyline", "parse", "read"]
+__all__ = ["Note", "PltDrawing", "Polyline", "parse", "read"]
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Note:
 
 
 @dataclass(frozen=True)
-class Drawing:
+class PltDrawing:
     """What one page of a PLT file draws."""
 
     lines: list[Polyline]  # In the file's order, moves with the pen up between them
@@ -59,7 +59,7 @@ def read(
     frame: tuple[float, float, float, float] | None = None,
     fills: bool = True,
     page: int = 1,
-) -> Drawing:
+) -> PltDrawing:
     """Read a page of a PLT file."""
     try:
         text = Path(file).read_bytes()
@@ -74,7 +74,7 @@ def parse(
     frame: tuple[float, float, float, float] | None = None,
     fills: bool = True,
     page: int = 1,
-) -> Drawing:
+) -> PltDrawing:
     """Read a page of the text of a PLT file."""
     plotter = Plotter(Scanner(text, name), frame, fills)
     plotter.run()
@@ -83,4 +83,4 @@ def parse(
         there = "one page" if len(pages) == 1 else f"{len(pages)} pages"
         raise InputError(f"{name}: no page {page}, it has {there}")
     notes = [Note(*n) for n in plotter.scan.notes()]
-    return Drawing(pages[page - 1], notes, name, text, page, len(pages))
+    return PltDrawing(pages[page - 1], notes, name, text, page, len(pages))

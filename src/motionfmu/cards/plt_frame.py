@@ -7,7 +7,7 @@ Place = tuple[float, float]
 _TURNS = {0: (1, 0, 0, 1), 90: (0, -1, 1, 0), 180: (-1, 0, 0, -1), 270: (0, 1, -1, 0)}
 
 
-class Frame:
+class UserUnits:
     """User units: scaled into P1 .. P2, then rotated about the origin of the sheet."""
 
     def __init__(self, machine: tuple[float, float, float, float] | None) -> None:

@@ -31,7 +31,7 @@ CALL = 5.0  # [s] for a connection to come about
 SAVE = 1.0  # [s] between two looks at the flash
 
 
-class VirtualCard:
+class VirtualNetCard:
     """A card of src/controllers/netcard with its machine; its time is in ns since power came."""
 
     def __init__(
@@ -117,7 +117,7 @@ class VirtualCard:
 class _Link(asyncio.Protocol):
     """The TCP connection of a card, for as long as it lasts."""
 
-    def __init__(self, run: "Run") -> None:
+    def __init__(self, run: "RealTimeRun") -> None:
         self._run = run
         self._waits = b""  # what the card has not taken yet
         self.transport: asyncio.Transport | None = None
@@ -150,12 +150,12 @@ class _Link(asyncio.Protocol):
         self._run.card.connected(False)
 
 
-class Run:
+class RealTimeRun:
     """A card on the clock of the wall, `speed` times as fast."""
 
     def __init__(
         self,
-        card: VirtualCard,
+        card: VirtualNetCard,
         place: tuple[str, int],
         speed: float,
         tls: "ssl.SSLContext | None" = None,
@@ -214,14 +214,14 @@ class Watch:
 
 
 async def simulate(
-    cards: list[VirtualCard],
+    cards: list[VirtualNetCard],
     place: tuple[str, int],
     speed: float = 1.0,
     watch: Watch = Watch(),
     tls: "ssl.SSLContext | None" = None,
 ) -> None:
     """Run cards as clients of a server until this is cancelled."""
-    runs = [Run(card, place, speed, tls, watch.failed) for card in cards]
+    runs = [RealTimeRun(card, place, speed, tls, watch.failed) for card in cards]
     clock = asyncio.get_running_loop().time
     due = clock() + SAVE
     while True:
@@ -252,7 +252,7 @@ class FlashFile:
             raise InputError(f"{self._file}: {len(data)} bytes, a flash has {FLASH_BYTES}")
         return data
 
-    def save(self, card: VirtualCard) -> None:
+    def save(self, card: VirtualNetCard) -> None:
         """Keep it, if anything was written since."""
         done = (card["programs"], card["sector_erases"], card["block_erases"])
         if done != self._kept:

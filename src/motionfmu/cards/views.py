@@ -54,7 +54,7 @@ TEXTS = {
 
 
 @dataclass(frozen=True)
-class Result:
+class CommandResult:
     """How a command or an upload ended."""
 
     code: int  # see Code
@@ -67,14 +67,14 @@ class Result:
         return self.code == Code.DONE
 
     @classmethod
-    def of(cls, code: int, state: str = "") -> "Result":
+    def of(cls, code: int, state: str = "") -> "CommandResult":
         """With the text of its code."""
         known = code in Code.__members__.values()
         return cls(code, TEXTS[Code(code)] if known else f"code {code}", state)
 
 
 @dataclass(frozen=True)
-class Setting:
+class SettingResult:
     """A setting that was sent to a card."""
 
     name: str
@@ -82,15 +82,15 @@ class Setting:
     before: int
     value: int
     later: bool  # acts from the next power-up on only
-    result: Result
+    result: CommandResult
 
 
 @dataclass(frozen=True)
-class Configured:
+class ConfigurationResult:
     """How the sending of a configuration ended: that of the first setting that was not done."""
 
-    result: Result
-    changed: tuple[Setting, ...] = ()  # that differed and were sent
+    result: CommandResult
+    changed: tuple[SettingResult, ...] = ()  # that differed and were sent
 
 
 @dataclass(frozen=True)

@@ -93,7 +93,7 @@ def _proved(given: bytes, wanted: bytes, whose: str) -> None:
         raise WireError(f"the {whose} has another key")
 
 
-class End:
+class LinkEnd:
     """What both ends of a connection do: bytes in, messages out, the handshake first."""
 
     def __init__(self, out: int) -> None:
@@ -130,7 +130,7 @@ class End:
             self.stream.secure(proof(key, b"K", hello, challenge))
 
 
-class PcEnd(End):
+class PcEnd(LinkEnd):
     """The PC's end; `key_of` gives the key of a card's id."""
 
     def __init__(self, key_of: Callable[[int], bytes], interval: int = 100) -> None:
@@ -160,7 +160,7 @@ class PcEnd(End):
         self.ready = True
 
 
-class CardEnd(End):
+class CardEnd(LinkEnd):
     """The card's end; HELLO is among its bytes from the start."""
 
     def __init__(self, key: bytes, hello: Hello) -> None:

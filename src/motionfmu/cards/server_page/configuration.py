@@ -12,17 +12,17 @@ from starlette.routing import Route
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file
+from motionfmu.cards.card_settings import asked, lines
 from motionfmu.cards.config import CardConfig, faults, read
 from motionfmu.cards.config_text import text_of, with_values
 from motionfmu.cards.headers import texts
-from motionfmu.cards.page.form import form
-from motionfmu.cards.settings import asked, lines
-from motionfmu.cards.views import Configured
+from motionfmu.cards.server_page.form import form
+from motionfmu.cards.views import ConfigurationResult
 
 NAME = "card.toml"
 LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the date of all headers: equal ones are equal bytes
 Values = Callable[[Request], Awaitable[dict[str, Any]]]
-Configure = Callable[[int, CardConfig], Awaitable[Configured]]
+Configure = Callable[[int, CardConfig], Awaitable[ConfigurationResult]]
 
 
 class Configuration:

@@ -6,13 +6,22 @@ from annotated_types import Ge, Gt, Le, Lt
 from pydantic_core import PydanticUndefined
 
 from motionfmu.base.units import spelled
+from motionfmu.cards.config_tables import (
+    CardAxis,
+    CardMotion,
+    Fifo,
+    Input,
+    Network,
+    Pen,
+    Pulse,
+    Tasks,
+)
 from motionfmu.cards.fields import Is, Table, choices, described
-from motionfmu.cards.tables import Axis, Fifo, Input, Motion, Network, Pen, Pulse, Tasks
 
 PARTS: tuple[tuple[str, str, type[Table]], ...] = (
     ("network", "Network", Network),
-    ("axes", "Axis", Axis),
-    ("motion", "Motion", Motion),
+    ("axes", "Axis", CardAxis),
+    ("motion", "Motion", CardMotion),
     ("motion.pen", "Pen", Pen),
     ("pulse", "Pulses", Pulse),
     ("fifo", "Buffer", Fifo),

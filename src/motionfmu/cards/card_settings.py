@@ -8,15 +8,15 @@ from pydantic.fields import FieldInfo
 
 from motionfmu.base.binding import dtype
 from motionfmu.base.units import spelled
+from motionfmu.cards.config_tables import AXES, CardAxis, CardMotion, Fifo, Input, Pulse, Tasks
 from motionfmu.cards.fields import Is, Table, choices, described
-from motionfmu.cards.tables import AXES, Axis, Fifo, Input, Motion, Pulse, Tasks
-from motionfmu.cards.views import Configured
+from motionfmu.cards.views import ConfigurationResult
 
 if TYPE_CHECKING:
     from motionfmu.cards.config import CardConfig
 
 Key = tuple[str, int]  # name in src/controllers/netcard/card_settings.h, element
-TABLES: tuple[type[Table], ...] = (Motion, Pulse, Fifo, Tasks, Axis, Input)
+TABLES: tuple[type[Table], ...] = (CardMotion, Pulse, Fifo, Tasks, CardAxis, Input)
 # Numbers that are an upper bound of another one: raised before it, lowered behind it.
 _UPPER = ("speed_max", "position_high")
 # What the card copies at power-up.
@@ -81,11 +81,11 @@ def shown(name: str, whole: int, pulses_per_m: int) -> str:
 def words(name: str, index: int) -> str:
     """What a setting is called."""
     table, _, what = fields()[name]
-    of = {Axis: f"Axis {AXES[index % 4]}: ", Input: f"Input {index}: ", Tasks: "Priority: "}
+    of = {CardAxis: f"Axis {AXES[index % 4]}: ", Input: f"Input {index}: ", Tasks: "Priority: "}
     return of.get(table, "") + what.words
 
 
-def lines(wanted: Mapping[Key, int], end: Configured) -> Iterator[str]:
+def lines(wanted: Mapping[Key, int], end: ConfigurationResult) -> Iterator[str]:
     """What became of each setting that was sent, in words."""
     before = {(s.name, s.index): s.before for s in end.changed}
     for s in end.changed:

@@ -15,7 +15,7 @@ KEPT = 16  # jobs
 
 
 @dataclass(frozen=True)
-class Opened:
+class OpenedJob:
     """A job, and its picture."""
 
     job: bytes
@@ -26,13 +26,13 @@ class Pictures:
     """The last jobs that were opened, by the SHA-256 of their files."""
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[str, Opened] = OrderedDict()
+        self._kept: OrderedDict[str, OpenedJob] = OrderedDict()
 
-    def get(self, digest: str) -> Opened | None:
+    def get(self, digest: str) -> OpenedJob | None:
         """A job that is still kept."""
         return self._kept.get(digest)
 
-    def add(self, opened: Opened) -> None:
+    def add(self, opened: OpenedJob) -> None:
         """Keep a job; the oldest goes."""
         digest = opened.picture["job"]
         self._kept[digest] = opened
@@ -41,12 +41,12 @@ class Pictures:
             self._kept.popitem(last=False)
 
 
-def opened(data: bytes, name: str, config: CardConfig | None, page: int = 1) -> Opened:
+def opened(data: bytes, name: str, config: CardConfig | None, page: int = 1) -> OpenedJob:
     """A job file, or a drawing that is planned for the configuration; InputError if neither."""
     told = {"notes": [], "page": 1, "pages": 1}
     if not data.startswith(b"MCJ1"):
         data, told = _planned(data, name, config, page)
-    return Opened(data, picture(decode(data, name), data, name) | told)
+    return OpenedJob(data, picture(decode(data, name), data, name) | told)
 
 
 def _planned(

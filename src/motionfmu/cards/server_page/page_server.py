@@ -16,7 +16,7 @@ MESSAGE_MAX = 4096  # [byte] of a page to the server: it says its token
 CLOSING = 1.0  # [s] for pages that are open when it ends
 
 
-class Serving:
+class PageServer:
     """The page on a port of this machine, in ``async with``.
 
     Parameters

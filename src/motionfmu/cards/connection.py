@@ -13,7 +13,7 @@ READ_MAX = 16384  # [byte] taken from a connection before the others have their 
 
 
 @dataclass(frozen=True)
-class Limits:
+class ConnectionLimits:
     """What a server bears."""
 
     connections: int = 256
@@ -35,7 +35,7 @@ class Limits:
 class Card(Protocol):
     """Who hears what a line brings."""
 
-    def heard(self, line: "Line", sequence: int, message: Message) -> None:
+    def heard(self, line: "CardConnection", sequence: int, message: Message) -> None:
         """A message behind the handshake."""
 
     def room(self) -> None:
@@ -45,20 +45,20 @@ class Card(Protocol):
 class Host(Protocol):
     """Who owns the lines."""
 
-    limits: Limits
+    limits: ConnectionLimits
     buffer: bytearray
 
-    def met(self, line: "Line") -> str:
+    def met(self, line: "CardConnection") -> str:
         """A connection has come; why it is refused, or nothing."""
 
-    def joined(self, line: "Line") -> Card:
+    def joined(self, line: "CardConnection") -> Card:
         """The handshake of a line is over."""
 
-    def lost(self, line: "Line", why: str) -> None:
+    def lost(self, line: "CardConnection", why: str) -> None:
         """A connection is over."""
 
 
-class Line(asyncio.BufferedProtocol):
+class CardConnection(asyncio.BufferedProtocol):
     """One connection: frames in, frames out."""
 
     def __init__(

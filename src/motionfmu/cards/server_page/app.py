@@ -15,12 +15,12 @@ from starlette.routing import Route, WebSocketRoute
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import shown
 from motionfmu.cards.config import CardConfig, load
-from motionfmu.cards.page.configuration import Configuration
-from motionfmu.cards.page.guard import Guard
-from motionfmu.cards.page.live import Live
-from motionfmu.cards.page.pictures import Pictures
-from motionfmu.cards.page.planning import opened_apart
-from motionfmu.cards.views import CardView, Configured, Event, Result
+from motionfmu.cards.server_page.configuration import Configuration
+from motionfmu.cards.server_page.guard import Guard
+from motionfmu.cards.server_page.job_pictures import Pictures
+from motionfmu.cards.server_page.live import Live
+from motionfmu.cards.server_page.plan_process import opened_apart
+from motionfmu.cards.views import CardView, CommandResult, ConfigurationResult, Event
 
 FILES = Path(__file__).parent
 KINDS = {
@@ -39,13 +39,13 @@ class Fleet(Protocol):
     def list(self) -> list[CardView]:
         """All cards."""
 
-    async def command(self, card: int, name: str, /, **values: int) -> Result:
+    async def command(self, card: int, name: str, /, **values: int) -> CommandResult:
         """Do a command."""
 
-    async def upload(self, card: int, job: bytes) -> Result:
+    async def upload(self, card: int, job: bytes) -> CommandResult:
         """Bring a job."""
 
-    async def configure(self, card: int, config: CardConfig) -> Configured:
+    async def configure(self, card: int, config: CardConfig) -> ConfigurationResult:
         """Send settings that differ."""
 
     def subscribe(self) -> "asyncio.Queue[Event]":
@@ -169,6 +169,6 @@ class _Page:
         return _result(await self._cards.upload(request.path_params["card"], job.job))
 
 
-def _result(result: Result) -> Response:
+def _result(result: CommandResult) -> Response:
     said = {"code": result.code, "ok": result.ok, "text": result.text, "state": result.state}
     return JSONResponse(said)

@@ -14,10 +14,10 @@ from typing import Any, BinaryIO
 from motionfmu.base.children import child
 from motionfmu.base.errors import InputError
 from motionfmu.cards.config import CardConfig
-from motionfmu.cards.page.pictures import Opened, opened
+from motionfmu.cards.server_page.job_pictures import OpenedJob, opened
 
 
-async def opened_apart(data: bytes, name: str, config: CardConfig | None, page: int) -> Opened:
+async def opened_apart(data: bytes, name: str, config: CardConfig | None, page: int) -> OpenedJob:
     """As `opened`; who does not wait any more ends the process, too."""
     asked = {"name": name, "page": page, "config": config.model_dump() if config else None}
     command, options = child(f"from {__name__} import main; main()")
@@ -33,7 +33,7 @@ async def opened_apart(data: bytes, name: str, config: CardConfig | None, page: 
     answer: dict[str, Any] = json.loads(line)
     if "errors" in answer:
         raise InputError(*answer["errors"])
-    return Opened(job, answer["picture"])
+    return OpenedJob(job, answer["picture"])
 
 
 def answered(request: BinaryIO, answer: BinaryIO) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from motionfmu.cards.fields import Is, Table, Wrong
+from motionfmu.cards.fields import FieldFaults, Is, Table
 
 AXES = "XYZU"
 PINS = 16  # programmable inputs, and outputs
@@ -43,7 +43,7 @@ def by_pins(empty: Any) -> Callable[[Any], Any]:
         known = [str(pin) for pin in range(PINS)]
         strange = [((str(key),), f"pins are 0 .. {PINS - 1}") for key in given if key not in known]
         if strange:
-            raise Wrong(*strange)
+            raise FieldFaults(*strange)
         return [given.get(pin, empty) for pin in known]
 
     return whole
@@ -92,18 +92,18 @@ class Network(Table):
         try:
             net = ipaddress.IPv4Network(f"{self.ip}/{self.netmask}", strict=False)
         except ValueError:
-            raise Wrong((("netmask",), "ones, then zeros wanted")) from None
+            raise FieldFaults((("netmask",), "ones, then zeros wanted")) from None
         found: list[tuple[tuple[str, ...], str]] = []
         if net.num_addresses > 2 and self.ip in (str(net[0]), str(net[-1])):
             found.append((("ip", "netmask"), f"an end of the network {net}"))
         if self.gateway != "0.0.0.0" and ipaddress.IPv4Address(self.gateway) not in net:
             found.append((("gateway", "ip", "netmask"), f"not in the card's network {net}"))
         if found:
-            raise Wrong(*found)
+            raise FieldFaults(*found)
         return self
 
 
-class Axis(Table):
+class CardAxis(Table):
     """An axis: its scale, its limits and how it goes home."""
 
     RULES = (
@@ -181,7 +181,7 @@ class Pen(Table):
     down: Annotated[float, Is("Position of the axis, down", "mm", low=-(10**6), high=10**6)] = 0.0
 
 
-class Motion(Table):
+class CardMotion(Table):
     """How paths are planned and run."""
 
     period: Annotated[
