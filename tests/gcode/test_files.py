@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 
 import motionfmu
 from motionfmu.analysis.gcode import Program, read
-from motionfmu.analysis.gcode.called import called
 from motionfmu.analysis.gcode.program import Texts, _reader
+from motionfmu.analysis.gcode.subprogram_files import called
 from motionfmu.base.errors import InputError
 from motionfmu.cli import app
 from motionfmu.export.resources import Resources

@@ -41,12 +41,12 @@ def compared(result: motionfmu.Result) -> str:
 
 
 def margins() -> str:
-    from motionfmu.analysis.freq.study import Asked, study
+    from motionfmu.analysis.freq.loop_study import LoopStudyOptions, study
     from motionfmu.analysis.linear import model
     from motionfmu.report.servo import margin_page
 
     linear = model(CIRCLE, 1, {"machine.motor_speed": 30.0}, {})
-    return margin_page.page_text(linear, study(linear, Asked(None, {}, False, None)))
+    return margin_page.page_text(linear, study(linear, LoopStudyOptions(None, {}, False, None)))
 
 
 def tuned() -> str:

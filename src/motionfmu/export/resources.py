@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain, count
 from pathlib import Path
 
-from motionfmu.analysis.gcode.called import called
+from motionfmu.analysis.gcode.subprogram_files import called
 from motionfmu.base.toml_lines import is_file
 from motionfmu.fmu import places
 from motionfmu.scenarios.system import Setting

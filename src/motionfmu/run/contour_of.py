@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from motionfmu.analysis.contour import ContourInput, ContourResult, Path, Trace, analyse
-from motionfmu.analysis.contour.commanded import Known
-from motionfmu.analysis.contour.planned import path_of_text
-from motionfmu.analysis.contour.scaled import Scaled
+from motionfmu.analysis.contour.planned_geometry import path_of_text
+from motionfmu.analysis.contour.pulse_path import PulsePaths
+from motionfmu.analysis.contour.scaled_values import ScaledValues
 from motionfmu.base import units
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run.run_record import RunRecord
@@ -17,16 +17,16 @@ from motionfmu.scenarios.contour_signals import CARD, library_of
 CLOCK = 25e-9  # [s] of the card
 
 
-def _millimetres(run: RunRecord, name: str) -> Scaled:
+def _millimetres(run: RunRecord, name: str) -> ScaledValues:
     unit = units.parse(run.resolver.end(name, "contour", "position").port.unit or "1")
-    return Scaled(run[name], units.parse("mm").factor / unit.factor)
+    return ScaledValues(run[name], units.parse("mm").factor / unit.factor)
 
 
 def contour_of(
     run: RunRecord,
     only_drawn: Collection[str],
     progress: Callable[[float], None] = lambda share: None,
-    known: Known | None = None,
+    known: PulsePaths | None = None,
 ) -> ContourResult:
     """Analyse the contour of a run; signals that only figures ask for are no traces.
 
@@ -37,7 +37,7 @@ def contour_of(
     contour = document.body.contour
     if contour is None:
         raise InputError(f"{document.file}: the scenario has no [contour] table")
-    known = Known() if known is None else known
+    known = PulsePaths() if known is None else known
     library, card = library_of(run.resolver), contour.pulses.partition(".")[0]
 
     def axes(name: str) -> Any:
@@ -55,7 +55,7 @@ def contour_of(
                 path=_path(run, known),
                 time=run.time,
                 actual=_millimetres(run, contour.position),
-                commanded=Scaled(run[contour.pulses], pulses_per_mm),
+                commanded=ScaledValues(run[contour.pulses], pulses_per_mm),
                 command=run[f"{library}.command"],
                 newest=run[f"{library}.command_newest"],
                 stock=optional["stock"],
@@ -72,7 +72,7 @@ def contour_of(
         raise NoNumber(f"no contour: {error}") from None
 
 
-def _path(run: RunRecord, known: Known) -> Path:
+def _path(run: RunRecord, known: PulsePaths) -> Path:
     if run.geometry is None:
         raise ValueError("the library wrote no path")
     return known.path(run.geometry, lambda text: path_of_text(text, "planned path"))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from motionfmu.analysis.contour import ContourResult
-    from motionfmu.analysis.contour.commanded import Known
+    from motionfmu.analysis.contour.pulse_path import PulsePaths
     from motionfmu.analysis.iso9283 import Evaluation
 
 
@@ -79,7 +79,7 @@ class Result(Mapping[str, NDArray[Any]]):
         Why it ended: ``stop = 4 s``, ``mcc.done at 16.213 s``.
     signal_at : float or None
         When the signal that ends the run came [s]; None if it did not, or a time ends it.
-    known : Known or None
+    known : PulsePaths or None
         What its contour has in common with those of other runs of a session.
 
     Examples
@@ -101,7 +101,7 @@ class Result(Mapping[str, NDArray[Any]]):
     overrides: list[str] = field(default_factory=list)
     stopped: str = ""
     signal_at: float | None = None
-    known: "Known | None" = None
+    known: "PulsePaths | None" = None
     _contour: "ContourResult | NoNumber | None" = None
     _iso9283: "Evaluation | NoNumber | None" = None
 

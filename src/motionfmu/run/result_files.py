@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionfmu.analysis.contour.scaled import places
+from motionfmu.analysis.contour.scaled_values import places
 from motionfmu.base.columns import LazyArray, forget
 from motionfmu.base.toml_lines import is_file
 from motionfmu.run.result import Result

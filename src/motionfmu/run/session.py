@@ -16,7 +16,7 @@ from motionfmu.scenarios.system import End, Setting, System
 from motionfmu.scenarios.values import settings, start_values
 
 if TYPE_CHECKING:
-    from motionfmu.analysis.contour.commanded import Known
+    from motionfmu.analysis.contour.pulse_path import PulsePaths
 
 
 class Session:
@@ -130,10 +130,10 @@ class Session:
         self.close()
 
 
-def _known(scenario: RunPlan) -> "Known | None":
+def _known(scenario: RunPlan) -> "PulsePaths | None":
     """What the contours of runs have in common; None if the scenario does not look at it."""
     if scenario.document.body.contour is None:
         return None
-    from motionfmu.analysis.contour.commanded import Known
+    from motionfmu.analysis.contour.pulse_path import PulsePaths
 
-    return Known()
+    return PulsePaths()

@@ -9,11 +9,11 @@ import numpy as np
 from scipy.linalg import eig
 
 from motionfmu.analysis.linear.axis import AxisModel
-from motionfmu.analysis.linear.form import Gain
+from motionfmu.analysis.linear.linear_form import Gain
 from motionfmu.analysis.linear.loops import feedbacks
-from motionfmu.analysis.linear.opened import listed, matrices
 from motionfmu.analysis.linear.pointwise import Quick
 from motionfmu.analysis.linear.residual import Residual, with_residuals
+from motionfmu.analysis.linear.tuning_parts import listed, matrices
 from motionfmu.analysis.linear.wiring import PeriodMap
 from motionfmu.base.memo import Memo
 from motionfmu.study.tune.curve import Loop

@@ -10,8 +10,8 @@ import numpy as np
 from motionfmu.analysis.linear import law
 from motionfmu.analysis.linear.axis import AxisModel
 from motionfmu.analysis.linear.block import Plant, Sampled, nonzero, reaches
-from motionfmu.analysis.linear.form import Gain
-from motionfmu.analysis.linear.opened import limit, linearised, listed, matrices
+from motionfmu.analysis.linear.linear_form import Gain
+from motionfmu.analysis.linear.tuning_parts import limit, linearised, listed, matrices
 from motionfmu.base.errors import InputError
 from motionfmu.base.units import parse
 from motionfmu.run import Result, Scenario

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from motionfmu.analysis.linear.block import Plant, Sampled
-from motionfmu.analysis.linear.opened import worst
+from motionfmu.analysis.linear.tuning_parts import worst
 from motionfmu.study.tune.problem import ON_PATH
 from motionfmu.study.tune.study import Study
 

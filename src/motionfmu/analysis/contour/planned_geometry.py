@@ -12,7 +12,15 @@ import numpy as np
 from motionfmu.analysis.contour.arcs import EPS, Arcs, Array
 from motionfmu.analysis.contour.geometry import Arc, Cubic, Label, norms
 from motionfmu.analysis.contour.path import Path
-from motionfmu.analysis.contour.segments import ARC, CUBIC, KINDS, LINE, Columns, Index, Segments
+from motionfmu.analysis.contour.segments import (
+    ARC,
+    CUBIC,
+    KINDS,
+    LINE,
+    Index,
+    SegmentColumns,
+    Segments,
+)
 
 # Kinds of commands by their number in the file; place in KINDS, and shape.
 TYPES = {0: "ptp", 1: "line", 2: "arc", 3: "arc", 4: "helix", 5: "helix", 14: "curve"}
@@ -31,7 +39,7 @@ INNER = [f"inner_{k}_{axis}" for k in (0, 1) for axis in AXES]
 MEETS = 1e-4
 
 
-class Wrong(ValueError):
+class RowFault(ValueError):
     """A row that cannot be, by its number among those given."""
 
     def __init__(self, row: int, what: str) -> None:
@@ -80,7 +88,7 @@ def path_of(stream: TextIO, name: str) -> Path:
         raise ValueError(f"{name}: no motion in the planned geometry")
     try:
         return Path(Segments(_columns(table[moves], wanted)))
-    except Wrong as error:
+    except RowFault as error:
         line = int(moves[error.row]) + 2
         raise ValueError(f"{name}:{line}: {error}") from None
 
@@ -107,7 +115,7 @@ def _number(row: dict[str, str], name: str) -> float:
     return value
 
 
-def _columns(table: Array, names: list[str]) -> Columns:
+def _columns(table: Array, names: list[str]) -> SegmentColumns:
     """Segments of rows that are motion."""
 
     def triple(what: str) -> Array:
@@ -120,7 +128,7 @@ def _columns(table: Array, names: list[str]) -> Columns:
     known = np.isin(types, list(TYPES))
     if not known.all():
         row = int(np.argmin(known))
-        raise Wrong(row, f"type '{types[row]}' is none of 0 to {DELAY} and 14")
+        raise RowFault(row, f"type '{types[row]}' is none of 0 to {DELAY} and 14")
     kinds, shapes = np.zeros(15, dtype=np.int8), np.zeros(15, dtype=np.int8)
     for number, kind in TYPES.items():
         kinds[number], shapes[number] = KINDS.index(kind), SHAPES[kind]
@@ -132,17 +140,17 @@ def _columns(table: Array, names: list[str]) -> Columns:
     about = (triple("centre")[round_], triple("normal")[round_])
     try:
         turned = _turned((start[round_], end[round_]), about, column("sweep")[round_])
-    except Wrong as error:
-        raise Wrong(int(round_[error.row]), str(error)) from None
+    except RowFault as error:
+        raise RowFault(int(round_[error.row]), str(error)) from None
     curves = {}
     for i in np.flatnonzero(shape == CUBIC).tolist():
         if not set(INNER) <= set(names):
             missing = next(c for c in INNER if c not in names)
-            raise Wrong(i, f"{missing} None is not a number")
+            raise RowFault(i, f"{missing} None is not a number")
         inner = table[i, [names.index(c) for c in INNER]].reshape(2, 3)
         own = Label(int(command[i]), int(line[i]), "curve", float(feed[i]))
         curves[i] = Cubic(own, np.array([start[i], *inner, end[i]]))
-    return Columns(command, line, kinds[types], feed, shape, start, end, *turned, curves)
+    return SegmentColumns(command, line, kinds[types], feed, shape, start, end, *turned, curves)
 
 
 def make_arc(
@@ -167,7 +175,7 @@ def _turned(
     def refuse(bad: Index, what: Callable[[int], str]) -> None:
         if bad.any():
             row = int(np.argmax(bad))
-            raise Wrong(row, what(row))
+            raise RowFault(row, what(row))
 
     start, end = ends
     size = norms(about[1])

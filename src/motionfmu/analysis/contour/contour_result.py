@@ -14,7 +14,7 @@ from motionfmu.analysis.contour.instants import Instants
 from motionfmu.analysis.contour.kinds import AXES, Corner, Statistics
 from motionfmu.analysis.contour.path import Path
 from motionfmu.analysis.contour.ranges import largest, parts
-from motionfmu.analysis.contour.scaled import Scaled, blocks, finite
+from motionfmu.analysis.contour.scaled_values import ScaledValues, blocks, finite
 from motionfmu.analysis.contour.segments import KINDS
 from motionfmu.analysis.contour.track import Track
 from motionfmu.base.errors import NoNumber
@@ -53,7 +53,7 @@ class ContourInput:
         The planned geometry.
     time : ndarray, shape (n,)
         [s], increasing.
-    actual, commanded : ndarray or Scaled, shape (n, 6)
+    actual, commanded : ndarray or ScaledValues, shape (n, 6)
         Position of the tool, and pulses put out over pulses per mm [mm]; memory maps are read in
         parts.
     command : ndarray of int, shape (n,)
@@ -81,8 +81,8 @@ class ContourInput:
 
     path: Path
     time: Array
-    actual: Array | Scaled
-    commanded: Array | Scaled
+    actual: Array | ScaledValues
+    commanded: Array | ScaledValues
     command: NDArray[np.int64]
     newest: NDArray[np.int64] | None = None
     stock: Array | None = None

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from motionfmu.analysis.explain.expression import evaluate
+from motionfmu.analysis.explain.parameter_expression import evaluate
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import tables_of
 from motionfmu.fmu.archive_names import EXTRA
@@ -69,7 +69,7 @@ class Cause:
 
 
 @dataclass(frozen=True)
-class Off:
+class CauseOff:
     """A cause that is switched off."""
 
     set: Mapping[str, Any]  # value by `component.variable`; empty if nothing changes
@@ -126,14 +126,16 @@ def watched(found: list[Cause]) -> list[str]:
     return [f"{c}.{n}" for cause in found for c, s in cause.switches.items() for n in s.reached]
 
 
-def off(cause: Cause, result: "Result", base: Mapping[str, Any]) -> Off:
+def off(cause: Cause, result: "Result", base: Mapping[str, Any]) -> CauseOff:
     """Settings that switch a cause off after the run `result`, on top of those of other causes."""
     for component, switch in cause.switches.items():
         for name, level in switch.reached.items():
             largest = float(np.abs(result[f"{component}.{name}"]).max())
             if largest < level:
                 text = f"{component}.{name} stays below {level:g} (largest {largest:.3g})"
-                return Off({}, text if level != 1 else f"{component}.{name} never", absent=True)
+                return CauseOff(
+                    {}, text if level != 1 else f"{component}.{name} never", absent=True
+                )
     changed: dict[str, Any] = {}
     for component, switch in cause.switches.items():
         ports = result.scenario.resolver.ports[component]
@@ -151,10 +153,10 @@ def off(cause: Cause, result: "Result", base: Mapping[str, Any]) -> Off:
         for name, values in wanted.items():
             given, why = _within(values, ports[name], name in switch.limit)
             if why:
-                return Off({}, f"{component}.{name}: {why}")
+                return CauseOff({}, f"{component}.{name}: {why}")
             if given != [_plain(x, ports[name]) for x in now(name)]:
                 changed[f"{component}.{name}"] = given if ports[name].shape else given[0]
-    return Off(changed, "" if changed else "nothing to switch off", absent=not changed)
+    return CauseOff(changed, "" if changed else "nothing to switch off", absent=not changed)
 
 
 def used(result: "Result") -> list[int]:

@@ -23,7 +23,7 @@ PEAK_STEPS, PEAK_LENGTH = 2000, 8.0
 
 
 @dataclass(frozen=True)
-class Axis:
+class ServoAxis:
     """One axis as theory sees it."""
 
     gain: float  # position gain Kp [1/s]
@@ -38,10 +38,10 @@ class Axis:
     travel: float = 0.0  # per turn [mm]
 
     @staticmethod
-    def of(quantities: Mapping[str, Array], axis: int) -> "Axis":
+    def of(quantities: Mapping[str, Array], axis: int) -> "ServoAxis":
         """The axis, from 0, that an FMU's quantities (six axes by name) describe."""
-        names = Axis.__dataclass_fields__
-        return Axis(**{n: float(quantities[n][axis]) for n in names if n in quantities})
+        names = ServoAxis.__dataclass_fields__
+        return ServoAxis(**{n: float(quantities[n][axis]) for n in names if n in quantities})
 
     def response(self, speed: float) -> complex:
         """Position over command at an angular frequency [rad/s].
@@ -97,7 +97,7 @@ def chord(radius: float, feed: float, time: float) -> float:
     return radius * (1.0 - math.cos(min(feed * time / (2.0 * radius), math.pi)))
 
 
-def chord_behind_servo(sag: float, time: float, axis: Axis) -> float:
+def chord_behind_servo(sag: float, time: float, axis: ServoAxis) -> float:
     """Largest distance inwards [mm] that a table shows of the sag of chords, each a time [s] long.
 
     The sag is a parabola of time: its mean, 2/3, passes the servo, its ripple
@@ -160,7 +160,7 @@ def blended_corner(feed: float, angle: float, gain: float, acceleration: float) 
     return abs(math.sin(angle)) * acceleration * own
 
 
-def reversal(axis: Axis) -> tuple[float, float]:
+def reversal(axis: ServoAxis) -> tuple[float, float]:
     """Position error by Coulomb friction [mm]: step, and peak.
 
     At a reversal the torque changes by 2 Fc. A proportional velocity loop keeps 2 Fc/(Kp Kv), half
@@ -189,7 +189,7 @@ def lost_motion_arc(radius: float, backlash: float) -> float:
     return math.acos(max(-1.0, 1.0 - backlash / radius))
 
 
-def limited(command: Array, time: Array, axis: Axis, torque: float) -> Array:
+def limited(command: Array, time: Array, axis: ServoAxis, torque: float) -> Array:
     """Position [mm] of a rigid axis without delays whose torque [N.m] is limited.
 
     ``J dv/dt = T - Fc sign(v) - Fv v`` with T of a PI velocity loop, within the limit, which asks

@@ -8,14 +8,14 @@ import control
 import numpy as np
 
 from motionfmu.analysis.freq.bench import Setup
-from motionfmu.analysis.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
+from motionfmu.analysis.freq.limit import RingingTest, simulated_gain, small_signal_gain, usual_kick
 from motionfmu.analysis.freq.response import Response, measured_loop, room, settling, slowest
 from motionfmu.analysis.freq.shape import WORTH, Loop, limits, small
 from motionfmu.analysis.linear import AxisModel
 from motionfmu.analysis.linear.loops import Limit, feedbacks, largest_gain
-from motionfmu.analysis.linear.opened import worst
 from motionfmu.analysis.linear.stability import Margins, margins
 from motionfmu.analysis.linear.stability import response as gains
+from motionfmu.analysis.linear.tuning_parts import worst
 from motionfmu.analysis.linear.wiring import Port
 from motionfmu.base.errors import InputError
 
@@ -57,7 +57,7 @@ class LoopStudy:
 
 
 @dataclass(frozen=True)
-class Asked:
+class LoopStudyOptions:
     """What to study."""
 
     loop: str | None = None  # one input; None: every input through which a plant is fed back
@@ -68,7 +68,7 @@ class Asked:
     progress: Callable[[float], None] = lambda share: None  # share done, 0 to 1
 
 
-def study(axis: AxisModel, asked: Asked) -> list[LoopStudy]:
+def study(axis: AxisModel, asked: LoopStudyOptions) -> list[LoopStudy]:
     """Study the loops of an axis."""
     if asked.kick is not None and not 0.0 < asked.kick < math.inf:
         raise InputError(f"kick = {asked.kick!r}: a number above 0 wanted")
@@ -95,7 +95,7 @@ def study(axis: AxisModel, asked: Asked) -> list[LoopStudy]:
 def _one(
     axis: AxisModel,
     which: tuple[str, tuple[str, ...]],
-    asked: Asked,
+    asked: LoopStudyOptions,
     progress: Callable[[float], None],
 ) -> LoopStudy:
     at, cut = which
@@ -118,7 +118,7 @@ def _one(
         if asked.kick is None:
             ringing, kick = small_signal_gain(axis, which, gain, tried)
         else:
-            ringing = simulated_gain(axis, which, Trial(kick), gain, tried)
+            ringing = simulated_gain(axis, which, RingingTest(kick), gain, tried)
     progress(1.0)
     parts = at, cut, loop, found, gain, limit, ringing, measured, kick, silent, notes
     return LoopStudy(*parts)

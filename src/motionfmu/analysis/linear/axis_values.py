@@ -23,7 +23,7 @@ def element(ports: Mapping[str, Port], name: str, axis: int) -> tuple[Port, int]
     return port, (places[0] - 1) * inner + (places[1] - 1 if len(places) > 1 else 0)
 
 
-class Values(Mapping[str, Any]):
+class AxisValues(Mapping[str, Any]):
     """Values of one axis of one component, asked for one by one."""
 
     # The axis counts from 1; a scalar is the same for all.

@@ -14,7 +14,7 @@ BLOCK = 1 << 15
 
 
 @dataclass(frozen=True, eq=False)
-class Scaled:
+class ScaledValues:
     """Values (n, m) over a divisor, or one for each column: made for the part that is asked for."""
 
     values: Array
@@ -50,7 +50,7 @@ class Scaled:
 def places(values: Any, rows: Any) -> Array:
     """The first three columns (n, 3) of some rows, each in a piece: so sums of them are quick."""
     divisor = 1.0
-    if isinstance(values, Scaled):
+    if isinstance(values, ScaledValues):
         values, divisor = values.values, values.divisor
     each = np.broadcast_to(divisor, values.shape[1])
     columns = [values[rows, i] for i in range(3)]
@@ -63,7 +63,7 @@ def places(values: Any, rows: Any) -> Array:
 def finite(values: Any, own: slice) -> Any:
     """Which values of some rows are finite; whole numbers are."""
     good = np.ones(1, dtype=bool)
-    if isinstance(values, Scaled):
+    if isinstance(values, ScaledValues):
         divisor, values = np.asarray(values.divisor), values.values
         good = np.isfinite(divisor) & (divisor != 0.0)
     return good if values.dtype.kind in "iub" else np.isfinite(values[own]) & good

@@ -9,9 +9,9 @@ import numpy as np
 
 from motionfmu.analysis.contour.arcs import Array
 from motionfmu.analysis.contour.assign import assign
+from motionfmu.analysis.contour.contour_result import ContourInput
 from motionfmu.analysis.contour.path import Path
-from motionfmu.analysis.contour.result import ContourInput
-from motionfmu.analysis.contour.scaled import Scaled, blocks, places
+from motionfmu.analysis.contour.scaled_values import ScaledValues, blocks, places
 from motionfmu.analysis.contour.segments import Index
 from motionfmu.analysis.contour.track import Track, follow
 
@@ -23,20 +23,20 @@ ROOM, TEXTS = 64_000_000, 16_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Commanded:
+class PulsePath:
     """The pulses put out, on the path."""
 
     track: Track
     moved: Index  # (n,) number of samples so far at which they moved the tool
 
 
-def commanded(run: ContourInput, progress: Callable[[float], None]) -> Commanded:
+def commanded(run: ContourInput, progress: Callable[[float], None]) -> PulsePath:
     """Follow the pulses along the path."""
     owners = assign(run.commanded, run.path, *_written(run), lambda share: progress(0.6 * share))
-    return Commanded(follow(run.commanded, run.path, owners), _moved(run.commanded))
+    return PulsePath(follow(run.commanded, run.path, owners), _moved(run.commanded))
 
 
-class Known:
+class PulsePaths:
     """Paths and pulses of the last runs: runs that differ in gains only have them in common.
 
     Whoever has many runs analysed keeps one and hands it to `analyse`. What it holds is bounded;
@@ -44,7 +44,7 @@ class Known:
     """
 
     def __init__(self) -> None:
-        self._found: OrderedDict[int, tuple[_Inputs, Commanded]] = OrderedDict()
+        self._found: OrderedDict[int, tuple[_Inputs, PulsePath]] = OrderedDict()
         self._paths: OrderedDict[str, Path] = OrderedDict()
         self._count = 0
 
@@ -58,7 +58,7 @@ class Known:
             self._paths.popitem(last=False)
         return found
 
-    def commanded(self, run: ContourInput, progress: Callable[[float], None]) -> Commanded:
+    def commanded(self, run: ContourInput, progress: Callable[[float], None]) -> PulsePath:
         """As the function; of a run with the same pulses what was found then."""
         given = _Inputs.of(run)
         for key, (before, found) in self._found.items():
@@ -87,7 +87,7 @@ class _Inputs:
         pulses = run.commanded
         values, divisor = (
             (pulses.values, np.ravel(pulses.divisor).tolist())
-            if isinstance(pulses, Scaled)
+            if isinstance(pulses, ScaledValues)
             else (pulses, [])
         )
         newest = run.command if run.newest is None else run.newest
@@ -113,7 +113,7 @@ class _Inputs:
         )
 
 
-def _size(found: Commanded) -> int:
+def _size(found: PulsePath) -> int:
     track = found.track
     arrays = (track.segment, track.along, track.distance, track.right, found.moved)
     return sum(0 if x is None else int(x.nbytes) for x in arrays)
@@ -147,7 +147,7 @@ def _segments(path: Path, command: Index) -> Index:
     return found
 
 
-def _moved(pulses: Array | Scaled) -> Index:
+def _moved(pulses: Array | ScaledValues) -> Index:
     found = np.zeros(len(pulses), dtype=np.int32)
     for own in blocks(len(pulses) - 1, pulses):
         place = places(pulses, slice(own.start, own.stop + 1))
