@@ -34,7 +34,7 @@ def plain(name: str, stop: float) -> str:
 def compared(result: motionfmu.Result) -> str:
     """The circle over itself at a higher gain."""
     from motionfmu.compare import compare
-    from motionfmu.compare.page import page_text as compare_page
+    from motionfmu.compare.comparison_page import page_text as compare_page
 
     other = motionfmu.load(ROOT / "scenarios/fifo_latency").run(stop=0.8, set={"mcc.p_gain": 250})
     return compare_page(compare(result, other))

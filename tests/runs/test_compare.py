@@ -17,8 +17,8 @@ import motionfmu
 from motionfmu.base import columns
 from motionfmu.base.errors import InputError
 from motionfmu.compare import Comparison, compare, overlay, plots
-from motionfmu.compare.figures import Number
-from motionfmu.compare.page import page_text
+from motionfmu.compare.comparison_page import page_text
+from motionfmu.compare.number_pairs import Number
 from motionfmu.compare.side import Side
 from motionfmu.compare.words import GONE
 from motionfmu.report.numbers import length

@@ -6,7 +6,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.compare.differences import Checked, Different, checks, different
-from motionfmu.compare.figures import Number, side_by_side
+from motionfmu.compare.number_pairs import Number, side_by_side
 from motionfmu.compare.overlay import Common, Pair, pair
 from motionfmu.compare.side import Side
 

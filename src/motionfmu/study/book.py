@@ -15,7 +15,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.locking import lock
-from motionfmu.study.study import Study
+from motionfmu.study.study_definition import Study
 from motionfmu.study.worker import CRASH, Row
 
 TABLE, JOURNAL = "sweep.parquet", "sweep.jsonl"

@@ -8,7 +8,7 @@ from typing import Any
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
 from motionfmu.study.processes import Task
-from motionfmu.study.study import Job
+from motionfmu.study.study_definition import WorkerJob
 from motionfmu.study.worker import CRASH, Row, chunk
 
 TIMEOUT = 10  # [s] for the scheduler to answer and a worker to be there
@@ -17,14 +17,14 @@ CHUNK_MAX = 200
 AHEAD = 2  # chunks per thread of the cluster, so that none waits for us
 
 
-def _timed(job: Job, tasks: Sequence[Task]) -> tuple[float, list[Row]]:
+def _timed(job: WorkerJob, tasks: Sequence[Task]) -> tuple[float, list[Row]]:
     """Seconds that a chunk took, and its rows."""
     start = time.perf_counter()
     found = chunk(job, tasks)
     return time.perf_counter() - start, found
 
 
-def rows(job: Job, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]:
+def rows(job: WorkerJob, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]:
     """Run points on a cluster ``tcp://host:8786``; rows as they come.
 
     The workers import motionfmu and read the scenario and the FMUs from their own disk, at the
@@ -45,7 +45,7 @@ def rows(job: Job, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]:
         yield from _chunks(client, job, tasks)
 
 
-def _chunks(client: Any, job: Job, tasks: Sequence[Task]) -> Iterator[Row]:
+def _chunks(client: Any, job: WorkerJob, tasks: Sequence[Task]) -> Iterator[Row]:
     import distributed
 
     pending, size = deque(tasks), 1

@@ -13,8 +13,8 @@ from typing import Any
 
 from motionfmu.base.children import child
 from motionfmu.base.errors import InputError
-from motionfmu.study.axes import Point
-from motionfmu.study.study import Job
+from motionfmu.study.study_axes import Point
+from motionfmu.study.study_definition import WorkerJob
 from motionfmu.study.worker import CRASH, Row
 
 Task = tuple[int, Point]
@@ -41,7 +41,7 @@ class _Process:
     ready: bool = False
 
 
-def _start(job: Job, temporary: str) -> _Process:
+def _start(job: WorkerJob, temporary: str) -> _Process:
     ours, theirs = Pipe()
     with theirs:
         number = theirs.fileno()
@@ -52,7 +52,7 @@ def _start(job: Job, temporary: str) -> _Process:
     return _Process(process, ours)
 
 
-def rows(job: Job, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
+def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
     """Run points in processes of this machine; rows as they come."""
     # A run that ends its process gives a row that says so; a worker that cannot begin, an
     # InputError.
@@ -114,7 +114,7 @@ def _receive(one: _Process) -> Any:
         return None
 
 
-def _crashed(one: _Process, job: Job) -> Row | None:
+def _crashed(one: _Process, job: WorkerJob) -> Row | None:
     """The row of the run that ended its process; the tasks that follow remain."""
     one.pipe.close()
     code = one.process.wait()

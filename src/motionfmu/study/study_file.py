@@ -21,7 +21,7 @@ _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 Place = Annotated[str, Field(max_length=1000)]
 
 
-class Body(BaseModel):
+class StudyBody(BaseModel):
     """The keys of a study file."""
 
     model_config = _STRICT
@@ -62,7 +62,7 @@ class StudyFile:
     """A study as written, its keys and their types checked."""
 
     origin: Origin
-    body: Body
+    body: StudyBody
     about: str  # what the first line says; empty from the command line
     folder: Path  # what it names lies here
     damaged: frozenset[str]  # keys at which something is wrong, which body does not have
@@ -94,10 +94,10 @@ def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
     return StudyFile(origin, body, first.lstrip("# "), file.parent, damaged)
 
 
-def _body(origin: Origin, keys: dict[str, Any], faults: Faults) -> tuple[Body, frozenset[str]]:
+def _body(origin: Origin, keys: dict[str, Any], faults: Faults) -> tuple[StudyBody, frozenset[str]]:
     """The body without what is wrong, and the keys at which something is."""
     try:
-        return Body.model_validate(keys), frozenset()
+        return StudyBody.model_validate(keys), frozenset()
     except ValidationError as error:
         found = error.errors()
     damaged = {str(one["loc"][0]) for one in found}
@@ -106,9 +106,9 @@ def _body(origin: Origin, keys: dict[str, Any], faults: Faults) -> tuple[Body, f
         text, *place = _told(one)
         faults.lines += origin.error(text, *place).args
         if one["type"] == "extra_forbidden":  # what it is meant for is not missing
-            damaged |= {name for name in Body.model_fields if text.endswith(f"mean {name!r}?")}
+            damaged |= {name for name in StudyBody.model_fields if text.endswith(f"mean {name!r}?")}
             damaged |= {"axis"} if isinstance(one["input"], dict) else set()
-    return Body.model_validate(rest), frozenset(damaged)
+    return StudyBody.model_validate(rest), frozenset(damaged)
 
 
 def _told(found: Any) -> tuple[str, str, str]:
@@ -116,7 +116,7 @@ def _told(found: Any) -> tuple[str, str, str]:
     key, value = str(found["loc"][0]), found["input"]
     if found["type"] == "extra_forbidden":
         what = f"table [{key}]" if isinstance(value, dict) else f"key {key!r}"
-        return f"unknown {what}{suggestion(key, Body.model_fields)}", "", key
+        return f"unknown {what}{suggestion(key, StudyBody.model_fields)}", "", key
     if key == "set" and found["loc"][1:]:
         name = str(found["loc"][1])
         return f"set.{name} = {shown(value)}: {VALUE}", key, name

@@ -15,9 +15,9 @@ from typing import Any
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run import load
 from motionfmu.run.session import Session
-from motionfmu.study.axes import Point
-from motionfmu.study.columns import column, signals
-from motionfmu.study.study import Job, digest
+from motionfmu.study.study_axes import Point
+from motionfmu.study.study_columns import column, signals
+from motionfmu.study.study_definition import WorkerJob, digest
 
 OK, ERROR, CRASH = "ok", "error", "crash"
 
@@ -41,7 +41,7 @@ class Worker:
 
     # An InputError if the scenario or the FMUs here are not those of the study.
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: WorkerJob) -> None:
         self.job = job
         scenario = load(job.scenario)
         if digest(scenario, job.named) != job.digest:
@@ -87,7 +87,7 @@ def _told(error: Exception) -> str:
 _kept = threading.local()  # one session per thread: a process of a cluster may have several
 
 
-def chunk(job: Job, points: Sequence[tuple[int, Point]]) -> list[Row]:
+def chunk(job: WorkerJob, points: Sequence[tuple[int, Point]]) -> list[Row]:
     """Run some points; the session stays for the next call."""
     worker: Worker | None = getattr(_kept, "worker", None)
     if worker is None or worker.job != job:

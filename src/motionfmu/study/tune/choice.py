@@ -15,7 +15,7 @@ from motionfmu.analysis.linear.tuning_parts import limit, linearised, listed, ma
 from motionfmu.base.errors import InputError
 from motionfmu.base.units import parse
 from motionfmu.run import Result, Scenario
-from motionfmu.study.tune.axis import Signals
+from motionfmu.study.tune.axis_study import Signals
 from motionfmu.study.tune.problem import Problem
 
 # Without bounds a gain may become this many times as large or as small.
@@ -25,7 +25,7 @@ _LATE_MAX = 8
 
 
 @dataclass(frozen=True)
-class Variable:
+class DecisionVariable:
     """One number that is looked for."""
 
     name: str  # component.variable
@@ -208,7 +208,9 @@ def speed_output(axis: AxisModel, position: str) -> str:
     return f"{component}.{outputs[speeds[0]]}" if speeds else ""
 
 
-def variables(axes: Mapping[int, AxisModel], names: list[str], problem: Problem) -> list[Variable]:
+def variables(
+    axes: Mapping[int, AxisModel], names: list[str], problem: Problem
+) -> list[DecisionVariable]:
     """The numbers that are looked for, within bounds that are right."""
     scenario = next(iter(axes.values())).scenario
     for name in problem.bounds:
@@ -228,7 +230,7 @@ def _port(scenario: Scenario, name: str) -> Any:
 
 def _variable(
     axes: Mapping[int, AxisModel], name: str, group: tuple[int, ...], problem: Problem
-) -> Variable:
+) -> DecisionVariable:
     port = _port(axes[group[0]].scenario, name)
     start = float(axes[group[0]].value(name))
     whole = port.type == "Int32"
@@ -245,4 +247,6 @@ def _variable(
     else:
         raise InputError(f"bounds: {name} = {start:g} at present, so give its bounds")
     own = low == port.low, high == port.high
-    return Variable(name, group, float(low), float(high), min(max(start, low), high), whole, own)
+    return DecisionVariable(
+        name, group, float(low), float(high), min(max(start, low), high), whole, own
+    )

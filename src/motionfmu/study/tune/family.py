@@ -10,7 +10,7 @@ from motionfmu.analysis.linear.axis import AxisModel
 from motionfmu.base.errors import InputError
 from motionfmu.run import Result, Scenario
 from motionfmu.study.tune import choice
-from motionfmu.study.tune.axis import AxisStudy
+from motionfmu.study.tune.axis_study import AxisStudy
 from motionfmu.study.tune.problem import CONTOUR, Problem
 from motionfmu.study.tune.steps import Array
 

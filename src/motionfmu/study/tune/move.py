@@ -7,7 +7,7 @@ import numpy as np
 from motionfmu.base import units
 from motionfmu.base.errors import InputError
 from motionfmu.run import Result
-from motionfmu.study.tune.path import Measured, PathError
+from motionfmu.study.tune.path_error import PathError, RunPath
 from motionfmu.study.tune.steps import Array
 
 # The axis is judged as standing from so long after its command has come to rest [s].
@@ -60,13 +60,13 @@ class MoveCost:
         found: Array = changes @ slope[:, axis - 1] * self.factor
         return found
 
-    def measured(self, result: Result) -> Measured:
+    def measured(self, result: Result) -> RunPath:
         """Position error of a run."""
         position = np.asarray(result[self._names[1]], dtype=float).reshape(len(result.time), -1)
         command = self._command(result)
         error = (position[:, 0] - position[0, 0] - self._scale * command) * self.factor
         rms = float(np.sqrt(np.mean(error**2)))
-        return Measured(rms, float(np.abs(error).max()), result.time, error)
+        return RunPath(rms, float(np.abs(error).max()), result.time, error)
 
     def beyond(self, result: Result) -> float:
         """Way past the ends of the command [mm]; 0 between them."""

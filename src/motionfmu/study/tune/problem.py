@@ -24,7 +24,7 @@ CONTOUR = ("contour_rms", "contour_max")
 ON_PATH = (*CONTOUR, "error_rms", "error_max")
 
 
-class Margins(BaseModel):
+class MarginLimits(BaseModel):
     """Least margins of a loop; what is not given is not asked for."""
 
     model_config = _STRICT
@@ -34,12 +34,12 @@ class Margins(BaseModel):
     phase: float | None = Field(default=None, gt=0.0, lt=180.0)  # lag that it bears [deg]
 
 
-class Limits(BaseModel):
+class TuningLimits(BaseModel):
     """What the gains must keep."""
 
     model_config = _STRICT
-    margins: Margins = Margins(sensitivity=1.5, gain=3.0, phase=45.0)  # of every loop
-    loop: dict[str, Margins] = Field(default_factory=dict)  # of one loop instead, by its input
+    margins: MarginLimits = MarginLimits(sensitivity=1.5, gain=3.0, phase=45.0)  # of every loop
+    loop: dict[str, MarginLimits] = Field(default_factory=dict)  # of one loop instead, by its input
     overshoot: float | None = Field(default=0.05, ge=0.0)  # after a step, share of it
     # Slowest time constant of the closed loop [s]: with it the effect of a load dies away.
     recovery: float | None = Field(default=0.05, gt=0.0)
@@ -70,7 +70,7 @@ class Problem(BaseModel):
         FMUs with the gains found.
     bounds : dict
         Least and largest value by gain; else a 20th and 20 times the present one.
-    limits : Limits
+    limits : TuningLimits
     family : dict
         Least and largest value of plant parameters: all corners are held.
     at : dict
@@ -92,7 +92,7 @@ class Problem(BaseModel):
     position: str | None = None
     trial: dict[str, tuple[float, float]] = Field(default_factory=dict)
     bounds: dict[str, tuple[float, float]] = Field(default_factory=dict)
-    limits: Limits = Limits()
+    limits: TuningLimits = TuningLimits()
     family: dict[str, tuple[float, float]] = Field(default_factory=dict)
     at: dict[str, float] = Field(default_factory=dict)
     starts: int = Field(default=2, ge=1, le=50)
@@ -196,7 +196,7 @@ def _told(wrong: Sequence[Any], place: _Place) -> list[str]:
         text = ".".join(keys)
         if one["type"] == "extra_forbidden":
             # [limits.margins] and each of [limits.loop] have one kind of keys.
-            holders: list[type[BaseModel]] = [Problem, Limits, Margins]
+            holders: list[type[BaseModel]] = [Problem, TuningLimits, MarginLimits]
             known = holders[min(len(keys), 3) - 1].model_fields
             what = "table" if isinstance(one["input"], dict) else "key"
             told = f"unknown {what}{suggestion(keys[-1], known)}"

@@ -9,7 +9,7 @@ import numpy as np
 from motionfmu.base.errors import InputError
 from motionfmu.run import Scenario, Session
 from motionfmu.study.tune.move import MoveCost
-from motionfmu.study.tune.path import EVERY
+from motionfmu.study.tune.path_error import EVERY
 from motionfmu.study.tune.solve import RanAway
 
 # Values of the first look, and of each finer one; costs within this share are the same.

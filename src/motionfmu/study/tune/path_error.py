@@ -54,7 +54,7 @@ class PathError:
 
 
 @dataclass(frozen=True)
-class Measured:
+class RunPath:
     """What a run of the FMUs shows."""
 
     rms: float  # [mm]
@@ -134,13 +134,13 @@ class PathCost:
         found: Array = changes[:, self._cutting] @ slope[:, axis - 1] * self.factor
         return found
 
-    def measured(self, result: Result) -> Measured:
+    def measured(self, result: Result) -> RunPath:
         """Contour error of a run."""
         contour = result.contour()
         track = contour.track
         values = track.distance if track.signed is None else track.signed
         shown = np.where(contour.cutting, values, np.nan)
-        return Measured(contour.error.rms, contour.error.max, contour.run.time, shown)
+        return RunPath(contour.error.rms, contour.error.max, contour.run.time, shown)
 
 
 def _held(time: Array, shift: float) -> NDArray[np.int64]:

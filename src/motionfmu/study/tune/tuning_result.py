@@ -10,25 +10,25 @@ from motionfmu.analysis.linear.gains import in_lines
 from motionfmu.base.memo import Memo
 from motionfmu.run import Result
 from motionfmu.study.tune.curve import margin
-from motionfmu.study.tune.path import Measured, PathError
+from motionfmu.study.tune.path_error import PathError, RunPath
 from motionfmu.study.tune.solve import Found
 from motionfmu.study.tune.steps import Array
-from motionfmu.study.tune.study import Study, Values
 from motionfmu.study.tune.trial import Trial
-from motionfmu.study.tune.words import assumptions, plant_text
+from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
+from motionfmu.study.tune.tuning_words import assumptions, plant_text
 
 # Gains whose margins are remembered: those of before and of after.
 _KEPT = 2
 
 
 @dataclass(frozen=True)
-class Run:
+class TuningRun:
     """The FMUs with some gains and a plant."""
 
     plant: dict[str, float]  # changed values; empty for the nominal one
     result: Result
     model: PathError  # what the tuner's model says of the same
-    fmus: Measured  # what the run shows
+    fmus: RunPath  # what the run shows
 
 
 @dataclass(frozen=True)
@@ -48,14 +48,14 @@ class Tuned:
 
     Attributes
     ----------
-    study : Study
+    study : TuningFunctions
     found : Found
         With the gains as the solver has them.
     z : ndarray
         The same, rounded to the registers.
-    values : Values
+    values : CostAndLimits
         With the rounded gains.
-    before, after : list of Run
+    before, after : list of TuningRun
         FMUs with the present and the found gains: nominal plant, then, with a family, its worst.
     seconds : float
         Of everything.
@@ -63,12 +63,12 @@ class Tuned:
         The parameter that was looked for by running the FMUs.
     """
 
-    study: Study
+    study: TuningFunctions
     found: Found
     z: Array
-    values: Values
-    before: list[Run] = field(default_factory=list)
-    after: list[Run] = field(default_factory=list)
+    values: CostAndLimits
+    before: list[TuningRun] = field(default_factory=list)
+    after: list[TuningRun] = field(default_factory=list)
     seconds: float = 0.0
     trial: Trial | None = None
     # Asked for by the gains file, the page and the numbers.
@@ -249,7 +249,7 @@ def _row(m: LoopMargins) -> dict[str, Any]:
     }
 
 
-def least_margins(study: Study, z: Array) -> list[LoopMargins]:
+def least_margins(study: TuningFunctions, z: Array) -> list[LoopMargins]:
     """Least margins of the family for each axis and loop."""
     gains, rows = study.gains(z), []
     for k, nominal in study.parts[0].items():
@@ -269,13 +269,13 @@ def least_margins(study: Study, z: Array) -> list[LoopMargins]:
     return rows
 
 
-def _position_gains(study: Study, z: Array) -> list[LoopGain]:
+def _position_gains(study: TuningFunctions, z: Array) -> list[LoopGain]:
     given = {**study.set, **settings(study, z)}
     found = [gain_of(study.scenario, given, k, study.at) for k in study.axes]
     return list(dict.fromkeys(sorted(sum(found, ()), key=lambda g: (g.name, g.axis))))
 
 
-def settings(study: Study, z: Array) -> dict[str, Any]:
+def settings(study: TuningFunctions, z: Array) -> dict[str, Any]:
     """Gains as a scenario takes them: one value, or one for each axis."""
     # Axes that are not tuned keep theirs.
     found: dict[str, Any] = {}

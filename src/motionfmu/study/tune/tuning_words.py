@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from motionfmu.analysis.linear.block import Plant, Sampled
 from motionfmu.analysis.linear.tuning_parts import worst
 from motionfmu.study.tune.problem import ON_PATH
-from motionfmu.study.tune.study import Study
+from motionfmu.study.tune.tuning_functions import TuningFunctions
 
 
-def assumptions(study: Study) -> list[str]:
+def assumptions(study: TuningFunctions) -> list[str]:
     """Feedback side, delays and operating point of the model."""
     axis = study.axes[next(iter(study.axes))]
     found = []
@@ -37,7 +37,7 @@ def assumptions(study: Study) -> list[str]:
     return found
 
 
-def summed(study: Study) -> str:
+def summed(study: TuningFunctions) -> str:
     """What a cost after a step is with several axes."""
     cost = study.problem.cost
     if cost in ON_PATH or len(study.axes) == 1:

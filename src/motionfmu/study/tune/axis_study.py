@@ -17,7 +17,7 @@ from motionfmu.analysis.linear.tuning_parts import listed, matrices
 from motionfmu.analysis.linear.wiring import PeriodMap
 from motionfmu.base.memo import Memo
 from motionfmu.study.tune.curve import Loop
-from motionfmu.study.tune.steps import Array, Sloped, System, lifted, system
+from motionfmu.study.tune.steps import Array, ArrayWithSlopes, DifferenceEquations, lifted, system
 
 # Between two samples the friction turns within a small part of the way: points that show it.
 _FINE = 64
@@ -38,7 +38,7 @@ class _Matrices:
         self._function = Quick("m", [gains], [every, slopes])
         self.period = found.period_ns * 1e-9
 
-    def at(self, gains: Array) -> tuple[Sloped, ...]:
+    def at(self, gains: Array) -> tuple[ArrayWithSlopes, ...]:
         """The four matrices."""
         values, slopes = self._function(gains)
         found, place = [], 0
@@ -46,7 +46,7 @@ class _Matrices:
             part = slice(place, place + rows * columns)
             value = values[part, 0].reshape(columns, rows).T
             change = slopes[part].T.reshape(-1, columns, rows).transpose(0, 2, 1)
-            found.append(Sloped(value, change))
+            found.append(ArrayWithSlopes(value, change))
             place = part.stop
         return tuple(found)
 
@@ -61,8 +61,8 @@ def _matrix(m: Array) -> ca.SX:
 class Motion:
     """What an axis does on the scenario's path."""
 
-    position: Sloped  # (count,) in the unit declared
-    peaks: list[Sloped]  # what is largest of each output with a limit
+    position: ArrayWithSlopes  # (count,) in the unit declared
+    peaks: list[ArrayWithSlopes]  # what is largest of each output with a limit
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ class AxisStudy:
         rate = np.log(size)
         return -self.period / rate, self.period / rate**2 * turned.real / size
 
-    def step(self, gains: Array, periods: int, count: int, slopes: bool = True) -> Sloped:
+    def step(self, gains: Array, periods: int, count: int, slopes: bool = True) -> ArrayWithSlopes:
         """The position (1, count) after a step of one pulse, as share of its end.
 
         Without friction, and without feed-forward, which no step can follow. Samples are so many
@@ -154,9 +154,9 @@ class AxisStudy:
         whole, begin, end = lifted(a, b, periods)
         y = system(whole, begin + end, c, d).driven(np.ones((1, count))).outputs(slice(None))
         inverse = np.linalg.inv(np.eye(len(a.value)) - a.value)
-        most = c @ Sloped(inverse, inverse @ a.slopes @ inverse) @ b + d
+        most = c @ ArrayWithSlopes(inverse, inverse @ a.slopes @ inverse) @ b + d
         share = y.value / most.value
-        return Sloped(share, (y.slopes - share * most.slopes) / most.value)
+        return ArrayWithSlopes(share, (y.slopes - share * most.slopes) / most.value)
 
     def motion(self, gains: Array, pulses: Array, periods: int, slopes: bool = True) -> Motion:
         """Move along pulses put out so far, from 0, every so many periods."""
@@ -171,11 +171,13 @@ class AxisStudy:
         position = driven.outputs(slice(1))
         high = np.abs(driven.outputs(slice(1, None), False).value)
         return Motion(
-            Sloped(position.value[0], position.slopes[:, 0]),
+            ArrayWithSlopes(position.value[0], position.slopes[:, 0]),
             [driven.at(row, int(np.argmax(y))) for row, y in enumerate(high, 1)],
         )
 
-    def _systems(self, gains: Array, periods: int, slopes: bool) -> tuple[System, System]:
+    def _systems(
+        self, gains: Array, periods: int, slopes: bool
+    ) -> tuple[DifferenceEquations, DifferenceEquations]:
         """From the pulses to the states of residuals, from both to what is shown."""
         a, b, c, d = (m if slopes else m.alone for m in self._motion.at(gains))
         whole, begin, end = lifted(a, b, periods)
@@ -191,20 +193,20 @@ class AxisStudy:
             system(whole, both[0], c[shown], both[1][shown]),
         )
 
-    def _rest(self, x: Sloped) -> Sloped:
+    def _rest(self, x: ArrayWithSlopes) -> ArrayWithSlopes:
         """Mean residuals between samples, from the states there."""
         found, place = [], 0
         for rest in self._rests:
             n = len(rest.states)
             found.append(_mean(rest, x[place : place + n]))
             place += n
-        return Sloped(
+        return ArrayWithSlopes(
             np.concatenate([w.value for w in found]),
             np.concatenate([w.slopes for w in found], axis=1),
         )
 
 
-def _mean(rest: Residual, x: Sloped) -> Sloped:
+def _mean(rest: Residual, x: ArrayWithSlopes) -> ArrayWithSlopes:
     """Mean over the way from each sample to the next, taken as straight."""
     called = rest.slopes if len(x.slopes) else rest.values
     at, dat = x.value, x.slopes
@@ -221,7 +223,7 @@ def _mean(rest: Residual, x: Sloped) -> Sloped:
     mean[:, turning] = fine.reshape(len(w), len(turning), _FINE).mean(axis=2)
     change = np.zeros((len(dat), *w.shape))
     if not len(dat):
-        return Sloped(mean, change)
+        return ArrayWithSlopes(mean, change)
     within = np.zeros((len(dat), len(w), len(turning)))
     sides = dat[:, :, turning], dat[:, :, turning + 1]
     for (row, column), slope, steep in zip(rest.places, changes[0], finer[0], strict=True):
@@ -231,4 +233,4 @@ def _mean(rest: Residual, x: Sloped) -> Sloped:
         within[:, row] += first * sides[0][:, column] + last * sides[1][:, column]
     change = 0.5 * (change + np.roll(change, -1, axis=2))
     change[:, :, turning] = within
-    return Sloped(mean, change)
+    return ArrayWithSlopes(mean, change)

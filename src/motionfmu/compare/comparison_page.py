@@ -11,7 +11,7 @@ from motionfmu.analysis.iso9283.evaluation import unit as unit_of_iso9283
 from motionfmu.base.units import spelled
 from motionfmu.compare import plots
 from motionfmu.compare.differences import NOTHING, Checked, port_of
-from motionfmu.compare.figures import Number
+from motionfmu.compare.number_pairs import Number
 from motionfmu.compare.pairing import Apart, Pairing
 from motionfmu.compare.words import GONE, change_text, row_of, signed, text_of
 from motionfmu.report import outcome

@@ -10,14 +10,14 @@ from typing import Any
 from motionfmu.base.errors import Faults, InputError
 from motionfmu.run import Scenario, load
 from motionfmu.scenarios import fmus
-from motionfmu.study import axes as ax
-from motionfmu.study.asked import Asked
-from motionfmu.study.columns import Column
+from motionfmu.study import study_axes as ax
+from motionfmu.study.study_columns import Column
 from motionfmu.study.study_file import StudyFile, read
+from motionfmu.study.study_resolver import StudyResolver
 
 
 @dataclass(frozen=True)
-class Job:
+class WorkerJob:
     """All a worker needs to know, without the points."""
 
     scenario: str  # path of the scenario.toml
@@ -42,7 +42,7 @@ class Study:
     columns : tuple of Column
     points : list of tuple
         One value per axis; the order of the rows.
-    job : Job
+    job : WorkerJob
         For the workers.
     sampling, seed : str, int
         How the points were made.
@@ -57,7 +57,7 @@ class Study:
     axes: tuple[ax.Axis, ...]
     columns: tuple[Column, ...]
     points: list[ax.Point] = field(repr=False)
-    job: Job
+    job: WorkerJob
     sampling: str
     seed: int
     cost: str
@@ -106,7 +106,7 @@ def study(path: str | Path, given: Mapping[str, Any] | None = None) -> Study:
     if scenario is None:
         file.origin.refuse(faults)
         raise InputError(f"{path}: no scenario")
-    asked = Asked(file, scenario, faults)
+    asked = StudyResolver(file, scenario, faults)
     chosen, columns = asked.axes(), asked.columns()
     asked.options()
     runs, cost, tuned = asked.runs(chosen), asked.cost(columns), asked.tuned(chosen)
@@ -117,7 +117,7 @@ def study(path: str | Path, given: Mapping[str, Any] | None = None) -> Study:
         axes=chosen,
         columns=columns,
         points=ax.points(chosen, body.sampling, runs, body.seed),
-        job=Job(
+        job=WorkerJob(
             scenario=str(scenario.document.file),
             digest=digest(scenario, _texts(chosen, body.set)),
             named=_texts(chosen, body.set),
@@ -160,6 +160,6 @@ def digest(scenario: Scenario, given: Iterable[Any] = ()) -> str:
 
 
 def _texts(chosen: tuple[ax.Axis, ...], given: Mapping[str, Any]) -> tuple[str, ...]:
-    lists = [a.source.values for a in chosen if isinstance(a.source, ax.Listed)]
+    lists = [a.source.values for a in chosen if isinstance(a.source, ax.ListedValues)]
     lists += [v if isinstance(v, list) else [v] for v in given.values()]
     return tuple(x for values in lists for x in values if isinstance(x, str))

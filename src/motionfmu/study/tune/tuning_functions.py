@@ -11,12 +11,12 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.memo import Memo
 from motionfmu.run import Result, Scenario
 from motionfmu.study.tune import choice
-from motionfmu.study.tune.axis import AxisStudy, Motion
+from motionfmu.study.tune.axis_study import AxisStudy, Motion
 from motionfmu.study.tune.curve import margin
 from motionfmu.study.tune.family import Family
 from motionfmu.study.tune.move import MoveCost
-from motionfmu.study.tune.path import EVERY, ROUGH, PathCost
-from motionfmu.study.tune.problem import ON_PATH, Margins, Problem
+from motionfmu.study.tune.path_error import EVERY, ROUGH, PathCost
+from motionfmu.study.tune.problem import ON_PATH, MarginLimits, Problem
 from motionfmu.study.tune.steps import Array
 
 # A step is watched for this many servo lags, at this many samples at least.
@@ -30,7 +30,7 @@ _LEAST_OVERSHOOT = 1e-3
 
 
 @dataclass(frozen=True)
-class Limit:
+class TuningLimit:
     """One of the limits."""
 
     what: str  # in words
@@ -39,7 +39,7 @@ class Limit:
 
 
 @dataclass(frozen=True)
-class Values:
+class CostAndLimits:
     """Cost and limits at a point."""
 
     costs: Array  # (plants,) NaN where a loop is unstable
@@ -57,7 +57,7 @@ class Values:
         return bool(np.isfinite(self.costs).all() and (self.slack > -tolerance).all())
 
 
-class Study(Family):
+class TuningFunctions(Family):
     """A tuning problem, ready to be evaluated.
 
     `base` is a run of the scenario with its present gains and `set`, each step a row; InputError if
@@ -84,9 +84,9 @@ class Study(Family):
         seconds = _LAGS * max(self.lag, 50.0 * period)
         self._step = max(1, round(seconds / _SAMPLES / period)), _SAMPLES
         self._check_loops()
-        self.limits = self._limits()  # in the order of `Values.slack`
+        self.limits = self._limits()  # in the order of `CostAndLimits.slack`
         self.evaluations = 0
-        self._known: Memo[Values] = Memo(_KNOWN_MAX)
+        self._known: Memo[CostAndLimits] = Memo(_KNOWN_MAX)
 
     def _path(self, axis: int, part: AxisStudy) -> tuple[PathCost | MoveCost, float]:
         """What judges motions, and the lag [s] with the present gains."""
@@ -105,11 +105,11 @@ class Study(Family):
             if name not in known:
                 raise InputError(f"limits.loop.{name}: no loop there ({', '.join(known)})")
 
-    def asked(self, loop: str) -> Margins:
+    def asked(self, loop: str) -> MarginLimits:
         """Margins asked of the loop that is opened at an input."""
         return self.problem.limits.loop.get(loop, self.problem.limits.margins)
 
-    def _limits(self) -> list[Limit]:
+    def _limits(self) -> list[TuningLimit]:
         found = []
         for p, parts in enumerate(self.parts):
             for k, part in parts.items():
@@ -128,25 +128,25 @@ class Study(Family):
                 if self.problem.limits.recovery is not None:
                     texts.append(f"recovery within {self.problem.limits.recovery:g} s")
                 texts += [f"{n} {v:g}" for n, v in self.peaks.items()]
-                found += [Limit(text, p, k) for text in texts]
+                found += [TuningLimit(text, p, k) for text in texts]
         return found
 
-    def values(self, z: Array, slopes: bool = True) -> Values:
+    def values(self, z: Array, slopes: bool = True) -> CostAndLimits:
         """Cost and limits at shares (n,) of the variables' ranges, with slopes or zeros."""
         place = z.tobytes()
         slopes = slopes or (place, True) in self._known
         return self._known((place, slopes), lambda: self._counted(z, slopes, self.path))
 
-    def rough(self, z: Array) -> Values:
+    def rough(self, z: Array) -> CostAndLimits:
         """The same without slopes; costs on the path from fewer samples of it."""
         return self._counted(z, False, self._rough)
 
-    def _counted(self, z: Array, slopes: bool, path: PathCost | MoveCost) -> Values:
+    def _counted(self, z: Array, slopes: bool, path: PathCost | MoveCost) -> CostAndLimits:
         self.evaluations += 1
         with _BLAS.limit(limits=1, user_api="blas"):
             return self._values(z, slopes, path)
 
-    def _values(self, z: Array, slopes: bool, path: PathCost | MoveCost) -> Values:
+    def _values(self, z: Array, slopes: bool, path: PathCost | MoveCost) -> CostAndLimits:
         gains, rates = self.gains(z), self.rates(z)
         costs, dcosts, slack, dslack = [], [], [], []
         for parts in self.parts:
@@ -168,7 +168,7 @@ class Study(Family):
                 peaks = self._peaks(motions.get(k), len(gains[k]))
                 slack += known[same][0] + peaks[0]
                 dslack += [c @ rates[k] for c in known[same][1] + peaks[1]]
-        return Values(
+        return CostAndLimits(
             np.array(costs),
             np.array(slack),
             np.array(dcosts),

@@ -43,14 +43,14 @@ class Normal(BaseModel):
     deviation: float = Field(gt=0, strict=True)
 
 
-class Listed(BaseModel):
+class ListedValues(BaseModel):
     """Values one by one; each equally likely where points are drawn."""
 
     model_config = _STRICT
     values: list[Value] = Field(min_length=1)
 
 
-Source = Span | Normal | Listed
+Source = Span | Normal | ListedValues
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class Axis:
         """Refuse values that this variable or this sampling, if one is given, cannot take."""
         # Values outside the range that the variable declares are no mistake of the study.
         source, kind = self.source, self.end.port.type
-        if isinstance(source, Listed):
+        if isinstance(source, ListedValues):
             fits: dict[str, Any] = {"Float64": (int, float), "Int32": int, "Boolean": bool}
             for x in source.values:
                 boolean = isinstance(x, bool) and kind != "Boolean"
@@ -129,7 +129,7 @@ class Axis:
 
     def grid(self) -> list[Value]:
         """All values, in order, in the variable's unit."""
-        if isinstance(self.source, Listed):
+        if isinstance(self.source, ListedValues):
             return [self._typed(x) for x in self.source.values]
         assert isinstance(self.source, Span), "check() has seen it"
         return [self._typed(x) for x in self._even(self.source)]
@@ -137,7 +137,7 @@ class Axis:
     def drawn(self, shares: NDArray[np.float64]) -> list[Value]:
         """Values at given shares, 0 to 1, of the distribution."""
         source, whole = self.source, self.end.port.type == "Int32"
-        if isinstance(source, Listed):
+        if isinstance(source, ListedValues):
             return [self._typed(source.values[int(u * len(source.values))]) for u in shares]
         if isinstance(source, Normal):
             return [self._typed(source.mean + source.deviation * z) for z in _normal(shares)]
@@ -190,7 +190,7 @@ def _word(text: str) -> Value:
 def count(axes: Sequence[Axis]) -> int:
     """Number of points of a grid."""
     sizes = (
-        len(a.source.values) if isinstance(a.source, Listed) else a.source.n
+        len(a.source.values) if isinstance(a.source, ListedValues) else a.source.n
         for a in axes
         if not isinstance(a.source, Normal)
     )

@@ -10,15 +10,15 @@ from motionfmu.base.toml_lines import shown, tables_of, text_of
 from motionfmu.run import Options, Scenario
 from motionfmu.scenarios import values
 from motionfmu.scenarios.system import End
-from motionfmu.study import axes as ax
-from motionfmu.study.columns import Column, column, usual
+from motionfmu.study import study_axes as ax
+from motionfmu.study.study_columns import Column, column, usual
 from motionfmu.study.study_file import StudyFile
 
 USUAL_COST = "contour.error.max"  # where none is named
 _KINDS: dict[str, Any] = {"String": str, "Boolean": bool}
 
 
-class Asked:
+class StudyResolver:
     """A study's file beside its scenario; what is wrong goes to the faults."""
 
     def __init__(self, file: StudyFile, scenario: Scenario, faults: Faults) -> None:
@@ -178,7 +178,7 @@ class Asked:
 def _source(name: str, spec: Any) -> ax.Source:
     """An axis from a list, from {from, to, n, log} or from {mean, deviation}."""
     if isinstance(spec, list):
-        return ax.Listed(values=spec)
+        return ax.ListedValues(values=spec)
     if isinstance(spec, dict):
         normal = set(ax.Normal.model_fields) & set(spec)
         return (ax.Normal if normal else ax.Span).model_validate(spec)
@@ -205,7 +205,7 @@ def _told(name: str, error: ValidationError) -> list[str]:
 
 
 def _fields(error: ValidationError) -> dict[str, Any]:
-    kinds = {kind.__name__: kind.model_fields for kind in (ax.Span, ax.Normal, ax.Listed)}
+    kinds = {kind.__name__: kind.model_fields for kind in (ax.Span, ax.Normal, ax.ListedValues)}
     return dict(kinds[error.title])
 
 

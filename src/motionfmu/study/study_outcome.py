@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.units import spelled
-from motionfmu.study.axes import Normal, Value
-from motionfmu.study.study import Study
+from motionfmu.study.study_axes import Normal, Value
+from motionfmu.study.study_definition import Study
 from motionfmu.study.worker import OK, Row
 
 EDGE = 0.02  # part of an axis that counts as its end, where points are drawn at random
