@@ -1,4 +1,4 @@
-"""What an exported system is: its version, and which variables it shows."""
+"""What is chosen for an exported system: the version of FMI, and the variables that it shows."""
 
 from collections.abc import Collection
 
@@ -12,7 +12,7 @@ _SHOWN = ("Float64", "Int32", "Boolean")
 
 
 def check_version(fmi: int) -> None:
-    """Refuse what is no version of FMI that is written."""
+    """Refuse a version of FMI in which nothing is written."""
     if fmi not in VERSIONS:
         raise InputError(f"FMI {fmi!r}: {' or '.join(map(str, VERSIONS))}")
 
@@ -20,7 +20,7 @@ def check_version(fmi: int) -> None:
 def also_shown(
     scenario: RunPlan, patterns: Collection[str], causalities: Collection[str]
 ) -> list[End]:
-    """What a scenario records, and what patterns name beside it; numbers and Booleans."""
+    """Outputs that a scenario records, and numbers and Booleans that patterns name beside them."""
     found = {e.name: e for e in scenario.ends}
     for pattern in patterns:
         ends = [e for kind in causalities for e in scenario.resolver.matching(pattern, kind)]

@@ -1,4 +1,4 @@
-"""An FMU by itself, with its files inside and other values to begin with."""
+"""A single FMU, packed with its files and with start values of the user's."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,9 +17,9 @@ from motionfmu.scenarios.values import values_of
 
 
 def packed(name: str, target: Path, fmi: int, given: Mapping[str, Any]) -> list[str]:
-    """Write a built FMU that begins with values given; files that it reads become resources.
+    """Write a built FMU with these start values; files that it reads become its resources.
 
-    Returns the names of these. Paths are from the working directory.
+    Returns the names of the files. Their paths are relative to the working directory.
     """
     check_version(fmi)
     ports = fmus.ports(name)

@@ -19,7 +19,7 @@ from motionfmu.fused.resource_files import carrying, placed
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import fmus
 
-PROGRAM = "program.json"  # what a run here reads instead of the description
+PROGRAM = "program.json"  # file that a run here reads instead of the description
 _LEFT = (
     PROGRAM,
     documentation.VARIABLES,
@@ -93,7 +93,7 @@ def as_fmu(
     except fused.NotFused as why:
         instead = "; an SSP needs none" if isinstance(why, fused.NoCompiler) else ""
         raise InputError(f"{scenario.name} cannot be one FMU: {why}{instead}") from None
-    # C text without the parts that it needs is of no use.
+    # The system's C text is of no use without that of its FMUs.
     left = _LEFT if choice.platforms else (*_LEFT, "sources/")
     packed = {
         name: f

@@ -106,7 +106,7 @@ def as_ssp(
 
 
 def _check_parts(name: str, system: System, fmi: int) -> None:
-    """Refuse FMUs and wires that an SSP of this version has not."""
+    """Refuse FMUs and wires that an SSP of this version cannot hold."""
     for component in system.components:
         if system.version(component, fmi) > fmi:
             told = f"{component} is FMI 3, which no SSP {VERSIONS[fmi]} has: --fmi 3"
@@ -118,7 +118,7 @@ def _check_parts(name: str, system: System, fmi: int) -> None:
 def _structure(
     scenario: RunPlan, system: System, shown: Collection[End], driving: list[Stimuli], fmi: int
 ) -> ssp.Structure:
-    """What the file says."""
+    """The structure that the file describes."""
     components = []
     for name in system.components:
         given = [v for s in _own(system, name)[0] for v in values(s, fmi)]
@@ -143,7 +143,7 @@ def _source(component: str) -> str:
 
 
 def _own(system: System, component: str) -> tuple[list[Setting], dict[str, Path]]:
-    """The settings of a component, and the files that they name, which are inside."""
+    """The settings of a component, and the files that they name, which its FMU carries."""
     resources = Resources()
     mine = [s for s in system.settings if s.end.component == component]
     if is_ours(system.components[component]):
@@ -152,10 +152,10 @@ def _own(system: System, component: str) -> tuple[list[Setting], dict[str, Path]
 
 
 def _pack(part: tuple[str, tuple[list[Setting], dict[str, Path]]], fmi: int, target: Path) -> None:
-    """Write an FMU, with the files and values inside.
+    """Write an FMU with its files inside.
 
-    It begins with the values, too: tools there are that pass over parameter sets. One that is not
-    of this package stays as it is.
+    The values become its start values as well, for some tools ignore parameter sets. A foreign FMU
+    is written as it is.
     """
     fmu, (settings, files) = part
     if not is_ours(fmu):
@@ -168,9 +168,9 @@ def _pack(part: tuple[str, tuple[list[Setting], dict[str, Path]]], fmi: int, tar
 def _connectors(
     system: System, component: str, shown: Collection[End], driving: list[Stimuli], fmi: int
 ) -> Iterator[ssp.Connector]:
-    """What is wired or shown of a component.
+    """The connectors of a component: variables that are wired or shown.
 
-    An input without a connection is no connector: tools there are that wire or clear it.
+    An unconnected input is no connector, for some tools would wire it or set it to 0.
     """
     ends = [*(w.target for w in system.wires), *(w.source for w in system.wires)]
     ends += [*(e for one in driving for e in one.driven()), *shown]

@@ -1,4 +1,4 @@
-"""A system compiled for any platform from the C text that its FMUs carry, which it carries, too."""
+"""A system compiled for any platform from the C text of its FMUs, which it carries as they do."""
 
 import tempfile
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ _FLAGS = (*FLAGS, layer.OPTIMIZED, "-shared", "-s", "-DFMU_PART_INSIDE")
 def compile_all(folder: Path, job: ProgramPlan, models: Mapping[str, str]) -> list[str]:
     """Fill ``sources`` and ``binaries`` of a folder; returns names of the C files to compile.
 
-    `models` are the FMUs by their model identifiers.
+    `models` gives the FMU of each model identifier.
     """
     sources = folder / "sources"
     files = [MAIN_UNIT]
@@ -46,7 +46,7 @@ def compile_all(folder: Path, job: ProgramPlan, models: Mapping[str, str]) -> li
 
 
 def _part(fmu: str, own: str, sources: Path) -> list[str]:
-    """Unpack the C text of an FMU into its own folder; names of what is compiled of it."""
+    """Unpack the C text of an FMU into a folder of its own; returns the C files to compile."""
     with opened(fmu) as archive:
         names = [n for n in archive.namelist() if n.startswith("sources/")]
         if f"sources/{NAMES}" not in names:

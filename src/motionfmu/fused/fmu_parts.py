@@ -14,7 +14,7 @@ from motionfmu.base.platforms import here
 from motionfmu.fmu.archive_names import MAIN_UNIT, PART_UNIT, PARTS
 from motionfmu.scenarios.fmus import digest, opened
 
-# Interface, instance and struct vars [bytes]: how the object of a part says them.
+# Text in a part's object: version of the interface, sizes of instance and struct vars [bytes].
 _MARK = re.compile(rb"motionfmu part 2 (\d{9}) (\d{9})\n")
 _DEFINED = re.compile(r'^#define FMU_(\w+) "?([^"\n]*)"?$', re.MULTILINE)
 _STRUCT = re.compile(r"^struct vars \{\n(.*?)^\};", re.MULTILINE | re.DOTALL)
@@ -25,7 +25,7 @@ class NotFused(Exception):
 
 
 class NoCompiler(NotFused):
-    """The machine has none."""
+    """The machine has no C compiler."""
 
 
 @dataclass(frozen=True)
@@ -33,15 +33,15 @@ class FmuPart:
     """An FMU's model as an object."""
 
     identifier: str  # of the model; the object shows motionfmu_part_<identifier>
-    tick_ns: int  # it steps by whole multiples of it [ns]
+    tick_ns: int  # its steps are whole multiples of this [ns]
     members: str  # C text of the members of its struct vars
-    size: int  # of that struct [bytes]
-    room: int  # of an instance, which begins with it [bytes]
-    code: bytes  # the object
+    size: int  # size of that struct [bytes]
+    room: int  # size of an instance, which begins with that struct [bytes]
+    code: bytes  # the object file
 
 
 def c_files(build: bytes) -> list[str]:
-    """What is compiled of an FMU's C text without FMI, from its buildDescription.xml."""
+    """C files of an FMU's model without FMI, as its buildDescription.xml names them."""
     listed = ElementTree.fromstring(build).find("BuildConfiguration/SourceFileSet")
     assert listed is not None, "an FMU has C files"
     names = [row.attrib["name"] for row in listed.iter("SourceFile")]
@@ -49,7 +49,7 @@ def c_files(build: bytes) -> list[str]:
 
 
 def carried(name: str) -> bool:
-    """Whether an FMU carries an object for this machine, not only C text; NotFused if neither."""
+    """Whether an FMU carries an object for this machine; NotFused if it has no C text either."""
     with opened(name) as archive:
         names = archive.namelist()
     if f"sources/{PART_UNIT}" not in names or "sources/buildDescription.xml" not in names:
@@ -61,7 +61,7 @@ def carried(name: str) -> bool:
 
 
 def part(name: str) -> FmuPart:
-    """Read the part of an FMU; NotFused if it has none, nor C text of one."""
+    """Read the part of an FMU; NotFused if it has neither an object nor its C text."""
     there = carried(name)
     with opened(name) as archive:
         header = archive.read("sources/vars.h").decode()
@@ -82,7 +82,7 @@ def part(name: str) -> FmuPart:
 
 
 def _compiled(name: str) -> bytes:
-    """The object of an FMU that carries none for this machine, from its C text."""
+    """Compile the object of an FMU that carries none for this machine from its C text."""
     cc = compiler()
     assert cc is not None, "`carried` has looked for it"
     key = disk_cache.key(digest(name), cc.version, *cc.command)

@@ -132,7 +132,7 @@ def _made(
 def _key(
     system: System, recorded: Sequence[End], name: str, given: Mapping[str, Values] | None
 ) -> str:
-    """A hash of what the system is, the same in both versions of FMI: states are, too."""
+    """A hash of what the system is; both versions of FMI have the same, as they have states."""
     fmus = dict.fromkeys(system.components.values())
     until, wired = system.until, {w.target.name for w in system.wires}
     lists: list[object] = [

@@ -1,4 +1,4 @@
-"""What a program is made of, and its folder."""
+"""The files of a system's program, and the folder that is filled with them."""
 
 import json
 import math
@@ -22,7 +22,7 @@ FMI_TYPES = {ours: fmi for fmi, ours in TYPES.items()}
 def _parts(system: System) -> dict[str, FmuPart]:
     found = {fmu: part(fmu) for fmu in system.components.values()}
     models: dict[str, FmuPart] = {}
-    for one in found.values():  # a model may come in several files, with other start values
+    for one in found.values():  # several FMUs may have one model, with different start values
         if models.setdefault(one.identifier, one) != one:
             raise NotFused(f"two FMUs with the model identifier {one.identifier} differ")
     for wire in system.wires:
@@ -86,13 +86,13 @@ def make(folder: Path, job: ProgramPlan, cc: Compiler) -> None:
 
 
 def _show(folder: Path, d: Description) -> None:
-    """What the documentation of an exported system is made of."""
+    """Write the documentation of an exported system."""
     (folder / documentation.VARIABLES).write_text(documentation.variables(d))
     (folder / documentation.TERMINALS).write_bytes(terminals.described(d.terminals))
 
 
 def _tell(folder: Path, d: Description, library: str) -> None:
-    """What a run reads instead of the description."""
+    """Write program.json, which a run reads instead of the description."""
     rows = {
         v.name: [FMI_TYPES[v.type], reference, v.count]
         for v, reference in zip(d.variables, d.references(), strict=True)

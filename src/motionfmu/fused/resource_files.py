@@ -1,4 +1,4 @@
-"""Files that the FMUs of a system carry in their resources, as those of one program."""
+"""Files in the resources of a system's FMUs, and their places in the resources of its program."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -12,7 +12,7 @@ from motionfmu.scenarios.values import start_values as usual
 
 
 def files(fmu: str) -> dict[str, bytes]:
-    """What parameters of an FMU may name as ``resource:NAME``, by this name."""
+    """The files that parameters of an FMU may name as ``resource:NAME``, by this name."""
     with fmus.opened(fmu) as archive:
         found = [n for n in archive.namelist() if n.startswith(f"{RESOURCES}/") and n[-1] != "/"]
         places = {n.removeprefix(f"{RESOURCES}/"): n for n in found}
@@ -20,12 +20,12 @@ def files(fmu: str) -> dict[str, bytes]:
 
 
 def carrying(system: System) -> Mapping[str, dict[str, bytes]]:
-    """The files of components that have some; in a program they are ``COMPONENT/NAME``."""
+    """Files of each component that has some; a program has them as ``COMPONENT/NAME``."""
     return {c: found for c, fmu in system.components.items() if (found := files(fmu))}
 
 
 def placed(system: System, components: Mapping[str, object]) -> System:
-    """The system with parameters of these components that name such files where those are."""
+    """The system whose parameters name the files of these components where the program has them."""
     given = {s.end.name: s for s in system.settings}
     for component in components:
         for port in fmus.ports(system.components[component]).values():

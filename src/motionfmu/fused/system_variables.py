@@ -1,4 +1,4 @@
-"""What a system is as an FMU: its variables, by the names that a scenario gives them."""
+"""The variables of a system's FMU, by the names that they have in its scenario."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -22,15 +22,15 @@ _STEP_MAX = 1e6  # [s]
 
 @dataclass(frozen=True)
 class ProgramPlan:
-    """What is to be made."""
+    """What a program is made of: its system, what it records, its version of FMI, its values."""
 
     system: System
     recorded: Sequence[End]
     fmi: int
     name: str
     key: str
-    given: Mapping[str, Values] | None  # start values of an exported one
-    platforms: Sequence[Platform] = ()  # for which it is made with its C text; none: here, without
+    given: Mapping[str, Values] | None  # start values of an exported system; None for a run here
+    platforms: Sequence[Platform] = ()  # compiled for, from C text it carries; none: this machine
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def _limit(kind: str, value: float) -> float | int | None:
 
 
 def _declared(end: End) -> tuple[str, str] | None:
-    """The type of a component's variable: files are alike in all of them."""
+    """The declared type of a component's variable; all variables that name files have one type."""
     declared = end.port.declared
     if declared is None or end.port.file:
         return declared
@@ -82,7 +82,7 @@ def _declared(end: End) -> tuple[str, str] | None:
 
 
 def _terminals(system: System, variables: Sequence[Variable]) -> Iterator[Terminal]:
-    """Those of the components, as far as the system shows them as inputs and outputs."""
+    """The components' terminals, as far as the system shows their inputs and outputs."""
     there = {v.name for v in variables if v.causality in ("input", "output")}
     for component, fmu in system.components.items():
         yield from terminals.within(component, fmus.terminals_of(fmu), there)
@@ -109,7 +109,7 @@ def _variable(end: End, causality: str, values: Values | None) -> Variable:
 
 
 def _own(system: System, step: float, tick_ns: int) -> Iterator[Variable]:
-    """The variables of the system itself; `step` [s]."""
+    """The variables of the system itself; `step` is the step of its components [s]."""
     text = "Step of the components"
     low = tick_ns * 1e-9
     yield Variable(
@@ -129,7 +129,7 @@ def _own(system: System, step: float, tick_ns: int) -> Iterator[Variable]:
 
 
 def described(job: ProgramPlan, used: Roles, tick_ns: int) -> Description:
-    """Describe a system as an FMU; `tick_ns`: of which its step must be a whole multiple."""
+    """Describe a system as an FMU; its step must be a whole multiple of `tick_ns`."""
     system, given = job.system, job.given or {}
     if tick_ns > TICK_MAX or system.step_ns % tick_ns:
         raise NotFused(f"steps of {system.step_ns} ns are not of {tick_ns} ns, as the FMUs' are")

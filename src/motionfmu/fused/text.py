@@ -21,7 +21,7 @@ static bool fmi_good_model(const struct model *m)
 
 
 def _in_part(end: End) -> str:
-    """The variable in the instance, from a `struct model *m`."""
+    """C expression of a component's variable in its instance, from a `struct model *m`."""
     return f"m->of_{end.component}.v.{end.port.name}"
 
 
@@ -30,7 +30,7 @@ def _in_model(end: End) -> str:
 
 
 def _here(end: End) -> str:
-    """The variable of the system, from a `struct vars *v`."""
+    """C expression of the system's own variable, from a `struct vars *v`."""
     return f"v->{member(end.name)}"
 
 
@@ -40,7 +40,7 @@ def _function(head: str, lines: Iterable[str], unused: Iterable[str], end: str =
 
 
 def _limits(end: End) -> str:
-    """What looks at a value that a wire has brought; empty if all is allowed."""
+    """C text that checks the limits of an input that a wire feeds; empty if it has no limits."""
     port, name = end.port, _in_part(end)
     if port.type == "Float64":
         if math.isinf(port.low) and math.isinf(port.high):
@@ -58,7 +58,7 @@ def _limits(end: End) -> str:
 
 
 def _table(head: str, rows: Sequence[str]) -> str:
-    """An array; C has none without elements."""
+    """C text of an array; without rows it gets one of zeros, for C has no empty array."""
     listed = rows or ["{0}"]
     return f"static const {head}[] = {{\n" + "".join(f"    {row},\n" for row in listed) + "};\n"
 
@@ -94,7 +94,7 @@ def _gives(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterabl
 
 
 def _carry(system: System) -> str:
-    """All wires, output to input, then the limits of the inputs."""
+    """C text that copies every wire's output to its input, then checks the limits of inputs."""
     lines = [f"SYSTEM_COPY({_in_part(w.target)}, {_in_part(w.source)});" for w in system.wires]
     checks = [check for w in system.wires if (check := _limits(w.target))]
     ends = ["struct system_check check = { .good = true };", *checks, "return system_good(&check);"]
@@ -157,7 +157,7 @@ def _tables(system: System, parts: Mapping[str, FmuPart], recorded: Sequence[End
 
 
 def main_unit(fmi: int, quickly: bool) -> str:
-    """Text of fmu_main.c; `quickly`: what runs once a call is compiled without optimization."""
+    """Text of fmu_main.c; with `quickly` code that runs once is compiled without optimization."""
     return (
         "/* Generated; do not edit. */\n"
         + ("#define SYSTEM_QUICKLY\n" if quickly else "")
@@ -171,7 +171,7 @@ def main_unit(fmi: int, quickly: bool) -> str:
 def model(
     system: System, parts: Mapping[str, FmuPart], used: Roles, recorded: Sequence[End]
 ) -> str:
-    """Text of model.c; `parts` by the names of the FMUs."""
+    """Text of model.c; `parts` gives the part of each FMU by its name."""
     pieces = [
         "/* Generated from a scenario's components and wires; do not edit. */\n"
         '#include "vars.h"\n#include "fmu_system.h"\n\n',

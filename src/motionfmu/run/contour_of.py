@@ -14,7 +14,7 @@ from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios.contour_signals import CARD, library_of
 
-CLOCK = 25e-9  # [s] of the card
+CLOCK = 25e-9  # [s] period of the card's clock
 
 
 def _millimetres(run: RunRecord, name: str) -> ScaledValues:
@@ -30,8 +30,8 @@ def contour_of(
 ) -> ContourResult:
     """Analyse the contour of a run; signals that only figures ask for are no traces.
 
-    `known` is what it has in common with other runs. It is an InputError if there is no [contour]
-    table, NoNumber if the run has no contour.
+    `known` holds what this run has in common with others. Without a [contour] table there is an
+    InputError, without a contour of the run NoNumber.
     """
     document = run.resolver.document
     contour = document.body.contour
@@ -79,7 +79,7 @@ def _path(run: RunRecord, known: PulsePaths) -> Path:
 
 
 def _traces(run: RunRecord, hidden: Collection[str]) -> tuple[Trace, ...]:
-    """Real signals of the drives and the card that the report also draws."""
+    """Recorded real signals of drives and card, which the report draws beside the contour error."""
     found = []
     for name, values in run.signals.items():
         port = run.resolver.end(name, "record", "signals").port

@@ -1,4 +1,4 @@
-"""A scenario as an engine runs it, and the result made of that."""
+"""One run of a scenario: the job for an engine, and the result made of what the engine gives."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ PLANNED = "path.csv"
 
 
 def own_settings(scenario: RunPlan, folder: Path) -> dict[str, Any]:
-    """Where the library writes the path that it plans."""
+    """The setting that says where the motion library writes the path that it plans."""
     library = scenario.library()
     return {f"{library}.path_file": str(folder / PLANNED)} if library else {}
 
@@ -32,13 +32,13 @@ class Execution:
     scenario: RunPlan
     system: System
     recorded: tuple[End, ...]
-    folder: Path  # for its files
+    folder: Path  # holds the files of the run
 
     @classmethod
     def plan(
         cls, scenario: RunPlan, options: Options, ends: Iterable[End], folder: Path
     ) -> "Execution":
-        """Say what is run and recorded, with files in a folder."""
+        """Make the execution of a scenario that records these outputs, with files in a folder."""
         planned = cls(scenario, scenario.resolved(options), tuple(ends), folder)
         scenario.check_scopes(planned.system, options)
         if told := recording.no_room(planned.system, planned.recorded, folder):
@@ -46,12 +46,12 @@ class Execution:
         return planned
 
     def job(self, fmi: int) -> EngineJob:
-        """What an engine is to make ready; elements are variables of their own in FMI 2 only."""
+        """The job for an engine; a system with wires of elements needs FMI 2."""
         given = 2 if self.system.elementwise else fmi
         return EngineJob(self.system, self.recorded, self.folder, given)
 
     def run(self, engine: Callable[[System], EngineResult], options: Options) -> Result:
-        """Run it; an FMU's message says where its value stands."""
+        """Run it in an engine; an FMU's error message says where the refused value stands."""
         planned = self.folder / PLANNED
         planned.unlink(missing_ok=True)
         try:
@@ -92,5 +92,5 @@ class Execution:
         return rows * (self.system.sample_ns * 1e-9)
 
     def _seconds(self, steps: int) -> float:
-        """How long so many steps are [s]."""
+        """Duration of so many steps [s]."""
         return steps * self.system.step_ns / 1e9

@@ -23,7 +23,8 @@ from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.system import Resolver
 
 TABLE = "iso9283"
-# A unit quaternion counts as so many mm when a recorded command is thinned out: 1e-5 rad stay.
+# When a recorded command is thinned out, a unit quaternion counts as so many mm; so turns of
+# 1e-5 rad stay.
 TURN_SCALE = 10.0
 
 
@@ -47,7 +48,7 @@ def written_path(document: Document) -> CommandPath | None:
 def evaluation_of(run: RunRecord, path: CommandPath | None = None) -> Evaluation:
     """Evaluate a run, along another path than its own if one is given.
 
-    It is an InputError if there is no [iso9283] table, NoNumber if the run has no such figures.
+    Without an [iso9283] table there is an InputError, without such figures of the run NoNumber.
     """
     document = run.resolver.document
     table = document.body.iso9283

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def _value(values: tuple[Any, ...]) -> str:
-    """One value if all elements have it."""
+    """The text of values: a single one if all elements have it."""
     same = len(set(values)) == 1
     if any(isinstance(v, float) for v in values):
         texts = [f"{v:.9g}" for v in values]
@@ -22,7 +22,7 @@ def _value(values: tuple[Any, ...]) -> str:
 
 
 def overrides(scenario: "RunPlan", options: "Options", system: System) -> list[str]:
-    """One line for each value that is not the scenario's own; none if it runs as written."""
+    """A line for each value that is not the scenario's own; none if the scenario ran as written."""
     body = scenario.document.body
     written = {s.end.name: s for s in settings(scenario.resolver, {})}
     given = {scenario.resolver.split(name)[0] for name in options.set}

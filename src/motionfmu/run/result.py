@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
-    """From when on a signal is not 0 to the end [s]; None if it never was 0 or is so at last."""
+    """Time from which a signal is not 0 until the end [s]; None if there is no such time."""
     for end in range(len(x), 0, -ROWS):
         first = max(0, end - ROWS)
         zero = np.flatnonzero(x[first:end] == 0)
@@ -43,7 +43,7 @@ def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
 
 
 def _report(module: str) -> Any:
-    """A module of the report: what a result shows of itself is made there, where it is asked."""
+    """A module of the report, which draws a result; it is imported when it is first needed."""
     if module == "notebook":
         needed("report")
     return import_module(f"motionfmu.report.{module}")

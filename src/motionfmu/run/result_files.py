@@ -1,4 +1,4 @@
-"""A run as it is stored: its numbers, how it was made, its way along the path."""
+"""A result as files: its numbers, what the run was made of, the error along the path."""
 
 import hashlib
 import json
@@ -37,7 +37,7 @@ def json_of(found: Any, level: int = 0) -> str:
 
 
 def numbers(result: Result) -> dict[str, Any]:
-    """The result, and how it was run, for JSON."""
+    """The numbers of a result, and what the run was made of, for JSON."""
     body = result.scenario.document.body
     found: dict[str, Any] = {
         "scenario": result.name,
@@ -72,7 +72,7 @@ def numbers(result: Result) -> dict[str, Any]:
 
 
 def _made(result: Result) -> dict[str, Any]:
-    """All that a run depends on: what two runs may differ in."""
+    """All that a run depends on, and in which two runs may differ."""
     document, library = result.scenario.document, result.scenario.library()
     options = result.options
     folder, body = document.file.parent, document.body
@@ -100,16 +100,16 @@ def _digest(file: Path) -> str:
 
 
 def _beside(value: Any, folder: Path) -> Any:
-    """A file beside the scenario by its name alone."""
+    """A value in which the path of a file beside the scenario is its name alone."""
     path = Path(value) if isinstance(value, str) and value else None
     return str(path.relative_to(folder)) if path and path.is_relative_to(folder) else value
 
 
 def track(contour: "ContourResult") -> dict[str, Any]:
     """The contour error along the path, and the ways round its circles, as arrays."""
-    # time [s]; along the path, error, nearest point and gap to it [mm], NaN where nothing is cut; a
-    # row for each command; of circle i and each way round it the angle [rad] and the radial
-    # deviation [mm]. What has a row a sample is made in parts.
+    # Time [s]; position along the path, error, nearest point and distance to it [mm], NaN where
+    # nothing is cut; a row for each command; of circle i, for each direction round it, angle [rad]
+    # and radial deviation [mm]. Arrays with a row for each sample are computed in parts.
     way, cut, actual = contour.track, contour.cutting, contour.run.actual
     count = len(cut)
 

@@ -1,4 +1,4 @@
-"""A scenario read and checked against its FMUs."""
+"""A scenario made ready to run: read, resolved and checked against its FMUs."""
 
 import re
 from collections.abc import Callable, Collection, Mapping
@@ -62,13 +62,13 @@ class Options:
     progress: Callable[[float], None] = lambda share: None
 
     def given(self) -> dict[str, Any]:
-        """What a result keeps of it: how to run so again."""
+        """The options that a result keeps, with which the same run can be made again."""
         names = ("engine", "fmi", "set", "stop", "step", "every")
         return {name: getattr(self, name) for name in names} | {"set": dict(self.set)}
 
 
 class RunPlan:
-    """A scenario with its FMUs, and what is recorded of it; checked."""
+    """A scenario that is resolved against its FMUs and checked, and the outputs it records."""
 
     def __init__(self, source: str | Path | files.Document) -> None:
         self.document: files.Document = (
@@ -112,7 +112,7 @@ class RunPlan:
         return not self.document.damaged.isdisjoint(tables)
 
     def _checked(self, name: str) -> list[system.End]:
-        """The output of which a [check] line is; none if that is of an analysis."""
+        """The output that a [check] line checks; none if it checks a figure of an analysis."""
         if is_figure(name) and self._damaged(name.partition(".")[0]):
             return []
         found = []
@@ -123,7 +123,7 @@ class RunPlan:
         return found
 
     def _check_whole(self, faults: Faults) -> None:
-        """Resolve it as far as it can be: times, wires, values, what is open."""
+        """Check times, wires, values and unconnected inputs, as far as the file can be resolved."""
         parts = Faults()
         made = self._made(Options(), parts)
         if made is None or self._damaged("component", "connect", "set", "drive", "leave"):
@@ -145,7 +145,7 @@ class RunPlan:
         return self.document.body.stop_limit
 
     def resolved(self, options: Options) -> system.System:
-        """All that an engine needs, with the options' values."""
+        """The system that an engine runs, with the options' values."""
         faults = Faults()
         made = self._made(options, faults)
         faults.tell()
@@ -156,7 +156,7 @@ class RunPlan:
         return made
 
     def _made(self, options: Options, faults: Faults) -> system.System | None:
-        """The system of these options; None without times, what else is wrong is left out."""
+        """The system of these options without what is wrong; None if the times are wrong."""
         body, resolver = self.document.body, self.resolver
         timing = Faults() if self._damaged("stop", "limit", "step") else faults
         times = timing.of(lambda: self._times(options))
@@ -211,7 +211,7 @@ class RunPlan:
                         raise document.error(f"{name}: {text}", "check", name)
 
     def check_scopes(self, plain: system.System, options: Options) -> None:
-        """Refuse scopes that no memory holds, or two of one file; names setting or option."""
+        """Refuse scopes that are too large or share a file; the message names the setting."""
         name, told = recording.refused(plain)
         if not told:
             return
@@ -238,13 +238,13 @@ class RunPlan:
         return contour_signals.library_of(self.resolver)
 
     def disagreements(self, given: Mapping[str, Any]) -> list[str]:
-        """What its FMUs say differently of one thing, with the values of `given` as a run's."""
+        """What two FMUs state differently of one thing in a run with the values of `given`."""
         return agreement.warnings(self.resolved(Options(set=given)))
 
     def located(
         self, error: InputError, plain: system.System, given: Mapping[str, Any]
     ) -> InputError:
-        """An FMU's error with the place of its value: the scenario's, or `given`, the stronger."""
+        """An FMU's error with the place of the value it refuses: `given`, else the scenario."""
         text = str(error)
         component, _, rest = text.partition(": ")
         for s in plain.settings:

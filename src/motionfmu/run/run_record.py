@@ -1,4 +1,4 @@
-"""What figures and contour analysis read of a run."""
+"""The signals and parameters of a run, as figures and analyses read them."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol

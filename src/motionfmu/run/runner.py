@@ -256,7 +256,7 @@ def scenario(
 
 
 def _sparse(result: Result, system: System) -> tuple[str, ...]:
-    """Warnings about a contour of rows of every so many steps, if there is one."""
+    """Warnings about a contour that is found from rows of every so many steps only."""
     if system.every == 1 or result.scenario.document.body.contour is None:
         return ()
     from motionfmu.analysis.contour.sparse import sparse
@@ -273,7 +273,7 @@ def _names(given: Iterable[str]) -> list[str]:
 
 
 def _check(asked: Options, faults: Faults) -> None:
-    """Gather options that no run can have."""
+    """Add options that no run can have to the faults."""
     if asked.fmi not in (2, 3):
         faults.lines.append(f"FMI {asked.fmi!r}: 2 or 3")
     if not isinstance(asked.set, Mapping):

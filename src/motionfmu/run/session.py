@@ -1,4 +1,4 @@
-"""One scenario run many times: what runs it is made ready once."""
+"""One scenario that is made ready once and run many times."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
@@ -131,7 +131,7 @@ class Session:
 
 
 def _known(scenario: RunPlan) -> "PulsePaths | None":
-    """What the contours of runs have in common; None if the scenario does not look at it."""
+    """A store of what contours of several runs have in common; None without a contour."""
     if scenario.document.body.contour is None:
         return None
     from motionfmu.analysis.contour.pulse_path import PulsePaths

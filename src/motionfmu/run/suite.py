@@ -33,8 +33,8 @@ class Case:
 
     scenario: str
     path: str
-    off: str = ""  # what was switched off; empty for the scenario as written
-    seconds: float = 0.0  # [s] that it took
+    off: str = ""  # what a contrary switched off; empty for the scenario as written
+    seconds: float = 0.0  # [s] duration
     checks: tuple[Verdict, ...] = ()
     holding: tuple[str, ...] = ()  # checks that hold although something is off
     warnings: tuple[str, ...] = ()
@@ -42,13 +42,13 @@ class Case:
 
     @property
     def ok(self) -> bool:
-        """Whether all checks hold; with something off, whether those named fail."""
+        """Whether all checks hold or, of a contrary, whether the checks that it names fail."""
         good = not self.holding if self.off else all(v.ok for v in self.checks)
         return good and not self.error
 
 
 def found(paths: Sequence[Path]) -> list[Path]:
-    """Scenarios that paths or names mean: themselves, or those in the folders of a folder."""
+    """Scenarios that paths or names mean; a folder of scenarios means all that are in it."""
     chosen: list[Path] = []
     for given in paths:
         path = package_files.scenario(given) or given
@@ -133,7 +133,7 @@ class _SuiteWorker:
 
 
 def serve(pipe: int) -> None:
-    """Judge what the process that started this one sends, until it is gone."""
+    """Judge the scenarios that the parent process sends, until it is gone."""
     import signal
 
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # files are removed on the way out

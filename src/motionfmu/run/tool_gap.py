@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Size:
-    """What a distance or an angle comes to over a run."""
+    """Largest and RMS value of a distance or an angle over a run."""
 
     largest: float
     at: float  # [s]
@@ -29,7 +29,7 @@ class Size:
 
 @dataclass(frozen=True)
 class ToolGap:
-    """A tool beside its command."""
+    """Distance and angle between a tool and its command at the same instants."""
 
     tool: Tool
     distance: Read  # (n,) [mm]
@@ -75,7 +75,7 @@ def _distance(run: RunRecord, pair: tuple[str, str]) -> Read:
 
 
 def _angle(run: RunRecord, pair: tuple[str, str]) -> Read:
-    """Of the turn from one quaternion to the other, which loses no digits near 0."""
+    """The angle of the turn from one quaternion to the other, exact near 0 as well."""
     command, actual = (reader(run[name]) for name in pair)
 
     def angle(first: int, last: int) -> Array:

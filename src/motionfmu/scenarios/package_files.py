@@ -32,23 +32,23 @@ def examples() -> dict[str, Path]:
 
 
 def is_name(given: str | Path) -> bool:
-    """Whether a text can only be a name: nothing is there by it as a path."""
+    """Whether a text can only be a scenario's name, for no file or folder has it as its path."""
     return len(Path(given).parts) == 1 and not os.path.lexists(given)
 
 
 def scenario(given: str | Path) -> Path | None:
-    """Folder of the scenario of a name; None if it is a path, or no name of one."""
+    """Folder of the scenario with this name; None if the text is a path or no scenario has it."""
     return scenarios().get(str(given)) if is_name(given) else None
 
 
 def unknown(given: str, known: Callable[[], dict[str, Path]]) -> str:
-    """The end of a message about a name that there is not: what is near it, else all."""
+    """The end of a message about an unknown name: the names that are near it, else all names."""
     names = list(known())
     return suggestion(given, names) or f" (there are: {', '.join(names) or 'none'})"
 
 
 def needed(name: str) -> list[Path]:
-    """Folder of an example, and those of others whose files it names."""
+    """Folder of an example, and folders of other examples whose files it names."""
     known = examples()
     if name not in known:
         raise InputError(f"{name}: no such example{unknown(name, examples)}")

@@ -17,7 +17,7 @@ JOINED = (("", "leave"), ("record", "signals"))
 
 @dataclass(frozen=True)
 class Source:
-    """Tables that stand in one place."""
+    """Tables of one file, or of one call of a program."""
 
     name: str  # path of the file, or ``<name>`` of what a program gave
     folder: Path  # what its texts name lies here
@@ -26,7 +26,7 @@ class Source:
     about: str = ""  # what the first line says
 
     def find(self, table: str, key: str) -> Any:
-        """What stands at a place as `Lines.of` names it; a KeyError if nothing does."""
+        """The value at a place, named as `Lines.of` names it; a KeyError if there is none."""
         here: Any = self.tables
         for part in [*(table.split(".") if table else ()), *([key] if key else ())]:
             if isinstance(here, list):
@@ -39,7 +39,7 @@ class Source:
         return here
 
     def has(self, table: str, key: str, item: Any) -> bool:
-        """Whether this place stands here, and lists the item, if one is given."""
+        """Whether this source has the place and, if an item is given, lists the item there."""
         try:
             found = self.find(table, key)
         except KeyError:
@@ -117,7 +117,7 @@ def _read(file: Path) -> Source:
 
 
 def merged(sources: Iterable[Source]) -> Tables:
-    """Tables of all sources, the first one's the strongest."""
+    """The tables of all sources merged; an earlier source is stronger than a later one."""
     found: Tables = {}
     for source in reversed(list(sources)):
         found = _over(found, source.tables)
@@ -125,7 +125,7 @@ def merged(sources: Iterable[Source]) -> Tables:
 
 
 def _over(base: Tables, own: Mapping[str, Any]) -> Tables:
-    """Tables key by key; None, which a program can give, takes a key away."""
+    """Two tables merged key by key; None, which a program can give, takes a key away."""
     out = {k: v for k, v in base.items() if k != "extends"}
     if "stop" in own and not isinstance(own["stop"], str):  # the limit was that of a signal
         out = {k: v for k, v in out.items() if k not in ("limit", "settle")}

@@ -16,7 +16,7 @@ _BASE = "BaseUnit"
 
 @dataclass(frozen=True)
 class Meaning:
-    """A unit: what of the base units is 1 of it, and what they are at its 0."""
+    """A unit as a factor and an offset to the base units, with their exponents."""
 
     exponents: tuple[int, ...]  # in the order of `units.BASE`
     factor: float = 1.0
@@ -28,7 +28,7 @@ class DeclaredVariable:
     """A variable of an FMU, FMI 2 or 3."""
 
     causality: str
-    type: str  # its element's name: Real, Float64, ...
+    type: str  # name of its XML element: Real, Float64, ...
     unit: str | None
     shape: tuple[int, ...]
 
@@ -38,8 +38,8 @@ class FmuDeclarations:
     """An FMU's description."""
 
     name: str  # of the model
-    tool: str  # that made it
-    fmi: str  # version
+    tool: str  # the tool that made the FMU
+    fmi: str  # version of FMI
     variables: dict[str, DeclaredVariable]
     units: dict[str, Meaning]
     stop: float | None  # [s]
@@ -47,7 +47,7 @@ class FmuDeclarations:
 
 
 def meanings(archive: Archive, parent: ET.Element) -> dict[str, Meaning]:
-    """Units that an element defines, of FMI or SSP, by name."""
+    """Units by name that an XML element of FMI or SSP defines."""
     found = {}
     for unit in (e for e in parent.iter() if plain(e) == "Unit"):
         for base in (e for e in unit if plain(e) == _BASE):
@@ -59,7 +59,7 @@ def meanings(archive: Archive, parent: ET.Element) -> dict[str, Meaning]:
 
 
 def fmu(archive: Archive, path: str, component: str) -> FmuDeclarations:
-    """Look at an FMU of the archive, which is to run a co-simulation."""
+    """Read the description of an FMU in the archive; it must be one for co-simulation."""
     try:
         with zipfile.ZipFile(io.BytesIO(archive.bytes(path))) as inner:
             root = ET.fromstring(inner.read("modelDescription.xml"))
@@ -88,7 +88,7 @@ def fmu(archive: Archive, path: str, component: str) -> FmuDeclarations:
 def converted(
     values: Iterable[float], given: Meaning | None, wanted: Meaning | None
 ) -> list[float]:
-    """Numbers in another unit; a ValueError if that is of another dimension."""
+    """Numbers converted to another unit; a ValueError if that has another dimension."""
     if given is None or wanted is None or given == wanted:
         return list(values)
     if given.exponents != wanted.exponents:
@@ -103,7 +103,7 @@ def converted(
 
 
 def alike(a: Meaning | None, b: Meaning | None) -> bool:
-    """Whether a number means the same in both; what is not known is taken to."""
+    """Whether a number means the same in both units; unknown units are taken to be alike."""
     if a is None or b is None:
         return True
     same = math.isclose(a.factor, b.factor, rel_tol=1e-12) and a.offset == b.offset

@@ -1,4 +1,4 @@
-"""Wires through nested systems, end to end."""
+"""Wires from component to component, put together of connections through nested systems."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from motionfmu.ssp.xml import Archive, number, plain
 
 SSD = f"{{{DESCRIPTION}}}"
 SSC = f"{{{COMMON}}}"
-# What of an element gives a value to the system around it, and what takes one.
+# Kinds of an element's connectors that give the system around it a value, and that take one.
 _GIVES, _TAKES = ("output", "calculatedParameter"), ("input", "parameter")
 
 Path = tuple[str, ...]  # names of the systems, from the outermost's children on, then the element
@@ -18,7 +18,7 @@ Node = tuple[Path, str]  # and a connector
 
 @dataclass(frozen=True)
 class WirePath:
-    """A connection between two nodes, or several one after the other."""
+    """A connection between two nodes, or a chain of connections."""
 
     source: Node
     target: Node
@@ -66,7 +66,7 @@ class Nodes:
             self.steps.append(self._step(path, connection))
 
     def _step(self, path: Path, connection: ET.Element) -> WirePath:
-        """One connection; start and end of the element say nothing of the direction."""
+        """Read one connection; which end is its source depends on the kinds of its connectors."""
         nodes, inside = [], []
         for end in ("start", "end"):
             element, connector = connection.get(f"{end}Element"), connection.get(f"{end}Connector")
@@ -98,7 +98,7 @@ class Nodes:
         return way
 
     def ways(self) -> Iterator[WirePath]:
-        """Connections of components, end to end; what comes from outside is none."""
+        """Wires between components; connections from outside the outermost system are left out."""
         for target in (n for n in self._into if n[0] in self.components):
             yield from self._back(target, frozenset())
 
@@ -137,5 +137,5 @@ class Nodes:
 
 
 def shown(path: Path, connector: str = "") -> str:
-    """A node for a reader."""
+    """The text of a node in messages."""
     return ".".join((*path, connector) if connector else path)

@@ -1,4 +1,4 @@
-"""Start values of components: parameter sets, inline or in files, mapped or not."""
+"""Start values of components from parameter sets: in the description or in files, mapped or not."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -22,13 +22,13 @@ class ParameterValue:
 
 
 def given(nodes: Nodes) -> tuple[list[ParameterValue], list[str]]:
-    """Values of all components, later ones the stronger; names that nothing here has."""
+    """Values of all components, later ones stronger; and the names that no variable has."""
     found: list[ParameterValue] = []
     lost: list[str] = []
     for path, component in nodes.components.items():
         for source, value in _bound(nodes.archive, path, component):
             found.append(ParameterValue(path, value, source))
-    # Those of a system count more than those of its parts.
+    # Values that a system gives are stronger than those of the components in it.
     for path, system in sorted(nodes.systems.items(), key=lambda x: -len(x[0])):
         for source, value in _bound(nodes.archive, path, system):
             targets = list(_targets(nodes, path, value.name))
@@ -40,7 +40,7 @@ def given(nodes: Nodes) -> tuple[list[ParameterValue], list[str]]:
 
 
 def _targets(nodes: Nodes, path: Path, name: str) -> Iterator[tuple[Path, str]]:
-    """The variables of components that a name in a system's parameter set means."""
+    """The components' variables that a name in a system's parameter set means."""
     if (path, name) in nodes.kinds:
         yield from nodes.fed((path, name))
     for owner in nodes.components:
@@ -56,7 +56,7 @@ def _targets(nodes: Nodes, path: Path, name: str) -> Iterator[tuple[Path, str]]:
 
 
 def _bound(archive: Archive, path: Path, element: ET.Element) -> Iterator[tuple[ET.Element, Value]]:
-    """Parameter sets bound to an element, values by the names of its variables."""
+    """The values, each with its parameter set, that are bound to an element, by its own names."""
     what = shown(path) or "the system"
     for binding in element.iterfind(f"{SSD}ParameterBindings/{SSD}ParameterBinding"):
         if binding.get("type", _SET) != _SET:
@@ -95,7 +95,7 @@ def _value(archive: Archive, what: str, parameter: ET.Element) -> Value:
 def _mapped(
     archive: Archive, what: str, mapping: ET.Element, values: list[Value]
 ) -> Iterator[Value]:
-    """Values under the names of a mapping; those that it does not have are left out."""
+    """Values renamed by a mapping; values that it does not name are left out."""
     source = mapping.get("source")
     tag = f"{SSM}ParameterMapping"
     root = mapping.find(tag) if source is None else archive.root(archive.place(source, what), tag)
@@ -121,5 +121,5 @@ def _scaled(archive: Archive, what: str, value: Value, line: tuple[float, float]
         texts = tuple(repr(factor * float(x) + offset) for x in value.text)
     except ValueError:
         raise archive.error(f"{what}: {' '.join(value.text)!r}: no number") from None
-    # What it was is in another unit now, if it had one.
+    # The mapping makes it a number of another unit, so the old unit is dropped.
     return replace(value, text=texts, unit=None)

@@ -1,4 +1,4 @@
-"""A scenario made of somebody's SSP: a folder with scenario.toml and the FMUs."""
+"""Import of an SSP as a scenario: a folder with scenario.toml and the FMUs."""
 
 import json
 import re
@@ -23,7 +23,7 @@ _FMU = "application/x-fmu-sharedlibrary"
 _WHOLE = "Integer Enumeration Int8 Int16 Int32 Int64 UInt8 UInt16 UInt32 UInt64".split()
 _PLAIN = dict.fromkeys(_WHOLE, "int") | {"Boolean": "bool"}
 _REAL = ("Real", "Float64", "Float32")
-_NAMED = 8  # of many, in a message
+_NAMED = 8  # a message names so many of a long list
 NAME_MAX = 64
 
 
@@ -75,7 +75,7 @@ class _Import:
         self.units = declarations.meanings(archive, self.root)
         self.given, self.lost = given(self.nodes)
         self.tables = {p: rows for p, fmu in self.fmus.items() if (rows := self._table(p, fmu))}
-        for path in self.tables:  # what they do is a [[drive]]
+        for path in self.tables:  # a Stimulus becomes a [[drive]]
             del self.fmus[path]
         self.names = dict(zip(self.fmus, _names(self.fmus), strict=True))
         self.ways = list(self.nodes.ways())
@@ -142,7 +142,7 @@ class _Import:
             yield target, source
 
     def _check(self, way: WirePath) -> None:
-        """A wire hands on what it gets."""
+        """Refuse a wire that changes what it carries."""
         what = f"connection of {shown(*way.source)} and {shown(*way.target)}"
         if (way.factor, way.offset) != (1.0, 0.0):
             line = f"factor {way.factor:g}, offset {way.offset:g}"
@@ -163,7 +163,7 @@ class _Import:
             raise self.archive.error(f"{what}: {units}: a wire here converts no units")
 
     def values(self) -> dict[str, str]:
-        """Start values as TOML, by name; a later one counts."""
+        """Start values as TOML, by name; of several for one variable the last counts."""
         lost, values = self.lost, dict[str, str]()
         for one in self.given:
             if one.component in self.tables:
@@ -179,7 +179,7 @@ class _Import:
         return values
 
     def _toml(self, one: ParameterValue) -> str:
-        """A value in the unit of its variable."""
+        """TOML text of a value, in the unit of its variable."""
         fmu, value = self.fmus[one.component], one.value
         about = fmu.variables[value.name]
         what = f"{shown(one.component)}.{value.name} = {' '.join(value.text)!r}"
@@ -207,7 +207,7 @@ class _Import:
         return declarations.converted((float(t) for t in one.value.text), meaning, wanted)
 
     def _whole(self, one: ParameterValue, text: str) -> int:
-        """A whole number; of an enumeration the name of an item."""
+        """The whole number that a text means: a number, or the name of an enumeration's item."""
         if one.value.type != "Enumeration":
             return int(text)
         items = [e for root in (one.source, self.root) for e in root.iter(f"{SSC}Item")]
@@ -240,7 +240,7 @@ class _Import:
         return {name: drive.toml(kind) for name, (drive, kind) in found.items() if drive.steps}
 
     def open_inputs(self, targets: Iterable[str]) -> Iterator[str]:
-        """Patterns of inputs that nothing feeds: those of a component."""
+        """Unconnected inputs as patterns: one pattern for a component without any wire to it."""
         fed = set(targets)
         for path, fmu in self.fmus.items():
             name = self.names[path]
@@ -249,7 +249,7 @@ class _Import:
                 yield f"{name}.*"
 
     def recorded(self) -> list[str]:
-        """Outputs that are connectors, or all there are; what a run can record."""
+        """Outputs that are connectors, or all if none is, as far as a run can record them."""
         every, few = [], []
         for path, fmu in self.fmus.items():
             for name, about in fmu.variables.items():
@@ -263,9 +263,10 @@ class _Import:
 
 
 def _recordable(about: DeclaredVariable, fmi: str) -> bool:
-    """Whether any engine records it: single numbers, groups of six, real ones of 3 and 4.
+    """Whether an engine can record a variable.
 
-    Of FMI 3's whole numbers those of 32 bits; its enumerations have 64.
+    That are single numbers, arrays of six, and real arrays of 3 and 4. Of FMI 3's whole numbers
+    those of 32 bits are recorded; its enumerations have 64.
     """
     if about.type in ("Real", "Float64"):
         return about.shape in [(), (3,), (4,), (6,)]
@@ -274,7 +275,7 @@ def _recordable(about: DeclaredVariable, fmi: str) -> bool:
 
 
 def _names(paths: Iterable[Inner]) -> Iterator[str]:
-    """Names that a scenario allows, each once."""
+    """Unique component names that a scenario allows, one for each path."""
     used: set[str] = set()
     for path in paths:
         name = re.sub(r"[^A-Za-z0-9_]", "_", "_".join(path))[: NAME_MAX - 4]

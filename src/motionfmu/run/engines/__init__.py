@@ -1,4 +1,4 @@
-"""Engines that run a System; all give the same bits.
+"""Engines that run a System; all engines give the same bits.
 
 Each is a module with ``opened(job)``, which gives an `Engine`; it is imported when it is used.
 """
@@ -18,7 +18,7 @@ VARIABLE = "MOTIONFMU_ENGINE"
 
 
 def unfused(system: System) -> str:
-    """Why a system cannot be one program, as far as its FMUs and wires tell; else empty."""
+    """Why a system cannot be one program, as far as FMUs and wires show it; empty if it can."""
     foreign = next((fmu for fmu in system.components.values() if not is_ours(fmu)), None)
     if foreign is not None:
         return f"{Path(foreign).name} has no C text of ours"
@@ -91,7 +91,7 @@ def opened(engine: str | None, job: EngineJob) -> Engine:
 
 
 def usual(system: System) -> tuple[str, str]:
-    """The engine that runs a system if none is named, and why it is that one; empty for fused."""
+    """The engine that runs a system if the user names none, and why; no reason for fused."""
     if given := named(None):
         return given, VARIABLE
     from motionfmu.fused.fmu_parts import NotFused, carried
@@ -109,7 +109,7 @@ def usual(system: System) -> tuple[str, str]:
 
 
 class _Instead:
-    """The native engine in the place of one that should have been; each run tells why."""
+    """The native engine in the place of the fused one; each run has a warning that says why."""
 
     def __init__(self, engine: Engine, told: str) -> None:
         self._engine, self._told = engine, told

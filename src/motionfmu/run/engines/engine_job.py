@@ -1,4 +1,4 @@
-"""What an engine is given to run, and what it tells of it."""
+"""The job that an engine gets, and the result that it gives."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,23 +13,23 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class EngineJob:
-    """What one run or many are made of; runs differ in values only."""
+    """What an engine makes ready for one run or many, which differ in values only."""
 
     system: System
     recorded: tuple[End, ...]
-    folder: Path  # for the files of the signals; the run's own
+    folder: Path  # holds the files of the signals; no other run uses it
     fmi: int  # 2 or 3
-    name: str = "system"  # for messages of what is wrong with the whole
+    name: str = "system"  # names the whole system in messages
 
 
 @dataclass(frozen=True)
 class EngineResult:
-    """What an engine tells of a run."""
+    """What an engine gives of a run: signals, warnings, and why it ended."""
 
-    engine: str  # its name
-    signals: Columns  # a row a sample
+    engine: str  # name of the engine
+    signals: Columns  # one row for each sample
     warnings: list[str]  # of the FMUs
-    steps: int  # done
+    steps: int  # number of steps that were made
     signal: int | None = None  # communication point at which the signal that ends it came
 
 
@@ -37,7 +37,7 @@ class Engine(Protocol):
     """A system that is ready to run, once or many times."""
 
     def run(self, system: System, progress: Progress) -> EngineResult:
-        """Run from the start a system that differs from the job's in values only."""
+        """Run a system, which differs from the job's in values only, from its start."""
 
     def close(self) -> None:
-        """Free what it holds."""
+        """Free instances, libraries and files."""

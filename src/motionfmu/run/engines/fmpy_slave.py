@@ -23,8 +23,9 @@ class FmpyLibrary(Library):
         self._slave: Any = None
 
     def function(self, name: str) -> Any:
-        """A function of the standard as FMPy's slave has it; its exception becomes a status."""
-        # Not getFloat64() and its like, which make lists and arrays anew: five times the time.
+        """A function of the standard, called through FMPy; its exception becomes a status."""
+        # getFloat64() and its like are not used: they make new lists and arrays, which takes five
+        # times as long.
         method = getattr(self._slave, f"fmi{self.fmi}{name}")
 
         def call(*arguments: Any) -> Any:
@@ -38,9 +39,9 @@ class FmpyLibrary(Library):
     def instantiate(
         self, name: str, token: str, resources: Path, log: Log, everything: bool = False
     ) -> None:
-        """Make the instance, in the place of one before; it tells errors, or everything."""
+        """Make a new instance in the place of an older one; it logs errors, or everything."""
         self.release()
-        # FMU3Slave finds the library by itself; FMU2Slave knows no folder of another processor.
+        # FMU3Slave finds the library by itself; FMU2Slave does not know every processor's folder.
         self._slave = (FMU3Slave if self.fmi == 3 else FMU2Slave)(
             guid=token,
             modelIdentifier=self._file.stem,
@@ -52,7 +53,7 @@ class FmpyLibrary(Library):
         if self.fmi == 3:
             given["logMessage"] = lambda _, status, __, text: log(status, read(text))
         else:
-            # FMPy's own logger of FMI 2 is one for the process: it cannot tell whose message it is.
+            # FMPy has one logger of FMI 2 for the process, which cannot say whose message it is.
             self._log = BindingLog.to(log)
             given["callbacks"] = fmi2CallbackFunctions.from_buffer(self._log.callbacks())
         try:
@@ -83,5 +84,5 @@ class FmpySlave(Slave):
 
 
 def opened(job: EngineJob) -> Master:
-    """Plan a job."""
+    """Make the engine of a job."""
     return Master(job, "fmpy", FmpySlave)

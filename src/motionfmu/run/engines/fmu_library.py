@@ -1,4 +1,4 @@
-"""The library of an FMU, called by ctypes."""
+"""The shared library of an FMU, whose functions are called by ctypes."""
 
 import _ctypes
 import ctypes
@@ -12,7 +12,7 @@ from motionfmu.run.engines.fmu_messages import WARNING
 
 Log = Callable[[int, str], None]  # status and message
 
-# Types and their values, by version; FMI 2 names elements, FMI 3 arrays.
+# Types and the C types of their values, by version of FMI; in FMI 2 each element is a variable.
 NAMES = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String": "String"}
 _VALUES: dict[str, Any] = {
     "Float64": c_double,
@@ -26,7 +26,7 @@ _LOG3 = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p)
 
 
 class _Callbacks(ctypes.Structure):
-    """fmi2CallbackFunctions."""
+    """The struct fmi2CallbackFunctions."""
 
     _fields_ = tuple(
         (name, c_void_p) for name in ("logger", "allocate", "free", "finished", "environment")
@@ -34,18 +34,18 @@ class _Callbacks(ctypes.Structure):
 
 
 class BindingLog(ctypes.Structure):
-    """struct binding_log, the environment of an instance of FMI 2; it is to live as long."""
+    """The struct binding_log, environment of an instance of FMI 2, which must not outlive it."""
 
     _TOLD = ctypes.CFUNCTYPE(None, c_int, c_char_p)
     _fields_ = (("told", _TOLD),)
 
     @classmethod
     def to(cls, log: Log) -> "BindingLog":
-        """One that tells a log, the values of a format filled in."""
+        """A struct that passes messages to a log, with the values of their formats filled in."""
         return cls(cls._TOLD(lambda status, text: log(status, read(text))))
 
     def callbacks(self) -> _Callbacks:
-        """What the instance is given."""
+        """The callbacks that the instance is given."""
         from motionfmu.base.binding import library
 
         system = ctypes.CDLL(None)
@@ -56,7 +56,7 @@ class BindingLog(ctypes.Structure):
 
 @dataclass(frozen=True)
 class ValuePlace:
-    """Where a value is: its type of FMI 3, its first reference, its elements."""
+    """Where a value is: its type of FMI 3, its first value reference, its number of elements."""
 
     type: str
     reference: int
@@ -64,7 +64,7 @@ class ValuePlace:
 
 
 class FmuRefusal(Exception):
-    """A call that the FMU refused; what it says of it went to the log."""
+    """A call that the FMU refused; its message went to the log."""
 
 
 class Library:
@@ -86,7 +86,7 @@ class Library:
     def instantiate(
         self, name: str, token: str, resources: Path, log: Log, everything: bool = False
     ) -> None:
-        """Make the instance, in the place of one before; it tells errors, or everything."""
+        """Make a new instance in the place of an older one; it logs errors, or everything."""
         self.release()
         texts: list[Any] = [text.encode() for text in (name, token)]
         rest: tuple[Any, ...]
@@ -108,12 +108,12 @@ class Library:
             raise FmuRefusal("instantiate")
 
     def warn(self) -> None:
-        """Let an FMU of ours tell its warnings, too."""
+        """Let one of our FMUs log its warnings as well as its errors."""
         categories = (c_char_p * 1)(b"logStatusWarning")
         self.call("SetDebugLogging", c_bool(True), c_size_t(1), categories)
 
     def _several(self, variables: Iterable[ValuePlace]) -> Any:
-        """References of variables; in FMI 2 one for each element."""
+        """Value references of variables; in FMI 2 each element has one."""
         elements = 1 if self.fmi == 3 else None
         found = [v.reference + i for v in variables for i in range(elements or v.count)]
         return (c_uint32 * len(found))(*found)
@@ -130,7 +130,7 @@ class Library:
             self.access("Set", [v for v, _ in several], buffer)()
 
     def buffer(self, kind: str, count: int) -> Any:
-        """Memory for values of a type, as the FMU has them."""
+        """Memory for values of a type, laid out as the FMU has them."""
         c = c_int if (self.fmi, kind) == (2, "Boolean") else _VALUES[kind]
         return (c * count)()
 
@@ -149,7 +149,7 @@ class Library:
         return run
 
     def get(self, variable: ValuePlace) -> list[Any]:
-        """Elements of a number."""
+        """The elements of a numeric variable."""
         values = self.buffer(variable.type, variable.count)
         self.access("Get", [variable], values)()
         return list(values)
@@ -202,5 +202,5 @@ class Library:
 
 
 def read(text: bytes) -> str:
-    """Text of an FMU."""
+    """The Python text of a C string that an FMU gave."""
     return text.decode(errors="replace")

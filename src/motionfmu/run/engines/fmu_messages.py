@@ -1,17 +1,17 @@
-"""What FMUs tell in a run: warnings, and the error that ends it."""
+"""Messages of FMUs in a run: warnings, and the error that ends the run."""
 
 import re
 
 from motionfmu.base.errors import InputError
 
-WARNING, ERROR = 1, 3  # status of both FMI versions; from an error on nothing is good
-# A run is not told more than so many different warnings of its FMUs.
+WARNING, ERROR = 1, 3  # status in both FMI versions; from ERROR on a run cannot go on
+# A run keeps so many different warnings of its FMUs at most.
 _WARNINGS_MAX = 20
 _NAMED = re.compile(r"^\w+: ")
 
 
 def unnamed(message: str) -> bool:
-    """Whether it does not begin with a component's name."""
+    """Whether a message does not begin with a component's name."""
     return _NAMED.match(message) is None
 
 
@@ -29,7 +29,7 @@ def keep(status: int, text: str, errors: list[str], warnings: list[str]) -> None
 
 
 def failure(name: str, call: str, errors: list[str]) -> InputError:
-    """The error for a call that failed: what the first component to tell one says."""
+    """The error for a call that failed: the message of the first component that gave one."""
     own = f"{name}: "
     inner = [m for m in errors if not m.startswith(own)]
     told = [*inner, *errors, f"{own}{call} failed without a message"]

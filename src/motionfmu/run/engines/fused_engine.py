@@ -1,6 +1,7 @@
 """The fused engine: a system is one compiled program with a recorder, loaded once.
 
-A run is an instance of it: values in a call for each type, few long steps, drives between them.
+A run is an instance of the program: its values are set by one call for each type, then it makes few
+long steps, and driven inputs are set between them.
 """
 
 import json
@@ -18,7 +19,7 @@ from motionfmu.run.engines.fmu_library import FmuRefusal, Library, ValuePlace
 from motionfmu.scenarios.system import System
 
 NAME = "system"
-# So many steps are made at most between two looks at an interrupt from the keyboard.
+# A call makes so many steps at most; Ctrl-C ends the run between two calls.
 STEPS_MAX = 20_000
 STEP, FOLDER, EVERY = "system.step", "recorder.folder", "recorder.every"
 SETTLE, SIGNAL = "until.settle", "until.step"
@@ -75,7 +76,7 @@ class Fused:
         self._library.set((self._variables[name], values) for name, values in given.items())
 
     def _advance(self, system: System, progress: Progress) -> tuple[int, int | None]:
-        """Steps that were done, and the communication point at which the signal came."""
+        """Number of steps made, and the communication point at which the signal came."""
         due, step, steps = system.due(), system.step_ns * 1e-9, system.steps
         signal = None
         for k, following in shares(system, due, STEPS_MAX):
@@ -98,7 +99,7 @@ class Fused:
         fmu_messages.keep(status, told, self._errors, self._warnings)
 
     def close(self) -> None:
-        """Free the program; it is kept on the disk."""
+        """Free the program; its files stay on the disk."""
         self._library.close()
 
 

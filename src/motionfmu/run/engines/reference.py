@@ -72,7 +72,7 @@ class Master:
             for slave in slaves.values():
                 slave.initialize()
             wires = [_wire(slaves, w) for w in system.wires]
-            _exchange(wires)  # a foreign FMU may show at once what it is given
+            _exchange(wires)  # an output of a foreign FMU may follow its inputs at once
             for slave in slaves.values():
                 slave.start()
             due = system.due()
@@ -91,7 +91,7 @@ class Master:
             return ending.ran(self._engine, self._scopes, told)
 
     def close(self) -> None:
-        """Nothing is held between runs."""
+        """Do nothing: no instance lives between two runs."""
 
 
 def opened(job: EngineJob) -> Master:

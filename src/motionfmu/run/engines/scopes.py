@@ -1,4 +1,4 @@
-"""Scopes that record what runs in an engine without a recorder of its own."""
+"""Scope FMUs that record the signals of a run in an engine without a recorder of its own."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from motionfmu.scenarios.system import System
 
 
 class ScopeSystem:
-    """A job's system with scopes."""
+    """A job's system with scopes added to it."""
 
     def __init__(self, job: EngineJob) -> None:
         self.system, self._traces = recording.plan(job.system, job.recorded, job.folder)
@@ -19,7 +19,7 @@ class ScopeSystem:
         self._own = self.system.settings[len(job.system.settings) :]
 
     def of(self, system: System) -> System:
-        """The same with the values of another system."""
+        """The system with scopes and with the values of another system."""
         return replace(
             system,
             components=self.system.components,
@@ -28,5 +28,5 @@ class ScopeSystem:
         )
 
     def signals(self) -> Columns:
-        """What they have recorded, by name; their files are moved away."""
+        """The recorded signals by name; the scopes' files are moved away."""
         return self._traces.load()

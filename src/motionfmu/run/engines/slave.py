@@ -35,9 +35,9 @@ def exposed(end: End, fmi: int) -> list[str]:
 class Slave:
     """A co-simulation FMU of either version, from an .fmu or a folder that holds an unpacked one.
 
-    `errors` receives what the FMU logs with a status of Error or worse; `warnings` holds what it
-    or the FMUs inside warned of, each once, as ``component: what``; without `logging`
-    there are errors only.
+    `errors` receives messages of the FMU with status Error or worse. `warnings` holds its warnings,
+    and those of FMUs inside it, each once, as ``component: what``. Without `logging` there are
+    errors only.
     """
 
     loads = Library
@@ -75,25 +75,25 @@ class Slave:
         self._keep(status, told)
 
     def _keep(self, status: int, message: str) -> None:
-        """Keep an error or a warning; one from inside a container gets its component's name."""
+        """Keep an error or a warning; one from inside a container is named by its component."""
         if status >= fmu_messages.WARNING:
             text = _INNER.sub(r"\1: ", message.strip())
             fmu_messages.keep(status, text, self.errors, self.warnings)
 
     @contextlib.contextmanager
     def _told(self) -> Iterator[None]:
-        """What the library refuses becomes the FMU's own message."""
+        """Raise the FMU's own message in place of the library's refusal."""
         try:
             yield
         except FmuRefusal as refused:
             raise self._failure(str(refused)) from None
 
     def _failure(self, call: str) -> InputError:
-        """The error for a call that failed: what the first component to tell one says."""
+        """The error for a call that failed: the message of the first component that gave one."""
         return fmu_messages.failure(self.name, call, self.errors)
 
     def _telling(self, call: Callable[..., None]) -> Callable[..., None]:
-        """The same function, with `_told`; a context would take longer than the call."""
+        """The function with the effect of `_told`, whose context takes longer than the call."""
 
         def run(*arguments: Any) -> None:
             try:
@@ -104,7 +104,7 @@ class Slave:
         return run
 
     def buffer(self, kind: str, count: int) -> Any:
-        """Memory for values of a number, as the FMU has them."""
+        """Memory for values of a numeric type, laid out as the FMU has them."""
         return self._library.buffer(kind, count)
 
     def access(self, verb: str, kind: str, reference: int, buffer: Any, *further: int) -> Any:
@@ -163,7 +163,7 @@ class Slave:
 
 
 def ending_of(container: Slave, system: System, fmi: int) -> Ending:
-    """Where a container's run ends; the signal is one of its outputs. `fmi` is that of our FMUs."""
+    """The `Ending` of a container's run: the signal is an output of it. Our FMUs have `fmi`."""
     if system.until is None:
         return Ending(system)
     end = system.until.end
