@@ -1,4 +1,4 @@
-"""What the C stations have in common for Python: their library, structs, a run on the clock."""
+"""The C library for Python: its structs, and stations that run on the clock of a card."""
 
 import ctypes
 import functools
@@ -12,10 +12,10 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.platforms import here
 
 PACKAGE = Path(__file__).resolve().parents[1]
-# Clocks of the cards in a second.
+# Clocks of the cards in a second [Hz].
 CLOCK_HZ = 40_000_000
 _SECOND_MAX = 2**62 // CLOCK_HZ
-# Clocks that a setting in seconds may make.
+# Most clocks that a setting in seconds may come to.
 _CLOCKS_MAX = 2.0**62
 _MILLISECOND = CLOCK_HZ // 1000
 
@@ -36,7 +36,7 @@ class _FieldRow(ctypes.Structure):
 
 
 def library_path() -> Path:
-    """Where the shared library is: in the installed package, or the source tree's ``build/lib``."""
+    """Path of the shared library: in the installed package, or the source tree's ``build/lib``."""
     name = "motionfmu_stations.so"
     own = PACKAGE / "lib"
     for folder in (own / here().name, own, PACKAGE.parent.parent / "build/lib"):
@@ -111,7 +111,7 @@ class Struct:
 
     @property
     def pointer(self) -> ctypes.c_void_p:
-        """Its address, to hand to the library."""
+        """Address of the struct, for calls of the library."""
         return ctypes.c_void_p(ctypes.addressof(self._memory))
 
     @property
@@ -129,7 +129,7 @@ class Struct:
         return np.ndarray((f.count,), kind, memory, f.offset, (f.stride,))
 
     def _given(self, name: str) -> np.ndarray:
-        """A member in the units in which it is given."""
+        """A member in the units in which a user gives it."""
         view, f = self._view(name), self._fields[name]
         if f.times == f.over:
             return view
@@ -178,7 +178,7 @@ class Struct:
 
 
 def whole(value: float) -> int:
-    """Take a whole number of 32 bits; InputError if it is none."""
+    """Convert a value to a whole number of 32 bits; an InputError if it is none."""
     if isinstance(value, int | float | np.number) and -(2**31) <= value < 2**31:
         if value == int(value):
             return int(value)
@@ -186,21 +186,21 @@ def whole(value: float) -> int:
 
 
 def real(value: float) -> float:
-    """Take a number; InputError if it is none."""
+    """Convert a value to a float; an InputError if it is no number."""
     if isinstance(value, int | float | np.number) and not isinstance(value, bool):
         return float(value)
     raise InputError(f"{value!r}: a number wanted")
 
 
 def text(value: str) -> bytes:
-    """Take a text; InputError if it is none."""
+    """Convert a text to bytes for C; an InputError if it is no text."""
     if isinstance(value, str):
         return value.encode()
     raise InputError(f"{value!r:.80}: a text wanted")
 
 
 class Reading:
-    """What there is to see at one clock, by attributes; `time` is the clock in seconds."""
+    """The state of a station at one clock, as attributes; `time` is the clock in seconds."""
 
     def __init__(self, values: dict[str, Any]) -> None:
         self.__dict__.update(values, time=values["clock"] / CLOCK_HZ)
@@ -213,7 +213,7 @@ class Reading:
 
 
 def unread(name: str, known: Collection[str]) -> str:
-    """What a misspelt reading is told."""
+    """The message about a reading that does not exist."""
     return f"no reading {name!r}" + (suggestion(name, known) or _there_are(known))
 
 
@@ -230,7 +230,7 @@ class Station(Generic[R]):
     What `motionfmu.virtual.mcc.VirtualCard` and `motionfmu.virtual.robot.VirtualRobot` share.
     """
 
-    # Reading that says that nothing is left to do.
+    # Name of the reading that is true when nothing is left to do.
     _at_rest: str
 
     def _advance(self, until: ctypes.c_int64) -> None:

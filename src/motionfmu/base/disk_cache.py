@@ -1,4 +1,4 @@
-"""What takes long to make and depends on nothing but its key is made once and kept on the disk."""
+"""A cache on the disk, for what takes long to make and depends on nothing but its key."""
 
 import hashlib
 import os
@@ -7,21 +7,21 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-# [bytes] what is kept of one kind; the longest unused goes first.
+# [bytes] that are kept of one kind; what was not used for the longest time goes first.
 ROOM = 500_000_000
-# Things that are kept of one kind.
+# Number of entries that are kept of one kind.
 MOST = 1000
 
 
 def folder() -> Path:
-    """``$MOTIONFMU_CACHE``, else the user's folder for such things (XDG)."""
+    """The cache's folder: ``$MOTIONFMU_CACHE``, else that of the user (XDG)."""
     if named := os.environ.get("MOTIONFMU_CACHE"):
         return Path(named)
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "motionfmu"
 
 
 def key(*parts: str | bytes) -> str:
-    """A name for what these parts make; every part counts, and where each ends."""
+    """A hash of parts, in which every part counts and where one ends and the next begins."""
     digest = hashlib.sha256()
     for part in parts:
         raw = part.encode() if isinstance(part, str) else part
@@ -30,10 +30,11 @@ def key(*parts: str | bytes) -> str:
 
 
 def kept(kind: str, name: str, make: Callable[[Path], None]) -> Path:
-    """Folder ``kind/name`` as `make` filled it, now or before.
+    """The folder ``kind/name`` of the cache, which `make` fills if it is not there.
 
-    `make` gets an empty folder. What it raises goes on, and nothing is kept; two processes may make
-    the same at once, one is kept. A place that cannot be written to serves this process only.
+    `make` gets an empty folder; if it raises an error, nothing is kept. Two processes may fill one
+    folder at once, and one of them is kept. Where the cache cannot be written to, the folder lives
+    as long as the process.
     """
     place = folder() / kind / name
     if place.is_dir():
@@ -48,7 +49,7 @@ def kept(kind: str, name: str, make: Callable[[Path], None]) -> Path:
         make(made)
         made.rename(place)
     except OSError:
-        if not place.is_dir():  # else somebody else was quicker
+        if not place.is_dir():  # else another process was quicker
             raise
     finally:
         shutil.rmtree(made, ignore_errors=True)
@@ -60,7 +61,7 @@ _held: dict[tuple[str, str], "tempfile.TemporaryDirectory[str]"] = {}
 
 
 def _for_now(kind: str, name: str, make: Callable[[Path], None]) -> Path:
-    """The same in a folder that goes with the process."""
+    """A folder filled by `make` that is deleted with the process."""
     if (kind, name) not in _held:
         held = tempfile.TemporaryDirectory(prefix="motionfmu-")
         try:
@@ -75,12 +76,12 @@ def _for_now(kind: str, name: str, make: Callable[[Path], None]) -> Path:
 def _used(place: Path) -> None:
     try:
         os.utime(place)
-    except OSError:  # somebody else's, or just pruned
+    except OSError:  # another user's, or just removed by another process
         return
 
 
 def _prune(newest: Path) -> None:
-    """Remove the longest unused of a kind until the rest has room."""
+    """Remove entries of a kind, those unused for the longest time first, until the rest has room."""
     found = []
     for place in newest.parent.iterdir():
         try:

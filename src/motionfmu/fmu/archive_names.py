@@ -1,16 +1,16 @@
-"""Names of what an FMU's archive holds beside what the standard asks for."""
+"""Names of files and folders that an FMU's archive holds beside those of the standard."""
 
 from motionfmu.fmu.describe import DOMAIN
 
-# What the linear models are made of goes into the FMU beside what the standard asks for.
+# Folder of the files of which linear models are made.
 EXTRA = f"extra/{DOMAIN}"
-# Files that travel with an FMU, resource:NAME in a parameter.
+# Folder of files that travel with an FMU; a parameter names one as resource:NAME.
 RESOURCES = "resources"
-# Which parameter is the FMU's grid; carried in EXTRA.
+# File in EXTRA that names the parameter that is the FMU's grid.
 GRID = "grid.json"
-# Parameters and outputs that agree with those of other FMUs; carried in EXTRA.
+# File in EXTRA with the quantities that parameters and outputs share with those of other FMUs.
 AGREE = "agree.json"
-# The model without FMI: its C text, and where an FMU carries its object, by the machine.
+# The model without FMI: its C text, and the path of its object for each machine.
 PART_UNIT = "fmu_part.c"
 MAIN_UNIT = "fmu_main.c"
 PARTS = f"{EXTRA}/part"

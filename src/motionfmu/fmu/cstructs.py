@@ -1,4 +1,4 @@
-"""C text that looks at the Booleans and enumerations of a model's state, made from its structs."""
+"""C text that checks Booleans and enumerations of a model's state, generated from its structs."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -13,7 +13,7 @@ _TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|\w+|[^\w\s]")
 
 @dataclass
 class _Member:
-    """One member; `kind` is bool, enum, struct or other, `of` the name of its enum or struct."""
+    """A member of a struct; `kind` is bool, enum, struct or other, `of` its enum or struct."""
 
     name: str
     kind: str
@@ -28,7 +28,7 @@ class _Definitions:
 
 
 class _StructReader:
-    """Reads the definitions of one file; what is not one is passed over."""
+    """Reads the definitions in one C file and skips all other text."""
 
     def __init__(self, text: str, found: _Definitions) -> None:
         self.tokens = [*_TOKEN.findall(_COMMENT.sub(" ", text)), "", "", ""]
@@ -70,7 +70,7 @@ class _StructReader:
         self.found.enums[name] = [n for n in names if n != "}"]
 
     def members(self, owner: str) -> Iterator[_Member]:
-        """The members up to the closing brace, which is taken."""
+        """The members up to the closing brace, which is read as well."""
         while not self.next_is("}"):
             yield from self.member(owner)
         self.at += 1
@@ -129,7 +129,7 @@ class _StructReader:
 
 
 def _looks(found: _Definitions, name: str, done: dict[str, str]) -> bool:
-    """Fill in the looks at a struct and at those in it; whether there is anything to look at."""
+    """Add the checks of a struct, and of structs in it, to `done`; returns whether it has any."""
     if name in done:
         return bool(done[name])
     lines = []

@@ -1,4 +1,4 @@
-"""What tools show of an FMU: a page made from its README and its variables, an icon, a licence."""
+"""Documentation in an FMU: a page made from its README and variables, an icon, a licence."""
 
 import html
 import re
@@ -10,7 +10,7 @@ from motionfmu.base import units
 from motionfmu.fmu import licence, terminals
 from motionfmu.fmu.describe import Description, Variable
 
-VARIABLES = "variables.html"  # the page's part that is made from a description
+VARIABLES = "variables.html"  # the part of the page that is generated from a description
 TERMINALS = "terminals.xml"
 PNG_SIZE = 400  # [pixel]
 _ICON = Path(__file__).with_name("icon.svg")  # of an FMU that has none
@@ -46,7 +46,7 @@ def _number(value: object) -> str:
 
 
 def _start(v: Variable) -> str:
-    """Start values; equal ones, and the last of many, once."""
+    """Text of start values: a single one if all are equal, else the first nine at most."""
     texts = [_number(x) if x != "" else '""' for x in v.start or []]
     if len(set(texts)) <= 1:
         return "".join(texts[:1])
@@ -110,12 +110,12 @@ def _sections(d: Description) -> Iterator[str]:
 
 
 def variables(d: Description) -> str:
-    """The part of the page that tells steps, terminals and variables."""
+    """The part of the page with steps, terminals and variables."""
     return "".join(_sections(d))
 
 
 def _readme(text: str) -> str:
-    """Markdown as HTML; links to what is not in the archive, and pictures, are words only."""
+    """Markdown as HTML; of pictures, and of links to files outside the archive, the words stay."""
     from markdown_it import MarkdownIt
 
     markdown = MarkdownIt("commonmark", {"html": False}).enable("table")
@@ -139,7 +139,7 @@ def _readme(text: str) -> str:
 
 
 def page(title: str, about: str, readme: str, fragment: str, icon: str) -> str:
-    """documentation/index.html, which needs nothing beside it."""
+    """Text of documentation/index.html, which needs no other file."""
     readme = re.sub(r"\A# .*\n", "", readme)
     found = re.findall(r'<h2 id="(\w+)">(.*?)</h2>', fragment)
     ways = "".join(f'<a href="#{place}">{html.escape(text)}</a> ' for place, text in found)
@@ -157,13 +157,13 @@ def page(title: str, about: str, readme: str, fragment: str, icon: str) -> str:
 
 
 def icon_of(folder: Path) -> str:
-    """The drawing in an FMU's folder; one that all others share if there is none."""
+    """The icon in an FMU's folder; the common icon if it has none."""
     own = folder / "icon.svg"
     return (own if own.is_file() else _ICON).read_text()
 
 
 def joined(icons: Sequence[str]) -> str:
-    """Up to four drawings in one."""
+    """One icon that shows up to four others."""
     ET.register_namespace("", _SVG)
     kept = list(dict.fromkeys(icons))[:4]
     if len(kept) == 1:
@@ -178,7 +178,7 @@ def joined(icons: Sequence[str]) -> str:
 
 
 def png(icon: str) -> bytes:
-    """A drawing as a picture."""
+    """An icon as a PNG picture."""
     import resvg_py
 
     return bytes(resvg_py.svg_to_bytes(svg_string=icon, width=PNG_SIZE, skip_system_fonts=True))
@@ -187,7 +187,7 @@ def png(icon: str) -> bytes:
 def files(
     fmi: int, generated: Path, about: tuple[str, str], readme: str, icon: str
 ) -> dict[str, bytes]:
-    """What is packed, by names in the archive; `about`: title and a line of words.
+    """The files of the documentation by their names in the archive; `about` is title and subtitle.
 
     The folder `generated` has `VARIABLES` and `TERMINALS`.
     """

@@ -37,12 +37,12 @@ from motionfmu.fmu.archive_names import AGREE, EXTRA, GRID, MAIN_UNIT, PART_UNIT
 from motionfmu.fmu.modeldescription import model_description
 
 SOURCE = Path(__file__).resolve().parents[2]
-# Zip cannot date earlier; a fixed date makes equal FMUs equal files.
+# The earliest date that an archive can have: with a fixed date equal FMUs are equal files.
 _DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def _write(path: Path, data: str | bytes) -> None:
-    """Write only what differs, so that nothing is compiled for nothing."""
+    """Write a file only if its content changes, so that nothing is compiled needlessly."""
     raw = data.encode() if isinstance(data, str) else data
     if not path.exists() or path.read_bytes() != raw:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -126,7 +126,7 @@ def _packed_sources(fmu: Path, out: Path, fmi: int, identifier: str) -> dict[str
 
 @dataclass(frozen=True)
 class CompilerOutput:
-    """What compilers made of an FMU."""
+    """Files that compilers made of an FMU."""
 
     libraries: Mapping[Platform, Path]
     part: Path  # fmu_part.h, for this machine
@@ -176,7 +176,7 @@ def write_archive(target: Path, files: Mapping[str, bytes]) -> None:
 
 
 def write_whole(target: Path, files: Mapping[str, bytes]) -> None:
-    """Write an archive as a file of the user's: whole, or not at all and an InputError."""
+    """Write an archive for the user, whole or not at all; an InputError if it cannot be written."""
     part = target.with_name(f".{target.name}.part{os.getpid()}")
     try:
         write_archive(part, files)
@@ -192,7 +192,7 @@ def repacked(
 ) -> None:
     """Copy an FMU with files added to its resources, by name, and with other start values.
 
-    What instances begin with changes, not only the description, so it must be an FMU made here:
+    Instances begin with the new values, too, which only FMUs of this package support:
     ``{"program": "resource:part.ngc", "p_gain": "200 198 0 0 0 0"}``, one value or one for each
     element. Equal input gives equal bytes; `target` may be `source`.
     """

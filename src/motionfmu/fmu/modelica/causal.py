@@ -86,7 +86,7 @@ class _FlatNames:
         self._known = {d.name: ca.SX.sym(d.name) for d in own}
 
     def refuse(self, what: str) -> Unsupported:
-        """The error to raise."""
+        """Make the error for a construct that is not handled."""
         return Unsupported(f"{self.flat.name}: {what}")
 
     def column(self, names: Iterable[str]) -> ca.SX:
@@ -94,13 +94,13 @@ class _FlatNames:
         return ca.vertcat(ca.SX(0, 1), *(self._known[n] for n in names))
 
     def symbol(self, name: str) -> ca.SX:
-        """Symbol of a variable, value of a bound parameter."""
+        """Symbol of a variable, or the value of a bound parameter."""
         if name in self._known:
             return self._known[name]
         d = self.flat.declarations.get(name)
         if d is None:
             raise self.refuse(f"{name} is not supported here")
-        if d.binding is None:  # a start is no value: rumoca makes one up
+        if d.binding is None:  # its start is no value, for rumoca invents one
             raise self.refuse(f"parameter {name} has no value")
         if name in self._pending:
             raise self.refuse(f"parameter {name} depends on itself")
@@ -206,7 +206,7 @@ def _inputs(flat: Flat) -> list[str]:
 
 
 def _coupled(names: _FlatNames, a: ca.SX, b: ca.SX, labels: list[str]) -> ca.SX:
-    """Solve A x = b, the parameters near their values."""
+    """Solve A x = b for parameters near their values."""
     try:
         return elimination.solve(a, b, {d.name: names.default(d) for d in names.parameters}, labels)
     except elimination.NoPivot as error:

@@ -26,7 +26,7 @@ class Packing:
 
     name: str  # of the FMU
     description: str
-    tick_ns: int  # it steps by whole multiples of it [ns]
+    tick_ns: int  # its steps are whole multiples of this [ns]
     experiment: dict[str, float]  # default `stop` and `step` [s]
     modelica: str  # full class name
     instances: int  # copies of the class, one per axis; a single one has scalars instead of arrays
@@ -40,7 +40,7 @@ class Packing:
 
 
 def read(toml: Path) -> Packing:
-    """Read an fmu.toml with a key ``modelica``; what is wrong is ``file:line: what`` each."""
+    """Read an fmu.toml with a key ``modelica``; faults are lines ``file:line: what``."""
     text = text_of(toml)
     doc, faults = tables_of(text, toml), Faults()
     faults.lines += wrong_keys(doc, (_KEYS, _OPTIONAL), text, str(toml))
@@ -123,7 +123,7 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
 
 
 def _dims(instances: int) -> list[int]:
-    """One copy of a class has scalars."""
+    """Array dimensions of a variable; empty for a single copy of the class."""
     return [instances] if instances > 1 else []
 
 
@@ -145,7 +145,7 @@ def _micro_step(packing: Packing) -> dict[str, Any]:
 def _row(
     ode: Ode, elements: list[tuple[Declaration, float | None]], instances: int
 ) -> dict[str, Any]:
-    """One variable, of its elements and their start values, as a row of fmu.toml would say it."""
+    """A variable, from its elements and their start values, as a row of fmu.toml."""
     d = elements[0][0]
     dims = [*_dims(instances), *d.dims]
     row: dict[str, Any] = {"type": _TYPES[d.type], "dims": dims, "doc": d.description}

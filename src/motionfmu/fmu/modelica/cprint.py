@@ -17,7 +17,7 @@ _TEMPLATES = {
     ca.OP_INV: "1.0 / {0}",
     ca.OP_SQ: "{0} * {0}",
     ca.OP_TWICE: "{0} + {0}",
-    # Not fmin and fmax: a comparison is one instruction, also for several lanes at once.
+    # Comparisons take the place of fmin and fmax: one instruction each, for several lanes, too.
     ca.OP_FMIN: "{0} < {1} ? {0} : {1}",
     ca.OP_FMAX: "{0} > {1} ? {0} : {1}",
     ca.OP_LT: "{0} < {1} ? 1.0 : 0.0",
@@ -38,7 +38,7 @@ _EXACT = "sqrt floor ceil"
 _ELEMENTARY = "sin cos tan asin acos atan sinh cosh tanh exp log"
 _TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f + "({0})" for f in _EXACT.split()})
 _TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f"el_{f}({{0}})" for f in _ELEMENTARY.split()})
-# Of an angle, and what each is called in C.
+# Operations on an angle, and the name of each in C.
 TURNS = {ca.OP_SIN: "sine", ca.OP_COS: "cosine"}
 
 

@@ -8,14 +8,14 @@ import casadi as ca
 from motionfmu.fmu.modelica.flat import Declaration
 from motionfmu.fmu.modelica.ode import Ode
 
-# Where a plant's FMU has it; FMI gives extra/ to whoever needs it.
+# Its path in a plant's FMU; FMI leaves the folder extra/ to tools.
 FILE = "ode.json"
 _GROUPS = ("states", "inputs", "parameters", "outputs")
 _ABOUT = ("name", "type", "kind", "unit", "description")
 
 
 def to_json(ode: Ode) -> str:
-    """Write names, units and CasADi's own form of the functions; equal for equal equations."""
+    """JSON of names, units and CasADi's own form of the functions; equal for equal equations."""
     results = [ode.xdot, ode.y, ode.start]
     function = ca.Function("ode", [ode.x, ode.u, ode.p], results, {"allow_free": False})
     groups = {g: [[getattr(d, a) for a in _ABOUT] for d in getattr(ode, g)] for g in _GROUPS}
@@ -32,7 +32,7 @@ def to_json(ode: Ode) -> str:
 
 
 def from_json(text: str) -> Ode:
-    """Read what `to_json` wrote: no checks, no sizes, no expressions in its declarations."""
+    """Read what `to_json` wrote, which has no checks, sizes or expressions of declarations."""
     data: dict[str, Any] = json.loads(text)
     function = ca.Function.deserialize(data["function"])
     x, u, p = (ca.SX.sym(s, function.size1_in(k)) for k, s in enumerate("xup"))

@@ -1,4 +1,4 @@
-"""Take out of a program what stays constant during a run."""
+"""Separate the operations of a program whose results stay constant during a run."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ class Split:
     # nodes of `early`, and whether the inverse is meant: a division by a constant becomes a
     # multiplication
     constants: tuple[tuple[int, bool], ...]
-    late: Operations  # the rest; constant k is its input (group, k)
+    late: Operations  # all other operations; constant k is input (group, k) of them
     group: int  # argument position that stands for the constants in `late`
 
 
