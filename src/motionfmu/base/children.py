@@ -9,7 +9,7 @@ _PLACE = str(Path(__file__).resolve().parents[2])
 
 
 def child(program: str, **own: str) -> tuple[list[str], dict[str, Any]]:
-    """Command and options of a process that runs a Python program, with some environment of its own.
+    """Command and options of a process that runs a Python program; `own` adds to its environment.
 
     Ctrl-C reaches the parent process only.
     """

@@ -81,7 +81,7 @@ def _used(place: Path) -> None:
 
 
 def _prune(newest: Path) -> None:
-    """Remove entries of a kind, those unused for the longest time first, until the rest has room."""
+    """Remove entries of a kind until the rest has room; the longest unused goes first."""
     found = []
     for place in newest.parent.iterdir():
         try:

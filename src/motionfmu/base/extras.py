@@ -37,7 +37,7 @@ def missing(extra: str) -> list[str]:
 
 
 def needed(extra: str) -> None:
-    """Raise `Missing` with what needs the extra and the command that installs it, if it is missing."""
+    """Raise `Missing` if an extra is not installed: what needs it, how it is installed."""
     if names := ", ".join(missing(extra)):
         raise Missing(f"{EXTRAS[extra].use} needs {names}: {install(extra)}")
 

@@ -18,7 +18,7 @@ INTEGER_MAX = 2**63  # range that TOML asks of a reader
 SHOWN_MAX = 200  # characters of a value in a message
 _PLACE = re.compile(r"^(.+?):(\d+): ")  # file and line with which a message begins
 _UNQUOTED = str.maketrans("", "", "\"'")
-# Strings and comments as a whole, whether they end or not, then characters of brackets, keys, lines.
+# Whole strings and comments, even unfinished ones, then characters of brackets, keys and lines.
 _TOKEN = re.compile(
     r'"""(?:\\.|[^\\])*?(?:"""|\\?\Z)'
     r"|'''.*?(?:'''|\Z)"

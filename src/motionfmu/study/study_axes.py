@@ -1,4 +1,4 @@
-"""What a study varies, and the points it takes."""
+"""The axes of a study: the variables that it varies, and the points at which it runs."""
 
 import itertools
 import math
@@ -68,11 +68,11 @@ class Axis:
 
     @property
     def log(self) -> bool:
-        """Whether the logarithm is what is even."""
+        """Whether values are spread evenly by their logarithms."""
         return isinstance(self.source, Span) and self.source.log
 
     def place(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Where values lie between the axis' ends, 0 to 1."""
+        """Positions of values between the axis' ends, 0 to 1."""
         if isinstance(self.source, Span):
             low, high = self.source.low, self.source.high
         else:
@@ -85,7 +85,7 @@ class Axis:
 
     def check(self, sampling: str) -> None:
         """Refuse values that this variable or this sampling, if one is given, cannot take."""
-        # Values outside the range that the variable declares are no mistake of the study.
+        # Values outside the range that the variable declares are allowed; their runs are errors.
         source, kind = self.source, self.end.port.type
         if isinstance(source, ListedValues):
             fits: dict[str, Any] = {"Float64": (int, float), "Int32": int, "Boolean": bool}
@@ -117,7 +117,7 @@ class Axis:
                 raise ValueError(f"{shown}: fewer whole numbers than n = {source.n}")
 
     def _even(self, source: Span) -> list[float]:
-        """Values of a grid; the two ends where points are drawn."""
+        """Values of a grid or, if points are drawn at random, the two ends of the range."""
         steps = (source.n or 2) - 1
         if source.log:
             ratio = source.high / source.low
@@ -142,7 +142,7 @@ class Axis:
         if isinstance(source, Normal):
             return [self._typed(source.mean + source.deviation * z) for z in _normal(shares)]
         low, high = source.low, source.high
-        if whole:  # every whole number has a stretch of its own
+        if whole:  # every whole number has an interval of the shares of its own
             low, high = low - (0.0 if source.log else 0.5), high + (0.0 if source.log else 0.5)
         if source.log:
             return [self._typed(low * (high / low) ** u) for u in shares]
@@ -161,7 +161,7 @@ def _normal(shares: NDArray[np.float64]) -> list[float]:
 
 
 def option(text: str) -> tuple[str, Any]:
-    """Name of an axis of the command line, and what a file would say.
+    """Name of an axis from the command line, and its value as a file would have it.
 
     ``comp.var=lo:hi:n``, ``lo:hi``, either with ``:log`` after it, or ``a,b,c``.
     """
@@ -208,7 +208,7 @@ def points(axes: Sequence[Axis], sampling: str, runs: int, seed: int) -> list[Po
         return list(itertools.product(*(a.grid() for a in axes)))
     random = np.random.default_rng(seed)
     if sampling == "latin":
-        from scipy.stats import qmc  # half a second, which no worker needs
+        from scipy.stats import qmc  # takes half a second to import, and no worker needs it
 
         shares = qmc.LatinHypercube(len(axes), rng=random).random(runs)
     else:

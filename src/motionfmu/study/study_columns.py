@@ -1,4 +1,4 @@
-"""What of a run becomes a column: figures of analyses and statistics of signals."""
+"""Columns of a study's table: figures of analyses and statistics of signals, for each run."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -22,7 +22,7 @@ from motionfmu.scenarios.system import End
 
 Array = NDArray[Any]
 
-# Over all samples and all elements.
+# Each is taken over all samples and all elements.
 STATISTICS: dict[str, Callable[[Array], float]] = {
     "final": lambda x: float(x[-1]),
     "min": lambda x: float(x.min()),
@@ -36,7 +36,7 @@ STATISTICS: dict[str, Callable[[Array], float]] = {
 
 @dataclass(frozen=True)
 class Column:
-    """A number of a run."""
+    """A number of each run, in a column of the table."""
 
     # ``contour.<figure>``, ``iso9283.<figure>``, or a signal and a name of STATISTICS:
     # ``card.stock.min``, ``card.err_count[1].final``.
@@ -52,8 +52,8 @@ class Column:
         return units_of(figure.rpartition(".")[2]) if kind == "iso9283" else unit_of(figure)
 
     def of(self, result: Result) -> float:
-        """The number, in the signal's unit or as the analysis has it."""
-        # `NoNumber` if the run has none, or it is not finite.
+        """The number of a run, in the signal's unit or that of the analysis."""
+        # Raises `NoNumber` if the run has no such number, or it is not finite.
         if self.end is None:
             value = result.figure(self.name)
         else:
@@ -65,7 +65,7 @@ class Column:
 
 
 def column(scenario: Scenario, name: str) -> Column:
-    """The column of a name; an InputError or ValueError if it is none."""
+    """The column with a name; an InputError or ValueError if there can be none."""
     if is_figure(name):
         if told := wrong_figure(name, scenario.document.body):
             raise ValueError(told)
@@ -89,7 +89,7 @@ def column(scenario: Scenario, name: str) -> Column:
 
 
 def usual(scenario: Scenario) -> list[Column]:
-    """The columns of a study that names none: what is checked."""
+    """The columns of a study that names none: the numbers that the scenario checks."""
     found: dict[str, Column] = {}
     for name, checks in scenario.document.body.check.items():
         for check in checks:
@@ -114,7 +114,7 @@ def _checked(scenario: Scenario, name: str, check: Bounds) -> Iterable[str]:
 
 
 def signals(scenario: Scenario, columns: Iterable[Column]) -> list[End]:
-    """What a run records, once: for columns, checks and contour."""
+    """The outputs that a run records, each once: for columns, checks and contour."""
     checked = [n for n in scenario.document.body.check if not is_figure(n)]
     analysed = [*of_contour(scenario.resolver), *of_iso9283(scenario.resolver)]
     names = [*analysed, *(scenario.resolver.split(n)[0] for n in checked)]

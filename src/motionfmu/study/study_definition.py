@@ -1,4 +1,4 @@
-"""A study: which scenario, what is varied, what becomes a column."""
+"""A study: its scenario, the axes that are varied, the columns of its table."""
 
 import hashlib
 import json
@@ -18,16 +18,16 @@ from motionfmu.study.study_resolver import StudyResolver
 
 @dataclass(frozen=True)
 class WorkerJob:
-    """All a worker needs to know, without the points."""
+    """All that a worker needs to know of a study, except its points."""
 
     scenario: str  # path of the scenario.toml
-    digest: str  # of its files and FMUs; a worker with others refuses
+    digest: str  # hash of its files and FMUs; a worker whose files differ refuses the study
     named: tuple[str, ...]  # texts among the study's values, which may name files
     axes: tuple[str, ...]
     columns: tuple[str, ...]
     set: dict[str, Any]  # values for all runs
-    stop: float | None  # instead of the scenario's [s]
-    step: float | None  # [s]
+    stop: float | None  # end of a run instead of the scenario's [s]
+    step: float | None  # communication step instead of the scenario's [s]
 
 
 @dataclass(frozen=True, repr=False)
@@ -69,12 +69,12 @@ class Study:
 
     @property
     def shown(self) -> str:
-        """The column that is drawn: the cost, without one the first."""
+        """The column that is drawn: the cost, or the first column if there is no cost."""
         return self.cost or self.columns[0].name
 
     @property
     def digest(self) -> str:
-        """What must be the same for rows to belong together."""
+        """Hash of all that must be equal for rows to belong to one study."""
         text = json.dumps([self.job.__dict__, self.points], default=str, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
 

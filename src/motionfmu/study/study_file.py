@@ -1,4 +1,4 @@
-"""The keys of a study: from its file and from the command line."""
+"""The keys of a study, read from its file and from the command line."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ FILE = "sweep.toml"
 ABOUT = "the first line is a comment that says what the study shows"
 VALUE = "a number, a text, true or false, or a list of one of these wanted"
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-# A path is part of messages.
+# Longest path, for messages have it in them.
 Place = Annotated[str, Field(max_length=1000)]
 
 
@@ -40,7 +40,7 @@ class StudyBody(BaseModel):
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a study is written, for messages."""
+    """Where a study's keys are written, for messages."""
 
     file: Path | None  # None if it comes from the command line alone
     lines: Lines  # line numbers of its keys
@@ -53,7 +53,7 @@ class Origin:
         return InputError(f"{self.file}:{self.lines.of(table, key)}: {text}")
 
     def refuse(self, faults: Faults) -> None:
-        """Tell all that is wrong, in the order of the lines; nothing if that is nothing."""
+        """Raise an InputError with all faults in the order of their lines, if there are any."""
         Faults(ordered(faults.lines, [str(self.file)])).tell()
 
 
@@ -65,7 +65,7 @@ class StudyFile:
     body: StudyBody
     about: str  # what the first line says; empty from the command line
     folder: Path  # what it names lies here
-    damaged: frozenset[str]  # keys at which something is wrong, which body does not have
+    damaged: frozenset[str]  # keys with faults, which the body does not have
 
 
 def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
@@ -95,7 +95,7 @@ def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
 
 
 def _body(origin: Origin, keys: dict[str, Any], faults: Faults) -> tuple[StudyBody, frozenset[str]]:
-    """The body without what is wrong, and the keys at which something is."""
+    """The body without the keys that have faults, and those keys."""
     try:
         return StudyBody.model_validate(keys), frozenset()
     except ValidationError as error:
@@ -105,14 +105,14 @@ def _body(origin: Origin, keys: dict[str, Any], faults: Faults) -> tuple[StudyBo
     for one in found:
         text, *place = _told(one)
         faults.lines += origin.error(text, *place).args
-        if one["type"] == "extra_forbidden":  # what it is meant for is not missing
+        if one["type"] == "extra_forbidden":  # a key that is meant by another is not missing
             damaged |= {name for name in StudyBody.model_fields if text.endswith(f"mean {name!r}?")}
             damaged |= {"axis"} if isinstance(one["input"], dict) else set()
     return StudyBody.model_validate(rest), frozenset(damaged)
 
 
 def _told(found: Any) -> tuple[str, str, str]:
-    """What is wrong in words, table and key."""
+    """Words, table and key of a fault."""
     key, value = str(found["loc"][0]), found["input"]
     if found["type"] == "extra_forbidden":
         what = f"table [{key}]" if isinstance(value, dict) else f"key {key!r}"

@@ -1,4 +1,4 @@
-"""How a study is run, and what it gave."""
+"""The outcome of a study: its rows, and the ways in which it can be run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
@@ -39,7 +39,7 @@ class Ways:
     progress: Callable[[int, int], None] = lambda done, errors: None
 
     def __new__(cls, *_: Any, **given: Any) -> Self:
-        """Refuse what is no way; the suggestion is one of these."""
+        """Refuse an option that does not exist, and suggest one that does."""
         known = [f.name for f in fields(cls)]
         for name in given:
             if name not in known:
@@ -106,7 +106,7 @@ class Outcome:
     @property
     def best(self) -> int | None:
         """Run of the smallest cost without an error, or None."""
-        # None, too, if the study has no cost.
+        # It is None as well if the study has no cost.
         if not self.study.cost:
             return None
         good = np.array([row.status == OK for row in self.rows], dtype=bool)
@@ -115,8 +115,8 @@ class Outcome:
 
     @property
     def at_the_edge(self) -> list[str]:
-        """Axes at an end of which the best run lies, in words."""
-        # A smaller cost may lie beyond.
+        """In words, the axes at one of whose ends the best run lies."""
+        # Beyond such an end the cost may be smaller.
         if (best := self.best) is None:
             return []
         ties = np.flatnonzero(self.cost == self.cost[best])

@@ -1,4 +1,4 @@
-"""What a study asks of its scenario: every name looked up, every value checked."""
+"""Looks up every name of a study in its scenario and checks every value."""
 
 from pathlib import Path
 from typing import Any
@@ -14,12 +14,12 @@ from motionfmu.study import study_axes as ax
 from motionfmu.study.study_columns import Column, column, usual
 from motionfmu.study.study_file import StudyFile
 
-USUAL_COST = "contour.error.max"  # where none is named
+USUAL_COST = "contour.error.max"  # the cost of a study that names none
 _KINDS: dict[str, Any] = {"String": str, "Boolean": bool}
 
 
 class StudyResolver:
-    """A study's file beside its scenario; what is wrong goes to the faults."""
+    """Resolves a study's file against its scenario; errors are added to the faults."""
 
     def __init__(self, file: StudyFile, scenario: Scenario, faults: Faults) -> None:
         self.file, self.scenario, self.faults = file, scenario, faults
@@ -27,11 +27,11 @@ class StudyResolver:
         self._wired = {w.target.name for w in scenario.resolved(Options()).wires}
 
     def _sound(self, *keys: str) -> bool:
-        """Whether nothing was told of these keys."""
+        """Whether these keys have no fault yet."""
         return not self.file.damaged & set(keys)
 
     def axes(self) -> tuple[ax.Axis, ...]:
-        """What is varied; without an axis of which something is wrong."""
+        """The axes of the study; one with a fault is left out."""
         if not self.body.axis and self._sound("axis"):
             with self.faults.each():
                 text = "nothing is varied: [axis] or --vary wanted"
@@ -66,7 +66,7 @@ class StudyResolver:
         return end
 
     def columns(self) -> tuple[Column, ...]:
-        """The results; without a name that is none."""
+        """The columns of the study's results; a name with a fault is left out."""
         if not self._sound("results"):
             return ()
         if not self.body.results:
@@ -90,7 +90,7 @@ class StudyResolver:
         return tuple(found)
 
     def options(self) -> None:
-        """Look at the values for all runs, and at the times."""
+        """Check the values for all runs, and the times."""
         resolver, document = self.scenario.resolver, self.scenario.document
         for name, value in self.body.set.items():
             with self.faults.each():
@@ -108,7 +108,7 @@ class StudyResolver:
                 self.faults.lines += self.origin.error(text, "", key).args
 
     def runs(self, chosen: tuple[ax.Axis, ...]) -> int:
-        """How many runs; 0 where something is wrong."""
+        """Number of runs that are drawn; 0 if it has a fault."""
         body = self.body
         with self.faults.each():
             if not self._sound("sampling", "runs"):
@@ -139,7 +139,7 @@ class StudyResolver:
         if wanted is None:
             return USUAL_COST if USUAL_COST in names else ""
         with self.faults.each():
-            # Of a result that was told already the cost may be the right name.
+            # If a result has a fault already, the cost may name just that one.
             told = len(columns) < len(set(self.body.results)) or not self._sound("results")
             if wanted not in names and not told:
                 text = f"cost = {wanted!r} is none of the results ({', '.join(names)})"
@@ -147,7 +147,7 @@ class StudyResolver:
         return wanted
 
     def tuned(self, chosen: tuple[ax.Axis, ...]) -> dict[str, ax.Value]:
-        """Values of a gains file at the axes; an element takes that of its whole array."""
+        """Values of the axes in a gains file; an element takes the value of its whole array."""
         named, origin = self.body.tuned, self.origin
         if named is None:
             return {}
@@ -187,7 +187,7 @@ def _source(name: str, spec: Any) -> ax.Source:
 
 
 def _told(name: str, error: ValidationError) -> list[str]:
-    """What is wrong with an axis; a missing key is not told where another is meant for it."""
+    """The faults of an axis; a missing key is left out if an unknown one is meant for it."""
     found: dict[str, str] = {}
     known = [f.alias or key for key, f in _fields(error).items()]
     meant = ""
@@ -210,7 +210,7 @@ def _fields(error: ValidationError) -> dict[str, Any]:
 
 
 def _words(found: Any) -> str:
-    """What pydantic tells; of a list's items in words of its own."""
+    """Pydantic's message, with other words for items of a list."""
     if found["loc"][0] == "values":
         return "it is empty" if not found["input"] else "a number, a text, true or false wanted"
     return str(found["msg"]).lower()

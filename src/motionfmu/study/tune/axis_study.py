@@ -1,4 +1,4 @@
-"""One axis with one plant: its motion and its margins as functions of the gains."""
+"""One axis with one plant: motion and margins as functions of the gains."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,16 +19,18 @@ from motionfmu.base.memo import Memo
 from motionfmu.study.tune.curve import Loop
 from motionfmu.study.tune.steps import Array, ArrayWithSlopes, DifferenceEquations, lifted, system
 
-# Between two samples the friction turns within a small part of the way: points that show it.
+# Points between two samples at which a residual is evaluated, for friction changes its sign within
+# a small part of that interval.
 _FINE = 64
-# A residual that changes by this share of its size between two samples is looked at finely.
+# If a residual changes by this share of its size between two samples, it is evaluated at these
+# points.
 _TURNS = 0.02
-# What is kept of one point: its axes and plants ask one after the other.
+# Results that are kept of one point, because its axes and plants ask for them in turn.
 _KEPT = 12
 
 
 class _Matrices:
-    """A, B, C, D and their derivatives, from expressions of the gains."""
+    """Matrices A, B, C, D and their derivatives, from expressions of the gains."""
 
     def __init__(self, found: PeriodMap, gains: ca.SX) -> None:
         parts = [_matrix(m) for m in (found.a, found.b, found.c, found.d)]
@@ -59,25 +61,25 @@ def _matrix(m: Array) -> ca.SX:
 
 @dataclass(frozen=True)
 class Motion:
-    """What an axis does on the scenario's path."""
+    """The motion of an axis on the scenario's path."""
 
-    position: ArrayWithSlopes  # (count,) in the unit declared
-    peaks: list[ArrayWithSlopes]  # what is largest of each output with a limit
+    position: ArrayWithSlopes  # (count,) in the unit of the position output
+    peaks: list[ArrayWithSlopes]  # largest magnitudes of each output with a limit
 
 
 @dataclass(frozen=True)
 class Signals:
-    """Names of what a study looks at."""
+    """Names of the signals that a tuning evaluates."""
 
     command: str  # input of the model that takes the pulses
-    position: str  # output that is judged
+    position: str  # output of which the cost is computed
     peaks: tuple[str, ...]  # outputs with a limit
 
 
 class AxisStudy:
-    """One axis with one plant, its gains left open.
+    """One axis with one plant, whose gains are variables.
 
-    `bent`: its motion has what the plant's equation has beyond the linear part.
+    With `bent` its motion includes the nonlinear part of the plant's equation.
     """
 
     def __init__(
@@ -116,20 +118,20 @@ class AxisStudy:
 
     def lag(self, gains: Array) -> float:
         """Following error over speed in slow motion [s]."""
-        # 1/Kp, the delays, less what is fed forward.
+        # It is 1/Kp plus the delays, less the effect of feed-forward.
         a, b, c, d = (m.value for m in self._motion.at(gains))
         once = np.linalg.solve(np.eye(len(a)) - a, b[:, :1])
         twice = np.linalg.solve(np.eye(len(a)) - a, once)
         return self.period * float(((c[:1] @ twice) / (c[:1] @ once + d[:1, :1]))[0, 0])
 
     def end(self, gains: Array) -> float:
-        """Position, in its unit, for one of the command, at rest."""
+        """Position at rest, in its unit, per unit of the command."""
         a, b, c, d = (m.value for m in self._answer.at(gains))
         return float((c @ np.linalg.solve(np.eye(len(a)) - a, b) + d)[0, 0])
 
     def slowest(self, gains: Array) -> tuple[float, Array]:
         """Slowest time constant [s] of the closed loop, and its slopes."""
-        # Infinite or negative for an unstable loop.
+        # The time constant of an unstable loop is infinite or negative.
         return self._made(("slowest", gains.tobytes()), lambda: self._slowest(gains))
 
     def _slowest(self, gains: Array) -> tuple[float, Array]:
@@ -159,7 +161,7 @@ class AxisStudy:
         return ArrayWithSlopes(share, (y.slopes - share * most.slopes) / most.value)
 
     def motion(self, gains: Array, pulses: Array, periods: int, slopes: bool = True) -> Motion:
-        """Move along pulses put out so far, from 0, every so many periods."""
+        """The motion along a sequence of pulse counts from 0 on, one every so many periods."""
         key = "motion", gains.tobytes(), periods, slopes
         ahead, whole = self._made(key, lambda: self._systems(gains, periods, slopes))
         u, du = pulses[None], None
@@ -178,7 +180,7 @@ class AxisStudy:
     def _systems(
         self, gains: Array, periods: int, slopes: bool
     ) -> tuple[DifferenceEquations, DifferenceEquations]:
-        """From the pulses to the states of residuals, from both to what is shown."""
+        """Equations from pulses to the states of residuals, and from both to the outputs."""
         a, b, c, d = (m if slopes else m.alone for m in self._motion.at(gains))
         whole, begin, end = lifted(a, b, periods)
         first, rests = slice(1), slice(1, None)
@@ -194,7 +196,7 @@ class AxisStudy:
         )
 
     def _rest(self, x: ArrayWithSlopes) -> ArrayWithSlopes:
-        """Mean residuals between samples, from the states there."""
+        """Mean residuals between samples, computed from the states at the samples."""
         found, place = [], 0
         for rest in self._rests:
             n = len(rest.states)
@@ -207,7 +209,7 @@ class AxisStudy:
 
 
 def _mean(rest: Residual, x: ArrayWithSlopes) -> ArrayWithSlopes:
-    """Mean over the way from each sample to the next, taken as straight."""
+    """Mean of a residual between each sample and the next, with the states on a straight line."""
     called = rest.slopes if len(x.slopes) else rest.values
     at, dat = x.value, x.slopes
     w, *changes = called(at)

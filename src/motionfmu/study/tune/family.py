@@ -41,7 +41,7 @@ class Family:
         self.parts = [self._studies(plant, on_contour) for plant in self.plants]
 
     def _studies(self, plant: Mapping[str, float], bent: bool) -> dict[int, AxisStudy]:
-        """Studies of all axes with one plant; axes that are alike share one."""
+        """The studies of all axes with one plant; equal axes share one study."""
         found: dict[int, AxisStudy] = {}
         for k, axis in self.axes.items():
             like = [j for j in found if self.axes[j].alike(axis)]

@@ -1,4 +1,4 @@
-"""The error of a simulated motion, with its derivatives: of a contour, or of one axis."""
+"""Contour error or position error of a simulated motion, with its derivatives."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,13 +12,13 @@ from motionfmu.base import units
 from motionfmu.run import Result
 from motionfmu.study.tune.steps import Array
 
-# Each step of a run is a row, whatever the scenario records: the model is compared at its instants.
+# A run records every step, whatever the scenario has, so that it has the model's instants.
 EVERY = 1
-# Distance between two samples of the path [s]: about one command of the card.
+# Time between two samples of the path [s]: about one command of the card.
 SAMPLE = 1e-3
-# The same where a search asks only where to look: costs within 5 % where limits are kept.
+# The same for the global search; costs are within 5 % wherever the limits are kept.
 ROUGH = 2e-3
-# Order of the mean that stands for the largest error.
+# Order of the norm that approximates the largest error, so that it has a derivative.
 _ORDER = 24
 
 
@@ -36,12 +36,12 @@ class PathError:
 
     @property
     def max(self) -> float:
-        """Largest one [mm]."""
+        """Largest distance [mm]."""
         return float(self.distance.max())
 
     def cost(self, name: str) -> tuple[float, Array]:
         """A cost [mm], and its derivative (count, 3) to the positions."""
-        # ``..._rms``, or ``..._max`` for the norm of order 24.
+        # The name ends with ``_rms``, or with ``_max`` for the norm of order 24.
         if name.endswith("rms"):
             value = max(self.rms, 1e-12)
             return value, self.gap / (value * len(self.gap))
@@ -55,7 +55,7 @@ class PathError:
 
 @dataclass(frozen=True)
 class RunPath:
-    """What a run of the FMUs shows."""
+    """The error in a run of the FMUs."""
 
     rms: float  # [mm]
     max: float  # [mm]
@@ -78,7 +78,7 @@ class PathCost:
         run, document = contour.run, base.scenario.document
         assert document.body.contour is not None
         rows = round(period / (run.time[1] - run.time[0]))
-        # of the model, from one sample to the next
+        # periods of the model from one sample to the next
         self.periods = max(1, round(sample / period))
         stride = slice(None, None, rows * self.periods)
         window = contour.window
@@ -90,7 +90,7 @@ class PathCost:
         self._cutting = contour.cutting[stride]
         self._path = run.path
         self._lowest, self._owners = first, first.copy()
-        # Elsewhere there is one candidate only; what lies between two such samples is by itself.
+        # Other samples have one candidate only, so runs of samples between them are independent.
         self._open = np.flatnonzero(first < last)
         self._candidates = first[self._open], last[self._open]
         self._pairs = np.split(self._open, np.flatnonzero(np.diff(self._candidates[0])) + 1)
@@ -106,7 +106,7 @@ class PathCost:
 
     def error(self, positions: Mapping[int, Array]) -> PathError:
         """Contour error of positions (count,) by axis, which begin at 0."""
-        # In the unit of the scenario's position output.
+        # The positions are in the unit of the scenario's position output.
         points = self._rest.copy()
         for axis, values in positions.items():
             points[:, axis - 1] = self._start[axis] + values * self.factor
@@ -121,7 +121,7 @@ class PathCost:
         if (last > first + 1).any():
             self._owners[self._open] = assign(points[self._open], self._path, first, last)
             return
-        for own in self._pairs:  # of two segments: the change after which the squares are least
+        for own in self._pairs:  # of two segments: change where the sum of squares is least
             if not len(own):
                 continue
             k = int(self._lowest[own[0]])

@@ -15,14 +15,15 @@ from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
 
 # A limit, or a bound of a variable, is reached within this share.
 _REACHED = 2e-3
-# What a result may miss a limit by, relative.
+# Relative amount by which a result may miss a limit.
 TOLERANCE = 1e-4
 _PENALTY = 10.0
-# Half the width of the box of one solution, share of the range: slopes are trusted so far.
+# Half the width of the box in which the NLP is solved once, as a share of the range: slopes are
+# trusted so far.
 _BOX, _BOXES, _EDGE = 0.15, 8, 1e-4
-# A solution is begun anew in a smaller box while that lowers the cost by this share.
+# The NLP is solved again in a smaller box as long as that lowers the cost by this share.
 _SMALLER, _SMALLEST, _GAIN, _AGAIN = 0.4, 0.01, 5e-4, 6
-# What each axis for itself could gain, of the cost, is no reason to look for it.
+# If gains for each axis alone lower the cost by a smaller share, they are not searched.
 _SETTLED = 1e-7
 _OPTIONS: Any = {
     "ipopt.hessian_approximation": "limited-memory",
@@ -44,14 +45,14 @@ _OPTIONS: Any = {
 
 
 class RanAway(InputError):
-    """A gain ran to its own bound: nothing else stopped it."""
+    """A gain ran to its own bound, because no limit stopped it before."""
 
 
 @dataclass(frozen=True)
 class Found:
     """A solution of the problem."""
 
-    z: Array  # (n,) share of its range of each variable
+    z: Array  # (n,) each variable as a share of its range
     values: CostAndLimits
     stopped_by: tuple[TuningLimit, ...]  # limits that are reached there
     ends: tuple[str, ...]  # variables at an end of their parameter's own range
@@ -156,7 +157,7 @@ def _solver(study: TuningFunctions, spread: Array) -> tuple[_Run, Any]:
     solver = ca.nlpsol("tune", "ipopt", nlp, _OPTIONS)
 
     def solve(start: Array, values: CostAndLimits, box: float) -> tuple[Array, CostAndLimits, bool]:
-        """One box after another, until the solution lies inside its own; whether it does."""
+        """Solve in one box after another until a solution is inside its box; returns if it is."""
         best = start, values
         for _ in range(_BOXES):
             centre = np.clip(inverse @ best[0], 0.01, 0.99)
@@ -172,7 +173,7 @@ def _solver(study: TuningFunctions, spread: Array) -> tuple[_Run, Any]:
             z = spread @ y
             found = study.values(z)
             if not merit(found) < merit(best[1]):
-                box *= _SMALLER  # the slopes did not hold so far
+                box *= _SMALLER  # the slopes did not hold over the whole box
                 if box < _SMALLEST:
                     break
                 continue
@@ -186,15 +187,15 @@ def _solver(study: TuningFunctions, spread: Array) -> tuple[_Run, Any]:
 
 
 def merit(values: CostAndLimits) -> float:
-    """One number for a search that knows no limits."""
-    # Logarithm of the worst cost plus a penalty for limits that are broken.
+    """Cost and limits as one number, for the global search, which knows no limits."""
+    # It is the logarithm of the worst cost plus a penalty for limits that are not kept.
     if not np.isfinite(values.costs).all():
         return 1e3
     return float(np.log(values.worst)) + _PENALTY * float(-np.minimum(values.slack, 0.0).sum())
 
 
 def solve(study: TuningFunctions, progress: Callable[[float], None] = lambda share: None) -> Found:
-    """Find the gains within the limits; `RanAway` at a bound alone."""
+    """Find the gains within the limits; `RanAway` if only a gain's own bound stops it."""
     together = _solver(study, _shared(study))
     begun, first = time.perf_counter(), study.evaluations
     check, points = np.nan, [study.present]
@@ -239,7 +240,7 @@ def solve(study: TuningFunctions, progress: Callable[[float], None] = lambda sha
 
 
 def _attempt(study: TuningFunctions, run: _Run, start: Array) -> tuple[Array, CostAndLimits] | None:
-    """The NLP from one point; the point itself if nothing better comes of it."""
+    """Solve the NLP from one point; the point itself if no better one is found."""
     best = start, study.values(start)
     if not np.isfinite(best[1].costs).all():
         return None
@@ -247,7 +248,7 @@ def _attempt(study: TuningFunctions, run: _Run, start: Array) -> tuple[Array, Co
     for _ in range(_AGAIN):
         try:
             z, values, done = run(*best, box)
-        except RuntimeError:  # CasADi: not a number somewhere
+        except RuntimeError:  # CasADi met a value that is not a number
             break
         lower = merit(best[1]) - merit(values)
         best = z, values
@@ -273,7 +274,7 @@ def _settled(values: CostAndLimits) -> bool:
 
 
 def _spread(study: TuningFunctions) -> list[Array]:
-    """Points spread over the range, drawn to the present gains until all loops are stable."""
+    """Points spread over the range, moved to the present gains until all loops are stable."""
     from scipy.stats import qmc  # a third of a second, and seldom needed
 
     present, found = study.present, []
@@ -290,7 +291,7 @@ def _spread(study: TuningFunctions) -> list[Array]:
 def _global(
     study: TuningFunctions, progress: Callable[[float], None]
 ) -> tuple[Array, CostAndLimits]:
-    """DIRECT: divides the box, needs no slope and no start; all axes move together."""
+    """Global search by DIRECT, which divides the box and needs neither slopes nor a start."""
     spread = _shared(study)
     box = [(0.0, 1.0)] * spread.shape[1]
     best: tuple[float, Array] = (np.inf, study.present)

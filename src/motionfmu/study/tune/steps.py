@@ -9,16 +9,17 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 # Steps of a chunk.
 _CHUNK = 32
-# How much later than an input of a chunk its outputs are; that many steps for those before it.
+# Steps from each input of a chunk to each output; an output before the input has the last index,
+# where the response is 0.
 _LATE = np.subtract.outer(np.arange(_CHUNK), np.arange(_CHUNK))
 _LATE[_LATE < 0] = _CHUNK
-# A transient below this share of its start is over.
+# A transient has ended when it is below this share of its start.
 _FORGOTTEN = 1e-12
 
 
 @dataclass(frozen=True)
 class ArrayWithSlopes:
-    """An array and its derivatives to the gains, which are the first axis; there may be none."""
+    """An array and its derivatives to the gains, along their first axis; there may be no gain."""
 
     value: Any
     slopes: Any
@@ -38,26 +39,26 @@ class ArrayWithSlopes:
 
     @property
     def alone(self) -> "ArrayWithSlopes":
-        """Without derivatives."""
+        """The array without derivatives."""
         return ArrayWithSlopes(self.value, self.slopes[:0])
 
     def beside(self, other: "ArrayWithSlopes") -> "ArrayWithSlopes":
-        """Both along the last axis."""
+        """Both arrays joined along the last axis."""
         pairs = (self.value, other.value), (self.slopes, other.slopes)
         return ArrayWithSlopes(*(np.concatenate(pair, axis=-1) for pair in pairs))
 
     def above(self, other: "ArrayWithSlopes") -> "ArrayWithSlopes":
-        """Both along the first axis."""
+        """Both arrays joined along the first axis."""
         value = np.concatenate([self.value, other.value])
         return ArrayWithSlopes(value, np.concatenate([self.slopes, other.slopes], axis=1))
 
     def columns(self, part: slice) -> "ArrayWithSlopes":
-        """Some places of the last axis."""
+        """A slice along the last axis."""
         return ArrayWithSlopes(self.value[..., part], self.slopes[..., part])
 
 
 def blocks(rows: list[list[Any]], gains: int) -> ArrayWithSlopes:
-    """A matrix of blocks: of such with derivatives to so many gains, and plain ones."""
+    """A matrix of blocks, some of which have derivatives to so many gains."""
     values = [[b.value if isinstance(b, ArrayWithSlopes) else b for b in row] for row in rows]
     change = [
         [b.slopes if isinstance(b, ArrayWithSlopes) else np.zeros((gains, *b.shape)) for b in row]
@@ -67,7 +68,7 @@ def blocks(rows: list[list[Any]], gains: int) -> ArrayWithSlopes:
 
 
 def power(a: ArrayWithSlopes, count: int) -> ArrayWithSlopes:
-    """A^count, count > 0, by squares."""
+    """A^count, count > 0, by repeated squaring."""
     found = None
     while True:
         if count % 2:
@@ -82,9 +83,9 @@ def power(a: ArrayWithSlopes, count: int) -> ArrayWithSlopes:
 def lifted(
     a: ArrayWithSlopes, b: ArrayWithSlopes, count: int
 ) -> tuple[ArrayWithSlopes, ArrayWithSlopes, ArrayWithSlopes]:
-    """So many periods as one, whose input goes straight from the value at its beginning to another.
+    """Matrices of `count` periods as one, over which the input changes linearly.
 
-    The state matrix, and the input matrices of the values at the beginning and at the end.
+    Returns the state matrix, and the input matrices of the values at the beginning and at the end.
     """
     # The states, the input, and what it grows by over all periods.
     (n, m), gains = b.value.shape, len(b.slopes)
@@ -126,7 +127,7 @@ class DifferenceEquations:
     show: ArrayWithSlopes  # (p, c, c m + n) from its inputs and the state before it to its outputs
 
     def driven(self, u: Array, du: Array | None = None) -> "DrivenEquations":
-        """Inputs (m, count), and derivatives (g, m, count) if they have some, from rest."""
+        """Drive the system from rest by inputs (m, count) with derivatives (g, m, count), if any."""
         inputs = _chunks(u)
         x = scan(self.step.value, self.feed.value @ inputs.T)
         change = self.step.slopes @ x + self.feed.slopes @ inputs.T
@@ -142,7 +143,7 @@ class DifferenceEquations:
 
 @dataclass(frozen=True)
 class DrivenEquations:
-    """A system with its inputs, whose outputs can be asked for."""
+    """A system with its inputs, from which outputs are computed as they are needed."""
 
     show: ArrayWithSlopes
     known: Array  # (chunks, c m + n) inputs of each chunk and the state before it
@@ -161,7 +162,7 @@ class DrivenEquations:
         return ArrayWithSlopes(*(self._along(v, p, c) for v in (value, change)))
 
     def _along(self, found: Array, p: int, c: int) -> Array:
-        """Outputs (..., p, count) of those of chunks (..., chunks, p c)."""
+        """Outputs (..., p, count) in order from outputs of chunks (..., chunks, p c)."""
         *g, chunks, _ = found.shape
         rows = found.reshape(*g, chunks, p, c).swapaxes(-2, -3).reshape(*g, p, chunks * c)
         return rows[..., : self.count]
@@ -177,7 +178,7 @@ class DrivenEquations:
 
 
 def _chunks(u: Array) -> Array:
-    """Inputs (..., chunks, c m) of inputs (..., m, count); zeros fill the last."""
+    """Inputs (..., m, count) as those of chunks (..., chunks, c m); zeros fill the last chunk."""
     *g, m, count = u.shape
     chunks = -(-count // _CHUNK)
     wide = np.zeros((*g, m, chunks * _CHUNK))
@@ -189,7 +190,7 @@ def _chunks(u: Array) -> Array:
 def system(
     a: ArrayWithSlopes, b: ArrayWithSlopes, c: ArrayWithSlopes, d: ArrayWithSlopes
 ) -> DifferenceEquations:
-    """Put a system in chunks."""
+    """Make the matrices of chunks from those of single steps."""
     (n, m), p = b.value.shape, len(c.value)
     x, y, step = b, c, a  # A^k B side by side and C A^k one above the other: twice as many a round
     for _ in range(_CHUNK.bit_length() - 1):

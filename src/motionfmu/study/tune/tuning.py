@@ -19,13 +19,13 @@ from motionfmu.study.tune.trial import tried
 from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
 from motionfmu.study.tune.tuning_result import Tuned, TuningRun, settings
 
-# More registers than this are rounded together, not one by one.
+# If there are more registers than this, all are rounded together instead of one by one.
 _ONE_BY_ONE = 4
 
 
 def rounded(study: TuningFunctions, z: Array) -> tuple[Array, CostAndLimits]:
     """The best whole-number registers about a solution."""
-    # Limits are kept, if they can be, rather than the cost.
+    # It is more important to keep the limits than to have the smallest cost.
     options = []
     whole = [k for k, v in enumerate(study.variables) if v.whole]
     for variable, share in zip(study.variables, z, strict=True):

@@ -19,11 +19,11 @@ from motionfmu.study.tune.path_error import EVERY, ROUGH, PathCost
 from motionfmu.study.tune.problem import ON_PATH, MarginLimits, Problem
 from motionfmu.study.tune.steps import Array
 
-# A step is watched for this many servo lags, at this many samples at least.
+# A step response is computed over this many servo lags, at this many samples at least.
 _LAGS, _SAMPLES = 20.0, 800
-# Products of matrices as small as these take five times as long on two threads as on one.
+# BLAS gets one thread: products of matrices as small as these take five times as long on two.
 _BLAS = ThreadpoolController()
-# Points that are remembered.
+# Number of points whose results are kept.
 _KNOWN_MAX = 1000
 # An overshoot limit of 0 means no more than rounding.
 _LEAST_OVERSHOOT = 1e-3
@@ -42,7 +42,7 @@ class TuningLimit:
 class CostAndLimits:
     """Cost and limits at a point."""
 
-    costs: Array  # (plants,) NaN where a loop is unstable
+    costs: Array  # (plants,) cost of each plant, NaN if a loop is unstable
     slack: Array  # (limits,) relative distance to each; negative beyond it
     dcosts: Array  # (plants, n) derivatives to the shares of the variables
     dslack: Array  # (limits, n)
@@ -77,7 +77,7 @@ class TuningFunctions(Family):
         super().__init__(scenario, problem, base, set or {})
         first = next(iter(self.axes))
         self.path, self.lag = self._path(first, self.parts[0][first])
-        self._rough = self.path  # what judges motions while it is asked only where to look
+        self._rough = self.path  # judges motions for the global search, from fewer samples
         if isinstance(self.path, PathCost):
             self._rough = PathCost(base, self.parts[0][first].period, ROUGH)
         period = self.parts[0][first].period
@@ -89,7 +89,7 @@ class TuningFunctions(Family):
         self._known: Memo[CostAndLimits] = Memo(_KNOWN_MAX)
 
     def _path(self, axis: int, part: AxisStudy) -> tuple[PathCost | MoveCost, float]:
-        """What judges motions, and the lag [s] with the present gains."""
+        """The judge of motions, and the servo lag [s] with the present gains."""
         problem, base = self.problem, self.base
         if problem.command is None or problem.position is None:
             return PathCost(base, part.period), base.contour().lag
@@ -138,7 +138,7 @@ class TuningFunctions(Family):
         return self._known((place, slopes), lambda: self._counted(z, slopes, self.path))
 
     def rough(self, z: Array) -> CostAndLimits:
-        """The same without slopes; costs on the path from fewer samples of it."""
+        """Cost and limits without slopes, the cost from fewer samples of the path."""
         return self._counted(z, False, self._rough)
 
     def _counted(self, z: Array, slopes: bool, path: PathCost | MoveCost) -> CostAndLimits:
@@ -160,7 +160,7 @@ class TuningFunctions(Family):
             cost, dcost, motions = self._cost(parts, (gains, rates), (path, slopes))
             costs.append(cost)
             dcosts.append(dcost)
-            known: dict[Any, tuple[list[float], list[Array]]] = {}  # axes alike share them
+            known: dict[Any, tuple[list[float], list[Array]]] = {}  # shared by equal axes
             for k, part in parts.items():
                 same = part, gains[k].tobytes()
                 if same not in known:

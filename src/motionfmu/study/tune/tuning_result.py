@@ -1,4 +1,4 @@
-"""What a tuning found."""
+"""The result of a tuning."""
 
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -17,18 +17,18 @@ from motionfmu.study.tune.trial import Trial
 from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
 from motionfmu.study.tune.tuning_words import assumptions, plant_text
 
-# Gains whose margins are remembered: those of before and of after.
+# Number of points whose margins are kept: the present gains and the found ones.
 _KEPT = 2
 
 
 @dataclass(frozen=True)
 class TuningRun:
-    """The FMUs with some gains and a plant."""
+    """A run of the FMUs with some gains and a plant, beside the model's."""
 
     plant: dict[str, float]  # changed values; empty for the nominal one
     result: Result
-    model: PathError  # what the tuner's model says of the same
-    fmus: RunPath  # what the run shows
+    model: PathError  # error by the tuning's model
+    fmus: RunPath  # error in the run
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Tuned:
     after: list[TuningRun] = field(default_factory=list)
     seconds: float = 0.0
     trial: Trial | None = None
-    # Asked for by the gains file, the page and the numbers.
+    # It is computed once for the gains file, the page and the numbers.
     _margins: Memo[list[LoopMargins]] = field(default_factory=lambda: Memo(_KEPT), repr=False)
     _position_gains: Memo[list[LoopGain]] = field(default_factory=lambda: Memo(_KEPT), repr=False)
 

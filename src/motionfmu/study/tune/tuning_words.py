@@ -38,7 +38,7 @@ def assumptions(study: TuningFunctions) -> list[str]:
 
 
 def summed(study: TuningFunctions) -> str:
-    """What a cost after a step is with several axes."""
+    """Words that say how a cost after a step is summed over several axes."""
     cost = study.problem.cost
     if cost in ON_PATH or len(study.axes) == 1:
         return ""
@@ -46,7 +46,7 @@ def summed(study: TuningFunctions) -> str:
 
 
 def _acts(block: Sampled) -> bool:
-    """Whether an output moves at all."""
+    """Whether an output of a block depends on anything."""
     first = len(block.states)
     return bool(block.pattern[first : first + len(block.outputs)].any())
 
