@@ -1,4 +1,4 @@
-"""Settings of a card on the wire: their numbers, what a configuration asks for, their words."""
+"""Settings of a card: their numbers on the wire, their values in a configuration, their words."""
 
 import functools
 from collections.abc import Iterator, Mapping
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 Key = tuple[str, int]  # name in src/controllers/netcard/card_settings.h, element
 TABLES: tuple[type[Table], ...] = (CardMotion, Pulse, Fifo, Tasks, CardAxis, Input)
-# Numbers that are an upper bound of another one: raised before it, lowered behind it.
+# Settings that are an upper bound of another one: they are raised before it and lowered after it.
 _UPPER = ("speed_max", "position_high")
-# What the card copies at power-up.
+# Settings that the card copies at power-up only.
 _COPIED = {"speed_min", "fifo_depth", "pulse_width_ns", "dir_setup_ns", "dir_hold_ns"}
 
 
@@ -33,7 +33,7 @@ def numbers() -> dict[str, tuple[int, int]]:
 
 
 def asked(config: "CardConfig") -> dict[Key, int]:
-    """Whole numbers that a configuration asks of a card; its id stays what it is."""
+    """Whole numbers of a card's settings in a configuration, without the card's id."""
     found: dict[Key, int] = {}
     for name, value in config.as_parameters().items():
         if name != "card_id":
@@ -43,7 +43,7 @@ def asked(config: "CardConfig") -> dict[Key, int]:
 
 
 def in_order(wanted: Mapping[Key, int], has: Mapping[Key, int]) -> list[Key]:
-    """Those that differ, so that with each one that is set all fit together."""
+    """The settings that differ, in an order in which all fit together after each one."""
 
     def turn(key: Key) -> int:
         return 1 if key[0] not in _UPPER else 0 if wanted[key] > has[key] else 2
@@ -68,7 +68,7 @@ def fields() -> dict[str, tuple[type[Table], FieldInfo, Is]]:
 
 
 def shown(name: str, whole: int, pulses_per_m: int) -> str:
-    """A setting as the file has it."""
+    """Text of a setting in the unit of the configuration's file."""
     _, field, what = fields()[name]
     if words := choices(field):
         return words[whole] if 0 <= whole < len(words) else str(whole)
@@ -79,14 +79,14 @@ def shown(name: str, whole: int, pulses_per_m: int) -> str:
 
 
 def words(name: str, index: int) -> str:
-    """What a setting is called."""
+    """The name of a setting in words."""
     table, _, what = fields()[name]
     of = {CardAxis: f"Axis {AXES[index % 4]}: ", Input: f"Input {index}: ", Tasks: "Priority: "}
     return of.get(table, "") + what.words
 
 
 def lines(wanted: Mapping[Key, int], end: ConfigurationResult) -> Iterator[str]:
-    """What became of each setting that was sent, in words."""
+    """A line for each setting that was sent, with its result."""
     before = {(s.name, s.index): s.before for s in end.changed}
     for s in end.changed:
         scale: Any = ("pulses_per_m", s.index)

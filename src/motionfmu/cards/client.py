@@ -1,4 +1,4 @@
-"""A soft card: the card's end of the protocol and a toy of a card, for tests and load."""
+"""A soft card: the card's end of the protocol with a minimal card behind it, for tests."""
 
 import asyncio
 import contextlib
@@ -19,7 +19,7 @@ PING, PINGS = 1.0, 3  # [s] of silence, without an answer
 
 
 class SoftCard:
-    """What a card keeps over its connections, and what it answers."""
+    """The state that a card keeps over its connections, and its answers."""
 
     def __init__(self, card: int, key: bytes = OPEN_KEY, credit: int = CREDIT) -> None:
         self.id, self.key, self.credit = card, key, credit
@@ -53,7 +53,7 @@ class SoftCard:
         )
 
     def status(self) -> m.Status:
-        """What it does now."""
+        """The card's present status."""
         return m.Status(
             self.state, 0, 0, 0, 0, 0, 0, (0, 0, 0, 0), 0, 0, (0, 0, 0, 0, 0, 0, 0), 1000, 0
         )
@@ -162,7 +162,7 @@ async def _converse(
             writer.write(end.take())
             await writer.drain()
             try:
-                # Not wait_for: in Python 3.11 it may swallow a cancellation.
+                # wait_for is not used, because in Python 3.11 it may swallow a cancellation.
                 async with asyncio.timeout(end.interval / 1000 or PING):
                     data = await reader.read(4096)
                 if not data:

@@ -35,7 +35,7 @@ def _six_bytes(text: Any) -> Any:
 
 
 def by_pins(empty: Any) -> Callable[[Any], Any]:
-    """What makes a list of all pins of tables or names by their pins."""
+    """A function that makes a list for all pins of tables or names given by pin."""
 
     def whole(given: Any) -> Any:
         if not isinstance(given, dict):
@@ -168,7 +168,7 @@ class CardAxis(Table):
 
 
 class Pen(Table):
-    """What raises and lowers the tool: an output, or the way of an axis."""
+    """The pen lift: an output, or an axis, that raises and lowers the tool."""
 
     kind: Annotated[Literal["output", "axis"], Is("Moved by", macro="PEN_MOVER")] = "output"
     output: Annotated[int, Is("Its output", macro="PEN_OUTPUT", high=PINS - 1, suffix="U")] = 0
@@ -235,7 +235,7 @@ class Fifo(Table):
 class Tasks(Table):
     """Priorities, 7 the most urgent; home has a second one while it works."""
 
-    # Pause stops a run, stop ends a pause, both end a homing, which takes the place of a run.
+    # A pause interrupts a run, a stop ends a pause; both end homing, which replaces a run.
     RULES = (
         ("run", "<", "home_active"),
         ("home_active", "<", "pause"),

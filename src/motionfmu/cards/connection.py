@@ -14,11 +14,11 @@ READ_MAX = 16384  # [byte] taken from a connection before the others have their 
 
 @dataclass(frozen=True)
 class ConnectionLimits:
-    """What a server bears."""
+    """Limits of a server on its connections, in number, bytes and time."""
 
     connections: int = 256
-    strangers: int = 8  # connections of one address in their handshake
-    cards: int = 1024  # remembered
+    strangers: int = 8  # connections of one address that have not finished their handshake
+    cards: int = 1024  # cards that the server remembers
     authenticate: float = 5.0  # [s] for the handshake
     gap: float = 15.0  # [s] between two bytes of a frame
     idle: float = 30.0  # [s] between two frames
@@ -33,7 +33,7 @@ class ConnectionLimits:
 
 
 class Card(Protocol):
-    """Who hears what a line brings."""
+    """The receiver of a connection's messages."""
 
     def heard(self, line: "CardConnection", sequence: int, message: Message) -> None:
         """A message behind the handshake."""
@@ -43,13 +43,13 @@ class Card(Protocol):
 
 
 class Host(Protocol):
-    """Who owns the lines."""
+    """The owner of all connections."""
 
     limits: ConnectionLimits
     buffer: bytearray
 
     def met(self, line: "CardConnection") -> str:
-        """A connection has come; why it is refused, or nothing."""
+        """Take a new connection; returns why it is refused, or an empty text."""
 
     def joined(self, line: "CardConnection") -> Card:
         """The handshake of a line is over."""
@@ -77,7 +77,7 @@ class CardConnection(asyncio.BufferedProtocol):
 
     @property
     def age(self) -> float:
-        """Since it has come [s]."""
+        """Time since the connection came [s]."""
         return self._now() - self._born
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -92,7 +92,7 @@ class CardConnection(asyncio.BufferedProtocol):
             self.drop(why)
 
     def get_buffer(self, sizehint: int) -> bytearray:
-        """One buffer serves all lines: what came is used up before the next line has its turn."""
+        """The buffer for received bytes, one for all connections: bytes are used up at once."""
         return self._host.buffer
 
     def buffer_updated(self, nbytes: int) -> None:
@@ -133,17 +133,17 @@ class CardConnection(asyncio.BufferedProtocol):
             self.drop("does not read what is sent")
 
     def pause_writing(self) -> None:
-        """What waits to be sent is enough."""
+        """Stop sending until the bytes that wait are sent."""
         self.room = False
 
     def resume_writing(self) -> None:
-        """It has been sent."""
+        """Go on sending."""
         self.room = True
         if self.card:
             self.card.room()
 
     def drop(self, why: str) -> None:
-        """Close at once; what was not sent yet is lost."""
+        """Close at once; bytes that are not sent yet are lost."""
         if self.open:
             self._why, self.open = why, False
             if self._transport:
@@ -158,7 +158,7 @@ class CardConnection(asyncio.BufferedProtocol):
         self._host.lost(self, self._why)
 
     def watch(self) -> None:
-        """Close what is too slow, ask what is silent."""
+        """Close the connection if it is too slow; send a ping if it is silent."""
         now, limits = self._now(), self._host.limits
         if not self.end.ready:
             if now - self._born > limits.authenticate:

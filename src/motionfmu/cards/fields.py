@@ -1,4 +1,4 @@
-"""What a field of the configuration is: words, unit, and the whole number that the card has."""
+"""Fields of a card's configuration: words, unit, and the whole number that the card gets."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, Self, get_args, get_origin
@@ -9,7 +9,7 @@ from pydantic.fields import FieldInfo
 from motionfmu.base.units import spelled
 
 STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
-# Field, "<" or "<=", field of the same table; the card's numbers keep it, too.
+# A rule: field, "<" or "<=", field of the same table. The card's numbers must keep it as well.
 Rule = tuple[str, str, str]
 
 
@@ -30,8 +30,8 @@ class Is:
     suffix: str = "UL"  # L where it may be negative, ULL where it has 64 bits
     factor: float = 1.0
     pulses: bool = False
-    step: int = 1  # it is a multiple of this
-    exact: bool = False  # the value gives it without rounding
+    step: int = 1  # the whole number is a multiple of this
+    exact: bool = False  # the value must give the whole number without rounding
     parameter: str = ""
 
 
@@ -44,7 +44,7 @@ class WholeNumber:
     source: Any  # the value in the file
 
     def wrong(self) -> str:
-        """What is wrong with it, in words; else empty."""
+        """The number's fault in words; empty if it has none."""
         w = self.what
         told = f"{self.value} {spelled(w.counts)}".rstrip()
         if not w.low <= self.value <= w.high:
@@ -56,7 +56,7 @@ class WholeNumber:
 
 
 class FieldFaults(ValueError):
-    """Fields of a table that are wrong: the key, and those it is judged by; what is wrong."""
+    """Faults of a table's fields: keys of the wrong field and those it depends on, and words."""
 
     def __init__(self, *found: tuple[tuple[str, ...], str]) -> None:
         super().__init__("; ".join(text for _, text in found))

@@ -15,7 +15,7 @@ from motionfmu.cards.fields import Is, Table, WholeNumber, choices, described, n
 
 WORD = 2**32
 Keys = tuple[str, ...] | None  # of some fields; None: all
-# What each header is about, and the headers it takes names from.
+# Subject of each header, and the headers that it includes.
 ABOUT = {
     "network": ("addresses of card and server", ()),
     "io": ("programmable inputs and outputs", ()),
@@ -68,7 +68,7 @@ def texts(config: CardConfig, source: str) -> dict[str, str]:
 
 
 def write(config: CardConfig, folder: Path, source: str, crlf: bool = False) -> list[Path]:
-    """Write the headers that are not there as they are; each is whole or not there."""
+    """Write the headers that are missing or differ, each whole or not at all."""
     changed = []
     for name, text in texts(config, source).items():
         data = text.replace("\n", "\r\n" if crlf else "\n").encode("ascii")
@@ -126,7 +126,7 @@ def _values(prefix: str, table: Table, keys: Keys) -> Iterator[str]:
 
 
 def _checks(prefix: str, table: Table, keys: Keys) -> Iterator[str]:
-    """Lines by which a compiler refuses what the card cannot have."""
+    """Lines by which a compiler refuses values that the card cannot have."""
     known, fields = numbers(table), _shown(table, keys)
     for key, (_, what) in fields.items():
         if key in known:
@@ -206,7 +206,7 @@ def _named(table: type[Table] | Table, keys: Keys = None) -> Iterator[str]:
 
 
 def _rate(axis: str) -> tuple[str, ...]:
-    """A pulse is high and low for at least its width."""
+    """Lines by which a compiler checks that a pulse is high and low for its width at least."""
     name = f"MC_{axis}_SPEED_MAX"
     words = f"{name}: more than MC_PULSE_WIDTH_NS lets"
     return _refuse(f"{name} > 500000000UL / MC_PULSE_WIDTH_NS", words)

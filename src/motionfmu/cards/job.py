@@ -20,7 +20,7 @@ _EVENTS_AT = 160
 
 @dataclass(frozen=True)
 class FrameEvent:
-    """What a frame switches as it begins."""
+    """An output that a frame switches as it begins."""
 
     pins: int  # A bit for each output
     pulse: bool  # Active for `width`, else from now on
@@ -44,16 +44,16 @@ class Job:
     jerk_max: tuple[int, ...] = (0,) * AXES
     origin: bytes = bytes(32)  # SHA-256 of drawing and settings
     pages: int = 0  # Data pages of the file it was read from
-    rest: int = 0  # Event put out when the job is given up; 0 none
+    rest: int = 0  # Event that is put out when the job is aborted; 0 none
 
     @property
     def positions(self) -> np.ndarray:
-        """Place at the end of each frame."""
+        """Positions at the end of each frame."""
         return np.cumsum(self.commands, axis=0, dtype=np.int64)
 
     @property
     def time(self) -> float:
-        """Of all frames."""
+        """Duration of all frames."""
         return 1e-9 * self.period_ns * len(self.commands)
 
 

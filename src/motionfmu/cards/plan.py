@@ -1,4 +1,4 @@
-"""Contours become a job: speed along a smooth path, whole pulses in each period of the card."""
+"""Planning of a job from contours: speed along a smooth path, whole pulses in each DDA period."""
 
 import ctypes
 import hashlib
@@ -18,20 +18,20 @@ from motionfmu.cards.plt import PltDrawing
 
 AXES = 4
 PAGE = 256
-ROOM = 1 << 15  # frames of a call
+ROOM = 1 << 15  # most frames of one call
 _PAYLOAD, _FRAME = 228, 13  # bytes of a page, of a frame at most
 _EVENTS = 11
 _MOVE, _DRAW, _STOP = range(3)
-# What the planner of C is given.
+# The structs that the planner in C gets.
 _SETTINGS = (
     "pulses_per_mm speed acc jerk period_ns tolerance rapid reserve pen pen_axis up down dwell"
 ).split()
-RESTS, SLIDES, DRAWS = 1, 2, 3  # what a frame is part of
+RESTS, SLIDES, DRAWS = 1, 2, 3  # kind of motion of which a frame is part
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A job, and how it moves."""
+    """A job and its planned motion."""
 
     job: bytes  # The file for the card
     period: float  # [s] of a frame
@@ -46,13 +46,13 @@ class Plan:
 
 @dataclass(frozen=True)
 class PlanOptions:
-    """How a drawing is planned."""
+    """Options of the planning of a drawing."""
 
     order: str = "file"  # "file" or "nearest": of the contours
     # "round" within the tolerance, or "stop": to rest exactly at vertices where the path
     # turns by more than the configuration's corner angle
     corners: str = "round"
-    pens: list[int] | None = None  # Only what these draw
+    pens: list[int] | None = None  # Only lines of these pens; None: of all
     speeds: bool = False  # Keep the speeds that the drawing asks for where they are below the feed
     # [mm] from the drawing's origin to the machine's position 0
     offset: tuple[float, float] = (0.0, 0.0)

@@ -1,4 +1,4 @@
-"""What a plan comes to: times, ways, deviations, peaks."""
+"""Figures of a plan: times, lengths, deviations, peaks."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -11,10 +11,10 @@ from motionfmu.cards.plan import DRAWS, PAGE, Plan
 
 # Pages of a slot of the card's flash.
 SLOT = 4064
-# Nearest parts of a line that are looked at for a distance, and the shortest. [mm]
+# Number of nearest parts of a line from which a distance is taken, and their least length. [mm]
 _NEAR, _SHORTEST = 6, 0.02
 _PARTS_MAX = 2_000_000
-# Share of the feed above which the speed is the feed.
+# A speed above this share of the feed counts as the feed.
 _AT_FEED = 0.99
 
 
@@ -41,7 +41,7 @@ class Figures:
     planning: float  # [s]
 
     def numbers(self) -> dict[str, Any]:
-        """All of them by name."""
+        """All figures by name."""
         return asdict(self)
 
 
@@ -82,7 +82,7 @@ def _at_feed(speeds: np.ndarray, feed: float) -> float:
 
 
 def steps_of(plan: Plan) -> np.ndarray:
-    """Way of each frame by axis [mm]."""
+    """Travel of each axis in each frame [mm]."""
     return np.diff(plan.places, axis=0, prepend=np.zeros((1, 4)))
 
 
@@ -107,7 +107,7 @@ def deviations(plan: Plan, offset: tuple[float, float]) -> tuple[float, float]:
 
 
 def _dense(line: np.ndarray) -> np.ndarray:
-    """Places along a line, near each other."""
+    """Closely spaced points along a line."""
     ways = np.linalg.norm(np.diff(line, axis=0), axis=1)
     longest = max(_SHORTEST, float(ways.sum()) / _PARTS_MAX)
     counts = np.maximum(1, np.ceil(ways / longest)).astype(int)
@@ -137,5 +137,5 @@ def distance(points: np.ndarray, line: np.ndarray) -> float:
 
 
 def speeds(plan: Plan) -> np.ndarray:
-    """Of the tool in X and Y at each frame [mm/s]."""
+    """Speed of the tool in X and Y in each frame [mm/s]."""
     return np.linalg.norm(steps_of(plan)[:, :2], axis=1) / plan.period

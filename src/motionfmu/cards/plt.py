@@ -1,4 +1,4 @@
-"""Drawings in HP-GL (PLT files): which lines they draw, with which pen, and what is passed over."""
+"""Drawings in HP-GL (PLT files): their lines by pen, and notes on what is ignored."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +14,7 @@ __all__ = ["Note", "PltDrawing", "Polyline", "parse", "read"]
 
 @dataclass(frozen=True)
 class Note:
-    """What a file says that draws nothing here."""
+    """An instruction of a file that is ignored."""
 
     line: int  # Where it stands first; line and column from 1, byte from 0
     column: int
@@ -25,7 +25,7 @@ class Note:
 
 @dataclass(frozen=True)
 class PltDrawing:
-    """What one page of a PLT file draws."""
+    """The drawing of one page of a PLT file."""
 
     lines: list[Polyline]  # In the file's order, moves with the pen up between them
     notes: list[Note]  # Of all pages

@@ -30,7 +30,7 @@ class Polyline:
 
 @dataclass
 class _PenStroke:
-    """A line under way: [plotter units], bytes."""
+    """A line that is being drawn: its points [plotter units], its bytes in the file."""
 
     down: bool
     xs: list[float]
@@ -85,7 +85,7 @@ class Plotter:
     # Lines
 
     def _flush(self) -> None:
-        """End the line under way."""
+        """End the line that is being drawn."""
         if (s := self.stroke) is None:
             return
         points = np.stack([np.array(s.xs), np.array(s.ys)], axis=1) * UNIT

@@ -1,4 +1,4 @@
-"""A card as the server has it: its line, its commands, the job on its way to it."""
+"""A card on the side of the server: its connection, its commands, the job that it gets."""
 
 import asyncio
 import time
@@ -39,14 +39,14 @@ class _Order:
 
 @dataclass
 class _Question:
-    """A setting that was asked for; its answer is a code and a value."""
+    """A setting that a card was asked for; the answer is a code and a value."""
 
     message: m.ConfigGet
     frame: int
     answer: "asyncio.Future[tuple[int, int]]"
 
     def end(self, code: int, value: int = 0) -> None:
-        """It is answered, or never will be."""
+        """Take the answer, or the reason why there will be none."""
         if not self.answer.done():
             self.answer.set_result((code, value))
 
@@ -85,16 +85,16 @@ class RemoteCard:
         self._job = _NextJob(JobFile(job)) if job else None
         self._keeping = asyncio.Lock()
         self._question: _Question | None = None
-        self._disk = ""  # what is wrong with it, told once
+        self._disk = ""  # fault of the disk, which is told once
         self._configuring = asyncio.Lock()
 
     @property
     def idle(self) -> bool:
-        """Whether nothing would be lost by forgetting it."""
+        """Whether the server can forget the card without losing anything."""
         return not (self.line or self._job or self._orders)
 
     def view(self) -> CardView:
-        """What there is to see of it."""
+        """The card's state for users of the server."""
         return CardView(
             self.id,
             self.line is not None,
@@ -108,7 +108,7 @@ class RemoteCard:
         )
 
     def tell(self, kind: str, text: str) -> None:
-        """Hand on what happened."""
+        """Pass on an event."""
         event = Event(kind, self.id, text, time.time())
         if kind not in FLEETING:
             self._events.append(event)
@@ -117,7 +117,7 @@ class RemoteCard:
     # The connection.
 
     def join(self, line: CardConnection, hello: m.Hello) -> None:
-        """Take a line whose handshake is over; the older one is closed."""
+        """Take a connection whose handshake is over; an older one is closed."""
         old, self.line, self._transfer = self.line, line, None
         if old:
             old.drop(f"the card came again from {line.address}:{line.port}")
@@ -134,7 +134,7 @@ class RemoteCard:
         self._offer()
 
     def left(self, line: CardConnection, why: str) -> None:
-        """A line is over."""
+        """Note that a connection has ended."""
         self.tell("closed", why)
         if self._question:
             self._question.end(Code.OFFLINE)
@@ -169,7 +169,7 @@ class RemoteCard:
                 self._moved()
 
     def watch(self) -> None:
-        """Ask again if an upload does not go on."""
+        """Ask the card again if an upload makes no progress."""
         now = self._loop.time()
         if self._transfer and now - self._progress > self._limits.stall:
             self._progress = now

@@ -39,7 +39,7 @@ QUEUE_MAX = 1000  # events
 JOB_MAX = 8192  # pages of the largest flash
 JOB_MAGIC = b"MCJ1"
 
-# What a command is made of, behind its number: name and highest value of each field.
+# Fields of each command behind its number: name and highest value.
 _COMMANDS: dict[str, tuple[Callable[..., m.Message], dict[str, int]]] = {
     "start": (m.Start, {}),
     "pause": (m.Pause, {}),
@@ -141,8 +141,8 @@ class Cards:
     async def command(self, card: int, name: str, /, **values: int) -> CommandResult:
         """Do start, pause, stop, home (axes), reset or output (pins, mode, level, width).
 
-        Never raises for what the card or the link does: a Result says it. InputError for a name
-        or a value that no card knows.
+        Faults of the card or the link raise nothing; the CommandResult tells them. InputError for a
+        name or a value that no card knows.
         """
         if name not in _COMMANDS:
             raise InputError(f"no command {shown(name)} (there are: {', '.join(_COMMANDS)})")
@@ -172,7 +172,7 @@ class Cards:
     async def configure(self, card: int, config: "CardConfig") -> ConfigurationResult:
         """Send the settings of a configuration that differ from the card's, one by one.
 
-        The first that the card does not take ends it: while it moves, it takes none. Its id stays.
+        The first setting that the card refuses ends it; a card that moves takes none. Its id stays.
         """
         check_card(card)
         if card not in self._cards:
@@ -182,8 +182,8 @@ class Cards:
     async def upload(self, card: int, job: bytes) -> CommandResult:
         """Bring a job file into a card's flash; returns when it is there, or refused.
 
-        Who does not wait any more (cancels) leaves the job in the folder: it is brought when the
-        card comes. A newer job for the card takes its place. InputError if it is no job file.
+        A caller that cancels leaves the job in the folder, and the card gets it when it connects. A
+        newer job for the card takes its place. InputError if it is no job file.
         """
         check_job(job)
         check_card(card)
@@ -203,7 +203,7 @@ class Cards:
     # What lines call.
 
     def met(self, line: CardConnection) -> str:
-        """A connection has come; why it is refused, or nothing."""
+        """Take a new connection; returns why it is refused, or an empty text."""
         if len(self._lines) >= self.limits.connections:
             return f"more than {self.limits.connections} connections"
         pending = (x for x in self._lines if x.open and not x.end.ready)

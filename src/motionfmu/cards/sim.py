@@ -1,6 +1,6 @@
-"""The card itself as a program: the C core in real time, a TCP client as the card is.
+"""Virtual network cards: the card's C core in real time, which connects by TCP as a card does.
 
-Its machine counts pulses; an origin switch stands at a place.
+The machine behind it counts pulses and has an origin switch for each axis.
 """
 
 import asyncio
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     import ssl
 
 FLASH_BYTES = 2_097_152
-ORIGIN = 5000  # [pulses] from where the machine stands at power-up, in the way of homing
+ORIGIN = 5000  # [pulses] from the start position to the origin switch, in homing's direction
 TICK = 0.01  # [s] from one look at the clock to the next
-AHEAD_NS = 1_000_000  # a card answers at once: it may be so far ahead of the clock
+AHEAD_NS = 1_000_000  # a card may be so far ahead of the clock, so that it answers at once
 MOST_NS = 100_000_000  # a card that is later than this does not catch up
 CHUNK = 4096  # [byte]
 UP = 4  # SESSION_UP of src/controllers/netcard/session.h
@@ -56,12 +56,12 @@ class VirtualNetCard:
 
     @property
     def now(self) -> int:
-        """All up to here has happened [ns]."""
+        """Time up to which the card has run [ns]."""
         return int(self._sim["now"])
 
     @property
     def state(self) -> State:
-        """What it does."""
+        """The card's state."""
         return State(self._c.binding_netcard_state(self._sim.pointer))
 
     @property
@@ -207,7 +207,7 @@ class RealTimeRun:
 
 @dataclass(frozen=True)
 class Watch:
-    """What is called while cards run."""
+    """Functions that are called while cards run."""
 
     each: Callable[[], None] = lambda: None  # each second
     failed: Callable[[str], None] = lambda why: None  # a connection did not come about

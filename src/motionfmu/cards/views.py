@@ -1,4 +1,4 @@
-"""What the server of network cards tells: cards, uploads, results of commands, events."""
+"""The states and events that the server of network cards shows to its users."""
 
 import enum
 from collections import deque
@@ -8,7 +8,7 @@ from typing import Any
 from motionfmu.cards import messages
 
 EVENTS_KEPT = 100
-# Kinds of events that come so often that nobody keeps them.
+# Kinds of events that are too frequent to be kept.
 FLEETING = ("status", "progress")
 
 
@@ -87,7 +87,7 @@ class SettingResult:
 
 @dataclass(frozen=True)
 class ConfigurationResult:
-    """How the sending of a configuration ended: that of the first setting that was not done."""
+    """The result of sending a configuration: that of the first setting that failed, if any."""
 
     result: CommandResult
     changed: tuple[SettingResult, ...] = ()  # that differed and were sent
@@ -130,7 +130,7 @@ class CardView:
     events: deque[Event] = field(default_factory=lambda: deque(maxlen=EVENTS_KEPT))
 
     def outline(self) -> dict[str, Any]:
-        """What is told of a card wherever it is told, as JSON has it."""
+        """A card's main values, as JSON, for every place that shows a card."""
         names = ("id", "connected", "address", "state", "job")
         return {n: getattr(self, n) for n in names} | {
             "upload": asdict(self.upload) if self.upload else None

@@ -94,7 +94,7 @@ def _proved(given: bytes, wanted: bytes, whose: str) -> None:
 
 
 class LinkEnd:
-    """What both ends of a connection do: bytes in, messages out, the handshake first."""
+    """What both ends of a connection have in common: the handshake, then messages from bytes."""
 
     def __init__(self, out: int) -> None:
         self.stream = Stream(out)

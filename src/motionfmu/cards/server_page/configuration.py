@@ -34,7 +34,7 @@ class Configuration:
         self.used, self._file, self._values, self._configure = used, file, values, configure
 
     def routes(self) -> list[Route]:
-        """What the page asks for."""
+        """The addresses that the page requests."""
         named = {
             "form": self._form,
             "read": self._read,
@@ -74,7 +74,7 @@ class Configuration:
     async def _save(self, request: Request) -> Response:
         """Use a configuration from now on, and keep it if there is a file.
 
-        Comments of the file that would be lost are told first; with ``?lose`` it is done.
+        If comments of the file would be lost, that is told first, and only ``?lose`` saves it.
         """
         config = await self._good(request)
         text = text_of(config)

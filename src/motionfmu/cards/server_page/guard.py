@@ -1,4 +1,4 @@
-"""Who may talk to the page: this machine's own browser, from this page, with the token."""
+"""Access to the page: only this machine's own browser, from this page, with the token."""
 
 import secrets
 
@@ -7,7 +7,7 @@ from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-# A name that an attacker's page has pointed to this machine is none of these.
+# Names of this machine; a name that an attacker's page has pointed to it is none of them.
 HOSTS = {"127.0.0.1", "localhost", "[::1]"}
 HEADERS = {
     "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; "
@@ -26,14 +26,14 @@ def refused(headers: Headers, tls: bool = False) -> str:
     if host.rsplit(":", 1)[0] not in HOSTS and host not in HOSTS:
         return "this host name is not the page's"
     origin = headers.get("origin")
-    # A browser tells it with every POST and WebSocket; other programs need none.
+    # A browser sends Origin with every POST and WebSocket; other programs need not.
     if origin is not None and origin != f"http{'s' * tls}://{host}":
         return "another page may not do this"
     return ""
 
 
 class CardId(IntegerConvertor):
-    """A card of a path: Python reads no number of thousands of digits."""
+    """The card in a path; its digits are limited, for Python refuses numbers of thousands."""
 
     regex = "[0-9]{1,20}"
 
@@ -42,13 +42,13 @@ register_url_convertor("card", CardId())
 
 
 class Guard:
-    """Refuses what comes from elsewhere, and says what a browser may do with the page."""
+    """Refuses requests from elsewhere, and sets the headers that restrict a browser."""
 
     def __init__(self, app: ASGIApp, token: str) -> None:
         self._app, self._token = app, token
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what is allowed."""
+        """Pass on a request that is allowed."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -75,5 +75,5 @@ class Guard:
 
 
 def same(given: str, wanted: str) -> bool:
-    """Whether two texts are the same, in a time that does not tell how far they are."""
+    """Whether two texts are equal, in a time that does not depend on where they differ."""
     return secrets.compare_digest(given.encode(), wanted.encode())

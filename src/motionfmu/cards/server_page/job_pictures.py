@@ -1,4 +1,4 @@
-"""Jobs that were opened on the page: their bytes, what they draw, how fast."""
+"""Pictures of jobs that were opened on the page: their lines and speeds, beside their bytes."""
 
 import hashlib
 from collections import OrderedDict
@@ -63,7 +63,7 @@ def _planned(
 
 
 def picture(job: Job, data: bytes, name: str) -> dict[str, Any]:
-    """What a job draws, thinned for a screen: places [mm], speed [mm/s], pen, frame of each."""
+    """Points of a job's lines for a screen: position [mm], speed [mm/s], pen and frame of each."""
     scale = np.array([1e3 / p if p else 0.0 for p in job.pulses_per_m])
     places = np.vstack([np.zeros((1, 4)), job.positions * scale])
     steps = np.hypot(*(job.commands * scale)[:, :2].T)
@@ -106,7 +106,7 @@ def pen_down(job: Job, height: np.ndarray) -> np.ndarray:
 
 
 def _kept(places: np.ndarray, down: np.ndarray) -> np.ndarray:
-    """Points of the picture: even along way and turning, and wherever the pen moves."""
+    """Points of the picture: evenly spaced in length and angle, and wherever the pen moves."""
     count = len(places)
     if count <= POINTS:
         return np.arange(count)

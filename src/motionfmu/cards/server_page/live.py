@@ -1,4 +1,4 @@
-"""What changes, as it changes: cards and events to every page that is open."""
+"""Live updates: cards and events are sent to every open page as they change."""
 
 import asyncio
 import json
@@ -40,7 +40,7 @@ class Live:
         try:
             await self._tell(page, queue, closed)
         except (TimeoutError, WebSocketDisconnect, RuntimeError):
-            pass  # it is gone, or takes nothing
+            pass  # the page is gone, or takes nothing
         finally:
             self._open -= 1
             self._cards.unsubscribe(queue)
@@ -69,7 +69,7 @@ class Live:
 
 
 async def _closed(page: WebSocket) -> None:
-    """Wait until a page is closed; what it says is passed over."""
+    """Wait until a page is closed; its messages are ignored."""
     while (await page.receive())["type"] != "websocket.disconnect":
         pass
 

@@ -1,6 +1,7 @@
-"""Opens files in a process of its own: a plan takes seconds, and no command waits for one.
+"""A child process that opens and plans files, because a plan takes seconds and commands must not
+wait for it.
 
-The file goes in behind a line of JSON, the job comes out behind one.
+The file is sent to it behind a line of JSON; the job comes back behind another line.
 """
 
 import asyncio
@@ -18,7 +19,7 @@ from motionfmu.cards.server_page.job_pictures import OpenedJob, opened
 
 
 async def opened_apart(data: bytes, name: str, config: CardConfig | None, page: int) -> OpenedJob:
-    """As `opened`; who does not wait any more ends the process, too."""
+    """As `opened`, in a child process, which ends if the caller cancels."""
     asked = {"name": name, "page": page, "config": config.model_dump() if config else None}
     command, options = child(f"from {__name__} import main; main()")
     process = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE, **options)
@@ -37,7 +38,7 @@ async def opened_apart(data: bytes, name: str, config: CardConfig | None, page: 
 
 
 def answered(request: BinaryIO, answer: BinaryIO) -> None:
-    """The process' part."""
+    """Answer one request in the child process."""
     asked = json.loads(request.readline())
     config = CardConfig.model_validate(asked["config"]) if asked["config"] else None
     try:
@@ -49,7 +50,7 @@ def answered(request: BinaryIO, answer: BinaryIO) -> None:
 
 
 def main() -> None:
-    """Answer one request."""
+    """Answer the request on stdin, with less priority."""
     if hasattr(os, "nice"):
         os.nice(5)
     with contextlib.suppress(BrokenPipeError):

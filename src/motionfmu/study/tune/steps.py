@@ -127,7 +127,7 @@ class DifferenceEquations:
     show: ArrayWithSlopes  # (p, c, c m + n) from its inputs and the state before it to its outputs
 
     def driven(self, u: Array, du: Array | None = None) -> "DrivenEquations":
-        """Drive the system from rest by inputs (m, count) with derivatives (g, m, count), if any."""
+        """Drive the system from rest by inputs (m, count), with derivatives (g, m, count)."""
         inputs = _chunks(u)
         x = scan(self.step.value, self.feed.value @ inputs.T)
         change = self.step.slopes @ x + self.feed.slopes @ inputs.T
