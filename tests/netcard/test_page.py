@@ -245,7 +245,8 @@ def test_files_are_opened_by_a_process_of_their_own(
     def never(*_: object) -> None:
         raise AssertionError("a file was opened by the server itself")
 
-    for name in ("planning.opened", "pictures.opened", "pictures.decode", "pictures.picture"):
+    names = ("opened", "decode", "picture")
+    for name in ("plan_process.opened", *(f"job_pictures.{name}" for name in names)):
         monkeypatch.setattr(f"motionfmu.cards.server_page.{name}", never)
     c = client(fleet, CARD)
     assert c.post("/open?name=a.plt", content=b"PU400,400;PD2000,400;").json()["lines"] == 1

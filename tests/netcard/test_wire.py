@@ -120,7 +120,7 @@ def c_struct(kind: type[m.Message]) -> type[ctypes.Structure]:
 
 
 NAMES = {m.Start: "command", m.Pause: "command", m.Stop: "command", m.Reset: "command"}
-NAMES |= {m.Ping: "token", m.Pong: "token"}
+NAMES |= {m.Ping: "token", m.Pong: "token", m.ResultMessage: "result"}
 
 
 @settings(max_examples=20)

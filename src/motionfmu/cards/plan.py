@@ -5,7 +5,7 @@ import hashlib
 import json
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -96,7 +96,11 @@ def origin(drawing: PltDrawing, config: CardConfig, options: PlanOptions) -> byt
         "corner": motion.corner_angle,
         "pen_output": motion.pen.output,
     }
-    settings |= {"pen": [motion.pen.output, motion.pen.up_level], "options": repr(options)}
+    chosen = ", ".join(f"{f.name}={getattr(options, f.name)!r}" for f in fields(options))
+    settings |= {
+        "pen": [motion.pen.output, motion.pen.up_level],
+        "options": f"Options({chosen})",  # this text must not change, or hashes of old jobs would
+    }
     told = json.dumps(settings, sort_keys=True, default=lambda row: row.tolist())
     return hashlib.sha256(drawing.text + b"\0" + told.encode()).digest()
 
