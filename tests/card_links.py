@@ -14,7 +14,7 @@ from typing import Any
 from soft_card import CardEnd, SoftCard, serve_card
 
 from motionfmu.cards import messages as m
-from motionfmu.cards.line import Limits
+from motionfmu.cards.connection import ConnectionLimits
 from motionfmu.cards.server import Cards
 from motionfmu.cards.sim import FLASH_BYTES
 
@@ -90,7 +90,9 @@ class Bench:
 
 
 @contextlib.asynccontextmanager
-async def bench(limits: Limits | None = None, folder: Path | None = None) -> AsyncIterator[Bench]:
+async def bench(
+    limits: ConnectionLimits | None = None, folder: Path | None = None
+) -> AsyncIterator[Bench]:
     """A server that ends with the block."""
     with tempfile.TemporaryDirectory() as own:
         place = folder or Path(own)

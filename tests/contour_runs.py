@@ -7,8 +7,8 @@ import numpy as np
 from scipy.signal import lfilter
 
 from motionfmu.analysis.contour import ContourInput, Path
-from motionfmu.analysis.contour.geometry import Label, Line, Segment
-from motionfmu.analysis.contour.planned import make_arc
+from motionfmu.analysis.contour.geometry import Label, LineSegment, Segment
+from motionfmu.analysis.contour.planned_geometry import make_arc
 
 Z = (0.0, 0.0, 1.0)
 
@@ -26,7 +26,7 @@ class Program:
 
     def line(self, *end: float, kind: str = "line") -> "Program":
         goal = np.array([*end, self.here[2]][:3])
-        self.segments.append(Line(self._label(kind), self.here, goal))
+        self.segments.append(LineSegment(self._label(kind), self.here, goal))
         self.here = goal
         return self
 

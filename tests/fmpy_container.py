@@ -24,8 +24,8 @@ from fmpy.model_description import (
 import motionfmu
 from motionfmu.run import engines
 from motionfmu.run.engines import lean
-from motionfmu.run.engines.job import Job, Progress, Ran
-from motionfmu.run.engines.scoped import Scoped
+from motionfmu.run.engines.engine_job import EngineJob, EngineResult, Progress
+from motionfmu.run.engines.scopes import ScopeSystem
 from motionfmu.run.engines.slave import Slave, element_names, ending_of
 from motionfmu.scenarios.system import End, System
 
@@ -121,11 +121,11 @@ def _give(slave: Slave, end: End, values: Iterable[Any]) -> None:
 class Container:
     """A container of its own for each run."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: EngineJob) -> None:
         assert {job.system.version(c, job.fmi) for c in job.system.components} == {2}
-        self._scopes = Scoped(job)
+        self._scopes = ScopeSystem(job)
 
-    def run(self, system: System, progress: Progress) -> Ran:
+    def run(self, system: System, progress: Progress) -> EngineResult:
         """Run from the start."""
         system = self._scopes.of(system)
         with ExitStack() as stack:

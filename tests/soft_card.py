@@ -1,4 +1,4 @@
-"""A soft card: the card's end of the protocol and a toy of a card, for tests and load."""
+"""A soft card: the card's end of the protocol with a minimal card behind it, for tests."""
 
 import asyncio
 import contextlib
@@ -8,17 +8,17 @@ import random
 import zlib
 from collections import deque
 
-<from motionfmu.cards import messages as m
+from motionfmu.cards import messages as m
 from motionfmu.cards.views import Code
-from motionfmu.cards.wire import OPEN_KEY, PROTOCOL, TO_PC, End, proof, proved
->
+from motionfmu.cards.wire import OPEN_KEY, PROTOCOL, TO_PC, LinkEnd, proof, proved
+
 CREDIT = 16  # [pages]
 KEPT = 8  # results of commands
 FIRST_WAIT, LAST_WAIT = 0.5, 30.0  # [s] until it connects again
 PING, PINGS = 1.0, 3  # [s] of silence, without an answer
 
 
-class CardEnd(End):
+class CardEnd(LinkEnd):
     """The card's end; HELLO is among its bytes from the start."""
 
     def __init__(self, key: bytes, hello: m.Hello) -> None:
@@ -45,7 +45,7 @@ class CardEnd(End):
 
 
 class SoftCard:
-    """What a card keeps over its connections, and what it answers."""
+    """The state that a card keeps over its connections, and its answers."""
 
     def __init__(self, card: int, key: bytes = OPEN_KEY, credit: int = CREDIT) -> None:
         self.id, self.key, self.credit = card, key, credit
@@ -58,7 +58,7 @@ class SoftCard:
         self.orders: list[m.Message] = []  # every command that was carried out
         self.written = 0  # pages that were taken, those taken again too
         self.settings: dict[tuple[int, int], int] = {}  # by number and index; others are 0
-        self._results: deque[m.Result] = deque(maxlen=KEPT)
+        self._results: deque[m.ResultMessage] = deque(maxlen=KEPT)
 
     def hello(self) -> m.Hello:
         """Its first message of a connection."""
@@ -79,7 +79,7 @@ class SoftCard:
         )
 
     def status(self) -> m.Status:
-        """What it does now."""
+        """The card's present status."""
         return m.Status(
             self.state, 0, 0, 0, 0, 0, 0, (0, 0, 0, 0), 0, 0, (0, 0, 0, 0, 0, 0, 0), 1000, 0
         )
@@ -132,16 +132,16 @@ class SoftCard:
         self.state = m.State.READY
         return Code.DONE
 
-    def _order(self, message: m.Message, number: int) -> m.Result:
+    def _order(self, message: m.Message, number: int) -> m.ResultMessage:
         """Carry out a command, or answer it again."""
         if number <= self.done:
             known = (r for r in self._results if r.number == number)
-            return next(known, m.Result(number, Code.STATE, self.state))
+            return next(known, m.ResultMessage(number, Code.STATE, self.state))
         self.done = number
         code = self._do(message)
         if code == Code.DONE:
             self.orders.append(message)
-        self._results.append(m.Result(number, code, self.state))
+        self._results.append(m.ResultMessage(number, code, self.state))
         return self._results[-1]
 
     def _do(self, message: m.Message) -> int:
@@ -188,7 +188,7 @@ async def _converse(
             writer.write(end.take())
             await writer.drain()
             try:
-                # Not wait_for: in Python 3.11 it may swallow a cancellation.
+                # wait_for is not used, because in Python 3.11 it may swallow a cancellation.
                 async with asyncio.timeout(end.interval / 1000 or PING):
                     data = await reader.read(4096)
                 if not data:

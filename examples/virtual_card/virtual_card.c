@@ -1,5 +1,5 @@
 /* A program of the MCC library on the virtual card: lines and a circle by calls of the API, then a
- * part program. motionfmu.virtual.mcc.example does the same.
+ * part program. motionfmu.virtual.mcc.card_example does the same.
  *
  *     cc -O2 virtual_card.c $(pkg-config --cflags --libs motionfmu-station) -o virtual_card
  *     ./virtual_card part.ngc

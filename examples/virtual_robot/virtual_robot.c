@@ -1,5 +1,5 @@
 /* A program on the virtual robot: moves by calls, one of them refused, then a job in the robot
- * language. motionfmu.virtual.robot.example does the same.
+ * language. motionfmu.virtual.robot.robot_example does the same.
  *
  *     cc -O2 virtual_robot.c $(pkg-config --cflags --libs motionfmu-robot_station) -o virtual_robot
  *     ./virtual_robot plate.job plate.points

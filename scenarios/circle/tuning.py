@@ -19,8 +19,8 @@ from rich.progress import track
 import motionfmu
 from motionfmu.study.tune import Tuned, problem, tune
 from motionfmu.study.tune.curve import margin
-from motionfmu.study.tune.result import settings
-from motionfmu.study.tune.study import Study
+from motionfmu.study.tune.tuning_functions import TuningFunctions
+from motionfmu.study.tune.tuning_result import settings
 
 HERE = Path(__file__).parent
 PROGRAMS = ("circle", "square", "lookahead")
@@ -51,7 +51,7 @@ RULES = {
 }
 
 
-def limits_of(study: Study) -> dict[str, object]:
+def limits_of(study: TuningFunctions) -> dict[str, object]:
     """Limits that the present gains just keep."""
     worst = {"sensitivity": 1.0, "gain": math.inf, "phase": 180.0}
     over, slow, gains = OVERSHOOT, 0.0, study.gains(study.present)
@@ -80,7 +80,7 @@ def compared(program: str, gains: dict[str, float]) -> Tuned:
     """Tune with the margins of a rule, from the rule's gains."""
     scenario = motionfmu.load(HERE.parent / program)
     asked = {"velocity": True, "axes": "equal", "family": FAMILY, "starts": 1, "check": 0}
-    study = Study(scenario, problem(asked), scenario.run(set=gains), gains)
+    study = TuningFunctions(scenario, problem(asked), scenario.run(set=gains), gains)
     limits = limits_of(study)
     return tune(scenario, {**asked, "limits": limits}, gains)
 
@@ -143,7 +143,7 @@ def brute() -> None:
         print(f"  brute force {cost * 1e3:.4f} µm, {seconds:.1f} s, {count} points: {off:+.3%}")
 
 
-def _grid(study: Study, points: int, rounds: int) -> tuple[float, float, int]:
+def _grid(study: TuningFunctions, points: int, rounds: int) -> tuple[float, float, int]:
     begun, n = time.perf_counter(), len(study.variables)
     low, high = np.zeros(n), np.ones(n)
     cost, done = math.inf, 0

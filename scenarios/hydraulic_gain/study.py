@@ -24,7 +24,7 @@ from rich.progress import track
 
 import motionfmu
 from motionfmu.analysis import linear
-from motionfmu.analysis.freq.limit import Trial, simulated_gain
+from motionfmu.analysis.freq.limit import RingingTest, simulated_gain
 from motionfmu.analysis.linear import largest_gain
 
 HERE = Path(__file__).parent
@@ -116,7 +116,7 @@ def measure(loop: str, damped: tuple[float, float]) -> Row:
     axis = axis_of(loop, damped, **FINE)
     kp, (omega, damping) = gain_of(axis), resonance(axis)
     limit = largest_gain(axis, SCALE)
-    rung = simulated_gain(axis, (SCALE, ()), Trial(KICK, 20))
+    rung = simulated_gain(axis, (SCALE, ()), RingingTest(KICK, 20))
     return Row(loop, damping, omega, kp * limit.gain, limit.omega, kp * rung.gain)
 
 

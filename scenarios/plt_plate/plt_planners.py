@@ -18,8 +18,8 @@ import study as least  # noqa: E402
 
 from motionfmu.cards import load, plt  # noqa: E402
 from motionfmu.cards.contours import clean  # noqa: E402
-from motionfmu.cards.figures import figures  # noqa: E402
 from motionfmu.cards.plan import plan  # noqa: E402
+from motionfmu.cards.plan_figures import figures  # noqa: E402
 
 UNITS = 40  # of the plotter in a mm
 RANGE = 1e4  # [mm] of the axes, as the shapes lie anywhere

@@ -18,8 +18,8 @@ from scipy.optimize import minimize
 import motionfmu
 from motionfmu.analysis import linear
 from motionfmu.analysis.linear import AxisModel
-from motionfmu.analysis.linear.opened import linearised, matrices
 from motionfmu.analysis.linear.stability import closed_poles, margins, moving
+from motionfmu.analysis.linear.tuning_parts import linearised, matrices
 
 HERE = Path(__file__).parent
 # Pen down at the middle of the line; arm nearly straight; forearm folded back.

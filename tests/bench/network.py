@@ -8,7 +8,7 @@ from card_links import flash_with
 from motionfmu.cards import plt
 from motionfmu.cards.config import read
 from motionfmu.cards.plan import plan
-from motionfmu.cards.sim import VirtualCard
+from motionfmu.cards.sim import VirtualNetCard
 
 SEGMENTS = 100_000
 CARDS = 100
@@ -49,7 +49,7 @@ class Network:
         self.parse = min(self.parse, (parsed - start) / SEGMENTS)
         self.plan = min(self.plan, (planned - parsed) / SEGMENTS)
         actions, deaf = [1] + [0] * 15, [0] * 16
-        card = VirtualCard(1, flash=flash_with(job), in_action=actions, in_debounce_us=deaf)
+        card = VirtualNetCard(1, flash=flash_with(job), in_action=actions, in_debounce_us=deaf)
         card.set_inputs(1)
         card.run(500_000_000)
         begin, at = time.process_time(), card.now

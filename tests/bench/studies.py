@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from motionfmu.study import processes
-from motionfmu.study.study import Study as Chosen
+from motionfmu.study.study_definition import Study as Chosen
 from motionfmu.sweep import Ways, conduct, study
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"

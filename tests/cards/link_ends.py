@@ -103,7 +103,7 @@ class Card(Stream):
                 if given not in self.done:
                     self.order.append(kind)
                 self.done[given] = self.done.get(given, 0) + 1
-                self.end.send(m.Result(given, 0, 1))
+                self.end.send(m.ResultMessage(given, 0, 1))
             if isinstance(message, m.JobBegin | m.JobData | m.JobEnd):
                 self.end.send(m.Ack(number, 16, self.missing()))
         self.out += self.end.take()

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from motionfmu.base.units import spelled
 from motionfmu.cards import messages as m
-from motionfmu.cards.job import Event, Job, encode
+from motionfmu.cards.job import FrameEvent, Job, encode
 from motionfmu.cards.keys import OPEN_KEY
 from motionfmu.cards.wire import PcEnd
 
@@ -45,7 +45,7 @@ def job_of(frames: int, top: int = 100) -> Job:
         mask=3,
         commands=commands,
         frame_events=events,
-        events=[Event(pins=0x11, pulse=False, level=1)],
+        events=[FrameEvent(pins=0x11, pulse=False, level=1)],
         speed_max=(1000 * top,) * 4,
         acc_max=(2000000,) * 4,
         jerk_max=(200000000,) * 4,
@@ -269,7 +269,7 @@ def test_a_job_comes_over_the_link_in_two_pieces_of_a_state() -> None:
     cable.end.send(m.JobEnd(zlib.crc32(file)))
     cable.wait(m.Ack, 5000)
     cable.end.send(m.Start(cable.end.hello.done + 1))
-    result = cable.wait(m.Result)
+    result = cable.wait(m.ResultMessage)
     assert (result.code, result.state) == (0, RUNNING)
     while other.get("state") != READY:
         cable.step()

@@ -144,7 +144,7 @@ def test_a_scenarios_name_is_an_identifier() -> None:
 def test_without_a_compiler_the_way_that_needs_none_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sys.modules["motionfmu.fused.program"], "compiler", lambda: None)
+    monkeypatch.setattr(sys.modules["motionfmu.fused.fused_program"], "compiler", lambda: None)
     demo = motionfmu.load(ROOT / "scenarios/circle")
     with pytest.raises(motionfmu.InputError, match=r"be one FMU: .* an SSP needs none"):
         export(demo, tmp_path / "x.fmu", 3, {})

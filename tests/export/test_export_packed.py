@@ -14,7 +14,7 @@ from fmpy import read_model_description, simulate_fmu
 import motionfmu
 from motionfmu.analysis.gcode import read
 from motionfmu.base.errors import InputError
-from motionfmu.export.packed import packed
+from motionfmu.export.single_fmu import packed
 from motionfmu.export.system_fmu import as_fmu as export
 
 both = pytest.mark.parametrize("fmi", (2, 3))

@@ -20,7 +20,7 @@ from motionfmu import cli
 from motionfmu.base.errors import InputError
 from motionfmu.export import as_ssp, system_ssp
 from motionfmu.export.stimuli import stimuli
-from motionfmu.run.prepared import Options
+from motionfmu.run.run_plan import Options
 
 SCENARIOS = sorted(p.parent.name for p in (ROOT / "scenarios").glob("*/scenario.toml"))
 STOP, STEP = 0.06, 1e-4  # [s]

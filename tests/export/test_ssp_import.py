@@ -16,7 +16,7 @@ import motionfmu
 from motionfmu import cli
 from motionfmu.base.errors import InputError
 from motionfmu.export import as_ssp
-from motionfmu.ssp.imported import take
+from motionfmu.ssp.ssp_import import take
 
 HEAD = """<ssd:SystemStructureDescription version="1.0" name="two" description="Two parts"
   xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription"

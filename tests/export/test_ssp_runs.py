@@ -11,7 +11,7 @@ import motionfmu
 from motionfmu.export import as_ssp
 from motionfmu.export.stimuli import stimuli
 from motionfmu.run import Options
-from motionfmu.ssp.imported import take
+from motionfmu.ssp.ssp_import import take
 
 STEPS = 120  # of each run
 # What each scenario has that the others have not: wires of arrays and a part program; driven

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 import motionfmu
 from motionfmu.run.engines import lean
 from motionfmu.run.engines.slave import Slave
-from motionfmu.run.prepared import Options
+from motionfmu.run.run_plan import Options
 from motionfmu.scenarios.fmus import fmu_names, fmu_path
 
 ROOT = Path(__file__).parents[2]

@@ -19,9 +19,9 @@ from PIL import Image
 import motionfmu
 from motionfmu.base import units
 from motionfmu.export.system_fmu import as_fmu as export
+from motionfmu.fmu.documentation import icon_of, joined, page, png
 from motionfmu.fmu.fmu_toml import parse
 from motionfmu.fmu.modeldescription import model_description
-from motionfmu.fmu.shown import icon_of, joined, page, png
 from motionfmu.scenarios.fmus import fmu_names, fmu_path, ports, terminals_of
 
 every_fmu = pytest.mark.parametrize("name", fmu_names())
@@ -187,7 +187,7 @@ def test_what_goes_together_has_types_shapes_units_and_directions_that_do() -> N
 
 def test_terminals_are_the_bundles_that_scenarios_connect() -> None:
     """Joined by their terminals, the demo's FMUs have the wires that its scenario lists."""
-    system = motionfmu.load(ROOT / "scenarios/circle").resolved(motionfmu.run.prepared.Options())
+    system = motionfmu.load(ROOT / "scenarios/circle").resolved(motionfmu.run.run_plan.Options())
     fmu = system.components
     listed = {
         frozenset((f"{fmu[e.component]}.{e.port.name}") for e in (w.source, w.target))

@@ -15,8 +15,8 @@ from fmi_tools import ERROR, OK, Instance, unpacked
 
 import motionfmu
 from motionfmu import fused
-from motionfmu.fused import parts
-from motionfmu.run.prepared import Options
+from motionfmu.fused import fmu_parts
+from motionfmu.run.run_plan import Options
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import End, System
 
@@ -59,7 +59,7 @@ def system_of(tables: dict[str, Any]) -> tuple[System, list[End]]:
     return scenario.resolved(Options()), scenario.ends
 
 
-def packed(program: fused.Program, target: Path) -> None:
+def packed(program: fused.FusedProgram, target: Path) -> None:
     with zipfile.ZipFile(target, "w") as archive:
         for file in sorted(f for f in program.folder.rglob("*") if f.is_file()):
             archive.write(file, file.relative_to(program.folder))
@@ -301,7 +301,7 @@ def test_a_program_depends_on_structure_only(monkeypatch: pytest.MonkeyPatch) ->
         made.append(key)
         return Path(key)
 
-    monkeypatch.setattr("motionfmu.base.kept.kept", kept)
+    monkeypatch.setattr("motionfmu.base.disk_cache.kept", kept)
     changes: list[dict[str, Any]] = [
         {},
         {"set": {"one.loop_period": 2e-4}},
@@ -321,14 +321,14 @@ def test_an_fmu_without_a_part_for_this_machine_is_compiled(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("MOTIONFMU_FMUS")
-    own = parts.part("servo_drives")
+    own = fmu_parts.part("servo_drives")
     with zipfile.ZipFile(fmus.fmu_path("servo_drives")) as whole:
         files = {n: whole.read(n) for n in whole.namelist() if not n.endswith(".o")}
     monkeypatch.setenv("MOTIONFMU_FMUS", str(tmp_path))
     with zipfile.ZipFile(tmp_path / "servo_drives.fmi3.fmu", "w") as less:
         for name, data in files.items():
             less.writestr(name, data)
-    made = parts.part("servo_drives")
+    made = fmu_parts.part("servo_drives")
     assert (made.identifier, made.size, made.room) == (own.identifier, own.size, own.room)
     (tmp_path / "part.o").write_bytes(made.code)
     line = ["nm", "-g", "--defined-only", tmp_path / "part.o"]
@@ -340,4 +340,4 @@ def test_an_fmu_without_a_part_for_this_machine_is_compiled(
             if not name.startswith("sources/"):
                 foreign.writestr(name, data)
     with pytest.raises(fused.NotFused, match="foreign carries no part"):
-        parts.part("foreign")
+        fmu_parts.part("foreign")

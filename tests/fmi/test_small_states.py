@@ -11,7 +11,7 @@ from fmi_tools import OK, Instance, start_values
 import motionfmu
 from motionfmu import fused
 from motionfmu.fused import layer
-from motionfmu.run.prepared import Options
+from motionfmu.run.run_plan import Options
 from motionfmu.scenarios.fmus import fmu_names
 
 ROOT = Path(__file__).parents[2]

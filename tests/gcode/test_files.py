@@ -15,12 +15,12 @@ from typer.testing import CliRunner
 
 import motionfmu
 from motionfmu.analysis.gcode import Program, read
-from motionfmu.analysis.gcode.called import called
 from motionfmu.analysis.gcode.program import Texts, _reader
+from motionfmu.analysis.gcode.subprogram_files import called
 from motionfmu.base.errors import InputError
 from motionfmu.cli import app
-from motionfmu.export.packed import packed
 from motionfmu.export.resources import Resources
+from motionfmu.export.single_fmu import packed
 from motionfmu.fmu.places import RESOURCE
 from motionfmu.virtual.mcc import Mcc, VirtualCard
 from motionfmu.virtual.robot import RobotError, VirtualRobot

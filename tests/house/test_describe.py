@@ -183,7 +183,7 @@ def test_equal_input_packs_equal_bytes(fmi: int, tmp_path: Path) -> None:
     with zipfile.ZipFile(source) as z:
         library = next(n for n in z.namelist() if n.startswith("binaries/"))
         (tmp_path / "scope.so").write_bytes(z.read(library))
-    compiled = pack.Compiled({here(): tmp_path / "scope.so"}, ROOT / "build/parts/scope.o")
+    compiled = pack.CompilerOutput({here(): tmp_path / "scope.so"}, ROOT / "build/parts/scope.o")
     pack.generate(ROOT / "fmus/scope", tmp_path / "gen")
     target = tmp_path / "again.fmu"
     pack.archive(ROOT / "fmus/scope", tmp_path / "gen", fmi, compiled, target)

@@ -14,8 +14,8 @@ import motionfmu
 
 # Core and program of each example, its package, its inputs.
 EXAMPLES = [
-    ("station", "virtual_card", "mcc", ["part.ngc"]),
-    ("robot_station", "virtual_robot", "robot", ["plate.job", "plate.points"]),
+    ("station", "virtual_card", "mcc.card_example", ["part.ngc"]),
+    ("robot_station", "virtual_robot", "robot.robot_example", ["plate.job", "plate.points"]),
 ]
 CMAKE = Path(sys.executable).parent / "cmake"
 
@@ -55,14 +55,12 @@ def build_line(source: Path, prefix: Path) -> str:
 
 def printed(example: tuple[str, str, str, list[str]], prefix: Path, folder: Path) -> str:
     """What both programs print."""
-    core, name, package, inputs = example
+    core, name, module, inputs = example
     project = copied(name, folder)
     line = build_line(project / f"{name}.c", prefix)
     assert line in (project / "README.md").read_text() and f"motionfmu-{core})" in line
     in_c = output(project / name, *inputs, cwd=project)
-    assert in_c == output(
-        sys.executable, "-m", f"motionfmu.virtual.{package}.example", *inputs, cwd=project
-    )
+    assert in_c == output(sys.executable, "-m", f"motionfmu.virtual.{module}", *inputs, cwd=project)
     return in_c
 
 

@@ -24,7 +24,7 @@ from motionfmu import sweep
 from motionfmu.base.errors import InputError
 from motionfmu.cli.common import settings as gains
 from motionfmu.fmu import fmu_toml
-from motionfmu.fmu.modelica import description
+from motionfmu.fmu.modelica import class_description
 from motionfmu.run.engines.slave import Slave
 from motionfmu.scenarios.fmus import fmu_path
 from motionfmu.study import tune
@@ -116,7 +116,7 @@ def test_a_plants_description_is_read_or_refused(tmp_path: Path) -> None:
 
     def body(text: str) -> Any:
         file.write_bytes(text.encode(errors="surrogatepass"))
-        found = answer(description.read, file)
+        found = answer(class_description.read, file)
         assert found is None or found.instances >= 1
         return found
 

@@ -55,7 +55,11 @@ def test_a_new_fmu_builds_and_passes_what_every_fmu_must(project: Path) -> None:
             [*line.split(), *places, *units, "-ffp-contract=off", "-o", library, "-lm"], check=True
         )
         pack.archive(
-            source, gen, fmi, pack.Compiled({here(): library}, part), built / f"{NAME}.fmi{fmi}.fmu"
+            source,
+            gen,
+            fmi,
+            pack.CompilerOutput({here(): library}, part),
+            built / f"{NAME}.fmi{fmi}.fmu",
         )
     for fmu in FMUS.glob("scope.*"):
         shutil.copy(fmu, built)

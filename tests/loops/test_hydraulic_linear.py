@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 
 from motionfmu import InputError
 from motionfmu.analysis import freq, linear
-from motionfmu.analysis.freq.limit import Trial, simulated_gain, usual_kick
+from motionfmu.analysis.freq.limit import RingingTest, simulated_gain, usual_kick
+from motionfmu.analysis.freq.loop_study import LoopStudyOptions, study
 from motionfmu.analysis.freq.response import fastest
-from motionfmu.analysis.freq.study import Asked, study
 from motionfmu.analysis.linear.loops import feedbacks, largest_gain
 from motionfmu.analysis.linear.stability import margins
 from motionfmu.cli import app
@@ -77,7 +77,7 @@ def test_largest_gain_by_poles_and_by_ringing(case: str) -> None:
     axis = model(**(LATE if case == "late" else CASES[case]))
     assert feedbacks(axis) == {SCALE: ()}
     expected = largest_gain(axis, SCALE)
-    found = simulated_gain(axis, (SCALE, ()), Trial(usual_kick(axis, SCALE), 20))
+    found = simulated_gain(axis, (SCALE, ()), RingingTest(usual_kick(axis, SCALE), 20))
     assert found.gain == pytest.approx(expected.gain, rel=0.02)
     assert found.omega == pytest.approx(expected.omega, rel=0.06)
 
@@ -120,7 +120,7 @@ def test_an_input_is_not_moved_faster_than_it_is_followed() -> None:
 
 def test_fmus_that_would_lose_edges_are_not_run() -> None:
     """50 mm/s are 10,000 counts/s, and ten times that with the gain at its limit on the wire."""
-    (only,) = study(model(controller__timer_cycles=400), Asked())
+    (only,) = study(model(controller__timer_cycles=400), LoopStudyOptions())
     assert only.simulated is None and only.measured is None
     assert "faster than its FMU follows" in only.silent
 

@@ -14,8 +14,8 @@ from robot_arm import EXACT, Arm, Pinocchio
 from motionfmu.analysis import freq, linear
 from motionfmu.analysis.freq.shape import small
 from motionfmu.analysis.linear.loops import feedbacks
-from motionfmu.analysis.linear.opened import linearised
 from motionfmu.analysis.linear.stability import margins, response
+from motionfmu.analysis.linear.tuning_parts import linearised
 from motionfmu.base.errors import InputError
 
 LINE = Path(__file__).resolve().parents[2] / "scenarios" / "robot_line"

@@ -12,7 +12,7 @@ from fmi_tools import OK, Instance
 
 from motionfmu.analysis.linear import law
 from motionfmu.analysis.linear.block import Sampled, reaches
-from motionfmu.analysis.linear.form import Form, evaluate
+from motionfmu.analysis.linear.linear_form import Form, evaluate
 from motionfmu.scenarios import fmus
 
 LAWS = sorted(p.parent.name for p in ROOT.glob("fmus/*/linear.toml"))
@@ -68,7 +68,7 @@ def set_up(
         values |= {said.period: rng.choice([1e-4, 5e-5, 2e-4])}
         try:
             block = law.block(said, values)
-        except law.Refused:
+        except law.LawRefusal:
             continue
         if any(law.number(said, values, formula) for formula in said.worst):
             continue

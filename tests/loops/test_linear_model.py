@@ -15,8 +15,8 @@ from motionfmu.analysis.linear import law
 from motionfmu.analysis.linear.block import Plant
 from motionfmu.analysis.linear.loops import feedbacks, largest_gain
 from motionfmu.analysis.linear.stability import margins
-from motionfmu.analysis.linear.systems import System
-from motionfmu.fmu.modelica import causal, description
+from motionfmu.analysis.linear.systems import StandstillSystem
+from motionfmu.fmu.modelica import causal, class_description
 from motionfmu.fmu.modelica.ode import Ode
 
 T = 1e-4  # [s] sampling period of card and drives
@@ -275,9 +275,9 @@ def test_poles_at_one_that_matter() -> None:
     b, c = np.array([[1.0], [0], [0], [1]]), np.array([[-2.0, 0, 0, 0], [0, 3, 0, 0], [0, 0, 1, 1]])
     change = np.random.default_rng(4).normal(size=(4, 4))
     turned = change @ a @ np.linalg.inv(change), change @ b, c @ np.linalg.inv(change)
-    found = System(*turned, np.zeros((3, 1)), 1e-3).dcgain()[:, 0]
+    found = StandstillSystem(*turned, np.zeros((3, 1)), 1e-3).dcgain()[:, 0]
     assert found[:2].tolist() == [-math.inf, math.inf] and found[2] == pytest.approx(2.0)
-    assert System(a, b, c[2], [[1.0]], 1e-3).dcgain() == pytest.approx(3.0)
+    assert StandstillSystem(a, b, c[2], [[1.0]], 1e-3).dcgain() == pytest.approx(3.0)
 
 
 def test_a_changed_gain_keeps_the_plant() -> None:
@@ -295,7 +295,7 @@ def test_a_changed_gain_keeps_the_plant() -> None:
 def test_an_fmu_carries_the_equation_of_its_class(name: str) -> None:
     carried = law.carried(name)
     assert isinstance(carried, Ode)
-    packing = description.read(ROOT / "fmus" / name / "fmu.toml")
+    packing = class_description.read(ROOT / "fmus" / name / "fmu.toml")
     fresh = causal.load(packing.package, packing.modelica)
     assert [d.name for d in carried.states] == [d.name for d in fresh.states]
     assert carried.p0 == fresh.p0 and carried.limits == fresh.limits

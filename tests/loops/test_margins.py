@@ -15,8 +15,8 @@ import motionfmu
 from motionfmu import InputError
 from motionfmu.analysis import freq, linear
 from motionfmu.analysis.freq import limit
-from motionfmu.analysis.freq.limit import Trial, simulated_gain, small_signal_gain, usual_kick
-from motionfmu.analysis.freq.study import Asked, study
+from motionfmu.analysis.freq.limit import RingingTest, simulated_gain, small_signal_gain, usual_kick
+from motionfmu.analysis.freq.loop_study import LoopStudyOptions, study
 from motionfmu.analysis.linear.loops import Limit, boundary, feedbacks, largest_gain
 from motionfmu.analysis.linear.stability import closed_poles, margins
 from motionfmu.cli import app
@@ -163,7 +163,7 @@ def test_largest_gain_by_poles_and_by_ringing(case) -> None:
     model = linear.model(scenario, axis, at, set_)
     cut = feedbacks(model)[loop]
     expected = largest_gain(model, loop, cut, gain)
-    found = simulated_gain(model, (loop, cut), Trial(usual_kick(model, loop, cut), 20), gain)
+    found = simulated_gain(model, (loop, cut), RingingTest(usual_kick(model, loop, cut), 20), gain)
     assert found.gain == pytest.approx(expected.gain, rel=0.02)
     assert found.omega == pytest.approx(expected.omega, rel=0.06)
     assert found.evaluations > 1
@@ -175,7 +175,7 @@ def test_the_ringing_does_not_follow_the_linear_model_blindly(monkeypatch) -> No
     right = largest_gain(model, ENC)
     wrong = Limit(1.4 * right.gain, right.omega, 0)
     monkeypatch.setattr(limit, "largest_gain", lambda *_: wrong)
-    found = simulated_gain(model, (ENC, ()), Trial(50.0, 20))
+    found = simulated_gain(model, (ENC, ()), RingingTest(50.0, 20))
     assert found.gain == pytest.approx(right.gain, rel=0.02)
 
 
@@ -264,9 +264,11 @@ def test_the_operating_point_is_the_programs_and_told_first(tmp_path: Path) -> N
 )
 def test_the_running_fmus_do_what_the_model_says(scenario, axis, at, monkeypatch) -> None:
     """No limit is reached, nothing turns back or comes loose: within 2 % and 2 degrees."""
-    monkeypatch.setattr("motionfmu.analysis.freq.study.small_signal_gain", lambda *_: (None, 0.0))
+    monkeypatch.setattr(
+        "motionfmu.analysis.freq.loop_study.small_signal_gain", lambda *_: (None, 0.0)
+    )
     model = linear.model(scenario, axis, at)
-    found = study(model, Asked())
+    found = study(model, LoopStudyOptions())
     assert [s.at for s in found] == list(feedbacks(model))
     for s in found:
         assert s.measured is not None and s.difference is not None
@@ -300,7 +302,7 @@ def test_fmus_that_are_not_linear_are_told_of(peak, told, tmp_path, monkeypatch)
     def large(axis, loop, size, kick) -> freq.Excitation:
         return freq.multisine(*size, peak)
 
-    monkeypatch.setattr("motionfmu.analysis.freq.study.small", large)
+    monkeypatch.setattr("motionfmu.analysis.freq.loop_study.small", large)
     at, set_ = "machine.motor_speed=0.5", "drives.torque_limit=1"
     done = run(
         DEMO, "--loop", PHASE, "--at", at, "--set", set_, "--out", tmp_path / "out", "--kick", 0.05

@@ -19,13 +19,13 @@ from motionfmu.base.errors import InputError
 from motionfmu.cli.common import settings
 from motionfmu.run import Options
 from motionfmu.study.tune import RanAway, Tuned, choice, problem, tune
-from motionfmu.study.tune.axis import AxisStudy, Signals
-from motionfmu.study.tune.choice import Variable
+from motionfmu.study.tune.axis_study import AxisStudy, Signals
+from motionfmu.study.tune.choice import DecisionVariable
 from motionfmu.study.tune.curve import Loop, margin
 from motionfmu.study.tune.solve import solve
-from motionfmu.study.tune.steps import Sloped, lifted, system
-from motionfmu.study.tune.study import Study, Values
-from motionfmu.study.tune.words import assumptions
+from motionfmu.study.tune.steps import ArrayWithSlopes, lifted, system
+from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
+from motionfmu.study.tune.tuning_words import assumptions
 
 GAINS = ["mcc.p_gain", "drives.velocity_gain", "drives.velocity_time"]
 SIGNALS = Signals("card.pulses", "machine.table_position", ("drives.torque", "card.dac"))
@@ -58,12 +58,12 @@ def differences(function: Any, at: np.ndarray) -> np.ndarray:
     return np.array(rows)
 
 
-def stepped(gain: int, tau: float) -> tuple[Study, Values]:
+def stepped(gain: int, tau: float) -> tuple[TuningFunctions, CostAndLimits]:
     """ISE of both axes of the loop of theory at a gain."""
     chosen = {"machine.tau": tau}
     asked = problem({"cost": "ise", "bounds": {"mcc.p_gain": [50, 8000]}})
     loaded = motionfmu.load(THEORY)
-    study = Study(loaded, asked, loaded.run(set=chosen), chosen)
+    study = TuningFunctions(loaded, asked, loaded.run(set=chosen), chosen)
     return study, study.values(np.array([v.share(gain) for v in study.variables]), False)
 
 
@@ -72,12 +72,12 @@ def agree(slopes: np.ndarray, expected: np.ndarray, share: float) -> None:
     assert np.abs(slopes - expected).max() <= share * scale, (slopes, expected)
 
 
-def random_system(at: float, rate: bool) -> tuple[Sloped, ...]:
+def random_system(at: float, rate: bool) -> tuple[ArrayWithSlopes, ...]:
     """A, B, C, D of five states, two inputs, three outputs, along a line of one gain."""
     draw, found = np.random.default_rng(1), []
     for shape, size in (((5, 5), 0.3), ((5, 2), 1.0), ((3, 5), 1.0), ((3, 2), 1.0)):
         first, then = size * draw.normal(size=shape), 0.1 * draw.normal(size=(1, *shape))
-        found.append(Sloped(first + at * then[0], then if rate else then[:0]))
+        found.append(ArrayWithSlopes(first + at * then[0], then if rate else then[:0]))
     return tuple(found)
 
 
@@ -111,7 +111,7 @@ def test_periods_together_are_the_plain_recursion(periods: int) -> None:
     """Their input goes straight from sample to sample; slopes are differences."""
     u, count = np.cumsum(np.random.default_rng(3).normal(size=(2, 41)), axis=1), 41
 
-    def along(at: float, rate: bool) -> tuple[Sloped, ...]:
+    def along(at: float, rate: bool) -> tuple[ArrayWithSlopes, ...]:
         return lifted(*random_system(at, rate)[:2], periods)
 
     a, b = (m.value for m in random_system(0.0, False)[:2])
@@ -204,7 +204,7 @@ def test_a_circle_has_the_radius_of_theory() -> None:
 
 
 def test_nearest_points_are_those_of_the_contour_analysis(base: motionfmu.Result) -> None:
-    study = Study(motionfmu.load(DEMO), problem({}), base)
+    study = TuningFunctions(motionfmu.load(DEMO), problem({}), base)
     contour, stride = base.contour(), slice(None, None, 10)
     table = base["machine.table_position"]
     error = study.path.error({k: table[stride, k - 1] - table[0, k - 1] for k in (1, 2)})
@@ -243,7 +243,7 @@ def test_what_a_scenario_records_changes_no_gain(tuned: Tuned) -> None:
     for one, other in zip(again.before + again.after, tuned.before + tuned.after, strict=True):
         assert one.fmus.values.tobytes() == other.fmus.values.tobytes()
     with pytest.raises(InputError, match="needs each step of its run, not one of 7: every = 1"):
-        Study(sparse, problem({}), sparse.run())
+        TuningFunctions(sparse, problem({}), sparse.run())
 
 
 def test_the_demo_is_as_good_as_brute_force(tuned: Tuned) -> None:
@@ -294,7 +294,7 @@ def test_a_family_is_held_at_every_corner(base: motionfmu.Result, tuned: Tuned) 
     asked = {"axes": "equal", "starts": 1, "check": 0}
     alone = tuned.found
     ranges = {"machine.table_mass": [50.0, 250.0]}
-    study = Study(motionfmu.load(DEMO), problem({**asked, "family": ranges}), base)
+    study = TuningFunctions(motionfmu.load(DEMO), problem({**asked, "family": ranges}), base)
     found = solve(study)
     assert study.plants == [{}, {"machine.table_mass": 50.0}, {"machine.table_mass": 250.0}]
     assert found.values.feasible() and len(found.values.costs) == 3
@@ -310,7 +310,7 @@ class Formula:
     def __init__(self, cost: Any, bounds: tuple[float, float], limit: float = math.inf) -> None:
         self.cost, self.limit = cost, limit
         self.variables = [
-            Variable("card.gain", (1,), *bounds, math.sqrt(bounds[0] * bounds[1]), False)
+            DecisionVariable("card.gain", (1,), *bounds, math.sqrt(bounds[0] * bounds[1]), False)
         ]
         self.names, self.plants, self.evaluations = ["card.gain"], [{}], 0
         self.limits = [SimpleNamespace(what="largest gain", axis=1, plant=0)]
@@ -318,7 +318,7 @@ class Formula:
         self.scenario = SimpleNamespace(document=SimpleNamespace(file="formula.toml"))
         self.present = np.array([0.5])
 
-    def values(self, z: np.ndarray, slopes: bool = True) -> Values:
+    def values(self, z: np.ndarray, slopes: bool = True) -> CostAndLimits:
         self.evaluations += 1
         variable = self.variables[0]
         k = variable.value(float(z[0]))
@@ -326,9 +326,9 @@ class Formula:
         slope = variable.slope(k)
         slack = np.array([1.0 - k / self.limit])
         room = np.array([[-slope / self.limit]])
-        return Values(np.array([self.cost(k)]), slack, np.array([[rate * slope]]), room)
+        return CostAndLimits(np.array([self.cost(k)]), slack, np.array([[rate * slope]]), room)
 
-    def rough(self, z: np.ndarray) -> Values:
+    def rough(self, z: np.ndarray) -> CostAndLimits:
         return self.values(z, False)
 
 
@@ -439,7 +439,7 @@ def test_a_wrong_name_or_value_gets_one_message(
     base: motionfmu.Result, asked: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(InputError, match=message):
-        Study(motionfmu.load(DEMO), problem(asked), base)
+        TuningFunctions(motionfmu.load(DEMO), problem(asked), base)
 
 
 def test_limits_that_nothing_keeps_are_told() -> None:

@@ -13,8 +13,8 @@ from motionfmu.analysis.linear.parts import equation
 from motionfmu.analysis.linear.pointwise import Pointwise, Quick
 from motionfmu.study.tune import problem, solve
 from motionfmu.study.tune.curve import Loop
-from motionfmu.study.tune.path import PathCost
-from motionfmu.study.tune.study import Study, Values
+from motionfmu.study.tune.path_error import PathCost
+from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
 
 PLANTS = [
     f.parent.name for f in sorted((ROOT / "fmus").glob("*/fmu.toml")) if "modelica" in f.read_text()
@@ -22,9 +22,9 @@ PLANTS = [
 
 
 @pytest.fixture(scope="module")
-def study() -> Study:
+def study() -> TuningFunctions:
     scenario = motionfmu.load(DEMO)
-    return Study(scenario, problem({"velocity": True}), scenario.run())
+    return TuningFunctions(scenario, problem({"velocity": True}), scenario.run())
 
 
 @pytest.mark.parametrize("plant", PLANTS)
@@ -72,7 +72,7 @@ def test_a_quick_call_has_the_bits_of_a_plain_one() -> None:
         assert found.shape == plain.shape and (found == plain.full()).all()
 
 
-def test_a_loop_at_many_frequencies_is_that_at_one(study: Study) -> None:
+def test_a_loop_at_many_frequencies_is_that_at_one(study: TuningFunctions) -> None:
     part, gains = study.parts[0][1], study.gains(study.present)[1]
     for name in part.loops:
         loop: Loop = part.loop(name, gains)
@@ -84,7 +84,7 @@ def test_a_loop_at_many_frequencies_is_that_at_one(study: Study) -> None:
 
 
 def test_axes_alike_share_what_they_need_not_compute_twice(
-    study: Study, monkeypatch: pytest.MonkeyPatch
+    study: TuningFunctions, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     one, two = study.axes.values()
     assert one.alike(two) and study.parts[0][1] is study.parts[0][2]
@@ -94,7 +94,7 @@ def test_axes_alike_share_what_they_need_not_compute_twice(
     line = motionfmu.load(ROOT / "scenarios/mismatch_line")
     assert not linear.model(line, 1).alike(linear.model(line, 2))
     monkeypatch.setattr(linear.AxisModel, "alike", lambda *_: False)
-    apart = Study(study.scenario, study.problem, study.base)
+    apart = TuningFunctions(study.scenario, study.problem, study.base)
     assert apart.parts[0][1] is not apart.parts[0][2]
     alone, shared = apart.values(study.present), study.values(study.present)
     for found, wanted in ((shared.costs, alone.costs), (shared.slack, alone.slack)):
@@ -102,7 +102,7 @@ def test_axes_alike_share_what_they_need_not_compute_twice(
     np.testing.assert_allclose(shared.dslack, alone.dslack, rtol=1e-7, atol=1e-9)
 
 
-def test_the_global_search_sees_what_there_is(study: Study) -> None:
+def test_the_global_search_sees_what_there_is(study: TuningFunctions) -> None:
     """Where limits are kept, a cost of fewer samples is the same within 5 %; they are fewer."""
     draw, kept = np.random.default_rng(6), 0
     for z in np.repeat(draw.uniform(0.3, 0.8, (40, 3)), 2, axis=1):
@@ -121,11 +121,11 @@ def test_what_is_called_settled_cannot_be_bettered() -> None:
         n = int(draw.integers(1, 5))
         limits, slack = draw.normal(size=(n, n)), np.abs(draw.normal(size=n)) * (k % 3) * 1e-9
         slope = limits.T @ (draw.uniform(0.0, 1.0, n) - (0.3 if k % 2 else 0.0))
-        values = Values(np.array([2.0]), slack, 2.0 * slope[None, :], limits)
+        values = CostAndLimits(np.array([2.0]), slack, 2.0 * slope[None, :], limits)
         box = (-solve._BOX, solve._BOX)
         best = linprog(slope, A_ub=-limits, b_ub=slack, bounds=[box] * n)
         settled = solve._settled(values)
         said[settled] += 1
         assert not settled or -best.fun < solve._SETTLED
     assert min(said.values()) > 10
-    assert not solve._settled(Values(np.ones(2), slack, np.zeros((2, n)), limits))
+    assert not solve._settled(CostAndLimits(np.ones(2), slack, np.zeros((2, n)), limits))

@@ -9,11 +9,19 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from motionfmu.cards import messages
+from motionfmu.cards.card_settings import asked
 from motionfmu.cards.config import CardConfig
-from motionfmu.cards.job import Event as Switch
+from motionfmu.cards.job import FrameEvent as Switch
 from motionfmu.cards.job import Job, decode, encode
-from motionfmu.cards.settings import asked
-from motionfmu.cards.views import CardView, Code, Configured, Event, Result, Setting, Upload
+from motionfmu.cards.views import (
+    CardView,
+    Code,
+    CommandResult,
+    ConfigurationResult,
+    Event,
+    SettingResult,
+    Upload,
+)
 
 # State behind a command by the state before it; what is not here is refused with STATE.
 TABLE = {
@@ -55,18 +63,18 @@ class Fleet:
         for queue in self.queues:
             queue.put_nowait(event)
 
-    async def command(self, card: int, name: str, /, **values: int) -> Result:
+    async def command(self, card: int, name: str, /, **values: int) -> CommandResult:
         view = self.cards.get(card, CardView(card))
         if not view.connected:
-            return Result.of(Code.OFFLINE)
+            return CommandResult.of(Code.OFFLINE)
         if (view.state, name) == ("EMPTY", "start"):
-            return Result.of(Code.NO_JOB, view.state)
+            return CommandResult.of(Code.NO_JOB, view.state)
         if (view.state, name) not in TABLE:
-            return Result.of(Code.STATE, view.state)
+            return CommandResult.of(Code.STATE, view.state)
         self.done.append((card, name))
         self.move(card, TABLE[view.state, name])
         self.tell("result", card, f"{name}: done")
-        return Result.of(Code.DONE, view.state)
+        return CommandResult.of(Code.DONE, view.state)
 
     def move(self, card: int, state: str) -> None:
         view = self.cards[card]
@@ -75,7 +83,7 @@ class Fleet:
         view.status = replace(view.status, state=messages.State[state].value)
         self.tell("status", card, state)
 
-    async def upload(self, card: int, job: bytes) -> Result:
+    async def upload(self, card: int, job: bytes) -> CommandResult:
         view, digest = self.cards[card], hashlib.sha256(job).hexdigest()
         view.upload = Upload(digest, len(job) // 256)
         while view.upload.taken < view.upload.pages:
@@ -85,17 +93,17 @@ class Fleet:
             await asyncio.sleep(0.01)
         view.upload, view.job, view.state = None, digest, "READY"
         self.tell("upload", card, f"job {digest[:8]} is in the card")
-        return Result.of(Code.DONE, "READY")
+        return CommandResult.of(Code.DONE, "READY")
 
-    async def configure(self, card: int, config: CardConfig) -> Configured:
+    async def configure(self, card: int, config: CardConfig) -> ConfigurationResult:
         view = self.cards.get(card, CardView(card))
         if not view.connected:
-            return Configured(Result.of(Code.OFFLINE))
+            return ConfigurationResult(CommandResult.of(Code.OFFLINE))
         value = asked(config)["speed_max", 0]
         busy = view.state not in ("EMPTY", "READY", "FAULT")
-        end = Result.of(Code.BUSY if busy else Code.DONE, view.state)
+        end = CommandResult.of(Code.BUSY if busy else Code.DONE, view.state)
         self.done.append((card, f"speed_max {value}"))
-        return Configured(end, (Setting("speed_max", 0, 1000, value, False, end),))
+        return ConfigurationResult(end, (SettingResult("speed_max", 0, 1000, value, False, end),))
 
     def subscribe(self) -> "asyncio.Queue[Event]":
         self.queues.append(asyncio.Queue())

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motionfmu.base.errors import InputError
-from motionfmu.cards import load, tables
+from motionfmu.cards import config_tables, load
 from motionfmu.cards.config import faults, read
 from motionfmu.cards.fields import choices, described
 
@@ -54,7 +54,13 @@ def test_parameters_are_settings_of_the_card_within_their_ranges() -> None:
 def test_a_number_that_the_file_may_have_is_one_that_the_card_takes_and_the_other_way() -> None:
     narrower = {"period_ns"} | {name for name in KNOWN if name.startswith("priority")}
     seen = 0
-    for table in (tables.Network, tables.Axis, tables.Motion, tables.Pulse, tables.Fifo):
+    for table in (
+        config_tables.Network,
+        config_tables.CardAxis,
+        config_tables.CardMotion,
+        config_tables.Pulse,
+        config_tables.Fifo,
+    ):
         for field, what in described(table).values():
             row = KNOWN.get(what.parameter)
             if row and not choices(field) and row[1] != "bool" and row[2] not in narrower:

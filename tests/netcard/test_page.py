@@ -31,10 +31,10 @@ from motionfmu.base.errors import InputError
 from motionfmu.cards.config import CardConfig, load, read
 from motionfmu.cards.config_text import text_of, with_values
 from motionfmu.cards.job import decode
-from motionfmu.cards.page import Serving, application
-from motionfmu.cards.page.form import form
-from motionfmu.cards.page.guard import HEADERS
-from motionfmu.cards.page.pictures import POINTS, picture
+from motionfmu.cards.server_page import PageServer, application
+from motionfmu.cards.server_page.form import form
+from motionfmu.cards.server_page.guard import HEADERS
+from motionfmu.cards.server_page.job_pictures import POINTS, picture
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
 TOKEN, HOST, LIVE = "a-token", "http://127.0.0.1:8766", "ws://127.0.0.1:8766/live"
@@ -101,7 +101,7 @@ def test_who_has_no_token_yet_can_send_little(fleet: Fleet) -> None:
     """4 kB, that are no token, and no byte of a longer message is kept."""
 
     async def closed(length: int) -> int:
-        async with Serving(application(fleet, TOKEN), 0) as port:
+        async with PageServer(application(fleet, TOKEN), 0) as port:
             async with connect(f"ws://127.0.0.1:{port}/live") as line:
                 with contextlib.suppress(ConnectionClosed):
                     await line.send("x" * length)
@@ -116,7 +116,7 @@ def test_the_page_is_whole_without_any_other_server(fleet: Fleet) -> None:
     c = client(fleet, authorization="")
     text = c.get("/?token=x").text
     assert "a-token" not in text and "style=" not in text and "<script>" not in text
-    folder = ROOT / "src/motionfmu/cards/page"
+    folder = ROOT / "src/motionfmu/cards/server_page"
     for file in folder.glob("*.[jch]*s*"):
         assert c.get(f"/{file.name}").text == file.read_text()
         assert "://" not in file.read_text()
@@ -245,8 +245,9 @@ def test_files_are_opened_by_a_process_of_their_own(
     def never(*_: object) -> None:
         raise AssertionError("a file was opened by the server itself")
 
-    for name in ("planning.opened", "pictures.opened", "pictures.decode", "pictures.picture"):
-        monkeypatch.setattr(f"motionfmu.cards.page.{name}", never)
+    names = ("opened", "decode", "picture")
+    for name in ("plan_process.opened", *(f"job_pictures.{name}" for name in names)):
+        monkeypatch.setattr(f"motionfmu.cards.server_page.{name}", never)
     c = client(fleet, CARD)
     assert c.post("/open?name=a.plt", content=b"PU400,400;PD2000,400;").json()["lines"] == 1
     assert c.post("/open?name=b.mcj", content=circle()).json()["lines"] == 1
@@ -268,7 +269,7 @@ def test_that_process_imports_nothing_of_the_folder_it_runs_in(
 
 def test_an_answer_is_not_held_back_for_an_acknowledgement(fleet: Fleet) -> None:
     async def option() -> int:
-        serving = Serving(application(fleet, TOKEN), 0)
+        serving = PageServer(application(fleet, TOKEN), 0)
         async with serving as port:
             reader, writer = await asyncio.open_connection("127.0.0.1", port)
             writer.write(b"GET / HTTP/1.1\r\nhost: localhost\r\n\r\n")

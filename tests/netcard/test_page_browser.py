@@ -21,8 +21,8 @@ from soft_card import SoftCard, serve_card
 
 from motionfmu.cards import messages
 from motionfmu.cards.config import load
-from motionfmu.cards.page import Serving, application
 from motionfmu.cards.server import Cards
+from motionfmu.cards.server_page import PageServer, application
 
 CARD = ROOT / "examples/network_card_firmware/card.toml"
 TOKEN = "a-token"
@@ -41,7 +41,7 @@ def serving(cards: Any, config: Path, beside: Callable[[], Awaitable[Any]]) -> I
     ended, found = asyncio.Event(), Future[tuple[asyncio.AbstractEventLoop, int]]()
 
     async def main() -> None:
-        async with Serving(application(cards, TOKEN, config), 0) as port:
+        async with PageServer(application(cards, TOKEN, config), 0) as port:
             other = asyncio.ensure_future(beside())
             found.set_result((asyncio.get_running_loop(), port))
             await ended.wait()

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from test_page import CARD, TOKEN, client
 
 from motionfmu.cards.config import load
-from motionfmu.cards.page import application
 from motionfmu.cards.server import Cards
+from motionfmu.cards.server_page import application
 
 SERVED = client(Cards(Path("no folder of a server")))
 JSON = st.recursive(

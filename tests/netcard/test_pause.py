@@ -8,7 +8,7 @@ from motionfmu.cards import plt
 from motionfmu.cards.config import read as config_of
 from motionfmu.cards.messages import State
 from motionfmu.cards.plan import Plan, plan
-from motionfmu.cards.sim import VirtualCard
+from motionfmu.cards.sim import VirtualNetCard
 
 ACC, JERK, SCALE = 1000.0, 50_000.0, 3000.0  # [mm/s^2] [mm/s^3] [pulses/mm]
 MS = 1_000_000  # [ns]
@@ -35,7 +35,7 @@ def played(planned: Plan, seed: int, pauses: int) -> tuple[np.ndarray, int]:
     """Counts of X and Y each ms [mm], with pauses at random; how many times it stood in one."""
     actions, deaf = [START, PAUSE] + [0] * 14, [0] * 16
     flash = flash_with(planned.job)
-    card = VirtualCard(1, flash=flash, in_action=actions, in_debounce_us=deaf)
+    card = VirtualNetCard(1, flash=flash, in_action=actions, in_debounce_us=deaf)
     chance = np.random.default_rng(seed)
     most = len(planned.steps)
     near = np.where(chance.random(2 * pauses) < 0.4, 0.1, 1.0)

@@ -15,8 +15,8 @@ from motionfmu.base.errors import InputError
 from motionfmu.cards import CardConfig, job, load, plt
 from motionfmu.cards.config import read as config_of
 from motionfmu.cards.contours import clean, corners, way_between
-from motionfmu.cards.figures import figures, paths
-from motionfmu.cards.plan import DRAWS, Options, Plan, origin, plan
+from motionfmu.cards.plan import DRAWS, Plan, PlanOptions, origin, plan
+from motionfmu.cards.plan_figures import figures, paths
 from motionfmu.cli import app
 
 ACC, JERK, SCALE = 1000.0, 50_000.0, 800.0
@@ -110,7 +110,7 @@ def test_the_job_says_what_was_planned(planned: Plan) -> None:
     assert read.pulses_per_m[:2] == (800_000, 800_000)
     assert read.speed_max[:2] == (160_000, 160_000)
     assert read.acc_max[:2] == (800_000, 800_000) and read.jerk_max[:2] == (40_000_000, 40_000_000)
-    assert read.events == [job.Event(1, False, 1), job.Event(1, False, 0)]
+    assert read.events == [job.FrameEvent(1, False, 1), job.FrameEvent(1, False, 0)]
     assert np.flatnonzero(read.frame_events).size == 3
     assert read.time == pytest.approx(len(planned.steps) * 1e-3)
 
@@ -124,7 +124,7 @@ def test_jobs_of_both_writers_are_the_same_bytes() -> None:
     events = np.where(draws.random(900) < 0.2, draws.integers(1, 4, 900), 0)
     for mask in (15, 10, 4):
         moved = commands * [mask >> k & 1 for k in range(4)]
-        one = job.Job(1_000_000, mask, moved, events, [job.Event(3, True, 1, 50)] * 3)
+        one = job.Job(1_000_000, mask, moved, events, [job.FrameEvent(3, True, 1, 50)] * 3)
         read = job.decode(job.encode(one))
         np.testing.assert_array_equal(read.commands, moved)
         np.testing.assert_array_equal(read.frame_events, events)
@@ -191,7 +191,7 @@ def test_nearest_neighbours_save_way(config: CardConfig) -> None:
     (line,) = (c for c in nearest if not c.closed)
     assert line.points[0].tolist() == [100.0, 2.5]  # turned round
     assert [c.closed for c in by_file] == [True] * 20 + [False]
-    quick, slow = (plan(drawing, config, Options(order=o)) for o in ("nearest", "file"))
+    quick, slow = (plan(drawing, config, PlanOptions(order=o)) for o in ("nearest", "file"))
     assert len(quick.steps) < 0.9 * len(slow.steps)
     assert int((quick.steps == DRAWS).sum()) == pytest.approx(int((slow.steps == DRAWS).sum()))
 
@@ -214,7 +214,7 @@ def test_corners_to_stop_at(config: CardConfig) -> None:
     circle = circle[np.concatenate([[True], np.diff(circle, axis=0).any(axis=1)])]
     assert not corners(circle * 0.025, 30.0).any()
     drawing = plt.parse(written([squares()[0], np.add(circle, (2000, 0))]))
-    stopped, rounded = (plan(drawing, config, Options(corners=c)) for c in ("stop", "round"))
+    stopped, rounded = (plan(drawing, config, PlanOptions(corners=c)) for c in ("stop", "round"))
     assert (stopped.stops, rounded.stops) == (3, 0)
     (driven, _), (free, _) = paths(stopped), paths(rounded)
     vertex = squares()[0][1:4] * 0.025
@@ -224,13 +224,13 @@ def test_corners_to_stop_at(config: CardConfig) -> None:
 
 def test_settings_make_the_motion(config: CardConfig) -> None:
     drawing = plt.parse(b"SP1;VS2;PU400,400;PD2400,400;PU;")
-    slow, quick = plan(drawing, config, Options(speeds=True)), plan(drawing, config)
+    slow, quick = plan(drawing, config, PlanOptions(speeds=True)), plan(drawing, config)
     assert figures(slow, config).speed[0] <= 200.0
     tops = [np.diff(p.places[p.steps == DRAWS, 0]).max() * 1e3 for p in (slow, quick)]
     # With limited jerk the end of a ramp is eased towards the feed.
     assert np.all(np.array(tops) <= [20.0 + 1e-9, 100.0 + 1e-9])
     assert tops == pytest.approx([20.0, 100.0], rel=2e-3)
-    moved = plan(drawing, config, Options(offset=(5.0, -3.0)))
+    moved = plan(drawing, config, PlanOptions(offset=(5.0, -3.0)))
     assert (moved.places[-1] - quick.places[-1])[:2].tolist() == pytest.approx([5.0, -3.0])
     assert moved.job[128:160] != quick.job[128:160] == plan(drawing, config).job[128:160]
     dwell = int((quick.steps == 1).sum())
@@ -279,7 +279,7 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         shown = run(app, ["card", "show", file, "--picture", "x.png"], catch_exceptions=False)
         assert shown.exit_code == 0 and text in shown.stdout
         assert Path("x.png").stat().st_size > 10_000
-    monkeypatch.setattr("motionfmu.cards.figures.SLOT", 3)
+    monkeypatch.setattr("motionfmu.cards.plan_figures.SLOT", 3)
     long = run(app, words, catch_exceptions=False)
     assert long.exit_code == 1 and "too long for a slot of the card's flash" in long.stdout
     with pytest.raises(InputError, match="--order far: file or nearest wanted"):
@@ -295,7 +295,7 @@ def test_the_job_of_the_scenario_is_of_its_drawing() -> None:
     folder = ROOT / "scenarios/plt_plate"
     drawing, settings = plt.read(folder / "plate.plt"), load(folder / "card.toml")
     kept = job.read(folder / "plate.mcj")
-    assert kept.origin == origin(drawing, settings, Options())
+    assert kept.origin == origin(drawing, settings, PlanOptions())
     (line,) = clean(drawing)
     vertices = np.loadtxt(folder / "plate.txt")[:, :2]
     np.testing.assert_allclose(line.points, vertices, atol=1e-9)

@@ -25,9 +25,9 @@ from soft_card import SoftCard, serve_card
 
 from motionfmu.base.errors import InputError
 from motionfmu.cards import messages as m
+from motionfmu.cards.connection import ConnectionLimits
 from motionfmu.cards.control import Control, ask
 from motionfmu.cards.keys import new_key, read_keys
-from motionfmu.cards.line import Limits
 from motionfmu.cards.server import Cards
 from motionfmu.cards.views import Code
 
@@ -213,7 +213,7 @@ def test_chaos_leaves_the_job_that_was_sent_and_commands_done_once(seed: int, tw
     """Cuts every few kB in both directions; if `twice`, more connections of the same card."""
 
     async def main() -> tuple[int, int]:
-        async with bench(Limits(answer=PATIENCE)) as b:
+        async with bench(ConnectionLimits(answer=PATIENCE)) as b:
             link = ChaosLink(b.port, seed, 3000)
             soft, job = SoftCard(3), job_of(300, seed)
             port = await link.listen()
@@ -246,7 +246,7 @@ def test_chaos_leaves_the_job_that_was_sent_and_commands_done_once(seed: int, tw
 @pytest.mark.parametrize("power", [False, True], ids=["cut", "power cut"])
 def test_a_command_whose_answer_was_lost_is_not_done_again(power: bool) -> None:
     async def main() -> None:
-        async with bench(Limits(answer=PATIENCE)) as b:
+        async with bench(ConnectionLimits(answer=PATIENCE)) as b:
             reply = Puppet(SoftCard(3))
             end, sock = await reply.connect(b.port)
             await b.online([3])
@@ -313,7 +313,7 @@ def test_a_job_waits_on_disk_for_its_card_and_a_newer_one_takes_its_place(tmp_pa
             assert (await first).code == Code.REPLACED
             await until(lambda: b.view(3).upload)
             second.cancel()
-        async with bench(Limits(retry=0.05), tmp_path) as b:
+        async with bench(ConnectionLimits(retry=0.05), tmp_path) as b:
             assert b.view(3).upload.pages == 40
             soft = SoftCard(3)
             soft.state = m.State.RUNNING

@@ -10,12 +10,12 @@ import pytest
 from soft_card import CardEnd, SoftCard
 
 from motionfmu.cards import messages as m
-from motionfmu.cards.line import READ_MAX, Limits, Line
+from motionfmu.cards.connection import READ_MAX, CardConnection, ConnectionLimits
 from motionfmu.cards.server import Cards
 from motionfmu.cards.views import Event
 from motionfmu.cards.wire import HEADER, MAGIC, OPEN_KEY, PAYLOAD_MAX, VERSION
 
-LIMITS = Limits()
+LIMITS = ConnectionLimits()
 
 
 class Pipe:
@@ -45,18 +45,18 @@ class Pipe:
 class Room:
     """Who owns the line: it takes all that comes."""
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: ConnectionLimits) -> None:
         self.limits, self.buffer = limits, bytearray(READ_MAX)
 
-    def met(self, line: Line) -> str:
+    def met(self, line: CardConnection) -> str:
         return ""
 
-    def joined(self, line: Line) -> "Room":
+    def joined(self, line: CardConnection) -> "Room":
         return self
 
-    def lost(self, line: Line, why: str) -> None: ...
+    def lost(self, line: CardConnection, why: str) -> None: ...
 
-    def heard(self, line: Line, sequence: int, message: m.Message) -> None: ...
+    def heard(self, line: CardConnection, sequence: int, message: m.Message) -> None: ...
 
     def room(self) -> None: ...
 
@@ -64,10 +64,10 @@ class Room:
 class Peer:
     """A card on a line of a server, its clock, and what it says when."""
 
-    def __init__(self, limits: Limits = LIMITS) -> None:
+    def __init__(self, limits: ConnectionLimits = LIMITS) -> None:
         self.now = 0.0
         self.room = Room(limits)
-        self.line = Line(self.room, lambda _: OPEN_KEY, lambda: self.now)
+        self.line = CardConnection(self.room, lambda _: OPEN_KEY, lambda: self.now)
         self.pipe = Pipe()
         self.line.connection_made(self.pipe)  # type: ignore[arg-type]
         self.end = CardEnd(OPEN_KEY, SoftCard(3).hello())
@@ -122,11 +122,11 @@ def test_a_handshake_has_5_s() -> None:
 def test_a_place_of_a_handshake_is_its_own_for_so_long(tmp_path: Path) -> None:
     """One neighbour that always connects anew keeps nobody out: the oldest makes room."""
     cards, now = Cards(tmp_path), 0.0
-    lines: list[Line] = []
+    lines: list[CardConnection] = []
 
     def comes() -> bool:
         """Whether one more is let in."""
-        lines.append(Line(cards, lambda _: OPEN_KEY, lambda: now))
+        lines.append(CardConnection(cards, lambda _: OPEN_KEY, lambda: now))
         lines[-1].connection_made(Pipe())  # type: ignore[arg-type]
         return lines[-1].open
 
@@ -143,7 +143,7 @@ def test_a_place_of_a_handshake_is_its_own_for_so_long(tmp_path: Path) -> None:
     assert "place went to a newer" in _why(lines, comes)
 
 
-def _why(lines: list[Line], comes: Callable[[], bool]) -> str:
+def _why(lines: list[CardConnection], comes: Callable[[], bool]) -> str:
     """Why the oldest was closed when one more came."""
     oldest = lines[0]
     comes()
@@ -152,7 +152,7 @@ def _why(lines: list[Line], comes: Callable[[], bool]) -> str:
 
 @pytest.mark.parametrize(("pause", "end"), [(1000, 15.1), (14, 30.1)], ids=["no byte", "slow"])
 def test_a_frame_that_is_begun_is_waited_for(pause: int, end: float) -> None:
-    peer = Peer(Limits(ping=1000.0))  # as if each ping were answered
+    peer = Peer(ConnectionLimits(ping=1000.0))  # as if each ping were answered
     peer.shake()
     peer.say(frame(100))
     assert peer.closed_at(lambda: peer.say(b"" if peer.now % pause else b"\0")) == end

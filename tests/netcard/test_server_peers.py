@@ -30,8 +30,8 @@ from soft_card import CardEnd, SoftCard, serve_card
 
 from motionfmu.base.errors import InputError
 from motionfmu.cards import messages as m
+from motionfmu.cards.connection import ConnectionLimits
 from motionfmu.cards.control import ask
-from motionfmu.cards.line import Limits
 from motionfmu.cards.server import Cards
 from motionfmu.cards.wire import OPEN_KEY
 
@@ -64,7 +64,7 @@ async def until_closed(*peers: "asyncio.Task[None]") -> None:
 
 def test_slow_and_hostile_peers_are_closed_and_the_others_feel_nothing() -> None:
     async def main() -> None:
-        async with bench(Limits(authenticate=0.3, strangers=30)) as b:
+        async with bench(ConnectionLimits(authenticate=0.3, strangers=30)) as b:
             soft = [SoftCard(i) for i in range(10)]
             b.serve(*soft)
             await b.online(range(10))
@@ -109,12 +109,14 @@ def test_who_does_not_read_is_closed_before_memory_fills() -> None:
 @pytest.mark.parametrize(
     ("limits", "addresses", "refused"),
     [
-        (Limits(strangers=3, place=1e3), ["127.0.0.2"] * 6 + ["127.0.0.3"], 3),
-        (Limits(connections=5), [f"127.0.0.{k}" for k in range(2, 9)], 2),
+        (ConnectionLimits(strangers=3, place=1e3), ["127.0.0.2"] * 6 + ["127.0.0.3"], 3),
+        (ConnectionLimits(connections=5), [f"127.0.0.{k}" for k in range(2, 9)], 2),
     ],
     ids=["of an address", "in all"],
 )
-def test_connections_are_counted(limits: Limits, addresses: list[str], refused: int) -> None:
+def test_connections_are_counted(
+    limits: ConnectionLimits, addresses: list[str], refused: int
+) -> None:
     async def main() -> None:
         async with bench(limits) as b:
 

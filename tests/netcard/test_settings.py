@@ -10,10 +10,10 @@ from conftest import ROOT
 from soft_card import SoftCard
 from test_sim import job_of
 
+from motionfmu.cards.card_settings import asked, fields, lines, numbers, shown
 from motionfmu.cards.config import CardConfig, load
 from motionfmu.cards.messages import State
-from motionfmu.cards.settings import asked, fields, lines, numbers, shown
-from motionfmu.cards.sim import VirtualCard, simulate
+from motionfmu.cards.sim import VirtualNetCard, simulate
 from motionfmu.cards.views import Code
 
 CONFIG = load(ROOT / "examples/network_card_firmware/card.toml")
@@ -76,7 +76,7 @@ def test_the_card_takes_every_step_and_acts_when_it_is_said_to() -> None:
 
     async def main() -> None:
         async with bench() as b:
-            card = VirtualCard(5, in_action=[0] * 16)
+            card = VirtualNetCard(5, in_action=[0] * 16)
             task = asyncio.create_task(simulate([card], (HOST, b.port), 10.0))
             await b.online([5])
             assert (await b.cards.upload(5, job_of())).ok
@@ -105,7 +105,7 @@ def test_the_card_takes_every_step_and_acts_when_it_is_said_to() -> None:
     run(main())
 
 
-def stock(card: VirtualCard) -> int:
+def stock(card: VirtualNetCard) -> int:
     """Most frames that the FIFO holds in a run."""
     most = 0
     card._c.netcard_command(card._card, 0, 0)
@@ -119,7 +119,7 @@ def stock(card: VirtualCard) -> int:
 
 @pytest.mark.parametrize("name", ["speed_max", "position_high"])
 def test_bounds_are_raised_first_and_lowered_last(name: str) -> None:
-    from motionfmu.cards.settings import in_order
+    from motionfmu.cards.card_settings import in_order
 
     wanted = {("acc_max", 0): 2, (name, 0): 5, ("home_speed", 0): 3, (name, 1): 5}
     has = {("acc_max", 0): 2, (name, 0): 3, ("home_speed", 0): 1, (name, 1): 9}

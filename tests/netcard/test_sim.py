@@ -20,7 +20,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.cards import messages as m
 from motionfmu.cards.job import Job, encode
 from motionfmu.cards.keys import new_key
-from motionfmu.cards.sim import FLASH_BYTES, FlashFile, VirtualCard, simulate
+from motionfmu.cards.sim import FLASH_BYTES, FlashFile, VirtualNetCard, simulate
 from motionfmu.cards.transfer import JobFile, Transfer
 from motionfmu.cards.views import Code
 from motionfmu.cards.wire import OPEN_KEY, PcEnd
@@ -51,7 +51,7 @@ class Pc:
     def __init__(self, job: bytes, key: bytes = OPEN_KEY) -> None:
         self.file, self.key = JobFile(job), key
         self.sent = 0  # pages
-        self.results: list[m.Result] = []
+        self.results: list[m.ResultMessage] = []
         self.told: list[m.Message] = []
         self.open()
 
@@ -65,7 +65,7 @@ class Pc:
         for _, _, message in self.end.feed(data):
             if isinstance(message, m.Ping):
                 self.end.send(m.Pong(message.token))
-            elif isinstance(message, m.Result):
+            elif isinstance(message, m.ResultMessage):
                 self.results.append(message)
             elif isinstance(message, m.Config):
                 self.told.append(message)
@@ -92,7 +92,7 @@ class Pc:
         return now
 
 
-def exchange(card: VirtualCard, pc: Pc, room: int = 512) -> None:
+def exchange(card: VirtualNetCard, pc: Pc, room: int = 512) -> None:
     """Carry bytes both ways."""
     data = pc.more(room)
     taken = card.receive(data)
@@ -100,7 +100,7 @@ def exchange(card: VirtualCard, pc: Pc, room: int = 512) -> None:
     pc.hear(card.send())
 
 
-def bring(card: VirtualCard, pc: Pc, chance: random.Random | None = None) -> int:
+def bring(card: VirtualNetCard, pc: Pc, chance: random.Random | None = None) -> int:
     """Bring the job, with a cut now and then; returns how many there were."""
     cuts, up = 0, False
     for _ in range(60_000):
@@ -120,7 +120,7 @@ def bring(card: VirtualCard, pc: Pc, chance: random.Random | None = None) -> int
     raise AssertionError("the job did not arrive")
 
 
-def begin(card: VirtualCard, pc: Pc, command: m.Message) -> m.Result:
+def begin(card: VirtualNetCard, pc: Pc, command: m.Message) -> m.ResultMessage:
     """Send a command and wait for its result."""
     pc.end.send(command)
     before = len(pc.results)
@@ -130,7 +130,7 @@ def begin(card: VirtualCard, pc: Pc, command: m.Message) -> m.Result:
     return pc.results[-1]
 
 
-def slot(card: VirtualCard, k: int, size: int) -> bytes:
+def slot(card: VirtualNetCard, k: int, size: int) -> bytes:
     """First bytes of a slot of the flash."""
     return card.flash[k * 256 * 4096 :][:size]
 
@@ -138,7 +138,7 @@ def slot(card: VirtualCard, k: int, size: int) -> bytes:
 @pytest.mark.parametrize("key", [OPEN_KEY, KEY], ids=["open", "key"])
 def test_over_a_link_that_cuts_each_page_is_sent_and_written_once(key: bytes) -> None:
     job = job_of(9000)
-    straight, cut = VirtualCard(5, key), VirtualCard(5, key)
+    straight, cut = VirtualNetCard(5, key), VirtualNetCard(5, key)
     first, second = Pc(job, key), Pc(job, key)
     assert bring(straight, first) == 0
     cuts = bring(cut, second, random.Random(3))
@@ -150,7 +150,7 @@ def test_over_a_link_that_cuts_each_page_is_sent_and_written_once(key: bytes) ->
 
 
 def test_the_pulses_are_the_jobs_whatever_pauses_came_between() -> None:
-    card, pc = VirtualCard(5), Pc(job_of())
+    card, pc = VirtualNetCard(5), Pc(job_of())
     bring(card, pc)
     chance, number = random.Random(1), 1
     assert begin(card, pc, m.Start(number)).code == 0
@@ -169,7 +169,7 @@ def test_the_pulses_are_the_jobs_whatever_pauses_came_between() -> None:
 def test_settings_are_told_and_changed_where_they_may() -> None:
     parameters = tomllib.loads((ROOT / "fmus/network_card/fmu.toml").read_text())["parameter"]
     names = [name for name in parameters if name not in ("bus_period", "job", "key")]
-    card, pc = VirtualCard(5), Pc(job_of())
+    card, pc = VirtualNetCard(5), Pc(job_of())
     bring(card, pc)
 
     def asked(name: str, index: int = 0) -> int:
@@ -207,7 +207,7 @@ def test_settings_are_told_and_changed_where_they_may() -> None:
 
 
 def test_a_command_before_the_power_went_is_not_known_behind_it() -> None:
-    card, pc = VirtualCard(5), Pc(job_of())
+    card, pc = VirtualNetCard(5), Pc(job_of())
     bring(card, pc)
     assert begin(card, pc, m.Start(7)).code == 0
     before = pc.end.hello
@@ -251,7 +251,7 @@ def test_program_and_fmu_put_out_the_same_pulses_at_the_same_time() -> None:
     """The same bytes at the same instants; what differs is random, and has no length."""
     job, step = job_of(300), MS // 2
     fmu = Instance("network_card", 3).initialize({"bus_period": step * 1e-9, "card_id": 5})
-    card = VirtualCard(5)
+    card = VirtualNetCard(5)
     ours, theirs = Pc(job), Pc(job)
     ring = Ring(fmu, theirs)
     assert fmu.get("connect") == [True] and card.wants
@@ -285,17 +285,17 @@ def test_program_and_fmu_put_out_the_same_pulses_at_the_same_time() -> None:
 def test_the_flash_outlives_the_program(tmp_path: Path) -> None:
     file = FlashFile(tmp_path / "5.flash")
     assert file.load() == b""
-    card, pc = VirtualCard(5), Pc(job_of())
+    card, pc = VirtualNetCard(5), Pc(job_of())
     bring(card, pc)
     file.save(card)
-    again = VirtualCard(5, flash=file.load())
+    again = VirtualNetCard(5, flash=file.load())
     again.run(10 * MS)
     assert again.state == m.State.READY and again.flash == card.flash
     (tmp_path / "5.flash").write_bytes(bytes(5))
     with pytest.raises(InputError, match=f"5 bytes, a flash has {FLASH_BYTES}"):
         file.load()
     with pytest.raises(InputError, match=r"fifo_depth\[0\] = 1: out of range"):
-        VirtualCard(5, fifo_depth=1)
+        VirtualNetCard(5, fifo_depth=1)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
@@ -312,7 +312,7 @@ def test_a_card_that_is_ended_keeps_its_flash(tmp_path: Path, number: signal.Sig
                 sim(server=f"{HOST}:{b.port}", flash=tmp_path)
             program.send_signal(number)
             assert await program.wait() == (130 if number == signal.SIGINT else 0)
-        kept = VirtualCard(1, flash=FlashFile(tmp_path / "1.flash").load())
+        kept = VirtualNetCard(1, flash=FlashFile(tmp_path / "1.flash").load())
         kept.run(10 * MS)
         assert kept.state == m.State.READY
 
@@ -320,7 +320,7 @@ def test_a_card_that_is_ended_keeps_its_flash(tmp_path: Path, number: signal.Sig
 
 
 def test_inputs_and_homing_of_the_machine() -> None:
-    card = VirtualCard(5, in_action=[3] + [0] * 15, home_plus=[True, False, True, False])
+    card = VirtualNetCard(5, in_action=[3] + [0] * 15, home_plus=[True, False, True, False])
     card.run(MS)
     library().netcard_command(card._card, 3, 15)
     card.run(500 * MS)
@@ -340,7 +340,7 @@ def test_cards_serve_a_server_in_real_time(tmp_path: Path) -> None:
 
     async def main() -> None:
         async with bench(folder=tmp_path) as b:
-            cards = [VirtualCard(i, keys[i]) for i in (1, 2)]
+            cards = [VirtualNetCard(i, keys[i]) for i in (1, 2)]
             task = asyncio.create_task(simulate(cards, (HOST, b.port), 10.0))
             await b.online([1, 2])
             assert (await b.cards.command(1, "start")).text == "there is no job in the card"

@@ -18,9 +18,9 @@ from websockets.asyncio.client import connect
 
 from motionfmu.base.errors import InputError
 from motionfmu.cards import tls
-from motionfmu.cards.page import Serving, application
 from motionfmu.cards.server import Cards
-from motionfmu.cards.sim import VirtualCard, Watch, simulate
+from motionfmu.cards.server_page import PageServer, application
+from motionfmu.cards.sim import VirtualNetCard, Watch, simulate
 from motionfmu.cards.wire import MAGIC, OPEN_KEY
 
 FILES = Path(__file__).parent / "tls"
@@ -31,7 +31,7 @@ def test_cards_come_in_by_tls_and_trust_one_certificate(tmp_path: Path) -> None:
     async def main() -> None:
         cards = Cards(tmp_path)
         place = (HOST, await cards.listen(HOST, 0, tls.serving(CERT, KEY)))
-        soft = VirtualCard(1)
+        soft = VirtualNetCard(1)
         run = asyncio.create_task(simulate([soft], place, tls=tls.trusting(CERT)))
         await until(lambda: soft.online)
         assert (await cards.command(1, "start")).state == "EMPTY"
@@ -72,7 +72,7 @@ def test_why_a_card_does_not_come_in(tmp_path: Path, served, trusted, told: str)
             await cards.close()
         context = tls.trusting(trusted) if trusted else None
         reasons: list[str] = []
-        card = VirtualCard(1)
+        card = VirtualNetCard(1)
         run = asyncio.create_task(
             simulate([card], (HOST, port), tls=context, watch=Watch(failed=reasons.append))
         )
@@ -95,7 +95,7 @@ def test_the_page_is_there_by_tls_alone() -> None:
     trusts = ssl.create_default_context(cafile=CERT)
 
     async def main() -> None:
-        async with Serving(app, 0, (CERT, KEY)) as port:
+        async with PageServer(app, 0, (CERT, KEY)) as port:
             own = f"https://127.0.0.1:{port}"
             headers = {"authorization": "Bearer t", "origin": own}
             async with httpx2.AsyncClient(verify=trusts, headers=headers) as c:

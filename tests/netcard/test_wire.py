@@ -12,7 +12,7 @@ from soft_card import CardEnd
 
 from motionfmu.base.binding import library
 from motionfmu.cards import messages as m
-from motionfmu.cards.wire import OPEN_KEY, TO_CARD, TO_PC, End, PcEnd, Stream
+from motionfmu.cards.wire import OPEN_KEY, TO_CARD, TO_PC, LinkEnd, PcEnd, Stream
 
 KEY = bytes(range(32))
 ROOM = 65536  # [byte] more than a struct net_channel
@@ -121,7 +121,7 @@ def c_struct(kind: type[m.Message]) -> type[ctypes.Structure]:
 
 
 NAMES = {m.Start: "command", m.Pause: "command", m.Stop: "command", m.Reset: "command"}
-NAMES |= {m.Ping: "token", m.Pong: "token"}
+NAMES |= {m.Ping: "token", m.Pong: "token", m.ResultMessage: "result"}
 
 
 @settings(max_examples=20)
@@ -235,7 +235,7 @@ def hello(card: int = 7, oldest: int = 1, newest: int = 1) -> m.Hello:
     return m.Hello(card, oldest, newest, b"n" * 16, 1, 2, 4, 8, 0, bytes(32), 0, 5)
 
 
-def shake(pc: End, card: End) -> tuple[bytes, bytes]:
+def shake(pc: LinkEnd, card: LinkEnd) -> tuple[bytes, bytes]:
     """What the card and the PC say until nobody has anything to say."""
     said: tuple[bytearray, bytearray] = (bytearray(), bytearray())
     while (up := card.take()) or (down := pc.take()):
@@ -258,8 +258,8 @@ def test_both_ends_are_ready_and_understand_each_other(key: bytes) -> None:
     wire = pc.take()
     assert bool(wire[4] & 1) == (key != OPEN_KEY)
     assert [x for _, _, x in card.feed(wire)] == [m.Start(1)]
-    card.send(m.Result(1, 0, 2))
-    assert [x for _, _, x in pc.feed(card.take())] == [m.Result(1, 0, 2)]
+    card.send(m.ResultMessage(1, 0, 2))
+    assert [x for _, _, x in pc.feed(card.take())] == [m.ResultMessage(1, 0, 2)]
 
 
 @pytest.mark.parametrize("keys", [(KEY, OPEN_KEY), (OPEN_KEY, KEY), (KEY, bytes(31) + b"x")])

@@ -34,19 +34,19 @@ def plain(name: str, stop: float) -> str:
 def compared(result: motionfmu.Result) -> str:
     """The circle over itself at a higher gain."""
     from motionfmu.compare import compare
-    from motionfmu.compare.page import page_text as compare_page
+    from motionfmu.compare.comparison_page import page_text as compare_page
 
     other = motionfmu.load(ROOT / "scenarios/fifo_latency").run(stop=0.8, set={"mcc.p_gain": 250})
     return compare_page(compare(result, other))
 
 
 def margins() -> str:
-    from motionfmu.analysis.freq.study import Asked, study
+    from motionfmu.analysis.freq.loop_study import LoopStudyOptions, study
     from motionfmu.analysis.linear import model
     from motionfmu.report.servo import margin_page
 
     linear = model(CIRCLE, 1, {"machine.motor_speed": 30.0}, {})
-    return margin_page.page_text(linear, study(linear, Asked(None, {}, False, None)))
+    return margin_page.page_text(linear, study(linear, LoopStudyOptions(None, {}, False, None)))
 
 
 def tuned() -> str:
@@ -74,8 +74,8 @@ def program() -> str:
 
 def plan() -> str:
     from motionfmu.cards import load, plt
-    from motionfmu.cards.figures import figures
     from motionfmu.cards.plan import plan as planned
+    from motionfmu.cards.plan_figures import figures
     from motionfmu.report.jobs import card_page
 
     folder = ROOT / "scenarios/plt_plate"

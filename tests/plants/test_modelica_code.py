@@ -9,7 +9,7 @@ import pytest
 from plant_library import BUILD, PACKAGE, ROOT, Library, Run, array
 
 from motionfmu.fmu import fmu_toml
-from motionfmu.fmu.modelica import causal, codegen, cprint, description
+from motionfmu.fmu.modelica import causal, class_description, codegen, cprint
 from motionfmu.fmu.modelica.nodes import program
 
 BALL_SCREW = ROOT / "fmus/ball_screw_axes/fmu.toml"
@@ -343,4 +343,4 @@ def test_a_nominal_of_states_is_refused(small):
 
 
 def test_packing_finds_the_package():
-    assert description.read(BALL_SCREW).package == PACKAGE
+    assert class_description.read(BALL_SCREW).package == PACKAGE

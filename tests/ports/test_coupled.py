@@ -16,7 +16,7 @@ from test_ports import EXPORTED, exported
 import motionfmu
 from motionfmu.base.platforms import Platform, here
 from motionfmu.export import as_ssp
-from motionfmu.export.packed import packed
+from motionfmu.export.single_fmu import packed
 
 SOURCE = Path(__file__).with_name("coupled_bits.c")
 WINDOWS = Platform("x86_64-windows")

@@ -18,7 +18,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.run import Result, checks, decimate
 from motionfmu.run.session import Session
 from motionfmu.scenarios import rates, recording
-from motionfmu.scenarios.body import Check
+from motionfmu.scenarios.body import Bounds
 
 THEORY = ROOT / "scenarios/circle_theory"
 ROWS = 97  # of a block here: it divides nothing
@@ -128,7 +128,7 @@ def test_verdicts_of_blocks_are_those_of_the_whole(
     time = np.arange(1000) * 1e-4
     steps = np.repeat(random.integers(0, 3, (40, 2)), 25, axis=0)
     for data in (random.normal(size=(1000, 2)), random.normal(size=1000), steps, steps[:, 0] > 1):
-        check = Check(**bounds)
+        check = Bounds(**bounds)
         found = checks.judge("x", check, time, data)
         monkeypatch.setattr(checks, "ROWS", 10_000)
         whole = checks.judge("x", check, time, data)
@@ -174,11 +174,11 @@ PASS = """
 import resource, sys
 from motionfmu.base.columns import Columns
 from motionfmu.run import checks, figures, decimate
-from motionfmu.scenarios.body import Check
+from motionfmu.scenarios.body import Bounds
 kept = Columns.of(__import__("pathlib").Path(sys.argv[1]))
 peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 x, time = kept["a.x"], kept.time
-small = lambda n: (checks.judge("a.x", Check(rms=(0, 1), changes=0), time[:n], x[:n]),
+small = lambda n: (checks.judge("a.x", Bounds(rms=(0, 1), changes=0), time[:n], x[:n]),
     figures.curve("", time[:n], decimate.reader(x[:n, 3]), (0.0, 1e9), False))
 small(200_000)
 before = peak()

@@ -17,12 +17,12 @@ import motionfmu
 from motionfmu.base import columns
 from motionfmu.base.errors import InputError
 from motionfmu.compare import Comparison, compare, overlay, plots
-from motionfmu.compare.figures import Number
-from motionfmu.compare.page import page_text
+from motionfmu.compare.comparison_page import page_text
+from motionfmu.compare.number_pairs import Number
 from motionfmu.compare.side import Side
 from motionfmu.compare.words import GONE
 from motionfmu.report.numbers import length
-from motionfmu.run import Result, stored
+from motionfmu.run import Result, result_files
 
 THEORY = ROOT / "scenarios/circle_theory"
 PLACES = ("none", "half", "broken", "old", "torn", "short")
@@ -32,10 +32,10 @@ POSITION, STOCK = "machine.table_position", "card.stock"
 def leave(result: Result, folder: Path) -> Path:
     """The folder of a run, without its report."""
     folder.mkdir()
-    columns.write(folder / stored.SIGNALS, result.signals, result.time)
-    way = stored.track(result.contour())
-    columns.write(folder / stored.TRACK, way, way.pop("time"))
-    (folder / stored.NUMBERS).write_text(json.dumps(stored.numbers(result)))
+    columns.write(folder / result_files.SIGNALS, result.signals, result.time)
+    way = result_files.track(result.contour())
+    columns.write(folder / result_files.TRACK, way, way.pop("time"))
+    (folder / result_files.NUMBERS).write_text(json.dumps(result_files.numbers(result)))
     return folder
 
 
@@ -249,11 +249,11 @@ def test_values_between_samples_lie_on_lines_and_counts_hold() -> None:
 def test_what_only_one_run_has_is_said(folders: tuple[Path, Path], tmp_path: Path) -> None:
     less = tmp_path / "less"
     less.mkdir()
-    shutil.copytree(folders[1] / stored.SIGNALS, less / stored.SIGNALS)
-    made = json.loads((folders[1] / stored.NUMBERS).read_text())
-    (less / stored.SIGNALS / f"{STOCK}.npy").unlink()
+    shutil.copytree(folders[1] / result_files.SIGNALS, less / result_files.SIGNALS)
+    made = json.loads((folders[1] / result_files.NUMBERS).read_text())
+    (less / result_files.SIGNALS / f"{STOCK}.npy").unlink()
     made["units"][POSITION] = "mm"
-    (less / stored.NUMBERS).write_text(json.dumps(made))
+    (less / result_files.NUMBERS).write_text(json.dumps(made))
     found = compare(folders[0], less)
     assert found.left == {STOCK: "only in A", POSITION: "[m] in A, [mm] in B"}
     page = page_text(found)
@@ -302,13 +302,13 @@ def test_wrong_input_is_one_message(
     places = {n: tmp_path / n for n in PLACES} | {"b": folders[1]}
     for name, text in (("half", "{}"), ("broken", "{"), ("old", "{}")):
         places[name].mkdir()
-        (places[name] / stored.NUMBERS).write_text(text)
-    (places["old"] / stored.SIGNALS).mkdir()
+        (places[name] / result_files.NUMBERS).write_text(text)
+    (places["old"] / result_files.SIGNALS).mkdir()
     for name in ("torn", "short"):
         shutil.copytree(folders[1], places[name])
-    torn = places["torn"] / stored.SIGNALS / f"{STOCK}.npy"
+    torn = places["torn"] / result_files.SIGNALS / f"{STOCK}.npy"
     torn.write_bytes(torn.read_bytes()[:5000])  # its head is whole
-    np.save(places["short"] / stored.SIGNALS / f"{STOCK}.npy", np.zeros((3, 6)))
+    np.save(places["short"] / result_files.SIGNALS / f"{STOCK}.npy", np.zeros((3, 6)))
     wrong = within(
         "compare", folders[0], *(x.format(**places) for x in line), "--out", tmp_path / "x"
     )

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from motionfmu.analysis.contour import Path, analyse
 from motionfmu.analysis.contour.assign import assign
-from motionfmu.analysis.contour.geometry import Label, Line
+from motionfmu.analysis.contour.geometry import Label, LineSegment
 
 small = st.integers(-3, 3).map(float)
 dot = st.tuples(small, small).map(lambda p: np.array([*p, 0.0]))
@@ -34,7 +34,8 @@ def cases(draw):
     count, samples = draw(st.integers(1, 4)), draw(st.integers(1, 6))
     corners = [draw(dot) for _ in range(count + 1)]
     segments = tuple(
-        Line(Label(i + 1, i + 1, "line", 0.0), corners[i], corners[i + 1]) for i in range(count)
+        LineSegment(Label(i + 1, i + 1, "line", 0.0), corners[i], corners[i + 1])
+        for i in range(count)
     )
     points = np.array([draw(dot) for _ in range(samples)])
     bound = st.integers(0, count - 1)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from contour_runs import Machine, Program, run_along
 
-from motionfmu.analysis.contour import analyse, commanded, scaled
-from motionfmu.analysis.contour.commanded import Known
+from motionfmu.analysis.contour import analyse, pulse_path, scaled_values
 from motionfmu.analysis.contour.instants import Instants
 from motionfmu.analysis.contour.order import distinct, median, quantiles
+from motionfmu.analysis.contour.pulse_path import PulsePaths
 
 PATH = Program(0, 0).line(20, 0).arc((20, 10), 6.0).line(0, 5).path()
 RUN = run_along(PATH, 100.0, Machine(step=5e-4))
@@ -18,14 +18,14 @@ RUN = run_along(PATH, 100.0, Machine(step=5e-4))
 @pytest.fixture
 def followed(monkeypatch):
     """The runs whose pulses were followed."""
-    found, follow = [], commanded.commanded
+    found, follow = [], pulse_path.commanded
     counting = lambda run, progress: (found.append(run), follow(run, progress))[1]  # noqa: E731
-    monkeypatch.setattr(commanded, "commanded", counting)
+    monkeypatch.setattr(pulse_path, "commanded", counting)
     return found
 
 
 def test_other_gains_have_the_same_pulses_and_figures_of_their_own(followed) -> None:
-    known = Known()
+    known = PulsePaths()
     slow = replace(
         RUN, actual=run_along(PATH, 100.0, Machine(gains=(20, 20, 20), step=5e-4)).actual
     )
@@ -55,17 +55,17 @@ CHANGES = {
 
 @pytest.mark.parametrize("what", CHANGES)
 def test_what_the_pulses_depend_on_is_looked_at(what: str, followed) -> None:
-    known, other = Known(), CHANGES[what](RUN)
+    known, other = PulsePaths(), CHANGES[what](RUN)
     analyse(RUN, known=known)
     assert analyse(other, known=known).numbers() == analyse(other).numbers()
     assert [id(run) for run in followed] == [id(RUN), id(other), id(other)]
 
 
 def test_what_is_kept_is_bounded_and_the_longest_unused_goes(followed, monkeypatch) -> None:
-    known = Known()
+    known = PulsePaths()
     analyse(RUN, known=known)
-    (size,) = (i.size + commanded._size(c) for i, c in known._found.values())
-    monkeypatch.setattr(commanded, "ROOM", int(2.5 * size))
+    (size,) = (i.size + pulse_path._size(c) for i, c in known._found.values())
+    monkeypatch.setattr(pulse_path, "ROOM", int(2.5 * size))
     runs = [replace(RUN, dda_time=1e-3 * k) for k in (1, 2, 3)]
     for run in (runs[0], runs[1], runs[0], runs[2]):
         analyse(run, known=known)
@@ -74,7 +74,7 @@ def test_what_is_kept_is_bounded_and_the_longest_unused_goes(followed, monkeypat
     assert len(followed) == 3
     analyse(runs[1], known=known)
     assert len(followed) == 4
-    texts = ["a" * commanded.TEXTS, "b"]
+    texts = ["a" * pulse_path.TEXTS, "b"]
     first = known.path(texts[0], lambda text: PATH)
     assert known.path(texts[0], lambda text: pytest.fail("it was kept")) is first
     known.path(texts[1], lambda text: PATH)
@@ -117,7 +117,7 @@ def test_order_is_that_of_numpy(count: int) -> None:
 
 
 def test_the_share_that_is_done_grows_to_the_whole(monkeypatch) -> None:
-    monkeypatch.setattr(scaled, "BLOCK", 400)
+    monkeypatch.setattr(scaled_values, "BLOCK", 400)
     shares: list[float] = []
     analyse(RUN, shares.append)
     assert len(shares) > 2 * len(RUN.time) // 400

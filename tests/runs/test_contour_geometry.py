@@ -10,8 +10,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 
 from motionfmu.analysis.contour.arcs import kepler_root
-from motionfmu.analysis.contour.geometry import Arc, Cubic, Label, Line
-from motionfmu.analysis.contour.planned import make_arc
+from motionfmu.analysis.contour.geometry import Arc, Cubic, Label, LineSegment
+from motionfmu.analysis.contour.planned_geometry import make_arc
 
 LABEL = Label(1, 10, "line", 0.0)
 # Rounding of coordinates up to about 200 mm, a few operations long. [mm]
@@ -38,10 +38,10 @@ def arcs(draw) -> Arc:
 
 
 @st.composite
-def segments(draw) -> Line | Arc:
+def segments(draw) -> LineSegment | Arc:
     if draw(st.booleans()):
         return draw(arcs())
-    return Line(LABEL, draw(point), draw(point))
+    return LineSegment(LABEL, draw(point), draw(point))
 
 
 # Each turn has a nearest point of its own; the radius that shrinks and the rise choose among them.
@@ -130,8 +130,8 @@ def test_moving_everything_moves_nothing(segment, query, shift, axis, angle) -> 
     def moved(p: np.ndarray) -> np.ndarray:
         return turn @ p + shift
 
-    if isinstance(segment, Line):
-        other = Line(LABEL, moved(segment.start), moved(segment.end))
+    if isinstance(segment, LineSegment):
+        other = LineSegment(LABEL, moved(segment.start), moved(segment.end))
     else:
         other = Arc(
             LABEL,
@@ -246,6 +246,6 @@ def test_cubic_has_its_length_and_nothing_is_nearer_than_its_foot(seed: int) -> 
 
 
 def test_line_without_length_is_a_point() -> None:
-    dot = Line(LABEL, np.array([1.0, 2, 3]), np.array([1.0, 2, 3]))
+    dot = LineSegment(LABEL, np.array([1.0, 2, 3]), np.array([1.0, 2, 3]))
     foot = dot.foot(np.array([[1.0, 2.0, 7.0]]))
     assert foot.distance[0] == 4.0 and foot.along[0] == 0.0

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from contour_runs import Machine, Program, run_along
 
-from motionfmu.analysis.contour import ContourResult, analyse, result, scaled
+from motionfmu.analysis.contour import ContourResult, analyse, contour_result, scaled_values
 from motionfmu.report import drawing
 from motionfmu.run import decimate
-from motionfmu.run.stored import json_of
+from motionfmu.run.result_files import json_of
 
 
 def zigzag(moves: int, step: float = 1e-3) -> ContourResult:
@@ -37,7 +37,7 @@ def test_json_lists_the_worst_commands_and_corners_in_their_order(monkeypatch) -
     whole = found.numbers()
     assert "left_out" not in whole
     assert len(whole["commands"]) == len(found.commands) == 60 and len(whole["corners"]) == 59
-    monkeypatch.setattr(result, "LISTED", 7)
+    monkeypatch.setattr(contour_result, "LISTED", 7)
     few = found.numbers()
     assert few["left_out"] == {"commands": 53, "corners": 52}
     for name, size in (("commands", "max"), ("corners", "error")):
@@ -51,7 +51,7 @@ def test_json_lists_the_worst_commands_and_corners_in_their_order(monkeypatch) -
 
 
 def test_the_drawing_needs_no_memory_for_each_sample(monkeypatch) -> None:
-    monkeypatch.setattr(scaled, "BLOCK", 1 << 10)
+    monkeypatch.setattr(scaled_values, "BLOCK", 1 << 10)
     monkeypatch.setattr(drawing, "WAYS", 1 << 10)
     monkeypatch.setattr(decimate, "ROWS", 1 << 10)
     coarse, fine = zigzag(40, 1e-4), zigzag(40, 1.25e-5)
@@ -86,7 +86,7 @@ def test_a_path_of_many_segments_is_drawn_by_those_that_show(monkeypatch) -> Non
 
 
 def test_arrays_that_are_made_in_parts_are_the_whole() -> None:
-    from motionfmu.run.stored import track
+    from motionfmu.run.result_files import track
 
     found = zigzag(30)
     whole = track(found)

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from motionfmu.analysis.contour import ContourInput, Path, analyse
 from motionfmu.analysis.contour.assign import SAME, assign, nearest
-from motionfmu.analysis.contour.result import GROUPS
-from motionfmu.analysis.contour.scaled import Scaled
+from motionfmu.analysis.contour.contour_result import GROUPS
+from motionfmu.analysis.contour.scaled_values import ScaledValues
 from motionfmu.analysis.contour.segments import Segments
 
 
@@ -155,11 +155,11 @@ def test_parts_leave_no_seam_and_memory_maps_are_read_as_arrays(tmp_path) -> Non
     actual = np.load(tmp_path / "actual.npy", mmap_mode="r")
     pulses = np.load(tmp_path / "pulses.npy", mmap_mode="r")
     per = np.array([2000.0, 1000, 2000, 1, 1, 1])
-    mapped = replace(run, actual=Scaled(actual, 1e-3), commanded=Scaled(pulses, per))
+    mapped = replace(run, actual=ScaledValues(actual, 1e-3), commanded=ScaledValues(pulses, per))
     assert mapped.commanded[5:9, 1:3] == pytest.approx(run.commanded[5:9, 1:3], abs=1e-12)
     assert mapped.actual[[7, 3], 0] == pytest.approx(run.actual[[7, 3], 0], abs=1e-12)
     told: list[float] = []
-    with patch("motionfmu.analysis.contour.scaled.BLOCK", 97):
+    with patch("motionfmu.analysis.contour.scaled_values.BLOCK", 97):
         parts = analyse(mapped, told.append)
         numbers = parts.numbers()
     for name in ("segment", "along", "distance", "right"):
@@ -182,7 +182,7 @@ def test_numbers_are_made_once_and_only_those_asked_for() -> None:
         name: lambda r, name=name, make=make: made.append(name) or make(r)
         for name, make in GROUPS.items()
     }
-    with patch("motionfmu.analysis.contour.result.GROUPS", groups):
+    with patch("motionfmu.analysis.contour.contour_result.GROUPS", groups):
         for _ in range(3):
             assert result.number("error.max") == result.error.max
             assert result.number("circles.1.cw.g") > 0.0

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from contour_runs import Program
 
-from motionfmu.analysis.contour.geometry import Arc, Line
+from motionfmu.analysis.contour.geometry import Arc, LineSegment
 from motionfmu.analysis.contour.path import Path, outline
-from motionfmu.analysis.contour.planned import COLUMNS, read_path
+from motionfmu.analysis.contour.planned_geometry import COLUMNS, read_path
 
 HEAD = (
     ["command", "line", "type"]
@@ -43,7 +43,7 @@ def test_the_library_s_file_is_read_by_column_name(tmp_path) -> None:
     path = read_path(write(tmp_path, ROWS))
     kinds = [(s.label.command, s.label.line, s.label.kind) for s in path.segments]
     assert kinds == [(1, 10, "ptp"), (2, 20, "arc"), (4, 40, "helix"), (6, 60, "line")]
-    assert [type(s) for s in path.segments] == [Line, Arc, Arc, Line]
+    assert [type(s) for s in path.segments] == [LineSegment, Arc, Arc, LineSegment]
     circle, helix = path.segments[1:3]
     assert circle.length == pytest.approx(100 * math.pi, rel=1e-14)
     assert helix.length == pytest.approx(math.hypot(75 * math.pi, 6.0), rel=1e-14)

@@ -15,7 +15,7 @@ from motionfmu.run import contrary
 from motionfmu.run.checks import judge
 from motionfmu.run.session import Session
 from motionfmu.scenarios import document
-from motionfmu.scenarios.body import Check
+from motionfmu.scenarios.body import Bounds
 
 FOLDERS = sorted(p.parent for p in ROOT.glob("scenarios/*/scenario.toml"))
 SMALL = ROOT / "scenarios/interrupt_sources/scenario.toml"
@@ -230,20 +230,20 @@ HELD: list[tuple[dict[str, Any], bool, float]] = [
 @pytest.mark.parametrize(("bounds", "ok", "value"), HELD, ids=[str(h[0]) for h in HELD])
 def test_bounds(bounds: dict[str, Any], ok: bool, value: float) -> None:
     time = np.arange(5) * 0.1
-    (found,) = judge("x", Check(**bounds), time, X)
+    (found,) = judge("x", Bounds(**bounds), time, X)
     assert found.ok is ok and found.value == pytest.approx(value, nan_ok=True)
-    (two,) = judge("x", Check(**bounds), time, np.column_stack([X, X]))
+    (two,) = judge("x", Bounds(**bounds), time, np.column_stack([X, X]))
     assert two.ok is ok
-    (gone,) = judge("x", Check(**bounds), time, np.full(5, np.nan))
+    (gone,) = judge("x", Bounds(**bounds), time, np.full(5, np.nan))
     assert not gone.ok
 
 
 def test_every_axis_changes_for_itself() -> None:
     time, still = np.arange(5) * 0.1, np.zeros(5)
     both = np.column_stack([X, still])
-    assert not judge("x", Check(changes=3.0), time, both)[0].ok
-    assert not judge("x", Check(order=(0.0, 5.0, 2.0, 5.0)), time, both)[0].ok
-    assert judge("x", Check(changes=(0.0, 3.0)), time, both)[0].ok
+    assert not judge("x", Bounds(changes=3.0), time, both)[0].ok
+    assert not judge("x", Bounds(order=(0.0, 5.0, 2.0, 5.0)), time, both)[0].ok
+    assert judge("x", Bounds(changes=(0.0, 3.0)), time, both)[0].ok
 
 
 def test_several_tables_of_one_signal(tmp_path: Path) -> None:

@@ -39,7 +39,7 @@ def environment(folder: Path) -> dict[str, str]:
         ("list", "typer"),
         ("--help", "motionfmu.cli.info"),
         (RUN, "numpy"),
-        (RUN, "motionfmu.run.engines.fused"),  # the run has a folder by then
+        (RUN, "motionfmu.run.engines.fused_engine"),  # the run has a folder by then
         (RUN, "motionfmu.run.contour_of"),  # so has its result
         ("card serve --page 0 --port 0 --folder", "motionfmu.cards.control"),
     ],

@@ -16,9 +16,16 @@ from typer.testing import CliRunner
 
 import motionfmu
 from motionfmu.analysis.contour import ContourInput, analyse
-from motionfmu.analysis.explain import causes, decompose, explain, servo, signature, theory
-from motionfmu.analysis.explain.expression import evaluate
-from motionfmu.analysis.explain.servo import Axis
+from motionfmu.analysis.explain import (
+    cause_switches,
+    decompose,
+    explain,
+    servo_formulas,
+    signature,
+    theory,
+)
+from motionfmu.analysis.explain.parameter_expression import evaluate
+from motionfmu.analysis.explain.servo_formulas import ServoAxis
 from motionfmu.base.errors import InputError
 from motionfmu.report.causes.explain_page import page_text
 from motionfmu.report.numbers import length
@@ -148,7 +155,7 @@ def test_only_what_a_lead_error_does_across_the_path_counts(tmp_path: Path) -> N
         file.write_text(program)
         set_ = {"mcc.program": str(file), "machine.lead_error_slope": first(slope, 0.0)}
         result = motionfmu.load(ROOT / "scenarios/circle").run(set=set_, stop=0.9)
-        said = theory.Book(result, result.contour()).of("scale").value
+        said = theory.RunTheory(result, result.contour()).of("scale").value
         assert said == pytest.approx(expected, abs=1e-12)
 
 
@@ -278,24 +285,24 @@ def test_published_figures_of_controls() -> None:
     w = feed / radius
     t1, t2 = 0.024, 1.0 / 33.0
     # FANUC B-63503EN: acceleration after interpolation, exponential and linear, servo 1/Kp
-    exponential = servo.lag_response(w, t1) * servo.lag_response(w, t2)
-    shrunk = -servo.radius_change(radius, exponential)
+    exponential = servo_formulas.lag_response(w, t1) * servo_formulas.lag_response(w, t2)
+    shrunk = -servo_formulas.radius_change(radius, exponential)
     assert shrunk == pytest.approx((t1**2 / 2 + t2**2 / 2) * feed**2 / radius, rel=0.005)
-    linear = servo.average_response(w, t1) * servo.lag_response(w, t2)
-    shrunk = -servo.radius_change(radius, linear)
+    linear = servo_formulas.average_response(w, t1) * servo_formulas.lag_response(w, t2)
+    shrunk = -servo_formulas.radius_change(radius, linear)
     assert shrunk == pytest.approx((t1**2 / 24 + t2**2 / 2) * feed**2 / radius, rel=0.005)
     # Haas 96-8000: Ra = sqrt(R^2 - L^2), L the distance of the tool behind the command
-    h = servo.lag_response(w, t2)
+    h = servo_formulas.lag_response(w, t2)
     following = radius * abs(1.0 - h)
-    own = servo.following_radius(radius, following)
-    assert own == pytest.approx(radius + servo.radius_change(radius, h), rel=1e-12)
+    own = servo_formulas.following_radius(radius, following)
+    assert own == pytest.approx(radius + servo_formulas.radius_change(radius, h), rel=1e-12)
     # PMAC: cubic B-spline V^2 T^2/(6 R): 100 mm/s, 10 ms, 50 mm: 3 um
-    spline = -servo.radius_change(radius, servo.average_response(w, 0.01, 4))
+    spline = -servo_formulas.radius_change(radius, servo_formulas.average_response(w, 0.01, 4))
     assert spline == pytest.approx((feed * 0.01) ** 2 / (6.0 * radius), rel=1e-3)
     assert round(spline * 1e3) == 3
     # A polygon's mean radius is two thirds of its sag inside.
-    polygon = -servo.radius_change(radius, servo.average_response(w, 0.01, 2))
-    assert polygon == pytest.approx(2.0 / 3.0 * servo.chord(radius, feed, 0.01), rel=1e-3)
+    polygon = -servo_formulas.radius_change(radius, servo_formulas.average_response(w, 0.01, 2))
+    assert polygon == pytest.approx(2.0 / 3.0 * servo_formulas.chord(radius, feed, 0.01), rel=1e-3)
 
 
 def first_order(command: np.ndarray, gain: float, step: float) -> np.ndarray:
@@ -314,7 +321,7 @@ def test_corners_against_a_simulated_loop(kind: str, angle: float) -> None:
     ramp = feed / acc
     if kind == "sharp":
         one, two = np.minimum(feed * t, 0.0), np.maximum(feed * t, 0.0)
-        said = servo.corner(feed, th, gain)
+        said = servo_formulas.corner(feed, th, gain)
         assert said == pytest.approx(math.sin(th) * feed / (math.e * gain), rel=1e-9)
     else:
         late = 0.0 if kind == "stop" else ramp
@@ -323,9 +330,9 @@ def test_corners_against_a_simulated_loop(kind: str, angle: float) -> None:
         v = np.clip(t, 0.0, None)
         one, two = -brake, np.where(v < ramp, 0.5 * acc * v**2, feed * v - 0.5 * feed * ramp)
         said = (
-            servo.corner(0.0, th, gain, acc)
+            servo_formulas.corner(0.0, th, gain, acc)
             if kind == "stop"
-            else servo.blended_corner(feed, th, gain, acc)
+            else servo_formulas.blended_corner(feed, th, gain, acc)
         )
         assert late in (0.0, ramp)
     x, y = -first_order(one, gain, step), first_order(two, gain, step)
@@ -334,11 +341,11 @@ def test_corners_against_a_simulated_loop(kind: str, angle: float) -> None:
 
 
 def test_ellipse_and_reversal_against_brute_force() -> None:
-    x, y = Axis(50.0).response(2.0), Axis(40.0, period=1e-3, delay=1e-3).response(2.0)
+    x, y = ServoAxis(50.0).response(2.0), ServoAxis(40.0, period=1e-3, delay=1e-3).response(2.0)
     turn = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 20001))
     size = np.hypot((x * turn).real, (y * turn).imag)
-    assert servo.ellipse(1.0, (x, y)) == pytest.approx((size.max(), size.min()), rel=1e-6)
-    axis = Axis(
+    assert servo_formulas.ellipse(1.0, (x, y)) == pytest.approx((size.max(), size.min()), rel=1e-6)
+    axis = ServoAxis(
         50.0, velocity_gain=0.5, velocity_time=0.02, inertia=2e-3, friction=0.2, travel=10.0
     )
     step, place, speed, integral, largest = 1e-6, 0.0, 0.0, 0.0, 0.0
@@ -349,22 +356,22 @@ def test_ellipse_and_reversal_against_brute_force() -> None:
         place += speed * step
         largest = max(largest, -place)
     peak = largest * 10.0 / (2.0 * math.pi)
-    assert servo.reversal(axis)[1] == pytest.approx(peak, rel=0.01)
-    stiff = servo.reversal(replace(axis, velocity_time=0.0))
+    assert servo_formulas.reversal(axis)[1] == pytest.approx(peak, rel=0.01)
+    stiff = servo_formulas.reversal(replace(axis, velocity_time=0.0))
     assert stiff[0] == pytest.approx(2 * 0.2 / (50.0 * 0.5) * 10.0 / (2 * math.pi))
     assert stiff[1] == 0.5 * stiff[0]
-    assert servo.lost_motion_arc(50.0, 0.01) == pytest.approx(math.acos(1.0 - 0.01 / 50.0))
-    assert servo.line_mismatch(100.0, math.pi / 4, (40.0, 50.0)) == pytest.approx(0.25)
+    assert servo_formulas.lost_motion_arc(50.0, 0.01) == pytest.approx(math.acos(1.0 - 0.01 / 50.0))
+    assert servo_formulas.line_mismatch(100.0, math.pi / 4, (40.0, 50.0)) == pytest.approx(0.25)
 
 
 @pytest.mark.parametrize(
     "file", sorted(ROOT.glob("fmus/*/causes.toml")), ids=lambda f: f.parent.name
 )
 def test_the_causes_of_every_fmu_are_in_it_and_name_its_variables(file: Path) -> None:
-    found = causes.of_fmu(file.parent.name)
-    assert len(found) > 1 and causes.THEORY in found
+    found = cause_switches.of_fmu(file.parent.name)
+    assert len(found) > 1 and cause_switches.THEORY in found
     with zipfile.ZipFile(fmus.fmu_path(file.parent.name)) as archive:
-        assert archive.read(causes.RESOURCE) == file.read_bytes()
+        assert archive.read(cause_switches.RESOURCE) == file.read_bytes()
 
 
 @pytest.mark.parametrize(
@@ -385,22 +392,22 @@ def test_an_fmu_brings_its_causes_with_it(text, message, tmp_path, monkeypatch) 
         zipfile.ZipFile(tmp_path / "own.fmi3.fmu", "w") as new,
     ):
         for item in old.namelist():
-            new.writestr(item, text if item == causes.RESOURCE else old.read(item))
+            new.writestr(item, text if item == cause_switches.RESOURCE else old.read(item))
     monkeypatch.setenv("MOTIONFMU_FMUS", str(tmp_path))
-    causes.of_fmu.cache_clear()
+    cause_switches.of_fmu.cache_clear()
     fmus._ports.cache_clear()
     try:
         if message is not None:
             with pytest.raises(InputError, match=message):
-                causes.of_fmu("own")
+                cause_switches.of_fmu("own")
             return
         shutil.copytree(ROOT / "scenarios/mismatch_line", tmp_path / "line")
         file = tmp_path / "line/scenario.toml"
         file.write_text(file.read_text().replace('"velocity_axes"', '"own"'))
-        listed = causes.causes(motionfmu.load(file))
+        listed = cause_switches.causes(motionfmu.load(file))
         assert listed[-1].name == "heat" and listed[-1].title == "Heat"
     finally:
-        causes.of_fmu.cache_clear()
+        cause_switches.of_fmu.cache_clear()
         fmus._ports.cache_clear()
 
 

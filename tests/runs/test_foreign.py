@@ -18,8 +18,8 @@ from motionfmu.base.platforms import here
 from motionfmu.export import as_ssp
 from motionfmu.report import outcome
 from motionfmu.run.session import Session
-from motionfmu.ssp.imported import take
-from motionfmu.study import columns
+from motionfmu.ssp.ssp_import import take
+from motionfmu.study import study_columns
 
 ENGINES = ("python", "native", "fmpy")
 KINDS = {"ball": 2, "van_der_pol": 3, "feedthrough": 2}
@@ -151,7 +151,7 @@ def test_names_with_dots_and_brackets_go_everywhere(folder: Path, tmp_path: Path
     with Session(scenario, ["through.in[1]"]) as session:
         ran = session.run({"through.in[1]": 0.25})
     assert (ran["through.out[1]"][1:] == 0.25).all()
-    assert columns.column(scenario, "through.out[1].max").end.name == "through.out[1]"
+    assert study_columns.column(scenario, "through.out[1].max").end.name == "through.out[1]"
     ran = scenario.run(set={"through.in[1]": 0.5})
     assert ran.overrides == ["through.in[1] = 0.5 (default: 0)"]
     assert outcome.save(ran, tmp_path / "r").name == "report.html"

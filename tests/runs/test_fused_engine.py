@@ -34,7 +34,7 @@ def ran(scenario: motionfmu.Scenario, engine: str | None = None) -> motionfmu.Re
 def use(monkeypatch: pytest.MonkeyPatch, cache: Path, cc: Compiler | None) -> None:
     """This compiler, and nothing kept."""
     monkeypatch.setenv("MOTIONFMU_CACHE", str(cache))
-    monkeypatch.setattr(sys.modules["motionfmu.fused.program"], "compiler", lambda: cc)
+    monkeypatch.setattr(sys.modules["motionfmu.fused.fused_program"], "compiler", lambda: cc)
 
 
 def test_without_a_compiler_the_container_runs(

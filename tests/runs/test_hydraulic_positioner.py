@@ -46,16 +46,16 @@ def changed(name: str, folder: Path, drives: str, **keys: str) -> motionfmu.Scen
 def test_windows_of_a_check() -> None:
     """Both ends count, nothing between windows does, a window without samples fails."""
     from motionfmu.run.checks import judge
-    from motionfmu.scenarios.body import Check
+    from motionfmu.scenarios.body import Bounds
 
     time = np.arange(5) * 0.1
     data = np.array([0.0, 1.0, 9.0, 2.0, 3.0])
-    two = Check(windows=((0.0, 0.1), (0.3, 0.4)), max=3.0, peak=(3.0, 3.0), final=3.0)
+    two = Bounds(windows=((0.0, 0.1), (0.3, 0.4)), max=3.0, peak=(3.0, 3.0), final=3.0)
     found = judge("x", two, time, data)
     assert [v.ok for v in found] == [True, True, True]
     assert found[0].bounds == "<= 3, in 2 windows"
-    assert not judge("x", Check(windows=((0.1, 0.2),), max=3.0), time, data)[0].ok
-    assert not judge("x", Check(windows=((0.5, 0.6),), max=3.0), time, data)[0].ok
+    assert not judge("x", Bounds(windows=((0.1, 0.2),), max=3.0), time, data)[0].ok
+    assert not judge("x", Bounds(windows=((0.5, 0.6),), max=3.0), time, data)[0].ok
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from motionfmu.base import kept
+from motionfmu.base import disk_cache
 from motionfmu.base.compiler import Compiler, compiler
 from motionfmu.base.errors import InputError
 
@@ -22,16 +22,16 @@ def _write(text):
 
 
 def test_it_is_made_once(place):
-    first = kept.kept("word", "k", _write("one"))
+    first = disk_cache.kept("word", "k", _write("one"))
     assert first == place / "word" / "k"
-    assert kept.kept("word", "k", _write("two")) == first
+    assert disk_cache.kept("word", "k", _write("two")) == first
     assert (first / "a").read_text() == "one"
     assert [p.name for p in (place / "word").iterdir()] == ["k"]
 
 
 def test_a_key_knows_where_its_parts_end():
-    assert kept.key("ab", "c") != kept.key("a", "bc")
-    assert kept.key("ab") == kept.key(b"ab")
+    assert disk_cache.key("ab", "c") != disk_cache.key("a", "bc")
+    assert disk_cache.key("ab") == disk_cache.key(b"ab")
 
 
 def test_what_fails_leaves_nothing(place):
@@ -40,34 +40,34 @@ def test_what_fails_leaves_nothing(place):
         raise InputError("no")
 
     with pytest.raises(InputError, match="no"):
-        kept.kept("word", "k", fail)
+        disk_cache.kept("word", "k", fail)
     assert list((place / "word").iterdir()) == []
 
 
 def test_the_longest_unused_goes_first(place, monkeypatch):
-    monkeypatch.setattr(kept, "ROOM", 25)
+    monkeypatch.setattr(disk_cache, "ROOM", 25)
     for age, name in ((30, "old"), (20, "used"), (10, "young")):
-        made = kept.kept("word", name, _write("0123456789"))
+        made = disk_cache.kept("word", name, _write("0123456789"))
         os.utime(made, (1e9 - age, 1e9 - age))
-    kept.kept("word", "used", _write(""))  # now the youngest
-    kept.kept("word", "new", _write("0123456789"))
+    disk_cache.kept("word", "used", _write(""))  # now the youngest
+    disk_cache.kept("word", "new", _write("0123456789"))
     assert sorted(p.name for p in (place / "word").iterdir()) == ["new", "used"]
 
 
 def test_so_many_of_a_kind_are_kept(place, monkeypatch):
-    monkeypatch.setattr(kept, "MOST", 2)
+    monkeypatch.setattr(disk_cache, "MOST", 2)
     for age, name in ((30, "old"), (20, "young")):
-        os.utime(kept.kept("word", name, _write("0")), (1e9 - age, 1e9 - age))
-    kept.kept("word", "new", _write("0"))
+        os.utime(disk_cache.kept("word", name, _write("0")), (1e9 - age, 1e9 - age))
+    disk_cache.kept("word", "new", _write("0"))
     assert sorted(p.name for p in (place / "word").iterdir()) == ["new", "young"]
 
 
 def test_a_place_that_cannot_be_written_to_serves_the_process(place, monkeypatch):
     (place / "file").write_text("")
     monkeypatch.setenv("MOTIONFMU_CACHE", str(place / "file"))
-    made = kept.kept("word", "k", _write("one"))
+    made = disk_cache.kept("word", "k", _write("one"))
     assert (made / "a").read_text() == "one"
-    assert kept.kept("word", "k", _write("two")) == made
+    assert disk_cache.kept("word", "k", _write("two")) == made
 
 
 def test_a_library_is_made(place):

@@ -18,7 +18,7 @@ from motionfmu.analysis.contour.names import wrong
 from motionfmu.base.errors import NoNumber
 from motionfmu.report.outcome import save
 from motionfmu.run.checks import judge
-from motionfmu.scenarios.body import Check
+from motionfmu.scenarios.body import Bounds
 from motionfmu.study import processes, worker
 from motionfmu.sweep import Ways, conduct, study
 
@@ -150,19 +150,19 @@ def test_names_are_those_of_the_analysis() -> None:
 @pytest.mark.parametrize(
     ("check", "what"),
     [
-        (Check(at=0.8, final=1.0), "the run ends at 0.5 s, before 0.8 s"),
-        (Check(windows=((0.1, 0.2), (0.4, 0.7)), max=3.0), "the run ends at 0.5 s, before 0.7 s"),
-        (Check(windows=((0.1001, 0.1002),), max=3.0), "no sample is in a window"),
+        (Bounds(at=0.8, final=1.0), "the run ends at 0.5 s, before 0.8 s"),
+        (Bounds(windows=((0.1, 0.2), (0.4, 0.7)), max=3.0), "the run ends at 0.5 s, before 0.7 s"),
+        (Bounds(windows=((0.1001, 0.1002),), max=3.0), "no sample is in a window"),
     ],
 )
-def test_what_a_run_did_not_reach_is_failed(check: Check, what: str) -> None:
+def test_what_a_run_did_not_reach_is_failed(check: Bounds, what: str) -> None:
     time = np.arange(50) * 0.01
     (verdict,) = judge("x", check, time, np.ones(50))
     assert not verdict.ok and math.isnan(verdict.value) and verdict.reason == what
 
 
 def test_a_check_at_the_very_end_is_judged() -> None:
-    (verdict,) = judge("x", Check(at=0.5, final=1.0), np.arange(50) * 0.01, np.ones(50))
+    (verdict,) = judge("x", Bounds(at=0.5, final=1.0), np.arange(50) * 0.01, np.ones(50))
     assert verdict.ok and verdict.reason == ""
 
 

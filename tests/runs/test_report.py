@@ -17,7 +17,7 @@ from page_curves import curve, page_data, unwoven
 
 import motionfmu
 from motionfmu.analysis.explain.theory import CornerRow
-from motionfmu.compare import page as compared
+from motionfmu.compare import comparison_page as compared
 from motionfmu.compare.differences import Checked
 from motionfmu.report import write_report
 from motionfmu.report.causes.explain_page import _corners

@@ -23,9 +23,9 @@ from hypothesis import strategies as st
 import motionfmu
 from motionfmu.run.session import Session
 from motionfmu.scenarios import fmus
-from motionfmu.scenarios.body import Check
+from motionfmu.scenarios.body import Bounds
 from motionfmu.scenarios.system import End
-from motionfmu.study import axes, book, columns, processes, worker
+from motionfmu.study import book, processes, study_axes, study_columns, worker
 from motionfmu.sweep import Outcome, Study, Ways, conduct, study
 
 CIRCLE = ROOT / "scenarios/circle_theory"
@@ -59,19 +59,19 @@ def here(monkeypatch: pytest.MonkeyPatch) -> None:
 # ---- points
 
 
-def axis(kind: str, spec: object, name: str = "a.b") -> axes.Axis:
+def axis(kind: str, spec: object, name: str = "a.b") -> study_axes.Axis:
     port = motionfmu.load(CIRCLE).resolver.ports["mcc"]["irq_latency"]
     kinds = {"port": type(port)(**{**port.__dict__, "type": kind, "shape": ()})}
     source = (
-        axes.Listed(values=spec)
+        study_axes.ListedValues(values=spec)
         if isinstance(spec, list)
-        else (axes.Normal if "mean" in spec else axes.Span).model_validate(spec)
+        else (study_axes.Normal if "mean" in spec else study_axes.Span).model_validate(spec)
     )
-    return axes.Axis(name, End("a", **kinds), source)
+    return study_axes.Axis(name, End("a", **kinds), source)
 
 
 def test_a_grid_has_every_combination_the_last_axis_fastest() -> None:
-    found = axes.points(
+    found = study_axes.points(
         [axis("Float64", {"from": 0, "to": 1, "n": 3}), axis("String", ["u", "v"])], "grid", 0, 0
     )
     assert found == [(x, t) for x in (0.0, 0.5, 1.0) for t in ("u", "v")]
@@ -86,10 +86,10 @@ def test_a_latin_hypercube_takes_every_part_of_every_axis_once(
     runs: int, dimensions: int, seed: int
 ) -> None:
     every = [axis("Float64", {"from": 2.0, "to": 5.0})] * dimensions
-    found = np.array(axes.points(every, "latin", runs, seed))
+    found = np.array(study_axes.points(every, "latin", runs, seed))
     parts = np.floor((found - 2.0) / 3.0 * runs).astype(int).clip(0, runs - 1)
     assert (np.sort(parts, axis=0) == np.arange(runs)[:, None]).all()
-    assert axes.points(every, "latin", runs, seed) == [tuple(p) for p in found]
+    assert study_axes.points(every, "latin", runs, seed) == [tuple(p) for p in found]
 
 
 def test_draws_follow_their_distribution() -> None:
@@ -102,7 +102,7 @@ def test_draws_follow_their_distribution() -> None:
         axis("Int32", {"from": 1, "to": 4}),
         axis("Boolean", [True, False]),
     ]
-    a, b, c, d, e = zip(*axes.points(specs, "random", 4000, 7), strict=True)
+    a, b, c, d, e = zip(*study_axes.points(specs, "random", 4000, 7), strict=True)
     for sample, law in (
         (a, stats.uniform(2, 3)),
         (b, stats.loguniform(1e-2, 1e2)),
@@ -113,7 +113,7 @@ def test_draws_follow_their_distribution() -> None:
     assert set(whole) == {1, 2, 3, 4} and all(isinstance(x, int) for x in d)
     assert stats.chisquare(list(whole.values())).pvalue > 1e-3
     assert set(e) == {True, False}
-    assert axes.points(specs, "random", 5, 7) != axes.points(specs, "random", 5, 8)
+    assert study_axes.points(specs, "random", 5, 7) != study_axes.points(specs, "random", 5, 8)
 
 
 # ---- rows
@@ -189,16 +189,16 @@ def test_contour_figures_and_checks_become_columns() -> None:
 
 def test_a_check_of_one_element_becomes_a_column_of_it() -> None:
     scenario = motionfmu.load(ROOT / "scenarios/fifo_doubled")
-    names = [c.name for c in columns.usual(scenario)]
+    names = [c.name for c in study_columns.usual(scenario)]
     assert [n for n in names if "[" in n] == [
         "card.pulse_count[1].final",
         "card.stock[1].min",
         "card.stock[1].max",
     ]
     assert {"card.frames_refused.max", "mcc.services.final"} < {*names}
-    every = Check(final=0.0)
+    every = Bounds(final=0.0)
     scenario.document.body.check["card.err_count"] = [every]
-    names = [c.name for c in columns.usual(scenario)]
+    names = [c.name for c in study_columns.usual(scenario)]
     assert names[-6:] == [f"card.err_count[{i}].final" for i in range(1, 7)]
 
 

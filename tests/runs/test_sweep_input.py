@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
-from motionfmu.study import axes
+from motionfmu.study import study_axes
 from motionfmu.sweep import study
 
 CIRCLE = ROOT / "scenarios/circle_theory"
@@ -142,4 +142,4 @@ def test_the_command_refuses_wrong_options_with_status_2(
     ],
 )
 def test_vary_reads(text: str, spec: object) -> None:
-    assert axes.option(text) == ("a.b", spec)
+    assert study_axes.option(text) == ("a.b", spec)

@@ -13,7 +13,7 @@ import motionfmu
 from motionfmu.analysis.explain import explain_path
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.report.causes.path_causes_page import write_path_explanation
-from motionfmu.study import columns
+from motionfmu.study import study_columns
 
 PART = """%
 N10 G21 G17 G90 G61
@@ -78,8 +78,8 @@ def test_the_verdict_and_the_folder_have_the_figures(run, tmp_path: Path) -> Non
     page = (tmp_path / "out/report.html").read_text()
     assert "Path performance" in page and "The machine in motion" in page
     assert "Left out: " in page and "Coincidence of strokes 1.00 mm wide" in page
-    assert columns.column(run.scenario, "iso9283.RT_P").of(run) == numbers["RT_P"]
-    assert columns.column(run.scenario, "iso9283.AV").unit == "%"
+    assert study_columns.column(run.scenario, "iso9283.RT_P").of(run) == numbers["RT_P"]
+    assert study_columns.column(run.scenario, "iso9283.AV").unit == "%"
 
 
 def test_a_lead_error_is_found_and_explained(line: Path) -> None:

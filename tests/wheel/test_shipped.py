@@ -8,7 +8,7 @@ from conftest import ROOT
 from console import within
 
 import motionfmu
-from motionfmu.scenarios import shipped
+from motionfmu.scenarios import package_files
 
 NAMES = sorted(p.parent.name for p in (ROOT / "scenarios").glob("*/scenario.toml"))
 
@@ -79,7 +79,7 @@ def test_a_folder_that_cannot_be_written_to_is_told(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_a_copy_has_all_files_that_it_names(name: str) -> None:
     """Beside it are those of others whose files it names."""
-    places = shipped.needed(name)
+    places = package_files.needed(name)
     assert places[0] == ROOT / "scenarios" / name
     for file in (file for place in places for file in place.glob("*.toml")):
         for other in re.findall(r"\.\./(\w+)", file.read_text()):
@@ -90,5 +90,5 @@ def test_what_the_others_name_is_copied_too(tmp_path: Path, monkeypatch) -> None
     for name, text in (("a", '"../b/x.ngc"'), ("b", "'../c'"), ("c", '"../a/y"'), ("d", "")):
         (tmp_path / name).mkdir()
         (tmp_path / name / "scenario.toml").write_text(f"x = {text}\n")
-    monkeypatch.setattr(shipped, "folder", lambda kind: tmp_path)
-    assert [place.name for place in shipped.needed("a")] == ["a", "b", "c"]
+    monkeypatch.setattr(package_files, "folder", lambda kind: tmp_path)
+    assert [place.name for place in package_files.needed("a")] == ["a", "b", "c"]

@@ -1,4 +1,4 @@
-"""What the C stations have in common for Python: their library, structs, a run on the clock."""
+"""The C library for Python: its structs, and stations that run on the clock of a card."""
 
 import contextlib
 import ctypes
@@ -13,15 +13,15 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.platforms import here
 
 PACKAGE = Path(__file__).resolve().parents[1]
-# Clocks of the cards in a second.
+# Clocks of the cards in a second [Hz].
 CLOCK_HZ = 40_000_000
 _SECOND_MAX = 2**62 // CLOCK_HZ
-# Clocks that a setting in seconds may make.
+# Most clocks that a setting in seconds may come to.
 _CLOCKS_MAX = 2.0**62
 _MILLISECOND = CLOCK_HZ // 1000
 
 
-class _Field(ctypes.Structure):
+class _FieldRow(ctypes.Structure):
     """One row of a table in src/python."""
 
     _fields_ = (
@@ -37,7 +37,7 @@ class _Field(ctypes.Structure):
 
 
 def library_path() -> Path:
-    """Where the shared library is: in the installed package, or the source tree's ``build/lib``."""
+    """Path of the shared library: in the installed package, or the source tree's ``build/lib``."""
     name = "motionfmu_stations.so"
     own = PACKAGE / "lib"
     for folder in (own / here().name, own, PACKAGE.parent.parent / "build/lib"):
@@ -53,7 +53,7 @@ def library_path() -> Path:
 def library() -> ctypes.CDLL:
     """Load the shared library once."""
     c = ctypes.CDLL(str(library_path()))
-    c.binding_fields.restype = ctypes.POINTER(_Field)
+    c.binding_fields.restype = ctypes.POINTER(_FieldRow)
     c.binding_mcc.restype = c.binding_machine.restype = ctypes.c_void_p
     c.fault_text.restype = ctypes.c_char_p
     c.netcard_receive.restype = c.netcard_send.restype = ctypes.c_size_t
@@ -67,7 +67,7 @@ def library() -> ctypes.CDLL:
 
 
 @functools.cache
-def _table(of: str) -> tuple[int, dict[str, _Field]]:
+def _table(of: str) -> tuple[int, dict[str, _FieldRow]]:
     """Size of a struct [byte] and its members."""
     count, size = ctypes.c_int32(), ctypes.c_int64()
     rows = library().binding_fields(of.encode(), ctypes.byref(count), ctypes.byref(size))
@@ -112,7 +112,7 @@ class Struct:
 
     @property
     def pointer(self) -> ctypes.c_void_p:
-        """Its address, to hand to the library."""
+        """Address of the struct, for calls of the library."""
         return ctypes.c_void_p(ctypes.addressof(self._memory))
 
     @property
@@ -130,7 +130,7 @@ class Struct:
         return np.ndarray((f.count,), kind, memory, f.offset, (f.stride,))
 
     def _given(self, name: str) -> np.ndarray:
-        """A member in the units in which it is given."""
+        """A member in the units in which a user gives it."""
         view, f = self._view(name), self._fields[name]
         if f.times == f.over:
             return view
@@ -181,7 +181,7 @@ class Struct:
 
 
 def whole(value: float) -> int:
-    """Take a whole number of 32 bits; InputError if it is none."""
+    """Convert a value to a whole number of 32 bits; an InputError if it is none."""
     if isinstance(value, int | float | np.number) and -(2**31) <= value < 2**31:
         if value == int(value):
             return int(value)
@@ -189,7 +189,7 @@ def whole(value: float) -> int:
 
 
 def real(value: float) -> float:
-    """Take a number; InputError if it is none."""
+    """Convert a value to a float; an InputError if it is no number."""
     if isinstance(value, int | float | np.number) and not isinstance(value, bool):
         with contextlib.suppress(OverflowError):  # an int that is beyond all floats
             return float(value)
@@ -197,14 +197,14 @@ def real(value: float) -> float:
 
 
 def text(value: str) -> bytes:
-    """Take a text; InputError if it is none."""
+    """Convert a text to bytes for C; an InputError if it is no text."""
     if isinstance(value, str):
         return value.encode()
     raise InputError(f"{value!r:.80}: a text wanted")
 
 
-class Values:
-    """What there is to see at one clock, by attributes; `time` is the clock in seconds."""
+class Reading:
+    """The state of a station at one clock, as attributes; `time` is the clock in seconds."""
 
     def __init__(self, values: dict[str, Any]) -> None:
         self.__dict__.update(values, time=values["clock"] / CLOCK_HZ)
@@ -213,11 +213,11 @@ class Values:
         raise AttributeError(unread(name, self.__dict__))
 
     def __repr__(self) -> str:
-        return f"Reading({', '.join(f'{k}={v}' for k, v in self.__dict__.items())})"
+        return f"{type(self).__name__}({', '.join(f'{k}={v}' for k, v in self.__dict__.items())})"
 
 
 def unread(name: str, known: Collection[str]) -> str:
-    """What a misspelt reading is told."""
+    """The message about a reading that does not exist."""
     return f"no reading {name!r}" + (suggestion(name, known) or _there_are(known))
 
 
@@ -225,7 +225,7 @@ def _there_are(known: Iterable[str]) -> str:
     return f" (there are: {', '.join(known)})"
 
 
-R = TypeVar("R", bound=Values)
+R = TypeVar("R", bound=Reading)
 
 
 class Station(Generic[R]):
@@ -234,7 +234,7 @@ class Station(Generic[R]):
     What `motionfmu.virtual.mcc.VirtualCard` and `motionfmu.virtual.robot.VirtualRobot` share.
     """
 
-    # Reading that says that nothing is left to do.
+    # Name of the reading that is true when nothing is left to do.
     _at_rest: str
 
     def _advance(self, until: ctypes.c_int64) -> None:
@@ -332,7 +332,7 @@ class Station(Generic[R]):
         step : float
             [s] between two readings, rounded to 25 ns.
         *names : str
-            Attributes of Reading.
+            Attributes of the reading.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Processes of this package's own: Python that imports it, and nothing from where it runs."""
+"""Child processes in Python, which import this package and nothing from the working folder."""
 
 import os
 import sys
@@ -9,9 +9,9 @@ _PLACE = str(Path(__file__).resolve().parents[2])
 
 
 def child(program: str, **own: str) -> tuple[list[str], dict[str, Any]]:
-    """Command and options of a process that runs a program, with variables of its own beside ours.
+    """Command and options of a process that runs a Python program; `own` adds to its environment.
 
-    An interrupt from the keyboard is for its parent alone.
+    Ctrl-C reaches the parent process only.
     """
     path = [_PLACE, *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {**os.environ, **own, "PYTHONPATH": os.pathsep.join(path)}

@@ -1,4 +1,4 @@
-"""Signals in NumPy's files: mapped when asked for, passed in blocks, gone with who holds them."""
+"""Signals in NumPy's files: mapped when needed, read in blocks, deleted with their owner."""
 
 import contextlib
 import mmap
@@ -16,23 +16,23 @@ from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError
 
-# Rows of a block: of six numbers they are 6 MB.
+# Rows of a block; a block of six numbers each is 6 MB.
 ROWS = 1 << 17
 TIME, ENDING = "time", ".npy"
 
 
 @dataclass(frozen=True)
-class Part:
+class ArrayPlace:
     """Where an array stands: a file, or columns of it."""
 
     file: Path
     columns: slice | int | None = None  # None: the whole file
-    boolean: bool = False  # it is Boolean, the file has whole numbers
+    boolean: bool = False  # the array is Boolean, though its file holds whole numbers
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
-    """An array of which parts are made when they are asked for."""
+class LazyArray:
+    """An array whose rows are computed when they are asked for."""
 
     shape: tuple[int, ...]
     dtype: np.dtype[Any]
@@ -49,11 +49,12 @@ class Made:
 
 
 class Columns(Mapping[str, NDArray[Any]]):
-    """Arrays by name, a row a sample, that cannot be written to."""
+    """Read-only arrays by name, with a row for each sample."""
 
-    # An array is mapped as long as somebody has it; `own` is a folder that goes with this one.
+    # An array is mapped as long as somebody refers to it. The folder `own` is deleted with this
+    # object.
 
-    def __init__(self, parts: Mapping[str, Part], own: Path | None = None) -> None:
+    def __init__(self, parts: Mapping[str, ArrayPlace], own: Path | None = None) -> None:
         self._parts = dict(parts)
         self._heads: dict[Path, tuple[Any, ...]] = {}
         self._mapped: weakref.WeakValueDictionary[Any, NDArray[Any]] = weakref.WeakValueDictionary()
@@ -63,14 +64,14 @@ class Columns(Mapping[str, NDArray[Any]]):
 
     @classmethod
     def of(cls, folder: Path, order: Iterable[str] = (), own: bool = False) -> "Columns":
-        """All files of a folder, by their names, which may have an order."""
+        """The arrays in all files of a folder, by name; names in `order` come first."""
         there = {f.stem: f for f in sorted(folder.iterdir()) if f.suffix == ENDING}
         first = dict.fromkeys(n for n in order if n in there)
-        return cls({n: Part(there[n]) for n in first | there}, folder if own else None)
+        return cls({n: ArrayPlace(there[n]) for n in first | there}, folder if own else None)
 
     @classmethod
     def taken(cls, folder: Path, order: Iterable[str] = ()) -> "Columns":
-        """A folder that goes with the arrays; it is moved out of the one that it is in."""
+        """The arrays of a folder that is moved elsewhere and deleted with this object."""
         own = Path(tempfile.mkdtemp(prefix="motionfmu-", dir=folder.parent.parent))
         folder.rename(own)
         return cls.of(own, order, own=True)
@@ -92,7 +93,7 @@ class Columns(Mapping[str, NDArray[Any]]):
     def __len__(self) -> int:
         return len(self._parts)
 
-    def _array(self, part: Part) -> NDArray[Any]:
+    def _array(self, part: ArrayPlace) -> NDArray[Any]:
         key = part.file, str(part.columns), part.boolean
         found = self._mapped.get(key)
         if found is None:
@@ -118,7 +119,7 @@ class Columns(Mapping[str, NDArray[Any]]):
 
 
 def temporary(place: Path | None) -> tempfile.TemporaryDirectory[str]:
-    """A folder for the files of runs, in a place or in the system's temporary folder."""
+    """A folder for the files of runs, in `place` or in the system's temporary folder."""
     try:
         return tempfile.TemporaryDirectory(prefix="motionfmu-", dir=place)
     except OSError as error:
@@ -135,13 +136,13 @@ def kept(folder: Path, files: Iterable[str]) -> Path:
 
 
 def _remove(folder: Path, process: int) -> None:
-    """Delete a folder, but not in a process that was forked from its own."""
+    """Delete a folder, unless this process was forked from the one that made it."""
     if os.getpid() == process:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def _head(file: Path) -> tuple[Any, ...]:
-    """Type, shape and begin of the data of a file; a ValueError if it is none of NumPy's."""
+    """Type, shape and offset of a file's data; a ValueError if the file is none of NumPy's."""
     with file.open("rb") as opened:
         version = np.lib.format.read_magic(opened)
         read = np.lib.format.read_array_header_1_0
@@ -154,8 +155,8 @@ def _head(file: Path) -> tuple[Any, ...]:
 
 
 def in_blocks(*arrays: NDArray[Any], back: int = 0) -> Iterator[tuple[NDArray[Any], ...]]:
-    """The same rows of all arrays, block by block, each with some rows of the one before it."""
-    # Pages of a file count as memory of a process while they are mapped: passed ones are let go.
+    """The same rows of all arrays, block by block; a block begins with `back` rows of the last."""
+    # Mapped pages of a file count as memory of the process, so pages that were read are let go.
     for first in range(0, len(arrays[0]), ROWS):
         yield tuple(x[max(0, first - back) : first + ROWS] for x in arrays)
         for x in arrays:
@@ -163,7 +164,7 @@ def in_blocks(*arrays: NDArray[Any], back: int = 0) -> Iterator[tuple[NDArray[An
 
 
 def forget(array: Any) -> None:
-    """Let go the pages of an array that a file has; they are read again when needed."""
+    """Let go the memory pages of a mapped array; they are read again when needed."""
     base = array
     while (inner := getattr(base, "base", None)) is not None:
         base = inner
@@ -172,8 +173,8 @@ def forget(array: Any) -> None:
 
 
 def write(folder: Path, signals: Mapping[str, NDArray[Any]], time: NDArray[Any]) -> None:
-    """Make a folder of them, and of the times, a file each."""
-    # Files that are there already get a second name, which costs nothing, or else a copy.
+    """Write a folder with a file for each signal, and one for the times."""
+    # A signal that has a file already gets a hard link to it, which costs nothing, or else a copy.
     folder.mkdir()
     there = signals.files() if isinstance(signals, Columns) else None
     for name, file in (there or {}).items():

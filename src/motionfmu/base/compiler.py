@@ -14,7 +14,7 @@ from pathlib import Path
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import install
 
-# As CMakeLists.txt has them: the same bits as the FMUs.
+# The options of CMakeLists.txt, so that results have the same bits as those of the FMUs.
 FLAGS = (
     "-std=c11",
     "-fPIC",
@@ -24,16 +24,16 @@ FLAGS = (
     "-fno-trapping-math",
 )
 
-LINES = 3  # of a compiler's errors that are told
+LINES = 3  # a message has so many lines of a compiler's errors
 
 
 def none() -> str:
-    """What is told where there is no compiler; zig is one."""
+    """The message about a missing compiler, which suggests the extra with zig."""
     return f"there is no C compiler (gcc, clang; or {install('export')})"
 
 
 class NotCompiled(InputError):
-    """What a compiler said when it failed."""
+    """A compiler failed; the text is what it said."""
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,10 @@ class Compiler:
     """A command that compiles C as gcc does."""
 
     command: tuple[str, ...]
-    version: str  # first line of what it says of itself
+    version: str  # first line that it prints about its version
 
     def run(self, arguments: Sequence[str | Path], folder: Path) -> None:
-        """Run it in a folder; what it says when it fails becomes a `NotCompiled`."""
+        """Run the compiler in a folder; a `NotCompiled` with its errors if it fails."""
         whole = [*self.command, *map(str, arguments)]
         done = subprocess.run(whole, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
@@ -57,7 +57,7 @@ class Compiler:
     def library(
         self, files: Iterable[str | Path], target: str, folder: Path, *options: str
     ) -> Path:
-        """A shared library of C files and objects, in the folder in which they are."""
+        """Make a shared library of C files and objects in the folder that holds them."""
         self.run([*FLAGS, "-shared", *options, *files, "-o", target, "-lm"], folder)
         return folder / target
 
@@ -72,14 +72,14 @@ def _candidates() -> list[tuple[str, ...]]:
 
 
 def cross() -> Compiler | None:
-    """zig's, which compiles for any platform; None without the extra `export`."""
+    """The compiler of zig, which compiles for any platform; None without the extra `export`."""
     if not util.find_spec("ziglang"):
         return None
     return Compiler((sys.executable, "-m", "ziglang", "cc"), "zig")
 
 
 def there() -> bool:
-    """Whether the machine has what looks like a compiler; it is not started."""
+    """Whether the machine seems to have a compiler, which is not started for that."""
     return any(command and shutil.which(command[0]) for command in _candidates())
 
 

@@ -1,19 +1,19 @@
-"""The exceptions for everything a user can get wrong, or can miss."""
+"""The exceptions for everything that a user can get wrong, or that a run cannot give."""
 
 import contextlib
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
 T = TypeVar("T")
-# Things that are wrong and told at once.
+# A message tells so many faults at once.
 TOLD_MAX = 50
 
-# How alike two words are from which on one may be meant for the other; 1 is the same.
+# Similarity from which on one word may be meant for another; 1 is that of equal words.
 ALIKE = 0.5
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
-    """What a misspelt word may be meant for, as the end of a message; else empty."""
+    """The end of a message with the word that a misspelt one may be meant for; empty if none."""
     import difflib
 
     small = {name.lower(): name for name in known}
@@ -42,9 +42,9 @@ class InputError(ValueError):
 
 
 class Faults:
-    """Gathers what is wrong, to be told at once.
+    """Gathers faults, so that a user is told all of them at once.
 
-    An `InputError` without a line is one of which the cause is told elsewhere.
+    An `InputError` without a line is one whose cause is told elsewhere.
     """
 
     def __init__(self, lines: Iterable[str] = ()) -> None:
@@ -52,20 +52,20 @@ class Faults:
 
     @contextlib.contextmanager
     def each(self) -> Iterator[None]:
-        """Keep an error of the block; what follows the block goes on."""
+        """Keep an InputError of the block and go on behind it."""
         try:
             yield
         except InputError as error:
             self.lines += error.args
 
     def of(self, make: Callable[[], T]) -> T | None:
-        """What a function makes; None if it finds an error, which is kept."""
+        """The result of a function; None if it raises an InputError, which is kept."""
         with self.each():
             return make()
         return None
 
     def tell(self) -> None:
-        """Raise what was gathered as one error; nothing if there is none."""
+        """Raise one InputError with all faults, if there are any."""
         lines = list(dict.fromkeys(self.lines))
         if len(lines) > TOLD_MAX:
             lines = [*lines[:TOLD_MAX], f"and {len(lines) - TOLD_MAX} more"]

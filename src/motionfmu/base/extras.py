@@ -1,4 +1,4 @@
-"""What the package's base does without: large packages, by the extra that brings them."""
+"""Large packages that only some commands need, by the extra that installs them."""
 
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -11,8 +11,8 @@ from motionfmu.base.errors import InputError
 class Extra:
     """A row of pyproject.toml's optional dependencies."""
 
-    packages: tuple[str, ...]  # as they are imported
-    use: str  # what it is for, in words that end before "needs"
+    packages: tuple[str, ...]  # names by which they are imported
+    use: str  # what needs it: the beginning of a sentence that goes on with "needs"
 
 
 CARD = ("matplotlib", "scipy", "starlette", "uvicorn", "websockets")
@@ -28,7 +28,7 @@ EXTRAS = {
 
 
 class Missing(InputError, ImportError):
-    """An extra that is not installed; the text says which, and how it is."""
+    """An extra is not installed; the text says which one, and how to install it."""
 
 
 def missing(extra: str) -> list[str]:
@@ -37,13 +37,13 @@ def missing(extra: str) -> list[str]:
 
 
 def needed(extra: str) -> None:
-    """Refuse to go on without an extra: what it is for, what is missing, what installs it."""
+    """Raise `Missing` if an extra is not installed: what needs it, how it is installed."""
     if names := ", ".join(missing(extra)):
         raise Missing(f"{EXTRAS[extra].use} needs {names}: {install(extra)}")
 
 
 def install(extra: str) -> str:
-    """The command that installs an extra: no index has this project, only the packages."""
+    """The command that installs an extra; no package index has this project itself."""
     import json
     from importlib import metadata
     from urllib.parse import urlsplit

@@ -12,14 +12,15 @@ except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
     import msvcrt
 
-# Files have bits that say who may read them, and folders can be opened.
+# Whether files have permission bits and folders can be opened, as on POSIX.
 POSIX = fcntl is not None
 
 
 def lock(file: int, place: Path, taken: str, wait: bool = False) -> None:
     """Lock an open file for this process alone, until it is closed.
 
-    InputError: `taken`, if somebody else has it and is not waited for, or what else is wrong.
+    The InputError is `taken` if another process has the lock and `wait` is false, or any other
+    fault.
     """
     try:
         if POSIX:
@@ -32,7 +33,7 @@ def lock(file: int, place: Path, taken: str, wait: bool = False) -> None:
 
 
 def _lock_byte(file: int, wait: bool) -> None:
-    """Lock the first byte of a file: Windows locks nothing else."""
+    """Lock the first byte of a file, for Windows locks ranges of bytes only."""
     mode: int = msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK  # type: ignore[attr-defined]
     os.lseek(file, 0, os.SEEK_SET)
     while True:
@@ -40,12 +41,12 @@ def _lock_byte(file: int, wait: bool) -> None:
             msvcrt.locking(file, mode, 1)  # type: ignore[attr-defined]
             return
         except OSError as error:
-            if error.errno != errno.EDEADLK:  # it gives up after 10 s
+            if error.errno != errno.EDEADLK:  # Windows gives up after 10 s
                 raise
 
 
 def open_folder(folder: Path) -> int:
-    """A folder as a file to be locked; Windows opens none, but a file in it."""
+    """Open a folder to lock it; on Windows, which opens no folders, a file in it."""
     if POSIX:
         return os.open(folder, os.O_RDONLY)
     return os.open(folder / ".lock", os.O_RDWR | os.O_CREAT, 0o600)

@@ -1,4 +1,4 @@
-"""What was found for the last few keys."""
+"""A cache in memory with the values of the keys that were used last."""
 
 from collections.abc import Callable, Hashable
 from typing import Generic, TypeVar
@@ -7,7 +7,7 @@ T = TypeVar("T")
 
 
 class Memo(Generic[T]):
-    """Values by key, of so many keys at most: the one used least recently goes first."""
+    """Values by key, for a number of keys at most; the one used least recently goes first."""
 
     def __init__(self, most: int) -> None:
         self._most = most

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from motionfmu.base.errors import InputError
 
-# glibc of RHEL 7 and the first macOS for ARM: what is newer loads them, too.
+# The glibc of RHEL 7 and the first macOS for ARM; newer systems load such libraries, too.
 _TARGETS = {
     "x86_64-linux": "x86_64-linux-gnu.2.17",
     "aarch64-linux": "aarch64-linux-gnu.2.17",
@@ -19,7 +19,7 @@ _TARGETS = {
 _SUFFIX = {"linux": ".so", "windows": ".dll", "darwin": ".dylib"}
 _FMI2 = {"linux": "linux", "windows": "win", "darwin": "darwin"}
 
-# A universal binary: head, a row for each library, libraries on pages of the widest machine.
+# A universal binary has a head, a row for each library, and libraries that begin at whole pages.
 _MAGIC, _PAGE = 0xCAFEBABE, 14  # power of two
 _PE_AT = 0x3C  # where the head of a Windows library is said to be
 _ROW = struct.Struct(">5I")  # processor, its kind, offset, size, alignment
@@ -33,7 +33,7 @@ class Platform:
 
     @property
     def target(self) -> str:
-        """What zig calls it, with the oldest system that is to load its libraries."""
+        """Zig's name of the platform, with the oldest system that loads its libraries."""
         return _TARGETS[self.name]
 
     @property
@@ -69,7 +69,7 @@ def here() -> Platform:
 
 
 def named(text: str) -> tuple[Platform, ...]:
-    """Those of a list with commas, or all; none for ``here``."""
+    """Platforms that a text names: a list with commas, ``all``, or none for ``here``."""
     if text in ("here", "all"):
         return PLATFORMS if text == "all" else ()
     names = text.split(",")
@@ -91,7 +91,7 @@ def libraries(fmi: int, identifier: str, made: Mapping[Platform, bytes]) -> dict
 
 
 def undated(code: bytes) -> bytes:
-    """A library of Windows without the time of its making, which stands in its head alone."""
+    """A library of Windows without the time at which it was made, which its head alone has."""
     head = int.from_bytes(code[_PE_AT : _PE_AT + 4], "little")
     if code[head : head + 4] != b"PE\0\0":
         raise ValueError("no library of Windows")

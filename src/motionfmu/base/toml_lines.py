@@ -1,4 +1,4 @@
-"""TOML as people write it: read within limits, line numbers of keys, words of a command line."""
+"""TOML files within limits of size, line numbers of their keys, values on a command line."""
 
 import re
 import stat
@@ -9,15 +9,16 @@ from typing import Any
 
 from motionfmu.base.errors import InputError
 
-# Limits of a file. What people write is far below; what is above would take hours or all memory.
+# Limits of a file. Files that people write are far below; beyond, reading could take hours or all
+# memory.
 SIZE_MAX = 1 << 20  # bytes
 DEPTH_MAX = 16  # brackets inside each other, parts of a key
 KEY_MAX = 200  # characters
-INTEGER_MAX = 2**63  # what TOML asks a reader to hold
+INTEGER_MAX = 2**63  # range that TOML asks of a reader
 SHOWN_MAX = 200  # characters of a value in a message
-_PLACE = re.compile(r"^(.+?):(\d+): ")  # of a message
+_PLACE = re.compile(r"^(.+?):(\d+): ")  # file and line with which a message begins
 _UNQUOTED = str.maketrans("", "", "\"'")
-# Strings and comments as a whole, however they end, then what brackets, keys and lines are made of.
+# Whole strings and comments, even unfinished ones, then characters of brackets, keys and lines.
 _TOKEN = re.compile(
     r'"""(?:\\.|[^\\])*?(?:"""|\\?\Z)'
     r"|'''.*?(?:'''|\Z)"
@@ -48,7 +49,7 @@ class Lines:
                 self._at.setdefault((table, key[1].strip("\"'")), number)
 
     def has(self, table: str, key: str = "") -> bool:
-        """Whether this very key, or table, stands on a line of its own."""
+        """Whether this key or table itself, not one around it, has a line."""
         return (table, key) in self._at
 
     def of(self, table: str, key: str = "") -> int:
@@ -87,7 +88,7 @@ def is_file(path: Path) -> bool:
 def text_of(file: str | Path) -> str:
     """Read a text file; one that is missing, irregular, too large or not UTF-8 is refused."""
     try:
-        # A pipe would be waited for, a device may have no end.
+        # To read a pipe would wait for it, and a device may have no end.
         if not stat.S_ISREG(Path(file).stat().st_mode):
             raise InputError(f"{file}: not a regular file")
         with open(file, "rb") as stream:
@@ -124,7 +125,7 @@ def tables_of(text: str, file: str | Path) -> dict[str, Any]:
 
 
 def _too_deep(text: str) -> str:
-    """Line and words, if brackets or a key go deeper than the parser, which is recursive, bears."""
+    """A fault, line and words, if brackets or a key are too deep for the recursive parser."""
     line, depth, dots = 1, 0, 0
     for token in _TOKEN.finditer(text):
         word = token[0]
@@ -142,7 +143,7 @@ def _too_deep(text: str) -> str:
 
 
 def _beyond(tables: dict[str, Any], text: str) -> str:
-    """Line and words, if a key or a value is beyond a limit."""
+    """A fault, line and words, if a key or a value is beyond a limit."""
     waiting: list[tuple[tuple[str, ...], Any]] = [((), tables)]
     while waiting:
         path, value = waiting.pop()
@@ -166,7 +167,7 @@ def _beyond(tables: dict[str, Any], text: str) -> str:
 
 
 def ordered(lines: Iterable[str], files: Iterable[str]) -> list[str]:
-    """Messages in the order of files and their lines; what has no line comes first."""
+    """Messages in the order of files and lines; those without a line come first."""
     names = list(files)
 
     def order(line: str) -> tuple[int, int]:
@@ -179,13 +180,13 @@ def ordered(lines: Iterable[str], files: Iterable[str]) -> list[str]:
 
 
 def shown(value: Any) -> str:
-    """A value for a message, not longer than a person reads."""
+    """The text of a value in a message, cut to a length that a person reads."""
     text = repr(value)
     return text if len(text) <= SHOWN_MAX else f"{text[:SHOWN_MAX]}..."
 
 
 def word(text: str) -> Any:
-    """Read a value from a command line: what TOML says it is; a bare word is text."""
+    """Read a value from a command line as TOML; a bare word is text."""
     try:
         found = tables_of(f"x = {text}", "")
     except InputError:

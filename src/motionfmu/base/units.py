@@ -34,7 +34,7 @@ SYMBOLS: dict[str, tuple[float, dict[str, int]]] = {
 }
 
 
-# What a tool shows instead of a unit, and how large such a value usually is.
+# The unit in which a tool shows values of a unit, and their usual size.
 SHOWN: dict[str, tuple[str | None, float | None]] = {
     "m": ("mm", 0.1),
     "m/s": ("mm/s", 0.1),
@@ -58,7 +58,7 @@ SHOWN: dict[str, tuple[str | None, float | None]] = {
 }
 
 
-# As a reader wants them on pages, in pictures and on the console; data keep FMI's names.
+# Spelling of units on pages, in pictures and on the console; data keep FMI's names.
 SPELLED = {"um": "µm", "us": "µs", "deg": "°", "Ohm": "Ω"}
 POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -106,17 +106,17 @@ def parse(name: str) -> Unit:
 
 
 def shown_as(name: str | None) -> str | None:
-    """The unit in which a tool shows a value in this one; None: in this one."""
+    """The unit in which a tool shows a value of this unit; None for this unit itself."""
     return SHOWN.get(name or "", (None, None))[0]
 
 
 def usual(name: str | None) -> float | None:
-    """How large a value in this unit usually is, if that is far from 1."""
+    """The usual size of a value in this unit; None if that is near 1."""
     return SHOWN.get(name or "", (None, None))[1]
 
 
 def spelled(name: str | None) -> str:
-    """A unit for a reader: ``mm/s²``, ``N·m``, ``°/s``, ``µm``; nothing for a bare number."""
+    """Spelling of a unit for readers: ``mm/s²``, ``N·m``, ``°/s``, ``µm``; empty for a number."""
 
     def symbol(match: re.Match[str]) -> str:
         return SPELLED.get(match[1], match[1]) + match[2].translate(POWERS)
@@ -126,6 +126,6 @@ def spelled(name: str | None) -> str:
 
 
 def convertible(a: str | None, b: str | None) -> bool:
-    """Whether a value may cross a wire unchanged: same dimension and factor; None goes as ``1``."""
+    """Whether a wire may carry a value unchanged: dimension and factor are equal; None is ``1``."""
     ua, ub = parse(a or "1"), parse(b or "1")
     return ua.exponents == ub.exponents and math.isclose(ua.factor, ub.factor, rel_tol=1e-12)

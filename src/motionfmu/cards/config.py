@@ -1,4 +1,4 @@
-"""The card's configuration: one file for the plan, the headers, the FMU and the page."""
+"""A card's configuration, one file for plans, C headers, the FMU and the page."""
 
 import copy
 import re
@@ -10,20 +10,20 @@ from pydantic import BaseModel, BeforeValidator, Field, ValidationError, model_v
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.toml_lines import Lines, shown, tables_of, text_of
-from motionfmu.cards.fields import STRICT, Table, Wrong, choices, described, numbers
-from motionfmu.cards.tables import (
+from motionfmu.cards.config_tables import (
     AXES,
     PINS,
-    Axis,
+    CardAxis,
+    CardMotion,
     Fifo,
     Input,
-    Motion,
     Network,
     Output,
     Pulse,
     Tasks,
     by_pins,
 )
+from motionfmu.cards.fields import STRICT, FieldFaults, Table, choices, described, numbers
 
 
 class CardConfig(BaseModel):
@@ -33,9 +33,9 @@ class CardConfig(BaseModel):
     ----------
     network : Network
         Addresses of card and server.
-    axes : list of Axis
+    axes : list of CardAxis
         One to four, X first.
-    motion : Motion
+    motion : CardMotion
         How paths are planned and run.
     pulse : Pulse
         Shape of the pulses.
@@ -51,8 +51,8 @@ class CardConfig(BaseModel):
 
     model_config = STRICT
     network: Network = Network()
-    axes: Annotated[list[Axis], Field(min_length=1, max_length=len(AXES))]
-    motion: Motion = Motion()
+    axes: Annotated[list[CardAxis], Field(min_length=1, max_length=len(AXES))]
+    motion: CardMotion = CardMotion()
     pulse: Pulse = Pulse()
     fifo: Fifo = Fifo()
     tasks: Tasks = Tasks()
@@ -83,7 +83,7 @@ class CardConfig(BaseModel):
             if name and name in self.outputs[:k]:
                 found.append(((f"outputs.{k}",), "two outputs of one name"))
         if found:
-            raise Wrong(*found)
+            raise FieldFaults(*found)
         return self
 
     def as_parameters(self) -> dict[str, Any]:
@@ -96,7 +96,7 @@ class CardConfig(BaseModel):
             that the card does not have stands still and has no home.
         """
         found: dict[str, Any] = {}
-        spare = Axis(
+        spare = CardAxis(
             name="U", pulses_per_mm=1000.0, minimum=-1.0, maximum=1.0, speed_max=20.0,
             acceleration_max=1.0, home_order=0,
         )  # fmt: skip
@@ -110,7 +110,7 @@ class CardConfig(BaseModel):
 
 
 def _parameters(table: Table) -> dict[str, Any]:
-    """Parameters of a table; one of two words, or of yes and no, is a Boolean."""
+    """The FMU's parameters of a table; a choice of two words, or yes and no, is a Boolean."""
     found: dict[str, Any] = {}
     fields = described(table)
     for name, number in numbers(table).items():
@@ -155,7 +155,7 @@ def read(text: str, file: str | Path) -> CardConfig:
 
 
 def faults(tables: dict[str, Any]) -> list[tuple[str, Any, str]]:
-    """Place (``axes.0.speed_max``), value (None: not given) and fault of all that is wrong."""
+    """All faults: place (``axes.0.speed_max``), value (None if not given) and words of each."""
     found: dict[str, tuple[Any, str]] = {}
     meant: set[str] = set()
     rest = copy.deepcopy(tables)
@@ -165,7 +165,7 @@ def faults(tables: dict[str, Any]) -> list[tuple[str, Any, str]]:
             CardConfig.model_validate(rest)
         except ValidationError as error:
             told = list(_places(error))
-            for (place, *_), why in told:  # what a misspelt key stands for is not missing
+            for (place, *_), why in told:  # a key that is meant by a misspelt one is not missing
                 if why.startswith("unknown key") and why.endswith("?"):
                     meant.add(f"{place.rpartition('.')[0]}.{why.split(chr(39))[1]}".lstrip("."))
             known = found.keys() | meant
@@ -178,11 +178,11 @@ def faults(tables: dict[str, Any]) -> list[tuple[str, Any, str]]:
 
 
 def _places(error: ValidationError) -> Iterator[tuple[list[str], str]]:
-    """Places of each fault: first that of the wrong value, then what it was judged by; words."""
+    """Places and words of each fault: first the wrong value's place, then those it depends on."""
     for one in error.errors():
         table = ".".join(map(str, one["loc"]))
         inner = one.get("ctx", {}).get("error")
-        if isinstance(inner, Wrong):
+        if isinstance(inner, FieldFaults):
             for keys, why in inner.found:
                 yield [f"{table}.{key}".lstrip(".") for key in keys], why
         elif one["type"] == "extra_forbidden":
@@ -195,12 +195,12 @@ def _places(error: ValidationError) -> Iterator[tuple[list[str], str]]:
 
 
 def _words(found: Any) -> str:
-    """What pydantic tells, as the end of a message."""
+    """Pydantic's message, as the end of ours."""
     return str(found["msg"][0].lower() + found["msg"][1:])
 
 
 def _close(place: str) -> str:
-    """What the last key of a place may be meant for, as the end of a message."""
+    """The end of a message that suggests another key for the last one of a place."""
     table: Any = CardConfig
     *around, key = place.split(".")
     for part in around:
@@ -210,7 +210,7 @@ def _close(place: str) -> str:
 
 
 def _holder(tables: Any, place: str) -> Any:
-    """What holds the last key of a place."""
+    """The table or list that holds the last key of a place."""
     for key in place.split(".")[:-1]:
         if isinstance(tables, list):
             tables = tables[int(key)] if key.isdigit() and int(key) < len(tables) else None
@@ -220,14 +220,14 @@ def _holder(tables: Any, place: str) -> Any:
 
 
 def _value(tables: dict[str, Any], place: str) -> Any:
-    """What stands at a place of a file; None for a table or nothing."""
+    """The value at a place of a file; None for a table or an empty place."""
     holder, key = _holder(tables, place), place.rpartition(".")[2]
     value = holder.get(key) if isinstance(holder, dict) else None
     return None if isinstance(value, dict | list) else value
 
 
 def _without(tables: dict[str, Any], place: str) -> None:
-    """Take out what is wrong, so that what it hides is found."""
+    """Remove a wrong value, so that faults that it hides are found."""
     holder = _holder(tables, place)
     if isinstance(holder, dict):
         holder.pop(place.rpartition(".")[2], None)

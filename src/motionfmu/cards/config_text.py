@@ -7,14 +7,14 @@ from typing import Any
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import Lines
 from motionfmu.cards.config import CardConfig, read
-from motionfmu.cards.tables import Input
+from motionfmu.cards.config_tables import Input
 
 Place = tuple[str, str]  # table, key
 _ROW = re.compile(r"""([^=]*=\s*)(?:"[^"]*"|'[^']*'|[^#"'\s]+)(\s*(?:#.*)?)""")
 
 
 def text_of(config: CardConfig) -> str:
-    """Text of a card.toml that gives this configuration; of pins those that do or are something."""
+    """Text of a card.toml that gives this configuration, without pins that have no function."""
     tree = config.model_dump()
     inputs, outputs = tree.pop("inputs"), tree.pop("outputs")
     axes, pen = tree.pop("axes"), tree["motion"].pop("pen")
@@ -48,7 +48,7 @@ def _value(value: Any) -> str:
 
 
 def with_values(text: str, config: CardConfig) -> str | None:
-    """Text of a file in which only values that differ are replaced; None if it cannot be so."""
+    """Text of a file in which only values that differ are replaced; None if that is not enough."""
     try:
         has = dict(_leaves(read(text, "").model_dump()))
     except InputError:
@@ -69,7 +69,7 @@ def with_values(text: str, config: CardConfig) -> str | None:
         if not row:
             return None
         lines[k] = f"{row[1]}{_value(value)}{row[2]}"
-    for table in sorted(new, key=at.of, reverse=True):  # from below: numbers above stay
+    for table in sorted(new, key=at.of, reverse=True):  # from the last line on: others stay
         if at.has(table):
             lines[at.of(table) : at.of(table)] = new[table]
     for table in (t for t in new if not at.has(t)):

@@ -1,29 +1,32 @@
-"""From what a pen draws to the contours that a machine follows: cleaned, in an order."""
+"""Contours that a machine follows, made of the lines that a pen draws."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from motionfmu.cards.plt import Drawing
+from motionfmu.cards.plt import PltDrawing
 
-# Places nearer than that are one: below the rounding of every writer. [mm]
+# Points nearer than this are one; files round more coarsely. [mm]
 SAME = 1e-6
-# Way before and behind a vertex over which its turn is judged, so that steps of a raster are none.
+# Length before and behind a vertex over which its angle is taken, so that steps of a raster are no
+# corners.
 REACH = 0.3  # [mm]
 
 
 @dataclass(frozen=True)
-class Contour:
-    """A line with the pen down all along."""
+class PenContour:
+    """A line that is drawn without raising the pen."""
 
-    points: np.ndarray  # [mm]; no two in a row are the same. One alone is a dot.
+    points: np.ndarray  # [mm]; neighbours differ. A single point is a dot.
     pen: int
     closed: bool  # It ends where it begins
     speed: float  # [mm/s] that the drawing asks for; 0 none
     first: int  # Byte of the file where it begins
 
 
-def clean(drawing: Drawing, pens: list[int] | None = None, order: str = "file") -> list[Contour]:
+def clean(
+    drawing: PltDrawing, pens: list[int] | None = None, order: str = "file"
+) -> list[PenContour]:
     """Contours of a drawing in the order of the "file", or always to the "nearest" end.
 
     Lines that follow each other with the same pen and speed are one. A closed contour begins where
@@ -46,16 +49,16 @@ def clean(drawing: Drawing, pens: list[int] | None = None, order: str = "file") 
     return _nearest(found) if order == "nearest" else found
 
 
-def _contour(points: np.ndarray, pen: int, speed: float, first: int) -> Contour:
+def _contour(points: np.ndarray, pen: int, speed: float, first: int) -> PenContour:
     keep = np.abs(np.diff(points, axis=0)).max(axis=1, initial=0.0) > SAME
     points = points[np.concatenate([[True], keep])]
     closed = len(points) > 2 and bool(np.abs(points[-1] - points[0]).max() <= SAME)
-    return Contour(points, pen, closed, speed, first)
+    return PenContour(points, pen, closed, speed, first)
 
 
-def _nearest(contours: list[Contour]) -> list[Contour]:
-    """Pens one after another, each from where the one before ended."""
-    found: list[Contour] = []
+def _nearest(contours: list[PenContour]) -> list[PenContour]:
+    """Contours sorted by pen, then each next to the end of the one before."""
+    found: list[PenContour] = []
     at = np.zeros(2)
     for pen in dict.fromkeys(c.pen for c in contours):
         left = [c for c in contours if c.pen == pen]
@@ -72,8 +75,8 @@ def _nearest(contours: list[Contour]) -> list[Contour]:
     return found
 
 
-def way_between(contours: list[Contour]) -> float:
-    """Way with the pen up, from 0 on [mm]."""
+def way_between(contours: list[PenContour]) -> float:
+    """Length of the moves with the pen up, from 0 on [mm]."""
     at, way = np.zeros(2), 0.0
     for c in contours:
         way += float(np.linalg.norm(c.points[0] - at))
@@ -100,7 +103,7 @@ def turns(points: np.ndarray, reach: float = REACH) -> np.ndarray:
 
 
 def corners(points: np.ndarray, angle: float) -> np.ndarray:
-    """Vertices where the line turns by more than an angle [deg], of those near each other one."""
+    """Vertices where a line turns by more than an angle [deg]; of several nearby one counts."""
     turn = turns(points)
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     found = np.zeros(len(points), bool)

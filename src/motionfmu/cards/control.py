@@ -1,6 +1,6 @@
-"""How a command on this machine reaches a running server: a socket in the server's folder.
+"""Socket in a server's folder, by which commands on this machine reach the running server.
 
-A request is a line of JSON, for an upload with the file's bytes behind it; so is the answer. Who
+Request and answer are lines of JSON; behind the request of an upload come the file's bytes. Whoever
 may open the folder may command the cards.
 """
 
@@ -17,10 +17,10 @@ from typing import Any
 from motionfmu.base.errors import InputError
 from motionfmu.base.locking import lock
 from motionfmu.cards import messages as m
+from motionfmu.cards.card_settings import asked as wanted
+from motionfmu.cards.card_settings import lines
 from motionfmu.cards.config import CardConfig
 from motionfmu.cards.server import JOB_MAX, Cards
-from motionfmu.cards.settings import asked as wanted
-from motionfmu.cards.settings import lines
 from motionfmu.cards.views import CardView
 
 LOG = logging.getLogger("motionfmu.cards")
@@ -75,13 +75,13 @@ class Control:
                 answer = {"wrong": str(error)}
             except (ConnectionError, asyncio.IncompleteReadError):
                 raise
-            except Exception as error:  # whatever it is, who asked shall hear of it
+            except Exception as error:  # any error is the answer to the request
                 LOG.exception("a request was not done")
                 answer = {"wrong": f"the server failed, its log says more: {error!r}"}
             writer.write(json.dumps(answer).encode() + b"\n")
             await writer.drain()
         except (OSError, asyncio.IncompleteReadError):
-            pass  # who asked has gone
+            pass  # the client has gone
         finally:
             writer.close()
 
@@ -116,7 +116,7 @@ def _needs_sockets(folder: Path) -> None:
 
 
 def shown(view: CardView) -> dict[str, Any]:
-    """A card as JSON has it."""
+    """The state of a card as JSON."""
     status = view.status
     return view.outline() | {
         "frame": status.frame if status else 0,

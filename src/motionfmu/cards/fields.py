@@ -1,4 +1,4 @@
-"""What a field of the configuration is: words, unit, and the whole number that the card has."""
+"""Fields of a card's configuration: words, unit, and the whole number that the card gets."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, Self, get_args, get_origin
@@ -9,7 +9,7 @@ from pydantic.fields import FieldInfo
 from motionfmu.base.units import spelled
 
 STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
-# Field, "<" or "<=", field of the same table; the card's numbers keep it, too.
+# A rule: field, "<" or "<=", field of the same table. The card's numbers must keep it as well.
 Rule = tuple[str, str, str]
 
 
@@ -30,13 +30,13 @@ class Is:
     suffix: str = "UL"  # L where it may be negative, ULL where it has 64 bits
     factor: float = 1.0
     pulses: bool = False
-    step: int = 1  # it is a multiple of this
-    exact: bool = False  # the value gives it without rounding
+    step: int = 1  # the whole number is a multiple of this
+    exact: bool = False  # the value must give the whole number without rounding
     parameter: str = ""
 
 
 @dataclass(frozen=True)
-class Number:
+class WholeNumber:
     """The whole number of a field."""
 
     what: Is
@@ -44,7 +44,7 @@ class Number:
     source: Any  # the value in the file
 
     def wrong(self) -> str:
-        """What is wrong with it, in words; else empty."""
+        """The number's fault in words; empty if it has none."""
         w = self.what
         told = f"{self.value} {spelled(w.counts)}".rstrip()
         if not w.low <= self.value <= w.high:
@@ -55,8 +55,8 @@ class Number:
         return f"no whole number of {spelled(w.counts)}" if abs(exactly - self.value) > 1e-6 else ""
 
 
-class Wrong(ValueError):
-    """Fields of a table that are wrong: the key, and those it is judged by; what is wrong."""
+class FieldFaults(ValueError):
+    """Faults of a table's fields: keys of the wrong field and those it depends on, and words."""
 
     def __init__(self, *found: tuple[tuple[str, ...], str]) -> None:
         super().__init__("; ".join(text for _, text in found))
@@ -78,7 +78,7 @@ class Table(BaseModel):
             if not (a < b or (sign == "<=" and a == b)):
                 found.append(((left, right), f"{a} is not {sign} {right} = {b}"))
         if found:
-            raise Wrong(*found)
+            raise FieldFaults(*found)
         return self
 
 
@@ -99,7 +99,7 @@ def choices(field: FieldInfo) -> tuple[str, ...]:
     return get_args(kind) if get_origin(kind) is Literal else ()
 
 
-def numbers(table: Table) -> dict[str, Number]:
+def numbers(table: Table) -> dict[str, WholeNumber]:
     """Whole numbers of a table's fields, by their names; texts have none."""
     found = {}
     pulses_per_mm = getattr(table, "pulses_per_mm", 1.0)
@@ -108,8 +108,8 @@ def numbers(table: Table) -> dict[str, Number]:
         words = choices(field)
         if words:
             of_words = replace(what, low=0, high=len(words) - 1, suffix="U")
-            found[name] = Number(of_words, words.index(value), value)
+            found[name] = WholeNumber(of_words, words.index(value), value)
         elif not isinstance(value, str):
             scale = what.factor * (pulses_per_mm if what.pulses else 1.0)
-            found[name] = Number(what, round(value * scale), value)
+            found[name] = WholeNumber(what, round(value * scale), value)
     return found

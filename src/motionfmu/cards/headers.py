@@ -10,12 +10,12 @@ from pydantic.fields import FieldInfo
 
 from motionfmu.base.errors import InputError
 from motionfmu.cards.config import CardConfig
-from motionfmu.cards.fields import Is, Number, Table, choices, described, numbers
-from motionfmu.cards.tables import PINS, Axis, Input
+from motionfmu.cards.config_tables import PINS, CardAxis, Input
+from motionfmu.cards.fields import Is, Table, WholeNumber, choices, described, numbers
 
 WORD = 2**32
 Keys = tuple[str, ...] | None  # of some fields; None: all
-# What each header is about, and the headers it takes names from.
+# Subject of each header, and the headers that it includes.
 ABOUT = {
     "network": ("addresses of card and server", ()),
     "io": ("programmable inputs and outputs", ()),
@@ -32,7 +32,7 @@ def texts(config: CardConfig, source: str) -> dict[str, str]:
     bodies: dict[str, list[str]] = {
         "network": [],
         "io": [
-            *_named(Axis, ("limit_level",)),
+            *_named(CardAxis, ("limit_level",)),
             *_named(Input),
             "",
             f"#define MC_INPUTS {PINS}U",
@@ -40,7 +40,7 @@ def texts(config: CardConfig, source: str) -> dict[str, str]:
             *pins,
         ],
         "axes": [f"#define MC_AXES {len(config.axes)}U"],
-        "home": [*_named(Axis, ("origin_trigger", "home_direction"))],
+        "home": [*_named(CardAxis, ("origin_trigger", "home_direction"))],
         "motion": [*_named(config.motion), *_named(config.motion.pen, ("kind",))],
         "config": [],
     }
@@ -68,7 +68,7 @@ def texts(config: CardConfig, source: str) -> dict[str, str]:
 
 
 def write(config: CardConfig, folder: Path, source: str, crlf: bool = False) -> list[Path]:
-    """Write the headers that are not there as they are; each is whole or not there."""
+    """Write the headers that are missing or differ, each whole or not at all."""
     changed = []
     for name, text in texts(config, source).items():
         data = text.replace("\n", "\r\n" if crlf else "\n").encode("ascii")
@@ -126,7 +126,7 @@ def _values(prefix: str, table: Table, keys: Keys) -> Iterator[str]:
 
 
 def _checks(prefix: str, table: Table, keys: Keys) -> Iterator[str]:
-    """Lines by which a compiler refuses what the card cannot have."""
+    """Lines by which a compiler refuses values that the card cannot have."""
     known, fields = numbers(table), _shown(table, keys)
     for key, (_, what) in fields.items():
         if key in known:
@@ -137,7 +137,7 @@ def _checks(prefix: str, table: Table, keys: Keys) -> Iterator[str]:
             yield from _refuse(f"!({a} {sign} {b})", f"{a} must be {sign} {b}")
 
 
-def _number(name: str, number: Number) -> Iterator[str]:
+def _number(name: str, number: WholeNumber) -> Iterator[str]:
     """Macro of a number; one of 64 bits in two words, too, for a compiler that has no long long."""
     what = number.what
     short = f"{number.source:g}"
@@ -157,7 +157,7 @@ def _literal(value: int, suffix: str) -> str:
     return f"{value}{suffix}" if value >= 0 else f"({value}{suffix})"
 
 
-def _range(name: str, number: Number) -> Iterator[str]:
+def _range(name: str, number: WholeNumber) -> Iterator[str]:
     """Lines by which a compiler refuses a number out of its range."""
     what = number.what
     low, high = (_literal(x, what.suffix) for x in (what.low, what.high))
@@ -206,7 +206,7 @@ def _named(table: type[Table] | Table, keys: Keys = None) -> Iterator[str]:
 
 
 def _rate(axis: str) -> tuple[str, ...]:
-    """A pulse is high and low for at least its width."""
+    """Lines by which a compiler checks that a pulse is high and low for its width at least."""
     name = f"MC_{axis}_SPEED_MAX"
     words = f"{name}: more than MC_PULSE_WIDTH_NS lets"
     return _refuse(f"{name} > 500000000UL / MC_PULSE_WIDTH_NS", words)

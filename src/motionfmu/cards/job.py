@@ -19,8 +19,8 @@ _EVENTS_AT = 160
 
 
 @dataclass(frozen=True)
-class Event:
-    """What a frame switches as it begins."""
+class FrameEvent:
+    """An output that a frame switches as it begins."""
 
     pins: int  # A bit for each output
     pulse: bool  # Active for `width`, else from now on
@@ -36,7 +36,7 @@ class Job:
     mask: int  # A bit for each axis that moves
     commands: np.ndarray  # [pulses] of each frame
     frame_events: np.ndarray  # Number of the event at the begin of each frame; 0 none
-    events: list[Event] = field(default_factory=list)  # Number 1 first
+    events: list[FrameEvent] = field(default_factory=list)  # Number 1 first
     # [pulses/m], [pulses/s], [pulses/s^2], [pulses/s^3]
     pulses_per_m: tuple[int, ...] = (0,) * AXES
     speed_max: tuple[int, ...] = (0,) * AXES
@@ -44,16 +44,16 @@ class Job:
     jerk_max: tuple[int, ...] = (0,) * AXES
     origin: bytes = bytes(32)  # SHA-256 of drawing and settings
     pages: int = 0  # Data pages of the file it was read from
-    rest: int = 0  # Event put out when the job is given up; 0 none
+    rest: int = 0  # Event that is put out when the job is aborted; 0 none
 
     @property
     def positions(self) -> np.ndarray:
-        """Place at the end of each frame."""
+        """Positions at the end of each frame."""
         return np.cumsum(self.commands, axis=0, dtype=np.int64)
 
     @property
     def time(self) -> float:
-        """Of all frames."""
+        """Duration of all frames."""
         return 1e-9 * self.period_ns * len(self.commands)
 
 
@@ -87,7 +87,7 @@ def decode(text: bytes, name: str = "job") -> Job:
     events = []
     for k in range(count):
         pins, mode, level, width = _EVENT.unpack_from(text, _EVENTS_AT + k * _EVENT.size)
-        events.append(Event(pins, mode == 1, level, width))
+        events.append(FrameEvent(pins, mode == 1, level, width))
     axes = [k for k in range(AXES) if mask >> k & 1]
     commands, numbers, at = [], [], 0
     place = np.zeros(AXES, np.int64)

@@ -54,7 +54,7 @@ def new_key(file: Path, card: int) -> bytes:
 
 @contextlib.contextmanager
 def alone(folder: Path, wait: bool = True) -> Iterator[None]:
-    """Nobody else is in here with this folder; InputError if one is and shall not be waited for."""
+    """Lock a folder's keys for this block; InputError if they are locked and `wait` is false."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         held = open_folder(folder)
@@ -97,7 +97,7 @@ class Keys:
         return len(self._keys)
 
     def of(self, card: int) -> bytes:
-        """Key of a card; one that nobody knows, if it has none and needs one."""
+        """Key of a card; a random key if the card has none and needs one."""
         with contextlib.suppress(
             InputError
         ):  # a file that is wrong now leaves the keys read before

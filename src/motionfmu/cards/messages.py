@@ -35,7 +35,7 @@ class Message:
     LAYOUT: ClassVar[str] = ""
 
     def payload(self) -> bytes:
-        """Its bytes."""
+        """The message as bytes."""
         given = iter(fields(self))
         parts = []
         for form in self.LAYOUT.split():
@@ -132,7 +132,7 @@ class JobData(Message):
     data: bytes
 
     def payload(self) -> bytes:
-        """Its bytes."""
+        """The message as bytes."""
         return struct.pack("<HH", self.page, len(self.data) // PAGE) + self.data
 
     @classmethod
@@ -148,7 +148,7 @@ class JobData(Message):
 
 @dataclass(frozen=True)
 class JobEnd(Message):
-    """The file is whole."""
+    """The whole job file was sent."""
 
     TYPE = 18
     LAYOUT = "I"
@@ -157,7 +157,7 @@ class JobEnd(Message):
 
 @dataclass(frozen=True)
 class Ack(Message):
-    """What the card has taken, and what it can take."""
+    """Acknowledges received pages and says how many more the card can take."""
 
     TYPE = 19
     LAYOUT = "I H H"
@@ -237,7 +237,7 @@ class Output(Message):
 
 
 @dataclass(frozen=True)
-class Result(Message):
+class ResultMessage(Message):
     """How a command ended."""
 
     TYPE = 48
@@ -282,7 +282,7 @@ class Config(Message):
 
 @dataclass(frozen=True)
 class Status(Message):
-    """What the card does now."""
+    """The present status of the card."""
 
     TYPE = 80
     LAYOUT = "B B H H H I I 4i I I 7H H I"

@@ -1,4 +1,4 @@
-"""What a server keeps of a card on disk: the job that waits, numbers of commands."""
+"""A server's data of a card on the disk: the job that waits, the numbers of commands."""
 
 import contextlib
 import time
@@ -7,18 +7,18 @@ from pathlib import Path
 from motionfmu.base.errors import InputError
 from motionfmu.cards.keys import write_whole
 
-# Numbers are taken from the disk in blocks: a server that was killed goes on behind the block.
+# Numbers are reserved on the disk in blocks; after a kill a server goes on behind its block.
 BLOCK = 256
 NUMBER_MAX = 2**32 - 1
 
 
 class Outbox:
-    """A card's folder; it is made when something is to be kept."""
+    """A card's folder, which is made when the first thing is kept in it."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._used = self._reserved = 0
-        self.wrong = ""  # with the disk at the latest number
+        self.wrong = ""  # fault of the disk when the latest number was taken
 
     @property
     def _job(self) -> Path:
@@ -44,15 +44,15 @@ class Outbox:
         write_whole(self._job, job)
 
     def drop(self) -> None:
-        """The job is in the card, or refused."""
+        """Remove the job, which is in the card or refused."""
         with contextlib.suppress(OSError):  # it is offered once more, and the card has it
             self._job.unlink(missing_ok=True)
 
     def number(self, done: int) -> int:
         """A number of a command that this card never saw; 0 if all are used up.
 
-        A disk that takes none keeps no command back: then numbers go on from the clock [s], which
-        is ahead of all that were given before at less than one a second.
+        If the disk fails, commands go on: numbers are then taken from the clock [s], which is ahead
+        of all numbers given before, as these are fewer than one a second.
         """
         number = max(self._used, done) + 1
         if number > NUMBER_MAX:
@@ -65,7 +65,7 @@ class Outbox:
         return number
 
     def _reserve(self, reserved: int) -> str:
-        """Take the numbers up to this one from the disk; what is wrong with it."""
+        """Reserve the numbers up to this one on the disk; returns the disk's fault."""
         part = self._folder / ".number"
         try:
             self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)

@@ -1,11 +1,11 @@
-"""Contours become a job: speed along a smooth path, whole pulses in each period of the card."""
+"""Planning of a job from contours: speed along a smooth path, whole pulses in each DDA period."""
 
 import ctypes
 import hashlib
 import json
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -13,25 +13,25 @@ import numpy as np
 from motionfmu.base.binding import Struct, dtype, library
 from motionfmu.base.errors import InputError
 from motionfmu.cards.config import CardConfig
-from motionfmu.cards.contours import Contour, clean, corners
-from motionfmu.cards.plt import Drawing
+from motionfmu.cards.contours import PenContour, clean, corners
+from motionfmu.cards.plt import PltDrawing
 
 AXES = 4
 PAGE = 256
-ROOM = 1 << 15  # frames of a call
+ROOM = 1 << 15  # most frames of one call
 _PAYLOAD, _FRAME = 228, 13  # bytes of a page, of a frame at most
 _EVENTS = 11
 _MOVE, _DRAW, _STOP = range(3)
-# What the planner of C is given.
+# The structs that the planner in C gets.
 _SETTINGS = (
     "pulses_per_mm speed acc jerk period_ns tolerance rapid reserve pen pen_axis up down dwell"
 ).split()
-RESTS, SLIDES, DRAWS = 1, 2, 3  # what a frame is part of
+RESTS, SLIDES, DRAWS = 1, 2, 3  # kind of motion of which a frame is part
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A job, and how it moves."""
+    """A job and its planned motion."""
 
     job: bytes  # The file for the card
     period: float  # [s] of a frame
@@ -40,27 +40,27 @@ class Plan:
     events: np.ndarray  # 1 lowers, 2 raises a pen by an output, at the begin of the frame; 0 none
     steps: np.ndarray  # 1 a rest while the pen moves, 2 pen up (or the pen's axis moves), 3 drawing
     stops: int  # Rests within contours
-    contours: list[Contour]  # What is drawn, in this order
+    contours: list[PenContour]  # What is drawn, in this order
     seconds: float  # [s] that planning took
 
 
 @dataclass(frozen=True)
-class Options:
-    """How a drawing is planned."""
+class PlanOptions:
+    """Options of the planning of a drawing."""
 
     order: str = "file"  # "file" or "nearest": of the contours
     # "round" within the tolerance, or "stop": to rest exactly at vertices where the path
     # turns by more than the configuration's corner angle
     corners: str = "round"
-    pens: list[int] | None = None  # Only what these draw
+    pens: list[int] | None = None  # Only lines of these pens; None: of all
     speeds: bool = False  # Keep the speeds that the drawing asks for where they are below the feed
     # [mm] from the drawing's origin to the machine's position 0
     offset: tuple[float, float] = (0.0, 0.0)
 
 
-def plan(drawing: Drawing, config: CardConfig, options: Options | None = None) -> Plan:
+def plan(drawing: PltDrawing, config: CardConfig, options: PlanOptions | None = None) -> Plan:
     """Plan a drawing for a card."""
-    options = options or Options()
+    options = options or PlanOptions()
     if len(config.axes) < 2:
         raise InputError(f"{len(config.axes)} axes in the configuration, X and Y wanted")
     contours = clean(drawing, options.pens, options.order)
@@ -87,7 +87,7 @@ def plan(drawing: Drawing, config: CardConfig, options: Options | None = None) -
     )
 
 
-def origin(drawing: Drawing, config: CardConfig, options: Options) -> bytes:
+def origin(drawing: PltDrawing, config: CardConfig, options: PlanOptions) -> bytes:
     """SHA-256 of a drawing and all that its plan depends on: what a job's header has."""
     planner, motion = _planner(config), config.motion
     settings = {name: planner[name] for name in _SETTINGS}
@@ -96,7 +96,11 @@ def origin(drawing: Drawing, config: CardConfig, options: Options) -> bytes:
         "corner": motion.corner_angle,
         "pen_output": motion.pen.output,
     }
-    settings |= {"pen": [motion.pen.output, motion.pen.up_level], "options": repr(options)}
+    chosen = ", ".join(f"{f.name}={getattr(options, f.name)!r}" for f in fields(options))
+    settings |= {
+        "pen": [motion.pen.output, motion.pen.up_level],
+        "options": f"Options({chosen})",  # this text must not change, or hashes of old jobs would
+    }
     told = json.dumps(settings, sort_keys=True, default=lambda row: row.tolist())
     return hashlib.sha256(drawing.text + b"\0" + told.encode()).digest()
 
@@ -114,7 +118,7 @@ def write(job: bytes, file: Path) -> None:
 
 
 def _within(
-    drawing: Drawing, contours: list[Contour], config: CardConfig, offset: tuple[float, float]
+    drawing: PltDrawing, contours: list[PenContour], config: CardConfig, offset: tuple[float, float]
 ) -> None:
     """Refuse a vertex beyond a limit of its axis."""
     for c in contours:
@@ -169,7 +173,7 @@ def _pointer(array: np.ndarray) -> ctypes.c_void_p:
     return array.ctypes.data_as(ctypes.c_void_p)
 
 
-def _vertices(contours: list[Contour], config: CardConfig, options: Options) -> np.ndarray:
+def _vertices(contours: list[PenContour], config: CardConfig, options: PlanOptions) -> np.ndarray:
     """Moves and lines of all contours."""
     motion, kind = config.motion, dtype("plan_vertex")
     counts = [max(len(c.points), 2) for c in contours]

@@ -1,4 +1,4 @@
-"""Drawings in HP-GL (PLT files): which lines they draw, with which pen, and what is passed over."""
+"""Drawings in HP-GL (PLT files): their lines by pen, and notes on what is ignored."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,12 +9,12 @@ from motionfmu.base.errors import InputError
 from motionfmu.cards.plt_plotter import Plotter, Polyline
 from motionfmu.cards.plt_scan import Scanner
 
-__all__ = ["Drawing", "Note", "Polyline", "parse", "read"]
+__all__ = ["Note", "PltDrawing", "Polyline", "parse", "read"]
 
 
 @dataclass(frozen=True)
 class Note:
-    """What a file says that draws nothing here."""
+    """An instruction of a file that is ignored."""
 
     line: int  # Where it stands first; line and column from 1, byte from 0
     column: int
@@ -24,8 +24,8 @@ class Note:
 
 
 @dataclass(frozen=True)
-class Drawing:
-    """What one page of a PLT file draws."""
+class PltDrawing:
+    """The drawing of one page of a PLT file."""
 
     lines: list[Polyline]  # In the file's order, moves with the pen up between them
     notes: list[Note]  # Of all pages
@@ -59,7 +59,7 @@ def read(
     frame: tuple[float, float, float, float] | None = None,
     fills: bool = True,
     page: int = 1,
-) -> Drawing:
+) -> PltDrawing:
     """Read a page of a PLT file."""
     try:
         text = Path(file).read_bytes()
@@ -74,7 +74,7 @@ def parse(
     frame: tuple[float, float, float, float] | None = None,
     fills: bool = True,
     page: int = 1,
-) -> Drawing:
+) -> PltDrawing:
     """Read a page of the text of a PLT file."""
     plotter = Plotter(Scanner(text, name), frame, fills)
     plotter.run()
@@ -83,4 +83,4 @@ def parse(
         there = "one page" if len(pages) == 1 else f"{len(pages)} pages"
         raise InputError(f"{name}: no page {page}, it has {there}")
     notes = [Note(*n) for n in plotter.scan.notes()]
-    return Drawing(pages[page - 1], notes, name, text, page, len(pages))
+    return PltDrawing(pages[page - 1], notes, name, text, page, len(pages))

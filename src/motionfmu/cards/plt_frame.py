@@ -1,4 +1,4 @@
-"""From the numbers of an HP-GL file to places of the sheet: IP, SC, RO."""
+"""Conversion of an HP-GL file's numbers to positions on the sheet: IP, SC, RO."""
 
 from itertools import accumulate
 
@@ -7,7 +7,7 @@ Place = tuple[float, float]
 _TURNS = {0: (1, 0, 0, 1), 90: (0, -1, 1, 0), 180: (-1, 0, 0, -1), 270: (0, 1, -1, 0)}
 
 
-class Frame:
+class UserUnits:
     """User units: scaled into P1 .. P2, then rotated about the origin of the sheet."""
 
     def __init__(self, machine: tuple[float, float, float, float] | None) -> None:
@@ -22,7 +22,7 @@ class Frame:
         self._map()
 
     def _map(self) -> str:
-        """Scale and offset of both coordinates; what is wrong with them."""
+        """Set scale and offset of both coordinates; returns a fault."""
         self.sx, self.sy, self.ox, self.oy = 1.0, 1.0, 0.0, 0.0
         s, p = self.scaling, self.p
         if s is not None:
@@ -55,7 +55,7 @@ class Frame:
         return ""
 
     def corners(self, numbers: list[float]) -> str:
-        """IP; returns what is wrong."""
+        """Carry out IP; returns a fault."""
         if len(numbers) == 4:
             self.p = (numbers[0], numbers[1], numbers[2], numbers[3])
         elif len(numbers) == 2 and self.p is not None:
@@ -70,7 +70,7 @@ class Frame:
         return self._map()
 
     def scale(self, numbers: list[float]) -> str:
-        """SC; returns what is wrong."""
+        """Carry out SC; returns a fault."""
         if len(numbers) not in (0, 4, 5, 7):
             return f"{len(numbers)} numbers, 0, 4, 5 or 7 wanted"
         if len(numbers) > 4 and numbers[4] not in (0.0, 1.0, 2.0):
@@ -79,7 +79,7 @@ class Frame:
         return self._map()
 
     def rotate(self, numbers: list[float]) -> str:
-        """RO; returns what is wrong."""
+        """Carry out RO; returns a fault."""
         angle = numbers[0] if numbers else 0.0
         if len(numbers) > 1 or angle not in _TURNS:
             return f"{', '.join(f'{n:g}' for n in numbers)}: 0, 90, 180 or 270 degrees wanted"
@@ -87,13 +87,13 @@ class Frame:
         return self._map()
 
     def place(self, x: float, y: float) -> Place:
-        """Of the sheet [plotter units]."""
+        """Position on the sheet [plotter units] of user units."""
         x, y = self.sx * x + self.ox, self.sy * y + self.oy
         a, b, c, d = self.turn
         return a * x + b * y, c * x + d * y
 
     def user(self, at: Place) -> Place:
-        """Back to user units."""
+        """User units of a position on the sheet."""
         a, b, c, d = self.turn
         x, y = a * at[0] + c * at[1], b * at[0] + d * at[1]
         return (x - self.ox) / self.sx, (y - self.oy) / self.sy

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from motionfmu.cards.plt_frame import Frame
+from motionfmu.cards.plt_frame import UserUnits
 from motionfmu.cards.plt_scan import Scanner
 
 UNIT = 0.025  # [mm] of a plotter unit
@@ -29,8 +29,8 @@ class Polyline:
 
 
 @dataclass
-class _Stroke:
-    """A line under way: [plotter units], bytes."""
+class _PenStroke:
+    """A line that is being drawn: its points [plotter units], its bytes in the file."""
 
     down: bool
     xs: list[float]
@@ -46,7 +46,7 @@ class Plotter:
         self, scan: Scanner, frame: tuple[float, float, float, float] | None, fills: bool
     ) -> None:
         self.scan, self.fills = scan, fills
-        self.frame = Frame(frame)
+        self.frame = UserUnits(frame)
         self.pages: list[list[Polyline]] = [[]]  # moves and lines of each
         self.count = 0
         self.pen, self.down, self.relative = 1, False, False
@@ -54,7 +54,7 @@ class Plotter:
         self.deviation = False  # CT1: chords by their distance from the arc
         self.speeds: dict[int, float] = {}
         self.window: tuple[float, float, float, float] | None = None
-        self.stroke: _Stroke | None = None
+        self.stroke: _PenStroke | None = None
         self.polygon: list[list[tuple[float, float, bool]]] | None = None  # under way
         self.kept: list[list[tuple[float, float, bool]]] = []  # the latest whole one
         self.entry: tuple[tuple[float, float], bool] = ((0.0, 0.0), False)
@@ -85,7 +85,7 @@ class Plotter:
     # Lines
 
     def _flush(self) -> None:
-        """End the line under way."""
+        """End the line that is being drawn."""
         if (s := self.stroke) is None:
             return
         points = np.stack([np.array(s.xs), np.array(s.ys)], axis=1) * UNIT
@@ -109,7 +109,7 @@ class Plotter:
             down = down and self.pen != 0
             if self.stroke is None or self.stroke.down != down:
                 self._flush()
-                self.stroke = _Stroke(down, [self.at[0]], [self.at[1]], self.scan.first)
+                self.stroke = _PenStroke(down, [self.at[0]], [self.at[1]], self.scan.first)
                 self.count += 1
             self.stroke.xs.extend(xs)
             self.stroke.ys.extend(ys)

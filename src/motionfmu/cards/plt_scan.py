@@ -48,7 +48,7 @@ def _is_utf8(text: bytes) -> bool:
 
 
 class Scanner:
-    """Goes through a text; knows where it is."""
+    """Reads a text from its begin to its end and knows the place that it has reached."""
 
     def __init__(self, text: bytes, name: str) -> None:
         self.text, self.name = text, name
@@ -78,7 +78,7 @@ class Scanner:
         return f"{self.name}: line {line}, column {column}, byte {byte}"
 
     def wants(self, numbers: list[float], least: int, most: int) -> None:
-        """Refuse another count of numbers."""
+        """Refuse an instruction with too few or too many numbers."""
         if not least <= len(numbers) <= most:
             wanted = f"{least}" if least == most else f"{least} to {most}"
             self.refuse(f"{len(numbers)} numbers, {wanted} wanted")
@@ -94,7 +94,7 @@ class Scanner:
         found[1] += 1
 
     def notes(self) -> list[tuple[int, int, int, int, str]]:
-        """What was passed over: line, column, byte, how often, what."""
+        """What was ignored: line, column, byte, number of times, text."""
         return [(*self.place(at), at, n, what) for what, (at, n) in self._skipped.items()]
 
     def pairs(self) -> Iterator[tuple[str, list[float]]]:
@@ -128,7 +128,7 @@ class Scanner:
         return found
 
     def _slowly(self, m: re.Match[bytes]) -> list[float]:
-        """Signs part numbers too; or say which is none."""
+        """Read numbers that signs separate as well; an error names a text that is no number."""
         found, at, end = [], m.start(2), m.end(2)
         while at < end:
             if self.text[at] in b", \t\r\n\0":
@@ -181,7 +181,7 @@ class Scanner:
             self._to_end()
 
     def _quoted(self) -> None:
-        """Texts of one instruction: their pairs of letters are none."""
+        """Skip the texts of one instruction, whose letters are no instructions."""
         text, quoted = self.text, False
         while m := _QUOTE.match(text, self.next):
             end = text.find(b'"', m.end())

@@ -1,4 +1,4 @@
-"""A card as the server has it: its line, its commands, the job on its way to it."""
+"""A card on the side of the server: its connection, its commands, the job that it gets."""
 
 import asyncio
 import time
@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from motionfmu.cards import messages as m
-from motionfmu.cards.line import Limits, Line
+from motionfmu.cards.card_settings import Key, at_power_up, in_order, numbers
+from motionfmu.cards.connection import CardConnection, ConnectionLimits
 from motionfmu.cards.outbox import Outbox
-from motionfmu.cards.settings import Key, at_power_up, in_order, numbers
 from motionfmu.cards.transfer import JobFile, Transfer
 from motionfmu.cards.views import (
     EVENTS_KEPT,
@@ -17,10 +17,10 @@ from motionfmu.cards.views import (
     TEXTS,
     CardView,
     Code,
-    Configured,
+    CommandResult,
+    ConfigurationResult,
     Event,
-    Result,
-    Setting,
+    SettingResult,
     Upload,
 )
 
@@ -33,30 +33,30 @@ class _Order:
     """A command that waits for its result."""
 
     message: m.Message
-    result: "asyncio.Future[Result]"
+    result: "asyncio.Future[CommandResult]"
     frame: int = 0  # in which it was sent last
 
 
 @dataclass
 class _Question:
-    """A setting that was asked for; its answer is a code and a value."""
+    """A setting that a card was asked for; the answer is a code and a value."""
 
     message: m.ConfigGet
     frame: int
     answer: "asyncio.Future[tuple[int, int]]"
 
     def end(self, code: int, value: int = 0) -> None:
-        """It is answered, or never will be."""
+        """Take the answer, or the reason why there will be none."""
         if not self.answer.done():
             self.answer.set_result((code, value))
 
 
 @dataclass
-class _Job:
+class _NextJob:
     """The job that a card shall get."""
 
     file: JobFile
-    waits: "asyncio.Future[Result] | None" = None
+    waits: "asyncio.Future[CommandResult] | None" = None
     upload: Upload = field(init=False)
 
     def __post_init__(self) -> None:
@@ -67,10 +67,10 @@ class RemoteCard:
     """One card, with or without a connection."""
 
     def __init__(
-        self, card: int, outbox: Outbox, limits: Limits, tell: Callable[[Event], None]
+        self, card: int, outbox: Outbox, limits: ConnectionLimits, tell: Callable[[Event], None]
     ) -> None:
         self.id = card
-        self.line: Line | None = None
+        self.line: CardConnection | None = None
         self._outbox, self._limits, self._tell = outbox, limits, tell
         self._events: deque[Event] = deque(maxlen=EVENTS_KEPT)
         self._hello: m.Hello | None = None
@@ -82,19 +82,19 @@ class RemoteCard:
         self._pumping = False
         self._loop = asyncio.get_running_loop()
         job = outbox.load()
-        self._job = _Job(JobFile(job)) if job else None
+        self._job = _NextJob(JobFile(job)) if job else None
         self._keeping = asyncio.Lock()
         self._question: _Question | None = None
-        self._disk = ""  # what is wrong with it, told once
+        self._disk = ""  # fault of the disk, which is told once
         self._configuring = asyncio.Lock()
 
     @property
     def idle(self) -> bool:
-        """Whether nothing would be lost by forgetting it."""
+        """Whether the server can forget the card without losing anything."""
         return not (self.line or self._job or self._orders)
 
     def view(self) -> CardView:
-        """What there is to see of it."""
+        """The card's state for users of the server."""
         return CardView(
             self.id,
             self.line is not None,
@@ -108,7 +108,7 @@ class RemoteCard:
         )
 
     def tell(self, kind: str, text: str) -> None:
-        """Hand on what happened."""
+        """Pass on an event."""
         event = Event(kind, self.id, text, time.time())
         if kind not in FLEETING:
             self._events.append(event)
@@ -116,8 +116,8 @@ class RemoteCard:
 
     # The connection.
 
-    def join(self, line: Line, hello: m.Hello) -> None:
-        """Take a line whose handshake is over; the older one is closed."""
+    def join(self, line: CardConnection, hello: m.Hello) -> None:
+        """Take a connection whose handshake is over; an older one is closed."""
         old, self.line, self._transfer = self.line, line, None
         if old:
             old.drop(f"the card came again from {line.address}:{line.port}")
@@ -130,18 +130,18 @@ class RemoteCard:
             if before and before.life == hello.life:
                 order.frame = line.send(order.message)
             elif not order.result.done():  # its power failed: nobody knows what it has done
-                order.result.set_result(Result.of(Code.NO_ANSWER, self._state))
+                order.result.set_result(CommandResult.of(Code.NO_ANSWER, self._state))
         self._offer()
 
-    def left(self, line: Line, why: str) -> None:
-        """A line is over."""
+    def left(self, line: CardConnection, why: str) -> None:
+        """Note that a connection has ended."""
         self.tell("closed", why)
         if self._question:
             self._question.end(Code.OFFLINE)
         if line is self.line:
             self.line = self._transfer = None
 
-    def heard(self, line: Line, sequence: int, message: m.Message) -> None:
+    def heard(self, line: CardConnection, sequence: int, message: m.Message) -> None:
         """Take a message."""
         if line is not self.line:
             return
@@ -150,7 +150,7 @@ class RemoteCard:
             self._see(message.state)
             self.tell("status", self._state)
             self._offer()
-        elif isinstance(message, m.Result):
+        elif isinstance(message, m.ResultMessage):
             self._answer(message.number, message.code, message.state)
         elif isinstance(message, m.Config) and self._question:
             if self._question.message == m.ConfigGet(message.id, message.index):
@@ -169,7 +169,7 @@ class RemoteCard:
                 self._moved()
 
     def watch(self) -> None:
-        """Ask again if an upload does not go on."""
+        """Ask the card again if an upload makes no progress."""
         now = self._loop.time()
         if self._transfer and now - self._progress > self._limits.stall:
             self._progress = now
@@ -180,11 +180,11 @@ class RemoteCard:
 
     # Commands.
 
-    async def command(self, make: Callable[[int], m.Message], name: str) -> Result:
+    async def command(self, make: Callable[[int], m.Message], name: str) -> CommandResult:
         """Send a command and wait for its result, over a new connection too if need be."""
         number = self._number()
         if self.line is None or not number:
-            return self._ended(name, Result.of(Code.RANGE if self.line else Code.OFFLINE))
+            return self._ended(name, CommandResult.of(Code.RANGE if self.line else Code.OFFLINE))
         self.tell("command", f"{name} {number}")
         return self._ended(f"{name} {number}", await self._do(number, make(number), self.line))
 
@@ -196,18 +196,18 @@ class RemoteCard:
             self.tell("disk", f"{self._disk}; commands go on, jobs cannot be kept")
         return number
 
-    async def _do(self, number: int, message: m.Message, line: Line) -> Result:
+    async def _do(self, number: int, message: m.Message, line: CardConnection) -> CommandResult:
         order = self._orders[number] = _Order(message, self._loop.create_future())
         order.frame = line.send(message)
         try:
             async with asyncio.timeout(self._limits.answer):
                 return await order.result
         except TimeoutError:
-            return Result.of(Code.NO_ANSWER, self._state)
+            return CommandResult.of(Code.NO_ANSWER, self._state)
         finally:
             del self._orders[number]
 
-    def _ended(self, what: str, result: Result) -> Result:
+    def _ended(self, what: str, result: CommandResult) -> CommandResult:
         self.tell("result", f"{what}: {result.text}")
         return result
 
@@ -216,23 +216,23 @@ class RemoteCard:
         if state is not None:
             self._see(state)
         if (order := self._orders.get(number)) and not order.result.done():
-            order.result.set_result(Result.of(code, self._state))
+            order.result.set_result(CommandResult.of(code, self._state))
 
     # Settings.
 
-    async def settings(self, keys: Iterable[Key]) -> tuple[Result, dict[Key, int]]:
+    async def settings(self, keys: Iterable[Key]) -> tuple[CommandResult, dict[Key, int]]:
         """Ask for settings, one after the other; those that were told before one was not."""
         async with self._configuring:
             return await self._settings(keys)
 
-    async def _settings(self, keys: Iterable[Key]) -> tuple[Result, dict[Key, int]]:
+    async def _settings(self, keys: Iterable[Key]) -> tuple[CommandResult, dict[Key, int]]:
         found: dict[Key, int] = {}
         for key in keys:
             code, value = await self._get(m.ConfigGet(numbers()[key[0]][0], key[1]))
             if code:
-                return Result.of(code, self._state), found
+                return CommandResult.of(code, self._state), found
             found[key] = value
-        return Result.of(Code.DONE, self._state), found
+        return CommandResult.of(Code.DONE, self._state), found
 
     async def _get(self, message: m.ConfigGet) -> tuple[int, int]:
         if self.line is None:
@@ -247,35 +247,35 @@ class RemoteCard:
         finally:
             self._question = None
 
-    async def configure(self, wanted: Mapping[Key, int]) -> Configured:
+    async def configure(self, wanted: Mapping[Key, int]) -> ConfigurationResult:
         """Send the settings that differ, one after the other, to the first that is not taken."""
         async with self._configuring:
             end, has = await self._settings(wanted)
-            changed: list[Setting] = []
+            changed: list[SettingResult] = []
             for name, index in in_order(wanted, has) if end.ok else ():
                 value, number = wanted[name, index], self._number()
                 if self.line is None or not number:
-                    end = Result.of(Code.RANGE if self.line else Code.OFFLINE, self._state)
+                    end = CommandResult.of(Code.RANGE if self.line else Code.OFFLINE, self._state)
                 else:
                     message = m.ConfigSet(number, numbers()[name][0], index, value)
                     end = await self._do(number, message, self.line)
                 before, later = has[name, index], at_power_up(name)
-                changed.append(Setting(name, index, before, value, later, end))
+                changed.append(SettingResult(name, index, before, value, later, end))
                 if not end.ok:
                     break
         done = sum(s.result.ok for s in changed)
         self._ended(f"configure, {done} settings changed", end)
-        return Configured(end, tuple(changed))
+        return ConfigurationResult(end, tuple(changed))
 
     # The job.
 
-    async def upload(self, file: bytes) -> Result:
+    async def upload(self, file: bytes) -> CommandResult:
         """Bring a job; what waits in the folder is on disk before anything is sent."""
         async with self._keeping:
             await asyncio.to_thread(self._outbox.keep, file)
             if self._job:
                 self._finish(Code.REPLACED)
-            self._job = _Job(await asyncio.to_thread(JobFile, file), self._loop.create_future())
+            self._job = _NextJob(await asyncio.to_thread(JobFile, file), self._loop.create_future())
         waits, self._retry = self._job.waits, 0.0
         assert waits
         self._offer()
@@ -335,7 +335,7 @@ class RemoteCard:
             return
         if not self._keeping.locked():  # else the file is already the next one
             self._outbox.drop()
-        result = Result.of(code)
+        result = CommandResult.of(code)
         self.tell("upload", f"{job.upload.pages} pages: {result.text}")
         if job.waits and not job.waits.done():
             job.waits.set_result(result)

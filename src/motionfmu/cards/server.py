@@ -13,12 +13,19 @@ from typing import TYPE_CHECKING
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import shown
 from motionfmu.cards import messages as m
+from motionfmu.cards.card_settings import Key, asked, numbers
+from motionfmu.cards.connection import READ_MAX, CardConnection, ConnectionLimits
 from motionfmu.cards.keys import CARD_MAX, Keys
-from motionfmu.cards.line import READ_MAX, Limits, Line
 from motionfmu.cards.outbox import Outbox
 from motionfmu.cards.remote import RemoteCard
-from motionfmu.cards.settings import Key, asked, numbers
-from motionfmu.cards.views import FLEETING, CardView, Code, Configured, Event, Result
+from motionfmu.cards.views import (
+    FLEETING,
+    CardView,
+    Code,
+    CommandResult,
+    ConfigurationResult,
+    Event,
+)
 
 if TYPE_CHECKING:
     import ssl
@@ -32,7 +39,7 @@ QUEUE_MAX = 1000  # events
 JOB_MAX = 8192  # pages of the largest flash
 JOB_MAGIC = b"MCJ1"
 
-# What a command is made of, behind its number: name and highest value of each field.
+# Fields of each command behind its number: name and highest value.
 _COMMANDS: dict[str, tuple[Callable[..., m.Message], dict[str, int]]] = {
     "start": (m.Start, {}),
     "pause": (m.Pause, {}),
@@ -75,15 +82,15 @@ class Cards:
     """All cards of one server; everything runs on the event loop that called `listen`."""
 
     def __init__(
-        self, folder: Path, limits: Limits | None = None, keys: Path | None = None
+        self, folder: Path, limits: ConnectionLimits | None = None, keys: Path | None = None
     ) -> None:
-        self.limits = limits or Limits()
+        self.limits = limits or ConnectionLimits()
         self.buffer = bytearray(READ_MAX)
         self.dropped = 0  # lines of the log
         self._folder, self._key_file = folder, keys or folder / "keys.toml"
         self._keys: Keys | None = None
         self._cards: dict[int, RemoteCard] = {}
-        self._lines: set[Line] = set()
+        self._lines: set[CardConnection] = set()
         self._queues: list[asyncio.Queue[Event]] = []
         self._second, self._logged = 0, 0
         self._server: asyncio.Server | None = None
@@ -104,7 +111,7 @@ class Cards:
                 self._card(int(place.name))
         try:
             self._server = await loop.create_server(
-                lambda: Line(self, keys.of, loop.time),
+                lambda: CardConnection(self, keys.of, loop.time),
                 host,
                 port,
                 ssl=tls,
@@ -131,11 +138,11 @@ class Cards:
         """All cards that were heard or have a job waiting, by id."""
         return [self._cards[i].view() for i in sorted(self._cards)]
 
-    async def command(self, card: int, name: str, /, **values: int) -> Result:
+    async def command(self, card: int, name: str, /, **values: int) -> CommandResult:
         """Do start, pause, stop, home (axes), reset or output (pins, mode, level, width).
 
-        Never raises for what the card or the link does: a Result says it. InputError for a name
-        or a value that no card knows.
+        Faults of the card or the link raise nothing; the CommandResult tells them. InputError for a
+        name or a value that no card knows.
         """
         if name not in _COMMANDS:
             raise InputError(f"no command {shown(name)} (there are: {', '.join(_COMMANDS)})")
@@ -151,32 +158,32 @@ class Cards:
             raise InputError(f"{name}: {', '.join(sorted(missing))} wanted")
         check_card(card)
         if card not in self._cards:
-            return Result.of(Code.OFFLINE)
+            return CommandResult.of(Code.OFFLINE)
         return await self._cards[card].command(lambda n: kind(n, *(values[f] for f in most)), name)
 
-    async def settings(self, card: int) -> tuple[Result, dict[Key, int]]:
+    async def settings(self, card: int) -> tuple[CommandResult, dict[Key, int]]:
         """All settings of a card, by name and element, as it tells them."""
         check_card(card)
         if card not in self._cards:
-            return Result.of(Code.OFFLINE), {}
+            return CommandResult.of(Code.OFFLINE), {}
         known = numbers().items()
         return await self._cards[card].settings((n, i) for n, (_, k) in known for i in range(k))
 
-    async def configure(self, card: int, config: "CardConfig") -> Configured:
+    async def configure(self, card: int, config: "CardConfig") -> ConfigurationResult:
         """Send the settings of a configuration that differ from the card's, one by one.
 
-        The first that the card does not take ends it: while it moves, it takes none. Its id stays.
+        The first setting that the card refuses ends it; a card that moves takes none. Its id stays.
         """
         check_card(card)
         if card not in self._cards:
-            return Configured(Result.of(Code.OFFLINE))
+            return ConfigurationResult(CommandResult.of(Code.OFFLINE))
         return await self._cards[card].configure(asked(config))
 
-    async def upload(self, card: int, job: bytes) -> Result:
+    async def upload(self, card: int, job: bytes) -> CommandResult:
         """Bring a job file into a card's flash; returns when it is there, or refused.
 
-        Who does not wait any more (cancels) leaves the job in the folder: it is brought when the
-        card comes. A newer job for the card takes its place. InputError if it is no job file.
+        A caller that cancels leaves the job in the folder, and the card gets it when it connects. A
+        newer job for the card takes its place. InputError if it is no job file.
         """
         check_job(job)
         check_card(card)
@@ -195,8 +202,8 @@ class Cards:
 
     # What lines call.
 
-    def met(self, line: Line) -> str:
-        """A connection has come; why it is refused, or nothing."""
+    def met(self, line: CardConnection) -> str:
+        """Take a new connection; returns why it is refused, or an empty text."""
         if len(self._lines) >= self.limits.connections:
             return f"more than {self.limits.connections} connections"
         pending = (x for x in self._lines if x.open and not x.end.ready)
@@ -209,14 +216,14 @@ class Cards:
         self._lines.add(line)
         return ""
 
-    def joined(self, line: Line) -> RemoteCard:
+    def joined(self, line: CardConnection) -> RemoteCard:
         """The handshake of a line is over."""
         assert line.end.hello
         card = self._card(line.end.hello.card)
         card.join(line, line.end.hello)
         return card
 
-    def lost(self, line: Line, why: str) -> None:
+    def lost(self, line: CardConnection, why: str) -> None:
         """A connection is over."""
         self._lines.discard(line)
         if isinstance(line.card, RemoteCard):

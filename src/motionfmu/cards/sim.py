@@ -1,6 +1,6 @@
-"""The card itself as a program: the C core in real time, a TCP client as the card is.
+"""Virtual network cards: the card's C core in real time, which connects by TCP as a card does.
 
-Its machine counts pulses; an origin switch stands at a place.
+The machine behind it counts pulses and has an origin switch for each axis.
 """
 
 import asyncio
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     import ssl
 
 FLASH_BYTES = 2_097_152
-ORIGIN = 5000  # [pulses] from where the machine stands at power-up, in the way of homing
+ORIGIN = 5000  # [pulses] from the start position to the origin switch, in homing's direction
 TICK = 0.01  # [s] from one look at the clock to the next
-AHEAD_NS = 1_000_000  # a card answers at once: it may be so far ahead of the clock
+AHEAD_NS = 1_000_000  # a card may be so far ahead of the clock, so that it answers at once
 MOST_NS = 100_000_000  # a card that is later than this does not catch up
 CHUNK = 4096  # [byte]
 UP = 4  # SESSION_UP of src/controllers/netcard/session.h
@@ -31,7 +31,7 @@ CALL = 5.0  # [s] for a connection to come about
 SAVE = 1.0  # [s] between two looks at the flash
 
 
-class VirtualCard:
+class VirtualNetCard:
     """A card of src/controllers/netcard with its machine; its time is in ns since power came."""
 
     def __init__(
@@ -56,12 +56,12 @@ class VirtualCard:
 
     @property
     def now(self) -> int:
-        """All up to here has happened [ns]."""
+        """Time up to which the card has run [ns]."""
         return int(self._sim["now"])
 
     @property
     def state(self) -> State:
-        """What it does."""
+        """The card's state."""
         return State(self._c.binding_netcard_state(self._sim.pointer))
 
     @property
@@ -117,7 +117,7 @@ class VirtualCard:
 class _Link(asyncio.Protocol):
     """The TCP connection of a card, for as long as it lasts."""
 
-    def __init__(self, run: "Run") -> None:
+    def __init__(self, run: "RealTimeRun") -> None:
         self._run = run
         self._waits = b""  # what the card has not taken yet
         self.transport: asyncio.Transport | None = None
@@ -150,12 +150,12 @@ class _Link(asyncio.Protocol):
         self._run.card.connected(False)
 
 
-class Run:
+class RealTimeRun:
     """A card on the clock of the wall, `speed` times as fast."""
 
     def __init__(
         self,
-        card: VirtualCard,
+        card: VirtualNetCard,
         place: tuple[str, int],
         speed: float,
         tls: "ssl.SSLContext | None" = None,
@@ -207,21 +207,21 @@ class Run:
 
 @dataclass(frozen=True)
 class Watch:
-    """What is called while cards run."""
+    """Functions that are called while cards run."""
 
     each: Callable[[], None] = lambda: None  # each second
     failed: Callable[[str], None] = lambda why: None  # a connection did not come about
 
 
 async def simulate(
-    cards: list[VirtualCard],
+    cards: list[VirtualNetCard],
     place: tuple[str, int],
     speed: float = 1.0,
     watch: Watch = Watch(),
     tls: "ssl.SSLContext | None" = None,
 ) -> None:
     """Run cards as clients of a server until this is cancelled."""
-    runs = [Run(card, place, speed, tls, watch.failed) for card in cards]
+    runs = [RealTimeRun(card, place, speed, tls, watch.failed) for card in cards]
     clock = asyncio.get_running_loop().time
     due = clock() + SAVE
     while True:
@@ -252,7 +252,7 @@ class FlashFile:
             raise InputError(f"{self._file}: {len(data)} bytes, a flash has {FLASH_BYTES}")
         return data
 
-    def save(self, card: VirtualCard) -> None:
+    def save(self, card: VirtualNetCard) -> None:
         """Keep it, if anything was written since."""
         done = (card["programs"], card["sector_erases"], card["block_erases"])
         if done != self._kept:

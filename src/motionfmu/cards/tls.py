@@ -29,7 +29,7 @@ def trusting(certificate: Path) -> ssl.SSLContext:
 
 
 def refused(error: OSError) -> str:
-    """Why a connection did not come about."""
+    """Why a connection was not established."""
     if isinstance(error, ssl.SSLCertVerificationError):
         return f"by TLS its certificate is not trusted ({error.verify_message})"
     if isinstance(error, ssl.SSLError):

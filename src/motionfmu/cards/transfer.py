@@ -18,12 +18,12 @@ from motionfmu.cards.messages import (
 )
 from motionfmu.cards.views import Code
 
-# Pages on their way at most, whatever the card grants: a command waits behind no more.
+# Most pages that are on their way, whatever the card grants; so commands wait behind few pages.
 FLIGHT_MAX = 32
 
 
 class JobFile:
-    """A job file and what the protocol says of it."""
+    """A job file with the length, hash and CRC that the protocol tells of it."""
 
     def __init__(self, data: bytes) -> None:
         self.data, self.pages = data, len(data) // PAGE
@@ -55,7 +55,7 @@ class Transfer:
         self._credit, self._waits = 0, True
 
     def again(self) -> None:
-        """Nothing came for long: ask once more, unless the card still owes an answer."""
+        """Ask the card again after a long silence, unless it still owes an answer."""
         if not self._waits and not self._end:
             self.begin()
 
@@ -88,7 +88,7 @@ class Transfer:
             self.begin()
 
     def pump(self, frames: int) -> bool:
-        """Send so many frames at most; whether there was more to send."""
+        """Send so many frames at most; returns whether there is more to send."""
         if self.code is not None or self._end:
             return False
         for _ in range(frames):

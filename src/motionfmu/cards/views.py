@@ -1,4 +1,4 @@
-"""What the server of network cards tells: cards, uploads, results of commands, events."""
+"""The states and events that the server of network cards shows to its users."""
 
 import enum
 from collections import deque
@@ -8,7 +8,7 @@ from typing import Any
 from motionfmu.cards import messages
 
 EVENTS_KEPT = 100
-# Kinds of events that come so often that nobody keeps them.
+# Kinds of events that are too frequent to be kept.
 FLEETING = ("status", "progress")
 
 
@@ -54,7 +54,7 @@ TEXTS = {
 
 
 @dataclass(frozen=True)
-class Result:
+class CommandResult:
     """How a command or an upload ended."""
 
     code: int  # see Code
@@ -67,14 +67,14 @@ class Result:
         return self.code == Code.DONE
 
     @classmethod
-    def of(cls, code: int, state: str = "") -> "Result":
+    def of(cls, code: int, state: str = "") -> "CommandResult":
         """With the text of its code."""
         known = code in Code.__members__.values()
         return cls(code, TEXTS[Code(code)] if known else f"code {code}", state)
 
 
 @dataclass(frozen=True)
-class Setting:
+class SettingResult:
     """A setting that was sent to a card."""
 
     name: str
@@ -82,15 +82,15 @@ class Setting:
     before: int
     value: int
     later: bool  # acts from the next power-up on only
-    result: Result
+    result: CommandResult
 
 
 @dataclass(frozen=True)
-class Configured:
-    """How the sending of a configuration ended: that of the first setting that was not done."""
+class ConfigurationResult:
+    """The result of sending a configuration: that of the first setting that failed, if any."""
 
-    result: Result
-    changed: tuple[Setting, ...] = ()  # that differed and were sent
+    result: CommandResult
+    changed: tuple[SettingResult, ...] = ()  # that differed and were sent
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ class CardView:
     events: deque[Event] = field(default_factory=lambda: deque(maxlen=EVENTS_KEPT))
 
     def outline(self) -> dict[str, Any]:
-        """What is told of a card wherever it is told, as JSON has it."""
+        """A card's main values, as JSON, for every place that shows a card."""
         names = ("id", "connected", "address", "state", "job")
         return {n: getattr(self, n) for n in names} | {
             "upload": asdict(self.upload) if self.upload else None

@@ -94,8 +94,8 @@ def proved(given: bytes, wanted: bytes, whose: str) -> None:
         raise WireError(f"the {whose} has another key")
 
 
-class End:
-    """What both ends of a connection do: bytes in, messages out, the handshake first.
+class LinkEnd:
+    """What both ends of a connection have in common: the handshake, then messages from bytes.
 
     The package has the PC's end; the card's in Python, for tests, is in tests/soft_card.py.
     """
@@ -135,7 +135,7 @@ class End:
             self.stream.secure(proof(key, b"K", hello, challenge))
 
 
-class PcEnd(End):
+class PcEnd(LinkEnd):
     """The PC's end; `key_of` gives the key of a card's id."""
 
     def __init__(self, key_of: Callable[[int], bytes], interval: int = 100) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import typer
 
 # Modules whose commands stand in others, too, and those that have no command.
-SEVERAL = {"card", "common", "packing", "plain"}
+SEVERAL = {"card", "common", "console_text", "fmu_export"}
 
 
 def __getattr__(name: str) -> Any:

@@ -57,19 +57,19 @@ def settings(
 
 def _tell(found: dict[str, list[int]]) -> None:
     from motionfmu.base.units import spelled
-    from motionfmu.cards.settings import fields, shown, words
-    from motionfmu.cards.tables import Axis, Input
+    from motionfmu.cards.card_settings import fields, shown, words
+    from motionfmu.cards.config_tables import CardAxis, Input
 
     used = [i for i, action in enumerate(found["in_action"]) if action]
     tables: dict[Any, Any] = {
         None: bare_table("card", "", ""),
-        Axis: bare_table("axis", *AXES, ""),
+        CardAxis: bare_table("axis", *AXES, ""),
         Input: bare_table("input", *map(str, used), ""),
     }
     for name, (of, _, what) in fields().items():
         if name not in found or name == "card_id":
             continue
-        one = of not in (Axis, Input)
+        one = of not in (CardAxis, Input)
         columns = range(1) if one else used if of is Input else range(len(AXES))
         values = [
             shown(name, found[name][i], found["pulses_per_m"][0 if one else i % len(AXES)])

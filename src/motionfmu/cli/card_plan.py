@@ -12,9 +12,9 @@ from motionfmu.cli.card import card
 from motionfmu.cli.common import FAILED, bare_table, out, results
 
 if TYPE_CHECKING:
-    from motionfmu.cards.figures import Figures
     from motionfmu.cards.job import Job
-    from motionfmu.cards.plt import Drawing
+    from motionfmu.cards.plan_figures import Figures
+    from motionfmu.cards.plt import PltDrawing
 
 Config = Annotated[Path, typer.Option("-c", "--config", help="Configuration of the card.")]
 Corner = Annotated[tuple[float, float], typer.Option(metavar="X Y", help="Place of its 0 [mm].")]
@@ -27,7 +27,7 @@ PageOption = Annotated[int, typer.Option("--page", help="Of a drawing with sever
 
 @card.command()
 def plan(  # noqa: PLR0913  (each is an option of the command)
-    file: Annotated[Path, typer.Argument(help="Drawing, a PLT file.")],
+    file: Annotated[Path, typer.Argument(help="PltDrawing, a PLT file.")],
     config: Config,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="Job file.")] = None,
     order: Annotated[str, typer.Option(help="Of the contours: file or nearest.")] = "file",
@@ -44,9 +44,9 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     needed("card")
     from motionfmu.cards import load, plt
     from motionfmu.cards.contours import clean, way_between
-    from motionfmu.cards.figures import figures
-    from motionfmu.cards.plan import Options, write
+    from motionfmu.cards.plan import PlanOptions, write
     from motionfmu.cards.plan import plan as planned
+    from motionfmu.cards.plan_figures import figures
 
     for name, value, known in (
         ("--order", order, ("file", "nearest")),
@@ -56,7 +56,7 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
             raise InputError(f"{name} {value}: {' or '.join(known)} wanted")
     settings = load(config)
     drawing = plt.read(file, frame, page=page)
-    found = planned(drawing, settings, Options(order, corners, pen or None, speeds, at))
+    found = planned(drawing, settings, PlanOptions(order, corners, pen or None, speeds, at))
     numbers = figures(found, settings, at)
     target = output or file.with_suffix(".mcj")
     write(found.job, target)
@@ -104,7 +104,7 @@ def _tell(file: Path, target: Path, n: "Figures", by_file: float | None) -> None
 
 
 def _report(
-    name: str, found: Any, drawing: "Drawing", numbers: dict[str, Any], folder: Path
+    name: str, found: Any, drawing: "PltDrawing", numbers: dict[str, Any], folder: Path
 ) -> None:
     from motionfmu.report import outcome
     from motionfmu.report.jobs.card_page import plan_page
@@ -121,7 +121,7 @@ def _report(
 
 @card.command()
 def show(
-    file: Annotated[Path, typer.Argument(help="Drawing (.plt) or job (.mcj).")],
+    file: Annotated[Path, typer.Argument(help="PltDrawing (.plt) or job (.mcj).")],
     picture: Annotated[Path | None, typer.Option(help="Write a picture, .png or .svg.")] = None,
     frame: FrameOption = None,
     page: PageOption = 1,
@@ -143,7 +143,7 @@ def show(
         out.print(f"picture: {picture}", soft_wrap=True)
 
 
-def _show_drawing(file: Path, drawing: "Drawing", picture: Path | None) -> None:
+def _show_drawing(file: Path, drawing: "PltDrawing", picture: Path | None) -> None:
     import numpy as np
 
     low, high = drawing.extent

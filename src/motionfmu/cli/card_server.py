@@ -12,8 +12,8 @@ from motionfmu.cli.card import card, on_end, stopped
 from motionfmu.cli.common import FAILED, Group, bare_table, out
 
 if TYPE_CHECKING:
-    from motionfmu.cards.page import Serving
     from motionfmu.cards.server import Cards
+    from motionfmu.cards.server_page import PageServer
 
 AXES = "XYZU"
 Folder = Annotated[Path, typer.Option("--folder", help="The server's folder.")]
@@ -89,17 +89,17 @@ async def _serve(
 
 def _page(
     cards: "Cards", port: int, config: Path | None, tls: tuple[Path, Path] | None
-) -> "tuple[Serving, str]":
+) -> "tuple[PageServer, str]":
     """The page, and the address that lets a browser in."""
     import secrets
 
     try:
-        from motionfmu.cards.page import Serving, application
+        from motionfmu.cards.server_page import PageServer, application
     except ImportError as error:
         text = f"{error.name} is missing; {install('card')}, or --page 0"
         raise InputError(f"--page: {text}") from None
     token = secrets.token_urlsafe(16)
-    serving = Serving(application(cards, token, config), port, tls)
+    serving = PageServer(application(cards, token, config), port, tls)
     return serving, f"http{'s' * bool(tls)}://127.0.0.1:{port}/?token={token}"
 
 

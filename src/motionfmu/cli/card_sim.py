@@ -32,7 +32,7 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
 
     from motionfmu.cards.config import load
     from motionfmu.cards.keys import CARD_MAX, alone, read_keys
-    from motionfmu.cards.sim import FlashFile, VirtualCard, Watch, simulate
+    from motionfmu.cards.sim import FlashFile, VirtualNetCard, Watch, simulate
     from motionfmu.cards.tls import trusting
     from motionfmu.cards.wire import OPEN_KEY
 
@@ -51,11 +51,11 @@ def sim(  # noqa: PLR0913  (each is an option of the command)
     if flash:
         folders.enter_context(alone(flash, wait=False))
     parameters = load(config).as_parameters() if config else {}
-    made: list[tuple[VirtualCard, FlashFile | None]] = []
+    made: list[tuple[VirtualNetCard, FlashFile | None]] = []
     for i in range(id, id + cards):
         file = FlashFile(flash / f"{i}.flash") if flash else None
         held = file.load() if file else b""
-        made.append((VirtualCard(i, known.get(i, OPEN_KEY), held, **parameters), file))
+        made.append((VirtualNetCard(i, known.get(i, OPEN_KEY), held, **parameters), file))
 
     told = -1
 

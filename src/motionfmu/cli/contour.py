@@ -72,7 +72,7 @@ def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> 
     from motionfmu.report import outcome
     from motionfmu.report.causes.path_causes_page import HEADS, write_path_explanation
     from motionfmu.report.numbers import length
-    from motionfmu.scenarios.sources import scenario_file
+    from motionfmu.scenarios.table_sources import scenario_file
 
     name = scenario_file(path).parent.name
     target = outcome.usable(folder or results(name, "iso9283"))
@@ -106,7 +106,7 @@ def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
     from motionfmu.report import outcome
     from motionfmu.report.causes.explain_page import write_explanation
     from motionfmu.report.numbers import length
-    from motionfmu.scenarios.sources import scenario_file
+    from motionfmu.scenarios.table_sources import scenario_file
 
     name = scenario_file(path).parent.name
     target = outcome.usable(folder or results(name, "contour"))

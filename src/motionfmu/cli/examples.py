@@ -22,16 +22,16 @@ def examples(
 
     --copy takes one, with others whose files it names, or all; each becomes a folder of its name.
     """
-    from motionfmu.scenarios import shipped
+    from motionfmu.scenarios import package_files
 
     if not copy:
         if target is not None:
             raise InputError(f"{target}: what is this folder for? --copy copies into it")
-        known = shipped.examples()
-        chosen = known if name is None else {p.name: p for p in shipped.needed(name)}
+        known = package_files.examples()
+        chosen = known if name is None else {p.name: p for p in package_files.needed(name)}
         print_rows([((each,), first_line(place)) for each, place in chosen.items()])
         return
-    places = [*shipped.examples().values()] if name is None else shipped.needed(name)
+    places = [*package_files.examples().values()] if name is None else package_files.needed(name)
     _copy(places, target or Path())
 
 

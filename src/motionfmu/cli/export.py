@@ -46,10 +46,10 @@ def export(  # noqa: PLR0913  (each is an option)
     scenario and with its values; its outputs are what the scenario records. SSP: components, wires,
     values, time; 1.0 with FMI 2, 2.0 with FMI 3. Files that it reads are inside.
     """
-    from motionfmu.cli import packing
+    from motionfmu.cli import fmu_export
 
-    if packing.is_fmu(path):
-        packing.pack(path.name, target, fmi or 3, program, settings(set_))
+    if fmu_export.is_fmu(path):
+        fmu_export.pack(path.name, target, fmi or 3, program, settings(set_))
         return
     if program is not None:
         raise InputError(

@@ -23,7 +23,7 @@ def import_(
     Nested systems become one; values are converted to the units of their variables. What a scenario
     cannot say, such as a transformation on a wire, is refused.
     """
-    from motionfmu.ssp.imported import take
+    from motionfmu.ssp.ssp_import import take
 
     taken = take(path, target or Path(path.stem), stop, step)
     size = f"{taken.components} components, {taken.wires} wires, {taken.values} values"

@@ -13,7 +13,7 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.extras import Missing
 from motionfmu.base.units import spelled
 from motionfmu.cli.common import app
-from motionfmu.cli.plain import width
+from motionfmu.cli.console_text import width
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
@@ -32,15 +32,15 @@ START_MAX = 16  # columns of a start value
 @app.command("list")
 def list_all() -> None:
     """List the FMUs, and the scenarios of ./scenarios, else those that come with the package."""
-    from motionfmu.scenarios import fmus, shipped
+    from motionfmu.scenarios import fmus, package_files
 
     if names := fmus.fmu_names():
         print("FMUs")
         print_rows([((name,), fmus.about(name)) for name in names])
     else:
         print(f"FMUs: none is built in {fmus.folder()}; make build builds them")
-    here = Path("scenarios").glob(f"*/{shipped.SCENARIO}")
-    found = {str(file.parent): file.parent for file in sorted(here)} or shipped.scenarios()
+    here = Path("scenarios").glob(f"*/{package_files.SCENARIO}")
+    found = {str(file.parent): file.parent for file in sorted(here)} or package_files.scenarios()
     if found:
         print("Scenarios")
         print_rows([((name,), first_line(folder)) for name, folder in found.items()])
@@ -50,7 +50,7 @@ def list_all() -> None:
 
 def first_line(folder: Path) -> str:
     """What a scenario shows, be it right or wrong; of another project its title."""
-    from motionfmu.scenarios.shipped import SCENARIO
+    from motionfmu.scenarios.package_files import SCENARIO
 
     file = folder / SCENARIO
     with (file if file.is_file() else folder / "README.md").open(
@@ -73,7 +73,7 @@ def info(
     Of a scenario's FMUs, patterns choose variables by component, as 'mcc.home_*', and each is
     shown with its value in the scenario.
     """
-    from motionfmu.scenarios import fmus, shipped
+    from motionfmu.scenarios import fmus, package_files
 
     known = fmus.fmu_names()
     if what in known or (xml and not Path(what).exists()):
@@ -86,9 +86,9 @@ def info(
         return
     if xml:
         raise InputError(f"--xml: {what} is no FMU")
-    if not Path(what).exists() and not shipped.scenario(what):
+    if not Path(what).exists() and not package_files.scenario(what):
         names = ", ".join(known) or f"none is built in {fmus.folder()}; run make build"
-        hint = suggestion(what, [*known, *shipped.scenarios()])
+        hint = suggestion(what, [*known, *package_files.scenarios()])
         known_ones = f"FMUs: {names}; scenarios: motionfmu list"
         raise InputError(f"{what}: neither an FMU nor a scenario{hint} ({known_ones})")
     from motionfmu.run import load

@@ -23,7 +23,7 @@ from motionfmu.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from motionfmu.analysis.freq.study import Asked, LoopStudy
+    from motionfmu.analysis.freq.loop_study import LoopStudy, LoopStudyOptions
     from motionfmu.analysis.linear import AxisModel
 
 
@@ -48,10 +48,10 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Margins and largest stable gains of a scenario's loops, and their report."""
     needed("tune")
-    from motionfmu.analysis.freq.study import Asked
+    from motionfmu.analysis.freq.loop_study import LoopStudyOptions
     from motionfmu.analysis.linear import gain_of, model
     from motionfmu.analysis.linear.gains import in_lines
-    from motionfmu.analysis.linear.opened import held
+    from motionfmu.analysis.linear.tuning_parts import held
     from motionfmu.report import outcome
     from motionfmu.report.servo.margin_page import numbers, page_text, point_line
 
@@ -67,7 +67,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     out.print(about, markup=False, soft_wrap=True)
     target = outcome.usable(folder or results(linear.scenario.name, "margins"))
     gains = {loop: gain} if loop is not None and gain is not None else {}
-    studies = _study(linear, Asked(loop, gains, simulate, kick))
+    studies = _study(linear, LoopStudyOptions(loop, gains, simulate, kick))
     with outcome.whole(target) as part:
         (part / "report.html").write_text(page_text(linear, studies, about), encoding="utf-8")
         text = json.dumps(numbers(linear, studies), indent=1, allow_nan=False)
@@ -115,9 +115,9 @@ def _of_the_program(linear: "AxisModel") -> tuple[dict[str, float], str]:
     return operating_point(linear, base), "mean feed of the program"
 
 
-def _study(linear: "AxisModel", asked: "Asked") -> "list[LoopStudy]":
+def _study(linear: "AxisModel", asked: "LoopStudyOptions") -> "list[LoopStudy]":
     """Study with a progress bar, which shows on a terminal only."""
-    from motionfmu.analysis.freq.study import study
+    from motionfmu.analysis.freq.loop_study import study
 
     with progress_bar() as bar:
         task = bar.add_task(linear.scenario.name, total=1.0)

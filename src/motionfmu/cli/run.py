@@ -8,7 +8,7 @@ import typer
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
-from motionfmu.cli import plain
+from motionfmu.cli import console_text
 from motionfmu.cli.common import (
     FAILED,
     ScenarioPath,
@@ -38,9 +38,9 @@ def verdicts(checks: "Sequence[Verdict]") -> None:
     rows = []
     for same in of_one_number(checks):
         v, bounds = same[0], together([c.bounds for c in same])
-        mark, style = ("ok", plain.GREEN) if v.ok else ("FAILED", plain.RED)
+        mark, style = ("ok", console_text.GREEN) if v.ok else ("FAILED", console_text.RED)
         rows.append(((mark, v.name, "none" if v.reason else f"{v.value:.6g}", bounds), style))
-    print(plain.table(("", "check", "found", "asked"), rows))
+    print(console_text.table(("", "check", "found", "asked"), rows))
     for reason, names in _reasons(checks).items():
         print(f"{', '.join(names)}: {reason}")
 
@@ -48,7 +48,7 @@ def verdicts(checks: "Sequence[Verdict]") -> None:
 def warnings(texts: "Sequence[str]") -> None:
     """Warnings, one line each."""
     for told in texts:
-        print(plain.styled("warning", plain.YELLOW), told)
+        print(console_text.styled("warning", console_text.YELLOW), told)
 
 
 def _reasons(checks: "Sequence[Verdict]") -> dict[str, list[str]]:

@@ -83,7 +83,7 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu import sweep as sweeps
     from motionfmu.base.units import spelled
     from motionfmu.report.numbers import length
-    from motionfmu.study.axes import option
+    from motionfmu.study.study_axes import option
 
     given: dict[str, Any] = {"sampling": sampling, "runs": runs, "seed": seed, "cost": cost}
     given |= {"tuned": tuned, "stop": stop, "step": step, "results": result or None}

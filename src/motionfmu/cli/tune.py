@@ -46,7 +46,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.report.servo.tune_page import page_text
     from motionfmu.run import load
     from motionfmu.study.tune import problem, read
-    from motionfmu.study.tune.words import plant_text
+    from motionfmu.study.tune.tuning_words import plant_text
 
     scenario = load(path)
     beside = scenario.document.file.parent / "tune.toml"

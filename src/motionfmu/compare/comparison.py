@@ -7,7 +7,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.compare import overlay
-from motionfmu.compare.page import write_comparison
+from motionfmu.compare.comparison_page import write_comparison
 from motionfmu.compare.pairing import Pairing
 from motionfmu.compare.side import side
 from motionfmu.run import Result, Scenario

@@ -11,12 +11,12 @@ from motionfmu.scenarios.fmus import Port, ports
 from motionfmu.scenarios.values import start_values
 
 NOTHING = "—"
-LISTED = 8  # values of a list that are shown
+LISTED = 8  # so many values of a list are shown
 
 
 @dataclass(frozen=True)
 class Different:
-    """Something that the two runs do not have alike, in words."""
+    """Something in which the two runs differ, in words."""
 
     what: str
     a: str
@@ -40,7 +40,7 @@ class Checked:
 
 
 def different(a: Side, b: Side) -> list[Different]:
-    """Everything that a run depends on and that is not alike."""
+    """Everything that runs depend on and in which these two differ."""
     one, other = a.numbers["run"], b.numbers["run"]
     plain = [_plain(x) for x in (a, b)]
     found = list(_rows("", plain[0], plain[1]))
@@ -71,14 +71,14 @@ def _rows(what: str, a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterable[Dif
 
 
 def _contents(what: str, a: Mapping[str, str], b: Mapping[str, str]) -> Iterable[Different]:
-    """Of files, whose digests nobody wants to read."""
+    """Differences of files, by name only, for nobody wants to read their hashes."""
     for name in sorted({*a} & {*b}):
         if a[name] != b[name]:
             yield Different(f"{what} {name}", "one content", "another content")
 
 
 def _settings(a: Side, b: Side) -> Iterable[Different]:
-    """Values set, beside the default where a run has it as its FMU has it."""
+    """Differences of set values; a run that does not set a value has its FMU's default."""
     given = [x.numbers["run"]["settings"] for x in (a, b)]
     for name in sorted({*given[0], *given[1]}):
         if given[0].get(name) == given[1].get(name):

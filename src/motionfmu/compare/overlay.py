@@ -11,7 +11,7 @@ from motionfmu.compare.side import Side
 
 Array = NDArray[np.float64]
 
-NEAR = 1e-6  # part of a step by which two times may differ and be one
+NEAR = 1e-6  # two times that differ by this part of a step at most are equal
 
 
 @dataclass(frozen=True)

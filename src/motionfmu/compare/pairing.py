@@ -6,14 +6,14 @@ from typing import Any
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.compare.differences import Checked, Different, checks, different
-from motionfmu.compare.figures import Number, side_by_side
+from motionfmu.compare.number_pairs import Number, side_by_side
 from motionfmu.compare.overlay import Common, Pair, pair
 from motionfmu.compare.side import Side
 
 
 @dataclass(frozen=True)
 class Apart:
-    """How far a signal of B is from that of A."""
+    """Differences of a signal of B from the one of A."""
 
     name: str
     unit: str
@@ -33,7 +33,7 @@ class Pairing:
     b: Side
     common: Common = field(repr=False)  # instants at which signals are compared
     names: list[str] = field(repr=False)  # signals that both have and that can be compared
-    left: dict[str, str] = field(repr=False)  # why a signal is not among them, by its name
+    left: dict[str, str] = field(repr=False)  # why a signal is not compared, by its name
 
     def __getitem__(self, name: str) -> Pair:
         """A signal of both runs on their common time."""
@@ -44,7 +44,7 @@ class Pairing:
 
     @cached_property
     def signals(self) -> list[Apart]:
-        """How far apart every signal is, in the order of A."""
+        """The differences of every signal, in the order of A."""
         return [_apart(self[name]) for name in self.names]
 
     @cached_property
@@ -64,7 +64,8 @@ class Pairing:
     @property
     def worse(self) -> list[str]:
         """Checks whose verdict is worse in B than in A."""
-        # They held in A and fail in B; or A holds as a whole, and they fail in B.
+        # A check is worse if it held in A and fails in B, or if all checks of A hold and it fails
+        # in B.
         whole = bool(self.a.numbers["ok"])
         return list(
             dict.fromkeys(c.name for c in self.checks if c.worse or (whole and c.ok[1] is False))

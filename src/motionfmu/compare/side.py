@@ -1,4 +1,4 @@
-"""One of two runs: from its folder of results, or as it has just been run."""
+"""One of two runs that are compared: a folder of results, or a scenario that is run now."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -13,14 +13,14 @@ from motionfmu.base.columns import TIME, Columns
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file
 from motionfmu.run import Result, Scenario, load
-from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, numbers, track
+from motionfmu.run.result_files import NUMBERS, SIGNALS, TRACK, numbers, track
 
 WANTED = ("scenario", "ok", "checks", "units", "figures", "run")
 
 
 @dataclass(frozen=True)
 class Side:
-    """A run by what it leaves on disk."""
+    """A run as its folder of results holds it."""
 
     name: str  # of its folder or scenario
     numbers: dict[str, Any] = field(repr=False)  # as in result.json
@@ -30,7 +30,7 @@ class Side:
 
 
 def side(given: "str | Path | Scenario | Result", set: Mapping[str, Any] | None = None) -> Side:
-    """A folder of results as it is; a scenario is run, with values set."""
+    """Read a folder of results, or run a scenario with values set."""
     if isinstance(given, Result):
         found, place = given, given.name
     elif isinstance(given, Scenario):
@@ -72,7 +72,7 @@ def _read(folder: Path) -> Side:
 
 
 def _columns(folder: Path, order: Iterable[str]) -> tuple[Columns, NDArray[np.float64]]:
-    """What a folder holds, and its times; every file is looked at."""
+    """The signals in a folder, and their times; every file is checked."""
     file = f"{TIME}.npy"
     try:
         found = Columns.of(folder, order)

@@ -3,7 +3,7 @@
 import math
 
 from motionfmu.compare.differences import NOTHING
-from motionfmu.compare.figures import Number
+from motionfmu.compare.number_pairs import Number
 from motionfmu.report.numbers import MINUS, figure, length
 
 GONE = f"B {MINUS} A"

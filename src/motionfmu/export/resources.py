@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain, count
 from pathlib import Path
 
-from motionfmu.analysis.gcode.called import called
+from motionfmu.analysis.gcode.subprogram_files import called
 from motionfmu.base.toml_lines import is_file
 from motionfmu.fmu import places
 from motionfmu.scenarios.system import Setting
@@ -17,9 +17,9 @@ class Resources:
     files: dict[str, Path] = field(default_factory=dict)
 
     def added(self, file: Path, owner: str) -> str:
-        """Take a file in, with those that it calls; what a parameter says to name it.
+        """Add a file and the files that it calls; returns how a parameter names it.
 
-        They stay side by side: where another file has a name of theirs, in a folder of `owner`.
+        They stay side by side; if another file has the name of one of them, in a folder `owner`.
         """
         several = [file, *called(file)]
         folders = chain(("", f"{owner}/"), (f"{owner}.{k}/" for k in count(2)))
@@ -30,12 +30,12 @@ class Resources:
         return places.RESOURCE + folder + file.name
 
     def inside(self, setting: Setting) -> Setting:
-        """The setting with files as ``resource:NAME``; they are added to those there are."""
+        """The setting with its files named as ``resource:NAME``; the files are added to this."""
         return replace(setting, values=tuple(self._value(setting, v) for v in setting.values))
 
     def _value(self, setting: Setting, value: float | int | bool | str) -> float | int | bool | str:
         port = setting.end.port
-        # Somebody else's FMU does not say which of its texts are files.
+        # A foreign FMU does not say which of its texts name files.
         may = port.file == "read" or (port.type == "String" and port.declared is None)
         file = places.local(str(value)) if may else None
         if file is None or not file.is_absolute() or not is_file(file):

@@ -1,4 +1,4 @@
-"""Settings as an SSP has them."""
+"""Settings of a scenario as the parameter values of an SSP."""
 
 from collections.abc import Iterator
 
@@ -11,12 +11,12 @@ _TYPES = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean", "String":
 
 
 def kind(name: str, fmi: int) -> str:
-    """A type of FMI 3 in the SSP of a version of FMI."""
+    """The name that a type of FMI 3 has in an SSP whose FMUs have this version of FMI."""
     return _TYPES[name] if fmi == 2 else name
 
 
 def values(setting: Setting, fmi: int) -> Iterator[ssp.Value]:
-    """A setting as parameters: one, in FMI 2 one for each element."""
+    """A setting as parameters: one in FMI 3, one for each element in FMI 2."""
     port, listed = setting.end.port, texts(setting.values)
     if fmi == 3:
         yield ssp.Value(port.name, kind(port.type, fmi), listed, port.unit)

@@ -1,4 +1,4 @@
-"""Inputs that a scenario drives, as FMUs that drive them."""
+"""The FMUs Stimulus of an exported system, which drive the inputs that a scenario drives."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ SIGNALS = {"Float64": "real", "Int32": "whole", "Boolean": "on"}
 
 @dataclass
 class Stimuli:
-    """One instance of the FMU: rows of its table, and where its signals go.
+    """One instance of the FMU Stimulus: the rows of its table, and where its signals go.
 
     `used` counts the signals of each output.
     """
@@ -29,7 +29,7 @@ class Stimuli:
     )  # output, element, to, element
 
     def takes(self, end: End, steps: list[tuple[float, Values]]) -> bool:
-        """Add an input, or say that there is no room."""
+        """Add an input; False if the instance has no room for it."""
         output, ports = SIGNALS[end.port.type], fmus.ports(FMU)
         each, first = ports[output].count, self.used.get(output, 0)
         rows = len(self.rows) + len(steps) * end.port.count
@@ -44,7 +44,7 @@ class Stimuli:
         return True
 
     def settings(self) -> list[Setting]:
-        """Its parameters."""
+        """The instance's parameters."""
         ports = fmus.ports(FMU)
         columns = zip(*self.rows, strict=True)
         found = []
@@ -55,7 +55,7 @@ class Stimuli:
         return found
 
     def component(self, fmi: int, source: str) -> ssp.Component:
-        """It as a part of an SSP: the rows in use, the outputs that are wired."""
+        """The instance as a component of an SSP: the rows in use, the outputs that are wired."""
         ports = fmus.ports(FMU)
         kinds = {name: kind(port.type, fmi) for name, port in ports.items()}
         if fmi == 3:
@@ -71,11 +71,11 @@ class Stimuli:
         return ssp.Component(self.name, source, connectors, given)
 
     def driven(self) -> Iterator[End]:
-        """The inputs that it drives."""
+        """The inputs that the instance drives."""
         yield from {end.name: end for _, _, end, _ in self.ends}.values()
 
     def connections(self, fmi: int) -> Iterator[ssp.Connection]:
-        """Its wires."""
+        """The wires from the instance to these inputs."""
         for output, signal, end, element in self.ends:
             port = end.port
             if fmi == 3:
@@ -89,7 +89,7 @@ class Stimuli:
 
 
 def stimuli(system: System) -> tuple[list[Stimuli], list[str]]:
-    """Instances for all that is driven; and what they cannot drive, in words."""
+    """Instances that drive all inputs that they can, and in words what they cannot drive."""
     names = dict.fromkeys(s.end.name for s in system.stimuli)
     made: list[Stimuli] = []
     lost = []
@@ -117,13 +117,13 @@ def _what(end: End) -> str:
 
 
 def _first(settings: Iterable[Setting], end: End) -> Values:
-    """What an input has before it is driven."""
+    """The values of an input before it is driven."""
     given = [s.values for s in settings if s.end.name == end.name]
     return given[-1] if given else start_values(end.port)
 
 
 def _name(used: Iterable[str], number: int) -> str:
-    """A component's name that is free."""
+    """A name that no component has yet."""
     name = "stimuli" + (str(number + 1) if number else "")
     while name in used:
         name += "_"

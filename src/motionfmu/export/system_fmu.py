@@ -11,17 +11,21 @@ from motionfmu import fused
 from motionfmu.base.errors import InputError
 from motionfmu.base.platforms import Platform
 from motionfmu.base.toml_lines import is_file
-from motionfmu.export.chosen import also_shown, check_version
-from motionfmu.export.judged import check_scenario
+from motionfmu.export.export_choice import also_shown, check_version
+from motionfmu.export.program_check import check_scenario
 from motionfmu.export.resources import Resources
-from motionfmu.fmu import shown
+from motionfmu.fmu import documentation
 from motionfmu.fmu.pack import RESOURCES, write_whole
-from motionfmu.fused.carried import carrying, placed
-from motionfmu.run.prepared import Options, Prepared
+from motionfmu.fused.resource_files import carrying, placed
+from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import fmus
 
-PROGRAM = "program.json"  # what a run here reads instead of the description
-_LEFT = (PROGRAM, shown.VARIABLES, shown.TERMINALS)  # the latter two are in the documentation
+PROGRAM = "program.json"  # file that a run here reads instead of the description
+_LEFT = (
+    PROGRAM,
+    documentation.VARIABLES,
+    documentation.TERMINALS,
+)  # the latter two are in the documentation
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ class Choice:
 
 
 def as_fmu(
-    scenario: Prepared,
+    scenario: RunPlan,
     target: Path,
     fmi: int,
     given: Mapping[str, Any],
@@ -51,7 +55,7 @@ def as_fmu(
 
     Parameters
     ----------
-    scenario : Prepared
+    scenario : RunPlan
         Its parameters, open inputs and recorded outputs become variables, by its names; its values
         are their start values, and the files that they name resources.
     target : Path
@@ -91,7 +95,7 @@ def as_fmu(
     except fused.NotFused as why:
         instead = "; an SSP needs none" if isinstance(why, fused.NoCompiler) else ""
         raise InputError(f"{scenario.name} cannot be one FMU: {why}{instead}") from None
-    # C text without the parts that it needs is of no use.
+    # The system's C text is of no use without that of its FMUs.
     left = _LEFT if choice.platforms else (*_LEFT, "sources/")
     packed = {
         name: f
@@ -104,9 +108,11 @@ def as_fmu(
     if is_file(readme):
         packed["documentation/README.md"] = readme
         text = readme.read_text()
-    icon = shown.joined([x for fmu in system.components.values() if (x := fmus.icon_of(fmu))])
+    icon = documentation.joined(
+        [x for fmu in system.components.values() if (x := fmus.icon_of(fmu))]
+    )
     about = (scenario.name, f"The system of {scenario.name}: {', '.join(system.components)}")
-    made = shown.files(fmi, program.folder, about, text, icon)
+    made = documentation.files(fmi, program.folder, about, text, icon)
     write_whole(target, {n: f.read_bytes() for n, f in packed.items()} | made)
     return len(json.loads((program.folder / PROGRAM).read_bytes())["variables"])
 

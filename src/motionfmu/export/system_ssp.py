@@ -9,15 +9,15 @@ from typing import Any
 from motionfmu import ssp
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file
-from motionfmu.export.chosen import VERSIONS, also_shown, check_version
-from motionfmu.export.judged import check_scenario
+from motionfmu.export.export_choice import VERSIONS, also_shown, check_version
+from motionfmu.export.program_check import check_scenario
 from motionfmu.export.resources import Resources
 from motionfmu.export.ssp_values import kind, values
 from motionfmu.export.stimuli import FMU, Stimuli, stimuli
 from motionfmu.fmu.describe import element_names
 from motionfmu.fmu.pack import repacked, write_whole
 from motionfmu.fmu.start_values import texts
-from motionfmu.run.prepared import Options, Prepared
+from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios.fmus import fmu_path, is_ours
 from motionfmu.scenarios.system import End, Setting, System, Wire
 
@@ -43,7 +43,7 @@ class Written:
 
 
 def as_ssp(
-    scenario: Prepared,
+    scenario: RunPlan,
     target: Path,
     fmi: int,
     given: Mapping[str, Any],
@@ -55,7 +55,7 @@ def as_ssp(
 
     Parameters
     ----------
-    scenario : Prepared
+    scenario : RunPlan
         With its FMUs.
     target : Path
         The .ssp.
@@ -108,7 +108,7 @@ def as_ssp(
 
 
 def _check_parts(name: str, system: System, fmi: int) -> None:
-    """Refuse FMUs and wires that an SSP of this version has not."""
+    """Refuse FMUs and wires that an SSP of this version cannot hold."""
     for component in system.components:
         if system.version(component, fmi) > fmi:
             told = f"{component} is FMI 3, which no SSP {VERSIONS[fmi]} has: --fmi 3"
@@ -118,9 +118,9 @@ def _check_parts(name: str, system: System, fmi: int) -> None:
 
 
 def _structure(
-    scenario: Prepared, system: System, shown: Collection[End], driving: list[Stimuli], fmi: int
+    scenario: RunPlan, system: System, shown: Collection[End], driving: list[Stimuli], fmi: int
 ) -> ssp.Structure:
-    """What the file says."""
+    """The structure that the file describes."""
     components = []
     for name in system.components:
         given = [v for s in _own(system, name)[0] for v in values(s, fmi)]
@@ -145,7 +145,7 @@ def _source(component: str) -> str:
 
 
 def _own(system: System, component: str) -> tuple[list[Setting], dict[str, Path]]:
-    """The settings of a component, and the files that they name, which are inside."""
+    """The settings of a component, and the files that they name, which its FMU carries."""
     resources = Resources()
     mine = [s for s in system.settings if s.end.component == component]
     if is_ours(system.components[component]):
@@ -154,10 +154,10 @@ def _own(system: System, component: str) -> tuple[list[Setting], dict[str, Path]
 
 
 def _pack(part: tuple[str, tuple[list[Setting], dict[str, Path]]], fmi: int, target: Path) -> None:
-    """Write an FMU, with the files and values inside.
+    """Write an FMU with its files inside.
 
-    It begins with the values, too: tools there are that pass over parameter sets. One that is not
-    of this package stays as it is.
+    The values become its start values as well, for some tools ignore parameter sets. A foreign FMU
+    is written as it is.
     """
     fmu, (settings, files) = part
     if not is_ours(fmu):
@@ -170,9 +170,9 @@ def _pack(part: tuple[str, tuple[list[Setting], dict[str, Path]]], fmi: int, tar
 def _connectors(
     system: System, component: str, shown: Collection[End], driving: list[Stimuli], fmi: int
 ) -> Iterator[ssp.Connector]:
-    """What is wired or shown of a component.
+    """The connectors of a component: variables that are wired or shown.
 
-    An input without a connection is no connector: tools there are that wire or clear it.
+    An unconnected input is no connector, for some tools would wire it or set it to 0.
     """
     ends = [*(w.target for w in system.wires), *(w.source for w in system.wires)]
     ends += [*(e for one in driving for e in one.driven()), *shown]

@@ -1,4 +1,4 @@
-"""Quantities of a machine that several FMUs describe: which variable says each of them."""
+"""Quantities of a machine that several FMUs describe: the variable that states each of them."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,9 +13,9 @@ SAYS = ("parameter", "output")
 def read(table: Any, variables: Sequence[Variable]) -> list[tuple[str, str]]:
     """Quantities and variables of the tables ``[agree.THING]`` of an fmu.toml.
 
-    ``[agree.arm]`` with ``start = "start_joint"`` makes the parameter start_joint what this FMU
-    takes as arm.start. With an output it is what this FMU has of it as time goes on.
-    An InputError has a line for each thing that is wrong.
+    ``[agree.arm]`` with ``start = "start_joint"`` says that this FMU takes its parameter
+    start_joint as the quantity arm.start. An output would state the quantity over time.
+    An InputError has a line for each fault.
     """
     if not isinstance(table, dict):
         raise InputError(f"agree {shown(table)} is no table")

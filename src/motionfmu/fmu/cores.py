@@ -15,8 +15,8 @@ _GUARD = re.compile(r"^#ifndef (\w+)\n#define \1\n", re.MULTILINE)
 _END = "\n#endif\n"
 _INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
-# Around what a header declares, in C++: functions of C; C11's structs without a name are no
-# mistake.
+# Lines around a header's declarations, for C++: its functions are those of C, and C11's structs
+# without a name raise no warning.
 _OPENED = """#ifdef __cplusplus
 #ifdef __GNUC__
 #pragma GCC diagnostic push
@@ -58,7 +58,7 @@ def _names(file: Path, key: str) -> list[str]:
 
 
 def closure(source: Path, names: Iterable[str]) -> list[str]:
-    """These cores, and those they use, directly or not."""
+    """These cores, and all that they use, directly or through others."""
     place = folders(source)
     found: list[str] = []
     waiting = list(names)
@@ -76,7 +76,7 @@ def included(file: Path) -> list[str]:
 
 
 def cxx(header: Path) -> str:
-    """A header as it is installed: its functions are those of C in C++, its guard is its own."""
+    """Text of a header as it is installed: fit for C++, with a guard of its own."""
     own = r"#ifndef MOTIONFMU_\1\n#define MOTIONFMU_\1\n"
     text, guards = _GUARD.subn(own, header.read_text(), count=1)
     if not guards or not text.endswith(_END):
@@ -91,7 +91,7 @@ def cxx(header: Path) -> str:
 def reached(
     files: Iterable[Path], roots: Iterable[Path], owned: Mapping[str, list[Path]] | None = None
 ) -> list[Path]:
-    """Those files that C files include, directly or not, with the C files that they own."""
+    """All files that C files include, directly or through others, with the C files of headers."""
     known = {f.name: [f, *(owned or {}).get(f.name, [])] for f in files}
     found: set[Path] = set()
     waiting = list(roots)

@@ -29,7 +29,7 @@ def _member(v: Variable) -> str:
 
 
 def member(name: str) -> str:
-    """Where `struct vars` has a variable: one of a component is in a struct of its own."""
+    """C name of a variable in `struct vars`; those of a component are in a struct of their own."""
     component, dot, own = name.rpartition(".")
     return f"{component}_.{own}" if dot else own
 

@@ -20,11 +20,11 @@ COUNT_MAX = 65536  # elements of a variable; all of them are in that struct
 I32 = 2**31
 _KEYS = {"type", "dims", "unit", "start", "min", "max", "nominal", "tunable", "doc"}
 _KEYS |= {"values", "file"}
-# Who makes the descriptions, by which FMUs and SSPs of ours are known.
+# Generation tool in descriptions, by which FMUs and SSPs of ours are recognised.
 TOOL = "motionfmu"
-# Reverse domain name of what no standard names: kinds of terminals, folders.
+# Reverse domain name before names that no standard has: kinds of terminals, folders.
 DOMAIN = "org.motionfmu"
-# Types of text that names a file, by the key `file`: name and meaning.
+# Type definitions of texts that name a file, by the key `file`: name and meaning.
 FILES = {
     "read": (
         "InputFile",
@@ -94,13 +94,13 @@ class Variable:
 
 @dataclass(frozen=True)
 class Terminal:
-    """Variables that are connected together; those of two FMUs whose names are the same."""
+    """Variables that are connected together with those of the same names of another FMU."""
 
     name: str  # snake_case
-    kind: str  # what it connects to, one word for both sides
+    kind: str  # what it can be connected to; both sides have the same word
     doc: str
     members: tuple[tuple[str, str], ...]  # name of the member, variable
-    every: bool = True  # both sides have the same members; else some have fewer
+    every: bool = True  # both sides have the same members; else one may have fewer
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class Description:
 
     name: str  # CamelCase, also the model identifier
     description: str
-    tick_ns: int  # it steps by whole multiples of it [ns]
+    tick_ns: int  # its steps are whole multiples of this [ns]
     experiment: dict[str, float]  # default `stop` and `step` [s]
     cores: tuple[str, ...] = ()  # folders under src/ whose C files the model needs
     # name of the parameter that is the grid on which it reads inputs and shows outputs; or empty
@@ -121,13 +121,13 @@ class Description:
 
     @property
     def step(self) -> float:
-        """On which grid it reads inputs and shows outputs, if its parameter is left alone [s]."""
+        """The default grid on which the FMU reads inputs and changes outputs [s]."""
         periods = [v.start[0] for v in self.variables if v.name == self.grid and v.start]
         return float(periods[0]) if periods else self.tick_ns * 1e-9
 
     @property
     def strict(self) -> str:
-        """The parameter that `strict_step` made."""
+        """Name of the parameter that `strict_step` made."""
         return next(v.name for v in self.variables if v.name.rpartition(".")[2] == STRICT)
 
     @property
@@ -148,13 +148,13 @@ class Description:
 
 
 def strict_step(unit: str, otherwise: str, name: str = STRICT) -> Variable:
-    """The parameter of every FMU, and of a system, about steps that are no multiples of a unit."""
+    """The parameter of FMUs and systems that says whether steps must be multiples of a unit."""
     doc = f"Refuse communication steps that are no whole multiple of {unit}; else {otherwise}"
     return Variable(name, "parameter", "bool", doc, start=[False])
 
 
 def strict_tick(tick_ns: int) -> Variable:
-    """`strict_step` of an FMU, behind the variables of its own."""
+    """The parameter `strict_step` of an FMU, which follows the FMU's own variables."""
     return strict_step(f"{tick_ns} ns", "each runs to the nearest, and the next ones catch up")
 
 
@@ -190,7 +190,7 @@ def _check_value(variable: Variable, value: Any) -> Scalar:
 
 
 def _dims(given: Any) -> tuple[int, ...]:
-    """Array dimensions; a state of all elements has a size."""
+    """Check array dimensions; an array may not be too large for the FMU's state."""
     if given == ():
         return ()
     whole = isinstance(given, list | tuple) and all(type(n) is int and n >= 1 for n in given)
@@ -201,7 +201,7 @@ def _dims(given: Any) -> tuple[int, ...]:
 
 
 def _wrong(causality: str, name: str, row: dict[str, Any]) -> Iterator[str]:
-    """What is wrong with a row besides its start and its name among the others."""
+    """Faults of a row, apart from its start values and from names that stand twice."""
     for key in sorted(set(row) - _KEYS - {"continuous"}):
         yield f"unknown key {key!r}{suggestion(key, _KEYS)}"
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
@@ -237,7 +237,7 @@ def _check_unit(row: dict[str, Any]) -> None:
 
 
 def _check_limits(row: dict[str, Any]) -> None:
-    """Limits are numbers of the variable's type."""
+    """Refuse limits that are no numbers of the variable's type."""
     for key in ("min", "max"):
         if row.get(key) is not None:
             if row["type"] not in ("f64", "i32"):
@@ -247,7 +247,7 @@ def _check_limits(row: dict[str, Any]) -> None:
 
 
 def _check_nominal(row: dict[str, Any]) -> None:
-    """The usual size of an f64 is positive."""
+    """Refuse a nominal value that is not positive, or of a variable that is no f64."""
     if (nominal := row.get("nominal")) is not None:
         size = _of_type("f64", "nominal", nominal)
         if row["type"] != "f64" or not 0.0 < float(size) < math.inf:
@@ -255,14 +255,14 @@ def _check_nominal(row: dict[str, Any]) -> None:
 
 
 def _meanings(row: dict[str, Any]) -> dict[int, str]:
-    """What each number means: a list from 0 on, or a table."""
+    """The meaning of each number, from a list that counts from 0, or from a table."""
     given = row.get("values")
     rows = enumerate(given) if isinstance(given, list) else (given or {}).items()
     return {int(number): text for number, text in rows}
 
 
 def _check_values(row: dict[str, Any]) -> None:
-    """Meanings are texts of whole numbers, of an i32 without other limits."""
+    """Refuse meanings that are no texts, or of a variable that is no i32 without limits."""
     if (given := row.get("values")) is None:
         return
     if row["type"] != "i32" or {"min", "max"} & set(row):
@@ -279,7 +279,7 @@ def _check_file(row: dict[str, Any]) -> None:
 
 
 def _typed(name: str, causality: str, row: dict[str, Any]) -> dict[str, Any]:
-    """A row with the type that its `values` or `file` declare, in place of them."""
+    """A row in which the type that `values` or `file` declare stands in place of them."""
     plain = {k: v for k, v in row.items() if k not in ("values", "file")}
     if "file" in row:
         plain["declared"] = FILES[row["file"]]
@@ -295,7 +295,7 @@ def _typed(name: str, causality: str, row: dict[str, Any]) -> dict[str, Any]:
 def variable(name: str, causality: str, row: dict[str, Any]) -> Variable:
     """Make a Variable from a row as in fmu.toml.
 
-    What is wrong is an InputError with a line for each thing: the variable, what, the value.
+    An InputError has a line for each fault, with the variable, the reason and the value.
     """
     if not isinstance(row, dict):
         raise InputError(f"{causality} {name}: {shown(row)} is no table")

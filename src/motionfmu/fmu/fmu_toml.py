@@ -17,7 +17,7 @@ _CORE = r"[a-z][a-z0-9_]{0,63}"
 
 
 def parse(text: str, file: str = "fmu.toml") -> Description:
-    """Read the text of an fmu.toml; what is wrong is an InputError, ``file:line: what`` each."""
+    """Read the text of an fmu.toml; an InputError has a line ``file:line: what`` for each fault."""
     doc, faults = tables_of(text, file), Faults()
     rows = []
     for causality in CAUSALITIES:
@@ -62,7 +62,7 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
 
 
 def placed(faults: Faults, text: str, file: str, read: Callable[[], list[Any]]) -> list[Any]:
-    """What a reader of tables finds; its faults, ``table name: what``, get file and line."""
+    """The result of a reader of tables, whose faults, ``table name: what``, get file and line."""
     try:
         return read()
     except InputError as error:
@@ -85,7 +85,7 @@ def load(path: str | Path) -> Description:
     """Read the description in an fmu.toml, or of the Modelica class that it names."""
     text = text_of(path)
     if names_modelica(text):
-        from motionfmu.fmu.modelica import description
+        from motionfmu.fmu.modelica import class_description
 
-        return description.from_modelica(Path(path))
+        return class_description.from_modelica(Path(path))
     return parse(text, str(path))

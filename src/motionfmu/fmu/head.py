@@ -1,4 +1,4 @@
-"""What every fmu.toml begins with: name, description, tick and experiment."""
+"""The keys with which every fmu.toml begins: name, description, tick and experiment."""
 
 import math
 import re
@@ -9,13 +9,13 @@ from motionfmu.base.errors import suggestion
 from motionfmu.base.toml_lines import shown
 
 TICK_MAX = 1_000_000_000  # [ns]
-_NAME = r"[A-Z][A-Za-z0-9]{0,63}"  # it is part of the name of C functions and of files
+_NAME = r"[A-Z][A-Za-z0-9]{0,63}"  # becomes a part of names of C functions and files
 
 
 def wrong_keys(
     doc: Mapping[str, Any], keys: Sequence[Collection[str]], text: str, file: str
 ) -> list[str]:
-    """Unknown keys and missing ones, as messages; those a file must have come first in `keys`."""
+    """Messages about unknown and missing keys; `keys` has the required ones first."""
     known = set().union(*keys)
     found, meant = [], ""
     for key in sorted(set(doc) - known):
@@ -55,7 +55,7 @@ def _positive(x: Any) -> bool:
 
 
 def matches(pattern: str, x: Any) -> bool:
-    """Whether a value is text of a pattern as a whole."""
+    """Whether a value is a text all of which matches a pattern."""
     return isinstance(x, str) and re.fullmatch(pattern, x) is not None
 
 

@@ -1,4 +1,4 @@
-"""Whose an FMU is, and under which licence: said once, in the project's files."""
+"""Author, version and licence of an FMU, read from the project's files."""
 
 import functools
 import re
@@ -9,7 +9,7 @@ from pathlib import Path
 FOLDER = "documentation/licenses"
 ENTRY = f"{FOLDER}/license.txt"
 SPDX = "MIT"
-# The standard's headers are packed with the sources.
+# The headers of the FMI standard, packed with the sources, have a licence of their own.
 _HEADERS = """
 
 The files fmi2*.h and fmi3*.h in sources/ are those of the FMI standard, (c) MODELISAR consortium
@@ -19,7 +19,7 @@ _ROOT = Path(__file__).resolve().parents[3]
 
 
 def version() -> str:
-    """Of the project: where this is its tree, what its pyproject.toml says."""
+    """The project's version: that of pyproject.toml in its tree, else of the installed package."""
     file = _ROOT / "pyproject.toml"
     if file.is_file():
         return str(tomllib.loads(file.read_text())["project"]["version"])
@@ -28,7 +28,7 @@ def version() -> str:
 
 @functools.cache
 def text() -> str:
-    """The licence, and what is packed under another one."""
+    """Text of the licence, and of the licences of other people's files in the archive."""
     file = _ROOT / "LICENSE"
     own = file.read_text() if file.is_file() else _installed()
     return own.rstrip("\n") + _HEADERS
@@ -43,7 +43,7 @@ def _installed() -> str:
 
 
 def attributes() -> dict[str, str]:
-    """What the root of a description says."""
+    """Attributes of a description's root: version, author, copyright, licence."""
     holder = re.search(r"Copyright \(c\) (\d+) (.+)", text())
     assert holder, "the licence names its holder"
     return {

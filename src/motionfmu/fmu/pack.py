@@ -25,22 +25,22 @@ from motionfmu.base.toml_lines import text_of
 from motionfmu.fmu import (
     cores,
     ctables,
+    documentation,
     fmu_toml,
-    shown,
     sources,
     start_values,
     terminals,
 )
-from motionfmu.fmu.inside import AGREE, EXTRA, GRID, MAIN_UNIT, PART_UNIT, PARTS, RESOURCES
+from motionfmu.fmu.archive_names import AGREE, EXTRA, GRID, MAIN_UNIT, PART_UNIT, PARTS, RESOURCES
 from motionfmu.fmu.modeldescription import model_description
 
 SOURCE = Path(__file__).resolve().parents[2]
-# Zip cannot date earlier; a fixed date makes equal FMUs equal files.
+# The earliest date that an archive can have: with a fixed date equal FMUs are equal files.
 _DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def _write(path: Path, data: str | bytes) -> None:
-    """Write only what differs, so that nothing is compiled for nothing."""
+    """Write a file only if its content changes, so that nothing is compiled needlessly."""
     raw = data.encode() if isinstance(data, str) else data
     if not path.exists() or path.read_bytes() != raw:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -66,8 +66,8 @@ def generate(fmu: Path, out: Path) -> None:
         d = fmu_toml.load(fmu / "fmu.toml")
     _write(out / "vars.h", ctables.header(d))
     _write(out / "vars.c", ctables.table(d))
-    _write(out / shown.VARIABLES, shown.variables(d))
-    _write(out / shown.TERMINALS, terminals.described(d.terminals))
+    _write(out / documentation.VARIABLES, documentation.variables(d))
+    _write(out / documentation.TERMINALS, terminals.described(d.terminals))
     _write(out / GRID, json.dumps({"grid": d.grid}) + "\n")
     _write(out / AGREE, json.dumps(dict(d.agree)) + "\n")
     compiled = [f.name for f in compiled_sources(fmu, out)]
@@ -113,14 +113,14 @@ def _packed_sources(fmu: Path, out: Path, fmi: int, identifier: str) -> dict[str
 
 
 @dataclass(frozen=True)
-class Compiled:
-    """What compilers made of an FMU."""
+class CompilerOutput:
+    """Files that compilers made of an FMU."""
 
     libraries: Mapping[Platform, Path]
     part: Path  # fmu_part.h, for this machine
 
 
-def archive(folder: Path, out: Path, fmi: int, compiled: Compiled, target: Path) -> None:
+def archive(folder: Path, out: Path, fmi: int, compiled: CompilerOutput, target: Path) -> None:
     """Pack one .fmu of its folder, generated text and library; equal input gives equal bytes."""
     xml = (out / f"fmi{fmi}/modelDescription.xml").read_bytes()
     match = re.search(rb'modelIdentifier="(\w+)"', xml)
@@ -134,7 +134,9 @@ def archive(folder: Path, out: Path, fmi: int, compiled: Compiled, target: Path)
     readme = "".join(file.read_text() for file in folder.glob("README.md"))
     about = re.search(rb'description="([^"]*)"', xml)
     words = html.unescape(about[1].decode()) if about else ""
-    files |= shown.files(fmi, out, (identifier, words), readme, shown.icon_of(folder))
+    files |= documentation.files(
+        fmi, out, (identifier, words), readme, documentation.icon_of(folder)
+    )
     if readme:
         files["documentation/README.md"] = readme.encode()
     if fmi == 3:
@@ -162,7 +164,7 @@ def write_archive(target: Path, files: Mapping[str, bytes]) -> None:
 
 
 def write_whole(target: Path, files: Mapping[str, bytes]) -> None:
-    """Write an archive as a file of the user's: whole, or not at all and an InputError."""
+    """Write an archive for the user, whole or not at all; an InputError if it cannot be written."""
     part = target.with_name(f".{target.name}.part{os.getpid()}")
     try:
         write_archive(part, files)
@@ -178,7 +180,7 @@ def repacked(
 ) -> None:
     """Copy an FMU with files added to its resources, by name, and with other start values.
 
-    What instances begin with changes, not only the description, so it must be an FMU made here:
+    Instances begin with the new values, too, which only FMUs of this package support:
     ``{"program": "resource:part.ngc", "p_gain": "200 198 0 0 0 0"}``, one value or one for each
     element. Equal input gives equal bytes; `target` may be `source`.
     """
@@ -233,7 +235,7 @@ def main(arguments: list[str]) -> int:
                 platforms.here() if name == "here" else Platform(name): Path(file)
                 for name, file in named.items()
             }
-            compiled = Compiled(libraries, Path(part))
+            compiled = CompilerOutput(libraries, Path(part))
             archive(Path(fmu), Path(out), int(fmi), compiled, Path(target))
     except ValueError as error:
         print(error, file=sys.stderr)

@@ -1,4 +1,4 @@
-"""What a parameter that names a file says: the words of src/fmi/fmi_path.inc, for who packs it."""
+"""Texts by which a parameter names a file, as src/fmi/fmi_path.inc reads them."""
 
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -8,7 +8,7 @@ RESOURCE = "resource:"
 
 
 def local(text: str) -> Path | None:
-    """The file on this machine that a text names; None: none, or one that the FMU carries."""
+    """The file on this machine that a text names; None for no file, and for a resource."""
     if not text or text.lower().startswith(RESOURCE):
         return None
     if not text.lower().startswith("file:"):

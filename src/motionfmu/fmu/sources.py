@@ -7,8 +7,8 @@ from xml.etree import ElementTree as ET
 NAMES = "fmu_names.h"
 PREFIX = "motionfmu_"  # of every name that an installed library shows
 
-# What the objects show: functions and tables, inline functions of headers, what a list X(name, ..)
-# declares. The renaming of a name too much does no harm.
+# Definitions of names that other C files can see: functions and tables, inline functions of
+# headers, declarations of a list X(name, ..). To rename a name too many does no harm.
 _FUNCTION = re.compile(
     r"^(?!static\b|typedef\b|extern\b)[A-Za-z_][\w \*]*?\b(\w+)\([^;{}]*\)\n\{", re.MULTILINE
 )
@@ -21,7 +21,7 @@ _LISTED = re.compile(r"\bX\((\w+),")
 _DIRECTIVE = re.compile(r"^#(?:if|el|endif|include <).*", re.MULTILINE)
 _GUARD = re.compile(r"#ifndef [A-Z0-9_]+_H\n")
 _OWN = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
-# glibc has the mathematics in a library of its own.
+# glibc has mathematics in a separate library.
 _LIBM = ("x86_64-linux", "aarch64-linux")
 OPTIONS = "-ffp-contract=off"  # else a processor with fused operations rounds otherwise
 
@@ -74,7 +74,7 @@ def short_names(names: Iterable[str]) -> str:
 
 
 def _systems(text: str) -> Iterator[str]:
-    """The lines that include the system's headers, each within the conditions that it stands in."""
+    """The lines that include headers of the system, with the #if lines around them."""
     conditions: list[str] = []
     for line in _DIRECTIVE.findall(text):
         if line.startswith("#if"):
@@ -125,8 +125,8 @@ def renamed(
 ) -> dict[str, bytes]:
     """C files and headers as they are packed.
 
-    `units` are those that have a standard's functions, `compiled` the others that are no part of
-    another C file.
+    `units` are the C files with the functions of FMI, `compiled` all other files that are compiled
+    by themselves.
     """
     seen = dict.fromkeys(compiled)
     waiting = list(seen)

@@ -14,22 +14,22 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.fmu.describe import I32, STRING_MAX, TOOL
 
 FILE = "start_values.txt"
-LINE_MAX = 1 << 15  # [bytes] that the library reads
+LINE_MAX = 1 << 15  # [bytes] longest line that the library reads
 _TYPES = {"Real": "Float64", "Integer": "Int32"}
 _SETTABLE = ("parameter", "input")
 
 
 def texts(values: Iterable[float | int | bool | str]) -> tuple[str, ...]:
-    """Values as XML has them."""
+    """Values as texts of XML attributes."""
     return tuple(str(v).lower() if isinstance(v, bool) else str(v) for v in values)
 
 
-class _Variable:
-    """A variable in the tree of a description of either version, an array as one."""
+class _StartVariable:
+    """A variable, scalar or array, in the XML tree of a description of either version of FMI."""
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.rows: list[ET.Element] = []  # that carry `start`; in FMI 2 one for each element
+        self.rows: list[ET.Element] = []  # XML elements with `start`; FMI 2 has one per element
         self.count = 0
         self.type = ""
         self.causality = "local"
@@ -42,7 +42,7 @@ class _Variable:
         self.causality = about.get("causality", "local")
 
     def change(self, text: str) -> str:
-        """Put values in place of the start; the words of the resource's line."""
+        """Replace the start values in the tree; returns the words of the resource's line."""
         if self.type == "String":
             return self._change_text(text)
         listed = text.split()
@@ -70,7 +70,7 @@ class _Variable:
         return text
 
     def _number(self, text: str) -> tuple[str, str]:
-        """A value as the description has it, and as the resource has it."""
+        """Texts of a value for the description and for the resource."""
         if self.type == "Boolean":
             if text not in ("true", "false"):
                 raise InputError(f"{self.name} = {text}: true or false wanted")
@@ -92,19 +92,19 @@ class _Variable:
         return repr(value), f"{int(share * 2**53)}p{power - 53}"
 
 
-def _variables(root: ET.Element) -> dict[str, _Variable]:
-    found: dict[str, _Variable] = {}
+def _variables(root: ET.Element) -> dict[str, _StartVariable]:
+    found: dict[str, _StartVariable] = {}
     for about in root.iterfind("ModelVariables/*"):
         row = next(iter(about)) if about.tag == "ScalarVariable" else about
         name = about.attrib["name"].partition("[")[0]
-        found.setdefault(name, _Variable(name)).add(about, row)
+        found.setdefault(name, _StartVariable(name)).add(about, row)
     return found
 
 
 def changed(xml: bytes, before: bytes, starts: Mapping[str, str]) -> tuple[bytes, bytes]:
-    """Description and resource with other start values; `before` is the resource it has, or empty.
+    """Description and resource with other start values; `before` is the present resource.
 
-    Values are text: of an array as many as elements, between spaces, or one for all.
+    Values are text; for an array one for each element, with spaces between them, or one for all.
     """
     root = ET.fromstring(xml)
     if root.get("generationTool") != TOOL:

@@ -12,7 +12,7 @@ from motionfmu.fmu.describe import DOMAIN, Terminal, Variable
 XML = "terminalsAndIcons/terminalsAndIcons.xml"
 ICON = "terminalsAndIcons/icon"
 _KEYS = {"kind", "doc", "members", "every"}
-_SIZE = 100.0  # of the icon, in units of the diagram; its edge is then as long in tenths of a mm
+_SIZE = 100.0  # size of the icon in units of the diagram, which are tenths of a mm
 
 
 def read(table: Any, variables: Sequence[Variable]) -> list[Terminal]:
@@ -20,7 +20,7 @@ def read(table: Any, variables: Sequence[Variable]) -> list[Terminal]:
 
     `members` maps a member's name to a variable's, or to several: ``"*" = "host_*"`` makes
     ``host_dda_run`` the member ``dda_run``. Only inputs and outputs can be members. An InputError
-    has a line for each thing that is wrong.
+    has a line for each fault.
     """
     faults = Faults()
     if not isinstance(table, dict):
@@ -102,7 +102,7 @@ def of(xml: bytes) -> list[Terminal]:
 
 
 def within(component: str, terminals: Sequence[Terminal], there: Container[str]) -> list[Terminal]:
-    """Those of a component as a system's: what is left of them among the variables it shows."""
+    """Terminals of a component as a system's, with those members that the system shows."""
     kept = []
     for t in terminals:
         pairs = [(m, f"{component}.{v}") for m, v in t.members if f"{component}.{v}" in there]

@@ -4,14 +4,14 @@ import functools
 from importlib import util
 from pathlib import Path
 
-from motionfmu.base import kept
+from motionfmu.base import disk_cache
 from motionfmu.scenarios.fmus import PACKAGE
 
 OPTIMIZED = "-O3"
 
 
 def folders() -> list[Path]:
-    """Where the C text is: the installed package's, or the checkout's and FMPy's."""
+    """Folders of the C text: the installed package's, or those of the checkout and of FMPy."""
     installed = PACKAGE / "layer"
     if installed.is_dir():
         return [installed]
@@ -22,7 +22,7 @@ def folders() -> list[Path]:
 
 @functools.cache
 def digest() -> str:
-    """Of the layer, and of the Python text that generates what is compiled with it."""
+    """A hash of the layer's text, and of the Python text that generates the rest of the C text."""
     generators = [*Path(__file__).parent.glob("*.py"), *(PACKAGE / "fmu").glob("*.py")]
     files = sorted([*folders()[0].iterdir(), *generators])
-    return kept.key(*(part for f in files for part in (f.name, f.read_bytes())))
+    return disk_cache.key(*(part for f in files for part in (f.name, f.read_bytes())))

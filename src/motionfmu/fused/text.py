@@ -5,8 +5,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from motionfmu.fmu.ctables import member
-from motionfmu.fused.description import Roles
-from motionfmu.fused.parts import Part
+from motionfmu.fused.fmu_parts import FmuPart
+from motionfmu.fused.system_variables import Roles
 from motionfmu.scenarios.system import End, System
 
 _KINDS = {"Float64": "d", "Int32": "i", "Boolean": "b"}
@@ -14,7 +14,7 @@ _I32 = (-(2**31), 2**31 - 1)
 
 
 def _in_part(end: End) -> str:
-    """The variable in the instance, from a `struct model *m`."""
+    """C expression of a component's variable in its instance, from a `struct model *m`."""
     return f"m->of_{end.component}.v.{end.port.name}"
 
 
@@ -23,7 +23,7 @@ def _in_model(end: End) -> str:
 
 
 def _here(end: End) -> str:
-    """The variable of the system, from a `struct vars *v`."""
+    """C expression of the system's own variable, from a `struct vars *v`."""
     return f"v->{member(end.name)}"
 
 
@@ -33,7 +33,7 @@ def _function(head: str, lines: Iterable[str], unused: Iterable[str], end: str =
 
 
 def _limits(end: End) -> str:
-    """What looks at a value that a wire has brought; empty if all is allowed."""
+    """C text that checks the limits of an input that a wire feeds; empty if it has no limits."""
     port, name = end.port, _in_part(end)
     if port.type == "Float64":
         if math.isinf(port.low) and math.isinf(port.high):
@@ -51,12 +51,12 @@ def _limits(end: End) -> str:
 
 
 def _table(head: str, rows: Sequence[str]) -> str:
-    """An array; C has none without elements."""
+    """C text of an array; without rows it gets one of zeros, for C has no empty array."""
     listed = rows or ["{0}"]
     return f"static const {head}[] = {{\n" + "".join(f"    {row},\n" for row in listed) + "};\n"
 
 
-def _structs(parts: Mapping[str, Part]) -> Iterable[str]:
+def _structs(parts: Mapping[str, FmuPart]) -> Iterable[str]:
     for p in {p.identifier: p for p in parts.values()}.values():
         name = f"struct {p.identifier}_vars"
         yield f"{name} {{\n{p.members}}};\n"
@@ -64,7 +64,7 @@ def _structs(parts: Mapping[str, Part]) -> Iterable[str]:
         yield f"SYSTEM_PART(motionfmu_part_{p.identifier});\n\n"
 
 
-def _model(system: System, parts: Mapping[str, Part]) -> str:
+def _model(system: System, parts: Mapping[str, FmuPart]) -> str:
     lines = []
     for component, fmu in system.components.items():
         p = parts[fmu]
@@ -77,7 +77,7 @@ def _model(system: System, parts: Mapping[str, Part]) -> str:
     )
 
 
-def _gives(system: System, parts: Mapping[str, Part], used: Roles) -> Iterable[str]:
+def _gives(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterable[str]:
     for component, fmu in system.components.items():
         mine = [e for e in used.given if e.component == component]
         lines = [f"struct {parts[fmu].identifier}_vars *to = part;"]
@@ -87,7 +87,7 @@ def _gives(system: System, parts: Mapping[str, Part], used: Roles) -> Iterable[s
 
 
 def _carry(system: System) -> str:
-    """All wires, output to input, then the limits of the inputs."""
+    """C text that copies every wire's output to its input, then checks the limits of inputs."""
     lines = [f"SYSTEM_COPY({_in_part(w.target)}, {_in_part(w.source)});" for w in system.wires]
     checks = [check for w in system.wires if (check := _limits(w.target))]
     ends = ["struct system_check check = { .good = true };", *checks, "return system_good(&check);"]
@@ -103,7 +103,7 @@ def _until(system: System) -> str:
     return _function("bool system_until(const struct model *m)", [line], ["m"])
 
 
-def _step(system: System, parts: Mapping[str, Part]) -> str:
+def _step(system: System, parts: Mapping[str, FmuPart]) -> str:
     calls = [
         f"motionfmu_part_{parts[fmu].identifier}.step(&m->of_{component}, t0, t1) != 0"
         for component, fmu in system.components.items()
@@ -122,7 +122,7 @@ def _shows(system: System, used: Roles) -> Iterable[str]:
     yield _function("void system_show(const struct model *m, struct vars *v)", shown, ["m", "v"])
 
 
-def _tables(system: System, parts: Mapping[str, Part], recorded: Sequence[End]) -> Iterable[str]:
+def _tables(system: System, parts: Mapping[str, FmuPart], recorded: Sequence[End]) -> Iterable[str]:
     yield f"enum {{ SYSTEM_PARTS = {len(system.components)}, SYSTEM_WIRES = {len(system.wires)}, "
     yield f"SYSTEM_COLUMNS = {len(recorded)} }};\n\n"
     yield _table(
@@ -150,7 +150,7 @@ def _tables(system: System, parts: Mapping[str, Part], recorded: Sequence[End]) 
 
 
 def main_unit(fmi: int, quickly: bool) -> str:
-    """Text of fmu_main.c; `quickly`: what runs once a call is compiled without optimization."""
+    """Text of fmu_main.c; with `quickly` code that runs once is compiled without optimization."""
     return (
         "/* Generated; do not edit. */\n"
         + ("#define SYSTEM_QUICKLY\n" if quickly else "")
@@ -161,8 +161,10 @@ def main_unit(fmi: int, quickly: bool) -> str:
     )
 
 
-def model(system: System, parts: Mapping[str, Part], used: Roles, recorded: Sequence[End]) -> str:
-    """Text of model.c; `parts` by the names of the FMUs."""
+def model(
+    system: System, parts: Mapping[str, FmuPart], used: Roles, recorded: Sequence[End]
+) -> str:
+    """Text of model.c; `parts` gives the part of each FMU by its name."""
     pieces = [
         "/* Generated from a scenario's components and wires; do not edit. */\n"
         '#include "vars.h"\n#include "fmu_system.h"\n\n',

@@ -12,7 +12,7 @@ from motionfmu.analysis.contour.circles import plane_axes
 from motionfmu.analysis.contour.geometry import norms
 from motionfmu.analysis.contour.order import distinct
 from motionfmu.analysis.contour.path import Path, outline
-from motionfmu.analysis.contour.scaled import blocks, places
+from motionfmu.analysis.contour.scaled_values import blocks, places
 from motionfmu.analysis.contour.segments import Index
 from motionfmu.analysis.iso9283.simplify import simplified
 from motionfmu.report.numbers import magnification

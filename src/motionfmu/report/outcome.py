@@ -12,7 +12,7 @@ import numpy as np
 from motionfmu.base.columns import in_blocks, write
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run.result import Result
-from motionfmu.run.stored import NUMBERS, SIGNALS, TRACK, json_of, numbers, track
+from motionfmu.run.result_files import NUMBERS, SIGNALS, TRACK, json_of, numbers, track
 
 TABLE = "signals.csv"
 

@@ -42,7 +42,7 @@ from motionfmu.report.view.scene import scene_of
 from motionfmu.report.view_section import SCRIPTS as VIEW
 from motionfmu.report.view_section import add_view
 from motionfmu.run.figures import Chart
-from motionfmu.run.stored import json_of
+from motionfmu.run.result_files import json_of
 
 PAGE = "report.html"
 NUMBERS = "contour.json"

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.analysis.contour.arcs import Array
-from motionfmu.analysis.contour.circles import CircularTest, Way
+from motionfmu.analysis.contour.circles import CirclePass, CircularTest
 from motionfmu.report.numbers import MINUS, round_up
 from motionfmu.report.packed import packed
 from motionfmu.report.style import CCW, CW, GRID, INK, MUTED, layout
@@ -107,7 +107,7 @@ def polar_names(axes: Array) -> list[str]:
     ]
 
 
-def polar_trace(way: Way, radius: float) -> tuple[Array, Array]:
+def polar_trace(way: CirclePass, radius: float) -> tuple[Array, Array]:
     """Angle [°] and radial deviation [µm] of one way, decimated."""
     deviation = np.hypot(way.points[:, 0], way.points[:, 1]) - radius
     kept = keep_peaks(deviation, BUCKETS)

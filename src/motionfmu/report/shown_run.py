@@ -6,11 +6,11 @@ from typing import Any, Protocol
 from motionfmu.analysis.iso9283 import Evaluation
 from motionfmu.report.tables import Check
 from motionfmu.run.figures import Chart
-from motionfmu.run.prepared import Prepared
-from motionfmu.run.recorded import Recorded
+from motionfmu.run.run_plan import RunPlan
+from motionfmu.run.run_record import RunRecord
 
 
-class Result(Recorded, Protocol):
+class Result(RunRecord, Protocol):
     """A run beside its contour; `motionfmu.Result` is one."""
 
     @property
@@ -26,7 +26,7 @@ class Result(Recorded, Protocol):
         """Its verdicts."""
 
     @property
-    def scenario(self) -> Prepared:
+    def scenario(self) -> RunPlan:
         """What was run."""
 
     @property

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from motionfmu.analysis.contour import ContourResult
-from motionfmu.analysis.contour.circles import CircularTest, Way
+from motionfmu.analysis.contour.circles import CirclePass, CircularTest
 from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.report.numbers import unit as length_unit
 from motionfmu.run.checks import of_one_number, parts, together
@@ -209,15 +209,15 @@ def circle_table(test: CircularTest) -> str:
     return table(heads, rows)
 
 
-def _direction(way: Way) -> str:
+def _direction(way: CirclePass) -> str:
     return f"{figure(math.degrees(way.reading.orientation), sign=True)}°"
 
 
-def _offset(way: Way) -> str:
+def _offset(way: CirclePass) -> str:
     return "<br>".join(length(v, sign=True) for v in way.reading.offset)
 
 
-def _evaluated(way: Way) -> str:
+def _evaluated(way: CirclePass) -> str:
     steady = "" if way.steady else "<br>with run-in"
     return f"{math.degrees(way.coverage):.0f}°<br>{figure(way.speed)} mm/s{steady}"
 

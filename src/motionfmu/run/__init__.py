@@ -1,7 +1,7 @@
 """How a scenario runs, and what a run gave."""
 
-from motionfmu.run.prepared import Options
 from motionfmu.run.result import Result
+from motionfmu.run.run_plan import Options
 from motionfmu.run.runner import Scenario, load, scenario
 from motionfmu.run.session import Session
 

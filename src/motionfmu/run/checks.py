@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 from motionfmu.base.columns import ROWS
 from motionfmu.run.decimate import Read, reader
 from motionfmu.scenarios import rates
-from motionfmu.scenarios.body import Body, Check, Pair
+from motionfmu.scenarios.body import Body, Bounds, Pair
 
 TABLES = ("contour", "iso9283")  # analyses whose figures can be checked, by table
-# A bound in words: what, its numbers, when.
+# A bound in words: its name, its numbers, the times at which it holds.
 _BOUNDS = re.compile(r"((?:.*? )??(?:>=|<=|in|=|order) )(.*?)((?:, (?:at|in) .*|, \S+ to \S+ s)?)$")
 BOUNDS = ("min", "max", "absmax", "peak", "rms", "final", "changes", "order")
 
 
-Judged = TypeVar("Judged", bound=Any)  # a Verdict, or what a saved result has of one
+Judged = TypeVar("Judged", bound=Any)  # a Verdict, or a verdict of a saved result
 
 
 @dataclass(frozen=True)
@@ -29,32 +29,32 @@ class Verdict:
     """One bound of a ``[check]`` line and what was found."""
 
     name: str  # signal or figure
-    bounds: str  # what was asked, in words
+    bounds: str  # the bound in words
     value: float  # the worst over time and axes; NaN if there is no number
     ok: bool
     reason: str = ""  # why there is no number; else empty
 
 
 def parts(bounds: str) -> tuple[str, str, str]:
-    """Words of a bound, its numbers, and at which times it is asked."""
+    """Name of a bound, its numbers, and the times at which it holds."""
     found = _BOUNDS.match(bounds)
     return (found[1], found[2], found[3]) if found else (bounds, "", "")
 
 
 def of_one_number(checks: Iterable[Judged]) -> list[list[Judged]]:
-    """Verdicts that stand side by side together where they bound one number, by both sides."""
+    """Groups of successive verdicts: two that bound one number from both sides are one group."""
     groups = groupby(checks, lambda c: (c.name, c.ok, str(c.value), c.reason, parts(c.bounds)[2]))
     return [list(group) for _, group in groups]
 
 
 def together(bounds: Sequence[str]) -> str:
-    """Bounds of one number in words; the times at which all are asked stand once."""
+    """Bounds of one number in words; times that are common to all are told once."""
     where = parts(bounds[0])[2]
     return " and ".join(dict.fromkeys(b.removesuffix(where) for b in bounds)) + where
 
 
 def misplaced(name: str, body: Body) -> str:
-    """What is wrong with a [check] line beside the name of its signal; empty if nothing."""
+    """Why a [check] line cannot be, apart from the name of its signal; empty if it can."""
     checks = body.check[name]
     if any(all(getattr(c, bound) is None for bound in BOUNDS) for c in checks):
         return f"{name}: no bound ({', '.join(BOUNDS)})"
@@ -67,12 +67,12 @@ def misplaced(name: str, body: Body) -> str:
 
 
 def is_figure(name: str) -> bool:
-    """Whether a name is that of an analysis's figure, not of a signal."""
+    """Whether a name is that of a figure of an analysis, not of a signal."""
     return name.partition(".")[0] in TABLES
 
 
 def wrong_figure(name: str, body: Body) -> str:
-    """Why no run of a scenario can have this figure; empty if one can."""
+    """Why no run of a scenario can have this figure; empty if a run can."""
     table, _, figure = name.partition(".")
     if getattr(body, table) is None:
         return f"{name}: there is no [{table}] table"
@@ -83,8 +83,8 @@ def wrong_figure(name: str, body: Body) -> str:
     return wrong(figure)
 
 
-def _no_time(check: Check, stop: float) -> str:
-    """What is wrong with the times of a check; empty if nothing is."""
+def _no_time(check: Bounds, stop: float) -> str:
+    """Why the times of a check cannot be; empty if they can."""
     if check.at is not None and check.windows is not None:
         return "at and windows exclude each other"
     if check.at is not None and not 0.0 <= check.at <= stop:
@@ -106,7 +106,7 @@ def _range(name: str, words: str, value: float, bounds: tuple[float, float]) -> 
 
 
 def _side(name: str, sign: str, value: float, bound: float | Pair) -> Verdict:
-    """The smallest sample (sign ``>=``) or the largest one (``<=``): a bound, or a range."""
+    """Judge the smallest sample (sign ``>=``) or the largest (``<=``) by a limit or a range."""
     if isinstance(bound, tuple):
         words = {">=": "min", "<=": "max", "|.| <=": "absmax"}
         return _range(name, words[sign], value, bound)
@@ -115,7 +115,7 @@ def _side(name: str, sign: str, value: float, bound: float | Pair) -> Verdict:
 
 
 def _each(name: str, words: str, found: NDArray[Any], wanted: bool | float | Pair) -> Verdict:
-    """A value of every axis; the one that is farthest out is told."""
+    """Judge one value of every axis; the verdict has the value that is farthest out."""
     low, high = wanted if isinstance(wanted, tuple) else (float(wanted), float(wanted))
     outside = np.maximum(low - found, found - high)
     value = float(found.ravel()[int(np.argmax(outside))])
@@ -123,7 +123,7 @@ def _each(name: str, words: str, found: NDArray[Any], wanted: bool | float | Pai
 
 
 def _order(name: str, orders: list[list[float]], wanted: tuple[float, ...]) -> Verdict:
-    """The values of every axis one after the other; the first one out of order is told."""
+    """Judge the order of every axis' values; the verdict has the first that is out of order."""
     text = "order " + ", ".join(f"{w:g}" for w in wanted)
     for found in orders:
         for i in range(max(len(found), len(wanted))):
@@ -136,7 +136,7 @@ def _order(name: str, orders: list[list[float]], wanted: tuple[float, ...]) -> V
 
 
 def _inside(time: NDArray[Any], windows: tuple[tuple[float, float], ...]) -> NDArray[Any]:
-    """Samples from the start of a window to its end, both included."""
+    """Which samples lie within a window, both of its ends included."""
     return np.any([(time >= a - 1e-12) & (time <= b + 1e-12) for a, b in windows], axis=0)
 
 
@@ -145,7 +145,7 @@ def _where(windows: tuple[tuple[float, float], ...]) -> str:
     return f", {low:g} to {high:g} s" if len(windows) == 1 else f", in {len(windows)} windows"
 
 
-def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> list[Verdict]:
+def judge(name: str, check: Bounds, time: NDArray[Any], data: NDArray[Any]) -> list[Verdict]:
     """Judge one signal, a row per sample, by every bound of its check; a NaN fails them all."""
     end = float(time[-1]) + (float(time[-1] - time[-2]) if len(time) > 1 else 0.0)
     last = check.at if check.at is not None else max((b for _, b in check.windows or ()), default=0)
@@ -155,7 +155,7 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
         back = rates.steps(time, check.rate)
         time, read = time[back:], rates.reader(data, back, check.rate)
         reason = reason or ("" if len(time) else f"the run is shorter than {check.rate:g} s")
-    seen = Seen(check)
+    seen = SampleStatistics(check)
     if not reason:
         for block in _chosen(check, time, read):
             seen.add(block)
@@ -188,7 +188,7 @@ def judge(name: str, check: Check, time: NDArray[Any], data: NDArray[Any]) -> li
     ]
 
 
-def _chosen(check: Check, time: NDArray[Any], read: Read) -> Iterator[NDArray[np.float64]]:
+def _chosen(check: Bounds, time: NDArray[Any], read: Read) -> Iterator[NDArray[np.float64]]:
     """The samples that a check looks at, in blocks."""
     if check.at is not None:
         k = int(np.searchsorted(time, check.at - 1e-12).clip(0, len(time) - 1))
@@ -202,25 +202,25 @@ def _chosen(check: Check, time: NDArray[Any], read: Read) -> Iterator[NDArray[np
             yield block.astype(np.float64)
 
 
-class Seen:
-    """What bounds ask of the samples of a signal, which come in blocks."""
+class SampleStatistics:
+    """Statistics of a signal by which bounds judge it; its samples come in blocks."""
 
-    def __init__(self, check: Check) -> None:
-        self.count = 0  # values
+    def __init__(self, check: Bounds) -> None:
+        self.count = 0  # number of values
         self.low, self.high = math.inf, -math.inf
-        self.squares = 0.0  # their sum
-        self.last: NDArray[Any] = np.empty(0)  # of each axis
-        self.changes: NDArray[Any] = np.zeros(1)  # of each axis; NaN with one among its values
-        self.orders: list[list[float]] = []  # of each axis: its values one after the other
+        self.squares = 0.0  # sum of the squares of all values
+        self.last: NDArray[Any] = np.empty(0)  # last value of each axis
+        self.changes: NDArray[Any] = np.zeros(1)  # changes of each axis; NaN if it has a NaN
+        self.orders: list[list[float]] = []  # of each axis its values, one after the other
         self._check = check
 
     @property
     def size(self) -> float:
-        """The largest magnitude."""
+        """The largest magnitude of all values."""
         return float(np.maximum(abs(self.low), abs(self.high)))
 
     def add(self, x: NDArray[np.float64]) -> None:
-        """See some more samples."""
+        """Take the next block of samples into account."""
         if self._check.changes is not None or self._check.order is not None:
             self._follow(x if not self.count else np.concatenate([self.last[None], x]))
         self.count += x.size
@@ -231,7 +231,7 @@ class Seen:
         self.last = x[-1]
 
     def _follow(self, x: NDArray[np.float64]) -> None:
-        """See which values follow one another; the first sample is the last seen."""
+        """Note which values follow one another; `x` begins with the last sample before it."""
         other = np.diff(x, axis=0) != 0
         self.changes = self.changes + np.where(np.isnan(x).any(axis=0), np.nan, other.sum(axis=0))
         if self._check.order is None:

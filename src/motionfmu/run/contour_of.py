@@ -6,38 +6,38 @@ from typing import Any
 import numpy as np
 
 from motionfmu.analysis.contour import ContourInput, ContourResult, Path, Trace, analyse
-from motionfmu.analysis.contour.commanded import Known
-from motionfmu.analysis.contour.planned import path_of_text
-from motionfmu.analysis.contour.scaled import Scaled
+from motionfmu.analysis.contour.planned_geometry import path_of_text
+from motionfmu.analysis.contour.pulse_path import PulsePaths
+from motionfmu.analysis.contour.scaled_values import ScaledValues
 from motionfmu.base import units
 from motionfmu.base.errors import InputError, NoNumber
-from motionfmu.run.recorded import Recorded
+from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios.contour_signals import CARD, library_of
 
-CLOCK = 25e-9  # [s] of the card
+CLOCK = 25e-9  # [s] period of the card's clock
 
 
-def _millimetres(run: Recorded, name: str) -> Scaled:
+def _millimetres(run: RunRecord, name: str) -> ScaledValues:
     unit = units.parse(run.resolver.end(name, "contour", "position").port.unit or "1")
-    return Scaled(run[name], units.parse("mm").factor / unit.factor)
+    return ScaledValues(run[name], units.parse("mm").factor / unit.factor)
 
 
 def contour_of(
-    run: Recorded,
+    run: RunRecord,
     only_drawn: Collection[str],
     progress: Callable[[float], None] = lambda share: None,
-    known: Known | None = None,
+    known: PulsePaths | None = None,
 ) -> ContourResult:
     """Analyse the contour of a run; signals that only figures ask for are no traces.
 
-    `known` is what it has in common with other runs. It is an InputError if there is no [contour]
-    table, NoNumber if the run has no contour.
+    `known` holds what this run has in common with others. Without a [contour] table there is an
+    InputError, without a contour of the run NoNumber.
     """
     document = run.resolver.document
     contour = document.body.contour
     if contour is None:
         raise InputError(f"{document.file}: the scenario has no [contour] table")
-    known = Known() if known is None else known
+    known = PulsePaths() if known is None else known
     library, card = library_of(run.resolver), contour.pulses.partition(".")[0]
 
     def axes(name: str) -> Any:
@@ -55,7 +55,7 @@ def contour_of(
                 path=_path(run, known),
                 time=run.time,
                 actual=_millimetres(run, contour.position),
-                commanded=Scaled(run[contour.pulses], pulses_per_mm),
+                commanded=ScaledValues(run[contour.pulses], pulses_per_mm),
                 command=run[f"{library}.command"],
                 newest=run[f"{library}.command_newest"],
                 stock=optional["stock"],
@@ -72,14 +72,14 @@ def contour_of(
         raise NoNumber(f"no contour: {error}") from None
 
 
-def _path(run: Recorded, known: Known) -> Path:
+def _path(run: RunRecord, known: PulsePaths) -> Path:
     if run.geometry is None:
         raise ValueError("the library wrote no path")
     return known.path(run.geometry, lambda text: path_of_text(text, "planned path"))
 
 
-def _traces(run: Recorded, hidden: Collection[str]) -> tuple[Trace, ...]:
-    """Real signals of the drives and the card that the report also draws."""
+def _traces(run: RunRecord, hidden: Collection[str]) -> tuple[Trace, ...]:
+    """Recorded real signals of drives and card, which the report draws beside the contour error."""
     found = []
     for name, values in run.signals.items():
         port = run.resolver.end(name, "record", "signals").port

@@ -11,8 +11,8 @@ from motionfmu.scenarios.values import setting, unplaced
 
 
 def check(resolver: system.Resolver, named: bool = True) -> None:
-    """Refuse a [[contrary]] with a wrong name, value or check, of no effect, or named as
-    another; its checks only if the scenario's are well named.
+    """Refuse a [[contrary]] with a wrong name, value or check, without effect, or with the name of
+    another; its checks are looked at only if those of the scenario have right names.
     """
     document, faults = resolver.document, Faults()
     wired: set[str] = set()
@@ -52,13 +52,13 @@ def _check_value(
 
 
 def options(document: Document, case: Contrary) -> dict[str, Any]:
-    """Options of `Scenario.run` for a case; a value of a driven input stands for the whole run."""
+    """Options of `Scenario.run` for a case; a driven input keeps its value for the whole run."""
     driven = {d.input for d in document.body.drive}
     undriven = {n for n in driven if n in case.set or any(s.startswith(f"{n}[") for s in case.set)}
     return {"set": case.set, "undriven": undriven}
 
 
 def survivors(case: Contrary, verdicts: list[Verdict]) -> list[str]:
-    """Checks that hold although they are to fail; none if the verdict fails as it must."""
+    """Checks that hold although they must fail; none if the verdict fails as it must."""
     failed = {v.name for v in verdicts if not v.ok}
     return [name for name in case.fails if name not in failed]

@@ -1,4 +1,4 @@
-"""Fewer points with every peak kept, of as many as there are."""
+"""Fewer points of a long signal, with every peak kept."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -10,15 +10,16 @@ from motionfmu.base.columns import ROWS, forget
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-# Values from one sample to before another: a signal, or what is made of one, block by block.
+# A function that gives the values from one sample to before another, of a signal or of what is
+# computed from one; so a long signal can be read block by block.
 Read = Callable[[int, int], Array]
 
-# So many samples of a curve go into a figure; of more, the peaks.
+# A figure has so many samples of a curve at most; of a longer curve it has the peaks.
 MOST = 120_000
 
 
 def reader(values: Any) -> Read:
-    """Read an array, or what is one in parts; its pages of a file are let go with the next."""
+    """A `Read` of an array; of a mapped file the last part is let go when the next one is read."""
 
     def read(first: int, last: int) -> Array:
         forget(values)
@@ -28,7 +29,7 @@ def reader(values: Any) -> Read:
 
 
 def few(count: int, read: Read, steps: bool) -> Index | None:
-    """Samples that a figure holds of so many; None if all."""
+    """The samples of a curve of `count` that a figure has; None for all."""
 
     def plain(first: int, last: int) -> Array:
         return np.nan_to_num(np.asarray(read(first, last), dtype=np.float64))
@@ -39,7 +40,7 @@ def few(count: int, read: Read, steps: bool) -> Index | None:
 
 
 def at(read: Read, samples: Index) -> Array:
-    """Values of some samples, in their order, which increases."""
+    """Values at some samples, whose numbers increase."""
     parts = [read(0, 0)]
     for first in range(0, int(samples[-1]) + 1 if len(samples) else 0, ROWS):
         low, high = np.searchsorted(samples, [first, first + ROWS])
@@ -64,7 +65,7 @@ def ends(count: int, read: Read) -> tuple[Array, Array]:
 
 
 def distinct(parts: list[Index]) -> Index:
-    """Each sample once, in order; np.unique takes masked arrays with it."""
+    """Each sample once, in order; np.unique would do it, but imports masked arrays."""
     every = np.sort(np.concatenate(parts))
     return every[np.diff(every, prepend=-1) > 0]
 
@@ -76,13 +77,13 @@ def keep_steps(values: Array, buckets: int) -> Index:
 
 def keep_peaks(values: Array, buckets: int) -> Index:
     """Samples with the least and the largest value of each bucket."""
-    # Of (n,) or (n, k): one or several signals with common samples; both ends are among them.
+    # The values are (n,) or (n, k): one or k signals with common samples. Both ends are kept.
     return peaks_of(len(values), reader(values), buckets)
 
 
 def steps_of(count: int, read: Read, buckets: int) -> Index:
     """Samples at which a staircase changes, or its peaks."""
-    # Peaks where there are more than twice as many changes as buckets; both ends are among them.
+    # Peaks are taken if there are more than twice as many changes as buckets. Both ends are kept.
     parts, found = [np.array([0, count - 1])], 0
     for first in range(1, count, ROWS):
         block = read(first - 1, min(first + ROWS, count))
@@ -100,7 +101,7 @@ def peaks_of(count: int, read: Read, buckets: int) -> Index:
     edges = np.linspace(0, count, buckets + 1).astype(np.int64)
     width = int(np.diff(edges).max())
     kept = [np.array([0, count - 1])]
-    several = max(1, ROWS // width)  # buckets at a time
+    several = max(1, ROWS // width)  # so many buckets are read at a time
     for first in range(0, buckets, several):
         ends = edges[first : first + several + 1]
         # rows of equal length: the last samples of a shorter bucket are repeated

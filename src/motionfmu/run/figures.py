@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from motionfmu.base.errors import Faults
 from motionfmu.base.units import spelled
 from motionfmu.run.decimate import Read, at, few, reader
-from motionfmu.run.recorded import Recorded
+from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios import rates, recording
 from motionfmu.scenarios.body import Plot
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.system import End, Resolver
 
-# Signals that a report without figures shows.
+# A report without figures shows so many signals.
 OVERVIEW = 12
 
 
@@ -28,7 +28,7 @@ class Curve:
     time: NDArray[np.float64]  # (n,) [s]
     values: NDArray[np.float64]  # (n,) as shown, in the unit of the panel's label
     steps: bool  # a value holds until the next one
-    all: bool = True  # none of its samples are left out
+    all: bool = True  # the curve has every sample
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Panel:
     label: str  # vertical axis: quantity and unit
     curves: tuple[Curve, ...]
     levels: dict[str, float]  # value of a horizontal line by its name
-    legend: bool  # the curves need their names
+    legend: bool  # the curves' names are shown
     logic: bool = False  # all curves are Booleans
 
 
@@ -54,7 +54,7 @@ class Chart:
 
 
 def wanted(resolver: Resolver) -> list[End]:
-    """Outputs that figures show, for recording; a wrong element or too few names are refused."""
+    """Outputs to record because figures show them; wrong elements, too few names are refused."""
     found: list[End] = []
     faults = Faults()
     for i, figure in enumerate(resolver.document.body.figure):
@@ -96,7 +96,7 @@ def check(document: Document, step_ns: int) -> None:
     faults.tell()
 
 
-def charts(run: Recorded) -> list[Chart]:
+def charts(run: RunRecord) -> list[Chart]:
     """The figures of a run with their curves, in the order of the scenario."""
     found = []
     for i, figure in enumerate(run.resolver.document.body.figure):
@@ -108,7 +108,7 @@ def charts(run: Recorded) -> list[Chart]:
     return found
 
 
-def _panel(run: Recorded, plot: Plot, table: str, span: tuple[float, float]) -> Panel:
+def _panel(run: RunRecord, plot: Plot, table: str, span: tuple[float, float]) -> Panel:
     names, columns = [], []
     for signal in plot.signals:
         end, elements = recording.elements(run.resolver, signal, table, "signals")
@@ -125,9 +125,9 @@ def _panel(run: Recorded, plot: Plot, table: str, span: tuple[float, float]) -> 
 
 
 def _curve(
-    run: Recorded, plot: Plot, name: str, data: NDArray[Any], span: tuple[float, float]
+    run: RunRecord, plot: Plot, name: str, data: NDArray[Any], span: tuple[float, float]
 ) -> Curve:
-    """Samples of a signal in the span, and one on either side of it."""
+    """The curve of a signal: its samples in the span, and one on either side of it."""
     time, read = run.time, reader(data)
     if plot.rate is not None and len(time) > 1:
         back = rates.steps(time, plot.rate)
@@ -142,7 +142,7 @@ def _curve(
 def curve(
     name: str, time: NDArray[np.float64], read: Read, span: tuple[float, float], steps: bool
 ) -> Curve:
-    """What is read in a span, and one sample on either side of it; of very many the peaks."""
+    """A curve of the samples in a span and one on either side; of a long one the peaks."""
     first = max(0, int(np.searchsorted(time, span[0], side="right")) - 1)
     last = min(len(time), int(np.searchsorted(time, span[1], side="left")) + 1)
 
@@ -155,7 +155,7 @@ def curve(
     return Curve(name, time[first:last][kept], at(inside, kept), steps, all=False)
 
 
-def overview(run: Recorded, ends: Sequence[End]) -> list[Chart]:
+def overview(run: RunRecord, ends: Sequence[End]) -> list[Chart]:
     """A figure over the whole run of each of the first `OVERVIEW` signals, elements together."""
     span = (float(run.time[0]), float(run.time[-1]))
     found = []

@@ -18,12 +18,13 @@ from motionfmu.analysis.iso9283 import (
 from motionfmu.analysis.iso9283.simplify import simplified
 from motionfmu.base import units
 from motionfmu.base.errors import InputError, NoNumber
-from motionfmu.run.recorded import Recorded
+from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.system import Resolver
 
 TABLE = "iso9283"
-# A unit quaternion counts as so many mm when a recorded command is thinned out: 1e-5 rad stay.
+# When a recorded command is thinned out, a unit quaternion counts as so many mm; so turns of
+# 1e-5 rad stay.
 TURN_SCALE = 10.0
 
 
@@ -44,10 +45,10 @@ def written_path(document: Document) -> CommandPath | None:
     return None
 
 
-def evaluation_of(run: Recorded, path: CommandPath | None = None) -> Evaluation:
+def evaluation_of(run: RunRecord, path: CommandPath | None = None) -> Evaluation:
     """Evaluate a run, along another path than its own if one is given.
 
-    It is an InputError if there is no [iso9283] table, NoNumber if the run has no such figures.
+    Without an [iso9283] table there is an InputError, without such figures of the run NoNumber.
     """
     document = run.resolver.document
     table = document.body.iso9283
@@ -76,7 +77,7 @@ def position(resolver: Resolver, name: str, values: NDArray[Any]) -> NDArray[np.
     return np.asarray(values[:, :3] * (unit.factor / units.parse("mm").factor))
 
 
-def _spans(run: Recorded) -> list[tuple[int, int]]:
+def _spans(run: RunRecord) -> list[tuple[int, int]]:
     """First sample of each cycle and the one after its last."""
     table = run.resolver.document.body.iso9283
     assert table is not None
@@ -92,7 +93,7 @@ def _spans(run: Recorded) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
-def _recorded_path(run: Recorded, part: slice) -> CommandPath:
+def _recorded_path(run: RunRecord, part: slice) -> CommandPath:
     """The command of the first cycle as a polyline that is off by less than 0.1 um."""
     table = run.resolver.document.body.iso9283
     assert table is not None and table.command is not None
@@ -102,7 +103,7 @@ def _recorded_path(run: Recorded, part: slice) -> CommandPath:
     return CommandPath.of(points[kept], None if turn is None else turn[kept])
 
 
-def _poses(run: Recorded, tool: NDArray[np.float64]) -> Any:
+def _poses(run: RunRecord, tool: NDArray[np.float64]) -> Any:
     table = run.resolver.document.body.iso9283
     assert table is not None
     if not table.poses:

@@ -8,11 +8,11 @@ from motionfmu.scenarios.system import System
 from motionfmu.scenarios.values import settings, start_values
 
 if TYPE_CHECKING:
-    from motionfmu.run.prepared import Options, Prepared
+    from motionfmu.run.run_plan import Options, RunPlan
 
 
 def _value(values: tuple[Any, ...]) -> str:
-    """One value if all elements have it."""
+    """The text of values: a single one if all elements have it."""
     same = len(set(values)) == 1
     if any(isinstance(v, float) for v in values):
         texts = [f"{v:.9g}" for v in values]
@@ -21,8 +21,8 @@ def _value(values: tuple[Any, ...]) -> str:
     return text.lower() if isinstance(values[0], bool) else text
 
 
-def overrides(scenario: "Prepared", options: "Options", system: System) -> list[str]:
-    """One line for each value that is not the scenario's own; none if it runs as written."""
+def overrides(scenario: "RunPlan", options: "Options", system: System) -> list[str]:
+    """A line for each value that is not the scenario's own; none if the scenario ran as written."""
     body = scenario.document.body
     written = {s.end.name: s for s in settings(scenario.resolver, {})}
     given = {scenario.resolver.split(name)[0] for name in options.set}

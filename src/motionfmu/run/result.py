@@ -17,7 +17,7 @@ from motionfmu.base.extras import needed
 from motionfmu.run import figures, signals, waveforms
 from motionfmu.run.checks import TABLES, Verdict, is_figure, judge
 from motionfmu.run.figures import Chart
-from motionfmu.run.prepared import Prepared
+from motionfmu.run.run_plan import RunPlan
 from motionfmu.scenarios import values
 from motionfmu.scenarios.system import Resolver
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from motionfmu.analysis.contour import ContourResult
-    from motionfmu.analysis.contour.commanded import Known
+    from motionfmu.analysis.contour.pulse_path import PulsePaths
     from motionfmu.analysis.iso9283 import Evaluation
 
 
 def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
-    """From when on a signal is not 0 to the end [s]; None if it never was 0 or is so at last."""
+    """Time from which a signal is not 0 until the end [s]; None if there is no such time."""
     for end in range(len(x), 0, -ROWS):
         first = max(0, end - ROWS)
         zero = np.flatnonzero(x[first:end] == 0)
@@ -43,7 +43,7 @@ def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
 
 
 def _report(module: str) -> Any:
-    """A module of the report: what a result shows of itself is made there, where it is asked."""
+    """A module of the report, which draws a result; it is imported when it is first needed."""
     if module == "notebook":
         needed("report")
     return import_module(f"motionfmu.report.{module}")
@@ -79,7 +79,7 @@ class Result(Mapping[str, NDArray[Any]]):
         Why it ended: ``stop = 4 s``, ``mcc.done at 16.213 s``.
     signal_at : float or None
         When the signal that ends the run came [s]; None if it did not, or a time ends it.
-    known : Known or None
+    known : PulsePaths or None
         What its contour has in common with those of other runs of a session.
 
     Examples
@@ -91,7 +91,7 @@ class Result(Mapping[str, NDArray[Any]]):
     >>> result.plot("mcc.path_feed", ("drives.torque[1]", "drives.torque[2]"))  # doctest: +SKIP
     """
 
-    scenario: Prepared
+    scenario: RunPlan
     time: NDArray[np.float64]
     signals: Mapping[str, NDArray[Any]]
     parameters: dict[str, Any]
@@ -101,7 +101,7 @@ class Result(Mapping[str, NDArray[Any]]):
     overrides: list[str] = field(default_factory=list)
     stopped: str = ""
     signal_at: float | None = None
-    known: "Known | None" = None
+    known: "PulsePaths | None" = None
     _contour: "ContourResult | NoNumber | None" = None
     _iso9283: "Evaluation | NoNumber | None" = None
 

@@ -10,17 +10,17 @@ from motionfmu.base import columns
 from motionfmu.base.errors import Faults, InputError, NoNumber, suggestion
 from motionfmu.base.toml_lines import shown
 from motionfmu.run import engines
-from motionfmu.run.engines.job import Ran
-from motionfmu.run.prepared import Options, Prepared
+from motionfmu.run.engines.engine_job import EngineResult
+from motionfmu.run.execution import Execution, own_settings
 from motionfmu.run.result import Result
-from motionfmu.run.wired import Wired, own_settings
+from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import agreement, grids
 from motionfmu.scenarios.document import changed, made, plain
 from motionfmu.scenarios.system import System
 from motionfmu.scenarios.values import settings
 
 
-class Scenario(Prepared):
+class Scenario(RunPlan):
     """A scenario ready to run.
 
     Parameters
@@ -128,17 +128,17 @@ class Scenario(Prepared):
         with columns.temporary(asked.scratch) as name:
             folder = Path(name)
             given = replace(asked, set={**asked.set, **own_settings(self, folder)})
-            wired = Wired.plan(self, given, self.ends, folder)
+            execution = Execution.plan(self, given, self.ends, folder)
 
-            def master(system: System) -> Ran:
-                with closing(engines.opened(chosen, wired.job(asked.fmi))) as ready:
+            def master(system: System) -> EngineResult:
+                with closing(engines.opened(chosen, execution.job(asked.fmi))) as ready:
                     ran = ready.run(system, asked.progress)
                 early = [*agreement.warnings(system), *grids.warnings(system)]
                 return replace(ran, warnings=[*early, *ran.warnings])
 
-            result = wired.run(master, asked)
-        result.warnings += _sparse(result, wired.system)
-        if fmi == 3 and wired.system.elementwise:  # asked for
+            result = execution.run(master, asked)
+        result.warnings += _sparse(result, execution.system)
+        if fmi == 3 and execution.system.elementwise:  # asked for
             told = "fmi = 3: wires join elements of arrays, so FMUs that have both run as FMI 2"
             result.warnings += (told,)
         return result
@@ -256,7 +256,7 @@ def scenario(
 
 
 def _sparse(result: Result, system: System) -> tuple[str, ...]:
-    """Warnings about a contour of rows of every so many steps, if there is one."""
+    """Warnings about a contour that is found from rows of every so many steps only."""
     if system.every == 1 or result.scenario.document.body.contour is None:
         return ()
     from motionfmu.analysis.contour.sparse import sparse
@@ -273,7 +273,7 @@ def _names(given: Iterable[str]) -> list[str]:
 
 
 def _check(asked: Options, faults: Faults) -> None:
-    """Gather options that no run can have."""
+    """Add options that no run can have to the faults."""
     if asked.fmi not in (2, 3):
         faults.lines.append(f"FMI {asked.fmi!r}: 2 or 3")
     if not isinstance(asked.set, Mapping):

@@ -1,4 +1,4 @@
-"""One scenario run many times: what runs it is made ready once."""
+"""One scenario that is made ready once and run many times."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 from motionfmu.base import columns
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run import engines
-from motionfmu.run.engines.job import Engine, Ran
-from motionfmu.run.prepared import Options, Prepared
+from motionfmu.run.engines.engine_job import Engine, EngineResult
+from motionfmu.run.execution import Execution, own_settings
 from motionfmu.run.result import Result
-from motionfmu.run.wired import Wired, own_settings
+from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios.system import End, Setting, System
 from motionfmu.scenarios.values import settings, start_values
 
 if TYPE_CHECKING:
-    from motionfmu.analysis.contour.commanded import Known
+    from motionfmu.analysis.contour.pulse_path import PulsePaths
 
 
 class Session:
@@ -44,7 +44,7 @@ class Session:
 
     def __init__(
         self,
-        scenario: Prepared,
+        scenario: RunPlan,
         varied: Iterable[str],
         signals: Iterable[End] | None = None,
         **options: Any,
@@ -76,8 +76,8 @@ class Session:
         base = replace(self._options, set={**self._unset, **self._given})
         self._known = _known(scenario)
         used = scenario.ends if signals is None else list(signals)
-        self._wired = Wired.plan(scenario, base, used, self._folder)
-        return engines.opened(self._options.engine, self._wired.job(self._options.fmi))
+        self._execution = Execution.plan(scenario, base, used, self._folder)
+        return engines.opened(self._options.engine, self._execution.job(self._options.fmi))
 
     def _values(self, given: Mapping[str, Any]) -> list[Setting]:
         """All settings of a run; a value for one element leaves the others as they are."""
@@ -99,16 +99,17 @@ class Session:
         if unknown := [n for n in given if self.scenario.resolver.split(n)[0] not in self._varied]:
             hint = suggestion(unknown[0], self._varied)
             raise InputError(f"{unknown[0]} is not varied by this session{hint}")
-        wired = replace(
-            self._wired, system=replace(self._wired.system, settings=tuple(self._values(given)))
+        execution = replace(
+            self._execution,
+            system=replace(self._execution.system, settings=tuple(self._values(given))),
         )
         options = replace(self._options, set=given)
-        self.scenario.check_scopes(wired.system, options)
+        self.scenario.check_scopes(execution.system, options)
 
-        def engine(system: System) -> Ran:
+        def engine(system: System) -> EngineResult:
             return replace(self._engine.run(system, self._options.progress), warnings=[])
 
-        result = wired.run(engine, replace(self._options, set={**self._options.set, **given}))
+        result = execution.run(engine, replace(self._options, set={**self._options.set, **given}))
         result.known = self._known
         return result
 
@@ -129,10 +130,10 @@ class Session:
         self.close()
 
 
-def _known(scenario: Prepared) -> "Known | None":
-    """What the contours of runs have in common; None if the scenario does not look at it."""
+def _known(scenario: RunPlan) -> "PulsePaths | None":
+    """A store of what contours of several runs have in common; None without a contour."""
     if scenario.document.body.contour is None:
         return None
-    from motionfmu.analysis.contour.commanded import Known
+    from motionfmu.analysis.contour.pulse_path import PulsePaths
 
-    return Known()
+    return PulsePaths()

@@ -49,7 +49,7 @@ def _recorded(signals: Signals) -> str:
 
 
 def matching(signals: Signals, patterns: str | Iterable[str]) -> list[str]:
-    """Names that names and patterns with ``*`` and ``?`` stand for, each once."""
+    """Signals that names, and patterns with ``*`` and ``?``, mean, each once."""
     found: dict[str, None] = {}
     for pattern in [patterns] if isinstance(patterns, str) else patterns:
         if isinstance(pattern, str) and ("*" in pattern or "?" in pattern):
@@ -72,7 +72,7 @@ def elements(signals: Signals, name: str) -> dict[str, NDArray[Any]]:
 def table(
     time: NDArray[np.float64], signals: Signals, names: str | Iterable[str] | None
 ) -> "pandas.DataFrame":
-    """A column an element over time, in memory of its own."""
+    """A table over time with a column for each element, in memory of its own."""
     needed("pandas")
     import pandas
 

@@ -20,7 +20,7 @@ from motionfmu.base.toml_lines import is_file
 from motionfmu.run import contrary
 from motionfmu.run.checks import Verdict
 from motionfmu.run.runner import load
-from motionfmu.scenarios import shipped
+from motionfmu.scenarios import package_files
 
 FILE = "scenario.toml"
 PATIENCE = 10  # [s] for a process to remove its files when it is told to end
@@ -33,8 +33,8 @@ class Case:
 
     scenario: str
     path: str
-    off: str = ""  # what was switched off; empty for the scenario as written
-    seconds: float = 0.0  # [s] that it took
+    off: str = ""  # what a contrary switched off; empty for the scenario as written
+    seconds: float = 0.0  # [s] duration
     checks: tuple[Verdict, ...] = ()
     holding: tuple[str, ...] = ()  # checks that hold although something is off
     warnings: tuple[str, ...] = ()
@@ -42,20 +42,24 @@ class Case:
 
     @property
     def ok(self) -> bool:
-        """Whether all checks hold; with something off, whether those named fail."""
+        """Whether all checks hold or, of a contrary, whether the checks that it names fail."""
         good = not self.holding if self.off else all(v.ok for v in self.checks)
         return good and not self.error
 
 
 def found(paths: Sequence[Path]) -> list[Path]:
-    """Scenarios that paths or names mean: themselves, or those in the folders of a folder."""
+    """Scenarios that paths or names mean; a folder of scenarios means all that are in it."""
     chosen: list[Path] = []
     for given in paths:
-        path = shipped.scenario(given) or given
+        path = package_files.scenario(given) or given
         if is_file(path) or is_file(path / FILE):
             chosen.append(path)
         elif not path.is_dir():
-            hint = shipped.unknown(str(path), shipped.scenarios) if shipped.is_name(path) else ""
+            hint = (
+                package_files.unknown(str(path), package_files.scenarios)
+                if package_files.is_name(path)
+                else ""
+            )
             raise InputError(f"{path}: no such scenario, nor a folder of scenarios{hint}")
         elif inside := sorted(file.parent for file in path.glob(f"*/{FILE}")):
             chosen += inside
@@ -97,7 +101,7 @@ def judged(
         return [replace(bare, seconds=time.perf_counter() - start, error=str(error))]
 
 
-class _Worker:
+class _SuiteWorker:
     """A process that judges one scenario after the other."""
 
     def __init__(self, temporary: str) -> None:
@@ -129,7 +133,7 @@ class _Worker:
 
 
 def serve(pipe: int) -> None:
-    """Judge what the process that started this one sends, until it is gone."""
+    """Judge the scenarios that the parent process sends, until it is gone."""
     import signal
 
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # files are removed on the way out
@@ -142,16 +146,16 @@ def together(
     paths: Sequence[Path], options: Mapping[str, Any], contraries: bool, workers: int
 ) -> Iterator[list[Case]]:
     """Cases of each scenario, in the order of the paths, whatever the number of processes."""
-    running: list[_Worker] = []
+    running: list[_SuiteWorker] = []
     own, lock, ended = threading.local(), threading.Lock(), threading.Event()
 
     def one(path: Path) -> list[Case]:
-        worker: _Worker | None = getattr(own, "worker", None)
+        worker: _SuiteWorker | None = getattr(own, "worker", None)
         if worker is None:
             with lock:  # a pipe's other end is open in no other child
                 if ended.is_set():
                     return []
-                worker = own.worker = _Worker(temporary)
+                worker = own.worker = _SuiteWorker(temporary)
                 running.append(worker)
         cases = worker.judged(path, options, contraries)
         if cases is not None:

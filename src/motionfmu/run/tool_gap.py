@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from motionfmu.base import units
 from motionfmu.run.decimate import Read, blocks, reader
-from motionfmu.run.recorded import Recorded
+from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios.tool_signals import Tool, tools
 
 Array = NDArray[np.float64]
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Size:
-    """What a distance or an angle comes to over a run."""
+    """Largest and RMS value of a distance or an angle over a run."""
 
     largest: float
     at: float  # [s]
@@ -29,7 +29,7 @@ class Size:
 
 @dataclass(frozen=True)
 class ToolGap:
-    """A tool beside its command."""
+    """Distance and angle between a tool and its command at the same instants."""
 
     tool: Tool
     distance: Read  # (n,) [mm]
@@ -47,7 +47,7 @@ class ToolGap:
         }
 
 
-def tool_gaps(run: Recorded) -> list[ToolGap]:
+def tool_gaps(run: RunRecord) -> list[ToolGap]:
     """Each tool whose command and place were recorded, as numbers, throughout."""
     found = []
     for tool in tools(run.resolver):
@@ -62,7 +62,7 @@ def tool_gaps(run: Recorded) -> list[ToolGap]:
     return found
 
 
-def _distance(run: Recorded, pair: tuple[str, str]) -> Read:
+def _distance(run: RunRecord, pair: tuple[str, str]) -> Read:
     ports = [run.resolver.end(name, "", "").port for name in pair]
     factors = [units.parse(p.unit or "1").factor / units.parse("mm").factor for p in ports]
     command, actual = (reader(run[name]) for name in pair)
@@ -74,8 +74,8 @@ def _distance(run: Recorded, pair: tuple[str, str]) -> Read:
     return distance
 
 
-def _angle(run: Recorded, pair: tuple[str, str]) -> Read:
-    """Of the turn from one quaternion to the other, which loses no digits near 0."""
+def _angle(run: RunRecord, pair: tuple[str, str]) -> Read:
+    """The angle of the turn from one quaternion to the other, exact near 0 as well."""
     command, actual = (reader(run[name]) for name in pair)
 
     def angle(first: int, last: int) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from motionfmu.run.decimate import Array, reader
 from motionfmu.run.figures import Chart, Curve, Panel, curve
-from motionfmu.run.recorded import Recorded
+from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios import rates, recording
 from motionfmu.scenarios.analyses import Waveform
 from motionfmu.scenarios.system import End, Resolver
@@ -43,12 +43,12 @@ def wanted(resolver: Resolver) -> list[End]:
     return found
 
 
-def charts(run: Recorded) -> list[Chart]:
+def charts(run: RunRecord) -> list[Chart]:
     """The waveforms of a run, in the order of the scenario."""
     return [_chart(run, asked) for asked in run.resolver.document.body.waveform]
 
 
-def _chart(run: Recorded, asked: Waveform) -> Chart:
+def _chart(run: RunRecord, asked: Waveform) -> Chart:
     k = asked.axis - 1
     whole = (float(run.time[0]), float(run.time[-1]))
     low, high = asked.window or whole

@@ -5,22 +5,23 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from motionfmu.base import units
-from motionfmu.fmu.inside import AGREE, EXTRA
+from motionfmu.fmu.archive_names import AGREE, EXTRA
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.port import Port
 from motionfmu.scenarios.system import System, Wire
 from motionfmu.scenarios.values import start_values
 
-# Values in SI that differ by less, or by this share, are equal: 1 um, 0.2 arc seconds. It is less
-# than a machine repeats, and more than what printed digits lose.
+# Two values in SI units are equal if they differ by less than this, or by less than this share of
+# their size: 1 um, 0.2 arc seconds. No machine repeats so well, and printed digits lose less.
 CLOSE = 1e-6
-# A quantity of this ending is what one FMU wants of another, which has it without the ending.
+# A quantity whose name ends so is what one FMU commands; the other FMU's actual value has the name
+# without this ending.
 COMMAND = "_command"
 
 
 @functools.cache
 def quantities(fmu: str) -> Mapping[str, str]:
-    """Variable by quantity, such as arm.start: what an FMU says of things outside it."""
+    """The variable by quantity, such as arm.start, that an FMU states of things outside it."""
     if not fmus.is_ours(fmu):
         return {}
     with fmus.opened(fmu) as archive:
@@ -30,7 +31,7 @@ def quantities(fmu: str) -> Mapping[str, str]:
 
 
 def warnings(system: System) -> list[str]:
-    """A sentence for each quantity of which two FMUs along the wires have different values.
+    """A sentence for each quantity to which two FMUs along the wires give different values.
 
     An FMU is compared with the nearest ones behind its outputs that know the quantity, through
     others that do not; two of the same kind, such as two controllers, are never compared.
@@ -64,7 +65,7 @@ def warnings(system: System) -> list[str]:
 def commanded(
     components: Mapping[str, str], wires: Iterable[Wire], asked: Sequence[str]
 ) -> dict[str, list[tuple[str, str]]]:
-    """Pairs of outputs for each quantity: what one FMU commands, what another behind it has."""
+    """Pairs of outputs for each quantity: one FMU's command, the actual value of one behind it."""
     behind = _behind(wires)
     known = {c: quantities(fmu) for c, fmu in components.items()}
     found: dict[str, list[tuple[str, str]]] = {quantity: [] for quantity in asked}
@@ -79,7 +80,7 @@ def commanded(
 
 
 def _behind(wires: Iterable[Wire]) -> dict[str, set[str]]:
-    """The components to which wires lead from each."""
+    """For each component those to which wires lead from it."""
     behind: dict[str, set[str]] = {}
     for wire in wires:
         behind.setdefault(wire.source.component, set()).add(wire.target.component)
@@ -87,7 +88,7 @@ def _behind(wires: Iterable[Wire]) -> dict[str, set[str]]:
 
 
 def _nearest(start: str, behind: Mapping[str, set[str]], knowing: set[str]) -> Iterator[str]:
-    """The first components along the wires that know a quantity, too; sorted in each distance."""
+    """The nearest components along the wires that know a quantity, by distance, then by name."""
     seen, edge = {start}, {start}
     while edge:
         edge = {t for c in edge for t in behind.get(c, ())} - seen
@@ -97,7 +98,7 @@ def _nearest(start: str, behind: Mapping[str, set[str]], knowing: set[str]) -> I
 
 
 def _apart(sides: list[tuple[str, Port]], given: Mapping[str, Sequence[object]]) -> str:
-    """The first elements that differ, with names and values; empty if none does."""
+    """The first pair of elements that differ, with names and values; empty if all are equal."""
     (a, left), (b, right) = sides
     if left.count != right.count:
         return f"{a} has {left.count} elements, {b} has {right.count}"
@@ -114,7 +115,7 @@ def _apart(sides: list[tuple[str, Port]], given: Mapping[str, Sequence[object]])
 
 
 def _values(port: Port, given: Sequence[object]) -> list[float]:
-    """What a scenario gives, else the default, one number for each element."""
+    """The scenario's values of a variable, else its defaults, one number for each element."""
     values = [float(str(x)) for x in given or start_values(port)]
     return values * port.count if len(values) == 1 else values
 

@@ -54,7 +54,7 @@ class View(BaseModel):
 
 
 class Waveform(BaseModel):
-    """What a drive's monitor shows of one axis: speeds, torque, deviation."""
+    """What a drive's monitor shows of one axis: speeds, torque, following error."""
 
     model_config = STRICT
     drives: Name

@@ -10,11 +10,12 @@ from motionfmu.scenarios.analyses import Iso9283, View, Waveform
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 Pair = tuple[float, float]
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, defer_build=True)
-# Each is an FMU with a library and a folder of its own.
+# Each component is an FMU with a library and a folder of its own.
 COMPONENTS_MAX = 64
-# The name becomes that of an instance and of a file; the recorder's own begin with "_".
+# A component's name becomes that of an FMU instance and of a file; names of the recorder's own
+# components begin with "_".
 Component = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
-# Names and patterns are looked up in all variables of all components.
+# So many names and patterns at most, for each is compared with all variables of all components.
 LISTED_MAX = 1000
 NAMED_MAX = 10_000  # exact names: elements of arrays, where an SSP has FMUs of FMI 2
 FIGURES_MAX = 100  # a picture each
@@ -32,7 +33,7 @@ class Drive(BaseModel):
     value: list[Value] = Field(min_length=1)
 
 
-class Check(BaseModel):
+class Bounds(BaseModel):
     """Bounds of one signal or figure; each one given must hold."""
 
     model_config = _STRICT
@@ -50,7 +51,7 @@ class Check(BaseModel):
 
 
 class Contrary(BaseModel):
-    """Values that switch off a claim; the checks named must fail."""
+    """Values that switch off what the scenario claims; the checks it names must then fail."""
 
     model_config = _STRICT
     off: str = Field(min_length=1)
@@ -98,12 +99,12 @@ class Figure(BaseModel):
 
 
 def _listed(x: Any) -> Any:
-    """One table of bounds, or several."""
+    """A list of tables of bounds; a single table becomes a list of one."""
     return tuple(x) if isinstance(x, list | tuple) else (x,)
 
 
 Checks = Annotated[
-    tuple[Check, ...], BeforeValidator(_listed), Field(min_length=1, max_length=LISTED_MAX)
+    tuple[Bounds, ...], BeforeValidator(_listed), Field(min_length=1, max_length=LISTED_MAX)
 ]
 
 
@@ -131,14 +132,14 @@ class Body(BaseModel):
 
     @property
     def stop_limit(self) -> float:
-        """When a run ends at the latest [s]."""
+        """The latest time at which a run ends [s]."""
         return self.stop if isinstance(self.stop, float) else self.limit or LONGEST
 
 
-# The model of a table, by its name.
+# The pydantic model of each table, by the table's name.
 MODELS: dict[str, type[BaseModel]] = {
     "drive": Drive,
-    "check": Check,
+    "check": Bounds,
     "contrary": Contrary,
     "contour": Contour,
     "record": Record,

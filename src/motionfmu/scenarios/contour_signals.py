@@ -4,7 +4,7 @@ from motionfmu.base import units
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import Resolver
 
-# Outputs the analysis wants beside position and pulses, by their owner.
+# Outputs that the analysis needs beside position and pulses, by the FMU that has them.
 LIBRARY = ("command", "command_newest", "path_feed", "card_dda_length", "card_dda_divider")
 CARD = ("stock", "irq_seq", "dac")
 
@@ -30,7 +30,7 @@ def wanted(resolver: Resolver) -> list[str]:
 
 
 def _check_axes(resolver: Resolver, key: str, name: str) -> None:
-    """Refuse what is no row of axes; the position is a length."""
+    """Refuse a signal that is no array of axes, and a position that is no length."""
     document = resolver.document
     port = recording.output(resolver, name, "contour", key).port
     if port.shape != (recording.AXES,):

@@ -13,15 +13,15 @@ from motionfmu.base.toml_lines import is_file, ordered, shown
 from motionfmu.scenarios import body as tables_
 from motionfmu.scenarios.body import Body
 from motionfmu.scenarios.foreign import is_foreign
-from motionfmu.scenarios.sources import Source, Tables, chain, merged, of_file
+from motionfmu.scenarios.table_sources import Source, Tables, chain, merged, of_file
 
-# Tables of which each key is the user's own.
+# Tables whose keys are names that the user chooses.
 OPEN = ("component", "connect", "set", "check")
 ARRAYS = ("drive", "figure", "waveform", "contrary")
 ABOUT = "the first line is a comment that says what the scenario shows"
-# What a list wants at least, by its key.
+# The fewest entries that a list may have, by its key.
 EMPTY = {"signals": 'the name of an output, or a pattern such as "card.*", wanted'}
-# What takes the place of a table that cannot be read, so that the others are looked at.
+# What stands in for a table that cannot be read, so that the other tables are still checked.
 SOUND: Tables = {"stop": tables_.LONGEST, "step": 1e-4, "record": {"signals": ["*"]}}
 
 
@@ -57,12 +57,12 @@ class Document:
         return InputError(f"{_place(self.sources, table, key, item)}: {text}")
 
     def refuse(self, lines: list[str]) -> None:
-        """Tell everything that is wrong, in the order of the lines; nothing if that is nothing."""
+        """Raise an InputError with all faults in the order of their lines, if there are any."""
         Faults(ordered(lines, (s.name for s in self.sources))).tell()
 
 
 def _place(sources: tuple[Source, ...], table: str, key: str, item: Any = None) -> str:
-    """Where a key stands, or the nearest table around it, in the strongest source that has it."""
+    """Where a key, or the nearest table around it, stands in the strongest source that has it."""
     tries = [(table, key, item), (table, key, None)]
     parts = table.split(".")
     tries += [(".".join(parts[:n]), "", None) for n in range(len(parts), 0, -1)]
@@ -95,7 +95,7 @@ def changed(document: Document, tables: Mapping[str, Any], name: str) -> Documen
 
 
 def plain(value: Any) -> Any:
-    """What a program gives as TOML would give it."""
+    """A value from a program in the types that the TOML reader gives."""
     if isinstance(value, Mapping):
         return {str(k): plain(v) for k, v in value.items()}
     if hasattr(value, "tolist"):  # numpy's
@@ -106,7 +106,7 @@ def plain(value: Any) -> Any:
 
 
 def parsed(sources: list[Source], name: str = "") -> Document:
-    """Check keys and types; what is wrong is in the document, which has the rest."""
+    """Check keys and types; the document lists the faults and holds the tables that are right."""
     tables = merged(sources)
     places = tuple(sources)
     sound = _numbers(copy.deepcopy(tables))
@@ -153,7 +153,7 @@ def _ending(body: Body, sources: tuple[Source, ...]) -> list[str]:
 
 
 def _numbers(tables: Tables) -> Tables:
-    """Whole numbers where a time or a bound is meant; pairs become tuples."""
+    """Tables with floats where a time or a bound is a whole number, and tuples for pairs."""
 
     def number(x: Any) -> Any:
         if isinstance(x, list):
@@ -176,7 +176,7 @@ def _numbers(tables: Tables) -> Tables:
 
 
 def _without(tables: Tables, error: ValidationError) -> Tables:
-    """Tables without what pydantic refused; without an array of tables if one of it is wrong."""
+    """Tables without what pydantic refused; one wrong table of an array takes the array with it."""
     out = dict(tables)
     for found in error.errors():
         top, *rest = found["loc"]
@@ -190,7 +190,7 @@ def _without(tables: Tables, error: ValidationError) -> Tables:
 
 
 def _told(error: ValidationError, sources: tuple[Source, ...]) -> list[str]:
-    """A line for each place at which pydantic found something."""
+    """A line of text for each place at which pydantic found a fault."""
     found: dict[tuple[str, ...], str] = {}
     missing: dict[tuple[str, ...], list[str]] = {}
     for one in error.errors():
@@ -214,7 +214,7 @@ def _told(error: ValidationError, sources: tuple[Source, ...]) -> list[str]:
 
 
 def _meant(place: tuple[str, ...], missing: list[str]) -> tuple[str, str]:
-    """What an unknown key may be meant for: words of a message, and the key."""
+    """Words that suggest what an unknown key may be meant for, and the key that is suggested."""
     model: type[BaseModel] = Body
     for part in place[:-1]:
         if part in tables_.MODELS:
@@ -228,7 +228,7 @@ def _meant(place: tuple[str, ...], missing: list[str]) -> tuple[str, str]:
 def _one(
     found: Any, place: tuple[str, ...], sources: tuple[Source, ...]
 ) -> tuple[tuple[str, ...], str]:
-    """The place without the members of a choice of types, and a line."""
+    """A fault's place, without pydantic's names for the alternatives of a type, and its text."""
     top = place[0]
     if top in OPEN and top != "check":
         place = place[:2]  # what follows is a type, or the place in a list
@@ -266,7 +266,7 @@ def _spot(sources: tuple[Source, ...], place: tuple[str, ...]) -> str:
 
 
 def _table_key(place: tuple[str, ...]) -> tuple[str, str]:
-    """Table and key that `Lines` knows, of a place that pydantic names."""
+    """Table and key, as `Lines` knows them, of a place that pydantic names."""
     if len(place) == 1:
         return "", place[0]
     depth = 1

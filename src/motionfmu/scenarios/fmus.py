@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import IO, Any
 from xml.etree import ElementTree
 
-from motionfmu.base import kept
+from motionfmu.base import disk_cache
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.platforms import here
 from motionfmu.base.toml_lines import is_file
@@ -38,7 +38,7 @@ def folder() -> Path:
 
 
 def terminals_of(name: str) -> list[Terminal]:
-    """What of a built FMU is connected together."""
+    """The terminals of a built FMU: which of its variables are connected together."""
     with opened(name) as archive:
         there = terminals.XML in archive.namelist()
         return terminals.of(archive.read(terminals.XML)) if there else []
@@ -59,7 +59,7 @@ def fmu_names() -> list[str]:
 def fmu_path(name: str, fmi: int = 3) -> Path:
     """Find a built FMU by its folder's name under fmus/, or a foreign one by its path.
 
-    A foreign one has the version that it has. Of ours the message lists what there is.
+    A foreign FMU has one version of FMI only. The message about an unknown name lists our FMUs.
     """
     if is_foreign(name):
         foreign.read(name)
@@ -74,18 +74,18 @@ def fmu_path(name: str, fmi: int = 3) -> Path:
 
 
 def is_ours(name: str) -> bool:
-    """Whether an FMU is of this package: by its name, or a file of FMI 3 with the same inside."""
+    """Whether this package made an FMU: it has a name of ours, or is a file of FMI 3 like ours."""
     return not is_foreign(name) or foreign.read(name).ours
 
 
 def version(name: str, fmi: int) -> int:
-    """FMI version in which an FMU runs: a foreign one has one only."""
+    """The FMI version in which an FMU runs; a foreign FMU has one version only."""
     return foreign.read(name).fmi if is_foreign(name) else fmi
 
 
 @contextlib.contextmanager
 def opened(name: str) -> Iterator[zipfile.ZipFile]:
-    """The archive of a built FMU, of FMI 3; what is wrong with it is an InputError."""
+    """The open archive of a built FMU of FMI 3; an InputError if it cannot be read."""
     path = fmu_path(name)
     try:
         with zipfile.ZipFile(path) as archive:
@@ -95,7 +95,7 @@ def opened(name: str) -> Iterator[zipfile.ZipFile]:
 
 
 def digest(name: str) -> str:
-    """Of all that the archive of a built FMU holds, by its own check sums."""
+    """A hash of all files in the archive of a built FMU, from the archive's own check sums."""
     path = fmu_path(name)
     stat = path.stat()
     return _digest(name, (str(path), stat.st_mtime_ns, stat.st_size))
@@ -105,13 +105,13 @@ def digest(name: str) -> str:
 def _digest(name: str, state: tuple[str, int, int]) -> str:
     with opened(name) as archive:
         rows = [f"{i.filename} {i.CRC:08x} {i.file_size}" for i in archive.infolist()]
-    return kept.key(*rows)
+    return disk_cache.key(*rows)
 
 
 def runnable(name: str, fmi: int) -> Path:
     """Find a built FMU whose library loads on this machine; else an InputError with file and cause.
 
-    A master loads it, too, but where it cannot, it says nothing of the cause or ends the process.
+    A master that cannot load a library says nothing of the cause, or ends the process.
     """
     path = fmu_path(name, fmi)
     try:
@@ -126,9 +126,9 @@ def runnable(name: str, fmi: int) -> Path:
 
 @functools.cache
 def _refused(path: Path, fmi: int, identifier: str, state: tuple[int, int]) -> str:
-    """Why the library in this state of a file does not load; empty if it does.
+    """Why an FMU's library does not load; empty if it does. `state` is that of the FMU's file.
 
-    It has a name of its own; without one it is the only file of its folder.
+    The library is called `identifier`; if that is empty, it is the only file of its folder.
     """
     with tempfile.TemporaryDirectory(prefix="motionfmu-") as place:
         try:
@@ -155,7 +155,7 @@ def _refused(path: Path, fmi: int, identifier: str, state: tuple[int, int]) -> s
 
 
 def library(name: str) -> str:
-    """Place of a foreign FMU's library in its archive."""
+    """The path of a foreign FMU's library in its archive."""
     found = foreign.read(name)
     with zipfile.ZipFile(name) as archive:
         return _library(archive.namelist(), here().folder(found.fmi), found.identifier)[0]
@@ -176,7 +176,7 @@ def _library(there: list[str], folder: str, identifier: str) -> tuple[str, str]:
 
 @contextlib.contextmanager
 def _description(name: str, fmi: int = 3) -> Iterator[IO[bytes]]:
-    """The open modelDescription.xml of a built FMU; what is wrong with it is an InputError."""
+    """The open modelDescription.xml of a built FMU; an InputError if it cannot be read."""
     path = fmu_path(name, fmi)
     try:
         with zipfile.ZipFile(path) as archive, archive.open("modelDescription.xml") as stream:
@@ -193,7 +193,7 @@ def description_text(name: str, fmi: int = 3) -> str:
 
 
 def about(name: str) -> str:
-    """What an FMU is, as it says itself."""
+    """What an FMU is, in the words of its own description."""
     if is_foreign(name):
         return foreign.read(name).about
     with _description(name) as stream:
@@ -207,7 +207,7 @@ def about(name: str) -> str:
 
 
 def ports(name: str) -> Mapping[str, Port]:
-    """Variables of an FMU by name, without the independent variable; of ours those of FMI 3."""
+    """Variables of an FMU by name, without the independent one; for our FMUs those of FMI 3."""
     return foreign.read(name).ports if is_foreign(name) else _ports(name)
 
 

@@ -16,7 +16,7 @@ from motionfmu.scenarios.port import Port
 
 ENDING = ".fmu"
 _FMI2 = {"Real": "Float64", "Integer": "Int32", "Enumeration": "Int32"}
-# Clocks tick in event mode, which no run here has.
+# Clocks tick in event mode only, which no engine of this package uses.
 _PASSED_OVER = ("Clock",)
 _ROOT = "fmiModelDescription"
 
@@ -28,15 +28,15 @@ def is_foreign(fmu: str) -> bool:
 
 @dataclass(frozen=True)
 class Foreign:
-    """What the description of an FMU says."""
+    """What the description of a foreign FMU says of it."""
 
     fmi: int  # 2 or 3
-    identifier: str  # of its library for co-simulation
+    identifier: str  # name of its library for co-simulation
     about: str
     ports: Mapping[str, Port]
-    once: bool  # one instance in a process
-    tool: bool  # it needs its tool on this machine
-    ours: bool  # of this package, with the text of a part
+    once: bool  # a process can have one instance of it only
+    tool: bool  # it needs the tool that made it on this machine
+    ours: bool  # this package made it, and it carries the C text of its model
 
 
 def read(name: str) -> Foreign:
@@ -97,7 +97,7 @@ def _described(path: Path, root: ElementTree.Element) -> Foreign:
 def _with_meanings(
     root: ElementTree.Element, rows: list[ElementTree.Element], ports: Iterator[Port]
 ) -> Iterator[Port]:
-    """Variables of an FMU of ours, with the types that say what they mean."""
+    """Variables of one of our FMUs, with the type definitions that say what they mean."""
     types = {t.attrib["name"]: t.get("description", "") for t in root.iterfind("TypeDefinitions/*")}
     declared = {row.attrib["name"]: row.get("declaredType") for row in rows}
     for port in ports:
@@ -106,7 +106,7 @@ def _with_meanings(
 
 
 def _base(row: ElementTree.Element) -> Mapping[str, str]:
-    """What a type definition gives its variables; that of FMI 2 has it one element deeper."""
+    """Attributes that a type definition gives its variables; in FMI 2 an element holds them."""
     inner = row[0] if row.tag == "SimpleType" and len(row) else row
     return {k: v for k, v in inner.attrib.items() if k in ("unit", "min", "max", "nominal")}
 
@@ -143,7 +143,7 @@ def _port(
     types: Mapping[str, Mapping[str, str]],
     shape: tuple[int, ...] = (),
 ) -> Port:
-    """A variable; `values` has its start, unit and limits."""
+    """Make the port of a variable; `values` has its start, unit and limits."""
     given = {**types.get(values.get("declaredType", ""), {}), **values.attrib}
     texts = [start.get("value", "") for start in values.findall("Start")]
     return Port(

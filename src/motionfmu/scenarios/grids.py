@@ -4,7 +4,7 @@ import functools
 import json
 from collections.abc import Mapping
 
-from motionfmu.fmu.inside import EXTRA, GRID
+from motionfmu.fmu.archive_names import EXTRA, GRID
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import System, nanoseconds
 from motionfmu.scenarios.values import start_values
@@ -12,7 +12,7 @@ from motionfmu.scenarios.values import start_values
 
 @functools.cache
 def grid(fmu: str) -> str:
-    """The parameter that is an FMU's grid; empty if it says none."""
+    """The parameter that is an FMU's grid; empty if the FMU states none."""
     with fmus.opened(fmu) as archive:
         file = f"{EXTRA}/{GRID}"
         there = fmus.is_ours(fmu) and file in archive.namelist()
@@ -20,7 +20,7 @@ def grid(fmu: str) -> str:
 
 
 def warnings(system: System) -> list[str]:
-    """What is to be said about grids that do not fit, at most one sentence for each reason.
+    """Warnings about grids that do not fit each other, at most one sentence for each reason.
 
     A wire hands on without a delay if the step divides the grid of its source, which then changes
     at communication points only, or that of its target, which reads at such points only. A grid and

@@ -35,7 +35,7 @@ def wanted(resolver: Resolver) -> list[str]:
 
 
 def check_position(resolver: Resolver, name: str, table: str, key: str) -> None:
-    """Refuse what is no position: three lengths, or six axes of which the first three count."""
+    """Refuse a signal that is no position: three lengths, or six axes of which three count."""
     document = resolver.document
     port = recording.output(resolver, name, table, key).port
     if port.shape not in ((3,), (recording.AXES,)):
@@ -45,7 +45,7 @@ def check_position(resolver: Resolver, name: str, table: str, key: str) -> None:
 
 
 def _check_keys(resolver: Resolver) -> None:
-    """Refuse keys that exclude or miss each other."""
+    """Refuse keys that exclude each other, and a key without one that it needs."""
     document, table = resolver.document, resolver.document.body.iso9283
     assert table is not None
 

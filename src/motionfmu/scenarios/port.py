@@ -12,7 +12,7 @@ class Port:
 
     name: str
     type: str  # Float64, Int32, Boolean or String; of foreign FMUs any type of FMI 3
-    causality: str  # as FMI says
+    causality: str  # in FMI's words
     tunable: bool  # a parameter that may change during a run
     doc: str
     shape: tuple[int, ...]  # empty for a scalar
@@ -29,7 +29,7 @@ class Port:
 
     @property
     def file(self) -> str:
-        """Whether it names a file that is ``read`` or ``written``; empty if it names none."""
+        """``read`` or ``written`` for a variable that names a file; empty for any other."""
         name = self.declared[0] if self.declared else ""
         return {kind[0]: key for key, kind in FILES.items()}.get(name, "")
 
@@ -41,7 +41,7 @@ class Port:
     def element(self, index: str) -> "Port | None":
         """The element of an array at ``2`` or ``1,2``, from 1, as a single variable; None if none.
 
-        It has a reference of its own in FMI 2 only.
+        An element has a value reference of its own in FMI 2 only.
         """
         texts = index.split(",")
         if len(texts) != len(self.shape) or not all(t.isascii() and t.isdigit() for t in texts):

@@ -23,12 +23,12 @@ def change(
 
 
 def steps(time: NDArray[Any], rate: float) -> int:
-    """Samples in the time over which a rate is taken [s]; all if the run is shorter."""
+    """Number of samples in the time `rate` [s]; all samples if the run is shorter."""
     return min(len(time), round(rate / (time[1] - time[0]))) if len(time) > 1 else len(time)
 
 
 def reader(x: NDArray[Any], back: int, rate: float) -> Callable[[int, int], NDArray[np.float64]]:
-    """The same changes from one to before another, counted from t = rate on."""
+    """A function that gives `change` of a range of samples, which count from t = rate on."""
 
     def read(first: int, last: int) -> NDArray[np.float64]:
         forget(x)
@@ -39,7 +39,7 @@ def reader(x: NDArray[Any], back: int, rate: float) -> Callable[[int, int], NDAr
 
 
 def wrong(rate: float, step_ns: int, stop: float) -> str:
-    """What of a rate [s] does not fit a run of such steps up to `stop` [s]; empty if nothing."""
+    """Why a rate [s] does not fit a run of such steps up to `stop` [s]; empty if it fits."""
     count = round(rate * 1e9 / step_ns)
     if count < 1 or abs(rate * 1e9 - count * step_ns) > NS_TOLERANCE:
         return f"rate = {rate!r} s is no whole number of steps of {step_ns * 1e-9:g} s"

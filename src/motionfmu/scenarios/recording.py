@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from motionfmu.base.columns import Columns, Part, kept
+from motionfmu.base.columns import ArrayPlace, Columns, kept
 from motionfmu.base.errors import Faults
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.fmus import Port
@@ -16,13 +16,13 @@ from motionfmu.scenarios.system import STEPS_MAX, End, Resolver, Setting, System
 from motionfmu.scenarios.values import start_values, values_of
 
 AXES = 6
-# Channels of one scope FMU: groups of six and single ones, by the type they hold.
+# Channels of one scope FMU, by the type of their values: groups of six channels, and single ones.
 SIZES = {"Float64": 8, "Int32": 4}  # [bytes]
 # A scope holds its rows in memory; signals that are written as they come need room on the disk.
 ROWS_MAX = STEPS_MAX
 BYTES_MAX = 2_000_000_000
 WIDTH = {"Float64": 8, "Int32": 4, "Boolean": 1}  # [bytes] of a value in a file
-FILES = {"Float64": "real", "Int32": "int"}  # of a scope, by what they hold
+FILES = {"Float64": "real", "Int32": "int"}  # a scope's files, by the type of their values
 # Inputs of a scope by type: name and how many there are, by width, in the order of the files.
 GROUPS = {
     "Float64": {
@@ -36,7 +36,7 @@ GROUPS = {
 
 
 @dataclass(frozen=True)
-class Column:
+class TraceColumn:
     """Where the trace files hold a signal."""
 
     end: End
@@ -46,7 +46,7 @@ class Column:
 
     @property
     def width(self) -> int:
-        """Channels it takes."""
+        """How many channels the signal takes."""
         return self.end.port.count
 
 
@@ -54,12 +54,12 @@ class Column:
 class Recording:
     """All columns and the folder of the trace files."""
 
-    columns: tuple[Column, ...]
+    columns: tuple[TraceColumn, ...]
     folder: Path
     scopes: int
 
     def load(self) -> Columns:
-        """The files of an ended run, by signal; they are moved away, for the next one."""
+        """The signals of a run that has ended; their files make room for those of the next run."""
         scopes = [f"scope{i + 1}.{kind}.npy" for i in range(self.scopes) for kind in FILES.values()]
         own = kept(self.folder, scopes)
         parts = {}
@@ -70,7 +70,7 @@ class Recording:
             before = widths[: widths.index(c.width)]
             first = sum(o.width for o in mine if o.width in before) + c.width * c.group
             columns = slice(first, first + c.width) if c.end.port.shape else first
-            parts[c.end.name] = Part(file, columns, c.end.port.type == "Boolean")
+            parts[c.end.name] = ArrayPlace(file, columns, c.end.port.type == "Boolean")
         return Columns(parts, own)
 
 
@@ -86,7 +86,7 @@ def recordable(end: End) -> bool:
 
 
 def output(resolver: Resolver, name: str, table: str, key: str) -> End:
-    """Find an output that can be recorded; the message says where it is written, table and key."""
+    """Find an output that can be recorded; a message names the table and key that ask for it."""
     end = resolver.end(name, table, key)
     if end.port.causality != "output":
         text = f"{name} is no output ({end.port.causality})"
@@ -99,7 +99,7 @@ def output(resolver: Resolver, name: str, table: str, key: str) -> End:
 
 
 def elements(resolver: Resolver, name: str, table: str, key: str) -> tuple[End, tuple[int, ...]]:
-    """The output of which a name is, or an element, and which elements these are, from 1."""
+    """The output that a name means, whole or one element of it, and its elements, from 1."""
     whole, bracket, rest = name.partition("[")
     if resolver.split(name) == (name, None):
         whole, bracket, rest = name, "", ""
@@ -118,7 +118,7 @@ def elements(resolver: Resolver, name: str, table: str, key: str) -> tuple[End, 
 
 
 def chosen(resolver: Resolver, patterns: Iterable[str]) -> list[End]:
-    """Outputs that names and patterns name, each once; a pattern passes over the unrecordable."""
+    """Outputs that names and patterns mean, each once; patterns skip what cannot be recorded."""
     found: dict[str, End] = {}
     faults = Faults()
     for pattern in patterns:
@@ -138,8 +138,8 @@ def _matching(resolver: Resolver, pattern: str) -> list[End]:
     return ends
 
 
-def _allocate(ends: Iterable[End]) -> list[Column]:
-    columns: list[Column] = []
+def _allocate(ends: Iterable[End]) -> list[TraceColumn]:
+    columns: list[TraceColumn] = []
     used: dict[tuple[int, str, int], int] = {}
     for end in ends:
         kind, width = _kind(end), end.port.count
@@ -147,13 +147,13 @@ def _allocate(ends: Iterable[End]) -> list[Column]:
         scope = 0
         while used.get((scope, kind, width), 0) == room:
             scope += 1
-        columns.append(Column(end, scope, kind, used.get((scope, kind, width), 0)))
+        columns.append(TraceColumn(end, scope, kind, used.get((scope, kind, width), 0)))
         used[scope, kind, width] = used.get((scope, kind, width), 0) + 1
     return columns
 
 
 def refused(system: System) -> tuple[str, str]:
-    """What is wrong with a system's scopes before it runs: setting and words; empty if nothing."""
+    """The setting of a scope that would not work, and why; two empty texts if all would."""
     files: dict[str, str] = {}
     total = 0
     given = {s.end.name: s.values[0] for s in system.settings}
@@ -186,13 +186,13 @@ def refused(system: System) -> tuple[str, str]:
 
 
 def size(system: System, ends: Iterable[End]) -> int:
-    """What signals and times of a run take on the disk, at most [bytes]."""
+    """The most bytes that the signals and times of a run take on the disk."""
     row = WIDTH["Float64"] + sum(WIDTH[e.port.type] * e.port.count for e in ends)
     return row * system.rows(system.steps)
 
 
 def no_room(system: System, ends: Iterable[End], folder: Path) -> str:
-    """Why a folder has no room for a run's signals; empty if it has."""
+    """Why a folder has no room for a run's signals; empty if it has room."""
     wanted, free = size(system, ends), shutil.disk_usage(folder).free
     if wanted <= free:
         return ""
@@ -201,7 +201,7 @@ def no_room(system: System, ends: Iterable[End], folder: Path) -> str:
 
 
 def plan(system: System, ends: Iterable[End], folder: Path) -> tuple[System, Recording]:
-    """Add as many scopes as record these outputs, and say where they will be."""
+    """Add the scopes that record these outputs to a system, and say where each will be recorded."""
     columns = _allocate(ends)
     scopes = 1 + max((c.scope for c in columns), default=-1)
     ports = fmus.ports("scope") if scopes else {}

@@ -13,12 +13,12 @@ from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.fmus import Port
 
 Values = tuple[float | int | bool | str, ...]
-# A time in decimal seconds is off a whole number of ns by rounding only.
+# A time in decimal seconds differs from a whole number of ns by rounding only.
 NS_TOLERANCE = 1e-3
 # Limits of a run: more than a day of machine time, hours of computing.
 TIME_MAX = LONGEST  # [s]
 STEPS_MAX = 100_000_000
-# Clock of card and recorder; no FMU here steps by a part of it.
+# Period of the clock of card and recorder [ns]; no FMU of ours makes smaller steps.
 CLOCK_NS = 25
 # Types of FMI 3 whose values have a length of their own.
 _NO_WIRE = ("Binary",)
@@ -47,7 +47,7 @@ class Wire:
 
 @dataclass(frozen=True)
 class Setting:
-    """A value given before initialization; one per element."""
+    """Values that a variable gets before initialization, one for each element."""
 
     end: End
     values: Values
@@ -91,24 +91,24 @@ class System:
 
     @property
     def sample_ns(self) -> int:
-        """Between two rows of the recording."""
+        """Time between two rows of the recording [ns]."""
         return self.step_ns * self.every
 
     def rows(self, steps: int) -> int:
-        """Rows of the recording of so many steps."""
+        """Number of rows that the recording of so many steps has."""
         return -(-steps // self.every)
 
     @property
     def elementwise(self) -> bool:
-        """Whether a wire joins an element of an array, which FMI 2 alone has by itself."""
+        """Whether a wire joins one element of an array, in FMI 2 only a variable of its own."""
         return any(e.port.whole for w in self.wires for e in (w.source, w.target))
 
     def version(self, component: str, fmi: int) -> int:
-        """FMI version in which a component runs where ours are of this one."""
+        """FMI version in which a component runs if our FMUs run in version `fmi`."""
         return fmus.version(self.components[component], fmi)
 
     def due(self) -> dict[int, list[Stimulus]]:
-        """Stimuli by the step before which they act."""
+        """The stimuli by the number of the step before which they act."""
         found: dict[int, list[Stimulus]] = {}
         for stimulus in self.stimuli:
             found.setdefault(stimulus.step, []).append(stimulus)
@@ -128,7 +128,7 @@ def nanoseconds(key: str, seconds: float) -> int:
 
 
 def matches(name: str, pattern: str) -> bool:
-    """Whether a name is a pattern's, with ``*`` and ``?``; brackets mean themselves."""
+    """Whether a name matches a pattern with ``*`` and ``?``; its brackets are plain letters."""
     return fnmatch.fnmatchcase(name, pattern.replace("[", "[[]"))
 
 
@@ -145,7 +145,7 @@ class Resolver:
                     self.ports[name] = fmus.ports(fmu)
                 except InputError as error:
                     raise document.error(str(error), "component", name) from None
-        # Components of which it was told already that they cannot be.
+        # Components whose FMU cannot be used; a fault says so already.
         self.lost = set(document.tables.get("component", {})) - set(self.ports)
         if faults is None:
             kept.tell()
@@ -228,7 +228,7 @@ def _check_wire(document: Document, wire: Wire, key: str) -> None:
 
 
 def _same_quantity(document: Document, a: End, b: End) -> bool:
-    """Whether units fit; a foreign FMU may say none, or one that only it knows."""
+    """Whether two units fit; a foreign FMU may state no unit, or one that only it knows."""
     found = [e.port.unit for e in (a, b)]
     foreign = [fmus.is_foreign(document.body.component[e.component]) for e in (a, b)]
     if any(said and unit is None for said, unit in zip(foreign, found, strict=True)):
@@ -298,7 +298,7 @@ NAMED_MAX = 8
 
 
 def _whole(resolver: Resolver, system: System) -> set[str]:
-    """Arrays of which each element has a wire."""
+    """Names of the arrays of which every element has a wire."""
     counts: dict[tuple[str, str], int] = {}
     for target in (w.target for w in system.wires if w.target.port.whole):
         key = target.component, target.port.whole
@@ -308,7 +308,7 @@ def _whole(resolver: Resolver, system: System) -> set[str]:
 
 
 def check_inputs(resolver: Resolver, system: System) -> None:
-    """Refuse inputs that nothing or two things feed; the message names them."""
+    """Refuse inputs that have no source or two sources; the message names them."""
     document, faults = resolver.document, Faults()
     wired = {w.target.name for w in system.wires} | _whole(resolver, system)
     driven = {s.end.name for s in system.stimuli}

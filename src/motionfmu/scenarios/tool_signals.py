@@ -18,7 +18,7 @@ class Tool:
 
 
 def tools(resolver: Resolver) -> list[Tool]:
-    """Each tool whose command and place FMUs of the scenario say."""
+    """Each tool of which FMUs of the scenario have both the command and the actual position."""
     try:
         joined = wires(resolver)
         found = commanded(resolver.document.body.component, joined, (TOOL, ATTITUDE))
@@ -29,7 +29,7 @@ def tools(resolver: Resolver) -> list[Tool]:
 
 
 def wanted(resolver: Resolver) -> list[str]:
-    """Outputs that are recorded so that a page can hold command and tool against each other."""
+    """Outputs that are recorded so that a page can compare each tool with its command."""
     return [
         name
         for tool in tools(resolver)

@@ -22,7 +22,7 @@ from motionfmu.scenarios.system import (
 # Limits of the types that are whole numbers.
 WHOLE = {f"Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)}
 WHOLE |= {f"UInt{n}": (0, 2**n - 1) for n in (8, 16, 32, 64)}
-# What a value of each type is in a scenario.
+# In words, which values of a scenario each type takes.
 KINDS: dict[str, Any] = {
     "Float64": (int, float),
     "Float32": (int, float),
@@ -32,7 +32,7 @@ KINDS: dict[str, Any] = {
 
 
 def values_of(end: End, value: Any) -> Values:
-    """Check a value; a single one goes to every element. A ValueError names variable and value."""
+    """Check a value, one for all elements or a list; a ValueError names variable and value."""
     listed = list(value) if isinstance(value, list | tuple) else [value] * end.port.count
     if len(listed) != end.port.count:
         raise ValueError(f"{end.name} has {end.port.count} elements, not {len(listed)}")
@@ -60,7 +60,7 @@ def values_of(end: End, value: Any) -> Values:
 
 
 def _bound(limit: float) -> str:
-    """A limit with all its digits where it is that of a type."""
+    """The text of a limit; a limit of the type itself has all its digits."""
     return str(limit) if isinstance(limit, int) else f"{limit:g}"
 
 
@@ -75,7 +75,7 @@ def start_values(port: Port) -> Values:
 
 
 def _file_beside(document: Document, values: Values) -> Values:
-    """A string that names a file beside the scenario becomes its path."""
+    """Values in which a string that names a file beside the scenario is replaced by its path."""
     return tuple(str(document.beside(x) or x) if isinstance(x, str) else x for x in values)
 
 
@@ -99,7 +99,7 @@ def settings(resolver: Resolver, *stronger: Mapping[str, Any]) -> list[Setting]:
 
 
 def setting(resolver: Resolver, name: str, value: Any, found: Mapping[str, Setting]) -> Setting:
-    """A value for a variable, or for an element of what it has so far."""
+    """The setting of a variable, or of one element, whose others keep what `found` has for them."""
     document = resolver.document
     whole, element = resolver.split(name)
     end = resolver.end(whole, "set", name)
@@ -124,7 +124,7 @@ def _elements(end: End) -> str:
 
 
 def unplaced(document: Document, error: InputError) -> InputError:
-    """The error of a value that is not the scenario's: without a place in its file."""
+    """An error without its place in the scenario's file, for a value that is not from there."""
     return InputError(*(f"set {text}" for text in texts(document, error)))
 
 
@@ -148,7 +148,7 @@ def stimuli(resolver: Resolver, step_ns: int) -> list[Stimulus]:
 
 
 def _driven(resolver: Resolver, number: int, step_ns: int) -> list[Stimulus]:
-    """The steps of one [[drive]]."""
+    """The stimuli of one [[drive]]."""
     document, table = resolver.document, f"drive.{number}"
     drive, found, last = document.body.drive[number], [], -1
     end = resolver.end(drive.input, table, "input")

@@ -1,4 +1,4 @@
-"""What the moving picture of a scenario records beside what is recorded anyway."""
+"""The signals that a scenario records for its moving picture only."""
 
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.iso9283_signals import check_position
@@ -9,7 +9,7 @@ JOINTS = "link_angle"
 
 
 def wanted(resolver: Resolver) -> list[str]:
-    """Signals of the [view] table, and the joint angles of an arm whose tool is looked at."""
+    """Signals of the [view] table, and the joint angles of an arm whose tool they show."""
     body = resolver.document.body
     view, found = body.view, []
     if not view.show:

@@ -3,7 +3,7 @@
 The standard: https://ssp-standard.org, by the Modelica Association.
 """
 
-from motionfmu.ssp.imported import Taken, take
+from motionfmu.ssp.ssp_import import Taken, take
 from motionfmu.ssp.structure import SSD, Component, Connection, Connector, Structure, Value
 from motionfmu.ssp.write import description, parameter_values
 

@@ -1,9 +1,9 @@
-"""What the FMU Stimulus drives, as the [[drive]] of a scenario."""
+"""Tables [[drive]] of a scenario for what the FMU Stimulus drives in an SSP."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from motionfmu.ssp.flat import Way
+from motionfmu.ssp.flat_wires import WirePath
 from motionfmu.ssp.structure import Value
 
 MODEL = "Stimulus"
@@ -12,14 +12,14 @@ _COLUMNS = ("at", "signal", "value")
 
 
 @dataclass
-class Drive:
-    """An input, and what its elements become."""
+class InputSteps:
+    """An input that is driven, and the values that its elements take over time."""
 
     input: str
     steps: dict[float, dict[int, float]] = field(default_factory=dict)  # [s], by element, from 0
 
     def toml(self, kind: str) -> list[str]:
-        """Its table; `kind` is the type of the values: float, int or bool."""
+        """Lines of the input's [[drive]]; `kind` is the type of the values: float, int or bool."""
         width = 1 + max(k for values in self.steps.values() for k in values)
         held, lines = [0.0] * width, []
         for at in sorted(self.steps):
@@ -43,7 +43,7 @@ def _text(x: float, kind: str) -> str:
 
 
 def table(values: Iterable[Value]) -> list[tuple[float, int, float]]:
-    """Rows of a Stimulus: time [s], signal, value; a ValueError of what is no number."""
+    """Rows of a Stimulus: time [s], signal, value; a ValueError if a text is no number."""
     columns: dict[str, dict[int, str]] = {name: {} for name in _COLUMNS}
     for value in values:
         name, bracket, index = value.name.partition("[")
@@ -59,7 +59,7 @@ def table(values: Iterable[Value]) -> list[tuple[float, int, float]]:
     return rows
 
 
-def signal_of(way: Way) -> int:
+def signal_of(way: WirePath) -> int:
     """The number of the signal at the source of a wire, from 1."""
     name, bracket, index = way.source[1].partition("[")
     element = int(index[:-1]) if bracket else way.source_index[0]

@@ -9,8 +9,8 @@ COMMON = "http://ssp-standard.org/SSP1/SystemStructureCommon"
 DESCRIPTION = "http://ssp-standard.org/SSP1/SystemStructureDescription"
 VALUES = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 MAPPING = "http://ssp-standard.org/SSP1/SystemStructureParameterMapping"
-# The step of a master is in no SSP; tools of the Open Simulation Platform, and this one, find it
-# in an annotation of this type.
+# SSP has no element for a master's step; the tools of the Open Simulation Platform read it from an
+# annotation of this type, and so does this package.
 STEP = "com.opensimulationplatform"
 OSP = "http://opensimulationplatform.com/SSP/OSPAnnotations"
 

@@ -18,7 +18,7 @@ from motionfmu.ssp.structure import (
     Value,
 )
 
-# Readers there are that look for these prefixes and not for the namespaces.
+# Some readers look for these prefixes and not for the namespaces.
 _PREFIXES = {"ssc": COMMON, "ssd": DESCRIPTION, "ssv": VALUES, "osp": OSP}
 
 
@@ -70,7 +70,7 @@ def _connection(parent: ET.Element, c: Connection) -> None:
         if index:
             element.set(key, " ".join(map(str, index)))
     if (c.factor, c.offset) != (1.0, 0.0):
-        # Both are said: a reader there is that takes a missing factor for 0.
+        # Both attributes are written, for a reader is known that takes a missing factor for 0.
         transformation = ET.SubElement(element, "ssc:LinearTransformation")
         transformation.set("factor", repr(c.factor))
         transformation.set("offset", repr(c.offset))

@@ -1,4 +1,4 @@
-"""What is in an SSP archive, as trees of elements."""
+"""Files of an SSP archive, as bytes or as trees of XML elements."""
 
 import zipfile
 import zlib
@@ -12,7 +12,7 @@ SIZE_MAX = 64 << 20  # [byte] of an XML file
 
 
 class Archive:
-    """An open .ssp; messages name it."""
+    """An open .ssp file, which messages name."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -23,15 +23,15 @@ class Archive:
             raise InputError(f"{path}: not a readable SSP ({told})") from None
 
     def error(self, text: str) -> InputError:
-        """The error of something in it."""
+        """Make the error for a fault in the archive."""
         return InputError(f"{self.path}: {text}")
 
     def has(self, name: str) -> bool:
-        """Whether there is such a file."""
+        """Whether the archive has a file of this name."""
         return name in self._zip.NameToInfo
 
     def bytes(self, name: str) -> bytes:
-        """A whole file."""
+        """The content of a file."""
         try:
             return self._zip.read(name)
         except KeyError:
@@ -40,7 +40,7 @@ class Archive:
             raise self.error(f"{name}: {error}") from None
 
     def root(self, name: str, tag: str) -> ET.Element:
-        """The root of an XML file, which has this tag."""
+        """The root element of an XML file; an InputError if its tag is another one."""
         if self.has(name) and self._zip.getinfo(name).file_size > SIZE_MAX:
             raise self.error(f"{name}: larger than {SIZE_MAX >> 20} MiB")
         try:
@@ -52,7 +52,7 @@ class Archive:
         return found
 
     def place(self, source: str, what: str) -> str:
-        """The file of the archive that a source, a URI, names; `what` has it."""
+        """The file of the archive that the URI `source` of `what` names."""
         parts = urlsplit(source)
         path = unquote(parts.path)
         if parts.scheme or parts.netloc or path.startswith("/"):

@@ -1,1 +1,1 @@
-"""What a study is: a scenario at many points, run by workers, its rows kept."""
+"""Studies: a scenario that workers run at many points, and a table with a row for each run."""

@@ -1,8 +1,8 @@
-"""Rows on disk: a journal while a study runs, one Parquet file of what is done.
+"""Rows of a study on the disk: a journal while it runs, one Parquet file of all rows that are done.
 
-A row goes to the journal (JSON, a line each) the moment it is there. When a study ends, and when
-it is resumed, the journal is folded into the Parquet file: written beside it, then renamed. So a
-study that is killed at any moment loses nothing but the runs in flight.
+Each row is written to the journal (JSON, one line for each row) as soon as its run has ended. When
+a study ends, and when it is resumed, the journal is merged into the Parquet file, which is written
+under another name and renamed. So a study that is killed loses only the runs that were not done.
 """
 
 import contextlib
@@ -15,7 +15,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.locking import lock
-from motionfmu.study.study import Study
+from motionfmu.study.study_definition import Study
 from motionfmu.study.worker import CRASH, Row
 
 TABLE, JOURNAL = "sweep.parquet", "sweep.jsonl"
@@ -25,14 +25,14 @@ ABOUT = b"motionfmu"  # key of the table's metadata
 class Book:
     """The rows of one study in a folder: use it in `with`, or `close`.
 
-    The folder is new, empty, or has rows of this study, and no other process writes there; else it
-    is an InputError. A fresh one forgets what is there, also of another study.
+    The folder is new, empty, or has rows of this study, and no other process writes there; else
+    there is an InputError. A fresh book removes all rows in the folder, also of another study.
     """
 
     def __init__(self, folder: Path, study: Study, fresh: bool = False) -> None:
         self.folder, self.study = _usable(folder), study
         self.table, self.journal = self.folder / TABLE, self.folder / JOURNAL
-        self.done: dict[int, Row] = {}  # by number of the run; what crashed is not done
+        self.done: dict[int, Row] = {}  # by number of the run; a crashed run is not done
         self._new = [f for f in (self.folder, *self.folder.parents) if not f.exists()]
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -73,7 +73,7 @@ class Book:
             )
 
     def _line(self, content: dict[str, Any]) -> None:
-        """One write, so that a line is there whole or is the last."""
+        """Write a line at once, so that only the last line of a journal can be incomplete."""
         data = (json.dumps(content, allow_nan=False) + "\n").encode()
         try:
             if os.write(self._file, data) != len(data):
@@ -82,12 +82,12 @@ class Book:
             raise InputError(f"cannot write {self.journal}: {error.strerror}") from None
 
     def add(self, row: Row) -> None:
-        """Keep a row."""
+        """Add a row to the journal."""
         self._line(asdict(row))
         self.done[row.run] = row
 
     def finish(self) -> list[Row]:
-        """Fold everything into the table and remove the journal."""
+        """Merge the journal into the table and remove it."""
         rows = [self.done[run] for run in sorted(self.done)]
         self._write_table(rows)
         self.journal.unlink()
@@ -100,7 +100,7 @@ class Book:
             raise InputError(f"cannot write {self.table}: {error.strerror or error}") from None
 
     def close(self) -> None:
-        """Let another process at the folder; what holds no row goes again."""
+        """Release the folder for other processes; an empty journal or folder is removed."""
         if not self.done and not self.table.exists() and self.journal.exists():
             self.journal.unlink()
             for folder in self._new:
@@ -136,7 +136,7 @@ def _locked(journal: Path) -> int:
             raise
         if _is_same(file, journal):
             return file
-        os.close(file)  # the one that held it has removed it in between
+        os.close(file)  # the process that had locked it has removed it since
 
 
 def _is_same(file: int, path: Path) -> bool:
@@ -147,7 +147,7 @@ def _is_same(file: int, path: Path) -> bool:
 
 
 def _whole_lines(file: int) -> list[dict[str, Any]]:
-    """Lines of a journal up to one that a killed process did not finish."""
+    """Lines of a journal up to an incomplete one, which a killed process left."""
     data = os.pread(file, os.fstat(file).st_size, 0)
     found = []
     for line in data.split(b"\n")[:-1]:
@@ -159,7 +159,7 @@ def _whole_lines(file: int) -> list[dict[str, Any]]:
 
 
 def _about(table: Path) -> dict[str, Any]:
-    """What a table says about its study."""
+    """Metadata of a table about its study."""
     import pyarrow.parquet as pq
 
     try:

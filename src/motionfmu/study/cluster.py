@@ -8,23 +8,23 @@ from typing import Any
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
 from motionfmu.study.processes import Task
-from motionfmu.study.study import Job
+from motionfmu.study.study_definition import WorkerJob
 from motionfmu.study.worker import CRASH, Row, chunk
 
-TIMEOUT = 10  # [s] for the scheduler to answer and a worker to be there
-CHUNK = 1.0  # [s] of work in a chunk: a thousand times what handing it out costs
+TIMEOUT = 10  # [s] in which the scheduler must answer and a worker be there
+CHUNK = 1.0  # [s] of work in a chunk: to hand one out costs a thousandth of that
 CHUNK_MAX = 200
-AHEAD = 2  # chunks per thread of the cluster, so that none waits for us
+AHEAD = 2  # chunks handed out per thread of the cluster, so that none waits for its next one
 
 
-def _timed(job: Job, tasks: Sequence[Task]) -> tuple[float, list[Row]]:
+def _timed(job: WorkerJob, tasks: Sequence[Task]) -> tuple[float, list[Row]]:
     """Seconds that a chunk took, and its rows."""
     start = time.perf_counter()
     found = chunk(job, tasks)
     return time.perf_counter() - start, found
 
 
-def rows(job: Job, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]:
+def rows(job: WorkerJob, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]:
     """Run points on a cluster ``tcp://host:8786``; rows as they come.
 
     The workers import motionfmu and read the scenario and the FMUs from their own disk, at the
@@ -45,11 +45,11 @@ def rows(job: Job, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]:
         yield from _chunks(client, job, tasks)
 
 
-def _chunks(client: Any, job: Job, tasks: Sequence[Task]) -> Iterator[Row]:
+def _chunks(client: Any, job: WorkerJob, tasks: Sequence[Task]) -> Iterator[Row]:
     import distributed
 
     pending, size = deque(tasks), 1
-    alone: deque[Task] = deque()  # of a chunk whose worker was lost: who is to blame?
+    alone: deque[Task] = deque()  # tasks of a chunk whose worker was lost, run one by one
     sent: dict[Any, list[Task]] = {}
     done = distributed.as_completed(loop=client.loop)
 

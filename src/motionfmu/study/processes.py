@@ -1,4 +1,4 @@
-"""The workers on this machine: one process each, every run handed out by itself."""
+"""The workers on this machine: one process each, which gets one point after the other."""
 
 import contextlib
 import os
@@ -13,16 +13,16 @@ from typing import Any
 
 from motionfmu.base.children import child
 from motionfmu.base.errors import InputError
-from motionfmu.study.axes import Point
-from motionfmu.study.study import Job
+from motionfmu.study.study_axes import Point
+from motionfmu.study.study_definition import WorkerJob
 from motionfmu.study.worker import CRASH, Row
 
 Task = tuple[int, Point]
 
-# Points a worker has: one running, the others waiting, so that it never waits for us.
+# Points that a worker has: one runs, the others wait, so that the worker never has to wait.
 AHEAD = 4
 PATIENCE = 10  # [s] for a worker to remove its files when it is told to end
-# One thread per worker: the workers themselves are what fills the cores.
+# Variables that give each worker one thread, for there are as many workers as cores.
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
@@ -33,7 +33,7 @@ def cores() -> int:
 
 @dataclass
 class _Process:
-    """A worker's process, our end of its pipe, and the points it has, the running one first."""
+    """A worker's process, this end of its pipe, and its points, of which the first one runs."""
 
     process: "subprocess.Popen[bytes]"
     pipe: Connection
@@ -41,7 +41,7 @@ class _Process:
     ready: bool = False
 
 
-def _start(job: Job, temporary: str) -> _Process:
+def _start(job: WorkerJob, temporary: str) -> _Process:
     ours, theirs = Pipe()
     with theirs:
         number = theirs.fileno()
@@ -52,9 +52,9 @@ def _start(job: Job, temporary: str) -> _Process:
     return _Process(process, ours)
 
 
-def rows(job: Job, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
+def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
     """Run points in processes of this machine; rows as they come."""
-    # A run that ends its process gives a row that says so; a worker that cannot begin, an
+    # A run that ends its process gives a row that says so. A worker that cannot begin is an
     # InputError.
     pending = deque(tasks)
     running: list[_Process] = []
@@ -86,7 +86,7 @@ def rows(job: Job, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
 
 
 def _deal(running: list[_Process], pending: deque[Task]) -> None:
-    """Hand out points; the last ones only to those who have nothing to do."""
+    """Hand out points; the last points only to workers that have none."""
     for one in running:
         ahead = AHEAD if len(pending) > AHEAD * len(running) else 1
         while one.ready and pending and len(one.tasks) < ahead:
@@ -107,15 +107,15 @@ def _end(one: _Process) -> None:
 
 
 def _receive(one: _Process) -> Any:
-    """A message; None when the process has ended."""
+    """The next message of a worker; None when its process has ended."""
     try:
         return one.pipe.recv()
     except (EOFError, ConnectionResetError):
         return None
 
 
-def _crashed(one: _Process, job: Job) -> Row | None:
-    """The row of the run that ended its process; the tasks that follow remain."""
+def _crashed(one: _Process, job: WorkerJob) -> Row | None:
+    """The row of the run that ended its process; the worker's other points are not lost."""
     one.pipe.close()
     code = one.process.wait()
     how = f"signal {-code}" if code < 0 else f"status {code}"

@@ -1,4 +1,4 @@
-"""The keys of a study: from its file and from the command line."""
+"""The keys of a study, read from its file and from the command line."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,19 +9,19 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.base.errors import Faults, InputError, suggestion
 from motionfmu.base.toml_lines import Lines, is_file, ordered, shown, tables_of, text_of
-from motionfmu.scenarios import shipped
+from motionfmu.scenarios import package_files
 from motionfmu.scenarios.body import Name, Names, Value
-from motionfmu.scenarios.sources import scenario_file
+from motionfmu.scenarios.table_sources import scenario_file
 
 FILE = "sweep.toml"
 ABOUT = "the first line is a comment that says what the study shows"
 VALUE = "a number, a text, true or false, or a list of one of these wanted"
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-# A path is part of messages.
+# Longest path, for messages have it in them.
 Place = Annotated[str, Field(max_length=1000)]
 
 
-class Body(BaseModel):
+class StudyBody(BaseModel):
     """The keys of a study file."""
 
     model_config = _STRICT
@@ -40,7 +40,7 @@ class Body(BaseModel):
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a study is written, for messages."""
+    """Where a study's keys are written, for messages."""
 
     file: Path | None  # None if it comes from the command line alone
     lines: Lines  # line numbers of its keys
@@ -53,7 +53,7 @@ class Origin:
         return InputError(f"{self.file}:{self.lines.of(table, key)}: {text}")
 
     def refuse(self, faults: Faults) -> None:
-        """Tell all that is wrong, in the order of the lines; nothing if that is nothing."""
+        """Raise an InputError with all faults in the order of their lines, if there are any."""
         Faults(ordered(faults.lines, [str(self.file)])).tell()
 
 
@@ -62,10 +62,10 @@ class StudyFile:
     """A study as written, its keys and their types checked."""
 
     origin: Origin
-    body: Body
+    body: StudyBody
     about: str  # what the first line says; empty from the command line
     folder: Path  # what it names lies here
-    damaged: frozenset[str]  # keys at which something is wrong, which body does not have
+    damaged: frozenset[str]  # keys with faults, which the body does not have
 
 
 def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
@@ -74,7 +74,7 @@ def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
     Keys given count instead of those written there. What is wrong with keys and their types goes to
     the faults, with file, line and value; a file that cannot be read is an InputError.
     """
-    if shipped.is_name(path) and not path.suffix:
+    if package_files.is_name(path) and not path.suffix:
         path = scenario_file(path).parent
     if is_file(path / FILE):
         path = path / FILE
@@ -94,10 +94,10 @@ def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
     return StudyFile(origin, body, first.lstrip("# "), file.parent, damaged)
 
 
-def _body(origin: Origin, keys: dict[str, Any], faults: Faults) -> tuple[Body, frozenset[str]]:
-    """The body without what is wrong, and the keys at which something is."""
+def _body(origin: Origin, keys: dict[str, Any], faults: Faults) -> tuple[StudyBody, frozenset[str]]:
+    """The body without the keys that have faults, and those keys."""
     try:
-        return Body.model_validate(keys), frozenset()
+        return StudyBody.model_validate(keys), frozenset()
     except ValidationError as error:
         found = error.errors()
     damaged = {str(one["loc"][0]) for one in found}
@@ -105,18 +105,18 @@ def _body(origin: Origin, keys: dict[str, Any], faults: Faults) -> tuple[Body, f
     for one in found:
         text, *place = _told(one)
         faults.lines += origin.error(text, *place).args
-        if one["type"] == "extra_forbidden":  # what it is meant for is not missing
-            damaged |= {name for name in Body.model_fields if text.endswith(f"mean {name!r}?")}
+        if one["type"] == "extra_forbidden":  # a key that is meant by another is not missing
+            damaged |= {name for name in StudyBody.model_fields if text.endswith(f"mean {name!r}?")}
             damaged |= {"axis"} if isinstance(one["input"], dict) else set()
-    return Body.model_validate(rest), frozenset(damaged)
+    return StudyBody.model_validate(rest), frozenset(damaged)
 
 
 def _told(found: Any) -> tuple[str, str, str]:
-    """What is wrong in words, table and key."""
+    """Words, table and key of a fault."""
     key, value = str(found["loc"][0]), found["input"]
     if found["type"] == "extra_forbidden":
         what = f"table [{key}]" if isinstance(value, dict) else f"key {key!r}"
-        return f"unknown {what}{suggestion(key, Body.model_fields)}", "", key
+        return f"unknown {what}{suggestion(key, StudyBody.model_fields)}", "", key
     if key == "set" and found["loc"][1:]:
         name = str(found["loc"][1])
         return f"set.{name} = {shown(value)}: {VALUE}", key, name

@@ -1,6 +1,6 @@
 """Runs points of a study, one after another, in a process of its own.
 
-The row of a run is a `Row`, whatever happened in it. `motionfmu.study.processes` starts `main`,
+Every run gives a `Row`, even one that failed. `motionfmu.study.processes` starts `main`,
 `motionfmu.study.cluster` calls `chunk`.
 """
 
@@ -15,16 +15,16 @@ from typing import Any
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run import load
 from motionfmu.run.session import Session
-from motionfmu.study.axes import Point
-from motionfmu.study.columns import column, signals
-from motionfmu.study.study import Job, digest
+from motionfmu.study.study_axes import Point
+from motionfmu.study.study_columns import column, signals
+from motionfmu.study.study_definition import WorkerJob, digest
 
 OK, ERROR, CRASH = "ok", "error", "crash"
 
 
 @dataclass(frozen=True)
 class Row:
-    """What a run gave."""
+    """The row of one run."""
 
     run: int  # number of the point, from 0
     # ``ok``; ``error``: a value was refused; ``crash``: the run ended its process, and is tried
@@ -33,15 +33,15 @@ class Row:
     message: str  # what went wrong, or why a number is missing; else empty
     # Whether the scenario's checks hold; None if it has none or the run gave nothing.
     checks: bool | None
-    values: tuple[float | None, ...]  # one per column; None where there is none
+    values: tuple[float | None, ...]  # one per column; None where the run has no number
 
 
 class Worker:
     """A session of a study's scenario."""
 
-    # An InputError if the scenario or the FMUs here are not those of the study.
+    # Raises an InputError if the scenario or the FMUs on this machine are not those of the study.
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: WorkerJob) -> None:
         self.job = job
         scenario = load(job.scenario)
         if digest(scenario, job.named) != job.digest:
@@ -80,14 +80,14 @@ class Worker:
 
 
 def _told(error: Exception) -> str:
-    """A message; a mistake of the program also says what kind it is."""
+    """The message of an error; that of a mistake in the program begins with the error's type."""
     return str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
 
 
 _kept = threading.local()  # one session per thread: a process of a cluster may have several
 
 
-def chunk(job: Job, points: Sequence[tuple[int, Point]]) -> list[Row]:
+def chunk(job: WorkerJob, points: Sequence[tuple[int, Point]]) -> list[Row]:
     """Run some points; the session stays for the next call."""
     worker: Worker | None = getattr(_kept, "worker", None)
     if worker is None or worker.job != job:
@@ -101,7 +101,8 @@ def chunk(job: Job, points: Sequence[tuple[int, Point]]) -> list[Row]:
 def main(pipe: int) -> None:
     """Serve the process that started this one until it is gone.
 
-    The pipe, a file descriptor, brings the job, then points; takes "ready" or an error, then rows.
+    The pipe, a file descriptor, brings the job and then points. It takes "ready" or an error back,
+    then rows.
     """
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # files are removed on the way out
     with Connection(pipe) as connection:

@@ -5,8 +5,8 @@ from motionfmu.base.extras import needed
 
 needed("study")
 
-from motionfmu.study.outcome import Outcome, Ways
-from motionfmu.study.study import Study, study
+from motionfmu.study.study_definition import Study, study
+from motionfmu.study.study_outcome import Outcome, Ways
 from motionfmu.sweep.conduct import conduct
 
 __all__ = ["Outcome", "Study", "Ways", "conduct", "study"]

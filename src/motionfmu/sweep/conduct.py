@@ -5,8 +5,8 @@ from pathlib import Path
 
 from motionfmu.study import processes
 from motionfmu.study.book import Book
-from motionfmu.study.outcome import Outcome, Ways
-from motionfmu.study.study import Study
+from motionfmu.study.study_definition import Study
+from motionfmu.study.study_outcome import Outcome, Ways
 from motionfmu.study.worker import ERROR, OK, Row
 
 

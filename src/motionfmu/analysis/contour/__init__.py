@@ -3,10 +3,10 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from motionfmu.analysis.contour.contour_result import ContourInput, ContourResult, Trace
     from motionfmu.analysis.contour.error import analyse
     from motionfmu.analysis.contour.path import Path
-    from motionfmu.analysis.contour.planned import read_path
-    from motionfmu.analysis.contour.result import ContourInput, ContourResult, Trace
+    from motionfmu.analysis.contour.planned_geometry import read_path
     from motionfmu.base.errors import NoNumber
 
 __all__ = [
@@ -24,9 +24,10 @@ def __getattr__(name: str) -> Any:
     """Import the analysis when it is first used: a scenario's checks want the names alone."""
     if name not in __all__:
         raise AttributeError(f"module 'motionfmu.analysis.contour' has no attribute {name!r}")
-    from motionfmu.analysis.contour import error, planned, result
+    from motionfmu.analysis.contour import contour_result, error, planned_geometry
 
-    return next(getattr(place, name) for place in (error, planned, result) if hasattr(place, name))
+    places = (error, planned_geometry, contour_result)
+    return next(getattr(place, name) for place in places if hasattr(place, name))
 
 
 def __dir__() -> list[str]:

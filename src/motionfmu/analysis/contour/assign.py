@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from motionfmu.analysis.contour.arcs import Array
 from motionfmu.analysis.contour.geometry import norms
 from motionfmu.analysis.contour.path import Path
-from motionfmu.analysis.contour.scaled import BLOCK, blocks, places
+from motionfmu.analysis.contour.scaled_values import BLOCK, blocks, places
 from motionfmu.analysis.contour.segments import Index
 
 # Of so many samples in a row the middle one is searched first.

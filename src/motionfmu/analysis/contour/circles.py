@@ -10,10 +10,10 @@ from motionfmu.analysis.contour.arcs import TURN, Array, unwrapped
 from motionfmu.analysis.contour.geometry import Arc, Segment
 from motionfmu.analysis.contour.instants import Instants
 from motionfmu.analysis.contour.iso230 import both_ways, reading
-from motionfmu.analysis.contour.kinds import BothWays, Reading
+from motionfmu.analysis.contour.kinds import BothWays, CircleFigures
 from motionfmu.analysis.contour.order import median
 from motionfmu.analysis.contour.path import Path
-from motionfmu.analysis.contour.scaled import Scaled, places
+from motionfmu.analysis.contour.scaled_values import ScaledValues, places
 from motionfmu.analysis.contour.segments import ARC, Index
 from motionfmu.analysis.contour.track import Track
 
@@ -32,7 +32,7 @@ SAMPLES_MIN = 10
 
 
 @dataclass(frozen=True)
-class Way:
+class CirclePass:
     """One directed path round a circle."""
 
     first: int  # first segment
@@ -43,7 +43,7 @@ class Way:
     coverage: float  # angle they cover [rad]
     steady: bool  # run-in and run-out are left out; false if the circle is too short for that
     speed: float  # median of the command's over them [mm/s]
-    reading: Reading
+    reading: CircleFigures
 
     def numbers(self) -> dict[str, Any]:
         """Its numbers, ready for JSON."""
@@ -61,8 +61,8 @@ class CircularTest:
     normal: Array  # (3,) points to the positive side of its largest component
     radius: float  # [mm]
     axes: Array  # (2, 3) first and second axis of the plane: XY, YZ or ZX for the main planes
-    ccw: Way | None = None  # seen from the positive end of the normal
-    cw: Way | None = None
+    ccw: CirclePass | None = None  # seen from the positive end of the normal
+    cw: CirclePass | None = None
     both: BothWays | None = None  # if both directions are there
 
     def numbers(self) -> dict[str, Any]:
@@ -79,7 +79,7 @@ class CircularTest:
 
 def circular_tests(
     path: Path,
-    samples: tuple[Instants, Array | Scaled],
+    samples: tuple[Instants, Array | ScaledValues],
     tracks: tuple[Track, Track],
     settle: float,
     run_in: float | None,
@@ -121,10 +121,10 @@ def circular_tests(
 def _way(
     path: Path,
     ends: tuple[int, int],
-    samples: tuple[Instants, Array | Scaled],
+    samples: tuple[Instants, Array | ScaledValues],
     tracks: tuple[Track, Track],
     left_out: tuple[float, float | None],
-) -> Way | str:
+) -> CirclePass | str:
     """The circular test of one directed path, or why there is none."""
     arc, (settle, run_in) = path.segments[ends[0]], left_out
     assert isinstance(arc, Arc)
@@ -160,7 +160,7 @@ def _way(
         quantities = reading(own, arc.radius)
     except ArithmeticError as error:
         return str(error)
-    return Way(
+    return CirclePass(
         *ends,
         lines=(arc.label.line, int(path.lines[ends[1]])),
         points=own,

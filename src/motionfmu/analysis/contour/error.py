@@ -7,11 +7,11 @@ import numpy as np
 
 from motionfmu.analysis.contour.assign import assign
 from motionfmu.analysis.contour.circles import circular_tests
-from motionfmu.analysis.contour.commanded import Known
+from motionfmu.analysis.contour.contour_result import ContourInput, ContourResult
 from motionfmu.analysis.contour.corners import find_corners
 from motionfmu.analysis.contour.instants import Instants
-from motionfmu.analysis.contour.result import ContourInput, ContourResult
-from motionfmu.analysis.contour.scaled import blocks, places
+from motionfmu.analysis.contour.pulse_path import PulsePaths
+from motionfmu.analysis.contour.scaled_values import blocks, places
 from motionfmu.analysis.contour.statistics import statistics
 from motionfmu.analysis.contour.track import follow
 
@@ -28,7 +28,7 @@ SETTLE = 2.0
 def analyse(
     run: ContourInput,
     progress: Callable[[float], None] = lambda share: None,
-    known: Known | None = None,
+    known: PulsePaths | None = None,
 ) -> ContourResult:
     """Find the contour error of a run against the exact geometry.
 
@@ -44,7 +44,7 @@ def analyse(
         Geometry and signals, which may be memory maps: they are read in parts.
     progress : callable
         Told the share that is done, 0 to 1.
-    known : Known, optional
+    known : PulsePaths, optional
         What earlier runs have in common with this one; what is found is added to it.
 
     Raises
@@ -53,7 +53,7 @@ def analyse(
         The run never moves on a line, arc or helix.
     """
     path, instants = run.path, run.instants
-    known = Known() if known is None else known
+    known = PulsePaths() if known is None else known
     command = known.commanded(run, lambda share: progress(0.4 * share))
     progress(0.4)
     lag = servo_lag(instants, run.commanded, run.actual)

@@ -31,7 +31,7 @@ class Label:
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class LineSegment:
     """A straight segment; start and end may be the same point."""
 
     label: Label
@@ -258,7 +258,7 @@ class Cubic:
         return t
 
 
-Segment = Line | Arc | Cubic
+Segment = LineSegment | Arc | Cubic
 
 
 def norms(vectors: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 from motionfmu.analysis.contour.arcs import Array
 from motionfmu.analysis.contour.order import median
-from motionfmu.analysis.contour.scaled import blocks
+from motionfmu.analysis.contour.scaled_values import blocks
 from motionfmu.analysis.contour.segments import Index
 
 # Samples are even if each lies within this part of a step of its place: k times a step, rounded, is

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.contour.arcs import EPS, Array
-from motionfmu.analysis.contour.kinds import BothWays, Reading
+from motionfmu.analysis.contour.kinds import BothWays, CircleFigures
 from motionfmu.analysis.contour.order import distinct, quantiles
 from motionfmu.analysis.contour.segments import Index
 
@@ -235,14 +235,14 @@ def fit_ellipse(points: Array, circle: tuple[Array, float] | None = None) -> Ell
     return Ellipse((float(centre[0]), float(centre[1])), float(major), float(minor), orientation)
 
 
-def reading(points: Array, radius: float) -> Reading:
+def reading(points: Array, radius: float) -> CircleFigures:
     """Quantities of one directed path (n, 2) from the nominal centre, in the plane's axes [mm]."""
     circle = least_squares_circle(points)
     centre, mean = circle
     about_nominal = _radii(points, np.zeros(2)) - radius
     about_own = _radii(points, centre) - radius
     ellipse = fit_ellipse(points, circle)
-    return Reading(
+    return CircleFigures(
         g=minimum_zone(points, circle).width,
         g_least_squares=float(np.ptp(about_own)),
         f_max=float(about_nominal.max()),

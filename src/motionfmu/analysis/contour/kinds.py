@@ -35,7 +35,7 @@ class Statistics:
 
 
 @dataclass(frozen=True)
-class Reading:
+class CircleFigures:
     """Circular test of one directed path [mm]."""
 
     # circular deviation G: minimum radial separation of two concentric circles (minimum zone, own

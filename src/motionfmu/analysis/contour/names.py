@@ -3,7 +3,7 @@
 from dataclasses import fields
 from typing import Any, get_type_hints
 
-from motionfmu.analysis.contour.kinds import AXES, BothWays, Corner, Reading, Statistics
+from motionfmu.analysis.contour.kinds import AXES, BothWays, CircleFigures, Corner, Statistics
 from motionfmu.base.errors import suggestion
 
 NUMBER = (int, float)
@@ -17,7 +17,7 @@ def _of(kind: type, *more: str) -> dict[str, Any]:
 
 def _tree() -> dict[str, Any]:
     """As `ContourResult.numbers`: None is a number, [x] a list of x."""
-    way = _of(Reading, "coverage", "speed", "samples") | {"lines": [None]}
+    way = _of(CircleFigures, "coverage", "speed", "samples") | {"lines": [None]}
     circle = {"centre": [None], "normal": [None], "radius": None, "ccw": way, "cw": way}
     command = dict.fromkeys(("command", "line", "length", "max", "rms", "time"))
     return {

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from motionfmu.analysis.contour.arcs import Array
-from motionfmu.analysis.contour.scaled import BLOCK
+from motionfmu.analysis.contour.scaled_values import BLOCK
 from motionfmu.analysis.contour.segments import Index
 
 

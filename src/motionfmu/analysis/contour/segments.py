@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.contour.arcs import Arcs, Array, Foot
-from motionfmu.analysis.contour.geometry import Arc, Cubic, Label, Line, Segment, norms
+from motionfmu.analysis.contour.geometry import Arc, Cubic, Label, LineSegment, Segment, norms
 from motionfmu.analysis.contour.order import distinct
 from motionfmu.base.memo import Memo
 
@@ -25,7 +25,7 @@ KEPT = 64
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class SegmentColumns:
     """What many segments are, a row each."""
 
     command: Index  # (n,) of the library
@@ -44,7 +44,7 @@ class Columns:
 class Segments(Sequence[Segment]):
     """Segments in the order of travel; each is made when it is asked for."""
 
-    def __init__(self, columns: Columns) -> None:
+    def __init__(self, columns: SegmentColumns) -> None:
         self.columns = columns
         self._made: Memo[Segment] = Memo(KEPT)
 
@@ -53,10 +53,10 @@ class Segments(Sequence[Segment]):
         """The columns of segments."""
         found = list(segments)
         arcs = [s for s in found if isinstance(s, Arc)]
-        shapes = {Line: LINE, Arc: ARC, Cubic: CUBIC}
+        shapes = {LineSegment: LINE, Arc: ARC, Cubic: CUBIC}
         places = np.array([s.start for s in found], dtype=float).reshape(-1, 3)
         return cls(
-            Columns(
+            SegmentColumns(
                 np.array([s.label.command for s in found], dtype=np.int64),
                 np.array([s.label.line for s in found], dtype=np.int64),
                 np.array([KINDS.index(s.label.kind) for s in found], dtype=np.int8),
@@ -92,7 +92,7 @@ class Segments(Sequence[Segment]):
             return c.curves[i]
         label = Label(int(c.command[i]), int(c.line[i]), KINDS[c.kind[i]], float(c.feed[i]))
         if c.shape[i] == LINE:
-            return Line(label, c.start[i], c.end[i])
+            return LineSegment(label, c.start[i], c.end[i])
         k = int(self.place[i])
         return Arc(label, c.start[i], c.centre[k], c.axis[k], *c.turned[k].tolist())
 

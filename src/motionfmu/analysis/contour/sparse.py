@@ -1,7 +1,7 @@
 """What rows of every so many steps hide of a contour."""
 
+from motionfmu.analysis.contour.contour_result import ContourResult
 from motionfmu.analysis.contour.error import LAGS
-from motionfmu.analysis.contour.result import ContourResult
 
 # Rows in a lag, at least. An error that comes and goes with the lag T falls by exp(-t/T), so half
 # a row off its peak 12 % of it are lost. Commands shorter than a row are no loss: the tool

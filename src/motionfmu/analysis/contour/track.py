@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from motionfmu.analysis.contour.arcs import TURN, Array, unwrapped
 from motionfmu.analysis.contour.path import Path
-from motionfmu.analysis.contour.scaled import blocks, places
+from motionfmu.analysis.contour.scaled_values import blocks, places
 from motionfmu.analysis.contour.segments import ARC, Index
 
 

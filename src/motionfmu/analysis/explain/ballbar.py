@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.contour.arcs import TURN, Array
-from motionfmu.analysis.contour.circles import CircularTest, Way
+from motionfmu.analysis.contour.circles import CirclePass, CircularTest
 
 # Left out of the fit, and searched for spikes: behind each quadrant in the direction of travel,
 # and just before it [rad].
@@ -137,7 +137,7 @@ def signature(test: CircularTest, lag: float = 0.0) -> Signature:
     return Signature(test, mean, tuple(sorted(findings, key=lambda f: -f.size)), scatter)
 
 
-def _samples(way: Way, direction: float, radius: float) -> tuple[Array, Array, Array]:
+def _samples(way: CirclePass, direction: float, radius: float) -> tuple[Array, Array, Array]:
     angle = np.arctan2(way.points[:, 1], way.points[:, 0])
     deviation = np.hypot(way.points[:, 0], way.points[:, 1]) - radius
     return angle, np.full(len(angle), direction), deviation

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.contour.error import LAGS, WINDOW_MIN
-from motionfmu.analysis.explain import causes, theory
+from motionfmu.analysis.explain import cause_switches, theory
 from motionfmu.analysis.explain.ballbar import Signature, signature
-from motionfmu.analysis.explain.causes import Cause, Off
+from motionfmu.analysis.explain.cause_switches import Cause, CauseOff
 from motionfmu.analysis.explain.effects import Effects
-from motionfmu.analysis.explain.servo import Array
+from motionfmu.analysis.explain.servo_formulas import Array
 from motionfmu.base.errors import InputError
 from motionfmu.run import Scenario, load
 from motionfmu.scenarios import recording
@@ -146,12 +146,12 @@ def explain(
     if scenario.document.body.contour is None:
         raise InputError(f"{scenario.document.file}: the scenario has no [contour] table")
     given = dict(set or {})
-    known = causes.causes(scenario)
-    watch(scenario, [f"{library_of(scenario.resolver)}.error", *causes.watched(known)])
+    known = cause_switches.causes(scenario)
+    watch(scenario, [f"{library_of(scenario.resolver)}.error", *cause_switches.watched(known)])
     progress(scenario.name, 0.0)
     result = scenario.run(set=given, stop=stop)
     result.contour()
-    states = {c.name: causes.off(c, result, {}) for c in known}
+    states = {c.name: cause_switches.off(c, result, {}) for c in known}
     acting = [c for c in known if states[c.name].set]
     runs: dict[str, ContourResult] = {}
     count = len(acting) + 2
@@ -159,16 +159,16 @@ def explain(
         progress(f"without {cause.title.lower()}", i / count)
         before = states[cause.after].set if cause.after in states else {}
         try:
-            changed = causes.off(cause, result, before).set
+            changed = cause_switches.off(cause, result, before).set
             run = _run(scenario, {**given, **before, **changed}, stop)
             runs[cause.name] = _same_motion(run, result.contour())
         except InputError as error:
-            states[cause.name] = Off({}, f"not comparable without it: {error}")
+            states[cause.name] = CauseOff({}, f"not comparable without it: {error}")
     progress("without all of them", (count - 1) / count)
     everything: dict[str, Any] = {}
     for cause in acting:
         if cause.name in runs:
-            everything |= causes.off(cause, result, everything).set
+            everything |= cause_switches.off(cause, result, everything).set
     ideal = _run(scenario, given | everything, stop) if everything else result.contour()
     progress("done", 1.0)
     return _put_together(result, (known, states), (runs, ideal))
@@ -205,14 +205,14 @@ def _same_motion(run: "ContourResult", whole: "ContourResult") -> "ContourResult
 
 def _put_together(
     result: "Result",
-    known: tuple[list[Cause], dict[str, Off]],
+    known: tuple[list[Cause], dict[str, CauseOff]],
     runs: "tuple[dict[str, ContourResult], ContourResult]",
 ) -> Explanation:
     whole_run, ideal = result.contour(), runs[1]
     along = np.linspace(0.0, float(whole_run.run.path.offsets[-1]), PLACES)
     whole = _tool(whole_run, along)
     counts = _counted(whole_run, along)
-    book = theory.Book(result, ideal)
+    book = theory.RunTheory(result, ideal)
     effects = []
     for cause in known[0]:
         state, run = known[1][cause.name], runs[0].get(cause.name)

@@ -2,10 +2,10 @@
 
 from typing import Generic, Protocol, TypeVar
 
-from motionfmu.analysis.explain.servo import Array
+from motionfmu.analysis.explain.servo_formulas import Array
 
 
-class Named(Protocol):
+class NamedEffect(Protocol):
     """An effect."""
 
     @property
@@ -13,7 +13,7 @@ class Named(Protocol):
         """Of its cause."""
 
 
-E = TypeVar("E", bound=Named)
+E = TypeVar("E", bound=NamedEffect)
 
 
 class Effects(Generic[E]):

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from motionfmu.analysis.explain import causes
-from motionfmu.analysis.explain.causes import Cause, Off
+from motionfmu.analysis.explain import cause_switches
+from motionfmu.analysis.explain.cause_switches import Cause, CauseOff
 from motionfmu.analysis.explain.decompose import NOTHING, SAME, short, watch
 from motionfmu.analysis.explain.effects import Effects
-from motionfmu.analysis.explain.servo import Array
+from motionfmu.analysis.explain.servo_formulas import Array
 from motionfmu.analysis.iso9283 import Performance
 from motionfmu.base.errors import InputError
 from motionfmu.run import Scenario, load
@@ -113,13 +113,13 @@ def explain_path(
     if scenario.document.body.iso9283 is None:
         raise InputError(f"{scenario.document.file}: the scenario has no [iso9283] table")
     given = dict(set or {})
-    known = causes.causes(scenario)
+    known = cause_switches.causes(scenario)
     errors = _errors(scenario)
-    watch(scenario, [*errors, *causes.watched(known)])
+    watch(scenario, [*errors, *cause_switches.watched(known)])
     progress(scenario.name, 0.0)
     result = scenario.run(set=given, stop=stop)
     base = result.iso9283().path
-    states = {c.name: causes.off(c, result, {}) for c in known}
+    states = {c.name: cause_switches.off(c, result, {}) for c in known}
     acting = [c for c in known if states[c.name].set]
     runs: dict[str, Performance] = {}
 
@@ -134,14 +134,14 @@ def explain_path(
         progress(f"without {cause.title.lower()}", i / (len(acting) + 2))
         before = states[cause.after].set if cause.after in states else {}
         try:
-            runs[cause.name] = without({**before, **causes.off(cause, result, before).set})
+            runs[cause.name] = without({**before, **cause_switches.off(cause, result, before).set})
         except InputError as error:
-            states[cause.name] = Off({}, f"not comparable without it: {error}")
+            states[cause.name] = CauseOff({}, f"not comparable without it: {error}")
     progress("without all of them", (len(acting) + 1) / (len(acting) + 2))
     everything: dict[str, Any] = {}
     for cause in acting:
         if cause.name in runs:
-            everything |= causes.off(cause, result, everything).set
+            everything |= cause_switches.off(cause, result, everything).set
     ideal = without(everything) if everything else base
     progress("done", 1.0)
     return _put_together(result, (known, states), (runs, ideal))
@@ -186,7 +186,7 @@ def _figures(base: Performance, error: Array) -> dict[str, float]:
 
 def _put_together(
     result: "Result",
-    known: tuple[list[Cause], dict[str, Off]],
+    known: tuple[list[Cause], dict[str, CauseOff]],
     runs: tuple[dict[str, Performance], Performance],
 ) -> PathExplanation:
     base = result.iso9283().path

@@ -8,9 +8,9 @@ import numpy as np
 
 from motionfmu.analysis.contour import analyse
 from motionfmu.analysis.contour.circles import SPEED_SPAN
-from motionfmu.analysis.contour.geometry import Arc, Line, Segment
-from motionfmu.analysis.explain import causes, servo
-from motionfmu.analysis.explain.servo import Array, Axis
+from motionfmu.analysis.contour.geometry import Arc, LineSegment, Segment
+from motionfmu.analysis.explain import cause_switches, servo_formulas
+from motionfmu.analysis.explain.servo_formulas import Array, ServoAxis
 
 if TYPE_CHECKING:
     from motionfmu.analysis.contour import ContourResult
@@ -56,7 +56,9 @@ class CornerRow:
     theory: float | None
 
 
-def corner_rows(result: "Result", ideal: "ContourResult", book: "Book") -> tuple[CornerRow, ...]:
+def corner_rows(
+    result: "Result", ideal: "ContourResult", book: "RunTheory"
+) -> tuple[CornerRow, ...]:
     """All corners of a run, beside those without all causes."""
     rows = []
     for own, other in zip(result.contour().corners, ideal.corners, strict=False):
@@ -66,7 +68,7 @@ def corner_rows(result: "Result", ideal: "ContourResult", book: "Book") -> tuple
     return tuple(rows)
 
 
-class Book:
+class RunTheory:
     """Formulas applied to one run.
 
     The run without all causes, `ideal`, gives the corners, and the position gain if the FMUs do not
@@ -76,14 +78,14 @@ class Book:
     def __init__(self, result: "Result", ideal: "ContourResult") -> None:
         self.contour = result.contour()
         self.ideal = ideal  # where the command shows its corners best
-        self.told = causes.quantities(result)
-        self.used = [i for i in causes.used(result) if i < 3]
+        self.told = cause_switches.quantities(result)
+        self.used = [i for i in cause_switches.used(result) if i < 3]
         self.measured_gain = not (self.told.get("gain", np.zeros(6))[self.used] > 0.0).all()
         if self.measured_gain:
             lag = max(ideal.lag, 1e-6)
             names = ("gain", "period", "delay", "lag")
             self.told |= {n: np.full(6, 1.0 / lag if n == "gain" else 0.0) for n in names}
-        self.axes = {i: Axis.of(self.told, i) for i in self.used}
+        self.axes = {i: ServoAxis.of(self.told, i) for i in self.used}
         self.mean_gain = float(np.mean([a.gain for a in self.axes.values()]))
         self.moves = [
             (s, self._speed(s)) for s in self.contour.run.path.segments if s.label.kind != "ptp"
@@ -117,13 +119,13 @@ class Book:
         if gap.min() > reach and acceleration > 0.0:
             if short < 0.5 * feed * sum(times):
                 return BLENDED, feed, None
-            said = servo.blended_corner(feed, corner.angle, self.mean_gain, acceleration)
+            said = servo_formulas.blended_corner(feed, corner.angle, self.mean_gain, acceleration)
             return BLENDED, feed, said
         # The least speed is a mean over a span: a command that stops for an instant shows so much.
         speed = max(0.0, corner.speed - 0.25 * acceleration * SPEED_SPAN)
         if speed < SLOW * feed:
             speed = 0.0
-        said = servo.corner(speed, corner.angle, self.mean_gain, acceleration)
+        said = servo_formulas.corner(speed, corner.angle, self.mean_gain, acceleration)
         return ("sharp" if speed else "stop"), speed, said
 
     def _path(self) -> Theory:
@@ -162,7 +164,7 @@ class Book:
         for arc, speed in self._arcs():
             if pair := self._plane(arc):
                 mean = self._mean_axis(pair)
-                change = servo.radius_change(arc.radius, mean.response(speed / arc.radius))
+                change = servo_formulas.radius_change(arc.radius, mean.response(speed / arc.radius))
                 found.append(abs(change))
         sharp = (self.corner(c) for c in self.ideal.corners)
         found += [said for kind, _, said in sharp if kind != BLENDED and said is not None]
@@ -172,18 +174,18 @@ class Book:
             return Theory(None, "blended corners: only together with the path, see the corners")
         return Theory(max(found), text)
 
-    def _mean_axis(self, pair: tuple[int, int]) -> Axis:
+    def _mean_axis(self, pair: tuple[int, int]) -> ServoAxis:
         a, b = (self.axes[i] for i in pair)
-        names = Axis.__dataclass_fields__
-        return Axis(**{n: 0.5 * (getattr(a, n) + getattr(b, n)) for n in names})
+        names = ServoAxis.__dataclass_fields__
+        return ServoAxis(**{n: 0.5 * (getattr(a, n) + getattr(b, n)) for n in names})
 
     def _chord(self) -> Theory:
         found = []
         for arc, speed in self._arcs():
             if pair := self._plane(arc):
                 time = self.contour.run.dda_time
-                sag = servo.chord(arc.radius, speed, time)
-                found.append(servo.chord_behind_servo(sag, time, self._mean_axis(pair)))
+                sag = servo_formulas.chord(arc.radius, speed, time)
+                found.append(servo_formulas.chord_behind_servo(sag, time, self._mean_axis(pair)))
         if not found:
             return Theory(0.0, "lines have no chords")
         return Theory(max(found), "chord V²T²/(8R): two thirds, and the ripple the servo lets by")
@@ -198,11 +200,11 @@ class Book:
     def _mismatch(self) -> Theory:
         found = []
         for segment, speed in self.moves:
-            if isinstance(segment, Line):
+            if isinstance(segment, LineSegment):
                 found.append(self._line_mismatch(segment, speed))
             elif isinstance(segment, Arc) and speed > 0.0 and (pair := self._plane(segment)):
                 own = (self.axes[i].response(speed / segment.radius) for i in pair)
-                large, small = servo.ellipse(segment.radius, tuple(own))  # type: ignore[arg-type]
+                large, small = servo_formulas.ellipse(segment.radius, tuple(own))  # type: ignore[arg-type]
                 mean = self._mean_axis(pair).response(speed / segment.radius)
                 middle = segment.radius * abs(mean)
                 found.append(max(large - middle, middle - small))
@@ -211,7 +213,7 @@ class Book:
         text = "line V sin a cos a (1/Kx - 1/Ky); circle: ellipse of both responses at V/R"
         return Theory(max(found), text)
 
-    def _line_mismatch(self, line: Line, speed: float) -> float:
+    def _line_mismatch(self, line: LineSegment, speed: float) -> float:
         way = line.end - line.start
         size = float(np.linalg.norm(way))
         if size == 0.0:
@@ -224,7 +226,7 @@ class Book:
 
     def _friction(self) -> Theory:
         peaks = [
-            servo.reversal(self.axes[i])[1] + float(self._told("windup")[i])
+            servo_formulas.reversal(self.axes[i])[1] + float(self._told("windup")[i])
             for arc, _ in self._arcs()
             for i in self._plane(arc) or ()
         ]
@@ -242,7 +244,7 @@ class Book:
         if not widths:
             return NONE
         width, arc = max(widths, key=lambda w: w[0])
-        angle = math.degrees(servo.lost_motion_arc(arc.radius, width))
+        angle = math.degrees(servo_formulas.lost_motion_arc(arc.radius, width))
         text = f"half the backlash to each side; table at rest for acos(1 - B/R) = {angle:.2f}°"
         return Theory(0.5 * width, text)
 
@@ -267,8 +269,8 @@ class Book:
         free, bound = run.actual.copy(), run.actual.copy()
         for i, axis in self.axes.items():
             limit = float(self._told("torque_limit")[i])
-            free[:, i] = servo.limited(run.commanded[:, i], run.time, axis, math.inf)
-            bound[:, i] = servo.limited(run.commanded[:, i], run.time, axis, limit)
+            free[:, i] = servo_formulas.limited(run.commanded[:, i], run.time, axis, math.inf)
+            bound[:, i] = servo_formulas.limited(run.commanded[:, i], run.time, axis, limit)
         errors = [analyse(replace(run, actual=x)).error.max for x in (bound, free)]
         text = "rigid axes without delays: J dv/dt + friction = PI torque within the limit"
         return Theory(errors[0] - errors[1], text)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.linear import AxisModel
-from motionfmu.analysis.linear.given import element
+from motionfmu.analysis.linear.axis_values import element
 from motionfmu.analysis.linear.law import Law, carried
 from motionfmu.analysis.linear.stability import moving
 from motionfmu.analysis.linear.wiring import Port
@@ -227,11 +227,11 @@ class Bench:
             taps = [_Tap(slaves, self, k) for k in range(len(self.entries))]
             tapped = {t.port for t in taps}
             wires = [
-                _Wire(slaves, w, self._offset(w))
+                _BenchWire(slaves, w, self._offset(w))
                 for w in self.system.wires
                 if _target(w) not in tapped
             ]
-            exits = [_Reader(slaves, self, p) for p in self.exits]
+            exits = [_OutputReader(slaves, self, p) for p in self.exits]
             shown = np.zeros((len(added), len(exits)))
             used = np.zeros_like(added)
             step = self.step_ns * 1e-9
@@ -260,7 +260,7 @@ def _target(wire: Wire) -> Port:
     return wire.target.component, wire.target.port.name
 
 
-class _Wire:
+class _BenchWire:
     """A wire as it is, or with something constant added."""
 
     def __init__(self, slaves: dict[str, Slave], wire: Wire, offset: list[float]) -> None:
@@ -277,7 +277,7 @@ class _Wire:
         self.put = shifted if offset else put
 
 
-class _Reader:
+class _OutputReader:
     """One element of an output."""
 
     def __init__(self, slaves: dict[str, Slave], bench: Bench, port: Port) -> None:
@@ -313,7 +313,7 @@ class _Tap:
         self.source = (
             None
             if wire is None
-            else _Reader(slaves, bench, (wire.source.component, wire.source.port.name))
+            else _OutputReader(slaves, bench, (wire.source.component, wire.source.port.name))
         )
         self.gain = bench.setup.gains.get(name, 1.0)
         self.late = [0.0] * bench.setup.delays.get(name, 0)

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Trial:
+class RingingTest:
     """How a loop is made to ring."""
 
     kick: float  # step, in the unit of the input: many of its grains, far from every limit
@@ -73,7 +73,7 @@ def usual_kick(axis: AxisModel, at: str, cut: tuple[str, ...] = ()) -> float:
     return min(kick, fastest(axis, at) / (_CAP * omega)) if omega > 0.0 else kick
 
 
-def ringing(setup: Setup, trial: Trial, omega: float) -> tuple[float, float]:
+def ringing(setup: Setup, trial: RingingTest, omega: float) -> tuple[float, float]:
     """Growth [1/s] and pitch [rad/s] of a ringing of the running FMUs.
 
     The root of the mean square in windows, on a straight line over time in its logarithm. The pitch
@@ -143,7 +143,7 @@ def _pitch(windows: Array, cycle: int) -> float:
 def simulated_gain(
     axis: AxisModel,
     loop: tuple[str, tuple[str, ...]],
-    trial: Trial,
+    trial: RingingTest,
     gain: str | None = None,
     progress: Callable[[int], None] = lambda runs: None,
 ) -> Limit:
@@ -196,7 +196,7 @@ def small_signal_gain(
         def count(n: int, done: int = runs) -> None:
             progress(done + n)
 
-        found = simulated_gain(axis, loop, Trial(kick), gain, count)
+        found = simulated_gain(axis, loop, RingingTest(kick), gain, count)
         runs += found.evaluations
         if math.isclose(found.gain, before, rel_tol=_SAME):
             break

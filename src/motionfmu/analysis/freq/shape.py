@@ -11,9 +11,9 @@ from motionfmu.analysis.freq.excitation import Excitation, shaped
 from motionfmu.analysis.freq.response import room
 from motionfmu.analysis.linear import AxisModel
 from motionfmu.analysis.linear.block import Sampled
-from motionfmu.analysis.linear.opened import limit, matrices
 from motionfmu.analysis.linear.residual import Residual, with_residuals
 from motionfmu.analysis.linear.stability import response
+from motionfmu.analysis.linear.tuning_parts import limit, matrices
 from motionfmu.analysis.linear.wiring import Port
 
 Array = NDArray[np.float64]

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from motionfmu.analysis.iso9283.command_path import CommandPath
 from motionfmu.analysis.iso9283.cycles import Cycle
-from motionfmu.analysis.iso9283.path import CommandPath
 from motionfmu.analysis.iso9283.turn import Array, between, unit
 
 # Samples that are looked at together at first; twice as many each time without success.

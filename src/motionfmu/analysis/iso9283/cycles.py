@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from motionfmu.analysis.iso9283.path import CommandPath
+from motionfmu.analysis.iso9283.command_path import CommandPath
 from motionfmu.analysis.iso9283.turn import Array
 
 PLANES = 200

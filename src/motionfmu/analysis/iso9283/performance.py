@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.analysis.iso9283.command_path import CommandPath
 from motionfmu.analysis.iso9283.crossing import Crossings, crossings
 from motionfmu.analysis.iso9283.cycles import Cycle, Cycles
 from motionfmu.analysis.iso9283.line import straightness
-from motionfmu.analysis.iso9283.path import CommandPath
 from motionfmu.analysis.iso9283.pose import three_sigma
 from motionfmu.analysis.iso9283.strokes import Strokes, coincidence
 from motionfmu.analysis.iso9283.turn import Array, deviation

@@ -14,7 +14,7 @@ from motionfmu.run import Scenario, load
 
 if TYPE_CHECKING:
     from motionfmu.analysis.linear.systems import (
-        System,
+        StandstillSystem,
     )  # its import takes a second, a tuning does without
 
 
@@ -124,7 +124,7 @@ class AxisModel:
         outputs: str | Iterable[str],
         cut: str | Iterable[str] = (),
         delays: Mapping[str, int] | None = None,
-    ) -> "System":
+    ) -> "StandstillSystem":
         """The system from any inputs to any outputs.
 
         An input is added to what the wire brings to that port, and held over a period. An output is
@@ -142,7 +142,7 @@ class AxisModel:
 
         Returns
         -------
-        System
+        StandstillSystem
             A discrete control.StateSpace; names are ``component/variable``, because python-control
             allows no dots.
 
@@ -155,11 +155,11 @@ class AxisModel:
         exits = [self.port(n, self.outputs, "output") for n in _listed(outputs)]
         return self._between(self.net(cut, delays or {}), entries, exits)
 
-    def _between(self, net: Net, entries: list[Port], exits: list[Port]) -> "System":
+    def _between(self, net: Net, entries: list[Port], exits: list[Port]) -> "StandstillSystem":
         found = period_of(net, entries, exits, self.scenario.document.file)
-        from motionfmu.analysis.linear.systems import System
+        from motionfmu.analysis.linear.systems import StandstillSystem
 
-        return System(
+        return StandstillSystem(
             *(found.a, found.b, found.c, found.d, found.period_ns * 1e-9),
             inputs=[_name(p) for p in entries],
             outputs=[_name(p) for p in exits],
@@ -173,7 +173,7 @@ class AxisModel:
         at: str,
         cut: str | Iterable[str] = (),
         delays: Mapping[str, int] | None = None,
-    ) -> "System":
+    ) -> "StandstillSystem":
         """The open loop at an input, for negative feedback.
 
         Cut there, once around, with the other sign.
@@ -191,7 +191,7 @@ class AxisModel:
 
         Returns
         -------
-        System
+        StandstillSystem
             One input, one output.
 
         Raises

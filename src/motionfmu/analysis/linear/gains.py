@@ -8,7 +8,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from motionfmu.base import kept
+from motionfmu.base import disk_cache
 from motionfmu.base.extras import needed
 from motionfmu.run import Scenario, load
 from motionfmu.scenarios import fmus
@@ -104,7 +104,7 @@ def gain_of(
         listed = list(found(loaded, set or {}, axis, at))
         (folder / FILE).write_text(json.dumps(listed), encoding="utf-8")
 
-    place = kept.kept("position_gains", _key(loaded, set or {}, axis, at or {}), make)
+    place = disk_cache.kept("position_gains", _key(loaded, set or {}, axis, at or {}), make)
     return tuple(LoopGain(*row) for row in json.loads((place / FILE).read_bytes()))
 
 
@@ -115,14 +115,14 @@ def _key(
     # All of the scenario's tables: a law may ask for any value.
     told = repr((scenario.document.tables, plain(set_), axis, plain(at)))
     archives = map(fmus.digest, scenario.document.body.component.values())
-    return kept.key(_text(), told, *archives)
+    return disk_cache.key(_text(), told, *archives)
 
 
 @cache
 def _text() -> str:
     """A name for the package's own text, as far as it works out gains."""
     files = (file for pattern in MADE_BY for file in sorted(PACKAGE.glob(pattern)))
-    return kept.key(*(file.read_bytes() for file in files))
+    return disk_cache.key(*(file.read_bytes() for file in files))
 
 
 def in_lines(gains: Iterable[LoopGain]) -> list[str]:

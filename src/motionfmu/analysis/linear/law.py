@@ -11,9 +11,9 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.analysis.linear.block import Sampled
-from motionfmu.analysis.linear.form import Form, Gain, Quantity, evaluate
-from motionfmu.fmu.inside import EXTRA
-from motionfmu.fmu.modelica import stored
+from motionfmu.analysis.linear.linear_form import Form, Gain, Quantity, evaluate
+from motionfmu.fmu.archive_names import EXTRA
+from motionfmu.fmu.modelica import equation_text
 from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import nanoseconds
@@ -47,7 +47,7 @@ class Law(BaseModel):
     worst: dict[str, str] = Field(default_factory=dict)
 
 
-class Refused(ValueError):
+class LawRefusal(ValueError):
     """A law does not hold for the values given."""
 
 
@@ -71,12 +71,12 @@ def carried(fmu: str) -> Law | Ode | None:
         names = archive.namelist()
         if f"{EXTRA}/{LAW}" in names:
             return parse(archive.read(f"{EXTRA}/{LAW}").decode(), f"{fmu}: {LAW}")
-        if f"{EXTRA}/{stored.FILE}" in names:
-            return stored.from_json(archive.read(f"{EXTRA}/{stored.FILE}").decode())
+        if f"{EXTRA}/{equation_text.FILE}" in names:
+            return equation_text.from_json(archive.read(f"{EXTRA}/{equation_text.FILE}").decode())
     return None
 
 
-class _Names(Mapping[str, Any]):
+class _LawNames(Mapping[str, Any]):
     """Moving quantities first, then formulas of `let`, then values of the FMU's variables."""
 
     def __init__(self, law: Law, given: Mapping[str, Any], moving: dict[str, Quantity]) -> None:
@@ -100,18 +100,18 @@ def block(law: Law, values: Mapping[str, Any], point: Mapping[str, float] | None
     """Make the block of one axis from its values that stay.
 
     `point` has the outputs at the operating point, 0 where nothing is said. A wrong or not linear
-    formula is a ValueError, as is `Refused`.
+    formula is a ValueError, as is `LawRefusal`.
     """
     at = {name: (point or {}).get(output, 0.0) for name, output in law.point.items()}
     given = ChainMap(dict(at), values)  # type: ignore[arg-type]
     for formula, reason in law.refuse.items():
         if number(law, given, formula):
-            raise Refused(reason)
+            raise LawRefusal(reason)
     count = number(law, given, law.cycle)
     if not (round(count) >= 1 and abs(count - round(count)) <= _WHOLE * count):
         raise ValueError(f"cycle: {law.cycle!r} is {count:g}, a whole number is wanted")
     made = [_instant(law, given, (k, round(count))) for k in range(round(count))]
-    nothing = _Names(law, given, {})
+    nothing = _LawNames(law, given, {})
     return Sampled(
         inputs=tuple(law.inputs),
         commands=tuple(law.commands),
@@ -135,7 +135,7 @@ def _instant(
     known: dict[str, Quantity] = dict(zip(("instant", "instants"), place, strict=True))
     for name, unit in zip(moving, np.eye(len(moving)), strict=True):
         known[name] = Form(unit)
-    names = _Names(law, given, known)
+    names = _LawNames(law, given, known)
     later = [*law.state.items(), *law.output.items(), *law.early.items()]
     rows = [_row(text, names, len(moving)) for _, text in later]
     now = [_row(text, names, len(moving)) for text in law.direct.values()]
@@ -147,7 +147,7 @@ def _instant(
     return np.vstack([empty, *rows]), np.vstack([empty, *now])[:, first:]
 
 
-def _row(text: str, names: _Names, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _row(text: str, names: _LawNames, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
     found = evaluate(text, names)
     if isinstance(found, Form):
         return found.row
@@ -160,10 +160,10 @@ def constant(law: Law, values: Mapping[str, Any], name: str) -> float | None:
     """Value of an output that stays; None if the law does not give it."""
     if name not in law.constant:
         return None
-    found = evaluate(law.constant[name], _Names(law, values, {}))
+    found = evaluate(law.constant[name], _LawNames(law, values, {}))
     return found if isinstance(found, Gain) else float(found)  # type: ignore[arg-type]
 
 
 def number(law: Law, values: Mapping[str, Any], formula: str) -> float:
     """Value of a formula in which nothing moves."""
-    return float(evaluate(formula, _Names(law, values, {})))  # type: ignore[arg-type]
+    return float(evaluate(formula, _LawNames(law, values, {})))  # type: ignore[arg-type]

@@ -8,8 +8,8 @@ import numpy as np
 
 from motionfmu.analysis.linear.axis import AxisModel
 from motionfmu.analysis.linear.block import Plant
-from motionfmu.analysis.linear.opened import matrices
 from motionfmu.analysis.linear.stability import closed_poles, moving
+from motionfmu.analysis.linear.tuning_parts import matrices
 from motionfmu.analysis.linear.wiring import Port
 from motionfmu.base.errors import InputError
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from motionfmu.analysis.linear import coupled, law
+from motionfmu.analysis.linear import coupled_plant, law
+from motionfmu.analysis.linear.axis_values import AxisValues
 from motionfmu.analysis.linear.block import Block, Plant, Sampled
-from motionfmu.analysis.linear.form import Gain
-from motionfmu.analysis.linear.given import Values
+from motionfmu.analysis.linear.linear_form import Gain
 from motionfmu.analysis.linear.plant import Linearised, Point
 from motionfmu.analysis.linear.wiring import Port
 from motionfmu.base.errors import InputError
@@ -33,7 +33,7 @@ class Parts:
     """Blocks of an axis about their operating points, by component."""
 
     system: System
-    values: Mapping[str, Values]
+    values: Mapping[str, AxisValues]
     blocks: Mapping[str, Block]
     points: Mapping[str, Point]
     others: tuple[int, ...]  # axes that a plant couples with this one
@@ -76,9 +76,10 @@ def parts(
         given = tuple(settings(scenario.resolver, numbers))
         system = replace(before.system, settings=given)
     said = {c: law.carried(fmu) for c, fmu in system.components.items()}
-    others = coupled.others(system.wires, said, axis)
+    others = coupled_plant.others(system.wires, said, axis)
     wide = {
-        k: {c: Values(system, scenario, c, k) for c in system.components} for k in (axis, *others)
+        k: {c: AxisValues(system, scenario, c, k) for c in system.components}
+        for k in (axis, *others)
     }
     gains = {n: (v,) * axis for n, v in set_.items() if isinstance(v, Gain)}
     for k, every in wide.items():
@@ -88,7 +89,7 @@ def parts(
 
 
 def _complete(
-    system: System, every: Mapping[str, Values], gains: Mapping[str, tuple[Gain, ...]]
+    system: System, every: Mapping[str, AxisValues], gains: Mapping[str, tuple[Gain, ...]]
 ) -> None:
     """Put in open gains, and what the laws say of the other ends of the wires."""
     for name, value in gains.items():
@@ -106,7 +107,7 @@ def _blocks(
     scenario: Scenario,
     system: System,
     at: Mapping[str, float],
-    wide: Mapping[int, Mapping[str, Values]],
+    wide: Mapping[int, Mapping[str, AxisValues]],
     before: Parts | None,
 ) -> Parts:
     components = system.components
@@ -122,12 +123,14 @@ def _blocks(
             if isinstance(own, law.Law):
                 made = law.block(own, every[c], _fed(system.wires, c, points))
                 rest = _beside(own, c, (wide, scenario.resolver.ports[c]), (system.wires, points))
-                blocks[c] = coupled.beside(made, rest) if rest else made
+                blocks[c] = coupled_plant.beside(made, rest) if rest else made
             elif own is not None:
                 found = _plant(c, components[c], (at, every[c]), (system.wires, before))
-                if coupled.couples(own) and (before is None or found[0] is not before.blocks[c]):
-                    name = coupled.named(axis, tuple(others), scenario.resolver.ports[c])
-                    found = coupled.renamed(*found, name)
+                if coupled_plant.couples(own) and (
+                    before is None or found[0] is not before.blocks[c]
+                ):
+                    name = coupled_plant.named(axis, tuple(others), scenario.resolver.ports[c])
+                    found = coupled_plant.renamed(*found, name)
                 blocks[c], points[c] = found
         except ValueError as error:
             raise InputError(f"{scenario.document.file}: {c}: {error}") from None
@@ -139,7 +142,7 @@ def _blocks(
 def _beside(
     said: law.Law,
     component: str,
-    given: tuple[Mapping[int, Mapping[str, Values]], Mapping[str, Declared]],
+    given: tuple[Mapping[int, Mapping[str, AxisValues]], Mapping[str, Declared]],
     fed: tuple[Iterable[Wire], Mapping[str, Point]],
 ) -> dict[int, Sampled]:
     """Laws of the other axes of a component, where a plant couples them and they are active."""
@@ -170,7 +173,7 @@ def _keys(
     blocks: Mapping[str, Block],
     components: Mapping[str, str],
     at: Mapping[str, float],
-    every: Mapping[str, Values],
+    every: Mapping[str, AxisValues],
 ) -> dict[str, Any]:
     return {c: _key(c, components[c], at, every[c]) for c in blocks if _is_plant(components[c])}
 
@@ -179,7 +182,7 @@ def _is_plant(fmu: str) -> bool:
     return isinstance(law.carried(fmu), Ode)
 
 
-def _key(component: str, fmu: str, at: Mapping[str, float], own: Values) -> Any:
+def _key(component: str, fmu: str, at: Mapping[str, float], own: AxisValues) -> Any:
     names = [d.name for d in equation(fmu).ode.parameters]
     asked = sorted((n, v) for n, v in at.items() if n.startswith(f"{component}."))
     return fmu, asked, own["micro_step"], [float(own[n]) for n in names]
@@ -188,7 +191,7 @@ def _key(component: str, fmu: str, at: Mapping[str, float], own: Values) -> Any:
 def _plant(
     component: str,
     fmu: str,
-    given: tuple[Mapping[str, float], Values],
+    given: tuple[Mapping[str, float], AxisValues],
     found: tuple[Iterable[Wire], "Parts | None"],
 ) -> tuple[Plant, Point]:
     """A plant about its point; the one of an earlier model if nothing of it has changed."""
@@ -204,7 +207,7 @@ def _plant(
         if d.name.partition("[")[0] not in own.wired:
             inputs[d.name] = float(own[d.name])
     mine = {n.partition(".")[2]: v for n, v in at.items() if n.startswith(f"{component}.")}
-    if coupled.couples(parts.ode):
+    if coupled_plant.couples(parts.ode):
         ends = _ends(wires, component, parts.ode)
         left = {n: v for n, v in inputs.items() if n not in mine}
         point = parts.rest(p, ends, mine, left)
@@ -222,7 +225,7 @@ def _ends(wires: Iterable[Wire], component: str, ode: Ode) -> tuple[list[str], l
     return held, free
 
 
-def _constant(said: Any, own: Values, name: str) -> Any:
+def _constant(said: Any, own: AxisValues, name: str) -> Any:
     found = law.constant(said, own, name.partition(".")[2]) if isinstance(said, law.Law) else None
     if found is None:
         raise ValueError(f"it depends on {name}, of which no law says a value")
@@ -230,14 +233,14 @@ def _constant(said: Any, own: Values, name: str) -> Any:
 
 
 def _check(
-    scenario: Scenario, axis: int, at: Mapping[str, float], every: Mapping[str, Values]
+    scenario: Scenario, axis: int, at: Mapping[str, float], every: Mapping[str, AxisValues]
 ) -> None:
     for c, own in every.items():
         switch = scenario.resolver.ports[c].get("active")
         if switch is None:
             continue
         count = switch.count
-        of_axis = switch.shape or not coupled.couples(
+        of_axis = switch.shape or not coupled_plant.couples(
             law.carried(scenario.document.body.component[c])
         )
         if of_axis and not 1 <= axis <= count:
@@ -255,7 +258,7 @@ def _check(
         if not isinstance(value, int | float):
             raise InputError(f"at {name} = {value!r}: a number wanted")
         fixed = variable not in [d.name for d in known.inputs]
-        if coupled.couples(known) and (
+        if coupled_plant.couples(known) and (
             fixed or variable.partition("[")[0] in every[component].wired
         ):
             raise InputError(

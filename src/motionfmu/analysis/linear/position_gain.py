@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.analysis.linear import coupled, law
+from motionfmu.analysis.linear import coupled_plant, law
 from motionfmu.analysis.linear.axis import AxisModel, model
 from motionfmu.analysis.linear.loops import feedbacks
-from motionfmu.analysis.linear.opened import listed, matrices
+from motionfmu.analysis.linear.tuning_parts import listed, matrices
 from motionfmu.base.errors import InputError
 from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.run import Scenario
@@ -140,7 +140,7 @@ def _motions(scenario: Scenario) -> list[dict[str, float]]:
     wires = [(w.source.component, w.target.component) for w in system.wires(scenario.resolver)]
     for component, own in said.items():
         moved = any(t == component and isinstance(said[s], law.Law) for s, t in wires)
-        if not isinstance(own, Ode) or coupled.couples(own) or not moved:
+        if not isinstance(own, Ode) or coupled_plant.couples(own) or not moved:
             continue
         ports, shown = scenario.resolver.ports[component], [d.name for d in own.outputs]
         for unit, value in _MOTION.items():

@@ -7,8 +7,8 @@ import numpy as np
 
 from motionfmu.analysis.linear.axis import AxisModel
 from motionfmu.analysis.linear.block import Matrix, Plant
-from motionfmu.analysis.linear.opened import linearised
 from motionfmu.analysis.linear.pointwise import Pointwise
+from motionfmu.analysis.linear.tuning_parts import linearised
 from motionfmu.fmu.modelica.ode import Ode
 
 

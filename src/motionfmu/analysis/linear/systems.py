@@ -13,7 +13,7 @@ from motionfmu.analysis.linear.stability import AT_ONE
 _CANCELLED = 1e-12
 
 
-class System(control.StateSpace):
+class StandstillSystem(control.StateSpace):
     """A discrete state-space system with a right gain at standstill."""
 
     # Right also where a position, of which it shows nothing, adds up.
@@ -54,9 +54,9 @@ def _static(a: Matrix, b: Matrix, c: Matrix, d: Matrix) -> Matrix:
     return found
 
 
-def backward(system: System, output: str, name: str) -> System:
+def backward(system: StandstillSystem, output: str, name: str) -> StandstillSystem:
     """The same with the other sign; the states keep their names."""
-    return System(
+    return StandstillSystem(
         *(system.A, system.B, -system.C, -system.D, system.dt),
         inputs=system.input_labels,
         outputs=[output],

@@ -31,7 +31,7 @@ class Elements:
         self._dims = {name: tuple(d) for name, d in dims.items()}
 
     def shape(self, e: Expression) -> tuple[int, ...]:
-        """Dimensions that an expression has left; empty for a scalar."""
+        """Dimensions of an expression; empty for a scalar."""
         ((kind, d),) = e.items()
         if kind == "Array":
             return len(d["elements"]), *self.shape(d["elements"][0])
@@ -47,7 +47,7 @@ class Elements:
         return ()
 
     def pick(self, e: Expression, index: Index) -> Expression:
-        """One element; a scalar is the same for all, and what is no array here stays whole."""
+        """One element of an expression; an expression that is no array is returned whole."""
         if len(self.shape(e)) != len(index):
             return e
         ((kind, d),) = e.items()
@@ -65,5 +65,5 @@ class Elements:
         return e
 
     def _elementwise(self, d: dict[str, Any]) -> bool:
-        """Whether the operation of two arrays, or a number and an array, is that of elements."""
+        """Whether an operation of arrays, or of a number and an array, acts element by element."""
         return d["op"] in ("Add", "Sub") or () in (self.shape(d["lhs"]), self.shape(d["rhs"]))

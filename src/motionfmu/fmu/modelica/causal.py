@@ -19,7 +19,7 @@ def load(package: Path, name: str) -> Ode:
 
 def build(flat: Flat) -> Ode:
     """Make the differential equation of a flat class; Unsupported names class and construct."""
-    names = _Names(flat)
+    names = _FlatNames(flat)
     declared = list(flat.declarations.values())
     residuals = [names.evaluate(e) for e in _residuals(flat)]
     inputs = [d for d in declared if d.kind == "input"]
@@ -72,7 +72,7 @@ def build(flat: Flat) -> Ode:
     )
 
 
-class _Names:
+class _FlatNames:
     """Symbols and parameter values by flat name."""
 
     def __init__(self, flat: Flat):
@@ -86,7 +86,7 @@ class _Names:
         self._known = {d.name: ca.SX.sym(d.name) for d in own}
 
     def refuse(self, what: str) -> Unsupported:
-        """The error to raise."""
+        """Make the error for a construct that is not handled."""
         return Unsupported(f"{self.flat.name}: {what}")
 
     def column(self, names: Iterable[str]) -> ca.SX:
@@ -94,13 +94,13 @@ class _Names:
         return ca.vertcat(ca.SX(0, 1), *(self._known[n] for n in names))
 
     def symbol(self, name: str) -> ca.SX:
-        """Symbol of a variable, value of a bound parameter."""
+        """Symbol of a variable, or the value of a bound parameter."""
         if name in self._known:
             return self._known[name]
         d = self.flat.declarations.get(name)
         if d is None:
             raise self.refuse(f"{name} is not supported here")
-        if d.binding is None:  # a start is no value: rumoca makes one up
+        if d.binding is None:  # its start is no value, for rumoca invents one
             raise self.refuse(f"parameter {name} has no value")
         if name in self._pending:
             raise self.refuse(f"parameter {name} depends on itself")
@@ -147,7 +147,7 @@ def _residuals(flat: Flat) -> list[Expression]:
     return found
 
 
-def _linear_parts(names: _Names, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
+def _linear_parts(names: _FlatNames, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
     """A and b of e = A v + b."""
     a = ca.jacobian(e, v)
     if ca.depends_on(a, v) or steps_on(e, v):
@@ -157,7 +157,10 @@ def _linear_parts(names: _Names, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
 
 
 def _dummy_derivatives(
-    names: _Names, residuals: list[ca.SX], dummies: list[str], symbols: tuple[ca.SX, ca.SX, ca.SX]
+    names: _FlatNames,
+    residuals: list[ca.SX],
+    dummies: list[str],
+    symbols: tuple[ca.SX, ca.SX, ca.SX],
 ) -> list[ca.SX]:
     """Equations for der(z) of variables z that are no states.
 
@@ -202,15 +205,15 @@ def _inputs(flat: Flat) -> list[str]:
     return [d.name for d in flat.declarations.values() if d.kind == "input"]
 
 
-def _coupled(names: _Names, a: ca.SX, b: ca.SX, labels: list[str]) -> ca.SX:
-    """Solve A x = b, the parameters near their values."""
+def _coupled(names: _FlatNames, a: ca.SX, b: ca.SX, labels: list[str]) -> ca.SX:
+    """Solve A x = b for parameters near their values."""
     try:
         return elimination.solve(a, b, {d.name: names.default(d) for d in names.parameters}, labels)
     except elimination.NoPivot as error:
         raise names.refuse(str(error)) from None
 
 
-def _solve(names: _Names, residuals: ca.SX, unknowns: ca.SX) -> ca.SX:
+def _solve(names: _FlatNames, residuals: ca.SX, unknowns: ca.SX) -> ca.SX:
     """Solve residuals = 0 by its block lower triangular form."""
     labels = [str(unknowns[i]) for i in range(unknowns.numel())]
     if residuals.numel() != unknowns.numel():

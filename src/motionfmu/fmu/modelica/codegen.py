@@ -1,6 +1,6 @@
 """Write a Modelica class as plant.c and plant.h.
 
-They are what plant_model.c integrates.
+plant_model.c integrates the equation in them.
 
 CasADi's own C text serves one point per call, and its null checks keep compilers from doing
 two points at once. Here quantity k of lane i stands at [k * lanes + i], each function is one loop
@@ -15,38 +15,40 @@ from pathlib import Path
 import casadi as ca
 
 from motionfmu.fmu.describe import Description
-from motionfmu.fmu.modelica import causal, description, stored
+from motionfmu.fmu.modelica import causal, class_description, equation_text
 from motionfmu.fmu.modelica.cprint import TURNS, statements, turned
 from motionfmu.fmu.modelica.flat import Declaration
 from motionfmu.fmu.modelica.hoist import Split, split
-from motionfmu.fmu.modelica.nodes import STEPS, Node, Program, program
+from motionfmu.fmu.modelica.nodes import STEPS, Node, Operations, program
 from motionfmu.fmu.modelica.ode import Ode
 
-# Axes that are integrated together, at most, and the numbers of lanes that functions are compiled
-# for: a block has the next one from its axes on. Measured (an evaluation of BallScrewAxis for all,
-# 2026-11): 1 lane 16 ns, 2 lanes 16 ns, 4 lanes 19 ns (AVX2: 17), 6 lanes 26 ns (AVX2: 23).
+# The numbers of lanes for which functions are compiled; so many axes at most are integrated
+# together, with the smallest number of lanes that holds them. Measured (an evaluation of
+# BallScrewAxis for all, 2026-11): 1 lane 16 ns, 2 lanes 16 ns, 4 lanes 19 ns (AVX2: 17), 6 lanes
+# 26 ns (AVX2: 23).
 WIDTHS = (1, 2, 4, 6)
-# Branches are bits of an unsigned int. Up to 8 of them plant_model.c looks at every combination.
+# Branches are bits of an unsigned int; plant_model.c tries every combination of up to 8 of them.
 MAX_BRANCHES = 31
-# A Jacobian of more operations is made column by column from the derivative along a direction: that
-# of an arm (900 elements, 29,000 operations) takes a compiler 10 s, its derivative a third of it.
+# A Jacobian with more operations is computed column by column from the derivative along a
+# direction. To compile that of an arm (900 elements, 29,000 operations) takes 10 s, to compile the
+# derivative a third of it.
 WHOLE_JACOBIAN = 4000
 
 _NOTE = "/* Generated from {}; do not edit. */\n"
-# Positions of the arguments of every program here, and their names in C.
+# Argument positions of every program in this module, and their names in C.
 _X, _U, _P, _C = range(4)
-_WAY = _C  # of the derivative along a direction
+_WAY = _C  # argument position of the direction of a derivative
 _ARGUMENTS = "xupc"
 
 
 def write(toml: Path, out: Path) -> Description:
     """Write plant.c, plant.h, ode.json of an fmu.toml with the key ``modelica``, where changed."""
-    packing = description.read(toml)
+    packing = class_description.read(toml)
     ode = causal.load(packing.package, packing.modelica)
-    described = description.describe_class(toml, packing, ode)
+    described = class_description.describe_class(toml, packing, ode)
     out.mkdir(parents=True, exist_ok=True)
     code, header = generate(ode, packing.instances, packing.tolerance)
-    texts = {"plant.c": code, "plant.h": header, stored.FILE: stored.to_json(ode)}
+    texts = {"plant.c": code, "plant.h": header, equation_text.FILE: equation_text.to_json(ode)}
     for name, text in texts.items():
         file = out / name
         if not file.exists() or file.read_text() != text:
@@ -102,12 +104,12 @@ def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[
 
 
 def widths(instances: int) -> tuple[int, ...]:
-    """Those of `WIDTHS` that blocks of so many axes can have."""
+    """The `WIDTHS` that blocks of so many axes can have."""
     return tuple(w for k, w in enumerate(WIDTHS) if k == 0 or WIDTHS[k - 1] < instances)
 
 
-def _branches(jacobian: Program) -> dict[int, tuple[int, bool]]:
-    """Comparisons that state or input decides: bit, and whether its opposite is meant.
+def _branches(jacobian: Operations) -> dict[int, tuple[int, bool]]:
+    """Comparisons that depend on states or inputs: the bit of each, and whether it is negated.
 
     The slope of a minimum or maximum has both a <= b and b <= a: one bit is enough for the two.
     """
@@ -127,7 +129,7 @@ def _branches(jacobian: Program) -> dict[int, tuple[int, bool]]:
 
 
 def _function(head: str, lines: list[str]) -> str:
-    """A C function; arguments it does not use are named as such."""
+    """Text of a C function; arguments that it does not use are cast to void."""
     body = "\n".join(lines)
     arguments = re.findall(r"(\w+)[,)]", head)
     unused = [a for a in arguments if not re.search(rf"\b{a}\b", body)]
@@ -136,20 +138,20 @@ def _function(head: str, lines: list[str]) -> str:
 
 
 def _member(d: Declaration, element: str) -> str:
-    """A member of struct vars, or an element of it."""
+    """C text of a member of struct vars, or of an element of it."""
     subscripts = d.name.removeprefix(d.base)[1:-1].split(",") if d.base else []
     return f"v->{d.port}{element}" + "".join(f"[{int(k) - 1}]" for k in subscripts)
 
 
 def _cast(d: Declaration, text: str) -> str:
-    """A member of struct vars as a double."""
+    """C text of a member of struct vars as a double."""
     if d.type == "Boolean":
         return f"{text} ? 1.0 : 0.0"
     return text
 
 
 def _ports(ode: Ode, element: str) -> str:
-    """What connects `struct vars` with the plain arrays; `element` follows a member's name."""
+    """C functions that copy between `struct vars` and plain arrays; `element` is an index in C."""
     names = {
         kind: ", ".join(f'"{d.name}"' for d in group)
         for kind, group in (("state", ode.states), ("output", ode.outputs))
@@ -187,13 +189,13 @@ def _ports(ode: Ode, element: str) -> str:
 
 
 def _single(_: int, node: Node) -> str | None:
-    """An input of a program for one instance."""
+    """C text of a program's input for one instance."""
     group, place = node.input
     return f"{_ARGUMENTS[group]}[{place}]" if node.op == ca.OP_INPUT else None
 
 
 def _of_parameters(ode: Ode, equations: Split) -> str:
-    """Checks, initial state, sizes and constants: of parameters alone."""
+    """C functions of parameters alone: checks, initial state, sizes and constants."""
     conditions = ca.vertcat(ca.SX(0, 1), *(c for c, _ in ode.checks))
     early = program([ode.x, ode.u, ode.p], [conditions, ode.start, ode.sizes])
     checks, start, sizes = early.results
@@ -269,8 +271,8 @@ def _loops(ode: Ode, equations: Split, used: tuple[int, ...]) -> list[str]:
     return texts
 
 
-def _jacobian(ode: Ode, jacobian: Program, branches: dict[int, tuple[int, bool]]) -> str:
-    """plant_jacobian: one instance, comparisons decided from outside."""
+def _jacobian(ode: Ode, jacobian: Operations, branches: dict[int, tuple[int, bool]]) -> str:
+    """Text of plant_jacobian for one instance; the caller decides comparisons."""
 
     def leaf(k: int, node: Node) -> str | None:
         if k not in branches:

@@ -1,11 +1,11 @@
-"""Print the operations of a Program as C statements."""
+"""Print the operations of a function as C statements."""
 
 import math
 from collections.abc import Callable, Iterable
 
 import casadi as ca
 
-from motionfmu.fmu.modelica.nodes import Node, Program
+from motionfmu.fmu.modelica.nodes import Node, Operations
 
 _TEMPLATES = {
     ca.OP_ASSIGN: "{0}",
@@ -17,7 +17,7 @@ _TEMPLATES = {
     ca.OP_INV: "1.0 / {0}",
     ca.OP_SQ: "{0} * {0}",
     ca.OP_TWICE: "{0} + {0}",
-    # Not fmin and fmax: a comparison is one instruction, also for several lanes at once.
+    # Comparisons take the place of fmin and fmax: one instruction each, for several lanes, too.
     ca.OP_FMIN: "{0} < {1} ? {0} : {1}",
     ca.OP_FMAX: "{0} > {1} ? {0} : {1}",
     ca.OP_LT: "{0} < {1} ? 1.0 : 0.0",
@@ -38,7 +38,7 @@ _EXACT = "sqrt floor ceil"
 _ELEMENTARY = "sin cos tan asin acos atan sinh cosh tanh exp log"
 _TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f + "({0})" for f in _EXACT.split()})
 _TEMPLATES.update({getattr(ca, f"OP_{f.upper()}"): f"el_{f}({{0}})" for f in _ELEMENTARY.split()})
-# Of an angle, and what each is called in C.
+# Operations on an angle, and the name of each in C.
 TURNS = {ca.OP_SIN: "sine", ca.OP_COS: "cosine"}
 
 
@@ -50,7 +50,7 @@ def literal(value: float) -> str:
     return f"(-{text})" if value < 0 else text
 
 
-def turned(program: Program, roots: Iterable[int]) -> list[int]:
+def turned(program: Operations, roots: Iterable[int]) -> list[int]:
     """Nodes whose sine or cosine the nodes `roots` need and that need none themselves."""
     needed = _needed(program, roots)
     deep: set[int] = set()  # nodes that need a sine or cosine
@@ -65,7 +65,7 @@ def turned(program: Program, roots: Iterable[int]) -> list[int]:
 
 
 def _needed(
-    program: Program, roots: Iterable[int], leaf: Callable[[int, Node], str | None] | None = None
+    program: Operations, roots: Iterable[int], leaf: Callable[[int, Node], str | None] | None = None
 ) -> dict[int, str | None]:
     """Nodes that the nodes `roots` need, each with the text of a leaf."""
     stack = list(roots)
@@ -80,7 +80,7 @@ def _needed(
     return found
 
 
-def _sine_and_cosine(program: Program, nodes: Iterable[int]) -> dict[tuple[int, ...], int]:
+def _sine_and_cosine(program: Operations, nodes: Iterable[int]) -> dict[tuple[int, ...], int]:
     """The first node of each argument of which both are needed."""
     found: dict[tuple[int, ...], list[int]] = {}
     for k in sorted(nodes):
@@ -90,7 +90,7 @@ def _sine_and_cosine(program: Program, nodes: Iterable[int]) -> dict[tuple[int, 
 
 
 def statements(
-    program: Program, roots: Iterable[int], leaf: Callable[[int, Node], str | None]
+    program: Operations, roots: Iterable[int], leaf: Callable[[int, Node], str | None]
 ) -> list[str]:
     """Statements ``const double aN = ...;`` that the nodes `roots` need, in order of evaluation.
 

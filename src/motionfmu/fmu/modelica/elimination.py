@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 _Numbers = NDArray[np.float64]
 
-# Points at random at which pivots are looked at, and how far they reach; the solution at the first.
+# Number and range of random points at which pivots are tested; the first also tests the solution.
 _POINTS, _REACH, _SEED, _COMPARED = 64, 3.0, 1, 8
-# Parameters are looked at near their values: this share up and down; one of 0 at times a little
-# above it, because some switch with that.
+# At the points parameters differ from their values by this share at most. A parameter of 0 is
+# sometimes a little above it, because some models switch there.
 _NEAR, _LITTLE = 0.2, 1e-9
-# A pivot smaller than this share of its largest value at a point may vanish near it.
+# A pivot that is at some point smaller than this share of its largest value may vanish nearby.
 _SMALL = 1e-6
-# What the elimination may differ from a numeric solution, as a share of the largest unknown.
+# Largest difference from a numeric solution, as a share of the largest unknown.
 _EXACT = 1e-8
 
 
@@ -33,14 +33,14 @@ _Row = dict[int, _Entry]
 
 
 class NoPivot(ValueError):
-    """No coefficient is left that may be divided by, or digits would be lost."""
+    """No coefficient is left that can be divided by without a loss of digits."""
 
 
 def solve(a: ca.SX, b: ca.SX, values: dict[str, float], labels: Sequence[str]) -> ca.SX:
     """Solve A x = b by constant pivots first, then by those with the least fill (Markowitz 1957).
 
-    `values` has the parameters by name; all other symbols may be anything. A pivot keeps its sign
-    wherever it was looked at; NoPivot names the unknowns for which there is none.
+    `values` has the parameters by name; all other symbols may have any value. A pivot has the same
+    sign at all points; NoPivot names the unknowns that have none.
     """
     numbers = _points([a, b], values)
     rows, right = _rows(a, numbers[0]), [b[i] for i in range(b.numel())]
@@ -66,7 +66,7 @@ def solve(a: ca.SX, b: ca.SX, values: dict[str, float], labels: Sequence[str]) -
 
 
 def _points(expressions: list[ca.SX], values: dict[str, float]) -> list[_Numbers]:
-    """Values of expressions at points at random, the same for a symbol wherever it is."""
+    """Values of expressions at random points; a symbol has one value in all expressions."""
     symbols = ca.symvar(ca.veccat(*expressions))
     columns: list[_Numbers] = []
     for s in symbols:
@@ -127,12 +127,12 @@ def _size(row: _Row, j: int) -> float:
 
 
 def _over(e: ca.SX, pivot: _Entry) -> ca.SX:
-    """Division; a pivot that is divided by often has its inverse once."""
+    """Divide by a pivot, whose inverse is computed only once."""
     return e / pivot.e if pivot.constant else e * (1.0 / pivot.e)
 
 
 def _eliminate(row: _Row, by: _Row, j: int) -> ca.SX:
-    """Take unknown j out of a row; the factor is what the other side needs."""
+    """Remove unknown j from a row; returns the factor, which the right side needs as well."""
     gone = row.pop(j)
     factor = _over(gone.e, by[j])
     at = gone.at / by[j].at
@@ -149,7 +149,7 @@ def _eliminate(row: _Row, by: _Row, j: int) -> ca.SX:
 
 
 def _check(x: ca.SX, numbers: list[_Numbers], found: _Numbers, labels: Sequence[str]) -> None:
-    """The solution at the points is that of the numeric solver."""
+    """Refuse a solution that differs from that of the numeric solver at a point."""
     for a, b, mine in list(zip(*numbers, found, strict=True))[:_COMPARED]:
         exact = np.linalg.solve(a, b)
         if not np.abs(mine - exact).max() <= _EXACT * np.abs(exact).max():

@@ -37,7 +37,7 @@ class Declaration:
     kind: str  # parameter, input, output (both only at the top level) or variable
     unit: str  # empty where nothing is declared
     description: str
-    final: bool  # a final parameter, or a constant: nobody may set it
+    final: bool  # a final parameter or a constant, which cannot be set
     fixed: bool  # its start value is an initial condition
     binding: Expression | None
     start: Expression | None
@@ -49,7 +49,7 @@ class Declaration:
 
     @property
     def port(self) -> str:
-        """Name of the whole: of the array it is an element of, or its own."""
+        """Name of the array of which this is an element; for a scalar its own name."""
         return self.base or self.name
 
     @property
@@ -62,7 +62,7 @@ class Declaration:
 class Equation:
     """One equation, residual = 0."""
 
-    component: str  # it stands in; empty for the class itself
+    component: str  # the component in which it stands; empty for the class itself
     residual: Expression
 
 
@@ -93,7 +93,7 @@ def flatten(package: Path, name: str) -> Flat:
         model = rumoca.Session().load(str(file), model=name)
         doc = json.loads(model.to_json("flat", pretty=False))
     except BaseException as error:
-        # A panic of rumoca's compiler (for some wrong models) is no Exception.
+        # A panic of rumoca's compiler, which some wrong models cause, is no Exception.
         if isinstance(error, rumoca.RumocaError) or type(error).__name__ == "PanicException":
             raise ValueError(_reason(file, error)) from None
         raise
@@ -170,13 +170,13 @@ def _tag(value: Any) -> str:
 
 
 def _written_out(loop: dict[str, Any]) -> bool:
-    """Whether all equations of a for-equation are there; of some kinds only the first two are."""
+    """Whether rumoca gives all equations of a for-equation; of some kinds it gives two only."""
     points = math.prod(b["upper"] - b["lower"] + 1 for b in loop["domain"]["binders"])
     return loop["interiors_materialized"] or points <= 2
 
 
 def _element(v: dict[str, Any], elements: Elements, index: Index) -> dict[str, Any]:
-    """A variable as one element of it would be declared."""
+    """The declaration of one element of a variable."""
     keys = [k for k in ("binding", "start", "min", "max", "nominal") if v[k] is not None]
     return {**v, **{k: elements.pick(v[k], index) for k in keys}, "index": index}
 

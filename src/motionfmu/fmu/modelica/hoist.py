@@ -1,25 +1,25 @@
-"""Take out of a program what stays constant during a run."""
+"""Separate the operations of a program whose results stay constant during a run."""
 
 from dataclasses import dataclass
 
 import casadi as ca
 
-from motionfmu.fmu.modelica.nodes import Node, Program
+from motionfmu.fmu.modelica.nodes import Node, Operations
 
 
 @dataclass(frozen=True)
 class Split:
     """A program in two parts."""
 
-    early: Program  # all operations; only what `constants` needs is to be computed, once
+    early: Operations  # all operations; only what `constants` needs is to be computed, once
     # nodes of `early`, and whether the inverse is meant: a division by a constant becomes a
     # multiplication
     constants: tuple[tuple[int, bool], ...]
-    late: Program  # the rest; constant k is its input (group, k)
+    late: Operations  # all other operations; constant k is input (group, k) of them
     group: int  # argument position that stands for the constants in `late`
 
 
-def split(early: Program, varying: set[int], group: int) -> Split:
+def split(early: Operations, varying: set[int], group: int) -> Split:
     """Split a program by which arguments vary during a run; the constants get position `group`."""
     moving = early.depends(varying)
     places: dict[tuple[int, bool], int] = {}
@@ -49,4 +49,4 @@ def split(early: Program, varying: set[int], group: int) -> Split:
         late.append(node)
         at[k, False] = len(late) - 1
     results = tuple(tuple(fetch(k) for k in result) for result in early.results)
-    return Split(early, tuple(places), Program(tuple(late), results), group)
+    return Split(early, tuple(places), Operations(tuple(late), results), group)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-# Operations that jump, or select, where an operand crosses something: their derivative hides it.
+# Operations that jump or switch where an operand crosses a value, which their derivative hides.
 STEPS = frozenset(
     {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_SIGN, ca.OP_FLOOR, ca.OP_CEIL, ca.OP_NOT}
     | {ca.OP_AND, ca.OP_OR}
@@ -17,12 +17,12 @@ class Node:
 
     op: int  # CasADi's operation code
     args: tuple[int, ...] = ()  # positions of the operands in the list
-    value: float = 0.0  # of a constant
-    input: tuple[int, int] = (-1, -1)  # argument and element, of an input
+    value: float = 0.0  # value of a constant
+    input: tuple[int, int] = (-1, -1)  # argument and element of an input
 
 
 @dataclass(frozen=True)
-class Program:
+class Operations:
     """All operations of a function."""
 
     nodes: tuple[Node, ...]
@@ -38,8 +38,8 @@ class Program:
         return found
 
 
-def program(arguments: list[ca.SX], results: list[ca.SX]) -> Program:
-    """List the operations that compute expressions of columns of symbols, and of these only."""
+def program(arguments: list[ca.SX], results: list[ca.SX]) -> Operations:
+    """List the operations that compute these expressions of columns of symbols, and no others."""
     f = ca.Function("f", arguments, [ca.densify(r) for r in results], {"cse": True})
     nodes: list[Node] = []
     register: dict[int, int] = {}  # the function reuses registers; each node stays
@@ -61,7 +61,7 @@ def program(arguments: list[ca.SX], results: list[ca.SX]) -> Program:
             node = Node(op, tuple(register[s] for s in source))
         register[target[0]] = len(nodes)
         nodes.append(node)
-    return Program(tuple(nodes), tuple(map(tuple, outputs)))
+    return Operations(tuple(nodes), tuple(map(tuple, outputs)))
 
 
 def steps_on(expression: ca.SX, variables: ca.SX) -> bool:

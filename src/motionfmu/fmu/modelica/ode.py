@@ -13,7 +13,7 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Ode:
-    """The one model: dx/dt = xdot(x, u, p), y = y(x, u, p)."""
+    """The model of a class for C text and linear models alike: xdot(x, u, p) and y(x, u, p)."""
 
     name: str  # of the class
     description: str

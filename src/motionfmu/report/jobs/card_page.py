@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from matplotlib.colors import to_hex
 
-from motionfmu.cards.figures import speeds
 from motionfmu.cards.plan import DRAWS, Plan
-from motionfmu.cards.plt import Drawing
+from motionfmu.cards.plan_figures import speeds
+from motionfmu.cards.plt import PltDrawing
 from motionfmu.report.jobs.card_pictures import MOST, SPEEDS
 from motionfmu.report.packed import packed
 from motionfmu.report.samples import Samples, sampled
@@ -23,7 +23,7 @@ FOOTER = (
 )
 
 
-def plan_page(name: str, plan: Plan, drawing: Drawing, numbers: dict[str, Any]) -> str:
+def plan_page(name: str, plan: Plan, drawing: PltDrawing, numbers: dict[str, Any]) -> str:
     """The whole HTML page."""
     page = Sheet()
     n = numbers

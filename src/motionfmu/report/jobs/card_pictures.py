@@ -12,10 +12,10 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from motionfmu.base.errors import InputError
-from motionfmu.cards.figures import speeds
 from motionfmu.cards.job import Job
 from motionfmu.cards.plan import DRAWS, Plan
-from motionfmu.cards.plt import Drawing
+from motionfmu.cards.plan_figures import speeds
+from motionfmu.cards.plt import PltDrawing
 from motionfmu.report.pictures import PLAIN, STABLE
 from motionfmu.report.style import AXES, GRID, HEAT, MUTED, RAPID
 
@@ -54,7 +54,7 @@ def _lines(axes: Any, parts: list[np.ndarray], **look: Any) -> None:
     axes.autoscale_view()
 
 
-def draw_drawing(drawing: Drawing, title: str, file: Path) -> None:
+def draw_drawing(drawing: PltDrawing, title: str, file: Path) -> None:
     """Draw the layers of a PLT file; moves with the pen up are dotted."""
     with _sheet(file, title, 1) as (path,):
         up = [p.points for p in drawing.lines if not p.down and len(p.points) > 1]

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.analysis.freq.study import LoopStudy
+from motionfmu.analysis.freq.loop_study import LoopStudy
 from motionfmu.analysis.linear import AxisModel, LoopGain, gain_of
 from motionfmu.analysis.linear.gains import in_lines, in_words
 from motionfmu.analysis.linear.loops import Limit
-from motionfmu.analysis.linear.opened import held, worst
+from motionfmu.analysis.linear.tuning_parts import held, worst
 from motionfmu.report.numbers import figure
 from motionfmu.report.servo.margin_plots import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.sheet import Frame, Sheet

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.analysis.freq.study import LoopStudy
+from motionfmu.analysis.freq.loop_study import LoopStudy
 from motionfmu.analysis.linear.stability import closed_poles, grid, response
 from motionfmu.report.packed import packed
 from motionfmu.report.samples import Samples, sampled

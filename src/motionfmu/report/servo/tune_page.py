@@ -15,9 +15,9 @@ from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.style import AXES, RAPID, axis, layout
 from motionfmu.report.tables import RMS, cards, overrides, table
 from motionfmu.study.tune.problem import ON_PATH
-from motionfmu.study.tune.result import Run, Tuned
 from motionfmu.study.tune.trial import Trial
-from motionfmu.study.tune.words import assumptions, plant_text, units_of
+from motionfmu.study.tune.tuning_result import Tuned, TuningRun
+from motionfmu.study.tune.tuning_words import assumptions, plant_text, units_of
 
 BEFORE, AFTER = RAPID, AXES[0]
 _STEPS = 600
@@ -130,7 +130,7 @@ def _runs(tuned: Tuned) -> str:
 
 
 def _errors(tuned: Tuned) -> dict[str, Any]:
-    runs: Sequence[tuple[str, Run, str]] = (
+    runs: Sequence[tuple[str, TuningRun, str]] = (
         ("before", tuned.before[0], BEFORE),
         ("after", tuned.after[0], AFTER),
     )

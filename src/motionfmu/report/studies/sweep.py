@@ -32,7 +32,7 @@ from motionfmu.report.style import AXES, COLORSCALE, INK, MUTED, axis, layout
 from motionfmu.report.tables import cards, picture_links, table
 
 if TYPE_CHECKING:
-    from motionfmu.study.outcome import Outcome
+    from motionfmu.study.study_outcome import Outcome
 
 Figure = dict[str, Any]
 

@@ -13,8 +13,8 @@ from motionfmu.report.numbers import label
 from motionfmu.report.numbers import unit as length_unit
 
 if TYPE_CHECKING:
-    from motionfmu.study.axes import Value
-    from motionfmu.study.outcome import Outcome
+    from motionfmu.study.study_axes import Value
+    from motionfmu.study.study_outcome import Outcome
 
 Array = NDArray[np.float64]
 

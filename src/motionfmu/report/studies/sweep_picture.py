@@ -26,7 +26,7 @@ from motionfmu.report.studies.sweep_field import (
 from motionfmu.report.style import AXES, GRID, HEAT, INK, MUTED
 
 if TYPE_CHECKING:
-    from motionfmu.study.outcome import Outcome
+    from motionfmu.study.study_outcome import Outcome
 
 DPI = 110
 SIDE = 2.1  # [inch] of a cell of a scatter matrix

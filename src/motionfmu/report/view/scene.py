@@ -10,7 +10,7 @@ from motionfmu.analysis.iso9283.simplify import simplified
 from motionfmu.base import units
 from motionfmu.report.view.arm import Arm
 from motionfmu.run.decimate import Read, at, ends, reader
-from motionfmu.run.recorded import Recorded
+from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios.system import Resolver
 from motionfmu.scenarios.view_signals import JOINTS
 
@@ -49,7 +49,7 @@ class Scene:
     lines: tuple[Line, ...] = ()
 
 
-def scene_of(run: Recorded, lines: Sequence[Line] = ()) -> Scene | None:
+def scene_of(run: RunRecord, lines: Sequence[Line] = ()) -> Scene | None:
     """The moving picture of a run; None where nothing moves that it could show."""
     view = run.resolver.document.body.view
     name = tool_signal(run)
@@ -78,13 +78,13 @@ def scene_of(run: Recorded, lines: Sequence[Line] = ()) -> Scene | None:
     )
 
 
-def position(run: Recorded, name: str) -> Read:
+def position(run: RunRecord, name: str) -> Read:
     """A recorded position in mm, block by block."""
     read = reader(run[name])
     return lambda first, last: millimetres(run.resolver, name, read(first, last))
 
 
-def tool_signal(run: Recorded) -> str | None:
+def tool_signal(run: RunRecord) -> str | None:
     """The signal that is the tool's position; None if there is none."""
     body = run.resolver.document.body
     if body.view.tool:
@@ -100,7 +100,7 @@ def tool_signal(run: Recorded) -> str | None:
     return body.contour.position if body.contour else None
 
 
-def joint_signal(run: Recorded, tool: str) -> str | None:
+def joint_signal(run: RunRecord, tool: str) -> str | None:
     """The recorded signal of six joint angles: named, or the tool's own component has it."""
     named = run.resolver.document.body.view.joints
     name = named or f"{tool.partition('.')[0]}.{JOINTS}"
@@ -108,7 +108,7 @@ def joint_signal(run: Recorded, tool: str) -> str | None:
     return name if there else None
 
 
-def arm_of(run: Recorded, joints: str) -> Arm | None:
+def arm_of(run: RunRecord, joints: str) -> Arm | None:
     """The arm's lengths: of [view], or parameters of the component that shows the joint angles."""
     view = run.resolver.document.body.view
     if view.lengths is not None:

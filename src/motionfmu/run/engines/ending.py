@@ -4,16 +4,16 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
 from typing import Any
 
-from motionfmu.run.engines.job import Ran
-from motionfmu.run.engines.scoped import Scoped
+from motionfmu.run.engines.engine_job import EngineResult
+from motionfmu.run.engines.scopes import ScopeSystem
 from motionfmu.scenarios.system import System
 
-# Calls of the progress in a run.
+# A run calls its progress so many times.
 SHARES = 100
 
 
 def shares(system: System, due: Iterable[int], most: int) -> Iterator[tuple[int, int]]:
-    """Points from which to which a run goes in one call: to inputs that are due, few steps else."""
+    """Parts of a run, each driven by one call: from and to which step; inputs are due between."""
     part = min(max(1, system.steps // SHARES), most)
     cuts = {*range(0, system.steps, part), *(k for k in due if k < system.steps)}
     return pairwise([*sorted(cuts), system.steps])
@@ -22,7 +22,7 @@ def shares(system: System, due: Iterable[int], most: int) -> Iterator[tuple[int,
 class Ending:
     """Ends a run behind the first communication point at which a signal is not 0.
 
-    `read` fills `values`, the signal's elements; both are of the engine.
+    The engine's `read` fills its array `values` with the signal's elements.
     """
 
     def __init__(
@@ -33,12 +33,12 @@ class Ending:
         self.steps = system.steps
         self.signal: int | None = None
 
-    def ran(self, engine: str, scopes: Scoped, warnings: list[str]) -> Ran:
-        """What is told at the end."""
-        return Ran(engine, scopes.signals(), warnings, self.steps, self.signal)
+    def ran(self, engine: str, scopes: ScopeSystem, warnings: list[str]) -> EngineResult:
+        """The result of a run that has ended."""
+        return EngineResult(engine, scopes.signals(), warnings, self.steps, self.signal)
 
     def points(self, progress: Callable[[float], None]) -> Iterator[int]:
-        """Communication points from which a step is to be made, one after the other."""
+        """The communication points of the run, one after the other, each before its step."""
         part, element, k = max(1, self.steps // SHARES), 0, 0
         if self._until is not None and self._until.element is not None:
             element = self._until.element

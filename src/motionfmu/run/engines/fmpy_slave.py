@@ -8,8 +8,8 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions
 from fmpy.fmi3 import FMU3Slave
 
-from motionfmu.run.engines.job import Job
-from motionfmu.run.engines.library import Library, Log, Refused, Told, read
+from motionfmu.run.engines.engine_job import EngineJob
+from motionfmu.run.engines.fmu_library import BindingLog, FmuRefusal, Library, Log, read
 from motionfmu.run.engines.reference import Master
 from motionfmu.run.engines.slave import Slave
 
@@ -23,8 +23,9 @@ class FmpyLibrary(Library):
         self._slave: Any = None
 
     def function(self, name: str) -> Any:
-        """A function of the standard as FMPy's slave has it; its exception becomes a status."""
-        # Not getFloat64() and its like, which make lists and arrays anew: five times the time.
+        """A function of the standard, called through FMPy; its exception becomes a status."""
+        # getFloat64() and its like are not used: they make new lists and arrays, which takes five
+        # times as long.
         method = getattr(self._slave, f"fmi{self.fmi}{name}")
 
         def call(*arguments: Any) -> Any:
@@ -38,9 +39,9 @@ class FmpyLibrary(Library):
     def instantiate(
         self, name: str, token: str, resources: Path, log: Log, everything: bool = False
     ) -> None:
-        """Make the instance, in the place of one before; it tells errors, or everything."""
+        """Make a new instance in the place of an older one; it logs errors, or everything."""
         self.release()
-        # FMU3Slave finds the library by itself; FMU2Slave knows no folder of another processor.
+        # FMU3Slave finds the library by itself; FMU2Slave does not know every processor's folder.
         self._slave = (FMU3Slave if self.fmi == 3 else FMU2Slave)(
             guid=token,
             modelIdentifier=self._file.stem,
@@ -52,8 +53,8 @@ class FmpyLibrary(Library):
         if self.fmi == 3:
             given["logMessage"] = lambda _, status, __, text: log(status, read(text))
         else:
-            # FMPy's own logger of FMI 2 is one for the process: it cannot tell whose message it is.
-            self._log = Told.to(log)
+            # FMPy has one logger of FMI 2 for the process, which cannot say whose message it is.
+            self._log = BindingLog.to(log)
             given["callbacks"] = fmi2CallbackFunctions.from_buffer(self._log.callbacks())
         try:
             self._slave.instantiate(**given)
@@ -62,7 +63,7 @@ class FmpyLibrary(Library):
                 raise
             self._slave.freeLibrary()
             self._slave = None
-            raise Refused("instantiate") from None
+            raise FmuRefusal("instantiate") from None
         self.instance = c_void_p(self._slave.component)
 
     def release(self) -> None:
@@ -82,6 +83,6 @@ class FmpySlave(Slave):
     loads = FmpyLibrary
 
 
-def opened(job: Job) -> Master:
-    """Plan a job."""
+def opened(job: EngineJob) -> Master:
+    """Make the engine of a job."""
     return Master(job, "fmpy", FmpySlave)

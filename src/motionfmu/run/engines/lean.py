@@ -1,4 +1,4 @@
-"""FMUs with only what runs: most of an FMU's files are its C sources."""
+"""FMUs reduced to what a run needs: most of an FMU's files are its C sources."""
 
 import _ctypes
 import ctypes
@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 from motionfmu.base.compiler import compiler
 from motionfmu.base.errors import InputError
 from motionfmu.fused import layer
-from motionfmu.run.engines.messages import ERROR
+from motionfmu.run.engines.fmu_messages import ERROR
 from motionfmu.scenarios import fmus
 
 _FUNCTION = re.compile(r"^#define (fmi[23]\w+) +fmi[23]FullName", re.MULTILINE)
@@ -24,12 +24,12 @@ _UNUSED = ("sources/", "documentation/", "extra/", "terminalsAndIcons/", "model.
 
 
 def unpacked(name: str, fmi: int) -> Path:
-    """A folder that holds an FMU, unpacked once for all runs of this process."""
+    """The folder of an unpacked FMU, which all runs of this process share."""
     return _made(*_state(name, fmi))[0]
 
 
 def packed(name: str, fmi: int) -> Path:
-    """An archive of it, not compressed."""
+    """An uncompressed archive of the reduced FMU."""
     return _made(*_state(name, fmi))[1]
 
 
@@ -59,9 +59,10 @@ def _made(source: Path, foreign: str, fmi: int, *state: int) -> tuple[Path, Path
 
 
 def _simplify(description: Path) -> None:
-    """Take out what the container would use and no run here has, or what it refuses.
+    """Take out of a description what the container would use though no run has it, or refuses.
 
-    It enters event mode where an FMU has one; arrays get the sizes that structural parameters say.
+    It would enter event mode if an FMU has one. Arrays get the sizes that structural parameters
+    give.
     """
     tree = ElementTree.parse(description)
     starts = {
@@ -76,9 +77,9 @@ def _simplify(description: Path) -> None:
 
 
 def _complete(source: Path, library: Path, fmi: int) -> None:
-    """Put a library with all functions in the place of one that lacks some: masters want each.
+    """Put a library with all functions in the place of one that lacks some, for masters want all.
 
-    It depends on the one that was there; what that lacks answers with an error.
+    The new library calls the old one; functions that the old one lacks return an error.
     """
     loaded = ctypes.CDLL(str(library))
     header = (layer.folders()[-1] / f"fmi{fmi}Functions.h").read_text(encoding="utf-8")

@@ -14,8 +14,8 @@ from fmu_manipulation_toolbox.container import FMUContainer
 
 from motionfmu.run.engines import lean
 from motionfmu.run.engines.ending import shares
-from motionfmu.run.engines.job import Job, Progress, Ran
-from motionfmu.run.engines.scoped import Scoped
+from motionfmu.run.engines.engine_job import EngineJob, EngineResult, Progress
+from motionfmu.run.engines.scopes import ScopeSystem
 from motionfmu.run.engines.slave import Slave, ending_of, exposed
 from motionfmu.scenarios.system import End, Setting, Stimulus, System
 
@@ -23,10 +23,10 @@ IDENTIFIER = "system"
 
 
 class _Folder(FMUContainer):
-    """A container that stays a folder: it is run here, so nobody needs its archive."""
+    """A container that stays a folder; it runs on this machine only, so no archive is made."""
 
     def make_fmu_package(self, base_directory: Path, fmu_filename: Path) -> None:
-        """Do nothing; the base class compresses everything."""
+        """Do nothing, where the base class would compress everything."""
 
 
 def build(system: System, fmi: int, folder: Path) -> Path:
@@ -36,7 +36,7 @@ def build(system: System, fmi: int, folder: Path) -> Path:
     start values cannot carry arrays of Boolean nor text with spaces.
     """
     log = logging.getLogger("fmu_manipulation_toolbox")
-    before, log.disabled = log.disabled, True  # it warns of every output that nothing reads
+    before, log.disabled = log.disabled, True  # the log warns of every output that nothing reads
     try:
         container = _Folder(IDENTIFIER, folder, fmi_version=outer(system, fmi))
         container.start_time, container.stop_time = 0.0, system.steps * system.step_ns * 1e-9
@@ -66,7 +66,7 @@ def build(system: System, fmi: int, folder: Path) -> Path:
 
 
 def outer(system: System, fmi: int) -> int:
-    """FMI version of a container: 2 has no place for all types of 3."""
+    """FMI version of a container; FMI 2 lacks some types of FMI 3."""
     return max(system.version(component, fmi) for component in system.components)
 
 
@@ -82,11 +82,11 @@ def _give(slave: Slave, end: End, values: tuple[Any, ...], fmi: int) -> None:
 class Container:
     """A system as a container FMU, built once, run many times.
 
-    The system's settings say what can be set in a run.
+    A run can set the variables that the system's settings name.
     """
 
-    def __init__(self, job: Job) -> None:
-        self._scopes, self._fmi = Scoped(job), job.fmi
+    def __init__(self, job: EngineJob) -> None:
+        self._scopes, self._fmi = ScopeSystem(job), job.fmi
         self._folder = tempfile.TemporaryDirectory(prefix="motionfmu-")
         try:
             built = build(self._scopes.system, job.fmi, Path(self._folder.name))
@@ -96,7 +96,7 @@ class Container:
             raise
         self._used = False
 
-    def run(self, system: System, progress: Progress) -> Ran:
+    def run(self, system: System, progress: Progress) -> EngineResult:
         """Run from the start."""
         slave, system = self._slave, self._scopes.of(system)
         if self._used:
@@ -141,6 +141,6 @@ class Container:
             self._folder.cleanup()
 
 
-def opened(job: Job) -> Container:
+def opened(job: EngineJob) -> Container:
     """Build the container of a job."""
     return Container(job)

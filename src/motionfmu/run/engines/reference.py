@@ -8,8 +8,8 @@ from contextlib import ExitStack
 
 from motionfmu.run.engines import lean
 from motionfmu.run.engines.ending import Ending
-from motionfmu.run.engines.job import Job, Progress, Ran
-from motionfmu.run.engines.scoped import Scoped
+from motionfmu.run.engines.engine_job import EngineJob, EngineResult, Progress
+from motionfmu.run.engines.scopes import ScopeSystem
 from motionfmu.run.engines.slave import Slave
 from motionfmu.scenarios.system import System, Wire
 
@@ -53,11 +53,11 @@ def _ending(slaves: dict[str, Slave], system: System) -> Ending:
 class Master:
     """FMUs of their own for each run, one Python call per value."""
 
-    def __init__(self, job: Job, engine: str, make: type[Slave]) -> None:
-        self._fmi, self._scopes = job.fmi, Scoped(job)
+    def __init__(self, job: EngineJob, engine: str, make: type[Slave]) -> None:
+        self._fmi, self._scopes = job.fmi, ScopeSystem(job)
         self._engine, self._make = engine, make
 
-    def run(self, system: System, progress: Progress) -> Ran:
+    def run(self, system: System, progress: Progress) -> EngineResult:
         """Run from the start."""
         system, messages = self._scopes.of(system), list[str]()
         with ExitStack() as stack:
@@ -72,7 +72,7 @@ class Master:
             for slave in slaves.values():
                 slave.initialize()
             wires = [_wire(slaves, w) for w in system.wires]
-            _exchange(wires)  # a foreign FMU may show at once what it is given
+            _exchange(wires)  # an output of a foreign FMU may follow its inputs at once
             for slave in slaves.values():
                 slave.start()
             due = system.due()
@@ -91,9 +91,9 @@ class Master:
             return ending.ran(self._engine, self._scopes, told)
 
     def close(self) -> None:
-        """Nothing is held between runs."""
+        """Do nothing: no instance lives between two runs."""
 
 
-def opened(job: Job) -> Master:
+def opened(job: EngineJob) -> Master:
     """Plan a job."""
     return Master(job, "python", Slave)

@@ -13,9 +13,9 @@ from xml.etree import ElementTree
 from motionfmu.base.errors import InputError
 from motionfmu.base.platforms import here
 from motionfmu.fmu import describe
-from motionfmu.run.engines import messages
+from motionfmu.run.engines import fmu_messages
 from motionfmu.run.engines.ending import Ending
-from motionfmu.run.engines.library import Library, Refused, Variable
+from motionfmu.run.engines.fmu_library import FmuRefusal, Library, ValuePlace
 from motionfmu.scenarios.system import End, System
 
 # fmucontainer puts "mcc.fmu: " before the message of a component, which may name itself again.
@@ -35,9 +35,9 @@ def exposed(end: End, fmi: int) -> list[str]:
 class Slave:
     """A co-simulation FMU of either version, from an .fmu or a folder that holds an unpacked one.
 
-    `errors` receives what the FMU logs with a status of Error or worse; `warnings` holds what it
-    or the FMUs inside warned of, each once, as ``component: what``; without `logging`
-    there are errors only.
+    `errors` receives messages of the FMU with status Error or worse. `warnings` holds its warnings,
+    and those of FMUs inside it, each once, as ``component: what``. Without `logging` there are
+    errors only.
     """
 
     loads = Library
@@ -70,41 +70,41 @@ class Slave:
             self._library.instantiate(self.name, self._token, place, self._log, self._logging)
 
     def _log(self, status: int, told: str) -> None:
-        if self.fmi == 2 and messages.unnamed(told) and ".fmu: " not in told:
+        if self.fmi == 2 and fmu_messages.unnamed(told) and ".fmu: " not in told:
             told = f"{self.name}: {told}"
         self._keep(status, told)
 
     def _keep(self, status: int, message: str) -> None:
-        """Keep an error or a warning; one from inside a container gets its component's name."""
-        if status >= messages.WARNING:
+        """Keep an error or a warning; one from inside a container is named by its component."""
+        if status >= fmu_messages.WARNING:
             text = _INNER.sub(r"\1: ", message.strip())
-            messages.keep(status, text, self.errors, self.warnings)
+            fmu_messages.keep(status, text, self.errors, self.warnings)
 
     @contextlib.contextmanager
     def _told(self) -> Iterator[None]:
-        """What the library refuses becomes the FMU's own message."""
+        """Raise the FMU's own message in place of the library's refusal."""
         try:
             yield
-        except Refused as refused:
+        except FmuRefusal as refused:
             raise self._failure(str(refused)) from None
 
     def _failure(self, call: str) -> InputError:
-        """The error for a call that failed: what the first component to tell one says."""
-        return messages.failure(self.name, call, self.errors)
+        """The error for a call that failed: the message of the first component that gave one."""
+        return fmu_messages.failure(self.name, call, self.errors)
 
     def _telling(self, call: Callable[..., None]) -> Callable[..., None]:
-        """The same function, with `_told`; a context would take longer than the call."""
+        """The function with the effect of `_told`, whose context takes longer than the call."""
 
         def run(*arguments: Any) -> None:
             try:
                 call(*arguments)
-            except Refused as refused:
+            except FmuRefusal as refused:
                 raise self._failure(str(refused)) from None
 
         return run
 
     def buffer(self, kind: str, count: int) -> Any:
-        """Memory for values of a number, as the FMU has them."""
+        """Memory for values of a numeric type, laid out as the FMU has them."""
         return self._library.buffer(kind, count)
 
     def access(self, verb: str, kind: str, reference: int, buffer: Any, *further: int) -> Any:
@@ -114,14 +114,14 @@ class Slave:
         buffer may hold the values of further variables, one after the other.
         """
         count = 1 if further else len(buffer)
-        several = [Variable(kind, r, count) for r in (reference, *further)]
+        several = [ValuePlace(kind, r, count) for r in (reference, *further)]
         return self._telling(self._library.access(verb, several, buffer))
 
     def assign(self, kind: str, reference: int, values: Iterable[Any]) -> None:
         """Set a variable of any kind, by its first reference, once."""
         listed = list(values)
         with self._told():
-            self._library.set([(Variable(kind, reference, len(listed)), listed)])
+            self._library.set([(ValuePlace(kind, reference, len(listed)), listed)])
 
     def initialize(self) -> None:
         """Enter Initialization Mode at time 0."""
@@ -163,7 +163,7 @@ class Slave:
 
 
 def ending_of(container: Slave, system: System, fmi: int) -> Ending:
-    """Where a container's run ends; the signal is one of its outputs. `fmi` is that of our FMUs."""
+    """The `Ending` of a container's run: the signal is an output of it. Our FMUs have `fmi`."""
     if system.until is None:
         return Ending(system)
     end = system.until.end

@@ -1,4 +1,4 @@
-"""What a tuning takes from the scenario where the user says nothing."""
+"""Choices of a tuning for which the user gives nothing: gains, signals, bounds, speed."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,31 +10,31 @@ import numpy as np
 from motionfmu.analysis.linear import law
 from motionfmu.analysis.linear.axis import AxisModel
 from motionfmu.analysis.linear.block import Plant, Sampled, nonzero, reaches
-from motionfmu.analysis.linear.form import Gain
-from motionfmu.analysis.linear.opened import limit, linearised, listed, matrices
+from motionfmu.analysis.linear.linear_form import Gain
+from motionfmu.analysis.linear.tuning_parts import limit, linearised, listed, matrices
 from motionfmu.base.errors import InputError
 from motionfmu.base.units import parse
 from motionfmu.run import Result, Scenario
-from motionfmu.study.tune.axis import Signals
+from motionfmu.study.tune.axis_study import Signals
 from motionfmu.study.tune.problem import Problem
 
 # Without bounds a gain may become this many times as large or as small.
 SPAN = 20.0
-# An output shows a command not more periods late than this.
+# An output that shows a command is so many periods late at most.
 _LATE_MAX = 8
 
 
 @dataclass(frozen=True)
-class Variable:
-    """One number that is looked for."""
+class DecisionVariable:
+    """A number that the tuning searches: a parameter of one axis, or of several alike."""
 
     name: str  # component.variable
-    axes: tuple[int, ...]  # that have it, from 1
+    axes: tuple[int, ...]  # the axes that have it, from 1
     low: float
     high: float
     start: float  # present value
     whole: bool  # a register of whole numbers
-    own: tuple[bool, bool] = (False, False)  # each bound is the parameter's own, not the search's
+    own: tuple[bool, bool] = (False, False)  # whether each bound is the parameter's own limit
 
     @property
     def title(self) -> str:
@@ -42,7 +42,7 @@ class Variable:
         return f"{self.name}[{','.join(map(str, self.axes))}]"
 
     def value(self, z: float) -> float:
-        """Value at a share 0 to 1 of the range: logarithmic if all is > 0."""
+        """Value at a share, 0 to 1, of the range; logarithmic if both bounds are above 0."""
         if self.low > 0.0:
             return float(self.low * (self.high / self.low) ** z)
         return self.low + (self.high - self.low) * z
@@ -76,7 +76,7 @@ def _moves(axis: AxisModel, name: str) -> bool:
 
 
 def gains(axis: AxisModel, problem: Problem) -> list[str]:
-    """Gains that are looked for, each of which must change something."""
+    """Gains that the tuning searches; one on which the model does not depend is refused."""
     if problem.gains is not None:
         for name in problem.gains:
             if not _moves(axis, name):
@@ -96,8 +96,8 @@ def gains(axis: AxisModel, problem: Problem) -> list[str]:
 
 
 def signals(axis: AxisModel, problem: Problem) -> tuple[Signals, dict[str, float]]:
-    """What is commanded, judged and limited, with limits by output."""
-    # Limits are those of the FMUs and, stronger, those of the problem.
+    """The signals that are commanded, judged and limited, and the limits by output."""
+    # The problem's limits are stronger than those of the FMUs.
     document = axis.scenario.document
     if problem.command is not None and problem.position is not None:
         command, position = _followed(axis, problem.command), problem.position
@@ -178,7 +178,7 @@ def _acts(axis: AxisModel, component: str, name: str) -> bool:
 
 def operating_point(axis: AxisModel, base: Result) -> dict[str, float]:
     """Mean feed of a run, as a speed output of the plant."""
-    # Empty if the plant shows none, or is linear.
+    # It is empty if the plant has no speed output, for a linear plant needs no operating point.
     contour = axis.scenario.document.body.contour
     assert contour is not None
     if not (speed := speed_output(axis, contour.position)):
@@ -208,8 +208,10 @@ def speed_output(axis: AxisModel, position: str) -> str:
     return f"{component}.{outputs[speeds[0]]}" if speeds else ""
 
 
-def variables(axes: Mapping[int, AxisModel], names: list[str], problem: Problem) -> list[Variable]:
-    """The numbers that are looked for, within bounds that are right."""
+def variables(
+    axes: Mapping[int, AxisModel], names: list[str], problem: Problem
+) -> list[DecisionVariable]:
+    """The numbers that the tuning searches, with their bounds, which are checked."""
     scenario = next(iter(axes.values())).scenario
     for name in problem.bounds:
         if name not in names:
@@ -228,7 +230,7 @@ def _port(scenario: Scenario, name: str) -> Any:
 
 def _variable(
     axes: Mapping[int, AxisModel], name: str, group: tuple[int, ...], problem: Problem
-) -> Variable:
+) -> DecisionVariable:
     port = _port(axes[group[0]].scenario, name)
     start = float(axes[group[0]].value(name))
     whole = port.type == "Int32"
@@ -245,4 +247,6 @@ def _variable(
     else:
         raise InputError(f"bounds: {name} = {start:g} at present, so give its bounds")
     own = low == port.low, high == port.high
-    return Variable(name, group, float(low), float(high), min(max(start, low), high), whole, own)
+    return DecisionVariable(
+        name, group, float(low), float(high), min(max(start, low), high), whole, own
+    )

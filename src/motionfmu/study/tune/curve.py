@@ -1,4 +1,4 @@
-"""Margins of a loop, with their derivatives to the gains."""
+"""Stability margins of a loop, with their derivatives to the gains."""
 
 import functools
 from collections.abc import Callable
@@ -10,13 +10,13 @@ from scipy.linalg import matrix_balance, schur
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-# Frequencies looked at, as shares of half the sampling rate, and between two of them.
+# Frequencies as shares of half the sampling rate, and points of a finer grid between two of them.
 _GRID, _BETWEEN = np.geomspace(1e-4, 1.0, 240), np.linspace(0.0, 1.0, 13)
-# Points about each frequency at which the open or the closed loop rings.
+# Additional points about each frequency at which the open or the closed loop rings.
 _ABOUT = np.array([-2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0])
-# Steps to a crossing at most, and the share of it at which it is found.
+# Most steps of the search of a crossing, and the relative width at which it ends.
 _STEPS, _DONE = 100, 1e-6
-# No crossing: the loop may be 1000 times as large or as small.
+# A loop without a crossing has these margins: a factor of 1000 up and down.
 FREE = np.log(1e3)
 
 
@@ -59,7 +59,7 @@ class Loop:
         return a, b, (self.c[0] * scale) @ turn
 
     def value(self, omega: Array) -> Complex:
-        """The loop alone, over many omega [rad/s]."""
+        """The loop without slopes, at many frequencies [rad/s]."""
         a, b, c = self._triangular
         z = np.exp(1j * omega * self.period)
         x = np.empty((len(a), len(z)), dtype=complex)
@@ -69,7 +69,7 @@ class Loop:
         return found
 
     def steep(self, omega: Array) -> tuple[Complex, Complex]:
-        """The loop and its slope over a few omega [rad/s]."""
+        """The loop and its slope at a few frequencies [rad/s]."""
         z = np.exp(1j * omega * self.period)
         inverse = np.linalg.inv(z[:, None, None] * np.eye(len(self.a)) - self.a)
         once = inverse @ self.b
@@ -77,7 +77,7 @@ class Loop:
         return (self.c @ once)[:, 0, 0] + self.d[0, 0], slope
 
     def grid(self) -> Array:
-        """Frequencies [rad/s] up to half the rate, denser where it rings."""
+        """Frequencies [rad/s] up to half the sampling rate, denser where the loop rings."""
         closed = self.a - self.b @ self.c / (1.0 + self.d[0, 0])
         poles = np.concatenate([np.diagonal(self._triangular[0]), np.linalg.eigvals(closed)])
         roots = np.log(poles[np.abs(poles) > 1e-6].astype(complex)) / self.period
@@ -137,9 +137,10 @@ def _roots(
     ends: tuple[Array, Array],
     at: tuple[Array, Array],
 ) -> Array:
-    """Roots of a function with its slope, each between two ends and what it is there.
+    """Roots of a function with its slope, each between two ends with the values there.
 
-    Newton's steps, where they stay inside and halve; else the bracket is halved.
+    A step is Newton's if it stays between the ends and halves their distance; else the interval is
+    halved.
     """
     low, high = (end.copy() for end in ends)
     w = np.clip(low - at[0] * (high - low) / (at[1] - at[0]), low, high)
@@ -150,7 +151,7 @@ def _roots(
         high[above], low[~above] = w[above], w[~above]
         with np.errstate(divide="ignore", invalid="ignore"):
             there = w - f / rate
-        near = np.abs(there - w) <= _DONE * w  # what is left of it is the square of this
+        near = np.abs(there - w) <= _DONE * w  # the error that is left is the square of this
         good = near | (there > low) & (there < high) & (np.abs(there - w) <= 0.5 * before)
         there = np.where(good, there, 0.5 * (low + high))
         before = np.abs(there - w)
@@ -161,7 +162,7 @@ def _roots(
 
 
 def _changes(function: Array) -> NDArray[np.intp]:
-    """Places after which the sign is another one."""
+    """Positions after which the sign changes."""
     return np.flatnonzero(np.signbit(function[:-1]) != np.signbit(function[1:]))
 
 

@@ -10,7 +10,7 @@ from motionfmu.analysis.linear.axis import AxisModel
 from motionfmu.base.errors import InputError
 from motionfmu.run import Result, Scenario
 from motionfmu.study.tune import choice
-from motionfmu.study.tune.axis import AxisStudy
+from motionfmu.study.tune.axis_study import AxisStudy
 from motionfmu.study.tune.problem import CONTOUR, Problem
 from motionfmu.study.tune.steps import Array
 
@@ -41,7 +41,7 @@ class Family:
         self.parts = [self._studies(plant, on_contour) for plant in self.plants]
 
     def _studies(self, plant: Mapping[str, float], bent: bool) -> dict[int, AxisStudy]:
-        """Studies of all axes with one plant; axes that are alike share one."""
+        """The studies of all axes with one plant; equal axes share one study."""
         found: dict[int, AxisStudy] = {}
         for k, axis in self.axes.items():
             like = [j for j in found if self.axes[j].alike(axis)]

@@ -1,4 +1,4 @@
-"""The position error of one axis on a scenario's own move."""
+"""Position error of one axis on the move of a scenario, as a cost of a tuning."""
 
 from collections.abc import Mapping
 
@@ -7,18 +7,18 @@ import numpy as np
 from motionfmu.base import units
 from motionfmu.base.errors import InputError
 from motionfmu.run import Result
-from motionfmu.study.tune.path import Measured, PathError
+from motionfmu.study.tune.path_error import PathError, RunPath
 from motionfmu.study.tune.steps import Array
 
-# The axis is judged as standing from so long after its command has come to rest [s].
+# The axis counts as standing from this time after the end of its command's motion on [s].
 SETTLED = 0.1
 
 
 class MoveCost:
-    """The move of one axis, from a run of its FMUs.
+    """The move of one axis, taken from a run of its FMUs.
 
-    Names are those of command and position; the period [s] is the linear model's; `shown` is the
-    position per command and after how many periods the FMU shows the command that it follows.
+    Names are those of command and position. The period [s] is that of the linear model. `shown` is
+    the ratio of position to command, and the delay in periods after which the FMU shows a command.
     """
 
     what = "position error"
@@ -60,22 +60,22 @@ class MoveCost:
         found: Array = changes @ slope[:, axis - 1] * self.factor
         return found
 
-    def measured(self, result: Result) -> Measured:
+    def measured(self, result: Result) -> RunPath:
         """Position error of a run."""
         position = np.asarray(result[self._names[1]], dtype=float).reshape(len(result.time), -1)
         command = self._command(result)
         error = (position[:, 0] - position[0, 0] - self._scale * command) * self.factor
         rms = float(np.sqrt(np.mean(error**2)))
-        return Measured(rms, float(np.abs(error).max()), result.time, error)
+        return RunPath(rms, float(np.abs(error).max()), result.time, error)
 
     def beyond(self, result: Result) -> float:
-        """Way past the ends of the command [mm]; 0 between them."""
+        """Largest overshoot past the ends of the command [mm]; 0 without one."""
         way = self._scale * self.factor * self._command(result)
         place = way + self.measured(result).values
         return max(float(place.max() - way.max()), float(way.min() - place.min()), 0.0)
 
     def standing(self, result: Result) -> float:
-        """RMS error [mm] while the axis is to stand, after a first motion."""
+        """RMS error [mm] while the axis should stand still, after its first motion."""
         command, time = self._command(result), result.time
         moves = np.flatnonzero(np.diff(command))
         latest = moves[np.maximum(np.searchsorted(moves, np.arange(len(time))) - 1, 0)]

@@ -1,4 +1,4 @@
-"""What a tuning is asked for: gains, cost, limits, family of plants."""
+"""The problem of a tuning: gains, cost, limits, family of plants."""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -14,18 +14,18 @@ from motionfmu.run import Scenario
 from motionfmu.scenarios.values import texts
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
-# Each has pairs of a least and a largest value by name.
+# Tables with a least and a largest value for each name.
 TABLES = ("bounds", "family", "trial")
-# More ranges than this have more corners than a tuning can look at.
+# A family of more ranges has too many corners for a tuning.
 RANGES_MAX = 4
 Cost = Literal["contour_rms", "contour_max", "error_rms", "error_max", "ise", "iae", "itae"]
 CONTOUR = ("contour_rms", "contour_max")
-# On the scenario's own way; the others after a step.
+# Costs on the scenario's own motion; the others are taken after a step.
 ON_PATH = (*CONTOUR, "error_rms", "error_max")
 
 
-class Margins(BaseModel):
-    """Least margins of a loop; what is not given is not asked for."""
+class MarginLimits(BaseModel):
+    """Least margins of a loop; a margin that is None is not limited."""
 
     model_config = _STRICT
     sensitivity: float | None = Field(default=None, gt=1.0)  # largest |1/(1 + L)|
@@ -34,12 +34,12 @@ class Margins(BaseModel):
     phase: float | None = Field(default=None, gt=0.0, lt=180.0)  # lag that it bears [deg]
 
 
-class Limits(BaseModel):
-    """What the gains must keep."""
+class TuningLimits(BaseModel):
+    """Limits that the gains must keep."""
 
     model_config = _STRICT
-    margins: Margins = Margins(sensitivity=1.5, gain=3.0, phase=45.0)  # of every loop
-    loop: dict[str, Margins] = Field(default_factory=dict)  # of one loop instead, by its input
+    margins: MarginLimits = MarginLimits(sensitivity=1.5, gain=3.0, phase=45.0)  # of every loop
+    loop: dict[str, MarginLimits] = Field(default_factory=dict)  # of one loop instead, by its input
     overshoot: float | None = Field(default=0.05, ge=0.0)  # after a step, share of it
     # Slowest time constant of the closed loop [s]: with it the effect of a load dies away.
     recovery: float | None = Field(default=0.05, gt=0.0)
@@ -70,7 +70,7 @@ class Problem(BaseModel):
         FMUs with the gains found.
     bounds : dict
         Least and largest value by gain; else a 20th and 20 times the present one.
-    limits : Limits
+    limits : TuningLimits
     family : dict
         Least and largest value of plant parameters: all corners are held.
     at : dict
@@ -92,7 +92,7 @@ class Problem(BaseModel):
     position: str | None = None
     trial: dict[str, tuple[float, float]] = Field(default_factory=dict)
     bounds: dict[str, tuple[float, float]] = Field(default_factory=dict)
-    limits: Limits = Limits()
+    limits: TuningLimits = TuningLimits()
     family: dict[str, tuple[float, float]] = Field(default_factory=dict)
     at: dict[str, float] = Field(default_factory=dict)
     starts: int = Field(default=2, ge=1, le=50)
@@ -170,24 +170,24 @@ def problem(
 
 @dataclass(frozen=True)
 class _Place:
-    """Where a problem is written, for messages."""
+    """Where a problem's keys are written, for messages."""
 
     lines: Lines | None
     file: str
 
     def line(self, text: str, *keys: str) -> str:
-        """A message about a key."""
+        """A message about a key with its line."""
         if self.lines is None:
             return f"{self.file}: {text}" if self.file else text
         return f"{self.file}:{self.lines.of('.'.join(keys[:-1]), keys[-1])}: {text}"
 
     def refuse(self, faults: Faults) -> None:
-        """Tell all that is wrong, in the order of the lines; nothing if that is nothing."""
+        """Raise an InputError with all faults in the order of their lines, if there are any."""
         Faults(ordered(faults.lines, [self.file])).tell()
 
 
 def _told(wrong: Sequence[Any], place: _Place) -> list[str]:
-    """A line for each key of which pydantic found something."""
+    """A line for each key in which pydantic found a fault."""
     found: dict[tuple[str, ...], str] = {}
     for one in wrong:
         keys = [str(k) for k in one["loc"]]
@@ -195,8 +195,8 @@ def _told(wrong: Sequence[Any], place: _Place) -> list[str]:
             keys = keys[:2]  # what follows is the place in the pair
         text = ".".join(keys)
         if one["type"] == "extra_forbidden":
-            # [limits.margins] and each of [limits.loop] have one kind of keys.
-            holders: list[type[BaseModel]] = [Problem, Limits, Margins]
+            # [limits.margins] and each table of [limits.loop] have the same keys.
+            holders: list[type[BaseModel]] = [Problem, TuningLimits, MarginLimits]
             known = holders[min(len(keys), 3) - 1].model_fields
             what = "table" if isinstance(one["input"], dict) else "key"
             told = f"unknown {what}{suggestion(keys[-1], known)}"
@@ -209,7 +209,7 @@ def _told(wrong: Sequence[Any], place: _Place) -> list[str]:
 
 
 def check_names(problem: Problem, scenario: Scenario) -> None:
-    """Refuse names of a problem that the scenario's FMUs do not have: all at once."""
+    """Refuse names of a problem that the scenario's FMUs do not have, all in one message."""
     Faults(wrong_names(problem, scenario, _Place(None, ""))).tell()
 
 
@@ -239,7 +239,7 @@ def wrong_names(problem: Problem, scenario: Scenario, place: _Place) -> list[str
 
 
 def _pairs(values: dict[str, Any]) -> dict[str, Any]:
-    """TOML has lists where tuples of two numbers are meant."""
+    """Values in which TOML's lists of two numbers are tuples."""
     for table in TABLES:
         if isinstance(values.get(table), dict):
             values[table] = {

@@ -9,20 +9,21 @@ import casadi as ca
 import numpy as np
 
 from motionfmu.base.errors import InputError
-from motionfmu.study.tune.choice import Variable
+from motionfmu.study.tune.choice import DecisionVariable
 from motionfmu.study.tune.steps import Array
-from motionfmu.study.tune.study import Limit, Study, Values
+from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions, TuningLimit
 
 # A limit, or a bound of a variable, is reached within this share.
 _REACHED = 2e-3
-# What a result may miss a limit by, relative.
+# Relative amount by which a result may miss a limit.
 TOLERANCE = 1e-4
 _PENALTY = 10.0
-# Half the width of the box of one solution, share of the range: slopes are trusted so far.
+# Half the width of the box in which the NLP is solved once, as a share of the range: slopes are
+# trusted so far.
 _BOX, _BOXES, _EDGE = 0.15, 8, 1e-4
-# A solution is begun anew in a smaller box while that lowers the cost by this share.
+# The NLP is solved again in a smaller box as long as that lowers the cost by this share.
 _SMALLER, _SMALLEST, _GAIN, _AGAIN = 0.4, 0.01, 5e-4, 6
-# What each axis for itself could gain, of the cost, is no reason to look for it.
+# If gains for each axis alone lower the cost by a smaller share, they are not searched.
 _SETTLED = 1e-7
 _OPTIONS: Any = {
     "ipopt.hessian_approximation": "limited-memory",
@@ -44,16 +45,16 @@ _OPTIONS: Any = {
 
 
 class RanAway(InputError):
-    """A gain ran to its own bound: nothing else stopped it."""
+    """A gain ran to its own bound, because no limit stopped it before."""
 
 
 @dataclass(frozen=True)
 class Found:
     """A solution of the problem."""
 
-    z: Array  # (n,) share of its range of each variable
-    values: Values
-    stopped_by: tuple[Limit, ...]  # limits that are reached there
+    z: Array  # (n,) each variable as a share of its range
+    values: CostAndLimits
+    stopped_by: tuple[TuningLimit, ...]  # limits that are reached there
     ends: tuple[str, ...]  # variables at an end of their parameter's own range
     starts: tuple[float, ...]  # cost found from each start; NaN where the search failed
     # Cost of the global search alone; NaN if it found nothing within the limits, or was not made.
@@ -65,7 +66,7 @@ class Found:
 class _Function(ca.Callback):
     """Logarithms of the costs and the slacks, for CasADi."""
 
-    def __init__(self, study: Study) -> None:
+    def __init__(self, study: TuningFunctions) -> None:
         super().__init__()
         self.study = study
         self.n = len(study.variables)
@@ -134,10 +135,10 @@ class _Slopes(ca.Callback):
         return [ca.DM(np.vstack([found.dcosts / found.costs[:, None], found.dslack]))]
 
 
-_Run = Callable[[Array, Values, float], tuple[Array, Values, bool]]
+_Run = Callable[[Array, CostAndLimits, float], tuple[Array, CostAndLimits, bool]]
 
 
-def _shared(study: Study) -> Array:
+def _shared(study: TuningFunctions) -> Array:
     """Shares of all variables from those of the gains: axes move together."""
     found = np.zeros((len(study.variables), len(study.names)))
     for row, variable in enumerate(study.variables):
@@ -145,7 +146,7 @@ def _shared(study: Study) -> Array:
     return found
 
 
-def _solver(study: Study, spread: Array) -> tuple[_Run, Any]:
+def _solver(study: TuningFunctions, spread: Array) -> tuple[_Run, Any]:
     """min t over y and t, z = spread y, with log cost <= t for every plant and no slack < 0."""
     function = _Function(study)
     n, plants = spread.shape[1], len(study.plants)
@@ -155,8 +156,8 @@ def _solver(study: Study, spread: Array) -> tuple[_Run, Any]:
     nlp: Any = {"x": ca.vertcat(y, t), "f": t, "g": ca.vertcat(t - found[:plants], found[plants:])}
     solver = ca.nlpsol("tune", "ipopt", nlp, _OPTIONS)
 
-    def solve(start: Array, values: Values, box: float) -> tuple[Array, Values, bool]:
-        """One box after another, until the solution lies inside its own; whether it does."""
+    def solve(start: Array, values: CostAndLimits, box: float) -> tuple[Array, CostAndLimits, bool]:
+        """Solve in one box after another until a solution is inside its box; returns if it is."""
         best = start, values
         for _ in range(_BOXES):
             centre = np.clip(inverse @ best[0], 0.01, 0.99)
@@ -172,7 +173,7 @@ def _solver(study: Study, spread: Array) -> tuple[_Run, Any]:
             z = spread @ y
             found = study.values(z)
             if not merit(found) < merit(best[1]):
-                box *= _SMALLER  # the slopes did not hold so far
+                box *= _SMALLER  # the slopes did not hold over the whole box
                 if box < _SMALLEST:
                     break
                 continue
@@ -185,16 +186,16 @@ def _solver(study: Study, spread: Array) -> tuple[_Run, Any]:
     return solve, function
 
 
-def merit(values: Values) -> float:
-    """One number for a search that knows no limits."""
-    # Logarithm of the worst cost plus a penalty for limits that are broken.
+def merit(values: CostAndLimits) -> float:
+    """Cost and limits as one number, for the global search, which knows no limits."""
+    # It is the logarithm of the worst cost plus a penalty for limits that are not kept.
     if not np.isfinite(values.costs).all():
         return 1e3
     return float(np.log(values.worst)) + _PENALTY * float(-np.minimum(values.slack, 0.0).sum())
 
 
-def solve(study: Study, progress: Callable[[float], None] = lambda share: None) -> Found:
-    """Find the gains within the limits; `RanAway` at a bound alone."""
+def solve(study: TuningFunctions, progress: Callable[[float], None] = lambda share: None) -> Found:
+    """Find the gains within the limits; `RanAway` if only a gain's own bound stops it."""
     together = _solver(study, _shared(study))
     begun, first = time.perf_counter(), study.evaluations
     check, points = np.nan, [study.present]
@@ -207,7 +208,7 @@ def solve(study: Study, progress: Callable[[float], None] = lambda share: None) 
     points = points[: study.problem.starts]
     if len(points) < study.problem.starts:
         points = [*points, *_spread(study)][: study.problem.starts]
-    candidates: list[tuple[Array, Values]] = []
+    candidates: list[tuple[Array, CostAndLimits]] = []
     costs = []
     for i, start in enumerate(points):
         progress(0.4 + 0.6 * i / len(points))
@@ -238,8 +239,8 @@ def solve(study: Study, progress: Callable[[float], None] = lambda share: None) 
     )
 
 
-def _attempt(study: Study, run: _Run, start: Array) -> tuple[Array, Values] | None:
-    """The NLP from one point; the point itself if nothing better comes of it."""
+def _attempt(study: TuningFunctions, run: _Run, start: Array) -> tuple[Array, CostAndLimits] | None:
+    """Solve the NLP from one point; the point itself if no better one is found."""
     best = start, study.values(start)
     if not np.isfinite(best[1].costs).all():
         return None
@@ -247,7 +248,7 @@ def _attempt(study: Study, run: _Run, start: Array) -> tuple[Array, Values] | No
     for _ in range(_AGAIN):
         try:
             z, values, done = run(*best, box)
-        except RuntimeError:  # CasADi: not a number somewhere
+        except RuntimeError:  # CasADi met a value that is not a number
             break
         lower = merit(best[1]) - merit(values)
         best = z, values
@@ -257,7 +258,7 @@ def _attempt(study: Study, run: _Run, start: Array) -> tuple[Array, Values] | No
     return best
 
 
-def _settled(values: Values) -> bool:
+def _settled(values: CostAndLimits) -> bool:
     """Whether no direction in the box lowers the cost to first order: each axis for itself, too.
 
     For multipliers m >= 0 of the limits with slack s and slopes G the linear problem gains at most
@@ -272,8 +273,8 @@ def _settled(values: Values) -> bool:
     return abs(float(weights @ values.slack[near])) + _BOX * left < _SETTLED
 
 
-def _spread(study: Study) -> list[Array]:
-    """Points spread over the range, drawn to the present gains until all loops are stable."""
+def _spread(study: TuningFunctions) -> list[Array]:
+    """Points spread over the range, moved to the present gains until all loops are stable."""
     from scipy.stats import qmc  # a third of a second, and seldom needed
 
     present, found = study.present, []
@@ -287,8 +288,10 @@ def _spread(study: Study) -> list[Array]:
     return found
 
 
-def _global(study: Study, progress: Callable[[float], None]) -> tuple[Array, Values]:
-    """DIRECT: divides the box, needs no slope and no start; all axes move together."""
+def _global(
+    study: TuningFunctions, progress: Callable[[float], None]
+) -> tuple[Array, CostAndLimits]:
+    """Global search by DIRECT, which divides the box and needs neither slopes nor a start."""
     spread = _shared(study)
     box = [(0.0, 1.0)] * spread.shape[1]
     best: tuple[float, Array] = (np.inf, study.present)
@@ -309,7 +312,7 @@ def _global(study: Study, progress: Callable[[float], None]) -> tuple[Array, Val
     return best[1], study.values(best[1], False)
 
 
-def _ends(study: Study, z: Array, values: Values) -> tuple[str, ...]:
+def _ends(study: TuningFunctions, z: Array, values: CostAndLimits) -> tuple[str, ...]:
     """Variables at their bounds; an error if that is the search's own bound and holds the cost."""
     ends = []
     for k, (variable, share) in enumerate(zip(study.variables, z, strict=True)):
@@ -327,7 +330,7 @@ def _ends(study: Study, z: Array, values: Values) -> tuple[str, ...]:
     return tuple(ends)
 
 
-def _away(study: Study, variable: Variable, high: bool) -> str:
+def _away(study: TuningFunctions, variable: DecisionVariable, high: bool) -> str:
     bound = variable.high if high else variable.low
     side = "upper" if high else "lower"
     return (
@@ -337,7 +340,7 @@ def _away(study: Study, variable: Variable, high: bool) -> str:
     )
 
 
-def _hopeless(study: Study, candidates: list[tuple[Array, Values]]) -> str:
+def _hopeless(study: TuningFunctions, candidates: list[tuple[Array, CostAndLimits]]) -> str:
     text = f"{study.scenario.document.file}: no gains within the bounds keep all limits"
     if not candidates:
         return f"{text}: the loop is unstable wherever the search began"

@@ -9,65 +9,66 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 # Steps of a chunk.
 _CHUNK = 32
-# How much later than an input of a chunk its outputs are; that many steps for those before it.
+# Steps from each input of a chunk to each output; an output before the input has the last index,
+# where the response is 0.
 _LATE = np.subtract.outer(np.arange(_CHUNK), np.arange(_CHUNK))
 _LATE[_LATE < 0] = _CHUNK
-# A transient below this share of its start is over.
+# A transient has ended when it is below this share of its start.
 _FORGOTTEN = 1e-12
 
 
 @dataclass(frozen=True)
-class Sloped:
-    """An array and its derivatives to the gains, which are the first axis; there may be none."""
+class ArrayWithSlopes:
+    """An array and its derivatives to the gains, along their first axis; there may be no gain."""
 
     value: Any
     slopes: Any
 
-    def __matmul__(self, other: "Sloped") -> "Sloped":
+    def __matmul__(self, other: "ArrayWithSlopes") -> "ArrayWithSlopes":
         slopes = self.slopes @ other.value + self.value @ other.slopes
-        return Sloped(self.value @ other.value, slopes)
+        return ArrayWithSlopes(self.value @ other.value, slopes)
 
-    def __add__(self, other: "Sloped") -> "Sloped":
-        return Sloped(self.value + other.value, self.slopes + other.slopes)
+    def __add__(self, other: "ArrayWithSlopes") -> "ArrayWithSlopes":
+        return ArrayWithSlopes(self.value + other.value, self.slopes + other.slopes)
 
-    def __sub__(self, other: "Sloped") -> "Sloped":
-        return Sloped(self.value - other.value, self.slopes - other.slopes)
+    def __sub__(self, other: "ArrayWithSlopes") -> "ArrayWithSlopes":
+        return ArrayWithSlopes(self.value - other.value, self.slopes - other.slopes)
 
-    def __getitem__(self, rows: slice) -> "Sloped":
-        return Sloped(self.value[rows], self.slopes[:, rows])
+    def __getitem__(self, rows: slice) -> "ArrayWithSlopes":
+        return ArrayWithSlopes(self.value[rows], self.slopes[:, rows])
 
     @property
-    def alone(self) -> "Sloped":
-        """Without derivatives."""
-        return Sloped(self.value, self.slopes[:0])
+    def alone(self) -> "ArrayWithSlopes":
+        """The array without derivatives."""
+        return ArrayWithSlopes(self.value, self.slopes[:0])
 
-    def beside(self, other: "Sloped") -> "Sloped":
-        """Both along the last axis."""
+    def beside(self, other: "ArrayWithSlopes") -> "ArrayWithSlopes":
+        """Both arrays joined along the last axis."""
         pairs = (self.value, other.value), (self.slopes, other.slopes)
-        return Sloped(*(np.concatenate(pair, axis=-1) for pair in pairs))
+        return ArrayWithSlopes(*(np.concatenate(pair, axis=-1) for pair in pairs))
 
-    def above(self, other: "Sloped") -> "Sloped":
-        """Both along the first axis."""
+    def above(self, other: "ArrayWithSlopes") -> "ArrayWithSlopes":
+        """Both arrays joined along the first axis."""
         value = np.concatenate([self.value, other.value])
-        return Sloped(value, np.concatenate([self.slopes, other.slopes], axis=1))
+        return ArrayWithSlopes(value, np.concatenate([self.slopes, other.slopes], axis=1))
 
-    def columns(self, part: slice) -> "Sloped":
-        """Some places of the last axis."""
-        return Sloped(self.value[..., part], self.slopes[..., part])
+    def columns(self, part: slice) -> "ArrayWithSlopes":
+        """A slice along the last axis."""
+        return ArrayWithSlopes(self.value[..., part], self.slopes[..., part])
 
 
-def blocks(rows: list[list[Any]], gains: int) -> Sloped:
-    """A matrix of blocks: of such with derivatives to so many gains, and plain ones."""
-    values = [[b.value if isinstance(b, Sloped) else b for b in row] for row in rows]
+def blocks(rows: list[list[Any]], gains: int) -> ArrayWithSlopes:
+    """A matrix of blocks, some of which have derivatives to so many gains."""
+    values = [[b.value if isinstance(b, ArrayWithSlopes) else b for b in row] for row in rows]
     change = [
-        [b.slopes if isinstance(b, Sloped) else np.zeros((gains, *b.shape)) for b in row]
+        [b.slopes if isinstance(b, ArrayWithSlopes) else np.zeros((gains, *b.shape)) for b in row]
         for row in rows
     ]
-    return Sloped(np.block(values), np.block(change))
+    return ArrayWithSlopes(np.block(values), np.block(change))
 
 
-def power(a: Sloped, count: int) -> Sloped:
-    """A^count, count > 0, by squares."""
+def power(a: ArrayWithSlopes, count: int) -> ArrayWithSlopes:
+    """A^count, count > 0, by repeated squaring."""
     found = None
     while True:
         if count % 2:
@@ -79,10 +80,12 @@ def power(a: Sloped, count: int) -> Sloped:
         a = a @ a
 
 
-def lifted(a: Sloped, b: Sloped, count: int) -> tuple[Sloped, Sloped, Sloped]:
-    """So many periods as one, whose input goes straight from the value at its beginning to another.
+def lifted(
+    a: ArrayWithSlopes, b: ArrayWithSlopes, count: int
+) -> tuple[ArrayWithSlopes, ArrayWithSlopes, ArrayWithSlopes]:
+    """Matrices of `count` periods as one, over which the input changes linearly.
 
-    The state matrix, and the input matrices of the values at the beginning and at the end.
+    Returns the state matrix, and the input matrices of the values at the beginning and at the end.
     """
     # The states, the input, and what it grows by over all periods.
     (n, m), gains = b.value.shape, len(b.slopes)
@@ -113,18 +116,18 @@ def scan(a: Array, v: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class System:
+class DifferenceEquations:
     """x[k + 1] = A x[k] + B u[k], y[k] = C x[k] + D u[k], in chunks of c steps.
 
     The outputs of a chunk are one product of matrices with its inputs and the state before it.
     """
 
-    step: Sloped  # (n, n) the state matrix of a chunk
-    feed: Sloped  # (n, c m) from the inputs of a chunk to the state after it
-    show: Sloped  # (p, c, c m + n) from its inputs and the state before it to its outputs
+    step: ArrayWithSlopes  # (n, n) the state matrix of a chunk
+    feed: ArrayWithSlopes  # (n, c m) from the inputs of a chunk to the state after it
+    show: ArrayWithSlopes  # (p, c, c m + n) from its inputs and the state before it to its outputs
 
-    def driven(self, u: Array, du: Array | None = None) -> "Driven":
-        """Inputs (m, count), and derivatives (g, m, count) if they have some, from rest."""
+    def driven(self, u: Array, du: Array | None = None) -> "DrivenEquations":
+        """Drive the system from rest by inputs (m, count), with derivatives (g, m, count)."""
         inputs = _chunks(u)
         x = scan(self.step.value, self.feed.value @ inputs.T)
         change = self.step.slopes @ x + self.feed.slopes @ inputs.T
@@ -135,19 +138,19 @@ class System:
             change += self.feed.value @ dinputs.swapaxes(-1, -2)
             dx = scan(self.step.value, change).swapaxes(-1, -2)
             moved = np.concatenate([dinputs, dx], axis=-1)
-        return Driven(self.show, np.hstack([inputs, x.T]), moved, u.shape[-1])
+        return DrivenEquations(self.show, np.hstack([inputs, x.T]), moved, u.shape[-1])
 
 
 @dataclass(frozen=True)
-class Driven:
-    """A system with its inputs, whose outputs can be asked for."""
+class DrivenEquations:
+    """A system with its inputs, from which outputs are computed as they are needed."""
 
-    show: Sloped
+    show: ArrayWithSlopes
     known: Array  # (chunks, c m + n) inputs of each chunk and the state before it
     moved: Array  # (g, chunks, w) derivatives of the last of these
     count: int
 
-    def outputs(self, rows: slice, slopes: bool = True) -> Sloped:
+    def outputs(self, rows: slice, slopes: bool = True) -> ArrayWithSlopes:
         """Some outputs (p, count)."""
         show = self.show[rows] if slopes else self.show[rows].alone
         moved = self.moved[: len(show.slopes)]
@@ -156,24 +159,26 @@ class Driven:
         change = self.known @ show.slopes.reshape(len(moved), p * c, w).swapaxes(-1, -2)
         last = moved.shape[-1]
         change += moved @ show.value[..., w - last :].reshape(p * c, last).T
-        return Sloped(*(self._along(v, p, c) for v in (value, change)))
+        return ArrayWithSlopes(*(self._along(v, p, c) for v in (value, change)))
 
     def _along(self, found: Array, p: int, c: int) -> Array:
-        """Outputs (..., p, count) of those of chunks (..., chunks, p c)."""
+        """Outputs (..., p, count) in order from outputs of chunks (..., chunks, p c)."""
         *g, chunks, _ = found.shape
         rows = found.reshape(*g, chunks, p, c).swapaxes(-2, -3).reshape(*g, p, chunks * c)
         return rows[..., : self.count]
 
-    def at(self, row: int, k: int) -> Sloped:
+    def at(self, row: int, k: int) -> ArrayWithSlopes:
         """One output at one step."""
         chunk, place = divmod(k, self.show.value.shape[1])
         known, moved = self.known[chunk], self.moved[:, chunk]
         value, change = self.show.value[row, place], self.show.slopes[:, row, place]
-        return Sloped(value @ known, change @ known + moved @ value[len(value) - moved.shape[-1] :])
+        return ArrayWithSlopes(
+            value @ known, change @ known + moved @ value[len(value) - moved.shape[-1] :]
+        )
 
 
 def _chunks(u: Array) -> Array:
-    """Inputs (..., chunks, c m) of inputs (..., m, count); zeros fill the last."""
+    """Inputs (..., m, count) as those of chunks (..., chunks, c m); zeros fill the last chunk."""
     *g, m, count = u.shape
     chunks = -(-count // _CHUNK)
     wide = np.zeros((*g, m, chunks * _CHUNK))
@@ -182,8 +187,10 @@ def _chunks(u: Array) -> Array:
     return np.moveaxis(split, -3, -1).reshape(*g, chunks, _CHUNK * m)
 
 
-def system(a: Sloped, b: Sloped, c: Sloped, d: Sloped) -> System:
-    """Put a system in chunks."""
+def system(
+    a: ArrayWithSlopes, b: ArrayWithSlopes, c: ArrayWithSlopes, d: ArrayWithSlopes
+) -> DifferenceEquations:
+    """Make the matrices of chunks from those of single steps."""
     (n, m), p = b.value.shape, len(c.value)
     x, y, step = b, c, a  # A^k B side by side and C A^k one above the other: twice as many a round
     for _ in range(_CHUNK.bit_length() - 1):
@@ -200,4 +207,4 @@ def system(a: Sloped, b: Sloped, c: Sloped, d: Sloped) -> System:
         from_inputs = each[..., _LATE, :].reshape(*g, p, _CHUNK, _CHUNK * m)
         from_state = of_y.reshape(*g, _CHUNK, p, n).swapaxes(-2, -3)
         show.append(np.concatenate([from_inputs, from_state], axis=-1))
-    return System(step, Sloped(*feed), Sloped(*show))
+    return DifferenceEquations(step, ArrayWithSlopes(*feed), ArrayWithSlopes(*show))

@@ -1,4 +1,4 @@
-"""A parameter that no linear model knows, looked for by running the FMUs."""
+"""Search of a parameter that no linear model has, by running the FMUs."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -9,24 +9,25 @@ import numpy as np
 from motionfmu.base.errors import InputError
 from motionfmu.run import Scenario, Session
 from motionfmu.study.tune.move import MoveCost
-from motionfmu.study.tune.path import EVERY
+from motionfmu.study.tune.path_error import EVERY
 from motionfmu.study.tune.solve import RanAway
 
-# Values of the first look, and of each finer one; costs within this share are the same.
+# Numbers of values that are tried at first and in each finer round; costs within this share are
+# equal.
 _COARSE, _FINE, _ROUNDS, _SAME = 13, 5, 2, 0.05
 
 
 @dataclass(frozen=True)
 class Look:
-    """What the FMUs do with a value."""
+    """The result of a run with one value."""
 
-    cost: float  # RMS error while the axis is to stand [mm]
-    beyond: float  # way past the ends of the move [mm]
+    cost: float  # RMS error while the axis should stand still [mm]
+    beyond: float  # overshoot past the ends of the move [mm]
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What was tried."""
+    """The values that were tried, and the best of them."""
 
     name: str  # component.variable
     value: float  # the smallest whose cost is as small as any within the limit
@@ -35,7 +36,7 @@ class Trial:
 
     @property
     def stopped_by(self) -> str:
-        """What it is stopped by, in words."""
+        """In words, what keeps the value from being smaller."""
         values = list(self.tried)
         k = values.index(self.value)
         text = (
@@ -62,8 +63,8 @@ def tried(
 ) -> Trial:
     """Run the FMUs with values of a parameter between two bounds.
 
-    Asked are the parameter, its bounds, and the largest way beyond [mm]; the gains found are in
-    `set`. `RanAway` if the best value is a bound.
+    `asked` has the parameter, its bounds, and the largest overshoot [mm]; `set` has the gains that
+    were found. `RanAway` if the best value is a bound.
     """
     name, (low, high), limit = asked
     port = scenario.resolver.end(name, "trial", name).port

@@ -11,21 +11,21 @@ import numpy as np
 from motionfmu.base.errors import InputError
 from motionfmu.run import Result, Scenario, load
 from motionfmu.study.tune.move import MoveCost
-from motionfmu.study.tune.path import EVERY
+from motionfmu.study.tune.path_error import EVERY
 from motionfmu.study.tune.problem import Problem, check_names, problem
-from motionfmu.study.tune.result import Run, Tuned, settings
 from motionfmu.study.tune.solve import TOLERANCE, merit, solve
 from motionfmu.study.tune.steps import Array
-from motionfmu.study.tune.study import Study, Values
 from motionfmu.study.tune.trial import tried
+from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
+from motionfmu.study.tune.tuning_result import Tuned, TuningRun, settings
 
-# More registers than this are rounded together, not one by one.
+# If there are more registers than this, all are rounded together instead of one by one.
 _ONE_BY_ONE = 4
 
 
-def rounded(study: Study, z: Array) -> tuple[Array, Values]:
+def rounded(study: TuningFunctions, z: Array) -> tuple[Array, CostAndLimits]:
     """The best whole-number registers about a solution."""
-    # Limits are kept, if they can be, rather than the cost.
+    # It is more important to keep the limits than to have the smallest cost.
     options = []
     whole = [k for k, v in enumerate(study.variables) if v.whole]
     for variable, share in zip(study.variables, z, strict=True):
@@ -88,7 +88,7 @@ def tune(
     check_names(asked, loaded)
     given = dict(set or {})
     base = loaded.run(set=given, every=EVERY, progress=lambda share: progress("path", share))
-    study = Study(loaded, asked, base, given)
+    study = TuningFunctions(loaded, asked, base, given)
     found = solve(study, lambda share: progress("gains", share))
     z, values = rounded(study, found.z)
     tuned = Tuned(study, found, z, values)
@@ -115,6 +115,6 @@ def tune(
     return tuned
 
 
-def _run(study: Study, z: Array, plant: int, result: Result) -> Run:
+def _run(study: TuningFunctions, z: Array, plant: int, result: Result) -> TuningRun:
     model = study.path.error(study.motions(z, plant))
-    return Run(study.plants[plant], result, model, study.path.measured(result))
+    return TuningRun(study.plants[plant], result, model, study.path.measured(result))

@@ -4,10 +4,17 @@ The same C code as in the FMUs; see src/controllers: mcc/README.md and station/s
 """
 
 from motionfmu.base.binding import CLOCK_HZ, Station
-from motionfmu.virtual.mcc.card import LOOP, PULSES, SOFTWARE, CardError, Reading, VirtualCard
 from motionfmu.virtual.mcc.library import CODES, MccError
 from motionfmu.virtual.mcc.moves import CCW, CW
 from motionfmu.virtual.mcc.state import BLOCK, DELAY, HOLD, RUNNING, STOPPED, WHEEL, Mcc, defaults
+from motionfmu.virtual.mcc.virtual_card import (
+    LOOP,
+    PULSES,
+    SOFTWARE,
+    CardError,
+    CardReading,
+    VirtualCard,
+)
 
 __all__ = [
     "BLOCK",
@@ -24,9 +31,9 @@ __all__ = [
     "STOPPED",
     "WHEEL",
     "CardError",
+    "CardReading",
     "Mcc",
     "MccError",
-    "Reading",
     "Station",
     "VirtualCard",
     "defaults",

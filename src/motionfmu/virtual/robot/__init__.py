@@ -8,7 +8,7 @@ with R = Rz(C) Ry(B) Rx(A), or 4x4 matrices.
 from motionfmu.base.binding import CLOCK_HZ, Station
 from motionfmu.virtual.robot.kinematics import Kinematics, matrix_of, pose_of
 from motionfmu.virtual.robot.refusal import RobotError
-from motionfmu.virtual.robot.virtual import (
+from motionfmu.virtual.robot.virtual_robot import (
     BASE,
     DELAY,
     ERROR,
@@ -21,7 +21,7 @@ from motionfmu.virtual.robot.virtual import (
     STOPPED,
     TOOL,
     WAITING,
-    Reading,
+    RobotReading,
     VirtualRobot,
     defaults,
 )
@@ -41,8 +41,8 @@ __all__ = [
     "TOOL",
     "WAITING",
     "Kinematics",
-    "Reading",
     "RobotError",
+    "RobotReading",
     "Station",
     "VirtualRobot",
     "defaults",

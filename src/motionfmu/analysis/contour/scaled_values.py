@@ -1,0 +1,77 @@
+"""Recorded signals in other units and in parts, without a copy of them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from motionfmu.analysis.contour.arcs import Array
+from motionfmu.base.columns import forget
+
+# Samples that are looked at together: enough for few calls, few enough for little memory.
+BLOCK = 1 << 15
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledValues:
+    """Values (n, m) over a divisor, or one for each column: made for the part that is asked for."""
+
+    values: Array
+    divisor: Array | float
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Rows and columns."""
+        return self.values.shape
+
+    @property
+    def base(self) -> Array:
+        """What it is made of, as of a view of an array."""
+        return self.values
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, key: Any) -> Array:
+        divisor = self.divisor
+        if isinstance(key, tuple) and np.ndim(divisor):
+            divisor = np.asarray(divisor)[key[1]]
+        return np.asarray(self.values[key] / divisor)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
+        return np.asarray(self[:], dtype=dtype)
+
+    def copy(self) -> Array:
+        """All of it, to be changed."""
+        return self[:]
+
+
+def places(values: Any, rows: Any) -> Array:
+    """The first three columns (n, 3) of some rows, each in a piece: so sums of them are quick."""
+    divisor = 1.0
+    if isinstance(values, ScaledValues):
+        values, divisor = values.values, values.divisor
+    each = np.broadcast_to(divisor, values.shape[1])
+    columns = [values[rows, i] for i in range(3)]
+    found = np.empty((3, len(columns[0])))
+    for column, by, out in zip(columns, each.tolist(), found, strict=False):
+        np.divide(column, by, out=out)
+    return found.T
+
+
+def finite(values: Any, own: slice) -> Any:
+    """Which values of some rows are finite; whole numbers are."""
+    good = np.ones(1, dtype=bool)
+    if isinstance(values, ScaledValues):
+        divisor, values = np.asarray(values.divisor), values.values
+        good = np.isfinite(divisor) & (divisor != 0.0)
+    return good if values.dtype.kind in "iub" else np.isfinite(values[own]) & good
+
+
+def blocks(count: int, *passed: Any) -> Iterator[slice]:
+    """Samples in parts; of arrays that are passed with them, a file's pages are let go."""
+    for first in range(0, count, BLOCK):
+        yield slice(first, min(first + BLOCK, count))
+        for array in passed:
+            forget(array)

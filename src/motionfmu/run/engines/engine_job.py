@@ -1,0 +1,43 @@
+"""The job that an engine gets, and the result that it gives."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from motionfmu.base.columns import Columns
+from motionfmu.scenarios.system import End, System
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class EngineJob:
+    """What an engine makes ready for one run or many, which differ in values only."""
+
+    system: System
+    recorded: tuple[End, ...]
+    folder: Path  # holds the files of the signals; no other run uses it
+    fmi: int  # 2 or 3
+    name: str = "system"  # names the whole system in messages
+
+
+@dataclass(frozen=True)
+class EngineResult:
+    """What an engine gives of a run: signals, warnings, and why it ended."""
+
+    engine: str  # name of the engine
+    signals: Columns  # one row for each sample
+    warnings: list[str]  # of the FMUs
+    steps: int  # number of steps that were made
+    signal: int | None = None  # communication point at which the signal that ends it came
+
+
+class Engine(Protocol):
+    """A system that is ready to run, once or many times."""
+
+    def run(self, system: System, progress: Progress) -> EngineResult:
+        """Run a system, which differs from the job's in values only, from its start."""
+
+    def close(self) -> None:
+        """Free instances, libraries and files."""

@@ -1,0 +1,108 @@
+"""The fused engine: a system is one compiled program with a recorder, loaded once.
+
+A run is an instance of the program: its values are set by one call for each type, then it makes few
+long steps, and driven inputs are set between them.
+"""
+
+import json
+import re
+from typing import Any
+
+from motionfmu import fused
+from motionfmu.base.columns import Columns
+from motionfmu.fmu.describe import STRICT
+from motionfmu.fused.resource_files import carrying, placed
+from motionfmu.run.engines import fmu_messages
+from motionfmu.run.engines.ending import shares
+from motionfmu.run.engines.engine_job import EngineJob, EngineResult, Progress
+from motionfmu.run.engines.fmu_library import FmuRefusal, Library, ValuePlace
+from motionfmu.scenarios.system import System
+
+NAME = "system"
+# A call makes so many steps at most; Ctrl-C ends the run between two calls.
+STEPS_MAX = 20_000
+STEP, FOLDER, EVERY = "system.step", "recorder.folder", "recorder.every"
+SETTLE, SIGNAL = "until.settle", "until.step"
+# The program's own call refuses a component's value.
+_SET = re.compile(r"^(fmi[23]\w+: )(\w+)\.(?=\w)")
+
+
+class Fused:
+    """A program, and an instance of it for each run."""
+
+    def __init__(self, job: EngineJob) -> None:
+        self._job, self._signals = job, job.folder / "signals"
+        self._carrying = carrying(job.system)
+        self._folder = fused.program(job.system, job.recorded, job.fmi).folder
+        about = json.loads((self._folder / "program.json").read_bytes())
+        self._token: str = about["token"]
+        self._variables = {name: ValuePlace(*row) for name, row in about["variables"].items()}
+        self._library = Library(self._folder / about["library"], job.fmi)
+        self._errors: list[str] = []
+        self._warnings: list[str] = []
+
+    def run(self, system: System, progress: Progress) -> EngineResult:
+        """Run from the start."""
+        library = self._library
+        self._errors.clear()
+        self._warnings.clear()
+        try:
+            library.instantiate(NAME, self._token, self._folder / "resources", self._tell)
+            library.warn()
+            self._set(system)
+            library.enter()
+            library.leave()
+            steps, signal = self._advance(system, progress)
+            library.terminate()
+        except FmuRefusal as refused:
+            raise fmu_messages.failure(NAME, str(refused), self._errors) from None
+        finally:
+            library.release()
+        progress(1.0)
+        names = [end.name for end in self._job.recorded]
+        signals = Columns.taken(self._signals, names) if names else Columns({})
+        return EngineResult("fused", signals, [*self._warnings], steps, signal)
+
+    def _set(self, system: System) -> None:
+        settings = placed(system, self._carrying).settings
+        given: dict[str, tuple[Any, ...]] = {
+            s.end.name: s.values for s in settings if s.end.port.name != STRICT
+        }
+        given[STEP] = (system.step_ns * 1e-9,)
+        given[FOLDER] = (str(self._signals) if self._job.recorded else "",)
+        given[EVERY] = (system.every,)
+        if system.until is not None:
+            given[SETTLE] = (system.until.settle,)
+        self._library.set((self._variables[name], values) for name, values in given.items())
+
+    def _advance(self, system: System, progress: Progress) -> tuple[int, int | None]:
+        """Number of steps made, and the communication point at which the signal came."""
+        due, step, steps = system.due(), system.step_ns * 1e-9, system.steps
+        signal = None
+        for k, following in shares(system, due, STEPS_MAX):
+            self._library.set((self._variables[s.end.name], s.values) for s in due.get(k, ()))
+            self._library.step(k * system.step_ns * 1e-9, (following - k) * step)
+            progress(following / system.steps)
+            if system.until is not None and signal is None:
+                (at,) = self._library.get(self._variables[SIGNAL])
+                if at >= 0:
+                    signal, steps = at, min(steps, at + 1 + system.until.settle)
+            if following >= steps:
+                break
+        return steps, signal
+
+    def _tell(self, status: int, text: str) -> None:
+        told = text.strip().removeprefix(f"{NAME}: ")
+        told = _SET.sub(r"\2: \1", told)
+        if fmu_messages.unnamed(told) or told.startswith("fmi"):
+            told = f"{NAME}: {told}"
+        fmu_messages.keep(status, told, self._errors, self._warnings)
+
+    def close(self) -> None:
+        """Free the program; its files stay on the disk."""
+        self._library.close()
+
+
+def opened(job: EngineJob) -> Fused:
+    """Make or find the program of a job, and load it."""
+    return Fused(job)

@@ -1,0 +1,96 @@
+"""One run of a scenario: the job for an engine, and the result made of what the engine gives."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.base.errors import InputError
+from motionfmu.run.engines.engine_job import EngineJob, EngineResult
+from motionfmu.run.overrides import overrides
+from motionfmu.run.result import Result
+from motionfmu.run.run_plan import Options, RunPlan
+from motionfmu.scenarios import recording
+from motionfmu.scenarios.system import End, System
+
+PLANNED = "path.csv"
+
+
+def own_settings(scenario: RunPlan, folder: Path) -> dict[str, Any]:
+    """The setting that says where the motion library writes the path that it plans."""
+    library = scenario.library()
+    return {f"{library}.path_file": str(folder / PLANNED)} if library else {}
+
+
+@dataclass(frozen=True)
+class Execution:
+    """One run, ready for an engine."""
+
+    scenario: RunPlan
+    system: System
+    recorded: tuple[End, ...]
+    folder: Path  # holds the files of the run
+
+    @classmethod
+    def plan(
+        cls, scenario: RunPlan, options: Options, ends: Iterable[End], folder: Path
+    ) -> "Execution":
+        """Make the execution of a scenario that records these outputs, with files in a folder."""
+        planned = cls(scenario, scenario.resolved(options), tuple(ends), folder)
+        scenario.check_scopes(planned.system, options)
+        if told := recording.no_room(planned.system, planned.recorded, folder):
+            raise InputError(told)
+        return planned
+
+    def job(self, fmi: int) -> EngineJob:
+        """The job for an engine; a system with wires of elements needs FMI 2."""
+        given = 2 if self.system.elementwise else fmi
+        return EngineJob(self.system, self.recorded, self.folder, given)
+
+    def run(self, engine: Callable[[System], EngineResult], options: Options) -> Result:
+        """Run it in an engine; an FMU's error message says where the refused value stands."""
+        planned = self.folder / PLANNED
+        planned.unlink(missing_ok=True)
+        try:
+            ran = engine(self.system)
+        except InputError as error:
+            raise self.scenario.located(error, self.system, options.set) from None
+        stopped, signal = self._stopped(ran)
+        never: tuple[str, ...] = ()
+        if (until := self.system.until) is not None and signal is None:
+            limit = self._seconds(self.system.steps)
+            never = (f"{until.name} never came within {limit:.9g} s",)
+        return Result(
+            scenario=self.scenario,
+            time=ran.signals.time if ran.signals.time is not None else self._time(ran.steps),
+            signals=ran.signals,
+            parameters={s.end.name: s.values for s in self.system.settings},
+            geometry=planned.read_text(encoding="utf-8") if planned.is_file() else None,
+            warnings=(*ran.warnings, *never),
+            options=options.given() | {"engine": ran.engine},
+            overrides=overrides(self.scenario, options, self.system),
+            stopped=stopped,
+            signal_at=signal,
+        )
+
+    def _stopped(self, ran: EngineResult) -> tuple[str, float | None]:
+        """Why the run ended, and when the signal that ends it came [s]."""
+        until = self.system.until
+        if until is None:
+            return f"stop = {self._seconds(ran.steps):.9g} s", None
+        if ran.signal is None:
+            return f"limit {self._seconds(ran.steps):.9g} s, {until.name} never came", None
+        at = self._seconds(ran.signal)
+        return f"{until.name} at {at:.9g} s", at
+
+    def _time(self, steps: int) -> NDArray[np.float64]:
+        """Times of the rows of so many steps [s]."""
+        rows = np.arange(self.system.rows(steps), dtype=np.float64)
+        return rows * (self.system.sample_ns * 1e-9)
+
+    def _seconds(self, steps: int) -> float:
+        """Duration of so many steps [s]."""
+        return steps * self.system.step_ns / 1e9

@@ -1,0 +1,62 @@
+"""What comes with the package, found by name: scenarios, and projects to start from."""
+
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from motionfmu.base.errors import InputError, suggestion
+
+PACKAGE = Path(__file__).resolve().parents[1]
+SCENARIO = "scenario.toml"
+_OTHER = re.compile(r"""["']\.\./(\w+)["'/]""")
+
+
+def folder(kind: str) -> Path:
+    """Folder of all ``scenarios`` or ``examples``: the installed package's, or the checkout's."""
+    installed = PACKAGE / "shipped"
+    return (installed if installed.is_dir() else PACKAGE.parent.parent) / kind
+
+
+def scenarios() -> dict[str, Path]:
+    """Folders of the scenarios that have a name: those of the package and of ./scenarios."""
+    places = (folder("scenarios"), Path("scenarios"))
+    found = [file.parent for place in places for file in sorted(place.glob(f"*/{SCENARIO}"))]
+    return {place.name: place for place in found}
+
+
+def examples() -> dict[str, Path]:
+    """Folders that can be copied, by name: the package's scenarios, and its projects."""
+    found = [*folder("scenarios").glob(f"*/{SCENARIO}"), *folder("examples").glob("*/README.md")]
+    return {file.parent.name: file.parent for file in sorted(found)}
+
+
+def is_name(given: str | Path) -> bool:
+    """Whether a text can only be a scenario's name, for no file or folder has it as its path."""
+    return len(Path(given).parts) == 1 and not os.path.lexists(given)
+
+
+def scenario(given: str | Path) -> Path | None:
+    """Folder of the scenario with this name; None if the text is a path or no scenario has it."""
+    return scenarios().get(str(given)) if is_name(given) else None
+
+
+def unknown(given: str, known: Callable[[], dict[str, Path]]) -> str:
+    """The end of a message about an unknown name: the names that are near it, else all names."""
+    names = list(known())
+    return suggestion(given, names) or f" (there are: {', '.join(names) or 'none'})"
+
+
+def needed(name: str) -> list[Path]:
+    """Folder of an example, and folders of other examples whose files it names."""
+    known = examples()
+    if name not in known:
+        raise InputError(f"{name}: no such example{unknown(name, examples)}")
+    found, waiting = [known[name]], [known[name]]
+    while waiting:
+        text = "".join(file.read_text(encoding="utf-8") for file in waiting.pop().glob("*.toml"))
+        others = {known[other] for other in _OTHER.findall(text) if other in known}
+        new = sorted(others - {*found})
+        found += new
+        waiting += new
+    return found

@@ -1,0 +1,217 @@
+"""The axes of a study: the variables that it varies, and the points at which it runs."""
+
+import itertools
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import NormalDist
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import word
+from motionfmu.scenarios.system import End
+
+Value = float | int | bool | str
+Point = tuple[Value, ...]
+SAMPLINGS = ("grid", "random", "latin")
+RUNS_MAX = 1_000_000  # a day on forty cores; their table is still a gigabyte at most
+VALUES_MAX = 10_000_000  # runs times axes
+STANDARD = NormalDist()
+_STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class Span(BaseModel):
+    """A range: n even values of a grid, or a uniform distribution."""
+
+    model_config = _STRICT
+    low: float = Field(alias="from", strict=True)
+    high: float = Field(alias="to", strict=True)
+    n: int | None = Field(default=None, ge=2, le=RUNS_MAX, strict=True)
+    log: bool = Field(default=False, strict=True)
+
+
+class Normal(BaseModel):
+    """A normal distribution."""
+
+    model_config = _STRICT
+    mean: float = Field(strict=True)
+    deviation: float = Field(gt=0, strict=True)
+
+
+class ListedValues(BaseModel):
+    """Values one by one; each equally likely where points are drawn."""
+
+    model_config = _STRICT
+    values: list[Value] = Field(min_length=1)
+
+
+Source = Span | Normal | ListedValues
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A variable, or one element of it, and the values it takes."""
+
+    name: str  # component.variable or component.variable[i]
+    end: End
+    source: Source  # in the variable's unit
+
+    @property
+    def unit(self) -> str:
+        """Unit of the variable; empty if it has none."""
+        return self.end.port.unit or ""
+
+    @property
+    def log(self) -> bool:
+        """Whether values are spread evenly by their logarithms."""
+        return isinstance(self.source, Span) and self.source.log
+
+    def place(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Positions of values between the axis' ends, 0 to 1."""
+        if isinstance(self.source, Span):
+            low, high = self.source.low, self.source.high
+        else:
+            low, high = float(values.min()), float(values.max())
+        if low == high:
+            return np.full(len(values), 0.5)
+        if self.log:
+            values, low, high = np.log(values), math.log(low), math.log(high)
+        return (values - low) / (high - low)
+
+    def check(self, sampling: str) -> None:
+        """Refuse values that this variable or this sampling, if one is given, cannot take."""
+        # Values outside the range that the variable declares are allowed; their runs are errors.
+        source, kind = self.source, self.end.port.type
+        if isinstance(source, ListedValues):
+            fits: dict[str, Any] = {"Float64": (int, float), "Int32": int, "Boolean": bool}
+            for x in source.values:
+                boolean = isinstance(x, bool) and kind != "Boolean"
+                if boolean or not isinstance(x, fits.get(kind, str)):
+                    raise ValueError(f"{self.name} = {x!r}: {kind} wanted")
+            return
+        if kind not in ("Float64", "Int32"):
+            raise ValueError(f"{self.name} is {kind}: a list of values wanted")
+        if isinstance(source, Normal):
+            if sampling == "grid":
+                raise ValueError(f"{self.name}: a grid has no normal distribution")
+            return
+        shown = f"{self.name} = {source.low:g} .. {source.high:g}"
+        if not source.low < source.high:
+            raise ValueError(f"{shown}: from is not below to")
+        if source.log and source.low <= 0:
+            raise ValueError(f"{shown}: a logarithm wants positive numbers")
+        if sampling == "grid" and source.n is None:
+            raise ValueError(f"{shown}: a grid wants n, the number of values")
+        if sampling not in ("grid", "") and source.n is not None:
+            raise ValueError(f"{shown}: n = {source.n} belongs to a grid, not to {sampling}")
+        if kind == "Int32":
+            even = self._even(source)
+            if broken := [x for x in (even[0], even[-1]) if x != round(x)]:
+                raise ValueError(f"{shown}: {broken[0]:g} is no whole number")
+            if len(set(map(round, even))) < len(even):
+                raise ValueError(f"{shown}: fewer whole numbers than n = {source.n}")
+
+    def _even(self, source: Span) -> list[float]:
+        """Values of a grid or, if points are drawn at random, the two ends of the range."""
+        steps = (source.n or 2) - 1
+        if source.log:
+            ratio = source.high / source.low
+            inner = [source.low * ratio ** (k / steps) for k in range(1, steps)]
+        else:
+            width = source.high - source.low
+            inner = [source.low + width * k / steps for k in range(1, steps)]
+        return [source.low, *inner, source.high]
+
+    def grid(self) -> list[Value]:
+        """All values, in order, in the variable's unit."""
+        if isinstance(self.source, ListedValues):
+            return [self._typed(x) for x in self.source.values]
+        assert isinstance(self.source, Span), "check() has seen it"
+        return [self._typed(x) for x in self._even(self.source)]
+
+    def drawn(self, shares: NDArray[np.float64]) -> list[Value]:
+        """Values at given shares, 0 to 1, of the distribution."""
+        source, whole = self.source, self.end.port.type == "Int32"
+        if isinstance(source, ListedValues):
+            return [self._typed(source.values[int(u * len(source.values))]) for u in shares]
+        if isinstance(source, Normal):
+            return [self._typed(source.mean + source.deviation * z) for z in _normal(shares)]
+        low, high = source.low, source.high
+        if whole:  # every whole number has an interval of the shares of its own
+            low, high = low - (0.0 if source.log else 0.5), high + (0.0 if source.log else 0.5)
+        if source.log:
+            return [self._typed(low * (high / low) ** u) for u in shares]
+        inside = [low + (high - low) * u for u in shares]
+        return [self._typed(min(max(x, source.low), source.high)) for x in inside]
+
+    def _typed(self, x: Any) -> Value:
+        kinds: dict[str, Any] = {"Float64": float, "Int32": round}
+        return kinds.get(self.end.port.type, lambda same: same)(x)
+
+
+def _normal(shares: NDArray[np.float64]) -> list[float]:
+    """Quantiles of the standard normal distribution; none is infinite."""
+    inside = shares.clip(sys.float_info.min, 1.0 - sys.float_info.epsilon)
+    return [STANDARD.inv_cdf(u) for u in inside]
+
+
+def option(text: str) -> tuple[str, Any]:
+    """Name of an axis from the command line, and its value as a file would have it.
+
+    ``comp.var=lo:hi:n``, ``lo:hi``, either with ``:log`` after it, or ``a,b,c``.
+    """
+    name, _, value = text.partition("=")
+    parts = value.split(":")
+    log = len(parts) > 2 and parts[-1] == "log"
+    try:
+        if len(parts) == 1 and value:
+            return name.strip(), [_word(v.strip()) for v in value.split(",")]
+        low, high, *n = parts[: len(parts) - log]
+        spec: dict[str, Any] = {"from": float(low), "to": float(high), "log": log}
+        if n:
+            (spec["n"],) = map(int, n)
+        return name.strip(), spec
+    except ValueError:
+        wanted = "COMP.VAR=LO:HI:N, LO:HI, :log after either, or a list A,B,C"
+        raise InputError(f"--vary {text}: {wanted} wanted") from None
+
+
+def _word(text: str) -> Value:
+    """One value; anything else is text."""
+    found = word(text)
+    return found if isinstance(found, float | int | str) else text
+
+
+def count(axes: Sequence[Axis]) -> int:
+    """Number of points of a grid."""
+    sizes = (
+        len(a.source.values) if isinstance(a.source, ListedValues) else a.source.n
+        for a in axes
+        if not isinstance(a.source, Normal)
+    )
+    return math.prod(n or 1 for n in sizes)
+
+
+def points(axes: Sequence[Axis], sampling: str, runs: int, seed: int) -> list[Point]:
+    """All points of a study, in the order of its rows.
+
+    ``grid``: every combination, the last axis fastest, whatever `runs` is; ``random``: independent
+    draws; ``latin``: each axis' distribution cut into `runs` parts of equal probability, each taken
+    once (Latin hypercube). The same seed draws the same points.
+    """
+    if sampling == "grid":
+        return list(itertools.product(*(a.grid() for a in axes)))
+    random = np.random.default_rng(seed)
+    if sampling == "latin":
+        from scipy.stats import qmc  # takes half a second to import, and no worker needs it
+
+        shares = qmc.LatinHypercube(len(axes), rng=random).random(runs)
+    else:
+        shares = random.random((runs, len(axes)))
+    columns = [axis.drawn(shares[:, i]) for i, axis in enumerate(axes)]
+    return list(zip(*columns, strict=True))
