@@ -25,6 +25,13 @@ def unwoven(packed: dict[str, Any]) -> np.ndarray:
     return summed.view("<" + packed["kind"])
 
 
+def unpacked(value: object) -> np.ndarray:
+    """Numbers of a trace, packed or listed."""
+    if isinstance(value, dict):
+        return np.frombuffer(base64.b64decode(value["bdata"]), "<" + value["dtype"])
+    return np.asarray(value, dtype=float)
+
+
 def curve(data: dict[str, Any], trace: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     """Times [s] and values of a sampled trace."""
     clock = data["times"][trace["samples"]["time"]]

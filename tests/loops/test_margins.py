@@ -20,7 +20,7 @@ from motionfmu.analysis.freq.loop_study import LoopStudyOptions, study
 from motionfmu.analysis.linear.loops import Limit, boundary, feedbacks, largest_gain
 from motionfmu.analysis.linear.stability import closed_poles, margins
 from motionfmu.cli import app
-from motionfmu.report.servo.margin_page import point_line
+from motionfmu.report.loop_pages.margin_page import point_line
 
 ENC, PHASE = "card.enc_phase", "drives.phase"
 T = 1e-4  # [s]

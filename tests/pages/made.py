@@ -7,9 +7,9 @@ from pathlib import Path
 from conftest import ROOT
 
 import motionfmu
-from motionfmu.report.page import page_text
-from motionfmu.report.plain import plain_text
-from motionfmu.report.ran import ran_of
+from motionfmu.report.run_page import page_text
+from motionfmu.report.run_summary import summary_of
+from motionfmu.report.signal_page import plain_text
 
 CIRCLE = ROOT / "scenarios/circle"
 
@@ -20,15 +20,15 @@ def contour_run() -> motionfmu.Result:
 
 
 def contour(result: motionfmu.Result) -> str:
-    from motionfmu.report.drawing import draw
+    from motionfmu.report.error_path import draw
 
     found = result.contour()
-    return page_text((result, ran_of(result, found)), found, draw(found), result.figures())
+    return page_text((result, summary_of(result, found)), found, draw(found), result.figures())
 
 
 def plain(name: str, stop: float) -> str:
     result = motionfmu.load(ROOT / "scenarios" / name).run(stop=stop)
-    return plain_text(result, result.figures(), ran_of(result, None))
+    return plain_text(result, result.figures(), summary_of(result, None))
 
 
 def compared(result: motionfmu.Result) -> str:
@@ -43,14 +43,14 @@ def compared(result: motionfmu.Result) -> str:
 def margins() -> str:
     from motionfmu.analysis.freq.loop_study import LoopStudyOptions, study
     from motionfmu.analysis.linear import model
-    from motionfmu.report.servo import margin_page
+    from motionfmu.report.loop_pages import margin_page
 
     linear = model(CIRCLE, 1, {"machine.motor_speed": 30.0}, {})
     return margin_page.page_text(linear, study(linear, LoopStudyOptions(None, {}, False, None)))
 
 
 def tuned() -> str:
-    from motionfmu.report.servo import tune_page
+    from motionfmu.report.loop_pages import tune_page
     from motionfmu.run import load
     from motionfmu.study.tune import problem, tune
 
@@ -59,7 +59,7 @@ def tuned() -> str:
 
 def causes() -> str:
     from motionfmu.analysis.explain import explain
-    from motionfmu.report.causes import explain_page
+    from motionfmu.report.cause_pages import explain_page
 
     return explain_page.page_text(explain(ROOT / "scenarios/mismatch_line", {}))
 
@@ -87,7 +87,7 @@ def plan() -> str:
 
 def swept(folder: Path) -> str:
     """A study whose rows are made by hand: a bowl over two gains."""
-    from motionfmu.report.studies.sweep import page
+    from motionfmu.report.studies.sweep_page import page_text as sweep_text
     from motionfmu.study import worker
     from motionfmu.sweep import Outcome, study
 
@@ -99,12 +99,12 @@ def swept(folder: Path) -> str:
         worker.Row(i, "ok", "", True, (0.01 + sum((x / 200.0 - 1.0) ** 2 for x in point),))
         for i, point in enumerate(chosen.points)
     ]
-    return page(Outcome(chosen, rows, folder, 0))
+    return sweep_text(Outcome(chosen, rows, folder, 0))
 
 
 def path_causes(folder: Path) -> str:
     from motionfmu.analysis.explain import explain_path
-    from motionfmu.report.causes.path_causes_page import write_path_explanation
+    from motionfmu.report.cause_pages.path_causes_page import write_path_explanation
 
     found = explain_path(ROOT / "scenarios/plt_plate", {})
     return write_path_explanation(found, folder).read_text()

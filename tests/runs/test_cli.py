@@ -13,7 +13,7 @@ from console import command, within
 
 import motionfmu
 from motionfmu.cli.common import results
-from motionfmu.report.outcome import save
+from motionfmu.report.result_folder import save
 from motionfmu.scenarios import fmus
 
 
@@ -191,7 +191,7 @@ def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch) -
         raise OSError(28, "No space left on device")
 
     result = motionfmu.load(ROOT / "scenarios/circle").run(stop=0.01)
-    monkeypatch.setattr("motionfmu.report.outcome.write", full)
+    monkeypatch.setattr("motionfmu.report.result_folder.write", full)
     with pytest.raises(motionfmu.InputError, match=r"cannot write .*No space left on device"):
         save(result, tmp_path / "a/b/result")
     assert list(tmp_path.iterdir()) == []

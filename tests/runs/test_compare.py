@@ -131,17 +131,16 @@ def test_the_contour_of_both_stands_side_by_side(
     # The radius shrinks by V^2/(2 R Kp^2): at 3/2 of the gain to 4/9.
     assert table["error.rms"].change == pytest.approx(100.0 * (4 / 9 - 1), abs=3.0)
     drawn, largest = plots.error_figure(found.a, found.b)
-    over = {t["name"]: t["samples"] for t in drawn["data"]}
+    over = {mark.name: mark.samples for mark in drawn.marks}
     assert over["run A"].values.max() > over["run B"].values.max() > 0.0
     middle = len(over[GONE].values) // 2
     gone = over["run B"].values.max() - over["run A"].values.max()
     assert over[GONE].values[middle] == pytest.approx(gone, rel=0.2)
     assert largest == pytest.approx(np.abs(over[GONE].values).max() * 1e-3)
-    rings = plots.circle_figure(found, 0)["data"]
-    told = {t["name"] for t in rings if t.get("name")}
+    told = {mark.name for mark in plots.circle_figure(found, 0).marks}
     assert {"run A, counter-clockwise", "run B, counter-clockwise"} <= told
     path, factor = plots.path_figure(found.a, found.b)
-    assert [t["name"] for t in path["data"]] == ["programmed path", "run A", "run B"]
+    assert [mark.name for mark in path.marks] == ["programmed path", "run A", "run B"]
     assert factor > 1
 
 

@@ -9,7 +9,7 @@ import pytest
 from contour_runs import Machine, Program, run_along
 
 from motionfmu.analysis.contour import ContourResult, analyse, contour_result, scaled_values
-from motionfmu.report import drawing
+from motionfmu.report import error_path
 from motionfmu.run import decimate
 from motionfmu.run.result_files import json_of
 
@@ -52,10 +52,10 @@ def test_json_lists_the_worst_commands_and_corners_in_their_order(monkeypatch) -
 
 def test_the_drawing_needs_no_memory_for_each_sample(monkeypatch) -> None:
     monkeypatch.setattr(scaled_values, "BLOCK", 1 << 10)
-    monkeypatch.setattr(drawing, "WAYS", 1 << 10)
+    monkeypatch.setattr(error_path, "WAYS", 1 << 10)
     monkeypatch.setattr(decimate, "ROWS", 1 << 10)
     coarse, fine = zigzag(40, 1e-4), zigzag(40, 1.25e-5)
-    one, eight = (peak(lambda r=r: drawing.draw(r)) for r in (coarse, fine))
+    one, eight = (peak(lambda r=r: error_path.draw(r)) for r in (coarse, fine))
     more = len(fine.run.time) - len(coarse.run.time)
     assert more > 60_000
     # numbers of the cutting samples, 4 bytes each, and what a block needs; a float each is 8
@@ -69,9 +69,9 @@ def test_a_path_of_many_segments_is_drawn_by_those_that_show(monkeypatch) -> Non
         program = program.line(50 * np.cos(a), 50 * np.sin(a))
     path = program.line(0, 0).path()
     basis = np.eye(3)[:2]
-    every = drawing._outlined(path, np.arange(len(path.segments)), basis)
-    monkeypatch.setattr(drawing, "SEGMENTS_MAX", 100)
-    few = drawing._outlined(path, np.arange(len(path.segments)), basis)
+    every = error_path._outlined(path, np.arange(len(path.segments)), basis)
+    monkeypatch.setattr(error_path, "SEGMENTS_MAX", 100)
+    few = error_path._outlined(path, np.arange(len(path.segments)), basis)
     assert len(every) == 2 * len(path.segments) and len(few) < 0.2 * len(every)
     assert few[0] == pytest.approx(every[0]) and few[-1] == pytest.approx(every[-1])
     # no point of the path is farther from what is drawn than the part that no picture shows
@@ -81,8 +81,8 @@ def test_a_path_of_many_segments_is_drawn_by_those_that_show(monkeypatch) -> Non
     lines = drawn.path().segments
     points = np.column_stack([every, np.zeros(len(every))])
     near = np.min([line.foot(points).distance for line in lines], axis=0)
-    assert near.max() <= 100.0 / drawing.FINE + 1e-9
-    assert near.max() > 0.02 * 100.0 / drawing.FINE  # something was left out
+    assert near.max() <= 100.0 / error_path.FINE + 1e-9
+    assert near.max() > 0.02 * 100.0 / error_path.FINE  # something was left out
 
 
 def test_arrays_that_are_made_in_parts_are_the_whole() -> None:

@@ -27,7 +27,7 @@ from motionfmu.analysis.explain import (
 from motionfmu.analysis.explain.parameter_expression import evaluate
 from motionfmu.analysis.explain.servo_formulas import ServoAxis
 from motionfmu.base.errors import InputError
-from motionfmu.report.causes.explain_page import page_text
+from motionfmu.report.cause_pages.explain_page import page_text
 from motionfmu.report.numbers import length
 from motionfmu.scenarios import fmus
 

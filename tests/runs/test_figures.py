@@ -5,15 +5,15 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
-from matplotlib import pyplot as plt
 from page_curves import curve, page_data, unwoven
 
 import motionfmu
 from motionfmu.base.toml_lines import Lines
-from motionfmu.report.chart_pictures import chart_picture
-from motionfmu.report.charts import BUCKETS, chart_figure, shown
-from motionfmu.report.outcome import Kept, save
-from motionfmu.report.samples import COARSE
+from motionfmu.report.matplotlib_figure import BUCKETS, picture, thinned
+from motionfmu.report.plotly_figure import plotly_figure
+from motionfmu.report.result_folder import Kept, save
+from motionfmu.report.samples import COARSE, Samples
+from motionfmu.report.signal_chart import signal_chart
 from motionfmu.run.figures import OVERVIEW, Chart, Curve, Panel
 
 # 1 V is 300 rpm: 5 turns of 10 mm, 50 000 encoder counts per second.
@@ -103,9 +103,8 @@ def on_page(folder: Path, figure: int) -> list[tuple[np.ndarray, np.ndarray]]:
 
 def in_picture(chart: Chart) -> list[tuple[np.ndarray, np.ndarray]]:
     """Curves of the matplotlib picture, without the levels."""
-    picture = chart_picture(chart)
-    plt.close(picture)
-    lines = [line for axes in picture.axes for line in axes.lines]
+    drawn = picture(chart.title, chart.note, signal_chart(chart))
+    lines = [line for axes in drawn.axes for line in axes.lines]
     return [line.get_data() for line in lines if len(line.get_xdata()) > 2]
 
 
@@ -235,10 +234,10 @@ def test_thinning_keeps_peaks_and_steps(steps: bool) -> None:
     time = np.arange(100_000) * 1e-4
     values = np.sin(time)
     values[12_345], values[54_321] = 9.0, -9.0
-    part = shown(Curve("x", time, values, steps))
+    part = thinned(Samples(time, values, steps))
     assert len(part.values) <= 2 * BUCKETS + 2 and 9.0 in part.values and -9.0 in part.values
     staircase = np.floor(time)
-    part = shown(Curve("x", time, staircase, True))
+    part = thinned(Samples(time, staircase, True))
     held = part.values[np.searchsorted(part.time, time, side="right") - 1]
     assert np.array_equal(held, staircase) and len(part.values) == 11
 
@@ -247,11 +246,11 @@ def test_a_label_is_text_and_nothing_else() -> None:
     curve = Curve("<b>x_1$", np.arange(3.0), np.array([1.0, np.nan, 1.0]), False)
     panel = Panel("$a$ <i> [m]", (curve,), {"<u>$": 2.0}, True)
     chart = Chart("$t", "", (0.0, 2.0), True, (panel,))
-    assert chart_figure(chart)["layout"]["yaxis"]["title"]["text"] == "$a$ &lt;i&gt; [m]"
-    with matplotlib.rc_context({"text.parse_math": False}):
-        picture = chart_picture(chart)
-        picture.canvas.draw()
-        plt.close(picture)
+    drawn = plotly_figure(signal_chart(chart))
+    assert drawn["layout"]["yaxis"]["title"]["text"] == "$a$ &lt;i&gt; [m]"
+    shown = picture(chart.title, chart.note, signal_chart(chart))
+    shown.canvas.draw()
+    assert shown.axes[0].get_ylabel() == panel.label
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from motionfmu.base import binding
 from motionfmu.base.errors import InputError
 from motionfmu.base.platforms import here
 from motionfmu.export import as_ssp
-from motionfmu.report import outcome
+from motionfmu.report import result_folder
 from motionfmu.run.session import Session
 from motionfmu.ssp.ssp_import import take
 from motionfmu.study import study_columns
@@ -154,7 +154,7 @@ def test_names_with_dots_and_brackets_go_everywhere(folder: Path, tmp_path: Path
     assert study_columns.column(scenario, "through.out[1].max").end.name == "through.out[1]"
     ran = scenario.run(set={"through.in[1]": 0.5})
     assert ran.overrides == ["through.in[1] = 0.5 (default: 0)"]
-    assert outcome.save(ran, tmp_path / "r").name == "report.html"
+    assert result_folder.save(ran, tmp_path / "r").name == "report.html"
 
 
 # A value of each type, at the ends of those that are exact in a sum of doubles; its weight there.

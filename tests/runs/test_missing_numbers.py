@@ -16,7 +16,7 @@ import motionfmu
 from motionfmu.analysis.contour import analyse
 from motionfmu.analysis.contour.names import wrong
 from motionfmu.base.errors import NoNumber
-from motionfmu.report.outcome import save
+from motionfmu.report.result_folder import save
 from motionfmu.run.checks import judge
 from motionfmu.scenarios.body import Bounds
 from motionfmu.study import processes, worker

@@ -1,6 +1,5 @@
 """The page says what was computed: its curves hold the very numbers, peaks included."""
 
-import base64
 import math
 import re
 from dataclasses import replace
@@ -13,28 +12,22 @@ import pytest
 from conftest import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
-from page_curves import curve, page_data, unwoven
+from page_curves import curve, page_data, unpacked, unwoven
 
 import motionfmu
 from motionfmu.analysis.explain.theory import CornerRow
 from motionfmu.compare import comparison_page as compared
 from motionfmu.compare.differences import Checked
 from motionfmu.report import write_report
-from motionfmu.report.causes.explain_page import _corners
+from motionfmu.report.cause_pages.explain_page import _corners
+from motionfmu.report.html_tables import check_table, judged
 from motionfmu.report.numbers import MINUS, figure, length, magnification
-from motionfmu.report.packed import packed
 from motionfmu.report.samples import COARSE, bits
-from motionfmu.report.tables import check_table, judged
+from motionfmu.report.typed_arrays import packed
 from motionfmu.run.checks import Verdict
 from motionfmu.run.decimate import keep_peaks
 
 FLOAT32 = 1e-6
-
-
-def unpacked(value: object) -> np.ndarray:
-    if isinstance(value, dict):
-        return np.frombuffer(base64.b64decode(value["bdata"]), "<" + value["dtype"])
-    return np.asarray(value, dtype=float)
 
 
 @pytest.fixture(scope="module")

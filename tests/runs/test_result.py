@@ -120,7 +120,7 @@ def test_a_plot_has_a_panel_a_name_and_shows_the_samples(result: Result) -> None
         at = np.round(np.asarray(time) * 1e4).astype(int)
         assert (result[name][at] == values).all() and at[0] in (4999, 5000) and at[-1] >= 6000
     assert pyplot.get_fignums() == [] and matplotlib.get_backend() == backend
-    assert "circle_theory: contour error" in result.plot().axes[0].get_title(loc="left")
+    assert "circle_theory: contour error" in result.plot().texts[0].get_text()
     for window in ((0.6, 0.5), (0, 4), 3, "ab"):
         with pytest.raises(InputError, match=r"window = .*wanted"):
             result.plot("mcc.done", window=window)

@@ -63,7 +63,7 @@ def test_a_run_with_its_report_loads_nothing_that_draws(tmp_path) -> None:
     # with what is kept already: a system that is compiled now would take seconds
     folder = tmp_path / "run"
     found = loaded(None, "run", "scenarios/circle", "--stop", "0.4", "--out", str(folder))
-    assert "motionfmu.report.page" in found and (folder / "report.html").is_file()
+    assert "motionfmu.report.run_page" in found and (folder / "report.html").is_file()
     engine = json.loads((folder / "result.json").read_text())["options"]["engine"]
     used = {"numpy", "casadi"} | ({"fmpy", "lxml"} if engine != "fused" else set())
     assert found & (LARGE - used) == set()  # casadi: gains that are not kept yet

@@ -53,7 +53,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
     """All runs in this process, without a report: much faster where neither matters."""
     monkeypatch.setattr(processes, "rows", lambda job, tasks, _: iter(worker.chunk(job, tasks)))
-    monkeypatch.setattr("motionfmu.report.studies.sweep.write_sweep", lambda *_: None)
+    monkeypatch.setattr("motionfmu.report.studies.sweep_page.write_sweep", lambda *_: None)
 
 
 # ---- points

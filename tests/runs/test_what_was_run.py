@@ -10,7 +10,7 @@ from conftest import ROOT
 from page_curves import curve, page_data
 
 import motionfmu
-from motionfmu.report import outcome
+from motionfmu.report import result_folder
 from motionfmu.report.signal_words import sentence, titled
 
 
@@ -18,7 +18,7 @@ from motionfmu.report.signal_words import sentence, titled
 def circle(tmp_path_factory: pytest.TempPathFactory):
     folder = tmp_path_factory.mktemp("ran") / "circle"
     result = motionfmu.load(ROOT / "scenarios/circle").run(set={"mcc.p_gain": 300})
-    page = outcome.save(result, folder)
+    page = result_folder.save(result, folder)
     return (
         result,
         page.read_text(),
@@ -90,7 +90,7 @@ def test_notes_of_figures_are_the_scenarios_where_something_is_overridden(tmp_pa
     scenario = motionfmu.load(ROOT / "scenarios/fifo_one")
     mark = "Note of the scenario as written: The PC answers one clock"
     result = scenario.run(set={"mcc.irq_latency": 5e-4}, stop=0.3008)
-    page = outcome.save(result, tmp_path / "changed").read_text()
+    page = result_folder.save(result, tmp_path / "changed").read_text()
     assert mark in page
     assert words(page, "Overrides").count("<br>") == 1
     assert "stop = 0.3008 s (scenario: 0.6 s)" in words(page, "Overrides")
@@ -99,7 +99,7 @@ def test_notes_of_figures_are_the_scenarios_where_something_is_overridden(tmp_pa
     # 50 mm/s by the pulses alone
     time, tool = speeds(page_data(tmp_path / "changed/report.html"))[-1]
     assert tool[(time > 0.15) & (time < 0.29)] == pytest.approx(50.0, rel=5e-3)
-    written = outcome.save(scenario.run(), tmp_path / "written").read_text()
+    written = result_folder.save(scenario.run(), tmp_path / "written").read_text()
     assert mark not in written and "The PC answers one clock" in written
     assert words(written, "Overrides") == "none: as written"
 

@@ -12,7 +12,7 @@ from conftest import ROOT
 import motionfmu
 from motionfmu.analysis.explain import explain_path
 from motionfmu.base.errors import InputError, NoNumber
-from motionfmu.report.causes.path_causes_page import write_path_explanation
+from motionfmu.report.cause_pages.path_causes_page import write_path_explanation
 from motionfmu.study import study_columns
 
 PART = """%

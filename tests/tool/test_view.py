@@ -16,7 +16,7 @@ from py_mini_racer import MiniRacer
 
 import motionfmu
 from motionfmu.report import write_report
-from motionfmu.report.ran import without_leaps
+from motionfmu.report.run_summary import without_leaps
 from motionfmu.report.view.arm import Arm, chain
 from motionfmu.report.view.deviations import from_contour
 from motionfmu.report.view.scene import scene_of
@@ -241,9 +241,9 @@ def test_an_arm_appears_by_itself_with_the_lengths_of_its_fmu() -> None:
     assert scene_of(recorded({"show": False}, **both)) is None
     still = {"arm.tool_position": 0 * tip, "arm.link_angle": 0 * joints}
     assert scene_of(recorded({}, **still)) is None
-    from motionfmu.report.sheet import Sheet
+    from motionfmu.report.html_page import Page
 
-    page = Sheet()
+    page = Page()
     assert add_view(page, None) == {} and page.sections == []
 
 

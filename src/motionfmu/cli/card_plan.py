@@ -106,17 +106,17 @@ def _tell(file: Path, target: Path, n: "Figures", by_file: float | None) -> None
 def _report(
     name: str, found: Any, drawing: "PltDrawing", numbers: dict[str, Any], folder: Path
 ) -> None:
-    from motionfmu.report import outcome
+    from motionfmu.report import result_folder
+    from motionfmu.report.jobs.card_charts import draw_plan
     from motionfmu.report.jobs.card_page import plan_page
-    from motionfmu.report.jobs.card_pictures import draw_plan
 
-    outcome.usable(folder)
-    with outcome.whole(folder) as part:
+    result_folder.usable(folder)
+    with result_folder.whole(folder) as part:
         draw_plan(found, name, part / "plan.png")
         page = plan_page(name, found, drawing, numbers)
         (part / "report.html").write_text(page, encoding="utf-8")
         text = json.dumps(numbers, indent=1, allow_nan=False)
-        (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
+        (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
 
 
 @card.command()
@@ -163,7 +163,7 @@ def _show_drawing(file: Path, drawing: "PltDrawing", picture: Path | None) -> No
         place = f"line {n.line}, column {n.column}, byte {n.byte}"
         out.print(f"passed over {n.text}{times} ({place})", markup=False, soft_wrap=True)
     if picture:
-        from motionfmu.report.jobs.card_pictures import draw_drawing
+        from motionfmu.report.jobs.card_charts import draw_drawing
 
         draw_drawing(drawing, file.name, picture)
 
@@ -196,6 +196,6 @@ def _show_job(file: Path, found: "Job", picture: Path | None) -> None:
         active = "high" if e.level else "low"
         out.print(f"event {number}: output {pins}, {what} {active}, times: {times}")
     if picture:
-        from motionfmu.report.jobs.card_pictures import draw_job
+        from motionfmu.report.jobs.card_charts import draw_job
 
         draw_job(found, file.name, picture)

@@ -34,10 +34,10 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
     --set is for the run of B: compare scenarios/circle scenarios/circle --set mcc.p_gain=300.
     """
     from motionfmu import compare as pairs
-    from motionfmu.report import outcome
+    from motionfmu.report import result_folder
 
     if folder:
-        outcome.usable(folder)
+        result_folder.usable(folder)
     found = pairs.compare(a, b, signals or ("*",), settings(set_))
     shown = None
     if folder or not as_json:

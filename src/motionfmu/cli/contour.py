@@ -69,13 +69,13 @@ def _with_bar(work: Callable[..., T], name: str, path: Path, settings: dict[str,
 
 def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
     from motionfmu.analysis.explain import explain_path
-    from motionfmu.report import outcome
-    from motionfmu.report.causes.path_causes_page import HEADS, write_path_explanation
+    from motionfmu.report import result_folder
+    from motionfmu.report.cause_pages.path_causes_page import HEADS, write_path_explanation
     from motionfmu.report.numbers import length
     from motionfmu.scenarios.table_sources import scenario_file
 
     name = scenario_file(path).parent.name
-    target = outcome.usable(folder or results(name, "iso9283"))
+    target = result_folder.usable(folder or results(name, "iso9283"))
     found = _with_bar(explain_path, name, path, settings)
     kinds = [n for n in HEADS if n in found.figures]
     table = bare_table("cause")
@@ -89,7 +89,7 @@ def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> 
     for e in found.effects:
         if not e.judged:
             out.print(f"[bold]{e.title}[/] not judged: {e.how.replace('[', chr(92) + '[')}")
-    with outcome.whole(target) as part:
+    with result_folder.whole(target) as part:
         shown = write_path_explanation(found, part).name
     out.print(f"report: {target / shown}", soft_wrap=True)
 
@@ -103,13 +103,13 @@ def bar_columns() -> tuple[Any, ...]:
 
 def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
     from motionfmu.analysis.explain import explain
-    from motionfmu.report import outcome
-    from motionfmu.report.causes.explain_page import write_explanation
+    from motionfmu.report import result_folder
+    from motionfmu.report.cause_pages.explain_page import write_explanation
     from motionfmu.report.numbers import length
     from motionfmu.scenarios.table_sources import scenario_file
 
     name = scenario_file(path).parent.name
-    target = outcome.usable(folder or results(name, "contour"))
+    target = result_folder.usable(folder or results(name, "contour"))
     found = _with_bar(explain, name, path, settings)
     table = bare_table("cause")
     for heading in ("largest", "99 %", "theory", "error without"):
@@ -130,7 +130,7 @@ def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
         out.print(f"[bold]Ballbar, radius {mark.test.radius:g} mm[/]")
         for words in mark.words():
             out.print(f"  {words}")
-    with outcome.whole(target) as part:
+    with result_folder.whole(target) as part:
         shown = write_explanation(found, part).name
     out.print(f"report: {target / shown}", soft_wrap=True)
 

@@ -103,13 +103,14 @@ def _numbers(program: "Program") -> dict[str, Any]:
 def _show(file: Path, program: "Program", target: Path) -> None:
     """Print what was found and write the report."""
     from motionfmu.analysis.gcode import strokes, summarise
-    from motionfmu.report import outcome
+    from motionfmu.report import result_folder
     from motionfmu.report.jobs.gcode_page import (
         clock,
         fault_lines,
         metres,
         page_text,
         place,
+        write_path,
     )
 
     for text in fault_lines(str(file), program):
@@ -134,16 +135,14 @@ def _show(file: Path, program: "Program", target: Path) -> None:
         table.add_row(name, clock(u.time), metres(u.feed_way), f"{u.low[2]:.4g} mm")
     out.print(table)
     drawn = list(strokes(program))
-    outcome.usable(target)
-    with outcome.whole(target) as part:
+    result_folder.usable(target)
+    with result_folder.whole(target) as part:
         if not (without := missing("report")):
-            from motionfmu.report.jobs.gcode_picture import write_picture
-
-            write_picture(file.stem, drawn, part)
+            write_path(file.stem, drawn, part)
         page = page_text(file.stem, program, s, drawn)
         (part / "report.html").write_text(page, encoding="utf-8")
         numbers = json.dumps(_numbers(program), indent=1, allow_nan=False)
-        (part / outcome.NUMBERS).write_text(numbers + "\n", encoding="utf-8")
+        (part / result_folder.NUMBERS).write_text(numbers + "\n", encoding="utf-8")
     if without:
         out.print(f"no picture: {install('report')}", markup=False)
     out.print(f"report: {target / 'report.html'}", soft_wrap=True)

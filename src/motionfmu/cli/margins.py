@@ -52,8 +52,8 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.analysis.linear import gain_of, model
     from motionfmu.analysis.linear.gains import in_lines
     from motionfmu.analysis.linear.tuning_parts import held
-    from motionfmu.report import outcome
-    from motionfmu.report.servo.margin_page import numbers, page_text, point_line
+    from motionfmu.report import result_folder
+    from motionfmu.report.loop_pages.margin_page import numbers, page_text, point_line
 
     if gain is not None and loop is None:
         raise InputError(f"--gain {gain}: say with --loop which loop it belongs to")
@@ -65,13 +65,13 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
         linear = linear.moved(found) if found else linear
     about = point_line(linear, whence)
     out.print(about, markup=False, soft_wrap=True)
-    target = outcome.usable(folder or results(linear.scenario.name, "margins"))
+    target = result_folder.usable(folder or results(linear.scenario.name, "margins"))
     gains = {loop: gain} if loop is not None and gain is not None else {}
     studies = _study(linear, LoopStudyOptions(loop, gains, simulate, kick))
-    with outcome.whole(target) as part:
+    with result_folder.whole(target) as part:
         (part / "report.html").write_text(page_text(linear, studies, about), encoding="utf-8")
         text = json.dumps(numbers(linear, studies), indent=1, allow_nan=False)
-        (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
+        (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
     table = bare_table()
     table.add_column("loop", overflow="fold")
     for heading in ("gain", "phase", "delay", "peak S", "largest", "simulated"):

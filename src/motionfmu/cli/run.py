@@ -89,13 +89,13 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     ] = False,
 ) -> None:
     """Run a scenario, judge it and write its report."""
-    from motionfmu.report import outcome
+    from motionfmu.report import result_folder
     from motionfmu.run import load
 
     if pictures:
         needed("report")
     scenario = load(path)
-    target = outcome.usable(folder or results(scenario.name))
+    target = result_folder.usable(folder or results(scenario.name))
     options: dict[str, Any] = {
         "engine": engine,
         "fmi": fmi,
@@ -109,9 +109,10 @@ def run(  # noqa: PLR0913  (each is an option of the command)
         early = scenario.disagreements(options["set"])
     warnings(early)
     result = run_shown(
-        scenario, options | {"source": files_of(set_), "scratch": outcome.near(target)}
+        scenario, options | {"source": files_of(set_), "scratch": result_folder.near(target)}
     )
-    shown = outcome.save(result, target, outcome.Kept(csv, signals, pictures), under_way)
+    kept = result_folder.Kept(csv, signals, pictures)
+    shown = result_folder.save(result, target, kept, under_way)
     under_way("")
     verdicts(result.checks)
     warnings([told for told in result.warnings if told not in early])

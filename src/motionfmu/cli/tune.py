@@ -42,8 +42,8 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     """Find servo gains for a scenario's own path; write gains.toml and a report."""
     needed("tune")
     from motionfmu.analysis.linear.gains import in_lines
-    from motionfmu.report import outcome
-    from motionfmu.report.servo.tune_page import page_text
+    from motionfmu.report import result_folder
+    from motionfmu.report.loop_pages.tune_page import page_text
     from motionfmu.run import load
     from motionfmu.study.tune import problem, read
     from motionfmu.study.tune.tuning_words import plant_text
@@ -56,13 +56,13 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     values |= {"axes": "equal"} if equal else {}
     values |= {"cost": cost} if cost else {}
     asked = problem(values)
-    target = outcome.usable(folder or results(scenario.name, "tune"))
+    target = result_folder.usable(folder or results(scenario.name, "tune"))
     tuned = _tune(scenario, asked, settings(set_))
-    with outcome.whole(target) as part:
+    with result_folder.whole(target) as part:
         (part / "report.html").write_text(page_text(tuned), encoding="utf-8")
         (part / "gains.toml").write_text(tuned.toml(), encoding="utf-8")
         text = json.dumps(tuned.numbers(), indent=1, allow_nan=False)
-        (part / outcome.NUMBERS).write_text(text + "\n", encoding="utf-8")
+        (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
     table = bare_table("plant", tuned.study.path.what, "before", "after", "by the model")
     for before, after in zip(tuned.before, tuned.after, strict=True):
         old, new = before.fmus, after.fmus

@@ -14,11 +14,11 @@ from motionfmu.compare.differences import NOTHING, Checked, port_of
 from motionfmu.compare.number_pairs import Number
 from motionfmu.compare.pairing import Apart, Pairing
 from motionfmu.compare.words import GONE, change_text, row_of, signed, text_of
-from motionfmu.report import outcome
+from motionfmu.report import result_folder
 from motionfmu.report.contour_words import CIRCLE, CONTOUR, in_words
+from motionfmu.report.html_page import Page, PageFrame
+from motionfmu.report.html_tables import cards, judged, table
 from motionfmu.report.numbers import figure, length
-from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.tables import cards, judged, table
 from motionfmu.run.checks import parts, together
 from motionfmu.run.result_files import NUMBERS
 
@@ -33,7 +33,7 @@ FOOTER = (
 
 def write_comparison(found: Pairing, folder: Path) -> Path:
     """Write the page and result.json, whole or not at all."""
-    with outcome.whole(folder) as part:
+    with result_folder.whole(folder) as part:
         text = json.dumps(found.numbers(), indent=1, allow_nan=False, default=str)
         (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
         (part / PAGE).write_text(page_text(found), encoding="utf-8")
@@ -42,7 +42,7 @@ def write_comparison(found: Pairing, folder: Path) -> Path:
 
 def page_text(found: Pairing) -> str:
     """The whole HTML page of a comparison."""
-    page = Sheet()
+    page = Page()
     page.sections.append(_cards(found))
     _add_different(page, found)
     if found.checks:
@@ -59,7 +59,7 @@ def page_text(found: Pairing) -> str:
     _add_signals(page, found)
     about = f"A: {found.a.name} · B: {found.b.name}"
     names = dict.fromkeys(x.numbers["scenario"] for x in (found.a, found.b))
-    frame = Frame(" and ".join(names), about, "comparison", (), FOOTER)
+    frame = PageFrame(" and ".join(names), about, "comparison", (), FOOTER)
     return page.text(frame)
 
 
@@ -90,7 +90,7 @@ def _cards(found: Pairing) -> str:
     return cards(shown)
 
 
-def _add_different(page: Sheet, found: Pairing) -> None:
+def _add_different(page: Page, found: Pairing) -> None:
     rows = [tuple(map(escape, (d.what, d.a, d.b))) for d in found.different]
     content = table(("", "A", "B"), rows, 3) if rows else "<p>Nothing: both were made alike.</p>"
     page.section("What was run differently", "", content)
@@ -142,7 +142,7 @@ def _beside(plot: str, numbers: str) -> str:
     return f'<div class="wide" style="--beside: 575px"><div>{plot}</div><div>{numbers}</div></div>'
 
 
-def _add_contour(page: Sheet, found: Pairing) -> None:
+def _add_contour(page: Page, found: Pairing) -> None:
     drawn, factor = plots.path_figure(found.a, found.b)
     note = f"Both errors are drawn <b>{factor:,.0f} times</b> as large as they are."
     left = page.place("path", drawn)
@@ -179,7 +179,7 @@ def _performance(n: Number) -> tuple[str, ...]:
     return row_of(escape(n.name), n, spelled(unit_of_iso9283(n.name.rpartition(".")[2])))
 
 
-def _add_figures(page: Sheet, found: Pairing) -> None:
+def _add_figures(page: Page, found: Pairing) -> None:
     asked = {f["title"]: f for f in (*found.b.numbers["figures"], *found.a.numbers["figures"])}
     for i, one in enumerate(asked.values()):
         if (drawn := plots.figure_of(found, one)) is not None:
@@ -187,7 +187,7 @@ def _add_figures(page: Sheet, found: Pairing) -> None:
             page.section(escape(one["title"]), "", page.place(f"figure{i}", drawn, whole, "run"))
 
 
-def _add_signals(page: Sheet, found: Pairing) -> None:
+def _add_signals(page: Page, found: Pairing) -> None:
     apart = [s for s in found.signals if not s.same]
     same = [s.name for s in found.signals if s.same]
     time = found.common.time

@@ -12,32 +12,43 @@ from motionfmu.compare.overlay import Pair
 from motionfmu.compare.pairing import Pairing
 from motionfmu.compare.side import Side
 from motionfmu.compare.words import GONE
-from motionfmu.report.charts import CHARACTER, RIGHT, chart_figure
+from motionfmu.report.diagram import (
+    DASH,
+    DOT,
+    SOLID,
+    Diagram,
+    Mark,
+    SamplesMark,
+    Scale,
+    Subplot,
+    ends_of,
+    path_diagram,
+    path_lines,
+)
 from motionfmu.report.numbers import label, magnification, unit
-from motionfmu.report.packed import packed
-from motionfmu.report.path_plot import CAMERA, scene
-from motionfmu.report.polar_plot import polar_names, polar_rings
-from motionfmu.report.samples import Samples, sampled
-from motionfmu.report.style import AXES, PATH, axis, layout, plotted
+from motionfmu.report.polar_chart import deviation_line, polar_rings
+from motionfmu.report.samples import Samples
+from motionfmu.report.signal_chart import recolored, signal_chart
+from motionfmu.report.style import AXES, PATH
 from motionfmu.run.decimate import keep_peaks
 from motionfmu.run.figures import Chart, Curve, Panel
 from motionfmu.scenarios.rates import change, wrong
 
-Figure = dict[str, Any]
 Array = NDArray[np.float64]
 
 RUN_A, RUN_B = "run A", "run B"
 A, B = AXES[0], AXES[1]
 DIFFERENCE = ("#5a0f45", *AXES[2:], AXES[0], AXES[1])  # of one element, of several
 POINTS, BUCKETS = 2400, 400
+HEIGHT = 520  # [pixel] of the path
 FLAT = 1e-6  # part of its size by which a path in a plane leaves it
 SAME_PATH = 1e-2  # [mm] two paths whose points lie nearer are one: lengths are kept in 32 bits
 
 
-def signal_figure(found: Pairing, name: str) -> Figure:
+def signal_figure(found: Pairing, name: str) -> Diagram:
     """A signal of both runs, a panel for each element that differs, and the difference."""
     both = found[name]
-    panels, colors = [], []
+    panels, looks = [], []
     gone: list[Curve] = []
     for i in both.differing:
         curves = [
@@ -47,12 +58,12 @@ def signal_figure(found: Pairing, name: str) -> Figure:
         element = both.names[i].removeprefix(name)  # "[1]": the heading has the name
         title = label(element or name.rpartition(".")[2], both.unit)
         panels.append(Panel(title, tuple(curves), {}, True))
-        colors += [A, B]
+        looks += [(A, SOLID), (B, SOLID)]
         gone.append(Curve(element, both.time, both.difference[:, i], both.steps))
     several = len(gone) > 1
     panels.append(Panel(label(GONE, both.unit), tuple(gone), {}, several))
-    colors += [DIFFERENCE[(i + several) % len(DIFFERENCE)] for i in range(len(gone))]
-    return _colored(chart_figure(Chart(name, "", _whole(found), True, tuple(panels))), colors)
+    looks += [(DIFFERENCE[(i + several) % len(DIFFERENCE)], SOLID) for i in range(len(gone))]
+    return recolored(signal_chart(Chart(name, "", _whole(found), True, tuple(panels))), looks)
 
 
 def _column(x: Side, name: str, i: int) -> Array:
@@ -66,45 +77,36 @@ def _whole(found: Pairing) -> tuple[float, float]:
     return min(ends), max(ends)
 
 
-def _colored(drawn: Figure, colors: Sequence[str], dashes: Sequence[str] = ()) -> Figure:
-    for k, (trace, color) in enumerate(zip(drawn["data"], colors, strict=True)):
-        trace["line"] |= {"color": color, "dash": dashes[k] if dashes else "solid"}
-    return drawn
-
-
-def figure_of(found: Pairing, asked: Mapping[str, Any]) -> Figure | None:
+def figure_of(found: Pairing, asked: Mapping[str, Any]) -> Diagram | None:
     """A figure of the scenario with the curves of both runs; None if they do not have them."""
     panels: list[Panel] = []
-    colors: list[str] = []
-    dashes: list[str] = []
+    looks: list[tuple[str, str]] = []
     window = asked["window"]
     for plot in asked["plot"]:
         named = _named(found, plot)
         if not named:
             return None
-        one = len(named) == 1
+        alone = len(named) == 1
         curves, gone = [], []
         for k, (words, both, i) in enumerate(named):
             for run, x in ((RUN_A, found.a), (RUN_B, found.b)):
                 own = Curve("", x.time, _column(x, both.name, i), both.steps)
-                curves.append(_drawn(own, plot, run if one else f"{words}, {run}", window))
+                curves.append(_drawn(own, plot, run if alone else f"{words}, {run}", window))
             apart = Curve("", both.time, both.difference[:, i], both.steps)
             gone.append(_drawn(apart, plot, words, window))
-            colors += [A, B] if one else [AXES[k % len(AXES)]] * 2
-            dashes += ["solid", "solid" if one else "dash"]
+            color = AXES[k % len(AXES)]
+            looks += [(A, SOLID), (B, SOLID)] if alone else [(color, SOLID), (color, DASH)]
         if len(_known(curves)) < len(curves):
             return None
         panels.append(Panel(plot["label"], _known(curves), dict(plot["levels"]), True))
         unit_of = plot["label"][plot["label"].rindex("[") :] if "[" in plot["label"] else ""
         if len(_known(gone)) == len(gone):  # else the common times do not bear the rate
-            panels.append(Panel(f"{GONE} {unit_of}".strip(), _known(gone), {}, not one))
-            colors += [DIFFERENCE[0]] if one else [AXES[k % len(AXES)] for k in range(len(gone))]
-            dashes += ["solid"] * len(gone)
-    levels = [n for p in asked["plot"] for n in p["levels"]]
-    right = RIGHT + math.ceil(CHARACTER * max((len(n) for n in levels), default=0))
+            panels.append(Panel(f"{GONE} {unit_of}".strip(), _known(gone), {}, not alone))
+            colors = DIFFERENCE[:1] if alone else [AXES[k % len(AXES)] for k in range(len(gone))]
+            looks += [(color, SOLID) for color in colors]
     span = (window[0], window[1]) if window else _whole(found)
     chart = Chart(asked["title"], "", span, window is None, tuple(panels))
-    return _colored(chart_figure(chart, right), colors, dashes)
+    return recolored(signal_chart(chart), looks)
 
 
 def _named(found: Pairing, plot: Mapping[str, Any]) -> list[tuple[str, Pair, int]]:
@@ -160,7 +162,7 @@ def _cut(x: Side) -> tuple[Array, Array, Array]:
     return along, error[known[first]], x.track["foot"][known[first]].astype(np.float64)
 
 
-def error_figure(a: Side, b: Side) -> tuple[Figure, float]:
+def error_figure(a: Side, b: Side) -> tuple[Diagram, float]:
     """Contour error of both runs along the path, the difference below, and how large it is [mm]."""
     one, other = _cut(a), _cut(b)
     inside = (one[0] >= other[0][0]) & (one[0] <= other[0][-1])
@@ -168,31 +170,26 @@ def error_figure(a: Side, b: Side) -> tuple[Figure, float]:
     gone = np.interp(way, other[0], other[1]) - one[1][inside]
     factor, name = unit(max(np.abs(one[1]).max(), np.abs(other[1]).max()))
     finer, fine = unit(float(np.abs(gone).max()))
-    data = [
-        sampled(Samples(x[0], factor * x[1]), run, color)
+    curves = [
+        SamplesMark(Samples(x[0], factor * x[1]), run, color)
         for x, run, color in ((one, RUN_A, A), (other, RUN_B, B))
     ]
-    data.append(sampled(Samples(way, finer * gone), GONE, DIFFERENCE[0]) | {"yaxis": "y2"})
-    ends = [float(min(one[0][0], other[0][0])), float(max(one[0][-1], other[0][-1]))]
-    both = np.concatenate([one[1], other[1]]) * factor
-    more = {
-        "xaxis": axis("Along the path [mm]", range=ends, anchor="y2"),
-        "yaxis": _upright(f"Contour error [{name}]", both, [0.42, 1.0]),
-        "yaxis2": _upright(f"{GONE} [{fine}]", finer * gone, [0.0, 0.34]),
-        "hovermode": "x",
-        "margin": {"l": 84, "r": 20, "t": 34, "b": 48},
-    }
-    return {"data": data, "layout": layout(430, **more)}, float(np.abs(gone).max())
+    change = SamplesMark(Samples(way, finer * gone), GONE, DIFFERENCE[0])
+    ends = float(min(one[0][0], other[0][0])), float(max(one[0][-1], other[0][-1]))
+    rows = (
+        _subplot("Contour error", name, curves, 202.0),
+        _subplot(GONE, fine, [change], 118.0),
+    )
+    drawn = Diagram((Scale("Along the path", "mm", ends),), rows)
+    return drawn, float(np.abs(gone).max())
 
 
-def _upright(title: str, values: Array, domain: list[float]) -> Figure:
-    low, high = min(0.0, float(values.min())), max(0.0, float(values.max()))
-    room = 0.06 * (high - low) or 0.5
-    ends = [low - room, high + room]
-    return axis(title, domain=domain, range=ends, automargin=False, nticks=6)
+def _subplot(title: str, unit: str, curves: Sequence[SamplesMark], height: float) -> Subplot:
+    ends = ends_of([c.samples.values for c in curves], zero=True)
+    return Subplot(Scale(title, unit, ends), curves, height)
 
 
-def path_figure(a: Side, b: Side) -> tuple[Figure, float]:
+def path_figure(a: Side, b: Side) -> tuple[Diagram, float]:
     """Both paths with their errors so many times as large, and how many."""
     feet = [x.track["foot"][np.isfinite(x.track["error"])] for x in (a, b)]
     every = np.concatenate(feet).astype(np.float64)
@@ -206,27 +203,18 @@ def path_figure(a: Side, b: Side) -> tuple[Figure, float]:
     reach = max(float(x.track["along"].max()) for x in (a, b)) / (corners + 1)
     worst = float(np.percentile(known, 95)), float(known.max())
     factor = magnification(worst, float(size.max()), reach)
-    kind = "scatter" if flat else "scatter3d"
-    data: list[Figure] = []
+    lines: list[Mark] = []
     for x, run, color in ((a, RUN_A, A), (b, RUN_B, B)):
         kept = _kept(x.track["error"])
         foot, gap = (x.track[k][kept][:, drawn].astype(np.float64) for k in ("foot", "gap"))
-        if not data:
+        if not lines:
             nominal = np.where(np.isfinite(gap), foot, np.nan)
-            data.append(_line(kind, nominal, "programmed path", PATH, 1.4))
-        trace = _line(kind, foot + factor * gap, run, color, 1.8)
-        told = 1e3 * x.track["error"][kept]
-        trace |= {"customdata": packed(told), "hoverinfo": "all"}
-        trace["hovertemplate"] = f"%{{customdata:.2f}} µm<extra>{run}</extra>"
-        data.append(trace)
-    titles = [f"{'XYZ'[i]} [mm]" for i in drawn]
-    more: Figure = {} if flat else scene(titles, CAMERA)
-    if flat:
-        more = {
-            "xaxis": axis(titles[0], constrain="domain"),
-            "yaxis": axis(titles[1], scaleanchor="x", scaleratio=1, constrain="domain"),
-        }
-    return {"data": data, "layout": layout(600, hovermode="closest", **more)}, factor
+            look: Any = {"color": PATH, "width": 1.4, "hover": ()}
+            lines.append(path_lines(nominal, name="programmed path", **look))
+        told = [f"{run}: {1e3 * error:.2f} µm" for error in x.track["error"][kept]]
+        look = {"name": run, "color": color, "width": 1.8, "hover": told}
+        lines.append(path_lines(foot + factor * gap, **look))
+    return path_diagram(["XYZ"[i] for i in drawn], lines, HEIGHT), factor
 
 
 def _kept(error: Array) -> NDArray[np.int64]:
@@ -238,31 +226,18 @@ def _kept(error: Array) -> NDArray[np.int64]:
     return np.unique(np.concatenate([even, peaks, edges, edges + 1]))
 
 
-def _line(kind: str, points: Array, name: str, color: str, width: float) -> Figure:
-    found = plotted(points[:, 0], points[:, 1], name, color, width=width)
-    more = {"z": packed(points[:, 2])} if points.shape[1] == 3 else {}
-    return found | {"type": kind, "hoverinfo": "skip"} | more
-
-
-def circle_figure(found: Pairing, place: int) -> Figure | None:
+def circle_figure(found: Pairing, place: int) -> Diagram | None:
     """Radial deviation of both runs round a circle; None if a run did not go round it."""
-    traces: list[Figure] = []
-    top, done = 0.0, set()
+    lines, done = [], set()
     for x, run, color in ((found.a, RUN_A, A), (found.b, RUN_B, B)):
-        for way, words, dash in (("ccw", "counter-clockwise", "solid"), ("cw", "clockwise", "dot")):
+        for way, words, dash in (("ccw", "counter-clockwise", SOLID), ("cw", "clockwise", DOT)):
             angle = x.track.get(f"circles.{place}.{way}.angle")
             if angle is None:
                 continue
             done.add(run)
             deviation = 1e3 * x.track[f"circles.{place}.{way}.deviation"]
-            top = max(top, float(np.abs(deviation).max()))
-            kept = keep_peaks(deviation, BUCKETS)
-            trace: Figure = {"type": "scatterpolar", "mode": "lines", "name": f"{run}, {words}"}
-            trace |= {"theta": packed(angle[kept] * 180.0 / math.pi), "r": packed(deviation[kept])}
-            trace["line"] = {"color": color, "width": 2, "dash": dash}
-            trace["hovertemplate"] = f"%{{theta:.1f}}°: %{{r:.2f}} µm<extra>{run}, {words}</extra>"
-            traces.append(trace)
+            lines.append(deviation_line(angle, deviation, f"{run}, {words}", color, dash))
     if len(done) < 2:
         return None
     normal = np.array(found.a.numbers["contour"]["circles"][place]["normal"])
-    return polar_rings(traces, top, polar_names(plane_axes(normal)))
+    return polar_rings(lines, plane_axes(normal))

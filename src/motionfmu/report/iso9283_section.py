@@ -1,20 +1,33 @@
-"""The figures after ISO 9283 as a section of the page."""
+"""The figures after ISO 9283 as a section of the page and as a picture."""
 
 from html import escape
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from motionfmu.analysis.contour.circles import plane_axes
 from motionfmu.analysis.iso9283 import Evaluation, Performance
 from motionfmu.analysis.iso9283.evaluation import ANGLES
+from motionfmu.report.diagram import (
+    BandMark,
+    Diagram,
+    LineMark,
+    Mark,
+    Scale,
+    Subplot,
+    path_diagram,
+    path_lines,
+)
 from motionfmu.report.formula import readable
-from motionfmu.report.numbers import figure, length, unit
-from motionfmu.report.sheet import Sheet
-from motionfmu.report.style import AXES, INK, axis, layout, plotted
-from motionfmu.report.tables import picture_buttons, table
+from motionfmu.report.html_page import Page
+from motionfmu.report.html_tables import picture_buttons, table
+from motionfmu.report.numbers import figure, length, magnification, unit
+from motionfmu.report.style import AXES, INK, MUTED
 
 PICTURE = "iso9283"
-BAND = "rgba(11, 92, 173, 0.13)"
+BAND = "#0b5cad"
+HEIGHT = 190  # [pixel] of a plot along the path
 MEANS = {
     "AT_P": ("Path accuracy AT_P", "largest distance of the mean line from the command"),
     "RT_P": ("Path repeatability RT_P", "mean distance from the mean line and 3 S, largest"),
@@ -25,7 +38,7 @@ MEANS = {
 }
 
 
-def add_iso9283(page: Sheet, found: Evaluation) -> None:
+def add_iso9283(page: Page, found: Evaluation) -> None:
     """Add tables and pictures of an evaluation."""
     path = found.path
     start, end = path.excluded
@@ -36,7 +49,7 @@ def add_iso9283(page: Sheet, found: Evaluation) -> None:
         f" {_left_out(path, start, end)}."
     )
     content = _figures(found) + _cycles(found)
-    content += page.place("iso9283", deviation_figure(path)) + picture_buttons(PICTURE)
+    content += page.place("iso9283", deviation_chart(path)) + picture_buttons(PICTURE)
     if found.poses:
         content += f"<h3>Poses</h3>{_poses(found)}"
     page.section("Path performance", note, content)
@@ -123,35 +136,49 @@ def parts(path: Performance) -> list[tuple[str, Any, Any]]:
     ]
 
 
-def deviation_figure(path: Performance) -> dict[str, Any]:
+def deviation_chart(path: Performance) -> Diagram:
     """Deviation of every cycle along the path, and the band of the repeatability."""
     drawn = parts(path)
     factor, name = unit(max(float(np.abs(v).max()) for _, v, _ in drawn))
-    data: list[dict[str, Any]] = []
-    more: dict[str, Any] = {"xaxis": axis("Place on the path [mm]", anchor="y" + _key(drawn))}
-    room = 1.0 / len(drawn)
+    rows = []
     for i, (title, values, mean) in enumerate(drawn):
-        key = str(i + 1) if i else ""
-        top = 1.0 - i * room
-        more[f"yaxis{key}"] = axis(f"{title} [{name}]", domain=[top - room + 0.05, top])
-        curves = []
+        marks: list[Mark] = []
         if path.repeatability is not None:
-            for sign in (-1.0, 1.0):
-                edge = plotted(path.along, factor * (mean + sign * path.repeatability), "", BAND)
-                edge |= {"showlegend": False, "hoverinfo": "skip", "line": {"width": 0}}
-                curves.append(edge | ({"fill": "tonexty", "fillcolor": BAND} if sign > 0 else {}))
-            curves[-1] |= {"name": "mean ± repeatability", "showlegend": i == 0}
+            low, high = (factor * (mean + s * path.repeatability) for s in (-1.0, 1.0))
+            marks.append(BandMark(path.along, low, high, "mean ± repeatability", BAND))
         for j, own in enumerate(values):
             color = AXES[j % len(AXES)]
-            curve = plotted(path.along, factor * own, f"cycle {j + 1}", color, width=1.1)
-            curves.append(curve | {"showlegend": i == 0})
+            marks.append(LineMark(path.along, factor * own, f"cycle {j + 1}", color, 1.1))
         if len(values) > 1:
-            curve = plotted(path.along, factor * mean, "mean", INK, width=2.2)
-            curves.append(curve | {"showlegend": i == 0})
-        data += [c | {"yaxis": f"y{key}"} for c in curves]
-    more |= {"hovermode": "x", "legend": layout(0)["legend"] | {"traceorder": "normal"}}
-    return {"data": data, "layout": layout(140 + 210 * len(drawn), **more)}
+            marks.append(LineMark(path.along, factor * mean, "mean", INK, 2.2))
+        rows.append(Subplot(Scale(title, name), marks, HEIGHT, None if i == 0 else False))
+    return Diagram((Scale("Place on the path", "mm"),), rows)
 
 
-def _key(drawn: list[Any]) -> str:
-    return str(len(drawn)) if len(drawn) > 1 else ""
+def magnified_chart(path: Performance) -> tuple[Diagram, float]:
+    """The command path and the lines seen along its normal, and how much they are magnified."""
+    normal = np.array([0.0, 0.0, 1.0]) if path.normal is None else path.normal
+    basis = plane_axes(normal)
+    gap = path.point - path.command
+    sizes = np.linalg.norm(gap, axis=2)
+    extent = float(np.linalg.norm(np.ptp(path.command, axis=0)))
+    factor = magnification((float(np.percentile(sizes, 95)), float(sizes.max())), extent, extent)
+    lines = [path_lines(path.given.path.points @ basis.T, name="command", color=MUTED)]
+    for j, own in enumerate(path.command + factor * gap):
+        look: Any = {"name": f"cycle {j + 1}", "color": AXES[j % len(AXES)], "width": 1.2}
+        lines.append(path_lines(own @ basis.T, **look))
+    names = ["XYZ"[int(np.argmax(np.abs(b)))] for b in basis]
+    return path_diagram(names, lines, 2.0 * HEIGHT), factor
+
+
+def write_iso9283(name: str, found: Evaluation, folder: Path) -> None:
+    """Draw the lines over the command path and along it, as iso9283.png and iso9283.svg."""
+    from motionfmu.report.matplotlib_figure import write_picture
+
+    path = found.path
+    lines, factor = magnified_chart(path)
+    title = f"{name}: {len(path.given.cycles)} cycles, deviation {factor:,.0f} times as large"
+    note = f"AT_P {length(float(path.accuracy.max()))}"
+    if path.repeatability is not None:
+        note += f", RT_P {length(float(path.repeatability.max()))}"
+    write_picture(folder / PICTURE, title, note, lines, deviation_chart(path))

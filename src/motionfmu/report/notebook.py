@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.units import spelled
-from motionfmu.report.chart_pictures import MARKS, chart_picture
-from motionfmu.report.drawing import draw
+from motionfmu.report.error_path import draw
+from motionfmu.report.matplotlib_figure import picture
 from motionfmu.report.numbers import figure, label, length
-from motionfmu.report.pictures import PLAIN, STABLE, path_picture
+from motionfmu.report.path_chart import path_chart, path_titles
+from motionfmu.report.signal_chart import signal_chart
 from motionfmu.run import Result
 from motionfmu.run.checks import Verdict
 from motionfmu.run.decimate import Read, reader
@@ -26,8 +27,9 @@ from motionfmu.run.signals import elements
 
 # Checks that the view shows; those that failed come first.
 CHECKS_SHOWN = 15
-# Of the view's picture: of a path, with its size in inches, and of a figure; it has twice as many.
-PATH_WIDTH, PATH_SIZE, WIDTH = 400, (5.2, 4.3), 680  # [pixel]
+# Width [pixel] of the view's picture, of a path and of a figure; the file has twice as many.
+PATH_WIDTH, WIDTH = 400, 680
+PATH_INCHES = 5.2
 NOTHING = "the run records no signal"
 # Text takes the colour of the page that it stands on; a picture has its own white one.
 STYLE = """
@@ -60,24 +62,25 @@ def plot(
         from matplotlib import pyplot
 
         make = pyplot.figure  # else show() does not know it; a notebook would show it twice
-    with matplotlib.rc_context(PLAIN | STABLE | MARKS):
-        if not names and window is None:
-            return _first(result, make)
-        panels = names or tuple(result)[:1]
-        if not panels:
-            raise InputError(NOTHING)
-        return chart_picture(_chart(result, panels, window), make)
+    if not names and window is None:
+        return _first(result, make)
+    panels = names or tuple(result)[:1]
+    if not panels:
+        raise InputError(NOTHING)
+    chart = _chart(result, panels, window)
+    return picture(chart.title, chart.note, signal_chart(chart), make=make)
 
 
 def _first(result: Result, make: Callable[..., Figure] = Figure) -> Figure:
     """What the report begins with."""
     if _has_contour(result):
         contour = result.contour()
-        return path_picture(result.name, contour, draw(contour), make)
+        drawn = draw(contour)
+        return picture(*path_titles(result.name, contour, drawn), path_chart(drawn), make=make)
     charts = result.figures() or result.overview()[:1]
     if not charts:
         raise InputError(NOTHING)
-    return chart_picture(charts[0], make)
+    return picture(charts[0].title, charts[0].note, signal_chart(charts[0]), make=make)
 
 
 def _has_contour(result: Result) -> bool:
@@ -190,23 +193,16 @@ def _picture(result: Result) -> str:
     if not len(result):
         return ""
     file, width = io.BytesIO(), WIDTH
-    with matplotlib.rc_context(PLAIN | STABLE | MARKS):
-        drawn = _first(result)
-        if _has_contour(result):
-            width = PATH_WIDTH
-            _small(drawn, draw(result.contour()).magnify)
-        drawn.savefig(file, format="png", dpi=2 * width / drawn.get_figwidth())
+    if _has_contour(result):
+        # The picture fits beside the checks; the numbers of the error stand below them.
+        width, drawn = PATH_WIDTH, draw(result.contour())
+        title = f"Contour error {drawn.magnify:,.0f} times as large"
+        shown = picture(title, "", path_chart(drawn), width=PATH_INCHES)
+    else:
+        shown = _first(result)
+    shown.savefig(file, format="png", dpi=2 * width / shown.get_figwidth())
     data = base64.b64encode(file.getvalue()).decode()
     return f'<img width="{width}" alt="{escape(result.name)}" src="data:image/png;base64,{data}"/>'
-
-
-def _small(drawn: Figure, factor: float) -> None:
-    """Make the picture of a path fit beside the checks; its numbers stand below them."""
-    drawn.set_size_inches(PATH_SIZE)
-    axes = drawn.axes[0]
-    for text in list(axes.texts):
-        text.remove()
-    axes.set_title(f"Contour error {factor:,.0f} times as large", loc="left", fontsize=11, pad=6)
 
 
 def _overrides(result: Result) -> str:

@@ -7,7 +7,6 @@ const QUIET = { bgcolor: "rgba(0,0,0,0)", color: "#8a98a5", activecolor: "#0b5ca
 // So much more than what is in view is drawn on either side, for those who shift it.
 const BESIDE = 1;
 const GAP = 8, LOWEST = 200; // [pixel] of a plot of axes of one scale: beside it, its height
-const LEGEND = 34; // [pixel] margin above a plot of `layout` in style.py
 
 const BAR = 62; // [pixel] of a scale below a plot
 const narrow = document.documentElement.clientWidth < 500;
@@ -56,9 +55,6 @@ class Plot {
       .map(([trace, k]) => ({ trace, k, packed: trace.samples, clock: clocks }));
     layout.modebar = QUIET;
     this.place.style.minHeight = `${layout.height}px`;
-    // Room for a legend only where there is one.
-    const named = data.filter((trace) => trace.showlegend !== false).length > 1 || layout.showlegend;
-    if (!named && layout.margin.t === LEGEND) layout.margin.t = 20;
   }
 
   // Samples are unpacked, and a band stands behind each curve, for where it swings.

@@ -48,13 +48,6 @@ class Samples:
         return replace(made, dots=self.dots)
 
 
-def sampled(samples: Samples, name: str, color: str, **line: Any) -> dict[str, Any]:
-    """A curve over time of a plotly figure, for `Sheet.place`."""
-    style = {"color": color, "width": 1.4, "shape": "hv" if samples.steps else "linear"}
-    plain = {"type": "scatter", "mode": "lines", "name": name}
-    return plain | {"line": style | line, "samples": samples}
-
-
 def bits(values: NDArray[Any]) -> dict[str, Any]:
     """Numbers as one short text: whole ones exact, real ones to 7 digits of the height."""
     # Differences of their bits, the bytes sorted by their place: those of a smooth curve are alike.

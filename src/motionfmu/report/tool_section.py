@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 from html import escape
 
+from motionfmu.report.html_page import Page
+from motionfmu.report.html_tables import table
 from motionfmu.report.numbers import figure, length
-from motionfmu.report.sheet import Sheet
-from motionfmu.report.shown_run import Result
-from motionfmu.report.tables import table
-from motionfmu.report.time_plots import gap_figure
+from motionfmu.report.report_input import ReportInput
+from motionfmu.report.time_charts import gap_chart
 from motionfmu.run.tool_gap import ToolGap
 
 
-def add_tools(page: Sheet, result: Result, found: Sequence[ToolGap]) -> None:
+def add_tools(page: Page, result: ReportInput, found: Sequence[ToolGap]) -> None:
     """Add a section if controllers and machines of the run say where the tool is."""
     if not found:
         return
@@ -21,7 +21,7 @@ def add_tools(page: Sheet, result: Result, found: Sequence[ToolGap]) -> None:
     )
     content = table(("", "Largest", "at", "RMS"), [row for one in found for row in _rows(one)])
     for k, one in enumerate(found):
-        content += page.place(f"tool{k}", gap_figure(result.time, one), True)
+        content += page.place(f"tool{k}", gap_chart(result.time, one), True)
     page.section("Tool against command", note, content)
 
 

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.report.html_page import Page
 from motionfmu.report.numbers import figure, magnification
-from motionfmu.report.sheet import Sheet
 from motionfmu.report.style import AXES
 from motionfmu.report.view.scene import Scene
 
@@ -26,7 +26,7 @@ KEYS = (
 )
 
 
-def add_view(page: Sheet, scene: Scene | None) -> dict[str, Any]:
+def add_view(page: Page, scene: Scene | None) -> dict[str, Any]:
     """Add the section; give its data for the page, none without a scene."""
     if scene is None:
         return {}

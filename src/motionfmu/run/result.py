@@ -235,7 +235,7 @@ class Result(Mapping[str, NDArray[Any]]):
         InputError
             The folder holds something else, or cannot be written.
         """
-        outcome = _report("outcome")
+        outcome = _report("result_folder")
         shown: Path = outcome.save(self, Path(folder), outcome.Kept(csv, signals, pictures))
         return shown
 

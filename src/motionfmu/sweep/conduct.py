@@ -50,7 +50,7 @@ def conduct(study: Study, folder: str | Path, ways: Ways | None = None) -> Outco
             done, errors = done + 1, errors + (row.status != OK)
             asked.progress(done, errors)
         outcome = Outcome(study, book.finish(), book.folder, resumed)
-    from motionfmu.report.studies.sweep import write_sweep
+    from motionfmu.report.studies.sweep_page import write_sweep
 
     write_sweep(outcome, outcome.folder)
     return outcome

@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 
 from motionfmu.analysis.gcode import Fault, Program, Stroke, Summary
-from motionfmu.report.packed import packed
-from motionfmu.report.path_plot import CAMERA, scene
-from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, RAPID, axis, heat, layout
-from motionfmu.report.tables import cards, table
+from motionfmu.report.diagram import DOT, Diagram, path_diagram, path_lines
+from motionfmu.report.html_page import Page, PageFrame
+from motionfmu.report.html_tables import cards, table
+from motionfmu.report.style import AXES, RAPID, heat
 
 NAMES = "XYZUVW"
 SHORT = 24  # [characters] a text that is told again behind what is wrong with it
 # Spans of the feed that are told apart by their colours.
 LEVELS = 8
+HEIGHT = 500  # [pixel] of the path
 FOOTER = (
     "Times are those of the trajectory planner with the limits given; stops, tool changes and waits"
     " for inputs take none. Coordinates are the machine's. Every number is in"
@@ -42,7 +42,7 @@ def metres(way: float) -> str:
 
 def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Stroke]) -> str:
     """The whole HTML page."""
-    page = Sheet()
+    page = Page()
     low, high = summary.feeds
     feeds = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
     size = " \N{MULTIPLICATION SIGN} ".join(
@@ -62,9 +62,9 @@ def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Str
     if drawn:
         note = "Rapids are dotted." if any(s.rapid for s in drawn) else ""
         note += "" if len(summary.tools) < 2 else " A colour each tool."
-        page.section("Path", note, page.place("path", figure(drawn, by_feed=False)))
+        page.section("Path", note, page.place("path", path_of_program(drawn, by_feed=False)))
         if low < high:
-            place = page.place("feeds", figure(drawn, by_feed=True))
+            place = page.place("feeds", path_of_program(drawn, by_feed=True))
             page.section("Feed along the path", "As programmed.", place)
     page.section("Extents", "", _extents(summary))
     page.section("Tools", "", _tools(summary))
@@ -72,7 +72,7 @@ def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Str
         rows = [(f"{n.file} {n.line}".strip(), escape(n.text), n.why) for n in program.notes]
         told = table(("line", "text", "note"), rows, numeric=3)
         page.section("Notes", "Accepted, and without effect here; each once.", told)
-    return page.text(Frame(name, "A part program", "program", [], FOOTER))
+    return page.text(PageFrame(name, "A part program", "program", [], FOOTER))
 
 
 def _extents(summary: Summary) -> str:
@@ -147,47 +147,28 @@ def _by_feed(feeds: Sequence[Stroke]) -> list[Group]:
     ]
 
 
-def figure(drawn: Sequence[Stroke], by_feed: bool) -> dict[str, Any]:
-    """The path for plotly, by tool or by feed."""
-    space = is_space(drawn)
-    kind = "scatter3d" if space else "scatter"
-    plain = {"type": kind, "mode": "lines"}
-    traces: list[dict[str, Any]] = []
+def path_of_program(drawn: Sequence[Stroke], by_feed: bool) -> Diagram:
+    """The path, coloured by tool or by feed."""
+    width = 3 if is_space(drawn) else 2
     rapids = [s for s in drawn if s.rapid]
     feeds = [s for s in drawn if not s.rapid]
+    lines = []
     if rapids:
-        points, _, _ = _joined(rapids)
-        line = {"color": RAPID, "width": 2 if space else 1.2, "dash": "dot"}
-        traces.append(
-            plain | {"name": "rapid", "hoverinfo": "skip", "line": line} | _ends(points, space)
-        )
-    groups = _by_feed(feeds) if by_feed else _by_tool(feeds)
-    for name, parts, color in groups:
+        look: Any = {"name": "rapid", "color": RAPID, "width": 1.2, "dash": DOT, "hover": ()}
+        lines.append(path_lines(_joined(rapids)[0][:, :width], **look))
+    for name, parts, color in _by_feed(feeds) if by_feed else _by_tool(feeds):
         points, feed, number = _joined(parts)
-        trace = plain | {"name": name, "line": {"color": color, "width": 3 if space else 1.8}}
-        trace |= _ends(points, space)
-        trace["customdata"] = np.stack([number, np.round(feed, 3)], axis=1).tolist()
-        trace["hovertemplate"] = "line %{customdata[0]}, F%{customdata[1]:.4g}<extra></extra>"
-        traces.append(trace)
-    titles = [f"{n} [mm]" for n in NAMES[:3]]
-    if space:
-        more: dict[str, Any] = scene(titles, CAMERA)
-    else:
-        every = np.concatenate([s.points for s in drawn])
-        low, high = every.min(axis=0), every.max(axis=0)
-        edge = 0.03 * float((high - low)[:2].max()) or 1.0
-        (x, y) = ([a - edge, b + edge] for a, b in zip(low[:2], high[:2], strict=True))
-        more = {
-            "xaxis": axis(titles[0], range=x, constrain="domain"),
-            "yaxis": axis(titles[1], range=y, scaleanchor="x", scaleratio=1, constrain="domain"),
-        }
-    if space:
-        more["margin"] = {"l": 0, "r": 0, "t": 34, "b": 0}
-    return {"data": traces, "layout": layout(560, **more)}
+        told = [f"line {n:.0f}, F{f:.4g}" for n, f in zip(number, feed, strict=True)]
+        look = {"name": name, "color": color, "width": 1.8, "hover": told}
+        lines.append(path_lines(points[:, :width], **look))
+    return path_diagram(NAMES[:width], lines, HEIGHT)
 
 
-def _ends(points: Any, space: bool) -> dict[str, Any]:
-    return {a: packed(points[:, i]) for i, a in enumerate("xyz"[: 3 if space else 2])}
+def write_path(name: str, drawn: Sequence[Stroke], folder: Path) -> None:
+    """Draw the path by tool, as path.png and path.svg."""
+    from motionfmu.report.matplotlib_figure import write_picture
+
+    write_picture(folder / "path", name, "", path_of_program(drawn, by_feed=False))
 
 
 def place(name: str, f: Fault) -> str:

@@ -28,7 +28,7 @@ OFFSETS, SIGNS, PEN = "joint_offset", "joint_sign", "tool_length"
 
 
 @dataclass(frozen=True)
-class Line:
+class DeviationLine:
     """A line that was followed, and how far off."""
 
     foot: Array  # (n, 3) points of the command [mm]
@@ -46,10 +46,10 @@ class Scene:
     path_time: Array  # (m,) [s]
     path: Array  # (m, 3) [mm]
     speed: Array  # (m,) of the tool [mm/s]
-    lines: tuple[Line, ...] = ()
+    lines: tuple[DeviationLine, ...] = ()
 
 
-def scene_of(run: RunRecord, lines: Sequence[Line] = ()) -> Scene | None:
+def scene_of(run: RunRecord, lines: Sequence[DeviationLine] = ()) -> Scene | None:
     """The moving picture of a run; None where nothing moves that it could show."""
     view = run.resolver.document.body.view
     name = tool_signal(run)

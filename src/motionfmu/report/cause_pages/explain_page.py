@@ -5,7 +5,6 @@ import math
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -14,20 +13,21 @@ from motionfmu.analysis.explain import ballbar
 from motionfmu.analysis.explain.ballbar import Signature
 from motionfmu.analysis.explain.decompose import Effect, Explanation
 from motionfmu.analysis.explain.theory import CornerRow
-from motionfmu.report.causes.explain_picture import CAUSE, FORMULA, write_picture
+from motionfmu.report.diagram import BarMark, Diagram, LineMark, Scale, one
 from motionfmu.report.formula import readable
+from motionfmu.report.html_page import Page, PageFrame
+from motionfmu.report.html_tables import CORNERS_SHOWN, RMS, cards, circle_table, overrides, table
 from motionfmu.report.numbers import figure, length, unit
-from motionfmu.report.polar_plot import polar_figure
-from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, INK, MUTED, axis, layout, plotted
-from motionfmu.report.tables import CORNERS_SHOWN, RMS, cards, circle_table, overrides, table
+from motionfmu.report.polar_chart import polar_chart
+from motionfmu.report.style import AXES, INK, MUTED
 from motionfmu.run.decimate import keep_peaks
 
 PAGE, NUMBERS = "report.html", "result.json"
 # Points of a curve over the path: twice as many as a screen has columns.
 BUCKETS = 1200
 OVER_WAY = "over the way"
-BAR_HEIGHT = 44  # [pixel]
+BAR_HEIGHT, HEIGHT = 44, 238  # [pixel] of a cause, of the curves over the path
+CAUSE, FORMULA = AXES[0], "#9ec8e3"
 FOOTER = (
     "A cause is the change of the contour error between the run and the same run without it, at the"
     " same places of the path. Its size is the largest such change. Servo lag and path are what is"
@@ -42,14 +42,14 @@ def write_explanation(found: Explanation, folder: Path) -> Path:
     """Write report.html, result.json, causes.png and causes.svg."""
     text = json.dumps({"scenario": found.result.name} | found.numbers(), indent=1)
     (folder / NUMBERS).write_text(text + "\n", encoding="utf-8")
-    write_picture(found, folder)
+    _write_picture(found, folder)
     (folder / PAGE).write_text(page_text(found), encoding="utf-8")
     return folder / PAGE
 
 
 def page_text(found: Explanation) -> str:
     """The whole HTML page."""
-    page = Sheet()
+    page = Page()
     page.sections.append(_cards(found))
     if found.result.overrides:
         page.section("What was run", "", overrides(found.result.overrides))
@@ -71,7 +71,7 @@ def page_text(found: Explanation) -> str:
         )
         page.section("Corners", note, _corners(found))
     result = found.result
-    frame = Frame(result.name, result.about, "contour error explained", (), FOOTER)
+    frame = PageFrame(result.name, result.about, "contour error explained", (), FOOTER)
     return page.text(frame)
 
 
@@ -96,37 +96,33 @@ def shown(found: Explanation) -> list[Effect]:
     return acting or list(found.effects)
 
 
-def _bars(found: Explanation) -> dict[str, Any]:
-    effects = shown(found)[::-1]
+def _bars(found: Explanation) -> Diagram:
+    effects = shown(found)
+    theory = [e.theory.value for e in effects]
     factor, name = unit(max(max(e.size, e.theory.value or 0.0) for e in effects))
-    titles = [e.title for e in effects]
-    theory = [None if e.theory.value is None else e.theory.value * factor for e in effects]
-    size = [e.size * factor for e in effects]
+    marks = []
+    simulated: list[float | None] = [e.size for e in effects]
+    for what, sizes, color in (("simulated", simulated, CAUSE), ("theory", theory, FORMULA)):
+        values = [None if v is None else v * factor for v in sizes]
+        texts = ["" if v is None else f"{figure(v)} {name}" for v in values]
+        marks.append(BarMark(values, texts, what, color))
+    titles = tuple((float(i), e.title) for i, e in enumerate(effects))
+    across = Scale("Largest change of the contour error", name, floor=True)
+    return one(across, Scale(ticks=titles), marks, BAR_HEIGHT * len(effects))
 
-    def bar(what: str, values: list[Any], color: str) -> dict[str, Any]:
-        return {
-            "type": "bar",
-            "orientation": "h",
-            "name": what,
-            "y": titles,
-            "x": values,
-            "text": ["" if v is None else f"{figure(v)} {name}" for v in values],
-            "textposition": "outside",
-            "cliponaxis": False,
-            "marker": {"color": color},
-            "hovertemplate": "%{y}: %{x:.3g} " + name + f"<extra>{what}</extra>",
-        }
 
-    more = {
-        "barmode": "group",
-        "bargap": 0.3,
-        "margin": {"l": 210, "r": 90, "t": 34, "b": 48},
-        "xaxis": axis(f"Largest change of the contour error [{name}]", rangemode="tozero"),
-        "yaxis": axis("", automargin=True),
-        "legend": layout(0)["legend"] | {"traceorder": "reversed"},
-    }
-    data = [bar("theory", theory, FORMULA), bar("simulated", size, CAUSE)]
-    return {"data": data, "layout": layout(110 + BAR_HEIGHT * len(effects), **more)}
+def _write_picture(found: Explanation, folder: Path) -> None:
+    """Draw the causes, and the first circle that was run, as causes.png and causes.svg."""
+    from motionfmu.report.matplotlib_figure import write_picture
+
+    columns, note = [_bars(found)], ""
+    for mark in found.signatures[:1]:
+        columns.append(polar_chart(mark.test))
+        named = [f"{f.name} {length(f.size)}" for f in mark.findings if f.named]
+        words = ", ".join([f"mean radius {length(mark.mean, sign=True)}", *named])
+        note = f"{_circle_title(mark.test)}: {words}"
+    title = f"{found.result.name}: causes of the contour error"
+    write_picture(folder / "causes", title, note, *columns)
 
 
 def _effects(found: Explanation) -> str:
@@ -164,27 +160,22 @@ def _wrap(text: str, most: int = 5) -> str:
     return text if whole else ", ".join(parts[:most]) + f" and {len(parts) - most} more"
 
 
-def _curves(found: Explanation) -> dict[str, Any]:
+def _curves(found: Explanation) -> Diagram:
     factor, name = unit(float(np.abs(found.whole).max()))
-    data = []
-    curves = (
+    lines = []
+    for what, values, color, width in (
         ("contour error", found.whole, INK, 2.4),
         ("sum of the effects", found.together, AXES[1], 1.2),
         ("residual", found.residual, MUTED, 1.0),
-    )
-    for what, values, color, width in curves:
+    ):
         kept = keep_peaks(values, BUCKETS)
-        data.append(plotted(found.along[kept], values[kept] * factor, what, color, width=width))
-    more = {
-        "xaxis": axis("Place on the path [mm]"),
-        "yaxis": axis(f"Contour error [{name}]"),
-        "hovermode": "x",
-    }
-    return {"data": data, "layout": layout(320, **more)}
+        lines.append(LineMark(found.along[kept], values[kept] * factor, what, color, width))
+    scales = Scale("Place on the path", "mm"), Scale("Contour error", name)
+    return one(*scales, lines, HEIGHT)
 
 
-def _add_circle(page: Sheet, name: str, mark: Signature) -> None:
-    plot = page.place(name, polar_figure(mark.test))
+def _add_circle(page: Page, name: str, mark: Signature) -> None:
+    plot = page.place(name, polar_chart(mark.test))
     words = "".join(f"<li>{escape(w)}</li>" for w in mark.words())
     rows = [
         (f"<b>{f.name}</b>" if f.named else f.name, length(f.size), "named" if f.named else "")

@@ -11,8 +11,10 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
+from motionfmu.report.diagram import Diagram
+from motionfmu.report.plotly_figure import plotly_figure
 from motionfmu.report.samples import Samples, bits, clock
-from motionfmu.report.tables import Check
+from motionfmu.run.checks import Verdict
 
 # Cursors of all plots over the time of one run are the same two.
 RUN = "run"
@@ -20,17 +22,17 @@ SCRIPTS = ("samples.js", "cursors.js", "page.js")
 
 
 @dataclass(frozen=True)
-class Frame:
+class PageFrame:
     """What stands around the sections."""
 
     name: str  # of the scenario
     about: str  # what it shows
     kind: str  # of report
-    checks: Sequence[Check]  # for the verdict beside the title
+    checks: Sequence[Verdict]  # for the verdict beside the title
     footer: str  # HTML
 
 
-class Sheet:
+class Page:
     """Sections and plots, as they are added."""
 
     def __init__(self) -> None:
@@ -39,12 +41,11 @@ class Sheet:
         self.times: list[dict[str, Any]] = []
         self._known: dict[bytes, int] = {}
 
-    def place(
-        self, name: str, drawn: dict[str, Any], over_time: bool = False, cursors: str = ""
-    ) -> str:
-        """Add a plotly plot; give its HTML element, for a section."""
-        # Those over time are zoomed together, and share the cursors of the run. Others whose
-        # curves are `sampled` may have cursors of their own, by a name: plots of one name share.
+    def place(self, name: str, diagram: Diagram, over_time: bool = False, cursors: str = "") -> str:
+        """Add the plot of a diagram; give its HTML element, for a section."""
+        # Those over time are zoomed together, and share the cursors of the run. Others with curves
+        # of samples may have cursors of their own, by a name: plots of one name share.
+        drawn = plotly_figure(diagram)
         data = [self._trace(trace) for trace in drawn["data"]]
         more = {"over_time": over_time, "cursors": cursors or (RUN if over_time else "")}
         self.plots.append({"id": name, "data": data, "layout": drawn["layout"]} | more)
@@ -72,7 +73,7 @@ class Sheet:
         note = f'<p class="note">{note}</p>' if note else ""
         self.sections.append(f"<section><h2>{title}</h2>{note}{content}</section>")
 
-    def text(self, frame: Frame, scripts: Sequence[str] = (), **data: Any) -> str:
+    def text(self, frame: PageFrame, scripts: Sequence[str] = (), **data: Any) -> str:
         """The whole page; scripts that follow page.js, data for them."""
         here = files("motionfmu.report")
         everything = {"figures": self.plots, "times": self.times} | data
@@ -103,7 +104,7 @@ def _plotly() -> str:
     return (own / "plotly.min.js").read_text(encoding="utf-8")
 
 
-def _verdict(checks: Sequence[Check]) -> str:
+def _verdict(checks: Sequence[Verdict]) -> str:
     failed = sum(not c.ok for c in checks)
     if not checks:
         return ""

@@ -69,14 +69,14 @@ def save(
             told("signals")
             write(part / SIGNALS, result.signals, result.time)
         from motionfmu.report import write_report
-        from motionfmu.report.ran import ran_of
+        from motionfmu.report.run_summary import summary_of
 
         told("analyses")
         contour = None
         if result.scenario.document.body.contour is not None:
             with contextlib.suppress(NoNumber):
                 contour = result.contour(lambda share: told(f"contour {share:.0%}"))
-        ran = ran_of(result, contour)
+        ran = summary_of(result, contour)
         told("verdict")
         found = numbers(result) | ran.numbers()
         (part / NUMBERS).write_text(json_of(found) + "\n", encoding="utf-8")

@@ -13,11 +13,11 @@ from motionfmu.analysis.linear import AxisModel, LoopGain, gain_of
 from motionfmu.analysis.linear.gains import in_lines, in_words
 from motionfmu.analysis.linear.loops import Limit
 from motionfmu.analysis.linear.tuning_parts import held, worst
+from motionfmu.report.html_page import Page, PageFrame
+from motionfmu.report.html_tables import cards, overrides, table
+from motionfmu.report.loop_pages.margin_charts import bode, locus, nyquist, sensitivity, step
 from motionfmu.report.numbers import figure
-from motionfmu.report.servo.margin_plots import bode, locus, nyquist, sensitivity, step
-from motionfmu.report.sheet import Frame, Sheet
 from motionfmu.report.signal_words import words_of
-from motionfmu.report.tables import cards, overrides, table
 
 FOOTER = (
     "L is the open loop, cut at the input named, once around, with all delays of the FMUs, of their"
@@ -32,7 +32,7 @@ FOOTER = (
 
 def page_text(axis: AxisModel, studies: Sequence[LoopStudy], about: str = "") -> str:
     """The whole HTML page; `about` is what the operating point is and whence."""
-    page = Sheet()
+    page = Page()
     if told := worst(axis):
         note = "The model is the worst that the FMUs can become; they are not run."
         rows = [[escape(text)] for text in told]
@@ -45,7 +45,7 @@ def page_text(axis: AxisModel, studies: Sequence[LoopStudy], about: str = "") ->
     page.section("Operating point", _point_note(axis), _points(axis))
     name = f"{axis.scenario.name}, axis {axis.axis}"
     head = f"{axis.scenario.document.about} {about}".strip()
-    frame = Frame(name, head, "margins report", [], FOOTER)
+    frame = PageFrame(name, head, "margins report", [], FOOTER)
     return page.text(frame)
 
 
@@ -116,7 +116,7 @@ def _unlimited(value: float, text: str) -> str:
     return text if math.isfinite(value) else "unlimited"
 
 
-def _add(page: Sheet, study: LoopStudy, name: str, gains: Sequence[LoopGain]) -> None:
+def _add(page: Page, study: LoopStudy, name: str, gains: Sequence[LoopGain]) -> None:
     m = study.margins
     decibel = 20.0 * math.log10(m.gain) if 0.0 < m.gain < math.inf else math.inf
     rows = [

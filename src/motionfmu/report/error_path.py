@@ -36,7 +36,7 @@ AXES = "XYZ"
 
 
 @dataclass(frozen=True)
-class Drawing:
+class ErrorPath:
     """A path in the coordinates it is drawn in, and its error."""
 
     names: tuple[str, ...]  # of the axes drawn: two for a path in a plane, else three
@@ -55,7 +55,7 @@ class Drawing:
         return self.foot + factor * self.gap
 
 
-def draw(contour: ContourResult) -> Drawing:
+def draw(contour: ContourResult) -> ErrorPath:
     """Make the drawing of a run."""
     path, track = contour.run.path, contour.track
     basis = np.eye(3) if path.normal is None else plane_axes(path.normal)
@@ -67,7 +67,7 @@ def draw(contour: ContourResult) -> Drawing:
     foot = track.feet(kept) @ basis.T
     gap = np.where(whole[:, None], places(contour.run.actual, kept) @ basis.T - foot, np.nan)
     error = track.distance[kept]
-    return Drawing(
+    return ErrorPath(
         names=tuple(_name(b) for b in basis),
         path=cutting,
         rapids=_outlined(path, np.flatnonzero(~path.cut), basis),

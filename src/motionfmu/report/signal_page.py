@@ -4,29 +4,29 @@ from collections.abc import Sequence
 from functools import partial
 from html import escape
 
-from motionfmu.report.charts import add_charts
+from motionfmu.report.html_page import Page, PageFrame
+from motionfmu.report.html_tables import check_table, warning_list
 from motionfmu.report.iso9283_section import add_iso9283
-from motionfmu.report.ran import Ran, add_ran, add_speed
-from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.shown_run import Result
+from motionfmu.report.report_input import ReportInput
+from motionfmu.report.run_summary import RunSummary, add_speed, add_summary
+from motionfmu.report.signal_chart import add_charts
 from motionfmu.report.signal_words import words_of
-from motionfmu.report.tables import check_table, warning_list
 from motionfmu.report.tool_section import add_tools
 from motionfmu.report.view.deviations import from_cycles
-from motionfmu.report.view.scene import Line, scene_of
+from motionfmu.report.view.scene import DeviationLine, scene_of
 from motionfmu.report.view_section import SCRIPTS, add_view
 from motionfmu.run.figures import Chart
 
 FOOTER = "A point holds the outputs at its communication step, before that step was taken."
 
 
-def deviations(result: Result) -> list[Line]:
+def deviations(result: ReportInput) -> list[DeviationLine]:
     """Lines of the run's cycles, if it has an [iso9283] table."""
     asked = result.resolver.document.body.iso9283 is not None and not result.no_iso9283
     return from_cycles(result.iso9283().path) if asked else []
 
 
-def add_performance(page: Sheet, result: Result) -> None:
+def add_performance(page: Page, result: ReportInput) -> None:
     """Add the figures after ISO 9283, or why there are none, if the scenario asks for them."""
     if result.resolver.document.body.iso9283 is None:
         return
@@ -36,13 +36,13 @@ def add_performance(page: Sheet, result: Result) -> None:
         add_iso9283(page, result.iso9283())
 
 
-def plain_text(result: Result, charts: Sequence[Chart], ran: Ran) -> str:
+def plain_text(result: ReportInput, charts: Sequence[Chart], ran: RunSummary) -> str:
     """The whole HTML page of a run without a contour."""
     # If there are no figures, the recorded signals are shown.
-    page = Sheet()
+    page = Page()
     if result.checks:
         page.section("Verdict", "", check_table(result.checks, partial(words_of, result.resolver)))
-    add_ran(page, result, ran)
+    add_summary(page, result, ran)
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))
     if result.no_contour:
@@ -56,5 +56,5 @@ def plain_text(result: Result, charts: Sequence[Chart], ran: Ran) -> str:
     footer = FOOTER
     if not charts and len(shown) < len(result.signals):
         footer += f" {len(shown)} of {len(result.signals)} recorded signals are shown."
-    frame = Frame(result.name, result.about, "report", result.checks, footer)
+    frame = PageFrame(result.name, result.about, "report", result.checks, footer)
     return page.text(frame, SCRIPTS if views else (), **views)

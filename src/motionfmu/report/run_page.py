@@ -7,18 +7,9 @@ from pathlib import Path
 
 from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.contour.circles import CircularTest
-from motionfmu.report.charts import add_charts
-from motionfmu.report.drawing import Drawing, draw
-from motionfmu.report.numbers import figure, length
-from motionfmu.report.packed import packed
-from motionfmu.report.path_plot import path_figure
-from motionfmu.report.plain import add_performance, deviations, plain_text
-from motionfmu.report.polar_plot import polar_figure
-from motionfmu.report.ran import Ran, add_ran, add_speed, as_written, ran_of
-from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.shown_run import Result
-from motionfmu.report.signal_words import titled, words_of
-from motionfmu.report.tables import (
+from motionfmu.report.error_path import ErrorPath, draw
+from motionfmu.report.html_page import Page, PageFrame
+from motionfmu.report.html_tables import (
     CORNERS_SHOWN,
     RMS,
     cards,
@@ -30,13 +21,23 @@ from motionfmu.report.tables import (
     picture_buttons,
     warning_list,
 )
-from motionfmu.report.time_plots import (
-    error_figure,
-    fifo_figure,
-    following_figure,
-    trace_figures,
+from motionfmu.report.iso9283_section import write_iso9283
+from motionfmu.report.numbers import figure, length
+from motionfmu.report.path_chart import path_chart, path_titles
+from motionfmu.report.polar_chart import polar_chart
+from motionfmu.report.report_input import ReportInput
+from motionfmu.report.run_summary import RunSummary, add_speed, add_summary, as_written, summary_of
+from motionfmu.report.signal_chart import add_charts, write_charts
+from motionfmu.report.signal_page import add_performance, deviations, plain_text
+from motionfmu.report.signal_words import titled, words_of
+from motionfmu.report.time_charts import (
+    error_chart,
+    fifo_chart,
+    following_chart,
+    trace_charts,
 )
 from motionfmu.report.tool_section import add_tools
+from motionfmu.report.typed_arrays import packed
 from motionfmu.report.view.deviations import from_contour
 from motionfmu.report.view.scene import scene_of
 from motionfmu.report.view_section import SCRIPTS as VIEW
@@ -58,23 +59,23 @@ FOOTER = (
 
 
 def write_report(
-    result: Result,
+    result: ReportInput,
     contour: ContourResult | None,
     folder: str | Path,
-    ran: Ran | None = None,
+    ran: RunSummary | None = None,
     pictures: bool = False,
 ) -> Path:
     """Write the page and the contour's numbers of a run.
 
     Parameters
     ----------
-    result : Result
+    result : ReportInput
         Name, purpose, verdicts and figures of the scenario.
     contour : ContourResult or None
         The analysed run; None without a contour.
     folder : str or Path
         Made if it is not there; gets report.html, and with a contour contour.json.
-    ran : Ran, optional
+    ran : RunSummary, optional
         How the run went, if it was looked at before.
     pictures : bool
         Also as files what the page draws: figure1.png, figure1.svg and so on, with a contour
@@ -92,7 +93,7 @@ def write_report(
     """
     folder = Path(folder)
     charts = as_written(result, result.figures())
-    ran = ran or ran_of(result, contour)
+    ran = ran or summary_of(result, contour)
     if contour is None:
         page = plain_text(result, charts, ran)
         folder.mkdir(parents=True, exist_ok=True)
@@ -102,32 +103,33 @@ def write_report(
         numbers = json_of(contour.numbers())
         folder.mkdir(parents=True, exist_ok=True)
         if pictures:
-            from motionfmu.report.pictures import write_pictures  # with matplotlib
+            from motionfmu.report.matplotlib_figure import write_picture
 
-            write_pictures(result.name, contour, drawing, folder)
+            titles = path_titles(result.name, contour, drawing)
+            write_picture(folder / "path", *titles, path_chart(drawing))
         (folder / NUMBERS).write_text(numbers + "\n", encoding="utf-8")
     if pictures:
-        from motionfmu.report.chart_pictures import write_charts
-        from motionfmu.report.iso9283_picture import write_picture as write_lines
-
         write_charts(charts, folder)
         if result.resolver.document.body.iso9283 is not None and not result.no_iso9283:
-            write_lines(result.name, result.iso9283(), folder)
+            write_iso9283(result.name, result.iso9283(), folder)
     (folder / PAGE).write_text(page, encoding="utf-8")
     return folder / PAGE
 
 
 def page_text(
-    run: tuple[Result, Ran], contour: ContourResult, drawing: Drawing, charts: Sequence[Chart]
+    run: tuple[ReportInput, RunSummary],
+    contour: ContourResult,
+    drawing: ErrorPath,
+    charts: Sequence[Chart],
 ) -> str:
     """The whole HTML page of a run with a contour."""
     result, ran = run
-    page = Sheet()
+    page = Page()
     page.sections.append(_cards(contour))
     _add_path(page, contour, drawing)
     if result.checks:
         page.section("Verdict", "", check_table(result.checks, partial(words_of, result.resolver)))
-    add_ran(page, result, ran)
+    add_summary(page, result, ran)
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))
     views = add_view(page, scene_of(result, deviations(result) or [from_contour(contour)]))
@@ -146,7 +148,7 @@ def page_text(
     }
     sign = "Positive is to the left of the direction of travel, negative to the right. "
     footer = FOOTER.format(sign="" if contour.track.signed is None else sign)
-    frame = Frame(result.name, result.about, "contour report", result.checks, footer)
+    frame = PageFrame(result.name, result.about, "contour report", result.checks, footer)
     return page.text(frame, ["path.js", *(VIEW if views else ())], path=path, **views)
 
 
@@ -171,7 +173,7 @@ def _cards(contour: ContourResult) -> str:
     return cards(rows)
 
 
-def _add_path(page: Sheet, contour: ContourResult, drawing: Drawing) -> None:
+def _add_path(page: Page, contour: ContourResult, drawing: ErrorPath) -> None:
     factor = drawing.magnify
     choices = "".join(
         f'<option value="{m}"{" selected" if m == factor else ""}>&times; {m:,}</option>'
@@ -187,14 +189,14 @@ def _add_path(page: Sheet, contour: ContourResult, drawing: Drawing) -> None:
         f"The contour error is drawn <b><span data-magnification>{factor:,.0f}</span> times</b> as"
         " large as it is; colour is its true size."
     )
-    plot = page.place("path", path_figure(drawing)) + picture_buttons("path")
+    plot = page.place("path", path_chart(drawing)) + picture_buttons("path")
     left = f"<div>{control}{plot}</div>"
     right = f"<h3>Errors</h3>{error_table(contour)}<h3>Worst lines</h3>{line_table(contour)}"
     content = f'<div class="wide">{left}<div>{right}</div></div>'
     page.section("Path and contour error", note, content)
 
 
-def _add_circle(page: Sheet, name: str, test: CircularTest) -> None:
+def _add_circle(page: Page, name: str, test: CircularTest) -> None:
     lines = sorted({n for way in (test.ccw, test.cw) if way for n in way.lines})
     where = "line " + str(lines[0]) if len(lines) == 1 else f"lines {lines[0]} to {lines[-1]}"
     title = f"Circular test, radius {test.radius:g} mm"
@@ -202,29 +204,29 @@ def _add_circle(page: Sheet, name: str, test: CircularTest) -> None:
         f"ISO 230-4, {where}. Radial deviation from the nominal circle about its nominal centre;"
         " the rings are labelled with their deviation."
     )
-    plot = page.place(name, polar_figure(test))
+    plot = page.place(name, polar_chart(test))
     page.section(title, note, f'<div class="two">{plot}<div>{circle_table(test)}</div></div>')
 
 
-def _add_time(page: Sheet, result: Result, contour: ContourResult) -> None:
+def _add_time(page: Page, result: ReportInput, contour: ContourResult) -> None:
     sign = "" if contour.track.signed is None else " Positive is left of the direction of travel."
     zoom = " Zooming one plot zooms all plots over time."
     note = "Where the tool is cutting." + sign + zoom
-    page.section("Contour error", note, page.place("error", error_figure(contour), True))
+    page.section("Contour error", note, page.place("error", error_chart(contour), True))
     note = "Pulses put out minus actual position."
-    content = page.place("following", following_figure(contour), True)
+    content = page.place("following", following_chart(contour), True)
     page.section("Following error", note, content)
-    fifo = fifo_figure(contour)
+    fifo = fifo_chart(contour)
     if fifo is not None:
         note = "Least stock of the axes in use; an empty FIFO during motion means the PC was late."
         page.section("FIFO and interrupts", note, page.place("fifo", fifo, True))
-    for i, (title, drawn) in enumerate(trace_figures(contour)):
+    for i, (title, drawn) in enumerate(trace_charts(contour)):
         content = page.place(f"trace{i}", drawn, True)
         doc = result.resolver.end(title, "", "").port.doc
         page.section(escape(titled(title, doc)), "", content)
 
 
-def _add_corners(page: Sheet, contour: ContourResult) -> None:
+def _add_corners(page: Page, contour: ContourResult) -> None:
     if contour.corners:
         count = len(contour.corners)
         more = f", worst {CORNERS_SHOWN} of {count}" if count > CORNERS_SHOWN else ""

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from html import escape
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.contour.circles import CirclePass, CircularTest
 from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.report.numbers import unit as length_unit
-from motionfmu.run.checks import of_one_number, parts, together
+from motionfmu.run.checks import Verdict, of_one_number, parts, together
 
 # What the RMS of a contour error is, on every page.
 RMS = "over time where the tool cuts"
@@ -24,30 +24,6 @@ LONG, SMALL = 13, ' style="font-size:17px"'
 WIDE = 26
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")  # of a bound
 _DASH = re.compile(r"(?<![\w.>-])-(?=\d)|^-(?=\d)")  # before a number a minus
-
-
-class Check(Protocol):
-    """One verdict of a scenario."""
-
-    @property
-    def name(self) -> str:
-        """What was checked."""
-
-    @property
-    def ok(self) -> bool:
-        """Whether it holds."""
-
-    @property
-    def value(self) -> Any:
-        """What came out."""
-
-    @property
-    def bounds(self) -> str:
-        """What was asked for."""
-
-    @property
-    def reason(self) -> str:
-        """Why nothing came out; else empty."""
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: int = 1) -> str:
@@ -119,7 +95,7 @@ def warning_list(warnings: Sequence[str]) -> str:
     return f"<ul>{''.join(f'<li>{escape(told)}</li>' for told in warnings)}</ul>"
 
 
-def check_table(checks: Sequence[Check], words: Callable[[str], tuple[str, str]]) -> str:
+def check_table(checks: Sequence[Verdict], words: Callable[[str], tuple[str, str]]) -> str:
     """Verdicts of the scenario, failures first; `words` say what is checked, and its unit.
 
     The least and the largest that one number may be are one row.

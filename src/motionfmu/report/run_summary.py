@@ -14,10 +14,10 @@ from motionfmu.analysis.linear import LoopGain, gain_of
 from motionfmu.analysis.linear.gains import in_lines
 from motionfmu.base.columns import ROWS
 from motionfmu.base.extras import Missing
-from motionfmu.report.sheet import Sheet
-from motionfmu.report.shown_run import Result
-from motionfmu.report.tables import facts
-from motionfmu.report.time_plots import Speeds, speed_figure
+from motionfmu.report.html_page import Page
+from motionfmu.report.html_tables import facts
+from motionfmu.report.report_input import ReportInput
+from motionfmu.report.time_charts import Speeds, speed_chart
 from motionfmu.report.view.scene import STANDS, position, tool_signal
 from motionfmu.run import Scenario
 from motionfmu.run.decimate import Read, at, blocks, reader
@@ -41,7 +41,7 @@ AS_WRITTEN = "Note of the scenario as written: "
 
 
 @dataclass(frozen=True)
-class Ran:
+class RunSummary:
     """What a run was, for page and JSON."""
 
     began: float | None  # first command of the program, else first motion of the tool [s]
@@ -70,7 +70,7 @@ class Ran:
         }
 
 
-def ran_of(result: Result, contour: ContourResult | None) -> Ran:
+def summary_of(result: ReportInput, contour: ContourResult | None) -> RunSummary:
     """Look at how a run went."""
     scenario, given = result.scenario, result.options.get("set", {})
     gains: tuple[LoopGain, ...] = ()
@@ -87,22 +87,22 @@ def ran_of(result: Result, contour: ContourResult | None) -> Ran:
     elif tool is not None:
         began = _moves(result.time, tool)
     if tool is None or began is None:
-        return Ran(began, result.done_at, None, way, None, gains, tools)
+        return RunSummary(began, result.done_at, None, way, None, gains, tools)
     every = max(1, round(over / (result.time[1] - result.time[0])))
     some = np.arange(0, len(result.time), every)
     time, points = result.time[some], without_leaps(at(tool, some))
     distance = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     if len(time) < _LEAST:
-        return Ran(began, result.done_at, distance, way, None, gains, tools)
+        return RunSummary(began, result.done_at, distance, way, None, gains, tools)
     speed = np.linalg.norm(np.gradient(points, time, axis=0), axis=1)
     planned, programmed = _planned(result), _programmed(result, contour)
     factor, unit = (1.0, "mm/s") if contour is None else (MINUTE, "mm/min")
     rest = [None if v is None else factor * at(v, some) for v in (planned, programmed)]
     speeds = Speeds(time, factor * speed, rest[0], rest[1], (unit, source), result.done_at)
-    return Ran(began, result.done_at, distance, way, speeds, gains, tools)
+    return RunSummary(began, result.done_at, distance, way, speeds, gains, tools)
 
 
-def _tool(result: Result, contour: ContourResult | None) -> tuple[Read | None, str, float]:
+def _tool(result: ReportInput, contour: ContourResult | None) -> tuple[Read | None, str, float]:
     """Positions of the tool (n, 3) [mm], what they are from, and a time for its speed [s]."""
     if contour is not None:
         actual = reader(contour.run.actual)
@@ -144,7 +144,7 @@ def _moves(time: Array, tool: Read) -> float | None:
     return None
 
 
-def _programmed(result: Result, contour: ContourResult | None) -> Read | None:
+def _programmed(result: ReportInput, contour: ContourResult | None) -> Read | None:
     """The speed that program or scenario asks for [mm/s], NaN where it asks for none."""
     if contour is not None:
         path, commands, end = contour.run.path, contour.run.command, result.done_at or np.inf
@@ -173,7 +173,7 @@ def _first(there: NDArray[np.bool_], time: Array) -> float | None:
     return float(time[int(np.argmax(there))]) if there.any() else None
 
 
-def _planned(result: Result) -> Read | None:
+def _planned(result: ReportInput) -> Read | None:
     """The speed along the path as the controller planned it [mm/s], if one recorded says so."""
     for name, values in result.signals.items():
         if name.endswith(f".{PLANNED}") and values.ndim == 1:
@@ -181,7 +181,7 @@ def _planned(result: Result) -> Read | None:
     return None
 
 
-def add_ran(page: Sheet, result: Result, ran: Ran) -> None:
+def add_summary(page: Page, result: ReportInput, ran: RunSummary) -> None:
     """Add the section that says what was run, and the speed over time."""
     options = result.options
     step = options.get("step") or result.resolver.document.body.step
@@ -216,7 +216,7 @@ def add_ran(page: Sheet, result: Result, ran: Ran) -> None:
     page.section("What was run", told, facts(rows))
 
 
-def add_speed(page: Sheet, ran: Ran) -> None:
+def add_speed(page: Page, ran: RunSummary) -> None:
     """Add the speed of the tool over time."""
     if ran.speeds is None:
         return
@@ -227,10 +227,10 @@ def add_speed(page: Sheet, ran: Ran) -> None:
         rapids = ", rapids at their own speed" if ran.programmed else ""
         told.append(f"as programmed{rapids}")
     title = "Feed" if ran.programmed else "Speed of the tool"
-    page.section(title, "; ".join(told) + ".", page.place("speed", speed_figure(ran.speeds), True))
+    page.section(title, "; ".join(told) + ".", page.place("speed", speed_chart(ran.speeds), True))
 
 
-def as_written(result: Result, charts: Sequence[Chart]) -> list[Chart]:
+def as_written(result: ReportInput, charts: Sequence[Chart]) -> list[Chart]:
     """The figures; where something is overridden, notes are marked as the scenario's."""
     if not result.overrides:
         return list(charts)

@@ -52,7 +52,7 @@ class Dimension:
 
 
 @dataclass(frozen=True)
-class Field:
+class CostField:
     """Cost on a rectangular grid."""
 
     x: Array  # (n,) in the variable's unit
@@ -98,7 +98,7 @@ def kind(outcome: "Outcome") -> str:
     return CURVE if len(shown) == 1 else MATRIX
 
 
-def field(outcome: "Outcome") -> Field | None:
+def field(outcome: "Outcome") -> CostField | None:
     """The cost over two axes of numbers."""
     # A grid as it is; scattered points interpolated linearly inside their hull. None if the points
     # span no area.
@@ -111,7 +111,7 @@ def field(outcome: "Outcome") -> Field | None:
     if outcome.study.sampling == "grid":
         z = np.full((len(y), len(x)), np.nan)
         z[j, i] = cost
-        return Field(x, y, z)
+        return CostField(x, y, z)
     known = np.isfinite(cost)
     ends = [np.linspace(d.even.min(), d.even.max(), CELLS) for d in (first, second)]
     try:
@@ -121,7 +121,7 @@ def field(outcome: "Outcome") -> Field | None:
     except QhullError:
         return None
     across, up = (10.0**e if d.log else e for e, d in zip(ends, (first, second), strict=True))
-    return Field(across, up, z)
+    return CostField(across, up, z)
 
 
 def logarithmic(cost: Array) -> bool:
@@ -151,7 +151,7 @@ def levels(cost: Array) -> Array:
     return found[first : max(last, first + 1) + 1]
 
 
-def rangemode(cost: Array) -> str:
-    """How far an axis of the cost may reach: never below 0 if no cost does."""
+def never_negative(cost: Array) -> bool:
+    """Whether no cost is below 0, so that an axis of it does not reach below either."""
     known = cost[np.isfinite(cost)]
-    return "nonnegative" if len(known) and known.min() >= 0.0 else "normal"
+    return bool(len(known) and known.min() >= 0.0)

@@ -2,18 +2,18 @@
 
 from collections.abc import Sequence
 from html import escape
-from typing import Any
 
 import numpy as np
 
 from motionfmu.analysis.linear import LoopGain
 from motionfmu.analysis.linear.gains import in_words
 from motionfmu.base.units import spelled
+from motionfmu.report.diagram import DOT, SOLID, Diagram, SamplesMark, Scale, ends_of, one
+from motionfmu.report.html_page import Page, PageFrame
+from motionfmu.report.html_tables import RMS, cards, overrides, table
 from motionfmu.report.numbers import figure, length, unit
-from motionfmu.report.samples import Samples, sampled
-from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, RAPID, axis, layout
-from motionfmu.report.tables import RMS, cards, overrides, table
+from motionfmu.report.samples import Samples
+from motionfmu.report.style import AXES, RAPID
 from motionfmu.study.tune.problem import ON_PATH
 from motionfmu.study.tune.trial import Trial
 from motionfmu.study.tune.tuning_result import Tuned, TuningRun
@@ -21,7 +21,7 @@ from motionfmu.study.tune.tuning_words import assumptions, plant_text, units_of
 
 BEFORE, AFTER = RAPID, AXES[0]
 _STEPS = 600
-_WIDTH = 1.6  # [pixel] of a curve
+_WIDTH, _HEIGHT = 1.6, 230  # [pixel] of a curve, of a plot
 FOOTER = (
     "Model: the plant's own equation about the operating point with its friction as a disturbance,"
     " the sampled laws that the FMUs carry, all their delays. FMUs: the scenario run with the gains"
@@ -34,7 +34,7 @@ FOOTER = (
 
 def page_text(tuned: Tuned) -> str:
     """The whole HTML page."""
-    page = Sheet()
+    page = Page()
     page.sections.append(_cards(tuned))
     if told := tuned.before[0].result.overrides:
         page.section("What was run", "", overrides(told))
@@ -53,7 +53,7 @@ def page_text(tuned: Tuned) -> str:
     page.section("Step", note, page.place("step", _step(tuned), cursors="step"))
     page.section("How it was found", _search(tuned), _assumed(tuned))
     scenario = tuned.study.scenario
-    frame = Frame(scenario.name, scenario.document.about, "tuning report", [], FOOTER)
+    frame = PageFrame(scenario.name, scenario.document.about, "tuning report", [], FOOTER)
     return page.text(frame)
 
 
@@ -129,42 +129,34 @@ def _runs(tuned: Tuned) -> str:
     return table(heads, rows, 2)
 
 
-def _errors(tuned: Tuned) -> dict[str, Any]:
+def _errors(tuned: Tuned) -> Diagram:
     runs: Sequence[tuple[str, TuningRun, str]] = (
         ("before", tuned.before[0], BEFORE),
         ("after", tuned.after[0], AFTER),
     )
     factor, name = unit(max(r.fmus.max for _, r, _ in runs))
-    data, ends = [], []
-    for title, run, colour in runs:
-        values = run.fmus.values
-        samples = Samples(run.fmus.time, values * factor)
-        data.append(sampled(samples, title, colour, width=_WIDTH))
-        ends.append((np.nanmin(samples.values), np.nanmax(samples.values)))
-    low, high = float(min(a for a, _ in ends)), float(max(b for _, b in ends))
-    room = 0.06 * (high - low) or 1.0
+    curves = [
+        SamplesMark(Samples(run.fmus.time, run.fmus.values * factor), title, color, _WIDTH)
+        for title, run, color in runs
+    ]
+    ends = ends_of([c.samples.values for c in curves])
     what = tuned.study.path.what.capitalize()
-    up = axis(f"{what} [{name}]", range=[low - room, high + room])
-    titles = {"xaxis": axis("Time [s]"), "yaxis": up, "hovermode": "x"}
-    return {"data": data, "layout": layout(320, **titles)}
+    return one(Scale("Time", "s"), Scale(what, name, ends), curves, _HEIGHT)
 
 
-def _step(tuned: Tuned) -> dict[str, Any]:
-    study, data = tuned.study, []
+def _step(tuned: Tuned) -> Diagram:
+    study, curves = tuned.study, []
     part_of = study.parts[0]
-    lag = study.lag
-    for title, z, dash in (("before", study.present, "dot"), ("after", tuned.z, "solid")):
+    for title, z, dash in (("before", study.present, DOT), ("after", tuned.z, SOLID)):
         gains = study.gains(z)
         for k, part in part_of.items():
-            periods = max(1, round(8.0 * max(lag, 1e-3) / _STEPS / part.period))
+            periods = max(1, round(8.0 * max(study.lag, 1e-3) / _STEPS / part.period))
             answer = part.step(gains[k], periods, _STEPS, False).value[0]
             time = part.period * periods * 1e3 * np.arange(_STEPS, dtype=np.float64)
             color = AXES[(k - 1) % len(AXES)]
             samples = Samples(time, answer, steps=periods == 1)
-            name = f"axis {k} {title}"
-            data.append(sampled(samples, name, color, width=_WIDTH, dash=dash))
-    titles = {"xaxis": axis("Time [ms]"), "yaxis": axis("Share of the step")}
-    return {"data": data, "layout": layout(300, **titles)}
+            curves.append(SamplesMark(samples, f"axis {k} {title}", color, _WIDTH, dash))
+    return one(Scale("Time", "ms"), Scale("Share of the step"), curves, _HEIGHT)
 
 
 def _limits_note(tuned: Tuned) -> str:

@@ -3,21 +3,17 @@
 import json
 from html import escape
 from pathlib import Path
-from typing import Any
 
-import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
 
 from motionfmu.analysis.explain.path_causes import FIGURES, PathEffect, PathExplanation
+from motionfmu.report.diagram import BarMark, Diagram, LineMark, Scale, one
+from motionfmu.report.html_page import Page, PageFrame
+from motionfmu.report.html_tables import cards, overrides, picture_links, table
 from motionfmu.report.numbers import figure, length, unit
-from motionfmu.report.pictures import PLAIN, STABLE
-from motionfmu.report.sheet import Frame, Sheet
-from motionfmu.report.style import AXES, GRID, INK, MUTED, axis, layout, plotted
-from motionfmu.report.tables import cards, overrides, picture_links, table
+from motionfmu.report.style import AXES, INK, MUTED
 
 PAGE, NUMBERS = "report.html", "result.json"
-PICTURES = ("causes.svg", "causes.png")
 HEADS = {
     "accuracy": "AT_P",
     "straightness": "Best line",
@@ -25,7 +21,7 @@ HEADS = {
     "in_plane": "In plane",
     "height": "Height",
 }
-BAR_HEIGHT = 58  # [pixel]
+BAR_HEIGHT, HEIGHT = 58, 278  # [pixel] of a cause, of the curves over the path
 SHOWN = 6  # curves over the path
 FOOTER = (
     "A cause is the change of the mean line of all cycles between the run and the same run without"
@@ -41,7 +37,7 @@ def write_path_explanation(found: PathExplanation, folder: Path) -> Path:
     text = json.dumps({"scenario": found.result.name} | found.numbers(), indent=1)
     (folder / NUMBERS).write_text(text + "\n", encoding="utf-8")
     _write_picture(found, folder)
-    page = Sheet()
+    page = Page()
     page.sections.append(_cards(found))
     if found.result.overrides:
         page.section("What was run", "", overrides(found.result.overrides))
@@ -51,7 +47,7 @@ def write_path_explanation(found: PathExplanation, folder: Path) -> Path:
     note = "Change of the mean line by the largest causes: its size in the planes across the path."
     page.section("Along the path", note, page.place("along", _curves(found)))
     result = found.result
-    frame = Frame(result.name, result.about, "tool path explained", (), FOOTER)
+    frame = PageFrame(result.name, result.about, "tool path explained", (), FOOTER)
     (folder / PAGE).write_text(page.text(frame), encoding="utf-8")
     return folder / PAGE
 
@@ -76,33 +72,16 @@ def _kinds(found: PathExplanation) -> list[str]:
     return [n for n in FIGURES if n in found.figures and n != "straightness_in_plane"]
 
 
-def _bars(found: PathExplanation) -> dict[str, Any]:
-    effects = acting(found)[::-1]
+def _bars(found: PathExplanation) -> Diagram:
+    effects = acting(found)
     factor, name = unit(max(e.size for e in effects))
-    data = []
-    for i, kind in reversed(list(enumerate(_kinds(found)))):
+    marks = []
+    for kind, color in zip(_kinds(found), AXES, strict=False):
         values = [factor * e.figures[kind] for e in effects]
-        data.append(
-            {
-                "type": "bar",
-                "orientation": "h",
-                "name": HEADS[kind],
-                "y": [e.title for e in effects],
-                "x": values,
-                "text": [f"{figure(v)} {name}" for v in values],
-                "textposition": "outside",
-                "cliponaxis": False,
-                "marker": {"color": AXES[i]},
-            }
-        )
-    more = {
-        "barmode": "group",
-        "margin": {"l": 210, "r": 90, "t": 34, "b": 48},
-        "xaxis": axis(f"Of the change by the cause [{name}]", rangemode="tozero"),
-        "yaxis": axis("", automargin=True),
-        "legend": layout(0)["legend"] | {"traceorder": "reversed"},
-    }
-    return {"data": data, "layout": layout(110 + BAR_HEIGHT * len(effects), **more)}
+        marks.append(BarMark(values, [f"{figure(v)} {name}" for v in values], HEADS[kind], color))
+    titles = tuple((float(i), e.title) for i, e in enumerate(effects))
+    across = Scale("Of the change by the cause", name, floor=True)
+    return one(across, Scale(ticks=titles), marks, BAR_HEIGHT * len(effects))
 
 
 def _effects(found: PathExplanation) -> str:
@@ -123,47 +102,24 @@ def _effects(found: PathExplanation) -> str:
     return table(heads, rows) + note
 
 
-def _curves(found: PathExplanation) -> dict[str, Any]:
+def _curves(found: PathExplanation) -> Diagram:
     shown = [("deviation", found.whole, INK, 2.4)]
     shown += [
         (e.title, e.change, AXES[i], 1.3) for i, e in enumerate(acting(found)[:SHOWN]) if e.size
     ]
     shown.append(("residual", found.residual, MUTED, 1.0))
     factor, name = unit(float(np.linalg.norm(found.whole, axis=1).max()))
-    data = []
-    for what, values, color, width in shown:
-        size = factor * np.linalg.norm(values, axis=1)
-        data.append(plotted(found.along, size, what, color, width=width))
-    more = {
-        "xaxis": axis("Place on the path [mm]"),
-        "yaxis": axis(f"Size [{name}]", rangemode="tozero"),
-        "hovermode": "x",
-    }
-    return {"data": data, "layout": layout(360, **more)}
+    lines = [
+        LineMark(found.along, factor * np.linalg.norm(values, axis=1), what, color, width)
+        for what, values, color, width in shown
+    ]
+    return one(Scale("Place on the path", "mm"), Scale("Size", name, floor=True), lines, HEIGHT)
 
 
 def _write_picture(found: PathExplanation, folder: Path) -> None:
-    effects, kinds = acting(found)[::-1], _kinds(found)[::-1]
-    factor, name = unit(max(e.size for e in effects))
-    height = 0.8 / len(kinds)
-    with matplotlib.rc_context(PLAIN | STABLE):
-        drawn = Figure(figsize=(9.0, 1.4 + 0.62 * len(effects)), layout="constrained")
-        axes: Any = drawn.add_subplot()
-        place = np.arange(len(effects))
-        for i, kind in enumerate(kinds):
-            sizes = [factor * e.figures[kind] for e in effects]
-            shift = (i - 0.5 * (len(kinds) - 1)) * height
-            color = AXES[len(kinds) - 1 - i]
-            axes.barh(place + shift, sizes, 0.92 * height, color=color, label=HEADS[kind])
-        axes.set_yticks(place, [e.title for e in effects], color=INK)
-        axes.set_xlabel(f"Of the change by the cause [{name}]")
-        told = f"AT_P {length(found.figures['accuracy'])}"
-        axes.set_title(f"{found.result.name}: causes of the deviation, {told}", loc="left")
-        axes.grid(axis="x", color=GRID)
-        axes.set_axisbelow(True)
-        axes.tick_params(length=0)
-        axes.spines[:].set_visible(False)
-        axes.legend(frameon=False, loc="lower right", reverse=True)
-        for file in PICTURES:
-            plain = {"Date": None} if file.endswith("svg") else None
-            drawn.savefig(folder / file, dpi=100, metadata=plain)
+    from motionfmu.report.matplotlib_figure import write_picture
+
+    title = f"{found.result.name}: causes of the deviation"
+    write_picture(
+        folder / "causes", title, f"AT_P {length(found.figures['accuracy'])}", _bars(found)
+    )

@@ -1,16 +1,16 @@
-"""What the report needs to know of a run."""
+"""What a report needs to know of a run."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 from motionfmu.analysis.iso9283 import Evaluation
-from motionfmu.report.tables import Check
+from motionfmu.run.checks import Verdict
 from motionfmu.run.figures import Chart
 from motionfmu.run.run_plan import RunPlan
 from motionfmu.run.run_record import RunRecord
 
 
-class Result(RunRecord, Protocol):
+class ReportInput(RunRecord, Protocol):
     """A run beside its contour; `motionfmu.Result` is one."""
 
     @property
@@ -22,7 +22,7 @@ class Result(RunRecord, Protocol):
         """What the scenario shows."""
 
     @property
-    def checks(self) -> Sequence[Check]:
+    def checks(self) -> Sequence[Verdict]:
         """Its verdicts."""
 
     @property
