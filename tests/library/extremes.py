@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu import mcc, robot
+from motionfmu.virtual import mcc, robot
 from motionfmu.base.binding import Struct
 
 SECONDS = 1.0

@@ -180,7 +180,7 @@ int64_t pace_batch_cells(int64_t n, const struct pace_limits *l, double override
     plan_all(n, l, override);
     const int64_t count = pace.count < most ? pace.count : most;
     for (int64_t i = 0; i < count; i++) {
-        const struct pace_cell *c = &pace.cell[(pace.at.head + i) % PACE_CELLS];
+        const struct pace_cell *c = &pace.ring[(pace.at.head + i) % PACE_CELLS].cell;
         const double feed = fmin(c->feed * override, c->cap);
         known[i] = (struct known){ c->length, feed * feed, c->flat, c->most, c->top, c->planes,
                                    { { 0.0 } } };
@@ -206,7 +206,7 @@ int64_t pace_batch_boxes(int64_t most, double (*box)[4])
 {
     const int64_t count = pace.count < most ? pace.count : most;
     for (int64_t i = 0; i < count; i++) {
-        const struct pace_box *g = &pace.box[(pace.at.head + i) % PACE_CELLS];
+        const struct pace_box *g = &pace.ring[(pace.at.head + i) % PACE_CELLS].box;
         const double row[4] = { g->from, g->length, g->feed * g->feed, g->cap * g->cap };
         memcpy(box[i], row, sizeof row);
     }
