@@ -1,4 +1,4 @@
-"""What a refused call of the robot raises, and how C tells it."""
+"""The error that a refused call of the robot raises, made of what C says of it."""
 
 import ctypes
 import math
@@ -67,7 +67,7 @@ def message() -> Any:
 
 
 def refused(call: str, code: int, why: Struct, words: Any) -> RobotError:
-    """What a move or jog that C has refused raises."""
+    """The error for a move or jog that C has refused."""
     status = STATUS[code]
     error = RobotError(f"{call}: {words.value.decode()}", status)
     if status not in ("BUSY", "PARAMETER"):
@@ -78,7 +78,7 @@ def refused(call: str, code: int, why: Struct, words: Any) -> RobotError:
 
 
 def within(name: str, value: float, low: float, high: float) -> float:
-    """Take a number of a range; RobotError if it is not within."""
+    """Check that a number is within a range; a RobotError if it is not."""
     if not isinstance(value, int | float | np.number) or not low <= value <= high:
         limit = high if isinstance(value, int | float) and value > high else low
         number = float(value) if isinstance(value, int | float | np.number) else math.nan
@@ -88,7 +88,7 @@ def within(name: str, value: float, low: float, high: float) -> float:
 
 
 def bounded(name: str, values: np.ndarray, most: float = MOST) -> np.ndarray:
-    """Take an array of numbers up to a limit; RobotError names the first beyond it."""
+    """Check an array of numbers against a limit; a RobotError names the first beyond it."""
     for k in np.flatnonzero(~(np.abs(values) <= most).ravel()):
         within(f"{name}[{k}]", float(values.flat[k]), -most, most)
     return values
